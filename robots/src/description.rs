@@ -1,0 +1,82 @@
+//! A robot as its YAML file describes it, checked, in SI units.
+
+use crate::effect::{Convention, Effect, JointKind};
+
+/// A robot: kinematics, joint compliance, and the effects beyond it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Description {
+    /// The name, which becomes the Rust type (an upper camel case identifier).
+    pub name: String,
+    /// One line on what the robot is.
+    pub description: String,
+    /// Where the numbers come from.
+    pub source: String,
+    /// How the rows of [`joints`](Self::joints) are to be read.
+    pub convention: Convention,
+    /// Frame 0 in the base (world) frame, in which wrenches and displacements
+    /// are given.
+    pub base: Placement,
+    /// The DH rows, from the base to the flange; one to eight.
+    pub joints: Vec<Joint>,
+    /// The tool centre point's frame in the flange frame.
+    pub tool: Placement,
+    /// Masses for gravity: empty, or one a joint.
+    pub links: Vec<Link>,
+    /// What measurements added to the joints' compliance.
+    pub effects: Vec<Effect>,
+}
+
+/// One row of the DH table with the joint it belongs to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// Turning or sliding.
+    pub kind: JointKind,
+    /// DH angle about z at joint coordinate 0 [rad].
+    pub theta: f64,
+    /// DH offset along z at joint coordinate 0 [m].
+    pub d: f64,
+    /// DH length along x [m].
+    pub a: f64,
+    /// DH twist about x [rad].
+    pub alpha: f64,
+    /// Lower and upper limit of the joint coordinate [rad or m].
+    pub limits: Option<[f64; 2]>,
+    /// The parts of the compliance [rad/Nm or m/N], which add up; a joint with
+    /// one number has one part with an empty name, a rigid joint has none.
+    pub compliance: Vec<Part>,
+}
+
+impl Joint {
+    /// The joint's compliance, the sum of its parts [rad/Nm or m/N].
+    pub fn compliance(&self) -> f64 {
+        self.compliance.iter().map(|part| part.value).sum()
+    }
+}
+
+/// One part of a compound joint's compliance, such as `gear` or `belt`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// The part's name; empty where the joint is not compound.
+    pub name: String,
+    /// Its compliance [rad/Nm or m/N].
+    pub value: f64,
+}
+
+/// Where one frame stands in another.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Placement {
+    /// The origin [m].
+    pub xyz: [f64; 3],
+    /// Roll, pitch, yaw about the fixed x, y, z axes [rad]:
+    /// `R = Rz(yaw) Ry(pitch) Rx(roll)`.
+    pub rpy: [f64; 3],
+}
+
+/// Mass of the body that moves with joint `i`, for gravity.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Link {
+    /// Mass [kg].
+    pub mass: f64,
+    /// Centre of mass in the link's frame `i` [m].
+    pub center_of_mass: [f64; 3],
+}

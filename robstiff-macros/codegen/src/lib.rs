@@ -1,0 +1,1 @@
+//! From a robot description over symbolic expressions to unrolled Rust code.

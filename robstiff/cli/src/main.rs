@@ -1,0 +1,2 @@
+//! The command `robstiff`.
+fn main() {}

@@ -1,0 +1,126 @@
+//! Measured data: a campaign is a YAML file that says what was measured, and a
+//! CSV file with the observations.
+//!
+//! Reading checks everything and converts to SI; nothing is computed with the
+//! robot yet, so rows hold what the file says, in the frames the file says.
+
+use std::path::PathBuf;
+use std::string::String;
+use std::vec::Vec;
+
+use robstiff_robots::Description;
+
+/// A measuring campaign on one robot.
+#[derive(Clone, Debug)]
+pub struct Campaign {
+    /// What the file calls itself.
+    pub name: String,
+    /// The campaign file.
+    pub path: PathBuf,
+    /// The robot's description file, as resolved from the campaign's folder.
+    pub robot_path: PathBuf,
+    /// The robot as declared.
+    pub robot: Description,
+    /// The observations.
+    pub data: Data,
+    /// The noise as declared.
+    pub noise: Noise,
+    /// Which part of the poses to hold out, if the file asks for it.
+    pub holdout: Option<Holdout>,
+    /// What the reader noticed without refusing the files, e.g. unknown columns.
+    pub warnings: Vec<String>,
+}
+
+/// The observations, by kind of campaign.
+#[derive(Clone, Debug)]
+pub enum Data {
+    /// Loaded minus unloaded displacement of a point of the tool.
+    Displacement(Displacements),
+    /// One axis loaded, those before it clamped.
+    Clamped(Vec<ClampedRow>),
+}
+
+/// One sigma of one axis of one reading, where the file declares it. A
+/// displacement is the difference of a loaded and an unloaded reading.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Noise {
+    /// Of a displacement reading [m].
+    pub displacement: Option<f64>,
+    /// Of a rotation reading [rad].
+    pub rotation: Option<f64>,
+}
+
+/// The poses kept for judging, never for choosing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Holdout {
+    /// The fraction of the poses, between 0 and 1 exclusive.
+    pub fraction: f64,
+    /// Seed of the choice.
+    pub seed: u64,
+}
+
+/// Which frame a vector of the file is given in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Frame {
+    /// The robot's base frame.
+    #[default]
+    Base,
+    /// The tool's (TCP's) frame.
+    Tool,
+}
+
+/// Rows of kind `displacement`.
+#[derive(Clone, Debug)]
+pub struct Displacements {
+    /// The frame of forces and moments.
+    pub wrench_frame: Frame,
+    /// Where the wrench acts, in the tool frame [m]; the TCP is the origin.
+    pub wrench_at: [f64; 3],
+    /// The frame of displacements and rotations.
+    pub measured_frame: Frame,
+    /// Where the displacement is measured, in the tool frame [m].
+    pub measured_at: [f64; 3],
+    /// Pose ids in order of appearance; rows refer to them by index.
+    pub poses: Vec<String>,
+    /// Visit ids in order of appearance; rows refer to them by index. Without
+    /// the column, every row is a visit of its own.
+    pub visits: Vec<String>,
+    /// The rows, in the file's order.
+    pub rows: Vec<Observation>,
+}
+
+/// One row of kind `displacement`, as the file gives it, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Observation {
+    /// Line of the CSV file, from 1.
+    pub line: usize,
+    /// Index into [`Displacements::poses`].
+    pub pose: usize,
+    /// Index into [`Displacements::visits`].
+    pub visit: usize,
+    /// Time [s].
+    pub time: Option<f64>,
+    /// Temperature [degrees Celsius].
+    pub temperature: Option<f64>,
+    /// Joint coordinates [rad or m], one a joint.
+    pub q: Vec<f64>,
+    /// Force and moment in [`Displacements::wrench_frame`] [N, Nm].
+    pub wrench: [f64; 6],
+    /// Displacement in [`Displacements::measured_frame`] [m].
+    pub displacement: [f64; 3],
+    /// Rotation in the same frame [rad], where measured.
+    pub rotation: Option<[f64; 3]>,
+}
+
+/// One row of kind `clamped`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClampedRow {
+    /// Line of the CSV file, from 1.
+    pub line: usize,
+    /// The loaded axis, from 1.
+    pub axis: usize,
+    /// Torque about the axis [Nm].
+    pub torque: f64,
+    /// Deflection of the axis [rad].
+    pub deflection: f64,
+}

@@ -1,0 +1,1 @@
+//! Support for the tests: a simulator that shares no formula with the library.
