@@ -5,14 +5,14 @@ use robstiff_robots::{Convention, Effect, JointKind};
 
 use crate::Real;
 
-/// The elastostatics of a serial arm with `N` joints over the scalar `T`.
+/// The elastostatics of a serial arm with `N` joints, over any scalar [`Real`].
 ///
 /// Vectors of six have the translation first: a wrench `[f; m]` [N, Nm] acts
 /// at the tool centre point (TCP) in the base frame, a displacement `[d; r]`
 /// [m, rad] is that of the TCP in the base frame, `r` a small rotation vector.
 /// Joint coordinates `q` are in rad (revolute) or m (prismatic). Transforms
 /// are homogeneous 4 x 4 matrices.
-pub trait Robot<const N: usize, T: Real = f64> {
+pub trait Robot<const N: usize> {
     /// The robot's name.
     fn name(&self) -> &str;
 
@@ -24,7 +24,7 @@ pub trait Robot<const N: usize, T: Real = f64> {
     fn joint_kinds(&self) -> [JointKind; N];
 
     /// The joints' own compliances, the diagonal of `H_q` [rad/Nm or m/N].
-    fn joint_compliance(&self) -> SVector<T, N>;
+    fn joint_compliance(&self) -> SVector<f64, N>;
 
     /// Lower and upper limits of the joint coordinates, where they are known.
     fn limits(&self) -> [Option<[f64; 2]>; N];
@@ -33,31 +33,31 @@ pub trait Robot<const N: usize, T: Real = f64> {
     fn effects(&self) -> &[Effect];
 
     /// Frame 0 in the base frame.
-    fn base(&self) -> Matrix4<T>;
+    fn base(&self) -> Matrix4<f64>;
 
     /// The tool centre point's frame in the flange frame.
-    fn tool(&self) -> Matrix4<T>;
+    fn tool(&self) -> Matrix4<f64>;
 
     /// The tool centre point's frame in the base frame.
-    fn transform(&self, q: &SVector<T, N>) -> Matrix4<T>;
+    fn transform<T: Real>(&self, q: &SVector<T, N>) -> Matrix4<T>;
 
     /// Frames 1 to N, each fixed to the link behind its joint, in the base
     /// frame; the last is the flange frame.
-    fn link_frames(&self, q: &SVector<T, N>) -> [Matrix4<T>; N];
+    fn link_frames<T: Real>(&self, q: &SVector<T, N>) -> [Matrix4<T>; N];
 
     /// The 6 x N Jacobian of the TCP in the base frame, translation first.
-    fn jacobian(&self, q: &SVector<T, N>) -> SMatrix<T, 6, N>;
+    fn jacobian<T: Real>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, N>;
 
     /// The 6 x 6 Cartesian compliance at the TCP in the base frame,
     /// `H_x = J H_q J^T` and what the effects add: the displacement per small
     /// wrench about the unloaded state. Units by block: m/N, m/Nm, rad/N,
     /// rad/Nm.
-    fn compliance(&self, q: &SVector<T, N>) -> Matrix6<T>;
+    fn compliance<T: Real>(&self, q: &SVector<T, N>) -> Matrix6<T>;
 
     /// The displacement of the TCP under a wrench at the TCP; beyond
     /// `H_x` times the wrench it knows the nonlinear effects.
-    fn deflection(&self, q: &SVector<T, N>, wrench: &Vector6<T>) -> Vector6<T>;
+    fn deflection<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>) -> Vector6<T>;
 
     /// The joint torques that hold a wrench at the TCP, `J^T F` [Nm or N].
-    fn joint_torques(&self, q: &SVector<T, N>, wrench: &Vector6<T>) -> SVector<T, N>;
+    fn joint_torques<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>) -> SVector<T, N>;
 }
