@@ -3,10 +3,10 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-/// How near to a multiple of 90 degrees an angle counts as that multiple [rad].
+/// How near to a multiple of 90 degrees an angle counts as that multiple (rad).
 pub const SNAP: f64 = 1e-9;
 
-/// The number of quarter turns, reduced to `0..4`, if `angle` [rad] is within
+/// The number of quarter turns, reduced to `0..4`, if `angle` (rad) is within
 /// [`SNAP`] of a multiple of 90 degrees.
 pub fn quarter_turns(angle: f64) -> Option<u8> {
     let turns = angle / FRAC_PI_2;

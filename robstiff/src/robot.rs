@@ -7,9 +7,9 @@ use crate::Real;
 
 /// The elastostatics of a serial arm with `N` joints, over any scalar [`Real`].
 ///
-/// Vectors of six have the translation first: a wrench `[f; m]` [N, Nm] acts
+/// Vectors of six have the translation first: a wrench `[f; m]` (N, Nm) acts
 /// at the tool centre point (TCP) in the base frame, a displacement `[d; r]`
-/// [m, rad] is that of the TCP in the base frame, `r` a small rotation vector.
+/// (m, rad) is that of the TCP in the base frame, `r` a small rotation vector.
 /// Joint coordinates `q` are in rad (revolute) or m (prismatic). Transforms
 /// are homogeneous 4 x 4 matrices.
 pub trait Robot<const N: usize> {
@@ -23,7 +23,7 @@ pub trait Robot<const N: usize> {
     /// Turning or sliding, a joint each.
     fn joint_kinds(&self) -> [JointKind; N];
 
-    /// The joints' own compliances, the diagonal of `H_q` [rad/Nm or m/N].
+    /// The joints' own compliances, the diagonal of `H_q` (rad/Nm or m/N).
     fn joint_compliance(&self) -> SVector<f64, N>;
 
     /// Lower and upper limits of the joint coordinates, where they are known.
@@ -58,6 +58,6 @@ pub trait Robot<const N: usize> {
     /// `H_x` times the wrench it knows the nonlinear effects.
     fn deflection<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>) -> Vector6<T>;
 
-    /// The joint torques that hold a wrench at the TCP, `J^T F` [Nm or N].
+    /// The joint torques that hold a wrench at the TCP, `J^T F` (Nm or N).
     fn joint_torques<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>) -> SVector<T, N>;
 }

@@ -44,9 +44,9 @@ pub enum Data {
 /// displacement is the difference of a loaded and an unloaded reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Noise {
-    /// Of a displacement reading [m].
+    /// Of a displacement reading (m).
     pub displacement: Option<f64>,
-    /// Of a rotation reading [rad].
+    /// Of a rotation reading (rad).
     pub rotation: Option<f64>,
 }
 
@@ -74,11 +74,11 @@ pub enum Frame {
 pub struct Displacements {
     /// The frame of forces and moments.
     pub wrench_frame: Frame,
-    /// Where the wrench acts, in the tool frame [m]; the TCP is the origin.
+    /// Where the wrench acts, in the tool frame (m); the TCP is the origin.
     pub wrench_at: [f64; 3],
     /// The frame of displacements and rotations.
     pub measured_frame: Frame,
-    /// Where the displacement is measured, in the tool frame [m].
+    /// Where the displacement is measured, in the tool frame (m).
     pub measured_at: [f64; 3],
     /// Pose ids in order of appearance; rows refer to them by index.
     pub poses: Vec<String>,
@@ -98,17 +98,17 @@ pub struct Observation {
     pub pose: usize,
     /// Index into [`Displacements::visits`].
     pub visit: usize,
-    /// Time [s].
+    /// Time (s).
     pub time: Option<f64>,
-    /// Temperature [degrees Celsius].
+    /// Temperature (degrees Celsius).
     pub temperature: Option<f64>,
-    /// Joint coordinates [rad or m], one a joint.
+    /// Joint coordinates (rad or m), one a joint.
     pub q: Vec<f64>,
-    /// Force and moment in [`Displacements::wrench_frame`] [N, Nm].
+    /// Force and moment in [`Displacements::wrench_frame`] (N, Nm).
     pub wrench: [f64; 6],
-    /// Displacement in [`Displacements::measured_frame`] [m].
+    /// Displacement in [`Displacements::measured_frame`] (m).
     pub displacement: [f64; 3],
-    /// Rotation in the same frame [rad], where measured.
+    /// Rotation in the same frame (rad), where measured.
     pub rotation: Option<[f64; 3]>,
 }
 
@@ -119,8 +119,8 @@ pub struct ClampedRow {
     pub line: usize,
     /// The loaded axis, from 1.
     pub axis: usize,
-    /// Torque about the axis [Nm].
+    /// Torque about the axis (Nm).
     pub torque: f64,
-    /// Deflection of the axis [rad].
+    /// Deflection of the axis (rad).
     pub deflection: f64,
 }

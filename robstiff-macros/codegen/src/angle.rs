@@ -1,0 +1,151 @@
+//! Angles as sums of joint coordinates and a constant.
+//!
+//! Turns about parallel axes add up to one angle, and one angle needs one sine
+//! and cosine: `q2 + q3` instead of products of four.
+
+use std::f64::consts::FRAC_PI_2;
+use std::ops::{Add, Neg};
+
+use robstiff_robots::angle::quarter_turns;
+
+/// `sum of sign * q_joint + offset`, with joints from 0 in ascending order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Angle {
+    terms: Vec<(usize, i32)>,
+    offset: f64,
+}
+
+/// An angle as `quarter_turns * 90 degrees +- rest`.
+pub(crate) struct Reduced {
+    /// 0 to 3.
+    pub quarter_turns: u8,
+    /// Whether the rest enters with a minus.
+    pub negated: bool,
+    /// What is left: its first term is positive, and its offset is no multiple
+    /// of 90 degrees. Nothing, if the angle is such a multiple.
+    pub rest: Option<Angle>,
+}
+
+impl Angle {
+    /// A constant angle (rad).
+    pub fn constant(offset: f64) -> Self {
+        Self { terms: Vec::new(), offset }
+    }
+
+    /// The coordinate of a joint (from 0) plus a constant (rad).
+    pub fn of_joint(joint: usize, offset: f64) -> Self {
+        Self { terms: vec![(joint, 1)], offset }
+    }
+
+    /// The joints (from 0) with their factors.
+    pub fn terms(&self) -> &[(usize, i32)] {
+        &self.terms
+    }
+
+    /// The constant part (rad).
+    pub fn offset(&self) -> f64 {
+        self.offset
+    }
+
+    /// Whether it is exactly 0 for every pose.
+    pub fn is_zero(&self) -> bool {
+        self.terms.is_empty() && quarter_turns(self.offset) == Some(0)
+    }
+
+    /// Digits that name it: `23` for q2 + q3, `2m3` for q2 - q3, with an `o`
+    /// where an odd offset is in it.
+    pub fn label(&self) -> String {
+        let mut label = String::new();
+        for &(joint, factor) in &self.terms {
+            if factor < 0 {
+                label.push('m');
+            }
+            if factor.abs() > 1 {
+                label.push_str(&format!("{}x", factor.abs()));
+            }
+            label.push_str(&(joint + 1).to_string());
+        }
+        if self.offset != 0.0 {
+            label.push('o');
+        }
+        label
+    }
+
+    pub(crate) fn reduced(&self) -> Reduced {
+        let turns = quarter_turns(self.offset);
+        let mut rest = Self { terms: self.terms.clone(), offset: if turns.is_some() { 0.0 } else { self.offset } };
+        let negated = rest.terms.first().is_some_and(|&(_, factor)| factor < 0);
+        if negated {
+            rest = -rest;
+        }
+        let rest = (!rest.terms.is_empty() || turns.is_none()).then_some(rest);
+        Reduced { quarter_turns: turns.unwrap_or(0), negated, rest }
+    }
+}
+
+impl Add<&Angle> for Angle {
+    type Output = Self;
+
+    fn add(mut self, other: &Self) -> Self {
+        for &(joint, factor) in &other.terms {
+            match self.terms.binary_search_by_key(&joint, |term| term.0) {
+                Ok(at) => self.terms[at].1 += factor,
+                Err(at) => self.terms.insert(at, (joint, factor)),
+            }
+        }
+        self.terms.retain(|term| term.1 != 0);
+        self.offset += other.offset;
+        // Sums of quarter turns stay exact.
+        if let Some(turns) = quarter_turns(self.offset) {
+            self.offset = f64::from(turns) * FRAC_PI_2;
+        }
+        self
+    }
+}
+
+impl Neg for Angle {
+    type Output = Self;
+
+    fn neg(mut self) -> Self {
+        for term in &mut self.terms {
+            term.1 = -term.1;
+        }
+        self.offset = -self.offset;
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graph::Graph;
+
+    #[test]
+    fn quarter_turns_swap_sine_and_cosine() {
+        let g = Graph::new();
+        let (s, c) = g.sin_cos(&Angle::of_joint(1, 0.0));
+        assert_eq!(g.sin_cos(&Angle::of_joint(1, FRAC_PI_2)), (c, -s));
+        assert_eq!(g.sin_cos(&Angle::of_joint(1, -FRAC_PI_2)), (-c, s));
+        assert_eq!(g.sin_cos(&Angle::of_joint(1, 2.0 * FRAC_PI_2)), (-s, -c));
+        assert_eq!(g.sin_cos(&-Angle::of_joint(1, FRAC_PI_2)), (-c, -s));
+    }
+
+    #[test]
+    fn constants_are_exact() {
+        let g = Graph::new();
+        let (s, c) = g.sin_cos(&Angle::constant(2.0 * FRAC_PI_2));
+        assert_eq!((s.constant(), c.constant()), (Some(0.0), Some(-1.0)));
+    }
+
+    #[test]
+    fn opposite_turns_cancel() {
+        let there = Angle::of_joint(2, 0.25);
+        assert!((there.clone() + &-there).is_zero());
+    }
+
+    #[test]
+    fn labels_read_like_the_sum() {
+        assert_eq!((Angle::of_joint(1, 0.0) + &Angle::of_joint(2, 0.0)).label(), "23");
+        assert_eq!((Angle::of_joint(1, 0.0) + &-Angle::of_joint(2, 0.1)).label(), "2m3o");
+    }
+}

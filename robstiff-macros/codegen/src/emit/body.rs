@@ -1,0 +1,247 @@
+//! The statements of a generated function.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::names::{Names, WRENCH};
+use crate::function::Function;
+use crate::graph::{Id, Op};
+
+/// The lines before a function's result, and the result's entries.
+pub(super) struct Body {
+    pub statements: TokenStream,
+    pub outputs: Vec<TokenStream>,
+}
+
+/// How tightly an expression binds.
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
+enum Binding {
+    Sum,
+    Product,
+    Sign,
+    Unit,
+}
+
+/// Writes a function out; with `remarks`, the remarks of its algorithm as
+/// statements that the text form turns into comments.
+pub(super) fn body(function: &Function, remarks: bool) -> Body {
+    let writer = Writer { function, names: Names::of(function) };
+    let statements = writer.statements(remarks);
+    let outputs = function.outputs().iter().map(|&id| writer.operand(id, Binding::Sum)).collect();
+    Body { statements, outputs }
+}
+
+struct Writer<'f> {
+    function: &'f Function,
+    names: Names,
+}
+
+impl Writer<'_> {
+    fn statements(&self, with_remarks: bool) -> TokenStream {
+        let graph = self.function.graph();
+        let nodes = graph.nodes();
+        let mut out = TokenStream::new();
+        for (id, name) in self.names.lines().filter(|(id, _)| nodes[*id].constant.is_some()) {
+            let (name, value) = (format_ident!("{name}"), self.constant(id, Binding::Sum));
+            out.extend(quote!(let #name = T::of(#value);));
+        }
+        out.extend(self.wrench());
+        let mut remarks = graph.remarks().to_vec().into_iter().peekable();
+        for (id, node) in self.live() {
+            if node.constant.is_some() {
+                continue;
+            }
+            let line = match node.op {
+                Op::Sin(index) | Op::Cos(index) => self.sin_cos(id, index),
+                _ => self.names.get(id).map(|name| {
+                    let (name, value) = (format_ident!("{name}"), self.expression(id).0);
+                    quote!(let #name = #value;)
+                }),
+            };
+            let Some(line) = line else { continue };
+            // Of several remarks before a line, the last one speaks of it.
+            let mut remark = None;
+            while remarks.peek().is_some_and(|(first, _)| *first <= id) {
+                remark = remarks.next();
+            }
+            if let (true, Some((_, text))) = (with_remarks, remark) {
+                out.extend(quote!(__remark!(#text);));
+            }
+            out.extend(line);
+        }
+        out
+    }
+
+    fn live(&self) -> Vec<(Id, crate::graph::Node)> {
+        let uses = self.function.uses();
+        self.function.graph().nodes().iter().copied().enumerate().filter(|(id, _)| uses[*id] > 0).collect()
+    }
+
+    /// `let [fx, _, fz, ..] = wrench.data.0[0];`, if the wrench matters.
+    fn wrench(&self) -> TokenStream {
+        let used: Vec<usize> = self
+            .live()
+            .into_iter()
+            .filter_map(|(_, node)| if let Op::Wrench(index) = node.op { Some(index) } else { None })
+            .collect();
+        if used.is_empty() {
+            return TokenStream::new();
+        }
+        let entries = (0..6).map(|index| {
+            if used.contains(&index) {
+                let name = format_ident!("{}", WRENCH[index]);
+                quote!(#name)
+            } else {
+                quote!(_)
+            }
+        });
+        quote!(let [#(#entries),*] = wrench.data.0[0];)
+    }
+
+    /// `let (s23, c23) = (q[1] + q[2]).sin_cos();`, where the first of the two
+    /// is needed.
+    fn sin_cos(&self, id: Id, index: usize) -> Option<TokenStream> {
+        let live = self.live();
+        let at = |op: Op| live.iter().find(|(_, node)| node.op == op).map(|(id, _)| *id);
+        let (sin, cos) = (at(Op::Sin(index)), at(Op::Cos(index)));
+        if sin.into_iter().chain(cos).min() != Some(id) {
+            return None;
+        }
+        let angle = &self.function.graph().angles()[index];
+        let label = angle.label();
+        let pattern = |live: Option<Id>, letter: &str| match live {
+            Some(_) => {
+                let name = format_ident!("{letter}{label}");
+                quote!(#name)
+            }
+            None => quote!(_),
+        };
+        let (sin, cos) = (pattern(sin, "s"), pattern(cos, "c"));
+        let mut sum = TokenStream::new();
+        for (k, &(joint, factor)) in angle.terms().iter().enumerate() {
+            let joint = Literal::usize_unsuffixed(joint);
+            if factor < 0 {
+                sum.extend(quote!(-));
+            } else if k > 0 {
+                sum.extend(quote!(+));
+            }
+            sum.extend(match factor.abs() {
+                1 => quote!(q[#joint]),
+                factor => {
+                    let factor = Literal::f64_unsuffixed(f64::from(factor));
+                    quote!(T::of(#factor) * q[#joint])
+                }
+            });
+        }
+        if angle.offset() != 0.0 {
+            let offset = Literal::f64_unsuffixed(angle.offset().abs());
+            let sign = if angle.offset() < 0.0 { quote!(-) } else { quote!(+) };
+            sum.extend(quote!(#sign T::of(#offset)));
+        }
+        let single = angle.terms().len() == 1 && angle.offset() == 0.0 && angle.terms()[0].1 == 1;
+        let sum = if single { sum } else { quote!((#sum)) };
+        Some(quote!(let (#sin, #cos) = #sum.sin_cos();))
+    }
+
+    /// A node where it is used: its name if it has a line, else its expression.
+    fn operand(&self, id: Id, context: Binding) -> TokenStream {
+        if let Some(name) = self.names.get(id) {
+            let name = format_ident!("{name}");
+            return quote!(#name);
+        }
+        let (expression, binding) = self.expression(id);
+        if binding < context { quote!((#expression)) } else { expression }
+    }
+
+    /// What a node computes, from its operands.
+    fn expression(&self, id: Id) -> (TokenStream, Binding) {
+        let graph = self.function.graph();
+        match graph.nodes()[id].op {
+            Op::Number(bits) => match f64::from_bits(bits) {
+                0.0 => (quote!(T::zero()), Binding::Unit),
+                1.0 => (quote!(T::one()), Binding::Unit),
+                -1.0 => (quote!(-T::one()), Binding::Sign),
+                value => unreachable!("{value} has a line"),
+            },
+            Op::Parameter(_) => unreachable!("a parameter has a line"),
+            Op::Coordinate(index) => {
+                let index = Literal::usize_unsuffixed(index);
+                (quote!(q[#index]), Binding::Unit)
+            }
+            Op::Wrench(index) => {
+                let name = format_ident!("{}", WRENCH[index]);
+                (quote!(#name), Binding::Unit)
+            }
+            Op::Sin(index) => {
+                let name = format_ident!("s{}", graph.angles()[index].label());
+                (quote!(#name), Binding::Unit)
+            }
+            Op::Cos(index) => {
+                let name = format_ident!("c{}", graph.angles()[index].label());
+                (quote!(#name), Binding::Unit)
+            }
+            Op::Add(a, b) => {
+                let (a, b) = (self.operand(a, Binding::Sum), self.operand(b, Binding::Product));
+                (quote!(#a + #b), Binding::Sum)
+            }
+            Op::Sub(a, b) => {
+                let (a, b) = (self.operand(a, Binding::Sum), self.operand(b, Binding::Product));
+                (quote!(#a - #b), Binding::Sum)
+            }
+            Op::Mul(a, b) => {
+                let (a, b) = (self.operand(a, Binding::Product), self.operand(b, Binding::Sign));
+                (quote!(#a * #b), Binding::Product)
+            }
+            Op::Neg(a) => {
+                let a = self.operand(a, Binding::Product);
+                (quote!(-#a), Binding::Sign)
+            }
+            Op::Sqrt(a) => {
+                let a = self.operand(a, Binding::Unit);
+                (quote!(#a.sqrt()), Binding::Unit)
+            }
+            Op::Recip(a) => {
+                let a = self.operand(a, Binding::Unit);
+                (quote!(#a.recip()), Binding::Unit)
+            }
+        }
+    }
+
+    /// A constant from the description's numbers, which the compiler computes.
+    fn constant(&self, id: Id, context: Binding) -> TokenStream {
+        let graph = self.function.graph();
+        let (expression, binding) = match graph.nodes()[id].op {
+            Op::Number(bits) => {
+                let value = f64::from_bits(bits);
+                let literal = Literal::f64_unsuffixed(value.abs());
+                if value < 0.0 { (quote!(-#literal), Binding::Sign) } else { (quote!(#literal), Binding::Unit) }
+            }
+            Op::Parameter(index) => {
+                let name = format_ident!("{}", graph.parameters()[index].name);
+                (quote!(Self::#name), Binding::Unit)
+            }
+            Op::Add(a, b) => {
+                let (a, b) = (self.constant(a, Binding::Sum), self.constant(b, Binding::Product));
+                (quote!(#a + #b), Binding::Sum)
+            }
+            Op::Sub(a, b) => {
+                let (a, b) = (self.constant(a, Binding::Sum), self.constant(b, Binding::Product));
+                (quote!(#a - #b), Binding::Sum)
+            }
+            Op::Mul(a, b) => {
+                let (a, b) = (self.constant(a, Binding::Product), self.constant(b, Binding::Sign));
+                (quote!(#a * #b), Binding::Product)
+            }
+            Op::Neg(a) => {
+                let a = self.constant(a, Binding::Product);
+                (quote!(-#a), Binding::Sign)
+            }
+            Op::Recip(a) => {
+                let a = self.constant(a, Binding::Sign);
+                (quote!(1.0 / #a), Binding::Product)
+            }
+            op => unreachable!("{op:?} of constants: nothing takes the root of a parameter"),
+        };
+        if binding < context { quote!((#expression)) } else { expression }
+    }
+}

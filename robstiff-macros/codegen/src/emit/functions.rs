@@ -1,0 +1,78 @@
+//! The functions that are generated for a robot.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+use robstiff_robots::Description;
+
+use crate::function::Function;
+use crate::symbolic;
+
+/// One generated function: what it is called, what its docs say, how its
+/// result is put together.
+pub(super) struct Generated {
+    /// The method of the trait.
+    #[cfg_attr(not(feature = "text"), expect(dead_code, reason = "only people read it"))]
+    pub name: &'static str,
+    /// What it gives, with shape, frame and unit.
+    pub doc: &'static str,
+    /// The calculation.
+    pub function: Function,
+    result: fn(&[TokenStream]) -> TokenStream,
+}
+
+impl Generated {
+    /// The expression that builds the result from its entries.
+    pub fn result(&self, entries: &[TokenStream]) -> TokenStream {
+        (self.result)(entries)
+    }
+}
+
+/// All functions of a robot, in the order of the trait.
+pub(super) fn functions(robot: &Description) -> [Generated; 6] {
+    [
+        Generated {
+            name: "transform",
+            doc: "Frame of the tool centre point in the base frame, 4 x 4 homogeneous (m).",
+            function: Function::of(|g| symbolic::transform(g, robot)),
+            result: |entries| quote!(Matrix4::new(#(#entries),*)),
+        },
+        Generated {
+            name: "link_frames",
+            doc: "Frames behind the joints in the base frame, 4 x 4 homogeneous (m); the last is the flange.",
+            function: Function::of(|g| symbolic::link_frames(g, robot)),
+            result: |entries| {
+                let frames = entries.chunks(16).map(|frame| quote!(Matrix4::new(#(#frame),*)));
+                quote!([#(#frames),*])
+            },
+        },
+        Generated {
+            name: "jacobian",
+            doc: "Jacobian of the tool centre point in the base frame, 6 rows: translation (m/rad), rotation.",
+            function: Function::of(|g| symbolic::jacobian(g, robot)),
+            result: |entries| {
+                let columns = entries.chunks(6).map(|column| quote!([#(#column),*]));
+                quote!(SMatrix::from([#(#columns),*]))
+            },
+        },
+        Generated {
+            name: "compliance",
+            doc: "Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).\n\n \
+                  It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and \
+                  rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.",
+            function: Function::of(|g| symbolic::compliance(g, robot)),
+            result: |entries| quote!(Matrix6::new(#(#entries),*)),
+        },
+        Generated {
+            name: "deflection",
+            doc: "Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm).",
+            function: Function::of(|g| symbolic::deflection(g, robot)),
+            result: |entries| quote!(Vector6::new(#(#entries),*)),
+        },
+        Generated {
+            name: "joint_torques",
+            doc: "Joint torques (Nm) (forces (N) of sliding joints) that hold a wrench at the tool centre point.",
+            function: Function::of(|g| symbolic::joint_torques(g, robot)),
+            result: |entries| quote!(SVector::from([#(#entries),*])),
+        },
+    ]
+}

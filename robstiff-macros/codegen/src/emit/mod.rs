@@ -1,0 +1,13 @@
+//! From functions to Rust: a type, and its `Robot` implementation.
+
+mod body;
+mod facts;
+mod functions;
+mod names;
+mod robot;
+#[cfg(feature = "text")]
+mod text;
+
+pub use robot::{Origin, skeleton, tokens};
+#[cfg(feature = "text")]
+pub use text::source;

@@ -1,0 +1,198 @@
+//! The generated type and its `Robot` implementation.
+
+use proc_macro2::{Literal, Span, TokenStream};
+use quote::{format_ident, quote};
+use robstiff_robots::Description;
+use syn::Ident;
+
+use super::body::{Body, body};
+use super::facts::{facts, number};
+use super::functions::{Generated, functions};
+use crate::function::Function;
+use crate::graph::{Op, Parameter};
+
+/// Where generated code comes from and where it will stand.
+#[derive(Clone, Debug)]
+pub struct Origin {
+    /// The description's file, as generated docs name it.
+    pub file: String,
+    /// The path to the runtime crate.
+    pub runtime: TokenStream,
+    /// The visibility of the generated type.
+    pub visibility: TokenStream,
+}
+
+/// The items for one robot: the type, its constants, its implementation.
+pub fn tokens(robot: &Description, origin: &Origin) -> TokenStream {
+    let functions = functions(robot);
+    let definition = definition(robot, origin, &functions);
+    let (imports, implementation) = (imports(&origin.runtime), implementation(robot, &functions, false));
+    quote! {
+        #definition
+        const _: () = {
+            #imports
+            #implementation
+        };
+    }
+}
+
+/// What stands in for a robot whose description is wrong: the type and a
+/// `Robot` implementation without code, so that the description's errors are
+/// the only ones.
+pub fn skeleton(name: &str, joints: Option<usize>, origin: &Origin) -> TokenStream {
+    let Origin { runtime, visibility, .. } = origin;
+    let name = Ident::new(name, Span::call_site());
+    let (generics, count) = match joints {
+        Some(joints) => {
+            let joints = Literal::usize_unsuffixed(joints);
+            (quote!(), quote!(#joints))
+        }
+        None => (quote!(<const N: usize>), quote!(N)),
+    };
+    let methods = signatures().map(|(signature, _)| {
+        let signature = signature(&count);
+        quote!(#signature { ::core::unimplemented!() })
+    });
+    let imports = imports(runtime);
+    quote! {
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #visibility struct #name;
+        const _: () = {
+            #imports
+            impl #generics Robot<#count> for #name {
+                #(#[allow(unused_variables)] #methods)*
+            }
+        };
+    }
+}
+
+/// Whether a method of `Robot` states what the description says, or calculates.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Fact,
+    Calculation,
+}
+
+/// The signature of a method, for a number of joints.
+type Signature = fn(&TokenStream) -> TokenStream;
+
+/// The methods of `Robot` in its order.
+fn signatures() -> [(Signature, Kind); 14] {
+    use Kind::{Calculation, Fact};
+    [
+        (|_| quote!(fn name(&self) -> &str), Fact),
+        (|_| quote!(fn convention(&self) -> Convention), Fact),
+        (|n| quote!(fn joint_kinds(&self) -> [JointKind; #n]), Fact),
+        (|n| quote!(fn joint_compliance(&self) -> SVector<f64, #n>), Fact),
+        (|n| quote!(fn limits(&self) -> [Option<[f64; 2]>; #n]), Fact),
+        (|_| quote!(fn effects(&self) -> &[Effect]), Fact),
+        (|_| quote!(fn base(&self) -> Matrix4<f64>), Fact),
+        (|_| quote!(fn tool(&self) -> Matrix4<f64>), Fact),
+        (|n| quote!(fn transform<T: Real>(&self, q: &SVector<T, #n>) -> Matrix4<T>), Calculation),
+        (|n| quote!(fn link_frames<T: Real>(&self, q: &SVector<T, #n>) -> [Matrix4<T>; #n]), Calculation),
+        (|n| quote!(fn jacobian<T: Real>(&self, q: &SVector<T, #n>) -> SMatrix<T, 6, #n>), Calculation),
+        (|n| quote!(fn compliance<T: Real>(&self, q: &SVector<T, #n>) -> Matrix6<T>), Calculation),
+        (|n| quote!(fn deflection<T: Real>(&self, q: &SVector<T, #n>, wrench: &Vector6<T>) -> Vector6<T>), Calculation),
+        (
+            |n| quote!(fn joint_torques<T: Real>(&self, q: &SVector<T, #n>, wrench: &Vector6<T>) -> SVector<T, #n>),
+            Calculation,
+        ),
+    ]
+}
+
+/// What the implementation names.
+pub(super) fn imports(runtime: &TokenStream) -> TokenStream {
+    quote! {
+        use #runtime::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
+        use #runtime::{Convention, Effect, JointKind, Real, Robot};
+    }
+}
+
+/// The type with its documentation and its named numbers.
+pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Generated]) -> TokenStream {
+    let Origin { file, visibility, .. } = origin;
+    let name = Ident::new(&robot.name, Span::call_site());
+    let mut docs = Vec::new();
+    if !robot.description.trim().is_empty() {
+        docs.extend(paragraph(&robot.description));
+    }
+    docs.push(format!(" Elastostatics of `{}`, {} joints, generated from `{file}`.", robot.name, robot.joints.len()));
+    if !robot.source.trim().is_empty() {
+        docs.push(String::new());
+        docs.push(" # Sources".to_owned());
+        docs.push(String::new());
+        docs.extend(lines(&robot.source));
+    }
+    let mut parameters: Vec<Parameter> = Vec::new();
+    for parameter in functions.iter().flat_map(|generated| generated.function.graph().parameters().to_vec()) {
+        if !parameters.contains(&parameter) {
+            parameters.push(parameter);
+        }
+    }
+    let constants = parameters.iter().map(|parameter| {
+        let (doc, value) = (format!(" {}", parameter.doc), number(parameter.value));
+        let name = format_ident!("{}", parameter.name);
+        quote! {
+            #[doc = #doc]
+            pub const #name: f64 = #value;
+        }
+    });
+    quote! {
+        #(#[doc = #docs])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #visibility struct #name;
+
+        impl #name {
+            #(#constants)*
+        }
+    }
+}
+
+/// A paragraph of docs with an empty line after it.
+fn paragraph(text: &str) -> Vec<String> {
+    let mut out = lines(text);
+    out.push(String::new());
+    out
+}
+
+fn lines(text: &str) -> Vec<String> {
+    text.trim().lines().map(|line| format!(" {}", line.trim())).collect()
+}
+
+/// The `Robot` implementation.
+pub(super) fn implementation(robot: &Description, functions: &[Generated], remarks: bool) -> TokenStream {
+    let name = Ident::new(&robot.name, Span::call_site());
+    let n = Literal::usize_unsuffixed(robot.joints.len());
+    let count = quote!(#n);
+    let (stated, calculated): (Vec<_>, Vec<_>) = signatures().into_iter().partition(|(_, kind)| *kind == Kind::Fact);
+    let stated = stated.into_iter().zip(facts(robot)).map(|((signature, _), fact)| {
+        let signature = signature(&count);
+        quote!(#[inline] #signature { #fact })
+    });
+    let calculated = calculated.into_iter().zip(functions).map(|((signature, _), generated)| {
+        let signature = signature(&count);
+        let Body { statements, outputs } = body(&generated.function, remarks);
+        let result = generated.result(&outputs);
+        let docs = [format!(" {}", generated.doc), String::new(), format!(" {}.", generated.function.cost())];
+        // What a function does not depend on is unused.
+        let silence = ignores_an_input(&generated.function).then(|| quote!(#[allow(unused_variables)]));
+        quote!(#(#[doc = #docs])* #silence #[inline] #signature { #statements #result })
+    });
+    quote! {
+        impl Robot<#n> for #name {
+            #(#stated)*
+            #(#calculated)*
+        }
+    }
+}
+
+/// Whether a function does not read its joint coordinates, or takes a wrench
+/// and does not read that.
+fn ignores_an_input(function: &Function) -> bool {
+    let uses = function.uses();
+    let nodes = function.graph().nodes();
+    let reads = |of: fn(&Op) -> bool| nodes.iter().zip(&uses).any(|(node, &used)| used > 0 && of(&node.op));
+    let takes_wrench = nodes.iter().any(|node| matches!(node.op, Op::Wrench(_)));
+    !reads(|op| matches!(op, Op::Coordinate(_) | Op::Sin(_) | Op::Cos(_)))
+        || (takes_wrench && !reads(|op| matches!(op, Op::Wrench(_))))
+}

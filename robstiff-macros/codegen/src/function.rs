@@ -1,0 +1,139 @@
+//! A function as a graph with outputs: what is live in it, what it costs, and
+//! its value at a point.
+
+use std::fmt;
+
+use crate::graph::{Graph, Id, Op, Sym};
+
+/// The expressions of one function and which of them are its results.
+#[derive(Debug)]
+pub struct Function {
+    graph: Graph,
+    outputs: Vec<Id>,
+}
+
+impl Function {
+    /// Runs an algorithm on symbols.
+    pub fn of(algorithm: impl for<'g> FnOnce(&'g Graph) -> Vec<Sym<'g>>) -> Self {
+        let graph = Graph::new();
+        let outputs = algorithm(&graph).into_iter().map(Sym::id).collect();
+        Self { graph, outputs }
+    }
+
+    /// The expressions.
+    pub fn graph(&self) -> &Graph {
+        &self.graph
+    }
+
+    /// The results, in order.
+    pub fn outputs(&self) -> &[Id] {
+        &self.outputs
+    }
+
+    /// How often each node is used by live nodes and outputs; 0 for dead ones.
+    pub fn uses(&self) -> Vec<usize> {
+        let nodes = self.graph.nodes();
+        let mut uses = vec![0; nodes.len()];
+        for &output in &self.outputs {
+            uses[output] += 1;
+        }
+        // Operands come before their users: one sweep backwards sees all uses
+        // of a node before the node itself.
+        for id in (0..nodes.len()).rev() {
+            if uses[id] > 0 {
+                for operand in nodes[id].op.operands() {
+                    uses[operand] += 1;
+                }
+            }
+        }
+        uses
+    }
+
+    /// What one evaluation costs; constants cost nothing.
+    pub fn cost(&self) -> Cost {
+        let uses = self.uses();
+        let mut cost = Cost::default();
+        for (node, &used) in self.graph.nodes().iter().zip(&uses) {
+            if used == 0 || node.constant.is_some() {
+                continue;
+            }
+            match node.op {
+                Op::Sin(_) | Op::Cos(_) => cost.trig += 1,
+                Op::Mul(..) => cost.mul += 1,
+                Op::Add(..) | Op::Sub(..) => cost.add += 1,
+                Op::Neg(_) => cost.neg += 1,
+                Op::Sqrt(_) | Op::Recip(_) => cost.root += 1,
+                Op::Number(_) | Op::Parameter(_) | Op::Coordinate(_) | Op::Wrench(_) => {}
+            }
+        }
+        // An angle of two joints takes additions, too.
+        for (index, angle) in self.graph.angles().iter().enumerate() {
+            let live = self
+                .graph
+                .nodes()
+                .iter()
+                .zip(&uses)
+                .any(|(node, &used)| used > 0 && (node.op == Op::Sin(index) || node.op == Op::Cos(index)));
+            if live {
+                cost.add += angle.terms().len() - 1 + usize::from(angle.offset() != 0.0);
+            }
+        }
+        cost
+    }
+
+    /// The values of the outputs: the graph interpreted, node by node.
+    pub fn evaluate(&self, coordinates: &[f64], wrench: &[f64]) -> Vec<f64> {
+        let nodes = self.graph.nodes();
+        let angle = |index: usize| {
+            let angle = &self.graph.angles()[index];
+            let terms = angle.terms().iter().map(|&(joint, factor)| f64::from(factor) * coordinates[joint]);
+            terms.sum::<f64>() + angle.offset()
+        };
+        let mut values: Vec<f64> = Vec::with_capacity(nodes.len());
+        for node in nodes.iter() {
+            values.push(match node.op {
+                Op::Number(bits) => f64::from_bits(bits),
+                Op::Parameter(index) => self.graph.parameters()[index].value,
+                Op::Coordinate(index) => coordinates[index],
+                Op::Wrench(index) => wrench[index],
+                Op::Sin(index) => angle(index).sin(),
+                Op::Cos(index) => angle(index).cos(),
+                Op::Add(a, b) => values[a] + values[b],
+                Op::Sub(a, b) => values[a] - values[b],
+                Op::Mul(a, b) => values[a] * values[b],
+                Op::Neg(a) => -values[a],
+                Op::Sqrt(a) => values[a].sqrt(),
+                Op::Recip(a) => values[a].recip(),
+            });
+        }
+        self.outputs.iter().map(|&id| values[id]).collect()
+    }
+}
+
+/// Operations of one evaluation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// Sines and cosines, counted singly.
+    pub trig: usize,
+    /// Multiplications.
+    pub mul: usize,
+    /// Additions and subtractions.
+    pub add: usize,
+    /// Changes of sign that no addition absorbed.
+    pub neg: usize,
+    /// Square roots and reciprocals.
+    pub root: usize,
+}
+
+impl fmt::Display for Cost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} trig, {} mul, {} add", self.trig, self.mul, self.add)?;
+        if self.neg > 0 {
+            write!(f, ", {} neg", self.neg)?;
+        }
+        if self.root > 0 {
+            write!(f, ", {} root", self.root)?;
+        }
+        Ok(())
+    }
+}

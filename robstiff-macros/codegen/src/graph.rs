@@ -1,0 +1,246 @@
+//! The expression graph: every expression exists once.
+//!
+//! A [`Graph`] owns the nodes of one function. [`Sym`] is a handle to a node
+//! that computes like a number; the rules by which operations are simplified
+//! as they are written down are in the module `fold`. Because equal
+//! expressions are the same node, common subexpressions need no search, and
+//! because a node is only ever made after its operands, the order of creation
+//! is an order of evaluation.
+
+use std::cell::{Ref, RefCell};
+use std::collections::{BTreeMap, HashMap};
+
+use crate::angle::Angle;
+
+/// Index of a node in its graph.
+pub type Id = usize;
+
+/// What a node computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Op {
+    /// A number, by its bits.
+    Number(u64),
+    /// A number of the description that has a name.
+    Parameter(usize),
+    /// Joint coordinate, from 0 (rad or m).
+    Coordinate(usize),
+    /// Component of the wrench at the TCP, from 0 (N, then Nm).
+    Wrench(usize),
+    /// Sine of an angle.
+    Sin(usize),
+    /// Cosine of an angle.
+    Cos(usize),
+    /// Sum.
+    Add(Id, Id),
+    /// Difference.
+    Sub(Id, Id),
+    /// Product.
+    Mul(Id, Id),
+    /// Negative.
+    Neg(Id),
+    /// Square root.
+    Sqrt(Id),
+    /// Reciprocal.
+    Recip(Id),
+}
+
+impl Op {
+    /// The nodes that this one is computed from.
+    pub fn operands(self) -> impl Iterator<Item = Id> {
+        let (first, second) = match self {
+            Self::Add(a, b) | Self::Sub(a, b) | Self::Mul(a, b) => (Some(a), Some(b)),
+            Self::Neg(a) | Self::Sqrt(a) | Self::Recip(a) => (Some(a), None),
+            _ => (None, None),
+        };
+        first.into_iter().chain(second)
+    }
+}
+
+/// A number of the description under the name that generated code gives it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// The name in generated code, e.g. `A2`.
+    pub name: String,
+    /// Its value in SI units.
+    pub value: f64,
+    /// What it is, with its unit, for generated docs.
+    pub doc: String,
+}
+
+/// One node: what it computes and, if that is independent of every input,
+/// its value.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    /// What it computes.
+    pub op: Op,
+    /// The value of a constant.
+    pub constant: Option<f64>,
+}
+
+/// The expressions of one function.
+#[derive(Debug, Default)]
+pub struct Graph {
+    nodes: RefCell<Vec<Node>>,
+    known: RefCell<HashMap<Op, Id>>,
+    parameters: RefCell<Vec<Parameter>>,
+    angles: RefCell<Vec<Angle>>,
+    hints: RefCell<BTreeMap<Id, String>>,
+    remarks: RefCell<Vec<(Id, String)>>,
+}
+
+impl Graph {
+    /// A graph without nodes.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The nodes in order of creation, operands before their users.
+    pub fn nodes(&self) -> Ref<'_, [Node]> {
+        Ref::map(self.nodes.borrow(), Vec::as_slice)
+    }
+
+    /// The named numbers, which [`Op::Parameter`] indexes.
+    pub fn parameters(&self) -> Ref<'_, [Parameter]> {
+        Ref::map(self.parameters.borrow(), Vec::as_slice)
+    }
+
+    /// The angles, which [`Op::Sin`] and [`Op::Cos`] index.
+    pub fn angles(&self) -> Ref<'_, [Angle]> {
+        Ref::map(self.angles.borrow(), Vec::as_slice)
+    }
+
+    /// Names that the algorithms gave to nodes.
+    pub fn hints(&self) -> Ref<'_, BTreeMap<Id, String>> {
+        self.hints.borrow()
+    }
+
+    /// Remarks for the reader of generated code, each with the first node
+    /// that it speaks of.
+    pub fn remarks(&self) -> Ref<'_, [(Id, String)]> {
+        Ref::map(self.remarks.borrow(), Vec::as_slice)
+    }
+
+    /// A number.
+    pub fn number(&self, value: f64) -> Sym<'_> {
+        // -0 and 0 are one constant: nothing that is generated divides by it.
+        let value = if value == 0.0 { 0.0 } else { value };
+        self.intern(Op::Number(value.to_bits()), Some(value))
+    }
+
+    /// A number of the description; 0 and +-1 lose their name, so that they
+    /// fold. The same name always stands for the same value.
+    pub fn parameter(&self, name: &str, value: f64, doc: &str) -> Sym<'_> {
+        if value == 0.0 || value.abs() == 1.0 {
+            return self.number(value);
+        }
+        let mut parameters = self.parameters.borrow_mut();
+        let index = parameters.iter().position(|p| p.name == name).unwrap_or_else(|| {
+            parameters.push(Parameter { name: name.to_owned(), value, doc: doc.to_owned() });
+            parameters.len() - 1
+        });
+        debug_assert_eq!(parameters[index].value.to_bits(), value.to_bits(), "two values for {name}");
+        self.intern(Op::Parameter(index), Some(value))
+    }
+
+    /// Joint coordinate `index`, from 0.
+    pub fn coordinate(&self, index: usize) -> Sym<'_> {
+        self.intern(Op::Coordinate(index), None)
+    }
+
+    /// Component `index` of the wrench, from 0, forces first.
+    pub fn wrench(&self, index: usize) -> Sym<'_> {
+        self.intern(Op::Wrench(index), None)
+    }
+
+    /// Sine and cosine of an angle: exact where it is a multiple of 90
+    /// degrees, reduced to one sign and to offsets that are not.
+    pub fn sin_cos(&self, angle: &Angle) -> (Sym<'_>, Sym<'_>) {
+        let reduced = angle.reduced();
+        let (s, c) = match reduced.rest {
+            None => (self.number(0.0), self.number(1.0)),
+            Some(rest) if rest.terms().is_empty() => {
+                (self.number(rest.offset().sin()), self.number(rest.offset().cos()))
+            }
+            Some(rest) => {
+                let mut angles = self.angles.borrow_mut();
+                let index = angles.iter().position(|known| *known == rest).unwrap_or_else(|| {
+                    angles.push(rest);
+                    angles.len() - 1
+                });
+                (self.intern(Op::Sin(index), None), self.intern(Op::Cos(index), None))
+            }
+        };
+        let s = if reduced.negated { -s } else { s };
+        match reduced.quarter_turns {
+            0 => (s, c),
+            1 => (c, -s),
+            2 => (-s, -c),
+            _ => (-c, s),
+        }
+    }
+
+    /// Adds a remark that precedes whatever is computed from here on.
+    pub fn remark(&self, text: impl Into<String>) {
+        self.remarks.borrow_mut().push((self.nodes.borrow().len(), text.into()));
+    }
+
+    pub(crate) fn intern(&self, op: Op, constant: Option<f64>) -> Sym<'_> {
+        let id = *self.known.borrow_mut().entry(op).or_insert_with(|| {
+            let mut nodes = self.nodes.borrow_mut();
+            nodes.push(Node { op, constant });
+            nodes.len() - 1
+        });
+        Sym { graph: self, id }
+    }
+}
+
+/// An expression: a node of a graph that computes like a number.
+#[derive(Clone, Copy)]
+pub struct Sym<'g> {
+    pub(crate) graph: &'g Graph,
+    pub(crate) id: Id,
+}
+
+impl<'g> Sym<'g> {
+    /// The node's index.
+    pub fn id(self) -> Id {
+        self.id
+    }
+
+    /// The value, if it is a constant.
+    pub fn constant(self) -> Option<f64> {
+        self.graph.nodes.borrow()[self.id].constant
+    }
+
+    /// What the node computes.
+    pub fn op(self) -> Op {
+        self.graph.nodes.borrow()[self.id].op
+    }
+
+    /// Whether this is known to be 0.
+    pub fn is_zero(self) -> bool {
+        self.constant() == Some(0.0)
+    }
+
+    /// Suggests a name for generated code. The first suggestion stays; a
+    /// negated expression passes it on, so that a sign does not cost a line.
+    pub fn named(self, name: impl Into<String>) -> Self {
+        if let Op::Neg(_) = self.op() {
+            return self;
+        }
+        self.graph.hints.borrow_mut().entry(self.id).or_insert_with(|| name.into());
+        self
+    }
+}
+
+impl std::fmt::Debug for Sym<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "#{}", self.id)
+    }
+}
+
+impl PartialEq for Sym<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.graph, other.graph) && self.id == other.id
+    }
+}

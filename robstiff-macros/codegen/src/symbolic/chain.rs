@@ -1,0 +1,143 @@
+//! A description as a chain of elementary steps from the base to the TCP.
+//!
+//! Both Denavit-Hartenberg conventions, base and tool become the same few
+//! steps, so that the algorithms know nothing of conventions.
+
+use robstiff_robots::angle::{quarter_turns, sin_cos_of_turns};
+use robstiff_robots::{Convention, Description, JointKind, Placement};
+
+use super::vector::Vec3;
+use crate::angle::Angle;
+use crate::graph::{Graph, Sym};
+
+/// One step from a frame to the next. What stands in the frame that has been
+/// reached (a joint, the foundation) is a step that does not move.
+#[derive(Clone, Debug)]
+pub enum Step<'g> {
+    /// A shift along the axes of the current frame.
+    Move(Vec3<'g>),
+    /// A turn about the current z axis.
+    Turn(Angle),
+    /// A turn about the current axis 0 (x) or 1 (y) by a constant angle.
+    Tilt(Tilt<'g>),
+    /// Here is frame 0.
+    Base,
+    /// Joint `i` (from 0) acts on the current z axis, at the current origin.
+    Joint(usize),
+    /// Link `i` (from 0) begins at the current origin and ends a vector
+    /// further, in the current axes.
+    Link(usize, Vec3<'g>),
+    /// Here is the frame of link `i` (from 0).
+    LinkFrame(usize),
+    /// Here is the flange frame.
+    Flange,
+}
+
+/// A constant turn about x (0) or y (1).
+#[derive(Clone, Copy, Debug)]
+pub struct Tilt<'g> {
+    /// The axis turned about.
+    pub axis: usize,
+    /// Sine and cosine.
+    pub sin_cos: (Sym<'g>, Sym<'g>),
+}
+
+impl Tilt<'_> {
+    /// Whether this is half a turn about x, which merely mirrors turns about z.
+    pub fn is_half_turn_about_x(&self) -> bool {
+        self.axis == 0 && self.sin_cos.1.constant() == Some(-1.0)
+    }
+}
+
+/// The steps of a description, base first.
+pub fn chain<'g>(g: &'g Graph, robot: &Description) -> Vec<Step<'g>> {
+    let mut steps = Vec::new();
+    place(g, &mut steps, &robot.base, "BASE", "Frame 0 in the base frame");
+    steps.push(Step::Base);
+    for (i, joint) in robot.joints.iter().enumerate() {
+        let number = i + 1;
+        let d = g.parameter(&format!("D{number}"), joint.d, &format!("DH offset d of row {number} (m)."));
+        let a = g.parameter(&format!("A{number}"), joint.a, &format!("DH length a of row {number} (m)."));
+        let (turn, d) = match joint.kind {
+            JointKind::Revolute => (Angle::of_joint(i, joint.theta), d),
+            JointKind::Prismatic => (Angle::constant(joint.theta), g.coordinate(i) + d),
+        };
+        let twist = tilt(g, 0, joint.alpha, &format!("ALPHA{number}"), &format!("DH twist alpha of row {number}"));
+        let along = Vec3([a, g.number(0.0), d]);
+        match robot.convention {
+            Convention::Standard => {
+                steps.extend([Step::Joint(i), Step::Turn(turn)]);
+                if number < robot.joints.len() {
+                    steps.push(Step::Link(i, along));
+                }
+                steps.push(Step::Move(along));
+                steps.extend(twist);
+            }
+            Convention::Modified => {
+                steps.extend(twist);
+                if i > 0 {
+                    steps.push(Step::Link(i - 1, along));
+                }
+                // Tz(d) commutes with Rz(theta): one shift for a and d.
+                steps.extend([Step::Move(along), Step::Turn(turn), Step::Joint(i)]);
+            }
+        }
+        steps.push(Step::LinkFrame(i));
+    }
+    steps.push(Step::Flange);
+    place(g, &mut steps, &robot.tool, "TOOL", "TCP in the flange frame");
+    steps.retain(|step| match step {
+        Step::Move(by) => !by.is_zero(),
+        Step::Turn(angle) => !angle.is_zero(),
+        _ => true,
+    });
+    steps
+}
+
+fn place<'g>(g: &'g Graph, steps: &mut Vec<Step<'g>>, placement: &Placement, name: &str, what: &str) {
+    let at = |axis: usize, letter| {
+        g.parameter(&format!("{name}_{letter}"), placement.xyz[axis], &format!("{what}, along {letter} (m)."))
+    };
+    let [roll, pitch, yaw] = placement.rpy;
+    steps.push(Step::Move(Vec3([at(0, 'X'), at(1, 'Y'), at(2, 'Z')])));
+    steps.push(Step::Turn(Angle::constant(yaw)));
+    steps.extend(tilt(g, 1, pitch, &format!("{name}_PITCH"), &format!("pitch of {}", name.to_lowercase())));
+    steps.extend(tilt(g, 0, roll, &format!("{name}_ROLL"), &format!("roll of {}", name.to_lowercase())));
+}
+
+/// The turn by a constant angle, if it is one; exact at multiples of 90
+/// degrees, else with a named sine and cosine.
+fn tilt<'g>(g: &'g Graph, axis: usize, angle: f64, name: &str, what: &str) -> Option<Step<'g>> {
+    let sin_cos = match quarter_turns(angle) {
+        Some(0) => return None,
+        Some(turns) => {
+            let (s, c) = sin_cos_of_turns(turns);
+            (g.number(s), g.number(c))
+        }
+        None => (
+            g.parameter(&format!("SIN_{name}"), angle.sin(), &format!("Sine of {what}.")),
+            g.parameter(&format!("COS_{name}"), angle.cos(), &format!("Cosine of {what}.")),
+        ),
+    };
+    Some(Step::Tilt(Tilt { axis, sin_cos }))
+}
+
+/// The homogeneous matrix of a placement by rows, with exact quarter turns.
+pub fn homogeneous(placement: &Placement) -> [f64; 16] {
+    let [(sr, cr), (sp, cp), (sy, cy)] = placement.rpy.map(|angle| match quarter_turns(angle) {
+        Some(turns) => sin_cos_of_turns(turns),
+        None => angle.sin_cos(),
+    });
+    let [x, y, z] = placement.xyz;
+    [
+        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, x],
+        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr, y],
+        [-sp, cp * sr, cp * cr, z],
+        [0.0, 0.0, 0.0, 1.0],
+    ]
+    // -0 would be printed as such.
+    .map(|row| row.map(|entry| entry + 0.0))
+    .concat()
+    .try_into()
+    .expect("four rows of four")
+}

@@ -1,0 +1,276 @@
+//! Cartesian compliance, carried from the TCP to the base.
+//!
+//! `H_x = J H_q J^T` is not formed from J. Instead the compliance of what lies
+//! between the current frame and the TCP is kept, at the TCP but in the current
+//! frame's axes, next to the lever from the frame's origin to the TCP. An
+//! elastic element adds a few entries, in the frame where its own compliance is
+//! sparse; a shift changes only the lever; a quarter turn is a relabelling; a
+//! turn about z is 28 multiplications for the compliance and 4 for the lever.
+//! For the five-axis arm with its two parallel axes that is 3 turns instead of
+//! five outer products of full columns.
+
+use robstiff_robots::{Description, JointKind};
+
+use super::chain::{Step, Tilt, chain};
+use super::elastic::Elastic;
+use super::vector::{AXES, Matrix3, Symmetric3, Vec3};
+use crate::angle::Angle;
+use crate::graph::{Graph, Sym};
+
+/// The 36 entries of `H_x` at the TCP in the base frame, by rows.
+pub fn compliance<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
+    let elastic = Elastic::of(g, robot);
+    let mut walker = Walker::at_tcp(g);
+    for step in chain(g, robot).iter().rev() {
+        walker.back(step, robot, &elastic);
+    }
+    walker.settle();
+    walker.name("");
+    let Walker { tt, tr, rr, .. } = &walker;
+    let entry = |i: usize, j: usize| match (i < 3, j < 3) {
+        (true, true) => tt.at(i, j),
+        (true, false) => tr[i][j - 3],
+        (false, true) => tr[j][i - 3],
+        (false, false) => rr.at(i - 3, j - 3),
+    };
+    (0..36).map(|k| entry(k / 6, k % 6)).collect()
+}
+
+/// Compliance at the TCP in the axes of the current frame, less a turn about
+/// its z axis that is still pending.
+struct Walker<'g> {
+    g: &'g Graph,
+    /// TCP minus the current frame's origin.
+    lever: Vec3<'g>,
+    /// Displacement per force.
+    tt: Symmetric3<'g>,
+    /// Displacement per moment.
+    tr: Matrix3<'g>,
+    /// Rotation per moment.
+    rr: Symmetric3<'g>,
+    /// Twists of joints whose coupling partner is still to come.
+    twists: Vec<(usize, Twist<'g>)>,
+    /// The turn about z that the above does not contain yet.
+    pending: Angle,
+}
+
+/// What a unit of a joint coordinate moves at the TCP.
+#[derive(Clone, Copy)]
+struct Twist<'g> {
+    translation: Vec3<'g>,
+    rotation: Vec3<'g>,
+}
+
+impl<'g> Walker<'g> {
+    fn at_tcp(g: &'g Graph) -> Self {
+        Self {
+            g,
+            lever: Vec3::zero(g),
+            tt: Symmetric3::zero(g),
+            tr: [[g.number(0.0); 3]; 3],
+            rr: Symmetric3::zero(g),
+            twists: Vec::new(),
+            pending: Angle::default(),
+        }
+    }
+
+    /// Takes one step back towards the base.
+    fn back(&mut self, step: &Step<'g>, robot: &Description, elastic: &Elastic<'g>) {
+        match step {
+            Step::Move(by) => self.lever = self.lever + self.without_pending(*by),
+            Step::Turn(angle) => self.pending = std::mem::take(&mut self.pending) + angle,
+            Step::Tilt(tilt) => self.tilt(*tilt),
+            Step::Joint(i) => self.joint(*i, robot.joints[*i].kind, elastic),
+            Step::Link(i, along) => self.link(self.without_pending(*along), elastic.link[*i]),
+            Step::Base => self.add_about_z(elastic.base.0, self.g.number(0.0), elastic.base.1, elastic.base.1),
+            Step::Flange => self.add_about_z(elastic.tool.0, elastic.tool.0, elastic.tool.1, elastic.tool.1),
+            Step::LinkFrame(_) => {}
+        }
+    }
+
+    /// A vector of the current frame in the walker's axes.
+    fn without_pending(&self, v: Vec3<'g>) -> Vec3<'g> {
+        v.turned(2, self.g.sin_cos(&-self.pending.clone()))
+    }
+
+    fn is_rigid(&self) -> bool {
+        self.tt.is_zero() && self.rr.is_zero()
+    }
+
+    fn joint(&mut self, i: usize, kind: JointKind, elastic: &Elastic<'g>) {
+        if self.is_rigid() {
+            // Nothing to turn yet but the lever.
+            self.settle();
+        }
+        let number = i + 1;
+        self.g.remark(format!("From joint {number} to the TCP."));
+        self.lever.named(&format!("r{number}"));
+        let zero = self.g.number(0.0);
+        let h = elastic.unloaded_joint(i);
+        match kind {
+            JointKind::Revolute => self.add_about_z(elastic.transverse[i], h, zero, zero),
+            JointKind::Prismatic => self.add_about_z(elastic.transverse[i], zero, zero, h),
+        }
+        for &([first, second], c) in &elastic.coupling {
+            if second == i {
+                let twist = self.twist();
+                self.twists.push((second, twist));
+            }
+            if first == i {
+                let partner =
+                    self.twists.iter().find(|(joint, _)| *joint == second).expect("the later joint came first");
+                self.couple(self.twist(), partner.1, c);
+            }
+        }
+        self.name(&number.to_string());
+    }
+
+    /// The twist of a revolute joint at the current origin.
+    fn twist(&self) -> Twist<'g> {
+        let rotation = Vec3::unit(self.g, 2);
+        Twist { translation: rotation.cross(self.lever), rotation }
+    }
+
+    fn couple(&mut self, a: Twist<'g>, b: Twist<'g>, c: Sym<'g>) {
+        let outer = |u: Vec3<'g>, v: Vec3<'g>, i: usize, j: usize| c * u[i] * v[j];
+        let (at, ar, bt, br) = (a.translation, a.rotation, b.translation, b.rotation);
+        self.tt = self.tt + Symmetric3::from_fn(|i, j| outer(at, bt, i, j) + outer(bt, at, i, j));
+        self.rr = self.rr + Symmetric3::from_fn(|i, j| outer(ar, br, i, j) + outer(br, ar, i, j));
+        self.add_to_tr(|i, j| outer(at, br, i, j) + outer(bt, ar, i, j));
+    }
+
+    /// Adds an element at the current origin whose compliance is the same
+    /// after any turn about z: `across` about or along x and y, `along` about
+    /// or along z.
+    fn add_about_z(&mut self, turn_across: Sym<'g>, turn_along: Sym<'g>, move_across: Sym<'g>, move_along: Sym<'g>) {
+        let rr = Symmetric3::diagonal(self.g, [turn_across, turn_across, turn_along]);
+        let tt = Symmetric3::diagonal(self.g, [move_across, move_across, move_along]);
+        self.add(self.lever, tt, rr);
+    }
+
+    /// A round, uniform beam that begins here. As a compliance at its middle it
+    /// is block diagonal: `bending` across and `torsion` along it for turns,
+    /// and `bending L^2 / 12` across it for shifts (integrate the turns of its
+    /// slices, at levers from `lever` to `lever - along`).
+    fn link(&mut self, along: Vec3<'g>, (bending, torsion): (Sym<'g>, Sym<'g>)) {
+        let length_squared = along.dot(along);
+        if length_squared.is_zero() || (bending.is_zero() && torsion.is_zero()) {
+            return;
+        }
+        let per_square = (torsion - bending) * length_squared.recip();
+        let bend = self.g.number(1.0 / 12.0) * bending;
+        let scaled = along.scaled(per_square);
+        let shear = along.scaled(bend);
+        let diagonal = |i: usize, j: usize, value: Sym<'g>| if i == j { value } else { self.g.number(0.0) };
+        let rr = Symmetric3::from_fn(|i, j| scaled[i] * along[j] + diagonal(i, j, bending));
+        let tt = Symmetric3::from_fn(|i, j| diagonal(i, j, bend * length_squared) - shear[i] * along[j]);
+        let middle = self.lever - along.scaled(self.g.number(0.5));
+        self.add(middle, tt, rr);
+    }
+
+    /// Adds `X C X^T` for the compliance `C = diag(tt, rr)` at the point from
+    /// which `lever` leads to the TCP: a turn w there moves the TCP by
+    /// `w x lever`.
+    fn add(&mut self, lever: Vec3<'g>, tt: Symmetric3<'g>, rr: Symmetric3<'g>) {
+        // moved[j]: displacement of the TCP per unit moment j.
+        let moved: [Vec3<'g>; 3] = std::array::from_fn(|j| Vec3([rr.at(0, j), rr.at(1, j), rr.at(2, j)]).cross(lever));
+        let lever_of: [Vec3<'g>; 3] = std::array::from_fn(|j| Vec3::unit(self.g, j).cross(lever));
+        let by_turns = Symmetric3::from_fn(|i, j| {
+            moved[0][i] * lever_of[0][j] + moved[1][i] * lever_of[1][j] + moved[2][i] * lever_of[2][j]
+        });
+        self.tt = self.tt + (by_turns + tt);
+        self.rr = self.rr + rr;
+        self.add_to_tr(|i, j| moved[j][i]);
+    }
+
+    fn add_to_tr(&mut self, entry: impl Fn(usize, usize) -> Sym<'g>) {
+        for (i, row) in self.tr.iter_mut().enumerate() {
+            for (j, sum) in row.iter_mut().enumerate() {
+                *sum = *sum + entry(i, j);
+            }
+        }
+    }
+
+    fn tilt(&mut self, tilt: Tilt<'g>) {
+        if tilt.is_half_turn_about_x() {
+            // Rx(180) Rz(a) = Rz(-a) Rx(180): the turn may stay pending.
+            self.pending = -std::mem::take(&mut self.pending);
+        } else {
+            self.settle();
+        }
+        self.turn(tilt.axis, tilt.sin_cos);
+    }
+
+    /// Performs the pending turn.
+    fn settle(&mut self) {
+        let pending = std::mem::take(&mut self.pending);
+        if !pending.is_zero() {
+            self.turn(2, self.g.sin_cos(&pending));
+        }
+    }
+
+    /// Turns everything about one axis: `M <- R M R^T`.
+    fn turn(&mut self, axis: usize, sin_cos: (Sym<'g>, Sym<'g>)) {
+        self.lever = self.lever.turned(axis, sin_cos);
+        self.tt = turned_symmetric(&self.tt, axis, sin_cos);
+        self.rr = turned_symmetric(&self.rr, axis, sin_cos);
+        self.tr = turned_general(&self.tr, axis, sin_cos);
+        for (_, twist) in &mut self.twists {
+            twist.translation = twist.translation.turned(axis, sin_cos);
+            twist.rotation = twist.rotation.turned(axis, sin_cos);
+        }
+    }
+
+    /// Names the entries for generated code.
+    fn name(&self, suffix: &str) {
+        for (i, row) in AXES.iter().enumerate() {
+            for (j, column) in AXES.iter().enumerate() {
+                self.tr[i][j].named(format!("tr{suffix}_{row}{column}"));
+                if i <= j {
+                    self.tt.at(i, j).named(format!("tt{suffix}_{row}{column}"));
+                    self.rr.at(i, j).named(format!("rr{suffix}_{row}{column}"));
+                }
+            }
+        }
+    }
+}
+
+/// `R M R^T` for a symmetric M: 8 multiplications.
+fn turned_symmetric<'g>(m: &Symmetric3<'g>, axis: usize, (s, c): (Sym<'g>, Sym<'g>)) -> Symmetric3<'g> {
+    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut out = *m;
+    let [aa, ab, _, bb] = turned_block([m.at(i, i), m.at(i, j), m.at(i, j), m.at(j, j)], (s, c));
+    out.set(i, i, aa);
+    out.set(i, j, ab);
+    out.set(j, j, bb);
+    out.set(i, axis, c * m.at(i, axis) - s * m.at(j, axis));
+    out.set(j, axis, s * m.at(i, axis) + c * m.at(j, axis));
+    out
+}
+
+/// `R M R^T` for any M: 12 multiplications.
+fn turned_general<'g>(m: &Matrix3<'g>, axis: usize, (s, c): (Sym<'g>, Sym<'g>)) -> Matrix3<'g> {
+    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut out = *m;
+    [out[i][i], out[i][j], out[j][i], out[j][j]] = turned_block([m[i][i], m[i][j], m[j][i], m[j][j]], (s, c));
+    out[i][axis] = c * m[i][axis] - s * m[j][axis];
+    out[j][axis] = s * m[i][axis] + c * m[j][axis];
+    out[axis][i] = c * m[axis][i] - s * m[axis][j];
+    out[axis][j] = s * m[axis][i] + c * m[axis][j];
+    out
+}
+
+/// `R [[aa, ab], [ba, bb]] R^T` in the plane. With `t = s (aa - bb) +
+/// c (ab + ba)`, `s^2 + c^2 = 1` leaves four multiplications and no double
+/// angle: `aa - s t`, `bb + s t`, `c t - ba`, `c t - ab`.
+fn turned_block<'g>([aa, ab, ba, bb]: [Sym<'g>; 4], (s, c): (Sym<'g>, Sym<'g>)) -> [Sym<'g>; 4] {
+    if c.is_zero() && s.squared().constant() == Some(1.0) {
+        return [bb, -ba, -ab, aa];
+    }
+    if s.is_zero() {
+        return [aa, ab, ba, bb];
+    }
+    let t = s * (aa - bb) + c * (ab + ba);
+    let (st, ct) = (s * t, c * t);
+    [aa - st, ct - ba, ct - ab, bb + st]
+}

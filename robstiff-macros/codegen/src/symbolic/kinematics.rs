@@ -1,0 +1,156 @@
+//! Transform, frames, Jacobian, joint torques and deflection.
+
+use robstiff_robots::{Description, JointKind};
+
+use super::chain::chain;
+use super::elastic::Elastic;
+use super::forward::{Forward, Frame, forward};
+use super::vector::Vec3;
+use crate::graph::{Graph, Sym};
+
+/// The 16 entries of the TCP's frame in the base frame, by rows.
+pub fn transform<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
+    homogeneous(g, &forward(g, &chain(g, robot)).tcp, "")
+}
+
+/// The frames behind the joints in the base frame, 16 entries each, by rows.
+pub fn link_frames<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
+    let forward = forward(g, &chain(g, robot));
+    (1..).zip(&forward.link_frames).flat_map(|(i, frame)| homogeneous(g, frame, &i.to_string())).collect()
+}
+
+fn homogeneous<'g>(g: &'g Graph, frame: &Frame<'g>, suffix: &str) -> Vec<Sym<'g>> {
+    for (axis, letter) in frame.axes.iter().zip(['x', 'y', 'z']) {
+        axis.named(&format!("{letter}{suffix}_"));
+    }
+    frame.origin.named(&format!("p{suffix}_"));
+    let mut entries = Vec::with_capacity(16);
+    for row in 0..3 {
+        entries.extend(frame.axes.iter().map(|axis| axis[row]));
+        entries.push(frame.origin[row]);
+    }
+    entries.extend([0.0, 0.0, 0.0, 1.0].map(|entry| g.number(entry)));
+    entries
+}
+
+/// The columns of the Jacobian at the TCP in the base frame.
+struct Columns<'g> {
+    translation: Vec<Vec3<'g>>,
+    rotation: Vec<Vec3<'g>>,
+}
+
+impl<'g> Columns<'g> {
+    /// `[z x lever; z]` for a revolute joint, `[z; 0]` for a prismatic one.
+    fn of(g: &'g Graph, robot: &Description, forward: &Forward<'g>) -> Self {
+        let mut columns = Self { translation: Vec::new(), rotation: Vec::new() };
+        for ((number, joint), stand) in (1..).zip(&robot.joints).zip(&forward.joints) {
+            let axis = stand.axis.named(&format!("z{number}"));
+            let lever = stand.lever.named(&format!("r{number}"));
+            let (translation, rotation) = match joint.kind {
+                JointKind::Revolute => (axis.cross(lever), axis),
+                JointKind::Prismatic => (axis, Vec3::zero(g)),
+            };
+            columns.translation.push(translation.named(&format!("j{number}")));
+            columns.rotation.push(rotation);
+        }
+        columns
+    }
+
+    /// `J^T F`.
+    fn torques(&self, force: Vec3<'g>, moment: Vec3<'g>) -> Vec<Sym<'g>> {
+        let rows = (1..).zip(&self.translation).zip(&self.rotation);
+        rows.map(|((i, t), r)| (t.dot(force) + r.dot(moment)).named(format!("tau{i}"))).collect()
+    }
+}
+
+/// The Jacobian, 6 entries a column, column by column.
+pub fn jacobian<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
+    let columns = Columns::of(g, robot, &forward(g, &chain(g, robot)));
+    columns.translation.iter().zip(&columns.rotation).flat_map(|(t, r)| t.0.into_iter().chain(r.0)).collect()
+}
+
+fn wrench<'g>(g: &'g Graph) -> (Vec3<'g>, Vec3<'g>) {
+    (Vec3(std::array::from_fn(|i| g.wrench(i))), Vec3(std::array::from_fn(|i| g.wrench(3 + i))))
+}
+
+/// The joint torques `J^T F` that a wrench at the TCP asks for.
+pub fn joint_torques<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
+    let (force, moment) = wrench(g);
+    Columns::of(g, robot, &forward(g, &chain(g, robot))).torques(force, moment)
+}
+
+/// Displacement and rotation of the TCP under a wrench, `J (H_q (J^T F))` and
+/// what the effects add, without forming a compliance matrix.
+pub fn deflection<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
+    let elastic = Elastic::of(g, robot);
+    let forward = forward(g, &chain(g, robot));
+    let (force, moment) = wrench(g);
+    let mut sum = Displacement { translation: Vec3::zero(g), rotation: Vec3::zero(g) };
+
+    let columns = Columns::of(g, robot, &forward);
+    let torques = columns.torques(force, moment);
+    for (i, turn) in joint_turns(g, &elastic, &torques).into_iter().enumerate() {
+        sum.translation = sum.translation + columns.translation[i].scaled(turn);
+        sum.rotation = sum.rotation + columns.rotation[i].scaled(turn);
+    }
+    let moment_at = |lever: Vec3<'g>| moment + lever.cross(force);
+    for (stand, &transverse) in forward.joints.iter().zip(&elastic.transverse) {
+        if !transverse.is_zero() {
+            sum.turn(across(moment_at(stand.lever), stand.axis).scaled(transverse), stand.lever);
+        }
+    }
+    for (segment, &(bending, torsion)) in forward.links.iter().zip(&elastic.link) {
+        // As a compliance at the middle of the beam, see `compliance`.
+        let (along, length_squared) = (segment.along, segment.length_squared);
+        if length_squared.is_zero() || (bending.is_zero() && torsion.is_zero()) {
+            continue;
+        }
+        let middle = segment.lever - along.scaled(g.number(0.5));
+        let there = moment_at(middle);
+        let per_square = (torsion - bending) * length_squared.recip();
+        sum.turn(there.scaled(bending) + along.scaled(per_square * along.dot(there)), middle);
+        let bend = g.number(1.0 / 12.0) * bending;
+        sum.translation = sum.translation + force.scaled(bend * length_squared) - along.scaled(bend * along.dot(force));
+    }
+    let (tilt, shift) = elastic.base;
+    sum.turn(across(moment_at(forward.base.lever), forward.base.axis).scaled(tilt), forward.base.lever);
+    sum.translation = sum.translation + force.scaled(shift);
+    let (turn, shift) = elastic.tool;
+    sum.turn(moment_at(forward.flange.lever).scaled(turn), forward.flange.lever);
+    sum.translation = sum.translation + force.scaled(shift);
+    sum.translation.0.into_iter().chain(sum.rotation.0).collect()
+}
+
+struct Displacement<'g> {
+    translation: Vec3<'g>,
+    rotation: Vec3<'g>,
+}
+
+impl<'g> Displacement<'g> {
+    /// A small turn at the point from which `lever` leads to the TCP.
+    fn turn(&mut self, by: Vec3<'g>, lever: Vec3<'g>) {
+        self.translation = self.translation + by.cross(lever);
+        self.rotation = self.rotation + by;
+    }
+}
+
+/// The part of `v` across a unit vector.
+fn across<'g>(v: Vec3<'g>, axis: Vec3<'g>) -> Vec3<'g> {
+    v - axis.scaled(axis.dot(v))
+}
+
+/// What the joints yield under their torques: `H_q tau`, couplings and
+/// nonlinear joints included.
+fn joint_turns<'g>(g: &'g Graph, elastic: &Elastic<'g>, torques: &[Sym<'g>]) -> Vec<Sym<'g>> {
+    let mut turns: Vec<Sym<'g>> = elastic.joint.iter().zip(torques).map(|(&h, &tau)| h * tau).collect();
+    for &([i, j], c) in &elastic.coupling {
+        turns[i] = turns[i] + c * torques[j];
+        turns[j] = turns[j] + c * torques[i];
+    }
+    for &(i, added, knee) in &elastic.nonlinear {
+        let tau = torques[i];
+        let softened = (g.number(1.0) + (tau * knee.recip()).squared()).sqrt().recip();
+        turns[i] = turns[i] + added * tau * softened;
+    }
+    (1..).zip(turns).map(|(i, turn)| turn.named(format!("dq{i}"))).collect()
+}
