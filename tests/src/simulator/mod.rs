@@ -14,11 +14,14 @@
 
 mod arm;
 mod arms;
+mod campaign;
 mod equilibrium;
+mod files;
 mod frame;
 #[cfg(test)]
 mod tests;
 
 pub use arm::{Arm, SEGMENTS};
 pub use arms::{five_axis, six_axis};
+pub use campaign::{Row, Scenario, Simulated, scattered};
 pub use equilibrium::{Equilibrium, PosedArm};
