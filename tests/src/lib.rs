@@ -1,1 +1,3 @@
 //! Support for the tests: a simulator that shares no formula with the library.
+
+pub mod simulator;

@@ -1,0 +1,27 @@
+//! The judge: a robot arm as rigid bodies and springs, loaded, solved for its
+//! equilibrium in the deformed shape, and measured with noise.
+//!
+//! Nothing here linearises. Every spring is a finite turn or slide in the chain
+//! of transforms, and the load acts where the deformed arm has carried the tool
+//! centre point (TCP). What the library predicts with Jacobians can so be held
+//! against something that has none. Only the words of a description are shared
+//! ([`robstiff_robots`]), no formula.
+//!
+//! Units are SI; wrenches, displacements and rotations are given in the base
+//! (world) frame, the one that [`Description::base`] places frame 0 in.
+//!
+//! [`Description::base`]: robstiff_robots::Description::base
+
+mod arm;
+mod arms;
+mod campaign;
+mod equilibrium;
+mod files;
+mod frame;
+#[cfg(test)]
+mod tests;
+
+pub use arm::{Arm, SEGMENTS};
+pub use arms::{five_axis, six_axis};
+pub use campaign::{Row, Scenario, Simulated, scattered};
+pub use equilibrium::{Equilibrium, PosedArm};
