@@ -6,9 +6,16 @@ extern crate std;
 
 #[cfg(feature = "identify")]
 pub mod campaign;
+pub mod elements;
+#[cfg(feature = "generic")]
+pub mod generic;
 pub mod real;
 pub mod robot;
+#[cfg(all(test, feature = "generic"))]
+mod samples;
 
+#[cfg(feature = "generic")]
+pub use generic::{Generic, WrongJointCount};
 pub use real::Real;
 pub use robot::Robot;
 pub use robstiff_robots::{Convention, Effect, JointKind};

@@ -13,7 +13,7 @@ pub trait Real:
     /// The nearest value to a constant of the description.
     fn of(value: f64) -> Self;
 
-    /// Sine and cosine of an angle (rad).
+    /// Sine and cosine of an angle in rad.
     fn sin_cos(self) -> (Self, Self);
 
     /// The square root.

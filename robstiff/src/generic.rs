@@ -1,0 +1,224 @@
+//! Robots read at run time.
+
+use std::fmt;
+use std::string::String;
+use std::vec::Vec;
+
+use nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
+use robstiff_robots::angle::{quarter_turns, sin_cos_of_turns};
+use robstiff_robots::{Description, Joint, Placement};
+
+use crate::elements::{Parameter, Pose, contributions};
+use crate::{Convention, Effect, JointKind, Real, Robot};
+
+#[cfg(test)]
+mod tests;
+
+/// A robot with `N` joints, built from a [`Description`] at run time.
+///
+/// It computes the way the textbooks write it down: 4 x 4 matrices multiplied
+/// from the base to the tool, the Jacobian from axes and lever arms, the
+/// compliance as the sum of its elements' 6 x 6 matrices. That makes it slower
+/// than generated code and independent of it: generated code is tested against
+/// this.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Generic<const N: usize> {
+    name: String,
+    convention: Convention,
+    base: Matrix4<f64>,
+    joints: [Row; N],
+    tool: Matrix4<f64>,
+    compliance: SVector<f64, N>,
+    effects: Vec<Effect>,
+}
+
+/// One row of the DH table, `before * motion(q) * after`.
+#[derive(Clone, Debug, PartialEq)]
+struct Row {
+    kind: JointKind,
+    limits: Option<[f64; 2]>,
+    before: Matrix4<f64>,
+    after: Matrix4<f64>,
+}
+
+/// A description has another number of joints than the type it was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WrongJointCount {
+    /// The type's number of joints.
+    pub expected: usize,
+    /// The description's.
+    pub found: usize,
+}
+
+impl fmt::Display for WrongJointCount {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a robot with {} joints was asked for, the description has {}", self.expected, self.found)
+    }
+}
+
+impl core::error::Error for WrongJointCount {}
+
+impl<const N: usize> Generic<N> {
+    /// The robot that a description describes.
+    ///
+    /// The description is taken to be one that its reader accepted; an effect
+    /// at a joint that is not there panics when it is first computed.
+    ///
+    /// # Errors
+    /// [`WrongJointCount`] if the description does not have `N` joints.
+    pub fn new(description: &Description) -> Result<Self, WrongJointCount> {
+        let found = description.joints.len();
+        if found != N {
+            return Err(WrongJointCount { expected: N, found });
+        }
+        Ok(Self {
+            name: description.name.clone(),
+            convention: description.convention,
+            base: placement(&description.base),
+            joints: core::array::from_fn(|i| Row::new(description.convention, &description.joints[i])),
+            tool: placement(&description.tool),
+            compliance: SVector::from_fn(|i, _| description.joints[i].compliance()),
+            effects: description.effects.clone(),
+        })
+    }
+}
+
+impl Row {
+    fn new(convention: Convention, joint: &Joint) -> Self {
+        let z = rotation_z(sin_cos(joint.theta)) * translation([0.0, 0.0, joint.d]);
+        // A rotation about x and a translation along it commute.
+        let x = translation([joint.a, 0.0, 0.0]) * rotation_x(sin_cos(joint.alpha));
+        let (before, after) = match convention {
+            Convention::Standard => (z, x),
+            Convention::Modified => (x * z, Matrix4::identity()),
+        };
+        Self { kind: joint.kind, limits: joint.limits, before, after }
+    }
+
+    /// `T_i` at a joint coordinate; turning about z and sliding along it
+    /// commute with the row's own turn and slide.
+    fn transform<T: Real>(&self, q: T) -> Matrix4<T> {
+        let motion = match self.kind {
+            JointKind::Revolute => rotation_z(q.sin_cos()),
+            JointKind::Prismatic => translation([T::zero(), T::zero(), q]),
+        };
+        self.before.map(T::of) * motion * self.after.map(T::of)
+    }
+}
+
+impl<const N: usize> Robot<N> for Generic<N> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn convention(&self) -> Convention {
+        self.convention
+    }
+
+    fn joint_kinds(&self) -> [JointKind; N] {
+        core::array::from_fn(|i| self.joints[i].kind)
+    }
+
+    fn joint_compliance(&self) -> SVector<f64, N> {
+        self.compliance
+    }
+
+    fn limits(&self) -> [Option<[f64; 2]>; N] {
+        core::array::from_fn(|i| self.joints[i].limits)
+    }
+
+    fn effects(&self) -> &[Effect] {
+        &self.effects
+    }
+
+    fn base(&self) -> Matrix4<f64> {
+        self.base
+    }
+
+    fn tool(&self) -> Matrix4<f64> {
+        self.tool
+    }
+
+    fn transform<T: Real>(&self, q: &SVector<T, N>) -> Matrix4<T> {
+        self.link_frames(q).last().copied().unwrap_or(self.base.map(T::of)) * self.tool.map(T::of)
+    }
+
+    fn link_frames<T: Real>(&self, q: &SVector<T, N>) -> [Matrix4<T>; N] {
+        let mut frame = self.base.map(T::of);
+        core::array::from_fn(|i| {
+            frame *= self.joints[i].transform(q[i]);
+            frame
+        })
+    }
+
+    fn jacobian<T: Real>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, N> {
+        let pose = Pose::of(self, q);
+        let mut jacobian: SMatrix<T, 6, N> = SMatrix::zeros();
+        for i in 0..N {
+            jacobian.set_column(i, &pose.geometry().joint_twist(i + 1));
+        }
+        jacobian
+    }
+
+    fn compliance<T: Real>(&self, q: &SVector<T, N>) -> Matrix6<T> {
+        contributions(self, q).fold(Matrix6::zeros(), |sum, (_, part)| sum + part)
+    }
+
+    fn deflection<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>) -> Vector6<T> {
+        let pose = Pose::of(self, q);
+        let geometry = pose.geometry();
+        let mut compliance = Matrix6::zeros();
+        for i in 0..N {
+            compliance += geometry.unit_compliance(Parameter::Joint(i + 1)) * T::of(self.compliance[i]);
+        }
+        let mut beyond = Vector6::zeros();
+        for effect in &self.effects {
+            match *effect {
+                Effect::StiffnessNonlinearity { joint, added, knee } => {
+                    let twist = geometry.joint_twist(joint);
+                    let torque = twist.dot(wrench);
+                    let knees = torque * T::of(knee).recip();
+                    beyond += twist * (T::of(added) * torque * (T::one() + knees * knees).sqrt().recip());
+                }
+                _ => compliance += geometry.effect_compliance(effect),
+            }
+        }
+        compliance * wrench + beyond
+    }
+
+    fn joint_torques<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>) -> SVector<T, N> {
+        self.jacobian(q).transpose() * wrench
+    }
+}
+
+/// `Rz(yaw) Ry(pitch) Rx(roll)` about the origin at `xyz`.
+fn placement(placement: &Placement) -> Matrix4<f64> {
+    let [roll, pitch, yaw] = placement.rpy.map(sin_cos);
+    translation(placement.xyz) * rotation_z(yaw) * rotation_y(pitch) * rotation_x(roll)
+}
+
+/// Sine and cosine of a constant of the description, exact at the multiples of
+/// 90 degrees.
+fn sin_cos(angle: f64) -> (f64, f64) {
+    quarter_turns(angle).map_or_else(|| Real::sin_cos(angle), sin_cos_of_turns)
+}
+
+fn translation<T: Real>([x, y, z]: [T; 3]) -> Matrix4<T> {
+    let (o, i) = (T::zero(), T::one());
+    Matrix4::new(i, o, o, x, o, i, o, y, o, o, i, z, o, o, o, i)
+}
+
+fn rotation_x<T: Real>((s, c): (T, T)) -> Matrix4<T> {
+    let (o, i) = (T::zero(), T::one());
+    Matrix4::new(i, o, o, o, o, c, -s, o, o, s, c, o, o, o, o, i)
+}
+
+fn rotation_y<T: Real>((s, c): (T, T)) -> Matrix4<T> {
+    let (o, i) = (T::zero(), T::one());
+    Matrix4::new(c, o, s, o, o, i, o, o, -s, o, c, o, o, o, o, i)
+}
+
+fn rotation_z<T: Real>((s, c): (T, T)) -> Matrix4<T> {
+    let (o, i) = (T::zero(), T::one());
+    Matrix4::new(c, -s, o, o, s, c, o, o, o, o, i, o, o, o, o, i)
+}
