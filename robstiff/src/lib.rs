@@ -1,4 +1,29 @@
-//! Elastostatics of robot arms.
+//! Elastostatics of robot arms: how far a tool gives way under a load, at every
+//! pose, from a robot's description.
+//!
+//! [`robot!`] turns a description into code made for that robot; [`Generic`]
+//! reads one at run time. Both are a [`Robot`], and everything else takes
+//! either:
+//!
+//! ```
+//! use robstiff::nalgebra::{SVector, Vector6};
+//! use robstiff::Robot;
+//!
+//! robstiff::robot!("rv130hsc.yaml");
+//!
+//! let q = SVector::from([0.3, -0.4, 0.5, 0.0, 1.2]);
+//! let wrench = Vector6::new(0.0, 400.0, -200.0, 0.0, 0.0, 0.0);
+//! let deflection = Rv130hsc.deflection(&q, &wrench);
+//! assert!((deflection - Rv130hsc.compliance(&q) * wrench).norm() < 1e-15);
+//! ```
+//!
+//! - [`robot`]: the trait, with terms, frames and units;
+//! - [`elements`]: joints and effects one by one, and their share in the whole;
+//! - [`analysis`]: stiffness, directional stiffness, principal directions;
+//! - `campaign`, `identify`, `trace` (feature `identify`): measured data, the
+//!   joint compliances that fit it, and the effects it shows to be missing.
+//!
+//! Without default features the crate is `no_std` and allocates nothing.
 #![no_std]
 
 #[cfg(feature = "std")]
@@ -19,6 +44,26 @@ pub use generic::{Generic, WrongJointCount};
 pub use real::Real;
 pub use robot::Robot;
 pub use robstiff_robots::{Convention, Effect, JointKind};
+
+/// Generates a robot from its description, at compile time.
+///
+/// `robot!("rv130hsc.yaml")` finds the file next to the calling source file,
+/// in the crate's manifest folder, in its `robots/`, or in the catalogue that
+/// ships with robstiff, in this order; the crate is built again when the file
+/// changes. It defines a unit struct named as the description says, public
+/// unless a visibility precedes the file's name (`robot!(pub(crate)
+/// "rv130hsc.yaml")`), with the description's numbers as constants, and
+/// implements [`Robot`] for it.
+///
+/// # Errors
+/// A description with mistakes is a compile error that shows its own lines.
+#[macro_export]
+macro_rules! robot {
+    ($($input:tt)*) => { $crate::__generate! { [$crate] $($input)* } };
+}
+
+#[doc(hidden)]
+pub use robstiff_macros::robot as __generate;
 
 /// The linear algebra in this crate's interface.
 pub use nalgebra;
