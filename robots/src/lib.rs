@@ -9,8 +9,24 @@ pub mod angle;
 pub mod effect;
 
 #[cfg(feature = "read")]
+pub mod catalogue;
+#[cfg(feature = "read")]
 pub mod description;
+#[cfg(feature = "read")]
+pub mod diagnostic;
+#[cfg(feature = "read")]
+pub mod document;
+#[cfg(feature = "read")]
+pub mod quantity;
+#[cfg(feature = "read")]
+mod read;
+#[cfg(feature = "read")]
+mod suggest;
 
 #[cfg(feature = "read")]
 pub use description::{Description, Joint, Link, Part, Placement};
+#[cfg(feature = "read")]
+pub use diagnostic::{Diagnostic, Diagnostics};
 pub use effect::{Convention, Effect, JointKind};
+#[cfg(feature = "read")]
+pub use read::{Outline, ReadError};

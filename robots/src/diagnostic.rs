@@ -1,0 +1,187 @@
+//! Problems in a file a person wrote, shown where they are and with what would
+//! be right.
+
+use std::fmt;
+
+/// One problem, with its place in the file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// The file's name as it is to be shown.
+    pub file: String,
+    /// The line, from 1.
+    pub line: usize,
+    /// The column in characters, from 1.
+    pub column: usize,
+    /// How many characters the problem covers in its line; shown as at least 1.
+    pub width: usize,
+    /// The path inside the document, e.g. `joints[1].theta`; empty where there
+    /// is none.
+    pub path: String,
+    /// What is wrong.
+    pub message: String,
+    /// What would be right; empty where nothing can be said.
+    pub help: String,
+    /// The line of the file the problem is in, without its line break.
+    pub source_line: String,
+}
+
+/// How many columns a terminal gives to a character; an approximation that
+/// keeps carets in place behind accents, Greek, CJK text and emoji.
+fn columns(character: char) -> usize {
+    match u32::from(character) {
+        0x0300..=0x036f | 0x200b..=0x200f | 0xfe00..=0xfe0f => 0,
+        0x1100..=0x115f
+        | 0x2e80..=0xa4cf
+        | 0xac00..=0xd7a3
+        | 0xf900..=0xfaff
+        | 0xfe30..=0xfe6f
+        | 0xff00..=0xff60
+        | 0xffe0..=0xffe6
+        | 0x1f300..=0x1faff
+        | 0x20000..=0x3fffd => 2,
+        _ => 1,
+    }
+}
+
+/// The text as shown: tabs as four spaces, since their width is the terminal's
+/// own; control characters, which could move its cursor, replaced.
+fn shown(text: impl Iterator<Item = char>) -> String {
+    let mut line = String::new();
+    for character in text {
+        match character {
+            '\t' => line.push_str("    "),
+            control if control.is_control() => line.push('\u{fffd}'),
+            other => line.push(other),
+        }
+    }
+    line
+}
+
+fn shown_columns(text: impl Iterator<Item = char>) -> usize {
+    shown(text).chars().map(columns).sum()
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { file, line, column, width, path, message, help, source_line } = self;
+        let gutter = line.to_string().len();
+        let before = column.saturating_sub(1);
+        let indent = shown_columns(source_line.chars().take(before));
+        let carets = shown_columns(source_line.chars().skip(before).take(*width)).max(1);
+        write!(f, "error: {message}\n{:gutter$}--> {file}:{line}:{column}", "")?;
+        if !path.is_empty() {
+            write!(f, "  ({path})")?;
+        }
+        let text = shown(source_line.chars());
+        write!(f, "\n{:gutter$} |\n{line} | {}", "", text.trim_end())?;
+        write!(f, "\n{:gutter$} | {:indent$}{}", "", "", "^".repeat(carets))?;
+        if !help.is_empty() {
+            write!(f, "\n{:gutter$} |\n{:gutter$} = help: {help}", "", "")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Diagnostic {}
+
+/// All the problems of a file: at least one, in the order of the file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostics(Vec<Diagnostic>);
+
+impl Diagnostics {
+    /// The problems in the order of the file, each said once; `None` if there
+    /// are none.
+    pub fn new(mut problems: Vec<Diagnostic>) -> Option<Self> {
+        problems.sort_by_key(|problem| (problem.line, problem.column));
+        // What an anchor holds is checked wherever an alias repeats it.
+        problems.dedup_by(|b, a| (a.line, a.column, &a.message) == (b.line, b.column, &b.message));
+        (!problems.is_empty()).then_some(Self(problems))
+    }
+
+    /// The problems, in the order of the file.
+    pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
+        self.0.iter()
+    }
+}
+
+impl From<Diagnostic> for Diagnostics {
+    fn from(problem: Diagnostic) -> Self {
+        Self(vec![problem])
+    }
+}
+
+impl<'d> IntoIterator for &'d Diagnostics {
+    type Item = &'d Diagnostic;
+    type IntoIter = std::slice::Iter<'d, Diagnostic>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+/// Every problem as a compiler would show it, an empty line between two.
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, problem) in self.iter().enumerate() {
+            if index > 0 {
+                f.write_str("\n\n")?;
+            }
+            problem.fmt(f)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Diagnostics {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn diagnostic(source_line: &str, column: usize, width: usize) -> Diagnostic {
+        Diagnostic {
+            file: "loads.csv".into(),
+            line: 12,
+            column,
+            width,
+            path: String::new(),
+            message: "not a number".into(),
+            help: String::new(),
+            source_line: source_line.into(),
+        }
+    }
+
+    fn carets(source_line: &str, column: usize, width: usize) -> String {
+        diagnostic(source_line, column, width).to_string().lines().last().unwrap().to_owned()
+    }
+
+    #[test]
+    fn shows_file_line_and_carets() {
+        assert_eq!(
+            diagnostic("1,abc,3", 3, 3).to_string(),
+            "error: not a number\n  --> loads.csv:12:3\n   |\n12 | 1,abc,3\n   |   ^^^"
+        );
+    }
+
+    #[test]
+    fn carets_stay_in_place_behind_tabs_and_wide_characters() {
+        assert_eq!(carets("\t1,abc", 4, 3), "   |       ^^^");
+        assert_eq!(carets("µ,é,x", 5, 1), "   |     ^");
+        assert_eq!(carets("机器,x", 4, 1), "   |      ^");
+        assert_eq!(carets("e\u{301},x", 4, 1), "   |   ^");
+    }
+
+    #[test]
+    fn a_place_beyond_the_line_still_shows_a_caret() {
+        assert_eq!(carets("ab", 9, 4), "   |   ^");
+        assert_eq!(carets("", 0, 0), "   | ^");
+    }
+
+    #[test]
+    fn the_order_is_the_files_and_repetitions_are_dropped() {
+        let (late, early) = (diagnostic("1,2,3", 5, 1), diagnostic("1,2,3", 1, 1));
+        let all = Diagnostics::new(vec![late.clone(), early.clone(), late.clone()]).unwrap();
+        assert_eq!(all.iter().collect::<Vec<_>>(), [&early, &late]);
+        assert_eq!(Diagnostics::new(Vec::new()), None);
+    }
+}

@@ -1,0 +1,113 @@
+//! YAML documents that people write, read so that every problem is reported
+//! with its line, its column and what would be right.
+//!
+//! A [`Document`] is walked with [`Node`]s. A check that fails records a
+//! problem and gives `None`; the reader goes on, and [`Document::finish`] hands
+//! out either the value or all the problems:
+//!
+//! ```
+//! use robstiff_robots::document::Document;
+//! use robstiff_robots::quantity::Dimension;
+//!
+//! let document = Document::parse("spindle.yaml", "name: HSC\nlength: 120 mn\n").unwrap();
+//! let value = document.root().map(&["name", "length"]).and_then(|map| {
+//!     let name = map.require("name", "name: HSC").and_then(|node| node.text());
+//!     let length = map.require("length", "length: 120 mm").and_then(|node| node.quantity(Dimension::Length));
+//!     Some((name?.to_owned(), length?))
+//! });
+//! let problems = document.finish(value).unwrap_err();
+//! assert!(problems.to_string().starts_with("error: unknown unit `mn` for a length\n --> spindle.yaml:2:9  (length)"));
+//! ```
+
+mod content;
+mod node;
+
+pub(crate) use content::Content;
+pub use node::{Map, Node};
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use content::{Step, extent, locate, source_line};
+use serde::Deserialize;
+use std::cell::RefCell;
+
+/// Problems beyond this many are not recorded: nobody reads them, and each
+/// costs a pass over the text.
+const MOST_PROBLEMS: usize = 100;
+
+/// A YAML document and the problems found in it so far.
+#[derive(Debug)]
+pub struct Document {
+    file: String,
+    text: String,
+    root: Content,
+    problems: RefCell<Vec<Diagnostic>>,
+}
+
+impl Document {
+    /// Reads a document; `file` is the name that problems show.
+    ///
+    /// # Errors
+    /// What is not YAML, with its place.
+    pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
+        let root = Content::deserialize(serde_yaml::Deserializer::from_str(text));
+        let root = root.map_err(|error| syntax_problem(file, text, &error))?;
+        let document = Self { file: file.to_owned(), text: text.to_owned(), root, problems: RefCell::default() };
+        document.root().check_keys();
+        Ok(document)
+    }
+
+    /// The document's top value.
+    pub fn root(&self) -> Node<'_> {
+        Node::root(self)
+    }
+
+    /// The value that was read, if no problem was found on the way.
+    ///
+    /// # Errors
+    /// All the problems found, in the order of the file.
+    ///
+    /// # Panics
+    /// If there is neither a value nor a problem: whoever gives up on a value
+    /// must have reported why.
+    pub fn finish<T>(self, value: Option<T>) -> Result<T, Diagnostics> {
+        match Diagnostics::new(self.problems.into_inner()) {
+            Some(problems) => Err(problems),
+            None => Ok(value.expect("a value was given up without a problem being reported")),
+        }
+    }
+
+    fn report(&self, steps: &[Step], path: &str, content: &Content, message: String, help: String) {
+        if self.problems.borrow().len() >= MOST_PROBLEMS {
+            return;
+        }
+        let (line, column) = locate(&self.text, steps);
+        let source_line = source_line(&self.text, line);
+        let rest: String = source_line.chars().skip(column - 1).collect();
+        self.problems.borrow_mut().push(Diagnostic {
+            file: self.file.clone(),
+            line,
+            column,
+            width: extent(&rest, content),
+            path: path.to_owned(),
+            message,
+            help,
+            source_line: source_line.to_owned(),
+        });
+    }
+}
+
+fn syntax_problem(file: &str, text: &str, error: &serde_yaml::Error) -> Diagnostic {
+    let (line, column) = error.location().map_or((1, 1), |at| (at.line(), at.column()));
+    // The place is shown on its own; a second place in the message is of use.
+    let message = error.to_string().replacen(&format!(" at line {line} column {column}"), "", 1);
+    Diagnostic {
+        file: file.to_owned(),
+        line,
+        column,
+        width: 1,
+        path: String::new(),
+        message: format!("this is not YAML: {message}"),
+        help: "indent with spaces, put a space after every `:`, close every bracket and quote".to_owned(),
+        source_line: source_line(text, line).to_owned(),
+    }
+}

@@ -1,0 +1,261 @@
+//! Walking a document, with checks that report rather than stop.
+
+use super::{Content, Document, Step};
+use crate::quantity::{self, Dimension};
+use crate::suggest::{closest, list};
+
+/// A value in a document, with its place.
+#[derive(Clone, Debug)]
+pub struct Node<'d> {
+    document: &'d Document,
+    content: &'d Content,
+    steps: Vec<Step>,
+    path: String,
+}
+
+impl<'d> Node<'d> {
+    pub(super) fn root(document: &'d Document) -> Self {
+        Self { document, content: &document.root, steps: Vec::new(), path: String::new() }
+    }
+
+    /// The path of the value, e.g. `joints[1].theta`; items count from 0.
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// Reports a problem with this value.
+    pub fn error(&self, message: impl Into<String>, help: impl Into<String>) {
+        self.document.report(&self.steps, &self.path, self.content, message.into(), help.into());
+    }
+
+    fn expected(&self, what: &str, help: impl Into<String>) {
+        self.error(format!("{what} is expected here, not {}", self.content), help);
+    }
+
+    /// Whether the value is a map.
+    pub fn is_map(&self) -> bool {
+        matches!(self.content, Content::Map(_))
+    }
+
+    /// Whether the value is a list.
+    pub fn is_sequence(&self) -> bool {
+        matches!(self.content, Content::Sequence(_))
+    }
+
+    /// The value as a map of these fields; any other field is reported.
+    pub fn map(&self, fields: &[&str]) -> Option<Map<'d>> {
+        let map = self.any_map(&format!("the fields are {}", list(fields.iter().copied())))?;
+        for index in 0..map.entries.len() {
+            let Some(name) = map.key(index) else { continue };
+            if fields.contains(&name) {
+                continue;
+            }
+            let known = list(fields.iter().copied());
+            let help = match closest(name, fields.iter().copied()) {
+                _ if name == "<<" => "merge keys are not supported: write the fields out".to_owned(),
+                Some(meant) => format!("did you mean `{meant}`? The fields are {known}"),
+                None => format!("the fields are {known}"),
+            };
+            map.error_at_key(index, format!("unknown field `{name}`"), help);
+        }
+        Some(map)
+    }
+
+    /// The value as a map with fields of any name; `help` says what such a map
+    /// looks like.
+    pub fn any_map(&self, help: &str) -> Option<Map<'d>> {
+        let Content::Map(entries) = self.content else {
+            self.expected("a map", help);
+            return None;
+        };
+        Some(Map { node: self.clone(), entries })
+    }
+
+    /// The value as a list.
+    pub fn sequence(&self) -> Option<Vec<Node<'d>>> {
+        let Content::Sequence(items) = self.content else {
+            self.expected("a list", "write `[..]`, or one item a line, each after `- `");
+            return None;
+        };
+        let item = |(index, content)| self.child(Step::Item(index), content, format!("{}[{index}]", self.path));
+        Some(items.iter().enumerate().map(item).collect())
+    }
+
+    /// The value as text.
+    pub fn text(&self) -> Option<&'d str> {
+        let Content::Text(text) = self.content else {
+            self.expected("a text", "put quotes around a text that looks like a number or another value");
+            return None;
+        };
+        Some(text)
+    }
+
+    /// The value as one of several words.
+    pub fn choice<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
+        let names = || words.iter().map(|(name, _)| *name);
+        let help = format!("write one of {}", list(names()));
+        let Content::Text(text) = self.content else {
+            self.expected("a word", help);
+            return None;
+        };
+        let found = words.iter().find(|(name, _)| name == text).map(|(_, value)| *value);
+        if found.is_none() {
+            let help = closest(text, names()).map_or(help.clone(), |meant| format!("did you mean `{meant}`? {help}"));
+            self.error(format!("unknown word `{text}`"), help);
+        }
+        found
+    }
+
+    /// The value as a whole number.
+    pub fn integer(&self) -> Option<i64> {
+        let Content::Integer(value) = self.content else {
+            self.expected("a whole number", "e.g. `1`");
+            return None;
+        };
+        Some(*value)
+    }
+
+    /// The value as a finite quantity, in SI units: a number in SI, or a text
+    /// `value unit`.
+    pub fn quantity(&self, dimension: Dimension) -> Option<f64> {
+        let value = match self.content {
+            Content::Integer(value) => quantity::finite(*value as f64),
+            Content::Number(value) => quantity::finite(*value),
+            Content::Text(text) => quantity::parse(text, dimension),
+            _ => {
+                self.expected(dimension.name(), dimension.help());
+                return None;
+            }
+        };
+        value.map_err(|error| self.error(error.message, error.help)).ok()
+    }
+
+    /// A [`quantity`](Self::quantity) that is zero or positive.
+    pub fn nonnegative(&self, dimension: Dimension) -> Option<f64> {
+        let value = self.quantity(dimension)?;
+        if value < 0.0 {
+            self.error(format!("{} cannot be negative", dimension.name()), "write zero or a positive number");
+            return None;
+        }
+        Some(value)
+    }
+
+    /// A [`quantity`](Self::quantity) that is positive.
+    pub fn positive(&self, dimension: Dimension) -> Option<f64> {
+        let value = self.quantity(dimension)?;
+        if value <= 0.0 {
+            self.error(format!("{} above zero is expected here", dimension.name()), dimension.help());
+            return None;
+        }
+        Some(value)
+    }
+
+    /// A list of `N` quantities of one dimension.
+    pub fn quantities<const N: usize>(&self, dimension: Dimension) -> Option<[f64; N]> {
+        let items = self.sequence()?;
+        if items.len() != N {
+            let found = items.len();
+            self.error(format!("{N} values are expected here, not {found}"), dimension.help());
+            return None;
+        }
+        let values: Vec<Option<f64>> = items.iter().map(|item| item.quantity(dimension)).collect();
+        let values: Vec<f64> = values.into_iter().collect::<Option<_>>()?;
+        values.try_into().ok()
+    }
+
+    fn child(&self, step: Step, content: &'d Content, path: String) -> Self {
+        let mut steps = self.steps.clone();
+        steps.push(step);
+        Self { document: self.document, content, steps, path }
+    }
+
+    /// Reports keys that stand twice and keys that are no text, here and in
+    /// everything below.
+    pub(super) fn check_keys(&self) {
+        match self.content {
+            Content::Sequence(_) => self.sequence().into_iter().flatten().for_each(|item| item.check_keys()),
+            Content::Map(entries) => {
+                let map = Map { node: self.clone(), entries };
+                for index in 0..entries.len() {
+                    map.check_key(index);
+                    map.value(index).check_keys();
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// A map in a document: its fields by name. Of a field given twice, which is
+/// reported on reading the document, the first counts.
+#[derive(Clone, Debug)]
+pub struct Map<'d> {
+    node: Node<'d>,
+    entries: &'d [(Content, Content)],
+}
+
+impl<'d> Map<'d> {
+    /// The map as a value.
+    pub fn node(&self) -> &Node<'d> {
+        &self.node
+    }
+
+    /// The field of this name, if it is there.
+    pub fn get(&self, name: &str) -> Option<Node<'d>> {
+        (0..self.entries.len()).find(|index| self.key(*index) == Some(name)).map(|index| self.value(index))
+    }
+
+    /// The field of this name; its absence is reported with an example of it.
+    pub fn require(&self, name: &str, example: &str) -> Option<Node<'d>> {
+        let field = self.get(name);
+        if field.is_none() {
+            self.node.error(format!("the field `{name}` is missing"), format!("add it, e.g. `{example}`"));
+        }
+        field
+    }
+
+    /// All fields with a name, in the order of the file.
+    pub fn fields(&self) -> impl Iterator<Item = (&'d str, Node<'d>)> {
+        (0..self.entries.len()).filter_map(|index| Some((self.key(index)?, self.value(index))))
+    }
+
+    fn key(&self, index: usize) -> Option<&'d str> {
+        match &self.entries[index].0 {
+            Content::Text(name) => Some(name),
+            _ => None,
+        }
+    }
+
+    fn value(&self, index: usize) -> Node<'d> {
+        self.node.child(Step::Value(index), &self.entries[index].1, self.path_of(index))
+    }
+
+    fn path_of(&self, index: usize) -> String {
+        let parent = &self.node.path;
+        match (self.key(index), parent.is_empty()) {
+            (Some(name), true) => name.to_owned(),
+            (Some(name), false) => format!("{parent}.{name}"),
+            (None, _) => parent.clone(),
+        }
+    }
+
+    fn error_at_key(&self, index: usize, message: String, help: impl Into<String>) {
+        let (document, key) = (self.node.document, &self.entries[index].0);
+        let mut steps = self.node.steps.clone();
+        steps.push(Step::Key(index));
+        document.report(&steps, &self.path_of(index), key, message, help.into());
+    }
+
+    fn check_key(&self, index: usize) {
+        let key = &self.entries[index].0;
+        let Some(name) = self.key(index) else {
+            // `{at: joints 2,3}` reads as `{at: joints 2, 3: nothing}`.
+            let help = "inside `{..}` a text with a comma needs quotes, e.g. `at: \"joints 2,3\"`";
+            return self.error_at_key(index, format!("the name of a field is expected here, not {key}"), help);
+        };
+        if self.entries[..index].iter().any(|(earlier, _)| earlier == key) {
+            let help = "keep one of the two";
+            self.error_at_key(index, format!("the field `{name}` is given twice"), help);
+        }
+    }
+}

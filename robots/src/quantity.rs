@@ -1,0 +1,301 @@
+//! Quantities as people write them: a number in SI units, or `value unit`.
+
+use crate::suggest::list;
+use std::f64::consts::PI;
+use std::fmt;
+
+/// What kind of quantity is expected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// A plain number.
+    Number,
+    /// A length [m].
+    Length,
+    /// An angle [rad].
+    Angle,
+    /// The compliance of something that turns [rad/Nm]; a stiffness is taken
+    /// as its inverse.
+    Compliance,
+    /// The compliance of something that slides [m/N]; a stiffness is taken as
+    /// its inverse.
+    LinearCompliance,
+    /// A mass [kg].
+    Mass,
+    /// A force [N].
+    Force,
+    /// A torque [Nm].
+    Torque,
+    /// A time [s].
+    Time,
+    /// A temperature of which only differences count: `C` and `K` are the same.
+    Temperature,
+}
+
+impl Dimension {
+    /// The kind with its article: "an angle".
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Number => "a number",
+            Self::Length => "a length",
+            Self::Angle => "an angle",
+            Self::Compliance => "a rotational compliance",
+            Self::LinearCompliance => "a translational compliance",
+            Self::Mass => "a mass",
+            Self::Force => "a force",
+            Self::Torque => "a torque",
+            Self::Time => "a time",
+            Self::Temperature => "a temperature",
+        }
+    }
+
+    const fn example(self) -> &'static str {
+        match self {
+            Self::Number => "0.25",
+            Self::Length => "865 mm",
+            Self::Angle => "-90 deg",
+            Self::Compliance => "2.97e-7 rad/Nm",
+            Self::LinearCompliance => "0.02 um/N",
+            Self::Mass => "350 kg",
+            Self::Force => "500 N",
+            Self::Torque => "120 Nm",
+            Self::Time => "0.5 s",
+            Self::Temperature => "21.5 C",
+        }
+    }
+
+    /// How such a quantity is written.
+    pub fn help(self) -> String {
+        let units = || UNITS.iter().filter(|unit| unit.dimension == self).map(|unit| unit.name);
+        let example = self.example();
+        match units().next() {
+            None => format!("write a number without a unit, e.g. `{example}`"),
+            Some(si) if units().count() == 1 => {
+                format!("write a number in {si}, with or without its unit, e.g. `{example}`")
+            }
+            Some(si) => format!("write a number in {si} or one of {}, e.g. `{example}`", list(units())),
+        }
+    }
+}
+
+/// A unit: `value * times / per` is the value in SI, or one over it for a
+/// stiffness where compliances are meant. Both factors are exact where they
+/// can be, so that `865 mm` is the double nearest to 0.865 m.
+struct Unit {
+    name: &'static str,
+    dimension: Dimension,
+    times: f64,
+    per: f64,
+    inverse: bool,
+}
+
+const fn unit(name: &'static str, dimension: Dimension, times: f64, per: f64) -> Unit {
+    Unit { name, dimension, times, per, inverse: false }
+}
+
+const fn stiffness(name: &'static str, dimension: Dimension, times: f64, per: f64) -> Unit {
+    Unit { name, dimension, times, per, inverse: true }
+}
+
+/// Every unit there is; the first of each dimension is SI.
+#[rustfmt::skip]
+const UNITS: &[Unit] = {
+    use Dimension::*;
+    &[
+        unit("m", Length, 1.0, 1.0),
+        unit("mm", Length, 1.0, 1e3),
+        unit("um", Length, 1.0, 1e6),
+        unit("rad", Angle, 1.0, 1.0),
+        unit("mrad", Angle, 1.0, 1e3),
+        unit("urad", Angle, 1.0, 1e6),
+        unit("deg", Angle, PI, 180.0),
+        unit("arcmin", Angle, PI, 10_800.0),
+        unit("rad/Nm", Compliance, 1.0, 1.0),
+        unit("mrad/Nm", Compliance, 1.0, 1e3),
+        unit("urad/Nm", Compliance, 1.0, 1e6),
+        unit("urad/kNm", Compliance, 1.0, 1e9),
+        unit("arcmin/Nm", Compliance, PI, 10_800.0),
+        stiffness("Nm/rad", Compliance, 1.0, 1.0),
+        stiffness("kNm/rad", Compliance, 1e3, 1.0),
+        stiffness("MNm/rad", Compliance, 1e6, 1.0),
+        stiffness("Nm/arcmin", Compliance, 10_800.0, PI),
+        unit("m/N", LinearCompliance, 1.0, 1.0),
+        unit("mm/N", LinearCompliance, 1.0, 1e3),
+        unit("um/N", LinearCompliance, 1.0, 1e6),
+        stiffness("N/m", LinearCompliance, 1.0, 1.0),
+        stiffness("N/mm", LinearCompliance, 1e3, 1.0),
+        stiffness("N/um", LinearCompliance, 1e6, 1.0),
+        unit("kg", Mass, 1.0, 1.0),
+        unit("N", Force, 1.0, 1.0),
+        unit("kN", Force, 1e3, 1.0),
+        unit("Nm", Torque, 1.0, 1.0),
+        unit("kNm", Torque, 1e3, 1.0),
+        unit("s", Time, 1.0, 1.0),
+        unit("ms", Time, 1.0, 1e3),
+        unit("min", Time, 60.0, 1.0),
+        unit("h", Time, 3600.0, 1.0),
+        unit("C", Temperature, 1.0, 1.0),
+        unit("K", Temperature, 1.0, 1.0),
+    ]
+};
+
+/// Why a text is not the quantity that is expected.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct QuantityError {
+    /// What is wrong.
+    pub message: String,
+    /// What would be right.
+    pub help: String,
+}
+
+impl fmt::Display for QuantityError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}; {}", self.message, self.help)
+    }
+}
+
+impl std::error::Error for QuantityError {}
+
+fn error<T>(message: String, help: impl Into<String>) -> Result<T, QuantityError> {
+    Err(QuantityError { message, help: help.into() })
+}
+
+fn find(name: &str, dimension: Dimension) -> Result<&'static Unit, QuantityError> {
+    // Both micro signs are common on keyboards.
+    let plain = name.replace(['µ', 'μ'], "u");
+    match UNITS.iter().find(|unit| unit.name == plain) {
+        Some(unit) if unit.dimension == dimension => Ok(unit),
+        Some(unit) => {
+            let kind = match (unit.inverse, unit.dimension) {
+                (true, Dimension::Compliance) => "a rotational stiffness",
+                (true, _) => "a translational stiffness",
+                (false, dimension) => dimension.name(),
+            };
+            error(format!("`{name}` is {kind}, {} is expected here", dimension.name()), dimension.help())
+        }
+        None => error(format!("unknown unit `{name}` for {}", dimension.name()), dimension.help()),
+    }
+}
+
+/// What to multiply a number in this unit by to have it in SI, e.g. 1e-6 for
+/// `um`: for the columns of a table.
+///
+/// # Errors
+/// A unit that is unknown, of another dimension, or a stiffness (which a factor
+/// does not turn into a compliance).
+pub fn scale(unit: &str, dimension: Dimension) -> Result<f64, QuantityError> {
+    let found = find(unit.trim(), dimension)?;
+    if found.inverse {
+        let si = UNITS.iter().find(|unit| unit.dimension == dimension).map_or("", |unit| unit.name);
+        return error(
+            format!("`{}` is a stiffness, {} is expected here", found.name, dimension.name()),
+            format!("give it in {si}"),
+        );
+    }
+    Ok(found.times / found.per)
+}
+
+/// The number, if it is finite; a negative zero becomes zero.
+pub(crate) fn finite(value: f64) -> Result<f64, QuantityError> {
+    if !value.is_finite() {
+        return error(
+            format!("{value} is not finite"),
+            "write a finite number; leave a field out where nothing is known",
+        );
+    }
+    Ok(value + 0.0)
+}
+
+/// Reads `value unit`, or a number in SI, or for an angle a fraction of pi
+/// (`pi/2`, `-3*pi/4`, `2pi`), into SI units.
+///
+/// # Errors
+/// What is no number, not finite, or has a unit that does not fit; a stiffness
+/// of zero where a compliance is expected.
+pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
+    let text = text.trim();
+    let not_a_number = || {
+        let comma = if text.contains(',') { "a decimal point, not a comma: " } else { "" };
+        error(format!("`{text}` is not {}", dimension.name()), format!("{comma}{}", dimension.help()))
+    };
+    let (number, rest) = match leading_number(text) {
+        Some((number, rest)) => (Some(number), rest),
+        None => (None, text),
+    };
+    let (value, unit) = match fraction_of_pi(number, rest) {
+        Some((value, unit)) => {
+            if dimension != Dimension::Angle {
+                return error(format!("`{text}` is an angle, {} is expected here", dimension.name()), dimension.help());
+            }
+            if !matches!(unit, "" | "rad") {
+                return error(format!("a fraction of pi is in rad, not in `{unit}`"), "e.g. `pi/2`");
+            }
+            (value, unit)
+        }
+        None => match number {
+            Some(number) => (number, rest),
+            None if is_infinite_or_nan(text) => return error(format!("`{text}` is not finite"), dimension.help()),
+            None => return not_a_number(),
+        },
+    };
+    if unit.starts_with(|first: char| first.is_ascii_digit() || ".,_".contains(first)) {
+        return not_a_number();
+    }
+    if !value.is_finite() {
+        return error(format!("`{text}` is not finite"), dimension.help());
+    }
+    if unit.is_empty() {
+        return finite(value);
+    }
+    let unit = find(unit, dimension)?;
+    if !unit.inverse {
+        return finite(value * unit.times / unit.per);
+    }
+    if value == 0.0 {
+        return error("a stiffness of zero has no compliance".into(), "a rigid joint has no `compliance` at all");
+    }
+    finite(unit.per / (value * unit.times))
+}
+
+fn is_infinite_or_nan(text: &str) -> bool {
+    let word = text.split_whitespace().next().unwrap_or_default().trim_start_matches(['+', '-']);
+    matches!(word.trim_start_matches('.').to_ascii_lowercase().as_str(), "inf" | "nan" | "infinity")
+}
+
+/// The number at the start of a text and what follows it, blanks removed.
+fn leading_number(text: &str) -> Option<(f64, &str)> {
+    let bytes = text.as_bytes();
+    let digits_from = |start: usize| start + bytes[start..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+    let sign = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
+    let mut end = digits_from(sign);
+    if bytes.get(end) == Some(&b'.') {
+        end = digits_from(end + 1);
+    }
+    if let Some(b'e' | b'E') = bytes.get(end) {
+        let signed = end + 1 + usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        // Without digits the `e` is no exponent.
+        if digits_from(signed.min(bytes.len())) > signed {
+            end = digits_from(signed);
+        }
+    }
+    let number = text[..end].parse().ok()?;
+    Some((number, text[end..].trim_start()))
+}
+
+/// The angle, and the unit behind it, where `[number [*]] pi [/ number]` stands.
+fn fraction_of_pi(number: Option<f64>, rest: &str) -> Option<(f64, &str)> {
+    let (factor, rest) = match number {
+        Some(number) => (number, rest.strip_prefix('*').unwrap_or(rest).trim_start()),
+        None => match rest.strip_prefix('-') {
+            Some(rest) => (-1.0, rest.trim_start()),
+            None => (1.0, rest.strip_prefix('+').unwrap_or(rest).trim_start()),
+        },
+    };
+    let rest = rest.strip_prefix("pi").or_else(|| rest.strip_prefix('π'))?;
+    if rest.starts_with(char::is_alphanumeric) {
+        return None;
+    }
+    match rest.trim_start().strip_prefix('/') {
+        Some(divisor) => leading_number(divisor.trim_start()).map(|(divisor, unit)| (factor * PI / divisor, unit)),
+        None => Some((factor * PI, rest.trim_start())),
+    }
+}

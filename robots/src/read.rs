@@ -1,0 +1,252 @@
+//! Reading a description: every rule of the schema, every problem of a file at
+//! once.
+
+mod effects;
+mod outline;
+
+pub use outline::Outline;
+
+use crate::angle::snapped;
+use crate::description::{Description, Joint, Link, Part, Placement};
+use crate::diagnostic::Diagnostics;
+use crate::document::{Document, Map, Node};
+use crate::effect::{Convention, JointKind};
+use crate::quantity::Dimension;
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// The most joints a robot may have.
+const MOST_JOINTS: usize = 8;
+
+/// Why a description could not be read.
+#[derive(Debug)]
+pub enum ReadError {
+    /// The file could not be read.
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        error: io::Error,
+    },
+    /// The file was read, but does not describe a robot.
+    Invalid(Diagnostics),
+}
+
+impl fmt::Display for ReadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Io { path, error } => write!(f, "error: cannot read {}: {error}", path.display()),
+            Self::Invalid(problems) => problems.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for ReadError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Io { error, .. } => Some(error),
+            Self::Invalid(problems) => Some(problems),
+        }
+    }
+}
+
+impl Description {
+    /// Reads a description from a file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, and everything [`parse`](Self::parse) finds.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
+        let path = path.as_ref();
+        let text = std::fs::read_to_string(path).map_err(|error| ReadError::Io { path: path.to_owned(), error })?;
+        Self::parse(&path.display().to_string(), &text).map_err(ReadError::Invalid)
+    }
+
+    /// Reads a description; `file` is the name that problems show.
+    ///
+    /// # Errors
+    /// All that is wrong with the text, each problem with its place.
+    pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
+        let document = Document::parse(file, text)?;
+        let description = description(&document.root());
+        document.finish(description)
+    }
+
+    /// What can be told of a robot from a text that may be broken anywhere.
+    pub fn outline(text: &str) -> Outline {
+        outline::outline(text)
+    }
+}
+
+fn description(root: &Node) -> Option<Description> {
+    let map =
+        root.map(&["name", "description", "source", "convention", "base", "joints", "tool", "links", "effects"])?;
+    // Everything is read before anything is given up, to report all problems.
+    let name = map.require("name", "name: Rv130hsc").and_then(|node| name(&node));
+    let text = |field| map.get(field).map_or(Some(String::new()), |node| node.text().map(str::to_owned));
+    let (summary, source) = (text("description"), text("source"));
+    let convention = map
+        .require("convention", "convention: standard")
+        .and_then(|node| node.choice(&[("standard", Convention::Standard), ("modified", Convention::Modified)]));
+    let base = optional(&map, "base", placement);
+    let joints = map.require("joints", "joints: [{theta: 0 deg, d: 865 mm, alpha: -90 deg}, ..]");
+    let count = joints.as_ref().filter(|node| node.is_sequence()).and_then(|node| Some(node.sequence()?.len()));
+    let joints = joints.and_then(|node| self::joints(&node));
+    let tool = optional(&map, "tool", placement);
+    let links = optional(&map, "links", |node| links(node, count));
+    let effects = optional(&map, "effects", |node| effects::effects(node, joints.as_deref(), count));
+    Some(Description {
+        name: name?,
+        description: summary?,
+        source: source?,
+        convention: convention?,
+        base: base?,
+        joints: joints?,
+        tool: tool?,
+        links: links?,
+        effects: effects?,
+    })
+}
+
+/// A field that may be left out and then has its type's zero.
+fn optional<T: Default>(map: &Map, field: &str, read: impl FnOnce(&Node) -> Option<T>) -> Option<T> {
+    map.get(field).map_or(Some(T::default()), |node| read(&node))
+}
+
+/// Every item of a list, read; `None` if any failed.
+fn every<T>(items: &[Node], read: impl FnMut(&Node) -> Option<T>) -> Option<Vec<T>> {
+    let read: Vec<Option<T>> = items.iter().map(read).collect();
+    read.into_iter().collect()
+}
+
+fn name(node: &Node) -> Option<String> {
+    let name = node.text()?;
+    if !is_type_name(name) {
+        let help = format!("it becomes a Rust type, so write it in upper camel case, e.g. `{}`", suggested_name(name));
+        node.error(format!("`{name}` cannot name a robot"), help);
+        return None;
+    }
+    Some(name.to_owned())
+}
+
+/// Whether a text is an upper camel case identifier and no keyword.
+fn is_type_name(name: &str) -> bool {
+    name.starts_with(|first: char| first.is_ascii_uppercase())
+        && name.chars().all(|character| character.is_ascii_alphanumeric())
+        && name != "Self"
+}
+
+fn suggested_name(name: &str) -> String {
+    let words = name.split(|character: char| !character.is_ascii_alphanumeric());
+    let camel: String = words
+        .filter_map(|word| Some((word.chars().next()?.to_ascii_uppercase(), &word[1..])))
+        .map(|(first, rest)| format!("{first}{rest}"))
+        .collect();
+    if is_type_name(&camel) { camel } else { format!("Robot{camel}") }
+}
+
+fn placement(node: &Node) -> Option<Placement> {
+    let map = node.map(&["xyz", "rpy"])?;
+    let xyz = optional(&map, "xyz", |node| node.quantities(Dimension::Length));
+    let rpy = optional(&map, "rpy", |node| node.quantities(Dimension::Angle));
+    Some(Placement { xyz: xyz?, rpy: rpy?.map(snapped) })
+}
+
+fn joints(node: &Node) -> Option<Vec<Joint>> {
+    let items = node.sequence()?;
+    if items.is_empty() || items.len() > MOST_JOINTS {
+        node.error(
+            format!("a robot has 1 to {MOST_JOINTS} joints, not {}", items.len()),
+            "give one DH row a joint, from the base to the flange",
+        );
+        return None;
+    }
+    every(&items, joint)
+}
+
+fn joint(node: &Node) -> Option<Joint> {
+    let map = node.map(&["type", "theta", "d", "a", "alpha", "limits", "compliance"])?;
+    let kind = map.get("type").map_or(Some(JointKind::Revolute), |node| {
+        node.choice(&[("revolute", JointKind::Revolute), ("prismatic", JointKind::Prismatic)])
+    });
+    let angle = |field| optional(&map, field, |node| node.quantity(Dimension::Angle).map(snapped));
+    let length = |field| optional(&map, field, |node| node.quantity(Dimension::Length));
+    let (theta, d, a, alpha) = (angle("theta"), length("d"), length("a"), angle("alpha"));
+    // Without the kind, the dimensions of the rest are unknown.
+    let kind = kind?;
+    let limits = map.get("limits").map_or(Some(None), |node| limits(&node, kind).map(Some));
+    let compliance = optional(&map, "compliance", |node| compliance(node, kind));
+    Some(Joint { kind, theta: theta?, d: d?, a: a?, alpha: alpha?, limits: limits?, compliance: compliance? })
+}
+
+fn limits(node: &Node, kind: JointKind) -> Option<[f64; 2]> {
+    let limits = match kind {
+        JointKind::Revolute => node.quantities(Dimension::Angle)?.map(snapped),
+        JointKind::Prismatic => node.quantities(Dimension::Length)?,
+    };
+    if limits[0] >= limits[1] {
+        node.error("the lower limit is not below the upper one", "write `[lower, upper]`");
+        return None;
+    }
+    Some(limits)
+}
+
+fn compliance(node: &Node, kind: JointKind) -> Option<Vec<Part>> {
+    let dimension = match kind {
+        JointKind::Revolute => Dimension::Compliance,
+        JointKind::Prismatic => Dimension::LinearCompliance,
+    };
+    if !node.is_map() {
+        return Some(vec![Part { name: String::new(), value: node.nonnegative(dimension)? }]);
+    }
+    let help = "name the parts, which add up, e.g. `{gear: 1.9e-7 rad/Nm, belt: 1.22e-7 rad/Nm}`";
+    let map = node.any_map(help)?;
+    let parts: Vec<Option<Part>> = map
+        .fields()
+        .map(|(name, node)| {
+            if name.is_empty() {
+                node.error("a part of a compliance needs a name", help);
+                return None;
+            }
+            Some(Part { name: name.to_owned(), value: node.nonnegative(dimension)? })
+        })
+        .collect();
+    if parts.is_empty() {
+        node.error("a compliance has at least one part", "a rigid joint has no `compliance` at all");
+        return None;
+    }
+    parts.into_iter().collect()
+}
+
+fn links(node: &Node, joints: Option<usize>) -> Option<Vec<Link>> {
+    let items = node.sequence()?;
+    if let Some(joints) = joints.filter(|joints| *joints != items.len()) {
+        node.error(
+            format!("there are {} links for {joints} joints", items.len()),
+            "give the body that moves with each joint, `{}` where nothing is known, or leave `links` out",
+        );
+        return None;
+    }
+    every(&items, |node| {
+        let map = node.map(&["mass", "center_of_mass"])?;
+        let mass = optional(&map, "mass", |node| node.nonnegative(Dimension::Mass));
+        let center_of_mass = optional(&map, "center_of_mass", |node| node.quantities(Dimension::Length));
+        Some(Link { mass: mass?, center_of_mass: center_of_mass? })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn suggests_names_that_are_names() {
+        for (name, suggested) in
+            [("rv130-hsc", "Rv130Hsc"), ("6axis arm", "Robot6axisArm"), ("Self", "RobotSelf"), ("ü", "Robot")]
+        {
+            assert!(!is_type_name(name));
+            assert_eq!(suggested_name(name), suggested);
+            assert!(is_type_name(suggested));
+        }
+    }
+}
