@@ -17,6 +17,9 @@ use nalgebra::{Matrix3, Matrix4, Matrix6, Matrix6x3, SVector, Vector3, Vector6};
 
 use crate::{Convention, Effect, JointKind, Real, Robot};
 
+#[cfg(all(test, feature = "generic"))]
+mod tests;
+
 /// Where the parts of a robot are in one pose; every frame a homogeneous
 /// 4 x 4 matrix (lengths in m) in the base frame.
 #[derive(Clone, Copy, Debug)]
@@ -143,6 +146,7 @@ impl<T: Real> Geometry<'_, T> {
     fn along_link(&self, link: usize) -> Matrix3<T> {
         let along = origin(&self.joint_frames[link]) - origin(&self.joint_frames[link - 1]);
         let length_squared = along.dot(&along);
+        // Exact: a row with d = a = 0 adds zeros to the origin before it.
         if length_squared == T::zero() {
             return Matrix3::zeros();
         }

@@ -29,6 +29,7 @@
 #[cfg(feature = "std")]
 extern crate std;
 
+pub mod analysis;
 #[cfg(feature = "identify")]
 pub mod campaign;
 pub mod elements;
