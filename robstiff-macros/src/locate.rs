@@ -52,7 +52,7 @@ pub(crate) fn locate(file: &str, call: Span) -> Result<Located, String> {
 }
 
 fn folders(call: Span, manifest: Option<&Path>) -> Vec<PathBuf> {
-    let source = call.local_file();
+    let source = call.unwrap().local_file();
     let beside = source.as_deref().and_then(Path::parent).map(|folder| {
         // Source paths are relative to where the compiler runs, for the
         // members of a workspace its root.
