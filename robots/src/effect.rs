@@ -16,9 +16,9 @@ pub enum Convention {
 /// What a joint does along its axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
-    /// Turns: the joint coordinate [rad] adds to theta.
+    /// Turns: the joint coordinate \[rad\] adds to theta.
     Revolute,
-    /// Slides: the joint coordinate [m] adds to d.
+    /// Slides: the joint coordinate \[m\] adds to d.
     Prismatic,
 }
 
@@ -82,7 +82,7 @@ pub enum Effect {
         /// What the unloaded joint's compliance has on top [rad/Nm];
         /// above `-h`.
         added: f64,
-        /// The torque at which the change is half done [Nm], positive.
+        /// The torque at which the change is half done \[Nm\], positive.
         knee: f64,
     },
 }
