@@ -31,23 +31,23 @@ pub struct Description {
 pub struct Joint {
     /// Turning or sliding.
     pub kind: JointKind,
-    /// DH angle about z at joint coordinate 0 (rad).
+    /// DH angle about z at joint coordinate 0 \[rad\].
     pub theta: f64,
-    /// DH offset along z at joint coordinate 0 (m).
+    /// DH offset along z at joint coordinate 0 \[m\].
     pub d: f64,
-    /// DH length along x (m).
+    /// DH length along x \[m\].
     pub a: f64,
-    /// DH twist about x (rad).
+    /// DH twist about x \[rad\].
     pub alpha: f64,
-    /// Lower and upper limit of the joint coordinate (rad or m).
+    /// Lower and upper limit of the joint coordinate [rad or m].
     pub limits: Option<[f64; 2]>,
-    /// The parts of the compliance (rad/Nm or m/N), which add up; a joint with
+    /// The parts of the compliance [rad/Nm or m/N], which add up; a joint with
     /// one number has one part with an empty name, a rigid joint has none.
     pub compliance: Vec<Part>,
 }
 
 impl Joint {
-    /// The joint's compliance, the sum of its parts (rad/Nm or m/N).
+    /// The joint's compliance, the sum of its parts [rad/Nm or m/N].
     pub fn compliance(&self) -> f64 {
         self.compliance.iter().map(|part| part.value).sum()
     }
@@ -58,16 +58,16 @@ impl Joint {
 pub struct Part {
     /// The part's name; empty where the joint is not compound.
     pub name: String,
-    /// Its compliance (rad/Nm or m/N).
+    /// Its compliance [rad/Nm or m/N].
     pub value: f64,
 }
 
 /// Where one frame stands in another.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Placement {
-    /// The origin (m).
+    /// The origin \[m\].
     pub xyz: [f64; 3],
-    /// Roll, pitch, yaw about the fixed x, y, z axes (rad):
+    /// Roll, pitch, yaw about the fixed x, y, z axes \[rad\]:
     /// `R = Rz(yaw) Ry(pitch) Rx(roll)`.
     pub rpy: [f64; 3],
 }
@@ -75,8 +75,8 @@ pub struct Placement {
 /// Mass of the body that moves with joint `i`, for gravity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Link {
-    /// Mass (kg).
+    /// Mass \[kg\].
     pub mass: f64,
-    /// Centre of mass in the link's frame `i` (m).
+    /// Centre of mass in the link's frame `i` \[m\].
     pub center_of_mass: [f64; 3],
 }

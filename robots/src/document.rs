@@ -49,6 +49,7 @@ impl Document {
     /// # Errors
     /// What is not YAML, with its place.
     pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
+        let text = without_byte_order_mark(text);
         let root = Content::deserialize(serde_yaml::Deserializer::from_str(text));
         let root = root.map_err(|error| syntax_problem(file, text, &error))?;
         let document = Self { file: file.to_owned(), text: text.to_owned(), root, problems: RefCell::default() };
@@ -96,6 +97,11 @@ impl Document {
     }
 }
 
+/// The text as the parser wants it: it takes a mark for a document of its own.
+pub(crate) fn without_byte_order_mark(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
+}
+
 fn syntax_problem(file: &str, text: &str, error: &serde_yaml::Error) -> Diagnostic {
     let (line, column) = error.location().map_or((1, 1), |at| (at.line(), at.column()));
     // The place is shown on its own; a second place in the message is of use.
@@ -106,8 +112,9 @@ fn syntax_problem(file: &str, text: &str, error: &serde_yaml::Error) -> Diagnost
         column,
         width: 1,
         path: String::new(),
-        message: format!("this is not YAML: {message}"),
-        help: "indent with spaces, put a space after every `:`, close every bracket and quote".to_owned(),
+        message: format!("this cannot be read as YAML: {message}"),
+        help: "one document a file; indent with spaces, put a space after every `:`, close every bracket and quote"
+            .to_owned(),
         source_line: source_line(text, line).to_owned(),
     }
 }

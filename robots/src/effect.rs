@@ -16,9 +16,9 @@ pub enum Convention {
 /// What a joint does along its axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
-    /// Turns: the joint coordinate (rad) adds to theta.
+    /// Turns: the joint coordinate \[rad\] adds to theta.
     Revolute,
-    /// Slides: the joint coordinate (m) adds to d.
+    /// Slides: the joint coordinate \[m\] adds to d.
     Prismatic,
 }
 
@@ -35,7 +35,7 @@ pub enum Effect {
     TransverseCompliance {
         /// The joint, from 1.
         joint: usize,
-        /// Tilt per moment, the same about x and y (rad/Nm).
+        /// Tilt per moment, the same about x and y [rad/Nm].
         value: f64,
     },
     /// A uniform, round beam from the origin of joint frame `link` to the
@@ -43,25 +43,25 @@ pub enum Effect {
     LinkCompliance {
         /// The link, from 1 to n - 1.
         link: usize,
-        /// `L / EI` (rad/Nm).
+        /// `L / EI` [rad/Nm].
         bending: f64,
-        /// `L / GJ` (rad/Nm).
+        /// `L / GJ` [rad/Nm].
         torsion: f64,
     },
     /// Foundation and pedestal, at the origin of frame 0 (after the base
     /// placement). Its turn about z is that of a first joint on the same axis
     /// and is left to it.
     BaseCompliance {
-        /// Tilt per moment about x and y of frame 0 (rad/Nm).
+        /// Tilt per moment about x and y of frame 0 [rad/Nm].
         tilt: f64,
-        /// Displacement per force, the same in every direction (m/N).
+        /// Displacement per force, the same in every direction [m/N].
         translation: f64,
     },
     /// Flange, spindle and tool, at the origin of the flange frame.
     ToolCompliance {
-        /// Turn per moment, the same about every axis (rad/Nm).
+        /// Turn per moment, the same about every axis [rad/Nm].
         rotation: f64,
-        /// Displacement per force, the same in every direction (m/N).
+        /// Displacement per force, the same in every direction [m/N].
         translation: f64,
     },
     /// An off-diagonal entry of the joint compliance `H_q` (belts, wrist
@@ -69,7 +69,7 @@ pub enum Effect {
     JointCoupling {
         /// The two joints, from 1, the smaller first.
         joints: [usize; 2],
-        /// `H_q[i, j] = H_q[j, i]` (rad/Nm) between two revolute joints.
+        /// `H_q[i, j] = H_q[j, i]` [rad/Nm] between two revolute joints.
         value: f64,
     },
     /// Hardening (positive) or softening (negative) of a joint with torque:
@@ -79,10 +79,10 @@ pub enum Effect {
     StiffnessNonlinearity {
         /// The joint, from 1.
         joint: usize,
-        /// What the unloaded joint's compliance has on top (rad/Nm);
+        /// What the unloaded joint's compliance has on top [rad/Nm];
         /// above `-h`.
         added: f64,
-        /// The torque at which the change is half done (Nm), positive.
+        /// The torque at which the change is half done \[Nm\], positive.
         knee: f64,
     },
 }

@@ -22,6 +22,8 @@ pub mod quantity;
 mod read;
 #[cfg(feature = "read")]
 mod suggest;
+#[cfg(feature = "read")]
+mod write;
 
 #[cfg(feature = "read")]
 pub use description::{Description, Joint, Link, Part, Placement};

@@ -9,9 +9,9 @@ use std::fmt;
 pub enum Dimension {
     /// A plain number.
     Number,
-    /// A length [m].
+    /// A length \[m\].
     Length,
-    /// An angle [rad].
+    /// An angle \[rad\].
     Angle,
     /// The compliance of something that turns [rad/Nm]; a stiffness is taken
     /// as its inverse.
@@ -19,13 +19,13 @@ pub enum Dimension {
     /// The compliance of something that slides [m/N]; a stiffness is taken as
     /// its inverse.
     LinearCompliance,
-    /// A mass [kg].
+    /// A mass \[kg\].
     Mass,
-    /// A force [N].
+    /// A force \[N\].
     Force,
-    /// A torque [Nm].
+    /// A torque \[Nm\].
     Torque,
-    /// A time [s].
+    /// A time \[s\].
     Time,
     /// A temperature of which only differences count: `C` and `K` are the same.
     Temperature,
@@ -198,7 +198,7 @@ pub fn scale(unit: &str, dimension: Dimension) -> Result<f64, QuantityError> {
 pub(crate) fn finite(value: f64) -> Result<f64, QuantityError> {
     if !value.is_finite() {
         return error(
-            format!("{value} is not finite"),
+            format!("`{value}` is not finite"),
             "write a finite number; leave a field out where nothing is known",
         );
     }
@@ -297,5 +297,103 @@ fn fraction_of_pi(number: Option<f64>, rest: &str) -> Option<(f64, &str)> {
     match rest.trim_start().strip_prefix('/') {
         Some(divisor) => leading_number(divisor.trim_start()).map(|(divisor, unit)| (factor * PI / divisor, unit)),
         None => Some((factor * PI, rest.trim_start())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    fn message(text: &str, dimension: Dimension) -> String {
+        parse(text, dimension).expect_err(text).message
+    }
+
+    #[test]
+    fn units_are_exact_where_they_can_be() {
+        use Dimension::*;
+        for (text, dimension, si) in [
+            ("865 mm", Length, 0.865),
+            ("3 um", Length, 3e-6),
+            ("3 µm", Length, 3e-6),
+            ("-1.5e3mm", Length, -1.5),
+            ("0.41", Length, 0.41),
+            ("+.5 m", Length, 0.5),
+            ("180 deg", Angle, PI),
+            ("60 arcmin", Angle, PI / 180.0),
+            ("50 urad", Angle, 5e-5),
+            ("2.97e-7 rad/Nm", Compliance, 2.97e-7),
+            ("0.5 urad/Nm", Compliance, 5e-7),
+            ("4e6 Nm/rad", Compliance, 2.5e-7),
+            ("4000 kNm/rad", Compliance, 2.5e-7),
+            ("4 MNm/rad", Compliance, 2.5e-7),
+            ("20 N/um", LinearCompliance, 5e-8),
+            ("20000 N/mm", LinearCompliance, 5e-8),
+            ("2e7 N/m", LinearCompliance, 5e-8),
+            ("5 um/N", LinearCompliance, 5e-6),
+            ("2 kN", Force, 2000.0),
+            ("2 kNm", Torque, 2000.0),
+            ("350 kg", Mass, 350.0),
+            ("5 ms", Time, 5e-3),
+            ("21.5 C", Temperature, 21.5),
+            ("0.25", Number, 0.25),
+        ] {
+            assert_eq!(parse(text, dimension), Ok(si), "{text}");
+        }
+        let from_arcmin = parse("1000 Nm/arcmin", Dimension::Compliance).unwrap();
+        assert!((from_arcmin * 1000.0 * 10_800.0 / PI - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn fractions_of_pi_are_angles() {
+        for (text, angle) in [
+            ("pi", PI),
+            ("-pi/2", -FRAC_PI_2),
+            ("- pi / 2", -FRAC_PI_2),
+            ("+pi/2 rad", FRAC_PI_2),
+            ("3*pi/4", 3.0 * PI / 4.0),
+            ("3 * pi / 4", 3.0 * PI / 4.0),
+            ("2pi", 2.0 * PI),
+            ("-0.5 π", -FRAC_PI_2),
+        ] {
+            assert_eq!(parse(text, Dimension::Angle), Ok(angle), "{text}");
+        }
+        for text in ["pie", "pi/x", "pi/", "p", "3*", "pi deg"] {
+            parse(text, Dimension::Angle).expect_err(text);
+        }
+    }
+
+    #[test]
+    fn errors_tell_apart_what_is_wrong() {
+        use Dimension::*;
+        assert_eq!(message("3 furlong", Length), "unknown unit `furlong` for a length");
+        assert_eq!(message("3 mm", Angle), "`mm` is a length, an angle is expected here");
+        assert_eq!(
+            message("3 N/um", Compliance),
+            "`N/um` is a translational stiffness, a rotational compliance is expected here"
+        );
+        assert_eq!(message("3 m", Number), "`m` is a length, a number is expected here");
+        assert_eq!(message("three", Number), "`three` is not a number");
+        assert_eq!(message("1,5 mm", Length), "`1,5 mm` is not a length");
+        for text in ["-.inf m", "nan", "1e999", "infinity", "1e-320 Nm/rad"] {
+            assert!(message(text, Compliance).ends_with("is not finite"), "{text}");
+        }
+        assert_eq!(message("0 Nm/rad", Compliance), "a stiffness of zero has no compliance");
+        for text in ["", "-", "+", ".", "e", "e5", "1e", "é", "1é", "--1", "1 2"] {
+            parse(text, Length).expect_err(text);
+        }
+    }
+
+    #[test]
+    fn columns_have_factors() {
+        assert_eq!(scale("um", Dimension::Length), Ok(1e-6));
+        assert_eq!(scale(" deg ", Dimension::Angle), Ok(PI / 180.0));
+        assert_eq!(scale("kN", Dimension::Force), Ok(1e3));
+        assert!(scale("N", Dimension::Length).is_err());
+        assert!(scale("furlong", Dimension::Length).is_err());
+        assert_eq!(
+            scale("Nm/rad", Dimension::Compliance).unwrap_err().message,
+            "`Nm/rad` is a stiffness, a rotational compliance is expected here"
+        );
     }
 }

@@ -222,7 +222,7 @@ fn links(node: &Node, joints: Option<usize>) -> Option<Vec<Link>> {
     let items = node.sequence()?;
     if let Some(joints) = joints.filter(|joints| *joints != items.len()) {
         node.error(
-            format!("there are {} links for {joints} joints", items.len()),
+            format!("a robot of {joints} joints has {joints} links, not {}", items.len()),
             "give the body that moves with each joint, `{}` where nothing is known, or leave `links` out",
         );
         return None;

@@ -1,7 +1,7 @@
 //! The procedural macro behind `robstiff::robot!`: a thin shell around
 //! [`robstiff_codegen`].
 //!
-//! It finds the description ([`locate`]), has it read and checked, and hands it
+//! It finds the description (module `locate`), has it read and checked, and hands it
 //! to the generator. What is wrong with a description becomes one compile error
 //! that shows the description's own lines, next to a skeleton of the type, so
 //! that nothing else fails because of it.

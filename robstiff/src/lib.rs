@@ -17,7 +17,7 @@
 //! assert!((deflection - Rv130hsc.compliance(&q) * wrench).norm() < 1e-15);
 //! ```
 //!
-//! - [`robot`]: the trait, with terms, frames and units;
+//! - [`Robot`]: the trait, with terms, frames and units;
 //! - [`elements`]: joints and effects one by one, and their share in the whole;
 //! - [`analysis`]: stiffness, directional stiffness, principal directions;
 //! - `campaign`, `identify`, `trace` (feature `identify`): measured data, the

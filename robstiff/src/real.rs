@@ -16,6 +16,13 @@ pub trait Real:
     /// Sine and cosine of an angle in rad.
     fn sin_cos(self) -> (Self, Self);
 
+    /// Sines and cosines of several angles in rad, one pose's for instance:
+    /// a scalar that computes them side by side is faster than one by one.
+    #[inline]
+    fn sin_cos_all<const K: usize>(angles: [Self; K]) -> [(Self, Self); K] {
+        angles.map(Self::sin_cos)
+    }
+
     /// The square root.
     fn sqrt(self) -> Self;
 

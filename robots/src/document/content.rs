@@ -198,7 +198,7 @@ impl<'de> Visitor<'de> for Raise<'_> {
 /// The line of `text` with this number, from 1; empty beyond the end. Lines
 /// end where the YAML parser ends them.
 pub(super) fn source_line(text: &str, line: usize) -> &str {
-    let mut rest = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut rest = text;
     for _ in 1..line {
         let Some(end) = rest.find(is_break) else { return "" };
         rest = &rest[end..];

@@ -53,7 +53,7 @@ impl<'d> Node<'d> {
             let known = list(fields.iter().copied());
             let help = match closest(name, fields.iter().copied()) {
                 _ if name == "<<" => "merge keys are not supported: write the fields out".to_owned(),
-                Some(meant) => format!("did you mean `{meant}`? The fields are {known}"),
+                Some(meant) => format!("did you mean `{meant}`? the fields are {known}"),
                 None => format!("the fields are {known}"),
             };
             map.error_at_key(index, format!("unknown field `{name}`"), help);

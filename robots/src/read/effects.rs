@@ -266,7 +266,7 @@ fn check_couplings(items: &[Node], effects: &[Option<Effect>], joints: &[Joint])
         }
         let field = item.any_map("").and_then(|map| map.get("value"));
         field.as_ref().unwrap_or(item).error(
-            format!("the coupling must be weaker than sqrt(h_{i} h_{j}) = {bound:e} rad/Nm"),
+            format!("the coupling must be weaker than sqrt(h_{i} h_{j}) = {bound:.3e} rad/Nm"),
             if bound == 0.0 { "a rigid joint cannot be coupled" } else { "else a load could do negative work" },
         );
         return;

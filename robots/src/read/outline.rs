@@ -1,6 +1,6 @@
 //! A robot's name and number of joints from a file that may be broken.
 
-use crate::document::Content;
+use crate::document::{Content, without_byte_order_mark};
 use serde::de::{Deserializer, MapAccess, Visitor};
 use std::fmt;
 
@@ -17,7 +17,7 @@ pub struct Outline {
 pub(super) fn outline(text: &str) -> Outline {
     let mut outline = Outline::default();
     // Where the syntax breaks, what came before it still counts.
-    let _broken = serde_yaml::Deserializer::from_str(text).deserialize_map(Top(&mut outline));
+    let _broken = serde_yaml::Deserializer::from_str(without_byte_order_mark(text)).deserialize_map(Top(&mut outline));
     outline
 }
 

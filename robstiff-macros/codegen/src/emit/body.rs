@@ -4,6 +4,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::names::{Names, WRENCH};
+use crate::angle::Angle;
 use crate::function::Function;
 use crate::graph::{Id, Op};
 
@@ -46,19 +47,14 @@ impl Writer<'_> {
             out.extend(quote!(let #name = T::of(#value);));
         }
         out.extend(self.wrench());
+        out.extend(self.sin_cos());
         let mut remarks = graph.remarks().to_vec().into_iter().peekable();
         for (id, node) in self.live() {
             if node.constant.is_some() {
                 continue;
             }
-            let line = match node.op {
-                Op::Sin(index) | Op::Cos(index) => self.sin_cos(id, index),
-                _ => self.names.get(id).map(|name| {
-                    let (name, value) = (format_ident!("{name}"), self.expression(id).0);
-                    quote!(let #name = #value;)
-                }),
-            };
-            let Some(line) = line else { continue };
+            let Some(name) = self.names.get(id) else { continue };
+            let (name, value) = (format_ident!("{name}"), self.expression(id).0);
             // Of several remarks before a line, the last one speaks of it.
             let mut remark = None;
             while remarks.peek().is_some_and(|(first, _)| *first <= id) {
@@ -67,7 +63,7 @@ impl Writer<'_> {
             if let (true, Some((_, text))) = (with_remarks, remark) {
                 out.extend(quote!(__remark!(#text);));
             }
-            out.extend(line);
+            out.extend(quote!(let #name = #value;));
         }
         out
     }
@@ -98,49 +94,33 @@ impl Writer<'_> {
         quote!(let [#(#entries),*] = wrench.data.0[0];)
     }
 
-    /// `let (s23, c23) = (q[1] + q[2]).sin_cos();`, where the first of the two
-    /// is needed.
-    fn sin_cos(&self, id: Id, index: usize) -> Option<TokenStream> {
+    /// `let [(s1, c1), (s23, c23)] = T::sin_cos_all([q[0], q[1] + q[2]]);`:
+    /// all angles together, so that scalars may compute them side by side.
+    fn sin_cos(&self) -> Option<TokenStream> {
         let live = self.live();
-        let at = |op: Op| live.iter().find(|(_, node)| node.op == op).map(|(id, _)| *id);
-        let (sin, cos) = (at(Op::Sin(index)), at(Op::Cos(index)));
-        if sin.into_iter().chain(cos).min() != Some(id) {
-            return None;
-        }
-        let angle = &self.function.graph().angles()[index];
-        let label = angle.label();
-        let pattern = |live: Option<Id>, letter: &str| match live {
-            Some(_) => {
+        let is_live = |op: Op| live.iter().any(|(_, node)| node.op == op);
+        let pattern = |op: Op, letter: char, label: &str| {
+            if is_live(op) {
                 let name = format_ident!("{letter}{label}");
                 quote!(#name)
+            } else {
+                quote!(_)
             }
-            None => quote!(_),
         };
-        let (sin, cos) = (pattern(sin, "s"), pattern(cos, "c"));
-        let mut sum = TokenStream::new();
-        for (k, &(joint, factor)) in angle.terms().iter().enumerate() {
-            let joint = Literal::usize_unsuffixed(joint);
-            if factor < 0 {
-                sum.extend(quote!(-));
-            } else if k > 0 {
-                sum.extend(quote!(+));
+        let (mut patterns, mut sums) = (Vec::new(), Vec::new());
+        for (index, angle) in self.function.graph().angles().iter().enumerate() {
+            if is_live(Op::Sin(index)) || is_live(Op::Cos(index)) {
+                let label = angle.label();
+                let (sin, cos) = (pattern(Op::Sin(index), 's', &label), pattern(Op::Cos(index), 'c', &label));
+                patterns.push(quote!((#sin, #cos)));
+                sums.push(sum(angle));
             }
-            sum.extend(match factor.abs() {
-                1 => quote!(q[#joint]),
-                factor => {
-                    let factor = Literal::f64_unsuffixed(f64::from(factor));
-                    quote!(T::of(#factor) * q[#joint])
-                }
-            });
         }
-        if angle.offset() != 0.0 {
-            let offset = Literal::f64_unsuffixed(angle.offset().abs());
-            let sign = if angle.offset() < 0.0 { quote!(-) } else { quote!(+) };
-            sum.extend(quote!(#sign T::of(#offset)));
+        match (patterns.as_slice(), sums.as_slice()) {
+            ([], _) => None,
+            ([pattern], [sum]) => Some(quote!(let #pattern = T::sin_cos(#sum);)),
+            _ => Some(quote!(let [#(#patterns),*] = T::sin_cos_all([#(#sums),*]);)),
         }
-        let single = angle.terms().len() == 1 && angle.offset() == 0.0 && angle.terms()[0].1 == 1;
-        let sum = if single { sum } else { quote!((#sum)) };
-        Some(quote!(let (#sin, #cos) = #sum.sin_cos();))
     }
 
     /// A node where it is used: its name if it has a line, else its expression.
@@ -244,4 +224,30 @@ impl Writer<'_> {
         };
         if binding < context { quote!((#expression)) } else { expression }
     }
+}
+
+/// An angle as code: `q[1] + q[2] + T::of(0.1)`.
+fn sum(angle: &Angle) -> TokenStream {
+    let mut sum = TokenStream::new();
+    for (k, &(joint, factor)) in angle.terms().iter().enumerate() {
+        let joint = Literal::usize_unsuffixed(joint);
+        if factor < 0 {
+            sum.extend(quote!(-));
+        } else if k > 0 {
+            sum.extend(quote!(+));
+        }
+        sum.extend(match factor.abs() {
+            1 => quote!(q[#joint]),
+            factor => {
+                let factor = Literal::f64_unsuffixed(f64::from(factor));
+                quote!(T::of(#factor) * q[#joint])
+            }
+        });
+    }
+    if angle.offset() != 0.0 {
+        let offset = Literal::f64_unsuffixed(angle.offset().abs());
+        let sign = if angle.offset() < 0.0 { quote!(-) } else { quote!(+) };
+        sum.extend(quote!(#sign T::of(#offset)));
+    }
+    sum
 }

@@ -68,57 +68,40 @@ impl Names {
     }
 }
 
-/// The live nodes that need a line.
+/// The live nodes that need a line: what is used twice, what an algorithm
+/// named, constants, and whatever would make a line too wide.
 fn lines(function: &Function) -> BTreeSet<Id> {
     let graph = function.graph();
     let (nodes, uses, hints) = (graph.nodes(), function.uses(), graph.hints());
-    // How often a node is used by something that is computed at run time.
-    let mut needed = BTreeSet::new();
-    let mut operands = vec![1_usize; nodes.len()];
-    for (id, node) in nodes.iter().enumerate() {
-        if uses[id] == 0 {
-            continue;
-        }
-        if node.constant.is_some() {
-            continue;
-        }
-        for operand in node.op.operands() {
-            if needs_constant(nodes[operand].op, nodes[operand].constant) {
-                needed.insert(operand);
-            }
-        }
+    let is_constant = |id: Id| needs_constant(nodes[id].op, nodes[id].constant);
+    let mut needed: BTreeSet<Id> = function.outputs().iter().copied().filter(|&id| is_constant(id)).collect();
+    // How many operands a node has where it is written out.
+    let mut widths = vec![1; nodes.len()];
+    for (id, node) in nodes.iter().enumerate().filter(|(id, node)| uses[*id] > 0 && node.constant.is_none()) {
+        needed.extend(node.op.operands().filter(|&operand| is_constant(operand)));
+        let width = |needed: &BTreeSet<Id>, id: Id| if needed.contains(&id) { 1 } else { widths[id] };
         match node.op {
+            Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) => {
+                if width(&needed, a) + width(&needed, b) > OPERANDS_PER_LINE {
+                    let wider = if width(&needed, a) > width(&needed, b) { a } else { b };
+                    needed.insert(unsigned(nodes[wider].op, wider));
+                }
+                widths[id] = width(&needed, a) + width(&needed, b);
+            }
+            Op::Sqrt(a) | Op::Recip(a) => widths[id] = width(&needed, a),
+            // A sign is written where it is used; what it stands before is not
+            // written twice.
             Op::Neg(a) => {
-                // A sign is written where it is used.
-                operands[id] = operands[a];
+                widths[id] = width(&needed, a);
                 if uses[id] > 1 && !is_leaf(nodes[a].op) {
                     needed.insert(a);
                 }
+                continue;
             }
-            Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) => {
-                let width = |x: Id| if needed.contains(&x) { 1 } else { operands[x] };
-                let (mut left, right) = (width(a), width(b));
-                if left + right > OPERANDS_PER_LINE {
-                    let wider = if left > right { a } else { b };
-                    needed.insert(unsigned(nodes[wider].op, wider));
-                    left = 1.min(left);
-                    operands[id] = left + right.min(OPERANDS_PER_LINE - 1);
-                } else {
-                    operands[id] = left + right;
-                }
-                if uses[id] > 1 || hints.contains_key(&id) {
-                    needed.insert(id);
-                }
-            }
-            Op::Sqrt(_) | Op::Recip(_) if uses[id] > 1 || hints.contains_key(&id) => {
-                needed.insert(id);
-            }
-            _ => {}
+            _ => continue,
         }
-    }
-    for &output in function.outputs() {
-        if needs_constant(nodes[output].op, nodes[output].constant) {
-            needed.insert(output);
+        if uses[id] > 1 || hints.contains_key(&id) {
+            needed.insert(id);
         }
     }
     needed
@@ -129,7 +112,7 @@ fn unsigned(op: Op, id: Id) -> Id {
 }
 
 fn is_leaf(op: Op) -> bool {
-    matches!(op, Op::Sin(_) | Op::Cos(_) | Op::Coordinate(_) | Op::Wrench(_) | Op::Number(_) | Op::Parameter(_))
+    op.operands().next().is_none()
 }
 
 /// 0 and +-1 are written in place, other constants have a line.

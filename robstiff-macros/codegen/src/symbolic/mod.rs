@@ -3,7 +3,7 @@
 //! - [`chain`](mod@chain): a description as elementary steps from base to TCP;
 //! - [`forward`](mod@forward): frames and levers, from the base to the TCP;
 //! - [`kinematics`]: transform, frames, Jacobian, torques and deflection;
-//! - [`compliance`]: the Cartesian compliance, carried from the TCP to the
+//! - [`compliance`](mod@compliance): the Cartesian compliance, carried from the TCP to the
 //!   base.
 
 pub mod chain;
