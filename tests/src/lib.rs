@@ -1,3 +1,6 @@
-//! Support for the tests: a simulator that shares no formula with the library.
+//! Support for the tests: the arms they generate code for, a common measure of
+//! agreement, and a simulator that shares no formula with the library.
 
+pub mod arms;
+pub mod judge;
 pub mod simulator;

@@ -2,11 +2,12 @@
 //! random: both conventions, one to eight joints, sliding ones too, with and
 //! without base, tool and effects.
 
-use nalgebra::{SVector, Vector6};
+use nalgebra::{Matrix4, Matrix6, SVector, Vector6};
 use proptest::prelude::*;
 use robstiff::{Convention, Effect, Generic, JointKind, Robot};
 use robstiff_codegen::{Function, symbolic};
 use robstiff_robots::{Description, Joint, Part, Placement};
+use robstiff_tests::judge::{DOUBLE, Sizes, assert_close, blocks};
 
 /// Angles that generators trip over, and any others.
 fn angle() -> impl Strategy<Value = f64> {
@@ -95,74 +96,33 @@ fn robot() -> impl Strategy<Value = Description> {
         })
 }
 
-/// Relative to the largest entry of the same kind, because a cancelled entry
-/// has the rounding of what cancelled; where all cancel, to a thousandth of
-/// `size`, what they would be if nothing did.
-fn close(name: &str, generated: &[f64], generic: &[f64], size: f64) -> Result<(), TestCaseError> {
-    prop_assert_eq!(generated.len(), generic.len());
-    let scale = generic.iter().fold(1e-3 * size, |scale, x| scale.max(x.abs()));
-    for (k, (a, b)) in generated.iter().zip(generic).enumerate() {
-        prop_assert!((a - b).abs() <= 1e-12 * scale, "{name}[{k}]: {a} generated, {b} generic");
-    }
-    Ok(())
-}
-
-fn blocks(m: &[f64]) -> [Vec<f64>; 3] {
-    let block = |rows: std::ops::Range<usize>, columns: std::ops::Range<usize>| {
-        rows.flat_map(|i| columns.clone().map(move |j| (i, j))).map(|(i, j)| m[6 * i + j]).collect()
-    };
-    [block(0..3, 0..3), block(0..3, 3..6), block(3..6, 3..6)]
-}
-
-fn compare<const N: usize>(robot: &Description, q: &[f64], wrench: &[f64; 6]) -> Result<(), TestCaseError> {
+/// Panics where the two disagree, which a property takes for a failure.
+fn compare<const N: usize>(robot: &Description, q: &[f64], wrench: &[f64; 6]) {
     let generic = Generic::<N>::new(robot).expect("N joints");
     let at = SVector::<f64, N>::from_column_slice(q);
     let load = Vector6::from_column_slice(wrench);
-    let rows = |m: nalgebra::Matrix4<f64>| m.transpose().as_slice().to_vec();
+    let rows = |m: Matrix4<f64>| m.transpose().as_slice().to_vec();
+    let close = |name, found: &[f64], expected: &[f64], size| assert_close(name, found, expected, size, DOUBLE);
 
-    let reach = reach(robot, q);
-    let load_size = wrench.iter().fold(0.0_f64, |most, x| most.max(x.abs())) * reach;
-    let softest = softest(robot);
-
+    let sizes = Sizes::of(robot, q);
+    let torque = sizes.torque(&load);
     let transform = Function::of(|g| symbolic::transform(g, robot)).evaluate(q, &[]);
-    close("transform", &transform, &rows(generic.transform(&at)), 1.0)?;
+    close("transform", &transform, &rows(generic.transform(&at)), sizes.reach);
     let frames = Function::of(|g| symbolic::link_frames(g, robot)).evaluate(q, &[]);
-    close("link_frames", &frames, &generic.link_frames(&at).map(rows).concat(), 1.0)?;
+    close("link_frames", &frames, &generic.link_frames(&at).map(rows).concat(), sizes.reach);
     let jacobian = Function::of(|g| symbolic::jacobian(g, robot)).evaluate(q, &[]);
-    close("jacobian", &jacobian, generic.jacobian(&at).as_slice(), 1.0)?;
+    close("jacobian", &jacobian, generic.jacobian(&at).as_slice(), sizes.reach);
     let torques = Function::of(|g| symbolic::joint_torques(g, robot)).evaluate(q, wrench);
-    close("joint_torques", &torques, generic.joint_torques(&at, &load).as_slice(), load_size)?;
+    close("joint_torques", &torques, generic.joint_torques(&at, &load).as_slice(), torque);
     let compliance = Function::of(|g| symbolic::compliance(g, robot)).evaluate(q, &[]);
-    let reference: nalgebra::Matrix6<f64> = generic.compliance(&at);
-    let sizes = [softest * reach * reach, softest * reach, softest];
-    for (k, (a, b)) in blocks(&compliance).iter().zip(&blocks(reference.transpose().as_slice())).enumerate() {
-        close(["compliance tt", "compliance tr", "compliance rr"][k], a, b, sizes[k])?;
+    let (found, expected) = (blocks(&Matrix6::from_row_slice(&compliance)), blocks(&generic.compliance(&at)));
+    for (k, size) in sizes.compliance().into_iter().enumerate() {
+        close(["compliance tt", "compliance tr", "compliance rr"][k], &found[k], &expected[k], size);
     }
     let deflection = Function::of(|g| symbolic::deflection(g, robot)).evaluate(q, wrench);
     let reference = generic.deflection(&at, &load);
-    close("displacement", &deflection[..3], &reference.as_slice()[..3], softest * reach * load_size)?;
-    close("rotation", &deflection[3..], &reference.as_slice()[3..], softest * load_size)
-}
-
-/// The length of the outstretched arm (m), at least 1.
-fn reach(robot: &Description, q: &[f64]) -> f64 {
-    let placed = |placement: &Placement| placement.xyz.iter().map(|x| x.abs()).sum::<f64>();
-    let joints = robot.joints.iter().zip(q).map(|(joint, q)| joint.d.abs() + joint.a.abs() + q.abs());
-    (placed(&robot.base) + placed(&robot.tool) + joints.sum::<f64>()).max(1.0)
-}
-
-/// The largest compliance in the description.
-fn softest(robot: &Description) -> f64 {
-    let joints = robot.joints.iter().map(Joint::compliance);
-    let effects = robot.effects.iter().map(|effect| match *effect {
-        Effect::TransverseCompliance { value, .. } => value,
-        Effect::LinkCompliance { bending, torsion, .. } => bending.max(torsion),
-        Effect::BaseCompliance { tilt, translation } => tilt.max(translation),
-        Effect::ToolCompliance { rotation, translation } => rotation.max(translation),
-        Effect::JointCoupling { value, .. } => value.abs(),
-        Effect::StiffnessNonlinearity { added, .. } => added,
-    });
-    joints.chain(effects).fold(0.0, f64::max)
+    close("displacement", &deflection[..3], &reference.as_slice()[..3], sizes.softest * sizes.reach * torque);
+    close("rotation", &deflection[3..], &reference.as_slice()[3..], sizes.softest * torque);
 }
 
 proptest! {
@@ -176,14 +136,14 @@ proptest! {
     ) {
         let q = &q[..robot.joints.len()];
         match robot.joints.len() {
-            1 => compare::<1>(&robot, q, &wrench)?,
-            2 => compare::<2>(&robot, q, &wrench)?,
-            3 => compare::<3>(&robot, q, &wrench)?,
-            4 => compare::<4>(&robot, q, &wrench)?,
-            5 => compare::<5>(&robot, q, &wrench)?,
-            6 => compare::<6>(&robot, q, &wrench)?,
-            7 => compare::<7>(&robot, q, &wrench)?,
-            _ => compare::<8>(&robot, q, &wrench)?,
+            1 => compare::<1>(&robot, q, &wrench),
+            2 => compare::<2>(&robot, q, &wrench),
+            3 => compare::<3>(&robot, q, &wrench),
+            4 => compare::<4>(&robot, q, &wrench),
+            5 => compare::<5>(&robot, q, &wrench),
+            6 => compare::<6>(&robot, q, &wrench),
+            7 => compare::<7>(&robot, q, &wrench),
+            _ => compare::<8>(&robot, q, &wrench),
         }
     }
 }

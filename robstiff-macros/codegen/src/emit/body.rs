@@ -110,8 +110,8 @@ impl Writer<'_> {
         let (mut patterns, mut sums) = (Vec::new(), Vec::new());
         for (index, angle) in self.function.graph().angles().iter().enumerate() {
             if is_live(Op::Sin(index)) || is_live(Op::Cos(index)) {
-                let label = angle.label();
-                let (sin, cos) = (pattern(Op::Sin(index), 's', &label), pattern(Op::Cos(index), 'c', &label));
+                let label = self.names.angle(index);
+                let (sin, cos) = (pattern(Op::Sin(index), 's', label), pattern(Op::Cos(index), 'c', label));
                 patterns.push(quote!((#sin, #cos)));
                 sums.push(sum(angle));
             }
@@ -153,11 +153,11 @@ impl Writer<'_> {
                 (quote!(#name), Binding::Unit)
             }
             Op::Sin(index) => {
-                let name = format_ident!("s{}", graph.angles()[index].label());
+                let name = format_ident!("s{}", self.names.angle(index));
                 (quote!(#name), Binding::Unit)
             }
             Op::Cos(index) => {
-                let name = format_ident!("c{}", graph.angles()[index].label());
+                let name = format_ident!("c{}", self.names.angle(index));
                 (quote!(#name), Binding::Unit)
             }
             Op::Add(a, b) => {

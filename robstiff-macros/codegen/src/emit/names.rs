@@ -11,6 +11,7 @@ pub(super) const WRENCH: [&str; 6] = ["fx", "fy", "fz", "mx", "my", "mz"];
 /// Which nodes get a line of their own, and under which name.
 pub(super) struct Names {
     of: BTreeMap<Id, String>,
+    angles: Vec<String>,
 }
 
 /// How many operands a line may have before an inner expression gets a line of
@@ -24,8 +25,12 @@ impl Names {
         let needed = lines(function);
         let graph = function.graph();
         let mut taken: BTreeSet<String> = ["q", "wrench"].iter().chain(&WRENCH).map(|name| name.to_string()).collect();
+        let mut angles: Vec<String> = Vec::new();
         for angle in graph.angles().iter() {
-            taken.extend([format!("s{}", angle.label()), format!("c{}", angle.label())]);
+            // Two offsets of the same joints have one label.
+            let label = numbered(angle.label(), |label| !angles.contains(label));
+            taken.extend([format!("s{label}"), format!("c{label}")]);
+            angles.push(label);
         }
         let mut of = BTreeMap::new();
         // Hints first, so that a number never takes the name of a thing.
@@ -35,8 +40,7 @@ impl Names {
                 None => graph.hints().get(&id).cloned(),
             };
             if let Some(name) = wish {
-                let name = (1..).map(|k| if k == 1 { name.clone() } else { format!("{name}_{k}") });
-                let name = name.into_iter().find(|name| !taken.contains(name)).expect("endless");
+                let name = numbered(name, |name| !taken.contains(name));
                 taken.insert(name.clone());
                 of.insert(id, name);
             }
@@ -54,7 +58,12 @@ impl Names {
                 }
             });
         }
-        Self { of }
+        Self { of, angles }
+    }
+
+    /// What follows the s and the c of an angle's sine and cosine.
+    pub fn angle(&self, index: usize) -> &str {
+        &self.angles[index]
     }
 
     /// The name, if the node has a line.
@@ -66,6 +75,12 @@ impl Names {
     pub fn lines(&self) -> impl Iterator<Item = (Id, &str)> {
         self.of.iter().map(|(id, name)| (*id, name.as_str()))
     }
+}
+
+/// The name itself or, where it is not free, with the first number that is.
+fn numbered(name: String, is_free: impl Fn(&String) -> bool) -> String {
+    let all = (1..).map(|k| if k == 1 { name.clone() } else { format!("{name}_{k}") });
+    all.into_iter().find(is_free).expect("endless")
 }
 
 /// The live nodes that need a line: what is used twice, what an algorithm

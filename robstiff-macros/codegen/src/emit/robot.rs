@@ -137,11 +137,13 @@ pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Gene
             pub const #name: f64 = #value;
         }
     });
+    let silence = lints();
     quote! {
         #(#[doc = #docs])*
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #visibility struct #name;
 
+        #silence
         impl #name {
             #(#constants)*
         }
@@ -178,12 +180,19 @@ pub(super) fn implementation(robot: &Description, functions: &[Generated], remar
         let silence = ignores_an_input(&generated.function).then(|| quote!(#[allow(unused_variables)]));
         quote!(#(#[doc = #docs])* #silence #[inline] #signature { #statements #result })
     });
+    let silence = lints();
     quote! {
+        #silence
         impl Robot<#n> for #name {
             #(#stated)*
             #(#calculated)*
         }
     }
+}
+
+/// A limit of 180 degrees is no misspelt pi.
+fn lints() -> TokenStream {
+    quote!(#[allow(clippy::approx_constant)])
 }
 
 /// Whether a function does not read its joint coordinates, or takes a wrench

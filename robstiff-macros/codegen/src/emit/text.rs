@@ -61,7 +61,10 @@ fn polished(source: &str) -> String {
     while let Some(line) = lines.next() {
         let text = line.trim_start();
         let indent = &line[..line.len() - text.len()];
-        if begins_item(text) && (before.ends_with('}') || (before.starts_with("use") && !text.starts_with("use"))) {
+        let ended = before.ends_with('}')
+            || (before.starts_with("use") && !text.starts_with("use"))
+            || (before.ends_with(';') && before.contains("struct "));
+        if begins_item(text) && ended {
             out.push('\n');
         }
         before = text;

@@ -1,0 +1,76 @@
+//! The generated source text, for people: held against the files in
+//! `tests/golden`, which `golden_code.rs` compiles.
+//!
+//! A change of the generator that is meant is accepted with
+//! `ROBSTIFF_BLESS=1 cargo test -p robstiff-tests --test golden`, which writes
+//! the files anew; what changed is then for `git diff` and a reader.
+
+use std::fs;
+use std::path::Path;
+
+use robstiff_codegen::{Origin, source, tokens};
+use robstiff_robots::{Description, catalogue};
+use robstiff_tests::arms::{self, description};
+
+#[test]
+fn rv130hsc_is_as_before() {
+    is_as_before("rv130hsc", "rv130hsc.yaml");
+}
+
+#[test]
+fn fanuc_r2000ic_is_as_before() {
+    is_as_before("fanuc_r2000ic", "fanuc-r2000ic.yaml");
+}
+
+#[test]
+fn every_effect_is_as_before() {
+    is_as_before("every_effect", "every-effect.yaml");
+}
+
+fn origin(file: &str) -> Origin {
+    let path = |text: &str| text.parse().expect("a token");
+    Origin { file: file.to_owned(), runtime: path("robstiff"), visibility: path("pub") }
+}
+
+fn is_as_before(module: &str, file: &str) {
+    let generated = source(&description(file), &origin(file));
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden").join(module).with_extension("rs");
+    if std::env::var_os("ROBSTIFF_BLESS").is_some_and(|value| value == "1") {
+        fs::write(&path, &generated).expect("the golden file can be written");
+        return;
+    }
+    let golden = fs::read_to_string(&path).expect("a golden file").replace("\r\n", "\n");
+    let differs = golden.lines().zip(generated.lines()).position(|(before, now)| before != now);
+    let line = differs.unwrap_or(golden.lines().count().min(generated.lines().count()));
+    let at = |text: &str| text.lines().nth(line).unwrap_or("(the end)").to_owned();
+    assert!(
+        golden == generated,
+        "{}:{}: the generator writes something else now\n  before: {}\n  now:    {}\n\
+         if that is meant, run this test with ROBSTIFF_BLESS=1 and read the difference",
+        path.display(),
+        line + 1,
+        at(&golden),
+        at(&generated),
+    );
+}
+
+#[test]
+fn the_same_description_gives_the_same_code() {
+    for file in arms::FILES {
+        let [one, other] = [(); 2].map(|()| source(&description(file), &origin(file)));
+        assert_eq!(one, other, "{file}");
+        let [one, other] = [(); 2].map(|()| tokens(&description(file), &origin(file)).to_string());
+        assert_eq!(one, other, "{file}");
+    }
+}
+
+#[test]
+fn another_value_gives_other_code() {
+    let file = "rv130hsc.yaml";
+    let text = catalogue::find(file).expect("a robot of the catalogue");
+    let code = |text: &str| source(&Description::parse(file, text).expect("a description"), &origin(file));
+    for (value, other) in [("d: 1100 mm", "d: 1101 mm"), ("alpha: 90 deg", "alpha: 91 deg"), ("1.92e-7", "1.93e-7")] {
+        assert_eq!(text.matches(value).count(), 1, "{value}");
+        assert_ne!(code(text), code(&text.replace(value, other)), "{value}");
+    }
+}
