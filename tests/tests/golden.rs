@@ -1,5 +1,5 @@
-//! The generated source text, for people: held against the files in
-//! `tests/golden`, which `golden_code.rs` compiles.
+//! The generated source text, for people, and what it costs: held against the
+//! files in `tests/golden`, which `golden_code.rs` compiles.
 //!
 //! A change of the generator that is meant is accepted with
 //! `ROBSTIFF_BLESS=1 cargo test -p robstiff-tests --test golden`, which writes
@@ -8,7 +8,7 @@
 use std::fs;
 use std::path::Path;
 
-use robstiff_codegen::{Origin, source, tokens};
+use robstiff_codegen::{Function, Origin, source, symbolic, tokens};
 use robstiff_robots::{Description, catalogue};
 use robstiff_tests::arms::{self, description};
 
@@ -33,10 +33,35 @@ fn origin(file: &str) -> Origin {
 }
 
 fn is_as_before(module: &str, file: &str) {
-    let generated = source(&description(file), &origin(file));
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden").join(module).with_extension("rs");
+    compare(&format!("{module}.rs"), &source(&description(file), &origin(file)));
+}
+
+/// Operations of every function of every robot.
+#[test]
+fn costs_are_as_before() {
+    let mut costs = String::new();
+    for &file in arms::FILES {
+        let robot = description(file);
+        let functions = [
+            ("transform", Function::of(|g| symbolic::transform(g, &robot))),
+            ("link_frames", Function::of(|g| symbolic::link_frames(g, &robot))),
+            ("jacobian", Function::of(|g| symbolic::jacobian(g, &robot))),
+            ("compliance", Function::of(|g| symbolic::compliance(g, &robot))),
+            ("deflection", Function::of(|g| symbolic::deflection(g, &robot))),
+            ("joint_torques", Function::of(|g| symbolic::joint_torques(g, &robot))),
+        ];
+        costs += &format!("{file}\n");
+        for (name, function) in functions {
+            costs += &format!("  {name:<14}{}\n", function.cost());
+        }
+    }
+    compare("costs.txt", &costs);
+}
+
+fn compare(name: &str, generated: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden").join(name);
     if std::env::var_os("ROBSTIFF_BLESS").is_some_and(|value| value == "1") {
-        fs::write(&path, &generated).expect("the golden file can be written");
+        fs::write(&path, generated).expect("the golden file can be written");
         return;
     }
     let golden = fs::read_to_string(&path).expect("a golden file").replace("\r\n", "\n");
@@ -45,12 +70,12 @@ fn is_as_before(module: &str, file: &str) {
     let at = |text: &str| text.lines().nth(line).unwrap_or("(the end)").to_owned();
     assert!(
         golden == generated,
-        "{}:{}: the generator writes something else now\n  before: {}\n  now:    {}\n\
+        "{}:{}: the generator says something else now\n  before: {}\n  now:    {}\n\
          if that is meant, run this test with ROBSTIFF_BLESS=1 and read the difference",
         path.display(),
         line + 1,
         at(&golden),
-        at(&generated),
+        at(generated),
     );
 }
 

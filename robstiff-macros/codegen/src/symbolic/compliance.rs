@@ -81,7 +81,11 @@ impl<'g> Walker<'g> {
             Step::Turn(angle) => self.pending = std::mem::take(&mut self.pending) + angle,
             Step::Tilt(tilt) => self.tilt(*tilt),
             Step::Joint(i) => self.joint(*i, robot.joints[*i].kind, elastic),
-            Step::Link(i, along) => self.link(self.without_pending(*along), elastic.link[*i]),
+            Step::Link(i, along) => {
+                // Before the turn, the length is a constant.
+                let length_squared = along.dot(*along);
+                self.link(self.without_pending(*along), length_squared, elastic.link[*i]);
+            }
             Step::Base => self.add_about_z(elastic.base.0, self.g.number(0.0), elastic.base.1, elastic.base.1),
             Step::Flange => self.add_about_z(elastic.tool.0, elastic.tool.0, elastic.tool.1, elastic.tool.1),
             Step::LinkFrame(_) => {}
@@ -152,8 +156,7 @@ impl<'g> Walker<'g> {
     /// is block diagonal: `bending` across and `torsion` along it for turns,
     /// and `bending L^2 / 12` across it for shifts (integrate the turns of its
     /// slices, at levers from `lever` to `lever - along`).
-    fn link(&mut self, along: Vec3<'g>, (bending, torsion): (Sym<'g>, Sym<'g>)) {
-        let length_squared = along.dot(along);
+    fn link(&mut self, along: Vec3<'g>, length_squared: Sym<'g>, (bending, torsion): (Sym<'g>, Sym<'g>)) {
         if length_squared.is_zero() || (bending.is_zero() && torsion.is_zero()) {
             return;
         }

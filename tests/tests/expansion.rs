@@ -1,0 +1,237 @@
+//! What generated code costs and looks like, held against the best that was
+//! written by hand and against other generators. The counts of every robot are
+//! pinned in `golden.rs`.
+
+use robstiff::{Convention, Effect, JointKind};
+use robstiff_codegen::{Cost, Function, Origin, source, symbolic};
+use robstiff_robots::{Description, Joint, Part, Placement};
+use robstiff_tests::arms::{self, description};
+
+/// Operations of transform, link_frames, jacobian, compliance, deflection and
+/// joint_torques.
+fn costs(robot: &Description) -> [Cost; 6] {
+    [
+        Function::of(|g| symbolic::transform(g, robot)),
+        Function::of(|g| symbolic::link_frames(g, robot)),
+        Function::of(|g| symbolic::jacobian(g, robot)),
+        Function::of(|g| symbolic::compliance(g, robot)),
+        Function::of(|g| symbolic::deflection(g, robot)),
+        Function::of(|g| symbolic::joint_torques(g, robot)),
+    ]
+    .map(|function| function.cost())
+}
+
+fn compliance_cost(robot: &Description) -> Cost {
+    Function::of(|g| symbolic::compliance(g, robot)).cost()
+}
+
+fn deflection_cost(robot: &Description) -> Cost {
+    Function::of(|g| symbolic::deflection(g, robot)).cost()
+}
+
+fn text(robot: &Description, file: &str) -> String {
+    let path = |text: &str| text.parse().expect("a token");
+    source(robot, &Origin { file: file.to_owned(), runtime: path("robstiff"), visibility: path("pub") })
+}
+
+/// One method of a generated source.
+fn method<'t>(text: &'t str, name: &str) -> &'t str {
+    let start = text.find(&format!("fn {name}")).expect("the method");
+    let rest = &text[start..];
+    &rest[..rest.find("\n    }\n").expect("its end")]
+}
+
+/// A standard arm from rows `[theta, d, a, alpha]`, angles in degrees.
+fn arm(rows: &[[f64; 4]]) -> Description {
+    let joint = |(i, &[theta, d, a, alpha]): (usize, &[f64; 4])| Joint {
+        kind: JointKind::Revolute,
+        theta: theta.to_radians(),
+        d,
+        a,
+        alpha: alpha.to_radians(),
+        limits: None,
+        compliance: vec![Part { name: String::new(), value: 1.1e-7 * (i + 2) as f64 }],
+    };
+    Description {
+        name: "Arm".into(),
+        description: String::new(),
+        source: String::new(),
+        convention: Convention::Standard,
+        base: Placement::default(),
+        joints: rows.iter().enumerate().map(joint).collect(),
+        tool: Placement::default(),
+        links: Vec::new(),
+        effects: Vec::new(),
+    }
+}
+
+fn five_axes() -> Description {
+    arm(&[
+        [0.0, 0.865, 0.41, -90.0],
+        [-90.0, 0.0, 1.0, 0.0],
+        [0.0, 0.0, 0.25, -90.0],
+        [0.0, 1.1, 0.0, 90.0],
+        [0.0, 0.0, 0.3, 0.0],
+    ])
+}
+
+fn six_axes() -> Description {
+    arm(&[
+        [0.0, 0.75, 0.35, -90.0],
+        [0.0, 0.0, 1.25, 0.0],
+        [-90.0, 0.0, 0.055, -90.0],
+        [0.0, 1.1, 0.0, 90.0],
+        [0.0, 0.0, 0.0, -90.0],
+        [0.0, 0.23, 0.0, 0.0],
+    ])
+}
+
+/// The best known counts of `H_x`, and CasADi's (with common subexpressions
+/// eliminated), which must never be reached. Written by hand: 103 and 79 for
+/// five axes, 114 and 88 for six.
+#[test]
+fn compliance_is_cheaper_than_by_hand() {
+    for (arm, muls, adds) in [(five_axes(), 96, 78), (six_axes(), 106, 87)] {
+        let cost = compliance_cost(&arm);
+        assert!(cost.mul <= muls && cost.add <= adds, "{cost}");
+        assert!((cost.trig, cost.root) == (10, 0), "{cost}");
+    }
+    let (five, casadi) = (compliance_cost(&five_axes()), (166, 102));
+    assert!(five.mul < casadi.0 && five.add < casadi.1, "{five}");
+}
+
+/// A deflection does not form the compliance, which costs more together with
+/// its product with the wrench (36 mul, 30 add).
+#[test]
+fn a_deflection_is_cheaper_than_the_compliance_times_the_wrench() {
+    for arm in [five_axes(), six_axes()] {
+        let (deflection, compliance) = (deflection_cost(&arm), compliance_cost(&arm));
+        assert!(deflection.mul < compliance.mul + 36 && deflection.add < compliance.add + 30, "{deflection}");
+    }
+}
+
+/// An effect adds its own terms, and what they make of entries that were zero;
+/// nothing is carried along for effects that are not there.
+#[test]
+fn effects_cost_only_their_own_terms() {
+    let plain = five_axes();
+    // Multiplications and additions on top, of compliance and of deflection.
+    let bounds = [
+        (Effect::TransverseCompliance { joint: 1, value: 1e-7 }, [10, 14], [10, 11]),
+        (Effect::TransverseCompliance { joint: 3, value: 1e-7 }, [8, 11], [19, 18]),
+        (Effect::TransverseCompliance { joint: 5, value: 1e-7 }, [4, 6], [21, 20]),
+        (Effect::LinkCompliance { link: 2, bending: 1e-7, torsion: 2e-7 }, [34, 40], [35, 31]),
+        (Effect::LinkCompliance { link: 2, bending: 0.0, torsion: 2e-7 }, [24, 26], [22, 20]),
+        (Effect::BaseCompliance { tilt: 1e-7, translation: 0.0 }, [10, 14], [10, 11]),
+        (Effect::BaseCompliance { tilt: 0.0, translation: 1e-9 }, [0, 3], [3, 3]),
+        (Effect::ToolCompliance { rotation: 1e-7, translation: 0.0 }, [0, 2], [3, 3]),
+        (Effect::ToolCompliance { rotation: 0.0, translation: 1e-9 }, [0, 3], [3, 3]),
+        (Effect::JointCoupling { joints: [2, 3], value: 1e-7 }, [10, 11], [2, 2]),
+        (Effect::JointCoupling { joints: [1, 5], value: 1e-7 }, [30, 23], [2, 2]),
+        (Effect::StiffnessNonlinearity { joint: 2, added: 1e-7, knee: 500.0 }, [0, 0], [4, 2]),
+    ];
+    for (effect, compliance, deflection) in bounds {
+        let with = Description { effects: vec![effect], ..plain.clone() };
+        for (cost, before, [muls, adds]) in [
+            (compliance_cost(&with), compliance_cost(&plain), compliance),
+            (deflection_cost(&with), deflection_cost(&plain), deflection),
+        ] {
+            assert!(cost.mul <= before.mul + muls && cost.add <= before.add + adds, "{effect}: {cost} after {before}");
+            assert_eq!(cost.trig, before.trig, "{effect}");
+        }
+        // The root of the nonlinearity and its reciprocal; no effect divides.
+        let roots = if matches!(effect, Effect::StiffnessNonlinearity { .. }) { 2 } else { 0 };
+        assert_eq!((compliance_cost(&with).root, deflection_cost(&with).root), (0, roots), "{effect}");
+        let [before, after] = [&plain, &with].map(costs);
+        assert_eq!(before[..3], after[..3], "{effect} has no part in kinematics");
+        assert_eq!(before[5], after[5], "{effect} has no part in torques");
+    }
+}
+
+#[test]
+fn what_is_zero_costs_nothing() {
+    let plain = five_axes();
+    let mut with = plain.clone();
+    with.effects = vec![
+        Effect::TransverseCompliance { joint: 3, value: 0.0 },
+        Effect::LinkCompliance { link: 2, bending: 0.0, torsion: 0.0 },
+        Effect::BaseCompliance { tilt: 0.0, translation: 0.0 },
+        Effect::ToolCompliance { rotation: 0.0, translation: 0.0 },
+    ];
+    assert_eq!(costs(&with), costs(&plain));
+    // A rigid joint does not enter at all.
+    with.joints[4].compliance.clear();
+    assert!(compliance_cost(&with).mul < compliance_cost(&plain).mul);
+    for joint in &mut with.joints {
+        joint.compliance.clear();
+    }
+    assert_eq!((compliance_cost(&with), deflection_cost(&with)), (Cost::default(), Cost::default()));
+}
+
+#[test]
+fn what_the_result_does_not_depend_on_is_not_computed() {
+    // A TCP on the last axis does not move as that turns.
+    let text = text(&six_axes(), "six.yaml");
+    for name in ["jacobian", "compliance", "deflection", "joint_torques"] {
+        let method = method(&text, name);
+        assert!(method.contains("q[4]") && !method.contains("q[5]"), "{method}");
+    }
+    assert!(method(&text, "transform").contains("q[5]"));
+    // Nor does it matter to it how high the first joint stands.
+    assert!(!method(&text, "jacobian").contains("D1"));
+}
+
+#[test]
+fn every_line_is_used() {
+    for &file in arms::FILES {
+        let text = text(&description(file), file);
+        for name in ["transform", "link_frames", "jacobian", "compliance", "deflection", "joint_torques"] {
+            let method = method(&text, name);
+            let words = || method.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
+            for line in method.lines().filter_map(|line| line.trim().strip_prefix("let ")) {
+                let pattern = line.split('=').next().expect("something");
+                for bound in pattern.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')) {
+                    let uses = words().filter(|word| *word == bound).count();
+                    assert!(["", "_"].contains(&bound) || uses > 1, "{file}, {name}: {bound}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn quarter_turns_leave_no_rounding() {
+    for &file in arms::FILES {
+        for word in text(&description(file), file).split(|c: char| c.is_whitespace() || "(),;[]".contains(c)) {
+            if let Ok(number) = word.trim_start_matches('-').parse::<f64>() {
+                assert!(number == 0.0 || number > 1e-10, "{file}: {word}");
+            }
+        }
+    }
+}
+
+#[test]
+fn turns_about_parallel_axes_are_one_angle() {
+    let rv130hsc = text(&description("rv130hsc.yaml"), "rv130hsc.yaml");
+    for name in ["transform", "link_frames", "jacobian", "compliance", "deflection", "joint_torques"] {
+        let method = method(&rv130hsc, name);
+        assert!(method.contains("(s23, c23)") && method.contains("q[1] + q[2]"), "{method}");
+        // The way back from the TCP turns by q3 before it turns by both.
+        assert!(name == "compliance" || !method.contains("c3)"), "{method}");
+    }
+    // Over half a turn about x, the sense of the turn changes.
+    let snake = text(&description("snake.yaml"), "snake.yaml");
+    assert!(method(&snake, "transform").contains("q[0] + q[1] + q[2] - q[3]"));
+    // All axes of a SCARA are parallel: one sine and cosine for the hand.
+    let scara = text(&description("scara.yaml"), "scara.yaml");
+    assert!(method(&scara, "jacobian").contains("q[0] + q[1] - q[3]"));
+}
+
+#[test]
+fn angles_that_differ_in_their_offset_have_two_names() {
+    let sliders = text(&description("sliders.yaml"), "sliders.yaml");
+    let jacobian = method(&sliders, "jacobian");
+    for name in ["(s1o, c1o)", "(s1o_2, c1o_2)", "(s1o_3, c1o_3)"] {
+        assert_eq!(jacobian.matches(name).count(), 1, "{jacobian}");
+    }
+}
