@@ -45,7 +45,10 @@ fn expand(input: &Input) -> TokenStream {
     });
     let code = match Description::parse(&shown, &text) {
         Ok(robot) => tokens(&robot, &origin(&asked)),
-        Err(diagnostics) => failed(input, &diagnostics.to_string(), Some(&text), &origin(&asked)),
+        Err(diagnostics) => {
+            let message = format!("the robot description has mistakes\n\n{diagnostics}");
+            failed(input, &message, Some(&text), &origin(&asked))
+        }
     };
     quote!(#watch #code)
 }
@@ -54,8 +57,7 @@ fn expand(input: &Input) -> TokenStream {
 fn failed(input: &Input, message: &str, text: Option<&str>, origin: &Origin) -> TokenStream {
     let outline = text.map(Description::outline).unwrap_or_default();
     let name = outline.name.unwrap_or_else(|| input.type_name());
-    let message = format!("the robot description has mistakes\n\n{}", message.trim_end());
-    let error = syn::Error::new(input.file.span(), message).to_compile_error();
+    let error = syn::Error::new(input.file.span(), message.trim_end()).to_compile_error();
     let skeleton = skeleton(&name, outline.joints, origin);
     quote!(#error #skeleton)
 }
