@@ -53,12 +53,25 @@ pub fn skeleton(name: &str, joints: Option<usize>, origin: &Origin) -> TokenStre
         let signature = signature(&count);
         quote!(#signature { ::core::unimplemented!() })
     });
+    // Where the number of joints is unknown, a call of what does not depend on
+    // it must not ask for it.
+    let inherent = joints.is_none().then(|| {
+        let facts = signatures().into_iter().filter_map(|(signature, _)| {
+            let [one, other] = [quote!(1), quote!(2)].map(|joints| signature(&joints));
+            (one.to_string() == other.to_string()).then(|| quote!(pub #one { ::core::unimplemented!() }))
+        });
+        quote! {
+            #[allow(dead_code, missing_docs)]
+            impl #name { #(#facts)* }
+        }
+    });
     let imports = imports(runtime);
     quote! {
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #visibility struct #name;
         const _: () = {
             #imports
+            #inherent
             impl #generics Robot<#count> for #name {
                 #(#[allow(unused_variables)] #methods)*
             }
