@@ -35,6 +35,8 @@ pub mod campaign;
 pub mod elements;
 #[cfg(feature = "generic")]
 pub mod generic;
+#[cfg(feature = "identify")]
+pub mod identify;
 pub mod real;
 pub mod robot;
 #[cfg(all(test, feature = "generic"))]
