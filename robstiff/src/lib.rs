@@ -41,6 +41,8 @@ pub mod real;
 pub mod robot;
 #[cfg(all(test, feature = "generic"))]
 mod samples;
+#[cfg(feature = "identify")]
+pub mod trace;
 
 #[cfg(feature = "generic")]
 pub use generic::{Generic, WrongJointCount};
