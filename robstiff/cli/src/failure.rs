@@ -45,6 +45,12 @@ impl From<ReadError> for Failure {
     }
 }
 
+impl From<robstiff::identify::Error> for Failure {
+    fn from(error: robstiff::identify::Error) -> Self {
+        Self::new(error)
+    }
+}
+
 impl From<Diagnostics> for Failure {
     fn from(problems: Diagnostics) -> Self {
         Self::Explained(problems.to_string())

@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
+use robstiff::campaign::Campaign;
 use robstiff_robots::quantity::{self, Dimension};
 use robstiff_robots::{Description, JointKind, catalogue};
 
 use crate::failure::Failure;
+use crate::output;
 
 /// Reads a robot's description, with its file's name: a file, or where there is
 /// none of that name, a robot of the catalogue.
@@ -24,6 +26,15 @@ pub fn robot(path: &Path) -> Result<(Description, String), Failure> {
         path.display(),
         names.join(", ")
     )))
+}
+
+/// Reads a campaign, and says what its reader noticed.
+pub fn campaign(path: &Path) -> Result<Campaign, Failure> {
+    let campaign = Campaign::read(path)?;
+    for warning in &campaign.warnings {
+        output::complain(format_args!("warning: {warning}"));
+    }
+    Ok(campaign)
 }
 
 /// Joint coordinates as `--at` gives them: numbers in rad (or m), or

@@ -4,11 +4,15 @@
 mod effect;
 mod emit;
 mod failure;
+mod identify;
 mod input;
 mod json;
 mod output;
+mod predict;
+mod report;
 mod show;
 mod text;
+mod trace;
 
 use std::process::ExitCode;
 
@@ -27,6 +31,9 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Show(show::Arguments),
+    Identify(identify::Arguments),
+    Trace(trace::Arguments),
+    Predict(predict::Arguments),
     Emit(emit::Arguments),
 }
 
@@ -34,6 +41,9 @@ impl Command {
     fn run(&self) -> Result<(), Failure> {
         match self {
             Self::Show(arguments) => show::run(arguments),
+            Self::Identify(arguments) => identify::run(arguments),
+            Self::Trace(arguments) => trace::run(arguments),
+            Self::Predict(arguments) => predict::run(arguments),
             Self::Emit(arguments) => emit::run(arguments),
         }
     }

@@ -8,6 +8,8 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process;
 
+use robstiff::campaign::Campaign;
+
 use crate::failure::Failure;
 
 /// Prints to standard output. A reader that has gone away (`| head`) has seen
@@ -44,6 +46,12 @@ impl Files {
     /// it.
     pub fn protect(&mut self, input: impl Into<PathBuf>) {
         self.inputs.push(input.into());
+    }
+
+    /// The files of a campaign, which are not to be overwritten either.
+    pub fn protect_campaign(&mut self, campaign: &Campaign) {
+        self.protect(&campaign.path);
+        self.protect(&campaign.robot_path);
     }
 
     /// Writes every file under a temporary name in its folder, which is made

@@ -38,6 +38,30 @@ pub fn decimals(value: f64, decimals: usize) -> String {
     }
 }
 
+/// A number with its standard deviation, to two digits of that:
+/// `(6.31 ± 0.32)e-7`.
+pub fn uncertain(value: f64, std: f64) -> String {
+    if !(value.is_finite() && std.is_finite() && std > 0.0) {
+        return significant(value, 4);
+    }
+    let exponent = value.abs().max(std).log10().floor();
+    let scale = 10_f64.powf(-exponent);
+    let decimals = (1.0 - (std * scale).log10().floor()).clamp(0.0, 4.0) as usize;
+    let (value, std) = (value * scale, std * scale);
+    let suffix = if exponent == 0.0 { String::new() } else { format!("e{exponent}") };
+    format!("({value:.decimals$} ± {std:.decimals$}){suffix}")
+}
+
+/// A probability; what the draws of a bootstrap resolve has three decimals.
+pub fn probability(p: f64) -> String {
+    if p < 0.001 { "< 0.001".to_owned() } else { decimals(p, 3) }
+}
+
+/// A length in m as micrometres without the unit.
+pub fn micrometres(length: f64) -> String {
+    decimals(length * 1e6, 1)
+}
+
 /// A count with its noun.
 pub fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
@@ -98,6 +122,14 @@ mod tests {
         let written = [2.97e-7, 0.012345, 1234.56, 3.367e6, 100.0, 0.0, -0.5, 10.0, f64::NAN, 99999.0];
         let shown = written.map(|value| significant(value, 3));
         assert_eq!(shown, ["2.97e-7", "0.0123", "1235", "3.37e6", "100", "0", "-0.5", "10", "-", "1e5"]);
+    }
+
+    #[test]
+    fn uncertainty_sets_the_digits() {
+        assert_eq!(uncertain(6.314e-7, 3.2e-8), "(6.31 ± 0.32)e-7");
+        assert_eq!(uncertain(2.0, 0.5), "(2.00 ± 0.50)");
+        assert_eq!(uncertain(-1e-8, 4e-7), "(-0.1 ± 4.0)e-7");
+        assert_eq!(uncertain(3e-7, f64::NAN), "3e-7");
     }
 
     #[test]
