@@ -11,6 +11,7 @@ use std::process;
 use robstiff::campaign::Campaign;
 
 use crate::failure::Failure;
+use crate::input;
 
 /// Prints to standard output. A reader that has gone away (`| head`) has seen
 /// what it wanted.
@@ -37,9 +38,12 @@ pub struct Files {
 }
 
 impl Files {
-    /// A file with its whole text.
+    /// A file with its whole text; asked for twice, it is written once.
     pub fn add(&mut self, path: impl Into<PathBuf>, text: String) {
-        self.files.push((path.into(), text));
+        let file = (path.into(), text);
+        if !self.files.contains(&file) {
+            self.files.push(file);
+        }
     }
 
     /// A file that was read and must not be overwritten with what was made of
@@ -52,6 +56,7 @@ impl Files {
     pub fn protect_campaign(&mut self, campaign: &Campaign) {
         self.protect(&campaign.path);
         self.protect(&campaign.robot_path);
+        self.inputs.extend(input::observations(campaign));
     }
 
     /// Writes every file under a temporary name in its folder, which is made

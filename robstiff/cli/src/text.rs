@@ -52,6 +52,16 @@ pub fn uncertain(value: f64, std: f64) -> String {
     format!("({value:.decimals$} ± {std:.decimals$}){suffix}")
 }
 
+/// A compliance in millionths of its unit with its standard deviation, to two
+/// digits of that: `0.637 ± 0.032`.
+pub fn millionths(value: f64, std: f64) -> String {
+    if !(value.is_finite() && std.is_finite() && std > 0.0) {
+        return significant(value * 1e6, 4);
+    }
+    let decimals = (1.0 - (std * 1e6).log10().floor()).clamp(0.0, 6.0) as usize;
+    format!("{:.decimals$} ± {:.decimals$}", value * 1e6, std * 1e6)
+}
+
 /// A probability; what the draws of a bootstrap resolve has three decimals.
 pub fn probability(p: f64) -> String {
     if p < 0.001 { "< 0.001".to_owned() } else { decimals(p, 3) }
@@ -130,6 +140,9 @@ mod tests {
         assert_eq!(uncertain(2.0, 0.5), "(2.00 ± 0.50)");
         assert_eq!(uncertain(-1e-8, 4e-7), "(-0.1 ± 4.0)e-7");
         assert_eq!(uncertain(3e-7, f64::NAN), "3e-7");
+        assert_eq!(millionths(6.314e-7, 3.2e-8), "0.631 ± 0.032");
+        assert_eq!(millionths(4.9e-6, 4.1e-6), "4.9 ± 4.1");
+        assert_eq!(millionths(3e-7, f64::NAN), "0.3");
     }
 
     #[test]

@@ -21,7 +21,10 @@ pub struct Report {
     pub rows: usize,
     /// Poses of the campaign.
     pub poses: usize,
-    /// One sigma of one axis [um].
+    /// One sigma of one axis of one reading [um].
+    pub reading_um: f64,
+    /// The same of a displacement, the difference of two readings, at most
+    /// [um].
     pub noise_um: f64,
     /// Where that is known from.
     pub noise_source: String,
@@ -69,14 +72,27 @@ pub struct Effect {
     pub name: String,
     /// What that is, in words.
     pub words: String,
-    /// Its numbers with their uncertainty.
-    pub numbers: Vec<String>,
+    /// Its numbers.
+    pub numbers: Vec<Number>,
     /// The family-wise p-value.
     pub p_value: f64,
     /// The error on unseen poses with it [um].
     pub holdout_rms_um: f64,
     /// What these data cannot tell it from.
     pub same_as: Vec<String>,
+}
+
+/// A number of an effect, in SI.
+#[derive(Clone, Debug)]
+pub struct Number {
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// One sigma, where there is one.
+    pub std: Option<f64>,
+    /// Its unit.
+    pub unit: String,
 }
 
 /// One of the description's own numbers in the three models.

@@ -8,12 +8,12 @@ use crate::text::decimals;
 
 const WIDTH: f64 = 860.0;
 const LEFT: f64 = 52.0;
-const RIGHT: f64 = 14.0;
+const RIGHT: f64 = 44.0;
 
 /// The error pose by pose, and under it what the effects add there.
 pub fn errors(report: &Report) -> String {
     let poses = &report.errors;
-    let with_effects = poses.iter().any(|pose| pose.contribution > 0.0);
+    let with_effects = !report.effects.is_empty();
     let (top, upper) = (34.0, 220.0);
     let (gap, lower) = if with_effects { (44.0, 80.0) } else { (0.0, 0.0) };
     let mut svg = Svg::new(WIDTH, top + upper + gap + lower + 40.0, "Error of each pose before and after");
@@ -24,16 +24,25 @@ pub fn errors(report: &Report) -> String {
     let ceiling = if declared > 2.5 * compared { 1.15 * compared } else { declared.max(compared) };
     let marks = ticks(0.0, ceiling, 5);
     let frame = Frame { x: LEFT, y: top, width: WIDTH - LEFT - RIGHT, height: upper, range: ends(&marks) };
-    frame.grid(&mut svg, &marks, "error [µm]");
-    let noise = frame.up(report.noise_um);
-    svg.line("noise", [LEFT, noise], [WIDTH - RIGHT, noise]);
-    svg.text("small", [WIDTH - RIGHT, noise - 4.0], "end", "noise");
     let step = frame.width / poses.len().max(1) as f64;
+    for (k, _) in poses.iter().enumerate().filter(|(_, pose)| pose.held_out) {
+        svg.bar("held-out", [LEFT + k as f64 * step, top], [step, upper], "");
+    }
+    frame.grid(&mut svg, &marks, "error [µm]");
+    // A displacement is as noisy as one reading at least, as two at most.
+    let noise = [report.reading_um, report.noise_um].map(|um| frame.up(um));
+    svg.bar("noise", [LEFT, noise[1]], [frame.width, noise[0] - noise[1]], "");
+    for y in noise {
+        svg.line("noise", [LEFT, y], [WIDTH - RIGHT, y]);
+    }
+    svg.text("small", [WIDTH - RIGHT + 6.0, 0.5 * (noise[0] + noise[1]) + 4.0], "start", "noise");
     let radius = (step * 0.28).clamp(1.6, 4.5);
     for (k, pose) in poses.iter().enumerate() {
         let x = LEFT + (k as f64 + 0.5) * step;
         let title = pose_title(pose);
-        svg.line("stem", [x, frame.up(pose.identified)], [x, frame.up(pose.after)]);
+        if with_effects {
+            svg.line("stem", [x, frame.up(pose.identified)], [x, frame.up(pose.after)]);
+        }
         if pose.declared <= frame.range[1] {
             let y = frame.up(pose.declared);
             svg.line("declared", [x - 1.3 * radius, y], [x + 1.3 * radius, y]);
@@ -41,7 +50,9 @@ pub fn errors(report: &Report) -> String {
             // Beyond the figure: a short stroke at its upper edge.
             svg.line("declared", [x, top - 5.0], [x, top + 1.0]);
         }
-        svg.circle("before", [x, frame.up(pose.identified)], radius, &title);
+        if with_effects {
+            svg.circle("before", [x, frame.up(pose.identified)], radius, &title);
+        }
         svg.circle("after", [x, frame.up(pose.after)], radius, &title);
     }
     let beyond = poses.iter().any(|pose| pose.declared > frame.range[1]);
@@ -78,11 +89,22 @@ fn legend(svg: &mut Svg, beyond: bool, with_effects: bool) {
     let declared = if beyond { "as declared (strokes at the top: beyond)" } else { "as declared" };
     svg.text("legend", [x + 12.0, y + 4.0], "start", declared);
     x += if beyond { 270.0 } else { 100.0 };
-    svg.circle("before", [x, y], 4.5, "");
-    svg.text("legend", [x + 10.0, y + 4.0], "start", "joints identified again");
-    x += 170.0;
-    svg.circle("after", [x, y], 4.5, "");
-    svg.text("legend", [x + 10.0, y + 4.0], "start", if with_effects { "with the effects" } else { "final model" });
+    for (class, name, width) in models(with_effects) {
+        svg.circle(class, [x, y], 4.5, "");
+        svg.text("legend", [x + 10.0, y + 4.0], "start", name);
+        x += width;
+    }
+}
+
+/// Class, name and width in the legend of the models that were fitted; without
+/// effects there is only one.
+fn models(with_effects: bool) -> Vec<(&'static str, &'static str, f64)> {
+    let identified = "joints identified again";
+    if with_effects {
+        vec![("before", identified, 170.0), ("after", "with the effects", 140.0)]
+    } else {
+        vec![("after", identified, 170.0)]
+    }
 }
 
 /// Names under the poses, as many as there is room for.
@@ -96,15 +118,15 @@ fn pose_axis(svg: &mut Svg, poses: &[PoseError], y: f64, step: f64) {
 
 /// The tips of the residual vectors seen along y and along z.
 pub fn residuals(report: &Report) -> String {
-    let side = 360.0;
-    let (top, gap) = (34.0, WIDTH - 2.0 * (LEFT + side) - RIGHT);
+    let (side, with_effects) = (360.0, !report.effects.is_empty());
+    let top = 58.0;
     let mut svg = Svg::new(WIDTH, top + side + 40.0, "Residual vectors before and after in two projections");
     let components = report.residuals.iter().flat_map(|one| [one.before, one.after].concat());
     let largest = components.map(f64::abs).fold(2.0 * report.noise_um, f64::max);
     let marks = ticks(-largest, largest, 6);
     let radius = if report.residuals.len() > 200 { 1.8 } else { 2.8 };
     for (k, (across, up)) in [(0, 1), (0, 2)].into_iter().enumerate() {
-        let x = LEFT + k as f64 * (side + gap + LEFT);
+        let x = LEFT + k as f64 * (WIDTH - 24.0 - side - LEFT);
         let frame = Frame { x, y: top, width: side, height: side, range: ends(&marks) };
         frame.grid(&mut svg, &marks, &format!("{} [µm]", AXES[up]));
         for &mark in &marks {
@@ -114,7 +136,7 @@ pub fn residuals(report: &Report) -> String {
         }
         svg.text("axis", [x + side / 2.0, top + side + 34.0], "middle", &format!("{} [µm]", AXES[across]));
         let tip = |residual: [f64; 3]| [frame.right(residual[across]), frame.up(residual[up])];
-        for Residual { before, .. } in &report.residuals {
+        for Residual { before, .. } in report.residuals.iter().filter(|_| with_effects) {
             svg.circle("before", tip(*before), radius, "");
         }
         for Residual { after, .. } in &report.residuals {
@@ -123,12 +145,9 @@ pub fn residuals(report: &Report) -> String {
         let two_sigma = frame.right(2.0 * report.noise_um) - frame.right(0.0);
         svg.circle("noise", [frame.right(0.0), frame.up(0.0)], two_sigma, "two sigma of the noise");
     }
-    let mut x = LEFT + 150.0;
-    for (class, name, width) in [
-        ("before", "joints identified again", 180.0),
-        ("after", "final model", 110.0),
-        ("noise", "noise, two sigma", 0.0),
-    ] {
+    let mut x = LEFT + 5.0;
+    let noise = ("noise", "noise, two sigma", 0.0);
+    for (class, name, width) in models(with_effects).into_iter().chain([noise]) {
         svg.circle(class, [x, 10.0], 4.5, "");
         svg.text("legend", [x + 10.0, 14.0], "start", name);
         x += width;
@@ -138,13 +157,12 @@ pub fn residuals(report: &Report) -> String {
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// A bar as long as an error, with a mark where the noise is.
-pub fn meter(error_um: f64, noise_um: f64, largest_um: f64) -> String {
-    let scale = if largest_um > 0.0 { 238.0 / largest_um } else { 0.0 };
-    let (error, noise) = (error_um * scale, noise_um * scale);
+/// A bar as long as an error, with marks where the noise is.
+pub fn meter(error_um: f64, noise_um: [f64; 2], largest_um: f64) -> String {
+    let length = |um: f64| if um.is_finite() && largest_um > 0.0 { (um * 238.0 / largest_um).min(240.0) } else { 0.0 };
     let mut svg = Svg::new(240.0, 12.0, "");
-    svg.bar("", [0.0, 2.0], [if error.is_finite() { error } else { 0.0 }, 8.0], "");
-    if noise.is_finite() && noise <= 240.0 {
+    svg.bar("", [0.0, 2.0], [length(error_um), 8.0], "");
+    for noise in noise_um.map(length) {
         svg.line("", [noise, 0.0], [noise, 12.0]);
     }
     svg.decoration("meter")

@@ -1,10 +1,10 @@
 //! The sections of a report below its heading, each empty where there is
 //! nothing to say.
 
-use super::content::{Candidate, Report, SearchStep};
+use super::content::{Candidate, Number, Report, SearchStep};
 use super::figure;
 use super::html::{Cell, Table, element, escape, number, text, words};
-use crate::text::{and, count, decimals, probability, significant, uncertain};
+use crate::text::{and, count, decimals, millionths, probability, significant};
 
 /// The error of each model.
 pub fn errors(report: &Report) -> String {
@@ -13,29 +13,29 @@ pub fn errors(report: &Report) -> String {
         words("Model"),
         number("fitted poses [µm]"),
         number("unseen poses [µm]"),
-        number("times the noise"),
-        words(""),
+        words("unseen, against the noise"),
     ]);
     for (index, stage) in report.stages.iter().enumerate() {
-        let name = format!("{} <small>{}</small>", escape(&stage.name), escape(&stage.remark));
+        let name = format!("{} <small class=\"under\">{}</small>", escape(&stage.name), escape(&stage.remark));
         table.row(
             index + 1 == report.stages.len(),
             [
                 Cell::Html(name),
                 number(decimals(stage.rms_um, 1)),
                 number(decimals(stage.holdout_rms_um, 1)),
-                number(decimals(stage.holdout_rms_um / report.noise_um, 1)),
-                Cell::Html(figure::meter(stage.holdout_rms_um, report.noise_um, largest)),
+                Cell::Html(figure::meter(stage.holdout_rms_um, [report.reading_um, report.noise_um], largest)),
             ],
         );
     }
     let caption = format!(
-        "Root mean square error of one axis, over {} at {}. Unseen: {}. The mark is the noise of one reading, {} µm ({}).",
+        "Root mean square error of one axis, over {} at {}. Unseen: {}. Noise: {} µm a reading ({}), and up to {} µm a \
+         displacement, which is the difference of two; the marks are these two.",
         count(report.rows, "row"),
         count(report.poses, "pose"),
         report.unseen,
-        decimals(report.noise_um, 1),
-        report.noise_source
+        decimals(report.reading_um, 1),
+        report.noise_source,
+        decimals(report.noise_um, 1)
     );
     element("h2", "Error before and after") + &table.html() + &text("p", &caption)
 }
@@ -45,8 +45,15 @@ pub fn poses(report: &Report) -> String {
     if report.errors.is_empty() {
         return String::new();
     }
+    let mut first = "Root mean square error of one axis in each pose, in the order of the campaign.".to_owned();
+    if report.errors.iter().any(|pose| pose.held_out) {
+        first += " Shaded: poses that were held out.";
+    }
+    if !report.effects.is_empty() {
+        first += " Below: how far the named effects move the tool; fitted together with them, the joints give part of it back.";
+    }
     let captions = [
-        "Root mean square error of one axis in each pose, in the order of the campaign. Point at a mark for its numbers.",
+        first.as_str(),
         "Residual vectors of single rows in the base frame. A model that lacks nothing leaves a round cloud the size of the noise.",
     ];
     let figures = [figure::errors(report), figure::residuals(report)];
@@ -72,12 +79,12 @@ pub fn effects(report: &Report) -> String {
     ]);
     for effect in &report.effects {
         let name = format!("<code>{}</code><br>{}", escape(&effect.name), escape(&effect.words));
-        let lines: Vec<String> = effect.numbers.iter().map(|line| escape(line)).collect();
+        let lines: Vec<String> = effect.numbers.iter().map(|number| escape(&number_line(number))).collect();
         table.row(
             false,
             [
                 Cell::Html(name),
-                Cell::Html(lines.join("<br>")),
+                Cell::Html(format!("<span class=\"whole\">{}</span>", lines.join("<br>"))),
                 number(probability(effect.p_value)),
                 number(decimals(effect.holdout_rms_um, 1)),
                 codes(&effect.same_as),
@@ -87,6 +94,15 @@ pub fn effects(report: &Report) -> String {
     let note = "p: the probability that the model without this effect would show as much by chance, all candidates together. \
                 Unseen poses: the error with this effect and those above it.";
     element("h2", "What was missing") + &table.html() + &text("p", note)
+}
+
+/// Compliances in millionths; a knee, in Nm, as it is.
+fn number_line(number: &Number) -> String {
+    let Number { name, value, std, unit } = number;
+    match unit.as_str() {
+        "rad/Nm" | "m/N" => format!("{name} = {} µ{unit}", millionths(*value, std.unwrap_or(f64::NAN))),
+        _ => format!("{name} = {} {unit}", significant(*value, 3)),
+    }
 }
 
 fn codes(names: &[String]) -> Cell {
@@ -105,16 +121,16 @@ pub fn compliances(report: &Report) -> String {
     let mut table = Table::new(head);
     for one in &report.compliances {
         let fitted = |found: Option<(f64, f64)>| {
-            number(found.map_or_else(|| "not seen".to_owned(), |(value, std)| uncertain(value, std)))
+            number(found.map_or_else(|| "not seen".to_owned(), |(value, std)| millionths(value, std)))
         };
         let last = if with_effects { one.after } else { one.identified };
         let change = last.filter(|_| one.declared != 0.0).map(|(value, _)| value / one.declared - 1.0);
-        let mut cells = vec![words(&one.name), number(significant(one.declared, 4)), fitted(one.identified)];
+        let mut cells = vec![words(&one.name), number(significant(one.declared * 1e6, 4)), fitted(one.identified)];
         if with_effects {
             cells.push(fitted(one.after));
         }
         let change = change.map(|change| format!("{:+.0} %", change * 100.0)).unwrap_or_default();
-        cells.extend([number(change), words(&one.unit)]);
+        cells.extend([number(change), words(format!("µ{}", one.unit))]);
         table.row(false, cells);
     }
     let note = "With one standard deviation. Change: of the last model against the declared value. \

@@ -1,4 +1,4 @@
-use super::content::{Candidate, Compliance, Effect, Next, PoseError, Report, Residual, SearchStep, Stage};
+use super::content::{Candidate, Compliance, Effect, Next, Number, PoseError, Report, Residual, SearchStep, Stage};
 use super::html;
 
 /// A report in which every text tries to be markup, and numbers are missing.
@@ -11,7 +11,8 @@ fn hostile() -> Report {
         headline: bad(),
         summary: vec![bad()],
         verdict: bad(),
-        noise_um: f64::NAN,
+        reading_um: f64::NAN,
+        noise_um: f64::INFINITY,
         noise_source: bad(),
         unseen: bad(),
         rows: 2,
@@ -20,7 +21,7 @@ fn hostile() -> Report {
         effects: vec![Effect {
             name: bad(),
             words: bad(),
-            numbers: vec![bad()],
+            numbers: vec![Number { name: bad(), value: f64::NAN, std: None, unit: bad() }],
             p_value: f64::NAN,
             holdout_rms_um: f64::NAN,
             same_as: vec![bad()],

@@ -2,14 +2,14 @@
 
 use robstiff::campaign::{Campaign, Data};
 use robstiff::identify::{Estimate, Visibility, predict};
-use robstiff::trace::{NamedEffect, Options, RowResidual, Step, Tested, Trace, Verdict};
+use robstiff::trace::{EffectParameter, NamedEffect, Options, RowResidual, Step, Tested, Trace, Verdict};
 
 use super::story;
 use crate::effect;
 use crate::failure::Failure;
 use crate::identify::source_of;
 use crate::report::content::{
-    Candidate, Compliance, Effect, Left, Next, PoseError, Report, Residual, SearchStep, Stage, Structure,
+    Candidate, Compliance, Effect, Left, Next, Number, PoseError, Report, Residual, SearchStep, Stage, Structure,
 };
 use crate::text::{count, decimals};
 
@@ -29,7 +29,8 @@ pub fn report(trace: &Trace, campaign: &Campaign, options: &Options) -> Result<R
         settled: matches!(trace.verdict, Verdict::Adequate | Verdict::Explained),
         rows: trace.rows,
         poses: trace.poses,
-        noise_um: trace.noise * 1e6,
+        reading_um: trace.noise * 1e6,
+        noise_um: story::displacement_noise(trace) * 1e6,
         noise_source: source_of(trace.noise_source).to_owned(),
         unseen: story::unseen(trace),
         stages: stages(trace),
@@ -83,11 +84,16 @@ fn named(named: &NamedEffect) -> Effect {
     Effect {
         name: named.effect.to_string(),
         words: effect::words(&named.effect),
-        numbers: story::numbers(named),
+        numbers: named.parameters.iter().map(number).collect(),
         p_value: named.p_value,
         holdout_rms_um: named.holdout_rms * 1e6,
         same_as: named.same_as.clone(),
     }
+}
+
+fn number(parameter: &EffectParameter) -> Number {
+    let EffectParameter { name, value, std, unit } = *parameter;
+    Number { name: name.to_owned(), value, std, unit: unit.to_owned() }
 }
 
 fn compliances(trace: &Trace) -> Vec<Compliance> {

@@ -14,14 +14,11 @@ pub fn headline(trace: &Trace) -> String {
     let lacking = || and(&trace.effects.iter().map(|named| effect::words(&named.effect)).collect::<Vec<_>>());
     match trace.verdict {
         Verdict::Adequate => format!("Nothing is missing: identified joints predict unseen poses to {after} um"),
-        Verdict::Explained => format!(
-            "The description lacks {}; with {} the error on unseen poses falls from {before} to {after} um",
+        Verdict::Explained | Verdict::Partial => format!(
+            "The description lacks {}; with {} the error on unseen poses falls from {before} to {after} um{}",
             lacking(),
-            if trace.effects.len() == 1 { "it" } else { "them" }
-        ),
-        Verdict::Partial => format!(
-            "The description lacks {}, which takes the error on unseen poses from {before} to {after} um, and something more",
-            lacking()
+            if trace.effects.len() == 1 { "it" } else { "them" },
+            if trace.verdict == Verdict::Partial { ", but something more is missing" } else { "" }
         ),
         Verdict::Unexplained => {
             format!(
@@ -53,6 +50,12 @@ fn sentence(clause: &str) -> String {
     format!("{start}{}.", letters.as_str().trim_end_matches('.'))
 }
 
+/// The noise of a displacement, the difference of a loaded and an unloaded
+/// reading [m]; less where the unloaded one is an average of many.
+pub fn displacement_noise(trace: &Trace) -> f64 {
+    trace.noise * std::f64::consts::SQRT_2
+}
+
 /// How the errors on unseen poses came about.
 pub fn unseen(trace: &Trace) -> String {
     match trace.held_out.len() {
@@ -81,9 +84,14 @@ pub fn pose(next: &Proposal, joints: &[Joint]) -> String {
 
 /// The story for a terminal.
 pub fn page(trace: &Trace) -> String {
-    let noise = format!("{} um ({})", micrometres(trace.noise), source_of(trace.noise_source));
+    let noise = format!(
+        "noise: {} um a reading ({}), up to {} um a displacement, the difference of two",
+        micrometres(trace.noise),
+        source_of(trace.noise_source),
+        micrometres(displacement_noise(trace))
+    );
     let mut page =
-        format!("{}: {} at {}, noise {noise}\n\n", trace.robot, count(trace.rows, "row"), count(trace.poses, "pose"));
+        format!("{}: {} at {}\n{noise}\n\n", trace.robot, count(trace.rows, "row"), count(trace.poses, "pose"));
     let mut errors = Table::new(1, ["error [um]", "fitted poses", "unseen poses"]);
     let mut stages = vec![("as declared", trace.declared), ("joints identified again", trace.identified)];
     if !trace.effects.is_empty() {
