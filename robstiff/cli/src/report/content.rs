@@ -21,10 +21,10 @@ pub struct Report {
     pub rows: usize,
     /// Poses of the campaign.
     pub poses: usize,
-    /// One sigma of one axis of one reading [um].
+    /// One sigma of one axis of one reading \[um\].
     pub reading_um: f64,
     /// The same of a displacement, the difference of two readings, at most
-    /// [um].
+    /// \[um\].
     pub noise_um: f64,
     /// Where that is known from.
     pub noise_source: String,
@@ -59,9 +59,9 @@ pub struct Stage {
     pub name: String,
     /// What it is.
     pub remark: String,
-    /// On the rows it was fitted to [um].
+    /// On the rows it was fitted to \[um\].
     pub rms_um: f64,
-    /// On poses it has not seen [um].
+    /// On poses it has not seen \[um\].
     pub holdout_rms_um: f64,
 }
 
@@ -76,7 +76,7 @@ pub struct Effect {
     pub numbers: Vec<Number>,
     /// The family-wise p-value.
     pub p_value: f64,
-    /// The error on unseen poses with it [um].
+    /// The error on unseen poses with it \[um\].
     pub holdout_rms_um: f64,
     /// What these data cannot tell it from.
     pub same_as: Vec<String>,
@@ -110,7 +110,7 @@ pub struct Compliance {
     pub after: Option<(f64, f64)>,
 }
 
-/// The error in one pose, each the rms over its rows of one axis [um].
+/// The error in one pose, each the rms over its rows of one axis \[um\].
 #[derive(Clone, Debug)]
 pub struct PoseError {
     /// The pose's id.
@@ -127,7 +127,7 @@ pub struct PoseError {
     pub held_out: bool,
 }
 
-/// Residuals of one row [um] in the base frame.
+/// Residuals of one row \[um\] in the base frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Residual {
     /// With the joints identified again.
@@ -156,7 +156,7 @@ pub struct Candidate {
     pub statistic: Option<f64>,
     /// Its family-wise p-value.
     pub p_value: f64,
-    /// The error on unseen poses with it [um].
+    /// The error on unseen poses with it \[um\].
     pub holdout_rms_um: Option<f64>,
     /// Why it was not taken; empty where it was.
     pub reason: String,
@@ -189,7 +189,7 @@ pub struct Structure {
 pub struct Next {
     /// The pose, one number with its unit a joint.
     pub pose: String,
-    /// The force's components [N].
+    /// The force's components \[N\].
     pub force: String,
     /// What it separates.
     pub separates: [String; 2],

@@ -51,7 +51,7 @@ fn sentence(clause: &str) -> String {
 }
 
 /// The noise of a displacement, the difference of a loaded and an unloaded
-/// reading [m]; less where the unloaded one is an average of many.
+/// reading \[m\]; less where the unloaded one is an average of many.
 pub fn displacement_noise(trace: &Trace) -> f64 {
     trace.noise * std::f64::consts::SQRT_2
 }
