@@ -36,7 +36,7 @@ pub fn errors(report: &Report) -> String {
         svg.line("noise", [LEFT, y], [WIDTH - RIGHT, y]);
     }
     svg.text("small", [WIDTH - RIGHT + 6.0, 0.5 * (noise[0] + noise[1]) + 4.0], "start", "noise");
-    let radius = (step * 0.28).clamp(1.6, 4.5);
+    let radius = (step * 0.28).clamp(2.0, 4.5);
     for (k, pose) in poses.iter().enumerate() {
         let x = LEFT + (k as f64 + 0.5) * step;
         let title = pose_title(pose);
@@ -143,7 +143,10 @@ pub fn residuals(report: &Report) -> String {
             svg.circle("after", tip(*after), radius, "");
         }
         let two_sigma = frame.right(2.0 * report.noise_um) - frame.right(0.0);
-        svg.circle("noise", [frame.right(0.0), frame.up(0.0)], two_sigma, "two sigma of the noise");
+        let center = [frame.right(0.0), frame.up(0.0)];
+        // Dashes alone would be lost among the discs.
+        svg.circle("halo", center, two_sigma, "");
+        svg.circle("noise", center, two_sigma, "two sigma of the noise");
     }
     let mut x = LEFT + 5.0;
     let noise = ("noise", "noise, two sigma", 0.0);

@@ -58,7 +58,7 @@ fn heading(report: &Report) -> String {
     )
 }
 
-/// Units as print writes them.
+/// Units as print writes them, and numbers on the line of what they belong to.
 fn micro(text: &str) -> String {
-    text.replace(" um", " µm")
+    text.replace(" um", "\u{a0}µm").replace("p < ", "p\u{a0}<\u{a0}").replace("p = ", "p\u{a0}=\u{a0}")
 }
