@@ -72,6 +72,20 @@ impl Description {
         document.finish(description)
     }
 
+    /// A free name for a robot's type that is like `text`, e.g. a file's name.
+    pub fn name_like(text: &str) -> String {
+        let words = text.split(|character: char| !character.is_ascii_alphanumeric());
+        let camel: String = words
+            .filter_map(|word| Some((word.chars().next()?.to_ascii_uppercase(), &word[1..])))
+            .map(|(first, rest)| format!("{first}{rest}"))
+            .collect();
+        match camel.as_str() {
+            free if is_type_name(free) => camel,
+            "" | "Robot" => "MyRobot".to_owned(),
+            _ => format!("Robot{camel}"),
+        }
+    }
+
     /// What can be told of a robot from a text that may be broken anywhere.
     pub fn outline(text: &str) -> Outline {
         outline::outline(text)
@@ -122,27 +136,37 @@ fn every<T>(items: &[Node], read: impl FnMut(&Node) -> Option<T>) -> Option<Vec<
 fn name(node: &Node) -> Option<String> {
     let name = node.text()?;
     if !is_type_name(name) {
-        let help = format!("it becomes a Rust type, so write it in upper camel case, e.g. `{}`", suggested_name(name));
+        let help =
+            format!("it becomes a Rust type, so write it in upper camel case, e.g. `{}`", Description::name_like(name));
         node.error(format!("`{name}` cannot name a robot"), help);
         return None;
     }
     Some(name.to_owned())
 }
 
-/// Whether a text is an upper camel case identifier and no keyword.
+/// Names that generated code needs for other things.
+const TAKEN: [&str; 14] = [
+    "Self",
+    "Option",
+    "Some",
+    "None",
+    "Robot",
+    "Real",
+    "Effect",
+    "Convention",
+    "JointKind",
+    "Matrix4",
+    "Matrix6",
+    "SMatrix",
+    "SVector",
+    "Vector6",
+];
+
+/// Whether a text is an upper camel case identifier that is free.
 fn is_type_name(name: &str) -> bool {
     name.starts_with(|first: char| first.is_ascii_uppercase())
         && name.chars().all(|character| character.is_ascii_alphanumeric())
-        && name != "Self"
-}
-
-fn suggested_name(name: &str) -> String {
-    let words = name.split(|character: char| !character.is_ascii_alphanumeric());
-    let camel: String = words
-        .filter_map(|word| Some((word.chars().next()?.to_ascii_uppercase(), &word[1..])))
-        .map(|(first, rest)| format!("{first}{rest}"))
-        .collect();
-    if is_type_name(&camel) { camel } else { format!("Robot{camel}") }
+        && !TAKEN.contains(&name)
 }
 
 fn placement(node: &Node) -> Option<Placement> {
@@ -241,11 +265,15 @@ mod tests {
 
     #[test]
     fn suggests_names_that_are_names() {
-        for (name, suggested) in
-            [("rv130-hsc", "Rv130Hsc"), ("6axis arm", "Robot6axisArm"), ("Self", "RobotSelf"), ("ü", "Robot")]
-        {
+        for (name, suggested) in [
+            ("rv130-hsc", "Rv130Hsc"),
+            ("6axis arm", "Robot6axisArm"),
+            ("Self", "RobotSelf"),
+            ("Robot", "MyRobot"),
+            ("ü", "MyRobot"),
+        ] {
             assert!(!is_type_name(name));
-            assert_eq!(suggested_name(name), suggested);
+            assert_eq!(Description::name_like(name), suggested);
             assert!(is_type_name(suggested));
         }
     }

@@ -1,6 +1,7 @@
 //! What the macro is given.
 
 use proc_macro2::TokenStream;
+use robstiff_robots::Description;
 use syn::parse::{Parse, ParseStream};
 use syn::{LitStr, Visibility, bracketed};
 
@@ -41,17 +42,6 @@ impl Input {
         let file = self.file.value();
         let stem = file.rsplit(['/', '\\']).next().unwrap_or_default();
         let stem = stem.split('.').next().unwrap_or_default();
-        let words = stem.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
-        let name: String = words
-            .map(|word| {
-                let (first, rest) = word.split_at(1);
-                first.to_ascii_uppercase() + rest
-            })
-            .collect();
-        if name.starts_with(|c: char| c.is_ascii_alphabetic()) && name != "Self" {
-            name
-        } else {
-            "Robot".to_owned() + &name
-        }
+        Description::name_like(stem)
     }
 }

@@ -35,10 +35,14 @@ pub mod campaign;
 pub mod elements;
 #[cfg(feature = "generic")]
 pub mod generic;
+#[cfg(feature = "identify")]
+pub mod identify;
 pub mod real;
 pub mod robot;
 #[cfg(all(test, feature = "generic"))]
 mod samples;
+#[cfg(feature = "identify")]
+pub mod trace;
 
 #[cfg(feature = "generic")]
 pub use generic::{Generic, WrongJointCount};

@@ -292,37 +292,37 @@ impl Robot<6> for EveryEffect {
                     - Self::SIN_BASE_ROLL * 0.7648421872844885),
         );
         let k15 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k25 = T::of(
+        let k16 = T::of(
             Self::SIN_BASE_ROLL * -0.644217687237691
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
         );
-        let k26 = T::of(
+        let k17 = T::of(
             Self::SIN_BASE_ROLL * 0.7648421872844885
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
         );
-        let k27 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k29 = T::of(
+        let k18 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k19 = T::of(
             Self::A2
                 * (Self::SIN_BASE_ROLL * -0.644217687237691
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
         );
-        let k30 = T::of(
+        let k20 = T::of(
             Self::A2
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k31 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k33 = T::of(
+        let k21 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k22 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * -0.644217687237691
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
         );
-        let k34 = T::of(
+        let k23 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k35 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k24 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s1o, c1o), (s2, c2), (s23, c23), (s4o, c4o), (s5, c5), (s6, c6), (s6o, c6o),
         ] = T::sin_cos_all([
             q[0] + T::of(0.17453292519943295),
@@ -333,76 +333,76 @@ impl Robot<6> for EveryEffect {
             q[5],
             q[5] + T::of(2.949606435870417),
         ]);
-        let t16 = base_x + (k7 * c1o + k10 * s1o + k13);
-        let t17 = base_y + (k8 * c1o + k11 * s1o + k14);
-        let t18 = base_z + (k9 * c1o + k12 * s1o + k15);
-        let t19 = k1 * c1o + k5 * s1o;
-        let t20 = k2 * c1o + k6 * s1o;
-        let t21 = k3 * c1o + k4 * s1o;
-        let t22 = k5 * c1o - k1 * s1o;
-        let t23 = k6 * c1o - k2 * s1o;
-        let t24 = k4 * c1o - k3 * s1o;
-        let t28 = a2 * s2;
-        let t32 = a3 * s23;
-        let t36 = t19 * t32 - k33 * c23 + d3 * t22;
-        let t37 = t20 * t32 - k34 * c23 + d3 * t23;
-        let t38 = t21 * t32 - k35 * c23 + d3 * t24;
-        let t39 = t16 + (t19 * t28 - k29 * c2) + t36;
-        let t40 = t17 + (t20 * t28 - k30 * c2) + t37;
-        let t41 = t18 + (t21 * t28 - k31 * c2) + t38;
-        let t42 = t19 * s23 - k25 * c23;
-        let t43 = t20 * s23 - k26 * c23;
-        let t44 = t21 * s23 - k27 * c23;
-        let t45 = k25 * s23 + t19 * c23;
-        let t46 = k26 * s23 + t20 * c23;
-        let t47 = k27 * s23 + t21 * c23;
-        let t48 = cos_alpha3 * t45 + sin_alpha3 * t22;
-        let t49 = cos_alpha3 * t46 + sin_alpha3 * t23;
-        let t50 = cos_alpha3 * t47 + sin_alpha3 * t24;
-        let t51 = cos_alpha3 * t22 - sin_alpha3 * t45;
-        let t52 = cos_alpha3 * t23 - sin_alpha3 * t46;
-        let t53 = cos_alpha3 * t24 - sin_alpha3 * t47;
-        let t54 = t42 * c4o + t48 * s4o;
-        let t55 = t43 * c4o + t49 * s4o;
-        let t56 = t44 * c4o + t50 * s4o;
-        let t57 = t48 * c4o;
-        let t58 = t49 * c4o;
-        let t59 = t50 * c4o;
-        let t60 = t42 * s4o;
-        let t61 = t43 * s4o;
-        let t62 = t44 * s4o;
-        let t63 = t57 - t60;
-        let t64 = t58 - t61;
-        let t65 = t59 - t62;
-        let t66 = t39 + d4 * t51 + d5 * (t60 - t57);
-        let t67 = t40 + d4 * t52 + d5 * (t61 - t58);
-        let t68 = t41 + d4 * t53 + d5 * (t62 - t59);
-        let t69 = t54 * c5 + t51 * s5;
-        let t70 = t55 * c5 + t52 * s5;
-        let t71 = t56 * c5 + t53 * s5;
-        let t72 = t51 * c5 - t54 * s5;
-        let t73 = t52 * c5 - t55 * s5;
-        let t74 = t53 * c5 - t56 * s5;
-        let t75 = tool_y * s6 - tool_x * c6;
-        let t76 = tool_x * s6 + tool_y * c6;
-        let t77 = t69 * t75 - t63 * t76 + tool_z * t72;
-        let t78 = t70 * t75 - t64 * t76 + tool_z * t73;
-        let t79 = t71 * t75 - t65 * t76 + tool_z * t74;
-        let p_x = t66 + d6 * t72 + t77;
-        let p_y = t67 + d6 * t73 + t78;
-        let p_z = t68 + d6 * t74 + t79;
-        let t80 = t69 * c6o + t63 * s6o;
-        let t81 = t70 * c6o + t64 * s6o;
-        let t82 = t71 * c6o + t65 * s6o;
-        let y_x = cos_tool_pitch * t72 + sin_tool_pitch * t80;
-        let y_y = cos_tool_pitch * t73 + sin_tool_pitch * t81;
-        let y_z = cos_tool_pitch * t74 + sin_tool_pitch * t82;
-        let x_x = cos_tool_pitch * t80 - sin_tool_pitch * t72;
-        let x_y = cos_tool_pitch * t81 - sin_tool_pitch * t73;
-        let x_z = cos_tool_pitch * t82 - sin_tool_pitch * t74;
-        let z_x = t69 * s6o - t63 * c6o;
-        let z_y = t70 * s6o - t64 * c6o;
-        let z_z = t71 * s6o - t65 * c6o;
+        let t1 = base_x + (k7 * c1o + k10 * s1o + k13);
+        let t2 = base_y + (k8 * c1o + k11 * s1o + k14);
+        let t3 = base_z + (k9 * c1o + k12 * s1o + k15);
+        let t4 = k1 * c1o + k5 * s1o;
+        let t5 = k2 * c1o + k6 * s1o;
+        let t6 = k3 * c1o + k4 * s1o;
+        let t7 = k5 * c1o - k1 * s1o;
+        let t8 = k6 * c1o - k2 * s1o;
+        let t9 = k4 * c1o - k3 * s1o;
+        let t10 = a2 * s2;
+        let t11 = a3 * s23;
+        let t12 = t4 * t11 - k22 * c23 + d3 * t7;
+        let t13 = t5 * t11 - k23 * c23 + d3 * t8;
+        let t14 = t6 * t11 - k24 * c23 + d3 * t9;
+        let t15 = t1 + (t4 * t10 - k19 * c2) + t12;
+        let t16 = t2 + (t5 * t10 - k20 * c2) + t13;
+        let t17 = t3 + (t6 * t10 - k21 * c2) + t14;
+        let t18 = t4 * s23 - k16 * c23;
+        let t19 = t5 * s23 - k17 * c23;
+        let t20 = t6 * s23 - k18 * c23;
+        let t21 = k16 * s23 + t4 * c23;
+        let t22 = k17 * s23 + t5 * c23;
+        let t23 = k18 * s23 + t6 * c23;
+        let t24 = cos_alpha3 * t21 + sin_alpha3 * t7;
+        let t25 = cos_alpha3 * t22 + sin_alpha3 * t8;
+        let t26 = cos_alpha3 * t23 + sin_alpha3 * t9;
+        let t27 = cos_alpha3 * t7 - sin_alpha3 * t21;
+        let t28 = cos_alpha3 * t8 - sin_alpha3 * t22;
+        let t29 = cos_alpha3 * t9 - sin_alpha3 * t23;
+        let t30 = t18 * c4o + t24 * s4o;
+        let t31 = t19 * c4o + t25 * s4o;
+        let t32 = t20 * c4o + t26 * s4o;
+        let t33 = t24 * c4o;
+        let t34 = t25 * c4o;
+        let t35 = t26 * c4o;
+        let t36 = t18 * s4o;
+        let t37 = t19 * s4o;
+        let t38 = t20 * s4o;
+        let t39 = t33 - t36;
+        let t40 = t34 - t37;
+        let t41 = t35 - t38;
+        let t42 = t15 + d4 * t27 + d5 * (t36 - t33);
+        let t43 = t16 + d4 * t28 + d5 * (t37 - t34);
+        let t44 = t17 + d4 * t29 + d5 * (t38 - t35);
+        let t45 = t30 * c5 + t27 * s5;
+        let t46 = t31 * c5 + t28 * s5;
+        let t47 = t32 * c5 + t29 * s5;
+        let t48 = t27 * c5 - t30 * s5;
+        let t49 = t28 * c5 - t31 * s5;
+        let t50 = t29 * c5 - t32 * s5;
+        let t51 = tool_y * s6 - tool_x * c6;
+        let t52 = tool_x * s6 + tool_y * c6;
+        let t53 = t45 * t51 - t39 * t52 + tool_z * t48;
+        let t54 = t46 * t51 - t40 * t52 + tool_z * t49;
+        let t55 = t47 * t51 - t41 * t52 + tool_z * t50;
+        let p_x = t42 + d6 * t48 + t53;
+        let p_y = t43 + d6 * t49 + t54;
+        let p_z = t44 + d6 * t50 + t55;
+        let t56 = t45 * c6o + t39 * s6o;
+        let t57 = t46 * c6o + t40 * s6o;
+        let t58 = t47 * c6o + t41 * s6o;
+        let y_x = cos_tool_pitch * t48 + sin_tool_pitch * t56;
+        let y_y = cos_tool_pitch * t49 + sin_tool_pitch * t57;
+        let y_z = cos_tool_pitch * t50 + sin_tool_pitch * t58;
+        let x_x = cos_tool_pitch * t56 - sin_tool_pitch * t48;
+        let x_y = cos_tool_pitch * t57 - sin_tool_pitch * t49;
+        let x_z = cos_tool_pitch * t58 - sin_tool_pitch * t50;
+        let z_x = t45 * s6o - t39 * c6o;
+        let z_y = t46 * s6o - t40 * c6o;
+        let z_z = t47 * s6o - t41 * c6o;
         Matrix4::new(
             x_x, y_x, z_x, p_x,
             x_y, y_y, z_y, p_y,
@@ -473,28 +473,28 @@ impl Robot<6> for EveryEffect {
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
         );
         let k18 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k19 = T::of(
+            Self::A2
+                * (Self::SIN_BASE_ROLL * -0.644217687237691
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+        );
         let k20 = T::of(
             Self::A2
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
-        );
-        let k21 = T::of(
-            Self::A2
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k22 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k24 = T::of(
+        let k21 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k22 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * -0.644217687237691
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
         );
-        let k25 = T::of(
+        let k23 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k26 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k24 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s1o, c1o), (s2, c2), (s23, c23), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
             q[0] + T::of(0.17453292519943295),
             q[1],
@@ -512,53 +512,53 @@ impl Robot<6> for EveryEffect {
         let z1_x = k5 * c1o - k1 * s1o;
         let z1_y = k6 * c1o - k2 * s1o;
         let z1_z = k4 * c1o - k3 * s1o;
-        let t19 = a2 * s2;
-        let p2_x = p1_x + (x1_x * t19 - k20 * c2);
-        let p2_y = p1_y + (x1_y * t19 - k21 * c2);
-        let p2_z = p1_z + (x1_z * t19 - k22 * c2);
+        let t1 = a2 * s2;
+        let p2_x = p1_x + (x1_x * t1 - k19 * c2);
+        let p2_y = p1_y + (x1_y * t1 - k20 * c2);
+        let p2_z = p1_z + (x1_z * t1 - k21 * c2);
         let x2_x = x1_x * s2 - k16 * c2;
         let x2_y = x1_y * s2 - k17 * c2;
         let x2_z = x1_z * s2 - k18 * c2;
         let y2_x = k16 * s2 + x1_x * c2;
         let y2_y = k17 * s2 + x1_y * c2;
         let y2_z = k18 * s2 + x1_z * c2;
-        let t23 = a3 * s23;
-        let t27 = x1_x * t23 - k24 * c23 + d3 * z1_x;
-        let t28 = x1_y * t23 - k25 * c23 + d3 * z1_y;
-        let t29 = x1_z * t23 - k26 * c23 + d3 * z1_z;
-        let p3_x = p2_x + t27;
-        let p3_y = p2_y + t28;
-        let p3_z = p2_z + t29;
+        let t2 = a3 * s23;
+        let t3 = x1_x * t2 - k22 * c23 + d3 * z1_x;
+        let t4 = x1_y * t2 - k23 * c23 + d3 * z1_y;
+        let t5 = x1_z * t2 - k24 * c23 + d3 * z1_z;
+        let p3_x = p2_x + t3;
+        let p3_y = p2_y + t4;
+        let p3_z = p2_z + t5;
         let x3_x = x1_x * s23 - k16 * c23;
         let x3_y = x1_y * s23 - k17 * c23;
         let x3_z = x1_z * s23 - k18 * c23;
-        let t30 = k16 * s23 + x1_x * c23;
-        let t31 = k17 * s23 + x1_y * c23;
-        let t32 = k18 * s23 + x1_z * c23;
-        let y3_x = cos_alpha3 * t30 + sin_alpha3 * z1_x;
-        let y3_y = cos_alpha3 * t31 + sin_alpha3 * z1_y;
-        let y3_z = cos_alpha3 * t32 + sin_alpha3 * z1_z;
-        let z3_x = cos_alpha3 * z1_x - sin_alpha3 * t30;
-        let z3_y = cos_alpha3 * z1_y - sin_alpha3 * t31;
-        let z3_z = cos_alpha3 * z1_z - sin_alpha3 * t32;
+        let t6 = k16 * s23 + x1_x * c23;
+        let t7 = k17 * s23 + x1_y * c23;
+        let t8 = k18 * s23 + x1_z * c23;
+        let y3_x = cos_alpha3 * t6 + sin_alpha3 * z1_x;
+        let y3_y = cos_alpha3 * t7 + sin_alpha3 * z1_y;
+        let y3_z = cos_alpha3 * t8 + sin_alpha3 * z1_z;
+        let z3_x = cos_alpha3 * z1_x - sin_alpha3 * t6;
+        let z3_y = cos_alpha3 * z1_y - sin_alpha3 * t7;
+        let z3_z = cos_alpha3 * z1_z - sin_alpha3 * t8;
         let p4_x = p3_x + d4 * z3_x;
         let p4_y = p3_y + d4 * z3_y;
         let p4_z = p3_z + d4 * z3_z;
         let x4_x = x3_x * c4o + y3_x * s4o;
         let x4_y = x3_y * c4o + y3_y * s4o;
         let x4_z = x3_z * c4o + y3_z * s4o;
-        let t33 = y3_x * c4o;
-        let t34 = y3_y * c4o;
-        let t35 = y3_z * c4o;
-        let t36 = x3_x * s4o;
-        let t37 = x3_y * s4o;
-        let t38 = x3_z * s4o;
-        let y5_x = t33 - t36;
-        let y5_y = t34 - t37;
-        let y5_z = t35 - t38;
-        let z4_x = t36 - t33;
-        let z4_y = t37 - t34;
-        let z4_z = t38 - t35;
+        let t9 = y3_x * c4o;
+        let t10 = y3_y * c4o;
+        let t11 = y3_z * c4o;
+        let t12 = x3_x * s4o;
+        let t13 = x3_y * s4o;
+        let t14 = x3_z * s4o;
+        let y5_x = t9 - t12;
+        let y5_y = t10 - t13;
+        let y5_z = t11 - t14;
+        let z4_x = t12 - t9;
+        let z4_y = t13 - t10;
+        let z4_z = t14 - t11;
         let p5_x = p4_x + d5 * z4_x;
         let p5_y = p4_y + d5 * z4_y;
         let p5_z = p4_z + d5 * z4_z;
@@ -676,37 +676,37 @@ impl Robot<6> for EveryEffect {
                     - Self::SIN_BASE_ROLL * 0.7648421872844885),
         );
         let k18 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k22 = T::of(
+        let k19 = T::of(
             Self::SIN_BASE_ROLL * -0.644217687237691
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
         );
-        let k23 = T::of(
+        let k20 = T::of(
             Self::SIN_BASE_ROLL * 0.7648421872844885
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
         );
-        let k24 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k21 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k22 = T::of(
+            Self::A2
+                * (Self::SIN_BASE_ROLL * -0.644217687237691
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+        );
+        let k23 = T::of(
+            Self::A2
+                * (Self::SIN_BASE_ROLL * 0.7648421872844885
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+        );
+        let k24 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k25 = T::of(
+            Self::A3
+                * (Self::SIN_BASE_ROLL * -0.644217687237691
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+        );
         let k26 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
-        );
-        let k27 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * 0.7648421872844885
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
-        );
-        let k28 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k30 = T::of(
-            Self::A3
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
-        );
-        let k31 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k32 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s1o, c1o), (s2, c2), (s23, c23), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
             q[0] + T::of(0.17453292519943295),
             q[1],
@@ -715,67 +715,67 @@ impl Robot<6> for EveryEffect {
             q[4],
             q[5],
         ]);
-        let t19 = k1 * c1o + k5 * s1o;
-        let t20 = k2 * c1o + k6 * s1o;
-        let t21 = k3 * c1o + k4 * s1o;
+        let t1 = k1 * c1o + k5 * s1o;
+        let t2 = k2 * c1o + k6 * s1o;
+        let t3 = k3 * c1o + k4 * s1o;
         let z2x = k5 * c1o - k1 * s1o;
         let z2y = k6 * c1o - k2 * s1o;
         let z2z = k4 * c1o - k3 * s1o;
-        let t25 = a2 * s2;
-        let t29 = a3 * s23;
-        let t33 = t19 * t29 - k30 * c23 + d3 * z2x;
-        let t34 = t20 * t29 - k31 * c23 + d3 * z2y;
-        let t35 = t21 * t29 - k32 * c23 + d3 * z2z;
-        let t36 = t19 * s23 - k22 * c23;
-        let t37 = t20 * s23 - k23 * c23;
-        let t38 = t21 * s23 - k24 * c23;
-        let t39 = k22 * s23 + t19 * c23;
-        let t40 = k23 * s23 + t20 * c23;
-        let t41 = k24 * s23 + t21 * c23;
-        let t42 = cos_alpha3 * t39 + sin_alpha3 * z2x;
-        let t43 = cos_alpha3 * t40 + sin_alpha3 * z2y;
-        let t44 = cos_alpha3 * t41 + sin_alpha3 * z2z;
-        let z4x = cos_alpha3 * z2x - sin_alpha3 * t39;
-        let z4y = cos_alpha3 * z2y - sin_alpha3 * t40;
-        let z4z = cos_alpha3 * z2z - sin_alpha3 * t41;
-        let t45 = t36 * c4o + t42 * s4o;
-        let t46 = t37 * c4o + t43 * s4o;
-        let t47 = t38 * c4o + t44 * s4o;
-        let t48 = t42 * c4o;
-        let t49 = t43 * c4o;
-        let t50 = t44 * c4o;
-        let t51 = t36 * s4o;
-        let t52 = t37 * s4o;
-        let t53 = t38 * s4o;
-        let z5x = t51 - t48;
-        let z5y = t52 - t49;
-        let z5z = t53 - t50;
-        let z6x = z4x * c5 - t45 * s5;
-        let z6y = z4y * c5 - t46 * s5;
-        let z6z = z4z * c5 - t47 * s5;
-        let t54 = tool_y * s6 - tool_x * c6;
-        let t55 = tool_x * s6 + tool_y * c6;
-        let t56 = (t45 * c5 + z4x * s5) * t54;
-        let t57 = (t46 * c5 + z4y * s5) * t54;
-        let t58 = (t47 * c5 + z4z * s5) * t54;
-        let t59 = t56 - (t48 - t51) * t55 + tool_z * z6x;
-        let t60 = t57 - (t49 - t52) * t55 + tool_z * z6y;
-        let t61 = t58 - (t50 - t53) * t55 + tool_z * z6z;
-        let r6x = d6 * z6x + t59;
-        let r6y = d6 * z6y + t60;
-        let r6z = d6 * z6z + t61;
+        let t4 = a2 * s2;
+        let t5 = a3 * s23;
+        let t6 = t1 * t5 - k25 * c23 + d3 * z2x;
+        let t7 = t2 * t5 - k26 * c23 + d3 * z2y;
+        let t8 = t3 * t5 - k27 * c23 + d3 * z2z;
+        let t9 = t1 * s23 - k19 * c23;
+        let t10 = t2 * s23 - k20 * c23;
+        let t11 = t3 * s23 - k21 * c23;
+        let t12 = k19 * s23 + t1 * c23;
+        let t13 = k20 * s23 + t2 * c23;
+        let t14 = k21 * s23 + t3 * c23;
+        let t15 = cos_alpha3 * t12 + sin_alpha3 * z2x;
+        let t16 = cos_alpha3 * t13 + sin_alpha3 * z2y;
+        let t17 = cos_alpha3 * t14 + sin_alpha3 * z2z;
+        let z4x = cos_alpha3 * z2x - sin_alpha3 * t12;
+        let z4y = cos_alpha3 * z2y - sin_alpha3 * t13;
+        let z4z = cos_alpha3 * z2z - sin_alpha3 * t14;
+        let t18 = t9 * c4o + t15 * s4o;
+        let t19 = t10 * c4o + t16 * s4o;
+        let t20 = t11 * c4o + t17 * s4o;
+        let t21 = t15 * c4o;
+        let t22 = t16 * c4o;
+        let t23 = t17 * c4o;
+        let t24 = t9 * s4o;
+        let t25 = t10 * s4o;
+        let t26 = t11 * s4o;
+        let z5x = t24 - t21;
+        let z5y = t25 - t22;
+        let z5z = t26 - t23;
+        let z6x = z4x * c5 - t18 * s5;
+        let z6y = z4y * c5 - t19 * s5;
+        let z6z = z4z * c5 - t20 * s5;
+        let t27 = tool_y * s6 - tool_x * c6;
+        let t28 = tool_x * s6 + tool_y * c6;
+        let t29 = (t18 * c5 + z4x * s5) * t27;
+        let t30 = (t19 * c5 + z4y * s5) * t27;
+        let t31 = (t20 * c5 + z4z * s5) * t27;
+        let t32 = t29 - (t21 - t24) * t28 + tool_z * z6x;
+        let t33 = t30 - (t22 - t25) * t28 + tool_z * z6y;
+        let t34 = t31 - (t23 - t26) * t28 + tool_z * z6z;
+        let r6x = d6 * z6x + t32;
+        let r6y = d6 * z6y + t33;
+        let r6z = d6 * z6z + t34;
         let r5x = d5 * z5x + r6x;
         let r5y = d5 * z5y + r6y;
         let r5z = d5 * z5z + r6z;
         let r4x = d4 * z4x + r5x;
         let r4y = d4 * z4y + r5y;
         let r4z = d4 * z4z + r5z;
-        let r3x = t33 + r4x;
-        let r3y = t34 + r4y;
-        let r3z = t35 + r4z;
-        let r2x = t19 * t25 - k26 * c2 + r3x;
-        let r2y = t20 * t25 - k27 * c2 + r3y;
-        let r2z = t21 * t25 - k28 * c2 + r3z;
+        let r3x = t6 + r4x;
+        let r3y = t7 + r4y;
+        let r3z = t8 + r4z;
+        let r2x = t1 * t4 - k22 * c2 + r3x;
+        let r2y = t2 * t4 - k23 * c2 + r3y;
+        let r2z = t3 * t4 - k24 * c2 + r3z;
         let r1x = k10 * c1o + k13 * s1o + k16 + r2x;
         let r1y = k11 * c1o + k14 * s1o + k17 + r2y;
         let r1z = k12 * c1o + k15 * s1o + k18 + r2z;
@@ -928,7 +928,7 @@ impl Robot<6> for EveryEffect {
                     * (Self::TOOL_X * 0.981627183447664
                         - Self::TOOL_Y * 0.1908089953765448),
         );
-        let k20 = T::of(
+        let k17 = T::of(
             Self::TOOL_TRANSLATION
                 + (Self::TOOL_Z * (Self::TOOL_ROTATION * Self::TOOL_Z)
                     + -(Self::TOOL_ROTATION
@@ -953,7 +953,7 @@ impl Robot<6> for EveryEffect {
                             * (Self::TOOL_X * 0.981627183447664
                                 - Self::TOOL_Y * 0.1908089953765448))),
         );
-        let k21 = T::of(
+        let k18 = T::of(
             (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
                 * -(Self::TOOL_ROTATION
                     * (Self::TOOL_X * 0.1908089953765448
@@ -972,69 +972,69 @@ impl Robot<6> for EveryEffect {
                             * (Self::TOOL_X * 0.1908089953765448
                                 + Self::TOOL_Y * 0.981627183447664))),
         );
-        let k27 = T::of(Self::H5 + Self::ADDED5);
-        let k28 = T::of(-((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)));
-        let k30 = T::of(
+        let k19 = T::of(Self::H5 + Self::ADDED5);
+        let k20 = T::of(-((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)));
+        let k21 = T::of(
             -(Self::D6 + Self::TOOL_Z)
                 * -((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)),
         );
-        let k32 = T::of(Self::TOOL_ROTATION + (Self::H5 + Self::ADDED5));
-        let k33 = T::of(
+        let k22 = T::of(Self::TOOL_ROTATION + (Self::H5 + Self::ADDED5));
+        let k23 = T::of(
             -(Self::TOOL_ROTATION * Self::TOOL_Z)
                 + -((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)),
         );
-        let k34 = T::of(Self::COUPLING5_6 * -(Self::D6 + Self::TOOL_Z));
-        let k41 = T::of(Self::TOOL_ROTATION - (Self::H6 + Self::TOOL_ROTATION));
-        let k85 = T::of(
+        let k24 = T::of(Self::COUPLING5_6 * -(Self::D6 + Self::TOOL_Z));
+        let k25 = T::of(Self::TOOL_ROTATION - (Self::H6 + Self::TOOL_ROTATION));
+        let k26 = T::of(
             Self::BENDING3
                 + Self::A3
                     * (Self::A3
                         * (-Self::BENDING3
                             * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
         );
-        let k86 = T::of(
+        let k27 = T::of(
             Self::D3
                 * (Self::A3
                     * (-Self::BENDING3
                         * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
         );
-        let k87 = T::of(
+        let k28 = T::of(
             Self::BENDING3
                 + Self::D3
                     * (Self::D3
                         * (-Self::BENDING3
                             * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
         );
-        let k88 = T::of(
+        let k29 = T::of(
             (Self::A3 * Self::A3 + Self::D3 * Self::D3)
                 * (Self::BENDING3 * 0.08333333333333333),
         );
-        let k89 = T::of(
+        let k30 = T::of(
             (Self::A3 * Self::A3 + Self::D3 * Self::D3)
                 * (Self::BENDING3 * 0.08333333333333333)
                 - Self::A3 * (Self::A3 * (Self::BENDING3 * 0.08333333333333333)),
         );
-        let k90 = T::of(
+        let k31 = T::of(
             -(Self::D3 * (Self::A3 * (Self::BENDING3 * 0.08333333333333333))),
         );
-        let k91 = T::of(
+        let k32 = T::of(
             (Self::A3 * Self::A3 + Self::D3 * Self::D3)
                 * (Self::BENDING3 * 0.08333333333333333)
                 - Self::D3 * (Self::D3 * (Self::BENDING3 * 0.08333333333333333)),
         );
-        let k92 = T::of(Self::A3 * 0.5);
-        let k93 = T::of(Self::D3 * 0.5);
-        let k123 = T::of(
+        let k33 = T::of(Self::A3 * 0.5);
+        let k34 = T::of(Self::D3 * 0.5);
+        let k35 = T::of(
             Self::A2
                 * ((Self::TORSION2 - Self::BENDING2) * (1.0 / (Self::A2 * Self::A2))),
         );
-        let k125 = T::of(Self::A2 * (Self::BENDING2 * 0.08333333333333333));
-        let k130 = T::of(Self::A2 * Self::A2 * (Self::BENDING2 * 0.08333333333333333));
-        let k131 = T::of(Self::A2 * 0.5);
-        let k149 = T::of(Self::H2 + Self::ADDED2);
-        let k160 = T::of(Self::COUPLING2_3 + Self::COUPLING2_3);
-        let k261 = T::of(0.7648421872844885);
-        let k262 = T::of(0.644217687237691);
+        let k36 = T::of(Self::A2 * (Self::BENDING2 * 0.08333333333333333));
+        let k37 = T::of(Self::A2 * Self::A2 * (Self::BENDING2 * 0.08333333333333333));
+        let k38 = T::of(Self::A2 * 0.5);
+        let k39 = T::of(Self::H2 + Self::ADDED2);
+        let k40 = T::of(Self::COUPLING2_3 + Self::COUPLING2_3);
+        let k41 = T::of(0.7648421872844885);
+        let k42 = T::of(0.644217687237691);
         let [(s6o, c6o), (s5, c5), (s4o, c4o), (s3, c3), (s23, c23), (s1o, c1o)] = T::sin_cos_all([
             q[5] + T::of(2.949606435870417),
             q[4],
@@ -1045,357 +1045,357 @@ impl Robot<6> for EveryEffect {
         ]);
 
         // From joint 6 to the TCP.
-        let t17 = k1 * c6o;
-        let r5x = t17 - k2 * s6o;
-        let t18 = k1 * s6o;
-        let t19 = t18 + k2 * c6o;
-        let t22 = k20 * s6o + k21 * c6o;
-        let t23 = s6o * t22;
-        let tt5_zz = k13 + t23;
-        let t24 = k15 * s6o + k16 * c6o;
+        let t1 = k1 * c6o;
+        let r5x = t1 - k2 * s6o;
+        let t2 = k1 * s6o;
+        let t3 = t2 + k2 * c6o;
+        let t4 = k17 * s6o + k18 * c6o;
+        let t5 = s6o * t4;
+        let tt5_zz = k13 + t5;
+        let t6 = k15 * s6o + k16 * c6o;
         let tr5_yx = k4 * c6o - k5 * s6o;
-        let t25 = k6 * c6o - t18;
-        let t26 = t17 + k6 * s6o;
-        let r5z = d5 - t19;
+        let t7 = k6 * c6o - t2;
+        let t8 = t1 + k6 * s6o;
+        let r5z = d5 - t3;
 
         // From joint 5 to the TCP.
-        let t29 = k27 * r5x;
-        let r4y = t19 - d5;
-        let t31 = k7 * c6o - k8 * s6o + k28 * r5x;
-        let tt5_yy = k9 + r5x * t29;
-        let tr5_yz = t29 - (k4 * s6o + k5 * c6o);
-        let t35 = k34 * t25;
-        let t36 = coupling5_6 * t25;
+        let t9 = k19 * r5x;
+        let r4y = t3 - d5;
+        let t10 = k7 * c6o - k8 * s6o + k20 * r5x;
+        let tt5_yy = k9 + r5x * t9;
+        let tr5_yz = t9 - (k4 * s6o + k5 * c6o);
+        let t11 = k24 * t7;
+        let t12 = coupling5_6 * t7;
         let tr5_yy = coupling5_6 * r5x;
-        let t37 = coupling5_6 * t26;
-        let tt5_xx = k11 - t23 + k30 + (t35 + t35);
-        let tt5_xy = t31 + r5x * t36;
-        let tt5_xz = k12 - c6o * t22 - k34 * t26;
-        let t38 = k7 * s6o + k8 * c6o + t26 * tr5_yy;
-        let tr5_xy = k15 * c6o - k16 * s6o + k34;
-        let tr5_xz = k33 + t36;
+        let t13 = coupling5_6 * t8;
+        let tt5_xx = k11 - t5 + k21 + (t11 + t11);
+        let tt5_xy = t10 + r5x * t12;
+        let tt5_xz = k12 - c6o * t4 - k24 * t8;
+        let t14 = k7 * s6o + k8 * c6o + t8 * tr5_yy;
+        let tr5_xy = k15 * c6o - k16 * s6o + k24;
+        let tr5_xz = k23 + t12;
         let r4x = r5x * c5 - k10 * s5;
-        let t39 = s5 * (tt5_xx - tt5_yy) + c5 * (tt5_xy + tt5_xy);
-        let t40 = s5 * t39;
-        let tt4_xz = c5 * t39 - tt5_xy;
-        let tt4_zz = tt5_yy + t40;
-        let t42 = k41 * s5;
-        let t43 = s5 * t42;
-        let rr4_xz = c5 * t42;
-        let rr4_xx = tool_rotation - t43;
+        let t15 = s5 * (tt5_xx - tt5_yy) + c5 * (tt5_xy + tt5_xy);
+        let t16 = s5 * t15;
+        let tt4_xz = c5 * t15 - tt5_xy;
+        let tt4_zz = tt5_yy + t16;
+        let t17 = k25 * s5;
+        let t18 = s5 * t17;
+        let rr4_xz = c5 * t17;
+        let rr4_xx = tool_rotation - t18;
         let rr4_xy = coupling5_6 * s5;
-        let t44 = coupling5_6 * c5;
-        let t45 = c5 * (tr5_yx + tr5_xy) - tr5_yy * s5;
-        let t46 = s5 * t45;
-        let t47 = c5 * t45;
-        let tr4_zx = t47 - tr5_xy;
-        let tr4_zz = tr5_yy + t46;
-        let t48 = tr5_xz * s5 + tr5_yz * c5;
-        let t49 = k3 * c5 + t24 * s5;
-        let tt4_yz = t38 * c5 - tt5_xz * s5;
+        let t19 = coupling5_6 * c5;
+        let t20 = c5 * (tr5_yx + tr5_xy) - tr5_yy * s5;
+        let t21 = s5 * t20;
+        let t22 = c5 * t20;
+        let tr4_zx = t22 - tr5_xy;
+        let tr4_zz = tr5_yy + t21;
+        let t23 = tr5_xz * s5 + tr5_yz * c5;
+        let t24 = k3 * c5 + t6 * s5;
+        let tt4_yz = t14 * c5 - tt5_xz * s5;
         let tr4_xy = tr5_yz * s5 - tr5_xz * c5;
         let r4z = d4 + (r5x * s5 + k10 * c5);
 
         // From joint 4 to the TCP.
-        let t50 = h4 * r4y;
-        let t51 = h4 * r4x;
-        let tt4_xx = tt5_xx - t40 - r5z * t50;
-        let t52 = tt5_xz * c5 + t38 * s5 + r4x * t50;
-        let tt4_yy = tt5_zz + r4x * t51;
-        let rr4_zz = h4 + (k14 + t43);
-        let tr4_xz = t47 - tr5_yx - t50;
-        let tr4_yz = t24 * c5 - k3 * s5 + t51;
-        let t53 = r4x * s4o + r4y * c4o;
-        let t54 = s4o * (tt4_xx - tt4_yy) - c4o * (t52 + t52);
-        let t55 = s4o * t54;
-        let t56 = t52 + c4o * t54;
-        let t57 = tt4_yy + t55;
-        let t58 = tt4_xz * c4o - tt4_yz * s4o;
-        let t59 = tt4_xz * s4o + tt4_yz * c4o;
-        let t60 = s4o * (rr4_xx - k32) + c4o * (rr4_xy + rr4_xy);
-        let t61 = s4o * t60;
-        let t62 = c4o * t60 - rr4_xy;
-        let t63 = k32 + t61;
-        let t64 = rr4_xz * c4o + t44 * s4o;
-        let t65 = rr4_xz * s4o - t44 * c4o;
-        let t66 = s4o * (t37 - t46) + c4o * (tr4_xy - t49);
-        let t67 = s4o * t66;
-        let t68 = c4o * t66;
-        let t69 = t49 + t68;
-        let t70 = t68 - tr4_xy;
-        let t71 = t67 - t37;
-        let t72 = tr4_xz * c4o - tr4_yz * s4o;
-        let t73 = tr4_xz * s4o + tr4_yz * c4o;
-        let t74 = tr4_zx * c4o + t48 * s4o;
-        let t75 = tr4_zx * s4o - t48 * c4o;
-        let t76 = cos_alpha3 * t53;
-        let t77 = sin_alpha3 * r4z;
-        let r3y = t76 - t77;
-        let t78 = sin_alpha3 * (t57 - tt4_zz) + cos_alpha3 * (t59 + t59);
-        let t79 = sin_alpha3 * t78;
-        let t80 = sin_alpha3 * (t63 - rr4_zz) + cos_alpha3 * (t65 + t65);
-        let t81 = sin_alpha3 * t80;
-        let rr3_yz = cos_alpha3 * t80 - t65;
-        let rr3_xy = cos_alpha3 * t62 - sin_alpha3 * t64;
-        let t82 = sin_alpha3 * (t71 - tr4_zz) + cos_alpha3 * (t73 + t75);
-        let t83 = sin_alpha3 * t82;
-        let t84 = cos_alpha3 * t82;
-        let tr3_yy = t71 - t83;
+        let t25 = h4 * r4y;
+        let t26 = h4 * r4x;
+        let tt4_xx = tt5_xx - t16 - r5z * t25;
+        let t27 = tt5_xz * c5 + t14 * s5 + r4x * t25;
+        let tt4_yy = tt5_zz + r4x * t26;
+        let rr4_zz = h4 + (k14 + t18);
+        let tr4_xz = t22 - tr5_yx - t25;
+        let tr4_yz = t6 * c5 - k3 * s5 + t26;
+        let t28 = r4x * s4o + r4y * c4o;
+        let t29 = s4o * (tt4_xx - tt4_yy) - c4o * (t27 + t27);
+        let t30 = s4o * t29;
+        let t31 = t27 + c4o * t29;
+        let t32 = tt4_yy + t30;
+        let t33 = tt4_xz * c4o - tt4_yz * s4o;
+        let t34 = tt4_xz * s4o + tt4_yz * c4o;
+        let t35 = s4o * (rr4_xx - k22) + c4o * (rr4_xy + rr4_xy);
+        let t36 = s4o * t35;
+        let t37 = c4o * t35 - rr4_xy;
+        let t38 = k22 + t36;
+        let t39 = rr4_xz * c4o + t19 * s4o;
+        let t40 = rr4_xz * s4o - t19 * c4o;
+        let t41 = s4o * (t13 - t21) + c4o * (tr4_xy - t24);
+        let t42 = s4o * t41;
+        let t43 = c4o * t41;
+        let t44 = t24 + t43;
+        let t45 = t43 - tr4_xy;
+        let t46 = t42 - t13;
+        let t47 = tr4_xz * c4o - tr4_yz * s4o;
+        let t48 = tr4_xz * s4o + tr4_yz * c4o;
+        let t49 = tr4_zx * c4o + t23 * s4o;
+        let t50 = tr4_zx * s4o - t23 * c4o;
+        let t51 = cos_alpha3 * t28;
+        let t52 = sin_alpha3 * r4z;
+        let r3y = t51 - t52;
+        let t53 = sin_alpha3 * (t32 - tt4_zz) + cos_alpha3 * (t34 + t34);
+        let t54 = sin_alpha3 * t53;
+        let t55 = sin_alpha3 * (t38 - rr4_zz) + cos_alpha3 * (t40 + t40);
+        let t56 = sin_alpha3 * t55;
+        let rr3_yz = cos_alpha3 * t55 - t40;
+        let rr3_xy = cos_alpha3 * t37 - sin_alpha3 * t39;
+        let t57 = sin_alpha3 * (t46 - tr4_zz) + cos_alpha3 * (t48 + t50);
+        let t58 = sin_alpha3 * t57;
+        let t59 = cos_alpha3 * t57;
+        let tr3_yy = t46 - t58;
         let r3x = a3 + (r4x * c4o - r4y * s4o);
-        let r3z = d3 + (sin_alpha3 * t53 + cos_alpha3 * r4z);
-        let t94 = r3x - k92;
-        let t95 = r3z - k93;
-        let t96 = k86 * r3y;
-        let t97 = k86 * t94 - k85 * t95;
-        let t98 = k85 * r3y;
-        let t99 = bending3 * t95;
-        let t100 = bending3 * t94;
-        let t101 = k87 * r3y;
-        let t102 = k87 * t94 - k86 * t95;
-        let t103 = k93 - r3z;
-        let t104 = k92 - r3x;
-        let t105 = t77 - t76;
-        let t106 = t96 * t103 + t94 * t101;
-        let t107 = k89 + (t95 * t99 - t101 * t105);
-        let t108 = k90 + (t99 * t104 - r3y * t96);
-        let t109 = k88 + (t97 * t103 + t94 * t102);
-        let t110 = k91 + (r3y * t98 - t100 * t104);
-        let t111 = cos_alpha3 * t56 - sin_alpha3 * t58 - t106;
-        let t112 = sin_alpha3 * t56 + cos_alpha3 * t58 + t108;
-        let t113 = cos_alpha3 * t78 - t59 + r3y * t97;
-        let rr3_xz = sin_alpha3 * t62 + cos_alpha3 * t64 + k86;
-        let tr3_zz = tr4_zz + t83 + t96;
+        let r3z = d3 + (sin_alpha3 * t28 + cos_alpha3 * r4z);
+        let t60 = r3x - k33;
+        let t61 = r3z - k34;
+        let t62 = k27 * r3y;
+        let t63 = k27 * t60 - k26 * t61;
+        let t64 = k26 * r3y;
+        let t65 = bending3 * t61;
+        let t66 = bending3 * t60;
+        let t67 = k28 * r3y;
+        let t68 = k28 * t60 - k27 * t61;
+        let t69 = k34 - r3z;
+        let t70 = k33 - r3x;
+        let t71 = t52 - t51;
+        let t72 = t62 * t69 + t60 * t67;
+        let t73 = k30 + (t61 * t65 - t67 * t71);
+        let t74 = k31 + (t65 * t70 - r3y * t62);
+        let t75 = k29 + (t63 * t69 + t60 * t68);
+        let t76 = k32 + (r3y * t64 - t66 * t70);
+        let t77 = cos_alpha3 * t31 - sin_alpha3 * t33 - t72;
+        let t78 = sin_alpha3 * t31 + cos_alpha3 * t33 + t74;
+        let t79 = cos_alpha3 * t53 - t34 + r3y * t63;
+        let rr3_xz = sin_alpha3 * t37 + cos_alpha3 * t39 + k27;
+        let tr3_zz = tr4_zz + t58 + t62;
 
         // From joint 3 to the TCP.
-        let t114 = transverse3 * r3z;
-        let t115 = transverse3 * r3y;
-        let t116 = transverse3 * r3x;
-        let t117 = h3 * r3y;
-        let t118 = h3 * r3x;
-        let t119 = r3z * t114;
-        let t120 = r3y * t115 + r3x * t116;
-        let tt3_xx = tt4_xx - t55 + t107 + (t119 - t105 * t117);
-        let tt3_xy = t111 - r3x * t117;
-        let tt3_xz = t112 - r3x * t114;
-        let tt3_yy = t57 - t79 + t109 + (t119 + r3x * t118);
-        let tt3_yz = t113 - r3y * t114;
-        let tt3_zz = tt4_zz + t79 + t110 + t120;
-        let rr3_xx = transverse3 + (rr4_xx - t61 + k85);
-        let rr3_yy = transverse3 + (bending3 + (t63 - t81));
-        let rr3_zz = h3 + (rr4_zz + t81 + k87);
-        let tr3_xy = cos_alpha3 * t69 - sin_alpha3 * t72 + t99 + t114;
-        let tr3_xz = sin_alpha3 * t69 + cos_alpha3 * t72 - t101 - t117;
-        let tr3_yx = cos_alpha3 * t70 - sin_alpha3 * t74 + t97 - t114;
-        let tr3_yz = t84 - t75 + t102 + t118;
-        let tr3_zx = sin_alpha3 * t70 + cos_alpha3 * t74 + t98 + t115;
-        let tr3_zy = t84 - t73 - t100 - t116;
-        let t121 = a2 * c3;
-        let t122 = a2 * s3;
-        let r2x = r3x + t121;
-        let r2y = r3y - t122;
-        let t124 = k123 * c3;
-        let t126 = k125 * c3;
-        let t127 = bending2 + t121 * t124;
-        let t128 = t122 * t124;
-        let t129 = bending2 + t122 * (k123 * s3);
-        let t132 = k131 * c3;
-        let t133 = r2x - t132;
-        let t134 = r2y + k131 * s3;
-        let t135 = r3z * t128;
-        let t136 = r3z * t127;
-        let t137 = t127 * t134 + t128 * t133;
-        let t138 = r3z * t129;
-        let t139 = t128 * t134 + t129 * t133;
-        let t140 = bending2 * t134;
-        let t141 = bending2 * t133;
-        let t142 = t132 - r2x;
-        let t143 = r3z * t138 + t134 * t140;
-        let t144 = r3z * t136 + t133 * t141;
-        let t145 = t122 * t126 + (r3z * t135 - t133 * t140);
-        let t146 = tt3_xx + (k130 - t121 * t126 + t143);
-        let tt2_xz = tt3_xz + (t138 * t142 - t134 * t135);
-        let t147 = tt3_yy + (k130 - t122 * (k125 * s3) + t144);
-        let tt2_yz = tt3_yz + (t135 * t142 - t134 * t136);
-        let tt2_zz = tt3_zz + (k130 + (t134 * t137 - t139 * t142));
-        let rr2_xx = rr3_xx + t127;
-        let rr2_xy = rr3_xy - t128;
-        let rr2_yy = rr3_yy + t129;
-        let t148 = t46 + t67 + t96 + t135;
-        let tr2_xy = tr3_xy + t138;
-        let tr2_yx = tr3_yx - t136;
-        let tr2_yy = tr3_yy + t135;
-        let tr2_zx = tr3_zx + t137;
-        let tr2_zy = tr3_zy - t139;
+        let t80 = transverse3 * r3z;
+        let t81 = transverse3 * r3y;
+        let t82 = transverse3 * r3x;
+        let t83 = h3 * r3y;
+        let t84 = h3 * r3x;
+        let t85 = r3z * t80;
+        let t86 = r3y * t81 + r3x * t82;
+        let tt3_xx = tt4_xx - t30 + t73 + (t85 - t71 * t83);
+        let tt3_xy = t77 - r3x * t83;
+        let tt3_xz = t78 - r3x * t80;
+        let tt3_yy = t32 - t54 + t75 + (t85 + r3x * t84);
+        let tt3_yz = t79 - r3y * t80;
+        let tt3_zz = tt4_zz + t54 + t76 + t86;
+        let rr3_xx = transverse3 + (rr4_xx - t36 + k26);
+        let rr3_yy = transverse3 + (bending3 + (t38 - t56));
+        let rr3_zz = h3 + (rr4_zz + t56 + k28);
+        let tr3_xy = cos_alpha3 * t44 - sin_alpha3 * t47 + t65 + t80;
+        let tr3_xz = sin_alpha3 * t44 + cos_alpha3 * t47 - t67 - t83;
+        let tr3_yx = cos_alpha3 * t45 - sin_alpha3 * t49 + t63 - t80;
+        let tr3_yz = t59 - t50 + t68 + t84;
+        let tr3_zx = sin_alpha3 * t45 + cos_alpha3 * t49 + t64 + t81;
+        let tr3_zy = t59 - t48 - t66 - t82;
+        let t87 = a2 * c3;
+        let t88 = a2 * s3;
+        let r2x = r3x + t87;
+        let r2y = r3y - t88;
+        let t89 = k35 * c3;
+        let t90 = k36 * c3;
+        let t91 = bending2 + t87 * t89;
+        let t92 = t88 * t89;
+        let t93 = bending2 + t88 * (k35 * s3);
+        let t94 = k38 * c3;
+        let t95 = r2x - t94;
+        let t96 = r2y + k38 * s3;
+        let t97 = r3z * t92;
+        let t98 = r3z * t91;
+        let t99 = t91 * t96 + t92 * t95;
+        let t100 = r3z * t93;
+        let t101 = t92 * t96 + t93 * t95;
+        let t102 = bending2 * t96;
+        let t103 = bending2 * t95;
+        let t104 = t94 - r2x;
+        let t105 = r3z * t100 + t96 * t102;
+        let t106 = r3z * t98 + t95 * t103;
+        let t107 = t88 * t90 + (r3z * t97 - t95 * t102);
+        let t108 = tt3_xx + (k37 - t87 * t90 + t105);
+        let tt2_xz = tt3_xz + (t100 * t104 - t96 * t97);
+        let t109 = tt3_yy + (k37 - t88 * (k36 * s3) + t106);
+        let tt2_yz = tt3_yz + (t97 * t104 - t96 * t98);
+        let tt2_zz = tt3_zz + (k37 + (t96 * t99 - t101 * t104));
+        let rr2_xx = rr3_xx + t91;
+        let rr2_xy = rr3_xy - t92;
+        let rr2_yy = rr3_yy + t93;
+        let t110 = t21 + t42 + t62 + t97;
+        let tr2_xy = tr3_xy + t100;
+        let tr2_yx = tr3_yx - t98;
+        let tr2_yy = tr3_yy + t97;
+        let tr2_zx = tr3_zx + t99;
+        let tr2_zy = tr3_zy - t101;
 
         // From joint 2 to the TCP.
-        let t150 = k149 * r2y;
-        let t151 = k149 * r2x;
-        let t152 = t122 - r3y;
-        let t153 = coupling2_3 * t152;
-        let t154 = coupling2_3 * t105;
-        let t155 = t105 * t153 + t152 * t154;
-        let t156 = r3x * t153 + r2x * t154;
-        let t157 = coupling2_3 * r2x;
-        let t158 = coupling2_3 * r3x;
-        let t159 = r3x * t157 + r2x * t158;
-        let tt2_xx = t146 - t150 * t152 + t155;
-        let tt2_xy = tt3_xy + t145 - r2x * t150 + t156;
-        let tt2_yy = t147 + r2x * t151 + t159;
-        let rr2_zz = bending2 + rr3_zz + k149 + k160;
-        let tr2_xz = tr3_xz - t140 - t150 + (t153 + t154);
-        let tr2_yz = tr3_yz + t141 + t151 + (t157 + t158);
-        let t161 = s23 * (tt2_xy + tt2_xy) - c23 * (tt2_xx - tt2_yy);
-        let t162 = c23 * t161;
-        let t163 = s23 * (rr2_xy + rr2_xy) - c23 * (rr2_xx - rr2_yy);
-        let t164 = c23 * t163;
+        let t111 = k39 * r2y;
+        let t112 = k39 * r2x;
+        let t113 = t88 - r3y;
+        let t114 = coupling2_3 * t113;
+        let t115 = coupling2_3 * t71;
+        let t116 = t71 * t114 + t113 * t115;
+        let t117 = r3x * t114 + r2x * t115;
+        let t118 = coupling2_3 * r2x;
+        let t119 = coupling2_3 * r3x;
+        let t120 = r3x * t118 + r2x * t119;
+        let tt2_xx = t108 - t111 * t113 + t116;
+        let tt2_xy = tt3_xy + t107 - r2x * t111 + t117;
+        let tt2_yy = t109 + r2x * t112 + t120;
+        let rr2_zz = bending2 + rr3_zz + k39 + k40;
+        let tr2_xz = tr3_xz - t102 - t111 + (t114 + t115);
+        let tr2_yz = tr3_yz + t103 + t112 + (t118 + t119);
+        let t121 = s23 * (tt2_xy + tt2_xy) - c23 * (tt2_xx - tt2_yy);
+        let t122 = c23 * t121;
+        let t123 = s23 * (rr2_xy + rr2_xy) - c23 * (rr2_xx - rr2_yy);
+        let t124 = c23 * t123;
         let rr1_xy = rr3_xz * s23 + rr3_yz * c23;
-        let t165 = c23 * (t148 + tr2_yy) + s23 * (tr2_xy + tr2_yx);
-        let t166 = c23 * t165;
-        let t167 = s23 * t165;
-        let tr1_xx = t166 - t148;
-        let tr1_zz = tr2_yy - t166;
+        let t125 = c23 * (t110 + tr2_yy) + s23 * (tr2_xy + tr2_yx);
+        let t126 = c23 * t125;
+        let t127 = s23 * t125;
+        let tr1_xx = t126 - t110;
+        let tr1_zz = tr2_yy - t126;
         let rr1_yz = rr3_xz * c23 - rr3_yz * s23;
-        let rr1_xz = rr2_xy - s23 * t163;
+        let rr1_xz = rr2_xy - s23 * t123;
         let r1x = a1 + (r2x * s23 + r2y * c23);
         let r1z = d1 + (r2x * c23 - r2y * s23);
 
         // From joint 1 to the TCP.
-        let t168 = transverse1 * r1z;
-        let t169 = transverse1 * r3z;
-        let t170 = transverse1 * r1x;
-        let t171 = h1 * r3z;
-        let t172 = h1 * r1x;
-        let t173 = r1z * t168;
-        let tt1_xx = tt2_xx + t162 + (t173 + r3z * t171);
-        let tt1_xy = tt2_xz * s23 + tt2_yz * c23 - r1x * t171;
-        let tt1_xz = tt2_xy - s23 * t161 - r1x * t168;
-        let tt1_yy = tt2_zz + (t173 + r1x * t172);
-        let tt1_yz = tt2_xz * c23 - tt2_yz * s23 - r3z * t168;
-        let tt1_zz = tt2_yy - t162 + (r3z * t169 + r1x * t170);
-        let rr1_xx = transverse1 + (rr2_xx + t164);
+        let t128 = transverse1 * r1z;
+        let t129 = transverse1 * r3z;
+        let t130 = transverse1 * r1x;
+        let t131 = h1 * r3z;
+        let t132 = h1 * r1x;
+        let t133 = r1z * t128;
+        let tt1_xx = tt2_xx + t122 + (t133 + r3z * t131);
+        let tt1_xy = tt2_xz * s23 + tt2_yz * c23 - r1x * t131;
+        let tt1_xz = tt2_xy - s23 * t121 - r1x * t128;
+        let tt1_yy = tt2_zz + (t133 + r1x * t132);
+        let tt1_yz = tt2_xz * c23 - tt2_yz * s23 - r3z * t128;
+        let tt1_zz = tt2_yy - t122 + (r3z * t129 + r1x * t130);
+        let rr1_xx = transverse1 + (rr2_xx + t124);
         let rr1_yy = transverse1 + rr2_zz;
-        let rr1_zz = h1 + (rr2_yy - t164);
-        let tr1_xy = tr2_xz * s23 + tr2_yz * c23 + t168;
-        let tr1_xz = tr2_yx - t167 - t171;
-        let tr1_yx = tr2_zx * s23 + tr2_zy * c23 - t168;
-        let tr1_yz = tr2_zx * c23 - tr2_zy * s23 + t172;
-        let tr1_zx = tr2_xy - t167 + t169;
-        let tr1_zy = tr2_xz * c23 - tr2_yz * s23 - t170;
-        let t174 = base_tilt * r1z;
-        let t175 = base_tilt * r3z;
-        let t176 = base_tilt * r1x;
-        let t177 = base_translation + r1z * t174;
-        let t178 = tt1_xx + t177;
-        let t179 = tt1_xz - r1x * t174;
-        let t180 = tt1_yy + t177;
-        let t181 = tt1_yz - r3z * t174;
-        let t182 = tt1_zz + (base_translation + (r3z * t175 + r1x * t176));
-        let t183 = base_tilt + rr1_xx;
-        let t184 = base_tilt + rr1_yy;
-        let t185 = tr1_xy + t174;
-        let t186 = tr1_yx - t174;
-        let t187 = tr1_zx + t175;
-        let t188 = tr1_zy - t176;
-        let t189 = s1o * (t178 - t180) + c1o * (tt1_xy + tt1_xy);
-        let t190 = s1o * t189;
-        let t191 = t178 - t190;
-        let t192 = c1o * t189 - tt1_xy;
-        let t193 = t180 + t190;
-        let t194 = t179 * c1o - t181 * s1o;
-        let t195 = t179 * s1o + t181 * c1o;
-        let t196 = s1o * (t183 - t184) + c1o * (rr1_xy + rr1_xy);
-        let t197 = s1o * t196;
-        let t198 = t183 - t197;
-        let t199 = c1o * t196 - rr1_xy;
-        let t200 = t184 + t197;
-        let t201 = rr1_xz * c1o - rr1_yz * s1o;
-        let t202 = rr1_xz * s1o + rr1_yz * c1o;
-        let t203 = s1o * (tr1_xx - tr3_zz) + c1o * (t185 + t186);
-        let t204 = s1o * t203;
-        let t205 = c1o * t203;
-        let t206 = tr1_xx - t204;
-        let t207 = t205 - t186;
-        let t208 = t205 - t185;
-        let t209 = tr3_zz + t204;
-        let t210 = tr1_xz * c1o - tr1_yz * s1o;
-        let t211 = tr1_xz * s1o + tr1_yz * c1o;
-        let t212 = t187 * c1o - t188 * s1o;
-        let t213 = t187 * s1o + t188 * c1o;
-        let t214 = sin_base_roll * (t193 - t182) + cos_base_roll * (t195 + t195);
-        let t215 = sin_base_roll * t214;
-        let t216 = t193 - t215;
-        let t217 = cos_base_roll * t214 - t195;
-        let t218 = t182 + t215;
-        let t219 = cos_base_roll * t192 - sin_base_roll * t194;
-        let t220 = sin_base_roll * t192 + cos_base_roll * t194;
-        let t221 = sin_base_roll * (t200 - rr1_zz) + cos_base_roll * (t202 + t202);
-        let t222 = sin_base_roll * t221;
-        let t223 = t200 - t222;
-        let t224 = cos_base_roll * t221 - t202;
-        let t225 = rr1_zz + t222;
-        let t226 = cos_base_roll * t199 - sin_base_roll * t201;
-        let t227 = sin_base_roll * t199 + cos_base_roll * t201;
-        let t228 = sin_base_roll * (t209 - tr1_zz) + cos_base_roll * (t211 + t213);
-        let t229 = sin_base_roll * t228;
-        let t230 = cos_base_roll * t228;
-        let t231 = t209 - t229;
-        let t232 = t230 - t213;
-        let t233 = t230 - t211;
-        let t234 = tr1_zz + t229;
-        let t235 = cos_base_roll * t208 - sin_base_roll * t212;
-        let t236 = sin_base_roll * t208 + cos_base_roll * t212;
-        let t237 = cos_base_roll * t207 - sin_base_roll * t210;
-        let t238 = sin_base_roll * t207 + cos_base_roll * t210;
-        let t239 = sin_base_pitch * (t218 - t191) + cos_base_pitch * (t220 + t220);
-        let t240 = sin_base_pitch * t239;
-        let tt_zz = t218 - t240;
-        let t241 = cos_base_pitch * t239 - t220;
-        let t242 = t191 + t240;
-        let t243 = cos_base_pitch * t217 - sin_base_pitch * t219;
-        let t244 = sin_base_pitch * t217 + cos_base_pitch * t219;
-        let t245 = sin_base_pitch * (t225 - t198) + cos_base_pitch * (t227 + t227);
-        let t246 = sin_base_pitch * t245;
-        let rr_zz = t225 - t246;
-        let t247 = cos_base_pitch * t245 - t227;
-        let t248 = t198 + t246;
-        let t249 = cos_base_pitch * t224 - sin_base_pitch * t226;
-        let t250 = sin_base_pitch * t224 + cos_base_pitch * t226;
-        let t251 = sin_base_pitch * (t234 - t206) + cos_base_pitch * (t236 + t238);
-        let t252 = sin_base_pitch * t251;
-        let t253 = cos_base_pitch * t251;
-        let tr_zz = t234 - t252;
-        let t254 = t253 - t238;
-        let t255 = t253 - t236;
-        let t256 = t206 + t252;
-        let t257 = cos_base_pitch * t233 - sin_base_pitch * t237;
-        let t258 = sin_base_pitch * t233 + cos_base_pitch * t237;
-        let t259 = cos_base_pitch * t232 - sin_base_pitch * t235;
-        let t260 = sin_base_pitch * t232 + cos_base_pitch * t235;
-        let t263 = k262 * (t242 - t216) + k261 * (t244 + t244);
-        let t264 = k262 * t263;
-        let tt_xx = t242 - t264;
-        let tt_xy = k261 * t263 - t244;
-        let tt_yy = t216 + t264;
-        let tt_xz = k261 * t241 - k262 * t243;
-        let tt_yz = k262 * t241 + k261 * t243;
-        let t265 = k262 * (t248 - t223) + k261 * (t250 + t250);
-        let t266 = k262 * t265;
-        let rr_xx = t248 - t266;
-        let rr_xy = k261 * t265 - t250;
-        let rr_yy = t223 + t266;
-        let rr_xz = k261 * t247 - k262 * t249;
-        let rr_yz = k262 * t247 + k261 * t249;
-        let t267 = k262 * (t256 - t231) + k261 * (t258 + t260);
-        let t268 = k262 * t267;
-        let t269 = k261 * t267;
-        let tr_xx = t256 - t268;
-        let tr_xy = t269 - t260;
-        let tr_yx = t269 - t258;
-        let tr_yy = t231 + t268;
-        let tr_xz = k261 * t255 - k262 * t259;
-        let tr_yz = k262 * t255 + k261 * t259;
-        let tr_zx = k261 * t254 - k262 * t257;
-        let tr_zy = k262 * t254 + k261 * t257;
+        let rr1_zz = h1 + (rr2_yy - t124);
+        let tr1_xy = tr2_xz * s23 + tr2_yz * c23 + t128;
+        let tr1_xz = tr2_yx - t127 - t131;
+        let tr1_yx = tr2_zx * s23 + tr2_zy * c23 - t128;
+        let tr1_yz = tr2_zx * c23 - tr2_zy * s23 + t132;
+        let tr1_zx = tr2_xy - t127 + t129;
+        let tr1_zy = tr2_xz * c23 - tr2_yz * s23 - t130;
+        let t134 = base_tilt * r1z;
+        let t135 = base_tilt * r3z;
+        let t136 = base_tilt * r1x;
+        let t137 = base_translation + r1z * t134;
+        let t138 = tt1_xx + t137;
+        let t139 = tt1_xz - r1x * t134;
+        let t140 = tt1_yy + t137;
+        let t141 = tt1_yz - r3z * t134;
+        let t142 = tt1_zz + (base_translation + (r3z * t135 + r1x * t136));
+        let t143 = base_tilt + rr1_xx;
+        let t144 = base_tilt + rr1_yy;
+        let t145 = tr1_xy + t134;
+        let t146 = tr1_yx - t134;
+        let t147 = tr1_zx + t135;
+        let t148 = tr1_zy - t136;
+        let t149 = s1o * (t138 - t140) + c1o * (tt1_xy + tt1_xy);
+        let t150 = s1o * t149;
+        let t151 = t138 - t150;
+        let t152 = c1o * t149 - tt1_xy;
+        let t153 = t140 + t150;
+        let t154 = t139 * c1o - t141 * s1o;
+        let t155 = t139 * s1o + t141 * c1o;
+        let t156 = s1o * (t143 - t144) + c1o * (rr1_xy + rr1_xy);
+        let t157 = s1o * t156;
+        let t158 = t143 - t157;
+        let t159 = c1o * t156 - rr1_xy;
+        let t160 = t144 + t157;
+        let t161 = rr1_xz * c1o - rr1_yz * s1o;
+        let t162 = rr1_xz * s1o + rr1_yz * c1o;
+        let t163 = s1o * (tr1_xx - tr3_zz) + c1o * (t145 + t146);
+        let t164 = s1o * t163;
+        let t165 = c1o * t163;
+        let t166 = tr1_xx - t164;
+        let t167 = t165 - t146;
+        let t168 = t165 - t145;
+        let t169 = tr3_zz + t164;
+        let t170 = tr1_xz * c1o - tr1_yz * s1o;
+        let t171 = tr1_xz * s1o + tr1_yz * c1o;
+        let t172 = t147 * c1o - t148 * s1o;
+        let t173 = t147 * s1o + t148 * c1o;
+        let t174 = sin_base_roll * (t153 - t142) + cos_base_roll * (t155 + t155);
+        let t175 = sin_base_roll * t174;
+        let t176 = t153 - t175;
+        let t177 = cos_base_roll * t174 - t155;
+        let t178 = t142 + t175;
+        let t179 = cos_base_roll * t152 - sin_base_roll * t154;
+        let t180 = sin_base_roll * t152 + cos_base_roll * t154;
+        let t181 = sin_base_roll * (t160 - rr1_zz) + cos_base_roll * (t162 + t162);
+        let t182 = sin_base_roll * t181;
+        let t183 = t160 - t182;
+        let t184 = cos_base_roll * t181 - t162;
+        let t185 = rr1_zz + t182;
+        let t186 = cos_base_roll * t159 - sin_base_roll * t161;
+        let t187 = sin_base_roll * t159 + cos_base_roll * t161;
+        let t188 = sin_base_roll * (t169 - tr1_zz) + cos_base_roll * (t171 + t173);
+        let t189 = sin_base_roll * t188;
+        let t190 = cos_base_roll * t188;
+        let t191 = t169 - t189;
+        let t192 = t190 - t173;
+        let t193 = t190 - t171;
+        let t194 = tr1_zz + t189;
+        let t195 = cos_base_roll * t168 - sin_base_roll * t172;
+        let t196 = sin_base_roll * t168 + cos_base_roll * t172;
+        let t197 = cos_base_roll * t167 - sin_base_roll * t170;
+        let t198 = sin_base_roll * t167 + cos_base_roll * t170;
+        let t199 = sin_base_pitch * (t178 - t151) + cos_base_pitch * (t180 + t180);
+        let t200 = sin_base_pitch * t199;
+        let tt_zz = t178 - t200;
+        let t201 = cos_base_pitch * t199 - t180;
+        let t202 = t151 + t200;
+        let t203 = cos_base_pitch * t177 - sin_base_pitch * t179;
+        let t204 = sin_base_pitch * t177 + cos_base_pitch * t179;
+        let t205 = sin_base_pitch * (t185 - t158) + cos_base_pitch * (t187 + t187);
+        let t206 = sin_base_pitch * t205;
+        let rr_zz = t185 - t206;
+        let t207 = cos_base_pitch * t205 - t187;
+        let t208 = t158 + t206;
+        let t209 = cos_base_pitch * t184 - sin_base_pitch * t186;
+        let t210 = sin_base_pitch * t184 + cos_base_pitch * t186;
+        let t211 = sin_base_pitch * (t194 - t166) + cos_base_pitch * (t196 + t198);
+        let t212 = sin_base_pitch * t211;
+        let t213 = cos_base_pitch * t211;
+        let tr_zz = t194 - t212;
+        let t214 = t213 - t198;
+        let t215 = t213 - t196;
+        let t216 = t166 + t212;
+        let t217 = cos_base_pitch * t193 - sin_base_pitch * t197;
+        let t218 = sin_base_pitch * t193 + cos_base_pitch * t197;
+        let t219 = cos_base_pitch * t192 - sin_base_pitch * t195;
+        let t220 = sin_base_pitch * t192 + cos_base_pitch * t195;
+        let t221 = k42 * (t202 - t176) + k41 * (t204 + t204);
+        let t222 = k42 * t221;
+        let tt_xx = t202 - t222;
+        let tt_xy = k41 * t221 - t204;
+        let tt_yy = t176 + t222;
+        let tt_xz = k41 * t201 - k42 * t203;
+        let tt_yz = k42 * t201 + k41 * t203;
+        let t223 = k42 * (t208 - t183) + k41 * (t210 + t210);
+        let t224 = k42 * t223;
+        let rr_xx = t208 - t224;
+        let rr_xy = k41 * t223 - t210;
+        let rr_yy = t183 + t224;
+        let rr_xz = k41 * t207 - k42 * t209;
+        let rr_yz = k42 * t207 + k41 * t209;
+        let t225 = k42 * (t216 - t191) + k41 * (t218 + t220);
+        let t226 = k42 * t225;
+        let t227 = k41 * t225;
+        let tr_xx = t216 - t226;
+        let tr_xy = t227 - t220;
+        let tr_yx = t227 - t218;
+        let tr_yy = t191 + t226;
+        let tr_xz = k41 * t215 - k42 * t219;
+        let tr_yz = k42 * t215 + k41 * t219;
+        let tr_zx = k41 * t214 - k42 * t217;
+        let tr_zy = k42 * t214 + k41 * t217;
         Matrix6::new(
             tt_xx, tt_xy, tt_xz, tr_xx, tr_xy, tr_xz,
             tt_xy, tt_yy, tt_yz, tr_yx, tr_yy, tr_yz,
@@ -1486,61 +1486,61 @@ impl Robot<6> for EveryEffect {
                     - Self::SIN_BASE_ROLL * 0.7648421872844885),
         );
         let k18 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k22 = T::of(
+        let k19 = T::of(
             Self::SIN_BASE_ROLL * -0.644217687237691
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
         );
-        let k23 = T::of(
+        let k20 = T::of(
             Self::SIN_BASE_ROLL * 0.7648421872844885
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
         );
-        let k24 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k21 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k22 = T::of(
+            Self::A2
+                * (Self::SIN_BASE_ROLL * -0.644217687237691
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+        );
+        let k23 = T::of(
+            Self::A2
+                * (Self::SIN_BASE_ROLL * 0.7648421872844885
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+        );
+        let k24 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k25 = T::of(
+            Self::A3
+                * (Self::SIN_BASE_ROLL * -0.644217687237691
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+        );
         let k26 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
-        );
-        let k27 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * 0.7648421872844885
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
-        );
-        let k28 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k33 = T::of(
-            Self::A3
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
-        );
-        let k34 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k35 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k72 = T::of(1.0 / Self::KNEE2);
-        let k75 = T::of(1.0 / Self::KNEE5);
-        let k78 = T::of(
+        let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k28 = T::of(1.0 / Self::KNEE2);
+        let k29 = T::of(1.0 / Self::KNEE5);
+        let k30 = T::of(
             Self::H1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
                     - Self::SIN_BASE_ROLL * -0.644217687237691),
         );
-        let k79 = T::of(
+        let k31 = T::of(
             Self::H1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)
                     - Self::SIN_BASE_ROLL * 0.7648421872844885),
         );
-        let k80 = T::of(Self::H1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k119 = T::of(0.5);
-        let k126 = T::of(
+        let k32 = T::of(Self::H1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k33 = T::of(0.5);
+        let k34 = T::of(
             (Self::TORSION2 - Self::BENDING2) * (1.0 / (Self::A2 * Self::A2)),
         );
-        let k138 = T::of(Self::BENDING2 * 0.08333333333333333);
-        let k139 = T::of(Self::A2 * Self::A2 * (Self::BENDING2 * 0.08333333333333333));
-        let k151 = T::of(
+        let k35 = T::of(Self::BENDING2 * 0.08333333333333333);
+        let k36 = T::of(Self::A2 * Self::A2 * (Self::BENDING2 * 0.08333333333333333));
+        let k37 = T::of(
             -Self::BENDING3 * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)),
         );
-        let k160 = T::of(Self::BENDING3 * 0.08333333333333333);
-        let k161 = T::of(
+        let k38 = T::of(Self::BENDING3 * 0.08333333333333333);
+        let k39 = T::of(
             (Self::A3 * Self::A3 + Self::D3 * Self::D3)
                 * (Self::BENDING3 * 0.08333333333333333),
         );
@@ -1553,70 +1553,70 @@ impl Robot<6> for EveryEffect {
             q[4],
             q[5],
         ]);
-        let t19 = k1 * c1o + k5 * s1o;
-        let t20 = k2 * c1o + k6 * s1o;
-        let t21 = k3 * c1o + k4 * s1o;
+        let t1 = k1 * c1o + k5 * s1o;
+        let t2 = k2 * c1o + k6 * s1o;
+        let t3 = k3 * c1o + k4 * s1o;
         let z2x = k5 * c1o - k1 * s1o;
         let z2y = k6 * c1o - k2 * s1o;
         let z2z = k4 * c1o - k3 * s1o;
-        let t25 = a2 * s2;
-        let t29 = t19 * t25 - k26 * c2;
-        let t30 = t20 * t25 - k27 * c2;
-        let t31 = t21 * t25 - k28 * c2;
-        let t32 = a3 * s23;
-        let t36 = t19 * t32 - k33 * c23 + d3 * z2x;
-        let t37 = t20 * t32 - k34 * c23 + d3 * z2y;
-        let t38 = t21 * t32 - k35 * c23 + d3 * z2z;
-        let t39 = t19 * s23 - k22 * c23;
-        let t40 = t20 * s23 - k23 * c23;
-        let t41 = t21 * s23 - k24 * c23;
-        let t42 = k22 * s23 + t19 * c23;
-        let t43 = k23 * s23 + t20 * c23;
-        let t44 = k24 * s23 + t21 * c23;
-        let t45 = cos_alpha3 * t42 + sin_alpha3 * z2x;
-        let t46 = cos_alpha3 * t43 + sin_alpha3 * z2y;
-        let t47 = cos_alpha3 * t44 + sin_alpha3 * z2z;
-        let z4x = cos_alpha3 * z2x - sin_alpha3 * t42;
-        let z4y = cos_alpha3 * z2y - sin_alpha3 * t43;
-        let z4z = cos_alpha3 * z2z - sin_alpha3 * t44;
-        let t48 = t39 * c4o + t45 * s4o;
-        let t49 = t40 * c4o + t46 * s4o;
-        let t50 = t41 * c4o + t47 * s4o;
-        let t51 = t45 * c4o;
-        let t52 = t46 * c4o;
-        let t53 = t47 * c4o;
-        let t54 = t39 * s4o;
-        let t55 = t40 * s4o;
-        let t56 = t41 * s4o;
-        let z5x = t54 - t51;
-        let z5y = t55 - t52;
-        let z5z = t56 - t53;
-        let z6x = z4x * c5 - t48 * s5;
-        let z6y = z4y * c5 - t49 * s5;
-        let z6z = z4z * c5 - t50 * s5;
-        let t57 = tool_y * s6 - tool_x * c6;
-        let t58 = tool_x * s6 + tool_y * c6;
-        let t59 = (t48 * c5 + z4x * s5) * t57;
-        let t60 = (t49 * c5 + z4y * s5) * t57;
-        let t61 = (t50 * c5 + z4z * s5) * t57;
-        let t62 = t59 - (t51 - t54) * t58 + tool_z * z6x;
-        let t63 = t60 - (t52 - t55) * t58 + tool_z * z6y;
-        let t64 = t61 - (t53 - t56) * t58 + tool_z * z6z;
-        let r6x = d6 * z6x + t62;
-        let r6y = d6 * z6y + t63;
-        let r6z = d6 * z6z + t64;
+        let t4 = a2 * s2;
+        let t5 = t1 * t4 - k22 * c2;
+        let t6 = t2 * t4 - k23 * c2;
+        let t7 = t3 * t4 - k24 * c2;
+        let t8 = a3 * s23;
+        let t9 = t1 * t8 - k25 * c23 + d3 * z2x;
+        let t10 = t2 * t8 - k26 * c23 + d3 * z2y;
+        let t11 = t3 * t8 - k27 * c23 + d3 * z2z;
+        let t12 = t1 * s23 - k19 * c23;
+        let t13 = t2 * s23 - k20 * c23;
+        let t14 = t3 * s23 - k21 * c23;
+        let t15 = k19 * s23 + t1 * c23;
+        let t16 = k20 * s23 + t2 * c23;
+        let t17 = k21 * s23 + t3 * c23;
+        let t18 = cos_alpha3 * t15 + sin_alpha3 * z2x;
+        let t19 = cos_alpha3 * t16 + sin_alpha3 * z2y;
+        let t20 = cos_alpha3 * t17 + sin_alpha3 * z2z;
+        let z4x = cos_alpha3 * z2x - sin_alpha3 * t15;
+        let z4y = cos_alpha3 * z2y - sin_alpha3 * t16;
+        let z4z = cos_alpha3 * z2z - sin_alpha3 * t17;
+        let t21 = t12 * c4o + t18 * s4o;
+        let t22 = t13 * c4o + t19 * s4o;
+        let t23 = t14 * c4o + t20 * s4o;
+        let t24 = t18 * c4o;
+        let t25 = t19 * c4o;
+        let t26 = t20 * c4o;
+        let t27 = t12 * s4o;
+        let t28 = t13 * s4o;
+        let t29 = t14 * s4o;
+        let z5x = t27 - t24;
+        let z5y = t28 - t25;
+        let z5z = t29 - t26;
+        let z6x = z4x * c5 - t21 * s5;
+        let z6y = z4y * c5 - t22 * s5;
+        let z6z = z4z * c5 - t23 * s5;
+        let t30 = tool_y * s6 - tool_x * c6;
+        let t31 = tool_x * s6 + tool_y * c6;
+        let t32 = (t21 * c5 + z4x * s5) * t30;
+        let t33 = (t22 * c5 + z4y * s5) * t30;
+        let t34 = (t23 * c5 + z4z * s5) * t30;
+        let t35 = t32 - (t24 - t27) * t31 + tool_z * z6x;
+        let t36 = t33 - (t25 - t28) * t31 + tool_z * z6y;
+        let t37 = t34 - (t26 - t29) * t31 + tool_z * z6z;
+        let r6x = d6 * z6x + t35;
+        let r6y = d6 * z6y + t36;
+        let r6z = d6 * z6z + t37;
         let r5x = d5 * z5x + r6x;
         let r5y = d5 * z5y + r6y;
         let r5z = d5 * z5z + r6z;
         let r4x = d4 * z4x + r5x;
         let r4y = d4 * z4y + r5y;
         let r4z = d4 * z4z + r5z;
-        let r3x = t36 + r4x;
-        let r3y = t37 + r4y;
-        let r3z = t38 + r4z;
-        let r2x = t29 + r3x;
-        let r2y = t30 + r3y;
-        let r2z = t31 + r3z;
+        let r3x = t9 + r4x;
+        let r3y = t10 + r4y;
+        let r3z = t11 + r4z;
+        let r2x = t5 + r3x;
+        let r2y = t6 + r3y;
+        let r2z = t7 + r3z;
         let r1x = k10 * c1o + k13 * s1o + k16 + r2x;
         let r1y = k11 * c1o + k14 * s1o + k17 + r2y;
         let r1z = k12 * c1o + k15 * s1o + k18 + r2z;
@@ -1638,127 +1638,127 @@ impl Robot<6> for EveryEffect {
         let j6x = z6y * r6z - z6z * r6y;
         let j6y = z6z * r6x - z6x * r6z;
         let j6z = z6x * r6y - z6y * r6x;
-        let t65 = k8 * mx + k9 * my + k7 * mz;
-        let tau1 = fx * j1x + fy * j1y + fz * j1z + t65;
-        let t66 = fx * j2x + fy * j2y + fz * j2z;
-        let t67 = z2x * mx + z2y * my + z2z * mz;
-        let tau2 = t66 + t67;
-        let t68 = fx * j3x + fy * j3y + fz * j3z;
-        let tau3 = t67 + t68;
-        let t69 = z4x * mx + z4y * my + z4z * mz;
-        let tau4 = fx * j4x + fy * j4y + fz * j4z + t69;
-        let t70 = z5x * mx + z5y * my + z5z * mz;
-        let tau5 = fx * j5x + fy * j5y + fz * j5z + t70;
-        let t71 = z6x * mx + z6y * my + z6z * mz;
-        let tau6 = fx * j6x + fy * j6y + fz * j6z + t71;
+        let t38 = k8 * mx + k9 * my + k7 * mz;
+        let tau1 = fx * j1x + fy * j1y + fz * j1z + t38;
+        let t39 = fx * j2x + fy * j2y + fz * j2z;
+        let t40 = z2x * mx + z2y * my + z2z * mz;
+        let tau2 = t39 + t40;
+        let t41 = fx * j3x + fy * j3y + fz * j3z;
+        let tau3 = t40 + t41;
+        let t42 = z4x * mx + z4y * my + z4z * mz;
+        let tau4 = fx * j4x + fy * j4y + fz * j4z + t42;
+        let t43 = z5x * mx + z5y * my + z5z * mz;
+        let tau5 = fx * j5x + fy * j5y + fz * j5z + t43;
+        let t44 = z6x * mx + z6y * my + z6z * mz;
+        let tau6 = fx * j6x + fy * j6y + fz * j6z + t44;
         let dq1 = h1 * tau1;
         let dq4 = h4 * tau4;
         let dq3 = h3 * tau3 + coupling2_3 * tau2;
         let dq6 = h6 * tau6 + coupling5_6 * tau5;
-        let t73 = k72 * tau2;
-        let t74 = (T::one() + t73 * t73).sqrt().recip() * (added2 * tau2);
-        let dq2 = h2 * tau2 + coupling2_3 * tau3 + t74;
-        let t76 = k75 * tau5;
-        let t77 = (T::one() + t76 * t76).sqrt().recip() * (added5 * tau5);
-        let dq5 = h5 * tau5 + coupling5_6 * tau6 + t77;
-        let t81 = j1x * dq1 + j2x * dq2 + j3x * dq3;
-        let t82 = j1y * dq1 + j2y * dq2 + j3y * dq3;
-        let t83 = j1z * dq1 + j2z * dq2 + j3z * dq3;
-        let t84 = k78 * tau1 + z2x * dq2 + z2x * dq3;
-        let t85 = k79 * tau1 + z2y * dq2 + z2y * dq3;
-        let t86 = k80 * tau1 + z2z * dq2 + z2z * dq3;
-        let t87 = t81 + j4x * dq4 + j5x * dq5;
-        let t88 = t82 + j4y * dq4 + j5y * dq5;
-        let t89 = t83 + j4z * dq4 + j5z * dq5;
-        let t90 = t84 + z4x * dq4 + z5x * dq5;
-        let t91 = t85 + z4y * dq4 + z5y * dq5;
-        let t92 = t86 + z4z * dq4 + z5z * dq5;
-        let t93 = mx + (r1y * fz - r1z * fy);
-        let t94 = my + (r1z * fx - r1x * fz);
-        let t95 = mz + (r1x * fy - r1y * fx);
-        let t96 = k8 * t93 + k9 * t94 + k7 * t95;
-        let t97 = t93 - k8 * t96;
-        let t98 = t94 - k9 * t96;
-        let t99 = t95 - k7 * t96;
-        let t100 = transverse1 * t97;
-        let t101 = transverse1 * t98;
-        let t102 = transverse1 * t99;
-        let t103 = r1z * t101 - r1y * t102;
-        let t104 = r1x * t102 - r1z * t100;
-        let t105 = r1y * t100 - r1x * t101;
-        let t106 = mx + (r3y * fz - r3z * fy);
-        let t107 = my + (r3z * fx - r3x * fz);
-        let t108 = mz + (r3x * fy - r3y * fx);
-        let t109 = z2x * t106 + z2y * t107 + z2z * t108;
-        let t110 = transverse3 * (t106 - z2x * t109);
-        let t111 = transverse3 * (t107 - z2y * t109);
-        let t112 = transverse3 * (t108 - z2z * t109);
-        let t113 = r3z * t111 - r3y * t112;
-        let t114 = r3x * t112 - r3z * t110;
-        let t115 = r3y * t110 - r3x * t111;
-        let t116 = t87 + j6x * dq6 + t103 + t113;
-        let t117 = t88 + j6y * dq6 + t104 + t114;
-        let t118 = t89 + j6z * dq6 + t105 + t115;
-        let t120 = r2x - k119 * t29;
-        let t121 = r2y - k119 * t30;
-        let t122 = r2z - k119 * t31;
-        let t123 = mx + (fz * t121 - fy * t122);
-        let t124 = my + (fx * t122 - fz * t120);
-        let t125 = mz + (fy * t120 - fx * t121);
-        let t127 = t29 * t123 + t30 * t124 + t31 * t125;
-        let t128 = k126 * t127;
-        let t129 = bending2 * t123 + t29 * t128;
-        let t130 = bending2 * t124 + t30 * t128;
-        let t131 = bending2 * t125 + t31 * t128;
-        let t132 = t116 + (t122 * t130 - t121 * t131);
-        let t133 = t117 + (t120 * t131 - t122 * t129);
-        let t134 = t118 + (t121 * t129 - t120 * t130);
-        let t135 = t90 + z6x * dq6 + t100 + t110 + t129;
-        let t136 = t91 + z6y * dq6 + t101 + t111 + t130;
-        let t137 = t92 + z6z * dq6 + t102 + t112 + t131;
-        let t140 = t29 * fx + t30 * fy + t31 * fz;
-        let t141 = k138 * t140;
-        let t142 = t132 + k139 * fx - t29 * t141;
-        let t143 = t133 + k139 * fy - t30 * t141;
-        let t144 = t134 + k139 * fz - t31 * t141;
-        let t145 = r3x - k119 * t36;
-        let t146 = r3y - k119 * t37;
-        let t147 = r3z - k119 * t38;
-        let t148 = mx + (fz * t146 - fy * t147);
-        let t149 = my + (fx * t147 - fz * t145);
-        let t150 = mz + (fy * t145 - fx * t146);
-        let t152 = t36 * t148 + t37 * t149 + t38 * t150;
-        let t153 = k151 * t152;
-        let t154 = bending3 * t148 + t36 * t153;
-        let t155 = bending3 * t149 + t37 * t153;
-        let t156 = bending3 * t150 + t38 * t153;
-        let t157 = t142 + (t147 * t155 - t146 * t156);
-        let t158 = t143 + (t145 * t156 - t147 * t154);
-        let t159 = t144 + (t146 * t154 - t145 * t155);
-        let t162 = t36 * fx + t37 * fy + t38 * fz;
-        let t163 = k160 * t162;
-        let t164 = t157 + k161 * fx - t36 * t163;
-        let t165 = t158 + k161 * fy - t37 * t163;
-        let t166 = t159 + k161 * fz - t38 * t163;
-        let t167 = base_tilt * t97;
-        let t168 = base_tilt * t98;
-        let t169 = base_tilt * t99;
-        let t170 = t164 + (r1z * t168 - r1y * t169);
-        let t171 = t165 + (r1x * t169 - r1z * t167);
-        let t172 = t166 + (r1y * t167 - r1x * t168);
-        let t173 = tool_rotation * (mx + (t63 * fz - t64 * fy));
-        let t174 = tool_rotation * (my + (t64 * fx - t62 * fz));
-        let t175 = tool_rotation * (mz + (t62 * fy - t63 * fx));
-        let t176 = t64 * t174 - t63 * t175;
-        let t177 = t62 * t175 - t64 * t173;
-        let t178 = t63 * t173 - t62 * t174;
+        let t45 = k28 * tau2;
+        let t46 = (T::one() + t45 * t45).sqrt().recip() * (added2 * tau2);
+        let dq2 = h2 * tau2 + coupling2_3 * tau3 + t46;
+        let t47 = k29 * tau5;
+        let t48 = (T::one() + t47 * t47).sqrt().recip() * (added5 * tau5);
+        let dq5 = h5 * tau5 + coupling5_6 * tau6 + t48;
+        let t49 = j1x * dq1 + j2x * dq2 + j3x * dq3;
+        let t50 = j1y * dq1 + j2y * dq2 + j3y * dq3;
+        let t51 = j1z * dq1 + j2z * dq2 + j3z * dq3;
+        let t52 = k30 * tau1 + z2x * dq2 + z2x * dq3;
+        let t53 = k31 * tau1 + z2y * dq2 + z2y * dq3;
+        let t54 = k32 * tau1 + z2z * dq2 + z2z * dq3;
+        let t55 = t49 + j4x * dq4 + j5x * dq5;
+        let t56 = t50 + j4y * dq4 + j5y * dq5;
+        let t57 = t51 + j4z * dq4 + j5z * dq5;
+        let t58 = t52 + z4x * dq4 + z5x * dq5;
+        let t59 = t53 + z4y * dq4 + z5y * dq5;
+        let t60 = t54 + z4z * dq4 + z5z * dq5;
+        let t61 = mx + (r1y * fz - r1z * fy);
+        let t62 = my + (r1z * fx - r1x * fz);
+        let t63 = mz + (r1x * fy - r1y * fx);
+        let t64 = k8 * t61 + k9 * t62 + k7 * t63;
+        let t65 = t61 - k8 * t64;
+        let t66 = t62 - k9 * t64;
+        let t67 = t63 - k7 * t64;
+        let t68 = transverse1 * t65;
+        let t69 = transverse1 * t66;
+        let t70 = transverse1 * t67;
+        let t71 = r1z * t69 - r1y * t70;
+        let t72 = r1x * t70 - r1z * t68;
+        let t73 = r1y * t68 - r1x * t69;
+        let t74 = mx + (r3y * fz - r3z * fy);
+        let t75 = my + (r3z * fx - r3x * fz);
+        let t76 = mz + (r3x * fy - r3y * fx);
+        let t77 = z2x * t74 + z2y * t75 + z2z * t76;
+        let t78 = transverse3 * (t74 - z2x * t77);
+        let t79 = transverse3 * (t75 - z2y * t77);
+        let t80 = transverse3 * (t76 - z2z * t77);
+        let t81 = r3z * t79 - r3y * t80;
+        let t82 = r3x * t80 - r3z * t78;
+        let t83 = r3y * t78 - r3x * t79;
+        let t84 = t55 + j6x * dq6 + t71 + t81;
+        let t85 = t56 + j6y * dq6 + t72 + t82;
+        let t86 = t57 + j6z * dq6 + t73 + t83;
+        let t87 = r2x - k33 * t5;
+        let t88 = r2y - k33 * t6;
+        let t89 = r2z - k33 * t7;
+        let t90 = mx + (fz * t88 - fy * t89);
+        let t91 = my + (fx * t89 - fz * t87);
+        let t92 = mz + (fy * t87 - fx * t88);
+        let t93 = t5 * t90 + t6 * t91 + t7 * t92;
+        let t94 = k34 * t93;
+        let t95 = bending2 * t90 + t5 * t94;
+        let t96 = bending2 * t91 + t6 * t94;
+        let t97 = bending2 * t92 + t7 * t94;
+        let t98 = t84 + (t89 * t96 - t88 * t97);
+        let t99 = t85 + (t87 * t97 - t89 * t95);
+        let t100 = t86 + (t88 * t95 - t87 * t96);
+        let t101 = t58 + z6x * dq6 + t68 + t78 + t95;
+        let t102 = t59 + z6y * dq6 + t69 + t79 + t96;
+        let t103 = t60 + z6z * dq6 + t70 + t80 + t97;
+        let t104 = t5 * fx + t6 * fy + t7 * fz;
+        let t105 = k35 * t104;
+        let t106 = t98 + k36 * fx - t5 * t105;
+        let t107 = t99 + k36 * fy - t6 * t105;
+        let t108 = t100 + k36 * fz - t7 * t105;
+        let t109 = r3x - k33 * t9;
+        let t110 = r3y - k33 * t10;
+        let t111 = r3z - k33 * t11;
+        let t112 = mx + (fz * t110 - fy * t111);
+        let t113 = my + (fx * t111 - fz * t109);
+        let t114 = mz + (fy * t109 - fx * t110);
+        let t115 = t9 * t112 + t10 * t113 + t11 * t114;
+        let t116 = k37 * t115;
+        let t117 = bending3 * t112 + t9 * t116;
+        let t118 = bending3 * t113 + t10 * t116;
+        let t119 = bending3 * t114 + t11 * t116;
+        let t120 = t106 + (t111 * t118 - t110 * t119);
+        let t121 = t107 + (t109 * t119 - t111 * t117);
+        let t122 = t108 + (t110 * t117 - t109 * t118);
+        let t123 = t9 * fx + t10 * fy + t11 * fz;
+        let t124 = k38 * t123;
+        let t125 = t120 + k39 * fx - t9 * t124;
+        let t126 = t121 + k39 * fy - t10 * t124;
+        let t127 = t122 + k39 * fz - t11 * t124;
+        let t128 = base_tilt * t65;
+        let t129 = base_tilt * t66;
+        let t130 = base_tilt * t67;
+        let t131 = t125 + (r1z * t129 - r1y * t130);
+        let t132 = t126 + (r1x * t130 - r1z * t128);
+        let t133 = t127 + (r1y * t128 - r1x * t129);
+        let t134 = tool_rotation * (mx + (t36 * fz - t37 * fy));
+        let t135 = tool_rotation * (my + (t37 * fx - t35 * fz));
+        let t136 = tool_rotation * (mz + (t35 * fy - t36 * fx));
+        let t137 = t37 * t135 - t36 * t136;
+        let t138 = t35 * t136 - t37 * t134;
+        let t139 = t36 * t134 - t35 * t135;
         Vector6::new(
-            t170 + base_translation * fx + t176 + tool_translation * fx,
-            t171 + base_translation * fy + t177 + tool_translation * fy,
-            t172 + base_translation * fz + t178 + tool_translation * fz,
-            t135 + t154 + t167 + t173,
-            t136 + t155 + t168 + t174,
-            t137 + t156 + t169 + t175,
+            t131 + base_translation * fx + t137 + tool_translation * fx,
+            t132 + base_translation * fy + t138 + tool_translation * fy,
+            t133 + base_translation * fz + t139 + tool_translation * fz,
+            t101 + t117 + t128 + t134,
+            t102 + t118 + t129 + t135,
+            t103 + t119 + t130 + t136,
         )
     }
 
@@ -1828,37 +1828,37 @@ impl Robot<6> for EveryEffect {
                     - Self::SIN_BASE_ROLL * 0.7648421872844885),
         );
         let k18 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k22 = T::of(
+        let k19 = T::of(
             Self::SIN_BASE_ROLL * -0.644217687237691
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
         );
-        let k23 = T::of(
+        let k20 = T::of(
             Self::SIN_BASE_ROLL * 0.7648421872844885
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
         );
-        let k24 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k21 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k22 = T::of(
+            Self::A2
+                * (Self::SIN_BASE_ROLL * -0.644217687237691
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+        );
+        let k23 = T::of(
+            Self::A2
+                * (Self::SIN_BASE_ROLL * 0.7648421872844885
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+        );
+        let k24 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k25 = T::of(
+            Self::A3
+                * (Self::SIN_BASE_ROLL * -0.644217687237691
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+        );
         let k26 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
-        );
-        let k27 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * 0.7648421872844885
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
-        );
-        let k28 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k30 = T::of(
-            Self::A3
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
-        );
-        let k31 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k32 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
         let [(s1o, c1o), (s2, c2), (s23, c23), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
             q[0] + T::of(0.17453292519943295),
@@ -1868,67 +1868,67 @@ impl Robot<6> for EveryEffect {
             q[4],
             q[5],
         ]);
-        let t19 = k1 * c1o + k5 * s1o;
-        let t20 = k2 * c1o + k6 * s1o;
-        let t21 = k3 * c1o + k4 * s1o;
+        let t1 = k1 * c1o + k5 * s1o;
+        let t2 = k2 * c1o + k6 * s1o;
+        let t3 = k3 * c1o + k4 * s1o;
         let z2x = k5 * c1o - k1 * s1o;
         let z2y = k6 * c1o - k2 * s1o;
         let z2z = k4 * c1o - k3 * s1o;
-        let t25 = a2 * s2;
-        let t29 = a3 * s23;
-        let t33 = t19 * t29 - k30 * c23 + d3 * z2x;
-        let t34 = t20 * t29 - k31 * c23 + d3 * z2y;
-        let t35 = t21 * t29 - k32 * c23 + d3 * z2z;
-        let t36 = t19 * s23 - k22 * c23;
-        let t37 = t20 * s23 - k23 * c23;
-        let t38 = t21 * s23 - k24 * c23;
-        let t39 = k22 * s23 + t19 * c23;
-        let t40 = k23 * s23 + t20 * c23;
-        let t41 = k24 * s23 + t21 * c23;
-        let t42 = cos_alpha3 * t39 + sin_alpha3 * z2x;
-        let t43 = cos_alpha3 * t40 + sin_alpha3 * z2y;
-        let t44 = cos_alpha3 * t41 + sin_alpha3 * z2z;
-        let z4x = cos_alpha3 * z2x - sin_alpha3 * t39;
-        let z4y = cos_alpha3 * z2y - sin_alpha3 * t40;
-        let z4z = cos_alpha3 * z2z - sin_alpha3 * t41;
-        let t45 = t36 * c4o + t42 * s4o;
-        let t46 = t37 * c4o + t43 * s4o;
-        let t47 = t38 * c4o + t44 * s4o;
-        let t48 = t42 * c4o;
-        let t49 = t43 * c4o;
-        let t50 = t44 * c4o;
-        let t51 = t36 * s4o;
-        let t52 = t37 * s4o;
-        let t53 = t38 * s4o;
-        let z5x = t51 - t48;
-        let z5y = t52 - t49;
-        let z5z = t53 - t50;
-        let z6x = z4x * c5 - t45 * s5;
-        let z6y = z4y * c5 - t46 * s5;
-        let z6z = z4z * c5 - t47 * s5;
-        let t54 = tool_y * s6 - tool_x * c6;
-        let t55 = tool_x * s6 + tool_y * c6;
-        let t56 = (t45 * c5 + z4x * s5) * t54;
-        let t57 = (t46 * c5 + z4y * s5) * t54;
-        let t58 = (t47 * c5 + z4z * s5) * t54;
-        let t59 = t56 - (t48 - t51) * t55 + tool_z * z6x;
-        let t60 = t57 - (t49 - t52) * t55 + tool_z * z6y;
-        let t61 = t58 - (t50 - t53) * t55 + tool_z * z6z;
-        let r6x = d6 * z6x + t59;
-        let r6y = d6 * z6y + t60;
-        let r6z = d6 * z6z + t61;
+        let t4 = a2 * s2;
+        let t5 = a3 * s23;
+        let t6 = t1 * t5 - k25 * c23 + d3 * z2x;
+        let t7 = t2 * t5 - k26 * c23 + d3 * z2y;
+        let t8 = t3 * t5 - k27 * c23 + d3 * z2z;
+        let t9 = t1 * s23 - k19 * c23;
+        let t10 = t2 * s23 - k20 * c23;
+        let t11 = t3 * s23 - k21 * c23;
+        let t12 = k19 * s23 + t1 * c23;
+        let t13 = k20 * s23 + t2 * c23;
+        let t14 = k21 * s23 + t3 * c23;
+        let t15 = cos_alpha3 * t12 + sin_alpha3 * z2x;
+        let t16 = cos_alpha3 * t13 + sin_alpha3 * z2y;
+        let t17 = cos_alpha3 * t14 + sin_alpha3 * z2z;
+        let z4x = cos_alpha3 * z2x - sin_alpha3 * t12;
+        let z4y = cos_alpha3 * z2y - sin_alpha3 * t13;
+        let z4z = cos_alpha3 * z2z - sin_alpha3 * t14;
+        let t18 = t9 * c4o + t15 * s4o;
+        let t19 = t10 * c4o + t16 * s4o;
+        let t20 = t11 * c4o + t17 * s4o;
+        let t21 = t15 * c4o;
+        let t22 = t16 * c4o;
+        let t23 = t17 * c4o;
+        let t24 = t9 * s4o;
+        let t25 = t10 * s4o;
+        let t26 = t11 * s4o;
+        let z5x = t24 - t21;
+        let z5y = t25 - t22;
+        let z5z = t26 - t23;
+        let z6x = z4x * c5 - t18 * s5;
+        let z6y = z4y * c5 - t19 * s5;
+        let z6z = z4z * c5 - t20 * s5;
+        let t27 = tool_y * s6 - tool_x * c6;
+        let t28 = tool_x * s6 + tool_y * c6;
+        let t29 = (t18 * c5 + z4x * s5) * t27;
+        let t30 = (t19 * c5 + z4y * s5) * t27;
+        let t31 = (t20 * c5 + z4z * s5) * t27;
+        let t32 = t29 - (t21 - t24) * t28 + tool_z * z6x;
+        let t33 = t30 - (t22 - t25) * t28 + tool_z * z6y;
+        let t34 = t31 - (t23 - t26) * t28 + tool_z * z6z;
+        let r6x = d6 * z6x + t32;
+        let r6y = d6 * z6y + t33;
+        let r6z = d6 * z6z + t34;
         let r5x = d5 * z5x + r6x;
         let r5y = d5 * z5y + r6y;
         let r5z = d5 * z5z + r6z;
         let r4x = d4 * z4x + r5x;
         let r4y = d4 * z4y + r5y;
         let r4z = d4 * z4z + r5z;
-        let r3x = t33 + r4x;
-        let r3y = t34 + r4y;
-        let r3z = t35 + r4z;
-        let r2x = t19 * t25 - k26 * c2 + r3x;
-        let r2y = t20 * t25 - k27 * c2 + r3y;
-        let r2z = t21 * t25 - k28 * c2 + r3z;
+        let r3x = t6 + r4x;
+        let r3y = t7 + r4y;
+        let r3z = t8 + r4z;
+        let r2x = t1 * t4 - k22 * c2 + r3x;
+        let r2y = t2 * t4 - k23 * c2 + r3y;
+        let r2z = t3 * t4 - k24 * c2 + r3z;
         let r1x = k10 * c1o + k13 * s1o + k16 + r2x;
         let r1y = k11 * c1o + k14 * s1o + k17 + r2y;
         let r1z = k12 * c1o + k15 * s1o + k18 + r2z;
@@ -1950,19 +1950,19 @@ impl Robot<6> for EveryEffect {
         let j6x = z6y * r6z - z6z * r6y;
         let j6y = z6z * r6x - z6x * r6z;
         let j6z = z6x * r6y - z6y * r6x;
-        let t62 = k8 * mx + k9 * my + k7 * mz;
-        let tau1 = fx * j1x + fy * j1y + fz * j1z + t62;
-        let t63 = fx * j2x + fy * j2y + fz * j2z;
-        let t64 = mx * z2x + my * z2y + mz * z2z;
-        let tau2 = t63 + t64;
-        let t65 = fx * j3x + fy * j3y + fz * j3z;
-        let tau3 = t64 + t65;
-        let t66 = mx * z4x + my * z4y + mz * z4z;
-        let tau4 = fx * j4x + fy * j4y + fz * j4z + t66;
-        let t67 = mx * z5x + my * z5y + mz * z5z;
-        let tau5 = fx * j5x + fy * j5y + fz * j5z + t67;
-        let t68 = mx * z6x + my * z6y + mz * z6z;
-        let tau6 = fx * j6x + fy * j6y + fz * j6z + t68;
+        let t35 = k8 * mx + k9 * my + k7 * mz;
+        let tau1 = fx * j1x + fy * j1y + fz * j1z + t35;
+        let t36 = fx * j2x + fy * j2y + fz * j2z;
+        let t37 = mx * z2x + my * z2y + mz * z2z;
+        let tau2 = t36 + t37;
+        let t38 = fx * j3x + fy * j3y + fz * j3z;
+        let tau3 = t37 + t38;
+        let t39 = mx * z4x + my * z4y + mz * z4z;
+        let tau4 = fx * j4x + fy * j4y + fz * j4z + t39;
+        let t40 = mx * z5x + my * z5y + mz * z5z;
+        let tau5 = fx * j5x + fy * j5y + fz * j5z + t40;
+        let t41 = mx * z6x + my * z6y + mz * z6z;
+        let tau6 = fx * j6x + fy * j6y + fz * j6z + t41;
         SVector::from([tau1, tau2, tau3, tau4, tau5, tau6])
     }
 }

@@ -326,7 +326,7 @@ impl Robot<5> for Rv130hsc {
         let a5 = T::of(Self::A5);
         let h5_a5 = T::of(Self::H5 * Self::A5);
         let h4_a5 = T::of(Self::H4 * Self::A5);
-        let k6 = T::of(-Self::H5);
+        let k1 = T::of(-Self::H5);
         let [(s5, c5), (s4, c4), (s3, c3), (s23, c23), (s1, c1)] = T::sin_cos_all([
             q[4],
             q[3],
@@ -354,99 +354,99 @@ impl Robot<5> for Rv130hsc {
         let t5 = c4 * t3;
         let tt3_zz = tt4_yy + t4;
         let tt3_yz = t1 * s4;
-        let t7 = k6 * s4;
-        let t8 = s4 * t7;
-        let t9 = c4 * t7;
-        let t10 = tr4_xy * c4;
-        let tr3_zz = s4 * t10;
-        let t11 = c4 * t10;
-        let t12 = tr4_yz * s4;
-        let t13 = tr4_yz * c4;
+        let t6 = k1 * s4;
+        let t7 = s4 * t6;
+        let t8 = c4 * t6;
+        let t9 = tr4_xy * c4;
+        let tr3_zz = s4 * t9;
+        let t10 = c4 * t9;
+        let t11 = tr4_yz * s4;
+        let t12 = tr4_yz * c4;
         let tr3_yx = tr5_yz * s4;
-        let tr3_zx = tr4_xy - t11;
+        let tr3_zx = tr4_xy - t10;
         let r3x = a3 + r5x * c4;
 
         // From joint 3 to the TCP.
-        let t14 = h3 * r4z;
-        let t15 = h3 * r3x;
-        let tt3_xx = tt5_xx - t4 + r4z * t14;
-        let tt3_yy = tt5_yy + r3x * t15;
-        let rr3_zz = h3 + (h5 + t8);
-        let tr3_yz = tr5_yz * c4 + t15;
+        let t13 = h3 * r4z;
+        let t14 = h3 * r3x;
+        let tt3_xx = tt5_xx - t4 + r4z * t13;
+        let tt3_yy = tt5_yy + r3x * t14;
+        let rr3_zz = h3 + (h5 + t7);
+        let tr3_yz = tr5_yz * c4 + t14;
         let r2x = r3x + c3;
         let r2y = r4z - s3;
 
         // From joint 2 to the TCP.
-        let t16 = h2 * r2y;
-        let t17 = h2 * r2x;
-        let tt2_xx = tt3_xx - t16 * (s3 - r4z);
-        let t18 = t1 * c4 + r3x * t14 + r2x * t16;
-        let tt2_yy = tt3_yy + r2x * t17;
+        let t15 = h2 * r2y;
+        let t16 = h2 * r2x;
+        let tt2_xx = tt3_xx - t15 * (s3 - r4z);
+        let t17 = t1 * c4 + r3x * t13 + r2x * t15;
+        let tt2_yy = tt3_yy + r2x * t16;
         let rr2_zz = h2 + rr3_zz;
-        let t19 = t11 + t14 + t16;
-        let tr2_yz = tr3_yz + t17;
-        let t20 = c23 * (tt2_xx - tt2_yy) + s23 * (t18 + t18);
-        let t21 = c23 * t20;
-        let tt1_zz = tt2_yy + t21;
-        let t22 = t5 * c23 + tt3_yz * s23;
-        let t23 = c23 * (h4 + t8);
-        let t24 = c23 * t23;
-        let t25 = s23 * t23;
-        let rr1_xx = t24 - t8;
-        let t26 = t9 * s23;
-        let t27 = t9 * c23;
-        let t28 = tr3_zz * c23 + s23 * (tr3_yx - t12);
-        let t29 = c23 * t28;
-        let t30 = s23 * t28;
-        let tr1_xx = t29 - tr3_zz;
-        let t31 = t12 + t30;
-        let tr1_xy = tr2_yz * c23 - t19 * s23;
-        let t32 = t19 * c23 + tr2_yz * s23;
-        let tr1_yx = tr3_zx * s23 - t13 * c23;
-        let tt1_xz = s23 * t20 - t18;
+        let t18 = t10 + t13 + t15;
+        let tr2_yz = tr3_yz + t16;
+        let t19 = c23 * (tt2_xx - tt2_yy) + s23 * (t17 + t17);
+        let t20 = c23 * t19;
+        let tt1_zz = tt2_yy + t20;
+        let t21 = t5 * c23 + tt3_yz * s23;
+        let t22 = c23 * (h4 + t7);
+        let t23 = c23 * t22;
+        let t24 = s23 * t22;
+        let rr1_xx = t23 - t7;
+        let t25 = t8 * s23;
+        let t26 = t8 * c23;
+        let t27 = tr3_zz * c23 + s23 * (tr3_yx - t11);
+        let t28 = c23 * t27;
+        let t29 = s23 * t27;
+        let tr1_xx = t28 - tr3_zz;
+        let t30 = t11 + t29;
+        let tr1_xy = tr2_yz * c23 - t18 * s23;
+        let t31 = t18 * c23 + tr2_yz * s23;
+        let tr1_yx = tr3_zx * s23 - t12 * c23;
+        let tt1_xz = s23 * t19 - t17;
         let r1x = a1 + (r2x * s23 + r2y * c23);
 
         // From joint 1 to the TCP.
-        let t33 = h1 * t2;
-        let t34 = h1 * r1x;
-        let tt1_xx = tt2_xx - t21 + t2 * t33;
-        let tt1_xy = tt3_yz * c23 - t5 * s23 + r1x * t33;
-        let tt1_yy = tt3_zz + r1x * t34;
-        let rr1_zz = h1 + (h4 - t24);
-        let tr1_xz = tr3_yx - t30 + t33;
-        let tr1_yz = tr3_zx * c23 + t13 * s23 + t34;
-        let t35 = s1 * (tt1_xx - tt1_yy) + c1 * (tt1_xy + tt1_xy);
-        let t36 = s1 * t35;
-        let tt_xx = tt1_xx - t36;
-        let tt_xy = c1 * t35 - tt1_xy;
-        let tt_yy = tt1_yy + t36;
-        let tt_xz = tt1_xz * c1 + t22 * s1;
-        let tt_yz = tt1_xz * s1 - t22 * c1;
-        let t37 = s1 * (rr1_xx - rr2_zz) - c1 * (t26 + t26);
-        let t38 = s1 * t37;
-        let rr_xx = rr1_xx - t38;
-        let rr_xy = t26 + c1 * t37;
-        let rr_yy = rr2_zz + t38;
-        let rr_xz = t27 * s1 - t25 * c1;
-        let t39 = t25 * s1 + t27 * c1;
-        let t40 = s1 * (tr1_xx - tr3_zz) + c1 * (tr1_xy + tr1_yx);
-        let t41 = s1 * t40;
-        let t42 = c1 * t40;
-        let tr_xx = tr1_xx - t41;
-        let tr_xy = t42 - tr1_yx;
-        let tr_yx = t42 - tr1_xy;
-        let tr_yy = tr3_zz + t41;
+        let t32 = h1 * t2;
+        let t33 = h1 * r1x;
+        let tt1_xx = tt2_xx - t20 + t2 * t32;
+        let tt1_xy = tt3_yz * c23 - t5 * s23 + r1x * t32;
+        let tt1_yy = tt3_zz + r1x * t33;
+        let rr1_zz = h1 + (h4 - t23);
+        let tr1_xz = tr3_yx - t29 + t32;
+        let tr1_yz = tr3_zx * c23 + t12 * s23 + t33;
+        let t34 = s1 * (tt1_xx - tt1_yy) + c1 * (tt1_xy + tt1_xy);
+        let t35 = s1 * t34;
+        let tt_xx = tt1_xx - t35;
+        let tt_xy = c1 * t34 - tt1_xy;
+        let tt_yy = tt1_yy + t35;
+        let tt_xz = tt1_xz * c1 + t21 * s1;
+        let tt_yz = tt1_xz * s1 - t21 * c1;
+        let t36 = s1 * (rr1_xx - rr2_zz) - c1 * (t25 + t25);
+        let t37 = s1 * t36;
+        let rr_xx = rr1_xx - t37;
+        let rr_xy = t25 + c1 * t36;
+        let rr_yy = rr2_zz + t37;
+        let rr_xz = t26 * s1 - t24 * c1;
+        let t38 = t24 * s1 + t26 * c1;
+        let t39 = s1 * (tr1_xx - tr3_zz) + c1 * (tr1_xy + tr1_yx);
+        let t40 = s1 * t39;
+        let t41 = c1 * t39;
+        let tr_xx = tr1_xx - t40;
+        let tr_xy = t41 - tr1_yx;
+        let tr_yx = t41 - tr1_xy;
+        let tr_yy = tr3_zz + t40;
         let tr_xz = tr1_xz * c1 - tr1_yz * s1;
         let tr_yz = tr1_xz * s1 + tr1_yz * c1;
-        let tr_zx = t32 * s1 - t31 * c1;
-        let t43 = t31 * s1 + t32 * c1;
+        let tr_zx = t31 * s1 - t30 * c1;
+        let t42 = t30 * s1 + t31 * c1;
         Matrix6::new(
             tt_xx, tt_xy, tt_xz, tr_xx, tr_xy, tr_xz,
             tt_xy, tt_yy, tt_yz, tr_yx, tr_yy, tr_yz,
-            tt_xz, tt_yz, tt1_zz, tr_zx, -t43, -t29,
+            tt_xz, tt_yz, tt1_zz, tr_zx, -t42, -t28,
             tr_xx, tr_yx, tr_zx, rr_xx, rr_xy, rr_xz,
-            tr_xy, tr_yy, -t43, rr_xy, rr_yy, -t39,
-            tr_xz, tr_yz, -t29, rr_xz, -t39, rr1_zz,
+            tr_xy, tr_yy, -t42, rr_xy, rr_yy, -t38,
+            tr_xz, tr_yz, -t28, rr_xz, -t38, rr1_zz,
         )
     }
 

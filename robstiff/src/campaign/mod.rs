@@ -4,11 +4,19 @@
 //! Reading checks everything and converts to SI; nothing is computed with the
 //! robot yet, so rows hold what the file says, in the frames the file says.
 
+mod clamped;
+mod displacements;
+mod read;
+mod table;
+#[cfg(test)]
+mod tests;
+
 use std::path::PathBuf;
 use std::string::String;
 use std::vec::Vec;
 
 use robstiff_robots::Description;
+pub use robstiff_robots::ReadError;
 
 /// A measuring campaign on one robot.
 #[derive(Clone, Debug)]

@@ -45,17 +45,15 @@ impl Names {
                 of.insert(id, name);
             }
         }
-        let mut number = 0;
+        let (mut constants, mut temporaries) = (1.., 1..);
         for &id in &needed {
             of.entry(id).or_insert_with(|| {
-                loop {
-                    number += 1;
-                    let letter = if graph.nodes()[id].constant.is_some() { 'k' } else { 't' };
-                    let name = format!("{letter}{number}");
-                    if taken.insert(name.clone()) {
-                        break name;
-                    }
-                }
+                let (letter, numbers) = match graph.nodes()[id].constant {
+                    Some(_) => ('k', &mut constants),
+                    None => ('t', &mut temporaries),
+                };
+                let mut names = numbers.map(|number: usize| format!("{letter}{number}"));
+                names.find(|name| taken.insert(name.clone())).expect("endless")
             });
         }
         Self { of, angles }

@@ -170,8 +170,10 @@ fn paragraph(text: &str) -> Vec<String> {
     out
 }
 
+/// The lines of a description's text as docs, in which brackets are no links
+/// and no tags.
 fn lines(text: &str) -> Vec<String> {
-    text.trim().lines().map(|line| format!(" {}", line.trim())).collect()
+    text.trim().lines().map(|line| format!(" {}", line.trim().replace('[', "\\[").replace('<', "\\<"))).collect()
 }
 
 /// The `Robot` implementation.

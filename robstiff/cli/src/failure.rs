@@ -1,0 +1,58 @@
+//! Why a command stops.
+
+use std::fmt;
+use std::process::ExitCode;
+
+use robstiff_robots::{Diagnostics, ReadError};
+
+/// A failure that is explained to the person who ran the command.
+#[derive(Debug)]
+pub enum Failure {
+    /// What was asked for cannot be done (exit code 1); the whole message.
+    Explained(String),
+    /// What was asked for makes no sense (exit code 2).
+    Usage(String),
+}
+
+impl Failure {
+    /// A failure from a sentence.
+    pub fn new(sentence: impl fmt::Display) -> Self {
+        Self::Explained(format!("error: {sentence}"))
+    }
+
+    /// What the process exits with.
+    pub fn code(&self) -> ExitCode {
+        match self {
+            Self::Explained(_) => ExitCode::from(1),
+            Self::Usage(_) => ExitCode::from(2),
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Explained(message) => f.write_str(message),
+            Self::Usage(sentence) => write!(f, "error: {sentence}\n\nFor more information, try '--help'."),
+        }
+    }
+}
+
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
+        // Readers' messages begin with `error:` themselves.
+        Self::Explained(error.to_string())
+    }
+}
+
+impl From<robstiff::identify::Error> for Failure {
+    fn from(error: robstiff::identify::Error) -> Self {
+        Self::new(error)
+    }
+}
+
+impl From<Diagnostics> for Failure {
+    fn from(problems: Diagnostics) -> Self {
+        Self::Explained(problems.to_string())
+    }
+}

@@ -1,0 +1,151 @@
+//! `robstiff identify`: the joints' compliances, from measurements.
+
+use std::path::PathBuf;
+
+use robstiff::campaign::Campaign;
+use robstiff::identify::{Estimate, Identification, NoiseSource, Visibility, identify};
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+use crate::output::{self, Files};
+use crate::text::{Table, and, count, micrometres, significant, uncertain};
+use crate::{input, json};
+
+/// The compliances that fit a campaign, with their uncertainty
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The campaign
+    #[arg(value_name = "CAMPAIGN.yaml")]
+    campaign: PathBuf,
+    /// The folder for the description with these compliances, `robot.yaml`
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Write the result as JSON to FILE
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// Identifies the compliances.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let campaign = input::campaign(&arguments.campaign)?;
+    let found = identify(&campaign)?;
+    let mut files = Files::default();
+    files.protect_campaign(&campaign);
+    files.add(arguments.out.join("robot.yaml"), found.description.to_yaml());
+    if let Some(path) = &arguments.json {
+        files.add(path, json::document(&document(&found)));
+    }
+    let said = files.write()?;
+    output::print(page(&campaign, &found) + &said)
+}
+
+fn page(campaign: &Campaign, found: &Identification) -> String {
+    let mut page = match found.poses {
+        0 => format!("{}: {}\n\n", campaign.robot.name, count(found.rows, "row")),
+        poses => format!("{}: {} at {}\n\n", campaign.robot.name, count(found.rows, "row"), count(poses, "pose")),
+    };
+    page += &compliances(&found.estimates);
+    page += &unseen(&found.estimates);
+    if let (Some(declared), Some(rms)) = (found.rms_declared, found.rms) {
+        page += &format!("\nerror: {} um as declared, {} um identified", micrometres(declared), micrometres(rms));
+        page += &match found.noise {
+            Some((noise, source)) => format!("; noise {} um ({})\n", micrometres(noise), source_of(source)),
+            None => "\n".to_owned(),
+        };
+    }
+    page
+}
+
+/// Where a noise is known from.
+pub fn source_of(source: NoiseSource) -> &'static str {
+    match source {
+        NoiseSource::Declared => "as declared",
+        NoiseSource::Repetitions => "from repeated readings",
+        NoiseSource::Residuals => "from what the model leaves, so at most that",
+    }
+}
+
+/// The table of compliances, declared against identified.
+fn compliances(estimates: &[Estimate]) -> String {
+    let mut table = Table::new(1, ["compliance", "declared", "identified", "stiffness", "change", ""]);
+    for estimate in estimates {
+        let identified = match (&estimate.visibility, estimate.std) {
+            (Visibility::Seen, Some(std)) => uncertain(estimate.value, std),
+            (Visibility::Seen, None) => significant(estimate.value, 4),
+            _ => "not seen".to_owned(),
+        };
+        let change = estimate.deviation().map(|deviation| format!("{:+.0} %", deviation * 100.0)).unwrap_or_default();
+        let stiffness = if estimate.value > 0.0 {
+            format!("{} {}", significant(estimate.value.recip(), 3), stiffness_unit(estimate.unit))
+        } else {
+            "-".to_owned()
+        };
+        table.row([
+            estimate.name.clone(),
+            significant(estimate.declared, 4),
+            format!("{identified} {}", estimate.unit),
+            stiffness,
+            change,
+            if estimate.is_noteworthy() { "beyond 25 %".to_owned() } else { String::new() },
+        ]);
+    }
+    table.to_string()
+}
+
+fn stiffness_unit(unit: &str) -> &'static str {
+    if unit == "m/N" { "N/m" } else { "Nm/rad" }
+}
+
+/// Sentences on what the data cannot see.
+fn unseen(estimates: &[Estimate]) -> String {
+    let mut said = String::new();
+    for estimate in estimates {
+        match &estimate.visibility {
+            Visibility::Seen => {}
+            Visibility::Unseen => {
+                said += &format!("\n{} does not show in these data and keeps its value", estimate.name);
+            }
+            Visibility::Confounded(others) => {
+                let others: Vec<String> = others.iter().map(|&other| estimates[other].name.clone()).collect();
+                said += &format!(
+                    "\n{} cannot be told from {} in these data and keeps its value",
+                    estimate.name,
+                    and(&others)
+                );
+            }
+        }
+    }
+    if said.is_empty() { said } else { said + "\n" }
+}
+
+fn document(found: &Identification) -> Value {
+    json!({
+        "robot": found.description.name,
+        "rows": found.rows,
+        "poses": found.poses,
+        "noise_um": found.noise.map(|(noise, _)| json::number(noise * 1e6)),
+        "declared": {"rms_um": found.rms_declared.map(|rms| json::number(rms * 1e6))},
+        "identified": {"rms_um": found.rms.map(|rms| json::number(rms * 1e6))},
+        "compliances": found.estimates.iter().map(|estimate| compliance(estimate, &found.estimates)).collect::<Value>(),
+        "correlation": json::matrix(&found.correlation),
+    })
+}
+
+fn compliance(estimate: &Estimate, all: &[Estimate]) -> Value {
+    let (seen, others): (_, &[usize]) = match &estimate.visibility {
+        Visibility::Seen => ("seen", &[]),
+        Visibility::Unseen => ("unseen", &[]),
+        Visibility::Confounded(others) => ("confounded", others),
+    };
+    json!({
+        "name": estimate.name,
+        "declared": json::number(estimate.declared),
+        "value": json::number(estimate.value),
+        "std": estimate.std.map(json::number),
+        "unit": estimate.unit,
+        "visibility": seen,
+        "confounded_with": others.iter().map(|&other| all[other].name.as_str()).collect::<Value>(),
+        "deviation": estimate.deviation().map(json::number),
+        "noteworthy": estimate.is_noteworthy(),
+    })
+}

@@ -1,0 +1,116 @@
+//! What commands are given: robots by path or by name, and joint coordinates.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use robstiff::campaign::Campaign;
+use robstiff_robots::document::Document;
+use robstiff_robots::quantity::{self, Dimension};
+use robstiff_robots::{Description, JointKind, catalogue};
+
+use crate::failure::Failure;
+use crate::output;
+
+/// Reads a robot's description, with its file's name: a file, or where there is
+/// none of that name, a robot of the catalogue.
+pub fn robot(path: &Path) -> Result<(Description, String), Failure> {
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    if path.exists() {
+        return Ok((Description::read(path)?, name.into_owned()));
+    }
+    if let Some(text) = catalogue::find(&name).filter(|_| path.as_os_str() == name.as_ref()) {
+        let name = format!("{}.yaml", name.trim_end_matches(".yaml"));
+        return Ok((Description::parse(&name, text)?, name));
+    }
+    let names: Vec<&str> = catalogue::catalogue().iter().map(|(name, _)| name.trim_end_matches(".yaml")).collect();
+    Err(Failure::new(format!(
+        "there is no file {}, and no robot of that name in the catalogue: {}",
+        path.display(),
+        names.join(", ")
+    )))
+}
+
+/// Reads a campaign, and says what its reader noticed.
+pub fn campaign(path: &Path) -> Result<Campaign, Failure> {
+    let campaign = Campaign::read(path)?;
+    for warning in &campaign.warnings {
+        output::complain(format_args!("warning: {warning}"));
+    }
+    Ok(campaign)
+}
+
+/// The file with the observations of a campaign that was read; the campaign
+/// itself does not keep its name.
+pub fn observations(campaign: &Campaign) -> Option<PathBuf> {
+    let text = fs::read_to_string(&campaign.path).ok()?;
+    let document = Document::parse("", text.trim_start_matches('\u{feff}')).ok()?;
+    let name = document.root().any_map("")?.get("observations")?.text()?.to_owned();
+    Some(campaign.path.parent()?.join(name))
+}
+
+/// Joint coordinates as `--at` gives them: numbers in rad (or m), or
+/// quantities with their unit, separated by commas.
+pub fn coordinates(text: &str, robot: &Description) -> Result<Vec<f64>, Failure> {
+    let parts: Vec<&str> = text.split(',').collect();
+    let count = robot.joints.len();
+    if parts.len() != count {
+        return Err(Failure::Usage(format!(
+            "--at gives {} joint coordinates, {} has {count} joints",
+            parts.len(),
+            robot.name
+        )));
+    }
+    let coordinate = |(index, part): (usize, &&str)| {
+        let dimension = match robot.joints[index].kind {
+            JointKind::Revolute => Dimension::Angle,
+            JointKind::Prismatic => Dimension::Length,
+        };
+        quantity::parse(part, dimension).map_err(|error| Failure::Usage(format!("--at, q{}: {error}", index + 1)))
+    };
+    parts.iter().enumerate().map(coordinate).collect()
+}
+
+/// The pose that is shown where none is asked for: zero, and for a joint that
+/// cannot stand there the middle of its range.
+pub fn default_coordinates(robot: &Description) -> Vec<f64> {
+    let coordinate = |limits: Option<[f64; 2]>| match limits {
+        Some([low, high]) if !(low..=high).contains(&0.0) => 0.5 * (low + high),
+        _ => 0.0,
+    };
+    robot.joints.iter().map(|joint| coordinate(joint.limits)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn five_axes() -> Description {
+        robot(Path::new("rv130hsc")).unwrap().0
+    }
+
+    #[test]
+    fn coordinates_are_in_rad_or_carry_their_unit() {
+        let q = coordinates("0.5, 30 deg, -pi/2,0, 10 mrad", &five_axes()).unwrap();
+        assert_eq!(q, [0.5, 30_f64.to_radians(), -core::f64::consts::FRAC_PI_2, 0.0, 0.01]);
+    }
+
+    #[test]
+    fn wrong_coordinates_are_wrong_usage() {
+        for (text, part) in [
+            ("0,0,0", "gives 3 joint coordinates, Rv130hsc has 5"),
+            ("0,0,x,0,0", "q3: `x` is not an angle"),
+            ("0,0,0,0,5 mm", "q5"),
+        ] {
+            let failure = coordinates(text, &five_axes()).unwrap_err();
+            assert!(matches!(&failure, Failure::Usage(message) if message.contains(part)), "{failure}");
+        }
+    }
+
+    #[test]
+    fn a_joint_that_cannot_stand_at_zero_stands_in_the_middle() {
+        let mut robot = five_axes();
+        robot.joints[1].limits = Some([0.25, 0.75]);
+        robot.joints[2].limits = Some([-1.0, 2.0]);
+        assert_eq!(default_coordinates(&robot), [0.0, 0.5, 0.0, 0.0, 0.0]);
+    }
+}

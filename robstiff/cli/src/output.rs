@@ -1,0 +1,153 @@
+//! What commands leave behind: text on the terminal, and files that are there
+//! completely or not at all.
+
+use std::ffi::OsString;
+use std::fmt;
+use std::fs::{self, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process;
+
+use robstiff::campaign::Campaign;
+
+use crate::failure::Failure;
+use crate::input;
+
+/// Prints to standard output. A reader that has gone away (`| head`) has seen
+/// what it wanted.
+pub fn print(text: impl fmt::Display) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match write!(out, "{text}").and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::new(format!("cannot write to standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Prints to standard error; where that is gone, nobody is there to be told.
+pub fn complain(message: impl fmt::Display) {
+    let _ = writeln!(io::stderr(), "{message}");
+}
+
+/// Files to write, all together when everything is computed.
+#[derive(Default)]
+pub struct Files {
+    files: Vec<(PathBuf, String)>,
+    inputs: Vec<PathBuf>,
+}
+
+impl Files {
+    /// A file with its whole text; asked for twice, it is written once.
+    pub fn add(&mut self, path: impl Into<PathBuf>, text: String) {
+        let file = (path.into(), text);
+        if !self.files.contains(&file) {
+            self.files.push(file);
+        }
+    }
+
+    /// A file that was read and must not be overwritten with what was made of
+    /// it.
+    pub fn protect(&mut self, input: impl Into<PathBuf>) {
+        self.inputs.push(input.into());
+    }
+
+    /// The files of a campaign, which are not to be overwritten either.
+    pub fn protect_campaign(&mut self, campaign: &Campaign) {
+        self.protect(&campaign.path);
+        self.protect(&campaign.robot_path);
+        self.inputs.extend(input::observations(campaign));
+    }
+
+    /// Writes every file under a temporary name in its folder, which is made
+    /// where it is missing, and renames them only when all are complete.
+    /// Returns a line for each that says so.
+    ///
+    /// # Errors
+    /// What cannot be written, two outputs of the same name, or an input among
+    /// the outputs; no file is touched then.
+    pub fn write(self) -> Result<String, Failure> {
+        for (index, (path, _)) in self.files.iter().enumerate() {
+            if self.files[..index].iter().any(|(other, _)| same_file(other, path)) {
+                return Err(Failure::Usage(format!("{} would be written twice", path.display())));
+            }
+            if self.inputs.iter().any(|input| same_file(input, path)) {
+                return Err(Failure::new(format!(
+                    "{} is one of the files that were read, and would be overwritten; choose another name or folder",
+                    path.display()
+                )));
+            }
+        }
+        let mut drafts = Vec::new();
+        for (path, text) in &self.files {
+            // A draft that is dropped takes its file with it.
+            drafts.push(Draft::new(path, text).map_err(|error| cannot_write(path, &error))?);
+        }
+        let mut said = String::new();
+        for ((path, _), draft) in self.files.iter().zip(drafts) {
+            draft.publish().map_err(|error| cannot_write(path, &error))?;
+            said += &format!("wrote {}\n", path.display());
+        }
+        Ok(said)
+    }
+}
+
+fn cannot_write(path: &Path, error: &io::Error) -> Failure {
+    Failure::new(format!("cannot write {}: {error}", path.display()))
+}
+
+/// Whether two paths are one file, by whatever name.
+fn same_file(one: &Path, other: &Path) -> bool {
+    match (fs::canonicalize(one), fs::canonicalize(other)) {
+        (Ok(one), Ok(other)) => one == other,
+        _ => one == other,
+    }
+}
+
+/// A complete text on its way to its place.
+enum Draft {
+    /// A file beside the one it becomes.
+    Beside { temporary: PathBuf, target: PathBuf },
+    /// A pipe or a device cannot be replaced: it is written to at the end.
+    Stream { target: PathBuf, text: String },
+}
+
+impl Draft {
+    fn new(path: &Path, text: &str) -> io::Result<Self> {
+        // Through a link, so that the link stays one.
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        match fs::metadata(&target) {
+            Ok(found) if found.is_dir() => return Err(io::Error::from(io::ErrorKind::IsADirectory)),
+            Ok(found) if !found.is_file() => return Ok(Self::Stream { target, text: text.to_owned() }),
+            _ => {}
+        }
+        let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        fs::create_dir_all(folder)?;
+        let name = target.file_name().ok_or_else(|| io::Error::from(io::ErrorKind::InvalidInput))?;
+        let mut hidden = OsString::from(".");
+        hidden.push(name);
+        hidden.push(format!(".{}.tmp", process::id()));
+        let temporary = folder.join(hidden);
+        let mut file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
+        let draft = Self::Beside { temporary, target };
+        file.write_all(text.as_bytes())?;
+        file.sync_all()?;
+        Ok(draft)
+    }
+
+    fn publish(self) -> io::Result<()> {
+        match &self {
+            Self::Beside { temporary, target } => fs::rename(temporary, target),
+            Self::Stream { target, text } => OpenOptions::new().write(true).open(target)?.write_all(text.as_bytes()),
+        }
+    }
+}
+
+impl Drop for Draft {
+    fn drop(&mut self) {
+        if let Self::Beside { temporary, .. } = self {
+            // Gone where it was published.
+            let _ = fs::remove_file(temporary);
+        }
+    }
+}

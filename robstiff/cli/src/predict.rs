@@ -1,0 +1,102 @@
+//! `robstiff predict`: the error of a robot on measurements.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use robstiff::campaign::{Campaign, Data};
+use robstiff::identify::{Prediction, predict};
+use serde_json::json;
+
+use crate::failure::Failure;
+use crate::output::{self, Files};
+use crate::text::{count, decimals, micrometres};
+use crate::{input, json};
+
+/// The error of a robot on the measurements of a campaign
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The robot's description, or the name of a robot in the catalogue
+    #[arg(value_name = "ROBOT.yaml")]
+    robot: PathBuf,
+    /// The campaign, which may have been measured for another description
+    #[arg(value_name = "CAMPAIGN.yaml")]
+    campaign: PathBuf,
+    /// Write the error as JSON to FILE
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Write predicted and measured displacement of every row to FILE
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+}
+
+/// Predicts the campaign.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (robot, _) = input::robot(&arguments.robot)?;
+    let campaign = input::campaign(&arguments.campaign)?;
+    let prediction = predict(&robot, &campaign)?;
+    let mut files = Files::default();
+    files.protect(&arguments.robot);
+    files.protect_campaign(&campaign);
+    if let Some(path) = &arguments.json {
+        let document = json!({
+            "rows": prediction.rows.len(),
+            "rms_um": json::number(prediction.rms * 1e6),
+            "p95_um": json::number(prediction.p95 * 1e6),
+            "max_um": json::number(prediction.max * 1e6),
+        });
+        files.add(path, json::document(&document));
+    }
+    if let Some(path) = &arguments.csv {
+        files.add(path, table(&campaign, &prediction));
+    }
+    let said = files.write()?;
+    output::print(page(&robot.name, &prediction) + &said)
+}
+
+fn page(robot: &str, prediction: &Prediction) -> String {
+    let Prediction { rows, rms, p95, max } = prediction;
+    format!(
+        "{robot} on {}: error {} um rms, {} um at the 95th percentile, {} um at most\n\
+         (the length of a row's residual over the root of 3, as the noise of one axis)\n",
+        count(rows.len(), "row"),
+        micrometres(*rms),
+        micrometres(*p95),
+        micrometres(*max)
+    )
+}
+
+/// A row for each of the campaign's, in its order, in the base frame.
+fn table(campaign: &Campaign, prediction: &Prediction) -> String {
+    let Data::Displacement(data) = &campaign.data else {
+        unreachable!("only displacements are predicted");
+    };
+    let mut csv = String::from("pose,visit");
+    for kind in ["predicted", "measured", "residual"] {
+        for axis in ["x", "y", "z"] {
+            write!(csv, ",{kind}_d{axis} [um]").expect("a string takes any text");
+        }
+    }
+    csv.push('\n');
+    for (row, observation) in prediction.rows.iter().zip(&data.rows) {
+        csv += &format!("{},{}", field(&data.poses[observation.pose]), field(&data.visits[observation.visit]));
+        let residual: [f64; 3] = std::array::from_fn(|axis| row.measured[axis] - row.predicted[axis]);
+        for value in [row.predicted, row.measured, residual].concat() {
+            csv += &format!(",{}", decimals(value * 1e6, 4));
+        }
+        csv.push('\n');
+    }
+    csv
+}
+
+/// A text as a field of a CSV file.
+fn field(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn fields_with_commas_are_quoted() {
+        assert_eq!(["p 1", "a,b", "say \"x\""].map(super::field), ["p 1", "\"a,b\"", "\"say \"\"x\"\"\""]);
+    }
+}

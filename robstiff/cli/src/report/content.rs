@@ -1,0 +1,196 @@
+//! What a report shows, in the units it is shown in.
+
+/// A report on one campaign.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    /// The robot's name.
+    pub robot: String,
+    /// One line on the robot.
+    pub description: String,
+    /// What the campaign calls itself.
+    pub campaign: String,
+    /// The finding in one sentence.
+    pub headline: String,
+    /// What it means, a sentence each.
+    pub summary: Vec<String>,
+    /// The verdict's word.
+    pub verdict: String,
+    /// Whether nothing is left open.
+    pub settled: bool,
+    /// Rows of the campaign.
+    pub rows: usize,
+    /// Poses of the campaign.
+    pub poses: usize,
+    /// One sigma of one axis of one reading \[um\].
+    pub reading_um: f64,
+    /// The same of a displacement, the difference of two readings, at most
+    /// \[um\].
+    pub noise_um: f64,
+    /// Where that is known from.
+    pub noise_source: String,
+    /// How the errors on unseen poses came about.
+    pub unseen: String,
+    /// The models, from the declared to the final one.
+    pub stages: Vec<Stage>,
+    /// The effects named.
+    pub effects: Vec<Effect>,
+    /// The description's own numbers before and after.
+    pub compliances: Vec<Compliance>,
+    /// The error pose by pose.
+    pub errors: Vec<PoseError>,
+    /// Residual vectors of single rows.
+    pub residuals: Vec<Residual>,
+    /// The search, step by step.
+    pub steps: Vec<SearchStep>,
+    /// What is left.
+    pub left: Left,
+    /// What to measure next.
+    pub next: Vec<Next>,
+    /// What the readers of the files noticed.
+    pub warnings: Vec<String>,
+    /// Where everything came from, a name and a text each.
+    pub origins: Vec<(String, String)>,
+}
+
+/// A model and its error.
+#[derive(Clone, Debug)]
+pub struct Stage {
+    /// Which model.
+    pub name: String,
+    /// What it is.
+    pub remark: String,
+    /// On the rows it was fitted to \[um\].
+    pub rms_um: f64,
+    /// On poses it has not seen \[um\].
+    pub holdout_rms_um: f64,
+}
+
+/// An effect that was named.
+#[derive(Clone, Debug)]
+pub struct Effect {
+    /// `kind@at`.
+    pub name: String,
+    /// What that is, in words.
+    pub words: String,
+    /// Its numbers.
+    pub numbers: Vec<Number>,
+    /// The family-wise p-value.
+    pub p_value: f64,
+    /// The error on unseen poses with it \[um\].
+    pub holdout_rms_um: f64,
+    /// What these data cannot tell it from.
+    pub same_as: Vec<String>,
+}
+
+/// A number of an effect, in SI.
+#[derive(Clone, Debug)]
+pub struct Number {
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// One sigma, where there is one.
+    pub std: Option<f64>,
+    /// Its unit.
+    pub unit: String,
+}
+
+/// One of the description's own numbers in the three models.
+#[derive(Clone, Debug)]
+pub struct Compliance {
+    /// `joint 3`, or an effect's number.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// As declared.
+    pub declared: f64,
+    /// Fitted again, and one sigma; none where the data cannot see it.
+    pub identified: Option<(f64, f64)>,
+    /// With the effects.
+    pub after: Option<(f64, f64)>,
+}
+
+/// The error in one pose, each the rms over its rows of one axis \[um\].
+#[derive(Clone, Debug)]
+pub struct PoseError {
+    /// The pose's id.
+    pub id: String,
+    /// Of the description as declared.
+    pub declared: f64,
+    /// With the joints identified again.
+    pub identified: f64,
+    /// With the effects.
+    pub after: f64,
+    /// What the effects add to the displacement.
+    pub contribution: f64,
+    /// Whether the pose was held out.
+    pub held_out: bool,
+}
+
+/// Residuals of one row \[um\] in the base frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Residual {
+    /// With the joints identified again.
+    pub before: [f64; 3],
+    /// With the effects.
+    pub after: [f64; 3],
+}
+
+/// One step of the search.
+#[derive(Clone, Debug)]
+pub struct SearchStep {
+    /// What was named before.
+    pub named: Vec<String>,
+    /// What came of it.
+    pub outcome: String,
+    /// The candidates, the strongest first.
+    pub candidates: Vec<Candidate>,
+}
+
+/// A candidate in one step.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// `kind@at`.
+    pub name: String,
+    /// Its statistic.
+    pub statistic: Option<f64>,
+    /// Its family-wise p-value.
+    pub p_value: f64,
+    /// The error on unseen poses with it \[um\].
+    pub holdout_rms_um: Option<f64>,
+    /// Why it was not taken; empty where it was.
+    pub reason: String,
+}
+
+/// What is left unexplained.
+#[derive(Clone, Debug, Default)]
+pub struct Left {
+    /// The fraction of the residual variance that is not noise.
+    pub fraction: f64,
+    /// On what it depends.
+    pub depends_on: Vec<String>,
+    /// The tests for it.
+    pub tests: Vec<Structure>,
+}
+
+/// A test for structure in what is left.
+#[derive(Clone, Debug)]
+pub struct Structure {
+    /// What was tested.
+    pub name: String,
+    /// Its statistic.
+    pub statistic: f64,
+    /// The probability of so much under noise alone.
+    pub p_value: f64,
+}
+
+/// A measurement worth making.
+#[derive(Clone, Debug)]
+pub struct Next {
+    /// The pose, one number with its unit a joint.
+    pub pose: String,
+    /// The force's components \[N\].
+    pub force: String,
+    /// What it separates.
+    pub separates: [String; 2],
+}

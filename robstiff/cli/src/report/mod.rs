@@ -1,0 +1,64 @@
+//! `report.html`: one page that needs nothing beside it.
+//!
+//! No scripts, no network; a style sheet that serves light and dark screens and
+//! paper, and figures that can be read without colour.
+
+pub mod content;
+mod figure;
+mod html;
+mod sections;
+mod svg;
+#[cfg(test)]
+mod tests;
+
+use content::Report;
+use html::{escape, text};
+
+const STYLE: &str = include_str!("style.css");
+
+/// The page. Figures and tables say µm where other texts say um.
+pub fn html(report: &Report) -> String {
+    let body = [
+        heading(report),
+        sections::errors(report),
+        sections::poses(report),
+        sections::effects(report),
+        sections::compliances(report),
+        sections::left(report),
+        sections::next(report),
+        sections::search(report),
+        sections::origins(report),
+    ]
+    .concat();
+    let title = escape(&format!("{}: what the model lacks", report.robot));
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n"
+    )
+}
+
+fn heading(report: &Report) -> String {
+    let above = if report.campaign.is_empty() {
+        "Elastostatic model against measurements".to_owned()
+    } else {
+        format!("Elastostatic model against measurements: {}", report.campaign)
+    };
+    let mut page = format!("<header>\n{}{}", text("p", &above), text("h1", &report.robot));
+    if !report.description.is_empty() {
+        page += &text("p", &report.description);
+    }
+    page += "</header>\n";
+    let class = if report.settled { "finding" } else { "finding open" };
+    let summary: String = report.summary.iter().map(|sentence| text("p", &micro(sentence))).collect();
+    page + &format!(
+        "<section class=\"{class}\">\n<p class=\"headline\">{}.</p>\n{summary}<p><span class=\"verdict\">verdict: {}</span></p>\n</section>\n",
+        escape(&micro(&report.headline)),
+        escape(&report.verdict)
+    )
+}
+
+/// Units as print writes them, and numbers on the line of what they belong to.
+fn micro(text: &str) -> String {
+    text.replace(" um", "\u{a0}µm").replace("p < ", "p\u{a0}<\u{a0}").replace("p = ", "p\u{a0}=\u{a0}")
+}

@@ -1,0 +1,77 @@
+use super::content::{Candidate, Compliance, Effect, Next, Number, PoseError, Report, Residual, SearchStep, Stage};
+use super::html;
+
+/// A report in which every text tries to be markup, and numbers are missing.
+fn hostile() -> Report {
+    let bad = || "<script>alert(\"a & 'b'\")</script>".to_owned();
+    Report {
+        robot: bad(),
+        description: bad(),
+        campaign: bad(),
+        headline: bad(),
+        summary: vec![bad()],
+        verdict: bad(),
+        reading_um: f64::NAN,
+        noise_um: f64::INFINITY,
+        noise_source: bad(),
+        unseen: bad(),
+        rows: 2,
+        poses: 1,
+        stages: vec![Stage { name: bad(), remark: bad(), rms_um: f64::NAN, holdout_rms_um: f64::INFINITY }],
+        effects: vec![Effect {
+            name: bad(),
+            words: bad(),
+            numbers: vec![Number { name: bad(), value: f64::NAN, std: None, unit: bad() }],
+            p_value: f64::NAN,
+            holdout_rms_um: f64::NAN,
+            same_as: vec![bad()],
+        }],
+        compliances: vec![Compliance { name: bad(), unit: bad(), declared: 0.0, identified: None, after: None }],
+        errors: vec![PoseError {
+            id: bad(),
+            declared: f64::NAN,
+            identified: f64::NAN,
+            after: 0.0,
+            contribution: 1.0,
+            held_out: true,
+        }],
+        residuals: vec![Residual { before: [f64::NAN; 3], after: [0.0; 3] }],
+        steps: vec![SearchStep {
+            named: vec![bad()],
+            outcome: bad(),
+            candidates: vec![Candidate {
+                name: bad(),
+                statistic: None,
+                p_value: f64::NAN,
+                holdout_rms_um: None,
+                reason: bad(),
+            }],
+        }],
+        next: vec![Next { pose: bad(), force: bad(), separates: [bad(), bad()] }],
+        warnings: vec![bad()],
+        origins: vec![(bad(), bad())],
+        ..Report::default()
+    }
+}
+
+#[test]
+fn no_text_becomes_markup() {
+    let page = html(&hostile());
+    assert!(!page.contains("<script") && !page.contains("alert(\""));
+}
+
+#[test]
+fn no_number_becomes_nan() {
+    let page = html(&hostile());
+    assert!(!page.contains("NaN") && !page.contains("inf\""), "{page}");
+}
+
+#[test]
+fn nothing_is_loaded_from_elsewhere() {
+    for page in [html(&hostile()), html(&Report::default())] {
+        let page = page.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
+        for part in ["http:", "https:", "src=", "url(", "@import", "<link", "<script"] {
+            assert!(!page.contains(part), "{part}");
+        }
+    }
+}

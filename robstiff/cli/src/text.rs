@@ -1,0 +1,167 @@
+//! Text for people: numbers, and tables with aligned columns.
+
+use std::fmt;
+
+/// A number with so many significant digits, as short as it can be said.
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
+        return "-".to_owned();
+    }
+    let scientific = format!("{value:.*e}", digits.saturating_sub(1));
+    let (mantissa, exponent) = scientific.split_once('e').expect("that is how the format writes it");
+    let exponent: i32 = exponent.parse().expect("that is how the format writes it");
+    if (-3..=4).contains(&exponent) {
+        let decimals = usize::try_from(digits as i32 - 1 - exponent).unwrap_or(0);
+        let plain = format!("{value:.decimals$}");
+        return if plain.contains('.') { trimmed(&plain).to_owned() } else { plain };
+    }
+    let mantissa = if mantissa.contains('.') { trimmed(mantissa) } else { mantissa };
+    format!("{mantissa}e{exponent}")
+}
+
+fn trimmed(number: &str) -> &str {
+    number.trim_end_matches('0').trim_end_matches('.')
+}
+
+/// A number with so many decimals; what rounds to zero has no sign.
+pub fn decimals(value: f64, decimals: usize) -> String {
+    if !value.is_finite() {
+        return "-".to_owned();
+    }
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|byte| matches!(byte, b'0' | b'.')) => rest.to_owned(),
+        _ => text,
+    }
+}
+
+/// A number with its standard deviation, to two digits of that:
+/// `(6.31 ± 0.32)e-7`.
+pub fn uncertain(value: f64, std: f64) -> String {
+    if !(value.is_finite() && std.is_finite() && std > 0.0) {
+        return significant(value, 4);
+    }
+    let exponent = value.abs().max(std).log10().floor();
+    let scale = 10_f64.powf(-exponent);
+    let decimals = (1.0 - (std * scale).log10().floor()).clamp(0.0, 4.0) as usize;
+    let (value, std) = (value * scale, std * scale);
+    let suffix = if exponent == 0.0 { String::new() } else { format!("e{exponent}") };
+    format!("({value:.decimals$} ± {std:.decimals$}){suffix}")
+}
+
+/// A compliance in millionths of its unit with its standard deviation, to two
+/// digits of that: `0.637 ± 0.032`.
+pub fn millionths(value: f64, std: f64) -> String {
+    if !(value.is_finite() && std.is_finite() && std > 0.0) {
+        return significant(value * 1e6, 4);
+    }
+    let decimals = (1.0 - (std * 1e6).log10().floor()).clamp(0.0, 6.0) as usize;
+    format!("{:.decimals$} ± {:.decimals$}", value * 1e6, std * 1e6)
+}
+
+/// A probability; what the draws of a bootstrap resolve has three decimals.
+pub fn probability(p: f64) -> String {
+    if p < 0.001 { "< 0.001".to_owned() } else { decimals(p, 3) }
+}
+
+/// A length in m as micrometres without the unit.
+pub fn micrometres(length: f64) -> String {
+    decimals(length * 1e6, 1)
+}
+
+/// A count with its noun.
+pub fn count(number: usize, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+}
+
+/// Items as a sentence lists them: `a, b and c`.
+pub fn and(items: &[String]) -> String {
+    match items {
+        [] => String::new(),
+        [one] => one.clone(),
+        [start @ .., last] => format!("{} and {last}", start.join(", ")),
+    }
+}
+
+/// A table with aligned columns, indented by two.
+pub struct Table {
+    rows: Vec<Vec<String>>,
+    left: usize,
+}
+
+impl Table {
+    /// A table with a line of headings; the first `left` columns are words,
+    /// the others numbers, which line up at the right.
+    pub fn new<S: Into<String>>(left: usize, header: impl IntoIterator<Item = S>) -> Self {
+        Self { rows: vec![header.into_iter().map(Into::into).collect()], left }
+    }
+
+    /// Adds a row.
+    pub fn row<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) {
+        self.rows.push(cells.into_iter().map(Into::into).collect());
+    }
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
+        let width = |k: usize| self.rows.iter().filter_map(|row| row.get(k)).map(|cell| cell.chars().count()).max();
+        let widths: Vec<usize> = (0..columns).map(|k| width(k).unwrap_or(0)).collect();
+        for row in &self.rows {
+            let mut line = String::new();
+            for (k, cell) in row.iter().enumerate() {
+                let width = widths[k];
+                line += "  ";
+                line += &if k < self.left { format!("{cell:<width$}") } else { format!("{cell:>width$}") };
+            }
+            writeln!(f, "{}", line.trim_end())?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        let written = [2.97e-7, 0.012345, 1234.56, 3.367e6, 100.0, 0.0, -0.5, 10.0, f64::NAN, 99999.0];
+        let shown = written.map(|value| significant(value, 3));
+        assert_eq!(shown, ["2.97e-7", "0.0123", "1235", "3.37e6", "100", "0", "-0.5", "10", "-", "1e5"]);
+    }
+
+    #[test]
+    fn uncertainty_sets_the_digits() {
+        assert_eq!(uncertain(6.314e-7, 3.2e-8), "(6.31 ± 0.32)e-7");
+        assert_eq!(uncertain(2.0, 0.5), "(2.00 ± 0.50)");
+        assert_eq!(uncertain(-1e-8, 4e-7), "(-0.1 ± 4.0)e-7");
+        assert_eq!(uncertain(3e-7, f64::NAN), "3e-7");
+        assert_eq!(millionths(6.314e-7, 3.2e-8), "0.631 ± 0.032");
+        assert_eq!(millionths(4.9e-6, 4.1e-6), "4.9 ± 4.1");
+        assert_eq!(millionths(3e-7, f64::NAN), "0.3");
+    }
+
+    #[test]
+    fn zero_has_no_sign() {
+        assert_eq!(decimals(-0.0004, 3), "0.000");
+        assert_eq!(decimals(-0.0006, 3), "-0.001");
+    }
+
+    #[test]
+    fn columns_line_up() {
+        let mut table = Table::new(1, ["axis", "um"]);
+        table.row(["x", "10.5"]);
+        table.row(["long name", "7"]);
+        assert_eq!(table.to_string(), "  axis         um\n  x          10.5\n  long name     7\n");
+    }
+
+    #[test]
+    fn lists_read_as_sentences() {
+        let list = |items: &[&str]| and(&items.iter().map(|&item| item.to_owned()).collect::<Vec<_>>());
+        assert_eq!([list(&[]), list(&["a"]), list(&["a", "b", "c"])], ["", "a", "a, b and c"]);
+    }
+}

@@ -1,0 +1,199 @@
+//! What the report shows of a tracing.
+
+use robstiff::campaign::{Campaign, Data};
+use robstiff::identify::{Estimate, Visibility, predict};
+use robstiff::trace::{EffectParameter, NamedEffect, Options, RowResidual, Step, Tested, Trace, Verdict};
+
+use super::story;
+use crate::effect;
+use crate::failure::Failure;
+use crate::identify::source_of;
+use crate::report::content::{
+    Candidate, Compliance, Effect, Left, Next, Number, PoseError, Report, Residual, SearchStep, Stage, Structure,
+};
+use crate::text::{count, decimals};
+
+/// Brings together what the report shows.
+///
+/// # Errors
+/// What predicting the campaign says against it, which a campaign that was
+/// traced does not.
+pub fn report(trace: &Trace, campaign: &Campaign, options: &Options) -> Result<Report, Failure> {
+    Ok(Report {
+        robot: trace.robot.clone(),
+        description: campaign.robot.description.trim().to_owned(),
+        campaign: campaign.name.clone(),
+        headline: story::headline(trace),
+        summary: story::summary(trace),
+        verdict: trace.verdict.to_string(),
+        settled: matches!(trace.verdict, Verdict::Adequate | Verdict::Explained),
+        rows: trace.rows,
+        poses: trace.poses,
+        reading_um: trace.noise * 1e6,
+        noise_um: story::displacement_noise(trace) * 1e6,
+        noise_source: source_of(trace.noise_source).to_owned(),
+        unseen: story::unseen(trace),
+        stages: stages(trace),
+        effects: trace.effects.iter().map(named).collect(),
+        compliances: compliances(trace),
+        errors: errors(trace, campaign)?,
+        residuals: trace.residuals.iter().map(residual).collect(),
+        steps: trace.steps.iter().map(step).collect(),
+        left: Left {
+            fraction: trace.unexplained,
+            depends_on: trace.depends_on.clone(),
+            tests: trace
+                .structure
+                .iter()
+                .map(|test| Structure { name: test.name.clone(), statistic: test.statistic, p_value: test.p_value })
+                .collect(),
+        },
+        next: trace
+            .next
+            .iter()
+            .map(|next| Next {
+                pose: story::pose(next, &campaign.robot.joints),
+                force: next.force.map(|newton| decimals(newton, 0)).join(", "),
+                separates: next.separates.clone(),
+            })
+            .collect(),
+        warnings: campaign.warnings.clone(),
+        origins: origins(trace, campaign, options),
+    })
+}
+
+fn stages(trace: &Trace) -> Vec<Stage> {
+    let stage = |name: &str, remark: &str, misfit: &robstiff::trace::Misfit| Stage {
+        name: name.to_owned(),
+        remark: remark.to_owned(),
+        rms_um: misfit.rms * 1e6,
+        holdout_rms_um: misfit.holdout_rms * 1e6,
+    };
+    let mut stages = vec![
+        stage("As declared", "the description as it came", &trace.declared),
+        stage("Identified", "the same model, its compliances fitted again", &trace.identified),
+    ];
+    if !trace.effects.is_empty() {
+        let number = count(trace.effects.len(), "effect");
+        stages.push(stage("With effects", &format!("{number} added, everything fitted again"), &trace.after));
+    }
+    stages
+}
+
+fn named(named: &NamedEffect) -> Effect {
+    Effect {
+        name: named.effect.to_string(),
+        words: effect::words(&named.effect),
+        numbers: named.parameters.iter().map(number).collect(),
+        p_value: named.p_value,
+        holdout_rms_um: named.holdout_rms * 1e6,
+        same_as: named.same_as.clone(),
+    }
+}
+
+fn number(parameter: &EffectParameter) -> Number {
+    let EffectParameter { name, value, std, unit } = *parameter;
+    Number { name: name.to_owned(), value, std, unit: unit.to_owned() }
+}
+
+fn compliances(trace: &Trace) -> Vec<Compliance> {
+    let seen = |estimate: &Estimate| {
+        (estimate.visibility == Visibility::Seen).then(|| (estimate.value, estimate.std.unwrap_or(f64::NAN)))
+    };
+    let pairs = trace.estimates_before.iter().zip(&trace.estimates);
+    let one = |(before, after): (&Estimate, &Estimate)| Compliance {
+        name: before.name.clone(),
+        unit: before.unit.to_owned(),
+        declared: before.declared,
+        identified: seen(before),
+        after: seen(after),
+    };
+    pairs.map(one).collect()
+}
+
+/// The errors of every pose, in the campaign's order.
+fn errors(trace: &Trace, campaign: &Campaign) -> Result<Vec<PoseError>, Failure> {
+    let Data::Displacement(data) = &campaign.data else {
+        unreachable!("only campaigns of displacements are traced");
+    };
+    let declared = predict(&campaign.robot, campaign)?;
+    let mut without_effects = trace.description.clone();
+    without_effects.effects.truncate(campaign.robot.effects.len());
+    let (with, without) = (predict(&trace.description, campaign)?, predict(&without_effects, campaign)?);
+
+    let mut sums = vec![Sums::default(); data.poses.len()];
+    for (index, residual) in trace.residuals.iter().enumerate() {
+        let sum = &mut sums[residual.pose];
+        sum.rows += 1;
+        sum.declared += declared.rows[index].error().powi(2);
+        sum.identified += mean_square(residual.before);
+        sum.after += mean_square(residual.after);
+        let (with, without) = (with.rows[index].predicted, without.rows[index].predicted);
+        sum.contribution += mean_square(std::array::from_fn(|axis| with[axis] - without[axis]));
+    }
+    let error = |(id, sum): (&String, &Sums)| PoseError {
+        id: id.clone(),
+        declared: sum.rms_um(sum.declared),
+        identified: sum.rms_um(sum.identified),
+        after: sum.rms_um(sum.after),
+        contribution: sum.rms_um(sum.contribution),
+        held_out: trace.held_out.contains(id),
+    };
+    Ok(data.poses.iter().zip(&sums).map(error).collect())
+}
+
+/// Squares of one axis, summed over the rows of a pose \[m^2\].
+#[derive(Clone, Default)]
+struct Sums {
+    rows: usize,
+    declared: f64,
+    identified: f64,
+    after: f64,
+    contribution: f64,
+}
+
+impl Sums {
+    fn rms_um(&self, sum: f64) -> f64 {
+        (sum / self.rows.max(1) as f64).sqrt() * 1e6
+    }
+}
+
+fn mean_square(vector: [f64; 3]) -> f64 {
+    vector.iter().map(|component| component * component).sum::<f64>() / 3.0
+}
+
+fn residual(row: &RowResidual) -> Residual {
+    Residual { before: row.before.map(|metres| metres * 1e6), after: row.after.map(|metres| metres * 1e6) }
+}
+
+fn step(step: &Step) -> SearchStep {
+    let mut candidates: Vec<&Tested> = step.candidates.iter().collect();
+    candidates.sort_by(|a, b| b.statistic.unwrap_or(0.0).total_cmp(&a.statistic.unwrap_or(0.0)));
+    let candidate = |tested: &&Tested| Candidate {
+        name: tested.name.clone(),
+        statistic: tested.statistic,
+        p_value: tested.p_value,
+        holdout_rms_um: tested.holdout_rms.map(|rms| rms * 1e6),
+        reason: tested.reason.clone(),
+    };
+    SearchStep {
+        named: step.named.clone(),
+        outcome: step.outcome.clone(),
+        candidates: candidates.iter().map(candidate).collect(),
+    }
+}
+
+fn origins(trace: &Trace, campaign: &Campaign, options: &Options) -> Vec<(String, String)> {
+    let mut origins =
+        vec![("Campaign", campaign.path.display().to_string()), ("Robot", campaign.robot_path.display().to_string())];
+    if !campaign.robot.source.trim().is_empty() {
+        origins.push(("Source of the description", campaign.robot.source.trim().to_owned()));
+    }
+    if !trace.held_out.is_empty() {
+        origins.push(("Poses held out", trace.held_out.join(", ")));
+    }
+    let tests = format!("level {}, {} bootstrap draws, seed {}", options.alpha, options.draws, options.seed);
+    origins.push(("Tests", tests));
+    origins.push(("Program", format!("robstiff {}", env!("CARGO_PKG_VERSION"))));
+    origins.into_iter().map(|(name, text)| (name.to_owned(), text)).collect()
+}

@@ -1,0 +1,62 @@
+//! `trace.json`.
+
+use robstiff::JointKind;
+use robstiff::campaign::Campaign;
+use robstiff::trace::{Misfit, NamedEffect, Proposal, Trace};
+use serde_json::{Value, json};
+
+use crate::json::{number, numbers};
+
+/// The result for other programs.
+pub fn document(trace: &Trace, campaign: &Campaign) -> Value {
+    json!({
+        "robot": trace.robot,
+        "rows": trace.rows,
+        "poses": trace.poses,
+        "noise_um": number(trace.noise * 1e6),
+        "before": {"declared": misfit(&trace.declared), "identified": misfit(&trace.identified)},
+        "effects": trace.effects.iter().map(effect).collect::<Value>(),
+        "after": misfit(&trace.after),
+        "verdict": trace.verdict.to_string(),
+        "why": trace.why,
+        "unexplained": {"fraction": number(trace.unexplained), "depends_on": trace.depends_on},
+        "next": trace.next.iter().map(|next| proposal(next, campaign)).collect::<Value>(),
+    })
+}
+
+fn misfit(misfit: &Misfit) -> Value {
+    json!({"rms_um": number(misfit.rms * 1e6), "holdout_rms_um": number(misfit.holdout_rms * 1e6)})
+}
+
+fn effect(named: &NamedEffect) -> Value {
+    let parameters = named.parameters.iter().map(|parameter| {
+        json!({
+            "name": parameter.name,
+            "value": number(parameter.value),
+            "std": parameter.std.map(number),
+            "unit": parameter.unit,
+        })
+    });
+    json!({
+        "kind": named.effect.kind(),
+        "at": named.effect.place().to_string(),
+        "parameters": parameters.collect::<Value>(),
+        "p_value": number(named.p_value),
+        "holdout_rms_um": number(named.holdout_rms * 1e6),
+        "same_as": named.same_as,
+        "partial": named.partial,
+    })
+}
+
+/// Degrees for joints that turn; one that slides has its millimetres there.
+fn proposal(next: &Proposal, campaign: &Campaign) -> Value {
+    let coordinates = next.q.iter().zip(&campaign.robot.joints).map(|(&q, joint)| match joint.kind {
+        JointKind::Revolute => q.to_degrees(),
+        JointKind::Prismatic => q * 1e3,
+    });
+    json!({
+        "q_deg": numbers(coordinates),
+        "force_N": numbers(next.force),
+        "separates": next.separates,
+    })
+}

@@ -1,0 +1,86 @@
+//! `robstiff trace`: the closed loop, from the residual to the effect that the
+//! model lacks.
+
+mod content;
+mod document;
+mod story;
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use robstiff::trace::{Options, trace};
+
+use crate::failure::Failure;
+use crate::output::{self, Files};
+use crate::{input, json, report};
+
+/// Finds the effects that a description lacks, adds them, and reports the error before and after
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The campaign
+    #[arg(value_name = "CAMPAIGN.yaml")]
+    campaign: PathBuf,
+    /// The folder for `robot.yaml`, `trace.json` and `report.html`
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Write `trace.json` to FILE as well
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Seed of the bootstrap; one seed gives one result
+    #[arg(long, default_value_t = Options::default().seed)]
+    seed: u64,
+    /// Bootstrap draws; a p-value is no smaller than one over their number
+    #[arg(long, default_value_t = Options::default().draws as u32, value_parser = clap::value_parser!(u32).range(99..=1_000_000))]
+    draws: u32,
+    /// Level of the tests, over all candidates together
+    #[arg(long, default_value_t = Options::default().alpha, value_parser = level)]
+    alpha: f64,
+}
+
+fn level(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(level) if level > 0.0 && level < 1.0 => Ok(level),
+        _ => Err("a level is a number between 0 and 1".to_owned()),
+    }
+}
+
+/// Traces the campaign.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let options = Options { seed: arguments.seed, draws: arguments.draws as usize, alpha: arguments.alpha };
+    if 1.0 / f64::from(arguments.draws + 1) > options.alpha {
+        return Err(Failure::Usage(format!(
+            "{} draws resolve no level of {}; at least {:.0} are needed",
+            arguments.draws,
+            options.alpha,
+            options.alpha.recip().ceil()
+        )));
+    }
+    let campaign = input::campaign(&arguments.campaign)?;
+    let spinner = spinner();
+    let traced = trace(&campaign, &options, &|stage| spinner.set_message(stage.to_owned()));
+    spinner.finish_and_clear();
+    let traced = traced?;
+
+    let document = json::document(&document::document(&traced, &campaign));
+    let report = content::report(&traced, &campaign, &options)?;
+    let mut files = Files::default();
+    files.protect_campaign(&campaign);
+    files.add(arguments.out.join("robot.yaml"), traced.description.to_yaml());
+    if let Some(path) = &arguments.json {
+        files.add(path, document.clone());
+    }
+    files.add(arguments.out.join("trace.json"), document);
+    files.add(arguments.out.join("report.html"), report::html(&report));
+    let said = files.write()?;
+    output::print(story::page(&traced) + "\n" + &said)
+}
+
+/// Shows on a terminal that something goes on, and hides elsewhere.
+fn spinner() -> ProgressBar {
+    let spinner = ProgressBar::new_spinner();
+    let style = ProgressStyle::with_template("{spinner} {msg} ({elapsed})").expect("the template is one");
+    spinner.set_style(style);
+    spinner.enable_steady_tick(Duration::from_millis(100));
+    spinner
+}

@@ -1,0 +1,189 @@
+//! The rows of a campaign of kind `displacement`.
+
+use std::borrow::ToOwned;
+use std::format;
+use std::string::String;
+use std::vec::Vec;
+
+use robstiff_robots::Description;
+use robstiff_robots::quantity::Dimension;
+
+use super::table::{Numbers, Record, Table};
+use super::{Displacements, Frame, Observation};
+use crate::JointKind;
+
+/// Rows of one pose have the same joint coordinates within this (rad or m).
+const SAME_POSE: f64 = 1e-6;
+
+/// The columns of the table.
+struct Columns {
+    pose: usize,
+    visit: Option<usize>,
+    time: Option<Numbers>,
+    temperature: Option<Numbers>,
+    q: Vec<Numbers>,
+    force: [Numbers; 3],
+    moment: [Option<Numbers>; 3],
+    displacement: [Numbers; 3],
+    rotation: Option<[Numbers; 3]>,
+}
+
+/// Reads the rows; `None` with the problems reported to the table.
+pub fn read(
+    table: &Table<'_>,
+    robot: &Description,
+    (wrench_frame, wrench_at): (Frame, [f64; 3]),
+    (measured_frame, measured_at): (Frame, [f64; 3]),
+) -> Option<Displacements> {
+    let columns = columns(table, robot)?;
+    let mut data = Displacements {
+        wrench_frame,
+        wrench_at,
+        measured_frame,
+        measured_at,
+        poses: Vec::new(),
+        visits: Vec::new(),
+        rows: Vec::new(),
+    };
+    // The row that first named a pose or a visit, which later rows must match.
+    let (mut of_pose, mut of_visit): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
+    let mut complete = true;
+    for record in &table.records {
+        let pose = index_of(&mut data.poses, table.text(record, columns.pose));
+        let visit = match columns.visit {
+            Some(column) => index_of(&mut data.visits, table.text(record, column)),
+            None => {
+                data.visits.push(format!("line {}", record.line));
+                data.visits.len() - 1
+            }
+        };
+        let Some(row) = observation(table, &columns, record, pose, visit) else {
+            complete = false;
+            // Pose and visit stay without a row to compare with.
+            of_pose.resize(data.poses.len(), usize::MAX);
+            of_visit.resize(data.visits.len(), usize::MAX);
+            continue;
+        };
+        first(&mut of_pose, pose, data.rows.len());
+        first(&mut of_visit, visit, data.rows.len());
+        check_pose(table, &columns, record, &row, data.rows.get(of_pose[pose]));
+        let started = data.rows.get(of_visit[visit]).map(|row: &Observation| row.pose);
+        if let (Some(column), Some(started)) = (columns.visit, started)
+            && started != pose
+        {
+            let (visit, started, pose) = (&data.visits[visit], &data.poses[started], &data.poses[pose]);
+            table.report(
+                record.line,
+                column,
+                &format!("visit `{visit}` began at pose `{started}`, this row is at pose `{pose}`"),
+                "a visit is one load sequence at one pose; give each its own id",
+            );
+        }
+        data.rows.push(row);
+    }
+    complete.then_some(data)
+}
+
+fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
+    let coordinate = |(i, kind): (usize, JointKind)| {
+        let dimension = if kind == JointKind::Revolute { Dimension::Angle } else { Dimension::Length };
+        table.require(&format!("q{}", i + 1), dimension)
+    };
+    let all = |names: [&str; 3], dimension| {
+        let found = names.map(|name| table.require(name, dimension));
+        Some([found[0]?, found[1]?, found[2]?])
+    };
+    let pose = table.require_name("pose");
+    let visit = table.position("visit");
+    let time = table.numbers("time", Dimension::Time);
+    let temperature = table.numbers("temperature", Dimension::Temperature);
+    // Collected twice so that every missing column is reported, not the first.
+    let q: Vec<Option<Numbers>> = robot.joints.iter().map(|joint| joint.kind).enumerate().map(coordinate).collect();
+    let force = all(["Fx", "Fy", "Fz"], Dimension::Force);
+    let moment = ["Mx", "My", "Mz"].map(|name| table.numbers(name, Dimension::Torque));
+    let displacement = all(["dx", "dy", "dz"], Dimension::Length);
+    let turns = ["rx", "ry", "rz"];
+    let rotation = match turns.iter().any(|name| table.position(name).is_some()) {
+        true => Some(all(turns, Dimension::Angle)?),
+        false => None,
+    };
+    let q: Option<Vec<Numbers>> = q.into_iter().collect();
+    Some(Columns {
+        pose: pose?,
+        visit,
+        time,
+        temperature,
+        q: q?,
+        force: force?,
+        moment,
+        displacement: displacement?,
+        rotation,
+    })
+}
+
+/// One row; every number is checked before any gives it up.
+fn observation(
+    table: &Table<'_>,
+    columns: &Columns,
+    record: &Record,
+    pose: usize,
+    visit: usize,
+) -> Option<Observation> {
+    let optional = |column: Option<Numbers>| column.map(|column| table.number(record, column));
+    let time = optional(columns.time);
+    let temperature = optional(columns.temperature);
+    let q: Vec<Option<f64>> = columns.q.iter().map(|&column| table.number(record, column)).collect();
+    let force = table.all(record, columns.force);
+    let moment = columns.moment.map(|column| column.map_or(Some(0.0), |column| table.number(record, column)));
+    let displacement = table.all(record, columns.displacement);
+    let rotation = columns.rotation.map(|rotation| table.all(record, rotation));
+    if time == Some(None) || temperature == Some(None) || rotation == Some(None) {
+        return None;
+    }
+    let (force, q) = (force?, q.into_iter().collect::<Option<Vec<f64>>>()?);
+    Some(Observation {
+        line: record.line,
+        pose,
+        visit,
+        time: time.flatten(),
+        temperature: temperature.flatten(),
+        q,
+        wrench: [force[0], force[1], force[2], moment[0]?, moment[1]?, moment[2]?],
+        displacement: displacement?,
+        rotation: rotation.flatten(),
+    })
+}
+
+/// The same pose id means the same joint coordinates.
+fn check_pose(table: &Table<'_>, columns: &Columns, record: &Record, row: &Observation, first: Option<&Observation>) {
+    let Some(first) = first else { return };
+    for (i, (here, there)) in row.q.iter().zip(&first.q).enumerate() {
+        if (here - there).abs() > SAME_POSE {
+            let pose = table.text(record, columns.pose);
+            table.report_number(
+                record,
+                columns.q[i],
+                &format!("pose `{pose}` has another q{} in line {}", i + 1, first.line),
+                "rows of one pose have the same joint coordinates; give another pose another id",
+            );
+        }
+    }
+}
+
+fn first(rows: &mut Vec<usize>, index: usize, row: usize) {
+    if rows.len() <= index {
+        rows.resize(index + 1, usize::MAX);
+    }
+    if rows[index] == usize::MAX {
+        rows[index] = row;
+    }
+}
+
+/// The index of an id, new ones at the end.
+fn index_of(ids: &mut Vec<String>, id: &str) -> usize {
+    // Ids come in runs, so the last ones are the likely ones.
+    ids.iter().rposition(|known| known == id).unwrap_or_else(|| {
+        ids.push(id.to_owned());
+        ids.len() - 1
+    })
+}

@@ -1,0 +1,186 @@
+//! Reading a campaign: the YAML file that says what was measured.
+
+use std::borrow::ToOwned;
+use std::format;
+use std::path::Path;
+use std::string::{String, ToString};
+
+use robstiff_robots::document::{Document, Map};
+use robstiff_robots::quantity::Dimension;
+use robstiff_robots::{Description, ReadError};
+
+use super::table::Table;
+use super::{Campaign, Data, Frame, Holdout, Noise, clamped, displacements};
+
+/// The fields of a campaign file.
+const FIELDS: [&str; 8] = ["name", "robot", "observations", "kind", "wrench", "measured", "noise", "holdout"];
+
+/// What the observations are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Displacement,
+    Position,
+    Clamped,
+}
+
+/// What the YAML file says.
+struct Plan {
+    name: String,
+    robot: String,
+    observations: String,
+    kind: Kind,
+    wrench: (Frame, [f64; 3]),
+    measured: (Frame, [f64; 3]),
+    noise: Noise,
+    holdout: Option<Holdout>,
+}
+
+impl Campaign {
+    /// Reads a campaign, its robot and its observations.
+    ///
+    /// # Errors
+    /// A file that cannot be read; everything that is wrong with the first
+    /// file that has problems (campaign, robot, observations), each problem at
+    /// its place.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
+        let path = path.as_ref();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let document = Document::parse(&path.display().to_string(), &text_of(path)?).map_err(ReadError::Invalid)?;
+        let plan = plan(&document, folder);
+        let plan = document.finish(plan).map_err(ReadError::Invalid)?;
+
+        let robot_path = folder.join(&plan.robot);
+        let robot = Description::read(&robot_path)?;
+        let table_path = folder.join(&plan.observations);
+        let (table_name, text) = (table_path.display().to_string(), text_of(&table_path)?);
+        let table = Table::parse(&table_name, &text).map_err(ReadError::Invalid)?;
+        let data = match plan.kind {
+            Kind::Displacement => {
+                displacements::read(&table, &robot, plan.wrench, plan.measured).map(Data::Displacement)
+            }
+            Kind::Clamped => clamped::read(&table, &robot).map(Data::Clamped),
+            Kind::Position => unreachable!("refused with the file's other problems"),
+        };
+        let (data, warnings) = table.finish(data).map_err(ReadError::Invalid)?;
+        Ok(Self {
+            name: plan.name,
+            path: path.to_owned(),
+            robot_path,
+            robot,
+            data,
+            noise: plan.noise,
+            holdout: plan.holdout,
+            warnings,
+        })
+    }
+}
+
+/// The text of a file; a byte order mark, as spreadsheets write it, is no part
+/// of it.
+fn text_of(path: &Path) -> Result<String, ReadError> {
+    let text = std::fs::read_to_string(path).map_err(|error| ReadError::Io { path: path.to_owned(), error })?;
+    Ok(text.strip_prefix('\u{feff}').map(ToOwned::to_owned).unwrap_or(text))
+}
+
+fn plan(document: &Document, folder: &Path) -> Option<Plan> {
+    let map = document.root().map(&FIELDS)?;
+    let kinds = [("displacement", Kind::Displacement), ("position", Kind::Position), ("clamped", Kind::Clamped)];
+    let name = match map.get("name") {
+        Some(name) => name.text().map(ToOwned::to_owned),
+        None => Some(String::new()),
+    };
+    let robot = file(&map, "robot", "robot: robot.yaml", folder);
+    let observations = file(&map, "observations", "observations: loads.csv", folder);
+    let kind = map.require("kind", "kind: displacement").and_then(|node| {
+        let kind = node.choice(&kinds)?;
+        if kind == Kind::Position {
+            node.error(
+                "campaigns of kind `position` are not supported yet",
+                "give loaded minus unloaded displacements and write `kind: displacement`",
+            );
+            return None;
+        }
+        Some(kind)
+    });
+    let wrench = place(&map, "wrench");
+    let measured = place(&map, "measured");
+    let noise = noise(&map);
+    let holdout = holdout(&map);
+    Some(Plan {
+        name: name?,
+        robot: robot?,
+        observations: observations?,
+        kind: kind?,
+        wrench: wrench?,
+        measured: measured?,
+        noise: noise?,
+        holdout: holdout?,
+    })
+}
+
+/// A file that the campaign names, by its path from the campaign's folder.
+fn file(map: &Map<'_>, field: &str, example: &str, folder: &Path) -> Option<String> {
+    let node = map.require(field, example)?;
+    let name = node.text()?;
+    let path = folder.join(name);
+    if !path.is_file() {
+        node.error(
+            format!("there is no file {}", path.display()),
+            "write the path from the folder of this campaign file".to_string(),
+        );
+        return None;
+    }
+    Some(name.to_owned())
+}
+
+/// `{frame: base, at: tcp}`; left out, that is what it is.
+fn place(map: &Map<'_>, field: &str) -> Option<(Frame, [f64; 3])> {
+    let Some(node) = map.get(field) else { return Some((Frame::Base, [0.0; 3])) };
+    let place = node.map(&["frame", "at"])?;
+    let frame = match place.get("frame") {
+        Some(frame) => frame.choice(&[("base", Frame::Base), ("tool", Frame::Tool)]),
+        None => Some(Frame::Base),
+    };
+    let at = match place.get("at") {
+        Some(at) if at.is_sequence() => at.quantities::<3>(Dimension::Length),
+        Some(at) => at.choice(&[("tcp", [0.0; 3])]),
+        None => Some([0.0; 3]),
+    };
+    Some((frame?, at?))
+}
+
+fn noise(map: &Map<'_>) -> Option<Noise> {
+    let Some(node) = map.get("noise") else { return Some(Noise::default()) };
+    let noise = node.map(&["displacement", "rotation"])?;
+    let one = |field: &str, dimension| noise.get(field).map(|node| node.positive(dimension));
+    let (displacement, rotation) = (one("displacement", Dimension::Length), one("rotation", Dimension::Angle));
+    if displacement == Some(None) || rotation == Some(None) {
+        return None;
+    }
+    Some(Noise { displacement: displacement.flatten(), rotation: rotation.flatten() })
+}
+
+#[allow(clippy::option_option, reason = "the outer one is a problem, the inner one a field left out")]
+fn holdout(map: &Map<'_>) -> Option<Option<Holdout>> {
+    let Some(node) = map.get("holdout") else { return Some(None) };
+    let holdout = node.map(&["fraction", "seed"])?;
+    let fraction = holdout.require("fraction", "fraction: 0.25").and_then(|node| {
+        let fraction = node.quantity(Dimension::Number)?;
+        if !(fraction > 0.0 && fraction < 1.0) {
+            node.error("a fraction of the poses between 0 and 1 is expected here", "e.g. `0.25`");
+            return None;
+        }
+        Some(fraction)
+    });
+    let seed = match holdout.get("seed") {
+        Some(node) => node.integer().and_then(|seed| {
+            let positive = u64::try_from(seed).ok();
+            if positive.is_none() {
+                node.error("a seed is not negative", "e.g. `1`");
+            }
+            positive
+        }),
+        None => Some(0),
+    };
+    Some(Some(Holdout { fraction: fraction?, seed: seed? }))
+}

@@ -1,0 +1,277 @@
+//! A CSV file as a table of checked numbers, every problem at its place.
+
+use core::cell::RefCell;
+use std::borrow::ToOwned;
+use std::format;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use robstiff_robots::quantity::{Dimension, scale};
+use robstiff_robots::{Diagnostic, Diagnostics};
+
+/// Problems beyond this many are not recorded: nobody reads them, and a column
+/// that is wrong is wrong in every row.
+const MOST_PROBLEMS: usize = 100;
+
+/// A table, and the problems found in it so far.
+pub struct Table<'t> {
+    file: &'t str,
+    lines: Vec<&'t str>,
+    header: Vec<Header>,
+    /// The rows below the header; all as long as it.
+    pub records: Vec<Record>,
+    asked_for: RefCell<Vec<usize>>,
+    problems: RefCell<Vec<Diagnostic>>,
+}
+
+/// `name [unit]`.
+struct Header {
+    name: String,
+    unit: Option<String>,
+}
+
+/// One row.
+pub struct Record {
+    /// The line of the file, from 1.
+    pub line: usize,
+    fields: Vec<String>,
+}
+
+/// A column of numbers: where it is, and what makes its unit SI.
+#[derive(Clone, Copy, Debug)]
+pub struct Numbers {
+    index: usize,
+    scale: f64,
+}
+
+impl<'t> Table<'t> {
+    /// Reads a table; `file` is the name that problems show.
+    ///
+    /// # Errors
+    /// A file without a header or without rows.
+    pub fn parse(file: &'t str, text: &'t str) -> Result<Self, Diagnostics> {
+        let mut table = Self {
+            file,
+            lines: text.lines().collect(),
+            header: Vec::new(),
+            records: Vec::new(),
+            asked_for: RefCell::default(),
+            problems: RefCell::default(),
+        };
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .trim(csv::Trim::All)
+            .from_reader(text.as_bytes());
+        let mut rows = reader.records();
+        let Some(Ok(header)) = rows.next() else {
+            return Err(table.problem(1, 0, "the file is empty", "the first line names the columns").into());
+        };
+        let line = header.position().map_or(1, csv::Position::line) as usize;
+        table.header = header.iter().map(Header::parse).collect();
+        table.check_header(line);
+        for row in rows {
+            match row {
+                Ok(row) => table.push(&row),
+                Err(error) => table.report(1, 0, &format!("this is not CSV: {error}"), ""),
+            }
+        }
+        if table.records.is_empty() && table.problems.borrow().is_empty() {
+            return Err(table.problem(line, 0, "there are no rows", "each line below the header is one row").into());
+        }
+        Ok(table)
+    }
+
+    fn check_header(&self, line: usize) {
+        for (i, header) in self.header.iter().enumerate() {
+            if header.name.is_empty() {
+                self.report(line, i, "a column without a name", "write `name [unit]` or `name`");
+            } else if self.header[..i].iter().any(|before| before.name == header.name) {
+                self.report(line, i, &format!("the column `{}` is there twice", header.name), "keep one of them");
+            }
+        }
+    }
+
+    fn push(&mut self, row: &csv::StringRecord) {
+        let line = row.position().map_or(1, csv::Position::line) as usize;
+        let (expected, found) = (self.header.len(), row.len());
+        if found == expected {
+            self.records.push(Record { line, fields: row.iter().map(ToOwned::to_owned).collect() });
+        } else {
+            let message = format!("this row has {found} fields, the header has {expected}");
+            self.report(
+                line,
+                found.min(expected),
+                &message,
+                "give every row one field a column, with a point as decimal sign",
+            );
+        }
+    }
+
+    /// A column of numbers; `None` where there is none or where its unit is
+    /// wrong, which is reported.
+    pub fn numbers(&self, name: &str, dimension: Dimension) -> Option<Numbers> {
+        let index = self.position(name)?;
+        let scale = match &self.header[index].unit {
+            None => Ok(1.0),
+            Some(unit) => scale(unit, dimension),
+        };
+        match scale {
+            Ok(scale) => Some(Numbers { index, scale }),
+            Err(error) => {
+                self.report(1, index, &error.message, &error.help);
+                None
+            }
+        }
+    }
+
+    /// A column of numbers whose absence is reported.
+    pub fn require(&self, name: &str, dimension: Dimension) -> Option<Numbers> {
+        self.require_name(name)?;
+        self.numbers(name, dimension)
+    }
+
+    /// The index of a column of ids whose absence is reported.
+    pub fn require_name(&self, name: &str) -> Option<usize> {
+        let index = self.position(name);
+        if index.is_none() {
+            let names: Vec<_> = self.header.iter().map(|header| format!("`{}`", header.name)).collect();
+            let help = format!("the header line has {}", names.join(", "));
+            self.report(1, 0, &format!("the column `{name}` is missing"), &help);
+        }
+        index
+    }
+
+    /// The index of a column.
+    pub fn position(&self, name: &str) -> Option<usize> {
+        let index = self.header.iter().position(|header| header.name == name)?;
+        self.asked_for.borrow_mut().push(index);
+        Some(index)
+    }
+
+    /// A number of a row in SI; what is not a finite number is reported.
+    pub fn number(&self, record: &Record, column: Numbers) -> Option<f64> {
+        let text = &record.fields[column.index];
+        let problem = match text.parse::<f64>() {
+            Ok(number) if number.is_finite() => return Some(number * column.scale),
+            Ok(_) => format!("`{text}` is not finite"),
+            Err(_) if text.is_empty() => "a number is missing".to_owned(),
+            Err(_) => format!("`{text}` is not a number"),
+        };
+        let name = &self.header[column.index].name;
+        self.report(
+            record.line,
+            column.index,
+            &problem,
+            &format!("the column `{name}` holds finite numbers, e.g. `0.25`"),
+        );
+        None
+    }
+
+    /// The numbers of several columns, all checked.
+    pub fn all<const K: usize>(&self, record: &Record, columns: [Numbers; K]) -> Option<[f64; K]> {
+        let numbers = columns.map(|column| self.number(record, column));
+        numbers.iter().all(Option::is_some).then(|| numbers.map(Option::unwrap_or_default))
+    }
+
+    /// The text of a row in a column.
+    pub fn text<'r>(&self, record: &'r Record, index: usize) -> &'r str {
+        &record.fields[index]
+    }
+
+    /// Reports a problem with a field (by its index) of a line.
+    pub fn report(&self, line: usize, field: usize, message: &str, help: &str) {
+        if self.problems.borrow().len() < MOST_PROBLEMS {
+            let problem = self.problem(line, field, message, help);
+            self.problems.borrow_mut().push(problem);
+        }
+    }
+
+    /// Reports a problem with a row in a column of numbers.
+    pub fn report_number(&self, record: &Record, column: Numbers, message: &str, help: &str) {
+        self.report(record.line, column.index, message, help);
+    }
+
+    fn problem(&self, line: usize, field: usize, message: &str, help: &str) -> Diagnostic {
+        let source_line = self.lines.get(line - 1).copied().unwrap_or_default();
+        let (column, width) = extent(source_line, field);
+        Diagnostic {
+            file: self.file.to_owned(),
+            line,
+            column,
+            width,
+            path: String::new(),
+            message: message.to_owned(),
+            help: help.to_owned(),
+            source_line: source_line.to_owned(),
+        }
+    }
+
+    /// What was read with the warnings, if no problem was found on the way.
+    ///
+    /// # Errors
+    /// All the problems found.
+    ///
+    /// # Panics
+    /// If there is neither a value nor a problem.
+    pub fn finish<T>(self, value: Option<T>) -> Result<(T, Vec<String>), Diagnostics> {
+        if let Some(problems) = Diagnostics::new(self.problems.into_inner()) {
+            return Err(problems);
+        }
+        let asked_for = self.asked_for.into_inner();
+        let unknown = self.header.iter().enumerate().filter(|(i, _)| !asked_for.contains(i));
+        let warnings = unknown.map(|(_, header)| format!("{}: the column `{}` is not used", self.file, header.name));
+        Ok((value.expect("a value was given up without a problem being reported"), warnings.collect()))
+    }
+}
+
+impl Header {
+    fn parse(text: &str) -> Self {
+        let (name, unit) = match text.split_once('[') {
+            Some((name, rest)) => (name, Some(rest.trim_end().trim_end_matches(']').trim().to_string())),
+            None => (text, None),
+        };
+        Self { name: name.trim().to_owned(), unit }
+    }
+}
+
+/// Where a field is in its line: its column in characters from 1, and its
+/// width.
+fn extent(line: &str, field: usize) -> (usize, usize) {
+    let (mut quoted, mut index, mut column, mut width) = (false, 0, 1, 0);
+    for (i, character) in line.chars().enumerate() {
+        match character {
+            '"' => quoted = !quoted,
+            ',' if !quoted => {
+                if index == field {
+                    break;
+                }
+                index += 1;
+                (column, width) = (i + 2, 0);
+                continue;
+            }
+            _ => {}
+        }
+        width += 1;
+    }
+    if index < field { (1, line.chars().count()) } else { (column, width) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_are_found_in_their_line() {
+        assert_eq!(extent("1,abc,3", 1), (3, 3));
+        assert_eq!(extent("\"a,b\",x", 1), (7, 1));
+        assert_eq!(extent("1,2", 5), (1, 3));
+    }
+
+    #[test]
+    fn headers_have_names_and_units() {
+        let header = Header::parse("q1 [deg] ");
+        assert_eq!((header.name.as_str(), header.unit.as_deref()), ("q1", Some("deg")));
+        assert_eq!(Header::parse("pose").unit, None);
+    }
+}

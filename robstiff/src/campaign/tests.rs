@@ -1,0 +1,143 @@
+//! Campaigns as people write them, right and wrong.
+
+use std::borrow::ToOwned;
+use std::format;
+use std::path::{Path, PathBuf};
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use super::*;
+
+const ROBOT: &str = "name: Two
+convention: standard
+joints:
+  - {a: 1 m, compliance: 1e-6}
+  - {a: 500 mm, alpha: 90 deg, compliance: 2e-6}
+";
+const CAMPAIGN: &str = "name: bench
+robot: robot.yaml
+observations: loads.csv
+kind: displacement
+";
+const HEADER: &str = "pose,visit,q1 [deg],q2,Fx,Fy [kN],Fz,dx [um],dy [mm],dz";
+
+/// A folder of its own under the system's, removed at the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str, campaign: &str, table: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("robstiff-campaign-{}-{name}", std::process::id()));
+        std::fs::create_dir_all(&path).expect("a temporary folder");
+        let write = |file: &str, text: &str| std::fs::write(path.join(file), text).expect("a temporary file");
+        write("robot.yaml", ROBOT);
+        write("campaign.yaml", campaign);
+        write("loads.csv", table);
+        Self(path)
+    }
+
+    fn read(&self) -> Result<Campaign, ReadError> {
+        Campaign::read(self.0.join("campaign.yaml"))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// The problems of a table as `line:column message`.
+fn problems(name: &str, campaign: &str, table: &str) -> Vec<String> {
+    match Folder::new(name, campaign, table).read() {
+        Err(ReadError::Invalid(problems)) => {
+            problems.iter().map(|p| format!("{}:{} {}", p.line, p.column, p.message)).collect()
+        }
+        Err(other) => std::vec![other.to_string()],
+        Ok(_) => Vec::new(),
+    }
+}
+
+#[test]
+fn units_byte_order_marks_and_carriage_returns_are_read() {
+    let table = format!("\u{feff}{HEADER},note\r\na,v,90,0.5,1,2,3,4,5,6,hello\r\nb,w,0,0,1,2,3,4,5,6,\r\n");
+    let folder = Folder::new("units", CAMPAIGN, &table);
+    let campaign = folder.read().unwrap();
+    let Data::Displacement(data) = &campaign.data else { panic!("kind displacement") };
+    assert_eq!((data.rows.len(), data.poses.len(), data.visits.len()), (2, 2, 2));
+    let row = &data.rows[0];
+    assert!((row.q[0] - core::f64::consts::FRAC_PI_2).abs() < 1e-15 && row.q[1] == 0.5);
+    assert_eq!(row.wrench, [1.0, 2000.0, 3.0, 0.0, 0.0, 0.0]);
+    assert!((row.displacement[0] - 4e-6).abs() < 1e-20 && (row.displacement[1] - 5e-3).abs() < 1e-17);
+    assert_eq!(row.displacement[2], 6.0);
+    assert_eq!(campaign.warnings.len(), 1, "the column `note` is named: {:?}", campaign.warnings);
+    assert!(campaign.warnings[0].contains("`note`"));
+}
+
+#[test]
+fn every_problem_of_a_table_has_its_place() {
+    let found = |name: &str, rows: &str| problems(name, CAMPAIGN, &format!("{HEADER}\n{rows}"));
+    assert_eq!(found("text", "a,v,0,0,1,2,3,4,x,6\n"), ["2:17 `x` is not a number"]);
+    assert_eq!(found("nan", "a,v,0,0,1,2,3,4,NaN,inf\n"), ["2:17 `NaN` is not finite", "2:21 `inf` is not finite"]);
+    assert_eq!(found("missing", "a,v,0,0,1,2,3,4,,6\n"), ["2:17 a number is missing"]);
+    assert_eq!(found("short", "a,v,0,0,1,2,3,4,5\n"), ["2:1 this row has 9 fields, the header has 10"]);
+    assert_eq!(found("none", ""), ["1:1 there are no rows"]);
+    let visits = found("visit", "a,v,0,0,1,2,3,4,5,6\nb,v,9,0,1,2,3,4,5,6\n");
+    assert_eq!(visits, ["3:3 visit `v` began at pose `a`, this row is at pose `b`"]);
+    let poses = found("pose", "a,v,0,0,1,2,3,4,5,6\na,w,0.01,0,1,2,3,4,5,6\n");
+    assert_eq!(poses, ["3:5 pose `a` has another q1 in line 2"]);
+    assert_eq!(problems("empty", CAMPAIGN, ""), ["1:1 the file is empty"]);
+}
+
+#[test]
+fn every_problem_of_a_header_has_its_place() {
+    let found = |name: &str, header: &str| {
+        let fields = header.split(',').count();
+        let row: Vec<_> = (0..fields).map(|_| "1").collect();
+        problems(name, CAMPAIGN, &format!("{header}\n{}\n", row.join(",")))
+    };
+    assert_eq!(
+        found("columns", "pose,q1,Fx,Fy,Fz,dx,dy"),
+        ["1:1 the column `q2` is missing", "1:1 the column `dz` is missing"]
+    );
+    assert_eq!(found("twice", "pose,q1,q2,Fx,Fy,Fz,dx,dy,dz,dx"), ["1:30 the column `dx` is there twice"]);
+    assert_eq!(found("unit", "pose,q1 [mm],q2,Fx,Fy,Fz,dx,dy,dz"), ["1:6 `mm` is a length, an angle is expected here"]);
+    assert_eq!(
+        found("furlong", "pose,q1,q2,Fx,Fy,Fz,dx,dy,dz [furlong]"),
+        ["1:27 unknown unit `furlong` for a length"]
+    );
+}
+
+#[test]
+fn every_problem_of_a_campaign_file_has_its_place() {
+    let table = format!("{HEADER}\na,v,0,0,1,2,3,4,5,6\n");
+    let found = |name: &str, from: &str, to: &str| problems(name, &CAMPAIGN.replace(from, to), &table);
+    assert_eq!(found("fraction", "kind:", "holdout: {fraction: 1.5}\nkind:").len(), 1);
+    assert_eq!(found("noise", "kind:", "noise: {displacement: -8 um}\nkind:").len(), 1);
+    assert_eq!(
+        found("position", "kind: displacement", "kind: position"),
+        ["4:7 campaigns of kind `position` are not supported yet"]
+    );
+    assert!(found("robot", "robot.yaml", "nobody.yaml")[0].starts_with("2:8 there is no file"));
+    assert!(found("field", "kind:", "colour: red\nkind:")[0].contains("unknown field `colour`"));
+}
+
+#[test]
+fn clamped_rows_name_an_axis_the_robot_has() {
+    let campaign = CAMPAIGN.replace("displacement", "clamped");
+    let header = "axis,torque [Nm],deflection [mrad]";
+    let folder = Folder::new("clamped", &campaign, &format!("{header}\n1,100,0.1\n2,50,0.1\n"));
+    let Data::Clamped(rows) = folder.read().unwrap().data else { panic!("kind clamped") };
+    assert_eq!(rows[1].axis, 2);
+    assert!((rows[0].deflection - 1e-4).abs() < 1e-18);
+    assert_eq!(
+        problems("axis", &campaign, &format!("{header}\n3,1,1\n1.5,1,1\n")),
+        ["2:1 the robot has no axis 3".to_owned(), "3:1 the robot has no axis 1.5".to_owned()]
+    );
+}
+
+/// A campaign that does not exist is named.
+#[test]
+fn a_missing_file_is_named() {
+    let error = Campaign::read(Path::new("nowhere/campaign.yaml")).unwrap_err();
+    assert!(error.to_string().contains("nowhere/campaign.yaml"));
+}

@@ -1,0 +1,158 @@
+//! The model a description already has, as columns of a regression: its joint
+//! compliances and the effects it declares.
+
+use std::vec::Vec;
+
+use nalgebra::DVector;
+use robstiff_robots::{Description, Part};
+
+use super::normal::{Sign, independent};
+use super::problem::Problem;
+use super::samples::Column;
+use crate::Effect;
+use crate::elements::{Parameter, parameters};
+
+/// One number of a description that measurements can change.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Declared {
+    /// Its column.
+    pub column: Column,
+    /// The value the description gives.
+    pub value: f64,
+    /// What values it may take.
+    pub sign: Sign,
+    /// The effect it belongs to, by index; a joint's own compliance has none.
+    pub effect: Option<usize>,
+}
+
+/// The numbers of a description: the joints' compliances in order, then those
+/// of its effects.
+pub fn declared(description: &Description) -> Vec<Declared> {
+    let joints = description.joints.iter().enumerate().map(|(i, joint)| Declared {
+        column: Column::Linear(Parameter::Joint(i + 1)),
+        value: joint.compliance(),
+        sign: Sign::Nonnegative,
+        effect: None,
+    });
+    let effects = description.effects.iter().enumerate().flat_map(|(index, effect)| {
+        columns_of(effect).into_iter().map(move |(column, value)| Declared {
+            column,
+            value,
+            sign: sign_of(column),
+            effect: Some(index),
+        })
+    });
+    joints.chain(effects).collect()
+}
+
+/// The columns of an effect and its values.
+pub fn columns_of(effect: &Effect) -> Vec<(Column, f64)> {
+    match *effect {
+        Effect::StiffnessNonlinearity { joint, added, knee } => std::vec![(Column::Knee { joint, knee }, added)],
+        _ => parameters(effect).map(|(parameter, value)| (Column::Linear(parameter), value)).collect(),
+    }
+}
+
+/// Compliances are not negative; a coupling and a change with torque can be.
+pub fn sign_of(column: Column) -> Sign {
+    match column {
+        Column::Linear(Parameter::Coupling(_)) | Column::Knee { .. } => Sign::Free,
+        Column::Linear(_) => Sign::Nonnegative,
+    }
+}
+
+/// What a campaign can say about a number.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Visibility {
+    /// It was identified.
+    Seen,
+    /// Its displacement is lost in the noise, or zero; it kept its value.
+    Unseen,
+    /// The readings are a sum with those of other numbers (by index); it kept
+    /// its value and they took up the rest.
+    Confounded(Vec<usize>),
+}
+
+/// A column whose readings are this small against the largest of its kind is
+/// zero but for rounding.
+const ZERO_COLUMN: f64 = 1e-7;
+
+/// Which of the first `count` columns of a problem, those of the description,
+/// the campaign can see at all, by the geometry of poses and loads.
+pub fn visibility(problem: &Problem, count: usize) -> Vec<Visibility> {
+    let gram = &problem.total.gram;
+    let columns: Vec<usize> = (0..count).collect();
+    let largest = columns.iter().map(|&i| gram[(i, i)]).fold(0.0, f64::max);
+    let (kept, _) = independent(gram, &columns, largest * ZERO_COLUMN * ZERO_COLUMN);
+    columns
+        .iter()
+        .map(|&i| match (kept.contains(&i), gram[(i, i)] > largest * ZERO_COLUMN * ZERO_COLUMN) {
+            (true, _) => Visibility::Seen,
+            (false, false) => Visibility::Unseen,
+            (false, true) => Visibility::Confounded(parts_of(problem, i, &kept)),
+        })
+        .collect()
+}
+
+/// The columns whose sum another column is.
+fn parts_of(problem: &Problem, column: usize, kept: &[usize]) -> Vec<usize> {
+    let normal = &problem.total;
+    let Some(inverse) = normal.inverse(kept) else { return Vec::new() };
+    let along = DVector::from_fn(kept.len(), |k, _| normal.gram[(kept[k], column)]);
+    let shares = inverse * along;
+    let size = |k: usize| shares[k] * shares[k] * normal.gram[(kept[k], kept[k])];
+    let whole = normal.gram[(column, column)];
+    (0..kept.len()).filter(|&k| size(k) > PART_OF_A_SUM * whole).map(|k| kept[k]).collect()
+}
+
+/// A column contributes to another when its part of the energy is more than
+/// this.
+const PART_OF_A_SUM: f64 = 1e-6;
+
+/// A description with other values of its numbers, in the order of
+/// [`declared`]. The parts of a compound joint keep their proportion: the
+/// measurement sees their sum.
+pub fn with_values(description: &Description, values: &[f64]) -> Description {
+    let mut changed = description.clone();
+    for (number, &value) in declared(description).iter().zip(values) {
+        match (number.effect, number.column) {
+            (None, Column::Linear(Parameter::Joint(joint))) => {
+                set_compliance(&mut changed.joints[joint - 1].compliance, value);
+            }
+            (Some(effect), column) => set_parameter(&mut changed.effects[effect], column, value),
+            (None, _) => unreachable!("only joints' own compliances belong to no effect"),
+        }
+    }
+    changed
+}
+
+fn set_compliance(parts: &mut Vec<Part>, value: f64) {
+    let sum: f64 = parts.iter().map(|part| part.value).sum();
+    if parts.is_empty() {
+        parts.push(Part { name: std::string::String::new(), value });
+    } else if sum > 0.0 {
+        parts.iter_mut().for_each(|part| part.value *= value / sum);
+    } else {
+        let count = parts.len() as f64;
+        parts.iter_mut().for_each(|part| part.value = value / count);
+    }
+}
+
+/// Sets the parameter of an effect that a column belongs to.
+pub fn set_parameter(effect: &mut Effect, column: Column, number: f64) {
+    match (effect, column) {
+        (Effect::TransverseCompliance { value, .. }, _) | (Effect::JointCoupling { value, .. }, _) => *value = number,
+        (Effect::LinkCompliance { bending, .. }, Column::Linear(Parameter::LinkBending(_))) => *bending = number,
+        (Effect::LinkCompliance { torsion, .. }, _) => *torsion = number,
+        (Effect::BaseCompliance { tilt, .. }, Column::Linear(Parameter::BaseTilt)) => *tilt = number,
+        (Effect::BaseCompliance { translation, .. }, _) => *translation = number,
+        (Effect::ToolCompliance { rotation, .. }, Column::Linear(Parameter::ToolRotation)) => *rotation = number,
+        (Effect::ToolCompliance { translation, .. }, _) => *translation = number,
+        (Effect::StiffnessNonlinearity { added, knee, .. }, column) => {
+            *added = number;
+            if let Column::Knee { knee: at, .. } = column {
+                *knee = at;
+            }
+        }
+    }
+}

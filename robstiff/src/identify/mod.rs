@@ -1,0 +1,194 @@
+//! Identification: the compliances of a description from a campaign, with
+//! their uncertainty.
+//!
+//! The way of the data: [`samples`] brings rows to the base frame and turns
+//! parameters into columns, [`whitening`] accounts for shared unloaded
+//! readings, [`problem`] holds the regression in blocks of poses, [`normal`]
+//! solves it, [`prepare`] finds what the data can see, and [`displacement`] or
+//! [`clamped`] puts the result together.
+
+pub mod baseline;
+pub mod clamped;
+pub mod displacement;
+pub mod holdout;
+pub mod noise;
+pub mod normal;
+pub mod predict;
+pub mod prepare;
+pub mod problem;
+pub mod samples;
+pub mod second_order;
+#[cfg(test)]
+mod tests;
+pub mod uncertainty;
+pub mod whitening;
+
+use core::fmt;
+use std::format;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use nalgebra::DMatrix;
+use robstiff_robots::Description;
+
+pub use baseline::Visibility;
+pub use predict::{Prediction, predict};
+
+use self::baseline::Declared;
+use self::prepare::Prepared;
+use self::samples::Column;
+use crate::JointKind;
+use crate::campaign::{Campaign, Data};
+use crate::elements::Parameter;
+
+/// Why a campaign does not give what was asked of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Error(pub String);
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl core::error::Error for Error {}
+
+/// Where the noise of a reading is known from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoiseSource {
+    /// The campaign declares it.
+    Declared,
+    /// From what repeated readings differ by.
+    Repetitions,
+    /// From what the model leaves: an upper bound, since it counts what the
+    /// model lacks as noise.
+    Residuals,
+}
+
+/// A description from measurements.
+#[derive(Clone, Debug)]
+pub struct Identification {
+    /// The description with what was identified.
+    pub description: Description,
+    /// The joints' compliances in order, then the numbers of the description's
+    /// effects.
+    pub estimates: Vec<Estimate>,
+    /// The correlations of the estimates; those not seen have none.
+    pub correlation: DMatrix<f64>,
+    /// The number of rows.
+    pub rows: usize,
+    /// The number of poses; 0 for clamped axes.
+    pub poses: usize,
+    /// The noise of one displacement reading (m), and where it is from.
+    pub noise: Option<(f64, NoiseSource)>,
+    /// The error of the description as declared (m): rms over rows of the
+    /// displacement residual's length over `sqrt(3)`.
+    pub rms_declared: Option<f64>,
+    /// The same of the description as identified (m).
+    pub rms: Option<f64>,
+}
+
+/// One number with its uncertainty.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// `joint 3`, or an effect's number: `transverse_compliance@joint 3`,
+    /// `link_compliance@link 2 bending`.
+    pub name: String,
+    /// What the description said.
+    pub declared: f64,
+    /// What it is now; the declared value where the data do not see it.
+    pub value: f64,
+    /// One standard deviation, where it could be estimated.
+    pub std: Option<f64>,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Whether the data see it.
+    pub visibility: Visibility,
+}
+
+/// Beyond this deviation from the declared value a joint deserves a look: the
+/// seed paper's identified compliances stayed below it against the maker's.
+pub const NOTEWORTHY_DEVIATION: f64 = 0.25;
+
+impl Estimate {
+    /// The relative deviation from the declared value; `None` where nothing
+    /// was declared or seen.
+    pub fn deviation(&self) -> Option<f64> {
+        (self.declared != 0.0 && self.visibility == Visibility::Seen).then(|| self.value / self.declared - 1.0)
+    }
+
+    /// Whether the deviation is beyond [`NOTEWORTHY_DEVIATION`].
+    pub fn is_noteworthy(&self) -> bool {
+        self.deviation().is_some_and(|deviation| deviation.abs() > NOTEWORTHY_DEVIATION)
+    }
+}
+
+/// Identifies the compliances of a campaign's robot.
+///
+/// # Errors
+/// A campaign that shows none of them, or deflections against their torque.
+pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
+    match &campaign.data {
+        Data::Displacement(_) => displacement::identify(campaign),
+        Data::Clamped(rows) => clamped::identify(campaign, rows),
+    }
+}
+
+/// The estimates of a description's numbers; `columns` are the numbers that
+/// the covariance is of.
+pub(crate) fn estimates(
+    description: &Description,
+    prepared: &Prepared<'_>,
+    values: &[f64],
+    columns: &[usize],
+    covariance: &DMatrix<f64>,
+) -> Vec<Estimate> {
+    let one = |(i, number): (usize, &Declared)| Estimate {
+        name: element_name(description, number),
+        declared: number.value,
+        value: values[i],
+        std: columns.iter().position(|&column| column == i).map(|k| covariance[(k, k)].sqrt()),
+        unit: unit_of(description, number.column),
+        visibility: prepared.visibility[i].clone(),
+    };
+    prepared.own.iter().enumerate().map(one).collect()
+}
+
+/// `joint 3`, or an effect's full name with its number's where it has several.
+pub(crate) fn element_name(description: &Description, number: &Declared) -> String {
+    match (number.effect, number.column) {
+        (None, Column::Linear(Parameter::Joint(joint))) => format!("joint {joint}"),
+        (Some(effect), column) => {
+            let name = description.effects[effect].to_string();
+            let number = parameter_name(column);
+            if number == "value" { name } else { format!("{name} {number}") }
+        }
+        (None, _) => unreachable!("only joints' own compliances belong to no effect"),
+    }
+}
+
+/// What a description calls a column's number.
+pub fn parameter_name(column: Column) -> &'static str {
+    match column {
+        Column::Linear(Parameter::Joint(_) | Parameter::Transverse(_) | Parameter::Coupling(_)) => "value",
+        Column::Linear(Parameter::LinkBending(_)) => "bending",
+        Column::Linear(Parameter::LinkTorsion(_)) => "torsion",
+        Column::Linear(Parameter::BaseTilt) => "tilt",
+        Column::Linear(Parameter::ToolRotation) => "rotation",
+        Column::Linear(Parameter::BaseTranslation | Parameter::ToolTranslation) => "translation",
+        Column::Knee { .. } => "added",
+    }
+}
+
+/// The unit of a column's number.
+pub fn unit_of(description: &Description, column: Column) -> &'static str {
+    match column {
+        Column::Linear(Parameter::BaseTranslation | Parameter::ToolTranslation) => "m/N",
+        Column::Linear(Parameter::Joint(joint)) | Column::Knee { joint, .. }
+            if description.joints[joint - 1].kind == JointKind::Prismatic =>
+        {
+            "m/N"
+        }
+        _ => "rad/Nm",
+    }
+}

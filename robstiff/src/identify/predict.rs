@@ -1,0 +1,85 @@
+//! What a description says a campaign should have read.
+
+use std::string::String;
+use std::vec::Vec;
+
+use nalgebra::DVector;
+use robstiff_robots::Description;
+
+use super::Error;
+use super::baseline::declared;
+use super::samples::Samples;
+use crate::campaign::{Campaign, Data};
+
+/// The error of a description on a campaign. An error is the length of a row's
+/// displacement residual over `sqrt(3)`, throughout, so that it compares with
+/// the noise of one axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prediction {
+    /// The predicted displacement of each row, of the point and in the base
+    /// frame (m), and what the campaign read, in the same frame.
+    pub rows: Vec<PredictedRow>,
+    /// The root mean square error (m).
+    pub rms: f64,
+    /// The 95th percentile of the errors (m), the smallest that 95 % of the
+    /// rows do not exceed.
+    pub p95: f64,
+    /// The largest error (m).
+    pub max: f64,
+}
+
+/// One row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PredictedRow {
+    /// The line of the CSV file, from 1.
+    pub line: usize,
+    /// The displacement predicted, in the base frame (m).
+    pub predicted: [f64; 3],
+    /// The displacement read, in the base frame (m).
+    pub measured: [f64; 3],
+}
+
+impl PredictedRow {
+    /// The length of the residual over `sqrt(3)` (m).
+    pub fn error(&self) -> f64 {
+        let squares = self.predicted.iter().zip(&self.measured).map(|(p, m)| (p - m) * (p - m));
+        (squares.sum::<f64>() / 3.0).sqrt()
+    }
+}
+
+/// Predicts the rows of a campaign with a description, which need not be the
+/// campaign's own.
+///
+/// # Errors
+/// A campaign of another kind, or a description with another number of joints.
+pub fn predict(description: &Description, campaign: &Campaign) -> Result<Prediction, Error> {
+    let Data::Displacement(data) = &campaign.data else {
+        return Err(Error(String::from("predicting needs a campaign of kind `displacement`")));
+    };
+    let (expected, found) = (campaign.robot.joints.len(), description.joints.len());
+    if expected != found {
+        return Err(Error(std::format!("the campaign is of a robot with {expected} joints, this one has {found}")));
+    }
+    let samples = Samples::of_description(description, data);
+    let mut predicted: DVector<f64> = DVector::zeros(samples.rows.len() * samples.axes);
+    for number in declared(description) {
+        if number.value != 0.0 {
+            predicted.axpy(number.value, &samples.column(number.column), 1.0);
+        }
+    }
+    let row = |(i, sample): (usize, &super::samples::Sample)| PredictedRow {
+        line: data.rows[i].line,
+        predicted: core::array::from_fn(|axis| predicted[i * samples.axes + axis]),
+        measured: sample.displacement.into(),
+    };
+    let rows: Vec<PredictedRow> = samples.rows.iter().enumerate().map(row).collect();
+    let mut errors: Vec<f64> = rows.iter().map(PredictedRow::error).collect();
+    errors.sort_by(f64::total_cmp);
+    let count = errors.len();
+    Ok(Prediction {
+        rms: (errors.iter().map(|error| error * error).sum::<f64>() / count as f64).sqrt(),
+        p95: errors[((0.95 * count as f64).ceil() as usize).clamp(1, count) - 1],
+        max: errors[count - 1],
+        rows,
+    })
+}

@@ -1,0 +1,186 @@
+//! From a campaign to a regression: noise, weights, and what the data can see.
+
+use std::string::String;
+use std::vec::Vec;
+
+use nalgebra::DVector;
+
+use super::baseline::{Declared, Visibility, declared, sign_of, visibility};
+use super::holdout::training;
+use super::noise::{PureError, repetitions};
+use super::normal::Sign;
+use super::problem::Problem;
+use super::samples::{Column, Samples};
+use super::second_order::beyond_linear;
+use super::{Error, NoiseSource};
+use crate::campaign::{Campaign, Data, Displacements};
+
+/// A campaign made ready for regressions.
+pub struct Prepared<'c> {
+    /// The rows of the table.
+    pub data: &'c Displacements,
+    /// The rows on the robot.
+    pub samples: Samples,
+    /// Whether each pose is fitted to.
+    pub training: Vec<bool>,
+    /// The description's own numbers.
+    pub own: Vec<Declared>,
+    /// What the data can see of them.
+    pub visibility: Vec<Visibility>,
+    /// What they are: identified where seen, declared elsewhere.
+    pub values: Vec<f64>,
+    /// What repeated displacement readings differ by.
+    pub repeated: PureError,
+    /// The declared noise of one displacement reading (m).
+    pub declared_noise: Option<f64>,
+    /// The noise of a displacement over that of a rotation (m/rad).
+    pub rotation_weight: f64,
+    /// The second order of the joints' displacement (m).
+    correction: DVector<f64>,
+}
+
+/// Rotation weights settle to three digits within this many passes.
+const WEIGHT_PASSES: usize = 4;
+
+/// A joint whose declared compliance is not even one standard deviation, and
+/// whose identified one not two, moves the readings less than the noise does:
+/// its estimate would be a number made of noise.
+const DECLARED_STANDS_OUT: f64 = 1.0;
+const IDENTIFIED_STANDS_OUT: f64 = 2.0;
+
+impl<'c> Prepared<'c> {
+    /// Evaluates the robot on the campaign and fits the description's own
+    /// numbers.
+    ///
+    /// # Errors
+    /// A campaign of another kind, or one that sees none of the numbers.
+    pub fn new(campaign: &'c Campaign) -> Result<Self, Error> {
+        let Data::Displacement(data) = &campaign.data else {
+            return Err(Error(String::from("this needs a campaign of kind `displacement`")));
+        };
+        let description = &campaign.robot;
+        let samples = Samples::of_description(description, data);
+        let training = training(samples.poses, campaign.holdout);
+        let own = declared(description);
+        let found = repetitions(&samples, |pose| training[pose]);
+        let noise = campaign.noise;
+        let known = match (noise.displacement, noise.rotation) {
+            (Some(displacement), Some(rotation)) => Some(displacement / rotation),
+            _ => found.displacement.variance().zip(found.rotation.variance()).map(|(d, r)| (d / r).sqrt()),
+        };
+        let mut prepared = Self {
+            data,
+            correction: DVector::zeros(samples.rows.len() * samples.axes),
+            samples,
+            training,
+            values: own.iter().map(|number| number.value).collect(),
+            visibility: std::vec![Visibility::Seen; own.len()],
+            own,
+            repeated: found.displacement,
+            declared_noise: noise.displacement,
+            rotation_weight: known.unwrap_or(1.0),
+        };
+        if known.is_none() && prepared.samples.axes > 3 {
+            prepared.settle_weight()?;
+        }
+        prepared.look()?;
+        Ok(prepared)
+    }
+
+    /// The columns that are fitted: those of the numbers that are seen.
+    pub fn seen(&self) -> Vec<usize> {
+        (0..self.own.len()).filter(|&i| self.visibility[i] == Visibility::Seen).collect()
+    }
+
+    /// The signs of the description's numbers, and of further columns.
+    pub fn signs(&self, further: &[Column]) -> Vec<Sign> {
+        self.own.iter().map(|number| number.sign).chain(further.iter().map(|&column| sign_of(column))).collect()
+    }
+
+    /// The regression with the description's columns and further ones. What
+    /// numbers that are held at their declared value do is taken from the
+    /// readings.
+    pub fn problem(&self, further: &[Column]) -> Problem {
+        let mut columns: Vec<Column> = self.own.iter().map(|number| number.column).collect();
+        columns.extend(further);
+        let mut readings = self.samples.readings();
+        for (number, visibility) in self.own.iter().zip(&self.visibility) {
+            if *visibility != Visibility::Seen && number.value != 0.0 {
+                readings.axpy(-number.value, &self.samples.column(number.column), 1.0);
+            }
+        }
+        Problem::new(&self.samples, columns, readings, &self.correction, self.rotation_weight, &self.training)
+    }
+
+    /// The noise of one displacement reading (m), given the residual variance
+    /// (m^2), and where it is from.
+    pub fn noise(&self, residual_variance: f64) -> (f64, NoiseSource) {
+        match (self.declared_noise, self.repeated.variance()) {
+            (Some(declared), _) => (declared, NoiseSource::Declared),
+            (None, Some(repeated)) => (repeated.sqrt(), NoiseSource::Repetitions),
+            (None, None) => (residual_variance.sqrt(), NoiseSource::Residuals),
+        }
+    }
+
+    /// Displacements and rotations weighted by what the fit leaves of each.
+    fn settle_weight(&mut self) -> Result<(), Error> {
+        // A displacement of a millimetre goes with a rotation of one metre's
+        // lever: a start that the first pass corrects.
+        for _ in 0..WEIGHT_PASSES {
+            let problem = self.problem(&[]);
+            let fit = fit(self, &problem)?;
+            let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
+            let sum = |rotations: bool| -> f64 {
+                let of_kind = |i: &usize| (i % problem.axes >= 3) == rotations;
+                (0..residuals.len()).filter(of_kind).map(|i| residuals[i] * residuals[i]).sum()
+            };
+            let (displacement, rotation) = (sum(false), sum(true) / (self.rotation_weight * self.rotation_weight));
+            if displacement > 0.0 && rotation > 0.0 {
+                self.rotation_weight = (displacement / rotation).sqrt();
+            }
+        }
+        Ok(())
+    }
+
+    /// Finds out which numbers are seen, first by the geometry, then against
+    /// the noise; and their values.
+    fn look(&mut self) -> Result<(), Error> {
+        let problem = self.problem(&[]);
+        self.visibility = visibility(&problem, self.own.len());
+        let fitted = fit(self, &self.problem(&[]))?;
+        let total = &problem.total;
+        let freedom = total.rows.saturating_sub(fitted.columns.len()).max(1) as f64;
+        let variance = self.declared_noise.map_or(fitted.rss / freedom, |noise| noise * noise);
+        if let Some(inverse) = total.inverse(&fitted.columns) {
+            for (k, &column) in fitted.columns.iter().enumerate() {
+                let std = (inverse[(k, k)] * variance).sqrt();
+                let lost = self.own[column].value.abs() < DECLARED_STANDS_OUT * std
+                    && fitted.coefficients[k].abs() < IDENTIFIED_STANDS_OUT * std;
+                if lost {
+                    self.visibility[column] = Visibility::Unseen;
+                }
+            }
+        }
+        let problem = self.problem(&[]);
+        let fitted = fit(self, &problem)?;
+        for (&column, &value) in fitted.columns.iter().zip(fitted.coefficients.iter()) {
+            self.values[column] = value;
+        }
+        self.correction = beyond_linear(&self.samples, &self.values[..self.samples.joints()]);
+        Ok(())
+    }
+}
+
+/// The description's seen numbers, fitted.
+///
+/// # Errors
+/// If none is seen.
+pub fn fit(prepared: &Prepared<'_>, problem: &Problem) -> Result<super::normal::Fit, Error> {
+    let seen = prepared.seen();
+    let signs: Vec<Sign> = seen.iter().map(|&i| prepared.own[i].sign).collect();
+    let none = || Error(String::from("these poses and loads show none of the robot's compliances"));
+    if seen.is_empty() {
+        return Err(none());
+    }
+    problem.total.solve_signed(&seen, &signs).ok_or_else(none)
+}

@@ -1,0 +1,198 @@
+//! A campaign's displacements seen from the robot: every row brought to the
+//! base frame, with the geometry that turns parameters into displacements.
+
+use std::vec::Vec;
+
+use nalgebra::{DVector, Matrix3, Matrix4, SVector, Vector3, Vector6};
+use robstiff_robots::Description;
+
+use crate::campaign::{Displacements, Frame};
+use crate::elements::{Geometry, Parameter, Pose};
+use crate::{Generic, JointKind, Robot};
+
+/// A column of the regression: what a unit of one number adds to every
+/// displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Column {
+    /// A number in which the compliance is linear.
+    Linear(Parameter),
+    /// The `added` of a [`StiffnessNonlinearity`](crate::Effect) with a given
+    /// knee.
+    Knee {
+        /// The joint, from 1.
+        joint: usize,
+        /// The torque at which the change is half done (Nm).
+        knee: f64,
+    },
+}
+
+/// The rows of a campaign of kind `displacement`, on a robot.
+#[derive(Clone, Debug)]
+pub struct Samples {
+    /// Turning or sliding, a joint each.
+    pub joint_kinds: Vec<JointKind>,
+    /// Axes per row: 3, or 6 where every row has a rotation.
+    pub axes: usize,
+    /// The number of poses.
+    pub poses: usize,
+    /// The rows, in the campaign's order.
+    pub rows: Vec<Sample>,
+}
+
+/// One row: where the robot stood, what pulled, what was read; everything in
+/// the base frame.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// Index of the pose.
+    pub pose: usize,
+    /// Index of the visit.
+    pub visit: usize,
+    /// Joint coordinates (rad or m).
+    pub q: Vec<f64>,
+    /// Frame 0.
+    pub base: Matrix4<f64>,
+    /// The frames on whose z axes the joints act.
+    pub joint_frames: Vec<Matrix4<f64>>,
+    /// Frame n.
+    pub flange: Matrix4<f64>,
+    /// The tool centre point's frame.
+    pub tcp: Matrix4<f64>,
+    /// The wrench at the TCP (N, Nm).
+    pub wrench: Vector6<f64>,
+    /// From the TCP to the point whose displacement is read (m).
+    pub marker: Vector3<f64>,
+    /// The displacement read there (m).
+    pub displacement: Vector3<f64>,
+    /// The rotation read (rad).
+    pub rotation: Vector3<f64>,
+}
+
+/// Calls `$with::<N>(&Generic<N>, ..)` for a description's number of joints;
+/// the one place where the dynamic world meets the static one.
+macro_rules! dispatch {
+    ($description:expr, |$robot:ident| $body:expr, $($count:literal)+) => {
+        match $description.joints.len() {
+            $($count => {
+                let $robot = Generic::<$count>::new($description).expect("the arm of this match has the same count");
+                $body
+            })+
+            count => unreachable!("descriptions have one to eight joints, this one has {count}"),
+        }
+    };
+}
+
+impl Samples {
+    /// The rows of a campaign on the robot of a description.
+    pub fn of_description(description: &Description, data: &Displacements) -> Self {
+        dispatch!(description, |robot| Self::new(&robot, data), 1 2 3 4 5 6 7 8)
+    }
+
+    /// The rows of a campaign on a robot, generated or generic.
+    pub fn new<const N: usize>(robot: &impl Robot<N>, data: &Displacements) -> Self {
+        let with_rotations = data.rows.iter().all(|row| row.rotation.is_some());
+        let row = |row: &crate::campaign::Observation| {
+            let pose = Pose::of(robot, &SVector::<f64, N>::from_column_slice(&row.q));
+            let geometry = pose.geometry();
+            let tool = geometry.tcp.fixed_view::<3, 3>(0, 0).into_owned();
+            let turn = |frame| if frame == Frame::Tool { tool } else { Matrix3::identity() };
+            let (loads, reads) = (turn(data.wrench_frame), turn(data.measured_frame));
+            let force = loads * Vector3::from_column_slice(&row.wrench[..3]);
+            let lever = tool * Vector3::from(data.wrench_at);
+            let moment = loads * Vector3::from_column_slice(&row.wrench[3..]) + lever.cross(&force);
+            Sample {
+                pose: row.pose,
+                visit: row.visit,
+                q: row.q.clone(),
+                base: geometry.base,
+                joint_frames: geometry.joint_frames.to_vec(),
+                flange: geometry.flange,
+                tcp: geometry.tcp,
+                wrench: stack(&force, &moment),
+                marker: tool * Vector3::from(data.measured_at),
+                displacement: reads * Vector3::from(row.displacement),
+                rotation: reads * Vector3::from(row.rotation.unwrap_or_default()),
+            }
+        };
+        Self {
+            joint_kinds: robot.joint_kinds().to_vec(),
+            axes: if with_rotations { 6 } else { 3 },
+            poses: data.poses.len(),
+            rows: data.rows.iter().map(row).collect(),
+        }
+    }
+
+    /// The number of joints.
+    pub fn joints(&self) -> usize {
+        self.joint_kinds.len()
+    }
+
+    /// What was read, stacked row by row with [`axes`](Self::axes) numbers
+    /// each: displacement (m), then rotation (rad).
+    pub fn readings(&self) -> DVector<f64> {
+        self.stacked(|_, row| stack(&row.displacement, &row.rotation))
+    }
+
+    /// What a unit of a column's number adds to the readings, stacked alike.
+    pub fn column(&self, column: Column) -> DVector<f64> {
+        self.stacked(|geometry, row| {
+            let twist = match column {
+                Column::Linear(parameter) => geometry.unit_compliance(parameter) * row.wrench,
+                Column::Knee { joint, knee } => {
+                    let twist = geometry.joint_twist(joint);
+                    let torque = twist.dot(&row.wrench);
+                    twist * (torque / (torque / knee).hypot(1.0))
+                }
+            };
+            row.at_marker(&twist)
+        })
+    }
+
+    /// The torque of each row about a joint (from 1), `J_i^T F` (Nm or N).
+    pub fn torques(&self, joint: usize) -> Vec<f64> {
+        self.rows.iter().map(|row| self.geometry(row).joint_twist(joint).dot(&row.wrench)).collect()
+    }
+
+    /// The visit of each row.
+    pub fn visits(&self) -> Vec<usize> {
+        self.rows.iter().map(|row| row.visit).collect()
+    }
+
+    /// The geometry of one of the rows.
+    pub fn geometry<'a>(&'a self, row: &'a Sample) -> Geometry<'a, f64> {
+        Geometry {
+            base: row.base,
+            joint_frames: &row.joint_frames,
+            joint_kinds: &self.joint_kinds,
+            flange: row.flange,
+            tcp: row.tcp,
+        }
+    }
+
+    /// Stacks one vector of six a row, its first [`axes`](Self::axes) numbers.
+    pub fn stacked(&self, of: impl Fn(&Geometry<'_, f64>, &Sample) -> Vector6<f64>) -> DVector<f64> {
+        let mut stacked = DVector::zeros(self.rows.len() * self.axes);
+        for (i, row) in self.rows.iter().enumerate() {
+            let six = of(&self.geometry(row), row);
+            stacked.rows_mut(i * self.axes, self.axes).copy_from(&six.rows(0, self.axes));
+        }
+        stacked
+    }
+}
+
+impl Sample {
+    /// A small twist of the TCP as the marker reads it, `[I, -[p_r - p]x]`.
+    fn at_marker(&self, twist: &Vector6<f64>) -> Vector6<f64> {
+        let turn: Vector3<f64> = twist.fixed_rows::<3>(3).into_owned();
+        let mut read = *twist;
+        let mut moved = read.fixed_rows_mut::<3>(0);
+        moved += turn.cross(&self.marker);
+        read
+    }
+}
+
+fn stack(translation: &Vector3<f64>, rotation: &Vector3<f64>) -> Vector6<f64> {
+    let mut six = Vector6::zeros();
+    six.fixed_rows_mut::<3>(0).copy_from(translation);
+    six.fixed_rows_mut::<3>(3).copy_from(rotation);
+    six
+}

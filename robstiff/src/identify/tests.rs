@@ -1,0 +1,171 @@
+//! Identification of numbers that are known.
+
+use std::vec;
+
+use nalgebra::{DVector, Vector3, Vector6};
+
+use super::noise::repetitions;
+use super::samples::Samples;
+use super::second_order::beyond_linear;
+use super::*;
+use crate::campaign::{Displacements, Frame, Noise, Observation};
+use crate::samples::{arm, five_axis};
+use crate::{Convention, Generic, Robot};
+
+/// A campaign without noise, by the reference robot: `deflection` of the TCP,
+/// read at a point and in a frame as asked.
+fn campaign(truth: &Description, declared: Description, frame: Frame, at: [f64; 3], moments: bool) -> Campaign {
+    let robot = Generic::<5>::new(truth).expect("five joints");
+    let rows = (0..30).map(|i| {
+        let part = |k: usize| (1.0 + f64::from(i) * 1.7 + k as f64 * 2.3).sin();
+        let q = nalgebra::SVector::<f64, 5>::from_fn(|k, _| part(k));
+        let force = Vector3::from_fn(|k, _| 600.0 * part(5 + k));
+        let moment = if moments { Vector3::from_fn(|k, _| 90.0 * part(9 + k)) } else { Vector3::zeros() };
+        let tool = robot.transform(&q).fixed_view::<3, 3>(0, 0).into_owned();
+        let lever = tool * Vector3::from(at);
+        // The wrench acts at the point, and so has a moment about the TCP.
+        let about_tcp = moment + lever.cross(&force);
+        let wrench = Vector6::new(force.x, force.y, force.z, about_tcp.x, about_tcp.y, about_tcp.z);
+        let twist = robot.deflection(&q, &wrench);
+        let turn: Vector3<f64> = twist.fixed_rows::<3>(3).into_owned();
+        let displacement = twist.fixed_rows::<3>(0) + turn.cross(&lever);
+        let seen = |v: Vector3<f64>| if frame == Frame::Tool { tool.transpose() * v } else { v };
+        let (force, moment) = (seen(force), seen(moment));
+        Observation {
+            line: i as usize + 2,
+            pose: i as usize,
+            visit: i as usize,
+            time: None,
+            temperature: None,
+            q: q.iter().copied().collect(),
+            wrench: [force.x, force.y, force.z, moment.x, moment.y, moment.z],
+            displacement: seen(displacement).into(),
+            rotation: Some(seen(turn).into()),
+        }
+    });
+    let data = Displacements {
+        wrench_frame: frame,
+        wrench_at: at,
+        measured_frame: frame,
+        measured_at: at,
+        poses: (0..30).map(|i| format!("{i}")).collect(),
+        visits: (0..30).map(|i| format!("{i}")).collect(),
+        rows: rows.collect(),
+    };
+    Campaign {
+        name: String::new(),
+        path: "".into(),
+        robot_path: "".into(),
+        robot: declared,
+        data: Data::Displacement(data),
+        noise: Noise::default(),
+        holdout: None,
+        warnings: vec![],
+    }
+}
+
+fn stiffer(description: &Description) -> Description {
+    let mut stiffer = description.clone();
+    stiffer.joints.iter_mut().flat_map(|joint| &mut joint.compliance).for_each(|part| part.value *= 0.6);
+    stiffer
+}
+
+#[test]
+fn known_compliances_come_back_from_any_frame_and_point() {
+    let mut truth = five_axis();
+    truth.tool.xyz = [0.1, 0.0, 0.12];
+    for (frame, at) in [(Frame::Base, [0.0; 3]), (Frame::Tool, [0.2, -0.1, 0.3])] {
+        let found = identify(&campaign(&truth, stiffer(&truth), frame, at, true)).expect("all joints are seen");
+        for (estimate, joint) in found.estimates.iter().zip(&truth.joints) {
+            let off = (estimate.value / joint.compliance() - 1.0).abs();
+            assert!(off < 5e-3, "{frame:?} {at:?}: {} off by {off}", estimate.name);
+            assert!(estimate.is_noteworthy() && estimate.visibility == Visibility::Seen);
+        }
+        assert!(found.rms < found.rms_declared);
+        assert_eq!(found.correlation.nrows(), 5);
+    }
+}
+
+/// The flange axis of the arm goes through its TCP: without moments and lever
+/// arms, joint 5 does not move the point it is read at.
+#[test]
+fn a_joint_that_cannot_be_seen_keeps_what_is_declared() {
+    let mut truth = five_axis();
+    truth.joints[4].a = 0.0;
+    let mut campaign = campaign(&truth, stiffer(&truth), Frame::Base, [0.0; 3], false);
+    if let Data::Displacement(data) = &mut campaign.data {
+        data.rows.iter_mut().for_each(|row| row.rotation = None);
+    }
+    let found = identify(&campaign).expect("four joints are seen");
+    let unseen = &found.estimates[4];
+    assert_eq!((unseen.value, unseen.std, &unseen.visibility), (unseen.declared, None, &Visibility::Unseen));
+    assert!((found.estimates[1].value / truth.joints[1].compliance() - 1.0).abs() < 5e-3);
+    assert_eq!(found.description.joints[4], campaign.robot.joints[4]);
+}
+
+#[test]
+fn parts_of_a_compound_joint_keep_their_proportion() {
+    let mut description = five_axis();
+    description.joints[2].compliance = vec![
+        robstiff_robots::Part { name: "gear".into(), value: 1e-7 },
+        robstiff_robots::Part { name: "belt".into(), value: 3e-7 },
+    ];
+    let values: Vec<f64> = vec![1e-7, 1e-7, 8e-7, 1e-7, 1e-7];
+    let changed = baseline::with_values(&description, &values);
+    let parts: Vec<f64> = changed.joints[2].compliance.iter().map(|part| part.value).collect();
+    assert!((parts[0] - 2e-7).abs() < 1e-20 && (parts[1] - 6e-7).abs() < 1e-20);
+}
+
+/// A lever of length `l` under a constant force across it turns by
+/// `h F l cos(angle)`: the tip moves by `l sin` across and `l (cos - 1)` along.
+#[test]
+fn the_second_order_is_that_of_a_lever() {
+    let (length, h, force) = (1.0, 1e-6, 1000.0);
+    let description = arm(Convention::Standard, &[[0.0, 0.0, length, 0.0, h]]);
+    let data = Displacements {
+        wrench_frame: Frame::Base,
+        wrench_at: [0.0; 3],
+        measured_frame: Frame::Base,
+        measured_at: [0.0; 3],
+        poses: vec!["1".into()],
+        visits: vec!["1".into()],
+        rows: vec![Observation {
+            line: 2,
+            pose: 0,
+            visit: 0,
+            time: None,
+            temperature: None,
+            q: vec![0.0],
+            wrench: [0.0, force, 0.0, 0.0, 0.0, 0.0],
+            displacement: [0.0; 3],
+            rotation: None,
+        }],
+    };
+    let beyond = beyond_linear(&Samples::of_description(&description, &data), &[h]);
+    let mut angle: f64 = 0.0;
+    for _ in 0..20 {
+        angle = h * force * length * angle.cos();
+    }
+    let exact =
+        DVector::from_column_slice(&[length * (angle.cos() - 1.0), length * (angle.sin() - h * force * length), 0.0]);
+    assert!((beyond - exact).amax() < 1e-12);
+}
+
+/// Repetitions see the scatter between readings of one load, not the load.
+#[test]
+fn repetitions_give_the_noise() {
+    let mut campaign = campaign(&five_axis(), five_axis(), Frame::Base, [0.0; 3], false);
+    let Data::Displacement(data) = &mut campaign.data else { unreachable!("made above") };
+    let twins: Vec<Observation> = data.rows.clone();
+    for (i, mut twin) in twins.into_iter().enumerate() {
+        // Rows without a visit of their own in common have each its unloaded
+        // reading: a difference of 2 s has the variance of 4 readings, s^2.
+        twin.visit = 30 + i;
+        twin.displacement.iter_mut().for_each(|d| *d += 2e-5);
+        data.rows.push(twin);
+    }
+    data.visits = (0..60).map(|i| format!("{i}")).collect();
+    let found = repetitions(&Samples::of_description(&five_axis(), data), |_| true).displacement;
+    assert_eq!(found.freedom, 90);
+    assert!((found.variance().expect("enough repetitions").sqrt() - 1e-5).abs() < 1e-12);
+}

@@ -1,0 +1,301 @@
+//! Is there structure left in the residuals?
+//!
+//! Three tests, each of what noise alone cannot do, together at the level
+//! asked for (Bonferroni):
+//!
+//! 1. *Size*: where the noise is declared, or readings were repeated, the
+//!    residual sum of squares against it (chi-square or F).
+//! 2. *Resemblance*: residuals of rows that are alike in pose and load, or in
+//!    time, temperature or order, resemble each other across poses. For each
+//!    column of the table a sum over pairs of rows of *different* poses,
+//!    `sum K(x_i, x_j) r_i . r_j`, and one for all joint angles together; the
+//!    largest of these, each less its mean and over its standard deviation
+//!    under the null, against the wild cluster bootstrap (signs of whole poses;
+//!    the model fitted again in every draw).
+//! 3. *Growth*: the length of the residual grows with the force (Spearman's
+//!    rank correlation); the noise of a reading does not know the load.
+
+use std::borrow::ToOwned;
+use std::string::String;
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal as Gaussian};
+
+use super::bootstrap::rademacher;
+use super::features::features;
+use super::model::{Fitted, Setting};
+use crate::campaign::Displacements;
+use crate::identify::noise::PureError;
+
+/// What the noise of one displacement reading is held to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Yardstick {
+    /// Declared: its variance (m^2).
+    Declared(f64),
+    /// From repeated readings.
+    Repeated(PureError),
+    /// Not known but for the residuals.
+    Unknown,
+}
+
+/// What the tests say.
+#[derive(Clone, Debug)]
+pub struct LackOfFit {
+    /// Every test that could be done.
+    pub tests: Vec<StructureTest>,
+    /// Whether one of them finds structure at the level asked for.
+    pub structure: bool,
+    /// The share of the residual variance that is beyond the noise.
+    pub fraction: f64,
+    /// The columns the residual depends on, the strongest first.
+    pub depends_on: Vec<String>,
+}
+
+/// One test for structure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StructureTest {
+    /// What was tested.
+    pub name: String,
+    /// Its statistic.
+    pub statistic: f64,
+    /// The probability of so much under noise alone.
+    pub p_value: f64,
+}
+
+/// Rows beyond this many are thinned evenly for the pairwise sums, whose
+/// effort is quadratic.
+const MOST_ROWS: usize = 1200;
+
+/// Tests the residuals of a model.
+pub fn test(
+    setting: &Setting,
+    model: &Fitted,
+    data: &Displacements,
+    yardstick: Yardstick,
+    options: &super::Options,
+) -> LackOfFit {
+    let mut tests = Vec::new();
+    tests.extend(size(setting, model, yardstick));
+    tests.extend(growth(setting, model));
+    let resemblance = Resemblance::new(setting, model, data, options);
+    if let Some(resemblance) = &resemblance {
+        let (statistic, p_value) = resemblance.largest();
+        tests.push(StructureTest { name: "residuals resemble each other".to_owned(), statistic, p_value });
+    }
+    let level = options.alpha / tests.len().max(1) as f64;
+    let structure = tests.iter().any(|test| test.p_value <= level);
+    let fraction =
+        if structure { fraction(setting, model, yardstick, resemblance.as_ref(), options.alpha) } else { 0.0 };
+    let depends_on = resemblance.filter(|_| structure).map_or_else(Vec::new, |found| found.significant(options.alpha));
+    LackOfFit { tests, structure, fraction, depends_on }
+}
+
+/// The residual degrees of freedom.
+fn freedom(setting: &Setting, model: &Fitted) -> f64 {
+    setting.problem.total.rows.saturating_sub(model.fit.columns.len()).max(1) as f64
+}
+
+fn size(setting: &Setting, model: &Fitted, yardstick: Yardstick) -> Option<StructureTest> {
+    let (rss, freedom) = (model.fit.rss, freedom(setting, model));
+    match yardstick {
+        Yardstick::Declared(variance) => {
+            let statistic = rss / variance;
+            let p_value = ChiSquared::new(freedom).ok()?.sf(statistic);
+            Some(StructureTest { name: "residuals against the declared noise".to_owned(), statistic, p_value })
+        }
+        Yardstick::Repeated(pure) => {
+            let variance = pure.variance()?;
+            let rest = freedom - pure.freedom as f64;
+            if rest < 1.0 {
+                return None;
+            }
+            let statistic = (rss - pure.sum).max(0.0) / rest / variance;
+            let p_value = FisherSnedecor::new(rest, pure.freedom as f64).ok()?.sf(statistic);
+            Some(StructureTest { name: "residuals against repeated readings".to_owned(), statistic, p_value })
+        }
+        Yardstick::Unknown => None,
+    }
+}
+
+/// Spearman's rank correlation of squared residuals, each over what the fit
+/// leaves of a unit variance there, with the force.
+fn growth(setting: &Setting, model: &Fitted) -> Option<StructureTest> {
+    let problem = &setting.problem;
+    let residuals = problem.white_residuals(&model.fit.columns, &model.fit.coefficients);
+    let inverse = problem.total.inverse(&model.fit.columns)?;
+    let (mut lengths, mut forces) = (Vec::new(), Vec::new());
+    for row in problem.blocks.iter().flat_map(|block| &block.rows) {
+        let at = row * problem.axes;
+        let left: f64 = (at..at + 3)
+            .map(|i| {
+                let x = DVector::from_fn(model.fit.columns.len(), |k, _| problem.white[(i, model.fit.columns[k])]);
+                1.0 - x.dot(&(&inverse * &x))
+            })
+            .sum();
+        lengths.push(residuals.rows(at, 3).norm_squared() / left.max(f64::EPSILON));
+        forces.push(setting.samples.rows[*row].wrench.fixed_rows::<3>(0).norm());
+    }
+    let statistic = correlation(&ranks(&lengths), &ranks(&forces));
+    let p_value = Gaussian::standard().sf(statistic * ((lengths.len() - 1) as f64).sqrt());
+    Some(StructureTest { name: "residuals grow with the force".to_owned(), statistic, p_value })
+        .filter(|_| statistic.is_finite())
+}
+
+/// Ranks, those of equal values averaged.
+fn ranks(values: &[f64]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+    let mut ranks = std::vec![0.0; values.len()];
+    for equal in order.chunk_by(|&a, &b| values[a] == values[b]) {
+        let first = order.iter().position(|&i| i == equal[0]).unwrap_or_default();
+        for &i in equal {
+            ranks[i] = first as f64 + (equal.len() - 1) as f64 / 2.0;
+        }
+    }
+    ranks
+}
+
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len() as f64;
+    let (ma, mb) = (mean(a), mean(b));
+    let product =
+        |x: &[f64], mx: f64, y: &[f64], my: f64| -> f64 { x.iter().zip(y).map(|(x, y)| (x - mx) * (y - my)).sum() };
+    product(a, ma, b, mb) / (product(a, ma, a, ma) * product(b, mb, b, mb)).sqrt()
+}
+
+/// The share of the residual variance beyond the noise: against the noise
+/// where it is known, or the largest variance component that goes with a
+/// resemblance, by the method of moments (`E r_i . r_j = v K_ij` between
+/// poses); whichever is more, since what is no function of the load, such as
+/// hysteresis, makes repeated readings differ and so counts as noise there.
+fn fraction(setting: &Setting, model: &Fitted, yardstick: Yardstick, found: Option<&Resemblance>, alpha: f64) -> f64 {
+    let variance = model.fit.rss / freedom(setting, model);
+    let noise = match yardstick {
+        Yardstick::Declared(noise) => Some(noise),
+        Yardstick::Repeated(pure) => pure.variance(),
+        Yardstick::Unknown => None,
+    };
+    let component = found.map_or(0.0, |found| found.component(alpha));
+    let resembling = component / variance;
+    noise.map_or(resembling, |noise| 1.0 - noise / variance).max(resembling).clamp(0.0, 1.0)
+}
+
+/// The pairwise sums, observed and under the null.
+struct Resemblance {
+    names: Vec<String>,
+    /// Of each sum, standardised.
+    observed: Vec<f64>,
+    /// The same of each draw, a vector a sum.
+    under_null: Vec<DVector<f64>>,
+    /// The variance that goes with each kernel (m^2).
+    components: Vec<f64>,
+}
+
+impl Resemblance {
+    fn new(setting: &Setting, model: &Fitted, data: &Displacements, options: &super::Options) -> Option<Self> {
+        let problem = &setting.problem;
+        let columns = &model.fit.columns;
+        let trained: Vec<usize> = problem.blocks.iter().flat_map(|block| block.rows.iter().copied()).collect();
+        let stride = trained.len().div_ceil(MOST_ROWS);
+        let rows: Vec<usize> = trained.into_iter().step_by(stride).collect();
+        let residuals = problem.white_residuals(columns, &problem.total.solve(columns)?.coefficients);
+        let drawn = drawn_residuals(setting, model)?;
+        let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
+        let signs = rademacher(&mut rng, options.draws, problem.blocks.len());
+        let axis_rows = |axis: usize| rows.iter().map(move |row| row * problem.axes + axis).collect::<Vec<_>>();
+
+        let features = features(&setting.samples, data, &rows);
+        let (mut observed, mut under_null) = (Vec::new(), Vec::new());
+        let mut components = Vec::new();
+        for feature in &features {
+            let mut kernel = feature.kernel();
+            let of_one_row = kernel.trace() / rows.len() as f64;
+            keep_between_poses(&mut kernel, setting, &rows);
+            let mut sum = 0.0;
+            let mut quadratic = DMatrix::zeros(problem.blocks.len(), problem.blocks.len());
+            for axis in 0..3 {
+                let at = axis_rows(axis);
+                let own = residuals.select_rows(&at);
+                sum += own.dot(&(&kernel * &own));
+                let each = drawn.select_rows(&at);
+                quadratic += each.tr_mul(&(&kernel * &each));
+            }
+            components.push(of_one_row * sum / (3.0 * kernel.norm_squared()).max(f64::MIN_POSITIVE));
+            let sums: DVector<f64> = (&signs * quadratic).component_mul(&signs).column_sum();
+            let (mean, spread) = (sums.mean(), sums.variance().sqrt().max(f64::MIN_POSITIVE));
+            observed.push((sum - mean) / spread);
+            under_null.push(sums.map(|sum| (sum - mean) / spread));
+        }
+        let names = features.into_iter().map(|feature| feature.name).collect();
+        Some(Self { names, observed, under_null, components })
+    }
+
+    /// The largest sum and its family-wise p-value.
+    fn largest(&self) -> (f64, f64) {
+        let largest = self.observed.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let draws = self.under_null.first().map_or(0, DVector::len);
+        let of_draw = |draw: usize| self.under_null.iter().map(|sums| sums[draw]).fold(f64::NEG_INFINITY, f64::max);
+        let beyond = (0..draws).filter(|&draw| of_draw(draw) >= largest).count();
+        (largest, (1 + beyond) as f64 / (1 + draws) as f64)
+    }
+
+    /// Whether a sum on its own is significant; to be asked only where
+    /// structure was found by all tests together.
+    fn is_significant(&self, i: usize, alpha: f64) -> bool {
+        let sums = &self.under_null[i];
+        let beyond = sums.iter().filter(|&&sum| sum >= self.observed[i]).count();
+        (1 + beyond) as f64 <= alpha * (1 + sums.len()) as f64
+    }
+
+    /// The largest variance of a resemblance that is significant (m^2).
+    fn component(&self, alpha: f64) -> f64 {
+        let significant = (0..self.observed.len()).filter(|&i| self.is_significant(i, alpha));
+        significant.map(|i| self.components[i]).fold(0.0, f64::max)
+    }
+
+    /// The columns whose sums are significant, the largest first.
+    fn significant(&self, alpha: f64) -> Vec<String> {
+        let mut order: Vec<usize> = (0..self.names.len()).collect();
+        order.sort_by(|&a, &b| self.observed[b].total_cmp(&self.observed[a]));
+        let kept = order.into_iter().filter(|&i| !self.names[i].is_empty() && self.is_significant(i, alpha));
+        kept.map(|i| self.names[i].clone()).collect()
+    }
+}
+
+/// One column a pose: its residual from the fit without it, with the model
+/// fitted again when it alone is there; a bootstrap draw is their sum with
+/// random signs.
+fn drawn_residuals(setting: &Setting, model: &Fitted) -> Option<DMatrix<f64>> {
+    let problem = &setting.problem;
+    let columns = &model.fit.columns;
+    let inverse = problem.total.inverse(columns)?;
+    let design = problem.white.select_columns(columns);
+    let mut drawn = DMatrix::zeros(problem.white_readings.len(), problem.blocks.len());
+    for (p, block) in problem.blocks.iter().enumerate() {
+        let without = problem.total.without(&block.normal).solve(columns);
+        let coefficients = without.map_or_else(|| model.fit.coefficients.clone(), |fit| fit.coefficients);
+        let own = design.select_rows(&block.stacked);
+        let residual = problem.white_readings.select_rows(&block.stacked) - &own * &coefficients;
+        let absorbed = &inverse * own.tr_mul(&residual);
+        let mut column = &design * -absorbed;
+        for (k, &i) in block.stacked.iter().enumerate() {
+            column[i] += residual[k];
+        }
+        drawn.set_column(p, &column);
+    }
+    Some(drawn)
+}
+
+/// Makes a kernel zero within a pose, where residuals resemble each other by
+/// their noise as well.
+fn keep_between_poses(kernel: &mut DMatrix<f64>, setting: &Setting, rows: &[usize]) {
+    let pose = |i: usize| setting.samples.rows[rows[i]].pose;
+    for j in 0..rows.len() {
+        for i in (0..rows.len()).filter(|&i| pose(i) == pose(j)) {
+            kernel[(i, j)] = 0.0;
+        }
+    }
+}

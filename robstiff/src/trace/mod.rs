@@ -1,0 +1,266 @@
+//! Tracing: which effects a campaign shows that a description lacks.
+//!
+//! The way of the data: a campaign becomes a regression with a column for
+//! everything in the catalogue ([`candidate`], [`model`]); [`selection`]
+//! searches for the effects the data ask for, admitted by the family-wise
+//! [`bootstrap`] test and by poses held out; [`alias`] says what the data
+//! cannot tell apart; [`lack_of_fit`] asks whether structure is left, and
+//! [`verdict`] draws the conclusion.
+//!
+//! Levels: an effect is named, and structure is found, at a family-wise
+//! [`Options::alpha`] of 1 % each, so a robot that lacks nothing is called
+//! adequate in about 98 of 100 campaigns.
+
+pub mod alias;
+pub mod bootstrap;
+pub mod candidate;
+pub mod features;
+pub mod lack_of_fit;
+pub mod model;
+mod report;
+pub mod selection;
+mod setting;
+#[cfg(test)]
+mod tests;
+pub mod verdict;
+
+use std::format;
+use std::string::String;
+use std::vec::Vec;
+
+use robstiff_robots::Description;
+
+pub use lack_of_fit::StructureTest;
+pub use selection::{Step, Tested};
+pub use verdict::Verdict;
+
+use self::lack_of_fit::{LackOfFit, Yardstick};
+use self::model::{Fitted, Setting};
+use self::report::report;
+use self::selection::{Selection, p_values, select};
+use crate::Effect;
+use crate::campaign::Campaign;
+use crate::identify::prepare::Prepared;
+use crate::identify::{Error, Estimate, NoiseSource};
+
+/// How to trace.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Seed of the bootstrap; one seed gives one result.
+    pub seed: u64,
+    /// Bootstrap draws. A p-value is no smaller than one over their number.
+    pub draws: usize,
+    /// Family-wise level at which effects are named, and structure is found.
+    pub alpha: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { seed: 1, draws: 1999, alpha: 0.01 }
+    }
+}
+
+/// What is told while it takes: one line for each stage.
+pub type Progress<'a> = dyn Fn(&str) + 'a;
+
+/// The result of tracing a campaign. Lengths are in m; an rms is over rows of
+/// the displacement residual's length over `sqrt(3)`.
+#[derive(Clone, Debug)]
+pub struct Trace {
+    /// The robot's name.
+    pub robot: String,
+    /// The number of rows.
+    pub rows: usize,
+    /// The number of poses.
+    pub poses: usize,
+    /// The poses held out, by id.
+    pub held_out: Vec<String>,
+    /// The noise of one displacement reading (m).
+    pub noise: f64,
+    /// Where the noise is known from.
+    pub noise_source: NoiseSource,
+    /// The error of the description as declared.
+    pub declared: Misfit,
+    /// The error with the description's own numbers identified again.
+    pub identified: Misfit,
+    /// The effects named, the one that explains most first.
+    pub effects: Vec<NamedEffect>,
+    /// The error with them.
+    pub after: Misfit,
+    /// The conclusion.
+    pub verdict: Verdict,
+    /// Why, in a sentence.
+    pub why: String,
+    /// The share of the residual variance that is beyond the noise.
+    pub unexplained: f64,
+    /// The columns the residual depends on, the strongest first.
+    pub depends_on: Vec<String>,
+    /// Measurements that would separate what these cannot tell apart.
+    pub next: Vec<Proposal>,
+    /// The description with the effects and the compliances fitted with them.
+    pub description: Description,
+    /// The description's own numbers without the effects.
+    pub estimates_before: Vec<Estimate>,
+    /// The same with them.
+    pub estimates: Vec<Estimate>,
+    /// Every step of the search with every candidate.
+    pub steps: Vec<Step>,
+    /// The tests for structure in what is left.
+    pub structure: Vec<StructureTest>,
+    /// The residual of each row.
+    pub residuals: Vec<RowResidual>,
+    /// The rms of each pose.
+    pub pose_errors: Vec<PoseError>,
+}
+
+/// How far off a model is (m).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Misfit {
+    /// On the rows fitted to.
+    pub rms: f64,
+    /// On poses not fitted to: those held out, or each pose by the fit without
+    /// it.
+    pub holdout_rms: f64,
+}
+
+/// An effect that was named.
+#[derive(Clone, Debug)]
+pub struct NamedEffect {
+    /// The effect with its numbers.
+    pub effect: Effect,
+    /// Its numbers with their uncertainty.
+    pub parameters: Vec<EffectParameter>,
+    /// The family-wise p-value of the model without it.
+    pub p_value: f64,
+    /// The error on unseen poses (m) with it and those before it.
+    pub holdout_rms: f64,
+    /// Full names of what these data cannot tell it from.
+    pub same_as: Vec<String>,
+    /// Whether structure is left beyond all named effects.
+    pub partial: bool,
+}
+
+/// A number of an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectParameter {
+    /// Its name; `h` where the effect has one compliance.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// One standard deviation; none for a knee, which is one of a grid.
+    pub std: Option<f64>,
+    /// Its unit.
+    pub unit: &'static str,
+}
+
+/// A measurement that would separate two effects.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Proposal {
+    /// Joint coordinates (rad or m).
+    pub q: Vec<f64>,
+    /// The force (N).
+    pub force: [f64; 3],
+    /// Full names of what it separates.
+    pub separates: [String; 2],
+}
+
+/// What is left of a row, in the base frame (m).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowResidual {
+    /// The line of the CSV file, from 1.
+    pub line: usize,
+    /// Index of the pose.
+    pub pose: usize,
+    /// With the description's own numbers identified again.
+    pub before: [f64; 3],
+    /// With the effects.
+    pub after: [f64; 3],
+}
+
+/// The rms of one pose (m).
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseError {
+    /// The pose's id.
+    pub pose: String,
+    /// Whether the pose was held out.
+    pub held_out: bool,
+    /// With the description's own numbers identified again.
+    pub before: f64,
+    /// With the effects.
+    pub after: f64,
+}
+
+/// Traces a campaign.
+///
+/// # Errors
+/// A campaign of another kind, or one that shows none of the robot's
+/// compliances.
+pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) -> Result<Trace, Error> {
+    progress("identifying the joints");
+    let prepared = Prepared::new(campaign)?;
+    let setting = setting::setting(campaign, &prepared);
+    let yardstick = yardstick(&prepared);
+    if let Some(why) = too_little(&setting) {
+        let base = setting.fit(&[]).map_err(Error)?;
+        let found = Found::nothing(base, Verdict::Insufficient, why);
+        return Ok(report(campaign, &prepared, &setting, &found, options));
+    }
+    let mut selection = select(&setting, options, progress).map_err(Error)?;
+    progress("looking for structure in what is left");
+    let test = |model: &Fitted| lack_of_fit::test(&setting, model, prepared.data, yardstick, options);
+    let mut left = test(&selection.model);
+    let mut taken_back = 0;
+    loop {
+        let weak = verdict::to_take_back(&setting, &selection.model, &left);
+        if weak.is_empty() {
+            break;
+        }
+        taken_back += weak.len();
+        let mut named = selection.model.named.clone();
+        for k in weak.into_iter().rev() {
+            named.remove(k);
+        }
+        selection.model = setting.fit(&named).map_err(Error)?;
+        selection.p_values = p_values(&setting, &named, options);
+        left = test(&selection.model);
+        // What a name had accounted for is there, found by a test or not.
+        left.structure = true;
+    }
+    let (verdict, why) = verdict::judge(&selection, &left, taken_back);
+    let found = Found { selection, left: Some(left), verdict, why };
+    progress("asking what could be mistaken for what");
+    Ok(report(campaign, &prepared, &setting, &found, options))
+}
+
+/// What was found, before it is told.
+struct Found {
+    selection: Selection,
+    left: Option<LackOfFit>,
+    verdict: Verdict,
+    why: String,
+}
+
+impl Found {
+    fn nothing(model: Fitted, verdict: Verdict, why: String) -> Self {
+        let selection = Selection { model, p_values: Vec::new(), steps: Vec::new(), unnamed: false };
+        Self { selection, left: None, verdict, why }
+    }
+}
+
+fn yardstick(prepared: &Prepared<'_>) -> Yardstick {
+    match (prepared.declared_noise, prepared.repeated.variance()) {
+        (Some(noise), _) => Yardstick::Declared(noise * noise),
+        (None, Some(_)) => Yardstick::Repeated(prepared.repeated),
+        (None, None) => Yardstick::Unknown,
+    }
+}
+
+/// Why a campaign cannot tell what is missing, if so.
+fn too_little(setting: &Setting) -> Option<String> {
+    let (poses, numbers) = (setting.problem.blocks.len(), setting.base.len());
+    if poses < verdict::FEWEST_POSES {
+        return Some(format!("{poses} poses are too few to judge by, at least {} are needed", verdict::FEWEST_POSES));
+    }
+    let readings = setting.problem.total.rows;
+    (readings < 2 * numbers).then(|| format!("{readings} readings are too few for {numbers} compliances"))
+}

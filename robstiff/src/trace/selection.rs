@@ -1,0 +1,279 @@
+//! Which effects to name: a search by an information criterion, admitted by
+//! tests.
+//!
+//! The search proposes (the best models of each size, by BIC, from a beam of
+//! extensions and then by replacing each effect with each other candidate);
+//! the tests dispose: a model is accepted when *every* effect in it is missed
+//! by the model without it, family-wise over the whole catalogue, and when
+//! poses the fit has not seen are predicted better than by the smaller model.
+//! An effect that was named early and is no longer needed falls out this way,
+//! so steps go forward, sideways and back.
+
+use std::string::String;
+use std::vec::Vec;
+
+use super::bootstrap::{Reference, ScoreTest};
+use super::model::{Fitted, Named, Setting};
+use super::{Options, Progress};
+
+/// How many models of one size are kept: a single missing effect is found by
+/// the best alone, for two or three the right set can start from any of the
+/// first few.
+const BEAM: usize = 12;
+
+/// Rivals within this of the best in BIC are not told from it: odds below
+/// twenty to one (`exp(6 / 2)`), "positive" evidence at most (Kass and Raftery,
+/// JASA 90, 1995).
+pub const WITHIN_REACH: f64 = 6.0;
+
+/// A catalogue of a few dozen explains anything with enough names; what takes
+/// more than this many at once is not in it.
+const MOST_EFFECTS: usize = 6;
+
+/// What the search found.
+pub struct Selection {
+    /// The model.
+    pub model: Fitted,
+    /// The family-wise p-value of each of its effects.
+    pub p_values: Vec<f64>,
+    /// What was tested on the way.
+    pub steps: Vec<Step>,
+    /// Whether something is missing for which no effect passed every test.
+    pub unnamed: bool,
+}
+
+/// One step: all candidates against the model so far.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// The effects named before.
+    pub named: Vec<String>,
+    /// Every candidate with its statistic.
+    pub candidates: Vec<Tested>,
+    /// What came of it.
+    pub outcome: String,
+}
+
+/// One candidate in one step.
+#[derive(Clone, Debug)]
+pub struct Tested {
+    /// The full name, `kind@at`.
+    pub name: String,
+    /// The gain in sums of squares over the residual variance, less the price
+    /// of further numbers; `None` where it gains nothing physical.
+    pub statistic: Option<f64>,
+    /// Its family-wise p-value.
+    pub p_value: f64,
+    /// The criterion of the model with it; lower is better.
+    pub bic: Option<f64>,
+    /// The error on unseen poses with it (m).
+    pub holdout_rms: Option<f64>,
+    /// Why it was not taken; empty for the one that was.
+    pub reason: String,
+}
+
+/// A test of the whole catalogue against one model.
+pub struct Tests {
+    /// The statistic of each candidate and the variant that has it.
+    pub statistics: Vec<Option<(f64, usize)>>,
+    /// The distribution of the largest.
+    pub reference: Reference,
+}
+
+impl Tests {
+    /// The tests against the model of some effects; `None` where it cannot be
+    /// fitted.
+    pub fn against(setting: &Setting, named: &[Named], options: &Options) -> Option<Self> {
+        let test = score_test(setting, named)?;
+        Some(Self { statistics: test.statistics(), reference: test.reference(options.draws, options.seed) })
+    }
+
+    /// The family-wise p-value of a candidate.
+    pub fn p_value(&self, candidate: usize) -> f64 {
+        self.statistics[candidate].map_or(1.0, |(statistic, _)| self.reference.p_value(statistic))
+    }
+
+    /// The family-wise p-value of the largest statistic.
+    fn smallest_p(&self) -> f64 {
+        (0..self.statistics.len()).map(|candidate| self.p_value(candidate)).fold(1.0, f64::min)
+    }
+}
+
+/// The score test of the catalogue against the model of some effects.
+pub fn score_test<'a>(setting: &'a Setting, named: &[Named]) -> Option<ScoreTest<'a>> {
+    ScoreTest::new(&setting.problem, &setting.candidates, &setting.signs, setting.own, &setting.columns(named))
+}
+
+/// The effects the data ask for.
+///
+/// # Errors
+/// Why not even the description's own model can be fitted.
+pub fn select(setting: &Setting, options: &Options, progress: &Progress<'_>) -> Result<Selection, String> {
+    let mut model = setting.fit(&[])?;
+    let mut p_values = Vec::new();
+    let mut beam = std::vec![model.clone()];
+    let mut steps = Vec::new();
+    let mut unnamed = false;
+    while model.named.len() < MOST_EFFECTS {
+        progress(&std::format!("searching for effect {}", model.named.len() + 1));
+        let Some(tests) = Tests::against(setting, &model.named, options) else { break };
+        let mut step = table(setting, &model, &tests, options);
+        if tests.smallest_p() > options.alpha {
+            step.outcome = String::from("nothing is missing significantly");
+            steps.push(step);
+            break;
+        }
+        beam = improve(setting, extend(setting, &beam));
+        let accepted = beam
+            .iter()
+            .take_while(|proposed| proposed.bic < beam[0].bic + WITHIN_REACH)
+            .take(PROPOSALS)
+            .find_map(|proposed| Some((proposed.clone(), accept(setting, &model, proposed, &tests, options)?)));
+        let Some((proposed, p)) = accepted else {
+            unnamed = true;
+            step.outcome = String::from("something is missing, but no effect passes every test");
+            steps.push(step);
+            break;
+        };
+        let names: Vec<String> = proposed.named.iter().map(|one| setting.candidates[one.candidate].name()).collect();
+        for tested in step.candidates.iter_mut().filter(|tested| names.contains(&tested.name)) {
+            tested.reason.clear();
+        }
+        step.outcome = std::format!("named {}", names.join(", "));
+        steps.push(step);
+        (model, p_values) = (proposed, p);
+    }
+    Ok(Selection { model, p_values, steps, unnamed })
+}
+
+/// How many of the best proposals are put to the tests in one step.
+const PROPOSALS: usize = 3;
+
+/// The p-values of a proposal's effects if it passes.
+fn accept(
+    setting: &Setting,
+    smaller: &Fitted,
+    proposed: &Fitted,
+    against_smaller: &Tests,
+    options: &Options,
+) -> Option<Vec<f64>> {
+    if setting.holdout_rms(&proposed.fit) >= setting.holdout_rms(&smaller.fit) {
+        return None;
+    }
+    let p_values = (0..proposed.named.len()).map(|k| {
+        let mut rest = proposed.named.clone();
+        let one = rest.remove(k);
+        let p = if rest == smaller.named {
+            against_smaller.p_value(one.candidate)
+        } else {
+            Tests::against(setting, &rest, options)?.p_value(one.candidate)
+        };
+        (p <= options.alpha).then_some(p)
+    });
+    p_values.collect()
+}
+
+/// The family-wise p-value of each effect, that of the model without it.
+pub fn p_values(setting: &Setting, named: &[Named], options: &Options) -> Vec<f64> {
+    let one = |k: usize| {
+        let mut rest = named.to_vec();
+        let one = rest.remove(k);
+        Tests::against(setting, &rest, options).map_or(1.0, |tests| tests.p_value(one.candidate))
+    };
+    (0..named.len()).map(one).collect()
+}
+
+/// Every model with one effect more than one of `beam`, the best first.
+fn extend(setting: &Setting, beam: &[Fitted]) -> Vec<Fitted> {
+    let mut found = Vec::new();
+    for model in beam {
+        for candidate in 0..setting.candidates.len() {
+            found.extend(best_with(setting, &model.named, candidate));
+        }
+    }
+    best_of(found)
+}
+
+/// The best physical model of some effects and one candidate more.
+pub fn best_with(setting: &Setting, named: &[Named], candidate: usize) -> Option<Fitted> {
+    if named.iter().any(|one| one.candidate == candidate) {
+        return None;
+    }
+    let variants = 0..setting.candidates[candidate].variants.len();
+    let fits = variants.filter_map(|variant| {
+        let mut named = named.to_vec();
+        named.push(Named { candidate, variant });
+        // One order for one set, so that it is the same model however reached.
+        named.sort_unstable();
+        setting.fit(&named).ok()
+    });
+    let best = fits.min_by(|a, b| a.bic.total_cmp(&b.bic))?;
+    let is_sentinel = |one: &Named| one.candidate == candidate && setting.variant(*one).sentinel;
+    (!best.named.iter().any(is_sentinel)).then_some(best)
+}
+
+/// Replaces each effect of the best model with each candidate as long as that
+/// improves it.
+fn improve(setting: &Setting, mut beam: Vec<Fitted>) -> Vec<Fitted> {
+    loop {
+        let Some(best) = beam.first().cloned() else { return beam };
+        let swapped = (0..best.named.len()).flat_map(|k| {
+            let mut rest = best.named.clone();
+            rest.remove(k);
+            (0..setting.candidates.len()).filter_map(move |candidate| best_with(setting, &rest, candidate))
+        });
+        let swapped: Vec<Fitted> = swapped.collect();
+        beam.extend(swapped);
+        beam = best_of(beam);
+        if beam[0].bic >= best.bic - TIE {
+            return beam;
+        }
+    }
+}
+
+/// Criteria closer than this are equal but for rounding.
+const TIE: f64 = 1e-3;
+
+/// The best of each set of candidates, the best set first; among equals the
+/// one that comes first in the catalogue.
+fn best_of(mut models: Vec<Fitted>) -> Vec<Fitted> {
+    let set = |model: &Fitted| -> Vec<usize> { model.named.iter().map(|one| one.candidate).collect() };
+    models.sort_by_cached_key(|model| ((model.bic / TIE).round() as i64, model.named.clone()));
+    let mut kept: Vec<Fitted> = Vec::new();
+    for model in models {
+        if kept.len() < BEAM && kept.iter().all(|other| set(other) != set(&model)) {
+            kept.push(model);
+        }
+    }
+    kept
+}
+
+fn table(setting: &Setting, model: &Fitted, tests: &Tests, options: &Options) -> Step {
+    let name = |one: &Named| setting.candidates[one.candidate].name();
+    let before = setting.holdout_rms(&model.fit);
+    let candidates = (0..setting.candidates.len()).map(|candidate| {
+        let statistic = tests.statistics[candidate].map(|(statistic, _)| statistic);
+        let p_value = tests.p_value(candidate);
+        let with = best_with(setting, &model.named, candidate);
+        let holdout_rms = with.as_ref().map(|with| setting.holdout_rms(&with.fit));
+        let reason = if model.named.iter().any(|one| one.candidate == candidate) {
+            "already named"
+        } else if statistic.is_none() || with.is_none() {
+            "it explains nothing with numbers that are physically possible"
+        } else if p_value > options.alpha {
+            "not significant"
+        } else if holdout_rms.is_some_and(|rms| rms >= before) {
+            "unseen poses are not predicted better"
+        } else {
+            "another explains more"
+        };
+        Tested {
+            name: setting.candidates[candidate].name(),
+            statistic,
+            p_value,
+            bic: with.map(|with| with.bic),
+            holdout_rms,
+            reason: String::from(reason),
+        }
+    });
+    Step { named: model.named.iter().map(name).collect(), candidates: candidates.collect(), outcome: String::new() }
+}

@@ -1,0 +1,212 @@
+//! Tracing on campaigns made from the regression's own columns: what is tested
+//! is the statistics, not the mechanics.
+
+use std::format;
+use std::string::ToString;
+use std::vec;
+
+use nalgebra::DVector;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use super::bootstrap::ScoreTest;
+use super::*;
+use crate::campaign::{Data, Displacements, Frame, Noise, Observation};
+use crate::elements::Parameter;
+use crate::identify::predict;
+use crate::identify::samples::{Column, Samples};
+use crate::samples::five_axis;
+
+const SIGMA: f64 = 1e-5;
+const RAMP: [f64; 5] = [0.35, 0.7, 1.0, 0.7, 0.35];
+
+fn gauss(rng: &mut ChaCha8Rng) -> f64 {
+    let radius = (-2.0 * (1.0 - rng.random::<f64>()).ln()).sqrt();
+    radius * (core::f64::consts::TAU * rng.random::<f64>()).cos()
+}
+
+/// A campaign of two ramps a pose on an arm with further numbers, each column
+/// times its value; joint compliances as declared.
+fn campaign(robot: &Description, poses: usize, hidden: &[(Column, f64)], seed: u64) -> Campaign {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut data = Displacements {
+        wrench_frame: Frame::Base,
+        wrench_at: [0.0; 3],
+        measured_frame: Frame::Base,
+        measured_at: [0.0; 3],
+        poses: (0..poses).map(|pose| format!("{pose}")).collect(),
+        visits: (0..2 * poses).map(|visit| format!("{visit}")).collect(),
+        rows: Vec::new(),
+    };
+    for visit in 0..2 * poses {
+        let q = if visit % 2 == 0 {
+            robot.joints.iter().map(|_| rng.random_range(-1.2..1.2)).collect()
+        } else {
+            data.rows[data.rows.len() - 1].q.clone()
+        };
+        let force: [f64; 3] = core::array::from_fn(|_| rng.random_range(-700.0..700.0));
+        for share in RAMP {
+            let mut wrench = [0.0; 6];
+            (0..3).for_each(|k| wrench[k] = share * force[k]);
+            let line = data.rows.len() + 2;
+            data.rows.push(Observation {
+                line,
+                pose: visit / 2,
+                visit,
+                time: None,
+                temperature: None,
+                q: q.clone(),
+                wrench,
+                displacement: [0.0; 3],
+                rotation: None,
+            });
+        }
+    }
+    let samples = Samples::of_description(robot, &data);
+    let mut exact = DVector::zeros(3 * data.rows.len());
+    for (column, value) in crate::identify::baseline::declared(robot)
+        .iter()
+        .map(|number| (number.column, number.value))
+        .chain(hidden.iter().copied())
+    {
+        exact.axpy(value, &samples.column(column), 1.0);
+    }
+    let second = crate::identify::second_order::beyond_linear(
+        &samples,
+        &robot.joints.iter().map(robstiff_robots::Joint::compliance).collect::<Vec<_>>(),
+    );
+    exact += second;
+    let mut unloaded = [0.0; 3];
+    for (i, row) in data.rows.iter_mut().enumerate() {
+        if i % RAMP.len() == 0 {
+            unloaded = core::array::from_fn(|_| SIGMA * gauss(&mut rng));
+        }
+        row.displacement = core::array::from_fn(|k| exact[3 * i + k] + SIGMA * gauss(&mut rng) - unloaded[k]);
+    }
+    Campaign {
+        name: "test".to_string(),
+        path: "".into(),
+        robot_path: "".into(),
+        robot: robot.clone(),
+        data: Data::Displacement(data),
+        noise: Noise::default(),
+        holdout: None,
+        warnings: Vec::new(),
+    }
+}
+
+fn traced(campaign: &Campaign) -> Trace {
+    trace(campaign, &Options { draws: 499, ..Options::default() }, &|_| {}).expect("a campaign of displacements")
+}
+
+fn names(trace: &Trace) -> Vec<String> {
+    trace.effects.iter().map(|named| named.effect.to_string()).collect()
+}
+
+const TILT_3: (Column, f64) = (Column::Linear(Parameter::Transverse(3)), 6e-7);
+
+#[test]
+fn a_missing_effect_is_named_and_goes_into_the_description() {
+    let campaign = campaign(&five_axis(), 24, &[TILT_3], 3);
+    let found = traced(&campaign);
+    assert_eq!((names(&found), found.verdict), (vec!["transverse_compliance@joint 3".to_string()], Verdict::Explained));
+    let h = &found.effects[0].parameters[0];
+    assert!((h.value - TILT_3.1).abs() < 4.0 * h.std.expect("a compliance has one"), "{h:?}");
+    assert!(found.after.rms < 1.5 * SIGMA * 2_f64.sqrt() && found.identified.rms > 2.0 * found.after.rms);
+    assert!((found.noise / SIGMA - 1.0).abs() < 0.2, "{}", found.noise);
+
+    let predicted = predict(&found.description, &campaign).expect("the same robot");
+    assert!((predicted.rms / found.after.rms - 1.0).abs() < 1e-9, "the description says what the model says");
+    assert!(found.description.source.contains("transverse_compliance@joint 3"));
+}
+
+#[test]
+fn one_seed_gives_one_result() {
+    let campaign = campaign(&five_axis(), 16, &[TILT_3], 5);
+    let (first, second) = (traced(&campaign), traced(&campaign));
+    assert_eq!(first.after, second.after);
+    let p_values =
+        |trace: &Trace| -> Vec<f64> { trace.steps.iter().flat_map(|s| &s.candidates).map(|c| c.p_value).collect() };
+    assert_eq!(p_values(&first), p_values(&second));
+}
+
+#[test]
+fn an_arm_that_lacks_nothing_is_adequate() {
+    let adequate = (0..10).filter(|&seed| traced(&campaign(&five_axis(), 20, &[], seed)).verdict == Verdict::Adequate);
+    assert!(adequate.count() >= 9);
+}
+
+#[test]
+fn poses_held_out_are_kept_from_the_search() {
+    let mut campaign = campaign(&five_axis(), 24, &[TILT_3], 3);
+    campaign.holdout = Some(crate::campaign::Holdout { fraction: 0.25, seed: 1 });
+    let found = traced(&campaign);
+    assert_eq!(found.held_out.len(), 6);
+    assert_eq!(names(&found), ["transverse_compliance@joint 3"]);
+    // Readings of the poses held out do not reach the estimates.
+    if let Data::Displacement(data) = &mut campaign.data {
+        for row in data.rows.iter_mut().filter(|row| found.held_out.contains(&row.pose.to_string())) {
+            row.displacement = [1.0; 3];
+        }
+    }
+    let again = traced(&campaign);
+    assert_eq!(again.estimates, found.estimates);
+    assert!(again.after.holdout_rms > 0.1);
+}
+
+#[test]
+fn few_poses_are_insufficient() {
+    let found = traced(&campaign(&five_axis(), 5, &[TILT_3], 3));
+    assert_eq!(found.verdict, Verdict::Insufficient);
+    assert!(found.effects.is_empty() && found.why.contains("5 poses are too few"));
+}
+
+/// In the standard convention joint 1 stands on the base, so its tilt is that
+/// of the base; tilts of a spherical wrist differ by joint compliances.
+#[test]
+fn exact_aliases_are_said() {
+    let found = traced(&campaign(&five_axis(), 24, &[(Column::Linear(Parameter::BaseTilt), 1e-7)], 3));
+    assert_eq!(names(&found), ["base_compliance@base"]);
+    assert!(found.effects[0].same_as.contains(&"transverse_compliance@joint 1".to_string()));
+}
+
+/// A drift, on which no effect of the catalogue depends, is seen and not named.
+#[test]
+fn what_is_not_in_the_catalogue_stays_unexplained() {
+    let mut campaign = campaign(&five_axis(), 24, &[], 4);
+    if let Data::Displacement(data) = &mut campaign.data {
+        for (i, row) in data.rows.iter_mut().enumerate() {
+            row.displacement[0] += 4e-7 * (i as f64 - 120.0);
+        }
+    }
+    let found = traced(&campaign);
+    assert_eq!((found.verdict, names(&found).len()), (Verdict::Unexplained, 0));
+    assert_eq!(found.depends_on.first().map(String::as_str), Some("row order"), "{:?}", found.depends_on);
+    assert!(found.unexplained > 0.15 && !found.why.is_empty());
+}
+
+/// The family-wise test rejects a true null as often as it says, also with
+/// poses of unlike noise.
+#[test]
+fn the_bootstrap_has_its_nominal_size() {
+    let (runs, level) = (100, 0.1);
+    let rejected = (0..runs).filter(|&seed| {
+        let mut campaign = campaign(&five_axis(), 15, &[], 1000 + seed);
+        if let Data::Displacement(data) = &mut campaign.data {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            for row in data.rows.iter_mut().filter(|row| row.pose % 3 == 0) {
+                row.displacement.iter_mut().for_each(|d| *d += 2.0 * SIGMA * gauss(&mut rng));
+            }
+        }
+        let prepared = Prepared::new(&campaign).expect("displacements");
+        let setting = setting::setting(&campaign, &prepared);
+        let test =
+            ScoreTest::new(&setting.problem, &setting.candidates, &setting.signs, setting.own, &setting.columns(&[]))
+                .expect("joints are seen");
+        let largest = test.statistics().into_iter().flatten().map(|(s, _)| s).fold(0.0, f64::max);
+        test.reference(199, seed).p_value(largest) <= level
+    });
+    let share = rejected.count() as f64 / runs as f64;
+    // Three standard errors of a binomial above; the CR3 residuals err below.
+    assert!((0.02..level + 3.0 * (level * (1.0 - level) / runs as f64).sqrt()).contains(&share), "{share}");
+}

@@ -1,0 +1,121 @@
+//! The verdict, and when names are taken back.
+
+use core::fmt;
+use std::format;
+use std::string::String;
+use std::vec;
+use std::vec::Vec;
+
+use super::features::LOAD_ORDER;
+use super::lack_of_fit::LackOfFit;
+use super::model::{Fitted, Named, Setting};
+use super::selection::Selection;
+use crate::Effect;
+
+/// What a tracing came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Nothing is missing: no effect is named.
+    Adequate,
+    /// Effects are named, and the rest is noise.
+    Explained,
+    /// Effects are named, and structure is left.
+    Partial,
+    /// Structure, and nothing in the catalogue accounts for it.
+    Unexplained,
+    /// The data cannot tell.
+    Insufficient,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Adequate => "adequate",
+            Self::Explained => "explained",
+            Self::Partial => "partial",
+            Self::Unexplained => "unexplained",
+            Self::Insufficient => "insufficient",
+        })
+    }
+}
+
+/// With fewer poses there are too few sign patterns (`2^(P - 1)`) to reject
+/// anything at the usual levels with a margin.
+pub const FEWEST_POSES: usize = 10;
+
+/// So much of the structure that is there without an effect it has to account
+/// for, where structure is left with it. A search in a catalogue finds
+/// something a little like whatever is missing, and does not stop by itself on
+/// an effect that it does not have. The number is from simulated campaigns:
+/// names for a fault outside the catalogue (scaled force, lever arm, lost
+/// motion of joint 2, compliance that varies with pose) accounted for 0.05 to
+/// 0.43, four in five for less than 0.3; a true effect beside a fault of its own
+/// size for 0.37 to 0.85, nine in ten for more than 0.43. It is no guarantee:
+/// lost motion of joint 3 of a six-axis arm mostly passes for a nonlinearity of
+/// joint 2, whose axis is parallel.
+const SHARE: f64 = 0.4;
+
+/// So many names with structure still left are borrowed names, whatever each
+/// accounts for.
+const BORROWED: usize = 3;
+
+/// The effects of a model that are to be taken back because structure is left
+/// all the same: the one that accounts for too little of it, or all of several.
+pub fn to_take_back(setting: &Setting, model: &Fitted, left: &LackOfFit) -> Vec<usize> {
+    if !left.structure {
+        return Vec::new();
+    }
+    // A gear with hysteresis is softer at small torques, on the way back: what
+    // changes with the load order is no function of the torque.
+    let of_order = left.depends_on.iter().any(|column| column == LOAD_ORDER);
+    let nonlinear =
+        |named: &Named| matches!(setting.candidates[named.candidate].effect, Effect::StiffnessNonlinearity { .. });
+    if of_order && model.named.iter().any(nonlinear) {
+        return (0..model.named.len()).filter(|&k| nonlinear(&model.named[k])).collect();
+    }
+    let share = |k: usize| {
+        let mut rest = model.named.clone();
+        rest.remove(k);
+        // Both over the same degrees of freedom but for a few.
+        let without = setting.fit(&rest).map_or(f64::INFINITY, |fitted| fitted.fit.rss);
+        let noise = model.fit.rss * (1.0 - left.fraction);
+        (without - model.fit.rss) / (without - noise)
+    };
+    let weakest = (0..model.named.len()).map(|k| (share(k), k)).min_by(|a, b| a.0.total_cmp(&b.0));
+    match weakest {
+        Some((share, k)) if share < SHARE => vec![k],
+        _ if model.named.len() >= BORROWED => (0..model.named.len()).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// The verdict on a model that stands, and why.
+pub fn judge(selection: &Selection, left: &LackOfFit, taken_back: usize) -> (Verdict, String) {
+    let named = selection.model.named.len();
+    let structure = left.structure || selection.unnamed;
+    let strongest = left.tests.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value));
+    let because = strongest.map_or_else(String::new, |test| format!("{} (p {})", test.name, Shown(test.p_value)));
+    match (named, structure) {
+        (0, false) => {
+            (Verdict::Adequate, String::from("nothing is missing significantly, and what is left looks like noise"))
+        }
+        (_, false) => (Verdict::Explained, String::from("what the named effects leave looks like noise")),
+        (0, true) if taken_back > 0 => (
+            Verdict::Unexplained,
+            format!("names that fitted were taken back, for they leave most of what is missing: {because}"),
+        ),
+        (0, true) => {
+            (Verdict::Unexplained, format!("structure is left that no effect of the catalogue accounts for: {because}"))
+        }
+        (_, true) => (Verdict::Partial, format!("structure is left beyond the named effects: {because}")),
+    }
+}
+
+/// A probability with two digits.
+struct Shown(f64);
+
+impl fmt::Display for Shown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0 < 1e-3 { f.write_str("< 0.001") } else { write!(f, "= {:.3}", self.0) }
+    }
+}
