@@ -300,7 +300,7 @@ impl Robot<6> for EveryEffect {
             Self::SIN_BASE_ROLL * 0.7648421872844885
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
         );
-        let k18 = T::of(-Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k18 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k19 = T::of(
             Self::A2
                 * (Self::SIN_BASE_ROLL * -0.644217687237691
@@ -311,7 +311,7 @@ impl Robot<6> for EveryEffect {
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k21 = T::of(Self::A2 * -Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k21 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k22 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * -0.644217687237691
@@ -322,7 +322,7 @@ impl Robot<6> for EveryEffect {
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k24 = T::of(Self::A3 * -Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k24 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s1o, c1o), (s2, c2), (s23, c23), (s4o, c4o), (s5, c5), (s6, c6), (s6o, c6o),
         ] = T::sin_cos_all([
             q[0] + T::of(0.17453292519943295),
@@ -472,7 +472,7 @@ impl Robot<6> for EveryEffect {
             Self::SIN_BASE_ROLL * 0.7648421872844885
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
         );
-        let k18 = T::of(-Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k18 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k19 = T::of(
             Self::A2
                 * (Self::SIN_BASE_ROLL * -0.644217687237691
@@ -483,7 +483,7 @@ impl Robot<6> for EveryEffect {
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k21 = T::of(Self::A2 * -Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k21 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k22 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * -0.644217687237691
@@ -494,7 +494,7 @@ impl Robot<6> for EveryEffect {
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k24 = T::of(Self::A3 * -Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k24 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s1o, c1o), (s2, c2), (s23, c23), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
             q[0] + T::of(0.17453292519943295),
             q[1],
@@ -684,7 +684,7 @@ impl Robot<6> for EveryEffect {
             Self::SIN_BASE_ROLL * 0.7648421872844885
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
         );
-        let k21 = T::of(-Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k21 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k22 = T::of(
             Self::A2
                 * (Self::SIN_BASE_ROLL * -0.644217687237691
@@ -695,7 +695,7 @@ impl Robot<6> for EveryEffect {
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k24 = T::of(Self::A2 * -Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k24 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k25 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * -0.644217687237691
@@ -706,7 +706,7 @@ impl Robot<6> for EveryEffect {
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k27 = T::of(Self::A3 * -Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s1o, c1o), (s2, c2), (s23, c23), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
             q[0] + T::of(0.17453292519943295),
             q[1],
@@ -850,8 +850,8 @@ impl Robot<6> for EveryEffect {
                 * (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664),
         );
         let k5 = T::of(
-            -Self::TOOL_ROTATION
-                * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448),
+            -(Self::TOOL_ROTATION
+                * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)),
         );
         let k6 = T::of(
             -(Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664),
@@ -862,7 +862,7 @@ impl Robot<6> for EveryEffect {
         );
         let k8 = T::of(
             (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
-                * -Self::TOOL_ROTATION * Self::TOOL_Z,
+                * -(Self::TOOL_ROTATION * Self::TOOL_Z),
         );
         let k9 = T::of(
             Self::TOOL_TRANSLATION
@@ -870,9 +870,9 @@ impl Robot<6> for EveryEffect {
                     * (Self::TOOL_ROTATION
                         * (Self::TOOL_X * 0.1908089953765448
                             + Self::TOOL_Y * 0.981627183447664))
-                    + -Self::TOOL_ROTATION
+                    + -(Self::TOOL_ROTATION
                         * (Self::TOOL_X * 0.981627183447664
-                            - Self::TOOL_Y * 0.1908089953765448)
+                            - Self::TOOL_Y * 0.1908089953765448))
                         * (Self::TOOL_Y * 0.1908089953765448
                             - Self::TOOL_X * 0.981627183447664)),
         );
@@ -880,28 +880,29 @@ impl Robot<6> for EveryEffect {
         let k11 = T::of(
             Self::TOOL_TRANSLATION
                 + (Self::TOOL_Z * (Self::TOOL_ROTATION * Self::TOOL_Z)
-                    + -Self::TOOL_ROTATION
+                    + -(Self::TOOL_ROTATION
                         * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664)
+                            + Self::TOOL_Y * 0.981627183447664))
                         * -(Self::TOOL_X * 0.1908089953765448
                             + Self::TOOL_Y * 0.981627183447664))
                 + -(Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
-                    * -Self::H6
-                    * (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664),
+                    * -(Self::H6
+                        * (Self::TOOL_X * 0.1908089953765448
+                            + Self::TOOL_Y * 0.981627183447664)),
         );
         let k12 = T::of(
             (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                * -Self::TOOL_ROTATION
-                * (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
-                + (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                    * -Self::H6
+                * -(Self::TOOL_ROTATION
                     * (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664),
+                        + Self::TOOL_Y * 0.981627183447664))
+                + (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                    * -(Self::H6
+                        * (Self::TOOL_X * 0.1908089953765448
+                            + Self::TOOL_Y * 0.981627183447664)),
         );
         let k13 = T::of(
             Self::TOOL_TRANSLATION
-                + (-Self::TOOL_ROTATION * Self::TOOL_Z * -Self::TOOL_Z
+                + (-(Self::TOOL_ROTATION * Self::TOOL_Z) * -Self::TOOL_Z
                     + (Self::TOOL_X * 0.981627183447664
                         - Self::TOOL_Y * 0.1908089953765448)
                         * (Self::TOOL_ROTATION
@@ -914,11 +915,11 @@ impl Robot<6> for EveryEffect {
         );
         let k14 = T::of(Self::H6 + Self::TOOL_ROTATION);
         let k15 = T::of(
-            -Self::TOOL_ROTATION
-                * (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
-                + -Self::H6
+            -(Self::TOOL_ROTATION
+                * (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664))
+                + -(Self::H6
                     * (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664),
+                        + Self::TOOL_Y * 0.981627183447664)),
         );
         let k16 = T::of(
             Self::TOOL_ROTATION
@@ -930,17 +931,17 @@ impl Robot<6> for EveryEffect {
         let k17 = T::of(
             Self::TOOL_TRANSLATION
                 + (Self::TOOL_Z * (Self::TOOL_ROTATION * Self::TOOL_Z)
-                    + -Self::TOOL_ROTATION
+                    + -(Self::TOOL_ROTATION
                         * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664)
+                            + Self::TOOL_Y * 0.981627183447664))
                         * -(Self::TOOL_X * 0.1908089953765448
                             + Self::TOOL_Y * 0.981627183447664))
                 + -(Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
-                    * -Self::H6
-                    * (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664)
+                    * -(Self::H6
+                        * (Self::TOOL_X * 0.1908089953765448
+                            + Self::TOOL_Y * 0.981627183447664))
                 - (Self::TOOL_TRANSLATION
-                    + (-Self::TOOL_ROTATION * Self::TOOL_Z * -Self::TOOL_Z
+                    + (-(Self::TOOL_ROTATION * Self::TOOL_Z) * -Self::TOOL_Z
                         + (Self::TOOL_X * 0.981627183447664
                             - Self::TOOL_Y * 0.1908089953765448)
                             * (Self::TOOL_ROTATION
@@ -954,31 +955,33 @@ impl Robot<6> for EveryEffect {
         );
         let k18 = T::of(
             (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                * -Self::TOOL_ROTATION
-                * (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
+                * -(Self::TOOL_ROTATION
+                    * (Self::TOOL_X * 0.1908089953765448
+                        + Self::TOOL_Y * 0.981627183447664))
                 + (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                    * -Self::H6
-                    * (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664)
-                + ((Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                    * -Self::TOOL_ROTATION
-                    * (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664)
-                    + (Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448) * -Self::H6
+                    * -(Self::H6
                         * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664)),
+                            + Self::TOOL_Y * 0.981627183447664))
+                + ((Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                    * -(Self::TOOL_ROTATION
+                        * (Self::TOOL_X * 0.1908089953765448
+                            + Self::TOOL_Y * 0.981627183447664))
+                    + (Self::TOOL_X * 0.981627183447664
+                        - Self::TOOL_Y * 0.1908089953765448)
+                        * -(Self::H6
+                            * (Self::TOOL_X * 0.1908089953765448
+                                + Self::TOOL_Y * 0.981627183447664))),
         );
         let k19 = T::of(Self::H5 + Self::ADDED5);
-        let k20 = T::of(-(Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5));
+        let k20 = T::of(-((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)));
         let k21 = T::of(
-            -(Self::D6 + Self::TOOL_Z) * -(Self::D6 + Self::TOOL_Z)
-                * (Self::H5 + Self::ADDED5),
+            -(Self::D6 + Self::TOOL_Z)
+                * -((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)),
         );
         let k22 = T::of(Self::TOOL_ROTATION + (Self::H5 + Self::ADDED5));
         let k23 = T::of(
-            -Self::TOOL_ROTATION * Self::TOOL_Z
-                + -(Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5),
+            -(Self::TOOL_ROTATION * Self::TOOL_Z)
+                + -((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)),
         );
         let k24 = T::of(Self::COUPLING5_6 * -(Self::D6 + Self::TOOL_Z));
         let k25 = T::of(Self::TOOL_ROTATION - (Self::H6 + Self::TOOL_ROTATION));
@@ -1011,7 +1014,9 @@ impl Robot<6> for EveryEffect {
                 * (Self::BENDING3 * 0.08333333333333333)
                 - Self::A3 * (Self::A3 * (Self::BENDING3 * 0.08333333333333333)),
         );
-        let k31 = T::of(-Self::D3 * (Self::A3 * (Self::BENDING3 * 0.08333333333333333)));
+        let k31 = T::of(
+            -(Self::D3 * (Self::A3 * (Self::BENDING3 * 0.08333333333333333))),
+        );
         let k32 = T::of(
             (Self::A3 * Self::A3 + Self::D3 * Self::D3)
                 * (Self::BENDING3 * 0.08333333333333333)
@@ -1489,7 +1494,7 @@ impl Robot<6> for EveryEffect {
             Self::SIN_BASE_ROLL * 0.7648421872844885
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
         );
-        let k21 = T::of(-Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k21 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k22 = T::of(
             Self::A2
                 * (Self::SIN_BASE_ROLL * -0.644217687237691
@@ -1500,7 +1505,7 @@ impl Robot<6> for EveryEffect {
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k24 = T::of(Self::A2 * -Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k24 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k25 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * -0.644217687237691
@@ -1511,7 +1516,7 @@ impl Robot<6> for EveryEffect {
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k27 = T::of(Self::A3 * -Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k28 = T::of(1.0 / Self::KNEE2);
         let k29 = T::of(1.0 / Self::KNEE5);
         let k30 = T::of(
@@ -1831,7 +1836,7 @@ impl Robot<6> for EveryEffect {
             Self::SIN_BASE_ROLL * 0.7648421872844885
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
         );
-        let k21 = T::of(-Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k21 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k22 = T::of(
             Self::A2
                 * (Self::SIN_BASE_ROLL * -0.644217687237691
@@ -1842,7 +1847,7 @@ impl Robot<6> for EveryEffect {
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k24 = T::of(Self::A2 * -Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k24 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k25 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * -0.644217687237691
@@ -1853,7 +1858,7 @@ impl Robot<6> for EveryEffect {
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k27 = T::of(Self::A3 * -Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
         let [(s1o, c1o), (s2, c2), (s23, c23), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
             q[0] + T::of(0.17453292519943295),

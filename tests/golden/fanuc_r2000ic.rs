@@ -387,23 +387,23 @@ impl Robot<6> for FanucR2000ic {
         let a4 = T::of(Self::A4);
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
-        let k1 = T::of(-Self::H6 * Self::TOOL_Y);
+        let k1 = T::of(-(Self::H6 * Self::TOOL_Y));
         let h6_tool_x = T::of(Self::H6 * Self::TOOL_X);
-        let k2 = T::of(-Self::TOOL_Y * -Self::H6 * Self::TOOL_Y);
-        let k3 = T::of(Self::TOOL_X * -Self::H6 * Self::TOOL_Y);
+        let k2 = T::of(-Self::TOOL_Y * -(Self::H6 * Self::TOOL_Y));
+        let k3 = T::of(Self::TOOL_X * -(Self::H6 * Self::TOOL_Y));
         let tool_x_h6_tool_x = T::of(Self::TOOL_X * (Self::H6 * Self::TOOL_X));
         let k4 = T::of(Self::D6 + Self::TOOL_Z);
         let k5 = T::of(
-            -Self::TOOL_Y * -Self::H6 * Self::TOOL_Y
+            -Self::TOOL_Y * -(Self::H6 * Self::TOOL_Y)
                 - Self::TOOL_X * (Self::H6 * Self::TOOL_X),
         );
         let k6 = T::of(
-            Self::TOOL_X * -Self::H6 * Self::TOOL_Y
-                + Self::TOOL_X * -Self::H6 * Self::TOOL_Y,
+            Self::TOOL_X * -(Self::H6 * Self::TOOL_Y)
+                + Self::TOOL_X * -(Self::H6 * Self::TOOL_Y),
         );
-        let k7 = T::of(-Self::H5 * (Self::D6 + Self::TOOL_Z));
+        let k7 = T::of(-(Self::H5 * (Self::D6 + Self::TOOL_Z)));
         let k8 = T::of(
-            -(Self::D6 + Self::TOOL_Z) * -Self::H5 * (Self::D6 + Self::TOOL_Z),
+            -(Self::D6 + Self::TOOL_Z) * -(Self::H5 * (Self::D6 + Self::TOOL_Z)),
         );
         let k9 = T::of(-Self::H6);
         let [(s6, c6), (s5, c5), (s4, c4), (s3, c3), (s23, c23), (s1, c1)] = T::sin_cos_all([

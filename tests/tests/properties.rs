@@ -1,12 +1,13 @@
-//! The generator against the generic implementation, on robots drawn at
-//! random: both conventions, one to eight joints, sliding ones too, with and
-//! without base, tool and effects.
+//! The generator, its graphs and its code interpreted, against the generic
+//! implementation, on robots drawn at random: both conventions, one to eight
+//! joints, sliding ones too, with and without base, tool and effects.
 
 use nalgebra::{Matrix4, Matrix6, SVector, Vector6};
 use proptest::prelude::*;
 use robstiff::{Convention, Effect, Generic, JointKind, Robot};
-use robstiff_codegen::{Function, symbolic};
+use robstiff_codegen::{Function, Origin, symbolic, tokens};
 use robstiff_robots::{Description, Joint, Part, Placement};
+use robstiff_tests::interpreter::Code;
 use robstiff_tests::judge::{DOUBLE, Sizes, assert_close, blocks};
 
 /// Angles that generators trip over, and any others.
@@ -96,6 +97,24 @@ fn robot() -> impl Strategy<Value = Description> {
         })
 }
 
+/// That the tokens for the compiler, run by an interpreter, calculate what the
+/// graphs do, to the last bit.
+fn compare_code(robot: &Description, q: &[f64], wrench: &[f64; 6]) {
+    let path = |text: &str| text.parse().expect("a token");
+    let origin = Origin { file: "drawn.yaml".into(), runtime: path("robstiff"), visibility: path("pub") };
+    let code = Code::of(syn::parse2(tokens(robot, &origin)).expect("generated code is Rust"));
+    for (name, function) in [
+        ("transform", Function::of(|g| symbolic::transform(g, robot))),
+        ("link_frames", Function::of(|g| symbolic::link_frames(g, robot))),
+        ("jacobian", Function::of(|g| symbolic::jacobian(g, robot))),
+        ("compliance", Function::of(|g| symbolic::compliance(g, robot))),
+        ("deflection", Function::of(|g| symbolic::deflection(g, robot))),
+        ("joint_torques", Function::of(|g| symbolic::joint_torques(g, robot))),
+    ] {
+        assert_eq!(code.call(name, q, wrench), function.evaluate(q, wrench), "{name}");
+    }
+}
+
 /// Panics where the two disagree, which a property takes for a failure.
 fn compare<const N: usize>(robot: &Description, q: &[f64], wrench: &[f64; 6]) {
     let generic = Generic::<N>::new(robot).expect("N joints");
@@ -145,5 +164,18 @@ proptest! {
             7 => compare::<7>(&robot, q, &wrench),
             _ => compare::<8>(&robot, q, &wrench),
         }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn code_calculates_what_its_graphs_do(
+        robot in robot(),
+        q in prop::collection::vec(-3.0..3.0_f64, 8),
+        wrench in prop::array::uniform6(-1000.0..1000.0_f64),
+    ) {
+        compare_code(&robot, &q[..robot.joints.len()], &wrench);
     }
 }

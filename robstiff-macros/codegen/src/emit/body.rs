@@ -173,7 +173,8 @@ impl Writer<'_> {
                 (quote!(#a * #b), Binding::Product)
             }
             Op::Neg(a) => {
-                let a = self.operand(a, Binding::Product);
+                // A product in parentheses: `x * -a * b` multiplies in another order.
+                let a = self.operand(a, Binding::Sign);
                 (quote!(-#a), Binding::Sign)
             }
             Op::Sqrt(a) => {
@@ -213,7 +214,7 @@ impl Writer<'_> {
                 (quote!(#a * #b), Binding::Product)
             }
             Op::Neg(a) => {
-                let a = self.constant(a, Binding::Product);
+                let a = self.constant(a, Binding::Sign);
                 (quote!(-#a), Binding::Sign)
             }
             Op::Recip(a) => {

@@ -1,0 +1,176 @@
+//! Generated code, interpreted: the tokens that `robot!` would hand to the
+//! compiler, run without one, so that thousands of robots can be tried.
+//!
+//! It knows what generated code consists of and panics at everything else, as
+//! the compiler would at a name that is bound twice or not at all.
+
+use std::collections::HashMap;
+
+use syn::{BinOp, Block, Expr, File, ImplItem, Item, Lit, Pat, Stmt, UnOp};
+
+/// The generated code of one robot.
+pub struct Code {
+    constants: HashMap<String, f64>,
+    methods: HashMap<String, Block>,
+}
+
+impl Code {
+    /// The code among the items that were generated.
+    pub fn of(file: File) -> Self {
+        let mut code = Self { constants: HashMap::new(), methods: HashMap::new() };
+        file.items.into_iter().for_each(|item| code.item(item));
+        code
+    }
+
+    fn item(&mut self, item: Item) {
+        match item {
+            Item::Impl(item) => item.items.into_iter().for_each(|item| self.member(item)),
+            Item::Const(item) => {
+                let Expr::Block(hidden) = *item.expr else { panic!("a constant that hides its items") };
+                for statement in hidden.block.stmts {
+                    let Stmt::Item(item) = statement else { panic!("an item") };
+                    self.item(item);
+                }
+            }
+            Item::Struct(_) | Item::Use(_) => {}
+            _ => panic!("an item that the generator writes"),
+        }
+    }
+
+    fn member(&mut self, item: ImplItem) {
+        match item {
+            ImplItem::Const(item) => {
+                let value = Scope { code: self, bound: HashMap::new(), q: &[], wrench: &[] }.value(&item.expr);
+                assert!(self.constants.insert(item.ident.to_string(), value).is_none(), "{} twice", item.ident);
+            }
+            ImplItem::Fn(item) => {
+                self.methods.insert(item.sig.ident.to_string(), item.block);
+            }
+            _ => panic!("generated code has constants and methods"),
+        }
+    }
+
+    /// The entries of what a method returns, in the order in which it builds
+    /// them.
+    ///
+    /// # Panics
+    /// Where the code is none that the generator writes.
+    pub fn call(&self, method: &str, q: &[f64], wrench: &[f64]) -> Vec<f64> {
+        let mut scope = Scope { code: self, bound: HashMap::new(), q, wrench };
+        let mut result = Vec::new();
+        for statement in &self.methods[method].stmts {
+            match statement {
+                Stmt::Local(local) => {
+                    let value = &local.init.as_ref().expect("a value").expr;
+                    let values = scope.entries(value);
+                    assert_eq!(scope.bind(&local.pat, &values), values.len(), "as many names as values");
+                }
+                Stmt::Expr(expression, None) => result = scope.entries(expression),
+                _ => panic!("a statement that is no let"),
+            }
+        }
+        result
+    }
+}
+
+struct Scope<'c> {
+    code: &'c Code,
+    bound: HashMap<String, f64>,
+    q: &'c [f64],
+    wrench: &'c [f64],
+}
+
+impl Scope<'_> {
+    /// Binds names in order; returns how many values that took.
+    fn bind(&mut self, pattern: &Pat, values: &[f64]) -> usize {
+        let inner = match pattern {
+            Pat::Ident(name) => {
+                let name = name.ident.to_string();
+                assert!(self.bound.insert(name.clone(), values[0]).is_none(), "{name} is bound twice");
+                return 1;
+            }
+            Pat::Wild(_) => return 1,
+            Pat::Slice(slice) => &slice.elems,
+            Pat::Tuple(tuple) => &tuple.elems,
+            _ => panic!("a pattern of names"),
+        };
+        inner.iter().fold(0, |taken, pattern| taken + self.bind(pattern, &values[taken..]))
+    }
+
+    /// The numbers in a matrix, a list, or a single one.
+    fn entries(&self, expression: &Expr) -> Vec<f64> {
+        match expression {
+            Expr::Array(array) => array.elems.iter().flat_map(|entry| self.entries(entry)).collect(),
+            Expr::Call(call) => {
+                let arguments = || call.args.iter().flat_map(|argument| self.entries(argument));
+                match path(&call.func).as_str() {
+                    "T::sin_cos" | "T::sin_cos_all" => {
+                        arguments().flat_map(|angle| [angle.sin(), angle.cos()]).collect()
+                    }
+                    "T::zero" => vec![0.0],
+                    "T::one" => vec![1.0],
+                    "T::of" | "Matrix4::new" | "Matrix6::new" | "Vector6::new" | "SMatrix::from" | "SVector::from" => {
+                        arguments().collect()
+                    }
+                    other => panic!("a call of {other}"),
+                }
+            }
+            Expr::Index(index) if !is_q(&index.expr) => self.wrench.to_vec(),
+            _ => vec![self.value(expression)],
+        }
+    }
+
+    fn value(&self, expression: &Expr) -> f64 {
+        match expression {
+            Expr::Lit(literal) => match &literal.lit {
+                Lit::Float(number) => number.base10_parse().expect("a number"),
+                _ => panic!("a number that is no float"),
+            },
+            Expr::Paren(inner) => self.value(&inner.expr),
+            Expr::Unary(unary) if matches!(unary.op, UnOp::Neg(_)) => -self.value(&unary.expr),
+            Expr::Binary(binary) => {
+                let (a, b) = (self.value(&binary.left), self.value(&binary.right));
+                match binary.op {
+                    BinOp::Add(_) => a + b,
+                    BinOp::Sub(_) => a - b,
+                    BinOp::Mul(_) => a * b,
+                    BinOp::Div(_) => a / b,
+                    _ => panic!("an operation of arithmetic"),
+                }
+            }
+            Expr::Path(_) => {
+                let name = path(expression);
+                match name.strip_prefix("Self::") {
+                    Some(constant) => self.code.constants[constant],
+                    None => *self.bound.get(&name).unwrap_or_else(|| panic!("{name} is not bound")),
+                }
+            }
+            Expr::Index(index) if is_q(&index.expr) => match &*index.index {
+                Expr::Lit(literal) => match &literal.lit {
+                    Lit::Int(joint) => self.q[joint.base10_parse::<usize>().expect("an index")],
+                    _ => panic!("an index"),
+                },
+                _ => panic!("an index"),
+            },
+            Expr::MethodCall(call) => {
+                let value = self.value(&call.receiver);
+                match call.method.to_string().as_str() {
+                    "sqrt" => value.sqrt(),
+                    "recip" => value.recip(),
+                    other => panic!("a call of {other}"),
+                }
+            }
+            Expr::Call(_) => self.entries(expression)[0],
+            _ => panic!("an expression of arithmetic"),
+        }
+    }
+}
+
+fn path(expression: &Expr) -> String {
+    let Expr::Path(path) = expression else { panic!("a path") };
+    path.path.segments.iter().map(|segment| segment.ident.to_string()).collect::<Vec<_>>().join("::")
+}
+
+fn is_q(expression: &Expr) -> bool {
+    matches!(expression, Expr::Path(_)) && path(expression) == "q"
+}
