@@ -41,6 +41,44 @@ struct Row {
     after: Matrix4<f64>,
 }
 
+/// Evaluates an expression with a robot whose number of joints is known only at
+/// run time: `with_robot!(&description, |robot| expression)`, where `robot` is
+/// a `Generic<N>` for the `N` the description has. The expression is compiled
+/// for every `N` from 1 to 8, so let it call a generic function.
+///
+/// # Panics
+/// On a description that was not read but built, with no or more than eight
+/// joints.
+///
+/// ```
+/// use robstiff::Robot;
+/// use robstiff::nalgebra::SVector;
+/// use robstiff::robots::{Description, catalogue};
+///
+/// fn reach<const N: usize>(robot: &impl Robot<N>) -> f64 {
+///     robot.transform(&SVector::<f64, N>::zeros()).fixed_view::<3, 1>(0, 3).norm()
+/// }
+///
+/// let text = catalogue::find("staubli-rx160").unwrap();
+/// let description = Description::parse("staubli-rx160.yaml", text).unwrap();
+/// assert!(robstiff::with_robot!(&description, |robot| reach(&robot)) > 1.0);
+/// ```
+#[macro_export]
+macro_rules! with_robot {
+    ($description:expr, |$robot:ident| $body:expr) => {
+        $crate::with_robot!($description, |$robot| $body, 1 2 3 4 5 6 7 8)
+    };
+    ($description:expr, |$robot:ident| $body:expr, $($count:literal)+) => {
+        match $description.joints.len() {
+            $($count => {
+                let $robot = $crate::Generic::<$count>::new($description).expect("this arm has the same count");
+                $body
+            })+
+            count => panic!("a robot has one to eight joints, this one has {count}"),
+        }
+    };
+}
+
 /// A description has another number of joints than the type it was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WrongJointCount {

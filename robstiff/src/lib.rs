@@ -70,5 +70,8 @@ macro_rules! robot {
 #[doc(hidden)]
 pub use robstiff_macros::robot as __generate;
 
+/// Descriptions and the catalogue of robots.
+pub use robstiff_robots as robots;
+
 /// The linear algebra in this crate's interface.
 pub use nalgebra;

@@ -4,7 +4,7 @@
 
 use nalgebra::{Matrix4, Matrix6, SVector, Vector6};
 use proptest::prelude::*;
-use robstiff::{Convention, Effect, Generic, JointKind, Robot};
+use robstiff::{Convention, Effect, Generic, JointKind, Robot, with_robot};
 use robstiff_codegen::{Function, Origin, symbolic, tokens};
 use robstiff_robots::{Description, Joint, Part, Placement};
 use robstiff_tests::interpreter::Code;
@@ -116,8 +116,7 @@ fn compare_code(robot: &Description, q: &[f64], wrench: &[f64; 6]) {
 }
 
 /// Panics where the two disagree, which a property takes for a failure.
-fn compare<const N: usize>(robot: &Description, q: &[f64], wrench: &[f64; 6]) {
-    let generic = Generic::<N>::new(robot).expect("N joints");
+fn compare<const N: usize>(robot: &Description, generic: &Generic<N>, q: &[f64], wrench: &[f64; 6]) {
     let at = SVector::<f64, N>::from_column_slice(q);
     let load = Vector6::from_column_slice(wrench);
     let rows = |m: Matrix4<f64>| m.transpose().as_slice().to_vec();
@@ -154,16 +153,7 @@ proptest! {
         wrench in prop::array::uniform6(-1000.0..1000.0_f64),
     ) {
         let q = &q[..robot.joints.len()];
-        match robot.joints.len() {
-            1 => compare::<1>(&robot, q, &wrench),
-            2 => compare::<2>(&robot, q, &wrench),
-            3 => compare::<3>(&robot, q, &wrench),
-            4 => compare::<4>(&robot, q, &wrench),
-            5 => compare::<5>(&robot, q, &wrench),
-            6 => compare::<6>(&robot, q, &wrench),
-            7 => compare::<7>(&robot, q, &wrench),
-            _ => compare::<8>(&robot, q, &wrench),
-        }
+        with_robot!(&robot, |generic| compare(&robot, &generic, q, &wrench))
     }
 }
 

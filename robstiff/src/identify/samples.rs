@@ -8,7 +8,7 @@ use robstiff_robots::Description;
 
 use crate::campaign::{Displacements, Frame};
 use crate::elements::{Geometry, Parameter, Pose};
-use crate::{Generic, JointKind, Robot};
+use crate::{JointKind, Robot};
 
 /// A column of the regression: what a unit of one number adds to every
 /// displacement.
@@ -67,24 +67,10 @@ pub struct Sample {
     pub rotation: Vector3<f64>,
 }
 
-/// Calls `$with::<N>(&Generic<N>, ..)` for a description's number of joints;
-/// the one place where the dynamic world meets the static one.
-macro_rules! dispatch {
-    ($description:expr, |$robot:ident| $body:expr, $($count:literal)+) => {
-        match $description.joints.len() {
-            $($count => {
-                let $robot = Generic::<$count>::new($description).expect("the arm of this match has the same count");
-                $body
-            })+
-            count => unreachable!("descriptions have one to eight joints, this one has {count}"),
-        }
-    };
-}
-
 impl Samples {
     /// The rows of a campaign on the robot of a description.
     pub fn of_description(description: &Description, data: &Displacements) -> Self {
-        dispatch!(description, |robot| Self::new(&robot, data), 1 2 3 4 5 6 7 8)
+        crate::with_robot!(description, |robot| Self::new(&robot, data))
     }
 
     /// The rows of a campaign on a robot, generated or generic.

@@ -5,7 +5,7 @@ use robstiff::analysis::{
 };
 use robstiff::elements::{contributions, share_along, share_of_translation};
 use robstiff::nalgebra::{DMatrix, Matrix3, Matrix4, Matrix6, SVector, Unit, Vector3};
-use robstiff::{Generic, Robot};
+use robstiff::{Robot, with_robot};
 use robstiff_robots::Description;
 
 /// What is shown of a robot in one pose, whatever its number of joints.
@@ -55,29 +55,17 @@ pub struct Share {
 impl Shown {
     /// The robot at joint coordinates `q`, one for each joint.
     pub fn new(robot: &Description, q: Vec<f64>) -> Self {
-        let shown = match robot.joints.len() {
-            1 => shown::<1>,
-            2 => shown::<2>,
-            3 => shown::<3>,
-            4 => shown::<4>,
-            5 => shown::<5>,
-            6 => shown::<6>,
-            7 => shown::<7>,
-            8 => shown::<8>,
-            count => unreachable!("descriptions have one to eight joints, this one has {count}"),
-        };
-        shown(robot, q)
+        with_robot!(robot, |robot| shown(&robot, q))
     }
 }
 
-fn shown<const N: usize>(description: &Description, coordinates: Vec<f64>) -> Shown {
-    let robot = Generic::<N>::new(description).expect("called with the description's number of joints");
+fn shown<const N: usize>(robot: &impl Robot<N>, coordinates: Vec<f64>) -> Shown {
     let q = SVector::<f64, N>::from_column_slice(&coordinates);
     let compliance = robot.compliance(&q);
     let principal: Vec<Direction> =
         principal_directions(&compliance).iter().flat_map(directions(&compliance)).collect();
     let softest = principal.first().map(|direction| Vector3::from(direction.unit));
-    let shares = contributions(&robot, &q).map(|(element, part)| Share {
+    let shares = contributions(robot, &q).map(|(element, part)| Share {
         element: element.to_string(),
         translation: share_of_translation(&part, &compliance),
         softest: softest.and_then(|direction| share_along(&part, &compliance, &direction)),
