@@ -39,6 +39,7 @@ pub mod real;
 pub mod robot;
 #[cfg(all(test, feature = "generic"))]
 mod samples;
+mod trig;
 
 #[cfg(feature = "generic")]
 pub use generic::{Generic, WrongJointCount};
