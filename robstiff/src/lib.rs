@@ -43,6 +43,7 @@ pub mod robot;
 mod samples;
 #[cfg(feature = "identify")]
 pub mod trace;
+mod trig;
 
 #[cfg(feature = "generic")]
 pub use generic::{Generic, WrongJointCount};

@@ -5,8 +5,11 @@ use core::ops::Neg;
 use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign};
 use num_traits::{One, Zero};
 
-/// A scalar that generated code can compute with: `f32`, `f64`, and whatever
-/// else brings these few operations.
+use crate::trig;
+
+/// A scalar that generated code can compute with: `f32`, `f64`, several of
+/// them side by side (`Lanes`), with derivatives
+/// (`Dual`), and whatever else brings these few operations.
 pub trait Real:
     nalgebra::Scalar + Copy + Zero + One + Neg<Output = Self> + ClosedAddAssign + ClosedSubAssign + ClosedMulAssign
 {
@@ -14,6 +17,11 @@ pub trait Real:
     fn of(value: f64) -> Self;
 
     /// Sine and cosine of an angle in rad.
+    ///
+    /// Those of `f64` are within 1.6e-16 of the truth up to 1e6 rad, those of
+    /// `f32` within 9e-8 up to 3000 rad; beyond, and with the feature
+    /// `platform-trig` everywhere, they are the platform's (without the
+    /// feature `std`, those of the crate libm). An infinity or a NaN gives NaN.
     fn sin_cos(self) -> (Self, Self);
 
     /// Sines and cosines of several angles in rad, one pose's for instance:
@@ -21,6 +29,13 @@ pub trait Real:
     #[inline]
     fn sin_cos_all<const K: usize>(angles: [Self; K]) -> [(Self, Self); K] {
         angles.map(Self::sin_cos)
+    }
+
+    /// `self * factor + summand`; in one instruction, with one rounding, where
+    /// the target has it.
+    #[inline(always)]
+    fn mul_add(self, factor: Self, summand: Self) -> Self {
+        self * factor + summand
     }
 
     /// The square root.
@@ -31,22 +46,29 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($float:ident, $sincos:path, $sqrt:path) => {
+    ($float:ident, $sqrt:path) => {
         impl Real for $float {
-            #[inline]
+            #[inline(always)]
             fn of(value: f64) -> Self {
                 value as Self
             }
 
             #[inline]
             fn sin_cos(self) -> (Self, Self) {
-                #[cfg(feature = "std")]
-                return $float::sin_cos(self);
-                #[cfg(not(feature = "std"))]
-                return $sincos(self);
+                trig::sin_cos(self)
             }
 
-            #[inline]
+            #[inline(always)]
+            fn sin_cos_all<const K: usize>(angles: [Self; K]) -> [(Self, Self); K] {
+                trig::sin_cos_all(angles)
+            }
+
+            #[inline(always)]
+            fn mul_add(self, factor: Self, summand: Self) -> Self {
+                trig::mul_add::<Self, { trig::FUSED }>(self, factor, summand)
+            }
+
+            #[inline(always)]
             fn sqrt(self) -> Self {
                 #[cfg(feature = "std")]
                 return $float::sqrt(self);
@@ -54,7 +76,7 @@ macro_rules! real {
                 return $sqrt(self);
             }
 
-            #[inline]
+            #[inline(always)]
             fn recip(self) -> Self {
                 1.0 / self
             }
@@ -62,5 +84,5 @@ macro_rules! real {
     };
 }
 
-real!(f32, libm::sincosf, libm::sqrtf);
-real!(f64, libm::sincos, libm::sqrt);
+real!(f32, libm::sqrtf);
+real!(f64, libm::sqrt);

@@ -3,6 +3,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::fuse::Fusion;
 use super::names::{Names, WRENCH};
 use crate::angle::Angle;
 use crate::function::Function;
@@ -23,11 +24,25 @@ enum Binding {
     Unit,
 }
 
-/// Writes a function out; with `remarks`, the remarks of its algorithm as
-/// statements that the text form turns into comments.
-pub(super) fn body(function: &Function, remarks: bool) -> Body {
-    let writer = Writer { function, names: Names::of(function) };
-    let statements = writer.statements(remarks);
+/// Whom the code is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Reader {
+    /// The compiler: products and sums are fused.
+    Compiler,
+    /// People: plain operators, and the remarks of the algorithms as
+    /// statements that the text form turns into comments.
+    Person,
+}
+
+/// Writes a function out.
+pub(super) fn body(function: &Function, reader: Reader) -> Body {
+    let names = Names::of(function);
+    let fusion = match reader {
+        Reader::Compiler => Fusion::of(function, &names),
+        Reader::Person => Fusion::none(function),
+    };
+    let writer = Writer { function, names, fusion };
+    let statements = writer.statements(reader == Reader::Person);
     let outputs = function.outputs().iter().map(|&id| writer.operand(id, Binding::Sum)).collect();
     Body { statements, outputs }
 }
@@ -35,6 +50,7 @@ pub(super) fn body(function: &Function, remarks: bool) -> Body {
 struct Writer<'f> {
     function: &'f Function,
     names: Names,
+    fusion: Fusion,
 }
 
 impl Writer<'_> {
@@ -42,7 +58,8 @@ impl Writer<'_> {
         let graph = self.function.graph();
         let nodes = graph.nodes();
         let mut out = TokenStream::new();
-        for (id, name) in self.names.lines().filter(|(id, _)| nodes[*id].constant.is_some()) {
+        let constants = self.names.lines().filter(|(id, _)| nodes[*id].constant.is_some());
+        for (id, name) in constants {
             let (name, value) = (format_ident!("{name}"), self.constant(id, Binding::Sum));
             out.extend(quote!(let #name = T::of(#value);));
         }
@@ -53,7 +70,7 @@ impl Writer<'_> {
             if node.constant.is_some() {
                 continue;
             }
-            let Some(name) = self.names.get(id) else { continue };
+            let Some(name) = self.names.get(id).filter(|_| self.fusion.is_used(id)) else { continue };
             let (name, value) = (format_ident!("{name}"), self.expression(id).0);
             // Of several remarks before a line, the last one speaks of it.
             let mut remark = None;
@@ -135,6 +152,9 @@ impl Writer<'_> {
 
     /// What a node computes, from its operands.
     fn expression(&self, id: Id) -> (TokenStream, Binding) {
+        if let Some((x, y, is_first)) = self.fusion.product(self.function, id) {
+            return (self.fused(id, x, y, is_first), Binding::Unit);
+        }
         let graph = self.function.graph();
         match graph.nodes()[id].op {
             Op::Number(bits) => match f64::from_bits(bits) {
@@ -184,6 +204,30 @@ impl Writer<'_> {
             Op::Recip(a) => {
                 let a = self.operand(a, Binding::Unit);
                 (quote!(#a.recip()), Binding::Unit)
+            }
+        }
+    }
+
+    /// A sum with the product `x y` in it: `x.mul_add(y, ..)`.
+    fn fused(&self, id: Id, x: Id, y: Id, is_first: bool) -> TokenStream {
+        let (Op::Add(a, b) | Op::Sub(a, b)) = self.function.graph().nodes()[id].op else {
+            unreachable!("only sums take up products")
+        };
+        let is_difference = matches!(self.function.graph().nodes()[id].op, Op::Sub(..));
+        let (x, y) = (self.operand(x, Binding::Unit), self.operand(y, Binding::Sum));
+        let rest = if is_first { b } else { a };
+        match (is_difference, is_first) {
+            (false, _) => {
+                let rest = self.operand(rest, Binding::Sum);
+                quote!(#x.mul_add(#y, #rest))
+            }
+            (true, true) => {
+                let rest = self.operand(rest, Binding::Sign);
+                quote!(#x.mul_add(#y, -#rest))
+            }
+            (true, false) => {
+                let rest = self.operand(rest, Binding::Sum);
+                quote!((-#x).mul_add(#y, #rest))
             }
         }
     }

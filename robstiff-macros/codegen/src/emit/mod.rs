@@ -3,6 +3,7 @@
 mod body;
 mod facts;
 mod functions;
+mod fuse;
 mod names;
 mod robot;
 #[cfg(feature = "text")]

@@ -5,7 +5,7 @@ use quote::{format_ident, quote};
 use robstiff_robots::Description;
 use syn::Ident;
 
-use super::body::{Body, body};
+use super::body::{Body, Reader, body};
 use super::facts::{facts, number};
 use super::functions::{Generated, functions};
 use crate::function::Function;
@@ -26,7 +26,7 @@ pub struct Origin {
 pub fn tokens(robot: &Description, origin: &Origin) -> TokenStream {
     let functions = functions(robot);
     let definition = definition(robot, origin, &functions);
-    let (imports, implementation) = (imports(&origin.runtime), implementation(robot, &functions, false));
+    let (imports, implementation) = (imports(&origin.runtime), implementation(robot, &functions, Reader::Compiler));
     quote! {
         #definition
         const _: () = {
@@ -177,7 +177,7 @@ fn lines(text: &str) -> Vec<String> {
 }
 
 /// The `Robot` implementation.
-pub(super) fn implementation(robot: &Description, functions: &[Generated], remarks: bool) -> TokenStream {
+pub(super) fn implementation(robot: &Description, functions: &[Generated], reader: Reader) -> TokenStream {
     let name = Ident::new(&robot.name, Span::call_site());
     let n = Literal::usize_unsuffixed(robot.joints.len());
     let count = quote!(#n);
@@ -188,7 +188,7 @@ pub(super) fn implementation(robot: &Description, functions: &[Generated], remar
     });
     let calculated = calculated.into_iter().zip(functions).map(|((signature, _), generated)| {
         let signature = signature(&count);
-        let Body { statements, outputs } = body(&generated.function, remarks);
+        let Body { statements, outputs } = body(&generated.function, reader);
         let result = generated.result(&outputs);
         let docs = [format!(" {}", generated.doc), String::new(), format!(" {}.", generated.function.cost())];
         // What a function does not depend on is unused.

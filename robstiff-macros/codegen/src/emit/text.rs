@@ -4,16 +4,18 @@ use prettyplease::unparse;
 use quote::quote;
 use robstiff_robots::{Convention, Description, JointKind};
 
+use super::body::Reader;
 use super::functions::{Generated, functions};
 use super::robot::{Origin, definition, implementation, imports};
 
 /// The source of a module with one robot: a header that names the
 /// description, its table and what the functions cost, then the same items that
-/// the macro generates, with remarks on the way of the calculation.
+/// the macro generates, with remarks on the way of the calculation and with
+/// plain operators where the macro fuses products and sums.
 pub fn source(robot: &Description, origin: &Origin) -> String {
     let functions = functions(robot);
     let (imports, definition) = (imports(&origin.runtime), definition(robot, origin, &functions));
-    let implementation = implementation(robot, &functions, true);
+    let implementation = implementation(robot, &functions, Reader::Person);
     let file = syn::parse2(quote!(#imports #definition #implementation)).expect("generated code is Rust");
     header(robot, origin, &functions) + &polished(&unparse(&file))
 }

@@ -1,0 +1,131 @@
+"""The coefficients of robstiff/src/trig: best polynomials for sine and cosine.
+
+On |r| <= pi/4, with z = r^2,
+
+    sin r = r + r z S(z),        cos r = 1 - z/2 + z^2 C(z).
+
+S and C are chosen so that the largest error of the sine, relative to r, and of
+the cosine is as small as it can be. Such a polynomial of n coefficients misses
+by equal amounts of alternating sign at n + 1 points (Chebyshev). Remez: solve
+for the coefficients and the error at n + 1 trial points, move the points to the
+extremes of the error curve, repeat. Rounding the coefficients one by one,
+lowest first, and fitting the others again loses nothing of what the shape gives.
+
+Plain Python, exact to 60 digits: python3 minimax.py
+"""
+
+import math
+import struct
+from decimal import Decimal as D, getcontext
+from functools import lru_cache
+
+getcontext().prec = 60
+PI = D("3.14159265358979323846264338327950288419716939937510582097494459")
+END = (PI / 4 * D("1.0005")) ** 2  # the rounded quadrant can be a little off
+
+
+@lru_cache(maxsize=None)
+def tail(z, first):
+    """The Taylor series of S (first = 3) or C (first = 4), alternating."""
+    term = D(1 if first == 4 else -1) / math.factorial(first)
+    total, k = D(0), first
+    while abs(term) > D("1e-58"):
+        total += term
+        term *= -z / ((k + 1) * (k + 2))
+        k += 2
+    return total
+
+
+def horner(cs, z):
+    total = D(0)
+    for c in reversed(cs):
+        total = total * z + c
+    return total
+
+
+def solve(rows, right):
+    """Gaussian elimination with pivots."""
+    n = len(rows)
+    m = [row + [b] for row, b in zip(rows, right)]
+    for i in range(n):
+        p = max(range(i, n), key=lambda k: abs(m[k][i]))
+        m[i], m[p] = m[p], m[i]
+        for k in range(i + 1, n):
+            f = m[k][i] / m[i][i]
+            m[k] = [x - f * y for x, y in zip(m[k], m[i])]
+    x = [D(0)] * n
+    for i in reversed(range(n)):
+        x[i] = (m[i][n] - sum(m[i][j] * x[j] for j in range(i + 1, n))) / m[i][i]
+    return x
+
+
+def remez(first, known, n):
+    """n more coefficients after the known ones; weight z for S, z^2 for C."""
+    power = first - 2 if first == 3 else 2
+    def error(z, cs):
+        return z**power * (tail(z, first) - horner(cs, z))
+    m = len(known)
+    points = [END * (1 - D(math.cos(math.pi * (i + 0.5) / (n + 1)))) / 2 for i in range(n + 1)]
+    for _ in range(8):
+        rows, right = [], []
+        for i, z in enumerate(points):
+            rows.append([z ** (k + m) for k in range(n)] + [(-1) ** i / z**power])
+            right.append(tail(z, first) - horner(known, z))
+        cs = known + solve(rows, right)[:n]
+        grid = [END * D(i) / 1500 for i in range(1, 1501)]
+        values = [error(z, cs) for z in grid]
+        extremes, run = [], [0]
+        for i in range(1, 1500):
+            if (values[i] > 0) == (values[run[-1]] > 0):
+                run.append(i)
+            else:
+                extremes.append(max(run, key=lambda k: abs(values[k])))
+                run = [i]
+        extremes.append(max(run, key=lambda k: abs(values[k])))
+        if len(extremes) < n + 1:
+            break
+        points = [grid[i] for i in extremes[-(n + 1):]]
+    return cs, max(abs(v) for v in values)
+
+
+def rounded(x, single):
+    x = float(x)
+    return D(struct.unpack("f", struct.pack("f", x))[0] if single else x)
+
+
+def fit(first, n, single):
+    known = []
+    while len(known) < n:
+        cs, _ = remez(first, known, n - len(known))
+        known = known + [rounded(cs[len(known)], single)]
+    power = first - 2 if first == 3 else 2
+    worst = max(
+        abs(z**power * (tail(z, first) - horner(known, z)))
+        for z in (END * D(i) / 1500 for i in range(1, 1501))
+    )
+    return known, worst
+
+
+def parts(bits):
+    """pi/2 as a sum of numbers with so many bits each."""
+    rest, out = PI / 2, []
+    for b in bits:
+        e = math.frexp(float(rest))[1]
+        unit = D(2) ** (e - b)
+        part = (rest / unit).to_integral_value() * unit
+        out.append(part)
+        rest -= part
+    return out, rest
+
+
+if __name__ == "__main__":
+    for name, single, counts in (("f64", False, (6, 6)), ("f32", True, (4, 3)), ("f32", True, (3, 3))):
+        for first, n in zip((3, 4), counts):
+            cs, worst = fit(first, n, single)
+            print(name, "sin" if first == 3 else "cos", n, f"largest error {float(worst):.2e} = 2^{math.log2(worst):.1f}")
+            for c in cs:
+                print("   ", repr(float(c)))
+    for name, bits in (("f64", (33, 33, 53)), ("f64 fused", (53, 53, 53)), ("f32", (11, 11, 11, 24)), ("f32 fused", (24, 24, 24))):
+        ps, rest = parts(bits)
+        print("pi/2", name, [repr(float(p)) for p in ps], f"rest {float(rest):.1e}")
+    print("2/pi", repr(float(2 / PI)))

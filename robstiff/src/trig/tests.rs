@@ -1,0 +1,193 @@
+//! Against a reference in twice the precision, over the whole domain.
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::*;
+
+/// A number as the sum of two `f64`, the second below the last place of the
+/// first: 106 bits.
+#[derive(Clone, Copy)]
+struct Pair(f64, f64);
+
+impl Pair {
+    /// Exact sum (Knuth).
+    fn sum(a: f64, b: f64) -> Self {
+        let s = a + b;
+        let t = s - a;
+        Self(s, (a - (s - t)) + (b - t))
+    }
+
+    /// Exact product.
+    fn product(a: f64, b: f64) -> Self {
+        let p = a * b;
+        Self(p, f64::mul_add(a, b, -p))
+    }
+
+    fn plus(self, other: Self) -> Self {
+        let Self(s, t) = Self::sum(self.0, other.0);
+        Self::sum(s, t + (self.1 + other.1))
+    }
+
+    fn times(self, other: Self) -> Self {
+        let Self(p, e) = Self::product(self.0, other.0);
+        Self::sum(p, e + (self.0 * other.1 + self.1 * other.0))
+    }
+
+    fn over(self, divisor: f64) -> Self {
+        let q = self.0 / divisor;
+        let rest = self.plus(Self::product(-q, divisor));
+        Self::sum(q, rest.0 / divisor)
+    }
+
+    fn negative(self) -> Self {
+        Self(-self.0, -self.1)
+    }
+}
+
+/// Sine and cosine by Taylor's series, after reduction with 160 bits of pi/2.
+fn reference(x: f64) -> [Pair; 2] {
+    let k = (x / FRAC_PI_2).round();
+    let mut r = Pair(x, 0.0);
+    for part in [FRAC_PI_2, 6.123_233_995_736_766e-17, -1.497_384_904_859_169_8e-33] {
+        r = r.plus(Pair::product(-k, part));
+    }
+    let series = |first: Pair, from: f64| {
+        let (mut term, mut sum, mut n) = (first, first, from);
+        while n < 30.0 {
+            term = term.times(r).times(r).negative().over((n + 1.0) * (n + 2.0));
+            sum = sum.plus(term);
+            n += 2.0;
+        }
+        sum
+    };
+    let (s, c) = (series(r, 1.0), series(Pair(1.0, 0.0), 0.0));
+    match k.rem_euclid(4.0) {
+        0.0 => [s, c],
+        1.0 => [c, s.negative()],
+        2.0 => [s.negative(), c.negative()],
+        _ => [c.negative(), s],
+    }
+}
+
+/// Angles dense near zero, at random all over the domain, and at and next to
+/// multiples of pi/4, as far as the domain goes.
+fn angles(domain: f64) -> impl Iterator<Item = f64> {
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut random = move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let dense = (-20_000..=20_000).map(|i| f64::from(i) * 1e-3 * core::f64::consts::FRAC_1_SQRT_2);
+    let anywhere: std::vec::Vec<f64> = (0..100_000)
+        .map(|i| {
+            let range = [domain, 1000.0, 10.0, 1e-3][i % 4];
+            (2.0 * random() - 1.0) * range
+        })
+        .collect();
+    let last = domain / (FRAC_PI_2 / 2.0);
+    let marks = (0..20_000).map(move |i| {
+        let k = if i < 3000 { f64::from(i) } else { (last * f64::from(i) / 20_000.0).floor() };
+        k * FRAC_PI_2 / 2.0
+    });
+    let near = marks.flat_map(|x| [x, x.next_up(), x.next_down(), x + 1e-9, x - 1e-6, -x]);
+    let edge = [domain, -domain, domain.next_down(), f64::MIN_POSITIVE, 1e-310, 1e-17, 1e-8];
+    dense.chain(anywhere).chain(near).chain(edge).filter(move |x| x.abs() <= domain)
+}
+
+/// The largest error, absolute and in units in the last place of results
+/// beyond a quarter.
+fn worst<const FUSED: bool>() -> [f64; 2] {
+    let (mut absolute, mut places) = (0.0_f64, 0.0_f64);
+    for x in angles(f64::DOMAIN) {
+        let (s, c) = within_domain::<f64, FUSED>(x);
+        for (ours, Pair(high, low)) in [s, c].into_iter().zip(reference(x)) {
+            let error = ((ours - high) - low).abs();
+            absolute = absolute.max(error);
+            if high.abs() > 0.25 {
+                places = places.max(error / (high.abs().next_up() - high.abs()));
+            }
+        }
+    }
+    [absolute, places]
+}
+
+#[test]
+fn double_precision_is_as_near_as_stated() {
+    for (name, [absolute, places]) in [("plain", worst::<false>()), ("fused", worst::<true>())] {
+        std::println!("{name}: {absolute:e}, {places:.3} ulp");
+        assert!(absolute <= f64::BOUND, "{name}: off by {absolute:e}");
+        assert!(places <= 1.5, "{name}: {places} units in the last place");
+    }
+}
+
+#[test]
+fn single_precision_is_as_near_as_stated() {
+    let mut worst = [0.0_f64; 2];
+    for x in angles(f64::from(f32::DOMAIN)).map(|x| x as f32).filter(|x| x.is_within_domain()) {
+        let [sin, cos] = reference(f64::from(x));
+        for ((s, c), worst) in
+            [within_domain::<f32, false>(x), within_domain::<f32, true>(x)].into_iter().zip(&mut worst)
+        {
+            let error = (f64::from(s) - sin.0).abs().max((f64::from(c) - cos.0).abs());
+            *worst = worst.max(error);
+        }
+    }
+    std::println!("f32 plain and fused: {worst:?}");
+    assert!(worst.into_iter().all(|error| error <= f32::BOUND), "off by {worst:?}");
+}
+
+#[test]
+fn reference_is_the_platforms_to_a_place() {
+    for x in angles(f64::DOMAIN).step_by(7) {
+        let [s, c] = reference(x);
+        assert!((s.0 - x.sin()).abs() < 2e-16 && (c.0 - x.cos()).abs() < 2e-16, "{x:e}");
+    }
+}
+
+#[test]
+fn zero_and_symmetry_are_exact() {
+    assert_eq!(sin_cos(0.0_f64), (0.0, 1.0));
+    assert_eq!(sin_cos(0.0_f32), (0.0, 1.0));
+    for x in angles(f64::DOMAIN).step_by(3) {
+        let (s, c) = sin_cos(x);
+        assert_eq!(sin_cos(-x), (-s, c), "{x:e}");
+        let (s, c) = sin_cos(x as f32);
+        assert_eq!(sin_cos(-x as f32), (-s, c), "{x:e}");
+    }
+}
+
+#[test]
+fn side_by_side_is_one_by_one() {
+    fn check<F: Float + PartialEq + core::fmt::Debug, const K: usize>(angle: impl Fn(usize) -> F) {
+        let angles = core::array::from_fn(angle);
+        let all = sin_cos_all::<F, K>(angles);
+        let single = angles.map(sin_cos);
+        // The compiler may vectorise, but not round in another way.
+        assert_eq!(all, single);
+    }
+    macro_rules! counts {
+        ($($k:literal)*) => {$(
+            check::<f64, $k>(|i| 1.7 * i as f64 - 5.0);
+            check::<f32, $k>(|i| 1.7 * i as f32 - 5.0);
+        )*};
+    }
+    counts!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 30);
+}
+
+#[test]
+fn beyond_the_domain_is_the_platforms() {
+    for outside in [1.000_001e6, -3e8, 1e22, f64::MAX] {
+        let platform = outside.platform_sin_cos();
+        assert_eq!(sin_cos(outside), platform);
+        assert_eq!(sin_cos_all([0.5, outside, 0.25])[1], platform);
+        assert_eq!(sin_cos_all([0.5, outside, 0.25])[0], 0.5.platform_sin_cos());
+    }
+    for none in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let (s, c) = sin_cos(none);
+        assert!(s.is_nan() && c.is_nan());
+        let [(s, c), (t, _)] = sin_cos_all([none, 0.3]);
+        assert!(s.is_nan() && c.is_nan() && (t - 0.3_f64.sin()).abs() < 1e-15);
+    }
+}
