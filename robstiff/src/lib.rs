@@ -29,20 +29,29 @@
 #[cfg(feature = "std")]
 extern crate std;
 
+// The code of `robot!` names this crate; the tests are in it.
+#[cfg(test)]
+extern crate self as robstiff;
+
 pub mod analysis;
+pub mod batch;
 #[cfg(feature = "identify")]
 pub mod campaign;
+mod dual;
 pub mod elements;
 #[cfg(feature = "generic")]
 pub mod generic;
+mod lanes;
 pub mod real;
 pub mod robot;
 #[cfg(all(test, feature = "generic"))]
 mod samples;
 mod trig;
 
+pub use dual::Dual;
 #[cfg(feature = "generic")]
 pub use generic::{Generic, WrongJointCount};
+pub use lanes::Lanes;
 pub use real::Real;
 pub use robot::Robot;
 pub use robstiff_robots::{Convention, Effect, JointKind};
