@@ -29,14 +29,21 @@
 #[cfg(feature = "std")]
 extern crate std;
 
+// The code of `robot!` names this crate; the tests are in it.
+#[cfg(test)]
+extern crate self as robstiff;
+
 pub mod analysis;
+pub mod batch;
 #[cfg(feature = "identify")]
 pub mod campaign;
+mod dual;
 pub mod elements;
 #[cfg(feature = "generic")]
 pub mod generic;
 #[cfg(feature = "identify")]
 pub mod identify;
+mod lanes;
 pub mod real;
 pub mod robot;
 #[cfg(all(test, feature = "generic"))]
@@ -45,8 +52,10 @@ mod samples;
 pub mod trace;
 mod trig;
 
+pub use dual::Dual;
 #[cfg(feature = "generic")]
 pub use generic::{Generic, WrongJointCount};
+pub use lanes::Lanes;
 pub use real::Real;
 pub use robot::Robot;
 pub use robstiff_robots::{Convention, Effect, JointKind};

@@ -8,8 +8,8 @@ use num_traits::{One, Zero};
 use crate::trig;
 
 /// A scalar that generated code can compute with: `f32`, `f64`, several of
-/// them side by side (`Lanes`), with derivatives
-/// (`Dual`), and whatever else brings these few operations.
+/// them side by side ([`Lanes`](crate::Lanes)), with derivatives
+/// ([`Dual`](crate::Dual)), and whatever else brings these few operations.
 pub trait Real:
     nalgebra::Scalar + Copy + Zero + One + Neg<Output = Self> + ClosedAddAssign + ClosedSubAssign + ClosedMulAssign
 {

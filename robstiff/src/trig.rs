@@ -34,10 +34,21 @@ pub(crate) use float::{FUSED, Float, mul_add};
 ///
 /// `FUSED`: multiplies and adds in one instruction, which the target must have.
 #[inline(always)]
-fn within_domain<F: Float, const FUSED: bool>(x: F) -> (F, F) {
+pub(crate) fn within_domain<F: Float, const FUSED: bool>(x: F) -> (F, F) {
+    let (r, shifted) = reduce::<F, FUSED>(x);
+    of_reduced::<F, FUSED>(r, shifted)
+}
+
+/// Steps 1 and 2: `r`, and `k` in the last bits of a large number.
+#[inline(always)]
+fn reduce<F: Float, const FUSED: bool>(x: F) -> (F, F) {
     let shifted = mul_add::<F, FUSED>(x, F::TWO_OVER_PI, F::SHIFT);
-    let k = shifted - F::SHIFT;
-    let r = F::reduce::<FUSED>(x, k);
+    (F::reduce::<FUSED>(x, shifted - F::SHIFT), shifted)
+}
+
+/// Steps 3 and 4.
+#[inline(always)]
+fn of_reduced<F: Float, const FUSED: bool>(r: F, shifted: F) -> (F, F) {
     let z = r * r;
     let sin = mul_add::<F, FUSED>(r * z, F::sin_tail::<FUSED>(z), r);
     let cos = mul_add::<F, FUSED>(z, mul_add::<F, FUSED>(z, F::cos_tail::<FUSED>(z), -F::HALF), F::ONE);
@@ -86,9 +97,14 @@ pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K]) -> [(F, F); 
 
 #[inline(always)]
 fn padded<F: Float, const K: usize, const P: usize>(angles: [F; K]) -> [(F, F); K] {
-    let mut filled = [F::ZERO; P];
-    filled[..K].copy_from_slice(&angles);
-    let [sines, cosines] = side_by_side(&filled);
+    if cfg!(feature = "platform-trig") || !all_within_domain(&angles) {
+        return one_by_one(&angles);
+    }
+    let mut reduced = [[F::ZERO; P]; 2];
+    for i in 0..P {
+        (reduced[0][i], reduced[1][i]) = reduce::<F, FUSED>(angles[if i < K { i } else { K - 1 }]);
+    }
+    let [sines, cosines] = side_by_side(&reduced);
     core::array::from_fn(|i| (sines[i], cosines[i]))
 }
 
@@ -98,23 +114,19 @@ fn padded<F: Float, const K: usize, const P: usize>(angles: [F; K]) -> [(F, F); 
 /// knows, and then finds half of the vectors only. Not inlined, for all robots
 /// with about as many joints.
 #[inline(never)]
-fn side_by_side<F: Float, const P: usize>(angles: &[F; P]) -> [[F; P]; 2] {
-    if cfg!(feature = "platform-trig") || !all_within_domain(angles) {
-        return one_by_one(angles);
-    }
+fn side_by_side<F: Float, const P: usize>([reduced, shifted]: &[[F; P]; 2]) -> [[F; P]; 2] {
     let mut out = [[F::ZERO; P]; 2];
     let [sines, cosines] = &mut out;
     // The length in whole vectors: no rest that goes alone.
     let n = black_box(P / F::WIDTH).min(P / F::WIDTH) * F::WIDTH;
-    for ((x, s), c) in angles[..n].iter().zip(&mut sines[..n]).zip(&mut cosines[..n]) {
-        (*s, *c) = within_domain::<F, FUSED>(*x);
+    for i in 0..n {
+        (sines[i], cosines[i]) = of_reduced::<F, FUSED>(reduced[i], shifted[i]);
     }
     out
 }
 
 #[cold]
 #[inline(never)]
-fn one_by_one<F: Float, const P: usize>(angles: &[F; P]) -> [[F; P]; 2] {
-    let pairs = angles.map(F::platform_sin_cos);
-    [pairs.map(|(sin, _)| sin), pairs.map(|(_, cos)| cos)]
+fn one_by_one<F: Float, const K: usize>(angles: &[F; K]) -> [(F, F); K] {
+    angles.map(F::platform_sin_cos)
 }

@@ -193,7 +193,9 @@ pub(super) fn implementation(robot: &Description, functions: &[Generated], reade
         let docs = [format!(" {}", generated.doc), String::new(), format!(" {}.", generated.function.cost())];
         // What a function does not depend on is unused.
         let silence = ignores_an_input(&generated.function).then(|| quote!(#[allow(unused_variables)]));
-        quote!(#(#[doc = #docs])* #silence #[inline] #signature { #statements #result })
+        // Only a caller that sees the code can leave out what it does not
+        // need, and compute several poses abreast.
+        quote!(#(#[doc = #docs])* #silence #[inline(always)] #signature { #statements #result })
     });
     let silence = lints();
     quote! {

@@ -1,0 +1,90 @@
+//! Many poses at once: slices of poses in, slices of results out.
+//!
+//! ```
+//! use robstiff::nalgebra::{SVector, Vector3};
+//! use robstiff::{Robot, batch};
+//!
+//! robstiff::robot!("rv130hsc.yaml");
+//!
+//! let poses: Vec<_> = (0..1000).map(|i| SVector::from([0.0, -0.5, 0.5, 0.0, 0.001 * i as f64])).collect();
+//! let mut along_x = vec![0.0; poses.len()];
+//! batch::directional_compliance(&Rv130hsc, &poses, &Vector3::x(), &mut along_x);
+//! let single: f64 = Rv130hsc.compliance(&poses[7])[(0, 0)];
+//! assert!((along_x[7] - single).abs() < 1e-13 * single);
+//! ```
+//!
+//! Any [`Robot`](crate::Robot) will do; the code of [`robot!`](crate::robot!)
+//! gains most, because the compiler sees through it: what a function does not
+//! return is not computed, and several poses share every instruction. On
+//! x86-64 with the feature `std` the widest vectors that the machine has
+//! (AVX2 with FMA) are found at run time. Nothing is allocated. Results are
+//! those of the single pose but for rounding, 1e-13 of the largest entry.
+//!
+//! # Panics
+//! Every function panics if there are not as many results as poses.
+
+mod block;
+mod dispatch;
+mod known;
+#[cfg(feature = "rayon")]
+pub mod parallel;
+mod quantities;
+#[cfg(all(test, feature = "generic"))]
+mod tests;
+
+use nalgebra::{Matrix6, SVector, Vector3, Vector6};
+
+use crate::{Real, Robot, trig};
+use quantities::{Compliance, Deflection, Directional, Trace, Triangle};
+
+/// The floating point numbers that batches are made of: `f32` and `f64`.
+#[expect(private_bounds, reason = "nobody else shall implement it")]
+pub trait Float: Real + trig::Float + PartialOrd + Send + Sync {}
+
+impl Float for f32 {}
+impl Float for f64 {}
+
+/// [`Robot::compliance`] of every pose.
+pub fn compliance<T: Float, const N: usize>(
+    robot: &impl Robot<N>,
+    poses: &[SVector<T, N>],
+    compliances: &mut [Matrix6<T>],
+) {
+    dispatch::run(&Compliance { robot }, poses, compliances);
+}
+
+/// The upper triangles of [`Robot::compliance`] by rows, 21 entries a pose.
+pub fn compliance_triangle<T: Float, const N: usize>(
+    robot: &impl Robot<N>,
+    poses: &[SVector<T, N>],
+    triangles: &mut [[T; 21]],
+) {
+    dispatch::run(&Triangle { robot }, poses, triangles);
+}
+
+/// The traces of the translational blocks of [`Robot::compliance`] (m/N): how
+/// much the robot gives way to forces, whatever their direction.
+pub fn translational_trace<T: Float, const N: usize>(robot: &impl Robot<N>, poses: &[SVector<T, N>], traces: &mut [T]) {
+    dispatch::run(&Trace { robot }, poses, traces);
+}
+
+/// The displacement along a force per force, `u^T C u` (m/N), for the direction
+/// `u` in the base frame: a unit vector.
+pub fn directional_compliance<T: Float, const N: usize>(
+    robot: &impl Robot<N>,
+    poses: &[SVector<T, N>],
+    direction: &Vector3<T>,
+    compliances: &mut [T],
+) {
+    dispatch::run(&Directional { robot, direction: *direction }, poses, compliances);
+}
+
+/// [`Robot::deflection`] of every pose under one wrench.
+pub fn deflection<T: Float, const N: usize>(
+    robot: &impl Robot<N>,
+    poses: &[SVector<T, N>],
+    wrench: &Vector6<T>,
+    deflections: &mut [Vector6<T>],
+) {
+    dispatch::run(&Deflection { robot, wrench: *wrench }, poses, deflections);
+}

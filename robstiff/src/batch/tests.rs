@@ -1,0 +1,120 @@
+use std::vec;
+use std::vec::Vec;
+
+use nalgebra::{Matrix6, SVector, Vector3, Vector6};
+
+use super::dispatch::{Level, run_at};
+use super::quantities::{Compliance, Deflection, Directional, Quantity, Trace, Triangle};
+use super::*;
+use crate::samples::{linear_effects, odd};
+use crate::{Effect, Generic};
+
+crate::robot!("rv130hsc.yaml");
+crate::robot!("fanuc-r2000ic.yaml");
+
+const WRENCH: Vector6<f64> = Vector6::new(300.0, -500.0, 700.0, 40.0, -60.0, 80.0);
+const DIRECTION: Vector3<f64> = Vector3::new(0.36, -0.48, 0.8);
+
+fn poses<const N: usize>(count: usize) -> Vec<SVector<f64, N>> {
+    (0..count).map(|k| SVector::from_fn(|i, _| 3.0 * f64::sin(1.7 * k as f64 + 2.3 * i as f64))).collect()
+}
+
+/// On every level: what `expected` says of each pose, to 1e-13 of `size`.
+fn check<Q, R, const N: usize, const M: usize>(
+    quantity: &Q,
+    poses: &[SVector<f64, N>],
+    expected: impl Fn(&SVector<f64, N>) -> R,
+    numbers: impl Fn(&R) -> Vec<f64>,
+) where
+    Q: Quantity<f64, N, M, Result = R>,
+    R: Clone,
+{
+    let expected: Vec<Vec<f64>> = poses.iter().map(|q| numbers(&expected(q))).collect();
+    for level in Level::available() {
+        let mut results: Vec<R> = poses.iter().map(|_| Q::result([f64::NAN; M])).collect();
+        run_at(level, quantity, poses, &mut results);
+        for (result, expected) in results.iter().zip(&expected) {
+            let size = expected.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+            for (a, b) in numbers(result).iter().zip(expected) {
+                assert!((a - b).abs() <= 1e-13 * size, "{level:?}: {a:e} for {b:e}, size {size:e}");
+            }
+        }
+    }
+}
+
+fn check_all<const N: usize>(robot: &impl Robot<N>, count: usize) {
+    let poses = poses::<N>(count);
+    let (wrench, direction) = (WRENCH, DIRECTION);
+    let compliance = |q: &SVector<f64, N>| robot.compliance(q);
+    let block = |q: &SVector<f64, N>| compliance(q).fixed_view::<3, 3>(0, 0).into_owned();
+    check(&Compliance { robot }, &poses, compliance, |m| m.as_slice().to_vec());
+    let triangle = |q: &SVector<f64, N>| {
+        let entries: Vec<f64> = (0..6).flat_map(|i| (i..6).map(move |j| (i, j))).map(|at| compliance(q)[at]).collect();
+        entries.try_into().unwrap()
+    };
+    check(&Triangle { robot }, &poses, triangle, |entries: &[f64; 21]| entries.to_vec());
+    check(&Trace { robot }, &poses, |q| block(q).trace(), |x| vec![*x]);
+    check(&Directional { robot, direction }, &poses, |q| direction.dot(&(block(q) * direction)), |x| vec![*x]);
+    check(&Deflection { robot, wrench }, &poses, |q| robot.deflection(q, &wrench), |v| v.as_slice().to_vec());
+}
+
+#[test]
+fn every_level_gives_what_single_poses_give() {
+    // Nothing, parts of vectors, whole blocks, blocks and a tail.
+    for count in [0, 1, 7, 16, 63, 64, 65, 128, 200] {
+        check_all(&Rv130hsc, count);
+        check_all(&FanucR2000ic, count);
+    }
+}
+
+#[test]
+fn robots_read_at_run_time_come_in_batches_too() {
+    let mut description = odd();
+    description.effects = linear_effects();
+    description.effects.push(Effect::StiffnessNonlinearity { joint: 5, added: 2e-6, knee: 300.0 });
+    check_all(&Generic::<6>::new(&description).unwrap(), 70);
+}
+
+#[test]
+fn poses_out_of_the_domain_spoil_no_others() {
+    let mut poses = poses::<5>(200);
+    poses[70][2] = 1e9;
+    poses[150][0] = f64::NAN;
+    let mut traces = vec![0.0; 200];
+    translational_trace(&Rv130hsc, &poses, &mut traces);
+    for (k, (q, trace)) in poses.iter().zip(&traces).enumerate() {
+        let single = Rv130hsc.compliance(q).fixed_view::<3, 3>(0, 0).trace();
+        assert!(if k == 150 { trace.is_nan() } else { (trace - single).abs() < 1e-13 * single }, "pose {k}");
+    }
+}
+
+#[test]
+fn single_precision_comes_in_batches_too() {
+    let poses: Vec<SVector<f32, 5>> = poses::<5>(100).iter().map(|q| q.map(|x| x as f32)).collect();
+    let mut compliances = vec![Matrix6::zeros(); 100];
+    compliance(&Rv130hsc, &poses, &mut compliances);
+    for (q, compliance) in poses.iter().zip(&compliances) {
+        let single = Rv130hsc.compliance(&q.map(f64::from));
+        assert!((compliance.map(f64::from) - single).amax() < 2e-6 * single.amax());
+    }
+}
+
+#[test]
+#[should_panic(expected = "as many results as poses")]
+fn too_few_results_are_refused() {
+    translational_trace(&Rv130hsc, &poses::<5>(3), &mut [0.0; 2]);
+}
+
+#[cfg(feature = "rayon")]
+#[test]
+fn all_cores_give_what_one_gives() {
+    let poses = poses::<5>(5000);
+    let (mut one, mut all) = (vec![Vector6::zeros(); 5000], vec![Vector6::zeros(); 5000]);
+    deflection(&Rv130hsc, &poses, &WRENCH, &mut one);
+    parallel::deflection(&Rv130hsc, &poses, &WRENCH, &mut all);
+    assert_eq!(one, all);
+    let (mut one, mut all) = (vec![Matrix6::zeros(); 5000], vec![Matrix6::zeros(); 5000]);
+    compliance(&Rv130hsc, &poses, &mut one);
+    parallel::compliance(&Rv130hsc, &poses, &mut all);
+    assert_eq!(one, all);
+}
