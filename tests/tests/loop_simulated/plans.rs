@@ -1,0 +1,95 @@
+//! Other plans of a campaign: noise that is stated, rotations measured, poses
+//! held out.
+
+use robstiff::Effect;
+use robstiff::identify::NoiseSource;
+use robstiff::trace::{Trace, Verdict};
+use robstiff_robots::Description;
+use robstiff_tests::simulator::{Scenario, five_axis, six_axis};
+
+use crate::bench::{FLOOR, NOISE, assert_most, names_all, plan, trace_files};
+
+const TILT: Effect = Effect::TransverseCompliance { joint: 3, value: 3e-7 };
+
+/// Five campaigns on each arm, changed from the usual plan.
+fn campaigns(hidden: &[Effect], change: impl Fn(Scenario) -> Scenario, more: &str) -> Vec<(u64, Trace)> {
+    let trace = |arm: &Description, seed| trace_files(&change(plan(arm, hidden, seed)).run(), arm, more);
+    let arms = [five_axis(), six_axis()];
+    (500..505).flat_map(|seed| arms.each_ref().map(|arm| (seed, trace(arm, seed)))).collect()
+}
+
+fn is_found(trace: &Trace) -> bool {
+    names_all(trace, &[TILT])
+        && trace.verdict == Verdict::Explained
+        && (0.85..1.15).contains(&(trace.after.rms / FLOOR))
+}
+
+#[test]
+fn noise_is_taken_as_stated() {
+    let states = |scenario| Scenario { states_noise: true, ..scenario };
+    let stated = |trace: &Trace| {
+        assert_eq!(trace.noise_source, NoiseSource::Declared);
+        assert!((trace.noise / NOISE - 1.0).abs() < 1e-12, "{}", trace.noise);
+    };
+    assert_most("with stated noise", 9, &campaigns(&[TILT], states, ""), |_, trace| {
+        stated(trace);
+        is_found(trace)
+    });
+    assert_most("nothing, with stated noise", 9, &campaigns(&[], states, ""), |_, trace| {
+        stated(trace);
+        trace.verdict == Verdict::Adequate
+    });
+}
+
+#[test]
+fn noise_is_estimated_where_it_is_not_stated() {
+    assert_most("without stated noise", 9, &campaigns(&[TILT], |scenario| scenario, ""), |_, trace| {
+        assert_ne!(trace.noise_source, NoiseSource::Declared);
+        is_found(trace) && (0.85..1.15).contains(&(trace.noise / NOISE))
+    });
+}
+
+/// Less noise than there is: what is left looks like structure, and says so.
+#[test]
+fn noise_that_is_stated_too_small_is_noticed() {
+    let more = "noise: {displacement: 5 um}\n";
+    assert_most("too small a noise", 9, &campaigns(&[], |scenario| scenario, more), |_, trace| {
+        trace.verdict == Verdict::Unexplained && trace.unexplained > 0.5
+    });
+}
+
+/// A reading less for each row, each with an unloaded one of its own.
+#[test]
+fn rows_without_a_shared_reading() {
+    let own = |scenario| Scenario { ramp: vec![1.0], visits: 5, shares_unloaded: false, ..scenario };
+    assert_most("rows of their own", 9, &campaigns(&[TILT], own, ""), |_, trace| is_found(trace));
+}
+
+/// Moments and rotations make all joints of the wrist visible; without them the
+/// flange axis of the six-axis arm goes through the point that is read.
+#[test]
+fn rotations_are_used() {
+    let turned = |scenario| Scenario { rotation_noise: Some(5e-5), moment: Some([50.0, 200.0]), ..scenario };
+    let sees_the_last_joint =
+        |trace: &Trace| trace.estimates.iter().rfind(|e| e.name.starts_with("joint")).is_some_and(|e| e.std.is_some());
+    let traces = campaigns(&[TILT], turned, "");
+    assert_most("with rotations", 9, &traces, |_, trace| is_found(trace) && sees_the_last_joint(trace));
+    for (_, trace) in campaigns(&[TILT], |scenario| scenario, "") {
+        assert_eq!(sees_the_last_joint(&trace), trace.robot == "Rv130hsc");
+    }
+}
+
+#[test]
+fn held_out_poses_judge() {
+    let traces = campaigns(&[TILT], |scenario| scenario, "holdout: {fraction: 0.25, seed: 3}\n");
+    assert_most("with poses held out", 9, &traces, |_, trace| {
+        assert_eq!((trace.poses, trace.held_out.len()), (40, 10));
+        assert_eq!(trace.pose_errors.iter().filter(|pose| pose.held_out).count(), 10);
+        is_found(trace)
+            && (0.8..1.25).contains(&(trace.after.holdout_rms / FLOOR))
+            && trace.identified.holdout_rms > 1.5 * trace.after.holdout_rms
+    });
+    // Other poses with another seed.
+    let other = campaigns(&[TILT], |scenario| scenario, "holdout: {fraction: 0.25, seed: 4}\n");
+    assert_ne!(traces[0].1.held_out, other[0].1.held_out);
+}
