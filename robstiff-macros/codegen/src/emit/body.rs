@@ -156,7 +156,11 @@ impl Writer<'_> {
             return (self.fused(id, x, y, is_first), Binding::Unit);
         }
         let graph = self.function.graph();
-        match graph.nodes()[id].op {
+        let op = graph.nodes()[id].op;
+        if let Some(arithmetic) = arithmetic(op, |id, context| self.operand(id, context)) {
+            return arithmetic;
+        }
+        match op {
             Op::Number(bits) => match f64::from_bits(bits) {
                 0.0 => (quote!(T::zero()), Binding::Unit),
                 1.0 => (quote!(T::one()), Binding::Unit),
@@ -180,23 +184,6 @@ impl Writer<'_> {
                 let name = format_ident!("c{}", self.names.angle(index));
                 (quote!(#name), Binding::Unit)
             }
-            Op::Add(a, b) => {
-                let (a, b) = (self.operand(a, Binding::Sum), self.operand(b, Binding::Product));
-                (quote!(#a + #b), Binding::Sum)
-            }
-            Op::Sub(a, b) => {
-                let (a, b) = (self.operand(a, Binding::Sum), self.operand(b, Binding::Product));
-                (quote!(#a - #b), Binding::Sum)
-            }
-            Op::Mul(a, b) => {
-                let (a, b) = (self.operand(a, Binding::Product), self.operand(b, Binding::Sign));
-                (quote!(#a * #b), Binding::Product)
-            }
-            Op::Neg(a) => {
-                // A product in parentheses: `x * -a * b` multiplies in another order.
-                let a = self.operand(a, Binding::Sign);
-                (quote!(-#a), Binding::Sign)
-            }
             Op::Sqrt(a) => {
                 let a = self.operand(a, Binding::Unit);
                 (quote!(#a.sqrt()), Binding::Unit)
@@ -205,6 +192,7 @@ impl Writer<'_> {
                 let a = self.operand(a, Binding::Unit);
                 (quote!(#a.recip()), Binding::Unit)
             }
+            op => unreachable!("{op:?} is arithmetic"),
         }
     }
 
@@ -235,7 +223,9 @@ impl Writer<'_> {
     /// A constant from the description's numbers, which the compiler computes.
     fn constant(&self, id: Id, context: Binding) -> TokenStream {
         let graph = self.function.graph();
-        let (expression, binding) = match graph.nodes()[id].op {
+        let op = graph.nodes()[id].op;
+        let arithmetic = arithmetic(op, |id, context| self.constant(id, context));
+        let (expression, binding) = arithmetic.unwrap_or_else(|| match op {
             Op::Number(bits) => {
                 let value = f64::from_bits(bits);
                 let literal = Literal::f64_unsuffixed(value.abs());
@@ -245,30 +235,39 @@ impl Writer<'_> {
                 let name = format_ident!("{}", graph.parameters()[index].name);
                 (quote!(Self::#name), Binding::Unit)
             }
-            Op::Add(a, b) => {
-                let (a, b) = (self.constant(a, Binding::Sum), self.constant(b, Binding::Product));
-                (quote!(#a + #b), Binding::Sum)
-            }
-            Op::Sub(a, b) => {
-                let (a, b) = (self.constant(a, Binding::Sum), self.constant(b, Binding::Product));
-                (quote!(#a - #b), Binding::Sum)
-            }
-            Op::Mul(a, b) => {
-                let (a, b) = (self.constant(a, Binding::Product), self.constant(b, Binding::Sign));
-                (quote!(#a * #b), Binding::Product)
-            }
-            Op::Neg(a) => {
-                let a = self.constant(a, Binding::Sign);
-                (quote!(-#a), Binding::Sign)
-            }
             Op::Recip(a) => {
                 let a = self.constant(a, Binding::Sign);
                 (quote!(1.0 / #a), Binding::Product)
             }
             op => unreachable!("{op:?} of constants: nothing takes the root of a parameter"),
-        };
+        });
         if binding < context { quote!((#expression)) } else { expression }
     }
+}
+
+/// Sums, differences, products and negatives of operands that `write` writes for
+/// where they stand; nothing for other operations.
+fn arithmetic(op: Op, write: impl Fn(Id, Binding) -> TokenStream) -> Option<(TokenStream, Binding)> {
+    Some(match op {
+        Op::Add(a, b) => {
+            let (a, b) = (write(a, Binding::Sum), write(b, Binding::Product));
+            (quote!(#a + #b), Binding::Sum)
+        }
+        Op::Sub(a, b) => {
+            let (a, b) = (write(a, Binding::Sum), write(b, Binding::Product));
+            (quote!(#a - #b), Binding::Sum)
+        }
+        Op::Mul(a, b) => {
+            let (a, b) = (write(a, Binding::Product), write(b, Binding::Sign));
+            (quote!(#a * #b), Binding::Product)
+        }
+        Op::Neg(a) => {
+            // A product in parentheses: `x * -a * b` multiplies in another order.
+            let a = write(a, Binding::Sign);
+            (quote!(-#a), Binding::Sign)
+        }
+        _ => return None,
+    })
 }
 
 /// An angle as code: `q[1] + q[2] + T::of(0.1)`.
