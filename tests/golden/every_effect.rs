@@ -237,7 +237,7 @@ impl Robot<6> for EveryEffect {
     /// Frame of the tool centre point in the base frame, 4 x 4 homogeneous (m).
     ///
     /// 14 trig, 129 mul, 93 add.
-    #[inline]
+    #[inline(always)]
     fn transform<T: Real>(&self, q: &SVector<T, 6>) -> Matrix4<T> {
         let base_x = T::of(Self::BASE_X);
         let base_y = T::of(Self::BASE_Y);
@@ -414,7 +414,7 @@ impl Robot<6> for EveryEffect {
     /// Frames behind the joints in the base frame, 4 x 4 homogeneous (m); the last is the flange.
     ///
     /// 12 trig, 116 mul, 81 add, 3 neg.
-    #[inline]
+    #[inline(always)]
     fn link_frames<T: Real>(&self, q: &SVector<T, 6>) -> [Matrix4<T>; 6] {
         let base_x = T::of(Self::BASE_X);
         let base_y = T::of(Self::BASE_Y);
@@ -617,7 +617,7 @@ impl Robot<6> for EveryEffect {
     /// Jacobian of the tool centre point in the base frame, 6 rows: translation (m/rad), rotation.
     ///
     /// 12 trig, 141 mul, 95 add.
-    #[inline]
+    #[inline(always)]
     fn jacobian<T: Real>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 6> {
         let a2 = T::of(Self::A2);
         let d3 = T::of(Self::D3);
@@ -806,12 +806,14 @@ impl Robot<6> for EveryEffect {
             [j6x, j6y, j6z, z6x, z6y, z6z],
         ])
     }
-    /** Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
 
- It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.*/
+    /// Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
+    ///
+    /// It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
+    /// rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.
     ///
     /// 12 trig, 378 mul, 399 add.
-    #[inline]
+    #[inline(always)]
     fn compliance<T: Real>(&self, q: &SVector<T, 6>) -> Matrix6<T> {
         let h1 = T::of(Self::H1);
         let h3 = T::of(Self::H3);
@@ -1409,7 +1411,7 @@ impl Robot<6> for EveryEffect {
     /// Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm).
     ///
     /// 12 trig, 370 mul, 293 add, 4 root.
-    #[inline]
+    #[inline(always)]
     fn deflection<T: Real>(&self, q: &SVector<T, 6>, wrench: &Vector6<T>) -> Vector6<T> {
         let h1 = T::of(Self::H1);
         let h2 = T::of(Self::H2);
@@ -1765,7 +1767,7 @@ impl Robot<6> for EveryEffect {
     /// Joint torques (Nm) (forces (N) of sliding joints) that hold a wrench at the tool centre point.
     ///
     /// 12 trig, 174 mul, 123 add.
-    #[inline]
+    #[inline(always)]
     fn joint_torques<T: Real>(
         &self,
         q: &SVector<T, 6>,

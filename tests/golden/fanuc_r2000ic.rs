@@ -133,7 +133,7 @@ impl Robot<6> for FanucR2000ic {
     /// Frame of the tool centre point in the base frame, 4 x 4 homogeneous (m).
     ///
     /// 12 trig, 66 mul, 40 add, 3 neg.
-    #[inline]
+    #[inline(always)]
     fn transform<T: Real>(&self, q: &SVector<T, 6>) -> Matrix4<T> {
         let d1 = T::of(Self::D1);
         let a2 = T::of(Self::A2);
@@ -197,7 +197,7 @@ impl Robot<6> for FanucR2000ic {
     /// Frames behind the joints in the base frame, 4 x 4 homogeneous (m); the last is the flange.
     ///
     /// 12 trig, 57 mul, 30 add, 8 neg.
-    #[inline]
+    #[inline(always)]
     fn link_frames<T: Real>(&self, q: &SVector<T, 6>) -> [Matrix4<T>; 6] {
         let d1 = T::of(Self::D1);
         let a2 = T::of(Self::A2);
@@ -295,7 +295,7 @@ impl Robot<6> for FanucR2000ic {
     /// Jacobian of the tool centre point in the base frame, 6 rows: translation (m/rad), rotation.
     ///
     /// 12 trig, 80 mul, 45 add, 8 neg.
-    #[inline]
+    #[inline(always)]
     fn jacobian<T: Real>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 6> {
         let a2 = T::of(Self::A2);
         let a3 = T::of(Self::A3);
@@ -368,12 +368,14 @@ impl Robot<6> for FanucR2000ic {
             [j6x, -(t9 * r6x + z6x * r6z), j6z, z6x, z6y, -t9],
         ])
     }
-    /** Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
 
- It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.*/
+    /// Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
+    ///
+    /// It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
+    /// rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.
     ///
     /// 12 trig, 150 mul, 131 add.
-    #[inline]
+    #[inline(always)]
     fn compliance<T: Real>(&self, q: &SVector<T, 6>) -> Matrix6<T> {
         let h1 = T::of(Self::H1);
         let h2 = T::of(Self::H2);
@@ -573,7 +575,7 @@ impl Robot<6> for FanucR2000ic {
     /// Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm).
     ///
     /// 12 trig, 144 mul, 94 add.
-    #[inline]
+    #[inline(always)]
     fn deflection<T: Real>(&self, q: &SVector<T, 6>, wrench: &Vector6<T>) -> Vector6<T> {
         let h1 = T::of(Self::H1);
         let h2 = T::of(Self::H2);
@@ -687,7 +689,7 @@ impl Robot<6> for FanucR2000ic {
     /// Joint torques (Nm) (forces (N) of sliding joints) that hold a wrench at the tool centre point.
     ///
     /// 12 trig, 108 mul, 69 add.
-    #[inline]
+    #[inline(always)]
     fn joint_torques<T: Real>(
         &self,
         q: &SVector<T, 6>,

@@ -114,7 +114,7 @@ impl Robot<5> for Rv130hsc {
     /// Frame of the tool centre point in the base frame, 4 x 4 homogeneous (m).
     ///
     /// 10 trig, 45 mul, 26 add, 1 neg.
-    #[inline]
+    #[inline(always)]
     fn transform<T: Real>(&self, q: &SVector<T, 5>) -> Matrix4<T> {
         let d1 = T::of(Self::D1);
         let a1 = T::of(Self::A1);
@@ -165,7 +165,7 @@ impl Robot<5> for Rv130hsc {
     /// Frames behind the joints in the base frame, 4 x 4 homogeneous (m); the last is the flange.
     ///
     /// 10 trig, 47 mul, 26 add, 5 neg.
-    #[inline]
+    #[inline(always)]
     fn link_frames<T: Real>(&self, q: &SVector<T, 5>) -> [Matrix4<T>; 5] {
         let d1 = T::of(Self::D1);
         let a1 = T::of(Self::A1);
@@ -252,7 +252,7 @@ impl Robot<5> for Rv130hsc {
     /// Jacobian of the tool centre point in the base frame, 6 rows: translation (m/rad), rotation.
     ///
     /// 10 trig, 53 mul, 27 add, 6 neg.
-    #[inline]
+    #[inline(always)]
     fn jacobian<T: Real>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 5> {
         let a1 = T::of(Self::A1);
         let a3 = T::of(Self::A3);
@@ -308,12 +308,14 @@ impl Robot<5> for Rv130hsc {
             [j5x, j5y, j5z, z5x, z5y, z5z],
         ])
     }
-    /** Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
 
- It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.*/
+    /// Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
+    ///
+    /// It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
+    /// rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.
     ///
     /// 10 trig, 96 mul, 78 add, 3 neg.
-    #[inline]
+    #[inline(always)]
     fn compliance<T: Real>(&self, q: &SVector<T, 5>) -> Matrix6<T> {
         let h1 = T::of(Self::H1);
         let h2 = T::of(Self::H2);
@@ -453,7 +455,7 @@ impl Robot<5> for Rv130hsc {
     /// Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm).
     ///
     /// 10 trig, 104 mul, 65 add.
-    #[inline]
+    #[inline(always)]
     fn deflection<T: Real>(&self, q: &SVector<T, 5>, wrench: &Vector6<T>) -> Vector6<T> {
         let h1 = T::of(Self::H1);
         let h2 = T::of(Self::H2);
@@ -543,7 +545,7 @@ impl Robot<5> for Rv130hsc {
     /// Joint torques (Nm) (forces (N) of sliding joints) that hold a wrench at the tool centre point.
     ///
     /// 10 trig, 75 mul, 46 add.
-    #[inline]
+    #[inline(always)]
     fn joint_torques<T: Real>(
         &self,
         q: &SVector<T, 5>,

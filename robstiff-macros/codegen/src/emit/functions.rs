@@ -56,9 +56,10 @@ pub(super) fn functions(robot: &Description) -> [Generated; 6] {
         },
         Generated {
             name: "compliance",
-            doc: "Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).\n\n \
-                  It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and \
-                  rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.",
+            doc: "Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
+
+                It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
+                rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.",
             function: Function::of(|g| symbolic::compliance(g, robot)),
             result: |entries| quote!(Matrix6::new(#(#entries),*)),
         },

@@ -173,7 +173,8 @@ fn paragraph(text: &str) -> Vec<String> {
 /// The lines of a description's text as docs, in which brackets are no links
 /// and no tags.
 fn lines(text: &str) -> Vec<String> {
-    text.trim().lines().map(|line| format!(" {}", line.trim().replace('[', "\\[").replace('<', "\\<"))).collect()
+    let escaped = text.trim().replace('[', "\\[").replace('<', "\\<");
+    escaped.lines().map(|line| format!(" {}", line.trim()).trim_end().to_owned()).collect()
 }
 
 /// The `Robot` implementation.
@@ -190,7 +191,8 @@ pub(super) fn implementation(robot: &Description, functions: &[Generated], reade
         let signature = signature(&count);
         let Body { statements, outputs } = body(&generated.function, reader);
         let result = generated.result(&outputs);
-        let docs = [format!(" {}", generated.doc), String::new(), format!(" {}.", generated.function.cost())];
+        let mut docs = paragraph(generated.doc);
+        docs.push(format!(" {}.", generated.function.cost()));
         // What a function does not depend on is unused.
         let silence = ignores_an_input(&generated.function).then(|| quote!(#[allow(unused_variables)]));
         // Only a caller that sees the code can leave out what it does not
