@@ -145,13 +145,14 @@ fn name(node: &Node) -> Option<String> {
 }
 
 /// Names that generated code needs for other things.
-const TAKEN: [&str; 14] = [
+const TAKEN: [&str; 15] = [
     "Self",
     "Option",
     "Some",
     "None",
     "Robot",
     "Real",
+    "Statics",
     "Effect",
     "Convention",
     "JointKind",

@@ -57,7 +57,7 @@ pub use dual::Dual;
 pub use generic::{Generic, WrongJointCount};
 pub use lanes::Lanes;
 pub use real::Real;
-pub use robot::Robot;
+pub use robot::{Cost, Robot, Statics};
 pub use robstiff_robots::{Convention, Effect, JointKind};
 
 /// Generates a robot from its description, at compile time.

@@ -60,4 +60,38 @@ pub trait Robot<const N: usize> {
 
     /// The joint torques that hold a wrench at the TCP, `J^T F` (Nm or N).
     fn joint_torques<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>) -> SVector<T, N>;
+
+    /// [`transform`](Self::transform), [`jacobian`](Self::jacobian) and
+    /// [`compliance`](Self::compliance) of one pose; generated code shares what
+    /// they have in common, the sines and cosines above all.
+    fn statics<T: Real>(&self, q: &SVector<T, N>) -> Statics<N, T> {
+        Statics { transform: self.transform(q), jacobian: self.jacobian(q), compliance: self.compliance(q) }
+    }
+}
+
+/// The elastostatics of one pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Statics<const N: usize, T: Real = f64> {
+    /// The tool centre point's frame in the base frame.
+    pub transform: Matrix4<T>,
+    /// The 6 x N Jacobian of the TCP in the base frame, translation first.
+    pub jacobian: SMatrix<T, 6, N>,
+    /// The 6 x 6 Cartesian compliance at the TCP in the base frame.
+    pub compliance: Matrix6<T>,
+}
+
+/// The operations of one call of a generated function. Constants cost nothing:
+/// the compiler computes them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cost {
+    /// Sines and cosines, counted singly.
+    pub trig: usize,
+    /// Multiplications.
+    pub mul: usize,
+    /// Additions and subtractions.
+    pub add: usize,
+    /// Changes of sign that no addition absorbed.
+    pub neg: usize,
+    /// Square roots and reciprocals.
+    pub root: usize,
 }

@@ -26,9 +26,10 @@
 //   compliance     12 trig, 378 mul, 399 add
 //   deflection     12 trig, 370 mul, 293 add, 4 root
 //   joint_torques  12 trig, 174 mul, 123 add
+//   statics        16 trig, 543 mul, 524 add
 
 use robstiff::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
-use robstiff::{Convention, Effect, JointKind, Real, Robot};
+use robstiff::{Convention, Effect, JointKind, Real, Robot, Statics};
 
 /// A six-axis arm with every effect a description can hold
 ///
@@ -40,7 +41,7 @@ use robstiff::{Convention, Effect, JointKind, Real, Robot};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EveryEffect;
 
-#[allow(clippy::approx_constant)]
+#[allow(clippy::approx_constant, dead_code)]
 impl EveryEffect {
     /// Frame 0 in the base frame, along X (m).
     pub const BASE_X: f64 = 0.3;
@@ -128,9 +129,65 @@ impl EveryEffect {
     pub const ADDED5: f64 = -1e-6;
     /// Torque at the knee of joint 5 (Nm).
     pub const KNEE5: f64 = 90.0;
+    /// Operations of `transform`.
+    pub const TRANSFORM_COST: robstiff::Cost = robstiff::Cost {
+        trig: 14,
+        mul: 129,
+        add: 93,
+        neg: 0,
+        root: 0,
+    };
+    /// Operations of `link_frames`.
+    pub const LINK_FRAMES_COST: robstiff::Cost = robstiff::Cost {
+        trig: 12,
+        mul: 116,
+        add: 81,
+        neg: 3,
+        root: 0,
+    };
+    /// Operations of `jacobian`.
+    pub const JACOBIAN_COST: robstiff::Cost = robstiff::Cost {
+        trig: 12,
+        mul: 141,
+        add: 95,
+        neg: 0,
+        root: 0,
+    };
+    /// Operations of `compliance`.
+    pub const COMPLIANCE_COST: robstiff::Cost = robstiff::Cost {
+        trig: 12,
+        mul: 378,
+        add: 399,
+        neg: 0,
+        root: 0,
+    };
+    /// Operations of `deflection`.
+    pub const DEFLECTION_COST: robstiff::Cost = robstiff::Cost {
+        trig: 12,
+        mul: 370,
+        add: 293,
+        neg: 0,
+        root: 4,
+    };
+    /// Operations of `joint_torques`.
+    pub const JOINT_TORQUES_COST: robstiff::Cost = robstiff::Cost {
+        trig: 12,
+        mul: 174,
+        add: 123,
+        neg: 0,
+        root: 0,
+    };
+    /// Operations of `statics`.
+    pub const STATICS_COST: robstiff::Cost = robstiff::Cost {
+        trig: 16,
+        mul: 543,
+        add: 524,
+        neg: 0,
+        root: 0,
+    };
 }
 
-#[allow(clippy::approx_constant)]
+#[allow(clippy::approx_constant, dead_code)]
 impl Robot<6> for EveryEffect {
     #[inline]
     fn name(&self) -> &str {
@@ -1966,5 +2023,826 @@ impl Robot<6> for EveryEffect {
         let t41 = mx * z6x + my * z6y + mz * z6z;
         let tau6 = fx * j6x + fy * j6y + fz * j6z + t41;
         SVector::from([tau1, tau2, tau3, tau4, tau5, tau6])
+    }
+
+    /// Transform, Jacobian and compliance of one pose, with what they have in common.
+    ///
+    /// 16 trig, 543 mul, 524 add.
+    #[inline(always)]
+    fn statics<T: Real>(&self, q: &SVector<T, 6>) -> Statics<6, T> {
+        let base_x = T::of(Self::BASE_X);
+        let base_y = T::of(Self::BASE_Y);
+        let base_z = T::of(Self::BASE_Z);
+        let sin_base_pitch = T::of(Self::SIN_BASE_PITCH);
+        let cos_base_pitch = T::of(Self::COS_BASE_PITCH);
+        let sin_base_roll = T::of(Self::SIN_BASE_ROLL);
+        let cos_base_roll = T::of(Self::COS_BASE_ROLL);
+        let d1 = T::of(Self::D1);
+        let a1 = T::of(Self::A1);
+        let a2 = T::of(Self::A2);
+        let d3 = T::of(Self::D3);
+        let a3 = T::of(Self::A3);
+        let sin_alpha3 = T::of(Self::SIN_ALPHA3);
+        let cos_alpha3 = T::of(Self::COS_ALPHA3);
+        let d4 = T::of(Self::D4);
+        let d5 = T::of(Self::D5);
+        let d6 = T::of(Self::D6);
+        let tool_x = T::of(Self::TOOL_X);
+        let tool_y = T::of(Self::TOOL_Y);
+        let tool_z = T::of(Self::TOOL_Z);
+        let sin_tool_pitch = T::of(Self::SIN_TOOL_PITCH);
+        let cos_tool_pitch = T::of(Self::COS_TOOL_PITCH);
+        let k1 = T::of(0.644217687237691);
+        let k2 = T::of(0.7648421872844885);
+        let k3 = T::of(Self::COS_BASE_PITCH * 0.7648421872844885);
+        let k4 = T::of(Self::COS_BASE_PITCH * 0.644217687237691);
+        let k5 = T::of(-Self::SIN_BASE_PITCH);
+        let k6 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k7 = T::of(
+            Self::COS_BASE_ROLL * -0.644217687237691
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
+        );
+        let k8 = T::of(
+            Self::COS_BASE_ROLL * 0.7648421872844885
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
+        );
+        let k9 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k10 = T::of(
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
+                - Self::SIN_BASE_ROLL * -0.644217687237691,
+        );
+        let k11 = T::of(
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)
+                - Self::SIN_BASE_ROLL * 0.7648421872844885,
+        );
+        let k12 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.7648421872844885));
+        let k13 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.644217687237691));
+        let k14 = T::of(Self::A1 * -Self::SIN_BASE_PITCH);
+        let k15 = T::of(
+            Self::A1
+                * (Self::COS_BASE_ROLL * -0.644217687237691
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+        );
+        let k16 = T::of(
+            Self::A1
+                * (Self::COS_BASE_ROLL * 0.7648421872844885
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+        );
+        let k17 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
+        let k18 = T::of(
+            Self::D1
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
+                    - Self::SIN_BASE_ROLL * -0.644217687237691),
+        );
+        let k19 = T::of(
+            Self::D1
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)
+                    - Self::SIN_BASE_ROLL * 0.7648421872844885),
+        );
+        let k20 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k21 = T::of(
+            Self::SIN_BASE_ROLL * -0.644217687237691
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
+        );
+        let k22 = T::of(
+            Self::SIN_BASE_ROLL * 0.7648421872844885
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
+        );
+        let k23 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k24 = T::of(
+            Self::A2
+                * (Self::SIN_BASE_ROLL * -0.644217687237691
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+        );
+        let k25 = T::of(
+            Self::A2
+                * (Self::SIN_BASE_ROLL * 0.7648421872844885
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+        );
+        let k26 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k27 = T::of(
+            Self::A3
+                * (Self::SIN_BASE_ROLL * -0.644217687237691
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+        );
+        let k28 = T::of(
+            Self::A3
+                * (Self::SIN_BASE_ROLL * 0.7648421872844885
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+        );
+        let k29 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let h1 = T::of(Self::H1);
+        let h3 = T::of(Self::H3);
+        let h4 = T::of(Self::H4);
+        let transverse1 = T::of(Self::TRANSVERSE1);
+        let transverse3 = T::of(Self::TRANSVERSE3);
+        let bending2 = T::of(Self::BENDING2);
+        let bending3 = T::of(Self::BENDING3);
+        let base_tilt = T::of(Self::BASE_TILT);
+        let base_translation = T::of(Self::BASE_TRANSLATION);
+        let tool_rotation = T::of(Self::TOOL_ROTATION);
+        let coupling2_3 = T::of(Self::COUPLING2_3);
+        let coupling5_6 = T::of(Self::COUPLING5_6);
+        let k30 = T::of(
+            Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448,
+        );
+        let k31 = T::of(
+            Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664,
+        );
+        let k32 = T::of(Self::TOOL_Z * Self::TOOL_ROTATION);
+        let k33 = T::of(
+            Self::TOOL_ROTATION
+                * (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664),
+        );
+        let k34 = T::of(
+            -(Self::TOOL_ROTATION
+                * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)),
+        );
+        let k35 = T::of(
+            -(Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664),
+        );
+        let k36 = T::of(
+            Self::TOOL_Z * Self::TOOL_ROTATION
+                * (Self::TOOL_Y * 0.1908089953765448 - Self::TOOL_X * 0.981627183447664),
+        );
+        let k37 = T::of(
+            (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
+                * -(Self::TOOL_Z * Self::TOOL_ROTATION),
+        );
+        let k38 = T::of(
+            Self::TOOL_TRANSLATION
+                + ((Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
+                    * (Self::TOOL_ROTATION
+                        * (Self::TOOL_X * 0.1908089953765448
+                            + Self::TOOL_Y * 0.981627183447664))
+                    + -(Self::TOOL_ROTATION
+                        * (Self::TOOL_X * 0.981627183447664
+                            - Self::TOOL_Y * 0.1908089953765448))
+                        * (Self::TOOL_Y * 0.1908089953765448
+                            - Self::TOOL_X * 0.981627183447664)),
+        );
+        let k39 = T::of(Self::D6 + Self::TOOL_Z);
+        let k40 = T::of(
+            Self::TOOL_TRANSLATION
+                + (Self::TOOL_Z * (Self::TOOL_Z * Self::TOOL_ROTATION)
+                    + -(Self::TOOL_ROTATION
+                        * (Self::TOOL_X * 0.1908089953765448
+                            + Self::TOOL_Y * 0.981627183447664))
+                        * -(Self::TOOL_X * 0.1908089953765448
+                            + Self::TOOL_Y * 0.981627183447664))
+                + -(Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
+                    * -(Self::H6
+                        * (Self::TOOL_X * 0.1908089953765448
+                            + Self::TOOL_Y * 0.981627183447664)),
+        );
+        let k41 = T::of(
+            (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                * -(Self::TOOL_ROTATION
+                    * (Self::TOOL_X * 0.1908089953765448
+                        + Self::TOOL_Y * 0.981627183447664))
+                + (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                    * -(Self::H6
+                        * (Self::TOOL_X * 0.1908089953765448
+                            + Self::TOOL_Y * 0.981627183447664)),
+        );
+        let k42 = T::of(
+            Self::TOOL_TRANSLATION
+                + (-(Self::TOOL_Z * Self::TOOL_ROTATION) * -Self::TOOL_Z
+                    + (Self::TOOL_X * 0.981627183447664
+                        - Self::TOOL_Y * 0.1908089953765448)
+                        * (Self::TOOL_ROTATION
+                            * (Self::TOOL_X * 0.981627183447664
+                                - Self::TOOL_Y * 0.1908089953765448)))
+                + (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                    * (Self::H6
+                        * (Self::TOOL_X * 0.981627183447664
+                            - Self::TOOL_Y * 0.1908089953765448)),
+        );
+        let k43 = T::of(Self::H6 + Self::TOOL_ROTATION);
+        let k44 = T::of(
+            -(Self::TOOL_ROTATION
+                * (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664))
+                + -(Self::H6
+                    * (Self::TOOL_X * 0.1908089953765448
+                        + Self::TOOL_Y * 0.981627183447664)),
+        );
+        let k45 = T::of(
+            Self::TOOL_ROTATION
+                * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                + Self::H6
+                    * (Self::TOOL_X * 0.981627183447664
+                        - Self::TOOL_Y * 0.1908089953765448),
+        );
+        let k46 = T::of(
+            Self::TOOL_TRANSLATION
+                + (Self::TOOL_Z * (Self::TOOL_Z * Self::TOOL_ROTATION)
+                    + -(Self::TOOL_ROTATION
+                        * (Self::TOOL_X * 0.1908089953765448
+                            + Self::TOOL_Y * 0.981627183447664))
+                        * -(Self::TOOL_X * 0.1908089953765448
+                            + Self::TOOL_Y * 0.981627183447664))
+                + -(Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
+                    * -(Self::H6
+                        * (Self::TOOL_X * 0.1908089953765448
+                            + Self::TOOL_Y * 0.981627183447664))
+                - (Self::TOOL_TRANSLATION
+                    + (-(Self::TOOL_Z * Self::TOOL_ROTATION) * -Self::TOOL_Z
+                        + (Self::TOOL_X * 0.981627183447664
+                            - Self::TOOL_Y * 0.1908089953765448)
+                            * (Self::TOOL_ROTATION
+                                * (Self::TOOL_X * 0.981627183447664
+                                    - Self::TOOL_Y * 0.1908089953765448)))
+                    + (Self::TOOL_X * 0.981627183447664
+                        - Self::TOOL_Y * 0.1908089953765448)
+                        * (Self::H6
+                            * (Self::TOOL_X * 0.981627183447664
+                                - Self::TOOL_Y * 0.1908089953765448))),
+        );
+        let k47 = T::of(
+            (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                * -(Self::TOOL_ROTATION
+                    * (Self::TOOL_X * 0.1908089953765448
+                        + Self::TOOL_Y * 0.981627183447664))
+                + (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                    * -(Self::H6
+                        * (Self::TOOL_X * 0.1908089953765448
+                            + Self::TOOL_Y * 0.981627183447664))
+                + ((Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                    * -(Self::TOOL_ROTATION
+                        * (Self::TOOL_X * 0.1908089953765448
+                            + Self::TOOL_Y * 0.981627183447664))
+                    + (Self::TOOL_X * 0.981627183447664
+                        - Self::TOOL_Y * 0.1908089953765448)
+                        * -(Self::H6
+                            * (Self::TOOL_X * 0.1908089953765448
+                                + Self::TOOL_Y * 0.981627183447664))),
+        );
+        let k48 = T::of(Self::H5 + Self::ADDED5);
+        let k49 = T::of(-((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)));
+        let k50 = T::of(
+            -(Self::D6 + Self::TOOL_Z)
+                * -((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)),
+        );
+        let k51 = T::of(Self::TOOL_ROTATION + (Self::H5 + Self::ADDED5));
+        let k52 = T::of(
+            -(Self::TOOL_Z * Self::TOOL_ROTATION)
+                + -((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)),
+        );
+        let k53 = T::of(Self::COUPLING5_6 * -(Self::D6 + Self::TOOL_Z));
+        let k54 = T::of(Self::TOOL_ROTATION - (Self::H6 + Self::TOOL_ROTATION));
+        let k55 = T::of(
+            Self::BENDING3
+                + Self::A3
+                    * (Self::A3
+                        * (-Self::BENDING3
+                            * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
+        );
+        let k56 = T::of(
+            Self::D3
+                * (Self::A3
+                    * (-Self::BENDING3
+                        * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
+        );
+        let k57 = T::of(
+            Self::BENDING3
+                + Self::D3
+                    * (Self::D3
+                        * (-Self::BENDING3
+                            * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
+        );
+        let k58 = T::of(
+            (Self::A3 * Self::A3 + Self::D3 * Self::D3)
+                * (Self::BENDING3 * 0.08333333333333333),
+        );
+        let k59 = T::of(
+            (Self::A3 * Self::A3 + Self::D3 * Self::D3)
+                * (Self::BENDING3 * 0.08333333333333333)
+                - Self::A3 * (Self::A3 * (Self::BENDING3 * 0.08333333333333333)),
+        );
+        let k60 = T::of(
+            -(Self::D3 * (Self::A3 * (Self::BENDING3 * 0.08333333333333333))),
+        );
+        let k61 = T::of(
+            (Self::A3 * Self::A3 + Self::D3 * Self::D3)
+                * (Self::BENDING3 * 0.08333333333333333)
+                - Self::D3 * (Self::D3 * (Self::BENDING3 * 0.08333333333333333)),
+        );
+        let k62 = T::of(Self::A3 * 0.5);
+        let k63 = T::of(Self::D3 * 0.5);
+        let k64 = T::of(
+            Self::A2
+                * ((Self::TORSION2 - Self::BENDING2) * (1.0 / (Self::A2 * Self::A2))),
+        );
+        let k65 = T::of(Self::A2 * (Self::BENDING2 * 0.08333333333333333));
+        let k66 = T::of(Self::A2 * Self::A2 * (Self::BENDING2 * 0.08333333333333333));
+        let k67 = T::of(Self::A2 * 0.5);
+        let k68 = T::of(Self::H2 + Self::ADDED2);
+        let k69 = T::of(Self::COUPLING2_3 + Self::COUPLING2_3);
+        let [(s1o, c1o), (s2, c2), (s23, c23), (s4o, c4o), (s5, c5), (s6, c6),
+        (s6o, c6o), (s3, c3)] = T::sin_cos_all([
+            q[0] + T::of(0.17453292519943295),
+            q[1],
+            q[1] + q[2],
+            q[3] + T::of(0.08726646259971647),
+            q[4],
+            q[5],
+            q[5] + T::of(2.949606435870417),
+            q[2],
+        ]);
+        let t1 = k12 * c1o + k15 * s1o + k18;
+        let t2 = k13 * c1o + k16 * s1o + k19;
+        let t3 = k14 * c1o + k17 * s1o + k20;
+        let t4 = k3 * c1o + k7 * s1o;
+        let t5 = k4 * c1o + k8 * s1o;
+        let t6 = k5 * c1o + k6 * s1o;
+        let z2x = k7 * c1o - k3 * s1o;
+        let z2y = k8 * c1o - k4 * s1o;
+        let z2z = k6 * c1o - k5 * s1o;
+        let t7 = a2 * s2;
+        let t8 = t4 * t7 - k24 * c2;
+        let t9 = t5 * t7 - k25 * c2;
+        let t10 = t6 * t7 - k26 * c2;
+        let t11 = a3 * s23;
+        let t12 = t4 * t11 - k27 * c23 + d3 * z2x;
+        let t13 = t5 * t11 - k28 * c23 + d3 * z2y;
+        let t14 = t6 * t11 - k29 * c23 + d3 * z2z;
+        let t15 = t4 * s23 - k21 * c23;
+        let t16 = t5 * s23 - k22 * c23;
+        let t17 = t6 * s23 - k23 * c23;
+        let t18 = k21 * s23 + t4 * c23;
+        let t19 = k22 * s23 + t5 * c23;
+        let t20 = k23 * s23 + t6 * c23;
+        let t21 = cos_alpha3 * t18 + sin_alpha3 * z2x;
+        let t22 = cos_alpha3 * t19 + sin_alpha3 * z2y;
+        let t23 = cos_alpha3 * t20 + sin_alpha3 * z2z;
+        let z4x = cos_alpha3 * z2x - sin_alpha3 * t18;
+        let z4y = cos_alpha3 * z2y - sin_alpha3 * t19;
+        let z4z = cos_alpha3 * z2z - sin_alpha3 * t20;
+        let t24 = d4 * z4x;
+        let t25 = d4 * z4y;
+        let t26 = d4 * z4z;
+        let t27 = t15 * c4o + t21 * s4o;
+        let t28 = t16 * c4o + t22 * s4o;
+        let t29 = t17 * c4o + t23 * s4o;
+        let t30 = t21 * c4o;
+        let t31 = t22 * c4o;
+        let t32 = t23 * c4o;
+        let t33 = t15 * s4o;
+        let t34 = t16 * s4o;
+        let t35 = t17 * s4o;
+        let t36 = t30 - t33;
+        let t37 = t31 - t34;
+        let t38 = t32 - t35;
+        let z5x = t33 - t30;
+        let z5y = t34 - t31;
+        let z5z = t35 - t32;
+        let t39 = d5 * z5x;
+        let t40 = d5 * z5y;
+        let t41 = d5 * z5z;
+        let t42 = base_x + t1 + t8 + t12 + t24 + t39;
+        let t43 = base_y + t2 + t9 + t13 + t25 + t40;
+        let t44 = base_z + t3 + t10 + t14 + t26 + t41;
+        let t45 = t27 * c5 + z4x * s5;
+        let t46 = t28 * c5 + z4y * s5;
+        let t47 = t29 * c5 + z4z * s5;
+        let z6x = z4x * c5 - t27 * s5;
+        let z6y = z4y * c5 - t28 * s5;
+        let z6z = z4z * c5 - t29 * s5;
+        let t48 = d6 * z6x;
+        let t49 = d6 * z6y;
+        let t50 = d6 * z6z;
+        let t51 = tool_y * s6 - tool_x * c6;
+        let t52 = tool_x * s6 + tool_y * c6;
+        let t53 = t45 * t51 - t36 * t52 + tool_z * z6x;
+        let t54 = t46 * t51 - t37 * t52 + tool_z * z6y;
+        let t55 = t47 * t51 - t38 * t52 + tool_z * z6z;
+        let p_x = t42 + t48 + t53;
+        let p_y = t43 + t49 + t54;
+        let p_z = t44 + t50 + t55;
+        let t56 = t45 * c6o + t36 * s6o;
+        let t57 = t46 * c6o + t37 * s6o;
+        let t58 = t47 * c6o + t38 * s6o;
+        let y_x = cos_tool_pitch * z6x + sin_tool_pitch * t56;
+        let y_y = cos_tool_pitch * z6y + sin_tool_pitch * t57;
+        let y_z = cos_tool_pitch * z6z + sin_tool_pitch * t58;
+        let x_x = cos_tool_pitch * t56 - sin_tool_pitch * z6x;
+        let x_y = cos_tool_pitch * t57 - sin_tool_pitch * z6y;
+        let x_z = cos_tool_pitch * t58 - sin_tool_pitch * z6z;
+        let z_x = t45 * s6o - t36 * c6o;
+        let z_y = t46 * s6o - t37 * c6o;
+        let z_z = t47 * s6o - t38 * c6o;
+        let r6x = t48 + t53;
+        let r6y = t49 + t54;
+        let r6z = t50 + t55;
+        let r5x = t39 + r6x;
+        let r5y = t40 + r6y;
+        let r5z = t41 + r6z;
+        let r4x = t24 + r5x;
+        let r4y = t25 + r5y;
+        let r4z = t26 + r5z;
+        let r3x = t12 + r4x;
+        let r3y = t13 + r4y;
+        let r3z = t14 + r4z;
+        let r2x = t8 + r3x;
+        let r2y = t9 + r3y;
+        let r2z = t10 + r3z;
+        let r1x = t1 + r2x;
+        let r1y = t2 + r2y;
+        let r1z = t3 + r2z;
+        let j1x = k11 * r1z - k9 * r1y;
+        let j1y = k9 * r1x - k10 * r1z;
+        let j1z = k10 * r1y - k11 * r1x;
+        let j2x = z2y * r2z - z2z * r2y;
+        let j2y = z2z * r2x - z2x * r2z;
+        let j2z = z2x * r2y - z2y * r2x;
+        let j3x = z2y * r3z - z2z * r3y;
+        let j3y = z2z * r3x - z2x * r3z;
+        let j3z = z2x * r3y - z2y * r3x;
+        let j4x = z4y * r4z - z4z * r4y;
+        let j4y = z4z * r4x - z4x * r4z;
+        let j4z = z4x * r4y - z4y * r4x;
+        let j5x = z5y * r5z - z5z * r5y;
+        let j5y = z5z * r5x - z5x * r5z;
+        let j5z = z5x * r5y - z5y * r5x;
+        let j6x = z6y * r6z - z6z * r6y;
+        let j6y = z6z * r6x - z6x * r6z;
+        let j6z = z6x * r6y - z6y * r6x;
+
+        // From joint 6 to the TCP.
+        let t59 = k30 * c6o;
+        let r5x_2 = t59 - k31 * s6o;
+        let t60 = k30 * s6o;
+        let t61 = t60 + k31 * c6o;
+        let t62 = k46 * s6o + k47 * c6o;
+        let t63 = s6o * t62;
+        let tt5_zz = k42 + t63;
+        let t64 = k44 * s6o + k45 * c6o;
+        let tr5_yx = k33 * c6o - k34 * s6o;
+        let t65 = k35 * c6o - t60;
+        let t66 = t59 + k35 * s6o;
+        let r5z_2 = d5 - t61;
+
+        // From joint 5 to the TCP.
+        let t67 = k48 * r5x_2;
+        let r4y_2 = t61 - d5;
+        let t68 = k36 * c6o - k37 * s6o + k49 * r5x_2;
+        let tt5_yy = k38 + r5x_2 * t67;
+        let tr5_yz = t67 - (k33 * s6o + k34 * c6o);
+        let t69 = k53 * t65;
+        let t70 = coupling5_6 * t65;
+        let tr5_yy = coupling5_6 * r5x_2;
+        let t71 = coupling5_6 * t66;
+        let tt5_xx = k40 - t63 + k50 + (t69 + t69);
+        let tt5_xy = t68 + r5x_2 * t70;
+        let tt5_xz = k41 - c6o * t62 - k53 * t66;
+        let t72 = k36 * s6o + k37 * c6o + t66 * tr5_yy;
+        let tr5_xy = k44 * c6o - k45 * s6o + k53;
+        let tr5_xz = k52 + t70;
+        let r4x_2 = c5 * r5x_2 - k39 * s5;
+        let t73 = s5 * (tt5_xx - tt5_yy) + c5 * (tt5_xy + tt5_xy);
+        let t74 = s5 * t73;
+        let tt4_xz = c5 * t73 - tt5_xy;
+        let tt4_zz = tt5_yy + t74;
+        let t75 = k54 * s5;
+        let t76 = s5 * t75;
+        let rr4_xz = c5 * t75;
+        let rr4_xx = tool_rotation - t76;
+        let rr4_xy = coupling5_6 * s5;
+        let t77 = coupling5_6 * c5;
+        let t78 = c5 * (tr5_yx + tr5_xy) - s5 * tr5_yy;
+        let t79 = s5 * t78;
+        let t80 = c5 * t78;
+        let tr4_zx = t80 - tr5_xy;
+        let tr4_zz = tr5_yy + t79;
+        let t81 = s5 * tr5_xz + c5 * tr5_yz;
+        let t82 = k32 * c5 + s5 * t64;
+        let tt4_yz = c5 * t72 - s5 * tt5_xz;
+        let tr4_xy = s5 * tr5_yz - c5 * tr5_xz;
+        let r4z_2 = d4 + (s5 * r5x_2 + k39 * c5);
+
+        // From joint 4 to the TCP.
+        let t83 = h4 * r4y_2;
+        let t84 = h4 * r4x_2;
+        let tt4_xx = tt5_xx - t74 - r5z_2 * t83;
+        let t85 = c5 * tt5_xz + s5 * t72 + r4x_2 * t83;
+        let tt4_yy = tt5_zz + r4x_2 * t84;
+        let rr4_zz = h4 + (k43 + t76);
+        let tr4_xz = t80 - tr5_yx - t83;
+        let tr4_yz = c5 * t64 - k32 * s5 + t84;
+        let t86 = s4o * r4x_2 + c4o * r4y_2;
+        let t87 = s4o * (tt4_xx - tt4_yy) - c4o * (t85 + t85);
+        let t88 = s4o * t87;
+        let t89 = t85 + c4o * t87;
+        let t90 = tt4_yy + t88;
+        let t91 = c4o * tt4_xz - s4o * tt4_yz;
+        let t92 = s4o * tt4_xz + c4o * tt4_yz;
+        let t93 = s4o * (rr4_xx - k51) + c4o * (rr4_xy + rr4_xy);
+        let t94 = s4o * t93;
+        let t95 = c4o * t93 - rr4_xy;
+        let t96 = k51 + t94;
+        let t97 = c4o * rr4_xz + s4o * t77;
+        let t98 = s4o * rr4_xz - c4o * t77;
+        let t99 = s4o * (t71 - t79) + c4o * (tr4_xy - t82);
+        let t100 = s4o * t99;
+        let t101 = c4o * t99;
+        let t102 = t82 + t101;
+        let t103 = t101 - tr4_xy;
+        let t104 = t100 - t71;
+        let t105 = c4o * tr4_xz - s4o * tr4_yz;
+        let t106 = s4o * tr4_xz + c4o * tr4_yz;
+        let t107 = c4o * tr4_zx + s4o * t81;
+        let t108 = s4o * tr4_zx - c4o * t81;
+        let t109 = cos_alpha3 * t86;
+        let t110 = sin_alpha3 * r4z_2;
+        let r3y_2 = t109 - t110;
+        let t111 = sin_alpha3 * (t90 - tt4_zz) + cos_alpha3 * (t92 + t92);
+        let t112 = sin_alpha3 * t111;
+        let t113 = sin_alpha3 * (t96 - rr4_zz) + cos_alpha3 * (t98 + t98);
+        let t114 = sin_alpha3 * t113;
+        let rr3_yz = cos_alpha3 * t113 - t98;
+        let rr3_xy = cos_alpha3 * t95 - sin_alpha3 * t97;
+        let t115 = sin_alpha3 * (t104 - tr4_zz) + cos_alpha3 * (t106 + t108);
+        let t116 = sin_alpha3 * t115;
+        let t117 = cos_alpha3 * t115;
+        let tr3_yy = t104 - t116;
+        let r3x_2 = a3 + (c4o * r4x_2 - s4o * r4y_2);
+        let r3z_2 = d3 + (sin_alpha3 * t86 + cos_alpha3 * r4z_2);
+        let t118 = r3x_2 - k62;
+        let t119 = r3z_2 - k63;
+        let t120 = k56 * r3y_2;
+        let t121 = k56 * t118 - k55 * t119;
+        let t122 = k55 * r3y_2;
+        let t123 = bending3 * t119;
+        let t124 = bending3 * t118;
+        let t125 = k57 * r3y_2;
+        let t126 = k57 * t118 - k56 * t119;
+        let t127 = k63 - r3z_2;
+        let t128 = k62 - r3x_2;
+        let t129 = t110 - t109;
+        let t130 = t120 * t127 + t118 * t125;
+        let t131 = k59 + (t119 * t123 - t125 * t129);
+        let t132 = k60 + (t123 * t128 - r3y_2 * t120);
+        let t133 = k58 + (t121 * t127 + t118 * t126);
+        let t134 = k61 + (r3y_2 * t122 - t124 * t128);
+        let t135 = cos_alpha3 * t89 - sin_alpha3 * t91 - t130;
+        let t136 = sin_alpha3 * t89 + cos_alpha3 * t91 + t132;
+        let t137 = cos_alpha3 * t111 - t92 + r3y_2 * t121;
+        let rr3_xz = sin_alpha3 * t95 + cos_alpha3 * t97 + k56;
+        let tr3_zz = tr4_zz + t116 + t120;
+
+        // From joint 3 to the TCP.
+        let t138 = transverse3 * r3z_2;
+        let t139 = transverse3 * r3y_2;
+        let t140 = transverse3 * r3x_2;
+        let t141 = h3 * r3y_2;
+        let t142 = h3 * r3x_2;
+        let t143 = r3z_2 * t138;
+        let t144 = r3y_2 * t139 + r3x_2 * t140;
+        let tt3_xx = tt4_xx - t88 + t131 + (t143 - t129 * t141);
+        let tt3_xy = t135 - r3x_2 * t141;
+        let tt3_xz = t136 - r3x_2 * t138;
+        let tt3_yy = t90 - t112 + t133 + (t143 + r3x_2 * t142);
+        let tt3_yz = t137 - r3y_2 * t138;
+        let tt3_zz = tt4_zz + t112 + t134 + t144;
+        let rr3_xx = transverse3 + (rr4_xx - t94 + k55);
+        let rr3_yy = transverse3 + (bending3 + (t96 - t114));
+        let rr3_zz = h3 + (rr4_zz + t114 + k57);
+        let tr3_xy = cos_alpha3 * t102 - sin_alpha3 * t105 + t123 + t138;
+        let tr3_xz = sin_alpha3 * t102 + cos_alpha3 * t105 - t125 - t141;
+        let tr3_yx = cos_alpha3 * t103 - sin_alpha3 * t107 + t121 - t138;
+        let tr3_yz = t117 - t108 + t126 + t142;
+        let tr3_zx = sin_alpha3 * t103 + cos_alpha3 * t107 + t122 + t139;
+        let tr3_zy = t117 - t106 - t124 - t140;
+        let t145 = a2 * c3;
+        let t146 = a2 * s3;
+        let r2x_2 = r3x_2 + t145;
+        let r2y_2 = r3y_2 - t146;
+        let t147 = k64 * c3;
+        let t148 = k65 * c3;
+        let t149 = bending2 + t145 * t147;
+        let t150 = t146 * t147;
+        let t151 = bending2 + t146 * (k64 * s3);
+        let t152 = k67 * c3;
+        let t153 = r2x_2 - t152;
+        let t154 = r2y_2 + k67 * s3;
+        let t155 = r3z_2 * t150;
+        let t156 = r3z_2 * t149;
+        let t157 = t149 * t154 + t150 * t153;
+        let t158 = r3z_2 * t151;
+        let t159 = t150 * t154 + t151 * t153;
+        let t160 = bending2 * t154;
+        let t161 = bending2 * t153;
+        let t162 = t152 - r2x_2;
+        let t163 = r3z_2 * t158 + t154 * t160;
+        let t164 = r3z_2 * t156 + t153 * t161;
+        let t165 = t146 * t148 + (r3z_2 * t155 - t153 * t160);
+        let t166 = tt3_xx + (k66 - t145 * t148 + t163);
+        let tt2_xz = tt3_xz + (t158 * t162 - t154 * t155);
+        let t167 = tt3_yy + (k66 - t146 * (k65 * s3) + t164);
+        let tt2_yz = tt3_yz + (t155 * t162 - t154 * t156);
+        let tt2_zz = tt3_zz + (k66 + (t154 * t157 - t159 * t162));
+        let rr2_xx = rr3_xx + t149;
+        let rr2_xy = rr3_xy - t150;
+        let rr2_yy = rr3_yy + t151;
+        let t168 = t79 + t100 + t120 + t155;
+        let tr2_xy = tr3_xy + t158;
+        let tr2_yx = tr3_yx - t156;
+        let tr2_yy = tr3_yy + t155;
+        let tr2_zx = tr3_zx + t157;
+        let tr2_zy = tr3_zy - t159;
+
+        // From joint 2 to the TCP.
+        let t169 = k68 * r2y_2;
+        let t170 = k68 * r2x_2;
+        let t171 = t146 - r3y_2;
+        let t172 = coupling2_3 * t171;
+        let t173 = coupling2_3 * t129;
+        let t174 = t129 * t172 + t171 * t173;
+        let t175 = r3x_2 * t172 + r2x_2 * t173;
+        let t176 = coupling2_3 * r2x_2;
+        let t177 = coupling2_3 * r3x_2;
+        let t178 = r3x_2 * t176 + r2x_2 * t177;
+        let tt2_xx = t166 - t169 * t171 + t174;
+        let tt2_xy = tt3_xy + t165 - r2x_2 * t169 + t175;
+        let tt2_yy = t167 + r2x_2 * t170 + t178;
+        let rr2_zz = bending2 + rr3_zz + k68 + k69;
+        let tr2_xz = tr3_xz - t160 - t169 + (t172 + t173);
+        let tr2_yz = tr3_yz + t161 + t170 + (t176 + t177);
+        let t179 = s23 * (tt2_xy + tt2_xy) - c23 * (tt2_xx - tt2_yy);
+        let t180 = c23 * t179;
+        let t181 = s23 * (rr2_xy + rr2_xy) - c23 * (rr2_xx - rr2_yy);
+        let t182 = c23 * t181;
+        let rr1_xy = s23 * rr3_xz + c23 * rr3_yz;
+        let t183 = c23 * (t168 + tr2_yy) + s23 * (tr2_xy + tr2_yx);
+        let t184 = c23 * t183;
+        let t185 = s23 * t183;
+        let tr1_xx = t184 - t168;
+        let tr1_zz = tr2_yy - t184;
+        let rr1_yz = c23 * rr3_xz - s23 * rr3_yz;
+        let rr1_xz = rr2_xy - s23 * t181;
+        let r1x_2 = a1 + (s23 * r2x_2 + c23 * r2y_2);
+        let r1z_2 = d1 + (c23 * r2x_2 - s23 * r2y_2);
+
+        // From joint 1 to the TCP.
+        let t186 = transverse1 * r1z_2;
+        let t187 = transverse1 * r3z_2;
+        let t188 = transverse1 * r1x_2;
+        let t189 = h1 * r3z_2;
+        let t190 = h1 * r1x_2;
+        let t191 = r1z_2 * t186;
+        let tt1_xx = tt2_xx + t180 + (t191 + r3z_2 * t189);
+        let tt1_xy = s23 * tt2_xz + c23 * tt2_yz - r1x_2 * t189;
+        let tt1_xz = tt2_xy - s23 * t179 - r1x_2 * t186;
+        let tt1_yy = tt2_zz + (t191 + r1x_2 * t190);
+        let tt1_yz = c23 * tt2_xz - s23 * tt2_yz - r3z_2 * t186;
+        let tt1_zz = tt2_yy - t180 + (r3z_2 * t187 + r1x_2 * t188);
+        let rr1_xx = transverse1 + (rr2_xx + t182);
+        let rr1_yy = transverse1 + rr2_zz;
+        let rr1_zz = h1 + (rr2_yy - t182);
+        let tr1_xy = s23 * tr2_xz + c23 * tr2_yz + t186;
+        let tr1_xz = tr2_yx - t185 - t189;
+        let tr1_yx = s23 * tr2_zx + c23 * tr2_zy - t186;
+        let tr1_yz = c23 * tr2_zx - s23 * tr2_zy + t190;
+        let tr1_zx = tr2_xy - t185 + t187;
+        let tr1_zy = c23 * tr2_xz - s23 * tr2_yz - t188;
+        let t192 = base_tilt * r1z_2;
+        let t193 = base_tilt * r3z_2;
+        let t194 = base_tilt * r1x_2;
+        let t195 = base_translation + r1z_2 * t192;
+        let t196 = tt1_xx + t195;
+        let t197 = tt1_xz - r1x_2 * t192;
+        let t198 = tt1_yy + t195;
+        let t199 = tt1_yz - r3z_2 * t192;
+        let t200 = tt1_zz + (base_translation + (r3z_2 * t193 + r1x_2 * t194));
+        let t201 = base_tilt + rr1_xx;
+        let t202 = base_tilt + rr1_yy;
+        let t203 = tr1_xy + t192;
+        let t204 = tr1_yx - t192;
+        let t205 = tr1_zx + t193;
+        let t206 = tr1_zy - t194;
+        let t207 = s1o * (t196 - t198) + c1o * (tt1_xy + tt1_xy);
+        let t208 = s1o * t207;
+        let t209 = t196 - t208;
+        let t210 = c1o * t207 - tt1_xy;
+        let t211 = t198 + t208;
+        let t212 = c1o * t197 - s1o * t199;
+        let t213 = s1o * t197 + c1o * t199;
+        let t214 = s1o * (t201 - t202) + c1o * (rr1_xy + rr1_xy);
+        let t215 = s1o * t214;
+        let t216 = t201 - t215;
+        let t217 = c1o * t214 - rr1_xy;
+        let t218 = t202 + t215;
+        let t219 = c1o * rr1_xz - s1o * rr1_yz;
+        let t220 = s1o * rr1_xz + c1o * rr1_yz;
+        let t221 = s1o * (tr1_xx - tr3_zz) + c1o * (t203 + t204);
+        let t222 = s1o * t221;
+        let t223 = c1o * t221;
+        let t224 = tr1_xx - t222;
+        let t225 = t223 - t204;
+        let t226 = t223 - t203;
+        let t227 = tr3_zz + t222;
+        let t228 = c1o * tr1_xz - s1o * tr1_yz;
+        let t229 = s1o * tr1_xz + c1o * tr1_yz;
+        let t230 = c1o * t205 - s1o * t206;
+        let t231 = s1o * t205 + c1o * t206;
+        let t232 = sin_base_roll * (t211 - t200) + cos_base_roll * (t213 + t213);
+        let t233 = sin_base_roll * t232;
+        let t234 = t211 - t233;
+        let t235 = cos_base_roll * t232 - t213;
+        let t236 = t200 + t233;
+        let t237 = cos_base_roll * t210 - sin_base_roll * t212;
+        let t238 = sin_base_roll * t210 + cos_base_roll * t212;
+        let t239 = sin_base_roll * (t218 - rr1_zz) + cos_base_roll * (t220 + t220);
+        let t240 = sin_base_roll * t239;
+        let t241 = t218 - t240;
+        let t242 = cos_base_roll * t239 - t220;
+        let t243 = rr1_zz + t240;
+        let t244 = cos_base_roll * t217 - sin_base_roll * t219;
+        let t245 = sin_base_roll * t217 + cos_base_roll * t219;
+        let t246 = sin_base_roll * (t227 - tr1_zz) + cos_base_roll * (t229 + t231);
+        let t247 = sin_base_roll * t246;
+        let t248 = cos_base_roll * t246;
+        let t249 = t227 - t247;
+        let t250 = t248 - t231;
+        let t251 = t248 - t229;
+        let t252 = tr1_zz + t247;
+        let t253 = cos_base_roll * t226 - sin_base_roll * t230;
+        let t254 = sin_base_roll * t226 + cos_base_roll * t230;
+        let t255 = cos_base_roll * t225 - sin_base_roll * t228;
+        let t256 = sin_base_roll * t225 + cos_base_roll * t228;
+        let t257 = sin_base_pitch * (t236 - t209) + cos_base_pitch * (t238 + t238);
+        let t258 = sin_base_pitch * t257;
+        let tt_zz = t236 - t258;
+        let t259 = cos_base_pitch * t257 - t238;
+        let t260 = t209 + t258;
+        let t261 = cos_base_pitch * t235 - sin_base_pitch * t237;
+        let t262 = sin_base_pitch * t235 + cos_base_pitch * t237;
+        let t263 = sin_base_pitch * (t243 - t216) + cos_base_pitch * (t245 + t245);
+        let t264 = sin_base_pitch * t263;
+        let rr_zz = t243 - t264;
+        let t265 = cos_base_pitch * t263 - t245;
+        let t266 = t216 + t264;
+        let t267 = cos_base_pitch * t242 - sin_base_pitch * t244;
+        let t268 = sin_base_pitch * t242 + cos_base_pitch * t244;
+        let t269 = sin_base_pitch * (t252 - t224) + cos_base_pitch * (t254 + t256);
+        let t270 = sin_base_pitch * t269;
+        let t271 = cos_base_pitch * t269;
+        let tr_zz = t252 - t270;
+        let t272 = t271 - t256;
+        let t273 = t271 - t254;
+        let t274 = t224 + t270;
+        let t275 = cos_base_pitch * t251 - sin_base_pitch * t255;
+        let t276 = sin_base_pitch * t251 + cos_base_pitch * t255;
+        let t277 = cos_base_pitch * t250 - sin_base_pitch * t253;
+        let t278 = sin_base_pitch * t250 + cos_base_pitch * t253;
+        let t279 = k1 * (t260 - t234) + k2 * (t262 + t262);
+        let t280 = k1 * t279;
+        let tt_xx = t260 - t280;
+        let tt_xy = k2 * t279 - t262;
+        let tt_yy = t234 + t280;
+        let tt_xz = k2 * t259 - k1 * t261;
+        let tt_yz = k1 * t259 + k2 * t261;
+        let t281 = k1 * (t266 - t241) + k2 * (t268 + t268);
+        let t282 = k1 * t281;
+        let rr_xx = t266 - t282;
+        let rr_xy = k2 * t281 - t268;
+        let rr_yy = t241 + t282;
+        let rr_xz = k2 * t265 - k1 * t267;
+        let rr_yz = k1 * t265 + k2 * t267;
+        let t283 = k1 * (t274 - t249) + k2 * (t276 + t278);
+        let t284 = k1 * t283;
+        let t285 = k2 * t283;
+        let tr_xx = t274 - t284;
+        let tr_xy = t285 - t278;
+        let tr_yx = t285 - t276;
+        let tr_yy = t249 + t284;
+        let tr_xz = k2 * t273 - k1 * t277;
+        let tr_yz = k1 * t273 + k2 * t277;
+        let tr_zx = k2 * t272 - k1 * t275;
+        let tr_zy = k1 * t272 + k2 * t275;
+        Statics {
+            transform: Matrix4::new(
+                x_x, y_x, z_x, p_x,
+                x_y, y_y, z_y, p_y,
+                x_z, y_z, z_z, p_z,
+                T::zero(), T::zero(), T::zero(), T::one(),
+            ),
+            jacobian: SMatrix::from([
+                [j1x, j1y, j1z, k10, k11, k9],
+                [j2x, j2y, j2z, z2x, z2y, z2z],
+                [j3x, j3y, j3z, z2x, z2y, z2z],
+                [j4x, j4y, j4z, z4x, z4y, z4z],
+                [j5x, j5y, j5z, z5x, z5y, z5z],
+                [j6x, j6y, j6z, z6x, z6y, z6z],
+            ]),
+            compliance: Matrix6::new(
+                tt_xx, tt_xy, tt_xz, tr_xx, tr_xy, tr_xz,
+                tt_xy, tt_yy, tt_yz, tr_yx, tr_yy, tr_yz,
+                tt_xz, tt_yz, tt_zz, tr_zx, tr_zy, tr_zz,
+                tr_xx, tr_yx, tr_zx, rr_xx, rr_xy, rr_xz,
+                tr_xy, tr_yy, tr_zy, rr_xy, rr_yy, rr_yz,
+                tr_xz, tr_yz, tr_zz, rr_xz, rr_yz, rr_zz,
+            ),
+        }
     }
 }

@@ -16,9 +16,10 @@
 //   compliance     12 trig, 150 mul, 131 add
 //   deflection     12 trig, 144 mul, 94 add
 //   joint_torques  12 trig, 108 mul, 69 add
+//   statics        14 trig, 238 mul, 191 add, 10 neg
 
 use robstiff::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
-use robstiff::{Convention, Effect, JointKind, Real, Robot};
+use robstiff::{Convention, Effect, JointKind, Real, Robot, Statics};
 
 /// FANUC R-2000iC with a drilling spindle
 ///
@@ -30,7 +31,7 @@ use robstiff::{Convention, Effect, JointKind, Real, Robot};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FanucR2000ic;
 
-#[allow(clippy::approx_constant)]
+#[allow(clippy::approx_constant, dead_code)]
 impl FanucR2000ic {
     /// DH offset d of row 1 (m).
     pub const D1: f64 = 0.67;
@@ -62,9 +63,65 @@ impl FanucR2000ic {
     pub const H5: f64 = 2.4752475247524753e-6;
     /// Compliance of joint 6 (rad/Nm).
     pub const H6: f64 = 1.2562814070351759e-5;
+    /// Operations of `transform`.
+    pub const TRANSFORM_COST: robstiff::Cost = robstiff::Cost {
+        trig: 12,
+        mul: 66,
+        add: 40,
+        neg: 3,
+        root: 0,
+    };
+    /// Operations of `link_frames`.
+    pub const LINK_FRAMES_COST: robstiff::Cost = robstiff::Cost {
+        trig: 12,
+        mul: 57,
+        add: 30,
+        neg: 8,
+        root: 0,
+    };
+    /// Operations of `jacobian`.
+    pub const JACOBIAN_COST: robstiff::Cost = robstiff::Cost {
+        trig: 12,
+        mul: 80,
+        add: 45,
+        neg: 8,
+        root: 0,
+    };
+    /// Operations of `compliance`.
+    pub const COMPLIANCE_COST: robstiff::Cost = robstiff::Cost {
+        trig: 12,
+        mul: 150,
+        add: 131,
+        neg: 0,
+        root: 0,
+    };
+    /// Operations of `deflection`.
+    pub const DEFLECTION_COST: robstiff::Cost = robstiff::Cost {
+        trig: 12,
+        mul: 144,
+        add: 94,
+        neg: 0,
+        root: 0,
+    };
+    /// Operations of `joint_torques`.
+    pub const JOINT_TORQUES_COST: robstiff::Cost = robstiff::Cost {
+        trig: 12,
+        mul: 108,
+        add: 69,
+        neg: 0,
+        root: 0,
+    };
+    /// Operations of `statics`.
+    pub const STATICS_COST: robstiff::Cost = robstiff::Cost {
+        trig: 14,
+        mul: 238,
+        add: 191,
+        neg: 10,
+        root: 0,
+    };
 }
 
-#[allow(clippy::approx_constant)]
+#[allow(clippy::approx_constant, dead_code)]
 impl Robot<6> for FanucR2000ic {
     #[inline]
     fn name(&self) -> &str {
@@ -773,5 +830,288 @@ impl Robot<6> for FanucR2000ic {
         let t22 = mx * z6x + my * z6y - mz * t9;
         let tau6 = fx * j6x - t21 + fz * j6z + t22;
         SVector::from([tau1, tau2, tau3, tau4, tau5, tau6])
+    }
+
+    /// Transform, Jacobian and compliance of one pose, with what they have in common.
+    ///
+    /// 14 trig, 238 mul, 191 add, 10 neg.
+    #[inline(always)]
+    fn statics<T: Real>(&self, q: &SVector<T, 6>) -> Statics<6, T> {
+        let d1 = T::of(Self::D1);
+        let a2 = T::of(Self::A2);
+        let a3 = T::of(Self::A3);
+        let d4 = T::of(Self::D4);
+        let a4 = T::of(Self::A4);
+        let d6 = T::of(Self::D6);
+        let tool_x = T::of(Self::TOOL_X);
+        let tool_y = T::of(Self::TOOL_Y);
+        let tool_z = T::of(Self::TOOL_Z);
+        let h1 = T::of(Self::H1);
+        let h2 = T::of(Self::H2);
+        let h3 = T::of(Self::H3);
+        let h4 = T::of(Self::H4);
+        let h5 = T::of(Self::H5);
+        let h6 = T::of(Self::H6);
+        let k1 = T::of(-(Self::TOOL_Y * Self::H6));
+        let tool_x_h6 = T::of(Self::TOOL_X * Self::H6);
+        let k2 = T::of(-Self::TOOL_Y * -(Self::TOOL_Y * Self::H6));
+        let k3 = T::of(Self::TOOL_X * -(Self::TOOL_Y * Self::H6));
+        let tool_x_tool_x_h6 = T::of(Self::TOOL_X * (Self::TOOL_X * Self::H6));
+        let k4 = T::of(Self::D6 + Self::TOOL_Z);
+        let k5 = T::of(
+            -Self::TOOL_Y * -(Self::TOOL_Y * Self::H6)
+                - Self::TOOL_X * (Self::TOOL_X * Self::H6),
+        );
+        let k6 = T::of(
+            Self::TOOL_X * -(Self::TOOL_Y * Self::H6)
+                + Self::TOOL_X * -(Self::TOOL_Y * Self::H6),
+        );
+        let k7 = T::of(-(Self::H5 * (Self::D6 + Self::TOOL_Z)));
+        let k8 = T::of(
+            -(Self::D6 + Self::TOOL_Z) * -(Self::H5 * (Self::D6 + Self::TOOL_Z)),
+        );
+        let k9 = T::of(-Self::H6);
+        let [(s1, c1), (s2, c2), (s23, c23), (s4, c4), (s5, c5), (s6, c6), (s3, c3)] = T::sin_cos_all([
+            q[0],
+            q[1],
+            q[1] + q[2],
+            q[3],
+            q[4],
+            q[5],
+            q[2],
+        ]);
+        let t1 = a2 * c1;
+        let t2 = a2 * s1;
+        let t3 = a3 * s2;
+        let t4 = a3 * c2;
+        let t5 = c1 * t3;
+        let t6 = s1 * t3;
+        let t7 = c1 * s23;
+        let t8 = s1 * s23;
+        let z4x = c1 * c23;
+        let z4y = s1 * c23;
+        let t9 = a4 * t7 + d4 * z4x;
+        let t10 = a4 * t8 + d4 * z4y;
+        let t11 = a4 * c23 - d4 * s23;
+        let t12 = c23 * c4;
+        let t13 = t7 * c4 + s1 * s4;
+        let t14 = t8 * c4 - c1 * s4;
+        let t15 = s1 * c4;
+        let t16 = t7 * s4;
+        let z5z = c23 * s4;
+        let t17 = t15 - t16;
+        let z5y = c1 * c4 + t8 * s4;
+        let z5x = t16 - t15;
+        let t18 = t13 * c5 + z4x * s5;
+        let t19 = t14 * c5 + z4y * s5;
+        let t20 = t12 * c5 - s23 * s5;
+        let z_x = z4x * c5 - t13 * s5;
+        let z_y = z4y * c5 - t14 * s5;
+        let t21 = s23 * c5 + t12 * s5;
+        let t22 = d6 * z_x;
+        let t23 = d6 * z_y;
+        let t24 = d6 * t21;
+        let x_x = t18 * c6 + t17 * s6;
+        let x_y = t19 * c6 - z5y * s6;
+        let x_z = t20 * c6 - z5z * s6;
+        let y_x = t17 * c6 - t18 * s6;
+        let r5x = tool_x * c6 - tool_y * s6;
+        let r4y = tool_x * s6 + tool_y * c6;
+        let r6x = t18 * r5x + t17 * r4y + tool_z * z_x;
+        let r6y = t19 * r5x - z5y * r4y + tool_z * z_y;
+        let r6z = t20 * r5x - z5z * r4y - tool_z * t21;
+        let p_x = t1 + t5 + t9 + t22 + r6x;
+        let p_y = t2 + t6 + t10 + t23 + r6y;
+        let p_z = d1 + t4 + t11 - t24 + r6z;
+        let r4x = t22 + r6x;
+        let r4y_2 = t23 + r6y;
+        let r4z = r6z - t24;
+        let r3x = t9 + r4x;
+        let r3y = t10 + r4y_2;
+        let r3z = t11 + r4z;
+        let r2x = t5 + r3x;
+        let r2y = t6 + r3y;
+        let r1z = t4 + r3z;
+        let r1x = t1 + r2x;
+        let r1y = t2 + r2y;
+        let j2x = c1 * r1z;
+        let j2y = s1 * r1z;
+        let j3x = c1 * r3z;
+        let j3y = s1 * r3z;
+        let j4x = z4y * r4z + s23 * r4y_2;
+        let j4z = z4x * r4y_2 - z4y * r4x;
+        let j5x = z5y * r4z - z5z * r4y_2;
+        let j5y = z5z * r4x - z5x * r4z;
+        let j5z = z5x * r4y_2 - z5y * r4x;
+        let j6x = z_y * r6z + t21 * r6y;
+        let j6z = z_x * r6y - z_y * r6x;
+
+        // From joint 6 to the TCP.
+        let t25 = k5 * s6 + k6 * c6;
+        let t26 = s6 * t25;
+        let tt5_zz = tool_x_tool_x_h6 + t26;
+        let tr5_xy = k1 * c6 - tool_x_h6 * s6;
+        let t27 = k1 * s6 + tool_x_h6 * c6;
+        let tt5_xz = k3 - c6 * t25;
+
+        // From joint 5 to the TCP.
+        let tr5_yz = h5 * r5x;
+        let tt5_xy = k7 * r5x;
+        let tt5_yy = r5x * tr5_yz;
+        let tt5_xx = k2 - t26 + k8;
+        let r4x_2 = c5 * r5x - k4 * s5;
+        let r4z_2 = s5 * r5x + k4 * c5;
+        let t28 = s5 * (tt5_xx - tt5_yy) + c5 * (tt5_xy + tt5_xy);
+        let t29 = s5 * t28;
+        let tt4_xz = c5 * t28 - tt5_xy;
+        let tt4_zz = tt5_yy + t29;
+        let t30 = s5 * tt5_xz;
+        let t31 = k9 * s5;
+        let t32 = s5 * t31;
+        let rr4_xz = c5 * t31;
+        let t33 = c5 * tr5_xy;
+        let tr4_zz = s5 * t33;
+        let t34 = c5 * t33;
+        let tr4_zx = t34 - tr5_xy;
+        let t35 = k7 * s5 + c5 * tr5_yz;
+        let t36 = s5 * t27;
+        let tr4_xy = s5 * tr5_yz - k7 * c5;
+
+        // From joint 4 to the TCP.
+        let t37 = h4 * r4y;
+        let t38 = h4 * r4x_2;
+        let tt4_xx = tt5_xx - t29 + r4y * t37;
+        let t39 = c5 * tt5_xz + r4x_2 * t37;
+        let tt4_yy = tt5_zz + r4x_2 * t38;
+        let rr4_zz = h4 + (h6 + t32);
+        let tr4_xz = t34 - t37;
+        let tr4_yz = c5 * t27 + t38;
+        let t40 = r4x_2 + a4 * c4;
+        let t41 = r4y - a4 * s4;
+        let r3y_2 = d4 + r4z_2;
+        let r3x_2 = c4 * t40 - s4 * t41;
+        let t42 = s4 * t40 + c4 * t41;
+        let t43 = s4 * (tt4_xx - tt4_yy) - c4 * (t39 + t39);
+        let t44 = s4 * t43;
+        let t45 = t39 + c4 * t43;
+        let tt3_zz = tt4_yy + t44;
+        let t46 = s4 * (h5 + t32);
+        let t47 = s4 * t46;
+        let rr3_xz = c4 * t46;
+        let rr3_xx = t47 - t32;
+        let rr3_xy = c4 * rr4_xz;
+        let t48 = s4 * rr4_xz;
+        let t49 = c4 * (tr4_xy - t36) - s4 * tr4_zz;
+        let tr3_zz = s4 * t49;
+        let t50 = c4 * t49;
+        let t51 = tr4_zz + tr3_zz;
+        let tr3_xy = c4 * tr4_xz - s4 * tr4_yz;
+        let t52 = s4 * tr4_xz + c4 * tr4_yz;
+        let tr3_yx = c4 * tr4_zx + s4 * t35;
+        let tt3_yz = c4 * t30 - s4 * tt4_xz;
+        let tr3_zx = tr4_xy - t50;
+
+        // From joint 3 to the TCP.
+        let t53 = h3 * r3y_2;
+        let t54 = h3 * r3x_2;
+        let tt3_xx = tt4_xx - t44 + r3y_2 * t53;
+        let tt3_xy = c4 * tt4_xz + s4 * t30 - r3x_2 * t53;
+        let tt3_yy = tt4_zz + r3x_2 * t54;
+        let rr3_zz = h3 + (h5 - t47);
+        let tr3_yz = c4 * t35 - s4 * tr4_zx + t54;
+        let t55 = a3 * s3;
+        let r2x_2 = r3x_2 + a3 * c3;
+        let r2y_2 = r3y_2 - t55;
+
+        // From joint 2 to the TCP.
+        let t56 = h2 * r2y_2;
+        let t57 = h2 * r2x_2;
+        let tt2_xx = tt3_xx - t56 * (t55 - r3y_2);
+        let tt2_xy = tt3_xy - r2x_2 * t56;
+        let tt2_yy = tt3_yy + r2x_2 * t57;
+        let rr2_zz = h2 + rr3_zz;
+        let t58 = t36 + t50 + t53 + t56;
+        let tr2_yz = tr3_yz + t57;
+        let t59 = c23 * (r2y_2 + a2 * c23);
+        let r1x_2 = s23 * (r2x_2 + a2 * s23) + t59;
+        let t60 = s23 * (tt2_xy + tt2_xy) - c23 * (tt2_xx - tt2_yy);
+        let t61 = c23 * t60;
+        let tt1_zz = tt2_yy - t61;
+        let t62 = c23 * t45 + s23 * tt3_yz;
+        let t63 = s23 * (rr3_xy + rr3_xy) - c23 * (rr3_xx - rr4_zz);
+        let t64 = c23 * t63;
+        let rr1_xx = rr3_xx + t64;
+        let rr1_xy = s23 * rr3_xz - c23 * t48;
+        let rr1_yz = c23 * rr3_xz + s23 * t48;
+        let t65 = c23 * (tr4_zz + t51) + s23 * (tr3_xy + tr3_yx);
+        let t66 = c23 * t65;
+        let t67 = s23 * t65;
+        let tr1_xx = t66 - t51;
+        let tr1_zz = tr4_zz - t66;
+        let tr1_xy = c23 * tr2_yz - s23 * t58;
+        let t68 = c23 * t58 + s23 * tr2_yz;
+        let tr1_yx = s23 * tr3_zx - c23 * t52;
+        let tt1_xz = tt2_xy - s23 * t60;
+        let rr1_xz = rr3_xy - s23 * t63;
+        let tr1_zx = tr3_xy - t67;
+
+        // From joint 1 to the TCP.
+        let t69 = h1 * t42;
+        let t70 = h1 * r1x_2;
+        let tt1_xx = tt2_xx + t61 + t42 * t69;
+        let tt1_xy = c23 * tt3_yz - s23 * t45 + r1x_2 * t69;
+        let tt1_yy = tt3_zz + r1x_2 * t70;
+        let rr1_zz = h1 + (rr4_zz - t64);
+        let tr1_xz = tr3_yx - t67 + t69;
+        let tr1_yz = c23 * tr3_zx + s23 * t52 + t70;
+        let t71 = s1 * (tt1_xx - tt1_yy) + c1 * (tt1_xy + tt1_xy);
+        let t72 = s1 * t71;
+        let tt_xx = tt1_xx - t72;
+        let tt_xy = c1 * t71 - tt1_xy;
+        let tt_yy = tt1_yy + t72;
+        let tt_xz = c1 * tt1_xz + s1 * t62;
+        let tt_yz = s1 * tt1_xz - c1 * t62;
+        let t73 = s1 * (rr1_xx - rr2_zz) + c1 * (rr1_xy + rr1_xy);
+        let t74 = s1 * t73;
+        let rr_xx = rr1_xx - t74;
+        let rr_xy = c1 * t73 - rr1_xy;
+        let rr_yy = rr2_zz + t74;
+        let rr_xz = c1 * rr1_xz - s1 * rr1_yz;
+        let rr_yz = s1 * rr1_xz + c1 * rr1_yz;
+        let t75 = s1 * (tr1_xx - tr3_zz) + c1 * (tr1_xy + tr1_yx);
+        let t76 = s1 * t75;
+        let t77 = c1 * t75;
+        let tr_xx = tr1_xx - t76;
+        let tr_xy = t77 - tr1_yx;
+        let tr_yx = t77 - tr1_xy;
+        let tr_yy = tr3_zz + t76;
+        let tr_xz = c1 * tr1_xz - s1 * tr1_yz;
+        let tr_yz = s1 * tr1_xz + c1 * tr1_yz;
+        let tr_zx = c1 * tr1_zx + s1 * t68;
+        let tr_zy = s1 * tr1_zx - c1 * t68;
+        Statics {
+            transform: Matrix4::new(
+                x_x, y_x, z_x, p_x,
+                x_y, -(z5y * c6 + t19 * s6), z_y, p_y,
+                x_z, -(z5z * c6 + t20 * s6), -t21, p_z,
+                T::zero(), T::zero(), T::zero(), T::one(),
+            ),
+            jacobian: SMatrix::from([
+                [-r1y, r1x, T::zero(), T::zero(), T::zero(), T::one()],
+                [j2x, j2y, -(s1 * r2y + c1 * r2x), -s1, c1, T::zero()],
+                [j3x, j3y, -(s1 * r3y + c1 * r3x), -s1, c1, T::zero()],
+                [j4x, -(s23 * r4x + z4x * r4z), j4z, z4x, z4y, -s23],
+                [j5x, j5y, j5z, z5x, z5y, z5z],
+                [j6x, -(t21 * r6x + z_x * r6z), j6z, z_x, z_y, -t21],
+            ]),
+            compliance: Matrix6::new(
+                tt_xx, tt_xy, tt_xz, tr_xx, tr_xy, tr_xz,
+                tt_xy, tt_yy, tt_yz, tr_yx, tr_yy, tr_yz,
+                tt_xz, tt_yz, tt1_zz, tr_zx, tr_zy, tr1_zz,
+                tr_xx, tr_yx, tr_zx, rr_xx, rr_xy, rr_xz,
+                tr_xy, tr_yy, tr_zy, rr_xy, rr_yy, rr_yz,
+                tr_xz, tr_yz, tr1_zz, rr_xz, rr_yz, rr1_zz,
+            ),
+        }
     }
 }

@@ -39,6 +39,8 @@ impl Code {
 
     fn member(&mut self, item: ImplItem) {
         match item {
+            // What a call costs is no number of the calculation.
+            ImplItem::Const(item) if matches!(item.expr, Expr::Struct(_)) => {}
             ImplItem::Const(item) => {
                 let value = Scope { code: self, bound: HashMap::new(), q: &[], wrench: &[] }.value(&item.expr);
                 assert!(self.constants.insert(item.ident.to_string(), value).is_none(), "{} twice", item.ident);
@@ -101,6 +103,7 @@ impl Scope<'_> {
     fn entries(&self, expression: &Expr) -> Vec<f64> {
         match expression {
             Expr::Array(array) => array.elems.iter().flat_map(|entry| self.entries(entry)).collect(),
+            Expr::Struct(fields) => fields.fields.iter().flat_map(|field| self.entries(&field.expr)).collect(),
             Expr::Call(call) => {
                 let arguments = || call.args.iter().flat_map(|argument| self.entries(argument));
                 match path(&call.func).as_str() {
@@ -155,6 +158,8 @@ impl Scope<'_> {
             Expr::MethodCall(call) => {
                 let value = self.value(&call.receiver);
                 match call.method.to_string().as_str() {
+                    // As on a target without the instruction: rounded twice.
+                    "mul_add" => value * self.value(&call.args[0]) + self.value(&call.args[1]),
                     "sqrt" => value.sqrt(),
                     "recip" => value.recip(),
                     other => panic!("a call of {other}"),

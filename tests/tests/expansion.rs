@@ -3,22 +3,13 @@
 //! pinned in `golden.rs`.
 
 use robstiff::{Convention, Effect, JointKind};
-use robstiff_codegen::{Cost, Function, Origin, source, symbolic};
+use robstiff_codegen::{Cost, Function, Origin, functions, source, symbolic, symbolic::ALGORITHMS};
 use robstiff_robots::{Description, Joint, Part, Placement};
 use robstiff_tests::arms::{self, description};
 
-/// Operations of transform, link_frames, jacobian, compliance, deflection and
-/// joint_torques.
-fn costs(robot: &Description) -> [Cost; 6] {
-    [
-        Function::of(|g| symbolic::transform(g, robot)),
-        Function::of(|g| symbolic::link_frames(g, robot)),
-        Function::of(|g| symbolic::jacobian(g, robot)),
-        Function::of(|g| symbolic::compliance(g, robot)),
-        Function::of(|g| symbolic::deflection(g, robot)),
-        Function::of(|g| symbolic::joint_torques(g, robot)),
-    ]
-    .map(|function| function.cost())
+/// The operations of every function.
+fn costs(robot: &Description) -> Vec<Cost> {
+    functions(robot).iter().map(|(_, function)| function.cost()).collect()
 }
 
 fn compliance_cost(robot: &Description) -> Cost {
@@ -185,7 +176,7 @@ fn what_the_result_does_not_depend_on_is_not_computed() {
 fn every_line_is_used() {
     for &file in arms::FILES {
         let text = text(&description(file), file);
-        for name in ["transform", "link_frames", "jacobian", "compliance", "deflection", "joint_torques"] {
+        for (name, _) in ALGORITHMS {
             let method = method(&text, name);
             let words = || method.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
             for line in method.lines().filter_map(|line| line.trim().strip_prefix("let ")) {

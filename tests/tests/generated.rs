@@ -3,7 +3,7 @@
 //! conventions, in random poses, with both scalars.
 
 use nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
-use robstiff::{Generic, Robot};
+use robstiff::{Generic, Robot, Statics};
 use robstiff_robots::catalogue::catalogue;
 use robstiff_tests::arms::{FILES, description};
 use robstiff_tests::for_every_arm;
@@ -44,6 +44,9 @@ fn agrees<const N: usize, R: Robot<N>>(robot: R, file: &str) {
         let sizes = Sizes::of(&description, q.as_slice());
         let (found, expected) = (All::of(&robot, &q, &wrench), All::of(&generic, &q, &wrench));
         found.assert_close(&expected, &sizes, &wrench, DOUBLE);
+        let Statics { transform, jacobian, compliance } = robot.statics(&q);
+        let together = All { transform, jacobian, compliance, ..found };
+        together.assert_close(&expected, &sizes, &wrench, DOUBLE);
     }
 }
 

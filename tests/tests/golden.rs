@@ -8,7 +8,7 @@
 use std::fs;
 use std::path::Path;
 
-use robstiff_codegen::{Function, Origin, source, symbolic, tokens};
+use robstiff_codegen::{Origin, functions, source, tokens};
 use robstiff_robots::{Description, catalogue};
 use robstiff_tests::arms::{self, description};
 
@@ -42,16 +42,8 @@ fn costs_are_as_before() {
     let mut costs = String::new();
     for &file in arms::FILES {
         let robot = description(file);
-        let functions = [
-            ("transform", Function::of(|g| symbolic::transform(g, &robot))),
-            ("link_frames", Function::of(|g| symbolic::link_frames(g, &robot))),
-            ("jacobian", Function::of(|g| symbolic::jacobian(g, &robot))),
-            ("compliance", Function::of(|g| symbolic::compliance(g, &robot))),
-            ("deflection", Function::of(|g| symbolic::deflection(g, &robot))),
-            ("joint_torques", Function::of(|g| symbolic::joint_torques(g, &robot))),
-        ];
         costs += &format!("{file}\n");
-        for (name, function) in functions {
+        for (name, function) in functions(&robot) {
             costs += &format!("  {name:<14}{}\n", function.cost());
         }
     }

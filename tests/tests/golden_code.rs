@@ -52,5 +52,7 @@ fn bits<const N: usize>(robot: &impl Robot<N>, q: &SVector<f64, N>, wrench: &Vec
     all.extend(&robot.compliance(q));
     all.extend(&robot.deflection(q, wrench));
     all.extend(&robot.joint_torques(q, wrench));
+    let statics = robot.statics(q);
+    all.extend(statics.transform.iter().chain(&statics.jacobian).chain(&statics.compliance));
     all.into_iter().map(f64::to_bits).collect()
 }

@@ -5,7 +5,7 @@
 use nalgebra::{Matrix4, Matrix6, SVector, Vector6};
 use proptest::prelude::*;
 use robstiff::{Convention, Effect, Generic, JointKind, Robot, with_robot};
-use robstiff_codegen::{Function, Origin, symbolic, tokens};
+use robstiff_codegen::{Function, Origin, functions, symbolic, tokens};
 use robstiff_robots::{Description, Joint, Part, Placement};
 use robstiff_tests::interpreter::Code;
 use robstiff_tests::judge::{DOUBLE, Sizes, assert_close, blocks};
@@ -103,14 +103,7 @@ fn compare_code(robot: &Description, q: &[f64], wrench: &[f64; 6]) {
     let path = |text: &str| text.parse().expect("a token");
     let origin = Origin { file: "drawn.yaml".into(), runtime: path("robstiff"), visibility: path("pub") };
     let code = Code::of(syn::parse2(tokens(robot, &origin)).expect("generated code is Rust"));
-    for (name, function) in [
-        ("transform", Function::of(|g| symbolic::transform(g, robot))),
-        ("link_frames", Function::of(|g| symbolic::link_frames(g, robot))),
-        ("jacobian", Function::of(|g| symbolic::jacobian(g, robot))),
-        ("compliance", Function::of(|g| symbolic::compliance(g, robot))),
-        ("deflection", Function::of(|g| symbolic::deflection(g, robot))),
-        ("joint_torques", Function::of(|g| symbolic::joint_torques(g, robot))),
-    ] {
+    for (name, function) in functions(robot) {
         assert_eq!(code.call(name, q, wrench), function.evaluate(q, wrench), "{name}");
     }
 }

@@ -3,7 +3,10 @@
 
 use std::fmt;
 
+use robstiff_robots::Description;
+
 use crate::graph::{Graph, Id, Op, Sym};
+use crate::symbolic::ALGORITHMS;
 
 /// The expressions of one function and which of them are its results.
 #[derive(Debug)]
@@ -108,6 +111,11 @@ impl Function {
         }
         self.outputs.iter().map(|&id| values[id]).collect()
     }
+}
+
+/// The functions that are generated for a robot, by the names of the methods.
+pub fn functions(robot: &Description) -> Vec<(&'static str, Function)> {
+    ALGORITHMS.iter().map(|&(name, algorithm)| (name, Function::of(|g| algorithm(g, robot)))).collect()
 }
 
 /// Operations of one evaluation.

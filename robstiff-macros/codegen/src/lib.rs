@@ -22,4 +22,4 @@ pub mod symbolic;
 #[cfg(feature = "text")]
 pub use emit::source;
 pub use emit::{Origin, skeleton, tokens};
-pub use function::{Cost, Function};
+pub use function::{Cost, Function, functions};

@@ -11,7 +11,6 @@ use crate::symbolic;
 /// result is put together.
 pub(super) struct Generated {
     /// The method of the trait.
-    #[cfg_attr(not(feature = "text"), expect(dead_code, reason = "only people read it"))]
     pub name: &'static str,
     /// What it gives, with shape, frame and unit.
     pub doc: &'static str,
@@ -28,7 +27,7 @@ impl Generated {
 }
 
 /// All functions of a robot, in the order of the trait.
-pub(super) fn functions(robot: &Description) -> [Generated; 6] {
+pub(super) fn functions(robot: &Description) -> [Generated; 7] {
     [
         Generated {
             name: "transform",
@@ -74,6 +73,21 @@ pub(super) fn functions(robot: &Description) -> [Generated; 6] {
             doc: "Joint torques (Nm) (forces (N) of sliding joints) that hold a wrench at the tool centre point.",
             function: Function::of(|g| symbolic::joint_torques(g, robot)),
             result: |entries| quote!(SVector::from([#(#entries),*])),
+        },
+        Generated {
+            name: "statics",
+            doc: "Transform, Jacobian and compliance of one pose, with what they have in common.",
+            function: Function::of(|g| symbolic::statics(g, robot)),
+            result: |entries| {
+                let (transform, rest) = entries.split_at(16);
+                let (jacobian, compliance) = rest.split_at(rest.len() - 36);
+                let columns = jacobian.chunks(6).map(|column| quote!([#(#column),*]));
+                quote!(Statics {
+                    transform: Matrix4::new(#(#transform),*),
+                    jacobian: SMatrix::from([#(#columns),*]),
+                    compliance: Matrix6::new(#(#compliance),*),
+                })
+            },
         },
     ]
 }

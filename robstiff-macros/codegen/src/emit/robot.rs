@@ -8,7 +8,7 @@ use syn::Ident;
 use super::body::{Body, Reader, body};
 use super::facts::{facts, number};
 use super::functions::{Generated, functions};
-use crate::function::Function;
+use crate::function::{Cost, Function};
 use crate::graph::{Op, Parameter};
 
 /// Where generated code comes from and where it will stand.
@@ -90,7 +90,7 @@ enum Kind {
 type Signature = fn(&TokenStream) -> TokenStream;
 
 /// The methods of `Robot` in its order.
-fn signatures() -> [(Signature, Kind); 14] {
+fn signatures() -> [(Signature, Kind); 15] {
     use Kind::{Calculation, Fact};
     [
         (|_| quote!(fn name(&self) -> &str), Fact),
@@ -110,6 +110,7 @@ fn signatures() -> [(Signature, Kind); 14] {
             |n| quote!(fn joint_torques<T: Real>(&self, q: &SVector<T, #n>, wrench: &Vector6<T>) -> SVector<T, #n>),
             Calculation,
         ),
+        (|n| quote!(fn statics<T: Real>(&self, q: &SVector<T, #n>) -> Statics<#n, T>), Calculation),
     ]
 }
 
@@ -117,7 +118,7 @@ fn signatures() -> [(Signature, Kind); 14] {
 pub(super) fn imports(runtime: &TokenStream) -> TokenStream {
     quote! {
         use #runtime::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
-        use #runtime::{Convention, Effect, JointKind, Real, Robot};
+        use #runtime::{Convention, Effect, JointKind, Real, Robot, Statics};
     }
 }
 
@@ -150,6 +151,18 @@ pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Gene
             pub const #name: f64 = #value;
         }
     });
+    let runtime = &origin.runtime;
+    let costs = functions.iter().map(|generated| {
+        let name = format_ident!("{}_COST", generated.name.to_uppercase());
+        let doc = format!(" Operations of `{}`.", generated.name);
+        let Cost { trig, mul, add, neg, root } = generated.function.cost();
+        let [trig, mul, add, neg, root] = [trig, mul, add, neg, root].map(Literal::usize_unsuffixed);
+        quote! {
+            #[doc = #doc]
+            pub const #name: #runtime::Cost =
+                #runtime::Cost { trig: #trig, mul: #mul, add: #add, neg: #neg, root: #root };
+        }
+    });
     let silence = lints();
     quote! {
         #(#[doc = #docs])*
@@ -159,6 +172,7 @@ pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Gene
         #silence
         impl #name {
             #(#constants)*
+            #(#costs)*
         }
     }
 }
@@ -209,9 +223,9 @@ pub(super) fn implementation(robot: &Description, functions: &[Generated], reade
     }
 }
 
-/// A limit of 180 degrees is no misspelt pi.
+/// A limit of 180 degrees is no misspelt pi, and nobody needs every constant.
 fn lints() -> TokenStream {
-    quote!(#[allow(clippy::approx_constant)])
+    quote!(#[allow(clippy::approx_constant, dead_code)])
 }
 
 /// Whether a function does not read its joint coordinates, or takes a wrench

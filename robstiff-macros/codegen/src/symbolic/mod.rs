@@ -18,3 +18,27 @@ pub use compliance::compliance;
 pub use elastic::Elastic;
 pub use forward::{Forward, forward};
 pub use kinematics::{deflection, jacobian, joint_torques, link_frames, transform};
+
+use robstiff_robots::Description;
+
+use crate::graph::{Graph, Sym};
+
+/// Transform (16 entries), Jacobian (6 a joint) and compliance (36), which share
+/// what they have in common by being in one graph.
+pub fn statics<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
+    [transform(g, robot), jacobian(g, robot), compliance(g, robot)].concat()
+}
+
+/// How the entries of a result are calculated.
+pub type Algorithm = for<'g> fn(&'g Graph, &Description) -> Vec<Sym<'g>>;
+
+/// What is generated for every robot, by the names of the methods.
+pub const ALGORITHMS: [(&str, Algorithm); 7] = [
+    ("transform", transform),
+    ("link_frames", link_frames),
+    ("jacobian", jacobian),
+    ("compliance", compliance),
+    ("deflection", deflection),
+    ("joint_torques", joint_torques),
+    ("statics", statics),
+];
