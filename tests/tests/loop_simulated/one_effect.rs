@@ -2,7 +2,7 @@
 //!
 //! Sizes: the typical ones where these leave twice the noise of a reading once
 //! the joints have been identified again (the tilt of joints 2 and 3 leaves
-//! three to ten times), and larger where the joints take most of it: a typical
+//! three to fourteen times), and larger where the joints take most of it: a typical
 //! coupling leaves 1.3 times the noise, a typical tool 0.3 to 0.6 times, and the
 //! six-axis arm takes that for its own. Each test asserts what its effect
 //! leaves.

@@ -1,5 +1,5 @@
 //! Other plans of a campaign: noise that is stated, rotations measured, poses
-//! held out.
+//! held out, large loads.
 
 use robstiff::Effect;
 use robstiff::identify::NoiseSource;
@@ -58,11 +58,21 @@ fn noise_that_is_stated_too_small_is_noticed() {
     });
 }
 
-/// A reading less for each row, each with an unloaded one of its own.
+/// One load a visit, and an unloaded reading for each row.
 #[test]
 fn rows_without_a_shared_reading() {
     let own = |scenario| Scenario { ramp: vec![1.0], visits: 5, shares_unloaded: false, ..scenario };
     assert_most("rows of their own", 9, &campaigns(&[TILT], own, ""), |_, trace| is_found(trace));
+}
+
+/// A good tracker sees that large loads act on the arm as they have bent it,
+/// which is no effect that is missing.
+#[test]
+fn what_a_bent_arm_does_is_not_missing() {
+    let precise = |scenario| Scenario { noise: 2e-6, force: [1500.0, 2500.0], ..scenario };
+    assert_most("large loads, little noise", 9, &campaigns(&[], precise, ""), |_, trace| {
+        trace.verdict == Verdict::Adequate
+    });
 }
 
 /// Moments and rotations make all joints of the wrist visible; without them the
