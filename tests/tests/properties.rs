@@ -19,8 +19,11 @@ fn angle() -> impl Strategy<Value = f64> {
     ]
 }
 
+/// None, a whole metre, or anything from a centimetre: the direction of a
+/// shorter link, as a difference of two positions a metre away, has lost more
+/// than the digits that are compared.
 fn length() -> impl Strategy<Value = f64> {
-    prop_oneof![2 => Just(0.0), 1 => Just(1.0), 3 => -1.5..1.5_f64]
+    prop_oneof![2 => Just(0.0), 1 => Just(1.0), 2 => 0.01..1.5_f64, 1 => -1.5..-0.01_f64]
 }
 
 fn compliance() -> impl Strategy<Value = f64> {
