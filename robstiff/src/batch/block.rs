@@ -41,13 +41,7 @@ pub fn run<T, Q, const N: usize, const M: usize, const FUSED: bool>(
             continue;
         }
         evaluate::<T, Q, N, M, FUSED>(quantity, poses.len().next_multiple_of(VECTOR), &angles, &mut numbers);
-        for (pose, result) in results.iter_mut().enumerate() {
-            let mut own = [T::ZERO; M];
-            for k in 0..M {
-                own[k] = numbers[k][pose];
-            }
-            *result = Q::result(own);
-        }
+        put_together::<T, Q, N, M>(&numbers, results);
     }
 }
 
@@ -97,6 +91,22 @@ fn evaluate<T, Q, const N: usize, const M: usize, const FUSED: bool>(
         for k in 0..M {
             numbers[k][pose] = computed[k].value;
         }
+    }
+}
+
+/// The results of a block. Not inlined, because with AVX-512 the compiler makes
+/// gather instructions of it, which are slow.
+#[inline(never)]
+fn put_together<T: Float, Q: Quantity<T, N, M>, const N: usize, const M: usize>(
+    numbers: &[[T; BLOCK]; M],
+    results: &mut [Q::Result],
+) {
+    for (pose, result) in results.iter_mut().enumerate().take(BLOCK) {
+        let mut own = [T::ZERO; M];
+        for k in 0..M {
+            own[k] = numbers[k][pose];
+        }
+        *result = Q::result(own);
     }
 }
 
