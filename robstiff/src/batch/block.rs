@@ -5,6 +5,7 @@ use nalgebra::SVector;
 use super::Float;
 use super::known::Known;
 use super::quantities::Quantity;
+use super::sink::Sink;
 use crate::trig;
 
 /// Poses in a block: what a block needs stays in the first-level cache.
@@ -13,35 +14,35 @@ pub const BLOCK: usize = 64;
 /// The poses of a vector, at least: blocks are filled up to a multiple.
 const VECTOR: usize = 16;
 
-/// Computes `results` of `poses`, block by block.
+/// Computes the quantity at `poses`, block by block.
 ///
 /// Number `k` of all poses of a block lies side by side, so that the loops
 /// over the poses become loops over vectors of poses:
 ///
 /// 1. sines and cosines, joint by joint;
 /// 2. the algebra of the robot;
-/// 3. putting the results together.
+/// 3. handing the numbers over.
 ///
-/// Everything is inlined, because it takes the instructions that may be used
-/// from the function around it.
+/// Everything but the last is inlined, because it takes the instructions that
+/// may be used from the function around it.
 #[inline(always)]
 pub fn run<T, Q, const N: usize, const M: usize, const FUSED: bool>(
     quantity: &Q,
     poses: &[SVector<T, N>],
-    results: &mut [Q::Result],
+    sink: &mut impl Sink<T, M>,
 ) where
     T: Float,
     Q: Quantity<T, N, M>,
 {
     let mut angles = [[[T::ZERO; BLOCK]; N]; 3];
     let mut numbers = [[T::ZERO; BLOCK]; M];
-    for (poses, results) in poses.chunks(BLOCK).zip(results.chunks_mut(BLOCK)) {
-        if !turn::<T, N, FUSED>(poses, &mut angles) {
-            one_by_one(quantity, poses, results);
-            continue;
+    for (block, poses) in poses.chunks(BLOCK).enumerate() {
+        if turn::<T, N, FUSED>(poses, &mut angles) {
+            evaluate::<T, Q, N, M, FUSED>(quantity, poses.len(), &angles, &mut numbers);
+        } else {
+            one_by_one(quantity, poses, &mut numbers);
         }
-        evaluate::<T, Q, N, M, FUSED>(quantity, poses.len().next_multiple_of(VECTOR), &angles, &mut numbers);
-        put_together::<T, Q, N, M>(&numbers, results);
+        sink.take(BLOCK * block..BLOCK * block + poses.len(), &numbers);
     }
 }
 
@@ -72,7 +73,7 @@ fn turn<T: Float, const N: usize, const FUSED: bool>(
     true
 }
 
-/// The quantity at the first `count` poses.
+/// The quantity at the first `count` poses, and some more up to whole vectors.
 #[inline(always)]
 fn evaluate<T, Q, const N: usize, const M: usize, const FUSED: bool>(
     quantity: &Q,
@@ -83,30 +84,19 @@ fn evaluate<T, Q, const N: usize, const M: usize, const FUSED: bool>(
     T: Float,
     Q: Quantity<T, N, M>,
 {
-    for pose in 0..count.min(BLOCK) {
-        let q = SVector::from_fn(|joint, _| {
-            Known::<T, FUSED>::angle(values[joint][pose], sines[joint][pose], cosines[joint][pose])
-        });
-        let computed = quantity.numbers(&q, Known::number);
-        for k in 0..M {
-            numbers[k][pose] = computed[k].value;
+    // Two loops, both of a length that leaves no doubt: no index needs a check,
+    // and no rest of a vector a loop of its own.
+    for vector in 0..count.div_ceil(VECTOR).min(BLOCK / VECTOR) {
+        for lane in 0..VECTOR {
+            let pose = vector * VECTOR + lane;
+            let q = SVector::from_fn(|joint, _| {
+                Known::<T, FUSED>::angle(values[joint][pose], sines[joint][pose], cosines[joint][pose])
+            });
+            let computed = quantity.numbers(&q, Known::number);
+            for k in 0..M {
+                numbers[k][pose] = computed[k].value;
+            }
         }
-    }
-}
-
-/// The results of a block. Not inlined, because with AVX-512 the compiler makes
-/// gather instructions of it, which are slow.
-#[inline(never)]
-fn put_together<T: Float, Q: Quantity<T, N, M>, const N: usize, const M: usize>(
-    numbers: &[[T; BLOCK]; M],
-    results: &mut [Q::Result],
-) {
-    for (pose, result) in results.iter_mut().enumerate().take(BLOCK) {
-        let mut own = [T::ZERO; M];
-        for k in 0..M {
-            own[k] = numbers[k][pose];
-        }
-        *result = Q::result(own);
     }
 }
 
@@ -115,9 +105,11 @@ fn put_together<T: Float, Q: Quantity<T, N, M>, const N: usize, const M: usize>(
 fn one_by_one<T: Float, Q: Quantity<T, N, M>, const N: usize, const M: usize>(
     quantity: &Q,
     poses: &[SVector<T, N>],
-    results: &mut [Q::Result],
+    numbers: &mut [[T; BLOCK]; M],
 ) {
-    for (q, result) in poses.iter().zip(results) {
-        *result = Q::result(quantity.numbers(q, |x| x));
+    for (pose, q) in poses.iter().enumerate() {
+        for (number, own) in numbers.iter_mut().zip(quantity.numbers(q, |x| x)) {
+            number[pose] = own;
+        }
     }
 }

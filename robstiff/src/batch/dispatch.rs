@@ -13,6 +13,7 @@
 use nalgebra::SVector;
 
 use super::quantities::Quantity;
+use super::sink::Sink;
 use super::{Float, block};
 use crate::trig;
 
@@ -45,20 +46,20 @@ impl Level {
     }
 }
 
-/// Computes `results` of `poses` with the best there is.
+/// Computes the quantity at `poses` with the best there is.
 ///
 /// # Panics
 /// If there are not as many results as poses.
-pub fn run<T, Q, const N: usize, const M: usize>(quantity: &Q, poses: &[SVector<T, N>], results: &mut [Q::Result])
+pub fn run<T, Q, const N: usize, const M: usize>(quantity: &Q, poses: &[SVector<T, N>], sink: &mut impl Sink<T, M>)
 where
     T: Float,
     Q: Quantity<T, N, M>,
 {
     let best = Level::available().next_back().unwrap_or(Level::Portable);
-    run_at(best, quantity, poses, results);
+    run_at(best, quantity, poses, sink);
 }
 
-/// Computes `results` of `poses` with a set of instructions, which must be one
+/// Computes the quantity at `poses` with a set of instructions, which must be one
 /// of [`Level::available`].
 ///
 /// # Panics
@@ -67,40 +68,40 @@ pub fn run_at<T, Q, const N: usize, const M: usize>(
     level: Level,
     quantity: &Q,
     poses: &[SVector<T, N>],
-    results: &mut [Q::Result],
+    sink: &mut impl Sink<T, M>,
 ) where
     T: Float,
     Q: Quantity<T, N, M>,
 {
-    assert_eq!(poses.len(), results.len(), "there must be as many results as poses");
+    assert!(sink.fits(poses.len()), "there must be as many results as poses, {}", poses.len());
     assert!(Level::available().any(|available| available == level), "the machine has no {level:?}");
     match level {
-        Level::Portable => block::run::<T, Q, N, M, { trig::FUSED }>(quantity, poses, results),
+        Level::Portable => block::run::<T, Q, N, M, { trig::FUSED }>(quantity, poses, sink),
         // SAFETY: AVX2 and FMA are available, the assertion says.
         #[cfg(all(feature = "std", target_arch = "x86_64"))]
-        Level::Avx2 => unsafe { avx2(quantity, poses, results) },
+        Level::Avx2 => unsafe { avx2(quantity, poses, sink) },
         // SAFETY: the parts of AVX-512 are available, the assertion says.
         #[cfg(all(feature = "std", target_arch = "x86_64"))]
-        Level::Avx512 => unsafe { avx512(quantity, poses, results) },
+        Level::Avx512 => unsafe { avx512(quantity, poses, sink) },
     }
 }
 
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 #[target_feature(enable = "avx2,fma")]
-fn avx2<T, Q, const N: usize, const M: usize>(quantity: &Q, poses: &[SVector<T, N>], results: &mut [Q::Result])
+fn avx2<T, Q, const N: usize, const M: usize>(quantity: &Q, poses: &[SVector<T, N>], sink: &mut impl Sink<T, M>)
 where
     T: Float,
     Q: Quantity<T, N, M>,
 {
-    block::run::<T, Q, N, M, true>(quantity, poses, results);
+    block::run::<T, Q, N, M, true>(quantity, poses, sink);
 }
 
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 #[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl,avx512bw")]
-fn avx512<T, Q, const N: usize, const M: usize>(quantity: &Q, poses: &[SVector<T, N>], results: &mut [Q::Result])
+fn avx512<T, Q, const N: usize, const M: usize>(quantity: &Q, poses: &[SVector<T, N>], sink: &mut impl Sink<T, M>)
 where
     T: Float,
     Q: Quantity<T, N, M>,
 {
-    block::run::<T, Q, N, M, true>(quantity, poses, results);
+    block::run::<T, Q, N, M, true>(quantity, poses, sink);
 }

@@ -32,7 +32,7 @@ fn check<Q, R, const N: usize, const M: usize>(
     let expected: Vec<Vec<f64>> = poses.iter().map(|q| numbers(&expected(q))).collect();
     for level in Level::available() {
         let mut results: Vec<R> = poses.iter().map(|_| Q::result([f64::NAN; M])).collect();
-        run_at(level, quantity, poses, &mut results);
+        run_at(level, quantity, poses, &mut EachPose { results: &mut results, result: Q::result });
         for (result, expected) in results.iter().zip(&expected) {
             let size = expected.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
             for (a, b) in numbers(result).iter().zip(expected) {
@@ -85,6 +85,19 @@ fn poses_out_of_the_domain_spoil_no_others() {
     for (k, (q, trace)) in poses.iter().zip(&traces).enumerate() {
         let single = Rv130hsc.compliance(q).fixed_view::<3, 3>(0, 0).trace();
         assert!(if k == 150 { trace.is_nan() } else { (trace - single).abs() < 1e-13 * single }, "pose {k}");
+    }
+}
+
+#[test]
+fn by_entry_is_the_same() {
+    let poses = poses::<5>(150);
+    let mut triangles = vec![[0.0; 21]; 150];
+    compliance_triangle(&Rv130hsc, &poses, &mut triangles);
+    let mut entries = vec![0.0; 21 * 150];
+    let mut slices = entries.chunks_exact_mut(150);
+    compliance_by_entry(&Rv130hsc, &poses, core::array::from_fn(|_| slices.next().unwrap()));
+    for (k, entries) in entries.chunks_exact(150).enumerate() {
+        assert!(entries.iter().zip(&triangles).all(|(entry, triangle)| *entry == triangle[k]));
     }
 }
 
