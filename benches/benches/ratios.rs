@@ -1,0 +1,72 @@
+//! Ours against ours: generated against generic, one by one against abreast.
+//!
+//! Only the ratios of one run mean anything.
+#![allow(missing_docs, reason = "the macros of criterion make functions without")]
+
+use std::hint::black_box;
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use robstiff::nalgebra::{Matrix4, Matrix6, SMatrix, Vector3, Vector6};
+use robstiff::{Dual, Robot, batch};
+use robstiff_benches::{self as measured, Rv130hsc, WRENCH, poses};
+
+const COUNT: usize = 1024;
+
+/// One call a pose.
+fn single(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("single, 1024 poses");
+    group.throughput(Throughput::Elements(COUNT as u64));
+    let poses = poses::<5>(COUNT);
+    let generic = measured::generic();
+    macro_rules! each {
+        ($name:literal, $out:expr, |$q:ident, $into:ident| $call:expr) => {
+            let mut $into = $out;
+            group.bench_function($name, |bencher| {
+                bencher.iter(|| {
+                    for $q in &poses {
+                        $call;
+                        black_box(&mut $into);
+                    }
+                });
+            });
+        };
+    }
+    each!("sines and cosines", [(0.0, 0.0); 5], |q, out| measured::five_angles(&q.data.0[0], &mut out));
+    each!("sines and cosines, platform", [(0.0, 0.0); 5], |q, out| out = q.data.0[0].map(f64::sin_cos));
+    each!("transform", Matrix4::zeros(), |q, out| measured::transform(q, &mut out));
+    each!("jacobian", SMatrix::zeros(), |q, out| measured::jacobian(q, &mut out));
+    each!("deflection", Vector6::zeros(), |q, out| measured::deflection(q, &WRENCH, &mut out));
+    each!("trace", 0.0, |q, out| out = measured::trace(q));
+    each!("compliance", Matrix6::zeros(), |q, out| measured::compliance(q, &mut out));
+    each!("compliance, generic", Matrix6::zeros(), |q, out| out = generic.compliance(q));
+    each!("compliance with derivatives", Matrix6::zeros(), |q, out| out = Rv130hsc.compliance(&Dual::variables(*q)));
+    group.finish();
+}
+
+/// Slices of poses.
+fn batches(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("batch, 1024 poses");
+    group.throughput(Throughput::Elements(COUNT as u64));
+    let poses = poses::<5>(COUNT);
+    macro_rules! batch {
+        ($name:literal, $zero:expr, |$poses:ident, $out:ident| $call:expr) => {
+            let ($poses, mut results) = (&poses, vec![$zero; COUNT]);
+            group.bench_function($name, |bencher| {
+                bencher.iter(|| {
+                    let $out = &mut results;
+                    $call;
+                    black_box(&mut results);
+                });
+            });
+        };
+    }
+    batch!("compliance", Matrix6::zeros(), |q, out| batch::compliance(&Rv130hsc, q, out));
+    batch!("triangle", [0.0; 21], |q, out| batch::compliance_triangle(&Rv130hsc, q, out));
+    batch!("trace", 0.0, |q, out| batch::translational_trace(&Rv130hsc, q, out));
+    batch!("along a direction", 0.0, |q, out| batch::directional_compliance(&Rv130hsc, q, &Vector3::x(), out));
+    batch!("deflection", Vector6::zeros(), |q, out| batch::deflection(&Rv130hsc, q, &WRENCH, out));
+    group.finish();
+}
+
+criterion_group!(ratios, single, batches);
+criterion_main!(ratios);
