@@ -88,6 +88,23 @@ fn every_problem_of_a_table_has_its_place() {
     assert_eq!(problems("empty", CAMPAIGN, ""), ["1:1 the file is empty"]);
 }
 
+/// Empty lines are skipped, and counted.
+#[test]
+fn empty_lines_count() {
+    let row = "a,v,0,0,1,2,3,4,5,6";
+    let table = format!("\n{HEADER}\n{row}\n\n\r\n{row}\n\na,v,0,0,1,2,3,4,x,6\n");
+    assert_eq!(problems("empty-lines", CAMPAIGN, &table), ["8:17 `x` is not a number"]);
+    let table = table.replace(",x,", ",5,");
+    let folder = Folder::new("counted-lines", CAMPAIGN, &table);
+    let Data::Displacement(data) = folder.read().unwrap().data else { panic!("kind displacement") };
+    assert_eq!(data.rows.iter().map(|row| row.line).collect::<Vec<_>>(), [3, 6, 8]);
+    let header = HEADER.replace("dz", "height");
+    assert_eq!(
+        problems("late-header", CAMPAIGN, &format!("\n\n{header}\n{row}\n")),
+        ["3:1 the column `dz` is missing"]
+    );
+}
+
 #[test]
 fn every_problem_of_a_header_has_its_place() {
     let found = |name: &str, header: &str| {
