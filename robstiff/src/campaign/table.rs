@@ -156,8 +156,9 @@ impl<'t> Table<'t> {
     /// A number of a row in SI; what is not a finite number is reported.
     pub fn number(&self, record: &Record, column: Numbers) -> Option<f64> {
         let text = &record.fields[column.index];
-        let problem = match text.parse::<f64>() {
-            Ok(number) if number.is_finite() => return Some(number * column.scale),
+        let number = text.parse::<f64>().map(|number| number * column.scale);
+        let problem = match number {
+            Ok(number) if number.is_finite() => return Some(number),
             Ok(_) => format!("`{text}` is not finite"),
             Err(_) if text.is_empty() => "a number is missing".to_owned(),
             Err(_) => format!("`{text}` is not a number"),

@@ -78,6 +78,7 @@ fn every_problem_of_a_table_has_its_place() {
     let found = |name: &str, rows: &str| problems(name, CAMPAIGN, &format!("{HEADER}\n{rows}"));
     assert_eq!(found("text", "a,v,0,0,1,2,3,4,x,6\n"), ["2:17 `x` is not a number"]);
     assert_eq!(found("nan", "a,v,0,0,1,2,3,4,NaN,inf\n"), ["2:17 `NaN` is not finite", "2:21 `inf` is not finite"]);
+    assert_eq!(found("huge", "a,v,0,0,1,1e307,3,4,5,6\n"), ["2:11 `1e307` is not finite"]);
     assert_eq!(found("missing", "a,v,0,0,1,2,3,4,,6\n"), ["2:17 a number is missing"]);
     assert_eq!(found("short", "a,v,0,0,1,2,3,4,5\n"), ["2:1 this row has 9 fields, the header has 10"]);
     assert_eq!(found("none", ""), ["1:1 there are no rows"]);
