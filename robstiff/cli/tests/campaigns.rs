@@ -203,4 +203,9 @@ fn clamped_axes_are_identified_but_not_traced() {
     assert_eq!(found["compliances"][1]["visibility"], "unseen");
     fail(1, &["trace", &campaign, "--out", &inside(&folder, "traced")]);
     assert!(!folder.join("traced").exists());
+
+    fs::write(folder.join("axes.csv"), "axis,torque,deflection\n1,0,3e-5\n2,0,0\n").unwrap();
+    let message = fail(1, &["identify", &campaign, "--out", &inside(&folder, "unloaded")]);
+    assert!(message.contains("every torque is zero"), "{message}");
+    assert!(!folder.join("unloaded").exists());
 }
