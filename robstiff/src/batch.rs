@@ -13,7 +13,7 @@
 //! assert!((along_x[7] - single).abs() < 1e-13 * single);
 //! ```
 //!
-//! Any [`Robot`](crate::Robot) will do; the code of [`robot!`](crate::robot!)
+//! Any [`Robot`] will do; the code of [`robot!`](crate::robot!)
 //! gains most, because the compiler sees through it: what a function does not
 //! return is not computed, and several poses share every instruction. On
 //! x86-64 with the feature `std` the widest vectors that the machine has
