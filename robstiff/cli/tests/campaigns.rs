@@ -143,6 +143,17 @@ fn what_is_wrong_with_a_table_is_said_where_it_is_and_nothing_is_written() {
 }
 
 #[test]
+fn an_error_that_is_not_finite_is_none() {
+    let folder = folder("too-large");
+    let campaign = copy(&folder);
+    let loads = fs::read_to_string(folder.join("loads.csv")).unwrap();
+    fs::write(folder.join("loads.csv"), loads.replacen("-0.000686", "1e200", 1)).unwrap();
+    let message = fail(1, &["predict", "fanuc-r2000ic", &campaign, "--json", &inside(&folder, "error.json")]);
+    assert!(message.contains("too large"), "{message}");
+    assert_eq!(names(&folder), ["campaign.yaml", "loads.csv", "robot.yaml"]);
+}
+
+#[test]
 fn what_was_read_is_not_overwritten() {
     let folder = folder("overwrite");
     let campaign = copy(&folder);
@@ -192,4 +203,9 @@ fn clamped_axes_are_identified_but_not_traced() {
     assert_eq!(found["compliances"][1]["visibility"], "unseen");
     fail(1, &["trace", &campaign, "--out", &inside(&folder, "traced")]);
     assert!(!folder.join("traced").exists());
+
+    fs::write(folder.join("axes.csv"), "axis,torque,deflection\n1,0,3e-5\n2,0,0\n").unwrap();
+    let message = fail(1, &["identify", &campaign, "--out", &inside(&folder, "unloaded")]);
+    assert!(message.contains("every torque is zero"), "{message}");
+    assert!(!folder.join("unloaded").exists());
 }

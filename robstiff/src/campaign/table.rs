@@ -18,6 +18,8 @@ pub struct Table<'t> {
     file: &'t str,
     lines: Vec<&'t str>,
     header: Vec<Header>,
+    /// The line of the header, from 1.
+    header_line: usize,
     /// The rows below the header; all as long as it.
     pub records: Vec<Record>,
     asked_for: RefCell<Vec<usize>>,
@@ -54,6 +56,7 @@ impl<'t> Table<'t> {
             file,
             lines: text.lines().collect(),
             header: Vec::new(),
+            header_line: 1,
             records: Vec::new(),
             asked_for: RefCell::default(),
             problems: RefCell::default(),
@@ -67,22 +70,24 @@ impl<'t> Table<'t> {
         let Some(Ok(header)) = rows.next() else {
             return Err(table.problem(1, 0, "the file is empty", "the first line names the columns").into());
         };
-        let line = header.position().map_or(1, csv::Position::line) as usize;
+        table.header_line = line_of(&header, text);
         table.header = header.iter().map(Header::parse).collect();
-        table.check_header(line);
+        table.check_header();
         for row in rows {
             match row {
-                Ok(row) => table.push(&row),
+                Ok(row) => table.push(&row, line_of(&row, text)),
                 Err(error) => table.report(1, 0, &format!("this is not CSV: {error}"), ""),
             }
         }
         if table.records.is_empty() && table.problems.borrow().is_empty() {
+            let line = table.header_line;
             return Err(table.problem(line, 0, "there are no rows", "each line below the header is one row").into());
         }
         Ok(table)
     }
 
-    fn check_header(&self, line: usize) {
+    fn check_header(&self) {
+        let line = self.header_line;
         for (i, header) in self.header.iter().enumerate() {
             if header.name.is_empty() {
                 self.report(line, i, "a column without a name", "write `name [unit]` or `name`");
@@ -92,8 +97,7 @@ impl<'t> Table<'t> {
         }
     }
 
-    fn push(&mut self, row: &csv::StringRecord) {
-        let line = row.position().map_or(1, csv::Position::line) as usize;
+    fn push(&mut self, row: &csv::StringRecord, line: usize) {
         let (expected, found) = (self.header.len(), row.len());
         if found == expected {
             self.records.push(Record { line, fields: row.iter().map(ToOwned::to_owned).collect() });
@@ -119,7 +123,7 @@ impl<'t> Table<'t> {
         match scale {
             Ok(scale) => Some(Numbers { index, scale }),
             Err(error) => {
-                self.report(1, index, &error.message, &error.help);
+                self.report(self.header_line, index, &error.message, &error.help);
                 None
             }
         }
@@ -137,7 +141,7 @@ impl<'t> Table<'t> {
         if index.is_none() {
             let names: Vec<_> = self.header.iter().map(|header| format!("`{}`", header.name)).collect();
             let help = format!("the header line has {}", names.join(", "));
-            self.report(1, 0, &format!("the column `{name}` is missing"), &help);
+            self.report(self.header_line, 0, &format!("the column `{name}` is missing"), &help);
         }
         index
     }
@@ -152,8 +156,9 @@ impl<'t> Table<'t> {
     /// A number of a row in SI; what is not a finite number is reported.
     pub fn number(&self, record: &Record, column: Numbers) -> Option<f64> {
         let text = &record.fields[column.index];
-        let problem = match text.parse::<f64>() {
-            Ok(number) if number.is_finite() => return Some(number * column.scale),
+        let number = text.parse::<f64>().map(|number| number * column.scale);
+        let problem = match number {
+            Ok(number) if number.is_finite() => return Some(number),
             Ok(_) => format!("`{text}` is not finite"),
             Err(_) if text.is_empty() => "a number is missing".to_owned(),
             Err(_) => format!("`{text}` is not a number"),
@@ -233,6 +238,15 @@ impl Header {
         };
         Self { name: name.trim().to_owned(), unit }
     }
+}
+
+/// The line that a record begins in. The reader's own position is where it
+/// began to look for the record, before the empty lines that it skips.
+fn line_of(record: &csv::StringRecord, text: &str) -> usize {
+    let Some(position) = record.position() else { return 1 };
+    let rest = text.as_bytes().iter().skip(position.byte() as usize);
+    let skipped = rest.take_while(|byte| matches!(byte, b'\r' | b'\n')).filter(|&&byte| byte == b'\n').count();
+    position.line() as usize + skipped
 }
 
 /// Where a field is in its line: its column in characters from 1, and its

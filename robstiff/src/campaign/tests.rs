@@ -78,6 +78,7 @@ fn every_problem_of_a_table_has_its_place() {
     let found = |name: &str, rows: &str| problems(name, CAMPAIGN, &format!("{HEADER}\n{rows}"));
     assert_eq!(found("text", "a,v,0,0,1,2,3,4,x,6\n"), ["2:17 `x` is not a number"]);
     assert_eq!(found("nan", "a,v,0,0,1,2,3,4,NaN,inf\n"), ["2:17 `NaN` is not finite", "2:21 `inf` is not finite"]);
+    assert_eq!(found("huge", "a,v,0,0,1,1e307,3,4,5,6\n"), ["2:11 `1e307` is not finite"]);
     assert_eq!(found("missing", "a,v,0,0,1,2,3,4,,6\n"), ["2:17 a number is missing"]);
     assert_eq!(found("short", "a,v,0,0,1,2,3,4,5\n"), ["2:1 this row has 9 fields, the header has 10"]);
     assert_eq!(found("none", ""), ["1:1 there are no rows"]);
@@ -86,6 +87,23 @@ fn every_problem_of_a_table_has_its_place() {
     let poses = found("pose", "a,v,0,0,1,2,3,4,5,6\na,w,0.01,0,1,2,3,4,5,6\n");
     assert_eq!(poses, ["3:5 pose `a` has another q1 in line 2"]);
     assert_eq!(problems("empty", CAMPAIGN, ""), ["1:1 the file is empty"]);
+}
+
+/// Empty lines are skipped, and counted.
+#[test]
+fn empty_lines_count() {
+    let row = "a,v,0,0,1,2,3,4,5,6";
+    let table = format!("\n{HEADER}\n{row}\n\n\r\n{row}\n\na,v,0,0,1,2,3,4,x,6\n");
+    assert_eq!(problems("empty-lines", CAMPAIGN, &table), ["8:17 `x` is not a number"]);
+    let table = table.replace(",x,", ",5,");
+    let folder = Folder::new("counted-lines", CAMPAIGN, &table);
+    let Data::Displacement(data) = folder.read().unwrap().data else { panic!("kind displacement") };
+    assert_eq!(data.rows.iter().map(|row| row.line).collect::<Vec<_>>(), [3, 6, 8]);
+    let header = HEADER.replace("dz", "height");
+    assert_eq!(
+        problems("late-header", CAMPAIGN, &format!("\n\n{header}\n{row}\n")),
+        ["3:1 the column `dz` is missing"]
+    );
 }
 
 #[test]

@@ -3,6 +3,7 @@
 //! clamped, and the compliance is the slope of deflection over torque.
 
 use std::format;
+use std::string::String;
 use std::vec::Vec;
 
 use nalgebra::DMatrix;
@@ -16,7 +17,7 @@ use crate::campaign::{Campaign, ClampedRow};
 /// proportion.
 ///
 /// # Errors
-/// An axis whose deflection goes against its torque.
+/// An axis whose deflection goes against its torque; rows that load no axis.
 pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identification, Error> {
     let own = declared(&campaign.robot);
     let mut values: Vec<f64> = own.iter().map(|number| number.value).collect();
@@ -43,6 +44,9 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
             unit: unit_of(&campaign.robot, number.column),
             visibility: if slope.is_some() { Visibility::Seen } else { Visibility::Unseen },
         });
+    }
+    if estimates.iter().all(|estimate| estimate.visibility != Visibility::Seen) {
+        return Err(Error(String::from("no row loads its axis: every torque is zero")));
     }
     Ok(Identification {
         description: with_values(&campaign.robot, &values),

@@ -51,7 +51,8 @@ impl PredictedRow {
 /// campaign's own.
 ///
 /// # Errors
-/// A campaign of another kind, or a description with another number of joints.
+/// A campaign of another kind, a description with another number of joints, or
+/// numbers so large that an error is not finite.
 pub fn predict(description: &Description, campaign: &Campaign) -> Result<Prediction, Error> {
     let Data::Displacement(data) = &campaign.data else {
         return Err(Error(String::from("predicting needs a campaign of kind `displacement`")));
@@ -76,8 +77,12 @@ pub fn predict(description: &Description, campaign: &Campaign) -> Result<Predict
     let mut errors: Vec<f64> = rows.iter().map(PredictedRow::error).collect();
     errors.sort_by(f64::total_cmp);
     let count = errors.len();
+    let rms = (errors.iter().map(|error| error * error).sum::<f64>() / count as f64).sqrt();
+    if !rms.is_finite() {
+        return Err(Error(String::from("the numbers are too large: the error is not finite")));
+    }
     Ok(Prediction {
-        rms: (errors.iter().map(|error| error * error).sum::<f64>() / count as f64).sqrt(),
+        rms,
         p95: errors[((0.95 * count as f64).ceil() as usize).clamp(1, count) - 1],
         max: errors[count - 1],
         rows,

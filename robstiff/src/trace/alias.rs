@@ -29,13 +29,13 @@ pub fn same_as(setting: &Setting, model: &Fitted, k: usize, options: &Options) -
         return Vec::new();
     };
     let Ok(without) = setting.fit(&rest) else { return Vec::new() };
-    let unseen = setting.holdout_rms(&without.fit);
+    let unseen = setting.left_out_rms(&without.fit);
     let mut found: Vec<(f64, String)> = Vec::new();
     for candidate in (0..setting.candidates.len()).filter(|&candidate| candidate != one.candidate) {
         let Some(rival) = best_with(setting, &rest, candidate) else { continue };
         let variant = variant_of(&rival, candidate);
         let exact = test.distance(setting.variant(one), setting.variant(variant)) < EXACT;
-        let admitted = tests.p_value(candidate) <= options.alpha && setting.holdout_rms(&rival.fit) < unseen;
+        let admitted = tests.p_value(candidate) <= options.alpha && setting.left_out_rms(&rival.fit) < unseen;
         let near = rival.bic - model.bic < WITHIN_REACH || witnesses(setting, model, &rival) < WITNESSES;
         if exact || (admitted && near) {
             found.push((rival.bic, setting.candidates[candidate].name()));

@@ -149,10 +149,24 @@ impl Setting {
     /// campaign's rows they are of.
     pub fn unseen_residuals(&self, fit: &Fit) -> (DVector<f64>, Vec<usize>) {
         let problem = &self.problem;
-        if !problem.held_out.is_empty() {
-            let rows = problem.held_out.iter().flat_map(|block| block.rows.iter().copied()).collect();
-            return (problem.residuals(&fit.columns, &fit.coefficients), rows);
+        if problem.held_out.is_empty() {
+            return self.left_out_residuals(fit);
         }
+        let rows = problem.held_out.iter().flat_map(|block| block.rows.iter().copied()).collect();
+        (problem.residuals(&fit.columns, &fit.coefficients), rows)
+    }
+
+    /// The root mean square of [`unseen_residuals`](Self::unseen_residuals) (m):
+    /// for judging a model, never for choosing one.
+    pub fn holdout_rms(&self, fit: &Fit) -> f64 {
+        let (residuals, rows) = self.unseen_residuals(fit);
+        rms(&residuals, self.problem.axes, rows)
+    }
+
+    /// The residuals of each pose fitted to, by the fit without it, stacked;
+    /// with the campaign's rows they are of.
+    fn left_out_residuals(&self, fit: &Fit) -> (DVector<f64>, Vec<usize>) {
+        let problem = &self.problem;
         let mut residuals = problem.readings.clone();
         for (p, block) in problem.blocks.iter().enumerate() {
             let coefficients = self.fit_without(fit, p);
@@ -166,9 +180,10 @@ impl Setting {
         (residuals, rows)
     }
 
-    /// The root mean square of [`unseen_residuals`](Self::unseen_residuals) (m).
-    pub fn holdout_rms(&self, fit: &Fit) -> f64 {
-        let (residuals, rows) = self.unseen_residuals(fit);
+    /// The root mean square error on each pose fitted to, by the fit without it
+    /// (m): for choosing a model. Poses held out have no part in it.
+    pub fn left_out_rms(&self, fit: &Fit) -> f64 {
+        let (residuals, rows) = self.left_out_residuals(fit);
         rms(&residuals, self.problem.axes, rows)
     }
 

@@ -5,9 +5,10 @@
 //! extensions and then by replacing each effect with each other candidate);
 //! the tests dispose: a model is accepted when *every* effect in it is missed
 //! by the model without it, family-wise over the whole catalogue, and when
-//! poses the fit has not seen are predicted better than by the smaller model.
-//! An effect that was named early and is no longer needed falls out this way,
-//! so steps go forward, sideways and back.
+//! poses left out of the fit, each in turn, are predicted better than by the
+//! smaller model. An effect that was named early and is no longer needed falls
+//! out this way, so steps go forward, sideways and back. Poses held out take no
+//! part: they judge what was found.
 
 use std::string::String;
 use std::vec::Vec;
@@ -65,8 +66,9 @@ pub struct Tested {
     pub p_value: f64,
     /// The criterion of the model with it; lower is better.
     pub bic: Option<f64>,
-    /// The error on unseen poses with it (m).
-    pub holdout_rms: Option<f64>,
+    /// The error with it on poses left out of the fit (m), each in turn; those
+    /// held out have no part in it.
+    pub left_out_rms: Option<f64>,
     /// Why it was not taken; empty for the one that was.
     pub reason: String,
 }
@@ -156,7 +158,7 @@ fn accept(
     against_smaller: &Tests,
     options: &Options,
 ) -> Option<Vec<f64>> {
-    if setting.holdout_rms(&proposed.fit) >= setting.holdout_rms(&smaller.fit) {
+    if setting.left_out_rms(&proposed.fit) >= setting.left_out_rms(&smaller.fit) {
         return None;
     }
     let p_values = (0..proposed.named.len()).map(|k| {
@@ -249,20 +251,20 @@ fn best_of(mut models: Vec<Fitted>) -> Vec<Fitted> {
 
 fn table(setting: &Setting, model: &Fitted, tests: &Tests, options: &Options) -> Step {
     let name = |one: &Named| setting.candidates[one.candidate].name();
-    let before = setting.holdout_rms(&model.fit);
+    let before = setting.left_out_rms(&model.fit);
     let candidates = (0..setting.candidates.len()).map(|candidate| {
         let statistic = tests.statistics[candidate].map(|(statistic, _)| statistic);
         let p_value = tests.p_value(candidate);
         let with = best_with(setting, &model.named, candidate);
-        let holdout_rms = with.as_ref().map(|with| setting.holdout_rms(&with.fit));
+        let left_out_rms = with.as_ref().map(|with| setting.left_out_rms(&with.fit));
         let reason = if model.named.iter().any(|one| one.candidate == candidate) {
             "already named"
         } else if statistic.is_none() || with.is_none() {
             "it explains nothing with numbers that are physically possible"
         } else if p_value > options.alpha {
             "not significant"
-        } else if holdout_rms.is_some_and(|rms| rms >= before) {
-            "unseen poses are not predicted better"
+        } else if left_out_rms.is_some_and(|rms| rms >= before) {
+            "poses left out are not predicted better"
         } else {
             "another explains more"
         };
@@ -271,7 +273,7 @@ fn table(setting: &Setting, model: &Fitted, tests: &Tests, options: &Options) ->
             statistic,
             p_value,
             bic: with.map(|with| with.bic),
-            holdout_rms,
+            left_out_rms,
             reason: String::from(reason),
         }
     });

@@ -156,8 +156,8 @@ pub struct Candidate {
     pub statistic: Option<f64>,
     /// Its family-wise p-value.
     pub p_value: f64,
-    /// The error on unseen poses with it \[um\].
-    pub holdout_rms_um: Option<f64>,
+    /// The error with it on poses left out of the fit, each in turn \[um\].
+    pub left_out_rms_um: Option<f64>,
     /// Why it was not taken; empty where it was.
     pub reason: String,
 }

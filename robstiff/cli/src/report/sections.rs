@@ -202,7 +202,7 @@ fn candidates(candidates: &[Candidate]) -> String {
         words("Candidate"),
         number("statistic"),
         number("p"),
-        number("unseen poses [µm]"),
+        number("poses left out [µm]"),
         words("why not"),
     ]);
     for candidate in candidates {
@@ -213,7 +213,7 @@ fn candidates(candidates: &[Candidate]) -> String {
                 Cell::Html(format!("<code>{}</code>", escape(&candidate.name))),
                 number(candidate.statistic.map_or_else(|| "-".to_owned(), |statistic| significant(statistic, 3))),
                 number(probability(candidate.p_value)),
-                number(candidate.holdout_rms_um.map_or_else(|| "-".to_owned(), |um| decimals(um, 1))),
+                number(candidate.left_out_rms_um.map_or_else(|| "-".to_owned(), |um| decimals(um, 1))),
                 words(if named { "named" } else { &candidate.reason }),
             ],
         );

@@ -43,7 +43,7 @@ fn hostile() -> Report {
                 name: bad(),
                 statistic: None,
                 p_value: f64::NAN,
-                holdout_rms_um: None,
+                left_out_rms_um: None,
                 reason: bad(),
             }],
         }],

@@ -173,7 +173,7 @@ fn step(step: &Step) -> SearchStep {
         name: tested.name.clone(),
         statistic: tested.statistic,
         p_value: tested.p_value,
-        holdout_rms_um: tested.holdout_rms.map(|rms| rms * 1e6),
+        left_out_rms_um: tested.left_out_rms.map(|rms| rms * 1e6),
         reason: tested.reason.clone(),
     };
     SearchStep {
