@@ -20,6 +20,8 @@
 //! - [`Robot`]: the trait, with terms, frames and units;
 //! - [`elements`]: joints and effects one by one, and their share in the whole;
 //! - [`analysis`]: stiffness, directional stiffness, principal directions;
+//! - [`batch`]: slices of poses, several abreast; [`Lanes`] and [`Dual`]: vectors
+//!   and derivatives through the same generated code;
 //! - `campaign`, `identify`, `trace` (feature `identify`): measured data, the
 //!   joint compliances that fit it, and the effects it shows to be missing.
 //!
