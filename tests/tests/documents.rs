@@ -26,5 +26,7 @@ fn the_campaign_of_the_readme_reads() {
     assert_eq!(campaign.holdout, Some(Holdout { fraction: 0.25, seed: 1 }));
     let Data::Displacement(data) = campaign.data else { panic!("a campaign of displacements") };
     assert_eq!((data.poses.len(), data.visits.len(), data.rows.len()), (1, 2, 3));
-    assert_eq!(data.rows[1].displacement, [25e-6, -362e-6, -825e-6]);
+    for (metres, micrometres) in data.rows[1].displacement.into_iter().zip([25.0, -362.0, -825.0]) {
+        assert!((1e6 * metres - micrometres).abs() < 1e-9, "{metres}");
+    }
 }
