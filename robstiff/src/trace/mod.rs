@@ -85,7 +85,7 @@ pub struct Trace {
     pub identified: Misfit,
     /// The effects named, the one that explains most first.
     pub effects: Vec<NamedEffect>,
-    /// The error with them.
+    /// The error with them; as declared where the data cannot tell.
     pub after: Misfit,
     /// The conclusion.
     pub verdict: Verdict,
@@ -97,7 +97,8 @@ pub struct Trace {
     pub depends_on: Vec<String>,
     /// Measurements that would separate what these cannot tell apart.
     pub next: Vec<Proposal>,
-    /// The description with the effects and the compliances fitted with them.
+    /// The description with the effects and the compliances fitted with them;
+    /// as declared where the data cannot tell.
     pub description: Description,
     /// The description's own numbers without the effects.
     pub estimates_before: Vec<Estimate>,
@@ -173,7 +174,7 @@ pub struct RowResidual {
     pub pose: usize,
     /// With the description's own numbers identified again.
     pub before: [f64; 3],
-    /// With the effects.
+    /// With the effects; as declared where the data cannot tell.
     pub after: [f64; 3],
 }
 
@@ -186,7 +187,7 @@ pub struct PoseError {
     pub held_out: bool,
     /// With the description's own numbers identified again.
     pub before: f64,
-    /// With the effects.
+    /// With the effects; as declared where the data cannot tell.
     pub after: f64,
 }
 

@@ -163,6 +163,24 @@ fn few_poses_are_insufficient() {
     assert!(found.effects.is_empty() && found.why.contains("5 poses are too few"));
 }
 
+/// Data that can tell nothing change nothing, and the errors are those of the
+/// description that is written.
+#[test]
+fn insufficient_data_leave_the_description_as_declared() {
+    let mut declared = five_axis();
+    declared.joints.iter_mut().flat_map(|joint| &mut joint.compliance).for_each(|part| part.value *= 0.6);
+    let mut campaign = campaign(&five_axis(), 5, &[TILT_3], 3);
+    campaign.robot = declared.clone();
+    let found = traced(&campaign);
+    assert_eq!((found.verdict, &found.description), (Verdict::Insufficient, &declared));
+    assert_eq!(found.after, found.declared);
+    assert!(found.identified.rms < found.declared.rms);
+    let predicted = predict(&found.description, &campaign).expect("the same robot");
+    assert!((predicted.rms / found.after.rms - 1.0).abs() < 1e-9);
+    let of_rows = found.residuals.iter().flat_map(|row| row.after).map(|r| r * r).sum::<f64>();
+    assert!(((of_rows / (3.0 * found.rows as f64)).sqrt() / found.after.rms - 1.0).abs() < 1e-9);
+}
+
 /// In the standard convention joint 1 stands on the base, so its tilt is that
 /// of the base; tilts of a spherical wrist differ by joint compliances.
 #[test]

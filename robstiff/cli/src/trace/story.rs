@@ -32,6 +32,9 @@ pub fn headline(trace: &Trace) -> String {
 /// What follows the finding, a sentence each.
 pub fn summary(trace: &Trace) -> Vec<String> {
     let mut sentences = vec![sentence(&trace.why)];
+    if trace.verdict == Verdict::Insufficient {
+        sentences.push("The description keeps its declared values.".to_owned());
+    }
     for named in &trace.effects {
         if !named.same_as.is_empty() {
             sentences.push(format!("These data cannot tell {} from {}.", named.effect, and(&named.same_as)));
