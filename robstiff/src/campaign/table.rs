@@ -24,6 +24,7 @@ pub struct Table<'t> {
     pub records: Vec<Record>,
     asked_for: RefCell<Vec<usize>>,
     problems: RefCell<Vec<Diagnostic>>,
+    warnings: RefCell<Vec<String>>,
 }
 
 /// `name [unit]`.
@@ -60,6 +61,7 @@ impl<'t> Table<'t> {
             records: Vec::new(),
             asked_for: RefCell::default(),
             problems: RefCell::default(),
+            warnings: RefCell::default(),
         };
         let mut reader = csv::ReaderBuilder::new()
             .has_headers(false)
@@ -197,6 +199,16 @@ impl<'t> Table<'t> {
         self.report(record.line, column.index, message, help);
     }
 
+    /// Whether the header gives a column its unit.
+    pub fn has_unit(&self, column: Numbers) -> bool {
+        self.header[column.index].unit.is_some()
+    }
+
+    /// Warns of something that is no problem for the reader.
+    pub fn warn(&self, message: &str) {
+        self.warnings.borrow_mut().push(format!("{}: {message}", self.file));
+    }
+
     fn problem(&self, line: usize, field: usize, message: &str, help: &str) -> Diagnostic {
         let source_line = self.lines.get(line - 1).copied().unwrap_or_default();
         let (column, width) = extent(source_line, field);
@@ -225,8 +237,9 @@ impl<'t> Table<'t> {
         }
         let asked_for = self.asked_for.into_inner();
         let unknown = self.header.iter().enumerate().filter(|(i, _)| !asked_for.contains(i));
-        let warnings = unknown.map(|(_, header)| format!("{}: the column `{}` is not used", self.file, header.name));
-        Ok((value.expect("a value was given up without a problem being reported"), warnings.collect()))
+        let mut warnings = self.warnings.into_inner();
+        warnings.extend(unknown.map(|(_, header)| format!("{}: the column `{}` is not used", self.file, header.name)));
+        Ok((value.expect("a value was given up without a problem being reported"), warnings))
     }
 }
 

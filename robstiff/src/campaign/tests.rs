@@ -89,6 +89,34 @@ fn every_problem_of_a_table_has_its_place() {
     assert_eq!(problems("empty", CAMPAIGN, ""), ["1:1 the file is empty"]);
 }
 
+/// Degrees in a column without a unit are radians that no joint reaches.
+#[test]
+fn coordinates_that_joints_do_not_reach_are_warned_of() {
+    let read = |name: &str, header: &str, rows: &str| {
+        let folder = Folder::new(name, CAMPAIGN, &format!("{header}\n{rows}"));
+        let robot = ROBOT.replace("a: 1 m,", "a: 1 m, limits: [-90 deg, 90 deg],");
+        std::fs::write(folder.0.join("robot.yaml"), robot).expect("a temporary file");
+        let warnings = folder.read().expect("nothing is wrong").warnings;
+        let file = format!("{}: ", folder.0.join("loads.csv").display());
+        warnings.into_iter().map(|warning| warning.replace(&file, "")).collect::<Vec<_>>()
+    };
+    let rows = "a,90,12,1,2,3,4,5,6\nb,-90,13,1,2,3,4,5,6\n";
+    assert_eq!(
+        read("radians", "pose,q1,q2,Fx,Fy,Fz,dx,dy,dz", rows),
+        [
+            "q1 is outside its limits [-90, 90] deg in 2 rows, first on line 2: \
+             are the angles in degrees? write `q1 [deg]`",
+            "q2 is more than two turns in 1 row, first on line 3: are the angles in degrees? write `q2 [deg]`",
+        ]
+    );
+    let header = "pose,q1 [deg],q2 [rad],Fx,Fy,Fz,dx,dy,dz";
+    assert_eq!(read("on-the-limit", header, rows), Vec::<String>::new());
+    assert_eq!(
+        read("degrees", header, "a,0,0,1,2,3,4,5,6\nb,91,0,1,2,3,4,5,6\n"),
+        ["q1 is outside its limits [-90, 90] deg in 1 row, first on line 3"]
+    );
+}
+
 /// Empty lines are skipped, and counted.
 #[test]
 fn empty_lines_count() {
