@@ -41,7 +41,7 @@ use self::selection::{Selection, p_values, select};
 use crate::Effect;
 use crate::campaign::Campaign;
 use crate::identify::prepare::Prepared;
-use crate::identify::{Error, Estimate, NoiseSource};
+use crate::identify::{Error, Estimate, NoiseSource, is_at_bound};
 
 /// How to trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -201,8 +201,8 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
     let prepared = Prepared::new(campaign)?;
     let setting = setting::setting(campaign, &prepared);
     let yardstick = yardstick(&prepared);
-    if let Some(why) = too_little(&setting) {
-        let base = setting.fit(&[]).map_err(Error)?;
+    let base = setting.fit(&[]).map_err(Error)?;
+    if let Some(why) = too_little(&setting).or_else(|| against_the_loads(&prepared, &setting, &base)) {
         let found = Found::nothing(base, Verdict::Insufficient, why);
         return Ok(report(campaign, &prepared, &setting, &found, options));
     }
@@ -254,6 +254,18 @@ fn yardstick(prepared: &Prepared<'_>) -> Yardstick {
         (None, Some(_)) => Yardstick::Repeated(prepared.repeated),
         (None, None) => Yardstick::Unknown,
     }
+}
+
+/// That the readings do not follow the loads, if so: every joint they show
+/// would be less than rigid. Whatever is found then, is found in readings of
+/// something else, or of the wrong sign.
+fn against_the_loads(prepared: &Prepared<'_>, setting: &Setting, base: &Fitted) -> Option<String> {
+    let numbers = base.fit.columns.iter().zip(base.fit.coefficients.iter());
+    let mut joints = numbers.filter(|&(&column, _)| column < setting.samples.joints()).peekable();
+    joints.peek()?;
+    joints
+        .all(|(&column, &value)| is_at_bound(&prepared.own[column], value))
+        .then(|| String::from("the readings do not follow the loads"))
 }
 
 /// Why a campaign cannot tell what is missing, if so.
