@@ -49,15 +49,16 @@ pub fn read(
     let (mut of_pose, mut of_visit): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
     let mut complete = true;
     for record in &table.records {
-        let pose = index_of(&mut data.poses, table.text(record, columns.pose));
+        let pose = index_of(&mut data.poses, table.id(record, columns.pose));
         let visit = match columns.visit {
-            Some(column) => index_of(&mut data.visits, table.text(record, column)),
+            Some(column) => index_of(&mut data.visits, table.id(record, column)),
             None => {
                 data.visits.push(format!("line {}", record.line));
                 data.visits.len() - 1
             }
         };
-        let Some(row) = observation(table, &columns, record, pose, visit) else {
+        let named = !data.poses[pose].is_empty() && !data.visits[visit].is_empty();
+        let Some(row) = observation(table, &columns, record, pose, visit).filter(|_| named) else {
             complete = false;
             // Pose and visit stay without a row to compare with.
             of_pose.resize(data.poses.len(), usize::MAX);

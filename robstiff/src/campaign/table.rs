@@ -31,6 +31,8 @@ pub struct Table<'t> {
 struct Header {
     name: String,
     unit: Option<String>,
+    /// Whether the bracket of the unit is closed.
+    closed: bool,
 }
 
 /// One row.
@@ -73,6 +75,11 @@ impl<'t> Table<'t> {
             return Err(table.problem(1, 0, "the file is empty", "the first line names the columns").into());
         };
         table.header_line = line_of(&header, text);
+        if let Some(field) = header.iter().position(|name| name.contains(';')) {
+            let help = "the separator is a comma, and the decimal sign a point: `pose,q1 [deg],Fx [N]`";
+            let message = "the columns are separated by semicolons";
+            return Err(table.problem(table.header_line, field, message, help).into());
+        }
         table.header = header.iter().map(Header::parse).collect();
         table.check_header();
         for row in rows {
@@ -95,6 +102,14 @@ impl<'t> Table<'t> {
                 self.report(line, i, "a column without a name", "write `name [unit]` or `name`");
             } else if self.header[..i].iter().any(|before| before.name == header.name) {
                 self.report(line, i, &format!("the column `{}` is there twice", header.name), "keep one of them");
+            }
+            if !header.closed {
+                let (name, unit) = (&header.name, header.unit.as_deref().unwrap_or_default());
+                let help = match unit {
+                    "" => format!("write `{name} [unit]` or `{name}`"),
+                    unit => format!("write `{name} [{unit}]`"),
+                };
+                self.report(line, i, "the bracket of the unit is not closed", &help);
             }
         }
     }
@@ -119,6 +134,8 @@ impl<'t> Table<'t> {
     pub fn numbers(&self, name: &str, dimension: Dimension) -> Option<Numbers> {
         let index = self.position(name)?;
         let scale = match &self.header[index].unit {
+            // What is between broken brackets was reported with the header.
+            Some(_) if !self.header[index].closed => Ok(1.0),
             None => Ok(1.0),
             Some(unit) => scale(unit, dimension),
         };
@@ -179,6 +196,17 @@ impl<'t> Table<'t> {
     pub fn all<const K: usize>(&self, record: &Record, columns: [Numbers; K]) -> Option<[f64; K]> {
         let numbers = columns.map(|column| self.number(record, column));
         numbers.iter().all(Option::is_some).then(|| numbers.map(Option::unwrap_or_default))
+    }
+
+    /// The id of a row in a column; a blank one is reported, and is no id.
+    pub fn id<'r>(&self, record: &'r Record, index: usize) -> &'r str {
+        let id = self.text(record, index);
+        if id.is_empty() {
+            let name = &self.header[index].name;
+            let help = format!("give every row the id of its {name}, e.g. `1`");
+            self.report(record.line, index, &format!("the {name} has no id"), &help);
+        }
+        id
     }
 
     /// The text of a row in a column.
@@ -245,11 +273,14 @@ impl<'t> Table<'t> {
 
 impl Header {
     fn parse(text: &str) -> Self {
-        let (name, unit) = match text.split_once('[') {
-            Some((name, rest)) => (name, Some(rest.trim_end().trim_end_matches(']').trim().to_string())),
-            None => (text, None),
+        let (name, unit, closed) = match text.split_once('[') {
+            Some((name, rest)) => {
+                let inside = rest.trim_end().strip_suffix(']');
+                (name, Some(inside.unwrap_or(rest).trim().to_string()), inside.is_some())
+            }
+            None => (text, None, true),
         };
-        Self { name: name.trim().to_owned(), unit }
+        Self { name: name.trim().to_owned(), unit, closed }
     }
 }
 
@@ -300,5 +331,7 @@ mod tests {
         let header = Header::parse("q1 [deg] ");
         assert_eq!((header.name.as_str(), header.unit.as_deref()), ("q1", Some("deg")));
         assert_eq!(Header::parse("pose").unit, None);
+        let open = Header::parse("dx [um");
+        assert_eq!((open.name.as_str(), open.unit.as_deref(), open.closed), ("dx", Some("um"), false));
     }
 }

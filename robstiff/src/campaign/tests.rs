@@ -81,6 +81,8 @@ fn every_problem_of_a_table_has_its_place() {
     assert_eq!(found("huge", "a,v,0,0,1,1e307,3,4,5,6\n"), ["2:11 `1e307` is not finite"]);
     assert_eq!(found("missing", "a,v,0,0,1,2,3,4,,6\n"), ["2:17 a number is missing"]);
     assert_eq!(found("short", "a,v,0,0,1,2,3,4,5\n"), ["2:1 this row has 9 fields, the header has 10"]);
+    let blank = found("blank", "a,v,0,0,1,2,3,4,5,6\n ,v,9,0,1,2,3,4,5,6\nb, ,9,0,1,2,3,4,5,6\n,w,8,0,1,2,3,4,5,6\n");
+    assert_eq!(blank, ["3:1 the pose has no id", "4:3 the visit has no id", "5:1 the pose has no id"]);
     assert_eq!(found("none", ""), ["1:1 there are no rows"]);
     let visits = found("visit", "a,v,0,0,1,2,3,4,5,6\nb,v,9,0,1,2,3,4,5,6\n");
     assert_eq!(visits, ["3:3 visit `v` began at pose `a`, this row is at pose `b`"]);
@@ -147,6 +149,8 @@ fn every_problem_of_a_header_has_its_place() {
     );
     assert_eq!(found("twice", "pose,q1,q2,Fx,Fy,Fz,dx,dy,dz,dx"), ["1:30 the column `dx` is there twice"]);
     assert_eq!(found("unit", "pose,q1 [mm],q2,Fx,Fy,Fz,dx,dy,dz"), ["1:6 `mm` is a length, an angle is expected here"]);
+    assert_eq!(found("open", "pose,q1,q2,Fx,Fy,Fz,dx [um,dy,dz"), ["1:21 the bracket of the unit is not closed"]);
+    assert_eq!(found("semicolons", "pose;q1;q2;Fx;Fy;Fz;dx;dy;dz"), ["1:1 the columns are separated by semicolons"]);
     assert_eq!(
         found("furlong", "pose,q1,q2,Fx,Fy,Fz,dx,dy,dz [furlong]"),
         ["1:27 unknown unit `furlong` for a length"]
