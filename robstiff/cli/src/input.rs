@@ -9,7 +9,7 @@ use robstiff_robots::quantity::{self, Dimension};
 use robstiff_robots::{Description, Joint, JointKind, catalogue};
 
 use crate::failure::Failure;
-use crate::output;
+use crate::{output, text};
 
 /// Reads a robot's description, with its file's name: a file, or where there is
 /// none of that name, a robot of the catalogue.
@@ -50,14 +50,15 @@ pub fn observations(campaign: &Campaign) -> Option<PathBuf> {
 
 /// Joint coordinates as `--at` gives them: numbers in rad (or m), or
 /// quantities with their unit, separated by commas.
-pub fn coordinates(text: &str, robot: &Description) -> Result<Vec<f64>, Failure> {
-    let parts: Vec<&str> = text.split(',').collect();
+pub fn coordinates(given: &str, robot: &Description) -> Result<Vec<f64>, Failure> {
+    let parts: Vec<&str> = given.split(',').collect();
     let count = robot.joints.len();
     if parts.len() != count {
         return Err(Failure::Usage(format!(
-            "--at gives {} joint coordinates, {} has {count} joints",
-            parts.len(),
-            robot.name
+            "--at gives {}, {} has {}",
+            text::count(parts.len(), "joint coordinate"),
+            robot.name,
+            text::count(count, "joint")
         )));
     }
     let coordinate = |(index, part): (usize, &&str)| {

@@ -217,9 +217,26 @@ fn a_folder_that_cannot_be_made_is_a_failure() {
     fs::write(&file, "in the way").unwrap();
     for command in ["identify", "trace"] {
         let message = fail(1, &[command, &campaign(), "--out", &inside(Path::new(&file), "out")]);
-        assert!(message.contains("cannot write"), "{message}");
+        assert!(message.contains("cannot write") && message.contains("file is a file, not a folder"), "{message}");
+        let message = fail(1, &[command, &campaign(), "--out", &file]);
+        assert!(message.contains("file is a file, not a folder"), "{message}");
     }
     assert_eq!(names(&folder), ["file"]);
+}
+
+/// What was made for files that could not all be written goes again; what was
+/// there stays.
+#[test]
+fn a_folder_that_would_stay_empty_is_not_left_behind() {
+    let folder = folder("empty-folder");
+    let taken = inside(&folder, "taken");
+    fs::create_dir(&taken).unwrap();
+    for out in ["new/out", "taken"] {
+        let message = fail(1, &["identify", &campaign(), "--out", &inside(&folder, out), "--json", &taken]);
+        assert!(message.contains("cannot write"), "{message}");
+    }
+    assert_eq!(names(&folder), ["taken"]);
+    assert!(names(Path::new(&taken)).is_empty());
 }
 
 #[test]

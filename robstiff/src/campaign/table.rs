@@ -119,7 +119,8 @@ impl<'t> Table<'t> {
         if found == expected {
             self.records.push(Record { line, fields: row.iter().map(ToOwned::to_owned).collect() });
         } else {
-            let message = format!("this row has {found} fields, the header has {expected}");
+            let fields = if found == 1 { "field" } else { "fields" };
+            let message = format!("this row has {found} {fields}, the header has {expected}");
             self.report(
                 line,
                 found.min(expected),

@@ -272,8 +272,10 @@ fn against_the_loads(prepared: &Prepared<'_>, setting: &Setting, base: &Fitted) 
 fn too_little(setting: &Setting) -> Option<String> {
     let (poses, numbers) = (setting.problem.blocks.len(), setting.base.len());
     if poses < verdict::FEWEST_POSES {
-        return Some(format!("{poses} poses are too few to judge by, at least {} are needed", verdict::FEWEST_POSES));
+        let given = if poses == 1 { String::from("1 pose is") } else { format!("{poses} poses are") };
+        return Some(format!("{given} too few to judge by, at least {} are needed", verdict::FEWEST_POSES));
     }
     let readings = setting.problem.total.rows;
-    (readings < 2 * numbers).then(|| format!("{readings} readings are too few for {numbers} compliances"))
+    let plural = if numbers == 1 { "" } else { "s" };
+    (readings < 2 * numbers).then(|| format!("{readings} readings are too few for {numbers} compliance{plural}"))
 }
