@@ -51,6 +51,11 @@ const CASES: &[(&str, &str, &str)] = &[
     // The table.
     ("loads.csv", ",dz [um]", ",dz [N]"),
     ("loads.csv", "Fy [N]", "Fy (N)"),
+    ("loads.csv", "dx [um]", "dx [um"),
+    ("loads.csv", "dx [um]", "dx ["),
+    ("loads.csv", "pose,visit,q1 [deg],q2 [deg],Fx [N]", "pose;visit;q1 [deg];q2 [deg];Fx [N]"),
+    ("loads.csv", "b,2,45", ",2,45"),
+    ("loads.csv", "b,2,45", "b, ,45"),
     ("loads.csv", "q2 [deg]", "q3 [deg]"),
     ("loads.csv", "pose,", "poses,"),
     ("loads.csv", "a,1,0,30,200,400,600,20,40,60", "a,1,0,30,200,\"400,600\",20,40,60"),

@@ -70,6 +70,7 @@ fn compliances(estimates: &[Estimate]) -> String {
     let mut table = Table::new(1, ["compliance", "declared", "identified", "stiffness", "change", ""]);
     for estimate in estimates {
         let identified = match (&estimate.visibility, estimate.std) {
+            (Visibility::Seen, _) if estimate.at_bound => "0".to_owned(),
             (Visibility::Seen, Some(std)) => uncertain(estimate.value, std),
             (Visibility::Seen, None) => significant(estimate.value, 4),
             _ => "not seen".to_owned(),
@@ -96,11 +97,18 @@ fn stiffness_unit(unit: &str) -> &'static str {
     if unit == "m/N" { "N/m" } else { "Nm/rad" }
 }
 
-/// Sentences on what the data cannot see.
+/// Of a number that is zero because it cannot be less.
+pub fn at_bound(name: &str) -> String {
+    let what = if name.starts_with("joint ") { "this joint" } else { "it" };
+    format!("{name} is at its bound 0: the data do not follow the load on {what}")
+}
+
+/// Sentences on what the data cannot see, or see against the load.
 fn unseen(estimates: &[Estimate]) -> String {
     let mut said = String::new();
     for estimate in estimates {
         match &estimate.visibility {
+            Visibility::Seen if estimate.at_bound => said += &format!("\n{}", at_bound(&estimate.name)),
             Visibility::Seen => {}
             Visibility::Unseen => {
                 said += &format!("\n{} does not show in these data and keeps its value", estimate.name);
@@ -144,6 +152,7 @@ fn compliance(estimate: &Estimate, all: &[Estimate]) -> Value {
         "std": estimate.std.map(json::number),
         "unit": estimate.unit,
         "visibility": seen,
+        "at_bound": estimate.at_bound,
         "confounded_with": others.iter().map(|&other| all[other].name.as_str()).collect::<Value>(),
         "deviation": estimate.deviation().map(json::number),
         "noteworthy": estimate.is_noteworthy(),

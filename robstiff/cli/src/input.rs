@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use robstiff::campaign::Campaign;
 use robstiff_robots::document::Document;
 use robstiff_robots::quantity::{self, Dimension};
-use robstiff_robots::{Description, JointKind, catalogue};
+use robstiff_robots::{Description, Joint, JointKind, catalogue};
 
 use crate::failure::Failure;
-use crate::output;
+use crate::{output, text};
 
 /// Reads a robot's description, with its file's name: a file, or where there is
 /// none of that name, a robot of the catalogue.
@@ -50,14 +50,15 @@ pub fn observations(campaign: &Campaign) -> Option<PathBuf> {
 
 /// Joint coordinates as `--at` gives them: numbers in rad (or m), or
 /// quantities with their unit, separated by commas.
-pub fn coordinates(text: &str, robot: &Description) -> Result<Vec<f64>, Failure> {
-    let parts: Vec<&str> = text.split(',').collect();
+pub fn coordinates(given: &str, robot: &Description) -> Result<Vec<f64>, Failure> {
+    let parts: Vec<&str> = given.split(',').collect();
     let count = robot.joints.len();
     if parts.len() != count {
         return Err(Failure::Usage(format!(
-            "--at gives {} joint coordinates, {} has {count} joints",
-            parts.len(),
-            robot.name
+            "--at gives {}, {} has {}",
+            text::count(parts.len(), "joint coordinate"),
+            robot.name,
+            text::count(count, "joint")
         )));
     }
     let coordinate = |(index, part): (usize, &&str)| {
@@ -68,6 +69,25 @@ pub fn coordinates(text: &str, robot: &Description) -> Result<Vec<f64>, Failure>
         quantity::parse(part, dimension).map_err(|error| Failure::Usage(format!("--at, q{}: {error}", index + 1)))
     };
     parts.iter().enumerate().map(coordinate).collect()
+}
+
+/// Sentences on coordinates that the joints' limits leave out.
+pub fn outside_limits(q: &[f64], robot: &Description) -> Vec<String> {
+    // A limit in degrees is rounded, and so is what is asked for.
+    const ON_THE_LIMIT: f64 = 1e-6;
+    let outside = |(number, (&q, joint)): (usize, (&f64, &Joint))| {
+        let [low, high] = joint.limits?;
+        let (scale, unit) = match joint.kind {
+            JointKind::Revolute => (1_f64.to_degrees(), "deg"),
+            JointKind::Prismatic => (1e3, "mm"),
+        };
+        let shown = |value: f64| (value * scale * 1e6).round() / 1e6;
+        let (low_shown, high_shown) = (shown(low), shown(high));
+        (!(low - ON_THE_LIMIT..=high + ON_THE_LIMIT).contains(&q)).then(|| {
+            format!("q{number} = {} {unit} is outside its limits [{low_shown}, {high_shown}] {unit}", shown(q))
+        })
+    };
+    (1..).zip(q.iter().zip(&robot.joints)).filter_map(outside).collect()
 }
 
 /// The pose that is shown where none is asked for: zero, and for a joint that
@@ -104,6 +124,16 @@ mod tests {
             let failure = coordinates(text, &five_axes()).unwrap_err();
             assert!(matches!(&failure, Failure::Usage(message) if message.contains(part)), "{failure}");
         }
+    }
+
+    #[test]
+    fn coordinates_outside_limits_are_noted() {
+        let mut robot = five_axes();
+        robot.joints.iter_mut().for_each(|joint| joint.limits = None);
+        robot.joints[1].limits = Some([-90_f64.to_radians(), 90_f64.to_radians()]);
+        let noted = |q2: &str| outside_limits(&coordinates(&format!("90,{q2},0,0,0"), &robot).unwrap(), &robot);
+        assert_eq!(noted("100 deg"), ["q2 = 100 deg is outside its limits [-90, 90] deg"]);
+        assert_eq!(noted("-90 deg"), Vec::<String>::new());
     }
 
     #[test]

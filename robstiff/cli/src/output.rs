@@ -78,10 +78,12 @@ impl Files {
                 )));
             }
         }
+        // Dropped after the drafts, when what was made for them is empty.
+        let mut made = Folders::default();
         let mut drafts = Vec::new();
         for (path, text) in &self.files {
             // A draft that is dropped takes its file with it.
-            drafts.push(Draft::new(path, text).map_err(|error| cannot_write(path, &error))?);
+            drafts.push(Draft::new(path, text, &mut made).map_err(|error| cannot_write(path, &error))?);
         }
         let mut said = String::new();
         for ((path, _), draft) in self.files.iter().zip(drafts) {
@@ -104,6 +106,40 @@ fn same_file(one: &Path, other: &Path) -> bool {
     }
 }
 
+/// Folders that were made for files, which go again where they stay empty.
+#[derive(Default)]
+struct Folders(Vec<PathBuf>);
+
+impl Folders {
+    /// Makes a folder, and those it is in.
+    fn make(&mut self, folder: &Path) -> io::Result<()> {
+        let missing = folder.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists());
+        let missing: Vec<&Path> = missing.collect();
+        let present = folder.ancestors().nth(missing.len()).filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(file) = present.filter(|folder| !folder.is_dir()) {
+            return Err(io::Error::other(format!("{} is a file, not a folder", file.display())));
+        }
+        // The outermost first.
+        for folder in missing.into_iter().rev() {
+            match fs::create_dir(folder) {
+                Ok(()) => self.0.push(folder.to_owned()),
+                Err(_) if folder.is_dir() => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Folders {
+    fn drop(&mut self) {
+        for folder in self.0.iter().rev() {
+            // Only what is empty can be removed this way.
+            let _ = fs::remove_dir(folder);
+        }
+    }
+}
+
 /// A complete text on its way to its place.
 enum Draft {
     /// A file beside the one it becomes.
@@ -113,7 +149,7 @@ enum Draft {
 }
 
 impl Draft {
-    fn new(path: &Path, text: &str) -> io::Result<Self> {
+    fn new(path: &Path, text: &str, made: &mut Folders) -> io::Result<Self> {
         // Through a link, so that the link stays one.
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         match fs::metadata(&target) {
@@ -122,7 +158,7 @@ impl Draft {
             _ => {}
         }
         let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        fs::create_dir_all(folder)?;
+        made.make(folder)?;
         let name = target.file_name().ok_or_else(|| io::Error::from(io::ErrorKind::InvalidInput))?;
         let mut hidden = OsString::from(".");
         hidden.push(name);

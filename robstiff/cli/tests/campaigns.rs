@@ -25,7 +25,18 @@ fn identifies_joints_and_says_what_changed() {
     assert_eq!(compliances.len(), 6);
     assert_eq!(
         keys(&compliances[0]),
-        ["name", "declared", "value", "std", "unit", "visibility", "confounded_with", "deviation", "noteworthy"]
+        [
+            "name",
+            "declared",
+            "value",
+            "std",
+            "unit",
+            "visibility",
+            "at_bound",
+            "confounded_with",
+            "deviation",
+            "noteworthy"
+        ]
     );
     // Least squares on these data, by hand: 8.61e5 Nm/rad.
     assert!((compliances[0]["value"].as_f64().unwrap().recip() / 8.61e5 - 1.0).abs() < 0.01);
@@ -41,6 +52,36 @@ fn predicted(robot: &str, folder: &Path) -> Value {
     let path = inside(folder, "predicted.json");
     succeed(&["predict", robot, &campaign(), "--json", &path]);
     json(&path)
+}
+
+/// Displacements of the wrong sign are no measurement of rigid joints.
+#[test]
+fn readings_against_the_loads_are_said_to_be() {
+    let folder = folder("against");
+    let campaign = copy(&folder);
+    let text = fs::read_to_string(folder.join("loads.csv")).unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    let forces: Vec<usize> =
+        (0..).zip(header.split(',')).filter(|(_, name)| "FM".contains(&name[..1])).map(|(i, _)| i).collect();
+    let turned = rows.lines().map(|row| {
+        let turn = |(i, field): (usize, &str)| match (forces.contains(&i), field.strip_prefix('-')) {
+            (false, _) => field.to_owned(),
+            (true, Some(number)) => number.to_owned(),
+            (true, None) => format!("-{field}"),
+        };
+        row.split(',').enumerate().map(turn).collect::<Vec<_>>().join(",")
+    });
+    fs::write(folder.join("loads.csv"), format!("{header}\n{}\n", turned.collect::<Vec<_>>().join("\n"))).unwrap();
+    let told = "joint 3 is at its bound 0: the data do not follow the load on this joint";
+    let (out, path) = (inside(&folder, "out"), inside(&folder, "found.json"));
+    let page = succeed(&["identify", &campaign, "--out", &out, "--json", &path]);
+    assert!(page.contains(told) && !page.contains("-100 %"), "{page}");
+    let joint = &json(&path)["compliances"][2];
+    assert_eq!((&joint["at_bound"], &joint["visibility"]), (&true.into(), &"seen".into()));
+    assert!(joint["std"].is_null() && joint["deviation"].is_null());
+    let page = succeed(&["trace", &campaign, "--out", &out]);
+    assert!(page.contains(told) && page.contains("Verdict: insufficient"), "{page}");
+    assert!(page.contains("The readings do not follow the loads."), "{page}");
 }
 
 #[test]
@@ -176,9 +217,26 @@ fn a_folder_that_cannot_be_made_is_a_failure() {
     fs::write(&file, "in the way").unwrap();
     for command in ["identify", "trace"] {
         let message = fail(1, &[command, &campaign(), "--out", &inside(Path::new(&file), "out")]);
-        assert!(message.contains("cannot write"), "{message}");
+        assert!(message.contains("cannot write") && message.contains("file is a file, not a folder"), "{message}");
+        let message = fail(1, &[command, &campaign(), "--out", &file]);
+        assert!(message.contains("file is a file, not a folder"), "{message}");
     }
     assert_eq!(names(&folder), ["file"]);
+}
+
+/// What was made for files that could not all be written goes again; what was
+/// there stays.
+#[test]
+fn a_folder_that_would_stay_empty_is_not_left_behind() {
+    let folder = folder("empty-folder");
+    let taken = inside(&folder, "taken");
+    fs::create_dir(&taken).unwrap();
+    for out in ["new/out", "taken"] {
+        let message = fail(1, &["identify", &campaign(), "--out", &inside(&folder, out), "--json", &taken]);
+        assert!(message.contains("cannot write"), "{message}");
+    }
+    assert_eq!(names(&folder), ["taken"]);
+    assert!(names(Path::new(&taken)).is_empty());
 }
 
 #[test]

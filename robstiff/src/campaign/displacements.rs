@@ -5,8 +5,8 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
-use robstiff_robots::Description;
 use robstiff_robots::quantity::Dimension;
+use robstiff_robots::{Description, Joint};
 
 use super::table::{Numbers, Record, Table};
 use super::{Displacements, Frame, Observation};
@@ -49,15 +49,16 @@ pub fn read(
     let (mut of_pose, mut of_visit): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
     let mut complete = true;
     for record in &table.records {
-        let pose = index_of(&mut data.poses, table.text(record, columns.pose));
+        let pose = index_of(&mut data.poses, table.id(record, columns.pose));
         let visit = match columns.visit {
-            Some(column) => index_of(&mut data.visits, table.text(record, column)),
+            Some(column) => index_of(&mut data.visits, table.id(record, column)),
             None => {
                 data.visits.push(format!("line {}", record.line));
                 data.visits.len() - 1
             }
         };
-        let Some(row) = observation(table, &columns, record, pose, visit) else {
+        let named = !data.poses[pose].is_empty() && !data.visits[visit].is_empty();
+        let Some(row) = observation(table, &columns, record, pose, visit).filter(|_| named) else {
             complete = false;
             // Pose and visit stay without a row to compare with.
             of_pose.resize(data.poses.len(), usize::MAX);
@@ -81,7 +82,48 @@ pub fn read(
         }
         data.rows.push(row);
     }
+    for (index, (joint, &column)) in robot.joints.iter().zip(&columns.q).enumerate() {
+        check_range(table, joint, index, column, &data.rows);
+    }
     complete.then_some(data)
+}
+
+/// Coordinates beyond a joint's limits by less than this are on them (rad or
+/// m): a limit in degrees is rounded.
+const ON_THE_LIMIT: f64 = 1e-6;
+
+/// No joint is wound up further than this (rad); degrees that are read as
+/// radians are.
+const TWO_TURNS: f64 = 2.0 * core::f64::consts::TAU;
+
+/// Warns of coordinates that a joint (by its index) does not reach.
+fn check_range(table: &Table<'_>, joint: &Joint, index: usize, column: Numbers, rows: &[Observation]) {
+    let unit_is_given = table.has_unit(column);
+    let (unit, scale) = match joint.kind {
+        JointKind::Revolute => ("deg", 1_f64.to_radians()),
+        JointKind::Prismatic => ("mm", 1e-3),
+    };
+    let warn = |what: &str, is_outside: &dyn Fn(f64) -> bool| {
+        let mut outside = rows.iter().filter(|row| is_outside(row.q[index]));
+        let Some(first) = outside.next() else { return false };
+        let (count, line, q) = (1 + outside.count(), first.line, index + 1);
+        let rows = if count == 1 { "row" } else { "rows" };
+        let ask = match joint.kind {
+            _ if unit_is_given => String::new(),
+            JointKind::Revolute => format!(": are the angles in degrees? write `q{q} [deg]`"),
+            JointKind::Prismatic => format!(": are the lengths in millimetres? write `q{q} [mm]`"),
+        };
+        table.warn(&format!("q{q} is {what} in {count} {rows}, first on line {line}{ask}"));
+        true
+    };
+    let limited = joint.limits.is_some_and(|[low, high]| {
+        let shown = |limit: f64| (limit / scale * 1e6).round() / 1e6;
+        let what = format!("outside its limits [{}, {}] {unit}", shown(low), shown(high));
+        warn(&what, &|q| !(low - ON_THE_LIMIT..=high + ON_THE_LIMIT).contains(&q))
+    });
+    if !limited && !unit_is_given && joint.kind == JointKind::Revolute {
+        warn("more than two turns", &|q| q.abs() > TWO_TURNS);
+    }
 }
 
 fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {

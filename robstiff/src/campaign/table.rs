@@ -24,12 +24,15 @@ pub struct Table<'t> {
     pub records: Vec<Record>,
     asked_for: RefCell<Vec<usize>>,
     problems: RefCell<Vec<Diagnostic>>,
+    warnings: RefCell<Vec<String>>,
 }
 
 /// `name [unit]`.
 struct Header {
     name: String,
     unit: Option<String>,
+    /// Whether the bracket of the unit is closed.
+    closed: bool,
 }
 
 /// One row.
@@ -60,6 +63,7 @@ impl<'t> Table<'t> {
             records: Vec::new(),
             asked_for: RefCell::default(),
             problems: RefCell::default(),
+            warnings: RefCell::default(),
         };
         let mut reader = csv::ReaderBuilder::new()
             .has_headers(false)
@@ -71,6 +75,11 @@ impl<'t> Table<'t> {
             return Err(table.problem(1, 0, "the file is empty", "the first line names the columns").into());
         };
         table.header_line = line_of(&header, text);
+        if let Some(field) = header.iter().position(|name| name.contains(';')) {
+            let help = "the separator is a comma, and the decimal sign a point: `pose,q1 [deg],Fx [N]`";
+            let message = "the columns are separated by semicolons";
+            return Err(table.problem(table.header_line, field, message, help).into());
+        }
         table.header = header.iter().map(Header::parse).collect();
         table.check_header();
         for row in rows {
@@ -94,6 +103,14 @@ impl<'t> Table<'t> {
             } else if self.header[..i].iter().any(|before| before.name == header.name) {
                 self.report(line, i, &format!("the column `{}` is there twice", header.name), "keep one of them");
             }
+            if !header.closed {
+                let (name, unit) = (&header.name, header.unit.as_deref().unwrap_or_default());
+                let help = match unit {
+                    "" => format!("write `{name} [unit]` or `{name}`"),
+                    unit => format!("write `{name} [{unit}]`"),
+                };
+                self.report(line, i, "the bracket of the unit is not closed", &help);
+            }
         }
     }
 
@@ -102,7 +119,8 @@ impl<'t> Table<'t> {
         if found == expected {
             self.records.push(Record { line, fields: row.iter().map(ToOwned::to_owned).collect() });
         } else {
-            let message = format!("this row has {found} fields, the header has {expected}");
+            let fields = if found == 1 { "field" } else { "fields" };
+            let message = format!("this row has {found} {fields}, the header has {expected}");
             self.report(
                 line,
                 found.min(expected),
@@ -117,6 +135,8 @@ impl<'t> Table<'t> {
     pub fn numbers(&self, name: &str, dimension: Dimension) -> Option<Numbers> {
         let index = self.position(name)?;
         let scale = match &self.header[index].unit {
+            // What is between broken brackets was reported with the header.
+            Some(_) if !self.header[index].closed => Ok(1.0),
             None => Ok(1.0),
             Some(unit) => scale(unit, dimension),
         };
@@ -179,6 +199,17 @@ impl<'t> Table<'t> {
         numbers.iter().all(Option::is_some).then(|| numbers.map(Option::unwrap_or_default))
     }
 
+    /// The id of a row in a column; a blank one is reported, and is no id.
+    pub fn id<'r>(&self, record: &'r Record, index: usize) -> &'r str {
+        let id = self.text(record, index);
+        if id.is_empty() {
+            let name = &self.header[index].name;
+            let help = format!("give every row the id of its {name}, e.g. `1`");
+            self.report(record.line, index, &format!("the {name} has no id"), &help);
+        }
+        id
+    }
+
     /// The text of a row in a column.
     pub fn text<'r>(&self, record: &'r Record, index: usize) -> &'r str {
         &record.fields[index]
@@ -195,6 +226,16 @@ impl<'t> Table<'t> {
     /// Reports a problem with a row in a column of numbers.
     pub fn report_number(&self, record: &Record, column: Numbers, message: &str, help: &str) {
         self.report(record.line, column.index, message, help);
+    }
+
+    /// Whether the header gives a column its unit.
+    pub fn has_unit(&self, column: Numbers) -> bool {
+        self.header[column.index].unit.is_some()
+    }
+
+    /// Warns of something that is no problem for the reader.
+    pub fn warn(&self, message: &str) {
+        self.warnings.borrow_mut().push(format!("{}: {message}", self.file));
     }
 
     fn problem(&self, line: usize, field: usize, message: &str, help: &str) -> Diagnostic {
@@ -225,18 +266,22 @@ impl<'t> Table<'t> {
         }
         let asked_for = self.asked_for.into_inner();
         let unknown = self.header.iter().enumerate().filter(|(i, _)| !asked_for.contains(i));
-        let warnings = unknown.map(|(_, header)| format!("{}: the column `{}` is not used", self.file, header.name));
-        Ok((value.expect("a value was given up without a problem being reported"), warnings.collect()))
+        let mut warnings = self.warnings.into_inner();
+        warnings.extend(unknown.map(|(_, header)| format!("{}: the column `{}` is not used", self.file, header.name)));
+        Ok((value.expect("a value was given up without a problem being reported"), warnings))
     }
 }
 
 impl Header {
     fn parse(text: &str) -> Self {
-        let (name, unit) = match text.split_once('[') {
-            Some((name, rest)) => (name, Some(rest.trim_end().trim_end_matches(']').trim().to_string())),
-            None => (text, None),
+        let (name, unit, closed) = match text.split_once('[') {
+            Some((name, rest)) => {
+                let inside = rest.trim_end().strip_suffix(']');
+                (name, Some(inside.unwrap_or(rest).trim().to_string()), inside.is_some())
+            }
+            None => (text, None, true),
         };
-        Self { name: name.trim().to_owned(), unit }
+        Self { name: name.trim().to_owned(), unit, closed }
     }
 }
 
@@ -287,5 +332,7 @@ mod tests {
         let header = Header::parse("q1 [deg] ");
         assert_eq!((header.name.as_str(), header.unit.as_deref()), ("q1", Some("deg")));
         assert_eq!(Header::parse("pose").unit, None);
+        let open = Header::parse("dx [um");
+        assert_eq!((open.name.as_str(), open.unit.as_deref(), open.closed), ("dx", Some("um"), false));
     }
 }

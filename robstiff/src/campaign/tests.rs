@@ -81,12 +81,42 @@ fn every_problem_of_a_table_has_its_place() {
     assert_eq!(found("huge", "a,v,0,0,1,1e307,3,4,5,6\n"), ["2:11 `1e307` is not finite"]);
     assert_eq!(found("missing", "a,v,0,0,1,2,3,4,,6\n"), ["2:17 a number is missing"]);
     assert_eq!(found("short", "a,v,0,0,1,2,3,4,5\n"), ["2:1 this row has 9 fields, the header has 10"]);
+    let blank = found("blank", "a,v,0,0,1,2,3,4,5,6\n ,v,9,0,1,2,3,4,5,6\nb, ,9,0,1,2,3,4,5,6\n,w,8,0,1,2,3,4,5,6\n");
+    assert_eq!(blank, ["3:1 the pose has no id", "4:3 the visit has no id", "5:1 the pose has no id"]);
     assert_eq!(found("none", ""), ["1:1 there are no rows"]);
     let visits = found("visit", "a,v,0,0,1,2,3,4,5,6\nb,v,9,0,1,2,3,4,5,6\n");
     assert_eq!(visits, ["3:3 visit `v` began at pose `a`, this row is at pose `b`"]);
     let poses = found("pose", "a,v,0,0,1,2,3,4,5,6\na,w,0.01,0,1,2,3,4,5,6\n");
     assert_eq!(poses, ["3:5 pose `a` has another q1 in line 2"]);
     assert_eq!(problems("empty", CAMPAIGN, ""), ["1:1 the file is empty"]);
+}
+
+/// Degrees in a column without a unit are radians that no joint reaches.
+#[test]
+fn coordinates_that_joints_do_not_reach_are_warned_of() {
+    let read = |name: &str, header: &str, rows: &str| {
+        let folder = Folder::new(name, CAMPAIGN, &format!("{header}\n{rows}"));
+        let robot = ROBOT.replace("a: 1 m,", "a: 1 m, limits: [-90 deg, 90 deg],");
+        std::fs::write(folder.0.join("robot.yaml"), robot).expect("a temporary file");
+        let warnings = folder.read().expect("nothing is wrong").warnings;
+        let file = format!("{}: ", folder.0.join("loads.csv").display());
+        warnings.into_iter().map(|warning| warning.replace(&file, "")).collect::<Vec<_>>()
+    };
+    let rows = "a,90,12,1,2,3,4,5,6\nb,-90,13,1,2,3,4,5,6\n";
+    assert_eq!(
+        read("radians", "pose,q1,q2,Fx,Fy,Fz,dx,dy,dz", rows),
+        [
+            "q1 is outside its limits [-90, 90] deg in 2 rows, first on line 2: \
+             are the angles in degrees? write `q1 [deg]`",
+            "q2 is more than two turns in 1 row, first on line 3: are the angles in degrees? write `q2 [deg]`",
+        ]
+    );
+    let header = "pose,q1 [deg],q2 [rad],Fx,Fy,Fz,dx,dy,dz";
+    assert_eq!(read("on-the-limit", header, rows), Vec::<String>::new());
+    assert_eq!(
+        read("degrees", header, "a,0,0,1,2,3,4,5,6\nb,91,0,1,2,3,4,5,6\n"),
+        ["q1 is outside its limits [-90, 90] deg in 1 row, first on line 3"]
+    );
 }
 
 /// Empty lines are skipped, and counted.
@@ -119,6 +149,8 @@ fn every_problem_of_a_header_has_its_place() {
     );
     assert_eq!(found("twice", "pose,q1,q2,Fx,Fy,Fz,dx,dy,dz,dx"), ["1:30 the column `dx` is there twice"]);
     assert_eq!(found("unit", "pose,q1 [mm],q2,Fx,Fy,Fz,dx,dy,dz"), ["1:6 `mm` is a length, an angle is expected here"]);
+    assert_eq!(found("open", "pose,q1,q2,Fx,Fy,Fz,dx [um,dy,dz"), ["1:21 the bracket of the unit is not closed"]);
+    assert_eq!(found("semicolons", "pose;q1;q2;Fx;Fy;Fz;dx;dy;dz"), ["1:1 the columns are separated by semicolons"]);
     assert_eq!(
         found("furlong", "pose,q1,q2,Fx,Fy,Fz,dx,dy,dz [furlong]"),
         ["1:27 unknown unit `furlong` for a length"]

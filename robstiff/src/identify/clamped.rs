@@ -43,6 +43,8 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
             std: slope.and_then(|(_, std)| std),
             unit: unit_of(&campaign.robot, number.column),
             visibility: if slope.is_some() { Visibility::Seen } else { Visibility::Unseen },
+            // A slope against the load is an error above.
+            at_bound: false,
         });
     }
     if estimates.iter().all(|estimate| estimate.visibility != Visibility::Seen) {

@@ -1,7 +1,7 @@
 //! Compliances from displacements at the tool: generalised least squares over
 //! all poses, with compliances that are not negative.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use std::vec::Vec;
 
 use super::baseline::with_values;
@@ -44,9 +44,14 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
 
 /// The rms of the readings against the description as declared (m).
 pub fn declared_rms(prepared: &Prepared<'_>, problem: &Problem, rows: impl IntoIterator<Item = usize>) -> f64 {
+    rms(&declared_residuals(prepared, problem), problem.axes, rows)
+}
+
+/// What the description as declared leaves of the readings, stacked; (m, rad).
+pub fn declared_residuals(prepared: &Prepared<'_>, problem: &Problem) -> DVector<f64> {
     let seen = prepared.seen();
-    let values = nalgebra::DVector::from_fn(seen.len(), |k, _| prepared.own[seen[k]].value);
-    rms(&problem.residuals(&seen, &values), problem.axes, rows)
+    let values = DVector::from_fn(seen.len(), |k, _| prepared.own[seen[k]].value);
+    problem.residuals(&seen, &values)
 }
 
 /// A matrix of some columns among all; the identity elsewhere.

@@ -35,6 +35,7 @@ pub use baseline::Visibility;
 pub use predict::{Prediction, predict};
 
 use self::baseline::Declared;
+use self::normal::Sign;
 use self::prepare::Prepared;
 use self::samples::Column;
 use crate::JointKind;
@@ -98,12 +99,15 @@ pub struct Estimate {
     pub declared: f64,
     /// What it is now; the declared value where the data do not see it.
     pub value: f64,
-    /// One standard deviation, where it could be estimated.
+    /// One standard deviation, where it could be estimated; not at a bound.
     pub std: Option<f64>,
     /// Its unit.
     pub unit: &'static str,
     /// Whether the data see it.
     pub visibility: Visibility,
+    /// Whether it is zero only because a compliance is not negative: the data
+    /// see it, but do not follow the load on it.
+    pub at_bound: bool,
 }
 
 /// Beyond this deviation from the declared value a joint deserves a look: the
@@ -112,9 +116,10 @@ pub const NOTEWORTHY_DEVIATION: f64 = 0.25;
 
 impl Estimate {
     /// The relative deviation from the declared value; `None` where nothing
-    /// was declared or seen.
+    /// was declared or seen, or the value is but a bound.
     pub fn deviation(&self) -> Option<f64> {
-        (self.declared != 0.0 && self.visibility == Visibility::Seen).then(|| self.value / self.declared - 1.0)
+        (self.declared != 0.0 && self.visibility == Visibility::Seen && !self.at_bound)
+            .then(|| self.value / self.declared - 1.0)
     }
 
     /// Whether the deviation is beyond [`NOTEWORTHY_DEVIATION`].
@@ -143,15 +148,26 @@ pub(crate) fn estimates(
     columns: &[usize],
     covariance: &DMatrix<f64>,
 ) -> Vec<Estimate> {
-    let one = |(i, number): (usize, &Declared)| Estimate {
-        name: element_name(description, number),
-        declared: number.value,
-        value: values[i],
-        std: columns.iter().position(|&column| column == i).map(|k| covariance[(k, k)].sqrt()),
-        unit: unit_of(description, number.column),
-        visibility: prepared.visibility[i].clone(),
+    let one = |(i, number): (usize, &Declared)| {
+        let fitted = columns.iter().position(|&column| column == i);
+        let at_bound = fitted.is_some() && is_at_bound(number, values[i]);
+        Estimate {
+            name: element_name(description, number),
+            declared: number.value,
+            value: values[i],
+            std: fitted.filter(|_| !at_bound).map(|k| covariance[(k, k)].sqrt()),
+            unit: unit_of(description, number.column),
+            visibility: prepared.visibility[i].clone(),
+            at_bound,
+        }
     };
     prepared.own.iter().enumerate().map(one).collect()
+}
+
+/// Whether a fitted value is where the solution was clipped. What is declared
+/// zero and comes out zero is no surprise.
+pub(crate) fn is_at_bound(number: &Declared, value: f64) -> bool {
+    number.sign == Sign::Nonnegative && number.value > 0.0 && value == 0.0
 }
 
 /// `joint 3`, or an effect's full name with its number's where it has several.

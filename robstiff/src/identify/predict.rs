@@ -59,7 +59,8 @@ pub fn predict(description: &Description, campaign: &Campaign) -> Result<Predict
     };
     let (expected, found) = (campaign.robot.joints.len(), description.joints.len());
     if expected != found {
-        return Err(Error(std::format!("the campaign is of a robot with {expected} joints, this one has {found}")));
+        let joints = if expected == 1 { "joint" } else { "joints" };
+        return Err(Error(std::format!("the campaign is of a robot with {expected} {joints}, this one has {found}")));
     }
     let samples = Samples::of_description(description, data);
     let mut predicted: DVector<f64> = DVector::zeros(samples.rows.len() * samples.axes);

@@ -41,7 +41,7 @@ use self::selection::{Selection, p_values, select};
 use crate::Effect;
 use crate::campaign::Campaign;
 use crate::identify::prepare::Prepared;
-use crate::identify::{Error, Estimate, NoiseSource};
+use crate::identify::{Error, Estimate, NoiseSource, is_at_bound};
 
 /// How to trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,7 +85,7 @@ pub struct Trace {
     pub identified: Misfit,
     /// The effects named, the one that explains most first.
     pub effects: Vec<NamedEffect>,
-    /// The error with them.
+    /// The error with them; as declared where the data cannot tell.
     pub after: Misfit,
     /// The conclusion.
     pub verdict: Verdict,
@@ -97,7 +97,8 @@ pub struct Trace {
     pub depends_on: Vec<String>,
     /// Measurements that would separate what these cannot tell apart.
     pub next: Vec<Proposal>,
-    /// The description with the effects and the compliances fitted with them.
+    /// The description with the effects and the compliances fitted with them;
+    /// as declared where the data cannot tell.
     pub description: Description,
     /// The description's own numbers without the effects.
     pub estimates_before: Vec<Estimate>,
@@ -173,7 +174,7 @@ pub struct RowResidual {
     pub pose: usize,
     /// With the description's own numbers identified again.
     pub before: [f64; 3],
-    /// With the effects.
+    /// With the effects; as declared where the data cannot tell.
     pub after: [f64; 3],
 }
 
@@ -186,7 +187,7 @@ pub struct PoseError {
     pub held_out: bool,
     /// With the description's own numbers identified again.
     pub before: f64,
-    /// With the effects.
+    /// With the effects; as declared where the data cannot tell.
     pub after: f64,
 }
 
@@ -200,8 +201,8 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
     let prepared = Prepared::new(campaign)?;
     let setting = setting::setting(campaign, &prepared);
     let yardstick = yardstick(&prepared);
-    if let Some(why) = too_little(&setting) {
-        let base = setting.fit(&[]).map_err(Error)?;
+    let base = setting.fit(&[]).map_err(Error)?;
+    if let Some(why) = too_little(&setting).or_else(|| against_the_loads(&prepared, &setting, &base)) {
         let found = Found::nothing(base, Verdict::Insufficient, why);
         return Ok(report(campaign, &prepared, &setting, &found, options));
     }
@@ -255,12 +256,26 @@ fn yardstick(prepared: &Prepared<'_>) -> Yardstick {
     }
 }
 
+/// That the readings do not follow the loads, if so: every joint they show
+/// would be less than rigid. Whatever is found then, is found in readings of
+/// something else, or of the wrong sign.
+fn against_the_loads(prepared: &Prepared<'_>, setting: &Setting, base: &Fitted) -> Option<String> {
+    let numbers = base.fit.columns.iter().zip(base.fit.coefficients.iter());
+    let mut joints = numbers.filter(|&(&column, _)| column < setting.samples.joints()).peekable();
+    joints.peek()?;
+    joints
+        .all(|(&column, &value)| is_at_bound(&prepared.own[column], value))
+        .then(|| String::from("the readings do not follow the loads"))
+}
+
 /// Why a campaign cannot tell what is missing, if so.
 fn too_little(setting: &Setting) -> Option<String> {
     let (poses, numbers) = (setting.problem.blocks.len(), setting.base.len());
     if poses < verdict::FEWEST_POSES {
-        return Some(format!("{poses} poses are too few to judge by, at least {} are needed", verdict::FEWEST_POSES));
+        let given = if poses == 1 { String::from("1 pose is") } else { format!("{poses} poses are") };
+        return Some(format!("{given} too few to judge by, at least {} are needed", verdict::FEWEST_POSES));
     }
     let readings = setting.problem.total.rows;
-    (readings < 2 * numbers).then(|| format!("{readings} readings are too few for {numbers} compliances"))
+    let plural = if numbers == 1 { "" } else { "s" };
+    (readings < 2 * numbers).then(|| format!("{readings} readings are too few for {numbers} compliance{plural}"))
 }

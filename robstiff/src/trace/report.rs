@@ -11,13 +11,13 @@ use super::alias::same_as;
 use super::candidate::with_numbers;
 use super::model::{Fitted, Setting};
 use super::selection::Selection;
-use super::{EffectParameter, Found, Misfit, NamedEffect, Options, PoseError, RowResidual, Trace};
+use super::{EffectParameter, Found, Misfit, NamedEffect, Options, PoseError, RowResidual, Trace, Verdict};
 use crate::campaign::Campaign;
 use crate::identify::baseline::{sign_of, with_values};
-use crate::identify::displacement::declared_rms;
+use crate::identify::displacement::{declared_residuals, declared_rms};
 use crate::identify::normal::Sign;
 use crate::identify::prepare::Prepared;
-use crate::identify::problem::{Block, rms};
+use crate::identify::problem::{Block, Problem, rms};
 use crate::identify::samples::Column;
 use crate::identify::uncertainty::covariance;
 use crate::identify::{Estimate, estimates, parameter_name, unit_of};
@@ -47,7 +47,18 @@ pub fn report(
     let effects = effects(campaign, setting, &found.selection, &spread, structure, options);
     let values: Vec<f64> = estimates.iter().map(|estimate| estimate.value).collect();
     let held_out = problem.held_out.iter().map(|block| prepared.data.poses[block.pose].clone()).collect();
-    let (residuals, pose_errors) = residuals(prepared, setting, &base, model);
+    let left = |fitted: &Fitted| problem.residuals(&fitted.fit.columns, &fitted.fit.coefficients);
+    let declared = Misfit {
+        rms: declared_rms(prepared, problem, fitted_rows()),
+        holdout_rms: declared_rms(prepared, problem, unseen_rows().iter().flat_map(|b| b.rows.iter().copied())),
+    };
+    // Data that can tell nothing change nothing.
+    let (description, after, left_after) = if found.verdict == Verdict::Insufficient {
+        (campaign.robot.clone(), declared, declared_residuals(prepared, problem))
+    } else {
+        (described(campaign, &values, &effects), misfit(model), left(model))
+    };
+    let (residuals, pose_errors) = residuals(prepared, problem, &left(&base), &left_after);
     Trace {
         robot: campaign.robot.name.clone(),
         rows: prepared.samples.rows.len(),
@@ -55,18 +66,15 @@ pub fn report(
         held_out,
         noise,
         noise_source,
-        declared: Misfit {
-            rms: declared_rms(prepared, problem, fitted_rows()),
-            holdout_rms: declared_rms(prepared, problem, unseen_rows().iter().flat_map(|b| b.rows.iter().copied())),
-        },
+        declared,
         identified: misfit(&base),
-        after: misfit(model),
+        after,
         verdict: found.verdict,
         why: found.why.clone(),
         unexplained: found.left.as_ref().map_or(0.0, |left| left.fraction),
         depends_on: found.left.as_ref().map_or_else(Vec::new, |left| left.depends_on.clone()),
         next: Vec::new(),
-        description: described(campaign, &values, &effects),
+        description,
         effects,
         estimates_before,
         estimates,
@@ -172,27 +180,24 @@ fn described(campaign: &Campaign, values: &[f64], effects: &[NamedEffect]) -> De
 
 fn residuals(
     prepared: &Prepared<'_>,
-    setting: &Setting,
-    base: &Fitted,
-    model: &Fitted,
+    problem: &Problem,
+    before: &DVector<f64>,
+    after: &DVector<f64>,
 ) -> (Vec<RowResidual>, Vec<PoseError>) {
-    let problem = &setting.problem;
-    let of = |fitted: &Fitted| problem.residuals(&fitted.fit.columns, &fitted.fit.coefficients);
-    let (before, after) = (of(base), of(model));
     let three =
         |residuals: &DVector<f64>, row: usize| core::array::from_fn(|axis| residuals[row * problem.axes + axis]);
     let rows = prepared.data.rows.iter().enumerate();
     let rows = rows.map(|(i, row)| RowResidual {
         line: row.line,
         pose: row.pose,
-        before: three(&before, i),
-        after: three(&after, i),
+        before: three(before, i),
+        after: three(after, i),
     });
     let pose = |block: &Block, held_out| PoseError {
         pose: prepared.data.poses[block.pose].to_string(),
         held_out,
-        before: rms(&before, problem.axes, block.rows.iter().copied()),
-        after: rms(&after, problem.axes, block.rows.iter().copied()),
+        before: rms(before, problem.axes, block.rows.iter().copied()),
+        after: rms(after, problem.axes, block.rows.iter().copied()),
     };
     let trained = problem.blocks.iter().map(|block| pose(block, false));
     let poses = trained.chain(problem.held_out.iter().map(|block| pose(block, true)));

@@ -13,8 +13,8 @@ use super::bootstrap::ScoreTest;
 use super::*;
 use crate::campaign::{Data, Displacements, Frame, Noise, Observation};
 use crate::elements::Parameter;
-use crate::identify::predict;
 use crate::identify::samples::{Column, Samples};
+use crate::identify::{Visibility, predict};
 use crate::samples::five_axis;
 
 const SIGMA: f64 = 1e-5;
@@ -161,6 +161,40 @@ fn few_poses_are_insufficient() {
     let found = traced(&campaign(&five_axis(), 5, &[TILT_3], 3));
     assert_eq!(found.verdict, Verdict::Insufficient);
     assert!(found.effects.is_empty() && found.why.contains("5 poses are too few"));
+}
+
+/// Data that can tell nothing change nothing, and the errors are those of the
+/// description that is written.
+#[test]
+fn insufficient_data_leave_the_description_as_declared() {
+    let mut declared = five_axis();
+    declared.joints.iter_mut().flat_map(|joint| &mut joint.compliance).for_each(|part| part.value *= 0.6);
+    let mut campaign = campaign(&five_axis(), 5, &[TILT_3], 3);
+    campaign.robot = declared.clone();
+    let found = traced(&campaign);
+    assert_eq!((found.verdict, &found.description), (Verdict::Insufficient, &declared));
+    assert_eq!(found.after, found.declared);
+    assert!(found.identified.rms < found.declared.rms);
+    let predicted = predict(&found.description, &campaign).expect("the same robot");
+    assert!((predicted.rms / found.after.rms - 1.0).abs() < 1e-9);
+    let of_rows = found.residuals.iter().flat_map(|row| row.after).map(|r| r * r).sum::<f64>();
+    assert!(((of_rows / (3.0 * found.rows as f64)).sqrt() / found.after.rms - 1.0).abs() < 1e-9);
+}
+
+/// Readings of the wrong sign say of every joint that it is less than rigid,
+/// and so nothing of what is missing.
+#[test]
+fn readings_against_the_loads_are_insufficient() {
+    let mut campaign = campaign(&five_axis(), 16, &[TILT_3], 3);
+    if let Data::Displacement(data) = &mut campaign.data {
+        data.rows.iter_mut().for_each(|row| row.displacement = row.displacement.map(|reading| -reading));
+    }
+    let found = traced(&campaign);
+    assert_eq!((found.verdict, &found.description), (Verdict::Insufficient, &campaign.robot));
+    assert_eq!(found.why, "the readings do not follow the loads");
+    let seen = || found.estimates.iter().filter(|estimate| estimate.visibility == Visibility::Seen);
+    assert!(seen().count() > 0 && seen().all(|estimate| estimate.at_bound && estimate.value == 0.0));
+    assert!(seen().all(|estimate| estimate.std.is_none() && !estimate.is_noteworthy()));
 }
 
 /// In the standard convention joint 1 stands on the base, so its tilt is that

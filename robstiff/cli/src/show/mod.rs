@@ -35,6 +35,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(text) => input::coordinates(text, &robot)?,
         None => input::default_coordinates(&robot),
     };
+    for note in input::outside_limits(&q, &robot) {
+        output::complain(format_args!("note: {note}"));
+    }
     let shown = Shown::new(&robot, q);
     let mut files = Files::default();
     files.protect(&arguments.robot);

@@ -5,7 +5,7 @@ use robstiff::trace::{NamedEffect, Proposal, Trace, Verdict};
 use robstiff_robots::Joint;
 
 use crate::effect;
-use crate::identify::source_of;
+use crate::identify::{at_bound, source_of};
 use crate::text::{Table, and, count, decimals, micrometres, probability, uncertain};
 
 /// The finding in one sentence.
@@ -32,6 +32,11 @@ pub fn headline(trace: &Trace) -> String {
 /// What follows the finding, a sentence each.
 pub fn summary(trace: &Trace) -> Vec<String> {
     let mut sentences = vec![sentence(&trace.why)];
+    if trace.verdict == Verdict::Insufficient {
+        sentences.push("The description keeps its declared values.".to_owned());
+    }
+    let clipped = trace.estimates.iter().filter(|estimate| estimate.at_bound);
+    sentences.extend(clipped.map(|estimate| at_bound(&estimate.name) + "."));
     for named in &trace.effects {
         if !named.same_as.is_empty() {
             sentences.push(format!("These data cannot tell {} from {}.", named.effect, and(&named.same_as)));
