@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use robstiff::campaign::Campaign;
 use robstiff::identify::{Estimate, Identification, NoiseSource, Visibility, identify};
+use robstiff_robots::Description;
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
@@ -46,6 +47,7 @@ fn page(campaign: &Campaign, found: &Identification) -> String {
     };
     page += &compliances(&found.estimates);
     page += &unseen(&found.estimates);
+    page += &compound(&found.description);
     if let (Some(declared), Some(rms)) = (found.rms_declared, found.rms) {
         page += &format!("\nerror: {} um as declared, {} um identified", micrometres(declared), micrometres(rms));
         page += &match found.noise {
@@ -101,6 +103,17 @@ fn stiffness_unit(unit: &str) -> &'static str {
 pub fn at_bound(name: &str) -> String {
     let what = if name.starts_with("joint ") { "this joint" } else { "it" };
     format!("{name} is at its bound 0: the data do not follow the load on {what}")
+}
+
+/// Sentences on joints whose compliance is a sum of parts.
+fn compound(description: &Description) -> String {
+    let joints = (1..).zip(&description.joints).filter(|(_, joint)| joint.compliance.len() > 1);
+    joints
+        .map(|(number, joint)| {
+            let parts: Vec<String> = joint.compliance.iter().map(|part| part.name.clone()).collect();
+            format!("\njoint {number}: a load shows the sum of {}, which keep their proportion\n", and(&parts))
+        })
+        .collect()
 }
 
 /// Sentences on what the data cannot see, or see against the load.

@@ -248,7 +248,9 @@ fn another_robot_is_refused_by_its_joints() {
 #[test]
 fn clamped_axes_are_identified_but_not_traced() {
     let folder = folder("clamped");
-    fs::copy(measured().join("../../rv130hsc.yaml"), folder.join("robot.yaml")).unwrap();
+    let robot = fs::read_to_string(measured().join("../../rv130hsc.yaml")).unwrap();
+    let robot = robot.replace("compliance: 78.0e-7 rad/Nm", "compliance: {gear: 60e-7 rad/Nm, belt: 20e-7 rad/Nm}");
+    fs::write(folder.join("robot.yaml"), robot).unwrap();
     let campaign = inside(&folder, "campaign.yaml");
     fs::write(&campaign, "name: axis by axis\nrobot: robot.yaml\nobservations: axes.csv\nkind: clamped\n").unwrap();
     let rows = "axis,torque [Nm],deflection [urad]\n1,100,30\n1,200,60\n1,-300,-90\n5,10,78\n5,20,160\n";
@@ -256,6 +258,9 @@ fn clamped_axes_are_identified_but_not_traced() {
     let (out, path) = (inside(&folder, "out"), inside(&folder, "found.json"));
     let page = succeed(&["identify", &campaign, "--out", &out, "--json", &path]);
     assert!(page.contains("joint 2 does not show in these data"), "{page}");
+    assert!(page.contains("joint 5: a load shows the sum of gear and belt, which keep their proportion"), "{page}");
+    let parts = &robstiff_robots::Description::read(folder.join("out/robot.yaml")).unwrap().joints[4].compliance;
+    assert!((parts[0].value - 5.97e-6).abs() < 1e-15 && (parts[1].value - 1.99e-6).abs() < 1e-15, "{parts:?}");
     let found = json(&path);
     assert!((found["compliances"][0]["value"].as_f64().unwrap() - 3e-7).abs() < 1e-18);
     assert_eq!(found["compliances"][1]["visibility"], "unseen");
