@@ -1,10 +1,8 @@
 //! What commands are given: robots by path or by name, and joint coordinates.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use robstiff::campaign::Campaign;
-use robstiff_robots::document::Document;
 use robstiff_robots::quantity::{self, Dimension};
 use robstiff_robots::{Description, Joint, JointKind, catalogue};
 
@@ -37,15 +35,6 @@ pub fn campaign(path: &Path) -> Result<Campaign, Failure> {
         output::complain(format_args!("warning: {warning}"));
     }
     Ok(campaign)
-}
-
-/// The file with the observations of a campaign that was read; the campaign
-/// itself does not keep its name.
-pub fn observations(campaign: &Campaign) -> Option<PathBuf> {
-    let text = fs::read_to_string(&campaign.path).ok()?;
-    let document = Document::parse("", text.trim_start_matches('\u{feff}')).ok()?;
-    let name = document.root().any_map("")?.get("observations")?.text()?.to_owned();
-    Some(campaign.path.parent()?.join(name))
 }
 
 /// Joint coordinates as `--at` gives them: numbers in rad (or m), or

@@ -11,7 +11,6 @@ use std::process;
 use robstiff::campaign::Campaign;
 
 use crate::failure::Failure;
-use crate::input;
 
 /// Prints to standard output. A reader that has gone away (`| head`) has seen
 /// what it wanted.
@@ -56,7 +55,7 @@ impl Files {
     pub fn protect_campaign(&mut self, campaign: &Campaign) {
         self.protect(&campaign.path);
         self.protect(&campaign.robot_path);
-        self.inputs.extend(input::observations(campaign));
+        self.protect(&campaign.observations_path);
     }
 
     /// Writes every file under a temporary name in its folder, which is made

@@ -27,6 +27,8 @@ pub struct Campaign {
     pub path: PathBuf,
     /// The robot's description file, as resolved from the campaign's folder.
     pub robot_path: PathBuf,
+    /// The file with the observations, likewise.
+    pub observations_path: PathBuf,
     /// The robot as declared.
     pub robot: Description,
     /// The observations.

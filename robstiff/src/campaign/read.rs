@@ -51,8 +51,8 @@ impl Campaign {
 
         let robot_path = folder.join(&plan.robot);
         let robot = Description::read(&robot_path)?;
-        let table_path = folder.join(&plan.observations);
-        let (table_name, text) = (table_path.display().to_string(), text_of(&table_path)?);
+        let observations_path = folder.join(&plan.observations);
+        let (table_name, text) = (observations_path.display().to_string(), text_of(&observations_path)?);
         let table = Table::parse(&table_name, &text).map_err(ReadError::Invalid)?;
         let data = match plan.kind {
             Kind::Displacement => {
@@ -66,6 +66,7 @@ impl Campaign {
             name: plan.name,
             path: path.to_owned(),
             robot_path,
+            observations_path,
             robot,
             data,
             noise: plan.noise,

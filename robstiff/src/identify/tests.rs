@@ -56,6 +56,7 @@ fn campaign(truth: &Description, declared: Description, frame: Frame, at: [f64; 
         name: String::new(),
         path: "".into(),
         robot_path: "".into(),
+        observations_path: "".into(),
         robot: declared,
         data: Data::Displacement(data),
         noise: Noise::default(),

@@ -87,6 +87,7 @@ fn campaign(robot: &Description, poses: usize, hidden: &[(Column, f64)], seed: u
         name: "test".to_string(),
         path: "".into(),
         robot_path: "".into(),
+        observations_path: "".into(),
         robot: robot.clone(),
         data: Data::Displacement(data),
         noise: Noise::default(),
