@@ -46,10 +46,45 @@ pub struct Joint {
     pub compliance: Vec<Part>,
 }
 
+/// Coordinates beyond a limit by less than this are on it (rad or m): a limit in
+/// degrees is rounded.
+const ON_THE_LIMIT: f64 = 1e-6;
+
 impl Joint {
     /// The joint's compliance, the sum of its parts [rad/Nm or m/N].
     pub fn compliance(&self) -> f64 {
         self.compliance.iter().map(|part| part.value).sum()
+    }
+
+    /// Whether a coordinate (rad or m) is within the limits, if there are any.
+    pub fn reaches(&self, q: f64) -> bool {
+        self.limits.is_none_or(|[low, high]| (low - ON_THE_LIMIT..=high + ON_THE_LIMIT).contains(&q))
+    }
+
+    /// A coordinate (rad or m) as people give it, in the
+    /// [`people_unit`](Self::people_unit), without the rounding of the
+    /// conversion.
+    pub fn for_people(&self, q: f64) -> f64 {
+        let unit = match self.kind {
+            JointKind::Revolute => 1_f64.to_radians(),
+            JointKind::Prismatic => 1e-3,
+        };
+        (q / unit * 1e6).round() / 1e6
+    }
+
+    /// The unit in which people give the joint's coordinate.
+    pub fn people_unit(&self) -> &'static str {
+        match self.kind {
+            JointKind::Revolute => "deg",
+            JointKind::Prismatic => "mm",
+        }
+    }
+
+    /// What a coordinate that the joint does not reach is, in words; nothing
+    /// for a joint without limits.
+    pub fn outside_limits(&self) -> Option<String> {
+        let [low, high] = self.limits?.map(|limit| self.for_people(limit));
+        Some(format!("outside its limits [{low}, {high}] {}", self.people_unit()))
     }
 }
 

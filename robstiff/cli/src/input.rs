@@ -62,19 +62,9 @@ pub fn coordinates(given: &str, robot: &Description) -> Result<Vec<f64>, Failure
 
 /// Sentences on coordinates that the joints' limits leave out.
 pub fn outside_limits(q: &[f64], robot: &Description) -> Vec<String> {
-    // A limit in degrees is rounded, and so is what is asked for.
-    const ON_THE_LIMIT: f64 = 1e-6;
     let outside = |(number, (&q, joint)): (usize, (&f64, &Joint))| {
-        let [low, high] = joint.limits?;
-        let (scale, unit) = match joint.kind {
-            JointKind::Revolute => (1_f64.to_degrees(), "deg"),
-            JointKind::Prismatic => (1e3, "mm"),
-        };
-        let shown = |value: f64| (value * scale * 1e6).round() / 1e6;
-        let (low_shown, high_shown) = (shown(low), shown(high));
-        (!(low - ON_THE_LIMIT..=high + ON_THE_LIMIT).contains(&q)).then(|| {
-            format!("q{number} = {} {unit} is outside its limits [{low_shown}, {high_shown}] {unit}", shown(q))
-        })
+        let what = joint.outside_limits().filter(|_| !joint.reaches(q))?;
+        Some(format!("q{number} = {} {} is {what}", joint.for_people(q), joint.people_unit()))
     };
     (1..).zip(q.iter().zip(&robot.joints)).filter_map(outside).collect()
 }

@@ -88,10 +88,6 @@ pub fn read(
     complete.then_some(data)
 }
 
-/// Coordinates beyond a joint's limits by less than this are on them (rad or
-/// m): a limit in degrees is rounded.
-const ON_THE_LIMIT: f64 = 1e-6;
-
 /// No joint is wound up further than this (rad); degrees that are read as
 /// radians are.
 const TWO_TURNS: f64 = 2.0 * core::f64::consts::TAU;
@@ -99,10 +95,6 @@ const TWO_TURNS: f64 = 2.0 * core::f64::consts::TAU;
 /// Warns of coordinates that a joint (by its index) does not reach.
 fn check_range(table: &Table<'_>, joint: &Joint, index: usize, column: Numbers, rows: &[Observation]) {
     let unit_is_given = table.has_unit(column);
-    let (unit, scale) = match joint.kind {
-        JointKind::Revolute => ("deg", 1_f64.to_radians()),
-        JointKind::Prismatic => ("mm", 1e-3),
-    };
     let warn = |what: &str, is_outside: &dyn Fn(f64) -> bool| {
         let mut outside = rows.iter().filter(|row| is_outside(row.q[index]));
         let Some(first) = outside.next() else { return false };
@@ -116,11 +108,7 @@ fn check_range(table: &Table<'_>, joint: &Joint, index: usize, column: Numbers, 
         table.warn(&format!("q{q} is {what} in {count} {rows}, first on line {line}{ask}"));
         true
     };
-    let limited = joint.limits.is_some_and(|[low, high]| {
-        let shown = |limit: f64| (limit / scale * 1e6).round() / 1e6;
-        let what = format!("outside its limits [{}, {}] {unit}", shown(low), shown(high));
-        warn(&what, &|q| !(low - ON_THE_LIMIT..=high + ON_THE_LIMIT).contains(&q))
-    });
+    let limited = joint.outside_limits().is_some_and(|what| warn(&what, &|q| !joint.reaches(q)));
     if !limited && !unit_is_given && joint.kind == JointKind::Revolute {
         warn("more than two turns", &|q| q.abs() > TWO_TURNS);
     }
