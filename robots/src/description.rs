@@ -1,5 +1,6 @@
 //! A robot as its YAML file describes it, checked, in SI units.
 
+use crate::effect::physics::Row;
 use crate::effect::{Convention, Effect, JointKind};
 
 /// A robot: kinematics, joint compliance, and the effects beyond it.
@@ -44,6 +45,21 @@ pub struct Joint {
     /// The parts of the compliance [rad/Nm or m/N], which add up; a joint with
     /// one number has one part with an empty name, a rigid joint has none.
     pub compliance: Vec<Part>,
+}
+
+impl Description {
+    /// The joints with the rows of the DH table as the effects correct them.
+    pub fn corrected_joints(&self) -> Vec<Joint> {
+        let mut joints = self.joints.clone();
+        for effect in &self.effects {
+            let Some(joint) = effect.row().and_then(|row| joints.get_mut(row - 1)) else { continue };
+            let mut row = Row { theta: joint.theta, d: joint.d, a: joint.a, alpha: joint.alpha };
+            effect.correct(&mut row);
+            (joint.theta, joint.d) = (row.theta, row.d);
+            (joint.a, joint.alpha) = (row.a, row.alpha);
+        }
+        joints
+    }
 }
 
 /// Coordinates beyond a limit by less than this are on it (rad or m): a limit in

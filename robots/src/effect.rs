@@ -1,5 +1,38 @@
 //! The words of a description that the runtime shares: conventions, kinds of
-//! joints, and the effects that measurements add to the joints' compliance.
+//! joints, and the catalogue of effects.
+//!
+//! An effect is one file: its parameters with their units and physical ranges,
+//! its formula, and what a person is told of it, in the vocabulary of
+//! [`physics`]. The list [`Effect`] is made from, below, is the registry; a file
+//! and a line there are all that a new effect needs. Reading, writing, checking,
+//! generated code, the generic robot and the command take the rest from it.
+
+pub mod base_compliance;
+pub mod dh_error;
+pub mod hysteresis;
+pub mod joint_coupling;
+pub mod joint_zero_offset;
+pub mod link_compliance;
+pub mod lost_motion;
+pub mod physics;
+mod place;
+pub mod pose_dependent_compliance;
+#[macro_use]
+mod registry;
+mod scalar;
+pub mod stiffness_nonlinearity;
+pub mod tool_compliance;
+pub mod transmission_error;
+pub mod transverse_compliance;
+
+use core::fmt;
+
+use physics::{About, Joint, PLAYS, Parameter, Physics, Row, Spring};
+
+pub use crate::dimension::Dimension;
+pub use place::{DhEntry, Place};
+pub use registry::{MOST_PARAMETERS, Numbers};
+pub use scalar::{Scalar, Tangent};
 
 /// Which of the two Denavit-Hartenberg conventions a table is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,128 +55,88 @@ pub enum JointKind {
     Prismatic,
 }
 
-/// An elastic effect besides the joints' own compliance, with its parameters.
-///
-/// Joints and links are counted from 1, as in the descriptions. The *joint
-/// frame* of joint `i` is frame `i - 1` under the standard convention and
-/// frame `i` under the modified one: the frame on whose z axis it acts. The
-/// *flange frame* is frame `n`, before the tool.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Effect {
-    /// Tilt of a joint about the x and y axes of its joint frame (bearing,
-    /// housing).
-    TransverseCompliance {
-        /// The joint, from 1.
-        joint: usize,
-        /// Tilt per moment, the same about x and y [rad/Nm].
-        value: f64,
-    },
-    /// A uniform, round beam from the origin of joint frame `link` to the
-    /// origin of joint frame `link + 1`.
-    LinkCompliance {
-        /// The link, from 1 to n - 1.
-        link: usize,
-        /// `L / EI` [rad/Nm].
-        bending: f64,
-        /// `L / GJ` [rad/Nm].
-        torsion: f64,
-    },
-    /// Foundation and pedestal, at the origin of frame 0 (after the base
-    /// placement). Its turn about z is that of a first joint on the same axis
-    /// and is left to it.
-    BaseCompliance {
-        /// Tilt per moment about x and y of frame 0 [rad/Nm].
-        tilt: f64,
-        /// Displacement per force, the same in every direction [m/N].
-        translation: f64,
-    },
-    /// Flange, spindle and tool, at the origin of the flange frame.
-    ToolCompliance {
-        /// Turn per moment, the same about every axis [rad/Nm].
-        rotation: f64,
-        /// Displacement per force, the same in every direction [m/N].
-        translation: f64,
-    },
-    /// An off-diagonal entry of the joint compliance `H_q` (belts, wrist
-    /// gearing); either sign, `|value| < sqrt(h_i h_j)`.
-    JointCoupling {
-        /// The two joints, from 1, the smaller first.
-        joints: [usize; 2],
-        /// `H_q[i, j] = H_q[j, i]` [rad/Nm] between two revolute joints.
-        value: f64,
-    },
-    /// Hardening (positive) or softening (negative) of a joint with torque:
-    /// the joint turns by `h tau + added tau / sqrt(1 + (tau / knee)^2)`, so
-    /// its compliance falls from `h + added` without load to `h` far beyond
-    /// the knee.
-    StiffnessNonlinearity {
-        /// The joint, from 1.
-        joint: usize,
-        /// What the unloaded joint's compliance has on top [rad/Nm];
-        /// above `-h`.
-        added: f64,
-        /// The torque at which the change is half done \[Nm\], positive.
-        knee: f64,
-    },
+registry! {
+    transverse_compliance::TransverseCompliance, Joint(joint: usize), value;
+    link_compliance::LinkCompliance, Link(link: usize), bending, torsion;
+    base_compliance::BaseCompliance, Base(), tilt, translation;
+    tool_compliance::ToolCompliance, Tool(), rotation, translation;
+    joint_coupling::JointCoupling, Joints(joints: [usize; 2]), value;
+    stiffness_nonlinearity::StiffnessNonlinearity, Joint(joint: usize), added, knee;
+    lost_motion::LostMotion, Joint(joint: usize), gap, knee;
+    hysteresis::Hysteresis, Joint(joint: usize), radius1, weight1, radius2, weight2, radius3, weight3;
+    pose_dependent_compliance::PoseDependentCompliance, Joint(joint: usize), cos1, sin1, cos2, sin2;
+    joint_zero_offset::JointZeroOffset, Joint(joint: usize), value;
+    dh_error::DhError, Entry(entry: DhEntry), value;
+    transmission_error::TransmissionError, Joint(joint: usize), order, sin, cos;
 }
 
 impl Effect {
     /// The kind as descriptions and reports spell it, e.g.
     /// `transverse_compliance`.
     pub const fn kind(&self) -> &'static str {
-        match self {
-            Self::TransverseCompliance { .. } => "transverse_compliance",
-            Self::LinkCompliance { .. } => "link_compliance",
-            Self::BaseCompliance { .. } => "base_compliance",
-            Self::ToolCompliance { .. } => "tool_compliance",
-            Self::JointCoupling { .. } => "joint_coupling",
-            Self::StiffnessNonlinearity { .. } => "stiffness_nonlinearity",
+        self.about().kind
+    }
+
+    /// Whether it moves frames rather than yields to loads.
+    pub const fn is_kinematic(&self) -> bool {
+        self.about().kinematic
+    }
+
+    /// What the kind's numbers are, with this effect's, in order.
+    pub fn parameters(&self) -> impl Iterator<Item = (&'static Parameter, f64)> + use<> {
+        self.about().parameters.iter().zip(self.numbers())
+    }
+
+    /// The row of the DH table (from 1) that the effect sits at, if it sits at
+    /// one.
+    pub const fn row(&self) -> Option<usize> {
+        match self.place() {
+            Place::Joint(joint) => Some(joint),
+            Place::Entry(entry) => Some(entry.row()),
+            _ => None,
         }
     }
 
-    /// Where the effect sits.
-    pub const fn place(&self) -> Place {
-        match *self {
-            Self::TransverseCompliance { joint, .. } | Self::StiffnessNonlinearity { joint, .. } => Place::Joint(joint),
-            Self::LinkCompliance { link, .. } => Place::Link(link),
-            Self::BaseCompliance { .. } => Place::Base,
-            Self::ToolCompliance { .. } => Place::Tool,
-            Self::JointCoupling { joints, .. } => Place::Joints(joints),
+    /// The slope of [`turn`](Self::turn) against the torque, on an unloaded
+    /// joint that was never loaded [rad/Nm]: derived from the law, not stated.
+    pub fn unloaded<S: Scalar>(&self, parameters: &[S], compliance: S, harmonic: &dyn Fn(f64) -> (S, S)) -> Option<S> {
+        let zero = compliance.times(0.0);
+        let torque = Tangent { value: zero, slope: zero.plus(1.0) };
+        let mut constants = [Tangent::constant(zero); MOST_PARAMETERS];
+        for (constant, &parameter) in constants.iter_mut().zip(parameters) {
+            *constant = Tangent::constant(parameter);
         }
+        let constants = &constants[..parameters.len()];
+        let joint = Joint {
+            compliance: Tangent::constant(compliance),
+            torque,
+            plays: self.plays(constants, torque, [Tangent::constant(zero); PLAYS]),
+            harmonic: &|order| {
+                let (s, c) = harmonic(order);
+                (Tangent::constant(s), Tangent::constant(c))
+            },
+        };
+        self.turn(constants, &joint).map(|turn| turn.slope)
+    }
+
+    /// The effect as a noun, for a sentence: "the backlash of joint 3".
+    pub fn noun(&self) -> impl fmt::Display {
+        struct Noun(&'static str, Place);
+        impl fmt::Display for Noun {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                match self.0.split_once("{}") {
+                    Some((before, after)) => write!(f, "{before}{}{after}", self.1.words()),
+                    None => f.write_str(self.0),
+                }
+            }
+        }
+        Noun(self.noun_of_numbers(), self.place())
     }
 }
 
 /// The full name, `kind@at`.
-impl core::fmt::Display for Effect {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+impl fmt::Display for Effect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}@{}", self.kind(), self.place())
-    }
-}
-
-/// Where an effect sits; displays as descriptions spell it (`joint 3`,
-/// `joints 2,3`, `link 2`, `base`, `tool`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// One joint, from 1.
-    Joint(usize),
-    /// Two joints, from 1.
-    Joints([usize; 2]),
-    /// One link, from 1: the body between joints `i` and `i + 1`.
-    Link(usize),
-    /// The foundation.
-    Base,
-    /// The flange and what is mounted on it.
-    Tool,
-}
-
-impl core::fmt::Display for Place {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Joint(i) => write!(f, "joint {i}"),
-            Self::Joints([i, j]) => write!(f, "joints {i},{j}"),
-            Self::Link(i) => write!(f, "link {i}"),
-            Self::Base => f.write_str("base"),
-            Self::Tool => f.write_str("tool"),
-        }
     }
 }

@@ -1,11 +1,12 @@
 //! Robot descriptions: what robstiff knows of a robot, and how it reads it.
 //!
-//! [`effect`] holds the plain types that the runtime shares (`no_std`, no
-//! allocation). With the feature `read` (on by default) come the
+//! [`effect`] holds the catalogue of effects, with their physics, and the plain
+//! types that the runtime shares (`no_std`, no allocation). With the feature `read` (on by default) come the
 //! [`Description`] and what reads, checks and writes one.
 #![cfg_attr(not(feature = "read"), no_std)]
 
 pub mod angle;
+pub mod dimension;
 pub mod effect;
 
 #[cfg(feature = "read")]
@@ -29,6 +30,6 @@ mod write;
 pub use description::{Description, Joint, Link, Part, Placement};
 #[cfg(feature = "read")]
 pub use diagnostic::{Diagnostic, Diagnostics};
-pub use effect::{Convention, Effect, JointKind};
+pub use effect::{Convention, DhEntry, Effect, JointKind, Place};
 #[cfg(feature = "read")]
 pub use read::{Outline, ReadError};

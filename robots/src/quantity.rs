@@ -4,32 +4,7 @@ use crate::suggest::list;
 use std::f64::consts::PI;
 use std::fmt;
 
-/// What kind of quantity is expected.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dimension {
-    /// A plain number.
-    Number,
-    /// A length \[m\].
-    Length,
-    /// An angle \[rad\].
-    Angle,
-    /// The compliance of something that turns [rad/Nm]; a stiffness is taken
-    /// as its inverse.
-    Compliance,
-    /// The compliance of something that slides [m/N]; a stiffness is taken as
-    /// its inverse.
-    LinearCompliance,
-    /// A mass \[kg\].
-    Mass,
-    /// A force \[N\].
-    Force,
-    /// A torque \[Nm\].
-    Torque,
-    /// A time \[s\].
-    Time,
-    /// A temperature of which only differences count: `C` and `K` are the same.
-    Temperature,
-}
+pub use crate::dimension::Dimension;
 
 impl Dimension {
     /// The kind with its article: "an angle".

@@ -145,7 +145,7 @@ fn name(node: &Node) -> Option<String> {
 }
 
 /// Names that generated code needs for other things.
-const TAKEN: [&str; 15] = [
+const TAKEN: [&str; 17] = [
     "Self",
     "Option",
     "Some",
@@ -153,7 +153,9 @@ const TAKEN: [&str; 15] = [
     "Robot",
     "Real",
     "Statics",
+    "State",
     "Effect",
+    "DhEntry",
     "Convention",
     "JointKind",
     "Matrix4",

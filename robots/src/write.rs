@@ -115,25 +115,20 @@ fn effect(effect: &Effect) -> String {
         place => place.to_string(),
     };
     let mut fields = vec![("kind", effect.kind().to_owned()), ("at", at)];
-    let turn = |value| in_unit(value, "rad/Nm");
-    let shift = |value| in_unit(value, "m/N");
-    match *effect {
-        Effect::TransverseCompliance { value, .. } | Effect::JointCoupling { value, .. } => {
-            fields.push(("value", turn(value)));
-        }
-        Effect::LinkCompliance { bending, torsion, .. } => {
-            fields.extend([("bending", turn(bending)), ("torsion", turn(torsion))]);
-        }
-        Effect::BaseCompliance { tilt, translation } => {
-            fields.extend([("tilt", turn(tilt)), ("translation", shift(translation))]);
-        }
-        Effect::ToolCompliance { rotation, translation } => {
-            fields.extend([("rotation", turn(rotation)), ("translation", shift(translation))]);
-        }
-        Effect::StiffnessNonlinearity { added, knee, .. } => {
-            fields.extend([("added", turn(added)), ("knee", in_unit(knee, "Nm"))]);
-        }
-    }
+    let written: Vec<(&str, Option<f64>, String)> = effect
+        .parameters()
+        .map(|(parameter, value)| {
+            let text = match parameter.quantity.at(effect.place()) {
+                Dimension::Number => number(value),
+                dimension => in_unit(value, dimension.unit()),
+            };
+            (parameter.name, parameter.default.filter(|default| *default == value), text)
+        })
+        .collect();
+    // What has its default is left out, unless nothing would be left.
+    let all_default = written.iter().all(|(_, default, _)| default.is_some());
+    let stated = written.into_iter().filter(|(_, default, _)| all_default || default.is_none());
+    fields.extend(stated.map(|(name, _, text)| (name, text)));
     flow_map(&fields)
 }
 

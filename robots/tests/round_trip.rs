@@ -3,7 +3,7 @@
 
 use robstiff_robots::angle::snapped;
 use robstiff_robots::catalogue::catalogue;
-use robstiff_robots::{Convention, Description, Effect, Joint, JointKind, Link, Part, Placement};
+use robstiff_robots::{Convention, Description, DhEntry, Effect, Joint, JointKind, Link, Part, Placement};
 
 /// Marsaglia's xorshift64.
 struct Random(u64);
@@ -139,16 +139,39 @@ impl Random {
                 torsion: self.value().abs(),
             });
             let bound = joints[joint - 1].compliance().sqrt() * joints[joint].compliance().sqrt();
-            let value = (2.0 * self.unit() - 1.0) * bound;
+            // What varies with the angle takes a quarter at most.
+            let value = (2.0 * self.unit() - 1.0) * 0.7 * bound;
             if revolute(joint) && revolute(joint + 1) && value.abs() < bound {
                 effects.push(Effect::JointCoupling { joints: [joint, joint + 1], value });
             }
         }
         if revolute(joint) {
             effects.push(Effect::StiffnessNonlinearity { joint, added: self.positive(), knee: self.positive() });
+            effects.push(Effect::LostMotion { joint, gap: self.value().abs(), knee: self.positive() });
+            effects.push(self.hysteresis(joint));
+            let [cos1, sin1, cos2, sin2] =
+                [0; 4].map(|_| [0.0, self.unit() / 16.0, -self.unit() / 16.0][self.below(3)]);
+            effects.push(Effect::PoseDependentCompliance { joint, cos1, sin1, cos2, sin2 });
+            effects.push(Effect::JointZeroOffset { joint, value: self.value() });
+            let [sin, cos] = [0; 2].map(|_| [0.0, self.unit() * 3e-3][self.below(2)]);
+            let order = (1 + self.below(1000)) as f64;
+            effects.push(Effect::TransmissionError { joint, order, sin, cos });
         }
+        let entry = [DhEntry::A, DhEntry::Alpha, DhEntry::D, DhEntry::Theta][self.below(4)](joint);
+        effects.push(Effect::DhError { entry, value: self.value() });
         effects.retain(|_| self.below(2) == 0);
         effects
+    }
+
+    fn hysteresis(&mut self, joint: usize) -> Effect {
+        let mut pairs = [[0.0; 2]; 3];
+        let mut radius = 0.0;
+        for pair in pairs.iter_mut().take(1 + self.below(3)) {
+            radius += 1e-3 + self.unit() * 100.0;
+            *pair = [radius, self.value().abs()];
+        }
+        let [[radius1, weight1], [radius2, weight2], [radius3, weight3]] = pairs;
+        Effect::Hysteresis { joint, radius1, weight1, radius2, weight2, radius3, weight3 }
     }
 
     fn description(&mut self) -> Description {

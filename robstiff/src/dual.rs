@@ -174,6 +174,21 @@ impl<T: Real, const K: usize> Real for Dual<T, K> {
         let inverse = self.value.recip();
         self.chain(inverse, -(inverse * inverse))
     }
+
+    #[inline]
+    fn signum(self) -> Self {
+        Self::constant(self.value.signum())
+    }
+
+    /// With the slopes of the number that is larger.
+    #[inline]
+    fn max(self, other: Self) -> Self {
+        let ahead = (self.value - other.value).signum();
+        let half = T::of(0.5);
+        let slope = |own: T, its: T| (own + its + ahead * (own - its)) * half;
+        let slopes = array::from_fn(|k| slope(self.slopes[k], other.slopes[k]));
+        Self { value: self.value.max(other.value), slopes }
+    }
 }
 
 #[cfg(all(test, feature = "generic"))]
@@ -227,5 +242,9 @@ mod tests {
         assert_eq!(y.value, Lanes([1.75, -3.5]));
         assert_eq!(y.slopes, [Lanes([-5.0, -1.0625])]);
         assert!(Dual::<f64, 3>::zero().is_zero() && !y.is_zero());
+        // The slopes follow the number that was taken.
+        let (x, z) = (Dual::<Lanes<f64, 2>>::variable(Lanes([0.25, 4.0]), 0), Dual::of(1.0));
+        assert_eq!((x.max(z).value, x.max(z).slopes), (Lanes([1.0, 4.0]), [Lanes([0.0, 1.0])]));
+        assert_eq!((x.min(z).value, x.min(z).slopes), (Lanes([0.25, 1.0]), [Lanes([1.0, 0.0])]));
     }
 }

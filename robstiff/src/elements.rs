@@ -17,8 +17,12 @@ use nalgebra::{Matrix3, Matrix4, Matrix6, Matrix6x3, SVector, Vector3, Vector6};
 
 use crate::{Convention, Effect, JointKind, Real, Robot};
 
+mod laws;
 #[cfg(all(test, feature = "generic"))]
 mod tests;
+
+pub use laws::{commanded_rates, deviation, plays, turn, unloaded_turn};
+pub use robstiff_robots::effect::physics::Spring as Parameter;
 
 /// Where the parts of a robot are in one pose; every frame a homogeneous
 /// 4 x 4 matrix (lengths in m) in the base frame.
@@ -34,30 +38,6 @@ pub struct Geometry<'a, T> {
     pub flange: Matrix4<T>,
     /// The tool centre point's frame.
     pub tcp: Matrix4<T>,
-}
-
-/// One number in which the compliance is linear; joints and links count from 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Parameter {
-    /// A joint's own compliance [rad/Nm or m/N].
-    Joint(usize),
-    /// The tilt of a joint about x and y of its joint frame [rad/Nm].
-    Transverse(usize),
-    /// `L / EI` of a link [rad/Nm].
-    LinkBending(usize),
-    /// `L / GJ` of a link [rad/Nm].
-    LinkTorsion(usize),
-    /// The tilt of the base about x and y of frame 0 [rad/Nm].
-    BaseTilt,
-    /// The displacement of the base [m/N].
-    BaseTranslation,
-    /// The turn of what is mounted on the flange, about the flange frame's
-    /// origin [rad/Nm].
-    ToolRotation,
-    /// The displacement of what is mounted on the flange [m/N].
-    ToolTranslation,
-    /// The off-diagonal entry of `H_q` that two joints share [rad/Nm].
-    Coupling([usize; 2]),
 }
 
 impl<T: Real> Geometry<'_, T> {
@@ -110,17 +90,6 @@ impl<T: Real> Geometry<'_, T> {
         }
     }
 
-    /// What an effect adds to the compliance at the TCP in the base frame,
-    /// 6 x 6 in m/N, m/Nm, rad/N, rad/Nm by block; of a nonlinear effect the
-    /// tangent in the unloaded state.
-    ///
-    /// # Panics
-    /// If the effect is at a joint or link that the robot does not have.
-    pub fn effect_compliance(&self, effect: &Effect) -> Matrix6<T> {
-        parameters(effect)
-            .fold(Matrix6::zeros(), |sum, (parameter, value)| sum + self.unit_compliance(parameter) * T::of(value))
-    }
-
     /// The twists at the TCP of turns about the base frame's axes through the
     /// origin of `frame`, a column each.
     fn lever(&self, frame: &Matrix4<T>) -> Matrix6x3<T> {
@@ -168,24 +137,10 @@ impl<T: Real> Geometry<'_, T> {
     }
 }
 
-/// The parameters of an effect in which the compliance is linear, with their
-/// values; of a nonlinear effect its tangent in the unloaded state.
+/// The linear elements of an effect, with their compliances.
 pub fn parameters(effect: &Effect) -> impl Iterator<Item = (Parameter, f64)> + use<> {
-    let [first, second] = match *effect {
-        Effect::TransverseCompliance { joint, value } => [Some((Parameter::Transverse(joint), value)), None],
-        Effect::LinkCompliance { link, bending, torsion } => {
-            [Some((Parameter::LinkBending(link), bending)), Some((Parameter::LinkTorsion(link), torsion))]
-        }
-        Effect::BaseCompliance { tilt, translation } => {
-            [Some((Parameter::BaseTilt, tilt)), Some((Parameter::BaseTranslation, translation))]
-        }
-        Effect::ToolCompliance { rotation, translation } => {
-            [Some((Parameter::ToolRotation, rotation)), Some((Parameter::ToolTranslation, translation))]
-        }
-        Effect::JointCoupling { joints, value } => [Some((Parameter::Coupling(joints), value)), None],
-        Effect::StiffnessNonlinearity { joint, added, .. } => [Some((Parameter::Joint(joint), added)), None],
-    };
-    first.into_iter().chain(second)
+    let numbers = effect.numbers();
+    effect.springs().map(move |(k, spring)| (spring, numbers[k]))
 }
 
 /// A robot's joint frames, kinds and ends in one pose, owned: what a
@@ -281,15 +236,34 @@ where
     T: Real,
     R: Robot<N>,
 {
-    let pose = Pose::of(robot, q);
+    let (pose, q) = (Pose::of(robot, q), *q);
     let (own, effects) = (robot.joint_compliance(), robot.effects());
     (0..N + effects.len()).map(move |k| {
         let geometry = pose.geometry();
         match k.checked_sub(N) {
             None => (Element::Joint(k + 1), geometry.unit_compliance(Parameter::Joint(k + 1)) * T::of(own[k])),
-            Some(k) => (Element::Effect(&effects[k]), geometry.effect_compliance(&effects[k])),
+            Some(k) => {
+                (Element::Effect(&effects[k]), effect_compliance(&geometry, &effects[k], own.as_slice(), q.as_slice()))
+            }
         }
     })
+}
+
+/// What an effect adds to the compliance at the TCP in the base frame, 6 x 6
+/// in m/N, m/Nm, rad/N, rad/Nm by block; of a nonlinear effect the tangent in
+/// the unloaded state, of a kinematic one nothing. The joints' own compliances
+/// `own` [rad/Nm or m/N] and coordinates `q` [rad or m] enter the laws of joints.
+///
+/// # Panics
+/// If the effect is at a joint or link that the robot does not have.
+pub fn effect_compliance<T: Real>(geometry: &Geometry<'_, T>, effect: &Effect, own: &[f64], q: &[T]) -> Matrix6<T> {
+    let springs = parameters(effect)
+        .fold(Matrix6::zeros(), |sum, (parameter, value)| sum + geometry.unit_compliance(parameter) * T::of(value));
+    let law = effect.row().and_then(|joint| {
+        let turn = unloaded_turn(effect, T::of(own[joint - 1]), q[joint - 1])?;
+        Some(geometry.unit_compliance(Parameter::Joint(joint)) * turn)
+    });
+    law.map_or(springs, |law| springs + law)
 }
 
 /// Which share of the displacement along a force comes from one element,

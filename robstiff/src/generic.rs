@@ -8,8 +8,8 @@ use nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
 use robstiff_robots::angle::{quarter_turns, sin_cos_of_turns};
 use robstiff_robots::{Description, Joint, Placement};
 
-use crate::elements::{Parameter, Pose, contributions};
-use crate::{Convention, Effect, JointKind, Real, Robot};
+use crate::elements::{Parameter, Pose, contributions, deviation, parameters, plays, turn};
+use crate::{Convention, Effect, JointKind, Real, Robot, State};
 
 #[cfg(test)]
 mod tests;
@@ -109,11 +109,12 @@ impl<const N: usize> Generic<N> {
         if found != N {
             return Err(WrongJointCount { expected: N, found });
         }
+        let joints = description.corrected_joints();
         Ok(Self {
             name: description.name.clone(),
             convention: description.convention,
             base: placement(&description.base),
-            joints: core::array::from_fn(|i| Row::new(description.convention, &description.joints[i])),
+            joints: core::array::from_fn(|i| Row::new(description.convention, &joints[i])),
             tool: placement(&description.tool),
             compliance: SVector::from_fn(|i, _| description.joints[i].compliance()),
             effects: description.effects.clone(),
@@ -184,7 +185,9 @@ impl<const N: usize> Robot<N> for Generic<N> {
     fn link_frames<T: Real>(&self, q: &SVector<T, N>) -> [Matrix4<T>; N] {
         let mut frame = self.base.map(T::of);
         core::array::from_fn(|i| {
-            frame *= self.joints[i].transform(q[i]);
+            let aside = self.effects.iter().filter(|effect| effect.row() == Some(i + 1));
+            let aside = aside.filter_map(|effect| deviation(effect, q[i]));
+            frame *= self.joints[i].transform(aside.fold(q[i], |sum, aside| sum + aside));
             frame
         })
     }
@@ -203,6 +206,10 @@ impl<const N: usize> Robot<N> for Generic<N> {
     }
 
     fn deflection<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>) -> Vector6<T> {
+        self.deflection_with(q, wrench, &mut State::new())
+    }
+
+    fn deflection_with<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>, state: &mut State<N, T>) -> Vector6<T> {
         let pose = Pose::of(self, q);
         let geometry = pose.geometry();
         let mut compliance = Matrix6::zeros();
@@ -211,14 +218,15 @@ impl<const N: usize> Robot<N> for Generic<N> {
         }
         let mut beyond = Vector6::zeros();
         for effect in &self.effects {
-            match *effect {
-                Effect::StiffnessNonlinearity { joint, added, knee } => {
-                    let twist = geometry.joint_twist(joint);
-                    let torque = twist.dot(wrench);
-                    let knees = torque * T::of(knee).recip();
-                    beyond += twist * (T::of(added) * torque * (T::one() + knees * knees).sqrt().recip());
-                }
-                _ => compliance += geometry.effect_compliance(effect),
+            for (parameter, value) in parameters(effect) {
+                compliance += geometry.unit_compliance(parameter) * T::of(value);
+            }
+            let Some(i) = effect.row().map(|joint| joint - 1) else { continue };
+            let twist = geometry.joint_twist(i + 1);
+            let torque = twist.dot(wrench);
+            state.plays[i] = plays(effect, torque, state.plays[i]);
+            if let Some(turn) = turn(effect, T::of(self.compliance[i]), q[i], torque, state.plays[i]) {
+                beyond += twist * turn;
             }
         }
         compliance * wrench + beyond

@@ -137,6 +137,21 @@ impl<T: Real, const W: usize> Real for Lanes<T, W> {
     fn recip(self) -> Self {
         self.each(T::recip)
     }
+
+    #[inline(always)]
+    fn signum(self) -> Self {
+        self.each(T::signum)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.with(other, T::max)
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.with(other, T::min)
+    }
 }
 
 #[cfg(test)]
@@ -181,6 +196,9 @@ mod tests {
         assert_eq!(a.mul_add(b, a), Lanes([1.5, -8.0, 5.0]));
         assert_eq!(Lanes([1.0, 4.0]).sqrt(), Lanes([1.0, 2.0]));
         assert_eq!(Lanes([1.0, 4.0]).recip(), Lanes([1.0, 0.25]));
+        assert_eq!(a.max(b), Lanes([1.0, 3.0, 4.0]));
+        assert_eq!(a.min(b), Lanes([0.5, -2.0, 0.25]));
+        assert_eq!(a.signum(), Lanes([1.0, -1.0, 1.0]));
         let mut sum = Lanes::<f32, 2>::zero();
         sum += Lanes::one();
         sum -= Lanes([0.5, 1.0]);

@@ -50,6 +50,7 @@ pub mod real;
 pub mod robot;
 #[cfg(all(test, feature = "generic"))]
 mod samples;
+mod state;
 #[cfg(feature = "identify")]
 pub mod trace;
 mod trig;
@@ -60,7 +61,8 @@ pub use generic::{Generic, WrongJointCount};
 pub use lanes::Lanes;
 pub use real::Real;
 pub use robot::{Cost, Robot, Statics};
-pub use robstiff_robots::{Convention, Effect, JointKind};
+pub use robstiff_robots::{Convention, DhEntry, Effect, JointKind};
+pub use state::State;
 
 /// Generates a robot from its description, at compile time.
 ///

@@ -43,6 +43,29 @@ pub trait Real:
 
     /// `1 / self`.
     fn recip(self) -> Self;
+
+    /// 1 with the sign of the number, for zero either: what joints with
+    /// hysteresis need beyond the arithmetic.
+    ///
+    /// The default takes a root, and for zero it is not a number; a scalar that
+    /// can compare does better.
+    #[inline]
+    fn signum(self) -> Self {
+        self * (self * self).sqrt().recip()
+    }
+
+    /// The larger of two numbers.
+    #[inline]
+    fn max(self, other: Self) -> Self {
+        let apart = self - other;
+        (self + other + (apart * apart).sqrt()) * Self::of(0.5)
+    }
+
+    /// The smaller of two numbers.
+    #[inline]
+    fn min(self, other: Self) -> Self {
+        -(-self).max(-other)
+    }
 }
 
 macro_rules! real {
@@ -79,6 +102,22 @@ macro_rules! real {
             #[inline(always)]
             fn recip(self) -> Self {
                 1.0 / self
+            }
+
+            #[inline(always)]
+            fn signum(self) -> Self {
+                $float::signum(self)
+            }
+
+            // One instruction, unlike the float's own, which look for NaN.
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                if self > other { self } else { other }
+            }
+
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                if self < other { self } else { other }
             }
         }
     };

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
 use robstiff_robots::{Convention, Effect, JointKind};
 
-use crate::Real;
+use crate::{Real, State};
 
 /// The elastostatics of a serial arm with `N` joints, over any scalar [`Real`].
 ///
@@ -45,7 +45,10 @@ pub trait Robot<const N: usize> {
     /// frame; the last is the flange frame.
     fn link_frames<T: Real>(&self, q: &SVector<T, N>) -> [Matrix4<T>; N];
 
-    /// The 6 x N Jacobian of the TCP in the base frame, translation first.
+    /// The 6 x N Jacobian of the TCP in the base frame, translation first: the
+    /// twist of the TCP per turn of each joint's output, which is what a load
+    /// moves. With a transmission error, a unit of the coordinate `q` is
+    /// [`commanded_rates`](crate::elements::commanded_rates) of that.
     fn jacobian<T: Real>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, N>;
 
     /// The 6 x 6 Cartesian compliance at the TCP in the base frame,
@@ -55,8 +58,21 @@ pub trait Robot<const N: usize> {
     fn compliance<T: Real>(&self, q: &SVector<T, N>) -> Matrix6<T>;
 
     /// The displacement of the TCP under a wrench at the TCP; beyond
-    /// `H_x` times the wrench it knows the nonlinear effects.
+    /// `H_x` times the wrench it knows the nonlinear effects. Joints with
+    /// hysteresis are those of a robot that was never loaded before.
     fn deflection<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>) -> Vector6<T>;
+
+    /// The displacement of the TCP under a wrench at the TCP that follows the
+    /// loads in `state`, which it joins: the one method that tells joints with
+    /// hysteresis on their way up from those on their way down. For robots
+    /// without hysteresis it is [`deflection`](Self::deflection).
+    ///
+    /// The wrench is reached from the one before without turning back on the
+    /// way; unloading is a load, too: the wrench zero.
+    fn deflection_with<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>, state: &mut State<N, T>) -> Vector6<T> {
+        let _ = state;
+        self.deflection(q, wrench)
+    }
 
     /// The joint torques that hold a wrench at the TCP, `J^T F` (Nm or N).
     fn joint_torques<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>) -> SVector<T, N>;
@@ -88,7 +104,7 @@ pub struct Cost {
     pub trig: usize,
     /// Multiplications.
     pub mul: usize,
-    /// Additions and subtractions.
+    /// Additions, subtractions, and choices of the larger or smaller of two.
     pub add: usize,
     /// Changes of sign that no addition absorbed.
     pub neg: usize,

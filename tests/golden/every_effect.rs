@@ -8,16 +8,16 @@
 //       4       5+q4        1.1          0         90   3.9e-6 rad/Nm
 //       5       0+q5       0.08          0        -90   2.7e-6 rad/Nm
 //       6     180+q6       0.23          0          0   5.1e-6 rad/Nm
-// with transverse_compliance@joint 1
-// with transverse_compliance@joint 3
-// with link_compliance@link 2
-// with link_compliance@link 3
-// with base_compliance@base
-// with tool_compliance@tool
-// with joint_coupling@joints 2,3
-// with joint_coupling@joints 5,6
-// with stiffness_nonlinearity@joint 2
-// with stiffness_nonlinearity@joint 5
+// with transverse_compliance@joint 1, the tilt of joint 1 about the axes across its own (bearing, housing)
+// with transverse_compliance@joint 3, the tilt of joint 3 about the axes across its own (bearing, housing)
+// with link_compliance@link 2, the bending and torsion of link 2
+// with link_compliance@link 3, the bending of link 3
+// with base_compliance@base, the compliance of foundation and pedestal
+// with tool_compliance@tool, the compliance of flange, spindle and tool
+// with joint_coupling@joints 2,3, the coupling of joints 2 and 3 (belts, wrist gearing)
+// with joint_coupling@joints 5,6, the coupling of joints 5 and 6 (belts, wrist gearing)
+// with stiffness_nonlinearity@joint 2, the hardening of joint 2 with torque
+// with stiffness_nonlinearity@joint 5, the softening of joint 5 with torque
 //
 // Operations of one call:
 //   transform      14 trig, 129 mul, 93 add
@@ -1487,7 +1487,9 @@ impl Robot<6> for EveryEffect {
         let coupling2_3 = T::of(Self::COUPLING2_3);
         let coupling5_6 = T::of(Self::COUPLING5_6);
         let added2 = T::of(Self::ADDED2);
+        let k1 = T::of(1.0 / Self::KNEE2);
         let added5 = T::of(Self::ADDED5);
+        let k2 = T::of(1.0 / Self::KNEE5);
         let a2 = T::of(Self::A2);
         let d3 = T::of(Self::D3);
         let a3 = T::of(Self::A3);
@@ -1499,85 +1501,83 @@ impl Robot<6> for EveryEffect {
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
-        let k1 = T::of(Self::COS_BASE_PITCH * 0.7648421872844885);
-        let k2 = T::of(Self::COS_BASE_PITCH * 0.644217687237691);
-        let k3 = T::of(-Self::SIN_BASE_PITCH);
-        let k4 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
-        let k5 = T::of(
+        let k3 = T::of(Self::COS_BASE_PITCH * 0.7648421872844885);
+        let k4 = T::of(Self::COS_BASE_PITCH * 0.644217687237691);
+        let k5 = T::of(-Self::SIN_BASE_PITCH);
+        let k6 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k7 = T::of(
             Self::COS_BASE_ROLL * -0.644217687237691
                 + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
         );
-        let k6 = T::of(
+        let k8 = T::of(
             Self::COS_BASE_ROLL * 0.7648421872844885
                 + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
         );
-        let k7 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
-        let k8 = T::of(
+        let k9 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k10 = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
                 - Self::SIN_BASE_ROLL * -0.644217687237691,
         );
-        let k9 = T::of(
+        let k11 = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)
                 - Self::SIN_BASE_ROLL * 0.7648421872844885,
         );
-        let k10 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.7648421872844885));
-        let k11 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.644217687237691));
-        let k12 = T::of(Self::A1 * -Self::SIN_BASE_PITCH);
-        let k13 = T::of(
+        let k12 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.7648421872844885));
+        let k13 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.644217687237691));
+        let k14 = T::of(Self::A1 * -Self::SIN_BASE_PITCH);
+        let k15 = T::of(
             Self::A1
                 * (Self::COS_BASE_ROLL * -0.644217687237691
                     + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
         );
-        let k14 = T::of(
+        let k16 = T::of(
             Self::A1
                 * (Self::COS_BASE_ROLL * 0.7648421872844885
                     + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k15 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k16 = T::of(
+        let k17 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
+        let k18 = T::of(
             Self::D1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
                     - Self::SIN_BASE_ROLL * -0.644217687237691),
         );
-        let k17 = T::of(
+        let k19 = T::of(
             Self::D1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)
                     - Self::SIN_BASE_ROLL * 0.7648421872844885),
         );
-        let k18 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k19 = T::of(
+        let k20 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k21 = T::of(
             Self::SIN_BASE_ROLL * -0.644217687237691
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
         );
-        let k20 = T::of(
+        let k22 = T::of(
             Self::SIN_BASE_ROLL * 0.7648421872844885
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
         );
-        let k21 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k22 = T::of(
+        let k23 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k24 = T::of(
             Self::A2
                 * (Self::SIN_BASE_ROLL * -0.644217687237691
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
         );
-        let k23 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * 0.7648421872844885
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
-        );
-        let k24 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k25 = T::of(
+            Self::A2
+                * (Self::SIN_BASE_ROLL * 0.7648421872844885
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+        );
+        let k26 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k27 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * -0.644217687237691
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
         );
-        let k26 = T::of(
+        let k28 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * 0.7648421872844885
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
-        let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k28 = T::of(1.0 / Self::KNEE2);
-        let k29 = T::of(1.0 / Self::KNEE5);
+        let k29 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k30 = T::of(
             Self::H1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
@@ -1612,26 +1612,26 @@ impl Robot<6> for EveryEffect {
             q[4],
             q[5],
         ]);
-        let t1 = k1 * c1o + k5 * s1o;
-        let t2 = k2 * c1o + k6 * s1o;
-        let t3 = k3 * c1o + k4 * s1o;
-        let z2x = k5 * c1o - k1 * s1o;
-        let z2y = k6 * c1o - k2 * s1o;
-        let z2z = k4 * c1o - k3 * s1o;
+        let t1 = k3 * c1o + k7 * s1o;
+        let t2 = k4 * c1o + k8 * s1o;
+        let t3 = k5 * c1o + k6 * s1o;
+        let z2x = k7 * c1o - k3 * s1o;
+        let z2y = k8 * c1o - k4 * s1o;
+        let z2z = k6 * c1o - k5 * s1o;
         let t4 = a2 * s2;
-        let t5 = t1 * t4 - k22 * c2;
-        let t6 = t2 * t4 - k23 * c2;
-        let t7 = t3 * t4 - k24 * c2;
+        let t5 = t1 * t4 - k24 * c2;
+        let t6 = t2 * t4 - k25 * c2;
+        let t7 = t3 * t4 - k26 * c2;
         let t8 = a3 * s23;
-        let t9 = t1 * t8 - k25 * c23 + d3 * z2x;
-        let t10 = t2 * t8 - k26 * c23 + d3 * z2y;
-        let t11 = t3 * t8 - k27 * c23 + d3 * z2z;
-        let t12 = t1 * s23 - k19 * c23;
-        let t13 = t2 * s23 - k20 * c23;
-        let t14 = t3 * s23 - k21 * c23;
-        let t15 = k19 * s23 + t1 * c23;
-        let t16 = k20 * s23 + t2 * c23;
-        let t17 = k21 * s23 + t3 * c23;
+        let t9 = t1 * t8 - k27 * c23 + d3 * z2x;
+        let t10 = t2 * t8 - k28 * c23 + d3 * z2y;
+        let t11 = t3 * t8 - k29 * c23 + d3 * z2z;
+        let t12 = t1 * s23 - k21 * c23;
+        let t13 = t2 * s23 - k22 * c23;
+        let t14 = t3 * s23 - k23 * c23;
+        let t15 = k21 * s23 + t1 * c23;
+        let t16 = k22 * s23 + t2 * c23;
+        let t17 = k23 * s23 + t3 * c23;
         let t18 = cos_alpha3 * t15 + sin_alpha3 * z2x;
         let t19 = cos_alpha3 * t16 + sin_alpha3 * z2y;
         let t20 = cos_alpha3 * t17 + sin_alpha3 * z2z;
@@ -1676,12 +1676,12 @@ impl Robot<6> for EveryEffect {
         let r2x = t5 + r3x;
         let r2y = t6 + r3y;
         let r2z = t7 + r3z;
-        let r1x = k10 * c1o + k13 * s1o + k16 + r2x;
-        let r1y = k11 * c1o + k14 * s1o + k17 + r2y;
-        let r1z = k12 * c1o + k15 * s1o + k18 + r2z;
-        let j1x = k9 * r1z - k7 * r1y;
-        let j1y = k7 * r1x - k8 * r1z;
-        let j1z = k8 * r1y - k9 * r1x;
+        let r1x = k12 * c1o + k15 * s1o + k18 + r2x;
+        let r1y = k13 * c1o + k16 * s1o + k19 + r2y;
+        let r1z = k14 * c1o + k17 * s1o + k20 + r2z;
+        let j1x = k11 * r1z - k9 * r1y;
+        let j1y = k9 * r1x - k10 * r1z;
+        let j1z = k10 * r1y - k11 * r1x;
         let j2x = z2y * r2z - z2z * r2y;
         let j2y = z2z * r2x - z2x * r2z;
         let j2z = z2x * r2y - z2y * r2x;
@@ -1697,7 +1697,7 @@ impl Robot<6> for EveryEffect {
         let j6x = z6y * r6z - z6z * r6y;
         let j6y = z6z * r6x - z6x * r6z;
         let j6z = z6x * r6y - z6y * r6x;
-        let t38 = k8 * mx + k9 * my + k7 * mz;
+        let t38 = k10 * mx + k11 * my + k9 * mz;
         let tau1 = fx * j1x + fy * j1y + fz * j1z + t38;
         let t39 = fx * j2x + fy * j2y + fz * j2z;
         let t40 = z2x * mx + z2y * my + z2z * mz;
@@ -1714,11 +1714,11 @@ impl Robot<6> for EveryEffect {
         let dq4 = h4 * tau4;
         let dq3 = h3 * tau3 + coupling2_3 * tau2;
         let dq6 = h6 * tau6 + coupling5_6 * tau5;
-        let t45 = k28 * tau2;
-        let t46 = (T::one() + t45 * t45).sqrt().recip() * (added2 * tau2);
+        let t45 = k1 * tau2;
+        let t46 = added2 * tau2 * (T::one() + t45 * t45).sqrt().recip();
         let dq2 = h2 * tau2 + coupling2_3 * tau3 + t46;
-        let t47 = k29 * tau5;
-        let t48 = (T::one() + t47 * t47).sqrt().recip() * (added5 * tau5);
+        let t47 = k2 * tau5;
+        let t48 = added5 * tau5 * (T::one() + t47 * t47).sqrt().recip();
         let dq5 = h5 * tau5 + coupling5_6 * tau6 + t48;
         let t49 = j1x * dq1 + j2x * dq2 + j3x * dq3;
         let t50 = j1y * dq1 + j2y * dq2 + j3y * dq3;
@@ -1735,10 +1735,10 @@ impl Robot<6> for EveryEffect {
         let t61 = mx + (r1y * fz - r1z * fy);
         let t62 = my + (r1z * fx - r1x * fz);
         let t63 = mz + (r1x * fy - r1y * fx);
-        let t64 = k8 * t61 + k9 * t62 + k7 * t63;
-        let t65 = t61 - k8 * t64;
-        let t66 = t62 - k9 * t64;
-        let t67 = t63 - k7 * t64;
+        let t64 = k10 * t61 + k11 * t62 + k9 * t63;
+        let t65 = t61 - k10 * t64;
+        let t66 = t62 - k11 * t64;
+        let t67 = t63 - k9 * t64;
         let t68 = transverse1 * t65;
         let t69 = transverse1 * t66;
         let t70 = transverse1 * t67;

@@ -35,6 +35,7 @@ macro_rules! for_every_arm {
             rv130hsc Rv130hsc "rv130hsc.yaml",
             staubli_rx160 StaubliRx160 "staubli-rx160.yaml",
             every_effect EveryEffect "every-effect.yaml",
+            every_law EveryLaw "every-law.yaml",
             modified_slider ModifiedSlider "modified-slider.yaml",
             pendulum Pendulum "pendulum.yaml",
             scara Scara "scara.yaml",

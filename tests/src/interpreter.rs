@@ -6,7 +6,7 @@
 
 use std::collections::HashMap;
 
-use syn::{BinOp, Block, Expr, File, ImplItem, Item, Lit, Pat, Stmt, UnOp};
+use syn::{BinOp, Block, Expr, File, ImplItem, Item, Lit, Member, Pat, Stmt, UnOp};
 
 /// The generated code of one robot.
 pub struct Code {
@@ -42,7 +42,8 @@ impl Code {
             // What a call costs is no number of the calculation.
             ImplItem::Const(item) if matches!(item.expr, Expr::Struct(_)) => {}
             ImplItem::Const(item) => {
-                let value = Scope { code: self, bound: HashMap::new(), q: &[], wrench: &[] }.value(&item.expr);
+                let value = Scope { code: self, bound: HashMap::new(), q: &[], wrench: &[], plays: Vec::new() }
+                    .value(&item.expr);
                 assert!(self.constants.insert(item.ident.to_string(), value).is_none(), "{} twice", item.ident);
             }
             ImplItem::Fn(item) => {
@@ -58,7 +59,16 @@ impl Code {
     /// # Panics
     /// Where the code is none that the generator writes.
     pub fn call(&self, method: &str, q: &[f64], wrench: &[f64]) -> Vec<f64> {
-        let mut scope = Scope { code: self, bound: HashMap::new(), q, wrench };
+        self.call_with(method, q, wrench, &mut [])
+    }
+
+    /// The same with the play operators of each joint, which the method may
+    /// bring up to date.
+    ///
+    /// # Panics
+    /// Where the code is none that the generator writes.
+    pub fn call_with(&self, method: &str, q: &[f64], wrench: &[f64], plays: &mut [[f64; 3]]) -> Vec<f64> {
+        let mut scope = Scope { code: self, bound: HashMap::new(), q, wrench, plays: plays.to_vec() };
         let mut result = Vec::new();
         for statement in &self.methods[method].stmts {
             match statement {
@@ -66,6 +76,10 @@ impl Code {
                     let value = &local.init.as_ref().expect("a value").expr;
                     let values = scope.entries(value);
                     assert_eq!(scope.bind(&local.pat, &values), values.len(), "as many names as values");
+                }
+                Stmt::Expr(Expr::Assign(assignment), Some(_)) => {
+                    let (joint, index) = play(&assignment.left).expect("a play operator");
+                    plays[joint][index] = scope.value(&assignment.right);
                 }
                 Stmt::Expr(expression, None) => result = scope.entries(expression),
                 _ => panic!("a statement that is no let"),
@@ -80,6 +94,7 @@ struct Scope<'c> {
     bound: HashMap<String, f64>,
     q: &'c [f64],
     wrench: &'c [f64],
+    plays: Vec<[f64; 3]>,
 }
 
 impl Scope<'_> {
@@ -118,7 +133,7 @@ impl Scope<'_> {
                     other => panic!("a call of {other}"),
                 }
             }
-            Expr::Index(index) if !is_q(&index.expr) => self.wrench.to_vec(),
+            Expr::Index(index) if !is_q(&index.expr) && play(expression).is_none() => self.wrench.to_vec(),
             _ => vec![self.value(expression)],
         }
     }
@@ -155,6 +170,10 @@ impl Scope<'_> {
                 },
                 _ => panic!("an index"),
             },
+            Expr::Index(_) => {
+                let (joint, index) = play(expression).expect("a play operator");
+                self.plays[joint][index]
+            }
             Expr::MethodCall(call) => {
                 let value = self.value(&call.receiver);
                 match call.method.to_string().as_str() {
@@ -162,6 +181,8 @@ impl Scope<'_> {
                     "mul_add" => value * self.value(&call.args[0]) + self.value(&call.args[1]),
                     "sqrt" => value.sqrt(),
                     "recip" => value.recip(),
+                    "max" => value.max(self.value(&call.args[0])),
+                    "min" => value.min(self.value(&call.args[0])),
                     other => panic!("a call of {other}"),
                 }
             }
@@ -178,4 +199,20 @@ fn path(expression: &Expr) -> String {
 
 fn is_q(expression: &Expr) -> bool {
     matches!(expression, Expr::Path(_)) && path(expression) == "q"
+}
+
+/// The joint and the number of `state.plays[1][0]`, from 0.
+fn play(expression: &Expr) -> Option<(usize, usize)> {
+    let index = |expression: &Expr| match expression {
+        Expr::Lit(literal) => match &literal.lit {
+            Lit::Int(index) => index.base10_parse().ok(),
+            _ => None,
+        },
+        _ => None,
+    };
+    let Expr::Index(outer) = expression else { return None };
+    let Expr::Index(inner) = &*outer.expr else { return None };
+    let Expr::Field(field) = &*inner.expr else { return None };
+    let is_plays = matches!(&field.member, Member::Named(name) if name == "plays") && path(&field.base) == "state";
+    is_plays.then(|| Some((index(&inner.index)?, index(&outer.index)?)))?
 }

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix6, SVector, Vector6};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use robstiff_robots::dimension::Dimension;
 use robstiff_robots::{Description, Effect, Joint, Placement};
 
 /// How large things of a robot are, for what cancels to be measured by.
@@ -22,12 +23,18 @@ impl Sizes {
         let reach = (placed(&robot.base) + placed(&robot.tool) + joints.sum::<f64>()).max(1.0);
         let joints = robot.joints.iter().map(Joint::compliance);
         let effects = robot.effects.iter().map(|effect| match *effect {
-            Effect::TransverseCompliance { value, .. } => value,
-            Effect::LinkCompliance { bending, torsion, .. } => bending.max(torsion),
-            Effect::BaseCompliance { tilt, translation } => tilt.max(translation),
-            Effect::ToolCompliance { rotation, translation } => rotation.max(translation),
-            Effect::JointCoupling { value, .. } => value.abs(),
-            Effect::StiffnessNonlinearity { added, .. } => added,
+            Effect::LostMotion { gap, knee, .. } => gap / (2.0 * knee),
+            Effect::PoseDependentCompliance { joint, cos1, sin1, cos2, sin2 } => {
+                robot.joints[joint - 1].compliance() * (1.0 + cos1.abs() + sin1.abs() + cos2.abs() + sin2.abs())
+            }
+            _ if effect.is_kinematic() => 0.0,
+            _ => {
+                let compliances = effect.parameters().filter(|(parameter, _)| {
+                    let dimension = parameter.quantity.at(effect.place());
+                    matches!(dimension, Dimension::Compliance | Dimension::LinearCompliance)
+                });
+                compliances.map(|(_, value)| value.abs()).fold(0.0, f64::max)
+            }
         });
         Self { reach, softest: joints.chain(effects).fold(0.0, f64::max) }
     }

@@ -2,7 +2,7 @@
 //! written by hand and against other generators. The counts of every robot are
 //! pinned in `golden.rs`.
 
-use robstiff::{Convention, Effect, JointKind};
+use robstiff::{Convention, DhEntry, Effect, JointKind};
 use robstiff_codegen::{Cost, Function, Origin, functions, source, symbolic, symbolic::ALGORITHMS};
 use robstiff_robots::{Description, Joint, Part, Placement};
 use robstiff_tests::arms::{self, description};
@@ -120,6 +120,10 @@ fn effects_cost_only_their_own_terms() {
         (Effect::JointCoupling { joints: [2, 3], value: 1e-7 }, [10, 11], [2, 2]),
         (Effect::JointCoupling { joints: [1, 5], value: 1e-7 }, [30, 23], [2, 2]),
         (Effect::StiffnessNonlinearity { joint: 2, added: 1e-7, knee: 500.0 }, [0, 0], [4, 2]),
+        (Effect::LostMotion { joint: 2, gap: 1e-4, knee: 30.0 }, [0, 0], [4, 2]),
+        (hysteresis(1), [0, 0], [1, 5]),
+        (hysteresis(3), [0, 0], [3, 15]),
+        (pose_dependent(1), [8, 4], [4, 2]),
     ];
     for (effect, compliance, deflection) in bounds {
         let with = Description { effects: vec![effect], ..plain.clone() };
@@ -131,11 +135,39 @@ fn effects_cost_only_their_own_terms() {
             assert_eq!(cost.trig, before.trig, "{effect}");
         }
         // The root of the nonlinearity and its reciprocal; no effect divides.
-        let roots = if matches!(effect, Effect::StiffnessNonlinearity { .. }) { 2 } else { 0 };
+        let is_rooted = matches!(effect, Effect::StiffnessNonlinearity { .. } | Effect::LostMotion { .. });
+        let roots = if is_rooted { 2 } else { 0 };
         assert_eq!((compliance_cost(&with).root, deflection_cost(&with).root), (0, roots), "{effect}");
         let [before, after] = [&plain, &with].map(costs);
         assert_eq!(before[..3], after[..3], "{effect} has no part in kinematics");
         assert_eq!(before[5], after[5], "{effect} has no part in torques");
+    }
+}
+
+/// Hysteresis of joint 2 with so many play operators.
+fn hysteresis(count: usize) -> Effect {
+    let weight = |k: usize| if k <= count { 1e-8 } else { 0.0 };
+    let [weight1, weight2, weight3] = [1, 2, 3].map(weight);
+    Effect::Hysteresis { joint: 2, radius1: 10.0, weight1, radius2: 20.0, weight2, radius3: 30.0, weight3 }
+}
+
+fn pose_dependent(joint: usize) -> Effect {
+    Effect::PoseDependentCompliance { joint, cos1: 0.1, sin1: 0.0, cos2: 0.0, sin2: 0.0 }
+}
+
+/// Corrections of the DH table are in its numbers; an angle error costs its
+/// sine and cosine, and those of the sum.
+#[test]
+fn kinematic_effects_cost_only_their_own_terms() {
+    let plain = five_axes();
+    let with = |effect: Effect| Description { effects: vec![effect], ..plain.clone() };
+    let corrected = with(Effect::DhError { entry: DhEntry::D(4), value: 1e-3 });
+    assert_eq!(costs(&corrected), costs(&plain));
+    let wave = with(Effect::TransmissionError { joint: 5, order: 7.0, sin: 1e-3, cos: 0.0 });
+    for (cost, before) in costs(&wave).into_iter().zip(costs(&plain)) {
+        assert!(cost.trig <= before.trig + 1, "{cost} after {before}");
+        assert!(cost.mul <= before.mul + 12 && cost.add <= before.add + 6, "{cost} after {before}");
+        assert_eq!(cost.root, before.root);
     }
 }
 

@@ -3,13 +3,16 @@
 //! conventions, in random poses, with both scalars.
 
 use nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
-use robstiff::{Generic, Robot, Statics};
+use robstiff::{Generic, Robot, State, Statics};
 use robstiff_robots::catalogue::catalogue;
 use robstiff_tests::arms::{FILES, description};
 use robstiff_tests::for_every_arm;
 use robstiff_tests::judge::{DOUBLE, SINGLE, Sizes, Tolerance, assert_close, blocks, trials};
 
 const POSES: usize = 1000;
+
+/// What is left of a load on the way back from it.
+const BACK: f64 = -0.25;
 
 for_every_arm!(states_the_facts);
 for_every_arm!(agrees);
@@ -55,7 +58,12 @@ fn agrees_in_single_precision<const N: usize, R: Robot<N>>(robot: R, file: &str)
     let (description, generic) = (description(file), generic::<N>(file));
     for (q, wrench) in trials::<N>(POSES, 2) {
         let (q, wrench) = (q.map(|x| x as f32), wrench.map(|x| x as f32));
+        let mut state = State::new();
+        robot.deflection_with(&q, &wrench, &mut state);
+        let back = robot.deflection_with(&q, &(wrench * BACK as f32), &mut state).map(f64::from);
         let found = All {
+            back,
+            state: State { plays: state.plays.map(|plays| plays.map(f64::from)) },
             transform: robot.transform(&q).map(f64::from),
             link_frames: robot.link_frames(&q).map(|frame| frame.map(f64::from)),
             jacobian: robot.jacobian(&q).map(f64::from),
@@ -77,11 +85,18 @@ struct All<const N: usize> {
     compliance: Matrix6<f64>,
     deflection: Vector6<f64>,
     joint_torques: SVector<f64, N>,
+    back: Vector6<f64>,
+    state: State<N>,
 }
 
 impl<const N: usize> All<N> {
     fn of<R: Robot<N>>(robot: &R, q: &SVector<f64, N>, wrench: &Vector6<f64>) -> Self {
+        let mut state = State::new();
+        robot.deflection_with(q, wrench, &mut state);
+        let back = robot.deflection_with(q, &(wrench * BACK), &mut state);
         Self {
+            back,
+            state,
             transform: robot.transform(q),
             link_frames: robot.link_frames(q),
             jacobian: robot.jacobian(q),
@@ -112,6 +127,10 @@ impl<const N: usize> All<N> {
         let (found, known) = (self.deflection.as_slice(), expected.deflection.as_slice());
         close("displacement", &found[..3], &known[..3], sizes.softest * sizes.reach * torque);
         close("rotation", &found[3..], &known[3..], sizes.softest * torque);
+        let (found, known) = (self.back.as_slice(), expected.back.as_slice());
+        close("displacement on the way back", &found[..3], &known[..3], sizes.softest * sizes.reach * torque);
+        close("rotation on the way back", &found[3..], &known[3..], sizes.softest * torque);
+        close("play operators", self.state.plays.as_flattened(), expected.state.plays.as_flattened(), torque);
         close("joint torques", self.joint_torques.as_slice(), expected.joint_torques.as_slice(), torque);
     }
 }

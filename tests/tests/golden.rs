@@ -27,6 +27,11 @@ fn every_effect_is_as_before() {
     is_as_before("every_effect", "every-effect.yaml");
 }
 
+#[test]
+fn every_law_is_as_before() {
+    is_as_before("every_law", "every-law.yaml");
+}
+
 fn origin(file: &str) -> Origin {
     let path = |text: &str| text.parse().expect("a token");
     Origin { file: file.to_owned(), runtime: path("robstiff"), visibility: path("pub") }
@@ -44,7 +49,8 @@ fn costs_are_as_before() {
         let robot = description(file);
         costs += &format!("{file}\n");
         for (name, function) in functions(&robot) {
-            costs += &format!("  {name:<14}{}\n", function.cost());
+            let gap = if name.len() < 14 { "" } else { " " };
+            costs += &format!("  {name:<14}{gap}{}\n", function.cost());
         }
     }
     compare("costs.txt", &costs);

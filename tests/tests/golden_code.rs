@@ -4,7 +4,7 @@
 //! do not compile.
 
 use nalgebra::{SVector, Vector6};
-use robstiff::Robot;
+use robstiff::{Robot, State};
 use robstiff_tests::arms;
 use robstiff_tests::judge::trials;
 
@@ -28,6 +28,7 @@ golden! {
     rv130hsc Rv130hsc
     fanuc_r2000ic FanucR2000ic
     every_effect EveryEffect
+    every_law EveryLaw
 }
 
 fn is_the_macros<const N: usize>(text: impl Robot<N>, expanded: impl Robot<N>) {
@@ -52,6 +53,10 @@ fn bits<const N: usize>(robot: &impl Robot<N>, q: &SVector<f64, N>, wrench: &Vec
     all.extend(&robot.compliance(q));
     all.extend(&robot.deflection(q, wrench));
     all.extend(&robot.joint_torques(q, wrench));
+    let mut state = State::new();
+    all.extend(&robot.deflection_with(q, wrench, &mut state));
+    all.extend(&robot.deflection_with(q, &(wrench * -0.5), &mut state));
+    all.extend(state.plays.as_flattened());
     let statics = robot.statics(q);
     all.extend(statics.transform.iter().chain(&statics.jacobian).chain(&statics.compliance));
     all.into_iter().map(f64::to_bits).collect()

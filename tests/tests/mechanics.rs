@@ -3,9 +3,10 @@
 //!
 //! Nothing here is compared with another implementation of the same formulas.
 
-use nalgebra::{Matrix3, Matrix4, Matrix6, SVector, UnitVector3, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix4, Matrix6, SMatrix, SVector, UnitVector3, Vector3, Vector6};
 use robstiff::analysis::{Stiffness, directional_stiffness, principal_directions, translational_stiffness};
-use robstiff::elements::{Element, contributions, share_along, share_of_translation};
+use robstiff::elements::{Element, commanded_rates, contributions, share_along, share_of_translation};
+use robstiff::robots::Place;
 use robstiff::{Convention, Effect, JointKind, Robot};
 use robstiff_tests::arms::{EveryEffect, FanucR2000ic, Pendulum, Rv130hsc, description};
 use robstiff_tests::for_every_arm;
@@ -49,7 +50,10 @@ fn joint_frame<const N: usize>(robot: &impl Robot<N>, q: &SVector<f64, N>, joint
 }
 
 fn is_linear<const N: usize>(robot: &impl Robot<N>) -> bool {
-    !robot.effects().iter().any(|effect| matches!(effect, Effect::StiffnessNonlinearity { .. }))
+    let bends = |effect: &Effect| {
+        matches!(effect, Effect::StiffnessNonlinearity { .. } | Effect::LostMotion { .. } | Effect::Hysteresis { .. })
+    };
+    !robot.effects().iter().any(bends)
 }
 
 /// The translation in m and the rotation times the arm's reach in m.
@@ -62,7 +66,10 @@ fn the_jacobian_is_the_derivative<const N: usize>(robot: impl Robot<N>, file: &s
     let step = 1e-5;
     for (q, _) in trials::<N>(POSES, 10) {
         let reach = Sizes::of(&description, q.as_slice()).reach;
-        let jacobian = robot.jacobian(&q);
+        // The Jacobian is that of the joints' outputs, the derivative that of
+        // the angles they are told.
+        let rates = commanded_rates(&robot, &q);
+        let jacobian = robot.jacobian(&q) * SMatrix::from_diagonal(&rates);
         let here = turn(&robot.transform(&q));
         for joint in 0..N {
             let moved = |by: f64| {
@@ -176,6 +183,18 @@ fn work<const N: usize>(robot: &impl Robot<N>, q: &SVector<f64, N>, wrench: &Vec
             }
             Effect::JointCoupling { joints: [i, j], value } => 2.0 * value * torque(i) * torque(j),
             Effect::StiffnessNonlinearity { joint, added, .. } => added * torque(joint).powi(2),
+            Effect::LostMotion { joint, gap, knee } => gap / (2.0 * knee) * torque(joint).powi(2),
+            Effect::PoseDependentCompliance { joint, cos1, sin1, cos2, sin2 } => {
+                let (angle, own) = (q[joint - 1], robot.joint_compliance()[joint - 1]);
+                let (once, twice) = (angle.sin_cos(), (2.0 * angle).sin_cos());
+                let change = cos1 * once.1 + sin1 * once.0 + cos2 * twice.1 + sin2 * twice.0;
+                own * change * torque(joint).powi(2)
+            }
+            // Play operators stay under a small load; frames store nothing.
+            Effect::Hysteresis { .. }
+            | Effect::JointZeroOffset { .. }
+            | Effect::DhError { .. }
+            | Effect::TransmissionError { .. } => 0.0,
         },
     }
 }
@@ -227,8 +246,8 @@ fn small_loads_see_the_compliance<const N: usize>(robot: impl Robot<N>, file: &s
     }
 }
 
-/// Under a huge load a nonlinear joint has only its own compliance left, and
-/// besides it the turn `added * knee` that it took on the way.
+/// Under a huge load a nonlinear joint has only its own compliance left, that of
+/// play operators that slide, and the turn that it took on the way.
 fn far_beyond_the_knee_the_joint_alone_yields<const N: usize>(robot: impl Robot<N>, file: &str) {
     let description = description(file);
     for (q, wrench) in trials::<N>(POSES, 18) {
@@ -236,11 +255,26 @@ fn far_beyond_the_knee_the_joint_alone_yields<const N: usize>(robot: impl Robot<
         let (jacobian, torques) = (robot.jacobian(&q), robot.joint_torques(&q, &wrench));
         let mut expected = robot.compliance(&q) * wrench;
         for effect in robot.effects() {
-            if let Effect::StiffnessNonlinearity { joint, added, knee } = *effect {
-                let torque = torques[joint - 1];
-                assert!(torque.abs() > 1e4 * knee, "{file}: the load is not huge");
-                expected += jacobian.column(joint - 1) * (added * (knee * torque.signum() - torque));
-            }
+            let Place::Joint(joint) = effect.place() else { continue };
+            let torque = torques[joint - 1];
+            let huge = |knee: f64| assert!(torque.abs() > 1e3 * knee, "{file}: the load is not huge");
+            let turned = match *effect {
+                Effect::StiffnessNonlinearity { added, knee, .. } => {
+                    huge(knee);
+                    added * (knee * torque.signum() - torque)
+                }
+                Effect::LostMotion { gap, knee, .. } => {
+                    huge(knee);
+                    gap / 2.0 * (torque.signum() - torque / knee)
+                }
+                Effect::Hysteresis { radius1, weight1, radius2, weight2, radius3, weight3, .. } => {
+                    let pairs = [(radius1, weight1), (radius2, weight2), (radius3, weight3)];
+                    assert!(torque.abs() > radius3, "{file}: the operators do not slide");
+                    pairs.map(|(radius, weight)| weight * (torque - radius * torque.signum())).iter().sum()
+                }
+                _ => continue,
+            };
+            expected += jacobian.column(joint - 1) * turned;
         }
         let size = sizes.softest * sizes.reach * sizes.torque(&wrench);
         let off = in_metres(&(robot.deflection(&q, &wrench) - expected), sizes.reach).amax();

@@ -5,7 +5,7 @@
 use nalgebra::{Matrix4, Matrix6, SVector, Vector6};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use robstiff::{Convention, Effect, Generic, JointKind, Robot, with_robot};
+use robstiff::{Convention, DhEntry, Effect, Generic, JointKind, Robot, State, with_robot};
 use robstiff_codegen::{Function, Origin, functions, symbolic, tokens};
 use robstiff_robots::{Description, Joint, Part, Placement};
 use robstiff_tests::interpreter::Code;
@@ -70,6 +70,50 @@ fn effects(joints: Vec<Joint>) -> impl Strategy<Value = Vec<Effect>> {
     }
     if !turning.is_empty() {
         let nonlinear = (prop::sample::select(turning.clone()), 1e-8..1e-6_f64, 10.0..1e4_f64);
+        let turning_joint = || prop::sample::select(turning.clone());
+        all.push(
+            (turning_joint(), 1e-5..1e-3_f64, 10.0..1e3_f64)
+                .prop_map(|(joint, gap, knee)| Effect::LostMotion { joint, gap, knee })
+                .boxed(),
+        );
+        all.push(
+            (turning_joint(), prop::array::uniform3(1.0..300.0_f64), prop::array::uniform3(compliance()))
+                .prop_map(|(joint, steps, [weight1, weight2, weight3])| {
+                    let [radius1, radius2, radius3] = [steps[0], steps[0] + steps[1], steps[0] + steps[1] + steps[2]];
+                    Effect::Hysteresis { joint, radius1, weight1, radius2, weight2, radius3, weight3 }
+                })
+                .boxed(),
+        );
+        all.push(
+            (turning_joint(), prop::array::uniform4(-0.2..0.2_f64))
+                .prop_map(|(joint, [cos1, sin1, cos2, sin2])| Effect::PoseDependentCompliance {
+                    joint,
+                    cos1,
+                    sin1,
+                    cos2,
+                    sin2,
+                })
+                .boxed(),
+        );
+        all.push(
+            (turning_joint(), angle()).prop_map(|(joint, value)| Effect::JointZeroOffset { joint, value }).boxed(),
+        );
+        all.push(
+            (turning_joint(), 1..60_u8, prop::array::uniform2(-3e-3..3e-3_f64))
+                .prop_map(|(joint, order, [sin, cos])| Effect::TransmissionError {
+                    joint,
+                    order: f64::from(order),
+                    sin,
+                    cos,
+                })
+                .boxed(),
+        );
+        let column = prop::sample::select(vec![DhEntry::A, DhEntry::Alpha, DhEntry::D, DhEntry::Theta]);
+        all.push(
+            (column, 1..=n, 0.02..0.1_f64)
+                .prop_map(|(column, row, value)| Effect::DhError { entry: column(row), value })
+                .boxed(),
+        );
         all.push(
             nonlinear.prop_map(|(joint, added, knee)| Effect::StiffnessNonlinearity { joint, added, knee }).boxed(),
         );
@@ -107,8 +151,17 @@ fn compare_code(robot: &Description, q: &[f64], wrench: &[f64; 6]) {
     let path = |text: &str| text.parse().expect("a token");
     let origin = Origin { file: "drawn.yaml".into(), runtime: path("robstiff"), visibility: path("pub") };
     let code = Code::of(syn::parse2(tokens(robot, &origin)).expect("generated code is Rust"));
+    let mut before = vec![[0.0; 3]; q.len()];
+    for (k, play) in before.as_flattened_mut().iter_mut().enumerate() {
+        *play = wrench[k % 6] * 0.3;
+    }
     for (name, function) in functions(robot) {
-        assert_eq!(code.call(name, q, wrench), function.evaluate(q, wrench), "{name}");
+        let mut after = before.clone();
+        let found = code.call_with(name, q, wrench, &mut after);
+        let expected = function.evaluate_with(q, wrench, &before);
+        let plays = symbolic::plays(robot).into_iter().map(|(joint, k)| after[joint][k]);
+        let found: Vec<f64> = found.into_iter().chain(plays.filter(|_| name == "deflection_with")).collect();
+        assert_eq!(found, expected, "{name}");
     }
 }
 
@@ -136,6 +189,19 @@ fn compare<const N: usize>(robot: &Description, generic: &Generic<N>, q: &[f64],
     }
     let deflection = Function::of(|g| symbolic::deflection(g, robot)).evaluate(q, wrench);
     let reference = generic.deflection(&at, &load);
+    let mut state = State::new();
+    let after = Function::of(|g| symbolic::deflection_with(g, robot));
+    let mut plays = vec![[0.0; 3]; N];
+    for share in [1.0, -0.3, 0.6, 0.0] {
+        let found = after.evaluate_with(q, &wrench.map(|x| x * share), &plays);
+        let reference = generic.deflection_with(&at, &(load * share), &mut state);
+        for (&(joint, k), &play) in symbolic::plays(robot).iter().zip(&found[6..]) {
+            plays[joint][k] = play;
+        }
+        close("displacement after", &found[..3], &reference.as_slice()[..3], sizes.softest * sizes.reach * torque);
+        close("rotation after", &found[3..6], &reference.as_slice()[3..], sizes.softest * torque);
+        close("play operators", plays.as_flattened(), state.plays.as_flattened(), torque);
+    }
     close("displacement", &deflection[..3], &reference.as_slice()[..3], sizes.softest * sizes.reach * torque);
     close("rotation", &deflection[3..], &reference.as_slice()[3..], sizes.softest * torque);
 }

@@ -23,6 +23,10 @@ for_every_arm!(moves_as_the_simulated_arm);
 
 fn stands_where_the_simulated_arm_stands<const N: usize>(robot: impl Robot<N>, file: &str) {
     let description = description(file);
+    if !Arm::knows(&description) {
+        // Held against statics and differences in `laws.rs`.
+        return;
+    }
     let arm = Arm::new(&description, &[]);
     for (q, _) in trials::<N>(300, 30) {
         let transform = robot.transform(&q);
@@ -34,6 +38,9 @@ fn stands_where_the_simulated_arm_stands<const N: usize>(robot: impl Robot<N>, f
 
 fn moves_as_the_simulated_arm<const N: usize>(robot: impl Robot<N>, file: &str) {
     let description = description(file);
+    if !Arm::knows(&description) {
+        return;
+    }
     for (q, wrench) in trials::<N>(40, 31) {
         let wrench = small(&description, q.as_slice(), &wrench);
         assert_settles(file, &description, q.as_slice(), &wrench, &robot.deflection(&q, &wrench));

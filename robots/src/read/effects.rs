@@ -2,31 +2,12 @@
 
 use crate::description::Joint;
 use crate::document::{Map, Node};
-use crate::effect::{Effect, JointKind, Place};
-use crate::quantity::Dimension;
+use crate::effect::physics::{About, At, Parameter, Range};
+use crate::effect::{CATALOGUE, DhEntry, Effect, JointKind, Place};
 use crate::suggest::{closest, list};
 
-/// The kinds a description may hold, with what each needs.
-const KINDS: &[(&str, &[&str])] = &[
-    ("transverse_compliance", &["value"]),
-    ("link_compliance", &["bending", "torsion"]),
-    ("base_compliance", &["tilt", "translation"]),
-    ("tool_compliance", &["rotation", "translation"]),
-    ("joint_coupling", &["value"]),
-    ("stiffness_nonlinearity", &["added", "knee"]),
-];
-
 /// Kinds that are known, but that no description can hold yet.
-const NOT_YET: &[&str] = &[
-    "lost_motion",
-    "hysteresis",
-    "pose_dependent_compliance",
-    "joint_zero_offset",
-    "dh_error",
-    "transmission_error",
-    "gravity_sag",
-    "base_slip",
-];
+const NOT_YET: &[&str] = &["gravity_sag", "base_slip"];
 
 /// Faults of the measurement (`@rig`), which are no part of a robot.
 const OF_THE_RIG: &[&str] = &[
@@ -63,69 +44,71 @@ pub(super) fn effects(node: &Node, joints: Option<&[Joint]>, count: Option<usize
 
 fn effect(node: &Node, joints: Option<&[Joint]>, count: Option<usize>) -> Option<Effect> {
     let map = node.any_map("write e.g. `{kind: transverse_compliance, at: joint 3, value: 6.35e-7 rad/Nm}`")?;
-    let (kind, parameters) = kind(&map.require("kind", "kind: transverse_compliance")?)?;
-    node.map(&[&["kind", "at"], parameters].concat())?;
-    let place = map.require("at", &format!("at: {}", example_place(kind))).and_then(|at| place(&at, kind, count));
-    let stated = |name| map.require(name, &format!("{name}: 6.35e-7 rad/Nm"));
-    let compliance = |name| left_out_or(&map, name, |node| node.nonnegative(Dimension::Compliance));
-    let translation = || left_out_or(&map, "translation", |node| node.nonnegative(Dimension::LinearCompliance));
-    if parameters.len() > 1 && kind != "stiffness_nonlinearity" && parameters.iter().all(|name| map.get(name).is_none())
-    {
-        node.error(
-            format!("`{kind}` needs at least one of {}", list(parameters.iter().copied())),
-            "a parameter left out is 0",
-        );
+    let about = kind(&map.require("kind", "kind: transverse_compliance")?)?;
+    let names = || about.parameters.iter().map(|parameter| parameter.name);
+    node.map(&["kind", "at"].into_iter().chain(names()).collect::<Vec<_>>())?;
+    let place = map.require("at", &format!("at: {}", about.at.example())).and_then(|at| place(&at, about, count));
+    let may_be_left_out = about.parameters.iter().all(|parameter| parameter.default.is_some());
+    if may_be_left_out && names().all(|name| map.get(name).is_none()) {
+        let help = "a parameter left out is 0";
+        node.error(format!("`{}` needs at least one of {}", about.kind, list(names())), help);
         return None;
     }
-    let effect = match kind {
-        "transverse_compliance" => {
-            let value = stated("value").and_then(|node| node.nonnegative(Dimension::Compliance));
-            let Place::Joint(joint) = place? else { return None };
-            Effect::TransverseCompliance { joint, value: value? }
-        }
-        "link_compliance" => {
-            let (bending, torsion) = (compliance("bending"), compliance("torsion"));
-            let Place::Link(link) = place? else { return None };
-            Effect::LinkCompliance { link, bending: bending?, torsion: torsion? }
-        }
-        "base_compliance" => {
-            let (tilt, translation) = (compliance("tilt"), translation());
-            place?;
-            Effect::BaseCompliance { tilt: tilt?, translation: translation? }
-        }
-        "tool_compliance" => {
-            let (rotation, translation) = (compliance("rotation"), translation());
-            place?;
-            Effect::ToolCompliance { rotation: rotation?, translation: translation? }
-        }
-        "joint_coupling" => {
-            let value = stated("value").and_then(|node| node.quantity(Dimension::Compliance));
-            let Place::Joints(pair) = place? else { return None };
-            revolute(&map, joints, &pair)?;
-            Effect::JointCoupling { joints: pair, value: value? }
-        }
-        _ => {
-            let added = stated("added").and_then(|node| node.quantity(Dimension::Compliance));
-            let knee = map.require("knee", "knee: 500 Nm").and_then(|node| node.positive(Dimension::Torque));
-            let Place::Joint(joint) = place? else { return None };
-            revolute(&map, joints, &[joint])?;
-            softening(&map, joints, joint, added?)?;
-            Effect::StiffnessNonlinearity { joint, added: added?, knee: knee? }
-        }
+    // Every number is read before anything is given up, to report all problems;
+    // the unit of some depends on the place.
+    let numbers: Vec<Option<f64>> = about.parameters.iter().map(|parameter| number(&map, parameter, place)).collect();
+    let numbers: Option<Vec<f64>> = numbers.into_iter().collect();
+    let place = place?;
+    if matches!(about.at, At::TurningJoint | At::TurningJoints) {
+        revolute(&map, joints, place)?;
+    }
+    let effect = Effect::of_kind(about.kind, place, &numbers?).expect("a place and numbers of this kind");
+    let compliance = match place {
+        Place::Joint(joint) => joints.and_then(|joints| joints.get(joint - 1))?.compliance(),
+        _ => 0.0,
     };
+    if let Some(complaint) = effect.check(compliance) {
+        map.get(complaint.parameter).as_ref().unwrap_or(node).error(complaint.message, complaint.help);
+        return None;
+    }
     Some(effect)
 }
 
-fn left_out_or(map: &Map, name: &str, read: impl FnOnce(&Node) -> Option<f64>) -> Option<f64> {
-    map.get(name).map_or(Some(0.0), |node| read(&node))
+/// A parameter, or its default.
+fn number(map: &Map, parameter: &Parameter, place: Option<Place>) -> Option<f64> {
+    let node = match parameter.default {
+        None => map.require(parameter.name, &format!("{}: {}", parameter.name, parameter.example))?,
+        Some(default) => match map.get(parameter.name) {
+            None => return Some(default),
+            Some(node) => node,
+        },
+    };
+    // Without a place, its own problem is told; the unit of most is known.
+    let dimension = parameter.quantity.at(place.unwrap_or(Place::Base));
+    match parameter.range {
+        Range::Any => node.quantity(dimension),
+        Range::NotNegative => node.nonnegative(dimension),
+        Range::Positive => node.positive(dimension),
+        Range::Whole(most) => {
+            let value = node.quantity(dimension)?;
+            if !parameter.range.contains(value) {
+                node.error(
+                    format!("`{}` is a whole number from 1 to {most}", parameter.name),
+                    format!("e.g. `{}: {}`", parameter.name, parameter.example),
+                );
+                return None;
+            }
+            Some(value)
+        }
+    }
 }
 
-fn kind(node: &Node) -> Option<(&'static str, &'static [&'static str])> {
+fn kind(node: &Node) -> Option<&'static About> {
     let name = node.text()?;
-    if let Some(kind) = KINDS.iter().find(|(kind, _)| *kind == name) {
-        return Some(*kind);
+    if let Some(about) = CATALOGUE.iter().find(|about| about.kind == name) {
+        return Some(about);
     }
-    let kinds = || KINDS.iter().map(|(kind, _)| *kind);
+    let kinds = || CATALOGUE.iter().map(|about| about.kind);
     let kinds_are = format!("the kinds are {}", list(kinds()));
     if OF_THE_RIG.contains(&name) {
         node.error(
@@ -141,24 +124,14 @@ fn kind(node: &Node) -> Option<(&'static str, &'static [&'static str])> {
     None
 }
 
-fn example_place(kind: &str) -> &'static str {
-    match kind {
-        "link_compliance" => "link 2",
-        "base_compliance" => "base",
-        "tool_compliance" => "tool",
-        "joint_coupling" => "\"joints 2,3\"",
-        _ => "joint 3",
-    }
-}
-
 /// The place of an effect of this kind, on the robot.
-fn place(node: &Node, kind: &str, count: Option<usize>) -> Option<Place> {
+fn place(node: &Node, about: &About, count: Option<usize>) -> Option<Place> {
     let text = node.text()?;
     let place = match parse_place(text) {
-        Some(place) if fits(kind, place) => place,
+        Some(place) if about.at.takes(place) => place,
         _ => {
-            let help = format!("write e.g. `at: {}`", example_place(kind));
-            node.error(format!("`{kind}` cannot sit at `{text}`"), help);
+            let help = format!("write e.g. `at: {}`", about.at.example());
+            node.error(format!("`{}` cannot sit at `{text}`", about.kind), help);
             return None;
         }
     };
@@ -166,6 +139,7 @@ fn place(node: &Node, kind: &str, count: Option<usize>) -> Option<Place> {
         Place::Joint(joint) => ("joint", [joint, joint], count),
         Place::Joints(joints) => ("joint", joints, count),
         Place::Link(link) => ("link", [link, link], count.map(|count| count.saturating_sub(1))),
+        Place::Entry(entry) => ("row", [entry.row(), entry.row()], count),
         Place::Base | Place::Tool => return Some(place),
     };
     if let (Some(most), Some(count)) = (most, count)
@@ -174,7 +148,7 @@ fn place(node: &Node, kind: &str, count: Option<usize>) -> Option<Place> {
         let help = match (what, most) {
             ("link", 0) => "link i is the body between joints i and i + 1".to_owned(),
             ("link", _) => format!("links count from 1 to {most}; link i is the body between joints i and i + 1"),
-            _ => format!("joints count from 1 to {most}"),
+            _ => format!("{what}s count from 1 to {most}"),
         };
         node.error(format!("there is no {what} {wrong} in a robot of {count} joints"), help);
         return None;
@@ -184,16 +158,6 @@ fn place(node: &Node, kind: &str, count: Option<usize>) -> Option<Place> {
         return None;
     }
     Some(place)
-}
-
-fn fits(kind: &str, place: Place) -> bool {
-    match kind {
-        "link_compliance" => matches!(place, Place::Link(_)),
-        "base_compliance" => place == Place::Base,
-        "tool_compliance" => place == Place::Tool,
-        "joint_coupling" => matches!(place, Place::Joints(_)),
-        _ => matches!(place, Place::Joint(_)),
-    }
 }
 
 fn parse_place(text: &str) -> Option<Place> {
@@ -209,12 +173,26 @@ fn parse_place(text: &str) -> Option<Place> {
         }
         "base" if numbers.is_empty() => Some(Place::Base),
         "tool" if numbers.is_empty() => Some(Place::Tool),
+        _ if numbers.is_empty() => Some(Place::Entry(parse_entry(word)?)),
         _ => None,
     }
 }
 
+/// `a2`, `alpha1`.
+fn parse_entry(word: &str) -> Option<DhEntry> {
+    let digits = word.find(|character: char| character.is_ascii_digit())?;
+    let (column, row) = (&word[..digits], word[digits..].parse().ok()?);
+    let entries = [DhEntry::A(row), DhEntry::Alpha(row), DhEntry::D(row), DhEntry::Theta(row)];
+    entries.into_iter().find(|entry| entry.column() == column)
+}
+
 /// That the joints an effect sits at turn.
-fn revolute(map: &Map, joints: Option<&[Joint]>, numbers: &[usize]) -> Option<()> {
+fn revolute(map: &Map, joints: Option<&[Joint]>, place: Place) -> Option<()> {
+    let numbers = match place {
+        Place::Joint(joint) => vec![joint],
+        Place::Joints(pair) => pair.to_vec(),
+        _ => Vec::new(),
+    };
     let sliding = |number: &&usize| {
         joints.and_then(|joints| joints.get(**number - 1)).is_some_and(|joint| joint.kind == JointKind::Prismatic)
     };
@@ -228,29 +206,31 @@ fn revolute(map: &Map, joints: Option<&[Joint]>, numbers: &[usize]) -> Option<()
     Some(())
 }
 
-/// That a joint that softens with torque keeps a positive compliance without it.
-fn softening(map: &Map, joints: Option<&[Joint]>, joint: usize, added: f64) -> Option<()> {
-    let compliance = joints.and_then(|joints| joints.get(joint - 1))?.compliance();
-    if added <= -compliance {
-        map.get("added")?.error(
-            format!("without load, joint {joint} would have no compliance left: {compliance:e} {added:+e} rad/Nm"),
-            format!("`added` must be above -{compliance:e} rad/Nm"),
-        );
-        return None;
+/// What is left of each joint's compliance where all its effects together take
+/// away the most; each by itself has been checked.
+fn least_compliances(items: &[Node], effects: &[Option<Effect>], joints: &[Joint]) -> Vec<f64> {
+    let mut least: Vec<f64> = joints.iter().map(Joint::compliance).collect();
+    for (item, effect) in items.iter().zip(effects) {
+        let Some((effect, Place::Joint(joint))) = effect.as_ref().map(|effect| (effect, effect.place())) else {
+            continue;
+        };
+        let taken = effect.least(joints[joint - 1].compliance());
+        least[joint - 1] += taken;
+        if taken < 0.0 && least[joint - 1] <= 0.0 {
+            item.error(
+                format!("with the effects before, joint {joint} would have no compliance left"),
+                "weaken one of them: together they must leave the joint's compliance positive",
+            );
+        }
     }
-    Some(())
+    least
 }
 
 /// That the joints' compliance matrix `H_q` with all couplings in it is
 /// positive definite: a load can do no negative work on the robot. The diagonal
 /// is the joints' least compliance over all torques.
 fn check_couplings(items: &[Node], effects: &[Option<Effect>], joints: &[Joint]) {
-    let mut least: Vec<f64> = joints.iter().map(Joint::compliance).collect();
-    for effect in effects.iter().flatten() {
-        if let Effect::StiffnessNonlinearity { joint, added, .. } = effect {
-            least[joint - 1] += added.min(0.0);
-        }
-    }
+    let least = least_compliances(items, effects, joints);
     // H_q scaled to a diagonal of ones, so that no product underflows.
     let count = joints.len();
     let mut scaled: Vec<Vec<f64>> =
@@ -258,7 +238,7 @@ fn check_couplings(items: &[Node], effects: &[Option<Effect>], joints: &[Joint])
     let mut last = None;
     for (item, effect) in items.iter().zip(effects) {
         let Some(Effect::JointCoupling { joints: [i, j], value }) = effect else { continue };
-        let bound = least[i - 1].sqrt() * least[j - 1].sqrt();
+        let bound = least[i - 1].max(0.0).sqrt() * least[j - 1].max(0.0).sqrt();
         if value.abs() < bound {
             scaled[j - 1][i - 1] = value / bound;
             last = Some(item);
@@ -308,11 +288,13 @@ mod tests {
 
     #[test]
     fn places_read_as_they_are_written() {
-        for place in [Place::Joint(3), Place::Joints([2, 3]), Place::Link(1), Place::Base, Place::Tool] {
+        let entries = [DhEntry::A(2), DhEntry::Alpha(1), DhEntry::D(4), DhEntry::Theta(3)].map(Place::Entry);
+        let places = [Place::Joint(3), Place::Joints([2, 3]), Place::Link(1), Place::Base, Place::Tool];
+        for place in places.into_iter().chain(entries) {
             assert_eq!(parse_place(&place.to_string()), Some(place));
         }
         assert_eq!(parse_place("joints 3, 2"), Some(Place::Joints([2, 3])));
-        for text in ["joint", "joint x", "joints 2", "base 1", "rig", ""] {
+        for text in ["joint", "joint x", "joints 2", "base 1", "rig", "", "a", "b2", "a2 3", "2"] {
             assert_eq!(parse_place(text), None);
         }
     }

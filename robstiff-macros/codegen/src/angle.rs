@@ -8,11 +8,13 @@ use std::ops::{Add, Neg};
 
 use robstiff_robots::angle::quarter_turns;
 
-/// `sum of sign * q_joint + offset`, with joints from 0 in ascending order.
+/// `sum of factor * q_joint + offset`, with joints from 0 in ascending order,
+/// and the deviations of joints that stand aside of their coordinates.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Angle {
     terms: Vec<(usize, i32)>,
     offset: f64,
+    deviations: Vec<(usize, i32)>,
 }
 
 /// An angle as `quarter_turns * 90 degrees +- rest`.
@@ -21,7 +23,7 @@ pub(crate) struct Reduced {
     pub quarter_turns: u8,
     /// Whether the rest enters with a minus.
     pub negated: bool,
-    /// What is left: its first term is positive, and its offset is no multiple
+    /// What is left, without deviations: its first term is positive, and its offset is no multiple
     /// of 90 degrees. Nothing, if the angle is such a multiple.
     pub rest: Option<Angle>,
 }
@@ -29,12 +31,29 @@ pub(crate) struct Reduced {
 impl Angle {
     /// A constant angle (rad).
     pub fn constant(offset: f64) -> Self {
-        Self { terms: Vec::new(), offset }
+        Self { offset, ..Self::default() }
     }
 
     /// The coordinate of a joint (from 0) plus a constant (rad).
     pub fn of_joint(joint: usize, offset: f64) -> Self {
-        Self { terms: vec![(joint, 1)], offset }
+        Self { terms: vec![(joint, 1)], offset, ..Self::default() }
+    }
+
+    /// A multiple of the coordinate of a joint (from 0).
+    pub fn multiple(joint: usize, factor: i32) -> Self {
+        Self { terms: vec![(joint, factor)], ..Self::default() }
+    }
+
+    /// With the angle by which a joint (from 0) stands aside of its coordinate,
+    /// which the graph knows.
+    pub fn with_deviation(mut self, joint: usize) -> Self {
+        self.deviations.push((joint, 1));
+        self
+    }
+
+    /// The joints (from 0) whose deviations are in it, with their signs.
+    pub fn deviations(&self) -> &[(usize, i32)] {
+        &self.deviations
     }
 
     /// The joints (from 0) with their factors.
@@ -49,7 +68,7 @@ impl Angle {
 
     /// Whether it is exactly 0 for every pose.
     pub fn is_zero(&self) -> bool {
-        self.terms.is_empty() && quarter_turns(self.offset) == Some(0)
+        self.terms.is_empty() && self.deviations.is_empty() && quarter_turns(self.offset) == Some(0)
     }
 
     /// Digits that name it: `23` for q2 + q3, `2m3` for q2 - q3, with an `o`
@@ -73,7 +92,8 @@ impl Angle {
 
     pub(crate) fn reduced(&self) -> Reduced {
         let turns = quarter_turns(self.offset);
-        let mut rest = Self { terms: self.terms.clone(), offset: if turns.is_some() { 0.0 } else { self.offset } };
+        let offset = if turns.is_some() { 0.0 } else { self.offset };
+        let mut rest = Self { terms: self.terms.clone(), offset, ..Self::default() };
         let negated = rest.terms.first().is_some_and(|&(_, factor)| factor < 0);
         if negated {
             rest = -rest;
@@ -87,13 +107,15 @@ impl Add<&Angle> for Angle {
     type Output = Self;
 
     fn add(mut self, other: &Self) -> Self {
-        for &(joint, factor) in &other.terms {
-            match self.terms.binary_search_by_key(&joint, |term| term.0) {
-                Ok(at) => self.terms[at].1 += factor,
-                Err(at) => self.terms.insert(at, (joint, factor)),
+        for (terms, others) in [(&mut self.terms, &other.terms), (&mut self.deviations, &other.deviations)] {
+            for &(joint, factor) in others {
+                match terms.binary_search_by_key(&joint, |term| term.0) {
+                    Ok(at) => terms[at].1 += factor,
+                    Err(at) => terms.insert(at, (joint, factor)),
+                }
             }
+            terms.retain(|term| term.1 != 0);
         }
-        self.terms.retain(|term| term.1 != 0);
         self.offset += other.offset;
         // Sums of quarter turns stay exact.
         if let Some(turns) = quarter_turns(self.offset) {
@@ -107,7 +129,7 @@ impl Neg for Angle {
     type Output = Self;
 
     fn neg(mut self) -> Self {
-        for term in &mut self.terms {
+        for term in self.terms.iter_mut().chain(&mut self.deviations) {
             term.1 = -term.1;
         }
         self.offset = -self.offset;

@@ -6,6 +6,8 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
+use robstiff_robots::effect::Scalar;
+
 use crate::graph::{Op, Sym};
 
 impl<'g> Sym<'g> {
@@ -46,6 +48,67 @@ impl<'g> Sym<'g> {
     /// `1 / self`.
     pub fn recip(self) -> Self {
         self.make(Op::Recip(self.id), self.constant().map(f64::recip))
+    }
+
+    /// The larger of the two.
+    pub fn max(self, other: Self) -> Self {
+        self.either(other, Op::Max, f64::max)
+    }
+
+    /// The smaller of the two.
+    pub fn min(self, other: Self) -> Self {
+        self.either(other, Op::Min, f64::min)
+    }
+
+    fn either(self, other: Self, op: fn(usize, usize) -> Op, apply: fn(f64, f64) -> f64) -> Self {
+        if self == other {
+            return self;
+        }
+        match self.both_constant(other, apply) {
+            // Which of the two it is, is known: no operation.
+            Some(value) => {
+                if self.constant() == Some(value) {
+                    self
+                } else {
+                    other
+                }
+            }
+            None => self.make(op(self.id, other.id), None),
+        }
+    }
+}
+
+/// The catalogue's formulas, on symbols.
+impl Scalar for Sym<'_> {
+    fn times(self, factor: f64) -> Self {
+        self * self.graph.number(factor)
+    }
+
+    fn plus(self, summand: f64) -> Self {
+        self + self.graph.number(summand)
+    }
+
+    fn sqrt(self) -> Self {
+        Sym::sqrt(self)
+    }
+
+    fn recip(self) -> Self {
+        Sym::recip(self)
+    }
+
+    fn max(self, other: Self) -> Self {
+        Sym::max(self, other)
+    }
+
+    fn min(self, other: Self) -> Self {
+        Sym::min(self, other)
+    }
+
+    fn signum(self) -> Self {
+        match self.constant() {
+            Some(value) => self.graph.number(value.signum()),
+            None => self * Sym::sqrt(self.squared()).recip(),
+        }
     }
 }
 

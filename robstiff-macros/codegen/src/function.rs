@@ -4,9 +4,10 @@
 use std::fmt;
 
 use robstiff_robots::Description;
+use robstiff_robots::effect::physics::PLAYS;
 
 use crate::graph::{Graph, Id, Op, Sym};
-use crate::symbolic::ALGORITHMS;
+use crate::symbolic::{ALGORITHMS, STATEFUL, remembers};
 
 /// The expressions of one function and which of them are its results.
 #[derive(Debug)]
@@ -63,13 +64,13 @@ impl Function {
             match node.op {
                 Op::Sin(_) | Op::Cos(_) => cost.trig += 1,
                 Op::Mul(..) => cost.mul += 1,
-                Op::Add(..) | Op::Sub(..) => cost.add += 1,
+                Op::Add(..) | Op::Sub(..) | Op::Max(..) | Op::Min(..) => cost.add += 1,
                 Op::Neg(_) => cost.neg += 1,
                 Op::Sqrt(_) | Op::Recip(_) => cost.root += 1,
-                Op::Number(_) | Op::Parameter(_) | Op::Coordinate(_) | Op::Wrench(_) => {}
+                Op::Number(_) | Op::Parameter(_) | Op::Coordinate(_) | Op::Wrench(_) | Op::Play(..) => {}
             }
         }
-        // An angle of two joints takes additions, too.
+        // An angle of two joints takes additions, a multiple a multiplication.
         for (index, angle) in self.graph.angles().iter().enumerate() {
             let live = self
                 .graph
@@ -79,13 +80,21 @@ impl Function {
                 .any(|(node, &used)| used > 0 && (node.op == Op::Sin(index) || node.op == Op::Cos(index)));
             if live {
                 cost.add += angle.terms().len() - 1 + usize::from(angle.offset() != 0.0);
+                cost.mul += angle.terms().iter().filter(|(_, factor)| factor.abs() > 1).count();
             }
         }
         cost
     }
 
-    /// The values of the outputs: the graph interpreted, node by node.
+    /// The values of the outputs: the graph interpreted, node by node, on a
+    /// robot that was never loaded.
     pub fn evaluate(&self, coordinates: &[f64], wrench: &[f64]) -> Vec<f64> {
+        self.evaluate_with(coordinates, wrench, &vec![[0.0; PLAYS]; coordinates.len()])
+    }
+
+    /// The same after the loads that left the play operators of each joint in
+    /// this state.
+    pub fn evaluate_with(&self, coordinates: &[f64], wrench: &[f64], plays: &[[f64; PLAYS]]) -> Vec<f64> {
         let nodes = self.graph.nodes();
         let angle = |index: usize| {
             let angle = &self.graph.angles()[index];
@@ -99,6 +108,7 @@ impl Function {
                 Op::Parameter(index) => self.graph.parameters()[index].value,
                 Op::Coordinate(index) => coordinates[index],
                 Op::Wrench(index) => wrench[index],
+                Op::Play(joint, index) => plays[joint][index],
                 Op::Sin(index) => angle(index).sin(),
                 Op::Cos(index) => angle(index).cos(),
                 Op::Add(a, b) => values[a] + values[b],
@@ -107,6 +117,8 @@ impl Function {
                 Op::Neg(a) => -values[a],
                 Op::Sqrt(a) => values[a].sqrt(),
                 Op::Recip(a) => values[a].recip(),
+                Op::Max(a, b) => values[a].max(values[b]),
+                Op::Min(a, b) => values[a].min(values[b]),
             });
         }
         self.outputs.iter().map(|&id| values[id]).collect()
@@ -115,7 +127,9 @@ impl Function {
 
 /// The functions that are generated for a robot, by the names of the methods.
 pub fn functions(robot: &Description) -> Vec<(&'static str, Function)> {
-    ALGORITHMS.iter().map(|&(name, algorithm)| (name, Function::of(|g| algorithm(g, robot)))).collect()
+    let stateful = remembers(robot).then_some(STATEFUL);
+    let algorithms = ALGORITHMS.into_iter().chain(stateful);
+    algorithms.map(|(name, algorithm)| (name, Function::of(|g| algorithm(g, robot)))).collect()
 }
 
 /// Operations of one evaluation.
@@ -125,7 +139,7 @@ pub struct Cost {
     pub trig: usize,
     /// Multiplications.
     pub mul: usize,
-    /// Additions and subtractions.
+    /// Additions, subtractions, and choices of the larger or smaller of two.
     pub add: usize,
     /// Changes of sign that no addition absorbed.
     pub neg: usize,

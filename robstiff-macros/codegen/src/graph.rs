@@ -26,6 +26,8 @@ pub enum Op {
     Coordinate(usize),
     /// Component of the wrench at the TCP, from 0 (N, then Nm).
     Wrench(usize),
+    /// A joint's play operator before the load, both from 0 (Nm).
+    Play(usize, usize),
     /// Sine of an angle.
     Sin(usize),
     /// Cosine of an angle.
@@ -42,13 +44,19 @@ pub enum Op {
     Sqrt(Id),
     /// Reciprocal.
     Recip(Id),
+    /// The larger of two.
+    Max(Id, Id),
+    /// The smaller of two.
+    Min(Id, Id),
 }
 
 impl Op {
     /// The nodes that this one is computed from.
     pub fn operands(self) -> impl Iterator<Item = Id> {
         let (first, second) = match self {
-            Self::Add(a, b) | Self::Sub(a, b) | Self::Mul(a, b) => (Some(a), Some(b)),
+            Self::Add(a, b) | Self::Sub(a, b) | Self::Mul(a, b) | Self::Max(a, b) | Self::Min(a, b) => {
+                (Some(a), Some(b))
+            }
             Self::Neg(a) | Self::Sqrt(a) | Self::Recip(a) => (Some(a), None),
             _ => (None, None),
         };
@@ -84,6 +92,7 @@ pub struct Graph {
     known: RefCell<HashMap<Op, Id>>,
     parameters: RefCell<Vec<Parameter>>,
     angles: RefCell<Vec<Angle>>,
+    deviations: RefCell<BTreeMap<usize, (Id, Id)>>,
     hints: RefCell<BTreeMap<Id, String>>,
     remarks: RefCell<Vec<(Id, String)>>,
 }
@@ -152,9 +161,32 @@ impl Graph {
         self.intern(Op::Wrench(index), None)
     }
 
+    /// A joint's play operator before the load, both from 0.
+    pub fn play(&self, joint: usize, index: usize) -> Sym<'_> {
+        self.intern(Op::Play(joint, index), None)
+    }
+
+    /// States sine and cosine of the angle by which a joint (from 0) stands
+    /// aside of its coordinate, for angles that
+    /// [contain](Angle::with_deviation) it.
+    pub fn set_deviation(&self, joint: usize, (sin, cos): (Sym<'_>, Sym<'_>)) {
+        self.deviations.borrow_mut().insert(joint, (sin.id, cos.id));
+    }
+
     /// Sine and cosine of an angle: exact where it is a multiple of 90
-    /// degrees, reduced to one sign and to offsets that are not.
+    /// degrees, reduced to one sign and to offsets that are not; deviations
+    /// enter by the rule for sums.
     pub fn sin_cos(&self, angle: &Angle) -> (Sym<'_>, Sym<'_>) {
+        let plain = self.sin_cos_of_coordinates(angle);
+        angle.deviations().iter().fold(plain, |(s, c), &(joint, sign)| {
+            let (sin, cos) = self.deviations.borrow()[&joint];
+            let (sin, cos) = (Sym { graph: self, id: sin }, Sym { graph: self, id: cos });
+            let sin = if sign < 0 { -sin } else { sin };
+            (s * cos + c * sin, c * cos - s * sin)
+        })
+    }
+
+    fn sin_cos_of_coordinates(&self, angle: &Angle) -> (Sym<'_>, Sym<'_>) {
         let reduced = angle.reduced();
         let (s, c) = match reduced.rest {
             None => (self.number(0.0), self.number(1.0)),

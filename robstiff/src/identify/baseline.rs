@@ -154,5 +154,6 @@ pub fn set_parameter(effect: &mut Effect, column: Column, number: f64) {
                 *knee = at;
             }
         }
+        (effect, column) => unreachable!("{effect} has no column {column:?}"),
     }
 }

@@ -40,6 +40,11 @@ impl Arm {
         Self { description: description.clone(), effects, segments: SEGMENTS }
     }
 
+    /// Whether the simulator knows the effects of a description.
+    pub fn knows(description: &Description) -> bool {
+        description.effects.iter().all(|effect| fits(description, effect))
+    }
+
     /// The same arm with its bending links divided into so many segments.
     ///
     /// # Panics
@@ -206,6 +211,7 @@ fn fits(description: &Description, effect: &Effect) -> bool {
         Effect::StiffnessNonlinearity { joint: number, added, knee } => {
             joint(number).is_some_and(|joint| added > -joint.compliance()) && knee > 0.0
         }
+        _ => false,
     }
 }
 

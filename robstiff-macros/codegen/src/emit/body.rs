@@ -4,7 +4,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::fuse::Fusion;
-use super::names::{Names, WRENCH};
+use super::names::{Names, WRENCH, before};
 use crate::angle::Angle;
 use crate::function::Function;
 use crate::graph::{Id, Op};
@@ -64,6 +64,7 @@ impl Writer<'_> {
             out.extend(quote!(let #name = T::of(#value);));
         }
         out.extend(self.wrench());
+        out.extend(self.plays());
         out.extend(self.sin_cos());
         let mut remarks = graph.remarks().to_vec().into_iter().peekable();
         for (id, node) in self.live() {
@@ -109,6 +110,19 @@ impl Writer<'_> {
             }
         });
         quote!(let [#(#entries),*] = wrench.data.0[0];)
+    }
+
+    /// `let before2_1 = state.plays[1][0];` for each play operator that matters.
+    fn plays(&self) -> TokenStream {
+        let plays = self.live().into_iter().filter_map(|(_, node)| match node.op {
+            Op::Play(joint, index) => {
+                let name = format_ident!("{}", before(joint, index));
+                let (joint, index) = (Literal::usize_unsuffixed(joint), Literal::usize_unsuffixed(index));
+                Some(quote!(let #name = state.plays[#joint][#index];))
+            }
+            _ => None,
+        });
+        plays.collect()
     }
 
     /// `let [(s1, c1), (s23, c23)] = T::sin_cos_all([q[0], q[1] + q[2]]);`:
@@ -183,6 +197,18 @@ impl Writer<'_> {
             Op::Cos(index) => {
                 let name = format_ident!("c{}", self.names.angle(index));
                 (quote!(#name), Binding::Unit)
+            }
+            Op::Play(joint, index) => {
+                let name = format_ident!("{}", before(joint, index));
+                (quote!(#name), Binding::Unit)
+            }
+            Op::Max(a, b) => {
+                let (a, b) = (self.operand(a, Binding::Unit), self.operand(b, Binding::Sum));
+                (quote!(#a.max(#b)), Binding::Unit)
+            }
+            Op::Min(a, b) => {
+                let (a, b) = (self.operand(a, Binding::Unit), self.operand(b, Binding::Sum));
+                (quote!(#a.min(#b)), Binding::Unit)
             }
             Op::Sqrt(a) => {
                 let a = self.operand(a, Binding::Unit);

@@ -1,8 +1,8 @@
 //! What a description states, as the bodies of methods that return it.
 
 use proc_macro2::{Literal, TokenStream};
-use quote::quote;
-use robstiff_robots::{Convention, Description, Effect, JointKind};
+use quote::{ToTokens, format_ident, quote};
+use robstiff_robots::{Convention, Description, DhEntry, Effect, JointKind, Place};
 
 use crate::symbolic;
 
@@ -44,33 +44,35 @@ pub(super) fn facts(robot: &Description) -> Vec<TokenStream> {
 }
 
 fn effect(effect: &Effect) -> TokenStream {
+    let (variant, field) = effect.variant();
+    let variant = format_ident!("{variant}");
     let index = Literal::usize_unsuffixed;
-    match *effect {
-        Effect::TransverseCompliance { joint, value } => {
-            let (joint, value) = (index(joint), number(value));
-            quote!(Effect::TransverseCompliance { joint: #joint, value: #value })
+    let place = match effect.place() {
+        Place::Joint(number) | Place::Link(number) => index(number).to_token_stream(),
+        Place::Joints([i, j]) => {
+            let (i, j) = (index(i), index(j));
+            quote!([#i, #j])
         }
-        Effect::LinkCompliance { link, bending, torsion } => {
-            let (link, bending, torsion) = (index(link), number(bending), number(torsion));
-            quote!(Effect::LinkCompliance { link: #link, bending: #bending, torsion: #torsion })
+        Place::Entry(entry) => {
+            let row = index(entry.row());
+            match entry {
+                DhEntry::A(_) => quote!(DhEntry::A(#row)),
+                DhEntry::Alpha(_) => quote!(DhEntry::Alpha(#row)),
+                DhEntry::D(_) => quote!(DhEntry::D(#row)),
+                DhEntry::Theta(_) => quote!(DhEntry::Theta(#row)),
+            }
         }
-        Effect::BaseCompliance { tilt, translation } => {
-            let (tilt, translation) = (number(tilt), number(translation));
-            quote!(Effect::BaseCompliance { tilt: #tilt, translation: #translation })
-        }
-        Effect::ToolCompliance { rotation, translation } => {
-            let (rotation, translation) = (number(rotation), number(translation));
-            quote!(Effect::ToolCompliance { rotation: #rotation, translation: #translation })
-        }
-        Effect::JointCoupling { joints: [i, j], value } => {
-            let (i, j, value) = (index(i), index(j), number(value));
-            quote!(Effect::JointCoupling { joints: [#i, #j], value: #value })
-        }
-        Effect::StiffnessNonlinearity { joint, added, knee } => {
-            let (joint, added, knee) = (index(joint), number(added), number(knee));
-            quote!(Effect::StiffnessNonlinearity { joint: #joint, added: #added, knee: #knee })
-        }
-    }
+        Place::Base | Place::Tool => TokenStream::new(),
+    };
+    let place = field.map(|field| {
+        let field = format_ident!("{field}");
+        quote!(#field: #place,)
+    });
+    let numbers = effect.parameters().map(|(parameter, value)| {
+        let (name, value) = (format_ident!("{}", parameter.name), number(value));
+        quote!(#name: #value)
+    });
+    quote!(Effect::#variant { #place #(#numbers),* })
 }
 
 /// A number as one would write it: `-0.41`, `2.97e-7`.

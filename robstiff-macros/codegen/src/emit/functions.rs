@@ -1,11 +1,14 @@
 //! The functions that are generated for a robot.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use robstiff_robots::Description;
 
 use crate::function::Function;
 use crate::symbolic;
+
+/// Builds a result from its entries.
+type Build = dyn Fn(&[TokenStream]) -> TokenStream;
 
 /// One generated function: what it is called, what its docs say, how its
 /// result is put together.
@@ -16,7 +19,7 @@ pub(super) struct Generated {
     pub doc: &'static str,
     /// The calculation.
     pub function: Function,
-    result: fn(&[TokenStream]) -> TokenStream,
+    result: Box<Build>,
 }
 
 impl Generated {
@@ -26,32 +29,56 @@ impl Generated {
     }
 }
 
-/// All functions of a robot, in the order of the trait.
-pub(super) fn functions(robot: &Description) -> [Generated; 7] {
+/// All functions of a robot, in the order of the trait; that with a state last,
+/// if the robot has one.
+pub(super) fn functions(robot: &Description) -> Vec<Generated> {
+    let stateful = symbolic::remembers(robot).then(|| stateful(robot));
+    stateless(robot).into_iter().chain(stateful).collect()
+}
+
+fn stateful(robot: &Description) -> Generated {
+    let slots = symbolic::plays(robot);
+    Generated {
+        name: "deflection_with",
+        doc: "Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm)
+            that follows the loads in the state.",
+        function: Function::of(|g| symbolic::deflection_with(g, robot)),
+        result: Box::new(move |entries| {
+            let (displacement, plays) = entries.split_at(6);
+            let after = slots.iter().zip(plays).map(|(&(joint, index), play)| {
+                let (joint, index) = (Literal::usize_unsuffixed(joint), Literal::usize_unsuffixed(index));
+                quote!(state.plays[#joint][#index] = #play;)
+            });
+            quote!(#(#after)* Vector6::new(#(#displacement),*))
+        }),
+    }
+}
+
+fn stateless(robot: &Description) -> [Generated; 7] {
     [
         Generated {
             name: "transform",
             doc: "Frame of the tool centre point in the base frame, 4 x 4 homogeneous (m).",
             function: Function::of(|g| symbolic::transform(g, robot)),
-            result: |entries| quote!(Matrix4::new(#(#entries),*)),
+            result: Box::new(|entries| quote!(Matrix4::new(#(#entries),*))),
         },
         Generated {
             name: "link_frames",
             doc: "Frames behind the joints in the base frame, 4 x 4 homogeneous (m); the last is the flange.",
             function: Function::of(|g| symbolic::link_frames(g, robot)),
-            result: |entries| {
+            result: Box::new(|entries| {
                 let frames = entries.chunks(16).map(|frame| quote!(Matrix4::new(#(#frame),*)));
                 quote!([#(#frames),*])
-            },
+            }),
         },
         Generated {
             name: "jacobian",
             doc: "Jacobian of the tool centre point in the base frame, 6 rows: translation (m/rad), rotation.",
             function: Function::of(|g| symbolic::jacobian(g, robot)),
-            result: |entries| {
+            result: Box::new(|entries| {
                 let columns = entries.chunks(6).map(|column| quote!([#(#column),*]));
                 quote!(SMatrix::from([#(#columns),*]))
-            },
+            }),
         },
         Generated {
             name: "compliance",
@@ -60,25 +87,25 @@ pub(super) fn functions(robot: &Description) -> [Generated; 7] {
                 It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
                 rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.",
             function: Function::of(|g| symbolic::compliance(g, robot)),
-            result: |entries| quote!(Matrix6::new(#(#entries),*)),
+            result: Box::new(|entries| quote!(Matrix6::new(#(#entries),*))),
         },
         Generated {
             name: "deflection",
             doc: "Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm).",
             function: Function::of(|g| symbolic::deflection(g, robot)),
-            result: |entries| quote!(Vector6::new(#(#entries),*)),
+            result: Box::new(|entries| quote!(Vector6::new(#(#entries),*))),
         },
         Generated {
             name: "joint_torques",
             doc: "Joint torques (Nm) (forces (N) of sliding joints) that hold a wrench at the tool centre point.",
             function: Function::of(|g| symbolic::joint_torques(g, robot)),
-            result: |entries| quote!(SVector::from([#(#entries),*])),
+            result: Box::new(|entries| quote!(SVector::from([#(#entries),*]))),
         },
         Generated {
             name: "statics",
             doc: "Transform, Jacobian and compliance of one pose, with what they have in common.",
             function: Function::of(|g| symbolic::statics(g, robot)),
-            result: |entries| {
+            result: Box::new(|entries| {
                 let (transform, rest) = entries.split_at(16);
                 let (jacobian, compliance) = rest.split_at(rest.len() - 36);
                 let columns = jacobian.chunks(6).map(|column| quote!([#(#column),*]));
@@ -87,7 +114,7 @@ pub(super) fn functions(robot: &Description) -> [Generated; 7] {
                     jacobian: SMatrix::from([#(#columns),*]),
                     compliance: Matrix6::new(#(#compliance),*),
                 })
-            },
+            }),
         },
     ]
 }

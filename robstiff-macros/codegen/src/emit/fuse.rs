@@ -30,7 +30,11 @@ impl Fusion {
         let graph = function.graph();
         let (nodes, uses) = (graph.nodes(), function.uses());
         let is_written_briefly = |id: Id| {
-            names.get(id).is_some() || !matches!(nodes[id].op, Op::Add(..) | Op::Sub(..) | Op::Mul(..) | Op::Neg(_))
+            names.get(id).is_some()
+                || !matches!(
+                    nodes[id].op,
+                    Op::Add(..) | Op::Sub(..) | Op::Mul(..) | Op::Neg(_) | Op::Max(..) | Op::Min(..)
+                )
         };
         let is_product = |id: Id| match nodes[id].op {
             _ if nodes[id].constant.is_some() => false,

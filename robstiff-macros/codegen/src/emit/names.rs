@@ -8,6 +8,11 @@ use crate::graph::{Id, Op};
 /// The components of a wrench.
 pub(super) const WRENCH: [&str; 6] = ["fx", "fy", "fz", "mx", "my", "mz"];
 
+/// A play operator before the load.
+pub(super) fn before(joint: usize, index: usize) -> String {
+    format!("before{}_{}", joint + 1, index + 1)
+}
+
 /// Which nodes get a line of their own, and under which name.
 pub(super) struct Names {
     of: BTreeMap<Id, String>,
@@ -24,7 +29,8 @@ impl Names {
     pub fn of(function: &Function) -> Self {
         let needed = lines(function);
         let graph = function.graph();
-        let mut taken: BTreeSet<String> = ["q", "wrench"].iter().chain(&WRENCH).map(|name| name.to_string()).collect();
+        let mut taken: BTreeSet<String> =
+            ["q", "wrench", "state"].iter().chain(&WRENCH).map(|name| name.to_string()).collect();
         let mut angles: Vec<String> = Vec::new();
         for angle in graph.angles().iter() {
             // Two offsets of the same joints have one label.
@@ -94,7 +100,7 @@ fn lines(function: &Function) -> BTreeSet<Id> {
         needed.extend(node.op.operands().filter(|&operand| is_constant(operand)));
         let width = |needed: &BTreeSet<Id>, id: Id| if needed.contains(&id) { 1 } else { widths[id] };
         match node.op {
-            Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) => {
+            Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Max(a, b) | Op::Min(a, b) => {
                 if width(&needed, a) + width(&needed, b) > OPERANDS_PER_LINE {
                     let wider = if width(&needed, a) > width(&needed, b) { a } else { b };
                     needed.insert(unsigned(nodes[wider].op, wider));

@@ -2,7 +2,7 @@
 
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::{format_ident, quote};
-use robstiff_robots::Description;
+use robstiff_robots::{Description, Place};
 use syn::Ident;
 
 use super::body::{Body, Reader, body};
@@ -10,6 +10,7 @@ use super::facts::{facts, number};
 use super::functions::{Generated, functions};
 use crate::function::{Cost, Function};
 use crate::graph::{Op, Parameter};
+use crate::symbolic;
 
 /// Where generated code comes from and where it will stand.
 #[derive(Clone, Debug)]
@@ -26,7 +27,8 @@ pub struct Origin {
 pub fn tokens(robot: &Description, origin: &Origin) -> TokenStream {
     let functions = functions(robot);
     let definition = definition(robot, origin, &functions);
-    let (imports, implementation) = (imports(&origin.runtime), implementation(robot, &functions, Reader::Compiler));
+    let imports = imports_of(robot, &origin.runtime);
+    let implementation = implementation(robot, &functions, Reader::Compiler);
     quote! {
         #definition
         const _: () = {
@@ -65,7 +67,7 @@ pub fn skeleton(name: &str, joints: Option<usize>, origin: &Origin) -> TokenStre
             impl #name { #(#facts)* }
         }
     });
-    let imports = imports(runtime);
+    let imports = imports(runtime, &[]);
     quote! {
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #visibility struct #name;
@@ -114,12 +116,38 @@ fn signatures() -> [(Signature, Kind); 15] {
     ]
 }
 
-/// What the implementation names.
-pub(super) fn imports(runtime: &TokenStream) -> TokenStream {
+/// The method of `Robot` that is generated besides where loads are remembered.
+fn stateful(n: &TokenStream) -> TokenStream {
+    quote!(fn deflection_with<T: Real>(
+        &self,
+        q: &SVector<T, #n>,
+        wrench: &Vector6<T>,
+        state: &mut State<#n, T>,
+    ) -> Vector6<T>)
+}
+
+/// What every implementation names, and `more` that this one does.
+fn imports(runtime: &TokenStream, more: &[&str]) -> TokenStream {
+    let mut names = ["Convention", "Effect", "JointKind", "Real", "Robot", "Statics"].to_vec();
+    names.extend(more);
+    names.sort_unstable();
+    let names = names.into_iter().map(|name| Ident::new(name, Span::call_site()));
     quote! {
         use #runtime::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
-        use #runtime::{Convention, Effect, JointKind, Real, Robot, Statics};
+        use #runtime::{#(#names),*};
     }
+}
+
+/// What the implementation of a robot names.
+pub(super) fn imports_of(robot: &Description, runtime: &TokenStream) -> TokenStream {
+    let mut more = Vec::new();
+    if symbolic::remembers(robot) {
+        more.push("State");
+    }
+    if robot.effects.iter().any(|effect| matches!(effect.place(), Place::Entry(_))) {
+        more.push("DhEntry");
+    }
+    imports(runtime, &more)
 }
 
 /// The type with its documentation and its named numbers.
@@ -201,7 +229,8 @@ pub(super) fn implementation(robot: &Description, functions: &[Generated], reade
         let signature = signature(&count);
         quote!(#[inline] #signature { #fact })
     });
-    let calculated = calculated.into_iter().zip(functions).map(|((signature, _), generated)| {
+    let calculated = calculated.into_iter().map(|(signature, _)| signature).chain([stateful as Signature]);
+    let calculated = calculated.zip(functions).map(|(signature, generated)| {
         let signature = signature(&count);
         let Body { statements, outputs } = body(&generated.function, reader);
         let result = generated.result(&outputs);

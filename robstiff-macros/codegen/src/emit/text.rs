@@ -6,7 +6,7 @@ use robstiff_robots::{Convention, Description, JointKind};
 
 use super::body::Reader;
 use super::functions::{Generated, functions};
-use super::robot::{Origin, definition, implementation, imports};
+use super::robot::{Origin, definition, implementation, imports_of};
 
 /// The source of a module with one robot: a header that names the
 /// description, its table and what the functions cost, then the same items that
@@ -14,7 +14,7 @@ use super::robot::{Origin, definition, implementation, imports};
 /// plain operators where the macro fuses products and sums.
 pub fn source(robot: &Description, origin: &Origin) -> String {
     let functions = functions(robot);
-    let (imports, definition) = (imports(&origin.runtime), definition(robot, origin, &functions));
+    let (imports, definition) = (imports_of(robot, &origin.runtime), definition(robot, origin, &functions));
     let implementation = implementation(robot, &functions, Reader::Person);
     let file = syn::parse2(quote!(#imports #definition #implementation)).expect("generated code is Rust");
     header(robot, origin, &functions) + &polished(&unparse(&file))
@@ -39,7 +39,7 @@ fn header(robot: &Description, origin: &Origin, functions: &[Generated]) -> Stri
         out += &format!("//   {number:>5} {theta:>10} {d:>10} {a:>10} {alpha:>10}   {h:e} {unit}\n");
     }
     for effect in &robot.effects {
-        out += &format!("// with {effect}\n");
+        out += &format!("// with {effect}, {}\n", effect.noun());
     }
     out += "//\n// Operations of one call:\n";
     for generated in functions {

@@ -6,6 +6,7 @@
 use robstiff_robots::angle::{quarter_turns, sin_cos_of_turns};
 use robstiff_robots::{Convention, Description, JointKind, Placement};
 
+use super::elastic::{harmonic, parameters};
 use super::vector::Vec3;
 use crate::angle::Angle;
 use crate::graph::{Graph, Sym};
@@ -54,12 +55,16 @@ pub fn chain<'g>(g: &'g Graph, robot: &Description) -> Vec<Step<'g>> {
     let mut steps = Vec::new();
     place(g, &mut steps, &robot.base, "BASE", "Frame 0 in the base frame");
     steps.push(Step::Base);
-    for (i, joint) in robot.joints.iter().enumerate() {
+    for (i, (joint, stated)) in robot.corrected_joints().iter().zip(&robot.joints).enumerate() {
         let number = i + 1;
-        let d = g.parameter(&format!("D{number}"), joint.d, &format!("DH offset d of row {number} (m)."));
-        let a = g.parameter(&format!("A{number}"), joint.a, &format!("DH length a of row {number} (m)."));
+        let entry = |name: &str, value: f64, stated: f64, what: &str| {
+            let corrected = if value == stated { "" } else { ", corrected" };
+            g.parameter(&format!("{name}{number}"), value, &format!("{what} of row {number}{corrected} (m)."))
+        };
+        let d = entry("D", joint.d, stated.d, "DH offset d");
+        let a = entry("A", joint.a, stated.a, "DH length a");
         let (turn, d) = match joint.kind {
-            JointKind::Revolute => (Angle::of_joint(i, joint.theta), d),
+            JointKind::Revolute => (aside(g, robot, i, Angle::of_joint(i, joint.theta)), d),
             JointKind::Prismatic => (Angle::constant(joint.theta), g.coordinate(i) + d),
         };
         let twist = tilt(g, 0, joint.alpha, &format!("ALPHA{number}"), &format!("DH twist alpha of row {number}"));
@@ -92,6 +97,23 @@ pub fn chain<'g>(g: &'g Graph, robot: &Description) -> Vec<Step<'g>> {
         _ => true,
     });
     steps
+}
+
+/// The angle of a joint (from 0) with that by which effects make it stand aside
+/// of its coordinate: at most 5 mrad, so that a few terms of the series give its
+/// sine and cosine to rounding.
+fn aside(g: &Graph, robot: &Description, joint: usize, angle: Angle) -> Angle {
+    let effects = robot.effects.iter().filter(|effect| effect.row() == Some(joint + 1));
+    let own = effects.filter_map(|effect| {
+        effect.is_kinematic().then(|| effect.deviation(&parameters(g, effect), &harmonic(g, joint)))?
+    });
+    let Some(aside) = own.reduce(|sum, more| sum + more).filter(|aside| !aside.is_zero()) else { return angle };
+    let number = |value| g.number(value);
+    let square = aside.named(format!("e{}", joint + 1)).squared();
+    let cos = number(1.0) - square * (number(0.5) - square * number(1.0 / 24.0));
+    let sin = aside - aside * square * (number(1.0 / 6.0) - square * number(1.0 / 120.0));
+    g.set_deviation(joint, (sin, cos));
+    angle.with_deviation(joint)
 }
 
 fn place<'g>(g: &'g Graph, steps: &mut Vec<Step<'g>>, placement: &Placement, name: &str, what: &str) {

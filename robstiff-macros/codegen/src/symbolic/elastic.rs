@@ -1,7 +1,9 @@
 //! The elastic parameters of a description, as named symbols.
 
-use robstiff_robots::{Description, Effect, Joint, JointKind};
+use robstiff_robots::effect::physics::{self, PLAYS, Spring};
+use robstiff_robots::{Description, Effect, Joint, JointKind, Place, effect};
 
+use crate::angle::Angle;
 use crate::graph::{Graph, Sym};
 
 /// All elastic parameters of a robot; what it does not have is 0 and folds
@@ -20,9 +22,63 @@ pub struct Elastic<'g> {
     pub tool: (Sym<'g>, Sym<'g>),
     /// Couplings of two joints, the smaller first (rad/Nm).
     pub coupling: Vec<([usize; 2], Sym<'g>)>,
-    /// Joints whose compliance changes with torque: what the unloaded joint
-    /// has on top (rad/Nm) and the knee (Nm).
-    pub nonlinear: Vec<(usize, Sym<'g>, Sym<'g>)>,
+    /// Effects with a part in the law of a joint.
+    pub laws: Vec<Law<'g>>,
+}
+
+/// An effect with a part in the law of its joint.
+#[derive(Clone, Debug)]
+pub struct Law<'g> {
+    /// The joint, from 0.
+    pub joint: usize,
+    effect: Effect,
+    parameters: Vec<Sym<'g>>,
+    /// What the unloaded joint's compliance has on top (rad/Nm).
+    unloaded: Sym<'g>,
+}
+
+impl<'g> Law<'g> {
+    fn of(g: &'g Graph, effect: Effect, parameters: &[Sym<'g>], own: &[Sym<'g>]) -> Option<Self> {
+        let joint = effect.row()? - 1;
+        let unloaded = effect.unloaded(parameters, own[joint], &harmonic(g, joint))?;
+        Some(Self { joint, effect, parameters: parameters.to_vec(), unloaded })
+    }
+
+    /// The play operators it uses, after a torque that follows `before`.
+    pub fn plays(&self, torque: Sym<'g>, before: [Sym<'g>; PLAYS]) -> Vec<Sym<'g>> {
+        self.effect.plays(&self.parameters, torque, before)[..self.effect.plays_in_use()].to_vec()
+    }
+
+    /// By how much the joint turns more than by its own compliance.
+    pub fn turn(&self, g: &'g Graph, compliance: Sym<'g>, torque: Sym<'g>, plays: &[Sym<'g>]) -> Sym<'g> {
+        let plays = std::array::from_fn(|k| plays.get(k).copied().unwrap_or(g.number(0.0)));
+        let joint = effect::physics::Joint { compliance, torque, plays, harmonic: &harmonic(g, self.joint) };
+        self.effect.turn(&self.parameters, &joint).expect("a law")
+    }
+}
+
+/// Sine and cosine of whole multiples of a joint's coordinate.
+pub fn harmonic<'g>(g: &'g Graph, joint: usize) -> impl Fn(f64) -> (Sym<'g>, Sym<'g>) {
+    move |order| g.sin_cos(&Angle::multiple(joint, order as i32))
+}
+
+/// The numbers of an effect under the names that generated code gives them.
+pub fn parameters<'g>(g: &'g Graph, effect: &Effect) -> Vec<Sym<'g>> {
+    let place = effect.place();
+    let suffix = match place {
+        Place::Joint(number) | Place::Link(number) => number.to_string(),
+        Place::Joints([i, j]) => format!("{i}_{j}"),
+        Place::Entry(entry) => format!("_{}", entry.to_string().to_uppercase()),
+        Place::Base | Place::Tool => String::new(),
+    };
+    let named = |(parameter, value): (&physics::Parameter, f64)| {
+        let unit = match parameter.quantity.at(place).unit() {
+            "" => String::new(),
+            unit => format!(" ({unit})"),
+        };
+        g.parameter(&format!("{}{suffix}", parameter.symbol), value, &format!("{} of {place}{unit}.", parameter.what))
+    };
+    effect.parameters().map(named).collect()
 }
 
 impl<'g> Elastic<'g> {
@@ -45,55 +101,40 @@ impl<'g> Elastic<'g> {
             base: (zero, zero),
             tool: (zero, zero),
             coupling: Vec::new(),
-            nonlinear: Vec::new(),
+            laws: Vec::new(),
         };
         for effect in &robot.effects {
-            let named = |name: &str, value: f64, what: &str, unit: &str| {
-                g.parameter(name, value, &format!("{what} of {} ({unit}).", effect.place()))
-            };
-            match *effect {
-                Effect::TransverseCompliance { joint, value } => {
-                    elastic.transverse[joint - 1] =
-                        named(&format!("TRANSVERSE{joint}"), value, "Transverse compliance", "rad/Nm");
-                }
-                Effect::LinkCompliance { link, bending, torsion } => {
-                    elastic.link[link - 1] = (
-                        named(&format!("BENDING{link}"), bending, "Bending compliance L / EI", "rad/Nm"),
-                        named(&format!("TORSION{link}"), torsion, "Torsion compliance L / GJ", "rad/Nm"),
-                    );
-                }
-                Effect::BaseCompliance { tilt, translation } => {
-                    elastic.base = (
-                        named("BASE_TILT", tilt, "Tilt compliance", "rad/Nm"),
-                        named("BASE_TRANSLATION", translation, "Translation compliance", "m/N"),
-                    );
-                }
-                Effect::ToolCompliance { rotation, translation } => {
-                    elastic.tool = (
-                        named("TOOL_ROTATION", rotation, "Rotation compliance", "rad/Nm"),
-                        named("TOOL_TRANSLATION", translation, "Translation compliance", "m/N"),
-                    );
-                }
-                Effect::JointCoupling { joints: [i, j], value } => {
-                    let pair = [i.min(j) - 1, i.max(j) - 1];
-                    let value = named(&format!("COUPLING{i}_{j}"), value, "Coupling compliance", "rad/Nm");
-                    elastic.coupling.push((pair, value));
-                }
-                Effect::StiffnessNonlinearity { joint, added, knee } => {
-                    elastic.nonlinear.push((
-                        joint - 1,
-                        named(&format!("ADDED{joint}"), added, "Additional compliance without load", "rad/Nm"),
-                        named(&format!("KNEE{joint}"), knee, "Torque at the knee", "Nm"),
-                    ));
-                }
+            if effect.is_kinematic() {
+                continue;
             }
+            let parameters = parameters(g, effect);
+            for (k, spring) in effect.springs() {
+                elastic.add(spring, parameters[k]);
+            }
+            elastic.laws.extend(Law::of(g, *effect, &parameters, &elastic.joint));
         }
         elastic
     }
 
-    /// The compliance of a joint about the unloaded state: its own and what a
-    /// nonlinearity has on top there.
+    fn add(&mut self, spring: Spring, h: Sym<'g>) {
+        let sum = match spring {
+            Spring::Joint(joint) => &mut self.joint[joint - 1],
+            Spring::Transverse(joint) => &mut self.transverse[joint - 1],
+            Spring::LinkBending(link) => &mut self.link[link - 1].0,
+            Spring::LinkTorsion(link) => &mut self.link[link - 1].1,
+            Spring::BaseTilt => &mut self.base.0,
+            Spring::BaseTranslation => &mut self.base.1,
+            Spring::ToolRotation => &mut self.tool.0,
+            Spring::ToolTranslation => &mut self.tool.1,
+            Spring::Coupling([i, j]) => return self.coupling.push(([i.min(j) - 1, i.max(j) - 1], h)),
+        };
+        *sum = *sum + h;
+    }
+
+    /// The compliance of a joint about the unloaded state: its own and what
+    /// its law has on top there.
     pub fn unloaded_joint(&self, joint: usize) -> Sym<'g> {
-        self.nonlinear.iter().filter(|(at, ..)| *at == joint).fold(self.joint[joint], |h, &(_, added, _)| h + added)
+        let laws = self.laws.iter().filter(|law| law.joint == joint);
+        laws.fold(self.joint[joint], |h, law| h + law.unloaded)
     }
 }

@@ -1,5 +1,6 @@
 //! Transform, frames, Jacobian, joint torques and deflection.
 
+use robstiff_robots::effect::physics::PLAYS;
 use robstiff_robots::{Description, JointKind};
 
 use super::chain::chain;
@@ -80,8 +81,30 @@ pub fn joint_torques<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
 }
 
 /// Displacement and rotation of the TCP under a wrench, `J (H_q (J^T F))` and
-/// what the effects add, without forming a compliance matrix.
+/// what the effects add, without forming a compliance matrix; of a robot that
+/// was never loaded.
 pub fn deflection<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
+    loaded(g, robot, |_| [g.number(0.0); PLAYS]).0
+}
+
+/// The same after other loads, and then the play operators that are in use, in
+/// the order of [`plays`].
+pub fn deflection_with<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
+    let (displacement, plays) = loaded(g, robot, |joint| std::array::from_fn(|k| g.play(joint, k)));
+    [displacement, plays].concat()
+}
+
+/// The play operators in use, each by its joint and its number there, from 0.
+pub fn plays(robot: &Description) -> Vec<(usize, usize)> {
+    let joints = robot.effects.iter().filter_map(|effect| Some((effect.row()? - 1, effect.plays_in_use())));
+    joints.flat_map(|(joint, count)| (0..count).map(move |k| (joint, k))).collect()
+}
+
+fn loaded<'g>(
+    g: &'g Graph,
+    robot: &Description,
+    before: impl Fn(usize) -> [Sym<'g>; PLAYS],
+) -> (Vec<Sym<'g>>, Vec<Sym<'g>>) {
     let elastic = Elastic::of(g, robot);
     let forward = forward(g, &chain(g, robot));
     let (force, moment) = wrench(g);
@@ -89,7 +112,8 @@ pub fn deflection<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
 
     let columns = Columns::of(g, robot, &forward);
     let torques = columns.torques(force, moment);
-    for (i, turn) in joint_turns(g, &elastic, &torques).into_iter().enumerate() {
+    let (turns, plays) = joint_turns(g, &elastic, &torques, before);
+    for (i, turn) in turns.into_iter().enumerate() {
         sum.translation = sum.translation + columns.translation[i].scaled(turn);
         sum.rotation = sum.rotation + columns.rotation[i].scaled(turn);
     }
@@ -118,7 +142,7 @@ pub fn deflection<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
     let (turn, shift) = elastic.tool;
     sum.turn(moment_at(forward.flange.lever).scaled(turn), forward.flange.lever);
     sum.translation = sum.translation + force.scaled(shift);
-    sum.translation.0.into_iter().chain(sum.rotation.0).collect()
+    (sum.translation.0.into_iter().chain(sum.rotation.0).collect(), plays)
 }
 
 struct Displacement<'g> {
@@ -139,18 +163,28 @@ fn across<'g>(v: Vec3<'g>, axis: Vec3<'g>) -> Vec3<'g> {
     v - axis.scaled(axis.dot(v))
 }
 
-/// What the joints yield under their torques: `H_q tau`, couplings and
-/// nonlinear joints included.
-fn joint_turns<'g>(g: &'g Graph, elastic: &Elastic<'g>, torques: &[Sym<'g>]) -> Vec<Sym<'g>> {
+/// What the joints yield under their torques, `H_q tau` with couplings and the
+/// laws of joints; and the play operators after that.
+fn joint_turns<'g>(
+    g: &'g Graph,
+    elastic: &Elastic<'g>,
+    torques: &[Sym<'g>],
+    before: impl Fn(usize) -> [Sym<'g>; PLAYS],
+) -> (Vec<Sym<'g>>, Vec<Sym<'g>>) {
     let mut turns: Vec<Sym<'g>> = elastic.joint.iter().zip(torques).map(|(&h, &tau)| h * tau).collect();
     for &([i, j], c) in &elastic.coupling {
         turns[i] = turns[i] + c * torques[j];
         turns[j] = turns[j] + c * torques[i];
     }
-    for &(i, added, knee) in &elastic.nonlinear {
-        let tau = torques[i];
-        let softened = (g.number(1.0) + (tau * knee.recip()).squared()).sqrt().recip();
-        turns[i] = turns[i] + added * tau * softened;
+    let mut all_plays = Vec::new();
+    for law in &elastic.laws {
+        let i = law.joint;
+        let plays = law.plays(torques[i], before(i));
+        for (k, play) in (1..).zip(&plays) {
+            play.named(format!("play{}_{k}", i + 1));
+        }
+        turns[i] = turns[i] + law.turn(g, elastic.joint[i], torques[i], &plays);
+        all_plays.extend(plays);
     }
-    (1..).zip(turns).map(|(i, turn)| turn.named(format!("dq{i}"))).collect()
+    ((1..).zip(turns).map(|(i, turn)| turn.named(format!("dq{i}"))).collect(), all_plays)
 }

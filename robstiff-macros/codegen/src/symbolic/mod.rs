@@ -17,7 +17,7 @@ pub use chain::{Step, Tilt, chain};
 pub use compliance::compliance;
 pub use elastic::Elastic;
 pub use forward::{Forward, forward};
-pub use kinematics::{deflection, jacobian, joint_torques, link_frames, transform};
+pub use kinematics::{deflection, deflection_with, jacobian, joint_torques, link_frames, plays, transform};
 
 use robstiff_robots::Description;
 
@@ -42,3 +42,11 @@ pub const ALGORITHMS: [(&str, Algorithm); 7] = [
     ("joint_torques", joint_torques),
     ("statics", statics),
 ];
+
+/// What is generated besides for a robot that [remembers] its loads.
+pub const STATEFUL: (&str, Algorithm) = ("deflection_with", deflection_with);
+
+/// Whether a robot's deflection depends on the loads before.
+pub fn remembers(robot: &Description) -> bool {
+    robot.effects.iter().any(|effect| effect.plays_in_use() > 0)
+}

@@ -78,10 +78,17 @@ fn chain(page: &mut String, robot: &Description) {
     for effect in &robot.effects {
         let numbers: Vec<String> = effect::parameters(effect)
             .into_iter()
-            .map(|(name, value, unit)| format!("{name} {} {unit}", significant(value, 4)))
+            .map(|(name, value, unit)| format!("{name} {} {unit}", significant(value, 4)).trim_end().to_owned())
             .collect();
         let _ = writeln!(page, "  with {effect}: {}", numbers.join(", "));
+        let _ = writeln!(page, "    {}. {}", capital(&effect::words(effect)), effect.about().explanation);
     }
+}
+
+/// A sentence begins with a capital.
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn limits(joint: &Joint) -> String {

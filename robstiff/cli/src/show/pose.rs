@@ -3,7 +3,7 @@
 use robstiff::analysis::{
     self, PrincipalDirections, Stiffness, directional_compliance, directional_stiffness, principal_directions,
 };
-use robstiff::elements::{contributions, share_along, share_of_translation};
+use robstiff::elements::{Element, contributions, share_along, share_of_translation};
 use robstiff::nalgebra::{DMatrix, Matrix3, Matrix4, Matrix6, SVector, Unit, Vector3};
 use robstiff::{Robot, with_robot};
 use robstiff_robots::Description;
@@ -65,7 +65,8 @@ fn shown<const N: usize>(robot: &impl Robot<N>, coordinates: Vec<f64>) -> Shown 
     let principal: Vec<Direction> =
         principal_directions(&compliance).iter().flat_map(directions(&compliance)).collect();
     let softest = principal.first().map(|direction| Vector3::from(direction.unit));
-    let shares = contributions(robot, &q).map(|(element, part)| Share {
+    let yields = |element: &Element| !matches!(element, Element::Effect(effect) if effect.is_kinematic());
+    let shares = contributions(robot, &q).filter(|(element, _)| yields(element)).map(|(element, part)| Share {
         element: element.to_string(),
         translation: share_of_translation(&part, &compliance),
         softest: softest.and_then(|direction| share_along(&part, &compliance, &direction)),

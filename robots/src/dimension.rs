@@ -1,0 +1,46 @@
+//! Kinds of quantities.
+
+/// What kind of quantity is expected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// A plain number.
+    Number,
+    /// A length \[m\].
+    Length,
+    /// An angle \[rad\].
+    Angle,
+    /// The compliance of something that turns [rad/Nm]; a stiffness is taken
+    /// as its inverse.
+    Compliance,
+    /// The compliance of something that slides [m/N]; a stiffness is taken as
+    /// its inverse.
+    LinearCompliance,
+    /// A mass \[kg\].
+    Mass,
+    /// A force \[N\].
+    Force,
+    /// A torque \[Nm\].
+    Torque,
+    /// A time \[s\].
+    Time,
+    /// A temperature of which only differences count: `C` and `K` are the same.
+    Temperature,
+}
+
+impl Dimension {
+    /// The SI unit, as descriptions spell it; empty for a number.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Number => "",
+            Self::Length => "m",
+            Self::Angle => "rad",
+            Self::Compliance => "rad/Nm",
+            Self::LinearCompliance => "m/N",
+            Self::Mass => "kg",
+            Self::Force => "N",
+            Self::Torque => "Nm",
+            Self::Time => "s",
+            Self::Temperature => "K",
+        }
+    }
+}

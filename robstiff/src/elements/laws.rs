@@ -1,0 +1,141 @@
+//! The laws of joints from the catalogue, on numbers.
+
+use core::ops::{Add, Mul, Neg, Sub};
+
+use nalgebra::SVector;
+use robstiff_robots::effect::physics::{Joint, PLAYS};
+use robstiff_robots::effect::{MOST_PARAMETERS, Scalar, Tangent};
+
+use crate::{Effect, Real, Robot};
+
+/// By how much a joint turns more \[rad\] under a torque \[Nm\] than by its own
+/// compliance `own` [rad/Nm], where the effect has a part in the joint's law: at
+/// the coordinate `q` \[rad\], with its play operators `plays` \[Nm\] after this
+/// load.
+pub fn turn<T: Real>(effect: &Effect, own: T, q: T, torque: T, plays: [T; PLAYS]) -> Option<T> {
+    let joint =
+        Joint { compliance: Number(own), torque: Number(torque), plays: plays.map(Number), harmonic: &harmonic(q) };
+    let (numbers, count) = numbers(effect);
+    effect.turn(&numbers[..count], &joint).map(|turn| turn.0)
+}
+
+/// The slope of [`turn`] against the torque [rad/Nm] on a joint that was never
+/// loaded.
+pub fn unloaded_turn<T: Real>(effect: &Effect, own: T, q: T) -> Option<T> {
+    let (numbers, count) = numbers(effect);
+    effect.unloaded(&numbers[..count], Number(own), &harmonic(q)).map(|turn| turn.0)
+}
+
+/// The play operators \[Nm\] of a joint after a torque \[Nm\] that follows the
+/// state `before`.
+pub fn plays<T: Real>(effect: &Effect, torque: T, before: [T; PLAYS]) -> [T; PLAYS] {
+    let (numbers, count) = numbers(effect);
+    let after = effect.plays(&numbers[..count], Number(torque), before.map(Number));
+    let in_use = effect.plays_in_use();
+    core::array::from_fn(|k| if k < in_use { after[k].0 } else { before[k] })
+}
+
+/// By how much a joint stands aside \[rad\] of its coordinate `q` \[rad\], if the
+/// effect says so.
+pub fn deviation<T: Real>(effect: &Effect, q: T) -> Option<T> {
+    let (numbers, count) = numbers(effect);
+    effect.deviation(&numbers[..count], &harmonic(q)).map(|deviation| deviation.0)
+}
+
+/// How fast each joint's output turns per unit of its coordinate: 1, but with a
+/// transmission error 1 and the error's slope. The TCP moves by
+/// [`Robot::jacobian`]'s column times this per unit of the coordinate.
+pub fn commanded_rates<const N: usize, T, R>(robot: &R, q: &SVector<T, N>) -> SVector<T, N>
+where
+    T: Real,
+    R: Robot<N>,
+{
+    let mut rates = SVector::repeat(T::one());
+    for effect in robot.effects() {
+        let Some(joint) = effect.row() else { continue };
+        let (numbers, count) = numbers::<T>(effect);
+        let constants = numbers.map(Tangent::constant);
+        let harmonic = |order: f64| {
+            let (s, c) = harmonic(q[joint - 1])(order);
+            (Tangent { value: s, slope: c.times(order) }, Tangent { value: c, slope: (-s).times(order) })
+        };
+        if let Some(deviation) = effect.deviation(&constants[..count], &harmonic) {
+            rates[joint - 1] += deviation.slope.0;
+        }
+    }
+    rates
+}
+
+/// The numbers of an effect, in the first places.
+fn numbers<T: Real>(effect: &Effect) -> ([Number<T>; MOST_PARAMETERS], usize) {
+    let mut numbers = [Number(T::zero()); MOST_PARAMETERS];
+    let own = effect.numbers();
+    for (number, &value) in numbers.iter_mut().zip(own.iter()) {
+        *number = Number(T::of(value));
+    }
+    (numbers, own.len())
+}
+
+/// Sine and cosine of whole multiples of a coordinate.
+fn harmonic<T: Real>(q: T) -> impl Fn(f64) -> (Number<T>, Number<T>) {
+    move |order| {
+        let (s, c) = (q * T::of(order)).sin_cos();
+        (Number(s), Number(c))
+    }
+}
+
+/// A [`Real`] as the catalogue's formulas compute with it.
+#[derive(Clone, Copy)]
+struct Number<T>(T);
+
+macro_rules! operator {
+    ($($trait:ident $method:ident)*) => {$(
+        impl<T: Real> $trait for Number<T> {
+            type Output = Self;
+
+            fn $method(self, other: Self) -> Self {
+                Self(self.0.$method(other.0))
+            }
+        }
+    )*};
+}
+
+operator! { Add add Sub sub Mul mul }
+
+impl<T: Real> Neg for Number<T> {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl<T: Real> Scalar for Number<T> {
+    fn times(self, factor: f64) -> Self {
+        Self(self.0 * T::of(factor))
+    }
+
+    fn plus(self, summand: f64) -> Self {
+        Self(self.0 + T::of(summand))
+    }
+
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt())
+    }
+
+    fn recip(self) -> Self {
+        Self(self.0.recip())
+    }
+
+    fn max(self, other: Self) -> Self {
+        Self(self.0.max(other.0))
+    }
+
+    fn min(self, other: Self) -> Self {
+        Self(self.0.min(other.0))
+    }
+
+    fn signum(self) -> Self {
+        Self(self.0.signum())
+    }
+}
