@@ -11,6 +11,7 @@ pub mod baseline;
 pub mod clamped;
 pub mod displacement;
 pub mod holdout;
+pub mod laws;
 pub mod noise;
 pub mod normal;
 pub mod predict;

@@ -3,11 +3,11 @@
 use std::string::String;
 use std::vec::Vec;
 
-use nalgebra::DVector;
 use robstiff_robots::Description;
 
 use super::Error;
 use super::baseline::declared;
+use super::laws::turned_by_laws;
 use super::samples::Samples;
 use crate::campaign::{Campaign, Data};
 
@@ -63,7 +63,7 @@ pub fn predict(description: &Description, campaign: &Campaign) -> Result<Predict
         return Err(Error(std::format!("the campaign is of a robot with {expected} {joints}, this one has {found}")));
     }
     let samples = Samples::of_description(description, data);
-    let mut predicted: DVector<f64> = DVector::zeros(samples.rows.len() * samples.axes);
+    let mut predicted = turned_by_laws(description, &samples);
     for number in declared(description) {
         if number.value != 0.0 {
             predicted.axpy(number.value, &samples.column(number.column), 1.0);

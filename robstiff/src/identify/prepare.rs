@@ -7,6 +7,7 @@ use nalgebra::DVector;
 
 use super::baseline::{Declared, Visibility, declared, sign_of, visibility};
 use super::holdout::training;
+use super::laws::turned_by_laws;
 use super::noise::{PureError, repetitions};
 use super::normal::Sign;
 use super::problem::Problem;
@@ -35,6 +36,8 @@ pub struct Prepared<'c> {
     pub declared_noise: Option<f64>,
     /// The noise of a displacement over that of a rotation (m/rad).
     pub rotation_weight: f64,
+    /// What laws of joints do that are held as declared (m, rad).
+    by_laws: DVector<f64>,
     /// The second order of the joints' displacement (m).
     correction: DVector<f64>,
 }
@@ -70,6 +73,7 @@ impl<'c> Prepared<'c> {
         };
         let mut prepared = Self {
             data,
+            by_laws: turned_by_laws(description, &samples),
             correction: DVector::zeros(samples.rows.len() * samples.axes),
             samples,
             training,
@@ -103,7 +107,7 @@ impl<'c> Prepared<'c> {
     pub fn problem(&self, further: &[Column]) -> Problem {
         let mut columns: Vec<Column> = self.own.iter().map(|number| number.column).collect();
         columns.extend(further);
-        let mut readings = self.samples.readings();
+        let mut readings = self.samples.readings() - &self.by_laws;
         for (number, visibility) in self.own.iter().zip(&self.visibility) {
             if *visibility != Visibility::Seen && number.value != 0.0 {
                 readings.axpy(-number.value, &self.samples.column(number.column), 1.0);

@@ -167,7 +167,7 @@ impl Samples {
 
 impl Sample {
     /// A small twist of the TCP as the marker reads it, `[I, -[p_r - p]x]`.
-    fn at_marker(&self, twist: &Vector6<f64>) -> Vector6<f64> {
+    pub fn at_marker(&self, twist: &Vector6<f64>) -> Vector6<f64> {
         let turn: Vector3<f64> = twist.fixed_rows::<3>(3).into_owned();
         let mut read = *twist;
         let mut moved = read.fixed_rows_mut::<3>(0);

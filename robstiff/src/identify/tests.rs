@@ -10,7 +10,7 @@ use super::second_order::beyond_linear;
 use super::*;
 use crate::campaign::{Displacements, Frame, Noise, Observation};
 use crate::samples::{arm, five_axis};
-use crate::{Convention, Generic, Robot};
+use crate::{Convention, Effect, Generic, Robot};
 
 /// A campaign without noise, by the reference robot: `deflection` of the TCP,
 /// read at a point and in a frame as asked.
@@ -85,6 +85,35 @@ fn known_compliances_come_back_from_any_frame_and_point() {
         assert!(found.rms < found.rms_declared);
         assert_eq!(found.correlation.nrows(), 5);
     }
+}
+
+#[test]
+fn declared_laws_of_joints_are_held() {
+    let mut truth = five_axis();
+    truth.effects = vec![
+        Effect::LostMotion { joint: 2, gap: 2e-4, knee: 40.0 },
+        Effect::Hysteresis {
+            joint: 3,
+            radius1: 60.0,
+            weight1: 8e-8,
+            radius2: 150.0,
+            weight2: 5e-8,
+            radius3: 0.0,
+            weight3: 0.0,
+        },
+    ];
+    let known = campaign(&truth, stiffer(&truth), Frame::Tool, [0.2, -0.1, 0.3], true);
+    let found = identify(&known).expect("all joints are seen");
+    for (estimate, joint) in found.estimates.iter().zip(&truth.joints) {
+        let off = (estimate.value / joint.compliance() - 1.0).abs();
+        assert!(off < 5e-3, "{} off by {off}", estimate.name);
+    }
+    assert_eq!(found.description.effects, truth.effects);
+    // With a compliance that varies, too, the truth predicts its own readings.
+    truth.effects.push(Effect::PoseDependentCompliance { joint: 2, cos1: 0.2, sin1: -0.1, cos2: 0.0, sin2: 0.1 });
+    let known = campaign(&truth, truth.clone(), Frame::Tool, [0.2, -0.1, 0.3], true);
+    let prediction = predict(&truth, &known).expect("a campaign of this robot");
+    assert!(prediction.max < 1e-15, "{:e}", prediction.max);
 }
 
 /// The flange axis of the arm goes through its TCP: without moments and lever
