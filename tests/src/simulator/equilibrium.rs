@@ -152,7 +152,12 @@ impl PosedArm {
         (self.unloaded.origin - self.rigid.origin).into()
     }
 
-    /// The unloaded tool's axes, as columns, in the base frame.
+    /// The unloaded tool's axes x, y, z in the base frame.
+    pub fn axes(&self) -> [[f64; 3]; 3] {
+        self.unloaded.turn.into()
+    }
+
+    /// The same as columns.
     pub(super) fn tool(&self) -> Matrix3<f64> {
         self.unloaded.turn
     }
