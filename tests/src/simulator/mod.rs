@@ -15,6 +15,8 @@
 mod arm;
 mod arms;
 mod campaign;
+#[cfg(test)]
+mod campaign_tests;
 mod equilibrium;
 mod files;
 mod frame;
@@ -25,6 +27,8 @@ mod hidden_tests;
 mod noise;
 mod outside;
 mod rig;
+#[cfg(test)]
+mod rig_tests;
 #[cfg(test)]
 mod tests;
 
