@@ -231,21 +231,14 @@ impl Hidden {
             ["x", "y", "z"].iter().zip(values).map(|(axis, &value)| (format!("{name}{axis}"), value)).collect()
         };
         match self {
-            Self::Elastic(effect) => named(&match *effect {
-                Effect::TransverseCompliance { value, .. } => vec![("h", value)],
-                Effect::LinkCompliance { bending, torsion, .. } => vec![("bending", bending), ("torsion", torsion)],
-                Effect::BaseCompliance { tilt, translation } => vec![("tilt", tilt), ("translation", translation)],
-                Effect::ToolCompliance { rotation, translation } => {
-                    vec![("rotation", rotation), ("translation", translation)]
-                }
-                Effect::JointCoupling { value, .. } => vec![("value", value)],
-                Effect::StiffnessNonlinearity { added, knee, .. } => vec![("added", added), ("knee", knee)],
-            }),
+            Self::Elastic(effect) => {
+                numbers(&mut { *effect }).into_iter().map(|(name, value)| (name.to_string(), *value)).collect()
+            }
             Self::LostMotion { gap, knee, .. } => named(&[("gap", *gap), ("knee", *knee)]),
             Self::PoseDependentCompliance { cos, sin, .. } => {
                 named(&[("cos1", cos[0]), ("sin1", sin[0]), ("cos2", cos[1]), ("sin2", sin[1])])
             }
-            Self::JointZeroOffset { offset, .. } => named(&[("offset", *offset)]),
+            Self::JointZeroOffset { offset, .. } => named(&[("value", *offset)]),
             Self::DhError { by, .. } => named(&[("value", *by)]),
             Self::TransmissionError { sin, cos, .. } => named(&[("sin", *sin), ("cos", *cos)]),
             Self::LoadCellMisalignment { turn, .. } | Self::TrackerMisalignment(turn) => axes("r", turn),
@@ -257,7 +250,13 @@ impl Hidden {
             Self::BaseSlip { shift, turn, .. } => {
                 axes("d", shift).into_iter().chain(axes("r", turn)).collect::<Vec<_>>()
             }
-            Self::Hysteresis { .. } | Self::GravitySag(_) | Self::Outliers { .. } | Self::Outside(_) => Vec::new(),
+            Self::Hysteresis { operators, .. } => {
+                let numbered = operators.iter().enumerate().flat_map(|(index, &(radius, weight))| {
+                    [(format!("radius{}", index + 1), radius), (format!("weight{}", index + 1), weight)]
+                });
+                numbered.collect()
+            }
+            Self::GravitySag(_) | Self::Outliers { .. } | Self::Outside(_) => Vec::new(),
         }
     }
 
@@ -267,13 +266,9 @@ impl Hidden {
     pub fn scaled(&self, factor: f64) -> Self {
         let mut scaled = self.clone();
         let numbers: Vec<&mut f64> = match &mut scaled {
-            Self::Elastic(effect) => match effect {
-                Effect::TransverseCompliance { value, .. } | Effect::JointCoupling { value, .. } => vec![value],
-                Effect::LinkCompliance { bending, torsion, .. } => vec![bending, torsion],
-                Effect::BaseCompliance { tilt, translation } => vec![tilt, translation],
-                Effect::ToolCompliance { rotation, translation } => vec![rotation, translation],
-                Effect::StiffnessNonlinearity { added, .. } => vec![added],
-            },
+            Self::Elastic(effect) => {
+                numbers(effect).into_iter().filter(|(name, _)| *name != "knee").map(|(_, value)| value).collect()
+            }
             Self::LostMotion { gap, .. } => vec![gap],
             Self::Hysteresis { operators, .. } => operators.iter_mut().map(|(_, weight)| weight).collect(),
             Self::PoseDependentCompliance { cos, sin, .. } => cos.iter_mut().chain(sin).collect(),
@@ -299,5 +294,39 @@ impl Hidden {
     /// Whether it is a fault of the measurement and not of the robot.
     pub fn is_of_the_rig(&self) -> bool {
         self.place() == "rig"
+    }
+}
+
+/// The numbers of an elastic effect by the names that traces use.
+fn numbers(effect: &mut Effect) -> Vec<(&'static str, &mut f64)> {
+    match effect {
+        Effect::TransverseCompliance { value, .. } => vec![("h", value)],
+        Effect::LinkCompliance { bending, torsion, .. } => vec![("bending", bending), ("torsion", torsion)],
+        Effect::BaseCompliance { tilt, translation } => vec![("tilt", tilt), ("translation", translation)],
+        Effect::ToolCompliance { rotation, translation } => vec![("rotation", rotation), ("translation", translation)],
+        Effect::JointCoupling { value, .. } => vec![("value", value)],
+        Effect::StiffnessNonlinearity { added, knee, .. } => vec![("added", added), ("knee", knee)],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_and_numbers_are_those_of_the_catalogue() {
+        let knee = Hidden::from(Effect::StiffnessNonlinearity { joint: 2, added: 2e-7, knee: 300.0 });
+        assert_eq!(knee.name(), "stiffness_nonlinearity@joint 2");
+        let numbers = |hidden: &Hidden| hidden.parameters().into_iter().map(|(_, value)| value).collect::<Vec<f64>>();
+        // The knee is no size.
+        assert_eq!(numbers(&knee.scaled(0.5)), [1e-7, 300.0]);
+        let plays = Hidden::Hysteresis { joint: 3, operators: vec![(10.0, 1e-8), (30.0, 2e-8)] };
+        assert_eq!(numbers(&plays.scaled(2.0)), [10.0, 2e-8, 30.0, 4e-8]);
+        assert_eq!(plays.parameters()[3].0, "weight2");
+        let twist = Hidden::DhError { of: DhColumn::Alpha, row: 2, by: 1e-3 };
+        assert_eq!((twist.name().as_str(), twist.is_of_the_rig()), ("dh_error@alpha2", false));
+        assert!(Hidden::LeverArm([0.1; 3]).is_of_the_rig());
+        let cable = Outside::Cable { link: 3, anchor: [1.0; 3], stiffness: 1e5, length: 0.3 };
+        assert_eq!(Hidden::Outside(cable).scaled(2.0).name(), "cable@link 3");
     }
 }
