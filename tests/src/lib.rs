@@ -1,8 +1,11 @@
 //! Support for the tests: the arms they generate code for, a common measure of
-//! agreement, an interpreter of generated code, and a simulator that shares no
-//! formula with the library.
+//! agreement, an interpreter of generated code, a simulator that shares no
+//! formula with the library, and a matrix of simulated campaigns to judge tracing
+//! by.
 
 pub mod arms;
 pub mod interpreter;
 pub mod judge;
+pub mod judge_tracing;
+pub mod matrix;
 pub mod simulator;

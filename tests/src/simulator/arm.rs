@@ -1,10 +1,13 @@
-//! An arm put together from rigid bodies and springs.
+//! An arm put together from rigid bodies, springs, gears and weights.
 
 use nalgebra::Vector3;
-use robstiff_robots::{Convention, Description, Effect, JointKind};
+use robstiff_robots::{Convention, Description, Effect, JointKind, Link};
 
-use super::equilibrium::{Equilibrium, JointLaw, Motion, PosedArm, Response, Spring};
+use super::equilibrium::{Attached, Equilibrium, Motion, PosedArm, Pull, Response, Spring};
 use super::frame::Frame;
+use super::gear::{Gear, JointLaw};
+use super::hidden::{DhColumn, Hidden};
+use super::outside::Outside;
 
 /// Segments a bending link is divided into where nothing else is said.
 ///
@@ -14,12 +17,17 @@ use super::frame::Frame;
 /// follow the curve of a strongly bent beam better.
 pub const SEGMENTS: usize = 4;
 
+/// Gravity (m/s^2), along -z of the base frame.
+pub const GRAVITY: f64 = 9.81;
+
 /// An arm with all its springs, those of its description and hidden ones.
 #[derive(Clone, Debug)]
 pub struct Arm {
     description: Description,
     /// The description's effects and the hidden ones.
     effects: Vec<Effect>,
+    /// What is hidden besides, as far as it is the arm's.
+    hidden: Vec<Hidden>,
     segments: usize,
 }
 
@@ -37,7 +45,63 @@ impl Arm {
         for effect in &effects {
             assert!(fits(description, effect), "{effect} with {effect:?} does not fit {}", description.name);
         }
-        Self { description: description.clone(), effects, segments: SEGMENTS }
+        Self { description: description.clone(), effects, hidden: Vec::new(), segments: SEGMENTS }
+    }
+
+    /// The same arm with something more hidden in it. What is of the rig leaves
+    /// the arm as it is, but for a lever arm, which is where its loads act.
+    ///
+    /// # Panics
+    ///
+    /// Where it does not fit the arm.
+    #[must_use]
+    pub fn hiding(mut self, hidden: &Hidden) -> Self {
+        let joints = self.description.joints.len();
+        let fits = match hidden {
+            Hidden::Elastic(effect) => fits(&self.description, effect),
+            Hidden::LostMotion { joint, .. }
+            | Hidden::Hysteresis { joint, .. }
+            | Hidden::PoseDependentCompliance { joint, .. }
+            | Hidden::JointZeroOffset { joint, .. }
+            | Hidden::TransmissionError { joint, .. }
+            | Hidden::DhError { row: joint, .. }
+            | Hidden::Outside(
+                Outside::ViscousJoint { joint, .. }
+                | Outside::WarmingJoint { joint, .. }
+                | Outside::Cable { link: joint, .. }
+                | Outside::LinkGrowth { link: joint, .. },
+            ) => (1..=joints).contains(joint),
+            Hidden::Outside(Outside::CrossDependence { joint, of, .. }) => {
+                (1..=joints).contains(joint) && (1..=joints).contains(of) && joint != of
+            }
+            Hidden::GravitySag(links) => links.len() == joints,
+            _ => true,
+        };
+        assert!(fits, "{} with {hidden:?} does not fit {}", hidden.name(), self.description.name);
+        match hidden {
+            Hidden::Elastic(effect) => self.effects.push(*effect),
+            Hidden::DhError { of, row, by } => {
+                let row = &mut self.description.joints[row - 1];
+                match of {
+                    DhColumn::A => row.a += by,
+                    DhColumn::D => row.d += by,
+                    DhColumn::Alpha => row.alpha += by,
+                }
+            }
+            other => self.hidden.push(other.clone()),
+        }
+        self
+    }
+
+    /// The same arm with one link (a row of its table, from 1) longer by a
+    /// share of itself.
+    #[must_use]
+    pub(super) fn stretched(&self, link: usize, share: f64) -> Self {
+        let mut arm = self.clone();
+        let row = &mut arm.description.joints[link - 1];
+        row.a *= 1.0 + share;
+        row.d *= 1.0 + share;
+        arm
     }
 
     /// Whether the simulator knows the effects of a description.
@@ -77,9 +141,10 @@ impl Arm {
     pub fn at(&self, q: &[f64]) -> PosedArm {
         let joints = &self.description.joints;
         assert_eq!(q.len(), joints.len(), "one coordinate a joint");
-        let mut chain = Chain { springs: Vec::new(), rod: Frame::placed(&self.description.base) };
+        let mut chain = Chain { springs: Vec::new(), rod: Frame::placed(&self.description.base), attached: Vec::new() };
         self.foundation(&mut chain);
         for (index, (joint, &coordinate)) in joints.iter().zip(q).enumerate() {
+            let coordinate = self.stands_at(index + 1, coordinate);
             let (turn, slide) = match joint.kind {
                 JointKind::Revolute => (coordinate, 0.0),
                 JointKind::Prismatic => (0.0, coordinate),
@@ -104,10 +169,48 @@ impl Arm {
                     self.joint(&mut chain, index);
                 }
             }
+            self.attach(&mut chain, index + 1);
         }
         self.flange(&mut chain);
         chain.rigid(&Frame::placed(&self.description.tool));
-        PosedArm::new(chain.springs, chain.rod, self.law())
+        let lever = self.hidden.iter().map(|hidden| match hidden {
+            Hidden::LeverArm(at) => Vector3::from(*at),
+            _ => Vector3::zeros(),
+        });
+        PosedArm::new(chain.springs, chain.rod, self.law(q), chain.attached, lever.sum())
+    }
+
+    /// Where a joint, from 1, really stands when it says `q`.
+    fn stands_at(&self, number: usize, q: f64) -> f64 {
+        let off = self.hidden.iter().map(|hidden| match *hidden {
+            Hidden::JointZeroOffset { joint, offset } if joint == number => offset,
+            Hidden::TransmissionError { joint, order, sin, cos } if joint == number => {
+                let angle = order as f64 * q;
+                sin * angle.sin() + cos * angle.cos()
+            }
+            _ => 0.0,
+        });
+        q + off.sum::<f64>()
+    }
+
+    /// What pulls at the link `number`, from 1, whose frame the chain has come
+    /// to.
+    fn attach(&self, chain: &mut Chain, number: usize) {
+        for hidden in &self.hidden {
+            match hidden {
+                Hidden::GravitySag(links) => {
+                    let Link { mass, center_of_mass } = links[number - 1];
+                    let weight = Pull::Weight(-Vector3::z() * (mass * GRAVITY));
+                    chain.attached(Vector3::from(center_of_mass), weight);
+                }
+                Hidden::Outside(Outside::Cable { link, anchor, stiffness, length }) if *link == number => {
+                    let anchor = Vector3::from(*anchor);
+                    let stay = Pull::Stay { anchor, stiffness: *stiffness, length: *length };
+                    chain.attached(Vector3::zeros(), stay);
+                }
+                _ => {}
+            }
+        }
     }
 
     fn foundation(&self, chain: &mut Chain) {
@@ -117,6 +220,11 @@ impl Arm {
                 chain.spring(Motion::Turn, Vector3::new(tilt, tilt, 0.0));
             }
         }
+        for hidden in &self.hidden {
+            if let Hidden::Outside(Outside::SoftFoundation { compliance, knee }) = *hidden {
+                chain.push(Motion::Turn, Response::Stiffening { compliance, knee });
+            }
+        }
     }
 
     fn flange(&self, chain: &mut Chain) {
@@ -124,6 +232,11 @@ impl Arm {
             if let Effect::ToolCompliance { rotation, translation } = *effect {
                 chain.spring(Motion::Slide, Vector3::repeat(translation));
                 chain.spring(Motion::Turn, Vector3::repeat(rotation));
+            }
+        }
+        for hidden in &self.hidden {
+            if let Hidden::Outside(Outside::LooseFlange { gap, knee }) = *hidden {
+                chain.push(Motion::Slide, Response::Gap { gap, knee });
             }
         }
     }
@@ -176,16 +289,54 @@ impl Arm {
         chain.rigid(&along.turned_back());
     }
 
-    fn law(&self) -> JointLaw {
-        let mut law = JointLaw::new(self.description.joints.iter().map(|joint| joint.compliance()).collect());
+    /// The joints' law at the joint coordinates `q`.
+    fn law(&self, q: &[f64]) -> JointLaw {
+        let plain: Vec<f64> = self.description.joints.iter().map(|joint| joint.compliance()).collect();
+        let mut law = JointLaw::new((1..=plain.len()).map(|joint| plain[joint - 1] * self.varies(joint, q)).collect());
         for effect in &self.effects {
             match *effect {
                 Effect::JointCoupling { joints: [i, j], value } => law.couplings.push((i - 1, j - 1, value)),
-                Effect::StiffnessNonlinearity { joint, added, knee } => law.softenings.push((joint - 1, added, knee)),
+                Effect::StiffnessNonlinearity { joint, added, knee } => {
+                    law.gears.push((joint - 1, Gear::Softening { added, knee }));
+                }
+                _ => {}
+            }
+        }
+        for hidden in &self.hidden {
+            match hidden {
+                &Hidden::LostMotion { joint, gap, knee } => law.gears.push((joint - 1, Gear::LostMotion { gap, knee })),
+                Hidden::Hysteresis { joint, operators } => {
+                    let plays = operators.iter().map(|&(radius, weight)| Gear::Play { weight, radius });
+                    law.gears.extend(plays.map(|play| (joint - 1, play)));
+                }
+                &Hidden::Outside(Outside::ViscousJoint { joint, compliance, constant }) => {
+                    law.gears.push((joint - 1, Gear::Lag { compliance, constant }));
+                }
+                &Hidden::Outside(Outside::WarmingJoint { joint, per_kelvin }) => {
+                    law.gears.push((joint - 1, Gear::Warming { per_kelvin: per_kelvin * plain[joint - 1] }));
+                }
                 _ => {}
             }
         }
         law
+    }
+
+    /// The factor of the compliance of a joint, from 1, at the joint
+    /// coordinates `q`.
+    fn varies(&self, number: usize, q: &[f64]) -> f64 {
+        let added = self.hidden.iter().map(|hidden| match *hidden {
+            Hidden::PoseDependentCompliance { joint, cos, sin } if joint == number => {
+                let (once, twice) = (q[joint - 1].sin_cos(), (2.0 * q[joint - 1]).sin_cos());
+                cos[0] * once.1 + sin[0] * once.0 + cos[1] * twice.1 + sin[1] * twice.0
+            }
+            Hidden::Outside(Outside::CrossDependence { joint, of, cos, sin }) if joint == number => {
+                cos * q[of - 1].cos() + sin * q[of - 1].sin()
+            }
+            _ => 0.0,
+        });
+        let factor = 1.0 + added.sum::<f64>();
+        assert!(factor > 0.0, "joint {number} would turn against its torque");
+        factor
     }
 }
 
@@ -220,6 +371,8 @@ struct Chain {
     springs: Vec<Spring>,
     /// The rigid piece since the last spring.
     rod: Frame,
+    /// What pulls at it.
+    attached: Vec<Attached>,
 }
 
 impl Chain {
@@ -230,6 +383,13 @@ impl Chain {
     fn push(&mut self, motion: Motion, response: Response) {
         let rod = std::mem::replace(&mut self.rod, Frame::identity());
         self.springs.push(Spring { rod, motion, response });
+    }
+
+    /// Lets something pull at a point `at` (m) in the frame that the chain has
+    /// come to.
+    fn attached(&mut self, at: Vector3<f64>, pull: Pull) {
+        let at = self.rod.origin + self.rod.turn * at;
+        self.attached.push(Attached { after: self.springs.len(), at, pull });
     }
 
     fn spring(&mut self, motion: Motion, compliance: Vector3<f64>) {

@@ -2,35 +2,43 @@
 
 use std::ops::Range;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
+use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::{Description, Effect, JointKind};
 
-use super::Arm;
+use super::gear::Moment;
+use super::hidden::Hidden;
+use super::noise::{Stream, direction, normal, tail, wild};
+use super::rig::{Creep, Rig, Stand};
+use super::{Arm, PosedArm};
 
 /// Draws of one pose before giving up on the working region.
 const TRIES: usize = 10_000;
 
-/// Seconds from one row to the next.
-const PACE: f64 = 60.0;
-
 /// What is measured on which arm, and how well.
 ///
-/// The poses, the loads and the noise come from random streams of their own:
-/// with the same seed, another noise or another hidden effect leaves the poses
-/// and the loads as they are.
+/// The poses, the loads, the noise, its tails, the order and the outliers come
+/// from random streams of their own: with the same seed, another noise or
+/// another hidden effect leaves the poses and the loads as they are.
+///
+/// A load is put on as soon as the reading before it is taken, and read one
+/// pace later; a visit begins with the arm unloaded and at rest. Where each row
+/// has an unloaded reading of its own, the arm is unloaded before it for half a
+/// pace.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     /// The arm as it really is; its effects are in the measurements too.
     pub truth: Description,
-    /// Effects that no description is told of.
-    pub hidden: Vec<Effect>,
+    /// What no description is told of.
+    pub hidden: Vec<Hidden>,
     /// Number of poses.
     pub poses: usize,
     /// Load sequences a pose, each with its own direction.
     pub visits: usize,
-    /// The loads of a visit, in order, as shares of the visit's greatest load.
+    /// The loads of a visit, in order, as shares of the visit's greatest load;
+    /// 0 is a check without load, and a negative share pulls the other way.
     pub ramp: Vec<f64>,
     /// Bounds of the visits' greatest force (N).
     pub force: [f64; 2],
@@ -42,11 +50,30 @@ pub struct Scenario {
     /// Noise of one reading of the rotation about each axis, one sigma (rad);
     /// none where rotations are not measured.
     pub rotation_noise: Option<f64>,
+    /// The noise of x, y and z, of position and rotation, in these multiples.
+    pub axis_noise: [f64; 3],
+    /// Degrees of freedom of Student's distribution, 3 or more, that the noise
+    /// of a reading has; normal noise where there is none.
+    pub tails: Option<usize>,
     /// Whether `campaign.yaml` states the noise.
     pub states_noise: bool,
     /// Whether the rows of a visit share one unloaded reading, or each row has
-    /// its own. A displacement is a loaded minus an unloaded reading.
+    /// its own and counts as a visit. A displacement is a loaded minus an
+    /// unloaded reading.
     pub shares_unloaded: bool,
+    /// Whether all unloaded readings are taken in a round before the first
+    /// load, and not with the loads they belong to. What changes in the hours
+    /// between is then in the displacements.
+    pub unloaded_first: bool,
+    /// Whether the visits come in random order, not pose after pose.
+    pub shuffled: bool,
+    /// Whether the file gives wrenches in the tool frame, not in the base
+    /// frame.
+    pub wrench_in_tool: bool,
+    /// From one row to the next (s).
+    pub pace: f64,
+    /// By how much the temperature in the hall swings about its rise (K).
+    pub swing: f64,
     /// The TCP stays at least this high in the base frame (m).
     pub floor: f64,
     /// The TCP stays at least this far from the vertical through the origin of
@@ -63,7 +90,7 @@ impl Scenario {
     pub fn new(truth: Description, hidden: Vec<Effect>, seed: u64) -> Self {
         Self {
             truth,
-            hidden,
+            hidden: hidden.into_iter().map(Hidden::Elastic).collect(),
             poses: 40,
             visits: 2,
             ramp: vec![0.35, 0.7, 1.0, 0.7, 0.35],
@@ -71,12 +98,26 @@ impl Scenario {
             moment: None,
             noise: 8e-6,
             rotation_noise: None,
+            axis_noise: [1.0; 3],
+            tails: None,
             states_noise: false,
             shares_unloaded: true,
+            unloaded_first: false,
+            shuffled: false,
+            wrench_in_tool: false,
+            pace: 60.0,
+            swing: 0.0,
             floor: 0.1,
             column: 0.6,
             seed,
         }
+    }
+
+    /// The same campaign with something more hidden in it.
+    #[must_use]
+    pub fn hiding(mut self, hidden: impl Into<Hidden>) -> Self {
+        self.hidden.push(hidden.into());
+        self
     }
 
     /// Measures.
@@ -86,47 +127,120 @@ impl Scenario {
     /// Where an effect does not fit the arm, the arm buckles, or no pose within
     /// the joints' limits keeps the TCP within the working region.
     pub fn run(&self) -> Simulated {
-        let arm = Arm::new(&self.truth, &self.hidden);
-        let [mut poses, mut loads, mut noise] = [0, 1, 2].map(|stream| {
-            let mut random = ChaCha8Rng::seed_from_u64(self.seed);
-            random.set_stream(stream);
-            random
-        });
-        let mut rows = Vec::with_capacity(self.poses * self.visits * self.ramp.len());
-        for pose in 0..self.poses {
-            let q = self.pose(&arm, &mut poses);
-            let posed = arm.at(&q);
-            for visit in 0..self.visits {
-                let greatest = self.greatest(&mut loads);
-                let mut unloaded = self.reading(&mut noise);
-                for (count, share) in self.ramp.iter().enumerate() {
-                    let wrench = greatest.map(|component| component * share);
-                    let settled = posed.settle(&wrench);
-                    if count > 0 && !self.shares_unloaded {
-                        unloaded = self.reading(&mut noise);
-                    }
-                    let loaded = self.reading(&mut noise);
-                    let read = |exact: [f64; 3], first: usize| {
-                        std::array::from_fn(|axis| exact[axis] + loaded[first + axis] - unloaded[first + axis])
-                    };
-                    let time = PACE * (rows.len() + 1) as f64;
-                    rows.push(Row {
-                        pose,
-                        visit: pose * self.visits + visit,
-                        time,
-                        // A hall that warms up over a morning.
-                        temperature: 21.0 - 4.0 * (-time / 7200.0).exp_m1(),
-                        q: q.clone(),
-                        wrench,
-                        displacement: read(settled.displacement, 0),
-                        rotation: self.rotation_noise.map(|_| read(settled.rotation, 3)),
-                        exact_displacement: settled.displacement,
-                        exact_rotation: settled.rotation,
-                    });
-                }
+        let declared = Arm::new(&self.truth, &[]);
+        let arm = self.hidden.iter().fold(declared.clone(), |arm, hidden| arm.hiding(hidden));
+        let mut plan = self.plan(&declared);
+        if self.shuffled {
+            plan.shuffle(&mut Stream::Order.of(self.seed));
+        }
+        let count = plan.len() * self.ramp.len();
+        let round = match (self.unloaded_first, self.shares_unloaded) {
+            (false, _) => 0,
+            (true, true) => plan.len(),
+            (true, false) => count,
+        };
+        let start = self.pace * round as f64;
+        let rig = Rig::new(&arm, &self.hidden, start + self.pace * count as f64, self.swing);
+        let mut rows = Vec::with_capacity(count);
+        let mut posed: Option<(usize, PosedArm)> = None;
+        for (turn, visit) in plan.iter().enumerate() {
+            if posed.as_ref().is_none_or(|(pose, _)| *pose != visit.pose) {
+                posed = Some((visit.pose, arm.at(&visit.q)));
             }
+            let (_, posed) = posed.as_ref().expect("it stands at the pose");
+            self.measure(&rig, posed, visit, turn, start, &mut rows);
         }
         Simulated { scenario: self.clone(), rows }
+    }
+
+    /// The visits with all that is random about them, pose after pose.
+    fn plan(&self, declared: &Arm) -> Vec<Visit> {
+        let [mut poses, mut loads, mut noise, mut rare, mut tails] =
+            [Stream::Poses, Stream::Loads, Stream::Noise, Stream::Wild, Stream::Tails].map(|one| one.of(self.seed));
+        let mut plan = Vec::with_capacity(self.poses * self.visits);
+        for pose in 0..self.poses {
+            let q = self.pose(declared, &mut poses);
+            for visit in 0..self.visits {
+                let greatest = self.greatest(&mut loads);
+                let mut unloaded = self.reading(&mut noise, &mut tails);
+                let readings = (0..self.ramp.len()).map(|count| {
+                    if count > 0 && !self.shares_unloaded {
+                        unloaded = self.reading(&mut noise, &mut tails);
+                    }
+                    let loaded = self.reading(&mut noise, &mut tails);
+                    Reading { noise: std::array::from_fn(|axis| loaded[axis] - unloaded[axis]), wild: wild(&mut rare) }
+                });
+                let readings = readings.collect();
+                plan.push(Visit { pose, visit: pose * self.visits + visit, q: q.clone(), greatest, readings });
+            }
+        }
+        plan
+    }
+
+    /// Takes the readings of a visit, the `turn`-th in time, whose loads begin
+    /// after `start`.
+    fn measure(&self, rig: &Rig<'_>, posed: &PosedArm, visit: &Visit, turn: usize, start: f64, rows: &mut Vec<Row>) {
+        let (pace, loads) = (self.pace, self.ramp.len());
+        let mut memory = posed.rested();
+        let mut creep = [Creep::new(&self.hidden), Creep::new(&self.hidden)];
+        // The load of this moment, put on at `since`, read at `time`.
+        let mut stand = |wrench: &[f64; 6], since: f64, time: f64| {
+            let moment = Moment { held: time - since, warmer: rig.warmer(time) };
+            let settled = posed.settle_after(wrench, &mut memory, moment);
+            let moved = [settled.displacement, settled.rotation].map(Vector3::from);
+            let grown = |(moved, creep): (Vector3<f64>, &mut Option<Creep>)| {
+                moved + creep.as_mut().map_or_else(Vector3::zeros, |creep| creep.adds(&moved, since, time))
+            };
+            let [displacement, rotation] = &mut creep;
+            let (displacement, rotation) = (grown((moved[0], displacement)), grown((moved[1], rotation)));
+            let (tcp, tool) = (Vector3::from(posed.tcp()), posed.tool());
+            Stand { time, q: &visit.q, tcp, tool, displacement, rotation }
+        };
+        let first = turn * loads;
+        let before = |time: f64, index: usize| if self.unloaded_first { pace * (index + 1) as f64 } else { time };
+        let begins = start + pace * first as f64;
+        let mut unloaded = stand(&[0.0; 6], begins - pace, begins);
+        let index = if self.shares_unloaded { turn } else { first };
+        unloaded.time = before(if self.shares_unloaded { begins } else { begins + 0.5 * pace }, index);
+        for (count, (share, reading)) in self.ramp.iter().zip(&visit.readings).enumerate() {
+            let time = start + pace * (first + count + 1) as f64;
+            let mut since = time - pace;
+            if !self.shares_unloaded {
+                if !self.unloaded_first {
+                    since += 0.5 * pace;
+                    if count > 0 {
+                        unloaded = stand(&[0.0; 6], time - pace, since);
+                    }
+                }
+                unloaded.time = before(since, first + count);
+            }
+            let acting = visit.greatest.map(|component| component * share);
+            let loaded = stand(&acting, since, time);
+            let (mut displacement, rotation) = rig.between(&unloaded, &loaded);
+            for hidden in &self.hidden {
+                if let Hidden::Outliers { share, size } = *hidden
+                    && reading.wild.0 < share
+                {
+                    displacement = (Vector3::from(displacement) + reading.wild.1 * size).into();
+                }
+            }
+            let read =
+                |exact: [f64; 3], first: usize| std::array::from_fn(|axis| exact[axis] + reading.noise[first + axis]);
+            let cell = rig.cell(&acting, &loaded.tool);
+            rows.push(Row {
+                pose: visit.pose,
+                visit: if self.shares_unloaded { visit.visit } else { visit.visit * loads + count },
+                time,
+                temperature: rig.temperature(time),
+                q: visit.q.clone(),
+                wrench: if self.wrench_in_tool { in_frame(&loaded.tool, &cell) } else { cell },
+                acting,
+                displacement: read(displacement, 0),
+                rotation: self.rotation_noise.map(|_| read(rotation, 3)),
+                exact_displacement: displacement,
+                exact_rotation: rotation,
+            });
+        }
     }
 
     /// A pose within the limits and the working region.
@@ -156,10 +270,38 @@ impl Scenario {
     }
 
     /// The noise of one reading, of the position and of the rotation.
-    fn reading(&self, random: &mut ChaCha8Rng) -> [f64; 6] {
+    fn reading(&self, random: &mut ChaCha8Rng, tails: &mut ChaCha8Rng) -> [f64; 6] {
         let turn = self.rotation_noise.unwrap_or(0.0);
-        [self.noise, self.noise, self.noise, turn, turn, turn].map(|sigma| sigma * normal(random))
+        let [x, y, z] = self.axis_noise;
+        let sigma = [x * self.noise, y * self.noise, z * self.noise, x * turn, y * turn, z * turn];
+        sigma.map(|sigma| {
+            let tail = self.tails.map_or(1.0, |freedom| tail(freedom, tails));
+            sigma * normal(random) * tail
+        })
     }
+}
+
+/// A visit as planned.
+struct Visit {
+    pose: usize,
+    visit: usize,
+    q: Vec<f64>,
+    greatest: [f64; 6],
+    readings: Vec<Reading>,
+}
+
+/// What is random about a row.
+struct Reading {
+    /// Of the loaded less the unloaded reading.
+    noise: [f64; 6],
+    wild: (f64, Vector3<f64>),
+}
+
+/// A wrench seen from a frame with these axes.
+fn in_frame(axes: &Matrix3<f64>, wrench: &[f64; 6]) -> [f64; 6] {
+    let turned = |first: usize| axes.tr_mul(&Vector3::from_column_slice(&wrench[first..first + 3]));
+    let (force, moment) = (turned(0), turned(3));
+    [force.x, force.y, force.z, moment.x, moment.y, moment.z]
 }
 
 /// The arm with every part of every joint's compliance changed by a random
@@ -172,18 +314,6 @@ pub fn scattered(arm: &Description, factors: Range<f64>, seed: u64) -> Descripti
         part.value *= random.random_range(factors.clone());
     }
     arm
-}
-
-/// A standard normal variate (Box and Muller).
-fn normal(random: &mut ChaCha8Rng) -> f64 {
-    // The logarithm needs a number above zero.
-    let radius = (-2.0 * (1.0 - random.random::<f64>()).ln()).sqrt();
-    radius * (std::f64::consts::TAU * random.random::<f64>()).cos()
-}
-
-/// A direction, all equally likely.
-fn direction(random: &mut ChaCha8Rng) -> Vector3<f64> {
-    Vector3::from_fn(|_, _| normal(random)).normalize()
 }
 
 /// A campaign that was simulated.
@@ -204,119 +334,21 @@ pub struct Row {
     pub visit: usize,
     /// Time since the beginning (s).
     pub time: f64,
-    /// Temperature in the hall (C); nothing depends on it.
+    /// Temperature in the hall (C).
     pub temperature: f64,
     /// Joint coordinates (rad or m).
     pub q: Vec<f64>,
-    /// Wrench `[f; m]` (N, Nm) at the TCP, in the base frame.
+    /// Wrench `[f; m]` (N, Nm) at the TCP as the load cell has it, in the
+    /// file's frame.
     pub wrench: [f64; 6],
+    /// The wrench that really acts (N, Nm), in the base frame.
+    pub acting: [f64; 6],
     /// Measured displacement of the TCP (m), in the base frame.
     pub displacement: [f64; 3],
     /// Measured rotation of the tool (rad), in the base frame, if measured.
     pub rotation: Option<[f64; 3]>,
-    /// The displacement without noise (m).
+    /// The displacement as it would be read without noise (m).
     pub exact_displacement: [f64; 3],
-    /// The rotation without noise (rad).
+    /// The rotation as it would be read without noise (rad).
     pub exact_rotation: [f64; 3],
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::{five_axis, six_axis};
-    use super::*;
-
-    fn tilt() -> Vec<Effect> {
-        vec![Effect::TransverseCompliance { joint: 3, value: 6e-7 }]
-    }
-
-    #[test]
-    fn the_seed_says_it_all() {
-        let scenario = Scenario::new(five_axis(), tilt(), 7);
-        assert_eq!(scenario.run(), scenario.run());
-        let other = Scenario { seed: 8, ..scenario.clone() }.run();
-        assert_ne!(scenario.run().rows[0].q, other.rows[0].q);
-        assert_ne!(scattered(&five_axis(), 0.7..1.3, 1), scattered(&five_axis(), 0.7..1.3, 2));
-    }
-
-    #[test]
-    fn another_noise_or_effect_keeps_poses_and_loads() {
-        let one = Scenario::new(six_axis(), tilt(), 3).run();
-        let other =
-            Scenario { rotation_noise: Some(5e-5), noise: 0.0, hidden: Vec::new(), ..one.scenario.clone() }.run();
-        for (one, other) in one.rows.iter().zip(&other.rows) {
-            assert_eq!((&one.q, one.wrench), (&other.q, other.wrench));
-            assert_ne!(one.exact_displacement, other.exact_displacement);
-            assert_eq!(other.displacement, other.exact_displacement);
-        }
-    }
-
-    #[test]
-    fn rows_come_in_visits_and_ramps() {
-        for truth in [five_axis(), six_axis()] {
-            let scenario = Scenario { moment: Some([50.0, 200.0]), ..Scenario::new(truth, Vec::new(), 11) };
-            let rows = scenario.run().rows;
-            assert_eq!(rows.len(), 400);
-            for (index, row) in rows.iter().enumerate() {
-                assert_eq!((row.pose, row.visit), (index / 10, index / 5));
-                let peak = &rows[index / 5 * 5 + 2].wrench;
-                let share = [0.35, 0.7, 1.0, 0.7, 0.35][index % 5];
-                assert!(row.wrench.iter().zip(peak).all(|(value, peak)| *value == share * peak));
-                let size = |first: usize| Vector3::from_row_slice(&peak[first..first + 3]).norm();
-                assert!((500.0..=1300.0).contains(&size(0)) && (50.0..=200.0).contains(&size(3)));
-                for (q, joint) in row.q.iter().zip(&scenario.truth.joints) {
-                    let [low, high] = joint.limits.unwrap();
-                    assert!((low..=high).contains(q));
-                }
-                let [x, y, z] = Arm::new(&scenario.truth, &[]).tcp(&row.q);
-                assert!(z >= 0.1 && x.hypot(y) >= 0.6);
-                // A tenth of a millimetre to a few, as on the real machines.
-                let moved = Vector3::from(row.exact_displacement).norm();
-                assert!((1e-5..1.5e-2).contains(&moved), "{moved}");
-            }
-        }
-    }
-
-    /// Sums of the noise of each visit, and the sum of squares about the
-    /// visits' means, over all three axes, by their expected values without
-    /// anything shared.
-    fn between_and_within(shares_unloaded: bool) -> [f64; 2] {
-        let rows = Scenario { shares_unloaded, poses: 1000, ..Scenario::new(five_axis(), Vec::new(), 5) }.run().rows;
-        let (mut between, mut within) = (0.0, 0.0);
-        for visit in rows.chunks(5) {
-            for axis in 0..3 {
-                let noise = visit.iter().map(|row| (row.displacement[axis] - row.exact_displacement[axis]) / 8e-6);
-                let mean = noise.clone().sum::<f64>() / 5.0;
-                between += mean * mean;
-                within += noise.map(|value| (value - mean).powi(2)).sum::<f64>();
-            }
-        }
-        let count = 3.0 * 2000.0;
-        [between / count, within / (4.0 * count)]
-    }
-
-    #[test]
-    fn noise_is_shared_within_a_visit() {
-        // Variance of a visit's mean and of a row about it, in sigma squared:
-        // shared 1 + 1/5 and 1; each its own 2/5 and 2. The estimates from 6000
-        // means scatter by 1.8 %, those from 24000 degrees of freedom by 0.9 %.
-        let [between, within] = between_and_within(true);
-        assert!((between / 1.2 - 1.0).abs() < 0.06 && (within - 1.0).abs() < 0.03, "{between} {within}");
-        let [between, within] = between_and_within(false);
-        assert!((between / 0.4 - 1.0).abs() < 0.06 && (within / 2.0 - 1.0).abs() < 0.03, "{between} {within}");
-    }
-
-    #[test]
-    fn directions_favour_none() {
-        let mut random = ChaCha8Rng::seed_from_u64(1);
-        let mean = (0..20_000).map(|_| direction(&mut random)).sum::<Vector3<f64>>() / 20_000.0;
-        assert!(mean.amax() < 0.02);
-    }
-
-    #[test]
-    fn scattered_stays_within_the_factors() {
-        let declared = six_axis();
-        for (one, other) in scattered(&declared, 0.7..1.3, 4).joints.iter().zip(&declared.joints) {
-            assert!((0.7..1.3).contains(&(one.compliance() / other.compliance())));
-        }
-    }
 }

@@ -1,11 +1,18 @@
 //! The equilibrium of a loaded arm in its deformed shape.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::frame::{Frame, exp, log, work_on};
+use super::gear::{JointLaw, Memory, Moment};
 
 /// The springs have settled when none still moves by this much (rad or m).
 const SETTLED: f64 = 1e-15;
+
+/// A load that is read as soon as it is on, in the cold.
+const AT_ONCE: Moment = Moment { held: 0.0, warmer: 0.0 };
+
+/// One that has been on for longer than anything takes to come to rest.
+const AT_LAST: Moment = Moment { held: f64::MAX, warmer: 0.0 };
 
 /// Far more rounds than any load takes that the arm can carry at all.
 const ROUNDS: usize = 500;
@@ -26,6 +33,34 @@ pub(super) enum Response {
     Linear(Vector3<f64>),
     /// About or along z only, as the [`JointLaw`] says for this joint, from 0.
     Joint(usize),
+    /// About x and y alike, with a compliance that falls with the moment `m`
+    /// there: `compliance m / sqrt(1 + (m / knee)^2)`.
+    Stiffening { compliance: f64, knee: f64 },
+    /// Along x only, half a gap (m) to the side of the force, with a knee (N).
+    Gap { gap: f64, knee: f64 },
+}
+
+impl Response {
+    /// How far it lets go, and the integral of that over the force (J); joints
+    /// have a law of their own.
+    fn alone(&self, work: &Vector3<f64>) -> (Vector3<f64>, f64) {
+        match *self {
+            Self::Linear(compliance) => {
+                let by = compliance.component_mul(work);
+                (by, 0.5 * work.dot(&by))
+            }
+            Self::Joint(_) => (Vector3::zeros(), 0.0),
+            Self::Stiffening { compliance, knee } => {
+                let across = Vector3::new(work.x, work.y, 0.0);
+                let bend = 1_f64.hypot(across.norm() / knee);
+                (across * (compliance / bend), compliance * knee * knee * (bend - 1.0))
+            }
+            Self::Gap { gap, knee } => {
+                let size = work.x.hypot(knee);
+                (Vector3::x() * (0.5 * gap * work.x / size), 0.5 * gap * (size - knee))
+            }
+        }
+    }
 }
 
 /// A spring, and the rigid piece that leads to it.
@@ -37,49 +72,25 @@ pub(super) struct Spring {
     pub response: Response,
 }
 
-/// Deflection of the joints about their own axes under their torques.
-#[derive(Clone, Debug)]
-pub(super) struct JointLaw {
-    compliances: Vec<f64>,
-    /// Two joints and the entry of the compliance matrix they share.
-    pub couplings: Vec<(usize, usize, f64)>,
-    /// A joint, what its unloaded compliance has on top, and the knee torque.
-    pub softenings: Vec<(usize, f64, f64)>,
+/// What pulls at the arm besides the load.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Pull {
+    /// A force (N) of one direction in the base frame.
+    Weight(Vector3<f64>),
+    /// A spring to a point (m) that does not move: its stiffness (N/m), and its
+    /// length (m) without force, below which it hangs loose.
+    Stay { anchor: Vector3<f64>, stiffness: f64, length: f64 },
 }
 
-impl JointLaw {
-    pub fn new(compliances: Vec<f64>) -> Self {
-        Self { compliances, couplings: Vec::new(), softenings: Vec::new() }
-    }
-
-    fn joints(&self) -> usize {
-        self.compliances.len()
-    }
-
-    /// Joint deflections (rad or m) under the torques (Nm or N).
-    fn deflections(&self, torques: &[f64], out: &mut [f64]) {
-        for ((out, torque), compliance) in out.iter_mut().zip(torques).zip(&self.compliances) {
-            *out = compliance * torque;
-        }
-        for &(one, other, value) in &self.couplings {
-            out[one] += value * torques[other];
-            out[other] += value * torques[one];
-        }
-        for &(joint, added, knee) in &self.softenings {
-            let torque = torques[joint];
-            out[joint] += added * torque / 1_f64.hypot(torque / knee);
-        }
-    }
-
-    /// The integral of the deflections over the torques (J).
-    fn complementary_energy(&self, torques: &[f64]) -> f64 {
-        let straight: f64 = self.compliances.iter().zip(torques).map(|(h, torque)| 0.5 * h * torque * torque).sum();
-        let coupled: f64 = self.couplings.iter().map(|&(i, j, value)| value * torques[i] * torques[j]).sum();
-        let softened = |&(joint, added, knee): &(usize, f64, f64)| {
-            added * knee * knee * (1_f64.hypot(torques[joint] / knee) - 1.0)
-        };
-        straight + coupled + self.softenings.iter().map(softened).sum::<f64>()
-    }
+/// A point of the arm that something pulls at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Attached {
+    /// How many springs carry it.
+    pub after: usize,
+    /// Where it is in the frame of the last of these, as that one has moved
+    /// (m); in the base frame where there is none.
+    pub at: Vector3<f64>,
+    pub pull: Pull,
 }
 
 /// Where a load has taken an arm.
@@ -101,14 +112,32 @@ pub struct PosedArm {
     /// The TCP's frame in that of the last spring, as that one has moved.
     end: Frame,
     law: JointLaw,
+    attached: Vec<Attached>,
+    /// Where the load acts, in the TCP's frame (m).
+    lever: Vector3<f64>,
+    /// The TCP's frame where nothing has given way yet.
+    rigid: Frame,
+    /// The TCP's frame without a load.
     unloaded: Frame,
 }
 
 impl PosedArm {
-    pub(super) fn new(springs: Vec<Spring>, end: Frame, law: JointLaw) -> Self {
-        let mut arm = Self { springs, end, law, unloaded: Frame::identity() };
-        let still = vec![Vector3::zeros(); arm.springs.len()];
-        arm.unloaded = arm.walk(&still, &mut Vec::new());
+    pub(super) fn new(
+        springs: Vec<Spring>,
+        end: Frame,
+        law: JointLaw,
+        attached: Vec<Attached>,
+        lever: Vector3<f64>,
+    ) -> Self {
+        let still = vec![Vector3::zeros(); springs.len()];
+        let mut arm =
+            Self { springs, end, law, attached, lever, rigid: Frame::identity(), unloaded: Frame::identity() };
+        arm.rigid = arm.walk(&still, &mut Vec::new());
+        arm.unloaded = arm.rigid;
+        if !arm.attached.is_empty() {
+            let load = arm.settled(&[0.0; 6], &arm.law.fresh(), AT_LAST).1;
+            arm.unloaded = load.tcp;
+        }
         arm
     }
 
@@ -117,14 +146,64 @@ impl PosedArm {
         self.unloaded.origin.into()
     }
 
+    /// What the arm's own weight, or what else pulls at it, has moved the
+    /// unloaded TCP by (m), in the base frame.
+    pub fn sag(&self) -> [f64; 3] {
+        (self.unloaded.origin - self.rigid.origin).into()
+    }
+
+    /// The unloaded tool's axes x, y, z in the base frame.
+    pub fn axes(&self) -> [[f64; 3]; 3] {
+        self.unloaded.turn.into()
+    }
+
+    /// The same as columns.
+    pub(super) fn tool(&self) -> Matrix3<f64> {
+        self.unloaded.turn
+    }
+
     /// The equilibrium under a wrench `[f; m]` (N, Nm) that keeps its
-    /// components in the base frame and acts at the TCP, wherever that goes.
+    /// components in the base frame and acts at the TCP, wherever that goes;
+    /// joints with a memory have seen no load before.
     ///
     /// # Panics
     ///
     /// Where the springs do not settle: the load is beyond what the arm can
     /// carry without buckling.
     pub fn settle(&self, wrench: &[f64; 6]) -> Equilibrium {
+        self.settle_after(wrench, &mut self.rested(), AT_ONCE)
+    }
+
+    /// The memory of joints that stand unloaded, long since come to rest.
+    pub fn rested(&self) -> Memory {
+        let mut memory = self.law.fresh();
+        self.settle_after(&[0.0; 6], &mut memory, AT_LAST);
+        memory
+    }
+
+    /// The equilibrium as in [`settle`](Self::settle), after the loads that
+    /// `memory` has seen, which sees this one, too. Joints are taken to go
+    /// straight from their last torque to this one.
+    ///
+    /// # Panics
+    ///
+    /// Where the springs do not settle.
+    pub fn settle_after(&self, wrench: &[f64; 6], memory: &mut Memory, moment: Moment) -> Equilibrium {
+        let (moved, load) = self.settled(wrench, memory, moment);
+        self.law.remember(&load.torques, memory, moment);
+        let mut energy = -self.law.complementary_energy(&load.torques);
+        for ((spring, work), by) in self.springs.iter().zip(&load.generalised).zip(&moved) {
+            energy += work.dot(by) - spring.response.alone(work).1;
+        }
+        Equilibrium {
+            displacement: (load.tcp.origin - self.unloaded.origin).into(),
+            rotation: log(&(load.tcp.turn * self.unloaded.turn.transpose())).into(),
+            energy,
+        }
+    }
+
+    /// How far every spring has let go, and what the load does to it there.
+    fn settled(&self, wrench: &[f64; 6], memory: &Memory, moment: Moment) -> (Vec<Vector3<f64>>, Load) {
         let mut moved = vec![Vector3::zeros(); self.springs.len()];
         let mut next = moved.clone();
         let mut load = Load::new(wrench, self.springs.len(), self.law.joints());
@@ -133,11 +212,12 @@ impl PosedArm {
         // round.
         for _ in 0..ROUNDS {
             self.generalised(&moved, &mut load);
-            self.respond(&load, &mut next);
+            self.respond(&load, memory, moment, &mut next);
             let change = moved.iter().zip(&next).map(|(old, new)| (new - old).amax()).fold(0.0, f64::max);
             std::mem::swap(&mut moved, &mut next);
             if change < SETTLED {
-                return self.equilibrium(&moved, &mut load);
+                self.generalised(&moved, &mut load);
+                return (moved, load);
             }
         }
         panic!("the arm does not settle under {wrench:?}")
@@ -150,10 +230,7 @@ impl PosedArm {
         for (spring, by) in self.springs.iter().zip(moved) {
             frame = frame.then(&spring.rod);
             frames.push(frame);
-            match spring.motion {
-                Motion::Turn => frame.turn *= exp(by),
-                Motion::Slide => frame.origin += frame.turn * by,
-            }
+            frame = spring.let_go(&frame, by);
         }
         frame.then(&self.end)
     }
@@ -163,13 +240,35 @@ impl PosedArm {
     /// the force along it.
     fn generalised(&self, moved: &[Vector3<f64>], load: &mut Load) {
         load.tcp = self.walk(moved, &mut load.frames);
+        load.pulls.clear();
+        load.pulls.push((self.springs.len(), load.tcp.origin + load.tcp.turn * self.lever, load.force));
+        for attached in &self.attached {
+            let carrier = match attached.after.checked_sub(1) {
+                Some(last) => self.springs[last].let_go(&load.frames[last], &moved[last]),
+                None => Frame::identity(),
+            };
+            let point = carrier.origin + carrier.turn * attached.at;
+            let force = match attached.pull {
+                Pull::Weight(force) => force,
+                Pull::Stay { anchor, stiffness, length } => {
+                    let along = anchor - point;
+                    along * (stiffness * (1.0 - length / along.norm()).max(0.0))
+                }
+            };
+            load.pulls.push((attached.after, point, force));
+        }
         for (index, (spring, frame)) in self.springs.iter().zip(&load.frames).enumerate() {
+            let carried = load.pulls.iter().filter(|(after, ..)| *after > index);
             let work = match spring.motion {
                 Motion::Turn => {
-                    let moment = (load.tcp.origin - frame.origin).cross(&load.force) + load.moment;
+                    let moments = carried.map(|(_, point, force)| (point - frame.origin).cross(force));
+                    let moment = moments.fold(load.moment, |sum, one| sum + one);
                     work_on(&moved[index], &frame.turn.tr_mul(&moment))
                 }
-                Motion::Slide => frame.turn.tr_mul(&load.force),
+                Motion::Slide => {
+                    let force: Vector3<f64> = carried.map(|(.., force)| force).sum();
+                    frame.turn.tr_mul(&force)
+                }
             };
             load.generalised[index] = work;
             if let Response::Joint(joint) = spring.response {
@@ -179,32 +278,26 @@ impl PosedArm {
     }
 
     /// How far the springs let go under the generalised forces in `load`.
-    fn respond(&self, load: &Load, out: &mut [Vector3<f64>]) {
+    fn respond(&self, load: &Load, memory: &Memory, moment: Moment, out: &mut [Vector3<f64>]) {
         // A description has eight joints at most.
         let mut joints = [0.0; 8];
         let joints = &mut joints[..self.law.joints()];
-        self.law.deflections(&load.torques, joints);
+        self.law.deflections(&load.torques, memory, moment, joints);
         for ((spring, work), out) in self.springs.iter().zip(&load.generalised).zip(out) {
             *out = match spring.response {
-                Response::Linear(compliance) => compliance.component_mul(work),
                 Response::Joint(joint) => Vector3::z() * joints[joint],
+                response => response.alone(work).0,
             };
         }
     }
+}
 
-    fn equilibrium(&self, moved: &[Vector3<f64>], load: &mut Load) -> Equilibrium {
-        self.generalised(moved, load);
-        let mut energy = -self.law.complementary_energy(&load.torques);
-        for ((spring, work), by) in self.springs.iter().zip(&load.generalised).zip(moved) {
-            energy += match spring.response {
-                Response::Linear(_) => 0.5 * work.dot(by),
-                Response::Joint(_) => work.z * by.z,
-            };
-        }
-        Equilibrium {
-            displacement: (load.tcp.origin - self.unloaded.origin).into(),
-            rotation: log(&(load.tcp.turn * self.unloaded.turn.transpose())).into(),
-            energy,
+impl Spring {
+    /// Its frame after it has let go.
+    fn let_go(&self, frame: &Frame, by: &Vector3<f64>) -> Frame {
+        match self.motion {
+            Motion::Turn => Frame { turn: frame.turn * exp(by), ..*frame },
+            Motion::Slide => Frame { origin: frame.origin + frame.turn * by, ..*frame },
         }
     }
 }
@@ -215,6 +308,8 @@ struct Load {
     moment: Vector3<f64>,
     frames: Vec<Frame>,
     tcp: Frame,
+    /// Every force: how many springs carry its point, the point, the force.
+    pulls: Vec<(usize, Vector3<f64>, Vector3<f64>)>,
     generalised: Vec<Vector3<f64>>,
     /// The generalised forces of the joints, in the joints' order (Nm or N).
     torques: Vec<f64>,
@@ -228,6 +323,7 @@ impl Load {
             moment: Vector3::new(mx, my, mz),
             frames: Vec::with_capacity(springs),
             tcp: Frame::identity(),
+            pulls: Vec::new(),
             generalised: vec![Vector3::zeros(); springs],
             torques: vec![0.0; joints],
         }
@@ -281,7 +377,7 @@ mod tests {
             }
         }
         let mut moved = vec![Vector3::zeros(); arm.springs.len()];
-        arm.respond(&load, &mut moved);
+        arm.respond(&load, &arm.law.fresh(), AT_ONCE, &mut moved);
         let ahead = arm.settle(&wrench);
         let behind = arm.settle(&wrench.map(|component| -component));
         for axis in 0..6 {

@@ -33,9 +33,11 @@ impl Simulated {
              robot: robot.yaml\n\
              observations: loads.csv\n\
              kind: displacement\n\
-             wrench: {{frame: base, at: tcp}}\n\
+             wrench: {{frame: {}, at: tcp}}\n\
              measured: {{frame: base, at: tcp}}\n",
-            scenario.truth.name, scenario.seed
+            scenario.truth.name,
+            scenario.seed,
+            if scenario.wrench_in_tool { "tool" } else { "base" }
         );
         if scenario.states_noise {
             let rotation = scenario.rotation_noise.map(|sigma| format!(", rotation: {} urad", sigma * 1e6));

@@ -15,13 +15,27 @@
 mod arm;
 mod arms;
 mod campaign;
+#[cfg(test)]
+mod campaign_tests;
 mod equilibrium;
 mod files;
 mod frame;
+mod gear;
+mod hidden;
+#[cfg(test)]
+mod hidden_tests;
+mod noise;
+mod outside;
+mod rig;
+#[cfg(test)]
+mod rig_tests;
 #[cfg(test)]
 mod tests;
 
-pub use arm::{Arm, SEGMENTS};
+pub use arm::{Arm, GRAVITY, SEGMENTS};
 pub use arms::{five_axis, six_axis};
 pub use campaign::{Row, Scenario, Simulated, scattered};
 pub use equilibrium::{Equilibrium, PosedArm};
+pub use gear::{Memory, Moment};
+pub use hidden::{DhColumn, Follows, Hidden, Mount};
+pub use outside::Outside;

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use robstiff_robots::{Convention, Description, Effect, JointKind, Placement};
 
-use super::{Arm, five_axis, six_axis};
+use super::{Arm, Hidden, Outside, five_axis, six_axis};
 
 /// One pose of the six-axis arm, with no angle of a special size (rad).
 const POSE: [f64; 6] = [0.4, -1.1, 0.7, 0.9, -0.8, 1.3];
@@ -63,7 +63,12 @@ fn the_arms_stand_as_drawn() {
 #[test]
 fn work_done_is_energy_stored() {
     // Loads well beyond what the gears take, so that the shape matters.
-    let arm = Arm::new(&six_axis(), &every_effect()).at(&POSE);
+    let arm = [
+        Hidden::LostMotion { joint: 3, gap: 3e-4, knee: 2000.0 },
+        Hidden::Outside(Outside::SoftFoundation { compliance: 4e-8, knee: 9000.0 }),
+        Hidden::Outside(Outside::LooseFlange { gap: 2e-4, knee: 3000.0 }),
+    ];
+    let arm = arm.iter().fold(Arm::new(&six_axis(), &every_effect()), |arm, hidden| arm.hiding(hidden)).at(&POSE);
     let full = [9e3, -7e3, 1.2e4, 0.0, 0.0, 0.0];
     // The work of a dead load that grows: F d at the end, less what d grew by
     // while F did (Simpson over 40 steps).

@@ -1,0 +1,110 @@
+//! Traces simulated campaigns by the hundred and counts what came of them.
+
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::{fs, process, thread};
+
+use clap::{Parser, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use robstiff_tests::matrix::{Case, Group, Record, groups, run, table};
+
+/// Traces simulated campaigns with something hidden in them, and judges what is said of them
+#[derive(Parser)]
+#[command(name = "matrix")]
+struct Arguments {
+    /// How many campaigns, shared out among the groups
+    #[arg(long, default_value_t = 400)]
+    count: usize,
+    /// Seed of all of them
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Only these groups: kinds, or nothing, one, two, three, outside
+    #[arg(long, value_delimiter = ',')]
+    only: Vec<String>,
+    /// Only this arm
+    #[arg(long)]
+    arm: Option<ArmName>,
+    /// Threads
+    #[arg(long, default_value_t = 2)]
+    jobs: usize,
+    /// Where all runs are written
+    #[arg(long, default_value = "target/matrix.csv")]
+    csv: PathBuf,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum ArmName {
+    Five,
+    Six,
+}
+
+fn main() {
+    let arguments = Arguments::parse();
+    let chosen: Vec<Group> = groups().into_iter().filter(|group| is_asked_for(*group, &arguments.only)).collect();
+    if chosen.is_empty() {
+        let names: Vec<&str> = groups().into_iter().map(Group::name).collect();
+        eprintln!("there is no group of that name; there are: {}", names.join(", "));
+        process::exit(2);
+    }
+    let cases = cases(&chosen, &arguments);
+    let records = run_all(&cases, arguments.jobs.max(1));
+    print!("{}", table::markdown(&records));
+    if let Some(folder) = arguments.csv.parent() {
+        fs::create_dir_all(folder).unwrap_or_else(|problem| fail(&arguments.csv, &problem));
+    }
+    fs::write(&arguments.csv, table::csv(&records)).unwrap_or_else(|problem| fail(&arguments.csv, &problem));
+}
+
+fn fail(path: &std::path::Path, problem: &std::io::Error) -> ! {
+    eprintln!("{}: {problem}", path.display());
+    process::exit(1)
+}
+
+fn is_asked_for(group: Group, only: &[String]) -> bool {
+    let family = match group {
+        Group::One(_) => "one",
+        Group::Outside(_) => "outside",
+        _ => group.name(),
+    };
+    only.is_empty() || only.iter().any(|asked| asked == group.name() || asked == family)
+}
+
+/// The groups' shares of the count, at least one each.
+fn cases(chosen: &[Group], arguments: &Arguments) -> Vec<Case> {
+    let all: usize = chosen.iter().map(|group| group.share()).sum();
+    let share = |group: &Group| (arguments.count * group.share()).div_ceil(all);
+    let fits = |case: &Case| arguments.arm.is_none_or(|arm| case.six_axes == (arm == ArmName::Six));
+    let of = |&group: &Group| {
+        let endless = (0..).map(move |replicate| Case::new(group, replicate, arguments.seed));
+        endless.filter(fits).take(share(&group)).collect::<Vec<_>>()
+    };
+    chosen.iter().flat_map(of).collect()
+}
+
+fn run_all(cases: &[Case], jobs: usize) -> Vec<Record> {
+    let progress =
+        if std::io::stderr().is_terminal() { ProgressBar::new(cases.len() as u64) } else { ProgressBar::hidden() };
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len}, {eta} left").expect("a template that is right");
+    progress.set_style(style);
+    let next = AtomicUsize::new(0);
+    let records = Mutex::new(Vec::with_capacity(cases.len()));
+    thread::scope(|scope| {
+        for _ in 0..jobs {
+            scope.spawn(|| {
+                loop {
+                    let index = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(case) = cases.get(index) else { break };
+                    let record = run(case.clone());
+                    records.lock().expect("no thread panics with it").push((index, record));
+                    progress.inc(1);
+                }
+            });
+        }
+    });
+    progress.finish_and_clear();
+    let mut records = records.into_inner().expect("all threads are done");
+    records.sort_by_key(|(index, _)| *index);
+    records.into_iter().map(|(_, record)| record).collect()
+}

@@ -1,0 +1,182 @@
+//! What tracing said, held against what was hidden.
+//!
+//! - A name *stands for* something hidden where it is its full name, where
+//!   `same_as` has it, or where the name would do as well at these poses and
+//!   loads, which is found without tracing ([`would_do`]).
+//! - A judgement is *right* where everything hidden has a name of its own that
+//!   stands for it; *alone* where there are no more names than that.
+//! - A name is *wrong* where it stands for nothing hidden.
+//! - *Whole truth*: the verdict is `explained`, so the names are said to be all
+//!   there is.
+//!
+//! [`would_do`]: crate::matrix::alias::would_do
+
+use robstiff::trace::{Trace, Verdict};
+
+/// Standard deviations that have 95 % of a normal distribution within.
+const WITHIN: f64 = 1.959_964;
+
+/// What was said, in the terms of `trace.json`.
+#[derive(Clone, Debug)]
+pub struct Told {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The names.
+    pub names: Vec<Name>,
+    /// Value and standard deviation of each joint's compliance (rad/Nm).
+    pub joints: Vec<(f64, Option<f64>)>,
+}
+
+/// A name with what was said about it.
+#[derive(Clone, Debug)]
+pub struct Name {
+    /// `kind@at`.
+    pub name: String,
+    /// What the data are said not to tell it from.
+    pub same_as: Vec<String>,
+    /// Numbers by name, with their standard deviation.
+    pub parameters: Vec<(String, f64, Option<f64>)>,
+}
+
+impl Told {
+    /// What a trace says.
+    pub fn of(trace: &Trace) -> Self {
+        let names = trace.effects.iter().map(|named| Name {
+            name: named.effect.to_string(),
+            same_as: named.same_as.clone(),
+            parameters: named.parameters.iter().map(|p| (p.name.to_string(), p.value, p.std)).collect(),
+        });
+        let joints = trace.estimates.iter().filter(|estimate| estimate.name.starts_with("joint "));
+        Self {
+            verdict: trace.verdict,
+            names: names.collect(),
+            joints: joints.map(|estimate| (estimate.value, estimate.std)).collect(),
+        }
+    }
+}
+
+/// A judgement.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Judgement {
+    /// Everything hidden has a name.
+    pub right: bool,
+    /// And there are no other names.
+    pub alone: bool,
+    /// Every name is the hidden thing's own, not an alias.
+    pub own: bool,
+    /// Names that stand for nothing hidden.
+    pub wrong: Vec<String>,
+    /// The names are said to be all there is.
+    pub whole_truth: bool,
+}
+
+/// Judges names by the full names of what is hidden; `would_do` says whether a
+/// name would do as well as a hidden thing, by its index.
+pub fn judge(told: &Told, hidden: &[String], would_do: impl Fn(&str, usize) -> bool) -> Judgement {
+    let stands = |name: &Name, index: usize| {
+        let own = &hidden[index];
+        name.name == *own || name.same_as.contains(own) || would_do(&name.name, index)
+    };
+    let table: Vec<Vec<bool>> =
+        told.names.iter().map(|name| (0..hidden.len()).map(|index| stands(name, index)).collect()).collect();
+    let right = covers(&table, hidden.len(), &mut vec![false; told.names.len()], 0);
+    let wrong = told.names.iter().zip(&table).filter(|(_, stands)| !stands.contains(&true));
+    Judgement {
+        right,
+        alone: right && told.names.len() == hidden.len(),
+        own: told.names.len() == hidden.len() && told.names.iter().all(|name| hidden.contains(&name.name)),
+        wrong: wrong.map(|(name, _)| name.name.clone()).collect(),
+        whole_truth: told.verdict == Verdict::Explained,
+    }
+}
+
+/// Whether the hidden things from `index` on can each have a name that is not
+/// taken.
+fn covers(table: &[Vec<bool>], hidden: usize, taken: &mut Vec<bool>, index: usize) -> bool {
+    if index == hidden {
+        return true;
+    }
+    (0..table.len()).any(|name| {
+        if taken[name] || !table[name][index] {
+            return false;
+        }
+        taken[name] = true;
+        let rest = covers(table, hidden, taken, index + 1);
+        taken[name] = false;
+        rest
+    })
+}
+
+/// How many numbers of the names that are the hidden things' own are within
+/// their 95 % interval, and how many have one.
+pub fn numbers_within(told: &Told, hidden: &[(String, Vec<(String, f64)>)]) -> (usize, usize) {
+    let mut found = (0, 0);
+    for (name, truths) in hidden {
+        let Some(named) = told.names.iter().find(|named| named.name == *name) else { continue };
+        for (number, value, std) in &named.parameters {
+            let truth = truths.iter().find(|(truth, _)| truth == number);
+            if let (Some((_, truth)), Some(std)) = (truth, std) {
+                found.0 += usize::from((value - truth).abs() <= WITHIN * std);
+                found.1 += 1;
+            }
+        }
+    }
+    found
+}
+
+/// The same of the joints' compliances.
+pub fn joints_within(told: &Told, truths: &[f64]) -> (usize, usize) {
+    let known = told.joints.iter().zip(truths).filter_map(|((value, std), truth)| Some((value - truth, (*std)?)));
+    known.fold((0, 0), |(within, all), (off, std)| (within + usize::from(off.abs() <= WITHIN * std), all + 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(verdict: Verdict, names: &[(&str, &[&str])]) -> Told {
+        let name = |(name, same_as): &(&str, &[&str])| Name {
+            name: name.to_string(),
+            same_as: same_as.iter().map(ToString::to_string).collect(),
+            parameters: vec![("h".into(), 1.0, Some(0.1)), ("free".into(), 1.0, None)],
+        };
+        Told { verdict, names: names.iter().map(name).collect(), joints: vec![(2.0, Some(0.1)), (3.0, None)] }
+    }
+
+    fn judged(names: &[(&str, &[&str])], hidden: &[&str]) -> Judgement {
+        let hidden: Vec<String> = hidden.iter().map(ToString::to_string).collect();
+        judge(&told(Verdict::Explained, names), &hidden, |name, index| name == "twin" && hidden[index] == "a")
+    }
+
+    #[test]
+    fn names_and_aliases_are_told_from_wrong_ones() {
+        let own = judged(&[("a", &[])], &["a"]);
+        assert!(own.right && own.alone && own.own && own.wrong.is_empty() && own.whole_truth);
+        for alias in [judged(&[("b", &["a"])], &["a"]), judged(&[("twin", &[])], &["a"])] {
+            assert!(alias.right && alias.alone && !alias.own && alias.wrong.is_empty());
+        }
+        let more = judged(&[("a", &[]), ("c", &[])], &["a"]);
+        assert!(more.right && !more.alone && more.wrong == ["c"]);
+        let wrong = judged(&[("c", &[])], &["a"]);
+        assert!(!wrong.right && wrong.wrong == ["c"]);
+        assert!(!judged(&[], &["a"]).right && judged(&[], &[]).alone);
+    }
+
+    #[test]
+    fn one_name_does_not_stand_for_two() {
+        assert!(!judged(&[("a", &["b"])], &["a", "b"]).right);
+        // The first name could be either; the second only the first.
+        let both = judged(&[("a", &["b"]), ("c", &["a"])], &["a", "b"]);
+        assert!(both.right && both.alone && !both.own);
+    }
+
+    #[test]
+    fn intervals_count_where_there_is_one() {
+        let told = told(Verdict::Explained, &[("a", &[])]);
+        let truth = |value: f64| [("a".to_string(), vec![("h".to_string(), value), ("free".to_string(), 1.0)])];
+        assert_eq!(numbers_within(&told, &truth(1.19)), (1, 1));
+        assert_eq!(numbers_within(&told, &truth(1.2)), (0, 1));
+        assert_eq!(numbers_within(&told, &[("b".to_string(), Vec::new())]), (0, 0));
+        assert_eq!((joints_within(&told, &[2.1, 9.0]), joints_within(&told, &[2.3, 3.0])), ((1, 1), (0, 1)));
+    }
+}

@@ -1,0 +1,13 @@
+//! Simulated campaigns by the hundred, each with something hidden that is large
+//! enough to matter or with nothing, traced, and judged by what is hidden.
+
+pub mod alias;
+pub mod case;
+pub mod draw;
+pub mod interval;
+pub mod run;
+pub mod table;
+pub mod visible;
+
+pub use case::{Case, Expected, Group, Ready, groups};
+pub use run::{Record, run};

@@ -1,0 +1,121 @@
+//! Things that robots and rigs do and no catalogue of effects has: tracing
+//! must not give them another's name as the whole truth.
+
+/// Something outside the catalogue. Joints and links are counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outside {
+    /// Grease and seals: a spring and a dashpot side by side, in line with the
+    /// gear. Readings are taken before it has arrived, so they depend on how
+    /// long a load has been on.
+    ViscousJoint {
+        /// The joint.
+        joint: usize,
+        /// What it comes to in the end (rad/Nm).
+        compliance: f64,
+        /// Time constant (s).
+        constant: f64,
+    },
+    /// A hose package that runs from the hall to the end of a link: a stretched
+    /// spring beside the arm, which shares the load with it. It is not in
+    /// series with anything, so it is no compliance of an element.
+    Cable {
+        /// The link whose frame it is tied to.
+        link: usize,
+        /// The other end, in the base frame (m).
+        anchor: [f64; 3],
+        /// (N/m)
+        stiffness: f64,
+        /// Its length (m) without force; it hangs loose where it is shorter.
+        length: f64,
+    },
+    /// One link grows as the arm warms up, along itself, wherever that points.
+    LinkGrowth {
+        /// The link: the straight piece of this row of the DH table.
+        link: usize,
+        /// Strain per kelvin of the hall.
+        per_kelvin: f64,
+    },
+    /// The robot stands on a mat that hardens: the tilt per moment `m` is
+    /// `compliance / sqrt(1 + (m / knee)^2)`.
+    SoftFoundation {
+        /// Unloaded (rad/Nm).
+        compliance: f64,
+        /// (Nm)
+        knee: f64,
+    },
+    /// A gear beside a rod: the joint's compliance times
+    /// `1 + cos cos(q) + sin sin(q)` with the angle `q` of another joint.
+    CrossDependence {
+        /// The joint.
+        joint: usize,
+        /// The other one.
+        of: usize,
+        /// Of the cosine.
+        cos: f64,
+        /// Of the sine.
+        sin: f64,
+    },
+    /// A flange whose pin is loose in a slot: it goes half the gap along x of
+    /// the flange frame, to the side of the force.
+    LooseFlange {
+        /// From one side to the other (m).
+        gap: f64,
+        /// The force that closes most of it (N).
+        knee: f64,
+    },
+    /// The marker slips in its clamp at one moment, and stays there.
+    MarkerSlip {
+        /// In the tool frame (m).
+        shift: [f64; 3],
+        /// When, as a share of the campaign's duration.
+        when: f64,
+    },
+    /// Grease and belts soften with warmth: the joint's compliance times
+    /// `1 + per_kelvin (T - T at the beginning)`.
+    WarmingJoint {
+        /// The joint.
+        joint: usize,
+        /// (1/K)
+        per_kelvin: f64,
+    },
+}
+
+impl Outside {
+    /// A name of its own.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::ViscousJoint { .. } => "viscous_joint",
+            Self::Cable { .. } => "cable",
+            Self::LinkGrowth { .. } => "link_growth",
+            Self::SoftFoundation { .. } => "soft_foundation",
+            Self::CrossDependence { .. } => "cross_dependence",
+            Self::LooseFlange { .. } => "loose_flange",
+            Self::MarkerSlip { .. } => "marker_slip",
+            Self::WarmingJoint { .. } => "warming_joint",
+        }
+    }
+
+    /// Where it is.
+    pub fn place(&self) -> String {
+        match self {
+            Self::ViscousJoint { joint, .. } | Self::WarmingJoint { joint, .. } => format!("joint {joint}"),
+            Self::CrossDependence { joint, of, .. } => format!("joint {joint} by {of}"),
+            Self::Cable { link, .. } | Self::LinkGrowth { link, .. } => format!("link {link}"),
+            Self::SoftFoundation { .. } => "base".into(),
+            Self::LooseFlange { .. } => "tool".into(),
+            Self::MarkerSlip { .. } => "rig".into(),
+        }
+    }
+
+    /// The numbers it is proportional to.
+    pub(super) fn sizes(&mut self) -> Vec<&mut f64> {
+        match self {
+            Self::ViscousJoint { compliance, .. } | Self::SoftFoundation { compliance, .. } => vec![compliance],
+            Self::Cable { stiffness, .. } => vec![stiffness],
+            Self::LinkGrowth { per_kelvin, .. } | Self::WarmingJoint { per_kelvin, .. } => vec![per_kelvin],
+            Self::CrossDependence { cos, sin, .. } => vec![cos, sin],
+            Self::LooseFlange { gap, .. } => vec![gap],
+            Self::MarkerSlip { shift, .. } => shift.iter_mut().collect(),
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! What lies between the arm and the file: foundation, tracker, hall and load
+//! cell, with their faults.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::Arm;
+use super::frame::{exp, log};
+use super::hidden::{Follows, Hidden, Mount};
+use super::outside::Outside;
+
+/// The temperature in the hall at the beginning (C).
+const MORNING: f64 = 21.0;
+
+/// By how much it warms up (K), and with which time constant (s).
+const WARMS: (f64, f64) = (4.0, 7200.0);
+
+/// How long the gates of the hall take to open and close again (s).
+const SWING: f64 = 5400.0;
+
+/// The hall, the rig in it, and what is wrong with it.
+pub(super) struct Rig<'a> {
+    arm: &'a Arm,
+    hidden: &'a [Hidden],
+    /// When the last reading is taken (s).
+    end: f64,
+    /// Amplitude of the hall's temperature about its rise (K).
+    swing: f64,
+}
+
+/// The arm at one moment: a point of it, and how it has moved.
+pub(super) struct Stand<'a> {
+    /// When (s).
+    pub time: f64,
+    /// Joint coordinates.
+    pub q: &'a [f64],
+    /// The TCP (m) and the tool's axes without a load, in the base frame.
+    pub tcp: Vector3<f64>,
+    pub tool: Matrix3<f64>,
+    /// What the load has done: displacement (m) and rotation vector (rad).
+    pub displacement: Vector3<f64>,
+    pub rotation: Vector3<f64>,
+}
+
+impl<'a> Rig<'a> {
+    pub fn new(arm: &'a Arm, hidden: &'a [Hidden], end: f64, swing: f64) -> Self {
+        Self { arm, hidden, end, swing }
+    }
+
+    /// The temperature in the hall (C): it warms up over a morning.
+    pub fn temperature(&self, time: f64) -> f64 {
+        let (rise, constant) = WARMS;
+        MORNING - rise * (-time / constant).exp_m1() + self.swing * (std::f64::consts::TAU * time / SWING).sin()
+    }
+
+    /// How much warmer it is than at the beginning (K).
+    pub fn warmer(&self, time: f64) -> f64 {
+        self.temperature(time) - self.temperature(0.0)
+    }
+
+    /// The displacement and the rotation between two readings, as they are read
+    /// but for noise.
+    pub fn between(&self, unloaded: &Stand<'_>, loaded: &Stand<'_>) -> ([f64; 3], [f64; 3]) {
+        let (from, to) = (self.stands(unloaded), self.stands(loaded));
+        let turn = self.tracker();
+        ((turn * (to.0 - from.0)).into(), (turn * log(&(to.1 * from.1.transpose()))).into())
+    }
+
+    /// The turn from the base frame into the measuring frame as it stands.
+    fn tracker(&self) -> Matrix3<f64> {
+        let turns = self.hidden.iter().map(|hidden| match hidden {
+            Hidden::TrackerMisalignment(turn) => exp(&Vector3::from(*turn)),
+            _ => Matrix3::identity(),
+        });
+        turns.fold(Matrix3::identity(), |all, turn| turn * all)
+    }
+
+    /// Where the marker is, seen from where the unloaded TCP was when the robot
+    /// was new, and how the tool has turned since.
+    fn stands(&self, stand: &Stand<'_>) -> (Vector3<f64>, Matrix3<f64>) {
+        let mut point = stand.tcp + stand.displacement;
+        let mut turned = exp(&stand.rotation);
+        for hidden in self.hidden {
+            match hidden {
+                Hidden::BaseSlip { shift, turn, when } if stand.time > when * self.end => {
+                    let turn = exp(&Vector3::from(*turn));
+                    point = turn * point + Vector3::from(*shift);
+                    turned = turn * turned;
+                }
+                Hidden::ThermalDrift { rate, follows } => {
+                    point += Vector3::from(*rate) * self.drift(*follows, stand.time)
+                }
+                Hidden::Outside(Outside::MarkerSlip { shift, when }) if stand.time > when * self.end => {
+                    point += stand.tool * Vector3::from(*shift);
+                }
+                Hidden::Outside(Outside::LinkGrowth { link, per_kelvin }) => {
+                    let grown = self.arm.stretched(*link, per_kelvin * self.warmer(stand.time));
+                    point += Vector3::from(grown.tcp(stand.q)) - Vector3::from(self.arm.tcp(stand.q));
+                }
+                _ => {}
+            }
+        }
+        (point - stand.tcp, turned)
+    }
+
+    fn drift(&self, follows: Follows, time: f64) -> f64 {
+        match follows {
+            Follows::Time => time / 3600.0,
+            Follows::Temperature => self.warmer(time),
+            Follows::Settling(constant) => -(-time / constant).exp_m1(),
+        }
+    }
+
+    /// What the load cell says of a wrench, in the base frame, on an arm whose
+    /// tool has these axes.
+    pub fn cell(&self, wrench: &[f64; 6], tool: &Matrix3<f64>) -> [f64; 6] {
+        let mut force = Vector3::from_column_slice(&wrench[..3]);
+        let mut moment = Vector3::from_column_slice(&wrench[3..]);
+        for hidden in self.hidden {
+            let (Hidden::LoadCellMisalignment { mount, .. }
+            | Hidden::LoadCellBias { mount, .. }
+            | Hidden::LoadCellScale { mount, .. }) = hidden
+            else {
+                continue;
+            };
+            let axes = match mount {
+                Mount::Ground => Matrix3::identity(),
+                Mount::Tool => *tool,
+            };
+            (force, moment) = (axes.tr_mul(&force), axes.tr_mul(&moment));
+            match hidden {
+                Hidden::LoadCellMisalignment { turn, .. } => {
+                    let turn = exp(&Vector3::from(*turn));
+                    (force, moment) = (turn.tr_mul(&force), turn.tr_mul(&moment));
+                }
+                Hidden::LoadCellBias { force: bias, .. } => force -= Vector3::from(*bias),
+                Hidden::LoadCellScale { scale, .. } => {
+                    let by = Vector3::from(*scale).add_scalar(1.0);
+                    (force, moment) = (force.component_div(&by), moment.component_div(&by));
+                }
+                _ => unreachable!("only what is wrong with the cell comes here"),
+            }
+            (force, moment) = (axes * force, axes * moment);
+        }
+        [force.x, force.y, force.z, moment.x, moment.y, moment.z]
+    }
+}
+
+/// What creep adds to a displacement or rotation: every step that was made of
+/// it, grown by a share a decade since.
+pub(super) struct Creep {
+    share: f64,
+    onset: f64,
+    steps: Vec<(f64, Vector3<f64>)>,
+    last: Vector3<f64>,
+}
+
+impl Creep {
+    /// The creep of an arm that stands unloaded, if it creeps.
+    pub fn new(hidden: &[Hidden]) -> Option<Self> {
+        hidden.iter().find_map(|hidden| match *hidden {
+            Hidden::Creep { share, onset } => Some(Self { share, onset, steps: Vec::new(), last: Vector3::zeros() }),
+            _ => None,
+        })
+    }
+
+    /// What it adds at a time to a displacement that began at another, when the
+    /// load changed last.
+    pub fn adds(&mut self, displacement: &Vector3<f64>, since: f64, time: f64) -> Vector3<f64> {
+        self.steps.push((since, displacement - self.last));
+        self.last = *displacement;
+        let grown =
+            |&(since, step): &(f64, Vector3<f64>)| step * (self.share * (1.0 + (time - since) / self.onset).log10());
+        self.steps.iter().map(grown).sum()
+    }
+}
