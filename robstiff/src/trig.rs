@@ -72,12 +72,8 @@ pub(crate) fn sin_cos<F: Float>(angle: F) -> (F, F) {
     within_domain::<F, F, FUSED>(angle)
 }
 
-/// Sines and cosines of several angles, `(sin, cos)` each, in vectors.
-#[inline(always)]
-pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K]) -> [(F, F); K] {
-    if K > F::Vector::LANES { in_vectors::<F, F::Wider, K>(angles) } else { in_vectors::<F, F::Vector, K>(angles) }
-}
-
+/// Sines and cosines of several angles, `(sin, cos)` each.
+///
 /// Whole vectors of angles, the last one filled up with the last angle: a rest
 /// that goes alone costs as much as a vector.
 ///
@@ -85,16 +81,16 @@ pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K]) -> [(F, F); 
 /// and results stay in registers: numbers stored one by one and loaded as a
 /// vector would have to wait for the cache.
 #[inline(always)]
-fn in_vectors<F: Float, V: Vector<F>, const K: usize>(angles: [F; K]) -> [(F, F); K] {
+pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K]) -> [(F, F); K] {
     let mut out = [(F::ZERO, F::ZERO); K];
     let mut within = !cfg!(feature = "platform-trig");
-    for first in (0..K).step_by(V::LANES) {
-        within = within && V::gather(&angles, first).is_within_domain();
+    for first in (0..K).step_by(F::Vector::LANES) {
+        within = within && F::Vector::gather(&angles, first).is_within_domain();
     }
     if within {
-        for first in (0..K).step_by(V::LANES) {
-            let (sin, cos) = within_domain::<F, V, FUSED>(V::gather(&angles, first));
-            V::scatter(sin, cos, &mut out, first);
+        for first in (0..K).step_by(F::Vector::LANES) {
+            let (sin, cos) = within_domain::<F, F::Vector, FUSED>(F::Vector::gather(&angles, first));
+            F::Vector::scatter(sin, cos, &mut out, first);
         }
     } else {
         let copies = angles;

@@ -14,8 +14,6 @@ pub(crate) const FUSED: bool =
 pub(crate) trait Float: Abreast<Self> + Neg<Output = Self> {
     /// A vector of the target.
     type Vector: Vector<Self>;
-    /// The widest vector of the target, for more angles than go into the other.
-    type Wider: Vector<Self>;
     /// 0.
     const ZERO: Self;
     /// 1.
@@ -47,7 +45,7 @@ pub(crate) trait Float: Abreast<Self> + Neg<Output = Self> {
 
 macro_rules! float {
     (
-        $float:ident, $vector:path, $wider:path, $platform:path,
+        $float:ident, $vector:path, $platform:path,
         shift: $shift:expr, domain: $domain:expr, bound: $bound:expr,
         pi_over_2: [$($part:expr),*],
         sin: [$($sin:expr),*],
@@ -55,7 +53,6 @@ macro_rules! float {
     ) => {
         impl Float for $float {
             type Vector = $vector;
-            type Wider = $wider;
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const HALF: Self = 0.5;
@@ -113,7 +110,7 @@ fn polynomial<F: Float, V: Abreast<F>, const FUSED: bool, const N: usize>(coeffi
 // f64: 33 bits of pi/2, whose products with 20 bits of k are exact, and the
 // rest. Error of the polynomials 2^-58 of the sine, 2^-64 of the cosine.
 float! {
-    f64, target::F64, target::WiderF64, libm::sincos,
+    f64, target::F64, libm::sincos,
     shift: 6_755_399_441_055_744.0, domain: 1e6, bound: 1.8e-16,
     pi_over_2: [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11],
     sin: [
@@ -129,7 +126,7 @@ float! {
 // f32: twice 11 bits of pi/2, exact with 11 bits of k, and the rest. Error of
 // the polynomials 2^-28 of the sine, 2^-33 of the cosine.
 float! {
-    f32, target::F32, target::WiderF32, libm::sincosf,
+    f32, target::F32, libm::sincosf,
     shift: 12_582_912.0, domain: 3000.0, bound: 9.4e-8,
     pi_over_2: [1.570_312_5, 4.837_513e-4, 7.549_79e-8],
     sin: [-0.166_666_55, 0.008_332_191, -0.000_195_185_99],
