@@ -2,8 +2,8 @@
 //!
 //! The platform's `sin` takes one angle, and takes most of the time of a
 //! compliance. Here every angle goes the same way, without a branch or a
-//! table, so that the compiler puts the angles of a pose, or of several poses,
-//! into the lanes of one vector:
+//! table, so that the angles of a pose, or of several poses, go into the lanes
+//! of one vector ([`Abreast`]):
 //!
 //! 1. `k`, the multiple of pi/2 nearest to the angle, by adding and
 //!    subtracting a number so large that only whole ones fit ([`Float::SHIFT`]);
@@ -11,7 +11,8 @@
 //!    the first ones so short that `k` times them is exact, so that only the
 //!    last subtraction rounds;
 //! 3. `sin r = r + r z S(z)` and `cos r = 1 + z (z C(z) - 1/2)` with `z = r^2`
-//!    and the best polynomials of their length;
+//!    and the best polynomials of their length, in steps that wait for each
+//!    other as little as possible: a single pose waits more than it computes;
 //! 4. the last two bits of `k` exchange the two and set their signs.
 //!
 //! Both parts of the answer are within [`Float::BOUND`] of the truth for
@@ -22,37 +23,34 @@
 //!
 //! Gain: `benches/README.md`. The feature `platform-trig` takes all this out.
 
-use core::hint::black_box;
-
+mod abreast;
 mod float;
 #[cfg(all(test, feature = "std"))]
 mod tests;
 
-pub(crate) use float::{FUSED, Float, mul_add};
+use abreast::{Abreast, Vector};
+pub(crate) use float::{FUSED, Float};
 
-/// Sine and cosine of an angle within the domain.
+/// `a * b + c`, rounded once if `FUSED`.
+#[inline(always)]
+pub(crate) fn mul_add<F: Float, const FUSED: bool>(a: F, b: F, c: F) -> F {
+    abreast::mul_add::<F, F, FUSED>(a, b, c)
+}
+
+/// Sines and cosines of angles within the domain.
 ///
 /// `FUSED`: multiplies and adds in one instruction, which the target must have.
 #[inline(always)]
-pub(crate) fn within_domain<F: Float, const FUSED: bool>(x: F) -> (F, F) {
-    let (r, shifted) = reduce::<F, FUSED>(x);
-    of_reduced::<F, FUSED>(r, shifted)
-}
-
-/// Steps 1 and 2: `r`, and `k` in the last bits of a large number.
-#[inline(always)]
-fn reduce<F: Float, const FUSED: bool>(x: F) -> (F, F) {
-    let shifted = mul_add::<F, FUSED>(x, F::TWO_OVER_PI, F::SHIFT);
-    (F::reduce::<FUSED>(x, shifted - F::SHIFT), shifted)
-}
-
-/// Steps 3 and 4.
-#[inline(always)]
-fn of_reduced<F: Float, const FUSED: bool>(r: F, shifted: F) -> (F, F) {
+pub(crate) fn within_domain<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> (V, V) {
+    let mul_add = abreast::mul_add::<F, V, FUSED>;
+    let shifted = mul_add(x, V::splat(F::TWO_OVER_PI), V::splat(F::SHIFT));
+    let r = F::reduce::<V, FUSED>(x, shifted - V::splat(F::SHIFT));
     let z = r * r;
-    let sin = mul_add::<F, FUSED>(r * z, F::sin_tail::<FUSED>(z), r);
-    let cos = mul_add::<F, FUSED>(z, mul_add::<F, FUSED>(z, F::cos_tail::<FUSED>(z), -F::HALF), F::ONE);
-    F::turn_quarters(shifted, sin, cos)
+    let z2 = z * z;
+    let sin = mul_add(r * z, F::sin_tail::<V, FUSED>(z, z2), r);
+    let most = mul_add(z, V::splat(-F::HALF), V::splat(F::ONE));
+    let cos = mul_add(z2, F::cos_tail::<V, FUSED>(z, z2), most);
+    V::turn_quarters(shifted, sin, cos)
 }
 
 /// Whether all angles are within the domain; false for a NaN.
@@ -71,56 +69,32 @@ pub(crate) fn sin_cos<F: Float>(angle: F) -> (F, F) {
     if cfg!(feature = "platform-trig") || !angle.is_within_domain() {
         return angle.platform_sin_cos();
     }
-    within_domain::<F, FUSED>(angle)
+    within_domain::<F, F, FUSED>(angle)
 }
 
 /// Sines and cosines of several angles, `(sin, cos)` each.
 ///
-/// The angles fill whole vectors: a rest that goes alone costs as much as a
-/// vector. Whatever the rest of the vector holds, it is no angle out of the
-/// domain.
+/// Whole vectors of angles, the last one filled up with the last angle: a rest
+/// that goes alone costs as much as a vector.
+///
+/// Nothing here has its address taken on the way that is usual, so that angles
+/// and results stay in registers: numbers stored one by one and loaded as a
+/// vector would have to wait for the cache.
 #[inline(always)]
 pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K]) -> [(F, F); K] {
-    if K > 1 && F::WIDTH > 1 {
-        match K.next_multiple_of(F::WIDTH) {
-            2 => return padded::<F, K, 2>(angles),
-            4 => return padded::<F, K, 4>(angles),
-            6 => return padded::<F, K, 6>(angles),
-            8 => return padded::<F, K, 8>(angles),
-            10 | 12 => return padded::<F, K, 12>(angles),
-            14 | 16 => return padded::<F, K, 16>(angles),
-            _ => {}
+    let mut out = [(F::ZERO, F::ZERO); K];
+    let mut within = !cfg!(feature = "platform-trig");
+    for first in (0..K).step_by(F::Vector::LANES) {
+        within = within && F::Vector::gather(&angles, first).is_within_domain();
+    }
+    if within {
+        for first in (0..K).step_by(F::Vector::LANES) {
+            let (sin, cos) = within_domain::<F, F::Vector, FUSED>(F::Vector::gather(&angles, first));
+            F::Vector::scatter(sin, cos, &mut out, first);
         }
-    }
-    angles.map(sin_cos)
-}
-
-#[inline(always)]
-fn padded<F: Float, const K: usize, const P: usize>(angles: [F; K]) -> [(F, F); K] {
-    if cfg!(feature = "platform-trig") || !all_within_domain(&angles) {
-        return one_by_one(&angles);
-    }
-    let mut reduced = [[F::ZERO; P]; 2];
-    for i in 0..P {
-        (reduced[0][i], reduced[1][i]) = reduce::<F, FUSED>(angles[if i < K { i } else { K - 1 }]);
-    }
-    let [sines, cosines] = side_by_side(&reduced);
-    core::array::from_fn(|i| (sines[i], cosines[i]))
-}
-
-/// Whole vectors of angles, `[sines, cosines]`.
-///
-/// A loop whose length the compiler does not know, because it unrolls what it
-/// knows, and then finds half of the vectors only. Not inlined, for all robots
-/// with about as many joints.
-#[inline(never)]
-fn side_by_side<F: Float, const P: usize>([reduced, shifted]: &[[F; P]; 2]) -> [[F; P]; 2] {
-    let mut out = [[F::ZERO; P]; 2];
-    let [sines, cosines] = &mut out;
-    // The length in whole vectors: no rest that goes alone.
-    let n = black_box(P / F::WIDTH).min(P / F::WIDTH) * F::WIDTH;
-    for i in 0..n {
-        (sines[i], cosines[i]) = of_reduced::<F, FUSED>(reduced[i], shifted[i]);
+    } else {
+        let copies = angles;
+        out.copy_from_slice(&one_by_one(&copies));
     }
     out
 }

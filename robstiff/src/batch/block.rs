@@ -67,7 +67,7 @@ fn turn<T: Float, const N: usize, const FUSED: bool>(
             return false;
         }
         for pose in 0..BLOCK {
-            (sines[joint][pose], cosines[joint][pose]) = trig::within_domain::<T, FUSED>(values[joint][pose]);
+            (sines[joint][pose], cosines[joint][pose]) = trig::within_domain::<T, T, FUSED>(values[joint][pose]);
         }
     }
     true

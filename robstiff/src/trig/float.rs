@@ -1,6 +1,8 @@
 //! What differs between `f32` and `f64`: constants, parts of pi/2, polynomials.
 
-use core::ops::{Add, Mul, Neg, Sub};
+use core::ops::Neg;
+
+use super::abreast::{Abreast, Vector, mul_add, target};
 
 /// Whether the target multiplies and adds in one instruction. Without it
 /// `mul_add` would be a call of a slow function. It is not in `core`, so there
@@ -8,15 +10,10 @@ use core::ops::{Add, Mul, Neg, Sub};
 pub(crate) const FUSED: bool =
     cfg!(all(feature = "std", any(target_feature = "fma", all(target_arch = "aarch64", target_feature = "neon"))));
 
-/// The size of a vector that the compiler will use; AVX-512 gets two of them.
-const VECTOR_BYTES: usize = if cfg!(target_feature = "avx") { 32 } else { 16 };
-
 /// A floating point number that [`sin_cos`](super::sin_cos) knows.
-pub(crate) trait Float:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
-{
-    /// How many go into a vector of the target.
-    const WIDTH: usize = VECTOR_BYTES / size_of::<Self>();
+pub(crate) trait Float: Abreast<Self> + Neg<Output = Self> {
+    /// A vector of the target.
+    type Vector: Vector<Self>;
     /// 0.
     const ZERO: Self;
     /// 1.
@@ -33,45 +30,29 @@ pub(crate) trait Float:
     #[cfg_attr(not(all(test, feature = "std")), expect(dead_code, reason = "what the tests hold the functions to"))]
     const BOUND: f64;
 
-    /// `self * a + b`, rounded once.
-    fn fused(self, a: Self, b: Self) -> Self;
-
     /// `x - k pi/2`.
-    fn reduce<const FUSED: bool>(x: Self, k: Self) -> Self;
+    fn reduce<V: Abreast<Self>, const FUSED: bool>(x: V, k: V) -> V;
 
-    /// `S` in `sin r = r + r z S(z)`.
-    fn sin_tail<const FUSED: bool>(z: Self) -> Self;
+    /// `S` in `sin r = r + r z S(z)`, from `z` and its square.
+    fn sin_tail<V: Abreast<Self>, const FUSED: bool>(z: V, z2: V) -> V;
 
-    /// `C` in `cos r = 1 - z/2 + z^2 C(z)`.
-    fn cos_tail<const FUSED: bool>(z: Self) -> Self;
-
-    /// Sine and cosine of as many quarter turns more as the last bits of
-    /// `shifted` say: the last bit exchanges the two, the one before is the
-    /// sine's sign, and the cosine's is that of a quarter turn more.
-    fn turn_quarters(shifted: Self, sin: Self, cos: Self) -> (Self, Self);
-
-    /// False for a NaN.
-    fn is_within_domain(self) -> bool;
+    /// `C` in `cos r = 1 - z/2 + z^2 C(z)`, from `z` and its square.
+    fn cos_tail<V: Abreast<Self>, const FUSED: bool>(z: V, z2: V) -> V;
 
     /// The platform's or libm's function.
     fn platform_sin_cos(self) -> (Self, Self);
 }
 
-/// `a * b + c`, rounded once if `FUSED`.
-#[inline(always)]
-pub(crate) fn mul_add<F: Float, const FUSED: bool>(a: F, b: F, c: F) -> F {
-    if FUSED { a.fused(b, c) } else { a * b + c }
-}
-
 macro_rules! float {
     (
-        $float:ident, $bits:ident, $signed:ident, $fma:path, $platform:path,
+        $float:ident, $vector:path, $platform:path,
         shift: $shift:expr, domain: $domain:expr, bound: $bound:expr,
         pi_over_2: [$($part:expr),*],
         sin: [$($sin:expr),*],
         cos: [$($cos:expr),*],
     ) => {
         impl Float for $float {
+            type Vector = $vector;
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const HALF: Self = 0.5;
@@ -81,43 +62,19 @@ macro_rules! float {
             const BOUND: f64 = $bound;
 
             #[inline(always)]
-            fn fused(self, a: Self, b: Self) -> Self {
-                #[cfg(feature = "std")]
-                return self.mul_add(a, b);
-                #[cfg(not(feature = "std"))]
-                return $fma(self, a, b);
-            }
-
-            #[inline(always)]
-            fn reduce<const FUSED: bool>(x: Self, k: Self) -> Self {
-                $(let x = mul_add::<Self, FUSED>(-k, $part, x);)*
+            fn reduce<V: Abreast<Self>, const FUSED: bool>(x: V, k: V) -> V {
+                $(let x = mul_add::<Self, V, FUSED>(k, V::splat(-$part), x);)*
                 x
             }
 
             #[inline(always)]
-            fn sin_tail<const FUSED: bool>(z: Self) -> Self {
-                horner::<Self, FUSED, _>([$($sin),*], z)
+            fn sin_tail<V: Abreast<Self>, const FUSED: bool>(z: V, z2: V) -> V {
+                polynomial::<Self, V, FUSED, _>([$($sin),*], z, z2)
             }
 
             #[inline(always)]
-            fn cos_tail<const FUSED: bool>(z: Self) -> Self {
-                horner::<Self, FUSED, _>([$($cos),*], z)
-            }
-
-            #[inline(always)]
-            fn turn_quarters(shifted: Self, sin: Self, cos: Self) -> (Self, Self) {
-                const TOP: $bits = 1 << ($bits::BITS - 1);
-                let (last, before) = (shifted.to_bits() << ($bits::BITS - 1), shifted.to_bits() << ($bits::BITS - 2));
-                let (sin, cos) = (sin.to_bits(), cos.to_bits());
-                // Masks and not a choice: without SSE4.1 there is no other way.
-                let exchange = (sin ^ cos) & ((last as $signed) >> ($bits::BITS - 1)) as $bits;
-                let (sin_sign, cos_sign) = (before & TOP, (last ^ before) & TOP);
-                (Self::from_bits(sin ^ exchange ^ sin_sign), Self::from_bits(cos ^ exchange ^ cos_sign))
-            }
-
-            #[inline(always)]
-            fn is_within_domain(self) -> bool {
-                self.abs() <= Self::DOMAIN
+            fn cos_tail<V: Abreast<Self>, const FUSED: bool>(z: V, z2: V) -> V {
+                polynomial::<Self, V, FUSED, _>([$($cos),*], z, z2)
             }
 
             #[cold]
@@ -131,12 +88,19 @@ macro_rules! float {
     };
 }
 
-/// A polynomial, the lowest coefficient first.
+/// A polynomial, the lowest coefficient first: pairs of terms, which do not
+/// wait for each other, and then one step in `z^2` for each pair.
 #[inline(always)]
-fn horner<F: Float, const FUSED: bool, const N: usize>(coefficients: [F; N], z: F) -> F {
-    let mut value = coefficients[N - 1];
-    for i in (0..N - 1).rev() {
-        value = mul_add::<F, FUSED>(value, z, coefficients[i]);
+fn polynomial<F: Float, V: Abreast<F>, const FUSED: bool, const N: usize>(coefficients: [F; N], z: V, z2: V) -> V {
+    let pair = |i: usize| {
+        let low = V::splat(coefficients[i]);
+        if i + 1 < N { mul_add::<F, V, FUSED>(z, V::splat(coefficients[i + 1]), low) } else { low }
+    };
+    let mut i = (N - 1) / 2 * 2;
+    let mut value = pair(i);
+    while i > 0 {
+        i -= 2;
+        value = mul_add::<F, V, FUSED>(value, z2, pair(i));
     }
     value
 }
@@ -146,8 +110,8 @@ fn horner<F: Float, const FUSED: bool, const N: usize>(coefficients: [F; N], z: 
 // f64: 33 bits of pi/2, whose products with 20 bits of k are exact, and the
 // rest. Error of the polynomials 2^-58 of the sine, 2^-64 of the cosine.
 float! {
-    f64, u64, i64, libm::fma, libm::sincos,
-    shift: 6_755_399_441_055_744.0, domain: 1e6, bound: 1.6e-16,
+    f64, target::F64, libm::sincos,
+    shift: 6_755_399_441_055_744.0, domain: 1e6, bound: 1.8e-16,
     pi_over_2: [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11],
     sin: [
         -0.166_666_666_666_666_32, 0.008_333_333_333_322_472, -0.000_198_412_698_298_356_47,
@@ -162,8 +126,8 @@ float! {
 // f32: twice 11 bits of pi/2, exact with 11 bits of k, and the rest. Error of
 // the polynomials 2^-28 of the sine, 2^-33 of the cosine.
 float! {
-    f32, u32, i32, libm::fmaf, libm::sincosf,
-    shift: 12_582_912.0, domain: 3000.0, bound: 9e-8,
+    f32, target::F32, libm::sincosf,
+    shift: 12_582_912.0, domain: 3000.0, bound: 9.4e-8,
     pi_over_2: [1.570_312_5, 4.837_513e-4, 7.549_79e-8],
     sin: [-0.166_666_55, 0.008_332_191, -0.000_195_185_99],
     cos: [0.041_666_646, -0.001_388_731_4, 2.443_315_8e-5],

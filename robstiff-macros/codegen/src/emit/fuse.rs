@@ -10,6 +10,12 @@ use super::names::Names;
 use crate::function::Function;
 use crate::graph::{Id, Op};
 
+/// Cycles until the result of a product, fused or not, a sum, a root or
+/// reciprocal is known; much the same on all current machines.
+const PRODUCT: usize = 4;
+const SUM: usize = 3;
+const ROOT: usize = 13;
+
 /// For every node, the operand that is a product and is computed together
 /// with it.
 pub(super) struct Fusion {
@@ -24,8 +30,9 @@ impl Fusion {
         Self { product: vec![None; uses.len()], uses }
     }
 
-    /// Lets every sum take up one product: of two, the one with fewer other
-    /// users, because it is more likely to have no line left.
+    /// Lets every sum take up one product: of two, the one that makes the sum
+    /// known earlier; if both do, the one with fewer other users, because it is
+    /// more likely to have no line left.
     pub fn of(function: &Function, names: &Names) -> Self {
         let graph = function.graph();
         let (nodes, uses) = (graph.nodes(), function.uses());
@@ -42,13 +49,32 @@ impl Fusion {
             Op::Mul(a, b) => uses[id] == 1 || (is_written_briefly(a) && is_written_briefly(b)),
             _ => false,
         };
-        let product = nodes.iter().map(|node| match node.op {
-            Op::Add(a, b) | Op::Sub(a, b) if node.constant.is_none() && a != b => {
-                [b, a].into_iter().filter(|&id| is_product(id)).min_by_key(|&id| uses[id])
-            }
-            _ => None,
-        });
-        let mut fusion = Self { product: product.collect(), uses: vec![0; nodes.len()] };
+        let mut ready: Vec<usize> = Vec::with_capacity(nodes.len());
+        let mut product = Vec::with_capacity(nodes.len());
+        for node in nodes.iter() {
+            let last = |operands: &mut dyn Iterator<Item = Id>| operands.map(|id| ready[id]).max().unwrap_or(0);
+            let fused = |taken: Id, other: Id| last(&mut nodes[taken].op.operands().chain([other])) + PRODUCT;
+            let taken = match node.op {
+                Op::Add(a, b) | Op::Sub(a, b) if node.constant.is_none() && a != b => {
+                    let candidates = [(b, a), (a, b)].into_iter().filter(|&(taken, _)| is_product(taken));
+                    candidates
+                        .map(|(taken, other)| (fused(taken, other), uses[taken], taken))
+                        .min_by_key(|c| (c.0, c.1))
+                }
+                _ => None,
+            };
+            let done = match (taken, node.op) {
+                _ if node.constant.is_some() => 0,
+                (Some((done, ..)), _) => done,
+                (None, Op::Mul(..)) => last(&mut node.op.operands()) + PRODUCT,
+                (None, Op::Add(..) | Op::Sub(..)) => last(&mut node.op.operands()) + SUM,
+                (None, Op::Sqrt(_) | Op::Recip(_)) => last(&mut node.op.operands()) + ROOT,
+                (None, _) => last(&mut node.op.operands()),
+            };
+            product.push(taken.map(|(.., taken)| taken));
+            ready.push(done);
+        }
+        let mut fusion = Self { product, uses: vec![0; nodes.len()] };
         for &output in function.outputs() {
             fusion.uses[output] += 1;
         }
