@@ -23,7 +23,9 @@
 //! - [`batch`]: slices of poses, several abreast; [`Lanes`] and [`Dual`]: vectors
 //!   and derivatives through the same generated code;
 //! - `campaign`, `identify`, `trace` (feature `identify`): measured data, the
-//!   joint compliances that fit it, and the effects it shows to be missing.
+//!   joint compliances that fit it, and the effects it shows to be missing;
+//! - `simulate` (likewise): campaigns on an arm that hides something, to try a
+//!   measurement before making it.
 //!
 //! Without default features the crate is `no_std` and allocates nothing.
 #![no_std]
@@ -50,6 +52,8 @@ pub mod real;
 pub mod robot;
 #[cfg(all(test, feature = "generic"))]
 mod samples;
+#[cfg(feature = "identify")]
+pub mod simulate;
 #[cfg(feature = "identify")]
 pub mod trace;
 mod trig;

@@ -11,6 +11,7 @@ mod output;
 mod predict;
 mod report;
 mod show;
+mod simulate;
 mod text;
 mod trace;
 
@@ -35,6 +36,7 @@ enum Command {
     Trace(trace::Arguments),
     Predict(predict::Arguments),
     Emit(emit::Arguments),
+    Simulate(simulate::Arguments),
 }
 
 impl Command {
@@ -45,6 +47,7 @@ impl Command {
             Self::Trace(arguments) => trace::run(arguments),
             Self::Predict(arguments) => predict::run(arguments),
             Self::Emit(arguments) => emit::run(arguments),
+            Self::Simulate(arguments) => simulate::run(arguments),
         }
     }
 }
