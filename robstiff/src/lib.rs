@@ -24,8 +24,8 @@
 //!   and derivatives through the same generated code;
 //! - `campaign`, `identify`, `trace` (feature `identify`): measured data, the
 //!   joint compliances that fit it, and the effects it shows to be missing;
-//! - `simulate` (likewise): campaigns on an arm that hides something, to try a
-//!   measurement before making it.
+//! - `plan`, `simulate` (likewise): what to measure next, and campaigns on an arm
+//!   that hides something, to try a measurement before making it.
 //!
 //! Without default features the crate is `no_std` and allocates nothing.
 #![no_std]
@@ -48,6 +48,8 @@ pub mod generic;
 #[cfg(feature = "identify")]
 pub mod identify;
 mod lanes;
+#[cfg(feature = "identify")]
+pub mod plan;
 pub mod real;
 pub mod robot;
 #[cfg(all(test, feature = "generic"))]
