@@ -8,6 +8,7 @@ mod identify;
 mod input;
 mod json;
 mod output;
+mod plan;
 mod predict;
 mod report;
 mod show;
@@ -36,6 +37,7 @@ enum Command {
     Trace(trace::Arguments),
     Predict(predict::Arguments),
     Emit(emit::Arguments),
+    Plan(plan::Arguments),
     Simulate(simulate::Arguments),
 }
 
@@ -47,6 +49,7 @@ impl Command {
             Self::Trace(arguments) => trace::run(arguments),
             Self::Predict(arguments) => predict::run(arguments),
             Self::Emit(arguments) => emit::run(arguments),
+            Self::Plan(arguments) => plan::run(arguments),
             Self::Simulate(arguments) => simulate::run(arguments),
         }
     }
