@@ -10,7 +10,7 @@ use crate::angle::snapped;
 use crate::description::{Description, Joint, Link, Part, Placement};
 use crate::diagnostic::Diagnostics;
 use crate::document::{Document, Map, Node};
-use crate::effect::{Convention, JointKind};
+use crate::effect::{Convention, Effect, JointKind};
 use crate::quantity::Dimension;
 use std::fmt;
 use std::io;
@@ -70,6 +70,13 @@ impl Description {
         let document = Document::parse(file, text)?;
         let description = description(&document.root());
         document.finish(description)
+    }
+
+    /// Reads a list of effects in another document, written as descriptions
+    /// write it, against the joints of this robot; what is wrong is reported
+    /// there.
+    pub fn read_effects(&self, node: &Node<'_>) -> Option<Vec<Effect>> {
+        effects::effects(node, Some(&self.joints), Some(self.joints.len()))
     }
 
     /// A free name for a robot's type that is like `text`, e.g. a file's name.

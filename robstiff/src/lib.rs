@@ -23,7 +23,9 @@
 //! - [`batch`]: slices of poses, several abreast; [`Lanes`] and [`Dual`]: vectors
 //!   and derivatives through the same generated code;
 //! - `campaign`, `identify`, `trace` (feature `identify`): measured data, the
-//!   joint compliances that fit it, and the effects it shows to be missing.
+//!   joint compliances that fit it, and the effects it shows to be missing;
+//! - `plan`, `simulate` (likewise): what to measure next, and campaigns on an arm
+//!   that hides something, to try a measurement before making it.
 //!
 //! Without default features the crate is `no_std` and allocates nothing.
 #![no_std]
@@ -46,11 +48,15 @@ pub mod generic;
 #[cfg(feature = "identify")]
 pub mod identify;
 mod lanes;
+#[cfg(feature = "identify")]
+pub mod plan;
 pub mod real;
 pub mod robot;
 #[cfg(all(test, feature = "generic"))]
 mod samples;
 mod state;
+#[cfg(feature = "identify")]
+pub mod simulate;
 #[cfg(feature = "identify")]
 pub mod trace;
 mod trig;

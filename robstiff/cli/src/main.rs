@@ -8,9 +8,11 @@ mod identify;
 mod input;
 mod json;
 mod output;
+mod plan;
 mod predict;
 mod report;
 mod show;
+mod simulate;
 mod text;
 mod trace;
 
@@ -35,6 +37,8 @@ enum Command {
     Trace(trace::Arguments),
     Predict(predict::Arguments),
     Emit(emit::Arguments),
+    Plan(plan::Arguments),
+    Simulate(simulate::Arguments),
 }
 
 impl Command {
@@ -45,6 +49,8 @@ impl Command {
             Self::Trace(arguments) => trace::run(arguments),
             Self::Predict(arguments) => predict::run(arguments),
             Self::Emit(arguments) => emit::run(arguments),
+            Self::Plan(arguments) => plan::run(arguments),
+            Self::Simulate(arguments) => simulate::run(arguments),
         }
     }
 }

@@ -6,7 +6,7 @@
 
 mod clamped;
 mod displacements;
-mod read;
+pub(crate) mod read;
 mod table;
 #[cfg(test)]
 mod tests;

@@ -78,7 +78,7 @@ impl Campaign {
 
 /// The text of a file; a byte order mark, as spreadsheets write it, is no part
 /// of it.
-fn text_of(path: &Path) -> Result<String, ReadError> {
+pub fn text_of(path: &Path) -> Result<String, ReadError> {
     let text = std::fs::read_to_string(path).map_err(|error| ReadError::Io { path: path.to_owned(), error })?;
     Ok(text.strip_prefix('\u{feff}').map(ToOwned::to_owned).unwrap_or(text))
 }
@@ -135,7 +135,7 @@ fn file(map: &Map<'_>, field: &str, example: &str, folder: &Path) -> Option<Stri
 }
 
 /// `{frame: base, at: tcp}`; left out, that is what it is.
-fn place(map: &Map<'_>, field: &str) -> Option<(Frame, [f64; 3])> {
+pub fn place(map: &Map<'_>, field: &str) -> Option<(Frame, [f64; 3])> {
     let Some(node) = map.get(field) else { return Some((Frame::Base, [0.0; 3])) };
     let place = node.map(&["frame", "at"])?;
     let frame = match place.get("frame") {
@@ -162,7 +162,7 @@ fn noise(map: &Map<'_>) -> Option<Noise> {
 }
 
 #[allow(clippy::option_option, reason = "the outer one is a problem, the inner one a field left out")]
-fn holdout(map: &Map<'_>) -> Option<Option<Holdout>> {
+pub fn holdout(map: &Map<'_>) -> Option<Option<Holdout>> {
     let Some(node) = map.get("holdout") else { return Some(None) };
     let holdout = node.map(&["fraction", "seed"])?;
     let fraction = holdout.require("fraction", "fraction: 0.25").and_then(|node| {

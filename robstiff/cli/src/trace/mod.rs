@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use robstiff::plan::next;
 use robstiff::trace::{Options, trace};
 
 use crate::failure::Failure;
@@ -38,6 +39,9 @@ pub struct Arguments {
     alpha: f64,
 }
 
+/// How many measurements are proposed; `robstiff plan` proposes more.
+const PROPOSALS: usize = 3;
+
 fn level(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(level) if level > 0.0 && level < 1.0 => Ok(level),
@@ -59,6 +63,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let campaign = input::campaign(&arguments.campaign)?;
     let spinner = spinner();
     let traced = trace(&campaign, &options, &|stage| spinner.set_message(stage.to_owned()));
+    spinner.set_message("choosing what to measure next");
+    // A trace stands without proposals, where none can be made.
+    let traced = traced.map(|mut traced| {
+        traced.next = next(&campaign, &traced, PROPOSALS).unwrap_or_default();
+        traced
+    });
     spinner.finish_and_clear();
     let traced = traced?;
 
@@ -77,7 +87,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Shows on a terminal that something goes on, and hides elsewhere.
-fn spinner() -> ProgressBar {
+pub fn spinner() -> ProgressBar {
     let spinner = ProgressBar::new_spinner();
     let style = ProgressStyle::with_template("{spinner} {msg} ({elapsed})").expect("the template is one");
     spinner.set_style(style);

@@ -1,0 +1,117 @@
+//! `robstiff plan`: what to measure next.
+
+mod document;
+mod page;
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use robstiff::plan::{self, Options, plan};
+use robstiff::trace::{self, trace};
+use robstiff_robots::quantity::{self, Dimension};
+
+use crate::failure::Failure;
+use crate::output::{self, Files};
+use crate::trace::spinner;
+use crate::{input, json};
+
+/// Proposes what to measure next: the poses and loads that best tell apart what a campaign could not
+///
+/// The campaign is traced first. Where no pose can tell two effects apart, it
+/// says so, and which sensor would.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The campaign
+    #[arg(value_name = "CAMPAIGN.yaml")]
+    campaign: PathBuf,
+    /// How many poses to propose
+    #[arg(long, value_name = "COUNT", default_value_t = Options::default().poses as u16, value_parser = clap::value_parser!(u16).range(1..=200))]
+    poses: u16,
+    /// The folder for `plan.json` and `plan.csv`
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write the plan as JSON to FILE
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Write the poses and loads as a table, with a campaign's columns, to FILE
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// What the proposals are to be best at
+    #[arg(long, value_enum, default_value_t = Criterion::Compound)]
+    criterion: Criterion,
+    /// The greatest force, e.g. "800 N"; the campaign's where left out
+    #[arg(long, value_name = "FORCE", value_parser = size(Dimension::Force))]
+    force: Option<f64>,
+    /// The greatest moment, e.g. "100 Nm"; the campaign's where left out
+    #[arg(long, value_name = "MOMENT", value_parser = size(Dimension::Torque))]
+    moment: Option<f64>,
+    /// The least height of the tool above the base's origin, e.g. "300 mm"; the campaign's lowest where left out
+    #[arg(long, value_name = "HEIGHT", allow_hyphen_values = true, value_parser = height)]
+    floor: Option<f64>,
+    /// Seed of the search and of the bootstrap of the trace; one seed gives one result
+    #[arg(long, default_value_t = Options::default().seed)]
+    seed: u64,
+}
+
+/// What a plan is to be best at.
+#[derive(Clone, Copy, ValueEnum)]
+enum Criterion {
+    /// Telling rivals apart first, and all numbers
+    Compound,
+    /// Telling rivals apart (T-optimal)
+    T,
+    /// The effects' numbers (Ds-optimal)
+    Ds,
+    /// All numbers (D-optimal)
+    D,
+}
+
+fn size(dimension: Dimension) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |text| {
+        let value = quantity::parse(text, dimension).map_err(|error| error.to_string())?;
+        if value > 0.0 { Ok(value) } else { Err(format!("{} above zero is expected here", dimension.name())) }
+    }
+}
+
+fn height(text: &str) -> Result<f64, String> {
+    quantity::parse(text, Dimension::Length).map_err(|error| error.to_string())
+}
+
+/// Plans.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let campaign = input::campaign(&arguments.campaign)?;
+    let spinner = spinner();
+    let tracing = trace::Options { seed: arguments.seed, ..trace::Options::default() };
+    let traced = trace(&campaign, &tracing, &|stage| spinner.set_message(stage.to_owned()));
+    let options = Options {
+        poses: arguments.poses.into(),
+        criterion: match arguments.criterion {
+            Criterion::Compound => plan::Criterion::Compound,
+            Criterion::T => plan::Criterion::T,
+            Criterion::Ds => plan::Criterion::Ds,
+            Criterion::D => plan::Criterion::D,
+        },
+        seed: arguments.seed,
+        force: arguments.force,
+        moment: arguments.moment,
+        floor: arguments.floor,
+        ..Options::default()
+    };
+    spinner.set_message("choosing poses");
+    let planned = traced.and_then(|traced| Ok((plan(&campaign, &traced, &options)?, traced)));
+    spinner.finish_and_clear();
+    let (planned, traced) = planned?;
+
+    let mut files = Files::default();
+    files.protect_campaign(&campaign);
+    let document = json::document(&document::document(&planned, &traced, &campaign));
+    let table = document::table(&planned, &campaign);
+    for path in arguments.json.iter().cloned().chain(arguments.out.iter().map(|out| out.join("plan.json"))) {
+        files.add(path, document.clone());
+    }
+    for path in arguments.csv.iter().cloned().chain(arguments.out.iter().map(|out| out.join("plan.csv"))) {
+        files.add(path, table.clone());
+    }
+    let said = files.write()?;
+    output::print(page::page(&planned, &traced, &campaign) + &said)
+}

@@ -1,0 +1,90 @@
+//! `robstiff simulate`: a campaign on a robot that hides something.
+
+use std::path::PathBuf;
+
+use robstiff::simulate::{Scenario, Simulated, simulate};
+use serde_json::json;
+
+use crate::failure::Failure;
+use crate::output::{self, Files};
+use crate::text::count;
+use crate::{input, json};
+
+/// Measures a scenario on a simulated robot, to try a plan before making it
+///
+/// DIR gets `campaign.yaml`, `loads.csv` and `robot.yaml` (the robot as
+/// declared) for the other commands, and `truth.yaml`: the robot as it was
+/// simulated, with what was hidden from them.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The robot's description, or the name of a robot in the catalogue
+    #[arg(value_name = "ROBOT.yaml")]
+    robot: PathBuf,
+    /// What is measured, how well, and what is hidden (robots/measured/README.md)
+    #[arg(value_name = "SCENARIO.yaml")]
+    scenario: PathBuf,
+    /// The folder for the campaign
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Replace a campaign that is there already
+    #[arg(long)]
+    force: bool,
+    /// Write what was done as JSON to FILE
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// Measures.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (robot, _) = input::robot(&arguments.robot)?;
+    let scenario = Scenario::read(&arguments.scenario, &robot)?;
+    let simulated = simulate(&robot, &scenario)?;
+    let texts = simulated.files();
+    let mut files = Files::default();
+    files.protect(&arguments.robot);
+    files.protect(&arguments.scenario);
+    for (name, text) in [
+        ("campaign.yaml", texts.campaign),
+        ("loads.csv", texts.loads),
+        ("robot.yaml", texts.robot),
+        ("truth.yaml", texts.truth),
+    ] {
+        let path = arguments.out.join(name);
+        if path.exists() && !arguments.force {
+            return Err(Failure::new(format!(
+                "{} is there already, and would be overwritten; choose another folder, or say --force",
+                path.display()
+            )));
+        }
+        files.add(path, text);
+    }
+    if let Some(path) = &arguments.json {
+        files.add(path, json::document(&document(&simulated)));
+    }
+    let said = files.write()?;
+    output::print(page(&simulated) + &said)
+}
+
+fn page(simulated: &Simulated) -> String {
+    let (rows, poses) = (simulated.data.rows.len(), simulated.data.poses.len());
+    let hidden: Vec<String> = simulated.scenario.hidden.iter().map(|effect| format!("  {effect}\n")).collect();
+    let hidden = if hidden.is_empty() { "  nothing\n".to_owned() } else { hidden.concat() };
+    format!(
+        "{}: {} at {}, seed {}\nhidden:\n{hidden}",
+        simulated.declared.name,
+        count(rows, "row"),
+        count(poses, "pose"),
+        simulated.scenario.seed
+    )
+}
+
+fn document(simulated: &Simulated) -> serde_json::Value {
+    json!({
+        "robot": simulated.declared.name,
+        "rows": simulated.data.rows.len(),
+        "poses": simulated.data.poses.len(),
+        "seed": simulated.scenario.seed,
+        "hidden": simulated.scenario.hidden.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "compliances": simulated.truth.joints.iter().map(|joint| json::number(joint.compliance())).collect::<Vec<_>>(),
+    })
+}

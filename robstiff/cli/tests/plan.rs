@@ -1,0 +1,99 @@
+//! `plan`: what to measure next.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::{fail, folder, inside, json, keys, measured, names, run, succeed};
+use serde_json::Value;
+
+fn campaign() -> String {
+    inside(&measured(), "campaign.yaml")
+}
+
+#[test]
+fn proposes_poses_for_the_fanuc() {
+    let folder = folder("plan");
+    let (out, copy, table) = (inside(&folder, "out"), inside(&folder, "copy.json"), inside(&folder, "next.csv"));
+    let page = succeed(&["plan", &campaign(), "--out", &out, "--json", &copy, "--csv", &table]);
+    assert!(page.contains("10 poses to measure next, after 43"), "{page}");
+    assert!(page.contains("transverse_compliance@joint 3 / link_compliance@link 3"), "{page}");
+    // Translations of the tool and of the base are one, wherever the arm stands.
+    assert!(page.contains("No pose and load can tell tool_compliance@tool from base_compliance@base"), "{page}");
+    assert!(page.contains("joints without limits in the description stay in the campaign's range"), "{page}");
+    assert_eq!(names(Path::new(&out)), ["plan.csv", "plan.json"]);
+    let plan = json(&copy);
+    assert_eq!(plan, json(&inside(Path::new(&out), "plan.json")));
+    assert_eq!(keys(&plan), ["robot", "poses", "verdict", "proposals", "pairs", "numbers", "assumptions"]);
+    let proposals = plan["proposals"].as_array().unwrap();
+    assert_eq!(proposals.len(), 10);
+    assert_eq!(keys(&proposals[0]), ["q_deg", "force_N", "moment_Nm", "separates", "separation", "std"]);
+    let number = |value: &Value| value.as_f64().unwrap();
+    let pair = &plan["pairs"][0];
+    assert!(number(&pair["separation_after"]) > 1.5 * number(&pair["separation_now"]), "{pair}");
+    assert_eq!((&pair["outlook"], &plan["pairs"][1]["outlook"]), (&"separable".into(), &"alias".into()));
+    assert!(plan["numbers"].as_array().unwrap().iter().all(|known| number(&known["factor"]) >= 1.0));
+
+    // The campaign's own columns, within its range, at its greatest force.
+    let table = fs::read_to_string(table).unwrap();
+    assert!(table.starts_with("pose,visit,q1 [deg],q2 [deg],"), "{table}");
+    let loads = fs::read_to_string(measured().join("loads.csv")).unwrap();
+    let numbers = |text: &str, skipped: usize| -> Vec<Vec<f64>> {
+        let row = |line: &str| line.split(',').skip(skipped).map(|field| field.parse().unwrap()).collect();
+        text.lines().skip(1).map(row).collect()
+    };
+    let (next, past) = (numbers(&table, 2), numbers(&loads, 1));
+    let force = |row: &Vec<f64>| row[6..9].iter().map(|value| value * value).sum::<f64>().sqrt();
+    let greatest = past.iter().map(force).fold(0.0, f64::max);
+    for row in &next {
+        assert!((force(row) - greatest).abs() < 0.01);
+        for joint in 0..6 {
+            let within = |q: f64| past.iter().any(|row| row[joint].to_degrees() <= q + 1e-5);
+            let beyond = |q: f64| past.iter().any(|row| row[joint].to_degrees() >= q - 1e-5);
+            assert!(within(row[joint]) && beyond(row[joint]), "{row:?}");
+        }
+    }
+}
+
+#[test]
+fn a_trace_proposes_the_first_of_them() {
+    let folder = folder("plan-trace");
+    let out = inside(&folder, "out");
+    let page = succeed(&["trace", &campaign(), "--out", &out]);
+    let trace = json(&inside(Path::new(&out), "trace.json"));
+    let next = trace["next"].as_array().unwrap();
+    assert_eq!(next.len(), 3);
+    assert_eq!(keys(&next[0]), ["q_deg", "force_N", "separates"]);
+    assert_eq!(next[0]["q_deg"].as_array().unwrap().len(), 6);
+    assert_eq!(next[0]["separates"][0], trace["effects"][0]["kind"].as_str().unwrap().to_owned() + "@joint 3");
+    assert!(page.contains("To tell transverse_compliance@joint 3 from link_compliance@link 3: q = ("), "{page}");
+    let report = fs::read_to_string(folder.join("out/report.html")).unwrap();
+    assert!(report.contains("What to measure next"));
+}
+
+#[test]
+fn one_seed_gives_one_plan_and_options_count() {
+    let page = |more: &[&str]| succeed(&[&["plan", &campaign(), "--poses", "3"], more].concat());
+    assert_eq!(page(&[]), page(&[]));
+    let asked = page(&["--force", "0.5 kN", "--floor", "900 mm", "--criterion", "d"]);
+    assert!(asked.contains("forces of 500 N, as asked for") && asked.contains("at least 900 mm high"), "{asked}");
+    let turned = page(&["--moment", "80 Nm"]);
+    assert!(turned.contains("moments of 80 Nm, as asked for") && turned.contains("Mx [Nm]"), "{turned}");
+    for wrong in [["--poses", "0"], ["--force", "-3 N"], ["--force", "3 m"], ["--criterion", "e"], ["--seed", "x"]] {
+        assert_eq!(run(&["plan", &campaign(), wrong[0], wrong[1]]).code, 2, "{wrong:?}");
+    }
+}
+
+#[test]
+fn what_cannot_be_planned_is_explained() {
+    let folder = folder("plan-wrong");
+    let message = fail(1, &["plan", &campaign(), "--floor", "9 m", "--json", &inside(&folder, "plan.json")]);
+    assert!(message.contains("only 0 poses of 10"), "{message}");
+    let loads = inside(&folder, "loads.csv");
+    let copied = common::copy(&folder);
+    assert!(fail(1, &["plan", &copied, "--csv", &loads]).contains("would be overwritten"));
+    fs::write(&loads, "pose\n1\n").unwrap();
+    assert!(fail(1, &["plan", &copied]).contains("loads.csv:1"));
+    assert_eq!(names(&folder), ["campaign.yaml", "loads.csv", "robot.yaml"]);
+}

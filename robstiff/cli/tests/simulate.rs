@@ -1,0 +1,69 @@
+//! `simulate`: a campaign from a scenario, which the other commands read.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::{fail, folder, inside, json, keys, names, run, succeed};
+
+const SCENARIO: &str = "\
+seed: 3
+poses: {count: 30, floor: 100 mm, column: 600 mm}
+visits: 2
+ramp: [0.5, 1]
+force: {bounds: [500 N, 1300 N]}
+noise: {displacement: 8 um}
+hidden: {effects: [{kind: transverse_compliance, at: joint 3, value: 8e-7 rad/Nm}]}
+";
+
+fn scenario(folder: &Path, text: &str) -> String {
+    fs::write(folder.join("try.yaml"), text).unwrap();
+    inside(folder, "try.yaml")
+}
+
+#[test]
+fn what_is_simulated_is_traced() {
+    let folder = folder("simulate");
+    let (scenario, out) = (scenario(&folder, SCENARIO), inside(&folder, "out"));
+    let told = inside(&folder, "told.json");
+    let page = succeed(&["simulate", "kuka-kr270-r2700", &scenario, "--out", &out, "--json", &told]);
+    assert!(page.contains("120 rows at 30 poses") && page.contains("  transverse_compliance@joint 3"), "{page}");
+    assert_eq!(names(Path::new(&out)), ["campaign.yaml", "loads.csv", "robot.yaml", "truth.yaml"]);
+    let told = json(&told);
+    assert_eq!(keys(&told), ["robot", "rows", "poses", "seed", "hidden", "compliances"]);
+    assert_eq!((&told["rows"], &told["hidden"][0]), (&120.into(), &"transverse_compliance@joint 3".into()));
+    let campaign = format!("{out}/campaign.yaml");
+    let traced = inside(&folder, "traced");
+    let page = succeed(&["trace", &campaign, "--out", &traced, "--draws", "499"]);
+    assert!(page.contains("transverse_compliance@joint 3"), "{page}");
+    // The truth predicts it to the noise of a displacement, the difference of two readings.
+    let predicted = inside(&folder, "predicted.json");
+    succeed(&["predict", &format!("{out}/truth.yaml"), &campaign, "--json", &predicted]);
+    let rms = json(&predicted)["rms_um"].as_f64().unwrap();
+    assert!((rms / (8.0 * 2_f64.sqrt()) - 1.0).abs() < 0.15, "{rms}");
+}
+
+#[test]
+fn one_seed_gives_one_campaign_and_none_is_overwritten_unasked() {
+    let folder = folder("simulate-twice");
+    let (scenario, out) = (scenario(&folder, SCENARIO), inside(&folder, "out"));
+    let arguments = ["simulate", "kuka-kr270-r2700", &scenario, "--out", &out];
+    succeed(&arguments);
+    let loads = fs::read_to_string(folder.join("out/loads.csv")).unwrap();
+    assert!(fail(1, &arguments).contains("would be overwritten; choose another folder, or say --force"));
+    succeed(&[&arguments[..], &["--force"]].concat());
+    assert_eq!(fs::read_to_string(folder.join("out/loads.csv")).unwrap(), loads);
+}
+
+#[test]
+fn mistakes_leave_nothing_behind() {
+    let folder = folder("simulate-wrong");
+    let scenario = scenario(&folder, &SCENARIO.replace("8 um", "8 N").replace("seed: 3", "sede: 3"));
+    let out = inside(&folder, "out");
+    let message = fail(1, &["simulate", "kuka-kr270-r2700", &scenario, "--out", &out]);
+    assert!(message.contains("try.yaml:1:1") && message.contains("did you mean `seed`?"), "{message}");
+    assert!(message.contains("try.yaml:6:23") && message.contains("`N` is a force"), "{message}");
+    assert_eq!(run(&["simulate", "kuka-kr270-r2700", &scenario]).code, 2);
+    assert_eq!(names(&folder), ["try.yaml"]);
+}

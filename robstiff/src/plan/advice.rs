@@ -1,0 +1,103 @@
+//! What tells rivals apart where poses do not: further sensors and other loads,
+//! each tried on the proposed visits.
+
+use std::format;
+use std::string::String;
+use std::vec::Vec;
+
+use super::TOLD_APART;
+use super::adapter::{Adapter, ENCODER_NOISE, LEVELS, REACH, ROTATION_NOISE};
+use super::criterion::Judge;
+use super::regressors::{Regressors, Sensor, Visit};
+use super::rivals::Contest;
+
+/// Something that would tell two rivals apart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Remedy {
+    /// What to do.
+    pub words: String,
+    /// The separation (sigmas) expected of the proposed visits with it; none
+    /// where it is not computed.
+    pub separation: Option<f64>,
+}
+
+/// A sensor that does not bring this factor is not worth its trouble.
+const WORTH_IT: f64 = 1.5;
+
+/// Markers with this share of the best separation do about as well.
+const ABOUT_AS_WELL: f64 = 0.8;
+
+/// What would tell a pair apart, the best first. `without` is the separation
+/// with the visits alone.
+pub fn remedies(
+    adapter: &Adapter<'_>,
+    judge: &Judge,
+    visits: &[Visit],
+    contest: &Contest,
+    pair: usize,
+    without: f64,
+) -> Vec<Remedy> {
+    let separation = |sensor: Sensor| {
+        let gives = adapter.information(visits, Some(sensor)).into_iter().fold(adapter.known(), |sum, one| sum + one);
+        judge.separations(&gives)[pair]
+    };
+    let mut tried: Vec<(f64, Sensor)> = Vec::new();
+    let rotations = (!adapter.reads_rotations()).then_some(Sensor::Rotations);
+    for sensor in rotations.into_iter().chain([Sensor::Encoders, Sensor::Lever, Sensor::Levels]) {
+        tried.push((separation(sensor), sensor));
+    }
+    // Of markers that do about as well, those next to the foot, which is easily
+    // reached.
+    let markers: Vec<f64> = (0..=adapter.joints()).map(|body| separation(Sensor::Markers(body))).collect();
+    let most = markers.iter().copied().fold(0.0, f64::max);
+    tried.extend(
+        markers
+            .into_iter()
+            .enumerate()
+            .find(|(_, sigmas)| *sigmas >= ABOUT_AS_WELL * most)
+            .map(|(body, sigmas)| (sigmas, Sensor::Markers(body))),
+    );
+    tried.retain(|(sigmas, _)| *sigmas >= TOLD_APART && *sigmas >= WORTH_IT * without);
+    tried.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut found: Vec<Remedy> =
+        tried.into_iter().map(|(sigmas, sensor)| Remedy { words: words(sensor), separation: Some(sigmas) }).collect();
+    found.extend(of_kinds(contest).into_iter().map(|words| Remedy { words: String::from(words), separation: None }));
+    found
+}
+
+fn words(sensor: Sensor) -> String {
+    let millimetres = REACH * 1e3;
+    match sensor {
+        Sensor::Rotations => {
+            format!(
+                "readings of the tool's rotation (to {:.0} urad, where the campaign states nothing else)",
+                ROTATION_NOISE * 1e6
+            )
+        }
+        Sensor::Markers(0) => format!("markers on the foot, {millimetres:.0} mm about its origin"),
+        Sensor::Markers(1) => format!("markers on the column (link 1), {millimetres:.0} mm about joint 2"),
+        Sensor::Markers(body) => format!("markers on link {body}, {millimetres:.0} mm about its far end"),
+        Sensor::Encoders => format!("encoders on the output side of the gears (to {:.0} urad)", ENCODER_NOISE * 1e6),
+        Sensor::Lever => {
+            format!("the same forces at a second lever length, {millimetres:.0} mm further out along the tool")
+        }
+        Sensor::Levels => format!(
+            "five load levels, one of them {:.1} % of the greatest, and one with the torque reversed",
+            LEVELS[0] * 100.0
+        ),
+    }
+}
+
+/// What is known of kinds of effects and cannot be computed from a pose and a
+/// load alone.
+fn of_kinds(contest: &Contest) -> Vec<&'static str> {
+    let is = |kinds: &[&str]| contest.names.iter().any(|name| kinds.contains(&name.split('@').next().unwrap_or(name)));
+    let mut found = Vec::new();
+    if is(&["hysteresis"]) {
+        found.push("loading and unloading in steps at every pose");
+    }
+    if is(&["thermal_drift", "creep", "base_slip"]) {
+        found.push("a look at the unloaded arm between loads, and poses in random order");
+    }
+    found
+}

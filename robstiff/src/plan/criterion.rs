@@ -1,0 +1,168 @@
+//! How much is known after some measurements.
+//!
+//! With the information matrix `M = sum X^T V^-1 X` of all numbers (`V` the
+//! covariance of the readings), and `S` the Schur complement that is left of it
+//! for some numbers when the others are fitted:
+//!
+//! - *D*: `log det M` of the model; the volume of its confidence ellipsoid.
+//! - *Ds*: `log det S` of the effects' numbers (of the whole model where there
+//!   are none).
+//! - *T*, for a pair of rivals: what the wrong one leaves of the readings if the
+//!   other, at its size `b`, is the truth and everything is fitted again:
+//!   `b^T S b`, the expected difference in chi-square (Atkinson and Fedorov,
+//!   Biometrika 62, 1975). Of several pairs the harmonic mean counts, which is
+//!   ruled by the least clear one.
+
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::rivals::{Contest, Rivals};
+
+/// What a plan is to be best at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Criterion {
+    /// All numbers.
+    D,
+    /// The effects' numbers.
+    Ds,
+    /// Telling rivals apart.
+    T,
+    /// Telling rivals apart first, and all numbers.
+    Compound,
+}
+
+/// The weight of telling apart in [`Criterion::Compound`].
+const TELLING_APART: f64 = 0.7;
+
+/// Patterns that differ by less than this fraction of their energy over all
+/// poses and loads are one, as in [`crate::trace::alias`].
+const EXACT: f64 = 1e-6;
+
+/// What keeps a factorisation going where numbers are collinear, as a fraction
+/// of their energy; far below [`EXACT`].
+const RIDGE: f64 = 1e-10;
+
+/// What is known, by an information matrix.
+#[derive(Clone, Debug)]
+pub struct Judge {
+    /// One over the size of each number's column, so that no unit rules.
+    scale: DVector<f64>,
+    /// The model: the description's numbers and the effects named.
+    model: Vec<usize>,
+    /// Those of the effects, within the model.
+    effects: Vec<usize>,
+    contests: Vec<Contest>,
+    /// The pairs that the criterion counts.
+    pairs: Vec<usize>,
+    variance: f64,
+}
+
+impl Judge {
+    /// For rivals, with what is known already and the variance of a reading
+    /// (m^2).
+    pub fn new(known: &DMatrix<f64>, rivals: &Rivals, variance: f64) -> Self {
+        let size = |k: usize| if known[(k, k)] > 0.0 { known[(k, k)].sqrt().recip() } else { 1.0 };
+        Self {
+            scale: DVector::from_fn(known.nrows(), |k, _| size(k)),
+            model: rivals.model.clone(),
+            effects: rivals.effects.clone(),
+            contests: rivals.pairs.clone(),
+            pairs: (0..rivals.pairs.len()).collect(),
+            variance,
+        }
+    }
+
+    /// The same with only some pairs counted.
+    pub fn with_pairs(self, pairs: Vec<usize>) -> Self {
+        Self { pairs, ..self }
+    }
+
+    /// The pairs that differ at all in `everything` that could be measured.
+    pub fn separable(&self, everything: &DMatrix<f64>) -> Vec<usize> {
+        let differs = |&k: &usize| self.angle(everything, k).sin().powi(2) > EXACT;
+        (0..self.contests.len()).filter(differs).collect()
+    }
+
+    /// The angle between what two rivals show (rad), with the rest fitted again.
+    pub fn angle(&self, information: &DMatrix<f64>, pair: usize) -> f64 {
+        let contest = &self.contests[pair];
+        let one = |truth: usize| {
+            let whole = self.left(information, contest, truth, &contest.core);
+            let left = self.left(information, contest, truth, contest.without(truth));
+            (left / whole.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+        };
+        one(0).min(one(1)).sqrt().asin()
+    }
+
+    /// The separation of each pair (sigmas): see [`super::Pair::now`].
+    pub fn separations(&self, information: &DMatrix<f64>) -> Vec<f64> {
+        (0..self.contests.len()).map(|k| self.chi_square(information, k).sqrt()).collect()
+    }
+
+    /// The expected difference in chi-square, for the less clear truth.
+    fn chi_square(&self, information: &DMatrix<f64>, pair: usize) -> f64 {
+        let contest = &self.contests[pair];
+        let one = |truth: usize| self.left(information, contest, truth, contest.without(truth));
+        one(0).min(one(1)) / self.variance
+    }
+
+    /// `b^T S b` of the truth's readings, when the numbers `rest` are fitted.
+    fn left(&self, information: &DMatrix<f64>, contest: &Contest, truth: usize, rest: &[usize]) -> f64 {
+        let rival = &contest.rivals[truth];
+        let gram = |i: usize, j: usize| information[(i, j)] * self.scale[i] * self.scale[j];
+        let size: Vec<f64> = rival.columns.iter().zip(&rival.values).map(|(&c, b)| b / self.scale[c]).collect();
+        let along = |i: usize| -> f64 { rival.columns.iter().zip(&size).map(|(&c, b)| gram(i, c) * b).sum() };
+        let energy: f64 = rival.columns.iter().zip(&size).map(|(&c, b)| b * along(c)).sum();
+        let cross = DVector::from_fn(rest.len(), |k, _| along(rest[k]));
+        let Some(factor) = self.of(information, rest).cholesky() else { return 0.0 };
+        (energy - cross.dot(&factor.solve(&cross))).max(0.0)
+    }
+
+    /// The scaled information of some numbers.
+    fn of(&self, information: &DMatrix<f64>, numbers: &[usize]) -> DMatrix<f64> {
+        DMatrix::from_fn(numbers.len(), numbers.len(), |i, j| {
+            let (a, b) = (numbers[i], numbers[j]);
+            let value = information[(a, b)] * self.scale[a] * self.scale[b];
+            if i == j { value * (1.0 + RIDGE) + f64::MIN_POSITIVE } else { value }
+        })
+    }
+
+    /// One standard deviation of each number of the model, from the noise
+    /// alone.
+    pub fn stds(&self, information: &DMatrix<f64>) -> Vec<f64> {
+        let inverse = self.of(information, &self.model).try_inverse();
+        let std = |k: usize| {
+            let variance = inverse.as_ref().map_or(f64::INFINITY, |inverse| inverse[(k, k)] * self.variance);
+            variance.sqrt() * self.scale[self.model[k]]
+        };
+        (0..self.model.len()).map(std).collect()
+    }
+
+    /// `log det` of the scaled information of some numbers, by their count.
+    fn log_det(&self, information: &DMatrix<f64>, numbers: &[usize]) -> f64 {
+        let Some(factor) = self.of(information, numbers).cholesky() else { return f64::NEG_INFINITY };
+        2.0 * factor.l_dirty().diagonal().iter().map(|pivot| pivot.ln()).sum::<f64>()
+    }
+
+    /// The value of what is known; more is better. A criterion that has nothing
+    /// to say (no effects, no rivals) leaves it to D.
+    pub fn value(&self, criterion: Criterion, information: &DMatrix<f64>) -> f64 {
+        let d = || self.log_det(information, &self.model) / self.model.len().max(1) as f64;
+        let t = || {
+            let chi_square = |&k: &usize| self.chi_square(information, k).max(f64::MIN_POSITIVE);
+            let inverse: f64 = self.pairs.iter().map(|k| chi_square(k).recip()).sum();
+            (self.pairs.len() as f64 / inverse).ln()
+        };
+        match criterion {
+            Criterion::Ds if !self.effects.is_empty() => {
+                let nuisance: Vec<usize> = self.model.iter().copied().filter(|k| !self.effects.contains(k)).collect();
+                let left = self.log_det(information, &self.model) - self.log_det(information, &nuisance);
+                left / self.effects.len() as f64
+            }
+            Criterion::T if !self.pairs.is_empty() => t(),
+            Criterion::Compound if !self.pairs.is_empty() => TELLING_APART * t() + (1.0 - TELLING_APART) * d(),
+            _ => d(),
+        }
+    }
+}

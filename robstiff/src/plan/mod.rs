@@ -1,0 +1,265 @@
+//! Planning: which poses and loads to measure next.
+//!
+//! The way of the data: [`rivals`] takes from a trace the effects that the
+//! campaign could not tell apart, each with its size; [`space`] draws poses and
+//! loads that can be measured; [`regressors`] says what each would show, through
+//! the [`adapter`] to the regression that tracing uses; [`criterion`] turns that
+//! into what is known after a set of measurements; [`exchange`] looks for the
+//! best set; [`advice`] says what else would do where no pose does.
+//!
+//! Everything expected is to first order, with the noise that the trace found
+//! and each rival in turn taken for the truth at the size that fits best. The
+//! measurements are visits like the campaign's own, with its sequence of loads
+//! and one unloaded reading for each.
+
+pub mod adapter;
+pub mod advice;
+pub mod criterion;
+pub mod exchange;
+pub mod regressors;
+pub mod rivals;
+pub mod space;
+#[cfg(test)]
+mod tests;
+
+use std::string::String;
+use std::vec::Vec;
+
+use nalgebra::DMatrix;
+
+pub use advice::Remedy;
+pub use criterion::Criterion;
+pub use regressors::{Sensor, Visit};
+
+use self::adapter::Adapter;
+use self::criterion::Judge;
+use self::exchange::{Search, in_order, refine};
+use self::regressors::Regressors;
+use self::rivals::Rivals;
+use self::space::Space;
+use crate::campaign::Campaign;
+use crate::identify::Error;
+use crate::trace::{Proposal, Trace};
+
+/// What to plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// How many poses to propose.
+    pub poses: usize,
+    /// What they are to be best at.
+    pub criterion: Criterion,
+    /// Seed of the candidates and of the starts; one seed gives one plan.
+    pub seed: u64,
+    /// How many poses to choose from; each comes with several loads.
+    pub candidates: usize,
+    /// How many starts of the search.
+    pub starts: usize,
+    /// The greatest force (N); the campaign's where there is none.
+    pub force: Option<f64>,
+    /// The greatest moment (Nm); the campaign's where there is none.
+    pub moment: Option<f64>,
+    /// The least height of the tool centre point in the base frame (m); the
+    /// campaign's lowest where there is none.
+    pub floor: Option<f64>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            poses: 10,
+            criterion: Criterion::Compound,
+            seed: 1,
+            candidates: 150,
+            starts: 3,
+            force: None,
+            moment: None,
+            floor: None,
+        }
+    }
+}
+
+/// What to measure next, and what that is expected to give.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The measurements, the one that gives most first.
+    pub proposals: Vec<Planned>,
+    /// What is to be told apart.
+    pub pairs: Vec<Pair>,
+    /// The numbers of the description and of the effects named.
+    pub numbers: Vec<Number>,
+    /// What was taken for granted, a sentence each.
+    pub assumptions: Vec<String>,
+}
+
+/// A measurement that is proposed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Planned {
+    /// The pose, and the loads of the visit in order (N, Nm) in the base frame,
+    /// acting where the campaign's do.
+    pub visit: Visit,
+    /// The greatest load (N, Nm), in the base frame.
+    pub greatest: [f64; 6],
+    /// The rivals that it separates most, by their index in [`Plan::pairs`].
+    pub separates: Option<usize>,
+    /// The separation of each pair (sigmas) with this and those before it.
+    pub separation: Vec<f64>,
+    /// The standard deviation of each number with this and those before it.
+    pub std: Vec<f64>,
+}
+
+/// Two rivals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pair {
+    /// Their full names.
+    pub names: [String; 2],
+    /// How far the wrong one is off (sigmas): the square root of the expected
+    /// difference in chi-square, for the less clear of the two being the truth.
+    pub now: f64,
+    /// The same with all proposals measured.
+    pub after: f64,
+    /// The expected logarithm of the Bayes factor then, by the Schwarz
+    /// criterion; natural.
+    pub log_bayes: f64,
+    /// The angle between what the two show (rad), with everything else fitted
+    /// again, over every pose and load that could be proposed.
+    pub angle: f64,
+    /// What comes of it.
+    pub outlook: Outlook,
+    /// What would tell them apart beyond more poses, the best first.
+    pub remedies: Vec<Remedy>,
+}
+
+/// Whether two rivals can be told apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outlook {
+    /// The proposals are expected to.
+    Separable,
+    /// It takes about so many poses like the proposed.
+    Slow(usize),
+    /// No pose and load can: they show the same.
+    Alias,
+}
+
+/// One number and how well it is known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Number {
+    /// `joint 3`, or an effect's number.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// Its unit.
+    pub unit: &'static str,
+    /// One standard deviation with the campaign as it is, from the noise alone.
+    pub now: f64,
+    /// The same with all proposals measured.
+    pub after: f64,
+}
+
+/// Rivals closer than this after all proposals are not told apart by them: the
+/// level of [`same_as`](crate::trace::NamedEffect::same_as), a likelihood ratio
+/// of 2.33 standard errors, is met in half the campaigns there.
+pub const TOLD_APART: f64 = 3.0;
+
+/// Plans the measurements after a campaign that was traced.
+///
+/// # Errors
+/// A campaign of another kind; no pose that could be proposed.
+pub fn plan(campaign: &Campaign, trace: &Trace, options: &Options) -> Result<Plan, Error> {
+    let (adapter, rivals) = Adapter::new(campaign, trace)?;
+    let space = Space::new(campaign, options)?;
+    let visits = space.visits();
+    let judge = Judge::new(&adapter.known(), &rivals, adapter.variance());
+    let information: Vec<DMatrix<f64>> = adapter.information(&visits, None);
+    let everything = information.iter().sum::<DMatrix<f64>>() + adapter.known();
+    let open = judge.separable(&everything);
+    let judge = judge.with_pairs(open.clone());
+    let search = Search { judge: &judge, known: &adapter.known(), information: &information, visits: &visits };
+    let chosen = search.best(options.criterion, options.poses, options.starts, options.seed);
+    let chosen: Vec<Visit> = chosen.into_iter().map(|k| visits[k].clone()).collect();
+    let chosen = refine(&judge, &adapter, &space, options.criterion, chosen);
+    let chosen = in_order(&judge, &adapter, options.criterion, chosen);
+    Ok(told(&adapter, &rivals, &judge, &space, &everything, &open, &chosen))
+}
+
+/// The first proposals, as a trace holds them: what separates rivals.
+///
+/// # Errors
+/// As [`plan`].
+pub fn next(campaign: &Campaign, trace: &Trace, count: usize) -> Result<Vec<Proposal>, Error> {
+    let plan = plan(campaign, trace, &Options { poses: count, starts: 1, ..Options::default() })?;
+    let proposal = |planned: &Planned| {
+        let [x, y, z, ..] = planned.greatest;
+        Some(Proposal {
+            q: planned.visit.q.clone(),
+            force: [x, y, z],
+            separates: plan.pairs[planned.separates?].names.clone(),
+        })
+    };
+    Ok(plan.proposals.iter().filter_map(proposal).collect())
+}
+
+/// What is expected of the chosen visits, in their order.
+fn told(
+    adapter: &Adapter<'_>,
+    rivals: &Rivals,
+    judge: &Judge,
+    space: &Space,
+    everything: &DMatrix<f64>,
+    open: &[usize],
+    chosen: &[Visit],
+) -> Plan {
+    let mut sum = adapter.known();
+    let before = judge.separations(&sum);
+    let std_before = judge.stds(&sum);
+    let mut last = before.clone();
+    let mut proposals = Vec::new();
+    for (visit, information) in chosen.iter().zip(adapter.information(chosen, None)) {
+        sum += information;
+        let separation = judge.separations(&sum);
+        // What the harmonic mean of the criterion gains from the pair.
+        let share = |separation: &[f64], k: usize| (separation[k] * separation[k]).max(f64::MIN_POSITIVE).recip();
+        let gain = |&k: &usize| share(&last, k) - share(&separation, k);
+        let separates = open.iter().copied().max_by(|a, b| gain(a).total_cmp(&gain(b)));
+        proposals.push(Planned {
+            visit: visit.clone(),
+            greatest: visit.greatest(),
+            separates,
+            separation: separation.clone(),
+            std: judge.stds(&sum),
+        });
+        last = separation;
+    }
+    let std_after = judge.stds(&sum);
+    let pairs = (0..rivals.pairs.len()).map(|k| {
+        let names = rivals.pairs[k].names.clone();
+        let angle = judge.angle(everything, k);
+        let outlook = if !open.contains(&k) {
+            Outlook::Alias
+        } else if last[k] >= TOLD_APART {
+            Outlook::Separable
+        } else {
+            let gain = (last[k] * last[k] - before[k] * before[k]) / chosen.len().max(1) as f64;
+            let lacking = TOLD_APART * TOLD_APART - before[k] * before[k];
+            Outlook::Slow((lacking / gain.max(f64::MIN_POSITIVE)).ceil().min(1e6) as usize)
+        };
+        let remedies = match outlook {
+            Outlook::Separable => Vec::new(),
+            _ => advice::remedies(adapter, judge, chosen, &rivals.pairs[k], k, last[k]),
+        };
+        let readings = adapter.readings(chosen) as f64;
+        let further = rivals.pairs[k].further_numbers() as f64;
+        let log_bayes = 0.5 * (last[k] * last[k] + further * readings.ln());
+        Pair { names, now: before[k], after: last[k], log_bayes, angle, outlook, remedies }
+    });
+    let pairs = pairs.collect();
+    let numbers = rivals.numbers.iter().zip(std_before.iter().zip(&std_after));
+    let numbers = numbers.map(|(number, (&now, &after))| Number {
+        name: number.name.clone(),
+        value: number.value,
+        unit: number.unit,
+        now,
+        after,
+    });
+    let numbers = numbers.collect();
+    Plan { proposals, pairs, numbers, assumptions: space.assumptions.clone() }
+}

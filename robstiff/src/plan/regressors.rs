@@ -1,0 +1,50 @@
+//! What planning asks of a model.
+
+use std::vec::Vec;
+
+use nalgebra::DMatrix;
+
+/// A load sequence at one pose, with one unloaded reading.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Visit {
+    /// Joint coordinates (rad or m).
+    pub q: Vec<f64>,
+    /// The loads in order: forces (N) and moments (Nm) in the base frame,
+    /// acting where the campaign's do.
+    pub loads: Vec<[f64; 6]>,
+}
+
+impl Visit {
+    /// The load with the greatest force, or moment where there is no force.
+    pub fn greatest(&self) -> [f64; 6] {
+        let size = |load: &[f64; 6]| load.iter().map(|value| value * value).sum::<f64>();
+        self.loads.iter().copied().max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or_default()
+    }
+}
+
+/// What could be measured besides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sensor {
+    /// The rotation of the tool, where it is not read already.
+    Rotations,
+    /// Markers on the body behind so many joints: 0 is the foot.
+    Markers(usize),
+    /// Encoders on the output side of every gear.
+    Encoders,
+    /// The same loads once more, further out along the tool.
+    Lever,
+    /// Load levels from below 3 % of the greatest up, and with the sign
+    /// reversed.
+    Levels,
+}
+
+/// What measurements show of a fixed list of numbers.
+pub trait Regressors {
+    /// The information of the campaign as it is, as that of a visit.
+    fn known(&self) -> DMatrix<f64>;
+
+    /// The information that each visit gives on the numbers: the Gram matrix of
+    /// its whitened columns (those of a unit of each number), to be divided by
+    /// the variance of one displacement reading (m^2).
+    fn information(&self, visits: &[Visit], besides: Option<Sensor>) -> Vec<DMatrix<f64>>;
+}

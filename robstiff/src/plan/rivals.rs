@@ -1,0 +1,131 @@
+//! Who rivals whom: the effects that a trace could not tell apart.
+
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use crate::trace::selection::WITHIN_REACH;
+use crate::trace::{Trace, Verdict};
+
+/// Rivals of one effect beyond these many are not followed: all pairs count,
+/// and the best fitting are the likely ones.
+const MOST: usize = 4;
+
+/// What may be missing at all, family-wise, where nothing was named.
+const SUGGESTIVE: f64 = 0.05;
+
+/// The rivals with their columns, among the numbers that planning looks at.
+#[derive(Clone, Debug)]
+pub struct Rivals {
+    /// The model: the description's numbers and the effects named.
+    pub model: Vec<usize>,
+    /// Those of the effects, within the model.
+    pub effects: Vec<usize>,
+    /// The model's numbers, in its order.
+    pub numbers: Vec<Number>,
+    /// The pairs.
+    pub pairs: Vec<Contest>,
+}
+
+/// A number of the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Number {
+    /// `joint 3`, or an effect's number.
+    pub name: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Its value.
+    pub value: f64,
+}
+
+/// An effect in the running.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rival {
+    /// Its columns.
+    pub columns: Vec<usize>,
+    /// What fits best.
+    pub values: Vec<f64>,
+    /// How many numbers it takes, a knee counting as one.
+    pub parameters: usize,
+}
+
+/// Two effects, one of which is the truth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contest {
+    /// Their full names.
+    pub names: [String; 2],
+    /// What they are.
+    pub rivals: [Rival; 2],
+    /// The columns that both models have.
+    pub core: Vec<usize>,
+    rest: [Vec<usize>; 2],
+}
+
+impl Contest {
+    /// Two effects beside what both models have.
+    pub fn new(names: [String; 2], rivals: [Rival; 2], core: Vec<usize>) -> Self {
+        let beside = |rival: &Rival| core.iter().chain(&rival.columns).copied().collect();
+        let rest = [beside(&rivals[1]), beside(&rivals[0])];
+        Self { names, rivals, core, rest }
+    }
+
+    /// The columns of the wrong model, when rival 0 or 1 is the truth.
+    pub fn without(&self, truth: usize) -> &[usize] {
+        &self.rest[truth]
+    }
+
+    /// How many numbers the second has more than the first.
+    pub fn further_numbers(&self) -> isize {
+        self.rivals[1].parameters as isize - self.rivals[0].parameters as isize
+    }
+}
+
+/// Effects of which one is the truth, by name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Group {
+    /// The one that was named, by its index in the trace.
+    pub named: Option<usize>,
+    /// Those in the running, the named or best fitting first.
+    pub names: Vec<String>,
+}
+
+/// The groups of a trace: each effect named with what it could not be told
+/// from, and where something more is missing, the candidates within reach.
+pub fn groups(trace: &Trace) -> Vec<Group> {
+    let named = trace.effects.iter().enumerate().map(|(k, named)| {
+        let names = core::iter::once(named.effect.to_string()).chain(named.same_as.iter().cloned());
+        Group { named: Some(k), names: names.take(MOST).collect() }
+    });
+    let mut groups: Vec<Group> = named.collect();
+    if matches!(trace.verdict, Verdict::Partial | Verdict::Unexplained) {
+        let names = within_reach(trace);
+        if names.len() > 1 {
+            groups.push(Group { named: None, names });
+        }
+    }
+    groups
+}
+
+/// The candidates that fit about as well as the best, in the last step that has
+/// the effects named as its model.
+fn within_reach(trace: &Trace) -> Vec<String> {
+    let mut named: Vec<String> = trace.effects.iter().map(|named| named.effect.to_string()).collect();
+    named.sort();
+    let of_model = |step: &&crate::trace::Step| {
+        let mut before = step.named.clone();
+        before.sort();
+        before == named
+    };
+    let Some(step) = trace.steps.iter().rfind(of_model) else { return Vec::new() };
+    let in_question = |name: &String| {
+        !trace.effects.iter().any(|named| named.effect.to_string() == *name || named.same_as.contains(name))
+    };
+    let mut candidates: Vec<(f64, String)> = step
+        .candidates
+        .iter()
+        .filter(|tested| tested.p_value <= SUGGESTIVE && in_question(&tested.name))
+        .filter_map(|tested| Some((tested.bic?, tested.name.clone())))
+        .collect();
+    candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let best = candidates.first().map_or(f64::INFINITY, |best| best.0);
+    candidates.into_iter().filter(|(bic, _)| bic - best < WITHIN_REACH).take(MOST).map(|(_, name)| name).collect()
+}

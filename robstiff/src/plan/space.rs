@@ -1,0 +1,229 @@
+//! Poses and loads that can be proposed.
+//!
+//! Poses fill the joints' limits evenly (a Halton sequence, shifted by the
+//! seed). A joint without limits, or with wider ones than anybody wants to visit,
+//! stays where the campaign has been: what was reached once can be reached again.
+//! The tool stays as high above the base's origin and as far from its vertical
+//! as it did in the campaign. Whether the arm hits itself or its surroundings is
+//! not known here.
+
+use std::format;
+use std::string::String;
+use std::vec::Vec;
+
+use nalgebra::{SVector, Vector3};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use robstiff_robots::Description;
+
+use super::Options;
+use super::regressors::Visit;
+use crate::campaign::{Campaign, Data, Displacements};
+use crate::identify::Error;
+use crate::{JointKind, Robot};
+
+/// The bases of the sequence, a joint each.
+const PRIMES: [u32; 8] = [2, 3, 5, 7, 11, 13, 17, 19];
+
+/// Points of the sequence per pose wanted, before the region counts as empty.
+const TRIES: usize = 100;
+
+/// Where a robot may be sent, and how it may be pulled there.
+#[derive(Clone, Debug)]
+pub struct Space {
+    robot: Description,
+    /// The range of each joint (rad or m).
+    pub ranges: Vec<[f64; 2]>,
+    floor: f64,
+    column: f64,
+    /// The load sequences: forces and moments in the base frame (N, Nm).
+    pub loads: Vec<Vec<[f64; 6]>>,
+    /// The poses to choose from.
+    pub poses: Vec<Vec<f64>>,
+    /// What was taken for granted, a sentence each.
+    pub assumptions: Vec<String>,
+}
+
+impl Space {
+    /// The space around a campaign.
+    ///
+    /// # Errors
+    /// A campaign of another kind; no pose in the region.
+    pub fn new(campaign: &Campaign, options: &Options) -> Result<Self, Error> {
+        let Data::Displacement(data) = &campaign.data else {
+            return Err(Error(String::from("this needs a campaign of kind `displacement`")));
+        };
+        let mut assumptions = Vec::new();
+        let ranges = ranges(campaign, data, &mut assumptions);
+        let seen: Vec<Vector3<f64>> = data.rows.iter().map(|row| tool_centre_point(&campaign.robot, &row.q)).collect();
+        let lowest = seen.iter().map(|point| point.z).fold(f64::INFINITY, f64::min);
+        let floor = options.floor.unwrap_or(lowest);
+        let nearest = seen.iter().map(|point| from_vertical(&campaign.robot, point)).fold(f64::INFINITY, f64::min);
+        assumptions.push(format!(
+            "the tool stays at least {:.0} mm high and {:.0} mm from the vertical of the base{}",
+            floor * 1e3,
+            nearest * 1e3,
+            if options.floor.is_none() { ", as in the campaign" } else { "" }
+        ));
+        let loads = loads(data, options, &mut assumptions);
+        let mut space = Self {
+            robot: campaign.robot.clone(),
+            ranges,
+            floor,
+            column: nearest,
+            loads,
+            poses: Vec::new(),
+            assumptions,
+        };
+        space.poses = space.spread(options.candidates.max(options.poses), options.seed);
+        if space.poses.len() < options.poses {
+            return Err(Error(format!(
+                "within these limits and above {:.0} mm there are only {} poses of {} asked for",
+                floor * 1e3,
+                space.poses.len(),
+                options.poses
+            )));
+        }
+        Ok(space)
+    }
+
+    /// Every pose with every load sequence, those of a pose after each other.
+    pub fn visits(&self) -> Vec<Visit> {
+        let with = |q: &Vec<f64>| {
+            let q = q.clone();
+            self.loads.iter().map(move |loads| Visit { q: q.clone(), loads: loads.clone() })
+        };
+        self.poses.iter().flat_map(with).collect()
+    }
+
+    /// Whether a pose is in the region.
+    pub fn reaches(&self, q: &[f64]) -> bool {
+        let point = tool_centre_point(&self.robot, q);
+        // A campaign's own poses are in its region, rounding or not.
+        point.z >= self.floor - 1e-9 && from_vertical(&self.robot, &point) >= self.column - 1e-9
+    }
+
+    /// Poses that fill the region evenly.
+    fn spread(&self, count: usize, seed: u64) -> Vec<Vec<f64>> {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let shift: Vec<f64> = self.ranges.iter().map(|_| random.random::<f64>()).collect();
+        let pose = |index: usize| -> Vec<f64> {
+            let coordinate = |(joint, &[low, high]): (usize, &[f64; 2])| {
+                let share = (radical_inverse(index as u64, PRIMES[joint]) + shift[joint]).fract();
+                low + (high - low) * share
+            };
+            self.ranges.iter().enumerate().map(coordinate).collect()
+        };
+        (1..=TRIES * count).map(pose).filter(|q| self.reaches(q)).take(count).collect()
+    }
+}
+
+/// The digits of a number behind the point, in reverse.
+fn radical_inverse(mut index: u64, base: u32) -> f64 {
+    let (mut value, mut digit) = (0.0, 1.0 / f64::from(base));
+    while index > 0 {
+        value += (index % u64::from(base)) as f64 * digit;
+        index /= u64::from(base);
+        digit /= f64::from(base);
+    }
+    value
+}
+
+fn ranges(campaign: &Campaign, data: &Displacements, assumptions: &mut Vec<String>) -> Vec<[f64; 2]> {
+    let mut without = Vec::new();
+    let range = |(index, joint): (usize, &robstiff_robots::Joint)| {
+        joint.limits.unwrap_or_else(|| {
+            let seen = data.rows.iter().map(|row| row.q[index]);
+            let range = seen.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q), high.max(q)]);
+            let [low, high] = range.map(|q| match joint.kind {
+                JointKind::Revolute => q.to_degrees(),
+                JointKind::Prismatic => q * 1e3,
+            });
+            without.push(format!("{} [{low:.0}, {high:.0}] {}", index + 1, joint.people_unit()));
+            range
+        })
+    };
+    let ranges = campaign.robot.joints.iter().enumerate().map(range).collect();
+    if without.is_empty() {
+        assumptions.push(String::from("the joints stay within the limits of the description"));
+    } else {
+        let joints = without.join(", ");
+        assumptions.push(format!("joints without limits in the description stay in the campaign's range: {joints}"));
+    }
+    ranges
+}
+
+/// Directions to pull in: along the axes, the diagonals of the faces and those of
+/// the cube; downwards where there is a choice, as weights pull.
+fn directions() -> Vec<Vector3<f64>> {
+    let mut found: Vec<Vector3<f64>> = Vec::new();
+    for code in 0..27 {
+        let direction = Vector3::from([code / 9, code / 3 % 3, code % 3].map(|digit: i32| f64::from(digit - 1)));
+        let first = [-direction.z, direction.x, direction.y].into_iter().find(|value| *value != 0.0);
+        if first.is_some_and(|value| value > 0.0) {
+            found.push(direction.normalize());
+        }
+    }
+    found
+}
+
+/// The load sequences that can be proposed.
+fn loads(data: &Displacements, options: &Options, assumptions: &mut Vec<String>) -> Vec<Vec<[f64; 6]>> {
+    let size = |part: &[f64]| part.iter().map(|value| value * value).sum::<f64>().sqrt();
+    let most = |of: &dyn Fn(&[f64; 6]) -> f64| data.rows.iter().map(|row| of(&row.wrench)).fold(0.0, f64::max);
+    let force = options.force.unwrap_or_else(|| most(&|wrench| size(&wrench[..3])));
+    let moment = options.moment.unwrap_or_else(|| most(&|wrench| size(&wrench[3..])));
+    let whose = |given: Option<f64>| if given.is_some() { "as asked for" } else { "the campaign's greatest" };
+    assumptions.push(format!("forces of {force:.0} N, {}", whose(options.force)));
+    if moment > 0.0 {
+        assumptions.push(format!("moments of {moment:.0} Nm, {}", whose(options.moment)));
+    }
+    let ramp = ramp(data);
+    let told: Vec<String> = ramp.iter().map(|share| format!("{:.0} %", share * 100.0)).collect();
+    assumptions.push(format!("a visit loads to {}, with one unloaded reading, as the campaign does", told.join(", ")));
+    let mut moments = std::vec![Vector3::zeros()];
+    if moment > 0.0 {
+        moments.extend((0..6).map(|k| Vector3::ith(k / 2, if k % 2 == 0 { moment } else { -moment })));
+    }
+    let directions = directions();
+    let pulls = directions.iter().flat_map(|direction| moments.iter().map(move |moment| (direction * force, moment)));
+    let loads = pulls.map(|(force, moment)| {
+        let load = |share: &f64| {
+            let (force, moment) = (force * *share, moment * *share);
+            [force.x, force.y, force.z, moment.x, moment.y, moment.z]
+        };
+        ramp.iter().map(load).collect()
+    });
+    loads.collect()
+}
+
+/// The loads of the campaign's usual visit as shares of its greatest.
+fn ramp(data: &Displacements) -> Vec<f64> {
+    let of = |visit: usize| data.rows.iter().filter(move |row| row.visit == visit);
+    let lengths: Vec<usize> = {
+        let mut lengths = std::vec![0_usize; data.visits.len()];
+        data.rows.iter().for_each(|row| lengths[row.visit] += 1);
+        lengths
+    };
+    let common = |length: &usize| lengths.iter().filter(|other| *other == length).count();
+    let usual = lengths.iter().copied().max_by_key(|length| (common(length), *length)).unwrap_or(1);
+    let visit = lengths.iter().position(|length| *length == usual).unwrap_or(0);
+    let dot = |a: &[f64; 6], b: &[f64; 6]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let greatest = of(visit).map(|row| row.wrench).max_by(|a, b| dot(a, a).total_cmp(&dot(b, b)));
+    let Some(greatest) = greatest.filter(|greatest| dot(greatest, greatest) > 0.0) else { return std::vec![1.0] };
+    // Sequences that turn as they grow count by what they have along the greatest.
+    of(visit).map(|row| dot(&row.wrench, &greatest) / dot(&greatest, &greatest)).collect()
+}
+
+fn tool_centre_point(robot: &Description, q: &[f64]) -> Vector3<f64> {
+    crate::with_robot!(robot, |robot| position(&robot, q))
+}
+
+fn position<const N: usize>(robot: &impl Robot<N>, q: &[f64]) -> Vector3<f64> {
+    robot.transform(&SVector::<f64, N>::from_column_slice(q)).fixed_view::<3, 1>(0, 3).into_owned()
+}
+
+fn from_vertical(robot: &Description, point: &Vector3<f64>) -> f64 {
+    let [x, y, _] = robot.base.xyz;
+    (point.x - x).hypot(point.y - y)
+}

@@ -1,0 +1,32 @@
+//! What the robot does under the loads, without noise.
+
+use nalgebra::{Matrix3, SVector, Vector3};
+use robstiff_robots::Description;
+use std::vec::Vec;
+
+use crate::Robot;
+use crate::campaign::{Displacements, Frame};
+use crate::identify::samples::Samples;
+use crate::identify::second_order::beyond_linear;
+
+/// Sets what an exact instrument reads in every row.
+pub fn read(truth: &Description, data: &mut Displacements, rotations: bool) {
+    crate::with_robot!(truth, |robot| deflect(&robot, data, rotations));
+}
+
+fn deflect<const N: usize>(robot: &impl Robot<N>, data: &mut Displacements, rotations: bool) {
+    let samples = Samples::new(robot, data);
+    let compliance: Vec<f64> = robot.joint_compliance().iter().copied().collect();
+    let beyond = beyond_linear(&samples, &compliance);
+    for (i, (row, sample)) in data.rows.iter_mut().zip(&samples.rows).enumerate() {
+        let twist = robot.deflection(&SVector::<f64, N>::from_column_slice(&sample.q), &sample.wrench);
+        let turn: Vector3<f64> = twist.fixed_rows::<3>(3).into_owned();
+        let moved = twist.fixed_rows::<3>(0) + turn.cross(&sample.marker) + beyond.fixed_rows::<3>(i * samples.axes);
+        let frame: Matrix3<f64> = match data.measured_frame {
+            Frame::Base => Matrix3::identity(),
+            Frame::Tool => sample.tcp.fixed_view::<3, 3>(0, 0).transpose(),
+        };
+        row.displacement = (frame * moved).into();
+        row.rotation = rotations.then(|| (frame * turn).into());
+    }
+}

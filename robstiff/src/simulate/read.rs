@@ -1,0 +1,284 @@
+//! Reading a scenario.
+
+use std::borrow::ToOwned;
+use std::format;
+use std::path::Path;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use robstiff_robots::document::{Document, Map, Node};
+use robstiff_robots::quantity::Dimension;
+use robstiff_robots::{Description, Diagnostics, Joint, ReadError};
+
+use super::{Poses, Pull, Scenario};
+use crate::campaign::read::{holdout, place, text_of};
+use crate::{Effect, JointKind};
+
+/// The fields of a scenario.
+const FIELDS: [&str; 14] = [
+    "name", "seed", "poses", "visits", "ramp", "force", "moment", "wrench", "measured", "noise", "unloaded", "hidden",
+    "scatter", "holdout",
+];
+
+/// More of anything than a campaign on a real robot has, and less than what
+/// fills a machine's memory.
+const MOST: i64 = 100_000;
+
+impl Scenario {
+    /// Reads a scenario for a robot.
+    ///
+    /// # Errors
+    /// A file that cannot be read, and everything [`parse`](Self::parse) finds.
+    pub fn read(path: impl AsRef<Path>, robot: &Description) -> Result<Self, ReadError> {
+        let path = path.as_ref();
+        Self::parse(&path.display().to_string(), &text_of(path)?, robot).map_err(ReadError::Invalid)
+    }
+
+    /// Reads a scenario; `file` is the name that problems show.
+    ///
+    /// # Errors
+    /// All that is wrong with the text, each problem with its place.
+    pub fn parse(file: &str, text: &str, robot: &Description) -> Result<Self, Diagnostics> {
+        let document = Document::parse(file, text)?;
+        let scenario = scenario(&document, robot);
+        document.finish(scenario)
+    }
+}
+
+fn scenario(document: &Document, robot: &Description) -> Option<Scenario> {
+    let map = document.root().map(&FIELDS)?;
+    // Everything is read before anything is given up, to report all problems.
+    let name = map.get("name").map_or(Some(String::new()), |node| node.text().map(ToOwned::to_owned));
+    let seed = map.require("seed", "seed: 1").and_then(|node| seed(&node));
+    let poses = map.require("poses", "poses: {count: 40, floor: 100 mm}").and_then(|node| poses(&node, &robot.joints));
+    let visits = map.get("visits").map_or(Some(1), |node| count(&node));
+    let ramp = map.get("ramp").map_or(Some(std::vec![1.0]), |node| ramp(&node));
+    let force = map
+        .require("force", "force: {bounds: [500 N, 1300 N]}")
+        .and_then(|node| pull(&node, Dimension::Force, "bounds: [500 N, 1300 N]"));
+    let moment = map
+        .get("moment")
+        .map_or(Some(None), |node| pull(&node, Dimension::Torque, "bounds: [50 Nm, 200 Nm]").map(Some));
+    let (wrench, measured) = (place(&map, "wrench"), place(&map, "measured"));
+    let noise = map.require("noise", "noise: {displacement: 8 um}").and_then(|node| noise(&node));
+    let shares = map.get("unloaded").map_or(Some(true), |node| node.choice(&[("shared", true), ("separate", false)]));
+    let hidden = map.get("hidden").map_or(Some(Vec::new()), |node| hidden(&node, robot));
+    let scatter = map.get("scatter").map_or(Some(0.0), |node| scatter(&node));
+    let holdout = holdout(&map);
+    let (noise, rotation_noise, states_noise) = noise?;
+    Some(Scenario {
+        name: name?,
+        seed: seed?,
+        poses: poses?,
+        visits: visits?,
+        ramp: ramp?,
+        force: force?,
+        moment: moment?,
+        wrench: wrench?,
+        measured: measured?,
+        noise,
+        rotation_noise,
+        states_noise,
+        shares_unloaded: shares?,
+        hidden: hidden?,
+        scatter: scatter?,
+        holdout: holdout?,
+    })
+}
+
+fn seed(node: &Node<'_>) -> Option<u64> {
+    let seed = u64::try_from(node.integer()?).ok();
+    if seed.is_none() {
+        node.error("a seed is not negative", "e.g. `1`");
+    }
+    seed
+}
+
+fn count(node: &Node<'_>) -> Option<usize> {
+    let count = node.integer()?;
+    if !(1..=MOST).contains(&count) {
+        node.error(format!("a number from 1 to {MOST} is expected here, not {count}"), "e.g. `40`");
+        return None;
+    }
+    usize::try_from(count).ok()
+}
+
+fn poses(node: &Node<'_>, joints: &[Joint]) -> Option<Poses> {
+    let map = node.map(&["count", "within", "floor", "column", "list"])?;
+    if let Some(list) = map.get("list") {
+        if let Some(other) = ["count", "within", "floor", "column"].iter().find_map(|field| map.get(field)) {
+            other.error("poses that are listed are not drawn", "keep `list`, or what poses are drawn by");
+        }
+        let items = list.sequence()?;
+        if items.is_empty() {
+            list.error("at least one pose is expected here", "one list of joint coordinates a pose");
+        }
+        let poses: Vec<Option<Vec<f64>>> = items.iter().map(|item| pose(item, joints)).collect();
+        return poses.into_iter().collect::<Option<Vec<_>>>().filter(|poses| !poses.is_empty()).map(Poses::Listed);
+    }
+    let count = map.require("count", "count: 40").and_then(|node| self::count(&node));
+    let within = match map.get("within") {
+        Some(node) => within(&node, joints),
+        None => limits(&map, joints),
+    };
+    let length = |field| map.get(field).map_or(Some(None), |node| node.quantity(Dimension::Length).map(Some));
+    let (floor, column) = (length("floor"), length("column"));
+    Some(Poses::Drawn { count: count?, within: within?, floor: floor?, column: column? })
+}
+
+fn dimension(joint: &Joint) -> Dimension {
+    match joint.kind {
+        JointKind::Revolute => Dimension::Angle,
+        JointKind::Prismatic => Dimension::Length,
+    }
+}
+
+/// The items of a list that has one for each joint.
+fn for_each_joint<'d>(node: &Node<'d>, joints: &[Joint]) -> Option<Vec<Node<'d>>> {
+    let items = node.sequence()?;
+    if items.len() != joints.len() {
+        let (expected, found) = (joints.len(), items.len());
+        node.error(format!("{expected} items are expected here, not {found}"), "give one for each joint");
+        return None;
+    }
+    Some(items)
+}
+
+fn coordinate(node: &Node<'_>, joint: &Joint) -> Option<f64> {
+    let q = node.quantity(dimension(joint))?;
+    if let Some(what) = joint.outside_limits().filter(|_| !joint.reaches(q)) {
+        node.error(
+            format!("{} {} is {what}", joint.for_people(q), joint.people_unit()),
+            "the limits are those of the robot's description",
+        );
+        return None;
+    }
+    Some(q)
+}
+
+fn pose(node: &Node<'_>, joints: &[Joint]) -> Option<Vec<f64>> {
+    let items = for_each_joint(node, joints)?;
+    let q: Vec<Option<f64>> = items.iter().zip(joints).map(|(item, joint)| coordinate(item, joint)).collect();
+    q.into_iter().collect()
+}
+
+fn within(node: &Node<'_>, joints: &[Joint]) -> Option<Vec<[f64; 2]>> {
+    let items = for_each_joint(node, joints)?;
+    let range = |(item, joint): (&Node<'_>, &Joint)| {
+        let ends = item.sequence()?;
+        let [low, high] = ends.as_slice() else {
+            item.error("two values are expected here", "write `[lower, upper]`");
+            return None;
+        };
+        let (low, high) = (coordinate(low, joint), coordinate(high, joint));
+        let (low, high) = (low?, high?);
+        if low > high {
+            item.error("the lower end is above the upper one", "write `[lower, upper]`");
+            return None;
+        }
+        Some([low, high])
+    };
+    let ranges: Vec<Option<[f64; 2]>> = items.iter().zip(joints).map(range).collect();
+    ranges.into_iter().collect()
+}
+
+/// The joints' limits, where all have some.
+fn limits(map: &Map<'_>, joints: &[Joint]) -> Option<Vec<[f64; 2]>> {
+    if let Some(without) = joints.iter().position(|joint| joint.limits.is_none()) {
+        map.node().error(
+            format!("the description gives joint {} no limits to draw poses from", without + 1),
+            "add a range for each joint, e.g. `within: [[-120 deg, 120 deg], ..]`, or limits to the description",
+        );
+        return None;
+    }
+    joints.iter().map(|joint| joint.limits).collect()
+}
+
+fn ramp(node: &Node<'_>) -> Option<Vec<f64>> {
+    let items = node.sequence()?;
+    if items.is_empty() {
+        node.error("at least one load is expected here", "e.g. `[0.35, 0.7, 1, 0.7, 0.35]`");
+        return None;
+    }
+    let share = |item: &Node<'_>| {
+        let share = item.quantity(Dimension::Number)?;
+        if share.abs() > 1.0 {
+            item.error("a share of the visit's greatest load is between -1 and 1", "e.g. `0.35`");
+            return None;
+        }
+        Some(share)
+    };
+    let shares: Vec<Option<f64>> = items.iter().map(share).collect();
+    shares.into_iter().collect()
+}
+
+fn pull(node: &Node<'_>, dimension: Dimension, example: &str) -> Option<Pull> {
+    let map = node.map(&["bounds", "directions"])?;
+    let bounds = map.require("bounds", example).and_then(|node| {
+        let [low, high] = node.quantities::<2>(dimension)?;
+        if !(0.0..=high).contains(&low) {
+            node.error("the bounds are of a size: zero or more, the lower one first", format!("e.g. `{example}`"));
+            return None;
+        }
+        Some([low, high])
+    });
+    let directions = map.get("directions").map_or(Some(Vec::new()), |node| {
+        let items = node.sequence()?;
+        let direction = |item: &Node<'_>| {
+            let direction = item.quantities::<3>(Dimension::Number)?;
+            if direction == [0.0; 3] {
+                item.error("this is no direction", "e.g. `[0, 0, -1]`, of any length but zero");
+                return None;
+            }
+            Some(direction)
+        };
+        let directions: Vec<Option<[f64; 3]>> = items.iter().map(direction).collect();
+        directions.into_iter().collect()
+    });
+    Some(Pull { bounds: bounds?, directions: directions? })
+}
+
+/// Of displacements, of rotations where they are measured, and whether the
+/// campaign states them.
+fn noise(node: &Node<'_>) -> Option<([f64; 3], Option<f64>, bool)> {
+    let map = node.map(&["displacement", "rotation", "stated"])?;
+    let displacement = map.require("displacement", "displacement: 8 um").and_then(|node| {
+        if !node.is_sequence() {
+            return node.nonnegative(Dimension::Length).map(|sigma| [sigma; 3]);
+        }
+        let sigmas = node.quantities::<3>(Dimension::Length)?;
+        if sigmas.iter().any(|sigma| *sigma < 0.0) {
+            node.error("a length cannot be negative", "one sigma for each of x, y and z");
+            return None;
+        }
+        Some(sigmas)
+    });
+    let rotation = map.get("rotation").map_or(Some(None), |node| node.nonnegative(Dimension::Angle).map(Some));
+    let stated = map.get("stated").map_or(Some(true), |node| node.choice(&[("yes", true), ("no", false)]));
+    Some((displacement?, rotation?, stated?))
+}
+
+/// What the description is not told; `effects` as in a description.
+fn hidden(node: &Node<'_>, robot: &Description) -> Option<Vec<Effect>> {
+    let list = node.map(&["effects"])?.require("effects", "effects: [{kind: transverse_compliance, ..}]")?;
+    let effects = robot.read_effects(&list)?;
+    let same = |one: &Effect, other: &Effect| one.kind() == other.kind() && one.place() == other.place();
+    for (item, effect) in list.sequence()?.iter().zip(&effects) {
+        if robot.effects.iter().any(|declared| same(declared, effect)) {
+            item.error(
+                format!("the description declares `{effect}` already"),
+                "hide what it lacks; what it says wrong about its joints is `scatter`",
+            );
+        }
+    }
+    Some(effects)
+}
+
+fn scatter(node: &Node<'_>) -> Option<f64> {
+    let scatter = node.quantity(Dimension::Number)?;
+    if !(0.0..1.0).contains(&scatter) {
+        node.error("a fraction from 0 to below 1 is expected here", "e.g. `0.3` for joints up to 30 % off");
+        return None;
+    }
+    Some(scatter)
+}

@@ -1,0 +1,138 @@
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use nalgebra::{SVector, Vector6};
+use robstiff_robots::{Description, catalogue};
+
+use super::{Scenario, simulate};
+use crate::{Generic, Robot};
+
+const SCENARIO: &str = "\
+name: a try
+seed: 4
+poses: {count: 30, floor: 100 mm, column: 600 mm}
+visits: 2
+ramp: [0.5, 1, -0.25]
+force: {bounds: [500 N, 1.3 kN]}
+noise: {displacement: 8 um}
+hidden:
+  effects:
+    - {kind: transverse_compliance, at: joint 3, value: 6e-7 rad/Nm}
+scatter: 0.3
+";
+
+fn robot() -> Description {
+    let text = catalogue::find("kuka-kr270-r2700").expect("in the catalogue");
+    Description::parse("robot.yaml", text).expect("of the catalogue")
+}
+
+fn read(text: &str) -> Scenario {
+    Scenario::parse("try.yaml", text, &robot()).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn problem(text: &str) -> String {
+    Scenario::parse("try.yaml", text, &robot()).expect_err("it has a mistake").to_string()
+}
+
+#[test]
+fn the_seed_says_it_all_and_noise_keeps_the_rest() {
+    let rows = |text: &str| simulate(&robot(), &read(text)).expect("it can be measured").data.rows;
+    assert_eq!(rows(SCENARIO), rows(SCENARIO));
+    assert_ne!(rows(SCENARIO), rows(&SCENARIO.replace("seed: 4", "seed: 5")));
+    let louder = rows(&SCENARIO.replace("8 um", "80 um"));
+    for (one, other) in rows(SCENARIO).iter().zip(&louder) {
+        assert_eq!((&one.q, one.wrench), (&other.q, other.wrench));
+        assert_ne!(one.displacement, other.displacement);
+    }
+}
+
+#[test]
+fn poses_and_loads_are_within_their_bounds() {
+    let found = simulate(&robot(), &read(SCENARIO)).expect("it can be measured");
+    assert_eq!(found.data.rows.len(), 180);
+    for (i, row) in found.data.rows.iter().enumerate() {
+        assert_eq!((row.pose, row.visit, row.line), (i / 6, i / 3, i + 2));
+        assert!(row.q.iter().zip(&found.declared.joints).all(|(&q, joint)| joint.reaches(q)));
+        let force = Vector6::from(row.wrench).norm();
+        let share = [0.5, 1.0, 0.25][i % 3];
+        assert!((500.0 * share - 1e-9..=1300.0 * share + 1e-9).contains(&force));
+    }
+    for (joint, declared) in found.truth.joints.iter().zip(&found.declared.joints) {
+        assert!((0.7..=1.3).contains(&(joint.compliance() / declared.compliance())));
+    }
+}
+
+/// Against the trait's own deflection, at a load so small that its second order
+/// is nothing; read beside the tool centre point, in the tool's frame.
+#[test]
+fn small_loads_deflect_as_the_robot_says() {
+    let text = SCENARIO.replace("[500 N, 1.3 kN]", "[0.5 N, 1 N]").replace("8 um", "0 um")
+        + "measured: {frame: tool, at: [0, 0, 0.1]}\n";
+    let found = simulate(&robot(), &read(&text)).expect("it can be measured");
+    let robot = Generic::<6>::new(&found.truth).expect("six joints");
+    for row in &found.data.rows {
+        let q = SVector::<f64, 6>::from_column_slice(&row.q);
+        let twist = robot.deflection(&q, &Vector6::from(row.wrench));
+        let tool = robot.transform(&q).fixed_view::<3, 3>(0, 0).into_owned();
+        let lever = tool * nalgebra::Vector3::new(0.0, 0.0, 0.1);
+        let moved = tool.transpose() * (twist.fixed_rows::<3>(0) + twist.fixed_rows::<3>(3).cross(&lever));
+        let read = nalgebra::Vector3::from(row.displacement);
+        assert!((read - moved).norm() < 1e-5 * moved.norm(), "{read} {moved}");
+    }
+}
+
+#[test]
+fn rows_of_a_visit_share_their_unloaded_reading_or_not() {
+    // Half the difference of two rows of one load has the variance of a reading
+    // where the unloaded one is shared, and twice that where it is not.
+    let plan = |unloaded: &str| {
+        let text = SCENARIO.replace("count: 30", "count: 1000").replace("[0.5, 1, -0.25]", "[1, 1]")
+            + &std::format!("unloaded: {unloaded}\n");
+        let rows = simulate(&robot(), &read(&text)).expect("it can be measured").data.rows;
+        let halves: Vec<f64> =
+            rows.chunks(2).map(|two| (two[0].displacement[1] - two[1].displacement[1]).powi(2) / 2.0).collect();
+        halves.iter().sum::<f64>() / halves.len() as f64 / 8e-6_f64.powi(2)
+    };
+    // 2000 degrees of freedom: 3.2 % of scatter, four times that is allowed.
+    assert!((plan("shared") - 1.0).abs() < 0.13);
+    assert!((plan("separate") / 2.0 - 1.0).abs() < 0.13);
+}
+
+#[test]
+fn mistakes_are_shown_where_they_are() {
+    for (from, to, place, part) in [
+        ("seed: 4", "seed: -4", "2:7", "a seed is not negative"),
+        ("floor: 100 mm", "floor: 100 N", "3:27", "is a force, a length is expected"),
+        ("count: 30", "count: 0", "3:16", "a number from 1 to 100000"),
+        ("ramp: [0.5", "ramp: [1.5", "5:8", "between -1 and 1"),
+        ("[500 N, 1.3 kN]", "[500 N, 13 N]", "6:17", "the lower one first"),
+        ("joint 3", "joint 9", "10:41", "there is no joint 9"),
+        ("noise:", "nioses:", "7:1", "unknown field"),
+        ("scatter: 0.3", "scatter: 30", "11:10", "below 1"),
+        ("{count: 30, floor: 100 mm, column: 600 mm}", "{list: [[0, 0, 0]]}", "3:16", "6 items are expected"),
+        (
+            "{count: 30,",
+            "{count: 30, within: [[0, 9], [0, 1], [0, 1], [0, 1], [0, 1], [0, 1]],",
+            "3:34",
+            "outside its limits",
+        ),
+    ] {
+        let text = problem(&SCENARIO.replace(from, to));
+        assert!(text.contains(&std::format!("try.yaml:{place}")) && text.contains(part), "{text}");
+    }
+    let mut limitless = robot();
+    limitless.joints[1].limits = None;
+    let text = Scenario::parse("try.yaml", SCENARIO, &limitless).expect_err("no limits").to_string();
+    assert!(text.contains("gives joint 2 no limits") && text.contains("within:"), "{text}");
+    let mut declares = robot();
+    declares.effects = read(SCENARIO).hidden;
+    let text = Scenario::parse("try.yaml", SCENARIO, &declares).expect_err("declared").to_string();
+    assert!(text.contains("declares `transverse_compliance@joint 3` already"), "{text}");
+}
+
+#[test]
+fn what_cannot_be_measured_is_said() {
+    let text = SCENARIO.replace("floor: 100 mm", "floor: 90 m");
+    let error = simulate(&robot(), &read(&text)).expect_err("nobody reaches there");
+    assert!(error.to_string().contains("working region"), "{error}");
+}
