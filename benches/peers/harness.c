@@ -1,57 +1,68 @@
-/* The others' side: `harness check` prints the triangles of the first poses,
-   `harness time` the least time of a pass over all poses, in ns a pose. */
+/* `check` prints what each way makes of the first poses, `time` the least time of
+   a pass over all poses, in ns a pose. As harness.rs does. */
+#include "harness.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
 
-enum { COUNT = 1024 };
+enum { JOINTS = 6, ENTRIES = 16 + 6 * JOINTS + 21, CHECKED = 64 };
 
-void sympy_one(double, double, double, double, double, double *);
-void sympy_many(const double (*)[COUNT], double (*)[COUNT]);
-int casadi_one(const double **, double **, long long *, double *, int);
+static double poses[COUNT * JOINTS], results[COUNT * ENTRIES];
+static double angles[JOINTS][COUNT], entries[ENTRIES][COUNT];
+static float angles_f32[JOINTS][COUNT], entries_f32[ENTRIES][COUNT];
 
-static double q[COUNT][5], by_joint[5][COUNT], out[COUNT][21], by_entry[21][COUNT];
-
-static void sympy_pass(void) {
-    for (int k = 0; k < COUNT; k++) sympy_one(q[k][0], q[k][1], q[k][2], q[k][3], q[k][4], out[k]);
-}
-
-static void casadi_pass(void) {
-    static double work[4096];
-    static long long whole[64];
-    for (int k = 0; k < COUNT; k++) {
-        const double *arguments[8] = {q[k]};
-        double *results[8] = {out[k]};
-        casadi_one(arguments, results, whole, work, 0);
+static void pass(const struct way *way) {
+    if (way->all) {
+        way->all((const double (*)[COUNT])angles, entries);
+    } else if (way->all_f32) {
+        way->all_f32((const float (*)[COUNT])angles_f32, entries_f32);
+    } else {
+        for (int k = 0; k < COUNT; k++) way->one(&poses[k * way->joints], &results[k * way->size]);
     }
 }
 
-static void sympy_vector_pass(void) { sympy_many((const double (*)[COUNT])by_joint, by_entry); }
+static double now(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return time.tv_sec * 1e9 + time.tv_nsec;
+}
 
-static const struct {
-    const char *name;
-    void (*pass)(void);
-} PEERS[] = {{"SymPy", sympy_pass}, {"CasADi", casadi_pass}, {"SymPy, gcc with a vector libm", sympy_vector_pass}};
+static double least(const struct way *way) {
+    double least = INFINITY;
+    for (double first = now(), start = first; start < first + 15e6;) {
+        pass(way);
+        const double end = now();
+        least = fmin(least, end - start);
+        start = end;
+    }
+    return least / COUNT;
+}
+
+static double entry(const struct way *way, int k, int e) {
+    if (way->all) return entries[e][k];
+    return way->all_f32 ? entries_f32[e][k] : results[k * way->size + e];
+}
 
 int main(int count, char **arguments) {
-    for (int k = 0; k < COUNT; k++)
-        for (int i = 0; i < 5; i++) by_joint[i][k] = q[k][i] = 2.0 * sin(1.7 * k + 2.3 * i);
-    for (int p = 0; p < 3; p++) {
-        if (count > 1 && strcmp(arguments[1], "check") == 0) {
-            PEERS[p].pass();
-            for (int k = 0; k < 64; k++)
-                for (int e = 0; e < 21; e++) printf("%s\t%.17g\n", PEERS[p].name, p == 2 ? by_entry[e][k] : out[k][e]);
-            continue;
+    const int check = count > 1 && strcmp(arguments[1], "check") == 0;
+    for (int w = 0; w < WAY_COUNT; w++) {
+        const struct way *way = &WAYS[w];
+        for (int k = 0; k < COUNT; k++) {
+            for (int i = 0; i < way->joints; i++) {
+                const double angle = 2.0 * sin(1.7 * k + 2.3 * i);
+                poses[k * way->joints + i] = angles[i][k] = angle;
+                angles_f32[i][k] = (float)angle;
+            }
         }
-        double least = INFINITY;
-        for (int round = 0; round < 300; round++) {
-            struct timespec start, end;
-            clock_gettime(CLOCK_MONOTONIC, &start);
-            PEERS[p].pass();
-            clock_gettime(CLOCK_MONOTONIC, &end);
-            least = fmin(least, ((end.tv_sec - start.tv_sec) * 1e9 + (end.tv_nsec - start.tv_nsec)) / COUNT);
+        printf("%s\t%s\t%s", way->robot, way->quantity, way->name);
+        if (check) {
+            pass(way);
+            for (int k = 0; k < CHECKED; k++)
+                for (int e = 0; e < way->size; e++) printf("\t%.17g", entry(way, k, e));
+        } else {
+            printf("\t%.17g", least(way));
         }
-        printf("%s\t%.17g\n", PEERS[p].name, least);
+        printf("\n");
     }
 }

@@ -1,64 +1,127 @@
-//! Our side of `benches/peers`: `peer check` prints the triangles of the first
-//! poses, `peer time` the least time of a pass over all poses, in ns a pose.
+//! Our side of `benches/peers`: generated robots, robots read at run time, and a
+//! plain loop over the DH table in nalgebra.
 
-use std::hint::black_box;
-use std::time::Instant;
+use robstiff::batch::Float;
+use robstiff::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
+use robstiff::{Generic, Robot, Statics, batch};
+use robstiff_benches::{Rv130hsc, WRENCH};
+use robstiff_robots::Description;
 
-use robstiff::batch;
-use robstiff_benches::{Rv130hsc, poses, trace, triangle};
+#[path = "../../peers/harness.rs"]
+mod harness;
+#[path = "../../peers/nalgebra.rs"]
+mod nalgebra;
 
-const COUNT: usize = 1024;
+use harness::COUNT;
 
-fn time(name: &str, mut pass: impl FnMut()) {
-    let mut least = f64::INFINITY;
-    for _ in 0..300 {
-        let start = Instant::now();
-        pass();
-        least = least.min(start.elapsed().as_nanos() as f64 / COUNT as f64);
-    }
-    println!("{name}\t{least}");
+robstiff::robot!("six-axis.yaml");
+
+const OURS: &str = "robstiff";
+
+/// The upper triangle by rows.
+fn triangle(compliance: &Matrix6<f64>) -> [f64; 21] {
+    let mut out = [0.0; 21];
+    let upper = (0..6).flat_map(|i| (i..6).map(move |j| (i, j)));
+    out.iter_mut().zip(upper).for_each(|(out, at)| *out = compliance[at]);
+    out
+}
+
+/// T and J by columns, the triangle of H_x, one after the other.
+fn all<const N: usize, const ALL: usize>(
+    transform: &Matrix4<f64>,
+    jacobian: &SMatrix<f64, 6, N>,
+    compliance: &Matrix6<f64>,
+    out: &mut [f64; ALL],
+) {
+    let (first, rest) = out.split_at_mut(16);
+    first.copy_from_slice(transform.as_slice());
+    let (columns, upper) = rest.split_at_mut(6 * N);
+    columns.copy_from_slice(jacobian.as_slice());
+    upper.copy_from_slice(&triangle(compliance));
+}
+
+/// One pose after the other; `J` and `ALL` are the numbers of entries of the
+/// Jacobian, and of T, J and H_x together.
+fn singles<const N: usize, const J: usize, const ALL: usize>(label: &str, name: &str, robot: &impl Robot<N>) {
+    let poses: Vec<SVector<f64, N>> = harness::poses().into_iter().map(SVector::from).collect();
+    let way = |quantity| [label, quantity, name];
+    harness::one(way("T"), &poses, |q, out: &mut [f64; 16]| {
+        out.copy_from_slice(robot.transform(q).as_slice());
+    });
+    harness::one(way("J"), &poses, |q, out: &mut [f64; J]| out.copy_from_slice(robot.jacobian(q).as_slice()));
+    harness::one(way("H"), &poses, |q, out: &mut [f64; 21]| *out = triangle(&robot.compliance(q)));
+    harness::one(way("TJH"), &poses, |q, out: &mut [f64; ALL]| {
+        let Statics { transform, jacobian, compliance } = robot.statics(q);
+        all(&transform, &jacobian, &compliance, out);
+    });
+}
+
+/// The same by the plain loop.
+fn plain<const N: usize, const J: usize, const ALL: usize>(label: &str, arm: &nalgebra::Arm<N>) {
+    let poses: Vec<SVector<f64, N>> = harness::poses().into_iter().map(SVector::from).collect();
+    let way = |quantity| [label, quantity, "a loop in nalgebra 0.35"];
+    harness::one(way("T"), &poses, |q, out: &mut [f64; 16]| out.copy_from_slice(arm.transform(q).as_slice()));
+    harness::one(way("J"), &poses, |q, out: &mut [f64; J]| out.copy_from_slice(arm.jacobian(q).0.as_slice()));
+    harness::one(way("H"), &poses, |q, out: &mut [f64; 21]| *out = triangle(&arm.compliance(&arm.jacobian(q).0)));
+    harness::one(way("TJH"), &poses, |q, out: &mut [f64; ALL]| {
+        let (jacobian, tip) = arm.jacobian(q);
+        all(&tip, &jacobian, &arm.compliance(&jacobian), out);
+    });
+}
+
+/// All poses in one call; `precision` is what the quantities' names end in.
+fn batches<T: Float + Into<f64>, const N: usize>(label: &str, precision: &str, robot: &impl Robot<N>) {
+    let poses: Vec<SVector<T, N>> = harness::poses().into_iter().map(|q| SVector::from(q.map(T::of))).collect();
+    let wrench = WRENCH.map(T::of);
+    let quantity = |name| format!("{name}, batch{precision}");
+
+    let mut triangles = vec![[T::zero(); 21]; COUNT];
+    harness::all(
+        [label, &quantity("H"), OURS],
+        &mut triangles,
+        |out| batch::compliance_triangle(robot, &poses, out),
+        |out, k| out[k].map(T::into).to_vec(),
+    );
+    let mut entries = vec![[T::zero(); COUNT]; 21];
+    harness::all(
+        [label, &quantity("H"), "robstiff, by entry"],
+        &mut entries,
+        |out| {
+            let mut slices = out.iter_mut();
+            let slices = std::array::from_fn(|_| slices.next().expect("21 entries").as_mut_slice());
+            batch::compliance_by_entry(robot, &poses, slices);
+        },
+        |out, k| out.iter().map(|entry| entry[k].into()).collect(),
+    );
+    let mut traces = vec![T::zero(); COUNT];
+    harness::all(
+        [label, &quantity("trace"), OURS],
+        &mut traces,
+        |out| batch::translational_trace(robot, &poses, out),
+        |out, k| vec![out[k].into()],
+    );
+    let mut deflections = vec![Vector6::zeros(); COUNT];
+    harness::all(
+        [label, &quantity("deflection"), OURS],
+        &mut deflections,
+        |out| batch::deflection(robot, &poses, &wrench, out),
+        |out, k| out[k].map(T::into).as_slice().to_vec(),
+    );
 }
 
 fn main() {
-    let poses = poses::<5>(COUNT);
-    let mut triangles = vec![[0.0; 21]; COUNT];
-    if std::env::args().nth(1).as_deref() == Some("check") {
-        for batched in [false, true] {
-            for (q, out) in poses.iter().zip(&mut triangles) {
-                triangle(q, out);
-            }
-            if batched {
-                batch::compliance_triangle(&Rv130hsc, &poses, &mut triangles);
-            }
-            let name = if batched { "batch" } else { "single" };
-            for entry in triangles[..64].as_flattened() {
-                println!("{name}\t{entry:e}");
-            }
-        }
-        return;
-    }
-    let mut traces = vec![0.0; COUNT];
-    time("single", || {
-        poses.iter().zip(&mut triangles).for_each(|(q, out)| triangle(q, out));
-        black_box(&mut triangles);
-    });
-    time("single, trace only", || {
-        poses.iter().zip(&mut traces).for_each(|(q, out)| *out = trace(q));
-        black_box(&mut traces);
-    });
-    time("batch", || {
-        batch::compliance_triangle(&Rv130hsc, &poses, &mut triangles);
-        black_box(&mut triangles);
-    });
-    let mut entries = vec![0.0; 21 * COUNT];
-    time("batch, by entry", || {
-        let mut slices = entries.chunks_exact_mut(COUNT);
-        let slices = std::array::from_fn(|_| slices.next().expect("21 slices"));
-        batch::compliance_by_entry(&Rv130hsc, &poses, slices);
-        black_box(&mut entries);
-    });
-    time("batch, trace only", || {
-        batch::translational_trace(&Rv130hsc, &poses, &mut traces);
-        black_box(&mut traces);
-    });
+    let read = |text| Description::parse("the robot", text).expect("it has no mistakes");
+    let five = read(include_str!("../../../robots/rv130hsc.yaml"));
+    let six = read(include_str!("../../robots/six-axis.yaml"));
+    let at_run_time = "robstiff read at run time";
+    singles::<5, 30, 67>("R5", OURS, &Rv130hsc);
+    singles::<6, 36, 73>("R6", OURS, &SixAxis);
+    singles::<5, 30, 67>("R5", at_run_time, &Generic::<5>::new(&five).expect("five joints"));
+    singles::<6, 36, 73>("R6", at_run_time, &Generic::<6>::new(&six).expect("six joints"));
+    plain::<5, 30, 67>("R5", &nalgebra::Arm::new(&five));
+    plain::<6, 36, 73>("R6", &nalgebra::Arm::new(&six));
+    batches::<f64, 5>("R5", "", &Rv130hsc);
+    batches::<f64, 6>("R6", "", &SixAxis);
+    batches::<f32, 5>("R5", ", f32", &Rv130hsc);
+    batches::<f32, 6>("R6", ", f32", &SixAxis);
 }
