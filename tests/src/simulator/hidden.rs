@@ -306,6 +306,7 @@ fn numbers(effect: &mut Effect) -> Vec<(&'static str, &mut f64)> {
         Effect::ToolCompliance { rotation, translation } => vec![("rotation", rotation), ("translation", translation)],
         Effect::JointCoupling { value, .. } => vec![("value", value)],
         Effect::StiffnessNonlinearity { added, knee, .. } => vec![("added", added), ("knee", knee)],
+        other => unreachable!("the simulator has a variant of its own for {other}"),
     }
 }
 
