@@ -54,9 +54,9 @@ pub mod real;
 pub mod robot;
 #[cfg(all(test, feature = "generic"))]
 mod samples;
-mod state;
 #[cfg(feature = "identify")]
 pub mod simulate;
+mod state;
 #[cfg(feature = "identify")]
 pub mod trace;
 mod trig;

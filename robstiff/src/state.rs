@@ -27,10 +27,10 @@ use crate::Real;
 /// let (q, push) = (SVector::from([0.0]), Vector6::new(0.0, 100.0, 0.0, 0.0, 0.0, 0.0));
 ///
 /// let mut state = State::new();
-/// let up = lever.deflection_with(&q, &push, &mut state)[1];
+/// let up: f64 = lever.deflection_with(&q, &push, &mut state)[1];
 /// assert!((up - (100e-6 + 2e-7 * (100.0 - 50.0))).abs() < 1e-12);
 /// // Without load, what the play operator still holds is left.
-/// let left = lever.deflection_with(&q, &(push * 0.0), &mut state)[1];
+/// let left: f64 = lever.deflection_with(&q, &(push * 0.0), &mut state)[1];
 /// assert!((left - 2e-7 * 50.0).abs() < 1e-12);
 /// # }
 /// ```
