@@ -206,7 +206,7 @@ fn exact_aliases_need_other_sensors() {
 /// second lever tells them apart.
 #[test]
 fn a_second_lever_tells_the_tool_from_the_wrist() {
-    let wrist = Effect::TransverseCompliance { joint: 5, value: 3e-6 };
+    let wrist = Effect::TransverseCompliance { joint: 5, value: 1.5e-6 };
     let tool = Effect::ToolCompliance { rotation: 3e-6, translation: 0.0 };
     let found = planned(&six_axis(), wrist, &[tool], &Options { poses: 6, ..Options::default() });
     let [pair] = &found.pairs[..] else { panic!("{:?}", found.pairs) };
