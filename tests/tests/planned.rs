@@ -9,9 +9,9 @@ use rand_chacha::ChaCha8Rng;
 use robstiff::Effect;
 use robstiff::campaign::{Campaign, Data, Frame, Noise};
 use robstiff::identify::identify;
-use robstiff::plan::{Options, Outlook, Plan, plan};
+use robstiff::plan::{Group, Options, Outlook, Plan, plan_between};
 use robstiff::simulate::{Poses, Pull, Scenario, Simulated, simulate};
-use robstiff::trace::{self, EffectParameter, NamedEffect, Trace, Verdict, trace};
+use robstiff::trace::{self, trace};
 use robstiff_robots::Description;
 use robstiff_tests::simulator::{five_axis, six_axis};
 
@@ -82,16 +82,13 @@ fn measured(robot: &Description, hidden: &[Effect], pulls: &Pulls, seed: u64) ->
     campaign(&simulate(robot, &scenario(hidden, Poses::Listed(poses), directions, seed)).expect("measured"))
 }
 
-/// A trace that cannot tell one effect from others.
-fn undecided(campaign: &Campaign, named: Effect, same_as: &[Effect]) -> Trace {
-    let options = trace::Options { draws: 199, alpha: 0.05, ..trace::Options::default() };
-    let mut traced = trace(campaign, &options, &|_| {}).expect("traced");
-    let parameters = vec![EffectParameter { name: "h", value: 0.0, std: None, unit: "rad/Nm" }];
-    let same_as = same_as.iter().map(ToString::to_string).collect();
-    traced.effects =
-        vec![NamedEffect { effect: named, parameters, p_value: 0.0, holdout_rms: 0.0, same_as, partial: false }];
-    traced.verdict = Verdict::Explained;
-    traced
+/// A plan to tell an effect from others, whatever the trace made of them.
+fn plan_for(campaign: &Campaign, one: Effect, others: &[Effect], options: &Options) -> Plan {
+    let tracing = trace::Options { draws: 199, alpha: 0.05, ..trace::Options::default() };
+    let mut traced = trace(campaign, &tracing, &|_| {}).expect("traced");
+    traced.effects.clear();
+    let names = [&[one], others].concat().iter().map(ToString::to_string).collect();
+    plan_between(campaign, &traced, &[Group { named: None, names }], options).expect("planned")
 }
 
 /// By how much chi-square favours one effect over another. One row a visit, so
@@ -135,9 +132,8 @@ fn gains(robot: &Description, truth: Effect, rival: Effect) -> Gains {
     let mut decided = [0; 2];
     for seed in SEEDS {
         let first = simulate(robot, &scenario(&[truth], drawn(robot, FIRST), Vec::new(), seed)).expect("measured");
-        let traced = undecided(&campaign(&first), truth, &[rival]);
         let options = Options { poses: MORE, ..Options::default() };
-        let planned = plan(&campaign(&first), &traced, &options).expect("planned");
+        let planned = plan_for(&campaign(&first), truth, &[rival], &options);
         let next = |planned: &robstiff::plan::Planned| {
             let [x, y, z, ..] = planned.greatest;
             (planned.visit.q.clone(), [x, y, z])
@@ -184,7 +180,7 @@ fn planned_poses_separate_near_aliases_better_than_random_ones() {
 
 fn planned(robot: &Description, named: Effect, same_as: &[Effect], options: &Options) -> Plan {
     let first = simulate(robot, &scenario(&[named], drawn(robot, 20), Vec::new(), 1)).expect("measured");
-    plan(&campaign(&first), &undecided(&campaign(&first), named, same_as), options).expect("planned")
+    plan_for(&campaign(&first), named, same_as, options)
 }
 
 /// What no pose separates is said to be so, and what would separate it.
@@ -210,7 +206,7 @@ fn exact_aliases_need_other_sensors() {
 /// second lever tells them apart.
 #[test]
 fn a_second_lever_tells_the_tool_from_the_wrist() {
-    let wrist = Effect::TransverseCompliance { joint: 5, value: 3e-6 };
+    let wrist = Effect::TransverseCompliance { joint: 5, value: 1.5e-6 };
     let tool = Effect::ToolCompliance { rotation: 3e-6, translation: 0.0 };
     let found = planned(&six_axis(), wrist, &[tool], &Options { poses: 6, ..Options::default() });
     let [pair] = &found.pairs[..] else { panic!("{:?}", found.pairs) };
@@ -258,8 +254,7 @@ fn what_is_expected_comes_true() {
     let mut errors = Vec::new();
     for seed in SEEDS {
         let first = simulate(&robot, &scenario(&[truth], drawn(&robot, 60), Vec::new(), seed)).expect("measured");
-        let traced = undecided(&campaign(&first), truth, &[rival]);
-        let expected = plan(&campaign(&first), &traced, &Options { poses: 1, ..Options::default() }).expect("planned");
+        let expected = plan_for(&campaign(&first), truth, &[rival], &Options { poses: 1, ..Options::default() });
         let expected = expected.pairs[0].now.powi(2);
         let again = measured(&robot, &[truth], &pulls(&first), random.random());
         errors.push((favours(&again, truth, rival) - expected) / (2.0 * expected.sqrt()));

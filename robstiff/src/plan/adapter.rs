@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, Matrix4, Vector3, Vector6};
 use robstiff_robots::Description;
 
 use super::regressors::{Regressors, Sensor, Visit};
-use super::rivals::{Contest, Group, Number, Rival, Rivals, groups};
+use super::rivals::{Contest, Group, Number, Rival, Rivals};
 use crate::campaign::{Campaign, Displacements, Frame, Observation};
 use crate::elements::{Geometry, Parameter};
 use crate::identify::baseline::columns_of;
@@ -59,17 +59,17 @@ struct Catalogue<'p> {
 }
 
 impl<'c> Adapter<'c> {
-    /// For a campaign and its trace, with the rivals there.
+    /// For a campaign and its trace, with groups of rivals.
     ///
     /// # Errors
     /// A campaign of another kind, or one that sees none of the numbers.
-    pub fn new(campaign: &'c Campaign, trace: &Trace) -> Result<(Self, Rivals), Error> {
+    pub fn new(campaign: &'c Campaign, trace: &Trace, groups: &[Group]) -> Result<(Self, Rivals), Error> {
         let prepared = Prepared::new(campaign)?;
         let (candidates, further) = catalogue(&campaign.robot, &prepared.samples, prepared.own.len());
         let (problem, signs) = (prepared.problem(&further), prepared.signs(&further));
         let catalogue = Catalogue { prepared, candidates, problem, signs };
         let mut kept = catalogue.prepared.seen();
-        let rivals = catalogue.rivals(campaign, trace, &mut kept);
+        let rivals = catalogue.rivals(campaign, trace, groups, &mut kept);
         let (prepared, problem) = (&catalogue.prepared, &catalogue.problem);
         let white = problem.white.select_columns(&kept);
         let data = Displacements { wrench_frame: Frame::Base, rows: Vec::new(), ..prepared.data.clone() };
@@ -268,9 +268,8 @@ fn markers(geometry: &Geometry<'_, f64>, row: &Sample, column: Column, body: usi
 impl Catalogue<'_> {
     /// The rivals of a trace. `kept` holds the problem's columns that planning
     /// looks at, first those of the description; rivals refer to them by index.
-    fn rivals(&self, campaign: &Campaign, trace: &Trace, kept: &mut Vec<usize>) -> Rivals {
+    fn rivals(&self, campaign: &Campaign, trace: &Trace, groups: &[Group], kept: &mut Vec<usize>) -> Rivals {
         let base = kept.clone();
-        let groups = groups(trace);
         // Every effect named with its columns, and a group's rivals beside all
         // named ones but its own.
         let named: Vec<Vec<usize>> = trace
@@ -293,7 +292,7 @@ impl Catalogue<'_> {
         };
         let mut places = |columns: &[usize]| -> Vec<usize> { columns.iter().map(|&column| place(column)).collect() };
         let mut pairs = Vec::new();
-        for Group { named: own, names } in &groups {
+        for Group { named: own, names } in groups {
             let others = named.iter().enumerate().filter(|(k, _)| Some(*k) != *own).flat_map(|(_, columns)| columns);
             let core: Vec<usize> = base.iter().chain(others).copied().collect();
             let found = names.iter().filter_map(|name| Some((name, self.best(name, &core)?)));

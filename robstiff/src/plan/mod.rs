@@ -30,12 +30,13 @@ use nalgebra::DMatrix;
 pub use advice::Remedy;
 pub use criterion::Criterion;
 pub use regressors::{Sensor, Visit};
+pub use rivals::Group;
 
 use self::adapter::Adapter;
 use self::criterion::Judge;
 use self::exchange::{Search, in_order, refine};
 use self::regressors::Regressors;
-use self::rivals::Rivals;
+use self::rivals::{Rivals, groups};
 use self::space::Space;
 use crate::campaign::Campaign;
 use crate::identify::Error;
@@ -165,7 +166,16 @@ pub const TOLD_APART: f64 = 3.0;
 /// # Errors
 /// A campaign of another kind; no pose that could be proposed.
 pub fn plan(campaign: &Campaign, trace: &Trace, options: &Options) -> Result<Plan, Error> {
-    let (adapter, rivals) = Adapter::new(campaign, trace)?;
+    plan_between(campaign, trace, &groups(trace), options)
+}
+
+/// The same with other rivals than those of the trace, by their full names: to
+/// ask what it would take to tell these apart.
+///
+/// # Errors
+/// As [`plan`].
+pub fn plan_between(campaign: &Campaign, trace: &Trace, groups: &[Group], options: &Options) -> Result<Plan, Error> {
+    let (adapter, rivals) = Adapter::new(campaign, trace, groups)?;
     let space = Space::new(campaign, options)?;
     let visits = space.visits();
     let judge = Judge::new(&adapter.known(), &rivals, adapter.variance());

@@ -113,7 +113,7 @@ fn mistakes_are_shown_where_they_are() {
         (
             "{count: 30,",
             "{count: 30, within: [[0, 9], [0, 1], [0, 1], [0, 1], [0, 1], [0, 1]],",
-            "3:34",
+            "3:33",
             "outside its limits",
         ),
     ] {
