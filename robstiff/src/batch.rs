@@ -16,8 +16,8 @@
 //! Any [`Robot`] will do; the code of [`robot!`](crate::robot!)
 //! gains most, because the compiler sees through it: what a function does not
 //! return is not computed, and several poses share every instruction. On
-//! x86-64 with the feature `std` the widest vectors that the machine has
-//! (AVX2 with FMA) are found at run time. Nothing is allocated. Results are
+//! x86-64 with the feature `std` the widest vectors that the machine has (AVX2
+//! with FMA, AVX-512) are found at run time. Nothing is allocated. Results are
 //! those of the single pose but for rounding, 1e-13 of the largest entry.
 //!
 //! # Panics
@@ -26,22 +26,28 @@
 mod block;
 mod dispatch;
 mod known;
+mod needs;
 #[cfg(feature = "rayon")]
 pub mod parallel;
+mod poses;
 mod quantities;
 mod sink;
+mod source;
 #[cfg(all(test, feature = "generic"))]
 mod tests;
 
-use nalgebra::{Matrix6, SVector, Vector3, Vector6};
+use nalgebra::{Matrix6, Vector3, Vector6};
+
+pub use poses::Poses;
 
 use crate::{Real, Robot, trig};
-use quantities::{Compliance, Deflection, Directional, Quantity, Trace, Triangle};
+use poses::View;
+use quantities::{Deflection, Directional, Trace, Triangle};
 use sink::{ByNumber, EachPose};
 
 /// The floating point numbers that batches are made of: `f32` and `f64`.
 #[expect(private_bounds, reason = "nobody else shall implement it")]
-pub trait Float: Real + trig::Float + PartialOrd + Send + Sync {}
+pub trait Float: Real + trig::Float + dispatch::Transpose + PartialOrd + Send + Sync {}
 
 impl Float for f32 {}
 impl Float for f64 {}
@@ -49,63 +55,54 @@ impl Float for f64 {}
 /// [`Robot::compliance`] of every pose.
 pub fn compliance<T: Float, const N: usize>(
     robot: &impl Robot<N>,
-    poses: &[SVector<T, N>],
+    poses: impl Poses<T, N>,
     compliances: &mut [Matrix6<T>],
 ) {
-    each(&Compliance { robot }, poses, compliances);
+    dispatch::run(Triangle { robot }, poses.view().source(), EachPose(compliances));
 }
 
 /// The upper triangles of [`Robot::compliance`] by rows, 21 entries a pose.
 pub fn compliance_triangle<T: Float, const N: usize>(
     robot: &impl Robot<N>,
-    poses: &[SVector<T, N>],
+    poses: impl Poses<T, N>,
     triangles: &mut [[T; 21]],
 ) {
-    each(&Triangle { robot }, poses, triangles);
+    dispatch::run(Triangle { robot }, poses.view().source(), EachPose(triangles));
 }
 
 /// The upper triangles of [`Robot::compliance`], a slice an entry: by rows,
-/// `entries[k][i]` belongs to pose `i`. The fastest way to whole compliances,
-/// because nothing has to be rearranged.
+/// `entries[k][i]` belongs to pose `i`. Nothing has to be rearranged.
 pub fn compliance_by_entry<T: Float, const N: usize>(
     robot: &impl Robot<N>,
-    poses: &[SVector<T, N>],
+    poses: impl Poses<T, N>,
     entries: [&mut [T]; 21],
 ) {
-    dispatch::run(&Triangle { robot }, poses, &mut ByNumber { slices: entries });
+    dispatch::run(Triangle { robot }, poses.view().source(), ByNumber(entries));
 }
 
 /// The traces of the translational blocks of [`Robot::compliance`] (m/N): how
 /// much the robot gives way to forces, whatever their direction.
-pub fn translational_trace<T: Float, const N: usize>(robot: &impl Robot<N>, poses: &[SVector<T, N>], traces: &mut [T]) {
-    each(&Trace { robot }, poses, traces);
+pub fn translational_trace<T: Float, const N: usize>(robot: &impl Robot<N>, poses: impl Poses<T, N>, traces: &mut [T]) {
+    dispatch::run(Trace { robot }, poses.view().source(), EachPose(traces));
 }
 
 /// The displacement along a force per force, `u^T C u` (m/N), for the direction
 /// `u` in the base frame: a unit vector.
 pub fn directional_compliance<T: Float, const N: usize>(
     robot: &impl Robot<N>,
-    poses: &[SVector<T, N>],
+    poses: impl Poses<T, N>,
     direction: &Vector3<T>,
     compliances: &mut [T],
 ) {
-    each(&Directional { robot, direction: *direction }, poses, compliances);
+    dispatch::run(Directional { robot, direction: *direction }, poses.view().source(), EachPose(compliances));
 }
 
 /// [`Robot::deflection`] of every pose under one wrench.
 pub fn deflection<T: Float, const N: usize>(
     robot: &impl Robot<N>,
-    poses: &[SVector<T, N>],
+    poses: impl Poses<T, N>,
     wrench: &Vector6<T>,
     deflections: &mut [Vector6<T>],
 ) {
-    each(&Deflection { robot, wrench: *wrench }, poses, deflections);
-}
-
-fn each<T: Float, Q: Quantity<T, N, M>, const N: usize, const M: usize>(
-    quantity: &Q,
-    poses: &[SVector<T, N>],
-    results: &mut [Q::Result],
-) {
-    dispatch::run(quantity, poses, &mut EachPose { results, result: Q::result });
+    dispatch::run(Deflection { robot, wrench: *wrench }, poses.view().source(), EachPose(deflections));
 }

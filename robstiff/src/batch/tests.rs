@@ -4,7 +4,8 @@ use std::vec::Vec;
 use nalgebra::{Matrix6, SVector, Vector3, Vector6};
 
 use super::dispatch::{Level, run_at};
-use super::quantities::{Compliance, Deflection, Directional, Quantity, Trace, Triangle};
+use super::quantities::{Quantity, Results};
+use super::source::Source;
 use super::*;
 use crate::samples::{linear_effects, odd};
 use crate::{Effect, Generic};
@@ -19,51 +20,55 @@ fn poses<const N: usize>(count: usize) -> Vec<SVector<f64, N>> {
     (0..count).map(|k| SVector::from_fn(|i, _| 3.0 * f64::sin(1.7 * k as f64 + 2.3 * i as f64))).collect()
 }
 
-/// On every level: what `expected` says of each pose, to 1e-13 of `size`.
-fn check<Q, R, const N: usize, const M: usize>(
-    quantity: &Q,
-    poses: &[SVector<f64, N>],
+/// On every level: what `expected` says of each pose, to 1e-13 of the largest
+/// number of the pose.
+fn check<V, Q, R, const N: usize, const M: usize>(
+    quantity: impl Fn() -> Q,
+    poses: V,
     expected: impl Fn(&SVector<f64, N>) -> R,
     numbers: impl Fn(&R) -> Vec<f64>,
 ) where
-    Q: Quantity<f64, N, M, Result = R>,
-    R: Clone,
+    V: View<f64, N>,
+    Q: Quantity<f64, N, M>,
+    R: Results<f64, M> + Clone,
 {
-    let expected: Vec<Vec<f64>> = poses.iter().map(|q| numbers(&expected(q))).collect();
+    let source = poses.source();
+    let expected: Vec<R> = (0..poses.count()).map(|k| expected(&source.pose(k))).collect();
     for level in Level::available() {
-        let mut results: Vec<R> = poses.iter().map(|_| Q::result([f64::NAN; M])).collect();
-        run_at(level, quantity, poses, &mut EachPose { results: &mut results, result: Q::result });
-        for (result, expected) in results.iter().zip(&expected) {
+        let mut results = expected.clone();
+        results.iter_mut().for_each(|result| result.entries().fill(f64::NAN));
+        run_at(level, quantity(), poses.source(), EachPose(&mut results));
+        for (k, (result, expected)) in results.iter().zip(&expected).enumerate() {
+            let (result, expected) = (numbers(result), numbers(expected));
             let size = expected.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
-            for (a, b) in numbers(result).iter().zip(expected) {
-                assert!((a - b).abs() <= 1e-13 * size, "{level:?}: {a:e} for {b:e}, size {size:e}");
+            for (a, b) in result.iter().zip(&expected) {
+                assert!((a - b).abs() <= 1e-13 * size, "{level:?}, pose {k}: {a:e} for {b:e}, size {size:e}");
             }
         }
     }
 }
 
-fn check_all<const N: usize>(robot: &impl Robot<N>, count: usize) {
-    let poses = poses::<N>(count);
+fn check_all<const N: usize>(robot: &impl Robot<N>, poses: impl View<f64, N>) {
     let (wrench, direction) = (WRENCH, DIRECTION);
     let compliance = |q: &SVector<f64, N>| robot.compliance(q);
     let block = |q: &SVector<f64, N>| compliance(q).fixed_view::<3, 3>(0, 0).into_owned();
-    check(&Compliance { robot }, &poses, compliance, |m| m.as_slice().to_vec());
+    check(|| Triangle { robot }, poses, compliance, |m| m.as_slice().to_vec());
     let triangle = |q: &SVector<f64, N>| {
         let entries: Vec<f64> = (0..6).flat_map(|i| (i..6).map(move |j| (i, j))).map(|at| compliance(q)[at]).collect();
         entries.try_into().unwrap()
     };
-    check(&Triangle { robot }, &poses, triangle, |entries: &[f64; 21]| entries.to_vec());
-    check(&Trace { robot }, &poses, |q| block(q).trace(), |x| vec![*x]);
-    check(&Directional { robot, direction }, &poses, |q| direction.dot(&(block(q) * direction)), |x| vec![*x]);
-    check(&Deflection { robot, wrench }, &poses, |q| robot.deflection(q, &wrench), |v| v.as_slice().to_vec());
+    check(|| Triangle { robot }, poses, triangle, |entries: &[f64; 21]| entries.to_vec());
+    check(|| Trace { robot }, poses, |q| block(q).trace(), |x| vec![*x]);
+    check(|| Directional { robot, direction }, poses, |q| direction.dot(&(block(q) * direction)), |x| vec![*x]);
+    check(|| Deflection { robot, wrench }, poses, |q| robot.deflection(q, &wrench), |v| v.as_slice().to_vec());
 }
 
 #[test]
 fn every_level_gives_what_single_poses_give() {
     // Nothing, parts of vectors, whole blocks, blocks and a tail.
     for count in [0, 1, 7, 16, 63, 64, 65, 128, 200] {
-        check_all(&Rv130hsc, count);
-        check_all(&FanucR2000ic, count);
+        check_all(&Rv130hsc, &poses(count)[..]);
+        check_all(&FanucR2000ic, &poses(count)[..]);
     }
 }
 
@@ -72,7 +77,7 @@ fn robots_read_at_run_time_come_in_batches_too() {
     let mut description = odd();
     description.effects = linear_effects();
     description.effects.push(Effect::StiffnessNonlinearity { joint: 5, added: 2e-6, knee: 300.0 });
-    check_all(&Generic::<6>::new(&description).unwrap(), 70);
+    check_all(&Generic::<6>::new(&description).unwrap(), &poses(70)[..]);
 }
 
 #[test]
@@ -101,14 +106,26 @@ fn by_entry_is_the_same() {
     }
 }
 
+/// Every level, against double precision: 2e-6 of the largest entry.
 #[test]
 fn single_precision_comes_in_batches_too() {
     let poses: Vec<SVector<f32, 5>> = poses::<5>(100).iter().map(|q| q.map(|x| x as f32)).collect();
-    let mut compliances = vec![Matrix6::zeros(); 100];
-    compliance(&Rv130hsc, &poses, &mut compliances);
-    for (q, compliance) in poses.iter().zip(&compliances) {
-        let single = Rv130hsc.compliance(&q.map(f64::from));
-        assert!((compliance.map(f64::from) - single).amax() < 2e-6 * single.amax());
+    let wrench = WRENCH.map(|x| x as f32);
+    for level in Level::available() {
+        let (mut compliances, mut traces) = (vec![Matrix6::zeros(); 100], vec![0.0; 100]);
+        run_at(level, Triangle { robot: &Rv130hsc }, &poses[..], EachPose(&mut compliances));
+        run_at(level, Trace { robot: &Rv130hsc }, &poses[..], EachPose(&mut traces));
+        let mut deflections = vec![Vector6::zeros(); 100];
+        run_at(level, Deflection { robot: &Rv130hsc, wrench }, &poses[..], EachPose(&mut deflections));
+        for (k, q) in poses.iter().enumerate() {
+            let q = q.map(f64::from);
+            let single: Matrix6<f64> = Rv130hsc.compliance(&q);
+            assert!((compliances[k].map(f64::from) - single).amax() < 2e-6 * single.amax(), "{level:?}");
+            let trace = single.fixed_view::<3, 3>(0, 0).trace();
+            assert!((f64::from(traces[k]) - trace).abs() < 2e-6 * trace, "{level:?}");
+            let single = Rv130hsc.deflection(&q, &WRENCH);
+            assert!((deflections[k].map(f64::from) - single).amax() < 4e-6 * single.amax(), "{level:?}");
+        }
     }
 }
 
