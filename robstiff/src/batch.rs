@@ -42,7 +42,7 @@ pub use poses::Poses;
 
 use crate::{Real, Robot, trig};
 use poses::View;
-use quantities::{Deflection, Directional, Trace, Triangle};
+use quantities::{Deflection, Deflections, Directional, Trace, Triangle};
 use sink::{ByNumber, EachPose};
 
 /// The floating point numbers that batches are made of: `f32` and `f64`.
@@ -105,4 +105,36 @@ pub fn deflection<T: Float, const N: usize>(
     deflections: &mut [Vector6<T>],
 ) {
     dispatch::run(Deflection { robot, wrench: *wrench }, poses.view().source(), EachPose(deflections));
+}
+
+/// [`Robot::deflection`] of every pose under a wrench of its own.
+///
+/// ```
+/// use robstiff::batch;
+/// use robstiff::nalgebra::{SVector, Vector6};
+///
+/// robstiff::robot!("rv130hsc.yaml");
+///
+/// // Along a path, the force turns with the tool (N).
+/// let poses: Vec<_> = (0..100).map(|i| SVector::from([0.01 * i as f64, -0.5, 0.5, 0.0, 1.0])).collect();
+/// let wrench = |turn: f64| Vector6::new(400.0 * turn.cos(), 400.0 * turn.sin(), 0.0, 0.0, 0.0, 0.0);
+/// let wrenches: Vec<_> = poses.iter().map(|q| wrench(q[0])).collect();
+/// let mut deflections = vec![Vector6::zeros(); poses.len()];
+/// batch::deflections(&Rv130hsc, &poses, &wrenches, &mut deflections);
+/// let (first, last) = (deflections[0], deflections[99]);
+/// // Turned about the base's axis, everything is the same but for the turn.
+/// assert!((first.xyz().norm() - last.xyz().norm()).abs() < 1e-12);
+/// ```
+///
+/// # Panics
+/// Also if there are not as many wrenches as poses.
+pub fn deflections<T: Float, const N: usize>(
+    robot: &impl Robot<N>,
+    poses: impl Poses<T, N>,
+    wrenches: &[Vector6<T>],
+    deflections: &mut [Vector6<T>],
+) {
+    let poses = poses.view();
+    assert_eq!(wrenches.len(), poses.count(), "there must be as many wrenches as poses");
+    dispatch::run(Deflections::new(robot, wrenches), poses.source(), EachPose(deflections));
 }

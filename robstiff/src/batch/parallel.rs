@@ -73,3 +73,17 @@ pub fn deflection<T: Float, const N: usize>(
 ) {
     pieces(poses.view(), deflections, |_, poses, results| super::deflection(robot, poses, wrench, results));
 }
+
+/// [`deflections`](super::deflections) on all cores.
+pub fn deflections<T: Float, const N: usize>(
+    robot: &(impl Robot<N> + Sync),
+    poses: impl Poses<T, N>,
+    wrenches: &[Vector6<T>],
+    deflections: &mut [Vector6<T>],
+) {
+    let poses = poses.view();
+    assert_eq!(wrenches.len(), poses.count(), "there must be as many wrenches as poses");
+    pieces(poses, deflections, |start, poses, results| {
+        super::deflections(robot, poses, &wrenches[start..start + results.len()], results);
+    });
+}

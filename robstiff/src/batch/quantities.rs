@@ -5,6 +5,7 @@ use core::ops::Range;
 use nalgebra::{Matrix6, SVector, Vector3, Vector6};
 
 use super::Float;
+use super::block::BLOCK;
 use crate::{Real, Robot};
 
 /// Something that is computed of a pose: `M` numbers, in any scalar that holds
@@ -161,6 +162,35 @@ impl<T: Float, R: Robot<N>, const N: usize> Quantity<T, N, 6> for Deflection<'_,
     #[inline(always)]
     fn numbers<S: Real>(&self, _: usize, q: &SVector<S, N>, scalar: impl Fn(T) -> S) -> [S; 6] {
         deflection(self.robot, q, |i| scalar(self.wrench[i]))
+    }
+}
+
+/// The deflection under a wrench of the pose's own.
+pub struct Deflections<'r, R, T> {
+    robot: &'r R,
+    wrenches: &'r [Vector6<T>],
+    block: [[T; BLOCK]; 6],
+}
+
+impl<'r, R, T: Float> Deflections<'r, R, T> {
+    pub fn new(robot: &'r R, wrenches: &'r [Vector6<T>]) -> Self {
+        Self { robot, wrenches, block: [[T::ZERO; BLOCK]; 6] }
+    }
+}
+
+impl<T: Float, R: Robot<N>, const N: usize> Quantity<T, N, 6> for Deflections<'_, R, T> {
+    #[inline(always)]
+    fn prepare(&mut self, poses: Range<usize>) {
+        for (pose, wrench) in self.wrenches[poses].iter().enumerate().take(BLOCK) {
+            for i in 0..6 {
+                self.block[i][pose] = wrench[i];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn numbers<S: Real>(&self, pose: usize, q: &SVector<S, N>, scalar: impl Fn(T) -> S) -> [S; 6] {
+        deflection(self.robot, q, |i| scalar(self.block[i][pose]))
     }
 }
 

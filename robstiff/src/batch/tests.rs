@@ -61,6 +61,15 @@ fn check_all<const N: usize>(robot: &impl Robot<N>, poses: impl View<f64, N>) {
     check(|| Trace { robot }, poses, |q| block(q).trace(), |x| vec![*x]);
     check(|| Directional { robot, direction }, poses, |q| direction.dot(&(block(q) * direction)), |x| vec![*x]);
     check(|| Deflection { robot, wrench }, poses, |q| robot.deflection(q, &wrench), |v| v.as_slice().to_vec());
+    let k = std::cell::Cell::new(0);
+    let wrenches: Vec<_> = (0..poses.count()).map(own_wrench).collect();
+    let own = |q: &SVector<f64, N>| robot.deflection(q, &wrenches[k.replace(k.get() + 1)]);
+    check(|| Deflections::new(robot, &wrenches), poses, own, |v| v.as_slice().to_vec());
+}
+
+/// A wrench that differs from pose to pose.
+fn own_wrench(pose: usize) -> Vector6<f64> {
+    Vector6::from_fn(|i, _| WRENCH[i] * (1.0 + 0.5 * f64::sin(1.1 * pose as f64 + i as f64)))
 }
 
 #[test]
@@ -135,6 +144,12 @@ fn too_few_results_are_refused() {
     translational_trace(&Rv130hsc, &poses::<5>(3), &mut [0.0; 2]);
 }
 
+#[test]
+#[should_panic(expected = "as many wrenches as poses")]
+fn too_few_wrenches_are_refused() {
+    deflections(&Rv130hsc, &poses::<5>(3), &[WRENCH; 2], &mut [Vector6::zeros(); 3]);
+}
+
 #[cfg(feature = "rayon")]
 #[test]
 fn all_cores_give_what_one_gives() {
@@ -146,5 +161,10 @@ fn all_cores_give_what_one_gives() {
     let (mut one, mut all) = (vec![Matrix6::zeros(); 5000], vec![Matrix6::zeros(); 5000]);
     compliance(&Rv130hsc, &poses, &mut one);
     parallel::compliance(&Rv130hsc, &poses, &mut all);
+    assert_eq!(one, all);
+    let wrenches: Vec<_> = (0..5000).map(own_wrench).collect();
+    let (mut one, mut all) = (vec![Vector6::zeros(); 5000], vec![Vector6::zeros(); 5000]);
+    deflections(&Rv130hsc, &poses, &wrenches, &mut one);
+    parallel::deflections(&Rv130hsc, &poses, &wrenches, &mut all);
     assert_eq!(one, all);
 }
