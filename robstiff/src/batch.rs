@@ -20,6 +20,11 @@
 //! with FMA, AVX-512) are found at run time. Nothing is allocated. Results are
 //! those of the single pose but for rounding, 1e-13 of the largest entry.
 //!
+//! From the fastest on: [`compliance_blocks`], where results are used and not
+//! kept; [`compliance_by_entry`], unless the slices begin a multiple of 4096
+//! bytes apart; [`compliance_triangle`]; [`compliance`]. Who wants a trace or a
+//! deflection only asks for that.
+//!
 //! # Panics
 //! Every function panics if there are not as many results as poses.
 
@@ -36,14 +41,17 @@ mod source;
 #[cfg(all(test, feature = "generic"))]
 mod tests;
 
+use core::ops::Range;
+
 use nalgebra::{Matrix6, Vector3, Vector6};
 
+pub use block::BLOCK;
 pub use poses::Poses;
 
 use crate::{Real, Robot, trig};
 use poses::View;
 use quantities::{Deflection, Deflections, Directional, Trace, Triangle};
-use sink::{ByNumber, EachPose};
+use sink::{Blocks, ByNumber, EachPose};
 
 /// The floating point numbers that batches are made of: `f32` and `f64`.
 #[expect(private_bounds, reason = "nobody else shall implement it")]
@@ -78,6 +86,40 @@ pub fn compliance_by_entry<T: Float, const N: usize>(
     entries: [&mut [T]; 21],
 ) {
     dispatch::run(Triangle { robot }, poses.view().source(), ByNumber(entries));
+}
+
+/// Calls a function with the upper triangles of [`Robot::compliance`] of up to
+/// [`BLOCK`] poses at a time, in order: with the numbers of the poses, and with
+/// the entries by rows, `entries[k][i]` of the `i`-th of these poses. Entries
+/// beyond the last of them mean nothing.
+///
+/// The fastest way to whole compliances: what looks at them finds them in the
+/// first-level cache, and there is no need to keep them.
+///
+/// ```
+/// use robstiff::batch;
+/// use robstiff::nalgebra::SVector;
+///
+/// robstiff::robot!("rv130hsc.yaml");
+///
+/// let poses: Vec<_> = (0..1000).map(|i| SVector::from([0.0, -0.5, 0.5, 0.0, 0.001 * i as f64])).collect();
+/// // The softest of all poses along x, and how soft it is there.
+/// let mut softest = (0, 0.0);
+/// batch::compliance_blocks(&Rv130hsc, &poses, |range, entries| {
+///     for (pose, xx) in range.zip(entries[0]) {
+///         if xx > softest.1 {
+///             softest = (pose, xx);
+///         }
+///     }
+/// });
+/// assert!(softest.1 > 1e-7);
+/// ```
+pub fn compliance_blocks<T: Float, const N: usize>(
+    robot: &impl Robot<N>,
+    poses: impl Poses<T, N>,
+    look: impl FnMut(Range<usize>, &[[T; BLOCK]; 21]),
+) {
+    dispatch::run(Triangle { robot }, poses.view().source(), Blocks(look));
 }
 
 /// The traces of the translational blocks of [`Robot::compliance`] (m/N): how

@@ -70,3 +70,17 @@ impl<T: Float, const M: usize> Sink<T, M> for ByNumber<'_, T, M> {
         }
     }
 }
+
+/// A function that looks at the blocks.
+pub struct Blocks<F>(pub F);
+
+impl<T: Float, F: FnMut(Range<usize>, &[[T; BLOCK]; M]), const M: usize> Sink<T, M> for Blocks<F> {
+    fn fits(&self, _: usize) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn take(&mut self, poses: Range<usize>, numbers: &[[T; BLOCK]; M], _: impl Instructions) {
+        (self.0)(poses, numbers);
+    }
+}

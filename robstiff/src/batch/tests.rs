@@ -90,6 +90,22 @@ fn robots_read_at_run_time_come_in_batches_too() {
 }
 
 #[test]
+fn blocks_come_in_order_and_hold_all_entries() {
+    let poses = poses::<5>(150);
+    let mut triangles = vec![[0.0; 21]; 150];
+    compliance_triangle(&Rv130hsc, &poses, &mut triangles);
+    let mut next = 0;
+    compliance_blocks(&Rv130hsc, &poses, |range, entries| {
+        assert_eq!(range.start, next);
+        next = range.end;
+        for (lane, pose) in range.enumerate() {
+            assert_eq!(core::array::from_fn(|k| entries[k][lane]), triangles[pose]);
+        }
+    });
+    assert_eq!(next, 150);
+}
+
+#[test]
 fn poses_out_of_the_domain_spoil_no_others() {
     let mut poses = poses::<5>(200);
     poses[70][2] = 1e9;
