@@ -1,5 +1,8 @@
 //! Many poses at once: slices of poses in, slices of results out.
 //!
+//! Poses are given one by one, or as a [`Grid`] in joint space, which costs less:
+//! its sines and cosines are in tables.
+//!
 //! ```
 //! use robstiff::nalgebra::{SVector, Vector3};
 //! use robstiff::{Robot, batch};
@@ -30,6 +33,7 @@
 
 mod block;
 mod dispatch;
+mod grid;
 mod known;
 mod needs;
 #[cfg(feature = "rayon")]
@@ -46,6 +50,7 @@ use core::ops::Range;
 use nalgebra::{Matrix6, Vector3, Vector6};
 
 pub use block::BLOCK;
+pub use grid::Grid;
 pub use poses::Poses;
 
 use crate::{Real, Robot, trig};

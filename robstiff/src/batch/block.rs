@@ -61,11 +61,12 @@ pub fn run<T, Q, S, const N: usize, const M: usize, const FUSED: bool>(
     let mut first = 0;
     while first < poses {
         let filled = source.fill::<FUSED>(first, needs, &mut joints);
-        let (Filled::Each(count) | Filled::Beyond(count)) = filled;
+        let (Filled::Each(count) | Filled::Row(count) | Filled::Beyond(count)) = filled;
         quantity.prepare(first..first + count);
         match filled {
             Filled::Beyond(_) => one_by_one(quantity, count, |pose| source.pose(first + pose), &mut numbers.0),
-            Filled::Each(_) => evaluate::<T, Q, N, M, FUSED>(quantity, count, &joints, &mut numbers.0),
+            Filled::Row(_) if S::ROWS => evaluate_row::<T, Q, N, M, FUSED>(quantity, &joints, &mut numbers.0),
+            _ => evaluate::<T, Q, N, M, FUSED>(quantity, count, &joints, &mut numbers.0),
         }
         sink.take(first..first + count, &numbers.0, instructions);
         first += count;
@@ -88,13 +89,29 @@ fn evaluate<T, Q, const N: usize, const M: usize, const FUSED: bool>(
     for vector in 0..count.div_ceil(VECTOR).min(BLOCK / VECTOR) {
         for lane in 0..VECTOR {
             let pose = vector * VECTOR + lane;
-            evaluate_one::<T, Q, N, M, FUSED>(quantity, pose, joints, numbers);
+            evaluate_one::<T, Q, N, M, FUSED, false>(quantity, pose, joints, numbers);
         }
     }
 }
 
+/// The quantity at a row of poses that differ in the first joint: what depends
+/// on the others alone, the compiler computes before the loop.
 #[inline(always)]
-fn evaluate_one<T, Q, const N: usize, const M: usize, const FUSED: bool>(
+fn evaluate_row<T, Q, const N: usize, const M: usize, const FUSED: bool>(
+    quantity: &Q,
+    joints: &Joints<T, N>,
+    numbers: &mut [[T; BLOCK]; M],
+) where
+    T: Float,
+    Q: Quantity<T, N, M>,
+{
+    for pose in 0..BLOCK {
+        evaluate_one::<T, Q, N, M, FUSED, true>(quantity, pose, joints, numbers);
+    }
+}
+
+#[inline(always)]
+fn evaluate_one<T, Q, const N: usize, const M: usize, const FUSED: bool, const ROW: bool>(
     quantity: &Q,
     pose: usize,
     joints: &Joints<T, N>,
@@ -104,6 +121,7 @@ fn evaluate_one<T, Q, const N: usize, const M: usize, const FUSED: bool>(
     Q: Quantity<T, N, M>,
 {
     let q = SVector::from_fn(|joint, _| {
+        let pose = if ROW && joint > 0 { 0 } else { pose };
         Known::<T, FUSED>::angle(joints.values[joint][pose], joints.sines[joint][pose], joints.cosines[joint][pose])
     });
     let computed = quantity.numbers(pose, &q, Known::number);

@@ -23,6 +23,11 @@ impl Needs {
     }
 
     #[inline(always)]
+    pub fn value(self, joint: usize) -> bool {
+        self.0 & bit(joint) != 0
+    }
+
+    #[inline(always)]
     pub fn sin_cos(self, joint: usize) -> bool {
         self.0 & (bit(joint) << 32) != 0
     }

@@ -1,5 +1,20 @@
 //! The same on all cores, in pieces that keep a core busy for some
 //! microseconds. Each function panics as its namesake does.
+//!
+//! ```
+//! # #[cfg(feature = "rayon")] {
+//! use robstiff::batch::{Grid, parallel};
+//!
+//! robstiff::robot!("rv130hsc.yaml");
+//!
+//! let turns: Vec<f64> = (0..100).map(|i| 0.03 * i as f64).collect();
+//! let coordinates = [&turns[..], &turns[..50], &[0.5], &[0.0], &[1.2]];
+//! let mut tables = vec![0.0; Grid::table_len(&coordinates)];
+//! let grid = Grid::new(coordinates, &mut tables);
+//! let mut traces = vec![0.0; grid.len()];
+//! parallel::translational_trace(&Rv130hsc, grid, &mut traces);
+//! # }
+//! ```
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 use rayon::prelude::*;

@@ -5,10 +5,11 @@ use core::ops::Range;
 use nalgebra::SVector;
 
 use super::Float;
+use super::grid::{Grid, Steps};
 use super::source::Source;
 
 /// Poses to compute something at: a slice, an array or a `Vec` of them, by
-/// reference.
+/// reference, or a [`Grid`].
 pub trait Poses<T: Float, const N: usize>: IntoView<T, N> {}
 
 impl<T: Float, P: IntoView<T, N>, const N: usize> Poses<T, N> for P {}
@@ -43,6 +44,20 @@ impl<T: Float, const N: usize> View<T, N> for &[SVector<T, N>] {
     }
 }
 
+impl<T: Float, const N: usize> View<T, N> for Grid<'_, T, N> {
+    fn count(&self) -> usize {
+        self.len()
+    }
+
+    fn cut(&self, poses: Range<usize>) -> Self {
+        self.part(poses)
+    }
+
+    fn source(self) -> impl Source<T, N> {
+        Steps::new(self)
+    }
+}
+
 impl<T: Float, const N: usize> IntoView<T, N> for &[SVector<T, N>] {
     type View = Self;
 
@@ -64,6 +79,14 @@ impl<'p, T: Float, const N: usize> IntoView<T, N> for &'p std::vec::Vec<SVector<
     type View = &'p [SVector<T, N>];
 
     fn view(self) -> Self::View {
+        self
+    }
+}
+
+impl<T: Float, const N: usize> IntoView<T, N> for Grid<'_, T, N> {
+    type View = Self;
+
+    fn view(self) -> Self {
         self
     }
 }

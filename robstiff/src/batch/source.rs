@@ -9,6 +9,9 @@ use crate::trig;
 
 /// Poses, block after block.
 pub trait Source<T, const N: usize> {
+    /// Whether blocks may be rows.
+    const ROWS: bool = false;
+
     /// How many there are.
     fn poses(&self) -> usize;
 
@@ -25,6 +28,9 @@ pub trait Source<T, const N: usize> {
 pub enum Filled {
     /// Every joint of every pose.
     Each(usize),
+    /// The first joint of every pose, and the others, which all have in common,
+    /// of the first pose.
+    Row(usize),
     /// Nothing: some angle is out of the domain of the sine for vectors.
     Beyond(usize),
 }

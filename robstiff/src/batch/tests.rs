@@ -89,6 +89,87 @@ fn robots_read_at_run_time_come_in_batches_too() {
     check_all(&Generic::<6>::new(&description).unwrap(), &poses(70)[..]);
 }
 
+/// Coordinates of as many joints as there are lengths, wide apart.
+fn coordinates<const N: usize>(lengths: [usize; N]) -> [Vec<f64>; N] {
+    let mut joint = 0;
+    lengths.map(|length| {
+        joint += 1;
+        (0..length).map(|i| 3.0 * f64::sin(1.3 * i as f64 + 2.3 * joint as f64)).collect()
+    })
+}
+
+/// All quantities on a grid of so many coordinates a joint.
+fn check_grid<const N: usize>(robot: &impl Robot<N>, lengths: [usize; N], part: impl Fn(usize) -> Range<usize>) {
+    let coordinates = coordinates(lengths);
+    let coordinates = coordinates.each_ref().map(|axis| &axis[..]);
+    let mut tables = vec![0.0; Grid::table_len(&coordinates)];
+    let grid = Grid::new(coordinates, &mut tables);
+    check_all(robot, grid.part(part(grid.len())));
+}
+
+#[test]
+fn grids_give_what_single_poses_give() {
+    // Rows and parts of rows, the first joint fixed, short rows, one pose, none.
+    for lengths in [
+        [65, 2, 3, 1, 2],
+        [32, 1, 2, 2, 1],
+        [31, 3, 2, 1, 1],
+        [200, 1, 1, 1, 1],
+        [1, 65, 3, 1, 1],
+        [1, 1, 7, 1, 20],
+        [7, 7, 1, 2, 3],
+        [2, 1, 2, 2, 33],
+        [1, 1, 1, 1, 1],
+        [7, 65, 0, 1, 2],
+    ] {
+        check_grid(&Rv130hsc, lengths, |len| 0..len);
+        check_grid(&Rv130hsc, lengths, |len| len / 3..len - len / 5);
+    }
+    check_grid(&FanucR2000ic, [70, 2, 3, 1, 2, 1], |len| 0..len);
+    check_grid(&FanucR2000ic, [1, 7, 3, 2, 2, 3], |len| 1..len);
+    let mut description = odd();
+    description.effects = linear_effects();
+    description.effects.push(Effect::StiffnessNonlinearity { joint: 5, added: 2e-6, knee: 300.0 });
+    let robot = Generic::<6>::new(&description).unwrap();
+    check_grid(&robot, [40, 2, 1, 1, 2, 1], |len| 0..len);
+    check_grid(&robot, [2, 3, 2, 1, 2, 3], |len| 0..len);
+}
+
+#[test]
+fn the_first_joint_of_a_grid_changes_fastest() {
+    let coordinates: [&[f64]; 3] = [&[1.0, 2.0], &[10.0, 20.0, 30.0], &[100.0, 200.0]];
+    let mut tables = [0.0; 14];
+    let grid = Grid::new(coordinates, &mut tables);
+    assert_eq!(grid.len(), 12);
+    assert_eq!(grid.pose(1 + 2 * (2 + 3)), SVector::from([2.0, 30.0, 200.0]));
+    let part = grid.part(5..9).part(1..3);
+    assert_eq!((part.len(), part.is_empty()), (2, false));
+    assert_eq!(part.pose(1), grid.pose(7));
+    assert!(part.part(2..2).is_empty());
+}
+
+#[test]
+#[should_panic(expected = "there are 2 poses")]
+fn a_part_lies_within_the_grid() {
+    let mut tables = [0.0; 4];
+    Grid::new([&[1.0, 2.0]], &mut tables).part(1..3);
+}
+
+#[test]
+fn a_coordinate_out_of_the_domain_spoils_no_others() {
+    let coordinates: [&[f64]; 5] = [&[0.1, f64::NAN, 1e9, 0.3], &[0.2, -0.2], &[0.5], &[0.1, f64::INFINITY], &[1.0]];
+    let mut tables = vec![0.0; Grid::table_len(&coordinates)];
+    let grid = Grid::new(coordinates, &mut tables);
+    let mut deflections = vec![Vector6::zeros(); grid.len()];
+    deflection(&Rv130hsc, grid, &WRENCH, &mut deflections);
+    for (k, deflection) in deflections.iter().enumerate() {
+        let q = grid.pose(k);
+        let single = Rv130hsc.deflection(&q, &WRENCH);
+        assert_eq!(q.iter().all(|x| x.is_finite()), deflection.iter().all(|x| x.is_finite()));
+        assert!(!single[0].is_finite() || (deflection - single).amax() <= 1e-13 * single.amax());
+    }
+}
+
 #[test]
 fn blocks_come_in_order_and_hold_all_entries() {
     let poses = poses::<5>(150);
@@ -183,4 +264,18 @@ fn all_cores_give_what_one_gives() {
     deflections(&Rv130hsc, &poses, &wrenches, &mut one);
     parallel::deflections(&Rv130hsc, &poses, &wrenches, &mut all);
     assert_eq!(one, all);
+}
+
+#[cfg(feature = "rayon")]
+#[test]
+fn all_cores_give_a_grid_what_one_gives() {
+    let coordinates = coordinates([70, 9, 4, 1, 2]);
+    let coordinates = coordinates.each_ref().map(|axis| &axis[..]);
+    let mut tables = vec![0.0; Grid::table_len(&coordinates)];
+    let grid = Grid::new(coordinates, &mut tables);
+    let (mut one, mut all) = (vec![0.0; grid.len()], vec![0.0; grid.len()]);
+    translational_trace(&Rv130hsc, grid, &mut one);
+    parallel::translational_trace(&Rv130hsc, grid, &mut all);
+    // The pieces of a row have other vectors: the same but for rounding.
+    assert!(one.iter().zip(&all).all(|(one, all)| (one - all).abs() <= 1e-13 * one));
 }
