@@ -4,7 +4,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use robstiff::batch;
+use robstiff::batch::{self, Grid};
 use robstiff_benches::{Rv130hsc, poses, trace, triangle};
 
 const COUNT: usize = 1024;
@@ -59,6 +59,40 @@ fn main() {
     });
     time("batch, trace only", || {
         batch::translational_trace(&Rv130hsc, &poses, &mut traces);
+        black_box(&mut traces);
+    });
+    time("batch, by block", || {
+        batch::compliance_blocks(&Rv130hsc, &poses, |_, entries| {
+            black_box(entries);
+        });
+    });
+    let poses: Vec<_> = poses.iter().map(|q| q.map(|x| x as f32)).collect();
+    let mut triangles = vec![[0.0; 21]; COUNT];
+    time("batch, f32", || {
+        batch::compliance_triangle(&Rv130hsc, &poses, &mut triangles);
+        black_box(&mut triangles);
+    });
+    time("batch, by block, f32", || {
+        batch::compliance_blocks(&Rv130hsc, &poses, |_, entries| {
+            black_box(entries);
+        });
+    });
+    let turns: Vec<f64> = (0..64).map(|i| 0.05 * i as f64).collect();
+    let coordinates = [64, 4, 4, 1, 1].map(|length| &turns[..length]);
+    let mut tables = vec![0.0; Grid::table_len(&coordinates)];
+    let grid = Grid::new(coordinates, &mut tables);
+    let mut triangles = vec![[0.0; 21]; COUNT];
+    time("grid", || {
+        batch::compliance_triangle(&Rv130hsc, grid, &mut triangles);
+        black_box(&mut triangles);
+    });
+    time("grid, by block", || {
+        batch::compliance_blocks(&Rv130hsc, grid, |_, entries| {
+            black_box(entries);
+        });
+    });
+    time("grid, trace only", || {
+        batch::translational_trace(&Rv130hsc, grid, &mut traces);
         black_box(&mut traces);
     });
 }
