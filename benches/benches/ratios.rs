@@ -6,8 +6,9 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use robstiff::batch::{self, Grid};
 use robstiff::nalgebra::{Matrix4, Matrix6, SMatrix, Vector3, Vector6};
-use robstiff::{Dual, Robot, batch};
+use robstiff::{Dual, Robot};
 use robstiff_benches::{self as measured, Rv130hsc, WRENCH, poses};
 
 const COUNT: usize = 1024;
@@ -65,8 +66,55 @@ fn batches(criterion: &mut Criterion) {
     batch!("trace", 0.0, |q, out| batch::translational_trace(&Rv130hsc, q, out));
     batch!("along a direction", 0.0, |q, out| batch::directional_compliance(&Rv130hsc, q, &Vector3::x(), out));
     batch!("deflection", Vector6::zeros(), |q, out| batch::deflection(&Rv130hsc, q, &WRENCH, out));
+    let single: Vec<_> = poses.iter().map(|q| q.map(|x| x as f32)).collect();
+    let wrenches = vec![WRENCH; COUNT];
+    batch!("deflection, a wrench a pose", Vector6::zeros(), |q, out| batch::deflections(&Rv130hsc, q, &wrenches, out));
+    batch!("blocks", (), |q, _out| batch::compliance_blocks(&Rv130hsc, q, |_, entries| {
+        black_box(entries);
+    }));
+    batch!("triangle, f32", [0.0; 21], |_q, out| batch::compliance_triangle(&Rv130hsc, &single, out));
+    batch!("trace, f32", 0.0, |_q, out| batch::translational_trace(&Rv130hsc, &single, out));
+    batch!("blocks, f32", (), |_q, _out| batch::compliance_blocks(&Rv130hsc, &single, |_, entries| {
+        black_box(entries);
+    }));
     group.finish();
 }
 
-criterion_group!(ratios, single, batches);
+/// Grids in joint space, of as many poses.
+fn grids(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("grid, 1024 poses");
+    group.throughput(Throughput::Elements(COUNT as u64));
+    let turns: Vec<f64> = (0..64).map(|i| 0.05 * i as f64).collect();
+    // The first joint has 64 coordinates, or one; or both of the first have few.
+    let shapes =
+        [("rows of 64", [64, 4, 4, 1, 1]), ("first joint fixed", [1, 64, 4, 4, 1]), ("rows of 8", [8, 8, 4, 4, 1])];
+    for (name, lengths) in shapes {
+        let coordinates = lengths.map(|length| &turns[..length]);
+        let mut tables = vec![0.0; Grid::table_len(&coordinates)];
+        let grid = Grid::new(coordinates, &mut tables);
+        let (mut triangles, mut traces) = (vec![[0.0; 21]; COUNT], vec![0.0; COUNT]);
+        group.bench_function(format!("triangle, {name}"), |bencher| {
+            bencher.iter(|| {
+                batch::compliance_triangle(&Rv130hsc, grid, &mut triangles);
+                black_box(&mut triangles);
+            });
+        });
+        group.bench_function(format!("blocks, {name}"), |bencher| {
+            bencher.iter(|| {
+                batch::compliance_blocks(&Rv130hsc, grid, |_, entries| {
+                    black_box(entries);
+                });
+            });
+        });
+        group.bench_function(format!("trace, {name}"), |bencher| {
+            bencher.iter(|| {
+                batch::translational_trace(&Rv130hsc, grid, &mut traces);
+                black_box(&mut traces);
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(ratios, single, batches, grids);
 criterion_main!(ratios);

@@ -26,10 +26,15 @@ pub fn one<Q, const M: usize>(way: [&str; 3], poses: &[Q], one: impl Fn(&Q, &mut
     );
 }
 
+/// Whether results are checked and nothing is timed.
+pub fn is_check() -> bool {
+    std::env::args().nth(1).as_deref() == Some("check")
+}
+
 /// A way to compute all poses, and what of the results belongs to pose `k`.
 pub fn all<R>(way: [&str; 3], results: &mut R, mut pass: impl FnMut(&mut R), of: impl Fn(&R, usize) -> Vec<f64>) {
     let mut numbers = Vec::new();
-    if std::env::args().nth(1).as_deref() == Some("check") {
+    if is_check() {
         pass(results);
         numbers.extend((0..CHECKED).flat_map(|k| of(results, k)));
     } else {

@@ -15,6 +15,11 @@ def own(way):
     return way.startswith(OURS)
 
 
+def comparable(way):
+    """Ours that does the peers' work: they keep every result."""
+    return own(way) and not way.endswith("by block")
+
+
 def number(x):
     return f"{x:.1f}" if x < 99.95 else f"{x:.0f}"
 
@@ -40,7 +45,7 @@ class Times:
         return " / ".join(
             f"{self.best(quantity, robot, lambda way: not own(way), **flags) / ours:.2f}"
             for robot in self.robots
-            for ours in [self.best(quantity, robot, own, **flags)]
+            for ours in [self.best(quantity, robot, comparable, **flags)]
         )
 
     def ways(self, quantities):
@@ -64,7 +69,10 @@ def short(times):
     unflagged = {"flags": lambda flags: flags == "none"}
 
     def row(name, **flags):
-        return [times.cell(q, way=lambda way: way.split(", ")[0] == name, **flags) for q in columns]
+        return [
+            times.cell(q, way=lambda way: way.split(", ")[0] == name and not way.endswith("by block"), **flags)
+            for q in columns
+        ]
 
     rows = [[name, *row(name)] for name in names]
     rows.append(["**best peer / robstiff**", *(f"**{times.gain(q)}**" for q in columns)])

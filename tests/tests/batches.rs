@@ -2,8 +2,9 @@
 //! against the robots that are read at run time, pose by pose.
 
 use nalgebra::{Matrix6, SVector, Vector3, Vector6};
-use robstiff::{Generic, Robot, batch};
-use robstiff_tests::arms::description;
+use robstiff::batch::{self, Grid};
+use robstiff::{Generic, Robot};
+use robstiff_tests::arms::{EveryEffect, ModifiedSlider, Snake, description};
 use robstiff_tests::for_every_arm;
 use robstiff_tests::judge::{DOUBLE, Sizes, assert_close, blocks, trials};
 
@@ -39,11 +40,61 @@ fn agrees<const N: usize, R: Robot<N>>(robot: R, file: &str) {
         assert_close("trace", &[traces[k]], &[translational.trace()], size, DOUBLE);
         let directional = direction.dot(&(translational * direction));
         assert_close("directional compliance", &[along[k]], &[directional], size, DOUBLE);
-        let expected = generic.deflection(q, &wrench);
-        let torque = sizes.torque(&wrench);
-        for (part, size) in [(0..3, sizes.softest * sizes.reach * torque), (3..6, sizes.softest * torque)] {
-            let (found, expected) = (&deflections[k].as_slice()[part.clone()], &expected.as_slice()[part]);
-            assert_close("deflection", found, expected, size, DOUBLE);
+        assert_deflection(&generic, &sizes, q, &wrench, &deflections[k]);
+    }
+}
+
+fn assert_deflection<const N: usize>(
+    generic: &Generic<N>,
+    sizes: &Sizes,
+    q: &SVector<f64, N>,
+    wrench: &Vector6<f64>,
+    found: &Vector6<f64>,
+) {
+    let expected = generic.deflection(q, wrench);
+    let torque = sizes.torque(wrench);
+    for (part, size) in [(0..3, sizes.softest * sizes.reach * torque), (3..6, sizes.softest * torque)] {
+        let (found, expected) = (&found.as_slice()[part.clone()], &expected.as_slice()[part]);
+        assert_close("deflection", found, expected, size, DOUBLE);
+    }
+}
+
+/// Grids of arms with every effect, with sliding joints and with odd offsets:
+/// the compliance, and the deflection under a wrench a pose.
+#[test]
+fn grids_agree() {
+    grid_agrees(EveryEffect, "every-effect.yaml");
+    grid_agrees(ModifiedSlider, "modified-slider.yaml");
+    grid_agrees(Snake, "snake.yaml");
+}
+
+fn grid_agrees<const N: usize>(robot: impl Robot<N>, file: &str) {
+    let description = description(file);
+    let generic = Generic::<N>::new(&description).expect("as many joints as the generated robot");
+    let some: Vec<SVector<f64, N>> = trials::<N>(POSES, 7).map(|(q, _)| q).collect();
+    // Rows longer than a vector, but no multiple; the first joint fixed.
+    for lengths in [[37, 3, 2], [1, 3, 37]] {
+        let axes: [Vec<f64>; N] = std::array::from_fn(|joint| {
+            some.iter().map(|q| q[joint]).take(lengths.get(joint).copied().unwrap_or(1)).collect()
+        });
+        let coordinates = axes.each_ref().map(|axis| &axis[..]);
+        let mut tables = vec![0.0; Grid::table_len(&coordinates)];
+        let grid = Grid::new(coordinates, &mut tables);
+        let count = grid.len();
+        let wrenches: Vec<_> = (0..count)
+            .map(|k| Vector6::new(30.0, -20.0, 10.0, 4.0, 5.0, -6.0) * (1.0 + k as f64 / count as f64))
+            .collect();
+        let (mut compliances, mut deflections) = (vec![Matrix6::zeros(); count], vec![Vector6::zeros(); count]);
+        batch::compliance(&robot, grid, &mut compliances);
+        batch::deflections(&robot, grid, &wrenches, &mut deflections);
+        for k in 0..count {
+            let q = grid.pose(k);
+            let sizes = Sizes::of(&description, q.as_slice());
+            let expected: Matrix6<f64> = generic.compliance(&q);
+            for (block, (found, expected)) in blocks(&compliances[k]).iter().zip(&blocks(&expected)).enumerate() {
+                assert_close("compliance", found, expected, sizes.compliance()[block], DOUBLE);
+            }
+            assert_deflection(&generic, &sizes, &q, &wrenches[k], &deflections[k]);
         }
     }
 }

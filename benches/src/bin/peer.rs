@@ -1,6 +1,8 @@
 //! Our side of `benches/peers`: generated robots, robots read at run time, and a
 //! plain loop over the DH table in nalgebra.
 
+use std::hint::black_box;
+
 use robstiff::batch::Float;
 use robstiff::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
 use robstiff::{Generic, Robot, Statics, batch};
@@ -90,6 +92,23 @@ fn batches<T: Float + Into<f64>, const N: usize>(label: &str, precision: &str, r
             let mut slices = out.iter_mut();
             let slices = std::array::from_fn(|_| slices.next().expect("21 entries").as_mut_slice());
             batch::compliance_by_entry(robot, &poses, slices);
+        },
+        |out, k| out.iter().map(|entry| entry[k].into()).collect(),
+    );
+    // Handed over in blocks, and kept only where they are to be checked.
+    let checking = harness::is_check();
+    harness::all(
+        [label, &quantity("H"), "robstiff, by block"],
+        &mut entries,
+        |out| {
+            batch::compliance_blocks(robot, &poses, |range, block| {
+                if checking {
+                    for (entry, numbers) in out.iter_mut().zip(block) {
+                        entry[range.clone()].copy_from_slice(&numbers[..range.len()]);
+                    }
+                }
+                black_box(block);
+            });
         },
         |out, k| out.iter().map(|entry| entry[k].into()).collect(),
     );

@@ -3,10 +3,12 @@
 use nalgebra::SVector;
 
 use super::Float;
+use super::dispatch::Instructions;
 use super::known::Known;
+use super::needs::{Needs, Traced};
 use super::quantities::Quantity;
 use super::sink::Sink;
-use crate::trig;
+use super::source::{Filled, Source};
 
 /// Poses in a block: what a block needs stays in the first-level cache.
 pub const BLOCK: usize = 64;
@@ -14,63 +16,61 @@ pub const BLOCK: usize = 64;
 /// The poses of a vector, at least: blocks are filled up to a multiple.
 const VECTOR: usize = 16;
 
-/// Computes the quantity at `poses`, block by block.
+/// The joint coordinates of a block of poses, number by number.
+///
+/// Aligned, because a vector that is half in one line of the cache and half in
+/// the next takes twice as long.
+#[repr(align(64))]
+pub struct Joints<T, const N: usize> {
+    pub values: [[T; BLOCK]; N],
+    pub sines: [[T; BLOCK]; N],
+    pub cosines: [[T; BLOCK]; N],
+}
+
+#[repr(align(64))]
+struct Numbers<T, const M: usize>([[T; BLOCK]; M]);
+
+/// Computes the quantity at all poses of a source, block by block.
 ///
 /// Number `k` of all poses of a block lies side by side, so that the loops
 /// over the poses become loops over vectors of poses:
 ///
-/// 1. sines and cosines, joint by joint;
+/// 1. sines and cosines, joint by joint ([`Source::fill`]);
 /// 2. the algebra of the robot;
-/// 3. handing the numbers over.
+/// 3. handing the numbers over ([`Sink::take`]).
 ///
-/// Everything but the last is inlined, because it takes the instructions that
-/// may be used from the function around it.
+/// All is inlined, because it takes the instructions that may be used from the
+/// function around it.
 #[inline(always)]
-pub fn run<T, Q, const N: usize, const M: usize, const FUSED: bool>(
-    quantity: &Q,
-    poses: &[SVector<T, N>],
+pub fn run<T, Q, S, const N: usize, const M: usize, const FUSED: bool>(
+    quantity: &mut Q,
+    source: &mut S,
     sink: &mut impl Sink<T, M>,
+    instructions: impl Instructions,
 ) where
     T: Float,
     Q: Quantity<T, N, M>,
+    S: Source<T, N>,
 {
-    let mut angles = [[[T::ZERO; BLOCK]; N]; 3];
-    let mut numbers = [[T::ZERO; BLOCK]; M];
-    for (block, poses) in poses.chunks(BLOCK).enumerate() {
-        if turn::<T, N, FUSED>(poses, &mut angles) {
-            evaluate::<T, Q, N, M, FUSED>(quantity, poses.len(), &angles, &mut numbers);
-        } else {
-            one_by_one(quantity, poses, &mut numbers);
+    let mut joints =
+        Joints { values: [[T::ZERO; BLOCK]; N], sines: [[T::ZERO; BLOCK]; N], cosines: [[T::ZERO; BLOCK]; N] };
+    let mut numbers = Numbers([[T::ZERO; BLOCK]; M]);
+    // Constants, where the compiler sees through the robot.
+    let needs = Needs::of(&quantity.numbers(0, &SVector::from_fn(|joint, _| Traced::joint(joint)), |_| Traced::NUMBER));
+    let poses = source.poses();
+    let mut first = 0;
+    while first < poses {
+        let filled = source.fill::<FUSED>(first, needs, &mut joints);
+        let (Filled::Each(count) | Filled::Row(count) | Filled::Beyond(count)) = filled;
+        quantity.prepare(first..first + count);
+        match filled {
+            Filled::Beyond(_) => one_by_one(quantity, count, |pose| source.pose(first + pose), &mut numbers.0),
+            Filled::Row(_) if S::ROWS => evaluate_row::<T, Q, N, M, FUSED>(quantity, &joints, &mut numbers.0),
+            _ => evaluate::<T, Q, N, M, FUSED>(quantity, count, &joints, &mut numbers.0),
         }
-        sink.take(BLOCK * block..BLOCK * block + poses.len(), &numbers);
+        sink.take(first..first + count, &numbers.0, instructions);
+        first += count;
     }
-}
-
-/// Coordinates, sines and cosines; false if some angle is out of the domain.
-#[inline(always)]
-fn turn<T: Float, const N: usize, const FUSED: bool>(
-    poses: &[SVector<T, N>],
-    [values, sines, cosines]: &mut [[[T; BLOCK]; N]; 3],
-) -> bool {
-    if cfg!(feature = "platform-trig") {
-        return false;
-    }
-    for (pose, q) in poses.iter().enumerate() {
-        for joint in 0..N {
-            values[joint][pose] = q[joint];
-        }
-    }
-    for joint in 0..N {
-        if !trig::all_within_domain(&values[joint]) {
-            // The values that fill up a later block would be beyond it too.
-            *values = [[T::ZERO; BLOCK]; N];
-            return false;
-        }
-        for pose in 0..BLOCK {
-            (sines[joint][pose], cosines[joint][pose]) = trig::within_domain::<T, T, FUSED>(values[joint][pose]);
-        }
-    }
-    true
 }
 
 /// The quantity at the first `count` poses, and some more up to whole vectors.
@@ -78,7 +78,7 @@ fn turn<T: Float, const N: usize, const FUSED: bool>(
 fn evaluate<T, Q, const N: usize, const M: usize, const FUSED: bool>(
     quantity: &Q,
     count: usize,
-    [values, sines, cosines]: &[[[T; BLOCK]; N]; 3],
+    joints: &Joints<T, N>,
     numbers: &mut [[T; BLOCK]; M],
 ) where
     T: Float,
@@ -89,14 +89,44 @@ fn evaluate<T, Q, const N: usize, const M: usize, const FUSED: bool>(
     for vector in 0..count.div_ceil(VECTOR).min(BLOCK / VECTOR) {
         for lane in 0..VECTOR {
             let pose = vector * VECTOR + lane;
-            let q = SVector::from_fn(|joint, _| {
-                Known::<T, FUSED>::angle(values[joint][pose], sines[joint][pose], cosines[joint][pose])
-            });
-            let computed = quantity.numbers(&q, Known::number);
-            for k in 0..M {
-                numbers[k][pose] = computed[k].value;
-            }
+            evaluate_one::<T, Q, N, M, FUSED, false>(quantity, pose, joints, numbers);
         }
+    }
+}
+
+/// The quantity at a row of poses that differ in the first joint: what depends
+/// on the others alone, the compiler computes before the loop.
+#[inline(always)]
+fn evaluate_row<T, Q, const N: usize, const M: usize, const FUSED: bool>(
+    quantity: &Q,
+    joints: &Joints<T, N>,
+    numbers: &mut [[T; BLOCK]; M],
+) where
+    T: Float,
+    Q: Quantity<T, N, M>,
+{
+    for pose in 0..BLOCK {
+        evaluate_one::<T, Q, N, M, FUSED, true>(quantity, pose, joints, numbers);
+    }
+}
+
+#[inline(always)]
+fn evaluate_one<T, Q, const N: usize, const M: usize, const FUSED: bool, const ROW: bool>(
+    quantity: &Q,
+    pose: usize,
+    joints: &Joints<T, N>,
+    numbers: &mut [[T; BLOCK]; M],
+) where
+    T: Float,
+    Q: Quantity<T, N, M>,
+{
+    let q = SVector::from_fn(|joint, _| {
+        let pose = if ROW && joint > 0 { 0 } else { pose };
+        Known::<T, FUSED>::angle(joints.values[joint][pose], joints.sines[joint][pose], joints.cosines[joint][pose])
+    });
+    let computed = quantity.numbers(pose, &q, Known::number);
+    for k in 0..M {
+        numbers[k][pose] = computed[k].value;
     }
 }
 
@@ -104,11 +134,12 @@ fn evaluate<T, Q, const N: usize, const M: usize, const FUSED: bool>(
 #[inline(never)]
 fn one_by_one<T: Float, Q: Quantity<T, N, M>, const N: usize, const M: usize>(
     quantity: &Q,
-    poses: &[SVector<T, N>],
+    count: usize,
+    q: impl Fn(usize) -> SVector<T, N>,
     numbers: &mut [[T; BLOCK]; M],
 ) {
-    for (pose, q) in poses.iter().enumerate() {
-        for (number, own) in numbers.iter_mut().zip(quantity.numbers(q, |x| x)) {
+    for pose in 0..count.min(BLOCK) {
+        for (number, own) in numbers.iter_mut().zip(quantity.numbers(pose, &q(pose), |x| x)) {
             number[pose] = own;
         }
     }

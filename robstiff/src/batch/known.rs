@@ -9,9 +9,9 @@ use crate::{Real, trig};
 
 /// A number that brings its sine and cosine along, so that trigonometry is a
 /// pass of its own: with it in the same loop as the algebra, neither fits into
-/// the registers. Sums and differences of such angles know theirs by the
-/// addition theorem, and where nobody asks, the compiler drops it all. Any
-/// other number computes them when asked.
+/// the registers. Sums and differences of such angles, and of one with a number,
+/// know theirs by the addition theorem, and where nobody asks, the compiler drops
+/// it all. Any other number computes them when asked.
 ///
 /// `FUSED`: the code around has an instruction that multiplies and adds.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +25,16 @@ impl<T: Float, const FUSED: bool> Known<T, FUSED> {
     #[inline(always)]
     pub fn number(value: T) -> Self {
         Self { value, sin_cos: (T::ZERO, T::ZERO), is_known: false }
+    }
+
+    /// As an angle. Of a constant, this costs nothing: the compiler does it.
+    #[inline(always)]
+    fn turned(self) -> Self {
+        if self.is_known {
+            return self;
+        }
+        let is_known = !cfg!(feature = "platform-trig") && trig::all_within_domain(&[self.value]);
+        Self { sin_cos: trig::within_domain::<T, T, FUSED>(self.value), is_known, ..self }
     }
 
     #[inline(always)]
@@ -49,10 +59,15 @@ impl<T: Float, const FUSED: bool> Add for Known<T, FUSED> {
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        let ((s, c), (t, d)) = (self.sin_cos, other.sin_cos);
+        let value = self.value + other.value;
+        if !self.is_known && !other.is_known {
+            return Self::number(value);
+        }
+        let (one, other) = (self.turned(), other.turned());
+        let ((s, c), (t, d)) = (one.sin_cos, other.sin_cos);
         let sin = mul_add::<T, FUSED>(s, d, c * t);
         let cos = mul_add::<T, FUSED>(c, d, -(s * t));
-        Self { value: self.value + other.value, sin_cos: (sin, cos), is_known: self.is_known && other.is_known }
+        Self { value, sin_cos: (sin, cos), is_known: one.is_known && other.is_known }
     }
 }
 

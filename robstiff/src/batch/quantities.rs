@@ -1,21 +1,77 @@
 //! What is computed of a pose.
 
+use core::ops::Range;
+
 use nalgebra::{Matrix6, SVector, Vector3, Vector6};
 
 use super::Float;
+use super::block::BLOCK;
 use crate::{Real, Robot};
 
-/// Something that is computed of a pose: `M` numbers, from which the result is
-/// put together.
+/// Something that is computed of a pose: `M` numbers, in any scalar that holds
+/// a `T`.
 pub trait Quantity<T: Float, const N: usize, const M: usize> {
-    /// What the caller gets.
-    type Result;
+    /// Reads what belongs to the poses of a block besides their coordinates.
+    #[inline(always)]
+    fn prepare(&mut self, _poses: Range<usize>) {}
 
-    /// The numbers, in any scalar that holds a `T`.
-    fn numbers<S: Real>(&self, q: &SVector<S, N>, scalar: impl Fn(T) -> S) -> [S; M];
+    /// The numbers of a pose of the block.
+    fn numbers<S: Real>(&self, pose: usize, q: &SVector<S, N>, scalar: impl Fn(T) -> S) -> [S; M];
+}
 
-    /// The result.
-    fn result(numbers: [T; M]) -> Self::Result;
+/// What the caller gets: `M` numbers in a row.
+pub trait Results<T, const M: usize> {
+    /// Which number each entry is.
+    const ENTRIES: &[usize];
+
+    /// The entries in memory's order.
+    fn entries(&mut self) -> &mut [T];
+}
+
+const IDENTITY: [usize; 21] = {
+    let mut numbers = [0; 21];
+    let mut k = 0;
+    while k < 21 {
+        numbers[k] = k;
+        k += 1;
+    }
+    numbers
+};
+
+impl<T: Float> Results<T, 1> for T {
+    const ENTRIES: &[usize] = &[0];
+
+    #[inline(always)]
+    fn entries(&mut self) -> &mut [T] {
+        core::slice::from_mut(self)
+    }
+}
+
+impl<T: Float> Results<T, 6> for Vector6<T> {
+    const ENTRIES: &[usize] = &[0, 1, 2, 3, 4, 5];
+
+    #[inline(always)]
+    fn entries(&mut self) -> &mut [T] {
+        &mut self.data.0[0]
+    }
+}
+
+impl<T: Float> Results<T, 21> for [T; 21] {
+    const ENTRIES: &[usize] = &IDENTITY;
+
+    #[inline(always)]
+    fn entries(&mut self) -> &mut [T] {
+        self
+    }
+}
+
+impl<T: Float> Results<T, 21> for Matrix6<T> {
+    const ENTRIES: &[usize] = &ENTRY;
+
+    #[inline(always)]
+    fn entries(&mut self) -> &mut [T] {
+        self.data.0.as_flattened_mut()
+    }
 }
 
 /// Row and column of the entries of the upper triangle, by rows.
@@ -55,45 +111,15 @@ fn triangle<S: Real>(compliance: &Matrix6<S>) -> [S; 21] {
     entries
 }
 
-pub struct Compliance<'r, R> {
-    pub robot: &'r R,
-}
-
-impl<T: Float, R: Robot<N>, const N: usize> Quantity<T, N, 21> for Compliance<'_, R> {
-    type Result = Matrix6<T>;
-
-    #[inline(always)]
-    fn numbers<S: Real>(&self, q: &SVector<S, N>, _: impl Fn(T) -> S) -> [S; 21] {
-        triangle(&self.robot.compliance(q))
-    }
-
-    #[inline(always)]
-    fn result(numbers: [T; 21]) -> Matrix6<T> {
-        let mut full = [[T::ZERO; 6]; 6];
-        for (j, column) in full.iter_mut().enumerate() {
-            for (i, entry) in column.iter_mut().enumerate() {
-                *entry = numbers[ENTRY[6 * j + i]];
-            }
-        }
-        Matrix6::from(full)
-    }
-}
-
+/// The upper triangle of the compliance.
 pub struct Triangle<'r, R> {
     pub robot: &'r R,
 }
 
 impl<T: Float, R: Robot<N>, const N: usize> Quantity<T, N, 21> for Triangle<'_, R> {
-    type Result = [T; 21];
-
     #[inline(always)]
-    fn numbers<S: Real>(&self, q: &SVector<S, N>, _: impl Fn(T) -> S) -> [S; 21] {
+    fn numbers<S: Real>(&self, _: usize, q: &SVector<S, N>, _: impl Fn(T) -> S) -> [S; 21] {
         triangle(&self.robot.compliance(q))
-    }
-
-    #[inline(always)]
-    fn result(numbers: [T; 21]) -> [T; 21] {
-        numbers
     }
 }
 
@@ -102,17 +128,10 @@ pub struct Trace<'r, R> {
 }
 
 impl<T: Float, R: Robot<N>, const N: usize> Quantity<T, N, 1> for Trace<'_, R> {
-    type Result = T;
-
     #[inline(always)]
-    fn numbers<S: Real>(&self, q: &SVector<S, N>, _: impl Fn(T) -> S) -> [S; 1] {
+    fn numbers<S: Real>(&self, _: usize, q: &SVector<S, N>, _: impl Fn(T) -> S) -> [S; 1] {
         let compliance = self.robot.compliance(q);
         [compliance[(0, 0)] + compliance[(1, 1)] + compliance[(2, 2)]]
-    }
-
-    #[inline(always)]
-    fn result([trace]: [T; 1]) -> T {
-        trace
     }
 }
 
@@ -122,10 +141,8 @@ pub struct Directional<'r, R, T> {
 }
 
 impl<T: Float, R: Robot<N>, const N: usize> Quantity<T, N, 1> for Directional<'_, R, T> {
-    type Result = T;
-
     #[inline(always)]
-    fn numbers<S: Real>(&self, q: &SVector<S, N>, scalar: impl Fn(T) -> S) -> [S; 1] {
+    fn numbers<S: Real>(&self, _: usize, q: &SVector<S, N>, scalar: impl Fn(T) -> S) -> [S; 1] {
         let c = self.robot.compliance(q);
         let [x, y, z] = self.direction.data.0[0];
         let (x, y, z) = (scalar(x), scalar(y), scalar(z));
@@ -133,11 +150,6 @@ impl<T: Float, R: Robot<N>, const N: usize> Quantity<T, N, 1> for Directional<'_
         let along_x = c[(0, 0)].mul_add(x, xy + xy + xz + xz);
         let along_y = c[(1, 1)].mul_add(y, yz + yz);
         [x.mul_add(along_x, y.mul_add(along_y, z * z * c[(2, 2)]))]
-    }
-
-    #[inline(always)]
-    fn result([compliance]: [T; 1]) -> T {
-        compliance
     }
 }
 
@@ -147,19 +159,47 @@ pub struct Deflection<'r, R, T> {
 }
 
 impl<T: Float, R: Robot<N>, const N: usize> Quantity<T, N, 6> for Deflection<'_, R, T> {
-    type Result = Vector6<T>;
-
     #[inline(always)]
-    fn numbers<S: Real>(&self, q: &SVector<S, N>, scalar: impl Fn(T) -> S) -> [S; 6] {
-        let [fx, fy, fz, mx, my, mz] = self.wrench.data.0[0];
-        let force = (scalar(fx), scalar(fy), scalar(fz));
-        let moment = (scalar(mx), scalar(my), scalar(mz));
-        let wrench = Vector6::new(force.0, force.1, force.2, moment.0, moment.1, moment.2);
-        self.robot.deflection(q, &wrench).data.0[0]
+    fn numbers<S: Real>(&self, _: usize, q: &SVector<S, N>, scalar: impl Fn(T) -> S) -> [S; 6] {
+        deflection(self.robot, q, |i| scalar(self.wrench[i]))
+    }
+}
+
+/// The deflection under a wrench of the pose's own.
+pub struct Deflections<'r, R, T> {
+    robot: &'r R,
+    wrenches: &'r [Vector6<T>],
+    block: [[T; BLOCK]; 6],
+}
+
+impl<'r, R, T: Float> Deflections<'r, R, T> {
+    pub fn new(robot: &'r R, wrenches: &'r [Vector6<T>]) -> Self {
+        Self { robot, wrenches, block: [[T::ZERO; BLOCK]; 6] }
+    }
+}
+
+impl<T: Float, R: Robot<N>, const N: usize> Quantity<T, N, 6> for Deflections<'_, R, T> {
+    #[inline(always)]
+    fn prepare(&mut self, poses: Range<usize>) {
+        for (pose, wrench) in self.wrenches[poses].iter().enumerate().take(BLOCK) {
+            for i in 0..6 {
+                self.block[i][pose] = wrench[i];
+            }
+        }
     }
 
     #[inline(always)]
-    fn result(numbers: [T; 6]) -> Vector6<T> {
-        Vector6::from(numbers)
+    fn numbers<S: Real>(&self, pose: usize, q: &SVector<S, N>, scalar: impl Fn(T) -> S) -> [S; 6] {
+        deflection(self.robot, q, |i| scalar(self.block[i][pose]))
     }
+}
+
+#[inline(always)]
+fn deflection<S: Real, const N: usize>(
+    robot: &impl Robot<N>,
+    q: &SVector<S, N>,
+    wrench: impl Fn(usize) -> S,
+) -> [S; 6] {
+    let wrench = Vector6::new(wrench(0), wrench(1), wrench(2), wrench(3), wrench(4), wrench(5));
+    robot.deflection(q, &wrench).data.0[0]
 }

@@ -1,9 +1,12 @@
 //! Where the numbers of a block go.
 
+use core::array;
 use core::ops::Range;
 
 use super::Float;
 use super::block::BLOCK;
+use super::dispatch::Instructions;
+use super::quantities::Results;
 
 /// Takes the numbers of the poses in a range, `numbers[k][i]` of the `i`-th.
 pub trait Sink<T, const M: usize> {
@@ -11,47 +14,73 @@ pub trait Sink<T, const M: usize> {
     fn fits(&self, poses: usize) -> bool;
 
     /// Takes a block, or what is left for the last one.
-    fn take(&mut self, poses: Range<usize>, numbers: &[[T; BLOCK]; M]);
+    fn take(&mut self, poses: Range<usize>, numbers: &[[T; BLOCK]; M], instructions: impl Instructions);
 }
 
 /// A result a pose, put together from its numbers.
-pub struct EachPose<'s, R, F> {
-    pub results: &'s mut [R],
-    pub result: F,
-}
+pub struct EachPose<'s, R>(pub &'s mut [R]);
 
-impl<T: Float, R, F: Fn([T; M]) -> R, const M: usize> Sink<T, M> for EachPose<'_, R, F> {
+/// Numbers and poses that are transposed at once.
+const TILE: usize = 4;
+
+impl<T: Float, R: Results<T, M>, const M: usize> Sink<T, M> for EachPose<'_, R> {
     fn fits(&self, poses: usize) -> bool {
-        self.results.len() == poses
+        self.0.len() == poses
     }
 
-    // Not inlined: with AVX-512 the compiler makes gather instructions of it,
-    // which are slow. It remains two fifths of the time of a triangle.
-    #[inline(never)]
-    fn take(&mut self, poses: Range<usize>, numbers: &[[T; BLOCK]; M]) {
-        for (i, result) in self.results[poses].iter_mut().enumerate().take(BLOCK) {
-            let mut own = [T::ZERO; M];
-            for k in 0..M {
-                own[k] = numbers[k][i];
+    // Tile by tile: left to itself, the compiler takes one number after the
+    // other, or with AVX-512 gathers and scatters, which are slower still.
+    #[inline(always)]
+    fn take(&mut self, poses: Range<usize>, numbers: &[[T; BLOCK]; M], instructions: impl Instructions) {
+        let results = &mut self.0[poses];
+        let mut done = 0;
+        if let Some(last) = R::ENTRIES.len().checked_sub(TILE) {
+            let (tiles, _) = results.as_chunks_mut::<TILE>();
+            done = TILE * tiles.len();
+            for (tile, results) in tiles.iter_mut().enumerate().take(BLOCK / TILE) {
+                for k in 0..R::ENTRIES.len().div_ceil(TILE) {
+                    // The last tile overlaps the one before.
+                    let first = last.min(TILE * k);
+                    let rows = array::from_fn(|i| &numbers[R::ENTRIES[first + i]].as_chunks().0[tile]);
+                    let columns = results.each_mut().map(|r| r.entries()[first..].first_chunk_mut().expect("a tile"));
+                    instructions.transpose(rows, columns);
+                }
             }
-            *result = (self.result)(own);
+        }
+        for (pose, result) in (done..BLOCK).zip(results.iter_mut().skip(done)) {
+            for (entry, number) in result.entries().iter_mut().zip(R::ENTRIES) {
+                *entry = numbers[*number][pose];
+            }
         }
     }
 }
 
 /// A slice a number, as the block has them: nothing to rearrange.
-pub struct ByNumber<'s, T, const M: usize> {
-    pub slices: [&'s mut [T]; M],
-}
+pub struct ByNumber<'s, T, const M: usize>(pub [&'s mut [T]; M]);
 
 impl<T: Float, const M: usize> Sink<T, M> for ByNumber<'_, T, M> {
     fn fits(&self, poses: usize) -> bool {
-        self.slices.iter().all(|slice| slice.len() == poses)
+        self.0.iter().all(|slice| slice.len() == poses)
     }
 
-    fn take(&mut self, poses: Range<usize>, numbers: &[[T; BLOCK]; M]) {
-        for (slice, numbers) in self.slices.iter_mut().zip(numbers) {
+    #[inline(always)]
+    fn take(&mut self, poses: Range<usize>, numbers: &[[T; BLOCK]; M], _: impl Instructions) {
+        for (slice, numbers) in self.0.iter_mut().zip(numbers) {
             slice[poses.clone()].copy_from_slice(&numbers[..poses.len()]);
         }
+    }
+}
+
+/// A function that looks at the blocks.
+pub struct Blocks<F>(pub F);
+
+impl<T: Float, F: FnMut(Range<usize>, &[[T; BLOCK]; M]), const M: usize> Sink<T, M> for Blocks<F> {
+    fn fits(&self, _: usize) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn take(&mut self, poses: Range<usize>, numbers: &[[T; BLOCK]; M], _: impl Instructions) {
+        (self.0)(poses, numbers);
     }
 }

@@ -1,0 +1,83 @@
+//! Where the joint coordinates of a block come from.
+
+use nalgebra::SVector;
+
+use super::Float;
+use super::block::{BLOCK, Joints};
+use super::needs::Needs;
+use crate::trig;
+
+/// Poses, block after block.
+pub trait Source<T, const N: usize> {
+    /// Whether blocks may be rows.
+    const ROWS: bool = false;
+
+    /// How many there are.
+    fn poses(&self) -> usize;
+
+    /// One of them.
+    fn pose(&self, pose: usize) -> SVector<T, N>;
+
+    /// Fills in what is needed of the next block, which begins at pose `first`.
+    /// `FUSED`: with an instruction that multiplies and adds.
+    fn fill<const FUSED: bool>(&mut self, first: usize, needs: Needs, joints: &mut Joints<T, N>) -> Filled;
+}
+
+/// What the block holds, and of how many poses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Filled {
+    /// Every joint of every pose.
+    Each(usize),
+    /// The first joint of every pose, and the others, which all have in common,
+    /// of the first pose.
+    Row(usize),
+    /// Nothing: some angle is out of the domain of the sine for vectors.
+    Beyond(usize),
+}
+
+/// Poses whose sines and cosines are computed.
+impl<T: Float, const N: usize> Source<T, N> for &[SVector<T, N>] {
+    fn poses(&self) -> usize {
+        self.len()
+    }
+
+    fn pose(&self, pose: usize) -> SVector<T, N> {
+        self[pose]
+    }
+
+    #[inline(always)]
+    fn fill<const FUSED: bool>(&mut self, first: usize, needs: Needs, joints: &mut Joints<T, N>) -> Filled {
+        let poses = &self[first..];
+        let count = poses.len().min(BLOCK);
+        if cfg!(feature = "platform-trig") {
+            return Filled::Beyond(count);
+        }
+        let padded: [SVector<T, N>; BLOCK];
+        let block = if let Some(block) = poses.first_chunk() {
+            block
+        } else {
+            let mut rest = [SVector::zeros(); BLOCK];
+            rest[..count].copy_from_slice(poses);
+            padded = rest;
+            &padded
+        };
+        let Joints { values, sines, cosines } = joints;
+        for pose in 0..BLOCK {
+            for joint in 0..N {
+                values[joint][pose] = block[pose][joint];
+            }
+        }
+        for joint in 0..N {
+            if needs.sin_cos(joint) {
+                if !trig::all_within_domain(&values[joint]) {
+                    return Filled::Beyond(count);
+                }
+                for pose in 0..BLOCK {
+                    (sines[joint][pose], cosines[joint][pose]) =
+                        trig::within_domain::<T, T, FUSED>(values[joint][pose]);
+                }
+            }
+        }
+        Filled::Each(count)
+    }
+}
