@@ -57,7 +57,7 @@ fn the_tilt_of_joint_3_is_missing() {
 
     assert_eq!(found.effects.len(), 1, "{:?}", found.effects);
     let named = &found.effects[0];
-    let Effect::TransverseCompliance { joint: 3, value } = named.effect else { panic!("{:?}", named.effect) };
+    let Some(Effect::TransverseCompliance { joint: 3, value }) = named.effect.effect() else { panic!("{:?}", named.effect) };
     assert_near("the tilt (rad/Nm)", value, 6.37e-7, 0.02);
     assert!(named.p_value < 0.01, "{}", named.p_value);
     assert!(named.same_as.iter().any(|name| name == "link_compliance@link 3"), "{:?}", named.same_as);
@@ -162,7 +162,7 @@ fn the_description_predicts_what_was_promised_in_every_way() {
     let written = TRACE.description.to_yaml();
     let read = Description::parse("robot.yaml", &written).unwrap_or_else(|problem| panic!("{problem}"));
     assert_eq!(read, TRACE.description);
-    assert_eq!(read.effects, [TRACE.effects[0].effect]);
+    assert_eq!(read.effects, TRACE.effects[0].effect.effect().as_slice());
 
     let prediction = predict(&read, &CAMPAIGN).expect("the campaign's robot");
     assert_near("the error", prediction.rms, TRACE.after.rms, 1e-9);
@@ -200,7 +200,7 @@ fn the_description_compiles_and_the_program_agrees() {
 
     let printed = user.prints();
     let mut lines = printed.lines();
-    assert_eq!(lines.next(), Some(format!("{:?}", [TRACE.effects[0].effect]).as_str()));
+    assert_eq!(lines.next(), Some(format!("{:?}", TRACE.effects[0].effect.effect().as_slice()).as_str()));
     let moved = |line: &str| -> [f64; 3] {
         let numbers: Vec<f64> = line.split(' ').map(|number| number.parse().expect("a number")).collect();
         numbers.try_into().expect("three numbers")

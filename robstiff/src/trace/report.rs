@@ -7,59 +7,71 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 use robstiff_robots::Description;
 
-use super::alias::same_as;
-use super::candidate::with_numbers;
+use super::alias::{rivals, same_as};
+use super::bench::Bench;
+use super::catalogue::{BASE_SLIP, OUTLIERS};
+use super::found::{EffectParameter, Found, Place};
+use super::isolated::Event;
 use super::model::{Fitted, Setting};
-use super::selection::Selection;
-use super::{EffectParameter, Found, Misfit, NamedEffect, Options, PoseError, RowResidual, Trace, Verdict};
+use super::{Misfit, NamedEffect, Options, Outcome, PoseError, RowResidual, Trace, Verdict};
 use crate::campaign::Campaign;
-use crate::identify::baseline::{sign_of, with_values};
+use crate::identify::baseline::with_values;
 use crate::identify::displacement::{declared_residuals, declared_rms};
 use crate::identify::normal::Sign;
 use crate::identify::prepare::Prepared;
-use crate::identify::problem::{Block, Problem, rms};
-use crate::identify::samples::Column;
+use crate::identify::problem::{Block, rms};
 use crate::identify::uncertainty::covariance;
-use crate::identify::{Estimate, estimates, parameter_name, unit_of};
+use crate::identify::{Estimate, estimates};
 
 /// A tracing in full: errors before and after, the effects with their
 /// uncertainty, and the description that says it all.
+///
+/// # Errors
+/// Why a model that was fitted before cannot be again.
 pub fn report(
     campaign: &Campaign,
     prepared: &Prepared<'_>,
-    setting: &Setting,
-    found: &Found,
+    bench: &Bench<'_>,
+    outcome: &Outcome,
     options: &Options,
-) -> Trace {
-    let (problem, model) = (&setting.problem, &found.selection.model);
-    let base = setting.fit(&[]).expect("the description's own numbers were fitted before");
-    let fitted_rows = || problem.blocks.iter().flat_map(|block| block.rows.iter().copied());
-    let unseen_rows = || if problem.held_out.is_empty() { &problem.blocks } else { &problem.held_out };
-    let misfit = |fitted: &Fitted| Misfit {
-        rms: rms(&problem.residuals(&fitted.fit.columns, &fitted.fit.coefficients), problem.axes, fitted_rows()),
+) -> Result<Trace, String> {
+    // Before anything was corrected, wild rows and all.
+    let untouched = Bench::new(campaign, prepared)?;
+    let all = untouched.at(&[])?;
+    let base = all.fit(&[])?;
+    let model = &outcome.selection.model;
+    let setting = bench.at(&model.named)?;
+    let problem = &setting.problem;
+    let fitted_rows = || all.problem.blocks.iter().flat_map(|block| block.rows.iter().copied());
+    let unseen = if all.problem.held_out.is_empty() { &all.problem.blocks } else { &all.problem.held_out };
+    let unseen_rows = || unseen.iter().flat_map(|block| block.rows.iter().copied());
+    let misfit = |setting: &Setting<'_>, fitted: &Fitted| Misfit {
+        rms: rms(
+            &setting.residuals(&fitted.fit),
+            setting.problem.axes,
+            setting.problem.blocks.iter().flat_map(|block| block.rows.iter().copied()),
+        ),
         holdout_rms: setting.holdout_rms(&fitted.fit),
     };
-    let residual_variance = model.fit.rss / problem.total.rows.saturating_sub(model.fit.columns.len()).max(1) as f64;
+    let residual_variance = model.fit.rss / problem.freedom(&model.fit);
     let (noise, noise_source) = prepared.noise(residual_variance);
-    let (estimates_before, _) = numbers(campaign, prepared, setting, &base);
-    let (estimates, spread) = numbers(campaign, prepared, setting, model);
-    let structure = found.left.as_ref().is_some_and(|left| left.structure) || found.selection.unnamed;
-    let effects = effects(campaign, setting, &found.selection, &spread, structure, options);
+    let (estimates_before, _) = numbers(campaign, prepared, &all, &base);
+    let (estimates, spread) = numbers(campaign, prepared, &setting, model);
+    let mut effects = effects(bench, &setting, outcome, &spread, options);
+    effects.extend(isolated(prepared, outcome, misfit(&setting, model).holdout_rms));
     let values: Vec<f64> = estimates.iter().map(|estimate| estimate.value).collect();
     let held_out = problem.held_out.iter().map(|block| prepared.data.poses[block.pose].clone()).collect();
-    let left = |fitted: &Fitted| problem.residuals(&fitted.fit.columns, &fitted.fit.coefficients);
-    let declared = Misfit {
-        rms: declared_rms(prepared, problem, fitted_rows()),
-        holdout_rms: declared_rms(prepared, problem, unseen_rows().iter().flat_map(|b| b.rows.iter().copied())),
-    };
+    let declared =
+        Misfit { rms: declared_rms(prepared, fitted_rows()), holdout_rms: declared_rms(prepared, unseen_rows()) };
     // Data that can tell nothing change nothing.
-    let (description, after, left_after) = if found.verdict == Verdict::Insufficient {
-        (campaign.robot.clone(), declared, declared_residuals(prepared, problem))
+    let (description, after, left_after) = if outcome.verdict == Verdict::Insufficient {
+        (campaign.robot.clone(), declared, declared_residuals(prepared))
     } else {
-        (described(campaign, &values, &effects), misfit(model), left(model))
+        (described(campaign, &values, &effects), misfit(&setting, model), setting.residuals(&model.fit))
     };
-    let (residuals, pose_errors) = residuals(prepared, problem, &left(&base), &left_after);
-    Trace {
+    let (residuals, pose_errors) = residuals(prepared, &all, &all.residuals(&base.fit), &left_after);
+    let left = outcome.left.as_ref();
+    Ok(Trace {
         robot: campaign.robot.name.clone(),
         rows: prepared.samples.rows.len(),
         poses: prepared.samples.poses,
@@ -67,22 +79,24 @@ pub fn report(
         noise,
         noise_source,
         declared,
-        identified: misfit(&base),
+        identified: misfit(&all, &base),
         after,
-        verdict: found.verdict,
-        why: found.why.clone(),
-        unexplained: found.left.as_ref().map_or(0.0, |left| left.fraction),
-        depends_on: found.left.as_ref().map_or_else(Vec::new, |left| left.depends_on.clone()),
+        verdict: outcome.verdict,
+        why: outcome.why.clone(),
+        unexplained: left.map_or(0.0, |left| left.fraction),
+        depends_on: left.map_or_else(Vec::new, |left| left.depends_on.clone()),
+        rivals: if outcome.verdict == Verdict::Insufficient { Vec::new() } else { rivals(bench, model) },
+        invisible: bench.invisible.clone(),
         next: Vec::new(),
         description,
         effects,
         estimates_before,
         estimates,
-        steps: found.selection.steps.clone(),
-        structure: found.left.as_ref().map_or_else(Vec::new, |left| left.tests.clone()),
+        steps: outcome.selection.steps.clone(),
+        structure: left.map_or_else(Vec::new, |left| left.tests.clone()),
         residuals,
         pose_errors,
-    }
+    })
 }
 
 /// The estimates of the description's own numbers in a model, and the
@@ -90,14 +104,14 @@ pub fn report(
 fn numbers(
     campaign: &Campaign,
     prepared: &Prepared<'_>,
-    setting: &Setting,
+    setting: &Setting<'_>,
     model: &Fitted,
 ) -> (Vec<Estimate>, DMatrix<f64>) {
     let signs: Vec<Sign> = model.fit.columns.iter().map(|&column| setting.signs[column]).collect();
     let spread = covariance(&setting.problem, &model.fit, &signs);
     let mut values = prepared.values.clone();
     for (&column, &value) in model.fit.columns.iter().zip(model.fit.coefficients.iter()) {
-        if column < setting.own {
+        if column < setting.own.len() {
             values[column] = value;
         }
     }
@@ -106,18 +120,17 @@ fn numbers(
 
 /// The named effects, the one whose removal costs most first.
 fn effects(
-    campaign: &Campaign,
-    setting: &Setting,
-    selection: &Selection,
+    bench: &Bench<'_>,
+    setting: &Setting<'_>,
+    outcome: &Outcome,
     spread: &DMatrix<f64>,
-    partial: bool,
     options: &Options,
 ) -> Vec<NamedEffect> {
-    let model = &selection.model;
+    let model = &outcome.selection.model;
     let cost = |k: usize| {
         let mut rest = model.named.clone();
         rest.remove(k);
-        setting.fit(&rest).map_or(f64::INFINITY, |without| without.bic)
+        bench.fit(&rest).map_or(f64::INFINITY, |without| without.bic)
     };
     let mut order: Vec<(f64, usize)> = (0..model.named.len()).map(|k| (cost(k), k)).collect();
     order.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -126,50 +139,78 @@ fn effects(
         let one = model.named[k];
         so_far.push(one);
         so_far.sort_unstable();
-        let holdout = setting.fit(&so_far).map_or(f64::NAN, |fitted| setting.holdout_rms(&fitted.fit));
-        let columns = &setting.variant(one).columns;
+        let unseen = |setting: &Setting<'_>| Some(setting.holdout_rms(&setting.fit(&so_far).ok()?.fit));
+        let holdout = bench.at(&so_far).ok().and_then(|setting| unseen(&setting)).unwrap_or(f64::NAN);
         let at = |column: &usize| model.fit.columns.iter().position(|c| c == column).expect("its own model has it");
-        let found: Vec<(Column, f64)> = columns
-            .iter()
-            .map(|column| (setting.problem.columns[*column], model.fit.coefficients[at(column)]))
-            .collect();
-        let mut parameters: Vec<EffectParameter> = columns
-            .iter()
-            .zip(&found)
-            .map(|(index, &(column, value))| {
-                let std = spread[(at(index), at(index))].sqrt();
-                let unit = unit_of(&campaign.robot, column);
-                EffectParameter { name: told(column), value, std: Some(std), unit }
-            })
-            .collect();
-        if let [(Column::Knee { knee, .. }, _)] = found[..] {
-            parameters.push(EffectParameter { name: "knee", value: knee, std: None, unit: "Nm" });
-        }
+        let variant = setting.variant(one);
+        let number = |column: &usize| {
+            let (number, at) = (&setting.numbers[column - setting.own.len()], at(column));
+            EffectParameter {
+                name: number.name,
+                value: model.fit.coefficients[at],
+                std: Some(spread[(at, at)].sqrt()),
+                unit: number.unit,
+            }
+        };
+        let parameters: Vec<EffectParameter> =
+            variant.columns.iter().map(number).chain(variant.shape.iter().cloned()).collect();
+        let candidate = &setting.candidates[one.candidate];
         NamedEffect {
-            effect: with_numbers(&setting.candidates[one.candidate].effect, &found),
+            effect: Found::new(candidate.kind, candidate.place, parameters.clone()),
             parameters,
-            p_value: selection.p_values[k],
+            lines: Vec::new(),
+            p_value: outcome.selection.p_values[k],
             holdout_rms: holdout,
-            same_as: same_as(setting, model, k, options),
-            partial,
+            same_as: same_as(bench, model, k, options),
+            partial: outcome.structure(),
         }
     });
     named.collect()
 }
 
-/// What a result calls a column's number: a sole compliance is `h`.
-fn told(column: Column) -> &'static str {
-    match parameter_name(column) {
-        "value" if sign_of(column) == Sign::Nonnegative => "h",
-        name => name,
+/// The names of what is wrong in single visits. A robot slips once: several
+/// slips are several wild visits.
+fn isolated(prepared: &Prepared<'_>, outcome: &Outcome, holdout_rms: f64) -> Vec<NamedEffect> {
+    let line = |row: &usize| prepared.data.rows[*row].line;
+    let one = |effect: Found, lines: Vec<usize>, events: &[&Event], same_as: Vec<String>| NamedEffect {
+        parameters: effect.parameters.clone(),
+        effect,
+        lines,
+        p_value: events.iter().map(|event| event.p_value).fold(0.0, f64::max),
+        holdout_rms,
+        same_as,
+        partial: outcome.structure(),
+    };
+    let (slips, wild): (Vec<&Event>, Vec<&Event>) = outcome.events.iter().partition(|event| event.is_slip);
+    let mut found = Vec::new();
+    let mut outliers = wild;
+    if let [slip] = slips[..] {
+        let number = |(name, value): (&'static str, &f64)| EffectParameter { name, value: *value, std: None, unit: "m" };
+        let mut parameters: Vec<EffectParameter> = ["x", "y", "z"].into_iter().zip(slip.shift.iter()).map(number).collect();
+        let first = slip.rows.iter().map(line).min().unwrap_or_default();
+        parameters.push(EffectParameter { name: "line", value: first as f64, std: None, unit: "1" });
+        let effect = Found::new(&BASE_SLIP, Place::Base, parameters);
+        found.push(one(effect, slip.rows.iter().map(line).collect(), &[slip], std::vec!["outliers@rig".to_string()]));
+    } else {
+        outliers.extend(slips);
     }
+    if !outliers.is_empty() {
+        let mut lines: Vec<usize> = outliers.iter().flat_map(|event| event.rows.iter().map(line)).collect();
+        lines.sort_unstable();
+        let rows = EffectParameter { name: "rows", value: lines.len() as f64, std: None, unit: "1" };
+        let effect = Found::new(&OUTLIERS, Place::Rig, std::vec![rows]);
+        // One visit alone may as well have been where the robot slipped.
+        let same = if outliers.len() == 1 { std::vec!["base_slip@base".to_string()] } else { Vec::new() };
+        found.push(one(effect, lines, &outliers, same));
+    }
+    found
 }
 
 /// The description with identified numbers and named effects, which says so.
 fn described(campaign: &Campaign, values: &[f64], effects: &[NamedEffect]) -> Description {
     let mut description = with_values(&campaign.robot, values);
-    description.effects.extend(effects.iter().map(|named| named.effect));
-    let names: Vec<String> = effects.iter().map(|named| named.effect.to_string()).collect();
+    let written = effects.iter().filter(|named| named.effect.write_into(&mut description));
+    let names: Vec<String> = written.map(|named| named.effect.to_string()).collect();
     let added = if names.is_empty() { String::new() } else { format!(", with {}", names.join(", ")) };
     let campaign = if campaign.name.is_empty() { "a campaign" } else { &campaign.name };
     let separator = if description.source.is_empty() { "" } else { "\n" };
@@ -180,10 +221,11 @@ fn described(campaign: &Campaign, values: &[f64], effects: &[NamedEffect]) -> De
 
 fn residuals(
     prepared: &Prepared<'_>,
-    problem: &Problem,
+    setting: &Setting<'_>,
     before: &DVector<f64>,
     after: &DVector<f64>,
 ) -> (Vec<RowResidual>, Vec<PoseError>) {
+    let problem = &setting.problem;
     let three =
         |residuals: &DVector<f64>, row: usize| core::array::from_fn(|axis| residuals[row * problem.axes + axis]);
     let rows = prepared.data.rows.iter().enumerate();

@@ -13,6 +13,7 @@
 use std::string::String;
 use std::vec::Vec;
 
+use super::bench::Bench;
 use super::bootstrap::{Reference, ScoreTest};
 use super::model::{Fitted, Named, Setting};
 use super::{Options, Progress};
@@ -84,8 +85,8 @@ pub struct Tests {
 impl Tests {
     /// The tests against the model of some effects; `None` where it cannot be
     /// fitted.
-    pub fn against(setting: &Setting, named: &[Named], options: &Options) -> Option<Self> {
-        let test = score_test(setting, named)?;
+    pub fn against(bench: &Bench<'_>, named: &[Named], options: &Options) -> Option<Self> {
+        let test = score_test(&*bench.at(named).ok()?, named)?;
         Some(Self { statistics: test.statistics(), reference: test.reference(options.draws, options.seed) })
     }
 
@@ -101,35 +102,44 @@ impl Tests {
 }
 
 /// The score test of the catalogue against the model of some effects.
-pub fn score_test<'a>(setting: &'a Setting, named: &[Named]) -> Option<ScoreTest<'a>> {
-    ScoreTest::new(&setting.problem, &setting.candidates, &setting.signs, setting.own, &setting.columns(named))
+pub fn score_test(setting: &Setting<'_>, named: &[Named]) -> Option<ScoreTest> {
+    ScoreTest::new(&setting.problem, &setting.candidates, &setting.signs, setting.own.len(), &setting.columns(named))
 }
 
-/// The effects the data ask for.
+/// The effects the data ask for, beginning with those of a model.
 ///
 /// # Errors
 /// Why not even the description's own model can be fitted.
-pub fn select(setting: &Setting, options: &Options, progress: &Progress<'_>) -> Result<Selection, String> {
-    let mut model = setting.fit(&[])?;
-    let mut p_values = Vec::new();
+pub fn select(
+    bench: &mut Bench<'_>,
+    mut model: Fitted,
+    options: &Options,
+    progress: &Progress<'_>,
+) -> Result<Selection, String> {
+    let mut p_values = p_values(bench, &model.named, options);
     let mut beam = std::vec![model.clone()];
     let mut steps = Vec::new();
     let mut unnamed = false;
     while model.named.len() < MOST_EFFECTS {
         progress(&std::format!("searching for effect {}", model.named.len() + 1));
-        let Some(tests) = Tests::against(setting, &model.named, options) else { break };
-        let mut step = table(setting, &model, &tests, options);
+        if bench.look_again(&model.named)? {
+            model = bench.fit(&model.named)?;
+        }
+        let Some(tests) = Tests::against(bench, &model.named, options) else { break };
+        let setting = bench.at(&model.named)?;
+        let mut step = table(&setting, &model, &tests, options);
         if tests.smallest_p() > options.alpha {
             step.outcome = String::from("nothing is missing significantly");
             steps.push(step);
             break;
         }
-        beam = improve(setting, extend(setting, &beam));
-        let accepted = beam
+        beam = improve(&setting, extend(&setting, &beam));
+        let proposals = nonlinear(bench, &setting, &beam);
+        let accepted = proposals
             .iter()
-            .take_while(|proposed| proposed.bic < beam[0].bic + WITHIN_REACH)
+            .take_while(|proposed| proposed.bic < proposals[0].bic + WITHIN_REACH)
             .take(PROPOSALS)
-            .find_map(|proposed| Some((proposed.clone(), accept(setting, &model, proposed, &tests, options)?)));
+            .find_map(|proposed| Some((proposed.clone(), accept(bench, &model, proposed, &tests, options)?)));
         let Some((proposed, p)) = accepted else {
             unnamed = true;
             step.outcome = String::from("something is missing, but no effect passes every test");
@@ -147,18 +157,33 @@ pub fn select(setting: &Setting, options: &Options, progress: &Progress<'_>) -> 
     Ok(Selection { model, p_values, steps, unnamed })
 }
 
+/// The best proposals of a linear search, with nonlinear numbers in their own
+/// form, the best first.
+fn nonlinear(bench: &Bench<'_>, setting: &Setting<'_>, beam: &[Fitted]) -> Vec<Fitted> {
+    let Some(best) = beam.first() else { return Vec::new() };
+    // Curvature can change a criterion by this much before it changes the order.
+    let near = beam.iter().filter(|model| model.bic < best.bic + CURVATURE).take(REFITTED);
+    best_of(near.filter_map(|model| bench.refit(setting, model).ok()).collect())
+}
+
+/// How many proposals are refitted, and how far behind the best they may be by
+/// the linear criterion.
+const REFITTED: usize = 6;
+pub const CURVATURE: f64 = 60.0;
+
 /// How many of the best proposals are put to the tests in one step.
 const PROPOSALS: usize = 3;
 
 /// The p-values of a proposal's effects if it passes.
 fn accept(
-    setting: &Setting,
+    bench: &Bench<'_>,
     smaller: &Fitted,
     proposed: &Fitted,
     against_smaller: &Tests,
     options: &Options,
 ) -> Option<Vec<f64>> {
-    if setting.left_out_rms(&proposed.fit) >= setting.left_out_rms(&smaller.fit) {
+    let left_out = |model: &Fitted| Some(bench.at(&model.named).ok()?.left_out_rms(&model.fit));
+    if left_out(proposed)? >= left_out(smaller)? {
         return None;
     }
     let p_values = (0..proposed.named.len()).map(|k| {
@@ -167,7 +192,7 @@ fn accept(
         let p = if rest == smaller.named {
             against_smaller.p_value(one.candidate)
         } else {
-            Tests::against(setting, &rest, options)?.p_value(one.candidate)
+            Tests::against(bench, &rest, options)?.p_value(one.candidate)
         };
         (p <= options.alpha).then_some(p)
     });
@@ -175,17 +200,17 @@ fn accept(
 }
 
 /// The family-wise p-value of each effect, that of the model without it.
-pub fn p_values(setting: &Setting, named: &[Named], options: &Options) -> Vec<f64> {
+pub fn p_values(bench: &Bench<'_>, named: &[Named], options: &Options) -> Vec<f64> {
     let one = |k: usize| {
         let mut rest = named.to_vec();
         let one = rest.remove(k);
-        Tests::against(setting, &rest, options).map_or(1.0, |tests| tests.p_value(one.candidate))
+        Tests::against(bench, &rest, options).map_or(1.0, |tests| tests.p_value(one.candidate))
     };
     (0..named.len()).map(one).collect()
 }
 
 /// Every model with one effect more than one of `beam`, the best first.
-fn extend(setting: &Setting, beam: &[Fitted]) -> Vec<Fitted> {
+fn extend(setting: &Setting<'_>, beam: &[Fitted]) -> Vec<Fitted> {
     let mut found = Vec::new();
     for model in beam {
         for candidate in 0..setting.candidates.len() {
@@ -196,7 +221,7 @@ fn extend(setting: &Setting, beam: &[Fitted]) -> Vec<Fitted> {
 }
 
 /// The best physical model of some effects and one candidate more.
-pub fn best_with(setting: &Setting, named: &[Named], candidate: usize) -> Option<Fitted> {
+pub fn best_with(setting: &Setting<'_>, named: &[Named], candidate: usize) -> Option<Fitted> {
     if named.iter().any(|one| one.candidate == candidate) {
         return None;
     }
@@ -208,14 +233,12 @@ pub fn best_with(setting: &Setting, named: &[Named], candidate: usize) -> Option
         named.sort_unstable();
         setting.fit(&named).ok()
     });
-    let best = fits.min_by(|a, b| a.bic.total_cmp(&b.bic))?;
-    let is_sentinel = |one: &Named| one.candidate == candidate && setting.variant(*one).sentinel;
-    (!best.named.iter().any(is_sentinel)).then_some(best)
+    fits.min_by(|a, b| a.bic.total_cmp(&b.bic))
 }
 
 /// Replaces each effect of the best model with each candidate as long as that
 /// improves it.
-fn improve(setting: &Setting, mut beam: Vec<Fitted>) -> Vec<Fitted> {
+fn improve(setting: &Setting<'_>, mut beam: Vec<Fitted>) -> Vec<Fitted> {
     loop {
         let Some(best) = beam.first().cloned() else { return beam };
         let swapped = (0..best.named.len()).flat_map(|k| {
@@ -249,7 +272,7 @@ fn best_of(mut models: Vec<Fitted>) -> Vec<Fitted> {
     kept
 }
 
-fn table(setting: &Setting, model: &Fitted, tests: &Tests, options: &Options) -> Step {
+fn table(setting: &Setting<'_>, model: &Fitted, tests: &Tests, options: &Options) -> Step {
     let name = |one: &Named| setting.candidates[one.candidate].name();
     let before = setting.left_out_rms(&model.fit);
     let candidates = (0..setting.candidates.len()).map(|candidate| {

@@ -9,7 +9,6 @@ use nalgebra::DVector;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::bootstrap::ScoreTest;
 use super::*;
 use crate::campaign::{Data, Displacements, Frame, Noise, Observation};
 use crate::elements::Parameter;
@@ -236,10 +235,8 @@ fn the_bootstrap_has_its_nominal_size() {
             }
         }
         let prepared = Prepared::new(&campaign).expect("displacements");
-        let setting = setting::setting(&campaign, &prepared);
-        let test =
-            ScoreTest::new(&setting.problem, &setting.candidates, &setting.signs, setting.own, &setting.columns(&[]))
-                .expect("joints are seen");
+        let bench = Bench::new(&campaign, &prepared).expect("joints are seen");
+        let test = selection::score_test(&bench.at(&[]).expect("joints are seen"), &[]).expect("joints are seen");
         let largest = test.statistics().into_iter().flatten().map(|(s, _)| s).fold(0.0, f64::max);
         test.reference(199, seed).p_value(largest) <= level
     });

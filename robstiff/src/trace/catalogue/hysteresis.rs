@@ -1,0 +1,63 @@
+//! Hysteresis: the joint turns by `sum w_r P_r` on top of `h tau`, with play
+//! operators `P_r(k) = max(tau - r, min(tau + r, P_r(k - 1)))` on its torque in
+//! the order of the loads (Prandtl and Ishlinskii), linear in their weights.
+//! Each visit begins at rest with its unloaded reading.
+
+use std::format;
+use std::vec;
+use std::vec::Vec;
+
+use super::{Form, Kind, Number, Offers, Place, Scene, place_words};
+use crate::identify::samples::Samples;
+
+/// The kind.
+pub static KIND: Kind = Kind {
+    name: "hysteresis",
+    of_rig: false,
+    words: |found| format!("the hysteresis of {}", place_words(found)),
+    offer,
+};
+
+/// The radii tried, as fractions of the largest torque seen on the joint; one
+/// of them, or two that are neighbours.
+const RADII: [f64; 4] = [1.0 / 16.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0];
+
+fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    // Without loads that follow one another there is no order to depend on.
+    let mut rows = vec![0_usize; scene.data.visits.len()];
+    scene.data.rows.iter().for_each(|row| rows[row.visit] += 1);
+    if rows.iter().all(|&rows| rows < 2) {
+        return (1..=scene.joints()).for_each(|joint| offers.invisible(Place::Joint(joint)));
+    }
+    for joint in 1..=scene.joints() {
+        let Some(largest) = scene.largest_torque(joint) else { continue };
+        let (unit, torque) = (scene.compliance_unit(joint), if scene.turns(joint) { "Nm" } else { "N" });
+        let radii = RADII.map(|fraction| fraction * largest);
+        let number = |(k, radius): (usize, f64)| {
+            let name = ["weight1", "weight2"][k];
+            Number::elastic(name, unit, [0.0, f64::INFINITY], move |point| {
+                let plays = plays(&point.samples, &point.torques(joint), radius);
+                point.of_joint(joint, |row| plays[row])
+            })
+        };
+        // As the first and as the second of two.
+        let numbers: Vec<Number> =
+            radii.into_iter().map(|radius| number((0, radius))).chain(radii[1..].iter().map(|&r| number((1, r)))).collect();
+        let one = (0..).zip(radii).map(|(k, radius)| Form::of([k]).with("radius1", radius, torque));
+        let two = radii.windows(2).enumerate().map(|(k, radii)| {
+            Form::of([k, RADII.len() + k]).with("radius1", radii[0], torque).with("radius2", radii[1], torque)
+        });
+        offers.add(Place::Joint(joint), numbers, one.chain(two).collect());
+    }
+}
+
+/// The play operator of a radius after each row.
+pub fn plays(samples: &Samples, torques: &[f64], radius: f64) -> Vec<f64> {
+    let mut state = vec![0.0; samples.rows.iter().map(|row| row.visit + 1).max().unwrap_or(0)];
+    let play = |(row, &torque): (&crate::identify::samples::Sample, &f64)| {
+        let before: &mut f64 = &mut state[row.visit];
+        *before = (torque - radius).max((torque + radius).min(*before));
+        *before
+    };
+    samples.rows.iter().zip(torques).map(play).collect()
+}
