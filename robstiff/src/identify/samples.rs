@@ -69,8 +69,6 @@ pub struct Sample {
     /// How a displacement or rotation in the base frame is seen in the
     /// readings.
     pub seen: Matrix3<f64>,
-    /// By what an elastic displacement has grown since it was loaded.
-    pub growth: f64,
 }
 
 impl Samples {
@@ -98,7 +96,6 @@ impl Samples {
         declared: Option<&Self>,
     ) -> Self {
         let with_rotations = data.rows.iter().all(|row| row.rotation.is_some());
-        let since = since(data);
         let row = |(i, row): (usize, &Observation)| {
             let q = setup.coordinates(i, &row.q);
             let pose = Pose::of(robot, &SVector::<f64, N>::from_column_slice(&q));
@@ -119,7 +116,6 @@ impl Samples {
                 displacement: reads * Vector3::from(row.displacement),
                 rotation: reads * Vector3::from(row.rotation.unwrap_or_default()),
                 seen: setup.seen(data, &declared, &tool),
-                growth: setup.growth(since[i]),
             }
         };
         Self {
@@ -195,24 +191,13 @@ impl Samples {
 
 impl Sample {
     /// An elastic twist of the TCP as it is read at the marker: `[I, -[p_r -
-    /// p]x]`, grown and turned as the row's setup has it.
+    /// p]x]`, turned as the row's setup has it.
     pub fn read(&self, twist: &Vector6<f64>) -> Vector6<f64> {
         let moved: Vector3<f64> = twist.fixed_rows::<3>(0).into_owned();
         let turn: Vector3<f64> = twist.fixed_rows::<3>(3).into_owned();
-        let see = |vector: Vector3<f64>| self.seen * vector * self.growth;
+        let see = |vector: Vector3<f64>| self.seen * vector;
         stack(&see(moved + turn.cross(&self.marker)), &see(turn))
     }
-}
-
-/// How long each row has been in its visit: the time since the visit's first
-/// row (s) where the file tells the time, else the number of rows before it.
-pub fn since(data: &Displacements) -> Vec<f64> {
-    let timed = data.rows.iter().all(|row| row.time.is_some());
-    let clock = |row: usize| data.rows[row].time.filter(|_| timed).unwrap_or(row as f64);
-    let mut first = std::vec![None; data.visits.len()];
-    let since = |row: usize| clock(row) - *first[data.rows[row].visit].get_or_insert_with(|| clock(row));
-    // A clock that goes back within a visit has no time to creep in.
-    (0..data.rows.len()).map(since).map(|time| time.max(0.0)).collect()
 }
 
 /// The turn of a frame.

@@ -28,8 +28,8 @@ pub struct Setup {
     pub lever: Vector3<f64>,
     /// The turn of what is read, in the frame of the readings (rad).
     pub tracker: Vector3<f64>,
-    /// The share that elastic displacements gain when the time under load
-    /// grows by a factor of e, and the time they begin at (s or rows).
+    /// What a step of the displacement grows by in a decade of the time since
+    /// it was made, as a share of it, and when that begins (s or rows).
     pub creep: [f64; 2],
     /// How far the joints stand aside under the robot's own weight, by row of
     /// the campaign and joint (rad or m), and how much of it is so.
@@ -132,12 +132,6 @@ impl Setup {
             Frame::Base => turn,
             Frame::Tool => declared * turn * tool.transpose(),
         }
-    }
-
-    /// By what elastic displacements have grown after some time under load.
-    pub fn growth(&self, since: f64) -> f64 {
-        let [share, scale] = self.creep;
-        1.0 + share * (since / scale).ln_1p()
     }
 }
 

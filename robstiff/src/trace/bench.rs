@@ -267,7 +267,7 @@ impl<'c> Bench<'c> {
         for _ in 0..PASSES {
             let setup = self.setup(&nonlinear, &theta);
             let point = self.point(setup.clone());
-            let mut readings = prepared.readings(&point.samples);
+            let mut readings = self.readings(&point);
             let mut raw = DMatrix::zeros(readings.len(), columns.len());
             for (k, &column) in columns.iter().enumerate() {
                 if !nonlinear.iter().any(|(of, _)| *of == column) {
@@ -343,15 +343,22 @@ impl<'c> Bench<'c> {
     /// A column that is no tangent, at a point.
     fn linear(&self, point: &Point<'c>, column: usize) -> DVector<f64> {
         match self.own.get(column) {
-            Some(&own) => point.samples.column(own),
-            None => (self.numbers[column - self.own.len()].regressor)(point),
+            Some(&own) => point.with_creep(point.samples.column(own)),
+            None => self.numbers[column - self.own.len()].column(point),
         }
+    }
+
+    /// The readings at a point less what numbers that are held do.
+    fn readings(&self, point: &Point<'c>) -> DVector<f64> {
+        let all = point.samples.readings();
+        let held = &all - self.prepared.readings(&point.samples);
+        all - point.with_creep(held)
     }
 
     /// What the arm does at a point, with the coefficients of a fit, numbers
     /// that are held included.
     fn prediction(&self, point: &Point<'c>, fit: &Fit, nonlinear: &[(usize, &Number)]) -> DVector<f64> {
-        let mut sum = point.samples.readings() - self.prepared.readings(&point.samples);
+        let mut sum = point.samples.readings() - self.readings(point);
         for (&column, &value) in fit.columns.iter().zip(fit.coefficients.iter()) {
             let is_nonlinear = nonlinear.iter().any(|(of, _)| *of == column);
             if value != 0.0 && !is_nonlinear && self.is_elastic(column) {

@@ -153,7 +153,7 @@ impl Found {
             ("dh_error", Place::Entry(entry, row)) => {
                 let joint = &mut description.joints[row - 1];
                 let entry = [&mut joint.theta, &mut joint.d, &mut joint.a, &mut joint.alpha].into_iter().nth(entry);
-                *entry.expect("a row has four entries") += self.value("error");
+                *entry.expect("a row has four entries") += self.value("value");
                 true
             }
             _ => false,

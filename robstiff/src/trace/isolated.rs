@@ -38,10 +38,10 @@ pub struct Event {
 }
 
 /// What must be explained over the robust variance, where structure may be
-/// left: beyond seven standard deviations with the straight line taken out,
-/// beyond ten where there are too few rows to do so.
-const STANDS_OUT: f64 = 60.0;
-const STANDS_OUT_AS_IT_IS: f64 = 100.0;
+/// left: beyond twelve standard deviations with the straight line taken out,
+/// beyond fourteen where there are too few rows to do so.
+const STANDS_OUT: f64 = 150.0;
+const STANDS_OUT_AS_IT_IS: f64 = 200.0;
 
 /// The level over all rows where what is left otherwise is noise. It is less
 /// than that of the other tests, for noise with a few larger values is common.

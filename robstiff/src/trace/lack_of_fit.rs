@@ -144,6 +144,28 @@ fn growth(setting: &Setting<'_>, model: &Fitted) -> Option<StructureTest> {
         .filter(|_| statistic.is_finite())
 }
 
+/// The share of the residual variance that grows with the square of the force,
+/// by a straight line, where residuals grow with the force significantly.
+fn growing(setting: &Setting<'_>, model: &Fitted, alpha: f64) -> f64 {
+    if growth(setting, model).is_none_or(|test| test.p_value > alpha) {
+        return 0.0;
+    }
+    let problem = &setting.problem;
+    let residuals = problem.white_residuals(&model.fit.columns, &model.fit.coefficients);
+    let rows = problem.blocks.iter().flat_map(|block| &block.rows);
+    let (forces, squares): (Vec<f64>, Vec<f64>) = rows
+        .map(|row| {
+            let force = setting.point.samples.rows[*row].wrench.fixed_rows::<3>(0).norm_squared();
+            (force, residuals.rows(row * problem.axes, 3).norm_squared())
+        })
+        .unzip();
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let (force, square) = (mean(&forces), mean(&squares));
+    let product: f64 = forces.iter().zip(&squares).map(|(f, s)| (f - force) * (s - square)).sum();
+    let slope = product / forces.iter().map(|f| (f - force) * (f - force)).sum::<f64>();
+    (slope * force / square).clamp(0.0, 1.0)
+}
+
 /// Ranks, those of equal values averaged.
 fn ranks(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
@@ -179,7 +201,7 @@ fn fraction(setting: &Setting<'_>, model: &Fitted, yardstick: Yardstick, found: 
         Yardstick::Unknown => None,
     };
     let component = found.map_or(0.0, |found| found.component(alpha));
-    let resembling = component / variance;
+    let resembling = (component / variance).max(growing(setting, model, alpha));
     noise.map_or(resembling, |noise| 1.0 - noise / variance).max(resembling).clamp(0.0, 1.0)
 }
 

@@ -75,8 +75,8 @@ impl Setting<'_> {
             return tangent.clone();
         }
         match self.own.get(column) {
-            Some(&own) => self.point.samples.column(own),
-            None => (self.numbers[column - self.own.len()].regressor)(&self.point),
+            Some(&own) => self.point.with_creep(self.point.samples.column(own)),
+            None => self.numbers[column - self.own.len()].column(&self.point),
         }
     }
 
@@ -174,7 +174,7 @@ impl Setting<'_> {
     }
 
     /// The compliance of a joint (from 1) in a fit; its own where it was held.
-    fn joint_value(&self, fit: &Fit, joint: usize) -> f64 {
+    pub fn joint_value(&self, fit: &Fit, joint: usize) -> f64 {
         let column = joint - 1;
         let fitted = fit.columns.iter().position(|&c| c == column);
         fitted.map_or(self.joint_values[column], |k| fit.coefficients[k])

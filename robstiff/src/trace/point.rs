@@ -114,7 +114,7 @@ impl<'c> Point<'c> {
     pub fn slope(&self, joint: usize, entry: usize, factor: impl Fn(usize) -> f64) -> DVector<f64> {
         self.samples.stacked_by(|at, row| {
             let wrench = Vector6::from(self.data.rows[at].wrench);
-            self.slopes[row.pose][joint - 1][entry] * wrench * (factor(at) * row.growth)
+            self.slopes[row.pose][joint - 1][entry] * wrench * factor(at)
         })
     }
 
@@ -160,6 +160,40 @@ impl<'c> Point<'c> {
         self.samples.stacked_by(|at, _| stack(&of(at), &Vector3::zeros()))
     }
 
+    /// What creep adds of stacked elastic displacements at a share of 1: every
+    /// step from one row of a visit to the next grows by `log10(1 + t / onset)`
+    /// of itself in the time `t` since it was made. The load of a row is put on
+    /// when the row before it was read.
+    pub fn crept(&self, elastic: &DVector<f64>, onset: f64) -> DVector<f64> {
+        let (clock, pace) = clock(self.data);
+        let axes = self.samples.axes;
+        let mut grown = DVector::zeros(elastic.len());
+        let mut visits = std::vec![Vec::new(); self.data.visits.len()];
+        for (row, observation) in self.data.rows.iter().enumerate() {
+            let before: &mut Vec<usize> = &mut visits[observation.visit];
+            before.push(row);
+            for (k, &step) in before.iter().enumerate() {
+                let made = if k == 0 { clock[step] - pace } else { clock[before[k - 1]] };
+                let share = ((clock[row] - made).max(0.0) / onset).ln_1p() / core::f64::consts::LN_10;
+                for axis in 0..axes {
+                    let last = if k == 0 { 0.0 } else { elastic[before[k - 1] * axes + axis] };
+                    grown[row * axes + axis] += share * (elastic[step * axes + axis] - last);
+                }
+            }
+        }
+        grown
+    }
+
+    /// Stacked elastic displacements with the creep of the setting.
+    pub fn with_creep(&self, elastic: DVector<f64>) -> DVector<f64> {
+        let [share, onset] = self.setup.creep;
+        if share == 0.0 {
+            return elastic;
+        }
+        let grown = self.crept(&elastic, onset);
+        elastic + grown * share
+    }
+
     /// The torque of every row about a joint (from 1).
     pub fn torques(&self, joint: usize) -> Vec<f64> {
         self.samples.torques(joint)
@@ -172,6 +206,18 @@ impl<'c> Point<'c> {
             setup
         })
     }
+}
+
+/// The time of each row (s), or their number where the file tells no time; and
+/// the median step from one row of a visit to the next.
+pub fn clock(data: &Displacements) -> (Vec<f64>, f64) {
+    let timed: Option<Vec<f64>> = data.rows.iter().map(|row| row.time).collect();
+    let clock = timed.unwrap_or_else(|| (0..data.rows.len()).map(|row| row as f64).collect());
+    let pairs = (1..clock.len()).filter(|&row| data.rows[row].visit == data.rows[row - 1].visit);
+    let mut steps: Vec<f64> = pairs.map(|row| clock[row] - clock[row - 1]).collect();
+    steps.sort_by(f64::total_cmp);
+    let pace = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
+    (clock, pace)
 }
 
 /// The first row of each pose.

@@ -21,7 +21,7 @@ use crate::identify::normal::Sign;
 use crate::identify::prepare::Prepared;
 use crate::identify::problem::{Block, rms};
 use crate::identify::uncertainty::covariance;
-use crate::identify::{Estimate, estimates};
+use crate::identify::{Estimate, NoiseSource, estimates};
 
 /// A tracing in full: errors before and after, the effects with their
 /// uncertainty, and the description that says it all.
@@ -54,7 +54,14 @@ pub fn report(
         holdout_rms: setting.holdout_rms(&fitted.fit),
     };
     let residual_variance = model.fit.rss / problem.freedom(&model.fit);
-    let (noise, noise_source) = prepared.noise(residual_variance);
+    // Repeated readings differ by more than noise where they depend on time or
+    // order; a model that accounts for it knows better.
+    let (noise, noise_source) = match prepared.noise(residual_variance) {
+        (repeated, NoiseSource::Repetitions) if repeated * repeated > residual_variance => {
+            (residual_variance.sqrt(), NoiseSource::Residuals)
+        }
+        known => known,
+    };
     let (estimates_before, _) = numbers(campaign, prepared, &all, &base);
     let (estimates, spread) = numbers(campaign, prepared, &setting, model);
     let mut effects = effects(bench, &setting, outcome, &spread, options);
@@ -143,17 +150,17 @@ fn effects(
         let holdout = bench.at(&so_far).ok().and_then(|setting| unseen(&setting)).unwrap_or(f64::NAN);
         let at = |column: &usize| model.fit.columns.iter().position(|c| c == column).expect("its own model has it");
         let variant = setting.variant(one);
-        let number = |column: &usize| {
+        let number = |(k, column): (usize, &usize)| {
             let (number, at) = (&setting.numbers[column - setting.own.len()], at(column));
-            EffectParameter {
-                name: number.name,
-                value: model.fit.coefficients[at],
-                std: Some(spread[(at, at)].sqrt()),
-                unit: number.unit,
-            }
+            let (value, std) = match number.share_of {
+                Some(joint) => share_of(setting, model, spread, at, joint),
+                None => (model.fit.coefficients[at], spread[(at, at)].sqrt()),
+            };
+            let name = variant.names.get(k).copied().unwrap_or(number.name);
+            EffectParameter { name, value, std: Some(std), unit: number.unit }
         };
-        let parameters: Vec<EffectParameter> =
-            variant.columns.iter().map(number).chain(variant.shape.iter().cloned()).collect();
+        let numbers = variant.columns.iter().enumerate().map(number);
+        let parameters: Vec<EffectParameter> = numbers.chain(variant.shape.iter().cloned()).collect();
         let candidate = &setting.candidates[one.candidate];
         NamedEffect {
             effect: Found::new(candidate.kind, candidate.place, parameters.clone()),
@@ -166,6 +173,24 @@ fn effects(
         }
     });
     named.collect()
+}
+
+/// A compliance as a share of that of a joint (from 1), with its standard
+/// deviation to the first order.
+fn share_of(
+    setting: &Setting<'_>,
+    model: &Fitted,
+    spread: &DMatrix<f64>,
+    at: usize,
+    joint: usize,
+) -> (f64, f64) {
+    let (value, own) = (model.fit.coefficients[at], setting.joint_value(&model.fit, joint));
+    let share = value / own;
+    let variance = match model.fit.columns.iter().position(|&column| column == joint - 1) {
+        Some(k) => spread[(at, at)] - 2.0 * share * spread[(at, k)] + share * share * spread[(k, k)],
+        None => spread[(at, at)],
+    };
+    (share, variance.max(0.0).sqrt() / own)
 }
 
 /// The names of what is wrong in single visits. A robot slips once: several
@@ -186,7 +211,7 @@ fn isolated(prepared: &Prepared<'_>, outcome: &Outcome, holdout_rms: f64) -> Vec
     let mut outliers = wild;
     if let [slip] = slips[..] {
         let number = |(name, value): (&'static str, &f64)| EffectParameter { name, value: *value, std: None, unit: "m" };
-        let mut parameters: Vec<EffectParameter> = ["x", "y", "z"].into_iter().zip(slip.shift.iter()).map(number).collect();
+        let mut parameters: Vec<EffectParameter> = ["dx", "dy", "dz"].into_iter().zip(slip.shift.iter()).map(number).collect();
         let first = slip.rows.iter().map(line).min().unwrap_or_default();
         parameters.push(EffectParameter { name: "line", value: first as f64, std: None, unit: "1" });
         let effect = Found::new(&BASE_SLIP, Place::Base, parameters);

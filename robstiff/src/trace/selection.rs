@@ -169,6 +169,7 @@ fn nonlinear(bench: &Bench<'_>, setting: &Setting<'_>, beam: &[Fitted]) -> Vec<F
 /// How many proposals are refitted, and how far behind the best they may be by
 /// the linear criterion.
 const REFITTED: usize = 6;
+/// See [`REFITTED`].
 pub const CURVATURE: f64 = 60.0;
 
 /// How many of the best proposals are put to the tests in one step.

@@ -8,7 +8,8 @@ use std::vec::Vec;
 
 use nalgebra::Vector3;
 
-use super::{Form, IN_BASE, Kind, Number, Offers, Place, Scene};
+use super::{Form, Kind, Number, Offers, Place, SHIFT, Scene, TURN};
+use crate::identify::samples::stack;
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -19,21 +20,32 @@ pub static KIND: Kind = Kind {
     offer,
 };
 
-/// A longer way is a move (m).
+/// A longer way is a move (m), a larger turn a fall (rad).
 const MOST: f64 = 5e-3;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
-    let number = |(moment, k): (usize, usize)| {
-        Number::of_reading(IN_BASE[k], "m", [-MOST, MOST], move |point| {
+    let Some(&likeliest) = scene.moments.first() else { return };
+    let shift = |(moment, k): (usize, usize)| {
+        Number::of_reading(SHIFT[k], "m", [-MOST, MOST], move |point| {
             point.of_reading(|row| if row >= moment { Vector3::ith(k, 1.0) } else { Vector3::zeros() })
         })
     };
-    let numbers: Vec<Number> = scene.moments.iter().flat_map(|&m| (0..3).map(move |k| (m, k))).map(number).collect();
-    let form = |(i, &moment): (usize, &usize)| {
-        Form::of(3 * i..3 * i + 3).with("line", scene.data.rows[moment].line as f64, "1")
+    // About the origin of the base frame, by a small turn.
+    let turn = |k: usize| {
+        Number::of_reading(TURN[k], "rad", [-MOST, MOST], move |point| {
+            point.samples.stacked_by(|row, sample| {
+                let turn = if row >= likeliest { Vector3::ith(k, 1.0) } else { Vector3::zeros() };
+                let at = sample.tcp.fixed_view::<3, 1>(0, 3) + sample.marker;
+                stack(&turn.cross(&at), &turn)
+            })
+        })
     };
-    let forms: Vec<Form> = scene.moments.iter().enumerate().map(form).collect();
-    if !forms.is_empty() {
-        offers.add(Place::Base, numbers, forms);
-    }
+    let shifts = scene.moments.iter().flat_map(|&moment| (0..3).map(move |k| (moment, k)));
+    let numbers: Vec<Number> = shifts.map(shift).chain((0..3).map(turn)).collect();
+    let turns = 3 * scene.moments.len();
+    let line = |moment: usize| scene.data.rows[moment].line as f64;
+    let form = |(i, &moment): (usize, &usize)| Form::of(3 * i..3 * i + 3).with("line", line(moment), "1");
+    let mut forms: Vec<Form> = scene.moments.iter().enumerate().map(form).collect();
+    forms.push(Form::of((0..3).chain(turns..turns + 3)).with("line", line(likeliest), "1"));
+    offers.add(Place::Base, numbers, forms);
 }

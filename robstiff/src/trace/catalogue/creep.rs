@@ -1,57 +1,41 @@
-//! The arm goes on yielding under its load: what a model's elastic effects do
-//! grows by `share log(1 + t / tau)` with the time since the visit began, or
-//! with the number of rows where the file tells no time.
+//! The arm goes on yielding under a load that stays on: every step of the
+//! displacement grows by `share log10(1 + t / onset)` of itself in the time `t`
+//! since it was made, and recovers alike; in rows where the file tells no time.
 
 use std::vec::Vec;
 
-use nalgebra::DVector;
-
 use super::{Form, Kind, Number, Offers, Place, Scene};
-use crate::identify::samples::since;
+use crate::trace::point::clock;
 
 /// The kind.
-pub static KIND: Kind = Kind {
-    name: "creep",
-    of_rig: true,
-    words: |_| "creep under load".into(),
-    offer,
-};
+pub static KIND: Kind = Kind { name: "creep", of_rig: true, words: |_| "creep under load".into(), offer };
 
-/// The times tried at which it begins, as shares of the longest visit.
-const BEGINNINGS: [f64; 3] = [0.01, 0.1, 1.0];
+/// The onsets tried, in steps from one row to the next.
+const ONSETS: [f64; 4] = [1.0 / 20.0, 1.0 / 6.0, 1.0 / 2.0, 2.0];
 
-/// Beyond this share it is no creep (1).
-const MOST: f64 = 0.3;
+/// Beyond this share a decade it is no creep (1).
+const MOST: f64 = 0.4;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
-    let since = since(scene.data);
-    let longest = since.iter().copied().fold(0.0, f64::max);
-    if longest == 0.0 {
+    let (_, pace) = clock(scene.data);
+    if pace <= 0.0 {
+        // One load a visit grows alike everywhere, as all compliances would.
         return offers.invisible(Place::Rig);
     }
     let unit = if scene.data.rows.iter().all(|row| row.time.is_some()) { "s" } else { "row" };
-    let beginnings = BEGINNINGS.map(|share| share * longest);
-    let number = |tau: f64| {
-        let since = since.clone();
+    let onsets = ONSETS.map(|share| share * pace);
+    let number = |onset: f64| {
         let number = Number::of_setup(
             "share",
             "1",
             MOST,
-            move |setup, share| {
-                // Two at once do not occur: a candidate has one of its forms.
-                setup.creep = [setup.creep[0] + share, tau];
-            },
-            move |point, _| {
-                let axes = point.samples.axes;
-                DVector::from_fn(point.elastic.len(), |i, _| {
-                    let row = i / axes;
-                    point.elastic[i] / point.samples.rows[row].growth * (since[row] / tau).ln_1p()
-                })
-            },
+            // Two at once do not occur: a candidate has one of its forms.
+            move |setup, share| setup.creep = [setup.creep[0] + share, onset],
+            move |point, _| point.crept(&point.elastic, onset),
         );
-        Number { range: [0.0, MOST], ..number }
+        Number { range: [0.0, MOST], creeps: false, ..number }
     };
-    let numbers: Vec<Number> = beginnings.map(number).into();
-    let forms = (0..).zip(beginnings).map(|(k, tau)| Form::of([k]).with("tau", tau, unit)).collect();
+    let numbers: Vec<Number> = onsets.map(number).into();
+    let forms = (0..).zip(onsets).map(|(k, onset)| Form::of([k]).with("onset", onset, unit)).collect();
     offers.add(Place::Rig, numbers, forms);
 }

@@ -16,7 +16,7 @@ pub static KIND: Kind = Kind {
 };
 
 /// Beyond this a table is not off but another robot's (rad, m, m, rad).
-const MOST: [f64; 4] = [0.2, 0.1, 0.1, 0.2];
+const MOST: [f64; 4] = [0.2, 0.15, 0.15, 0.2];
 const UNITS: [&str; 4] = ["rad", "m", "m", "rad"];
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
@@ -24,7 +24,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         let coordinate = coordinate_entry(scene.samples.joint_kinds[row - 1]);
         for entry in (0..4).filter(|&entry| entry != coordinate) {
             let number = Number::of_setup(
-                "error",
+                "value",
                 UNITS[entry],
                 MOST[entry],
                 move |setup, error| setup.table[row - 1][entry] += error,

@@ -18,9 +18,13 @@ pub static KIND: Kind = Kind {
     offer,
 };
 
-/// The radii tried, as fractions of the largest torque seen on the joint; one
-/// of them, or two that are neighbours.
-const RADII: [f64; 4] = [1.0 / 16.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0];
+/// The radii tried, as fractions of the largest torque seen on the joint; up to
+/// three of them together.
+const RADII: [f64; 5] = [1.0 / 32.0, 1.0 / 16.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0];
+const MOST: u32 = 3;
+
+const NAMES: [&str; 3] = ["weight1", "weight2", "weight3"];
+const OF_RADII: [&str; 3] = ["radius1", "radius2", "radius3"];
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     // Without loads that follow one another there is no order to depend on.
@@ -33,21 +37,20 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         let Some(largest) = scene.largest_torque(joint) else { continue };
         let (unit, torque) = (scene.compliance_unit(joint), if scene.turns(joint) { "Nm" } else { "N" });
         let radii = RADII.map(|fraction| fraction * largest);
-        let number = |(k, radius): (usize, f64)| {
-            let name = ["weight1", "weight2"][k];
-            Number::elastic(name, unit, [0.0, f64::INFINITY], move |point| {
+        let number = |radius: f64| {
+            Number::elastic("weight", unit, [0.0, f64::INFINITY], move |point| {
                 let plays = plays(&point.samples, &point.torques(joint), radius);
                 point.of_joint(joint, |row| plays[row])
             })
         };
-        // As the first and as the second of two.
-        let numbers: Vec<Number> =
-            radii.into_iter().map(|radius| number((0, radius))).chain(radii[1..].iter().map(|&r| number((1, r)))).collect();
-        let one = (0..).zip(radii).map(|(k, radius)| Form::of([k]).with("radius1", radius, torque));
-        let two = radii.windows(2).enumerate().map(|(k, radii)| {
-            Form::of([k, RADII.len() + k]).with("radius1", radii[0], torque).with("radius2", radii[1], torque)
-        });
-        offers.add(Place::Joint(joint), numbers, one.chain(two).collect());
+        let form = |set: u32| {
+            let own: Vec<usize> = (0..RADII.len()).filter(|&k| set >> k & 1 == 1).collect();
+            let form = Form { names: &NAMES, ..Form::of(own.iter().copied()) };
+            own.iter().zip(OF_RADII).fold(form, |form, (&k, name)| form.with(name, radii[k], torque))
+        };
+        let sets = (1..1_u32 << RADII.len()).filter(|set| set.count_ones() <= MOST);
+        let numbers: Vec<Number> = radii.map(number).into();
+        offers.add(Place::Joint(joint), numbers, sets.map(form).collect());
     }
 }
 

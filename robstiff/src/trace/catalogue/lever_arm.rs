@@ -1,7 +1,7 @@
 //! The load acts elsewhere than the file says, by `r` in the tool frame: its
 //! wrench at the TCP is `X(r) F`.
 
-use super::{Form, IN_BASE, Kind, Number, Offers, Place, Scene, WRENCH_STEP};
+use super::{Form, Kind, Number, Offers, POINT, Place, Scene, WRENCH_STEP};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -17,7 +17,7 @@ const MOST: f64 = 0.5;
 fn offer(_: &Scene<'_>, offers: &mut Offers<'_>) {
     let number = |k: usize| {
         Number::of_setup(
-            IN_BASE[k],
+            POINT[k],
             "m",
             MOST,
             move |setup, lever| setup.lever[k] += lever,

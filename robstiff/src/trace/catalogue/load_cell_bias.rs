@@ -1,13 +1,15 @@
 //! The load cell's zero is off: `b` acts on top of what the file says, constant
 //! in the base frame or in the tool's.
 
-use super::{Form, IN_BASE, IN_TOOL, Kind, Number, Offers, Place, Scene, WRENCH_STEP};
+use std::format;
+
+use super::{Form, Kind, Number, Offers, Place, Scene, WRENCH_STEP, frame_words};
 
 /// The kind.
 pub static KIND: Kind = Kind {
     name: "load_cell_bias",
     of_rig: true,
-    words: |_| "a bias of the load cell".into(),
+    words: |found| format!("a bias of the load cell, constant in the {}", frame_words(found)),
     offer,
 };
 
@@ -16,9 +18,8 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let force = |row: &crate::identify::samples::Sample| row.wrench.fixed_rows::<3>(0).norm();
     let most = scene.samples.rows.iter().map(force).fold(0.0, f64::max);
     let number = |k: usize| {
-        let name = if k < 3 { IN_BASE[k] } else { IN_TOOL[k - 3] };
         Number::of_setup(
-            name,
+            ["Fx", "Fy", "Fz"][k % 3],
             "N",
             most,
             move |setup, bias| {
@@ -28,6 +29,6 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
             |point, enters| point.of_wrench(&**enters, WRENCH_STEP),
         )
     };
-    let forms = [Form::of(0..3), Form::of(3..6)].into();
+    let forms = [Form::of(0..3), Form::of(3..6).in_tool()].into();
     offers.add(Place::Rig, (0..6).map(number).collect(), forms);
 }

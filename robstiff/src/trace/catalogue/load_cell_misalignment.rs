@@ -1,13 +1,15 @@
 //! The load cell is turned against the frame that the file names: the force is
 //! `R(theta) f`, the turn being constant in the base frame or in the tool's.
 
-use super::{Form, IN_BASE, IN_TOOL, Kind, Number, Offers, Place, Scene, WRENCH_STEP};
+use std::format;
+
+use super::{Form, Kind, Number, Offers, Place, Scene, TURN, WRENCH_STEP, frame_words};
 
 /// The kind.
 pub static KIND: Kind = Kind {
     name: "load_cell_misalignment",
     of_rig: true,
-    words: |_| "a turn of the load cell against its frame".into(),
+    words: |found| format!("a turn of the load cell, constant in the {}", frame_words(found)),
     offer,
 };
 
@@ -16,9 +18,8 @@ const MOST: f64 = 0.35;
 
 fn offer(_: &Scene<'_>, offers: &mut Offers<'_>) {
     let number = |k: usize| {
-        let name = if k < 3 { IN_BASE[k] } else { IN_TOOL[k - 3] };
         Number::of_setup(
-            name,
+            TURN[k % 3],
             "rad",
             MOST,
             move |setup, turn| {
@@ -28,6 +29,6 @@ fn offer(_: &Scene<'_>, offers: &mut Offers<'_>) {
             |point, enters| point.of_wrench(&**enters, WRENCH_STEP),
         )
     };
-    let forms = [Form::of(0..3), Form::of(3..6)].into();
+    let forms = [Form::of(0..3), Form::of(3..6).in_tool()].into();
     offers.add(Place::Rig, (0..6).map(number).collect(), forms);
 }

@@ -3,16 +3,17 @@
 //! all compliances and cannot be seen, so at most two axes are off against the
 //! third.
 
+use std::format;
 use std::vec;
 use std::vec::Vec;
 
-use super::{Form, IN_BASE, IN_TOOL, Kind, Number, Offers, Place, Scene, WRENCH_STEP};
+use super::{Form, Kind, Number, Offers, Place, Scene, WRENCH_STEP, frame_words};
 
 /// The kind.
 pub static KIND: Kind = Kind {
     name: "load_cell_scale",
     of_rig: true,
-    words: |_| "an unequal scale of the load cell's axes".into(),
+    words: |found| format!("an unequal scale of the load cell's axes, those of the {}", frame_words(found)),
     offer,
 };
 
@@ -21,9 +22,8 @@ const MOST: f64 = 0.5;
 
 fn offer(_: &Scene<'_>, offers: &mut Offers<'_>) {
     let number = |k: usize| {
-        let name = if k < 3 { IN_BASE[k] } else { IN_TOOL[k - 3] };
         Number::of_setup(
-            name,
+            ["sx", "sy", "sz"][k % 3],
             "1",
             MOST,
             move |setup, scale| {
@@ -36,7 +36,8 @@ fn offer(_: &Scene<'_>, offers: &mut Offers<'_>) {
     let forms: Vec<Form> = [0, 3]
         .into_iter()
         .flat_map(|first| [vec![0], vec![1], vec![2], vec![0, 1], vec![0, 2], vec![1, 2]].map(|k| (first, k)))
-        .map(|(first, axes)| Form::of(axes.into_iter().map(|axis: usize| first + axis)))
+        .map(|(first, axes)| (first, Form::of(axes.into_iter().map(|axis: usize| first + axis))))
+        .map(|(first, form)| if first == 0 { form } else { form.in_tool() })
         .collect();
     offers.add(Place::Rig, (0..6).map(number).collect(), forms);
 }

@@ -173,13 +173,17 @@ pub struct Number {
     /// The values that are physically possible, exclusive.
     pub range: [f64; 2],
     /// What a unit of it does to the readings, at a point.
-    pub regressor: Regressor,
+    regressor: Regressor,
     /// How it enters the forward model, where it does so other than linearly.
     pub enters: Option<Enters>,
     /// The compliance it is, where it is one that holds for every load.
     pub parameter: Option<Parameter>,
     /// Whether it is elastic: it moves the arm, and is seen as the arm is.
     pub elastic: bool,
+    /// Whether what it does creeps with the arm.
+    pub creeps: bool,
+    /// The joint (from 1) of whose compliance it is told as a share.
+    pub share_of: Option<usize>,
 }
 
 impl Number {
@@ -190,7 +194,7 @@ impl Number {
         range: [f64; 2],
         of: impl Fn(&Point<'_>) -> DVector<f64> + 'static,
     ) -> Self {
-        Self { name, unit, range, regressor: Rc::new(of), enters: None, parameter: None, elastic: true }
+        Self { name, unit, range, regressor: Rc::new(of), enters: None, parameter: None, elastic: true, creeps: true, share_of: None }
     }
 
     /// A number that adds to the readings, whatever the arm does.
@@ -200,7 +204,7 @@ impl Number {
         range: [f64; 2],
         of: impl Fn(&Point<'_>) -> DVector<f64> + 'static,
     ) -> Self {
-        Self { elastic: false, ..Self::elastic(name, unit, range, of) }
+        Self { elastic: false, creeps: false, ..Self::elastic(name, unit, range, of) }
     }
 
     /// A compliance.
@@ -225,6 +229,12 @@ impl Number {
         Self { enters: Some(enters), elastic: false, ..number }
     }
 
+    /// What a unit of it does to the readings at a point, stacked.
+    pub fn column(&self, point: &Point<'_>) -> DVector<f64> {
+        let column = (self.regressor)(point);
+        if self.creeps { point.with_creep(column) } else { column }
+    }
+
     /// Which values a fit may give it.
     pub fn sign(&self) -> Sign {
         if self.range[0] >= 0.0 { Sign::Nonnegative } else { Sign::Free }
@@ -244,6 +254,8 @@ pub struct Variant {
     pub parameters: usize,
     /// The numbers out of a grid.
     pub shape: Vec<EffectParameter>,
+    /// Names of the numbers where they are not those of the columns.
+    pub names: &'static [&'static str],
 }
 
 /// An effect that may be missing.
@@ -285,22 +297,33 @@ pub struct Offers<'s> {
 }
 
 /// A form of a candidate: some of its numbers, with those out of a grid.
+#[derive(Clone)]
 pub struct Form {
     /// Which of the numbers.
     pub numbers: Vec<usize>,
     /// The numbers out of a grid.
     pub shape: Vec<EffectParameter>,
+    /// What it says besides that is no number to be found.
+    pub marks: Vec<EffectParameter>,
+    /// Names of the numbers where they are not their own.
+    pub names: &'static [&'static str],
 }
 
 impl Form {
     /// Some of the numbers.
     pub fn of(numbers: impl IntoIterator<Item = usize>) -> Self {
-        Self { numbers: numbers.into_iter().collect(), shape: Vec::new() }
+        Self { numbers: numbers.into_iter().collect(), shape: Vec::new(), marks: Vec::new(), names: &[] }
     }
 
     /// The same with a number out of a grid.
     pub fn with(mut self, name: &'static str, value: f64, unit: &'static str) -> Self {
         self.shape.push(EffectParameter { name, value, std: None, unit });
+        self
+    }
+
+    /// The same with its vector given in the tool frame, not in the base frame.
+    pub fn in_tool(mut self) -> Self {
+        self.marks.push(EffectParameter { name: TOOL_FRAME, value: 1.0, std: None, unit: "1" });
         self
     }
 }
@@ -321,7 +344,8 @@ impl Offers<'_> {
         let variant = |form: Form| Variant {
             columns: form.numbers.iter().map(|k| start + k).collect(),
             parameters: form.numbers.len() + form.shape.len(),
-            shape: form.shape,
+            shape: form.shape.into_iter().chain(form.marks).collect(),
+            names: form.names,
         };
         let variants = forms.into_iter().map(variant).collect();
         self.catalogue.numbers.extend(numbers);
@@ -362,9 +386,18 @@ fn two_compliances(scene: &Scene<'_>, offers: &mut Offers<'_>, place: Place, two
 /// The range of a compliance.
 const MORE_THAN_NONE: [f64; 2] = [0.0, f64::INFINITY];
 
-/// The names of three components in the base frame, and in the tool frame.
-const IN_BASE: [&str; 3] = ["x", "y", "z"];
-const IN_TOOL: [&str; 3] = ["tool_x", "tool_y", "tool_z"];
+/// The names of three components: of a point, a shift, a turn.
+const POINT: [&str; 3] = ["x", "y", "z"];
+const SHIFT: [&str; 3] = ["dx", "dy", "dz"];
+const TURN: [&str; 3] = ["rx", "ry", "rz"];
+
+/// The mark of components in the tool frame.
+const TOOL_FRAME: &str = "tool_frame";
+
+/// In which frame something is constant.
+fn frame_words(found: &Found) -> &'static str {
+    if found.value(TOOL_FRAME) == 1.0 { "tool frame" } else { "base frame" }
+}
 
 /// `the joint 3`, `the base`: a place in a sentence.
 fn place_words(found: &Found) -> String {

@@ -1,6 +1,6 @@
 //! A joint whose compliance varies with its own coordinate (gears, gravity
-//! compensator): `(cos1 cos q + sin1 sin q + cos2 cos 2q + sin2 sin 2q) tau` on
-//! top of `h tau`.
+//! compensator): it turns by `h (1 + cos1 cos q + sin1 sin q + cos2 cos 2q + sin2
+//! sin 2q) tau`.
 
 use std::format;
 use std::rc::Rc;
@@ -31,10 +31,11 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         }
         let number = |k: usize| {
             let any = [f64::NEG_INFINITY, f64::INFINITY];
-            Number::elastic(NAMES[k], scene.compliance_unit(joint), any, move |point| {
+            let number = Number::elastic(NAMES[k], "1", any, move |point| {
                 let torques = point.torques(joint);
                 point.of_joint(joint, |row| wave(k, point.data.rows[row].q[joint - 1]) * torques[row])
-            })
+            });
+            Number { share_of: Some(joint), ..number }
         };
         let forms = vec![Form::of([0, 1]), Form::of([2, 3]), Form::of([0, 1, 2, 3])];
         let numbers: Vec<Number> = (0..4).map(number).collect();

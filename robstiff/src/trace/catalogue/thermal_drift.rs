@@ -1,13 +1,17 @@
-//! The readings drift, in a direction of its own, with the time or the
-//! temperature: since the visit's unloaded reading where each visit has its
-//! own, or since the campaign began where none is taken again.
+//! The readings drift, in a direction of its own, with the time, with the
+//! temperature, or as something that settles; since the visit's unloaded reading
+//! where each visit takes its own, or since the campaign began where none is
+//! taken again. Where the unloaded readings were taken in a round before, they
+//! have drifted among themselves by what no row tells; an offset, and one that
+//! grows from visit to visit, take that up.
 
 use std::vec::Vec;
 
 use nalgebra::Vector3;
 
-use super::{Form, IN_BASE, Kind, Number, Offers, Place, Scene};
-use crate::campaign::{Displacements, Observation};
+use super::{Form, Kind, Number, Offers, Place, SHIFT, Scene};
+use crate::campaign::Displacements;
+use crate::trace::point::clock;
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -21,58 +25,87 @@ pub static KIND: Kind = Kind {
 const MOST: f64 = 5e-3;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
-    let clocks = clocks(scene.data);
-    let number = |(k, clock): (usize, &Clock)| {
-        let largest = clock.values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-        let (values, most) = (clock.values.clone(), MOST / largest);
-        Number::of_reading(IN_BASE[k], clock.unit, [-most, most], move |point| {
-            point.of_reading(|row| Vector3::ith(k, values[row]))
-        })
+    let mut numbers: Vec<Number> = Vec::new();
+    let mut three = |name: [&'static str; 3], values: Vec<f64>, unit: &'static str| -> Vec<usize> {
+        let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        let most = MOST / largest.max(f64::MIN_POSITIVE);
+        let number = |k: usize| {
+            let values = values.clone();
+            Number::of_reading(name[k], unit, [-most, most], move |point| {
+                point.of_reading(|row| Vector3::ith(k, values[row]))
+            })
+        };
+        numbers.extend((0..3).map(number));
+        (numbers.len() - 3..numbers.len()).collect()
     };
-    let numbers: Vec<Number> =
-        clocks.iter().flat_map(|clock| (0..3).map(move |k| (k, clock))).map(number).collect();
-    let forms = (0..clocks.len()).map(|clock| Form::of(3 * clock..3 * clock + 3)).collect();
+    let offset = three(OFFSET, std::vec![1.0; scene.data.rows.len()], "m");
+    let visits = scene.data.rows.iter().map(|row| row.visit as f64).collect();
+    let order = three(BY_VISIT, visits, "m/visit");
+    let mut forms: Vec<Form> = Vec::new();
+    for course in courses(scene.data) {
+        let from = |before: &[f64]| course.values.iter().zip(before).map(|(value, before)| value - before).collect();
+        let in_visit = three(SHIFT, from(&course.before_visit), course.unit);
+        let whole = three(SHIFT, from(&std::vec![course.begins; course.values.len()]), course.unit);
+        let with = |more: &[&Vec<usize>]| {
+            let form = Form::of(whole.iter().chain(more.iter().copied().flatten()).copied());
+            course.settles.map_or(form.clone(), |constant| form.with("constant", constant, "s"))
+        };
+        forms.extend([Form::of(in_visit), with(&[]), with(&[&offset]), with(&[&offset, &order])]);
+    }
     offers.add(Place::Rig, numbers, forms);
 }
 
-/// What a drift may go with, by row.
-struct Clock {
+const OFFSET: [&str; 3] = ["offset_x", "offset_y", "offset_z"];
+const BY_VISIT: [&str; 3] = ["visit_x", "visit_y", "visit_z"];
+
+/// Time constants tried of what settles (s).
+const CONSTANTS: [f64; 3] = [1800.0, 3600.0, 7200.0];
+
+/// What a drift may follow, by row.
+struct Course {
     values: Vec<f64>,
+    /// At the unloaded reading of the row's visit, taken one step before its
+    /// first row.
+    before_visit: Vec<f64>,
+    /// At the beginning of the campaign.
+    begins: f64,
     unit: &'static str,
+    /// The time constant, where it settles.
+    settles: Option<f64>,
 }
 
-fn clocks(data: &Displacements) -> Vec<Clock> {
-    let known = |of: fn(&Observation) -> Option<f64>| -> Option<Vec<f64>> { data.rows.iter().map(of).collect() };
-    let order = || (0..data.rows.len()).map(|row| row as f64).collect::<Vec<f64>>();
-    let sources = [
-        (known(|row| row.time).map(|time| (time, "m/s")).or_else(|| Some((order(), "m/row")))),
-        known(|row| row.temperature).map(|temperature| (temperature, "m/K")),
-    ];
-    let mut clocks: Vec<Clock> = Vec::new();
-    for (values, unit) in sources.into_iter().flatten() {
+fn courses(data: &Displacements) -> Vec<Course> {
+    let (clock, pace) = clock(data);
+    let timed = data.rows.iter().all(|row| row.time.is_some());
+    let first = |values: &[f64], step: &dyn Fn(usize) -> f64| -> Vec<f64> {
         let mut first = std::vec![None; data.visits.len()];
-        let since = |row: usize| values[row] - *first[data.rows[row].visit].get_or_insert(values[row]);
-        let in_visit: Vec<f64> = (0..values.len()).map(since).collect();
-        let step = pace(data, &values);
-        // The unloaded reading came as long before the first as the others
-        // after each other; or just before it.
-        let with_step = in_visit.iter().map(|value| value + step).collect();
-        let whole = values.iter().map(|value| value - values[0]).collect();
-        for values in [with_step, in_visit, whole] {
-            let varies = values.iter().any(|value: &f64| value.abs() > 0.0);
-            let known = clocks.iter().any(|clock| clock.values == values);
-            if varies && !known {
-                clocks.push(Clock { values, unit });
-            }
-        }
+        let before = |row: usize| *first[data.rows[row].visit].get_or_insert_with(|| values[row] - step(row));
+        (0..values.len()).map(before).collect()
+    };
+    let of_time = |law: &dyn Fn(f64) -> f64, unit, settles| Course {
+        values: clock.iter().map(|&time| law(time)).collect(),
+        before_visit: first(&clock, &|_| pace).into_iter().map(law).collect(),
+        // A file that tells the time tells it from the beginning on.
+        begins: law(if timed { 0.0_f64.min(clock[0]) } else { clock[0] }),
+        unit,
+        settles,
+    };
+    let hours = if timed { 1.0 / 3600.0 } else { 1.0 };
+    let mut courses = std::vec![of_time(&|time| time * hours, if timed { "m/h" } else { "m/row" }, None)];
+    if timed {
+        let settling = |&constant: &f64| of_time(&|time: f64| -(-time / constant).exp_m1(), "m", Some(constant));
+        courses.extend(CONSTANTS.iter().map(settling));
     }
-    clocks
-}
-
-/// The median step from one row of a visit to the next.
-fn pace(data: &Displacements, values: &[f64]) -> f64 {
-    let pairs = (1..values.len()).filter(|&row| data.rows[row].visit == data.rows[row - 1].visit);
-    let mut steps: Vec<f64> = pairs.map(|row| values[row] - values[row - 1]).collect();
-    steps.sort_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied().unwrap_or(0.0)
+    let temperature: Option<Vec<f64>> = data.rows.iter().map(|row| row.temperature).collect();
+    if let Some(values) = temperature {
+        // One step before the first row it was about as much colder as the
+        // next is warmer.
+        let slope = |row: usize| match values.get(row + 1) {
+            Some(next) if data.rows[row + 1].visit == data.rows[row].visit => next - values[row],
+            _ => 0.0,
+        };
+        let before_visit = first(&values, &slope);
+        courses.push(Course { before_visit, begins: values[0], values, unit: "m/K", settles: None });
+    }
+    courses
 }

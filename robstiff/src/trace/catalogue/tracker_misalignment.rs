@@ -1,7 +1,7 @@
 //! What reads the displacement is turned against the frame that the file
 //! names: `R(theta) delta`.
 
-use super::{Form, IN_BASE, Kind, Number, Offers, Place, Scene, WRENCH_STEP};
+use super::{Form, Kind, Number, Offers, Place, Scene, TURN, WRENCH_STEP};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -18,7 +18,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let number = |k: usize| {
         let tools = scene.tools();
         Number::of_setup(
-            IN_BASE[k],
+            TURN[k],
             "rad",
             MOST,
             move |setup, turn| setup.tracker[k] += turn,
