@@ -57,7 +57,9 @@ fn the_tilt_of_joint_3_is_missing() {
 
     assert_eq!(found.effects.len(), 1, "{:?}", found.effects);
     let named = &found.effects[0];
-    let Some(Effect::TransverseCompliance { joint: 3, value }) = named.effect.effect() else { panic!("{:?}", named.effect) };
+    let Some(Effect::TransverseCompliance { joint: 3, value }) = named.effect.effect() else {
+        panic!("{:?}", named.effect)
+    };
     assert_near("the tilt (rad/Nm)", value, 6.37e-7, 0.02);
     assert!(named.p_value < 0.01, "{}", named.p_value);
     assert!(named.same_as.iter().any(|name| name == "link_compliance@link 3"), "{:?}", named.same_as);

@@ -89,12 +89,7 @@ impl Samples {
         crate::with_robot!(&setup.description(description), |robot| Self::on(&robot, data, setup, Some(self)))
     }
 
-    fn on<const N: usize>(
-        robot: &impl Robot<N>,
-        data: &Displacements,
-        setup: &Setup,
-        declared: Option<&Self>,
-    ) -> Self {
+    fn on<const N: usize>(robot: &impl Robot<N>, data: &Displacements, setup: &Setup, declared: Option<&Self>) -> Self {
         let with_rotations = data.rows.iter().all(|row| row.rotation.is_some());
         let row = |(i, row): (usize, &Observation)| {
             let q = setup.coordinates(i, &row.q);

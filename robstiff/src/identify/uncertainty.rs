@@ -21,11 +21,8 @@ const POSES_PER_COEFFICIENT: usize = 2;
 /// The covariance of a fit's coefficients; `signs` are those of its columns.
 pub fn covariance(problem: &Problem, fit: &Fit, signs: &[Sign]) -> DMatrix<f64> {
     let poses = problem.blocks.len();
-    let without: Vec<DVector<f64>> = problem
-        .blocks
-        .iter()
-        .filter_map(|block| problem.solve_without(block, &fit.columns, Some(signs)))
-        .collect();
+    let without: Vec<DVector<f64>> =
+        problem.blocks.iter().filter_map(|block| problem.solve_without(block, &fit.columns, Some(signs))).collect();
     if poses < POSES_PER_COEFFICIENT * fit.columns.len() || without.len() < poses {
         let inverse = problem.total.inverse(&fit.columns);
         let none = || DMatrix::zeros(signs.len(), signs.len());

@@ -37,8 +37,7 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -
         let Some(rival) = best_with(&setting, &rest, candidate) else { continue };
         let variant = variant_of(&rival, candidate);
         let exact = test.distance(setting.variant(one), setting.variant(variant)) < EXACT;
-        let admitted =
-            || tests.p_value(candidate) <= options.alpha && setting.left_out_rms(&rival.fit) < unseen;
+        let admitted = || tests.p_value(candidate) <= options.alpha && setting.left_out_rms(&rival.fit) < unseen;
         let of_model = own.deviances(&model.fit);
         let is_near = |rival: &Fitted, at: &Setting<'_>| {
             rival.bic - model.bic < WITHIN_REACH || witnesses(&of_model, &at.deviances(&rival.fit)) < WITNESSES
@@ -50,9 +49,7 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -
                 at.fit(&rival.named).ok().map(|rival| is_near(&rival, &at))
             };
             is_near(&rival, &setting)
-                || (bench.is_nonlinear(&rival.named)
-                    && rival.bic < model.bic + CURVATURE
-                    && refit().unwrap_or(false))
+                || (bench.is_nonlinear(&rival.named) && rival.bic < model.bic + CURVATURE && refit().unwrap_or(false))
         };
         if exact || (admitted() && near()) {
             found.push((rival.bic, setting.candidates[candidate].name()));

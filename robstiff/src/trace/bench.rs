@@ -11,7 +11,7 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::catalogue::{Candidate, Catalogue, Number, Scene, Variant, catalogue};
+use super::catalogue::{Candidate, Catalogue, LIKELY, Number, Scene, Variant, catalogue};
 use super::isolated;
 use super::model::{Fitted, Named, Setting};
 use super::point::Point;
@@ -90,8 +90,9 @@ impl<'c> Bench<'c> {
             states: RefCell::default(),
         };
         bench.moments.dedup();
-        // What the likeliest will be takes the first place.
-        bench.moments.insert(0, rows.div_ceil(2));
+        // What the likeliest will be take the first places.
+        let likely: Vec<usize> = (1..=LIKELY).map(|k| k * rows / (LIKELY + 1)).collect();
+        bench.moments.splice(0..0, likely);
         bench.set_up()?;
         Ok(bench)
     }
@@ -156,18 +157,15 @@ impl<'c> Bench<'c> {
             let wild = isolated::events(&setting, &fitted, self.strict);
             let mut left_out = vec![false; self.left_out.len()];
             wild.iter().flat_map(|event| &event.rows).for_each(|&row| left_out[row] = true);
-            let slips = |one: &Named| self.candidates[one.candidate].kind == &super::catalogue::BASE_SLIP;
-            let moment = if named.iter().any(slips) { None } else { isolated::likeliest_slip(&setting, &fitted) };
-            let moves = moment.is_some_and(|moment| moment != self.moments[0]);
+            let moments = self.likely_slips(named);
+            let moves = moments.iter().any(|moment| !self.moments[..LIKELY].contains(moment));
             if left_out == self.left_out && !moves {
                 break;
             }
             drop(setting);
             changed = true;
             self.left_out = left_out;
-            if let Some(moment) = moment {
-                self.moments[0] = moment;
-            }
+            self.moments[..moments.len()].copy_from_slice(&moments);
             // Which forms of which candidates are seen stays as it was.
             let (kept, invisible) = (Rc::clone(&self.candidates), self.invisible.clone());
             self.set_up()?;
@@ -182,6 +180,32 @@ impl<'c> Bench<'c> {
             self.states.get_mut().clear();
         }
         Ok(changed)
+    }
+
+    /// Where slips that all later rows keep may have begun: what a model says,
+    /// and what it says without one of its effects, which may be in place of a
+    /// slip or be one.
+    fn likely_slips(&self, named: &[Named]) -> Vec<usize> {
+        let slips = |one: &Named| self.candidates[one.candidate].kind == &super::catalogue::BASE_SLIP;
+        let mut models: Vec<Vec<Named>> = Vec::new();
+        if !named.iter().any(slips) {
+            models.push(named.to_vec());
+        }
+        for k in 0..named.len() {
+            let mut rest = named.to_vec();
+            rest.remove(k);
+            if !rest.iter().any(slips) {
+                models.push(rest);
+            }
+        }
+        let mut moments: Vec<usize> = Vec::new();
+        for named in models {
+            let Ok(setting) = self.at(&named) else { continue };
+            let Ok(fitted) = setting.fit(&named) else { continue };
+            moments.extend(isolated::likeliest_slip(&setting, &fitted).filter(|moment| !moments.contains(moment)));
+        }
+        moments.truncate(LIKELY);
+        moments
     }
 
     /// The candidates.
@@ -237,11 +261,7 @@ impl<'c> Bench<'c> {
     }
 
     fn weights(&self) -> Weights<'_> {
-        Weights {
-            rotation: self.prepared.rotation_weight,
-            training: &self.prepared.training,
-            left_out: &self.left_out,
-        }
+        Weights { rotation: self.prepared.rotation_weight, training: &self.prepared.training, left_out: &self.left_out }
     }
 
     fn state(&self, named: &[Named]) -> Result<Rc<State>, String> {

@@ -118,9 +118,7 @@ impl Found {
             ("link_compliance", Place::Link(link)) => {
                 Effect::LinkCompliance { link, bending: value("bending"), torsion: value("torsion") }
             }
-            ("base_compliance", _) => {
-                Effect::BaseCompliance { tilt: value("tilt"), translation: value("translation") }
-            }
+            ("base_compliance", _) => Effect::BaseCompliance { tilt: value("tilt"), translation: value("translation") },
             ("tool_compliance", _) => {
                 Effect::ToolCompliance { rotation: value("rotation"), translation: value("translation") }
             }

@@ -193,7 +193,13 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
 /// resemblance, by the method of moments (`E r_i . r_j = v K_ij` between
 /// poses); whichever is more, since what is no function of the load, such as
 /// hysteresis, makes repeated readings differ and so counts as noise there.
-fn fraction(setting: &Setting<'_>, model: &Fitted, yardstick: Yardstick, found: Option<&Resemblance>, alpha: f64) -> f64 {
+fn fraction(
+    setting: &Setting<'_>,
+    model: &Fitted,
+    yardstick: Yardstick,
+    found: Option<&Resemblance>,
+    alpha: f64,
+) -> f64 {
     let variance = model.fit.rss / freedom(setting, model);
     let noise = match yardstick {
         Yardstick::Declared(noise) => Some(noise),
@@ -298,8 +304,7 @@ fn drawn_residuals(setting: &Setting<'_>, model: &Fitted) -> Option<DMatrix<f64>
     let mut drawn = DMatrix::zeros(problem.white_readings.len(), problem.blocks.len());
     for (p, block) in problem.blocks.iter().enumerate() {
         let without = problem.solve_without(block, columns, None);
-        let residual =
-            problem.block_residuals(block, columns, without.as_ref().unwrap_or(&model.fit.coefficients));
+        let residual = problem.block_residuals(block, columns, without.as_ref().unwrap_or(&model.fit.coefficients));
         let own = design.select_rows(&block.stacked);
         let absorbed = &inverse * own.tr_mul(&residual);
         let mut column = &design * -absorbed;

@@ -61,6 +61,8 @@ pub struct Fitted {
     pub fit: Fit,
     /// The Bayesian information criterion.
     pub bic: f64,
+    /// Whether physics allows it.
+    pub physical: bool,
 }
 
 /// A joint's compliance below zero by this many standard deviations is no
@@ -122,7 +124,17 @@ impl Setting<'_> {
     pub fn judge(&self, named: &[Named], fit: Fit) -> Result<Fitted, String> {
         self.check(&fit, named)?;
         let bic = self.bic(named, fit.rss);
-        Ok(Fitted { named: named.to_vec(), fit, bic })
+        Ok(Fitted { named: named.to_vec(), fit, bic, physical: true })
+    }
+
+    /// Fits a model that physics may not allow: what is missing besides can
+    /// drive the numbers of a true effect beyond what is possible.
+    pub fn fit_loosely(&self, named: &[Named]) -> Option<Fitted> {
+        let columns = self.columns(named);
+        let signs: Vec<Sign> = columns.iter().map(|&column| self.signs[column]).collect();
+        let fit = self.problem.total.solve_signed(&columns, &signs)?;
+        let (bic, physical) = (self.bic(named, fit.rss), self.check(&fit, named).is_ok());
+        Some(Fitted { named: named.to_vec(), fit, bic, physical })
     }
 
     /// The Bayesian information criterion of a model with a residual sum of

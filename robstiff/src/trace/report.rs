@@ -177,13 +177,7 @@ fn effects(
 
 /// A compliance as a share of that of a joint (from 1), with its standard
 /// deviation to the first order.
-fn share_of(
-    setting: &Setting<'_>,
-    model: &Fitted,
-    spread: &DMatrix<f64>,
-    at: usize,
-    joint: usize,
-) -> (f64, f64) {
+fn share_of(setting: &Setting<'_>, model: &Fitted, spread: &DMatrix<f64>, at: usize, joint: usize) -> (f64, f64) {
     let (value, own) = (model.fit.coefficients[at], setting.joint_value(&model.fit, joint));
     let share = value / own;
     let variance = match model.fit.columns.iter().position(|&column| column == joint - 1) {
@@ -210,8 +204,10 @@ fn isolated(prepared: &Prepared<'_>, outcome: &Outcome, holdout_rms: f64) -> Vec
     let mut found = Vec::new();
     let mut outliers = wild;
     if let [slip] = slips[..] {
-        let number = |(name, value): (&'static str, &f64)| EffectParameter { name, value: *value, std: None, unit: "m" };
-        let mut parameters: Vec<EffectParameter> = ["dx", "dy", "dz"].into_iter().zip(slip.shift.iter()).map(number).collect();
+        let number =
+            |(name, value): (&'static str, &f64)| EffectParameter { name, value: *value, std: None, unit: "m" };
+        let mut parameters: Vec<EffectParameter> =
+            ["dx", "dy", "dz"].into_iter().zip(slip.shift.iter()).map(number).collect();
         let first = slip.rows.iter().map(line).min().unwrap_or_default();
         parameters.push(EffectParameter { name: "line", value: first as f64, std: None, unit: "1" });
         let effect = Found::new(&BASE_SLIP, Place::Base, parameters);

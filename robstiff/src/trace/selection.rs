@@ -125,8 +125,12 @@ pub fn select(
         if bench.look_again(&model.named)? {
             model = bench.fit(&model.named)?;
         }
+        let mut setting = bench.at(&model.named)?;
+        if let Some((better, p)) = sideways(bench, &setting, &model, options) {
+            (model, p_values) = (better, p);
+            setting = bench.at(&model.named)?;
+        }
         let Some(tests) = Tests::against(bench, &model.named, options) else { break };
-        let setting = bench.at(&model.named)?;
         let mut step = table(&setting, &model, &tests, options);
         if tests.smallest_p() > options.alpha {
             step.outcome = String::from("nothing is missing significantly");
@@ -134,12 +138,12 @@ pub fn select(
             break;
         }
         beam = improve(&setting, extend(&setting, &beam));
-        let proposals = nonlinear(bench, &setting, &beam);
-        let accepted = proposals
-            .iter()
-            .take_while(|proposed| proposed.bic < proposals[0].bic + WITHIN_REACH)
-            .take(PROPOSALS)
-            .find_map(|proposed| Some((proposed.clone(), accept(bench, &model, proposed, &tests, options)?)));
+        let mut accepted = propose(bench, &setting, &beam, &model, &tests, options);
+        if accepted.is_none() {
+            // Two that are missing can keep each other from passing alone.
+            beam = improve(&setting, extend(&setting, &beam));
+            accepted = propose(bench, &setting, &beam, &model, &tests, options);
+        }
         let Some((proposed, p)) = accepted else {
             unnamed = true;
             step.outcome = String::from("something is missing, but no effect passes every test");
@@ -157,12 +161,45 @@ pub fn select(
     Ok(Selection { model, p_values, steps, unnamed })
 }
 
-/// The best proposals of a linear search, with nonlinear numbers in their own
-/// form, the best first.
+/// The first of the best models of a beam that passes, with its p-values.
+fn propose(
+    bench: &Bench<'_>,
+    setting: &Setting<'_>,
+    beam: &[Fitted],
+    model: &Fitted,
+    tests: &Tests,
+    options: &Options,
+) -> Option<(Fitted, Vec<f64>)> {
+    let proposals = nonlinear(bench, setting, beam);
+    proposals
+        .iter()
+        .take_while(|proposed| proposed.bic < proposals[0].bic + WITHIN_REACH)
+        .take(PROPOSALS)
+        .find_map(|proposed| Some((proposed.clone(), accept(bench, model, proposed, tests, options)?)))
+}
+
+/// The model of as many effects that is better, one of them replaced or in
+/// another form, where there is one that passes.
+fn sideways(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted, options: &Options) -> Option<(Fitted, Vec<f64>)> {
+    if model.named.is_empty() {
+        return None;
+    }
+    let beam = improve(setting, std::vec![model.clone()]);
+    let proposals = nonlinear(bench, setting, &beam);
+    let best = proposals.into_iter().find(|proposed| proposed.bic < model.bic - BETTER)?;
+    let p_values = p_values(bench, &best.named, options);
+    p_values.iter().all(|&p| p <= options.alpha).then_some((best, p_values))
+}
+
+/// A criterion that is lower by this is worth another look: odds of e to one.
+const BETTER: f64 = 2.0;
+
+/// The best proposals of a linear search that physics allows, with nonlinear
+/// numbers in their own form, the best first.
 fn nonlinear(bench: &Bench<'_>, setting: &Setting<'_>, beam: &[Fitted]) -> Vec<Fitted> {
-    let Some(best) = beam.first() else { return Vec::new() };
+    let Some(best) = beam.iter().find(|model| model.physical) else { return Vec::new() };
     // Curvature can change a criterion by this much before it changes the order.
-    let near = beam.iter().filter(|model| model.bic < best.bic + CURVATURE).take(REFITTED);
+    let near = beam.iter().filter(|model| model.physical && model.bic < best.bic + CURVATURE).take(REFITTED);
     best_of(near.filter_map(|model| bench.refit(setting, model).ok()).collect())
 }
 
@@ -215,7 +252,7 @@ fn extend(setting: &Setting<'_>, beam: &[Fitted]) -> Vec<Fitted> {
     let mut found = Vec::new();
     for model in beam {
         for candidate in 0..setting.candidates.len() {
-            found.extend(best_with(setting, &model.named, candidate));
+            found.extend(best_loosely(setting, &model.named, candidate));
         }
     }
     best_of(found)
@@ -223,6 +260,12 @@ fn extend(setting: &Setting<'_>, beam: &[Fitted]) -> Vec<Fitted> {
 
 /// The best physical model of some effects and one candidate more.
 pub fn best_with(setting: &Setting<'_>, named: &[Named], candidate: usize) -> Option<Fitted> {
+    best_loosely(setting, named, candidate).filter(|model| model.physical)
+}
+
+/// The best model of some effects and one candidate more; where physics allows
+/// none, the best all the same.
+fn best_loosely(setting: &Setting<'_>, named: &[Named], candidate: usize) -> Option<Fitted> {
     if named.iter().any(|one| one.candidate == candidate) {
         return None;
     }
@@ -232,41 +275,57 @@ pub fn best_with(setting: &Setting<'_>, named: &[Named], candidate: usize) -> Op
         named.push(Named { candidate, variant });
         // One order for one set, so that it is the same model however reached.
         named.sort_unstable();
-        setting.fit(&named).ok()
+        setting.fit_loosely(&named)
     });
-    fits.min_by(|a, b| a.bic.total_cmp(&b.bic))
+    fits.min_by(|a, b| b.physical.cmp(&a.physical).then(a.bic.total_cmp(&b.bic)))
 }
 
 /// Replaces each effect of the best model with each candidate as long as that
 /// improves it.
 fn improve(setting: &Setting<'_>, mut beam: Vec<Fitted>) -> Vec<Fitted> {
     loop {
-        let Some(best) = beam.first().cloned() else { return beam };
-        let swapped = (0..best.named.len()).flat_map(|k| {
-            let mut rest = best.named.clone();
-            rest.remove(k);
-            (0..setting.candidates.len()).filter_map(move |candidate| best_with(setting, &rest, candidate))
-        });
-        let swapped: Vec<Fitted> = swapped.collect();
-        beam.extend(swapped);
+        let best = bests(&beam);
+        if best.is_empty() {
+            return beam;
+        }
+        for model in &best {
+            for k in 0..model.named.len() {
+                let mut rest = model.named.clone();
+                rest.remove(k);
+                let swapped =
+                    (0..setting.candidates.len()).filter_map(|candidate| best_loosely(setting, &rest, candidate));
+                beam.extend(swapped);
+            }
+        }
         beam = best_of(beam);
-        if beam[0].bic >= best.bic - TIE {
+        let better = |(new, old): (&Fitted, &Fitted)| new.bic < old.bic - TIE;
+        if !bests(&beam).iter().zip(&best).any(better) {
             return beam;
         }
     }
+}
+
+/// The best model that physics allows, and the best of all where that is
+/// another.
+fn bests(beam: &[Fitted]) -> Vec<Fitted> {
+    let physical = beam.iter().find(|model| model.physical);
+    let any = beam.first().filter(|model| !model.physical);
+    physical.into_iter().chain(any).cloned().collect()
 }
 
 /// Criteria closer than this are equal but for rounding.
 const TIE: f64 = 1e-3;
 
 /// The best of each set of candidates, the best set first; among equals the
-/// one that comes first in the catalogue.
+/// one that comes first in the catalogue. Those that physics does not allow are
+/// not counted against the others.
 fn best_of(mut models: Vec<Fitted>) -> Vec<Fitted> {
     let set = |model: &Fitted| -> Vec<usize> { model.named.iter().map(|one| one.candidate).collect() };
     models.sort_by_cached_key(|model| ((model.bic / TIE).round() as i64, model.named.clone()));
     let mut kept: Vec<Fitted> = Vec::new();
     for model in models {
-        if kept.len() < BEAM && kept.iter().all(|other| set(other) != set(&model)) {
+        let alike = kept.iter().filter(|other| other.physical == model.physical).count();
+        if alike < BEAM && kept.iter().all(|other| set(other) != set(&model)) {
             kept.push(model);
         }
     }

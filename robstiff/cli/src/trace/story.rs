@@ -46,7 +46,12 @@ pub fn summary(trace: &Trace) -> Vec<String> {
     sentences.extend(clipped.map(|estimate| at_bound(&estimate.name) + "."));
     for named in trace.effects.iter().filter(|named| !named.lines.is_empty()) {
         let lines: Vec<String> = named.lines.iter().map(usize::to_string).collect();
-        sentences.push(format!("{} is seen on line{} {}.", named.effect, if lines.len() == 1 { "" } else { "s" }, and(&lines)));
+        sentences.push(format!(
+            "{} is seen on line{} {}.",
+            named.effect,
+            if lines.len() == 1 { "" } else { "s" },
+            and(&lines)
+        ));
     }
     for named in &trace.effects {
         if !named.same_as.is_empty() {

@@ -20,32 +20,39 @@ pub static KIND: Kind = Kind {
     offer,
 };
 
+/// At so many of the moments, the first, the robot may have turned as well.
+pub const LIKELY: usize = 3;
+
 /// A longer way is a move (m), a larger turn a fall (rad).
 const MOST: f64 = 5e-3;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
-    let Some(&likeliest) = scene.moments.first() else { return };
     let shift = |(moment, k): (usize, usize)| {
         Number::of_reading(SHIFT[k], "m", [-MOST, MOST], move |point| {
             point.of_reading(|row| if row >= moment { Vector3::ith(k, 1.0) } else { Vector3::zeros() })
         })
     };
     // About the origin of the base frame, by a small turn.
-    let turn = |k: usize| {
+    let turn = |(moment, k): (usize, usize)| {
         Number::of_reading(TURN[k], "rad", [-MOST, MOST], move |point| {
             point.samples.stacked_by(|row, sample| {
-                let turn = if row >= likeliest { Vector3::ith(k, 1.0) } else { Vector3::zeros() };
+                let turn = if row >= moment { Vector3::ith(k, 1.0) } else { Vector3::zeros() };
                 let at = sample.tcp.fixed_view::<3, 1>(0, 3) + sample.marker;
                 stack(&turn.cross(&at), &turn)
             })
         })
     };
-    let shifts = scene.moments.iter().flat_map(|&moment| (0..3).map(move |k| (moment, k)));
-    let numbers: Vec<Number> = shifts.map(shift).chain((0..3).map(turn)).collect();
+    let three = |&moment: &usize| (0..3).map(move |k| (moment, k));
+    let likely = &scene.moments[..LIKELY.min(scene.moments.len())];
+    let shifts = scene.moments.iter().flat_map(three).map(shift);
+    let numbers: Vec<Number> = shifts.chain(likely.iter().flat_map(three).map(turn)).collect();
     let turns = 3 * scene.moments.len();
     let line = |moment: usize| scene.data.rows[moment].line as f64;
     let form = |(i, &moment): (usize, &usize)| Form::of(3 * i..3 * i + 3).with("line", line(moment), "1");
     let mut forms: Vec<Form> = scene.moments.iter().enumerate().map(form).collect();
-    forms.push(Form::of((0..3).chain(turns..turns + 3)).with("line", line(likeliest), "1"));
+    forms.extend(likely.iter().enumerate().map(|(i, &moment)| {
+        let own = (3 * i..3 * i + 3).chain(turns + 3 * i..turns + 3 * i + 3);
+        Form::of(own).with("line", line(moment), "1")
+    }));
     offers.add(Place::Base, numbers, forms);
 }

@@ -17,12 +17,8 @@ use crate::identify::setup::{Setup, coordinate_entry};
 use crate::trace::point::Point;
 
 /// The kind.
-pub static KIND: Kind = Kind {
-    name: "gravity_sag",
-    of_rig: false,
-    words: |_| "the sag of the robot under its own weight".into(),
-    offer,
-};
+pub static KIND: Kind =
+    Kind { name: "gravity_sag", of_rig: false, words: |_| "the sag of the robot under its own weight".into(), offer };
 
 /// Standard gravity (m/s^2), along -z of the base frame.
 const GRAVITY: f64 = 9.80665;
@@ -61,11 +57,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
 }
 
 /// The frames 1 to n that masses are given in.
-fn link_frames(
-    convention: Convention,
-    samples: &Samples,
-    row: &Sample,
-) -> Vec<nalgebra::Matrix4<f64>> {
+fn link_frames(convention: Convention, samples: &Samples, row: &Sample) -> Vec<nalgebra::Matrix4<f64>> {
     match convention {
         Convention::Modified => row.joint_frames.clone(),
         Convention::Standard => row.joint_frames[1..samples.joints()].iter().copied().chain([row.flange]).collect(),
@@ -73,13 +65,7 @@ fn link_frames(
 }
 
 /// The torque of the weights behind a joint (from 1) about it.
-fn torque(
-    samples: &Samples,
-    row: &Sample,
-    frames: &[nalgebra::Matrix4<f64>],
-    links: &[Link],
-    joint: usize,
-) -> f64 {
+fn torque(samples: &Samples, row: &Sample, frames: &[nalgebra::Matrix4<f64>], links: &[Link], joint: usize) -> f64 {
     let frame = &row.joint_frames[joint - 1];
     let axis: Vector3<f64> = frame.fixed_view::<3, 1>(0, 2).into_owned();
     let through: Vector3<f64> = frame.fixed_view::<3, 1>(0, 3).into_owned();

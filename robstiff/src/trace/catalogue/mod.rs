@@ -45,7 +45,7 @@ use std::vec::Vec;
 use nalgebra::{DVector, Matrix3};
 use robstiff_robots::Description;
 
-pub use self::base_slip::KIND as BASE_SLIP;
+pub use self::base_slip::{KIND as BASE_SLIP, LIKELY};
 pub use self::outliers::KIND as OUTLIERS;
 use super::found::{EffectParameter, Found, Place};
 use super::point::Point;
@@ -194,7 +194,17 @@ impl Number {
         range: [f64; 2],
         of: impl Fn(&Point<'_>) -> DVector<f64> + 'static,
     ) -> Self {
-        Self { name, unit, range, regressor: Rc::new(of), enters: None, parameter: None, elastic: true, creeps: true, share_of: None }
+        Self {
+            name,
+            unit,
+            range,
+            regressor: Rc::new(of),
+            enters: None,
+            parameter: None,
+            elastic: true,
+            creeps: true,
+            share_of: None,
+        }
     }
 
     /// A number that adds to the readings, whatever the arm does.

@@ -42,10 +42,13 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         // At the angles that were measured; elsewhere nothing is known of it.
         let angles: Vec<f64> = scene.data.rows.iter().map(|row| row.q[joint - 1]).collect();
         let check = move |numbers: &[(&str, f64)], of: &dyn Fn(usize) -> f64| {
-            let part = |q: f64| move |(name, b): &(&str, f64)| NAMES.iter().position(|n| n == name).map(|k| b * wave(k, q));
+            let part =
+                |q: f64| move |(name, b): &(&str, f64)| NAMES.iter().position(|n| n == name).map(|k| b * wave(k, q));
             let at = |q: f64| of(joint) + numbers.iter().filter_map(part(q)).sum::<f64>();
             let physical = angles.iter().all(|&q| at(q) > 0.0);
-            physical.then_some(()).ok_or_else(|| format!("joint {joint} would have a negative compliance at some angle"))
+            physical
+                .then_some(())
+                .ok_or_else(|| format!("joint {joint} would have a negative compliance at some angle"))
         };
         offers.add_checked(Place::Joint(joint), numbers, forms, Some(Rc::new(check)));
     }

@@ -14,12 +14,8 @@ use crate::campaign::Displacements;
 use crate::trace::point::clock;
 
 /// The kind.
-pub static KIND: Kind = Kind {
-    name: "thermal_drift",
-    of_rig: true,
-    words: |_| "a drift of the readings".into(),
-    offer,
-};
+pub static KIND: Kind =
+    Kind { name: "thermal_drift", of_rig: true, words: |_| "a drift of the readings".into(), offer };
 
 /// More than this over a campaign is a mishap (m).
 const MOST: f64 = 5e-3;
@@ -51,6 +47,11 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
             course.settles.map_or(form.clone(), |constant| form.with("constant", constant, "s"))
         };
         forms.extend([Form::of(in_visit), with(&[]), with(&[&offset]), with(&[&offset, &order])]);
+        if let Some(before) = &course.before_round {
+            let in_round = three(SHIFT, from(before), course.unit);
+            let form = Form::of(in_round);
+            forms.push(course.settles.map_or(form.clone(), |constant| form.with("constant", constant, "s")));
+        }
     }
     offers.add(Place::Rig, numbers, forms);
 }
@@ -67,6 +68,9 @@ struct Course {
     /// At the unloaded reading of the row's visit, taken one step before its
     /// first row.
     before_visit: Vec<f64>,
+    /// At the unloaded reading of the row's visit, all of which were taken in a
+    /// round before the first row, where there was time for that.
+    before_round: Option<Vec<f64>>,
     /// At the beginning of the campaign.
     begins: f64,
     unit: &'static str,
@@ -82,7 +86,9 @@ fn courses(data: &Displacements) -> Vec<Course> {
         let before = |row: usize| *first[data.rows[row].visit].get_or_insert_with(|| values[row] - step(row));
         (0..values.len()).map(before).collect()
     };
+    let round = round(data, &clock, pace).filter(|_| timed);
     let of_time = |law: &dyn Fn(f64) -> f64, unit, settles| Course {
+        before_round: round.as_ref().map(|times| times.iter().map(|&time| law(time)).collect()),
         values: clock.iter().map(|&time| law(time)).collect(),
         before_visit: first(&clock, &|_| pace).into_iter().map(law).collect(),
         // A file that tells the time tells it from the beginning on.
@@ -105,7 +111,29 @@ fn courses(data: &Displacements) -> Vec<Course> {
             _ => 0.0,
         };
         let before_visit = first(&values, &slope);
-        courses.push(Course { before_visit, begins: values[0], values, unit: "m/K", settles: None });
+        let begins = values[0];
+        courses.push(Course { before_visit, before_round: None, begins, values, unit: "m/K", settles: None });
     }
     courses
+}
+
+/// When the unloaded reading of each row's visit was taken, if all were in a
+/// round just before the first row, in the order of the visits, as far apart as
+/// rows are.
+fn round(data: &Displacements, clock: &[f64], pace: f64) -> Option<Vec<f64>> {
+    let mut place = std::vec![None; data.visits.len()];
+    let mut count = 0;
+    for row in &data.rows {
+        place[row.visit].get_or_insert_with(|| {
+            count += 1;
+            count
+        });
+    }
+    // Where every row is a visit, no two rows of one tell how far apart.
+    let pace = if pace > 0.0 { pace } else { (clock.last()? - clock[0]) / (clock.len().max(2) - 1) as f64 };
+    let begin = clock[0] - pace * (count + 1) as f64;
+    // Rounding aside, not before the clock was started.
+    let started = begin > -1e-6 * clock.last()?.abs();
+    let time = |row: &crate::campaign::Observation| begin + pace * place[row.visit].unwrap_or(0) as f64;
+    started.then(|| data.rows.iter().map(time).collect())
 }

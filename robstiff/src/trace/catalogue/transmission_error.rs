@@ -13,7 +13,11 @@ pub static KIND: Kind = Kind {
     name: "transmission_error",
     of_rig: false,
     words: |found| {
-        format!("the error of the angle of {} that comes back {} times a turn", place_words(found), found.value("order"))
+        format!(
+            "the error of the angle of {} that comes back {} times a turn",
+            place_words(found),
+            found.value("order")
+        )
     },
     offer,
 };
