@@ -12,7 +12,7 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 use super::catalogue::{Candidate, Catalogue, LIKELY, Number, Scene, Variant, catalogue};
-use super::isolated;
+use super::isolated::{self, Moment};
 use super::model::{Fitted, Named, Setting};
 use super::point::Point;
 use crate::campaign::Campaign;
@@ -39,7 +39,7 @@ pub struct Bench<'c> {
     /// Whether rows need only stand out from noise, not from structure.
     pub strict: bool,
     /// Where a slip that all later rows keep may have begun.
-    moments: Vec<usize>,
+    moments: Vec<Moment>,
     settings: RefCell<HashMap<Vec<Named>, Result<Rc<Setting<'c>>, String>>>,
     states: RefCell<HashMap<Vec<Named>, Result<Rc<State>, String>>>,
 }
@@ -63,7 +63,16 @@ const SETTLED: f64 = 1e-2;
 
 /// Moments at which a slip is looked for besides the likeliest, so that the
 /// tests know of the search.
-const MOMENTS: usize = 12;
+const MOMENTS: usize = 8;
+
+/// Times that numbers out of grids are looked at in turn, how far from the
+/// grid's value (grids double) and how finely, in logarithms; the golden
+/// section; and the step of differences.
+const SWEEPS: usize = 2;
+const REACH: f64 = 2.5;
+const FINE: f64 = 0.02;
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+const LOG_STEP: f64 = 0.02;
 
 /// Steps of central differences, as shares of what is physically possible.
 const STEP: f64 = 1e-3;
@@ -85,14 +94,15 @@ impl<'c> Bench<'c> {
             invisible: Vec::new(),
             left_out: vec![false; rows],
             strict: false,
-            moments: (1..=MOMENTS).map(|k| k * rows / (MOMENTS + 1)).filter(|&row| row > 0).collect(),
+            moments: Vec::new(),
             settings: RefCell::default(),
             states: RefCell::default(),
         };
-        bench.moments.dedup();
+        let evenly = |count: usize, before: bool| {
+            (1..=count).map(move |k| Moment { row: (k * rows / (count + 1)).clamp(1, rows), before })
+        };
         // What the likeliest will be take the first places.
-        let likely: Vec<usize> = (1..=LIKELY).map(|k| k * rows / (LIKELY + 1)).collect();
-        bench.moments.splice(0..0, likely);
+        bench.moments = evenly(LIKELY, false).chain(evenly(MOMENTS, false)).chain(evenly(MOMENTS, true)).collect();
         bench.set_up()?;
         Ok(bench)
     }
@@ -185,7 +195,7 @@ impl<'c> Bench<'c> {
     /// Where slips that all later rows keep may have begun: what a model says,
     /// and what it says without one of its effects, which may be in place of a
     /// slip or be one.
-    fn likely_slips(&self, named: &[Named]) -> Vec<usize> {
+    fn likely_slips(&self, named: &[Named]) -> Vec<Moment> {
         let slips = |one: &Named| self.candidates[one.candidate].kind == &super::catalogue::BASE_SLIP;
         let mut models: Vec<Vec<Named>> = Vec::new();
         if !named.iter().any(slips) {
@@ -198,7 +208,7 @@ impl<'c> Bench<'c> {
                 models.push(rest);
             }
         }
-        let mut moments: Vec<usize> = Vec::new();
+        let mut moments: Vec<Moment> = Vec::new();
         for named in models {
             let Ok(setting) = self.at(&named) else { continue };
             let Ok(fitted) = setting.fit(&named) else { continue };
@@ -248,6 +258,100 @@ impl<'c> Bench<'c> {
         setting.judge(&proposed.named, state.fit.clone())
     }
 
+    /// The same with numbers out of grids taken to where they fit best, and
+    /// what they are then; as it is where a model has none.
+    pub fn polished(&self, named: &[Named]) -> Self {
+        let mut bench = self.copy();
+        let rss = |bench: &Self| bench.state(named).map_or(f64::INFINITY, |state| state.fit.rss);
+        for _ in 0..SWEEPS {
+            for &one in named {
+                for k in 0..self.variant(one).shape.len() {
+                    if self.variant(one).refine.is_none() {
+                        continue;
+                    }
+                    let at = bench.variant(one).shape[k].value;
+                    let with = |value: f64| bench.with_shape(one, k, value);
+                    let (mut low, mut high) = ((at / REACH).ln(), (at * REACH).ln());
+                    let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+                    let [mut left, mut right] = inner(low, high);
+                    let (mut of_left, mut of_right) = (rss(&with(left.exp())), rss(&with(right.exp())));
+                    while high - low > FINE {
+                        if of_left < of_right {
+                            (high, right, of_right) = (right, left, of_left);
+                            left = inner(low, high)[0];
+                            of_left = rss(&with(left.exp()));
+                        } else {
+                            (low, left, of_left) = (left, right, of_right);
+                            right = inner(low, high)[1];
+                            of_right = rss(&with(right.exp()));
+                        }
+                    }
+                    let better = with((0.5 * (low + high)).exp());
+                    if rss(&better) < rss(&bench) {
+                        bench = better;
+                    }
+                }
+            }
+        }
+        bench
+    }
+
+    /// What the readings change by with the logarithm of a number out of a grid,
+    /// stacked, at a model's solution.
+    pub fn of_shape(&self, setting: &Setting<'_>, fit: &Fit, one: Named, k: usize) -> Option<DVector<f64>> {
+        let variant = self.variant(one);
+        let refine = variant.refine.as_ref()?;
+        let [there, back] = [LOG_STEP, -LOG_STEP].map(|step| {
+            let mut shape: Vec<f64> = variant.shape.iter().map(|number| number.value).collect();
+            shape[k] *= step.exp();
+            let columns = refine(&shape).into_iter().zip(&variant.columns);
+            let mut sum = DVector::zeros(setting.problem.readings.len());
+            for (number, column) in columns {
+                let value = fit.columns.iter().position(|c| c == column).map_or(0.0, |at| fit.coefficients[at]);
+                sum.axpy(value, &number.column(&setting.point), 1.0);
+            }
+            sum
+        });
+        Some((there - back) / (2.0 * LOG_STEP))
+    }
+
+    fn variant(&self, one: Named) -> &Variant {
+        &self.candidates[one.candidate].variants[one.variant]
+    }
+
+    fn copy(&self) -> Self {
+        Self {
+            own: Rc::clone(&self.own),
+            candidates: Rc::clone(&self.candidates),
+            numbers: Rc::clone(&self.numbers),
+            signs: Rc::clone(&self.signs),
+            invisible: self.invisible.clone(),
+            left_out: self.left_out.clone(),
+            moments: self.moments.clone(),
+            settings: RefCell::default(),
+            states: RefCell::default(),
+            ..*self
+        }
+    }
+
+    /// The same with one number out of a grid at another value.
+    fn with_shape(&self, one: Named, k: usize, value: f64) -> Self {
+        let mut bench = self.copy();
+        let mut candidates = self.candidates.to_vec();
+        let variant = &mut candidates[one.candidate].variants[one.variant];
+        variant.shape[k].value = value;
+        let shape: Vec<f64> = variant.shape.iter().map(|number| number.value).collect();
+        let mut numbers = self.numbers.to_vec();
+        if let Some(refine) = &variant.refine {
+            for (column, number) in variant.columns.iter().zip(refine(&shape)) {
+                numbers[column - self.own.len()] = number;
+            }
+        }
+        bench.candidates = candidates.into();
+        bench.numbers = numbers.into();
+        bench
+    }
+
     /// Whether a model has nonlinear numbers.
     pub fn is_nonlinear(&self, named: &[Named]) -> bool {
         !self.nonlinear(named).is_empty()
@@ -260,7 +364,8 @@ impl<'c> Bench<'c> {
         numbers.filter(|(_, number)| number.enters.is_some()).collect()
     }
 
-    fn weights(&self) -> Weights<'_> {
+    /// How rows are weighed.
+    pub fn weights(&self) -> Weights<'_> {
         Weights { rotation: self.prepared.rotation_weight, training: &self.prepared.training, left_out: &self.left_out }
     }
 

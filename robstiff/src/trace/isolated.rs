@@ -14,7 +14,7 @@
 use std::vec;
 use std::vec::Vec;
 
-use nalgebra::{DVector, Vector3};
+use nalgebra::{DMatrix, DVector, Vector3};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::model::{Fitted, Setting};
@@ -217,8 +217,27 @@ fn worst(visit: &Visit, variance: &Vector3<f64>, strict: bool, threshold: f64) -
     }
 }
 
-/// The row at which a slip that all later rows keep most likely began.
-pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted) -> Option<usize> {
+/// A slip that whole visits keep: the rows from one on have the shift, or where
+/// the unloaded readings were taken in a round before, and the slip was within
+/// the round, the rows before one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Moment {
+    /// The row.
+    pub row: usize,
+    /// Whether the rows before it have the shift.
+    pub before: bool,
+}
+
+impl Moment {
+    /// Whether a row has the shift.
+    pub fn has(&self, row: usize) -> bool {
+        (row < self.row) == self.before
+    }
+}
+
+/// The slip that whole visits keep which is most likely, if one is near
+/// significant.
+pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted) -> Option<Moment> {
     let problem = &setting.problem;
     let (axes, rows) = (problem.axes, setting.point.samples.rows.len());
     let mut fitted_to = vec![false; rows];
@@ -236,35 +255,41 @@ pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted) -> Option<usize> {
     let inverse = problem.total.inverse(columns)?;
     let mut sizes = vec![0_usize; visits.iter().max()? + 1];
     visits.iter().for_each(|&visit| sizes[visit] += 1);
-    let mut inside = vec![0_usize; sizes.len()];
-    let mut energy = 0.0;
-    let mut sums = nalgebra::DMatrix::<f64>::zeros(3, columns.len() + 1);
-    let mut best: Option<(f64, usize)> = None;
-    for row in (1..rows).rev() {
-        if fitted_to[row] {
-            for axis in 0..3 {
-                for column in 0..=columns.len() {
-                    sums[(axis, column)] += white[(row * axes + axis, column)];
+    let scan = |order: &mut dyn Iterator<Item = usize>, before: bool| {
+        let mut inside = vec![0_usize; sizes.len()];
+        let mut energy = 0.0;
+        let mut sums = DMatrix::<f64>::zeros(3, columns.len() + 1);
+        let mut best: Option<(f64, Moment)> = None;
+        for row in order {
+            if fitted_to[row] {
+                for axis in 0..3 {
+                    for column in 0..=columns.len() {
+                        sums[(axis, column)] += white[(row * axes + axis, column)];
+                    }
                 }
+                let visit = visits[row];
+                energy -= step_energy(sizes[visit], inside[visit]);
+                inside[visit] += 1;
+                energy += step_energy(sizes[visit], inside[visit]);
             }
-            let visit = visits[row];
-            energy -= step_energy(sizes[visit], inside[visit]);
-            inside[visit] += 1;
-            energy += step_energy(sizes[visit], inside[visit]);
+            let gain: f64 = (0..3)
+                .map(|axis| {
+                    let along = DVector::from_fn(columns.len(), |k, _| sums[(axis, k)]);
+                    let left = energy - along.dot(&(&inverse * &along));
+                    if left > OF_ITS_OWN * energy { sums[(axis, columns.len())].powi(2) / left } else { 0.0 }
+                })
+                .sum();
+            if best.is_none_or(|(most, _)| gain > most) {
+                best = Some((gain, Moment { row: row + usize::from(before), before }));
+            }
         }
-        let gain: f64 = (0..3)
-            .map(|axis| {
-                let along = DVector::from_fn(columns.len(), |k, _| sums[(axis, k)]);
-                let left = energy - along.dot(&(&inverse * &along));
-                if left > OF_ITS_OWN * energy { sums[(axis, columns.len())].powi(2) / left } else { 0.0 }
-            })
-            .sum();
-        if best.is_none_or(|(most, _)| gain > most) {
-            best = Some((gain, row));
-        }
-    }
+        best
+    };
+    let after = scan(&mut (1..rows).rev(), false);
+    let before = scan(&mut (0..rows - 1), true);
     let variance = model.fit.rss / problem.freedom(&model.fit);
-    best.filter(|(gain, _)| *gain > WORTH_A_LOOK * variance).map(|(_, row)| row)
+    let best = after.into_iter().chain(before).max_by(|a, b| a.0.total_cmp(&b.0));
+    best.filter(|(gain, _)| *gain > WORTH_A_LOOK * variance).map(|(_, moment)| moment)
 }
 
 /// The squared length of a step over the last `inside` of a visit's `rows`

@@ -17,9 +17,9 @@ use super::{Misfit, NamedEffect, Options, Outcome, PoseError, RowResidual, Trace
 use crate::campaign::Campaign;
 use crate::identify::baseline::with_values;
 use crate::identify::displacement::{declared_residuals, declared_rms};
-use crate::identify::normal::Sign;
+use crate::identify::normal::{Fit, Sign};
 use crate::identify::prepare::Prepared;
-use crate::identify::problem::{Block, rms};
+use crate::identify::problem::{Block, Problem, rms};
 use crate::identify::uncertainty::covariance;
 use crate::identify::{Estimate, NoiseSource, estimates};
 
@@ -39,9 +39,15 @@ pub fn report(
     let untouched = Bench::new(campaign, prepared)?;
     let all = untouched.at(&[])?;
     let base = all.fit(&[])?;
-    let model = &outcome.selection.model;
-    let setting = bench.at(&model.named)?;
-    let problem = &setting.problem;
+    let found = &outcome.selection.model;
+    // Numbers are told where they fit best, not where a grid has them.
+    let polished = bench.polished(&found.named);
+    let fine = polished.at(&found.named).and_then(|setting| Ok((setting.fit(&found.named)?, setting)));
+    let (model, setting, bench_of_numbers) = match fine {
+        Ok((model, setting)) => (model, setting, &polished),
+        Err(_) => (found.clone(), bench.at(&found.named)?, bench),
+    };
+    let (model, problem) = (&model, &setting.problem);
     let fitted_rows = || all.problem.blocks.iter().flat_map(|block| block.rows.iter().copied());
     let unseen = if all.problem.held_out.is_empty() { &all.problem.blocks } else { &all.problem.held_out };
     let unseen_rows = || unseen.iter().flat_map(|block| block.rows.iter().copied());
@@ -62,9 +68,10 @@ pub fn report(
         }
         known => known,
     };
-    let (estimates_before, _) = numbers(campaign, prepared, &all, &base);
-    let (estimates, spread) = numbers(campaign, prepared, &setting, model);
-    let mut effects = effects(bench, &setting, outcome, &spread, options);
+    let estimates_before = numbers(campaign, prepared, &all, &base, &spread_of(&untouched, &all, &base));
+    let spread = spread_of(bench_of_numbers, &setting, model);
+    let estimates = numbers(campaign, prepared, &setting, model, &spread);
+    let mut effects = effects(bench, &setting, model, outcome, &spread, options);
     effects.extend(isolated(prepared, outcome, misfit(&setting, model).holdout_rms));
     let values: Vec<f64> = estimates.iter().map(|estimate| estimate.value).collect();
     let held_out = problem.held_out.iter().map(|block| prepared.data.poses[block.pose].clone()).collect();
@@ -92,7 +99,7 @@ pub fn report(
         why: outcome.why.clone(),
         unexplained: left.map_or(0.0, |left| left.fraction),
         depends_on: left.map_or_else(Vec::new, |left| left.depends_on.clone()),
-        rivals: if outcome.verdict == Verdict::Insufficient { Vec::new() } else { rivals(bench, model) },
+        rivals: if outcome.verdict == Verdict::Insufficient { Vec::new() } else { rivals(bench, found) },
         invisible: bench.invisible.clone(),
         next: Vec::new(),
         description,
@@ -106,34 +113,64 @@ pub fn report(
     })
 }
 
-/// The estimates of the description's own numbers in a model, and the
-/// covariance of all its coefficients.
+/// The covariance of a model's coefficients, and behind them of the logarithms
+/// of its numbers out of grids, in the order of its effects.
+fn spread_of(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted) -> DMatrix<f64> {
+    let mut signs: Vec<Sign> = model.fit.columns.iter().map(|&column| setting.signs[column]).collect();
+    let plain = || covariance(&setting.problem, &model.fit, &signs);
+    let shapes = model.named.iter().flat_map(|&one| {
+        (0..setting.variant(one).shape.len()).filter_map(move |k| bench.of_shape(setting, &model.fit, one, k))
+    });
+    let shapes: Vec<DVector<f64>> = shapes.collect();
+    if shapes.is_empty() {
+        return plain();
+    }
+    let raw: Vec<DVector<f64>> = model.fit.columns.iter().map(|&column| setting.raw(column)).chain(shapes).collect();
+    let readings = setting.problem.readings.clone();
+    let samples = &setting.point.samples;
+    let problem = Problem::new(samples, DMatrix::from_columns(&raw), readings, &setting.correction, bench.weights());
+    let columns: Vec<usize> = (0..raw.len()).collect();
+    if problem.total.inverse(&columns).is_none() {
+        return plain();
+    }
+    let coefficients = model.fit.coefficients.clone().resize_vertically(raw.len(), 0.0);
+    signs.resize(raw.len(), Sign::Free);
+    covariance(&problem, &Fit { columns, coefficients, rss: model.fit.rss }, &signs)
+}
+
+/// The estimates of the description's own numbers in a model.
 fn numbers(
     campaign: &Campaign,
     prepared: &Prepared<'_>,
     setting: &Setting<'_>,
     model: &Fitted,
-) -> (Vec<Estimate>, DMatrix<f64>) {
-    let signs: Vec<Sign> = model.fit.columns.iter().map(|&column| setting.signs[column]).collect();
-    let spread = covariance(&setting.problem, &model.fit, &signs);
+    spread: &DMatrix<f64>,
+) -> Vec<Estimate> {
     let mut values = prepared.values.clone();
     for (&column, &value) in model.fit.columns.iter().zip(model.fit.coefficients.iter()) {
         if column < setting.own.len() {
             values[column] = value;
         }
     }
-    (estimates(&campaign.robot, prepared, &values, &model.fit.columns, &spread), spread)
+    estimates(&campaign.robot, prepared, &values, &model.fit.columns, spread)
 }
 
 /// The named effects, the one whose removal costs most first.
 fn effects(
     bench: &Bench<'_>,
     setting: &Setting<'_>,
+    fine: &Fitted,
     outcome: &Outcome,
     spread: &DMatrix<f64>,
     options: &Options,
 ) -> Vec<NamedEffect> {
     let model = &outcome.selection.model;
+    // Where the numbers out of grids of each effect begin in the covariance.
+    let shapes = |k: usize| -> usize {
+        let before = model.named[..k].iter().map(|&one| setting.variant(one));
+        let refined = before.filter(|variant| variant.refine.is_some());
+        fine.fit.columns.len() + refined.map(|variant| variant.shape.len()).sum::<usize>()
+    };
     let cost = |k: usize| {
         let mut rest = model.named.clone();
         rest.remove(k);
@@ -153,14 +190,20 @@ fn effects(
         let number = |(k, column): (usize, &usize)| {
             let (number, at) = (&setting.numbers[column - setting.own.len()], at(column));
             let (value, std) = match number.share_of {
-                Some(joint) => share_of(setting, model, spread, at, joint),
-                None => (model.fit.coefficients[at], spread[(at, at)].sqrt()),
+                Some(joint) => share_of(setting, fine, spread, at, joint),
+                None => (fine.fit.coefficients[at], spread[(at, at)].sqrt()),
             };
             let name = variant.names.get(k).copied().unwrap_or(number.name);
             EffectParameter { name, value, std: Some(std), unit: number.unit }
         };
         let numbers = variant.columns.iter().enumerate().map(number);
-        let parameters: Vec<EffectParameter> = numbers.chain(variant.shape.iter().cloned()).collect();
+        let first = shapes(k);
+        let shape = |(s, number): (usize, &EffectParameter)| {
+            let known = variant.refine.is_some() && first + s < spread.nrows();
+            let std = known.then(|| number.value * spread[(first + s, first + s)].sqrt());
+            EffectParameter { std, ..number.clone() }
+        };
+        let parameters: Vec<EffectParameter> = numbers.chain(variant.shape.iter().enumerate().map(shape)).collect();
         let candidate = &setting.candidates[one.candidate];
         NamedEffect {
             effect: Found::new(candidate.kind, candidate.place, parameters.clone()),

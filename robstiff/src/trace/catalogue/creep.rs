@@ -24,7 +24,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     }
     let unit = if scene.data.rows.iter().all(|row| row.time.is_some()) { "s" } else { "row" };
     let onsets = ONSETS.map(|share| share * pace);
-    let number = |onset: f64| {
+    let number = move |onset: f64| {
         let number = Number::of_setup(
             "share",
             "1",
@@ -36,6 +36,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         Number { range: [0.0, MOST], creeps: false, ..number }
     };
     let numbers: Vec<Number> = onsets.map(number).into();
-    let forms = (0..).zip(onsets).map(|(k, onset)| Form::of([k]).with("onset", onset, unit)).collect();
+    let forms = (0..).zip(onsets).map(|(k, onset)| Form::of([k]).with("onset", onset, unit));
+    let forms = forms.map(|form| form.refined(move |onsets| [number(onsets[0])].into())).collect();
     offers.add(Place::Rig, numbers, forms);
 }

@@ -37,7 +37,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         let Some(largest) = scene.largest_torque(joint) else { continue };
         let (unit, torque) = (scene.compliance_unit(joint), if scene.turns(joint) { "Nm" } else { "N" });
         let radii = RADII.map(|fraction| fraction * largest);
-        let number = |radius: f64| {
+        let number = move |radius: f64| {
             Number::elastic("weight", unit, [0.0, f64::INFINITY], move |point| {
                 let plays = plays(&point.samples, &point.torques(joint), radius);
                 point.of_joint(joint, |row| plays[row])
@@ -46,6 +46,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         let form = |set: u32| {
             let own: Vec<usize> = (0..RADII.len()).filter(|&k| set >> k & 1 == 1).collect();
             let form = Form { names: &NAMES, ..Form::of(own.iter().copied()) };
+            let form = form.refined(move |radii| radii.iter().map(|&radius| number(radius)).collect());
             own.iter().zip(OF_RADII).fold(form, |form, (&k, name)| form.with(name, radii[k], torque))
         };
         let sets = (1..1_u32 << RADII.len()).filter(|set| set.count_ones() <= MOST);

@@ -26,14 +26,15 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for joint in 1..=scene.joints() {
         let Some(largest) = scene.largest_torque(joint) else { continue };
         let [gap, torque] = if scene.turns(joint) { ["rad", "Nm"] } else { ["m", "N"] };
-        let number = |knee: f64| {
+        let number = move |knee: f64| {
             Number::elastic("gap", gap, [0.0, WIDEST], move |point| {
                 let torques = point.torques(joint);
                 point.of_joint(joint, |row| 0.5 * torques[row] / torques[row].hypot(knee))
             })
         };
         let knees = KNEES.map(|fraction| fraction * largest);
-        let forms = (0..).zip(knees).map(|(k, knee)| Form::of([k]).with("knee", knee, torque)).collect();
+        let forms = (0..).zip(knees).map(|(k, knee)| Form::of([k]).with("knee", knee, torque));
+        let forms = forms.map(|form| form.refined(move |knees| [number(knees[0])].into())).collect();
         let numbers: Vec<Number> = knees.map(number).into();
         offers.add(Place::Joint(joint), numbers, forms);
     }

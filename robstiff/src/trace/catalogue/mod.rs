@@ -48,6 +48,7 @@ use robstiff_robots::Description;
 pub use self::base_slip::{KIND as BASE_SLIP, LIKELY};
 pub use self::outliers::KIND as OUTLIERS;
 use super::found::{EffectParameter, Found, Place};
+use super::isolated::Moment;
 use super::point::Point;
 use crate::campaign::Displacements;
 use crate::elements::Parameter;
@@ -118,8 +119,8 @@ pub struct Scene<'c> {
     pub samples: &'c Samples,
     /// The compliance of each joint (rad/Nm or m/N), identified, from 0.
     pub compliance: Vec<f64>,
-    /// Rows at which a slip may have begun, the likeliest first.
-    pub moments: &'c [usize],
+    /// When the robot may have slipped, the likeliest first.
+    pub moments: &'c [Moment],
 }
 
 impl Scene<'_> {
@@ -162,6 +163,9 @@ pub type Enters = Rc<dyn Fn(&mut Setup, f64)>;
 /// What physics says against numbers, each with its name, given the compliance
 /// of each joint (from 1).
 type Check = Rc<dyn Fn(&[(&str, f64)], &dyn Fn(usize) -> f64) -> Result<(), String>>;
+
+/// The numbers of a form with other values of those out of its grid.
+type Refine = Rc<dyn Fn(&[f64]) -> Vec<Number>>;
 
 /// A number of a candidate.
 #[derive(Clone)]
@@ -256,7 +260,7 @@ impl Number {
 pub const WRENCH_STEP: f64 = 1e-4;
 
 /// One way a candidate can be there.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone)]
 pub struct Variant {
     /// The columns in the problem.
     pub columns: Vec<usize>,
@@ -266,6 +270,8 @@ pub struct Variant {
     pub shape: Vec<EffectParameter>,
     /// Names of the numbers where they are not those of the columns.
     pub names: &'static [&'static str],
+    /// Its numbers between the values of the grid, where there is a between.
+    pub refine: Option<Refine>,
 }
 
 /// An effect that may be missing.
@@ -317,17 +323,25 @@ pub struct Form {
     pub marks: Vec<EffectParameter>,
     /// Names of the numbers where they are not their own.
     pub names: &'static [&'static str],
+    /// Its numbers between the values of the grid, where there is a between.
+    pub refine: Option<Refine>,
 }
 
 impl Form {
     /// Some of the numbers.
     pub fn of(numbers: impl IntoIterator<Item = usize>) -> Self {
-        Self { numbers: numbers.into_iter().collect(), shape: Vec::new(), marks: Vec::new(), names: &[] }
+        Self { numbers: numbers.into_iter().collect(), shape: Vec::new(), marks: Vec::new(), names: &[], refine: None }
     }
 
     /// The same with a number out of a grid.
     pub fn with(mut self, name: &'static str, value: f64, unit: &'static str) -> Self {
         self.shape.push(EffectParameter { name, value, std: None, unit });
+        self
+    }
+
+    /// The same with what its numbers are between the values of the grid.
+    pub fn refined(mut self, refine: impl Fn(&[f64]) -> Vec<Number> + 'static) -> Self {
+        self.refine = Some(Rc::new(refine));
         self
     }
 
@@ -356,6 +370,7 @@ impl Offers<'_> {
             parameters: form.numbers.len() + form.shape.len(),
             shape: form.shape.into_iter().chain(form.marks).collect(),
             names: form.names,
+            refine: form.refine,
         };
         let variants = forms.into_iter().map(variant).collect();
         self.catalogue.numbers.extend(numbers);

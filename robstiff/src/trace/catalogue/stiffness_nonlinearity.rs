@@ -29,14 +29,15 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for joint in 1..=scene.joints() {
         let Some(largest) = scene.largest_torque(joint) else { continue };
         let unit = scene.compliance_unit(joint);
-        let number = |knee: f64| {
+        let number = move |knee: f64| {
             Number::elastic("added", unit, [f64::NEG_INFINITY, f64::INFINITY], move |point| {
                 point.samples.column(Column::Knee { joint, knee })
             })
         };
         let knees = KNEES.map(|fraction| fraction * largest);
         let torque = if scene.turns(joint) { "Nm" } else { "N" };
-        let forms = (0..).zip(knees).map(|(k, knee)| Form::of([k]).with("knee", knee, torque)).collect();
+        let forms = (0..).zip(knees).map(|(k, knee)| Form::of([k]).with("knee", knee, torque));
+        let forms = forms.map(|form| form.refined(move |knees| [number(knees[0])].into())).collect();
         let check = move |numbers: &[(&str, f64)], of: &dyn Fn(usize) -> f64| {
             (numbers[0].1 > -of(joint))
                 .then_some(())
