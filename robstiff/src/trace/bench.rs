@@ -4,6 +4,7 @@
 
 use std::cell::RefCell;
 use std::collections::HashMap;
+use std::ops::Range;
 use std::rc::Rc;
 use std::string::String;
 use std::vec;
@@ -186,6 +187,7 @@ impl<'c> Bench<'c> {
                 same.filter(|_| is_slip).unwrap_or(candidate).clone()
             };
             self.candidates = kept.iter().map(moved).collect();
+            self.numbers = self.refined_numbers(0..self.candidates.len());
             self.settings.get_mut().clear();
             self.states.get_mut().clear();
         }
@@ -327,6 +329,7 @@ impl<'c> Bench<'c> {
             signs: Rc::clone(&self.signs),
             invisible: self.invisible.clone(),
             left_out: self.left_out.clone(),
+            strict: self.strict,
             moments: self.moments.clone(),
             settings: RefCell::default(),
             states: RefCell::default(),
@@ -338,18 +341,31 @@ impl<'c> Bench<'c> {
     fn with_shape(&self, one: Named, k: usize, value: f64) -> Self {
         let mut bench = self.copy();
         let mut candidates = self.candidates.to_vec();
-        let variant = &mut candidates[one.candidate].variants[one.variant];
-        variant.shape[k].value = value;
-        let shape: Vec<f64> = variant.shape.iter().map(|number| number.value).collect();
-        let mut numbers = self.numbers.to_vec();
-        if let Some(refine) = &variant.refine {
-            for (column, number) in variant.columns.iter().zip(refine(&shape)) {
-                numbers[column - self.own.len()] = number;
+        let column = self.variant(one).columns[k];
+        // Forms that share a column share its number out of the grid.
+        for variant in &mut candidates[one.candidate].variants {
+            let at = variant.columns.iter().position(|&c| c == column).filter(|_| variant.refine.is_some());
+            if let Some(at) = at {
+                variant.shape[at].value = value;
             }
         }
         bench.candidates = candidates.into();
-        bench.numbers = numbers.into();
+        bench.numbers = bench.refined_numbers(one.candidate..one.candidate + 1);
         bench
+    }
+
+    /// The numbers with those of some candidates where their shapes have them.
+    fn refined_numbers(&self, candidates: Range<usize>) -> Rc<[Number]> {
+        let mut numbers = self.numbers.to_vec();
+        for variant in self.candidates[candidates].iter().flat_map(|candidate| &candidate.variants) {
+            if let Some(refine) = &variant.refine {
+                let shape: Vec<f64> = variant.shape.iter().map(|number| number.value).collect();
+                for (column, number) in variant.columns.iter().zip(refine(&shape)) {
+                    numbers[column - self.own.len()] = number;
+                }
+            }
+        }
+        numbers.into()
     }
 
     /// Whether a model has nonlinear numbers.

@@ -140,7 +140,7 @@ pub fn select(
         beam = improve(&setting, extend(&setting, &beam));
         let mut accepted = propose(bench, &setting, &beam, &model, &tests, options);
         if accepted.is_none() {
-            // Two that are missing can keep each other from passing alone.
+            // What is missing besides can keep either of two from passing alone.
             beam = improve(&setting, extend(&setting, &beam));
             accepted = propose(bench, &setting, &beam, &model, &tests, options);
         }
@@ -157,6 +157,11 @@ pub fn select(
         step.outcome = std::format!("named {}", names.join(", "));
         steps.push(step);
         (model, p_values) = (proposed, p);
+        // What a grid's value leaves of an effect must not look like another.
+        let polished = bench.polished(&model.named);
+        if let Ok(better) = polished.fit(&model.named) {
+            (*bench, model) = (polished, better);
+        }
     }
     Ok(Selection { model, p_values, steps, unnamed })
 }

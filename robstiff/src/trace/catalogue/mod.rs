@@ -270,7 +270,8 @@ pub struct Variant {
     pub shape: Vec<EffectParameter>,
     /// Names of the numbers where they are not those of the columns.
     pub names: &'static [&'static str],
-    /// Its numbers between the values of the grid, where there is a between.
+    /// Its numbers between the values of the grid, where there is a between; a
+    /// column then has one number out of the grid, its own.
     pub refine: Option<Refine>,
 }
 
