@@ -165,11 +165,9 @@ pub fn raw(samples: &Samples, columns: &[Column]) -> DMatrix<f64> {
 /// shares its unloaded reading with nothing that is used.
 fn visits_of(samples: &Samples, left_out: &[bool]) -> Vec<usize> {
     let mut visits = samples.visits();
-    let mut next = visits.iter().max().map_or(0, |last| last + 1);
-    for (visit, _) in visits.iter_mut().zip(left_out).filter(|(_, out)| **out) {
-        *visit = next;
-        next += 1;
-    }
+    let next = visits.iter().max().map_or(0, |last| last + 1);
+    let alone = visits.iter_mut().zip(left_out).filter(|(_, out)| **out);
+    alone.enumerate().for_each(|(k, (visit, _))| *visit = next + k);
     visits
 }
 

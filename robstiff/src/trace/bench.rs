@@ -41,9 +41,12 @@ pub struct Bench<'c> {
     pub strict: bool,
     /// Where a slip that all later rows keep may have begun.
     moments: Vec<Moment>,
-    settings: RefCell<HashMap<Vec<Named>, Result<Rc<Setting<'c>>, String>>>,
-    states: RefCell<HashMap<Vec<Named>, Result<Rc<State>, String>>>,
+    settings: Known<Setting<'c>>,
+    states: Known<State>,
 }
+
+/// What was found of models, or why not.
+type Known<T> = RefCell<HashMap<Vec<Named>, Result<Rc<T>, String>>>;
 
 /// A model at its solution.
 struct State {

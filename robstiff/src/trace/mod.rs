@@ -214,7 +214,10 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
         bench.strict = true;
         if bench.look_again(&outcome.selection.model.named).map_err(Error)? {
             let model = bench.fit(&outcome.selection.model.named).map_err(Error)?;
+            let mut steps = outcome.selection.steps;
             outcome = search(&mut bench, &prepared, model, options, progress).map_err(Error)?;
+            steps.append(&mut outcome.selection.steps);
+            outcome.selection.steps = steps;
         }
     }
     progress("asking what could be mistaken for what");

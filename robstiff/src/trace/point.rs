@@ -101,8 +101,8 @@ impl<'c> Point<'c> {
                     };
                     samples.rows.iter().map(per_file).collect::<Vec<_>>()
                 });
-                for (pose, (there, back)) in there.iter().zip(&back).enumerate() {
-                    slopes[pose][joint][entry] = (there - back) / (2.0 * STEP);
+                for (slopes, (there, back)) in slopes.iter_mut().zip(there.iter().zip(&back)) {
+                    slopes[joint][entry] = (there - back) / (2.0 * STEP);
                 }
             }
         }

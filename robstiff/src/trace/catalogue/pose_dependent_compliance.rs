@@ -21,7 +21,7 @@ const NAMES: [&str; 4] = ["cos1", "sin1", "cos2", "sin2"];
 
 fn wave(k: usize, q: f64) -> f64 {
     let angle = if k < 2 { q } else { 2.0 * q };
-    if k % 2 == 0 { angle.cos() } else { angle.sin() }
+    if k.is_multiple_of(2) { angle.cos() } else { angle.sin() }
 }
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
