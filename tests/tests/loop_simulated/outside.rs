@@ -159,9 +159,12 @@ fn slip(simulated: &mut Simulated) {
     }
 }
 
-/// The zero of joint 2 is 3 degrees off.
+/// The zero of joint 2 is 3 degrees off; poses that the file would then have
+/// outside the joint's limits are left out.
 fn offset(simulated: &mut Simulated) {
+    let [low, _] = simulated.scenario.truth.joints[1].limits.expect("it has limits");
     simulated.rows.iter_mut().for_each(|row| row.q[1] -= 3_f64.to_radians());
+    simulated.rows.retain(|row| row.q[1] >= low);
 }
 
 /// A tenth of the compliance of joint 2, and nothing else.
