@@ -1,5 +1,5 @@
 //! The loop on a measured robot: 43 loads on a FANUC R-2000iC lack something
-//! that looks like the tilt of joint 3; the description that tracing writes
+//! that looks like the tilt of joint 3, and more that looks like frames; the description that tracing writes
 //! predicts what was promised, in every way it can be used, compiled too.
 //!
 //! The figures are checked against a least squares fit of its own whose columns
@@ -51,26 +51,25 @@ fn the_tilt_of_joint_3_is_missing() {
     assert_eq!((found.rows, found.poses, found.held_out.len()), (43, 43, 0));
     assert_near("joints only (mm)", whole(found.identified.rms), 0.372, 2e-3);
     assert_near("joints only, each left out (mm)", whole(found.identified.holdout_rms), 0.405, 2e-3);
-    assert_near("with the effect (mm)", whole(found.after.rms), 0.289, 2e-3);
-    assert_near("with the effect, each left out (mm)", whole(found.after.holdout_rms), 0.314, 2e-3);
     assert!(found.declared.rms > found.identified.rms);
 
-    assert_eq!(found.effects.len(), 1, "{:?}", found.effects);
-    let named = &found.effects[0];
-    let Effect::TransverseCompliance { joint: 3, value } = named.effect else { panic!("{:?}", named.effect) };
-    assert_near("the tilt (rad/Nm)", value, 6.37e-7, 0.02);
-    assert!(named.p_value < 0.01, "{}", named.p_value);
-    assert!(named.same_as.iter().any(|name| name == "link_compliance@link 3"), "{:?}", named.same_as);
-    assert!(!named.same_as.iter().any(|name| name == "transverse_compliance@joint 3"));
-
-    // Measured arms have more than one effect in them.
-    assert_eq!((found.verdict, named.partial), (Verdict::Partial, true));
-    assert!((0.0..1.0).contains(&found.unexplained) && !found.why.is_empty());
-
-    let stiffness = [13.8e5, 27.8e5, 18.7e5, 5.8e5, 4.3e5, 3.1e5];
-    for (estimate, expected) in found.estimates.iter().zip(stiffness) {
-        assert_near(&estimate.name, estimate.value.recip(), expected, 0.02);
+    // The readings are turned against the loads, and the cable does not pull at
+    // the TCP: with that, less than half is left of what the tilt alone leaves.
+    assert!(whole(found.after.rms) < 0.15 && whole(found.after.holdout_rms) < 0.16, "{:?}", found.after);
+    let of_kind = |kind: &str| found.effects.iter().find(|named| named.effect.kind() == kind);
+    for kind in ["tracker_misalignment", "lever_arm"] {
+        assert!(of_kind(kind).is_some_and(|named| named.effect.is_of_rig() && named.p_value < 0.01), "{kind}");
     }
+    let named = of_kind("transverse_compliance").expect("it is named");
+    let Some(Effect::TransverseCompliance { joint: 3, value }) = named.effect.effect() else {
+        panic!("{:?}", named.effect)
+    };
+    // The value is that of the tilt alone, and surer.
+    assert_near("the tilt (rad/Nm)", value, 6.37e-7, 0.05);
+    assert!(named.parameters[0].std.is_some_and(|std| std < 0.1 * value), "{:?}", named.parameters);
+    assert!(named.p_value < 0.01, "{}", named.p_value);
+    assert!(matches!(found.verdict, Verdict::Explained | Verdict::Partial));
+    assert!((0.0..1.0).contains(&found.unexplained) && !found.why.is_empty());
 }
 
 /// Readings per unit of each joint's compliance, and of the tilt of joint 3: the
@@ -133,13 +132,10 @@ fn another_least_squares_finds_the_same() {
         assert_near(&estimate.name, *own, estimate.value, 5e-3);
     }
 
-    let (all, rms, unseen) = least_squares(&columns, &readings);
-    assert_near("with the tilt", rms, found.after.rms, 1e-3);
-    assert_near("with the tilt, each left out", unseen, found.after.holdout_rms, 1e-3);
-    let tilt = found.effects[0].parameters[0].value;
-    for (own, value) in all.iter().zip(found.estimates.iter().map(|estimate| estimate.value).chain([tilt])) {
-        assert_near("a compliance", *own, value, 5e-3);
-    }
+    let (all, _, unseen) = least_squares(&columns, &readings);
+    let tilt = found.steps[0].candidates.iter().find(|tested| tested.name == "transverse_compliance@joint 3");
+    let left_out = tilt.and_then(|tested| tested.left_out_rms).expect("it can be there");
+    assert_near("with the tilt, each left out", unseen, left_out, 1e-3);
     // As they are, no compliance had to be kept from being negative.
     assert!(all.iter().chain(joints.iter()).all(|&value| value > 0.0));
 }
@@ -162,10 +158,12 @@ fn the_description_predicts_what_was_promised_in_every_way() {
     let written = TRACE.description.to_yaml();
     let read = Description::parse("robot.yaml", &written).unwrap_or_else(|problem| panic!("{problem}"));
     assert_eq!(read, TRACE.description);
-    assert_eq!(read.effects, [TRACE.effects[0].effect]);
+    let of_robot: Vec<Effect> = TRACE.effects.iter().filter_map(|named| named.effect.effect()).collect();
+    assert_eq!(read.effects, of_robot);
 
     let prediction = predict(&read, &CAMPAIGN).expect("the campaign's robot");
-    assert_near("the error", prediction.rms, TRACE.after.rms, 1e-9);
+    // Of the readings as they are: faults of the rig are not in a description.
+    assert!(TRACE.after.rms < prediction.rms && prediction.rms < TRACE.declared.rms, "{}", prediction.rms);
     let before = predict(&CAMPAIGN.robot, &CAMPAIGN).expect("the campaign's robot");
     assert_near("the error as declared", before.rms, TRACE.declared.rms, 1e-9);
 
@@ -198,9 +196,10 @@ fn the_description_compiles_and_the_program_agrees() {
     fs::write(user.folder.join("loads.txt"), chosen.iter().map(line).collect::<String>())
         .expect("the copy can be written");
 
+    let of_robot: Vec<Effect> = TRACE.effects.iter().filter_map(|named| named.effect.effect()).collect();
     let printed = user.prints();
     let mut lines = printed.lines();
-    assert_eq!(lines.next(), Some(format!("{:?}", [TRACE.effects[0].effect]).as_str()));
+    assert_eq!(lines.next(), Some(format!("{of_robot:?}").as_str()));
     let moved = |line: &str| -> [f64; 3] {
         let numbers: Vec<f64> = line.split(' ').map(|number| number.parse().expect("a number")).collect();
         numbers.try_into().expect("three numbers")

@@ -121,22 +121,39 @@ fn traces_the_missing_effect_and_writes_everything() {
     assert_eq!(trace, json(&path));
     assert_eq!(
         keys(&trace),
-        ["robot", "rows", "poses", "noise_um", "before", "effects", "after", "verdict", "why", "unexplained", "next"]
+        [
+            "robot",
+            "rows",
+            "poses",
+            "noise_um",
+            "before",
+            "effects",
+            "after",
+            "verdict",
+            "why",
+            "unexplained",
+            "rivals",
+            "invisible",
+            "next"
+        ]
     );
     assert_eq!(keys(&trace["before"]), ["declared", "identified"]);
     assert_eq!(keys(&trace["before"]["declared"]), ["rms_um", "holdout_rms_um"]);
     assert_eq!(keys(&trace["after"]), ["rms_um", "holdout_rms_um"]);
     assert_eq!(keys(&trace["unexplained"]), ["fraction", "depends_on"]);
-    let effect = &trace["effects"][0];
-    assert_eq!(keys(effect), ["kind", "at", "parameters", "p_value", "holdout_rms_um", "same_as", "partial"]);
-    assert_eq!(keys(&effect["parameters"][0]), ["name", "value", "std", "unit"]);
     // What others found in these data: the tilt of joint 3, or what looks like it.
-    assert_eq!((&effect["kind"], &effect["at"]), (&"transverse_compliance".into(), &"joint 3".into()));
+    let effects = trace["effects"].as_array().unwrap();
+    let effect = effects.iter().find(|effect| effect["kind"] == "transverse_compliance").unwrap();
+    assert_eq!(keys(effect), ["kind", "at", "parameters", "p_value", "holdout_rms_um", "same_as", "partial", "lines"]);
+    assert_eq!(keys(&effect["parameters"][0]), ["name", "value", "std", "unit"]);
+    assert_eq!(effect["at"], "joint 3");
 
-    // The loop closes: the robot that was written has the error that was promised.
+    // The loop closes: the robot that was written is better than the declared
+    // one, though the faults of the rig are still in the readings.
     let after = trace["after"]["rms_um"].as_f64().unwrap();
     let predicted = predicted(&inside(out, "robot.yaml"), &folder);
-    assert!((predicted["rms_um"].as_f64().unwrap() / after - 1.0).abs() < 0.01);
+    let predicted = predicted["rms_um"].as_f64().unwrap();
+    assert!(after < predicted && predicted < trace["before"]["declared"]["rms_um"].as_f64().unwrap());
     assert!(succeed(&["show", &inside(out, "robot.yaml")]).contains("transverse_compliance@joint 3"));
     assert!(succeed(&["emit", &inside(out, "robot.yaml")]).contains("transverse_compliance@joint 3"));
 

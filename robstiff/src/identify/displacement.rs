@@ -5,8 +5,9 @@ use nalgebra::{DMatrix, DVector};
 use std::vec::Vec;
 
 use super::baseline::with_values;
+use super::normal::Fit;
 use super::prepare::{Prepared, fit};
-use super::problem::{Problem, rms};
+use super::problem::rms;
 use super::uncertainty::{correlation, covariance};
 use super::{Error, Identification, estimates};
 use crate::campaign::Campaign;
@@ -17,7 +18,7 @@ use crate::campaign::Campaign;
 /// A campaign that sees none of them.
 pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     let prepared = Prepared::new(campaign)?;
-    let problem = prepared.problem(&[]);
+    let problem = prepared.problem();
     let fitted = fit(&prepared, &problem)?;
     let signs: Vec<_> = fitted.columns.iter().map(|&i| prepared.own[i].sign).collect();
     let covariance = covariance(&problem, &fitted, &signs);
@@ -26,7 +27,7 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
         values[column] = value;
     }
     let estimates = estimates(&campaign.robot, &prepared, &values, &fitted.columns, &covariance);
-    let residuals = problem.residuals(&fitted.columns, &fitted.coefficients);
+    let residuals = residuals(&prepared, &fitted);
     let freedom = problem.total.rows.saturating_sub(fitted.columns.len()).max(1) as f64;
     let (noise, noise_source) = prepared.noise(fitted.rss / freedom);
     let rows = prepared.samples.rows.len();
@@ -37,21 +38,31 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
         rows,
         poses: prepared.samples.poses,
         noise: Some((noise, noise_source)),
-        rms_declared: Some(declared_rms(&prepared, &problem, 0..rows)),
-        rms: Some(rms(&residuals, problem.axes, 0..rows)),
+        rms_declared: Some(declared_rms(&prepared, 0..rows)),
+        rms: Some(rms(&residuals, prepared.samples.axes, 0..rows)),
     })
 }
 
+/// What a fit of the description's numbers leaves of the readings, stacked;
+/// (m, rad).
+fn residuals(prepared: &Prepared<'_>, fit: &Fit) -> DVector<f64> {
+    let mut left = prepared.readings(&prepared.samples);
+    for (&number, &value) in fit.columns.iter().zip(fit.coefficients.iter()) {
+        left.axpy(-value, &prepared.samples.column(prepared.own[number].column), 1.0);
+    }
+    left
+}
+
 /// The rms of the readings against the description as declared (m).
-pub fn declared_rms(prepared: &Prepared<'_>, problem: &Problem, rows: impl IntoIterator<Item = usize>) -> f64 {
-    rms(&declared_residuals(prepared, problem), problem.axes, rows)
+pub fn declared_rms(prepared: &Prepared<'_>, rows: impl IntoIterator<Item = usize>) -> f64 {
+    rms(&declared_residuals(prepared), prepared.samples.axes, rows)
 }
 
 /// What the description as declared leaves of the readings, stacked; (m, rad).
-pub fn declared_residuals(prepared: &Prepared<'_>, problem: &Problem) -> DVector<f64> {
+pub fn declared_residuals(prepared: &Prepared<'_>) -> DVector<f64> {
     let seen = prepared.seen();
-    let values = DVector::from_fn(seen.len(), |k, _| prepared.own[seen[k]].value);
-    problem.residuals(&seen, &values)
+    let coefficients = DVector::from_fn(seen.len(), |k, _| prepared.own[seen[k]].value);
+    residuals(prepared, &Fit { columns: seen, coefficients, rss: f64::NAN })
 }
 
 /// A matrix of some columns among all; the identity elsewhere.

@@ -18,6 +18,9 @@ use crate::elements::{plays, turn};
 pub fn turned_by_laws(description: &Description, samples: &Samples) -> DVector<f64> {
     let laws = description.effects.iter().filter(|effect| columns_of(effect).is_empty());
     let laws: Vec<_> = laws.filter_map(|effect| Some((effect, effect.row()? - 1))).collect();
+    if laws.is_empty() {
+        return DVector::zeros(samples.rows.len() * samples.axes);
+    }
     let mut states: BTreeMap<usize, Vec<[f64; PLAYS]>> = BTreeMap::new();
     let twists = samples.rows.iter().map(|row| {
         let geometry = samples.geometry(row);
@@ -30,7 +33,7 @@ pub fn turned_by_laws(description: &Description, samples: &Samples) -> DVector<f
             sum + twist * turn(effect, own, row.q[joint], torque, state[joint]).unwrap_or(0.0)
         })
     });
-    let read: Vec<Vector6<f64>> = twists.zip(&samples.rows).map(|(twist, row)| row.at_marker(&twist)).collect();
+    let read: Vec<Vector6<f64>> = twists.zip(&samples.rows).map(|(twist, row)| row.read(&twist)).collect();
     DVector::from_iterator(
         samples.rows.len() * samples.axes,
         read.iter().flat_map(|six| six.iter().copied().take(samples.axes)),

@@ -19,6 +19,7 @@ pub mod prepare;
 pub mod problem;
 pub mod samples;
 pub mod second_order;
+pub mod setup;
 #[cfg(test)]
 mod tests;
 pub mod uncertainty;

@@ -44,7 +44,19 @@ pub struct Fit {
 impl Normal {
     /// The normal equations of `x`, `y`.
     pub fn new(x: &DMatrix<f64>, y: &DVector<f64>) -> Self {
+        // The product of two stored matrices is the one that is fast.
+        let transposed = x.transpose();
+        Self { gram: &transposed * x, moment: transposed * y, energy: y.norm_squared(), rows: y.len() }
+    }
+
+    /// The same for a few columns.
+    pub fn small(x: &DMatrix<f64>, y: &DVector<f64>) -> Self {
         Self { gram: x.tr_mul(x), moment: x.tr_mul(y), energy: y.norm_squared(), rows: y.len() }
+    }
+
+    /// The normal equations of some of the columns, in the order given.
+    pub fn of(&self, columns: &[usize]) -> Self {
+        Self { gram: self.gram_of(columns), moment: self.moment_of(columns), energy: self.energy, rows: self.rows }
     }
 
     /// The same without a block of rows that is part of it.
@@ -181,13 +193,19 @@ impl Scaled {
 
     /// The factors of a Gram matrix; `None` where its columns are collinear.
     pub fn of(gram: &DMatrix<f64>) -> Option<Self> {
+        Self::apart(gram, COLLINEAR)
+    }
+
+    /// The same; `None` where a column is nearer than this, by the square of
+    /// the sine of the angle between, to the span of those before it.
+    pub fn apart(gram: &DMatrix<f64>, least: f64) -> Option<Self> {
         let scale = gram.diagonal().map(|norm| 1.0 / norm.sqrt());
         if !scale.iter().all(|s| s.is_finite()) {
             return None;
         }
         let scaled = DMatrix::from_fn(gram.nrows(), gram.ncols(), |i, j| gram[(i, j)] * scale[i] * scale[j]);
         let factor = Cholesky::new(scaled)?;
-        let near = factor.l_dirty().diagonal().iter().any(|d| d * d < COLLINEAR);
+        let near = factor.l_dirty().diagonal().iter().any(|d| d * d < least);
         (!near).then_some(Self { factor, scale })
     }
 

@@ -4,13 +4,14 @@ use std::string::String;
 use std::vec::Vec;
 
 use nalgebra::DVector;
+use robstiff_robots::Description;
 
-use super::baseline::{Declared, Visibility, declared, sign_of, visibility};
+use super::baseline::{Declared, Visibility, declared, visibility};
 use super::holdout::training;
 use super::laws::turned_by_laws;
 use super::noise::{PureError, repetitions};
 use super::normal::Sign;
-use super::problem::Problem;
+use super::problem::{Problem, Weights, raw};
 use super::samples::{Column, Samples};
 use super::second_order::beyond_linear;
 use super::{Error, NoiseSource};
@@ -18,6 +19,8 @@ use crate::campaign::{Campaign, Data, Displacements};
 
 /// A campaign made ready for regressions.
 pub struct Prepared<'c> {
+    /// The description as declared.
+    pub description: &'c Description,
     /// The rows of the table.
     pub data: &'c Displacements,
     /// The rows on the robot.
@@ -36,10 +39,8 @@ pub struct Prepared<'c> {
     pub declared_noise: Option<f64>,
     /// The noise of a displacement over that of a rotation (m/rad).
     pub rotation_weight: f64,
-    /// What laws of joints do that are held as declared (m, rad).
-    by_laws: DVector<f64>,
     /// The second order of the joints' displacement (m).
-    correction: DVector<f64>,
+    pub correction: DVector<f64>,
 }
 
 /// Rotation weights settle to three digits within this many passes.
@@ -73,7 +74,7 @@ impl<'c> Prepared<'c> {
         };
         let mut prepared = Self {
             data,
-            by_laws: turned_by_laws(description, &samples),
+            description,
             correction: DVector::zeros(samples.rows.len() * samples.axes),
             samples,
             training,
@@ -96,24 +97,30 @@ impl<'c> Prepared<'c> {
         (0..self.own.len()).filter(|&i| self.visibility[i] == Visibility::Seen).collect()
     }
 
-    /// The signs of the description's numbers, and of further columns.
-    pub fn signs(&self, further: &[Column]) -> Vec<Sign> {
-        self.own.iter().map(|number| number.sign).chain(further.iter().map(|&column| sign_of(column))).collect()
+    /// The signs of the description's numbers, in order.
+    pub fn signs(&self) -> Vec<Sign> {
+        self.own.iter().map(|number| number.sign).collect()
     }
 
-    /// The regression with the description's columns and further ones. What
-    /// numbers that are held at their declared value do is taken from the
-    /// readings.
-    pub fn problem(&self, further: &[Column]) -> Problem {
-        let mut columns: Vec<Column> = self.own.iter().map(|number| number.column).collect();
-        columns.extend(further);
-        let mut readings = self.samples.readings() - &self.by_laws;
+    /// The regression with the description's columns. What numbers that are
+    /// held at their declared value do is taken from the readings.
+    pub fn problem(&self) -> Problem {
+        let columns: Vec<Column> = self.own.iter().map(|number| number.column).collect();
+        let (readings, none) = (self.readings(&self.samples), std::vec![false; self.samples.rows.len()]);
+        let weights = Weights { rotation: self.rotation_weight, training: &self.training, left_out: &none };
+        Problem::new(&self.samples, raw(&self.samples, &columns), readings, &self.correction, weights)
+    }
+
+    /// The readings less what laws of joints do that the description declares,
+    /// and numbers that are held at their declared value, stacked.
+    pub fn readings(&self, samples: &Samples) -> DVector<f64> {
+        let mut readings = samples.readings() - turned_by_laws(self.description, samples);
         for (number, visibility) in self.own.iter().zip(&self.visibility) {
             if *visibility != Visibility::Seen && number.value != 0.0 {
-                readings.axpy(-number.value, &self.samples.column(number.column), 1.0);
+                readings.axpy(-number.value, &samples.column(number.column), 1.0);
             }
         }
-        Problem::new(&self.samples, columns, readings, &self.correction, self.rotation_weight, &self.training)
+        readings
     }
 
     /// The noise of one displacement reading (m), given the residual variance
@@ -131,7 +138,7 @@ impl<'c> Prepared<'c> {
         // A displacement of a millimetre goes with a rotation of one metre's
         // lever: a start that the first pass corrects.
         for _ in 0..WEIGHT_PASSES {
-            let problem = self.problem(&[]);
+            let problem = self.problem();
             let fit = fit(self, &problem)?;
             let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
             let sum = |rotations: bool| -> f64 {
@@ -149,9 +156,9 @@ impl<'c> Prepared<'c> {
     /// Finds out which numbers are seen, first by the geometry, then against
     /// the noise; and their values.
     fn look(&mut self) -> Result<(), Error> {
-        let problem = self.problem(&[]);
+        let problem = self.problem();
         self.visibility = visibility(&problem, self.own.len());
-        let fitted = fit(self, &self.problem(&[]))?;
+        let fitted = fit(self, &self.problem())?;
         let total = &problem.total;
         let freedom = total.rows.saturating_sub(fitted.columns.len()).max(1) as f64;
         let variance = self.declared_noise.map_or(fitted.rss / freedom, |noise| noise * noise);
@@ -165,7 +172,7 @@ impl<'c> Prepared<'c> {
                 }
             }
         }
-        let problem = self.problem(&[]);
+        let problem = self.problem();
         let fitted = fit(self, &problem)?;
         for (&column, &value) in fitted.columns.iter().zip(fitted.coefficients.iter()) {
             self.values[column] = value;

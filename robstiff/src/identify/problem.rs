@@ -1,22 +1,19 @@
 //! The regression a campaign poses: whitened columns and readings, in blocks
 //! of poses.
 
+use std::vec;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::normal::Normal;
+use super::normal::{Fit, Normal, Sign};
 use super::samples::{Column, Samples};
 use super::whitening::whiten;
 
 /// Readings and the columns that are to explain them.
 #[derive(Clone, Debug)]
 pub struct Problem {
-    /// What the columns are.
-    pub columns: Vec<Column>,
-    /// The columns as measured, stacked like [`Samples::readings`].
-    pub raw: DMatrix<f64>,
-    /// The readings as measured (m, rad).
+    /// The readings as measured (m, rad), stacked like [`Samples::readings`].
     pub readings: DVector<f64>,
     /// The columns, whitened; rotations in the displacements' unit (m).
     pub white: DMatrix<f64>,
@@ -28,7 +25,7 @@ pub struct Problem {
     pub blocks: Vec<Block>,
     /// The blocks kept for judging.
     pub held_out: Vec<Block>,
-    /// The sum of the normal equations of the blocks fitted to.
+    /// The normal equations of all blocks fitted to.
     pub total: Normal,
 }
 
@@ -38,66 +35,97 @@ pub struct Problem {
 pub struct Block {
     /// Index of the pose.
     pub pose: usize,
-    /// The campaign's rows.
+    /// The campaign's rows, without those that are left out.
     pub rows: Vec<usize>,
     /// Their indices in the stacked vectors.
     pub stacked: Vec<usize>,
-    /// The normal equations of these rows, whitened.
-    pub normal: Normal,
 }
 
+/// How a campaign's rows are weighed.
+#[derive(Clone, Copy, Debug)]
+pub struct Weights<'a> {
+    /// The noise of a displacement over that of a rotation (m/rad).
+    pub rotation: f64,
+    /// Whether each pose is fitted to.
+    pub training: &'a [bool],
+    /// Rows that are left out of everything.
+    pub left_out: &'a [bool],
+}
+
+/// Rows whose normal equations are formed at once: what fits a cache.
+const ROWS_AT_ONCE: usize = 512;
+
 impl Problem {
-    /// The problem of explaining `readings` (stacked like
-    /// [`Samples::readings`]) on the poses for which `training` holds.
-    /// `correction` is taken from what is whitened, but not from the readings
-    /// that residuals are reported of. `rotation_weight` (m/rad) is the noise
-    /// of a displacement over that of a rotation.
+    /// The problem of explaining `readings` by `columns`, both stacked like
+    /// [`Samples::readings`], on the poses fitted to. `correction` is taken
+    /// from what is whitened, but not from the readings that residuals are
+    /// reported of.
     ///
     /// # Panics
     /// If no row belongs to a training pose.
     pub fn new(
         samples: &Samples,
-        columns: Vec<Column>,
+        columns: DMatrix<f64>,
         readings: DVector<f64>,
         correction: &DVector<f64>,
-        rotation_weight: f64,
-        training: &[bool],
+        weights: Weights<'_>,
     ) -> Self {
         let axes = samples.axes;
-        let mut raw = DMatrix::zeros(readings.len(), columns.len());
-        for (j, &column) in columns.iter().enumerate() {
-            raw.set_column(j, &samples.column(column));
-        }
-        let mut white = raw.clone().insert_column(columns.len(), 0.0);
-        white.set_column(columns.len(), &(&readings - correction));
-        for (i, mut row) in white.row_iter_mut().enumerate() {
-            if i % axes >= 3 {
-                row *= rotation_weight;
+        let count = columns.ncols();
+        let mut white = columns.insert_column(count, 0.0);
+        white.set_column(count, &(&readings - correction));
+        if axes > 3 {
+            for (i, mut row) in white.row_iter_mut().enumerate() {
+                if i % axes >= 3 {
+                    row *= weights.rotation;
+                }
             }
         }
-        whiten(&mut white, &samples.visits(), axes);
-        let white_readings = white.column(columns.len()).into_owned();
-        let white = white.remove_column(columns.len());
+        whiten(&mut white, &visits_of(samples, weights.left_out), axes);
+        let white_readings = white.column(count).into_owned();
+        let white = white.remove_column(count);
 
-        let (blocks, held_out): (Vec<Block>, Vec<Block>) = (0..samples.poses)
-            .filter_map(|pose| {
-                let rows: Vec<usize> = (0..samples.rows.len()).filter(|&i| samples.rows[i].pose == pose).collect();
-                let stacked: Vec<usize> = rows.iter().flat_map(|row| row * axes..(row + 1) * axes).collect();
-                let normal = Normal::new(&white.select_rows(&stacked), &white_readings.select_rows(&stacked));
-                (!rows.is_empty()).then_some(Block { pose, rows, stacked, normal })
+        let mut rows = vec![Vec::new(); samples.poses];
+        for (i, row) in samples.rows.iter().enumerate().filter(|&(i, _)| !weights.left_out[i]) {
+            rows[row.pose].push(i);
+        }
+        let (blocks, held_out): (Vec<Block>, Vec<Block>) = rows
+            .into_iter()
+            .enumerate()
+            .filter(|(_, rows)| !rows.is_empty())
+            .map(|(pose, rows)| {
+                let stacked = rows.iter().flat_map(|row| row * axes..(row + 1) * axes).collect();
+                Block { pose, rows, stacked }
             })
-            .partition(|block: &Block| training[block.pose]);
-        let total = Normal::sum(blocks.iter().map(|block| &block.normal)).expect("a campaign has rows to train on");
-        Self { columns, raw, readings, white, white_readings, axes, blocks, held_out, total }
+            .partition(|block: &Block| weights.training[block.pose]);
+        let stacked: Vec<usize> = blocks.iter().flat_map(|block| block.stacked.iter().copied()).collect();
+        let parts: Vec<Normal> = stacked
+            .chunks(ROWS_AT_ONCE)
+            .map(|rows| Normal::new(&white.select_rows(rows), &white_readings.select_rows(rows)))
+            .collect();
+        let total = Normal::sum(&parts).expect("a campaign has rows to train on");
+        Self { readings, white, white_readings, axes, blocks, held_out, total }
     }
 
-    /// What is left of the readings as measured, stacked; (m, rad).
-    pub fn residuals(&self, columns: &[usize], coefficients: &DVector<f64>) -> DVector<f64> {
-        let mut left = self.readings.clone();
-        for (&column, &coefficient) in columns.iter().zip(coefficients.iter()) {
-            left.axpy(-coefficient, &self.raw.column(column), 1.0);
-        }
-        left
+    /// The normal equations of one block, of some of the columns in the order
+    /// given.
+    pub fn normal(&self, block: &Block, columns: &[usize]) -> Normal {
+        let x = DMatrix::from_fn(block.stacked.len(), columns.len(), |i, j| self.white[(block.stacked[i], columns[j])]);
+        let y = DVector::from_fn(block.stacked.len(), |i, _| self.white_readings[block.stacked[i]]);
+        Normal::small(&x, &y)
+    }
+
+    /// The coefficients of some columns without one of the blocks, by least
+    /// squares with or without signs; `None` where that block alone sees a
+    /// column.
+    pub fn solve_without(&self, block: &Block, columns: &[usize], signs: Option<&[Sign]>) -> Option<DVector<f64>> {
+        let rest = self.total.of(columns).without(&self.normal(block, columns));
+        let all: Vec<usize> = (0..columns.len()).collect();
+        let fit = match signs {
+            Some(signs) => rest.solve_signed(&all, signs),
+            None => rest.solve(&all),
+        };
+        fit.map(|fit| fit.coefficients)
     }
 
     /// What is left of the whitened readings, stacked (m).
@@ -108,6 +136,39 @@ impl Problem {
         }
         left
     }
+
+    /// What is left of a block's whitened readings (m).
+    pub fn block_residuals(&self, block: &Block, columns: &[usize], coefficients: &DVector<f64>) -> DVector<f64> {
+        DVector::from_fn(block.stacked.len(), |i, _| {
+            let row = block.stacked[i];
+            let fitted = columns.iter().zip(coefficients.iter()).map(|(&column, b)| self.white[(row, column)] * b);
+            self.white_readings[row] - fitted.sum::<f64>()
+        })
+    }
+
+    /// The residual degrees of freedom of a fit.
+    pub fn freedom(&self, fit: &Fit) -> f64 {
+        self.total.rows.saturating_sub(fit.columns.len()).max(1) as f64
+    }
+}
+
+/// The columns of a description's numbers, stacked like [`Samples::readings`].
+pub fn raw(samples: &Samples, columns: &[Column]) -> DMatrix<f64> {
+    let mut raw = DMatrix::zeros(samples.rows.len() * samples.axes, columns.len());
+    for (j, &column) in columns.iter().enumerate() {
+        raw.set_column(j, &samples.column(column));
+    }
+    raw
+}
+
+/// The visit of each row, each of those left out being one of its own: it
+/// shares its unloaded reading with nothing that is used.
+fn visits_of(samples: &Samples, left_out: &[bool]) -> Vec<usize> {
+    let mut visits = samples.visits();
+    let next = visits.iter().max().map_or(0, |last| last + 1);
+    let alone = visits.iter_mut().zip(left_out).filter(|(_, out)| **out);
+    alone.enumerate().for_each(|(k, (visit, _))| *visit = next + k);
+    visits
 }
 
 /// The root mean square over rows of the length of the displacement residual,

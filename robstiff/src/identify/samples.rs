@@ -6,7 +6,8 @@ use std::vec::Vec;
 use nalgebra::{DVector, Matrix3, Matrix4, SVector, Vector3, Vector6};
 use robstiff_robots::Description;
 
-use crate::campaign::{Displacements, Frame};
+use super::setup::Setup;
+use crate::campaign::{Displacements, Frame, Observation};
 use crate::elements::{Geometry, Parameter, Pose};
 use crate::{JointKind, Robot};
 
@@ -65,6 +66,9 @@ pub struct Sample {
     pub displacement: Vector3<f64>,
     /// The rotation read (rad).
     pub rotation: Vector3<f64>,
+    /// How a displacement or rotation in the base frame is seen in the
+    /// readings.
+    pub seen: Matrix3<f64>,
 }
 
 impl Samples {
@@ -75,35 +79,45 @@ impl Samples {
 
     /// The rows of a campaign on a robot, generated or generic.
     pub fn new<const N: usize>(robot: &impl Robot<N>, data: &Displacements) -> Self {
+        Self::on(robot, data, &Setup::as_declared(N), None)
+    }
+
+    /// The same rows, on the robot of the same description, where file and
+    /// description are off by a setup. The readings stay as they are; what a
+    /// model predicts of them changes.
+    pub fn with_setup(&self, description: &Description, data: &Displacements, setup: &Setup) -> Self {
+        crate::with_robot!(&setup.description(description), |robot| Self::on(&robot, data, setup, Some(self)))
+    }
+
+    fn on<const N: usize>(robot: &impl Robot<N>, data: &Displacements, setup: &Setup, declared: Option<&Self>) -> Self {
         let with_rotations = data.rows.iter().all(|row| row.rotation.is_some());
-        let row = |row: &crate::campaign::Observation| {
-            let pose = Pose::of(robot, &SVector::<f64, N>::from_column_slice(&row.q));
+        let row = |(i, row): (usize, &Observation)| {
+            let q = setup.coordinates(i, &row.q);
+            let pose = Pose::of(robot, &SVector::<f64, N>::from_column_slice(&q));
             let geometry = pose.geometry();
-            let tool = geometry.tcp.fixed_view::<3, 3>(0, 0).into_owned();
-            let turn = |frame| if frame == Frame::Tool { tool } else { Matrix3::identity() };
-            let (loads, reads) = (turn(data.wrench_frame), turn(data.measured_frame));
-            let force = loads * Vector3::from_column_slice(&row.wrench[..3]);
-            let lever = tool * Vector3::from(data.wrench_at);
-            let moment = loads * Vector3::from_column_slice(&row.wrench[3..]) + lever.cross(&force);
+            let tool = turn_of(&geometry.tcp);
+            let declared = declared.map_or(tool, |declared| turn_of(&declared.rows[i].tcp));
+            let reads = if data.measured_frame == Frame::Tool { declared } else { Matrix3::identity() };
             Sample {
                 pose: row.pose,
                 visit: row.visit,
-                q: row.q.clone(),
+                q,
                 base: geometry.base,
                 joint_frames: geometry.joint_frames.to_vec(),
                 flange: geometry.flange,
                 tcp: geometry.tcp,
-                wrench: stack(&force, &moment),
+                wrench: setup.wrench(data, &tool, &row.wrench),
                 marker: tool * Vector3::from(data.measured_at),
                 displacement: reads * Vector3::from(row.displacement),
                 rotation: reads * Vector3::from(row.rotation.unwrap_or_default()),
+                seen: setup.seen(data, &declared, &tool),
             }
         };
         Self {
             joint_kinds: robot.joint_kinds().to_vec(),
             axes: if with_rotations { 6 } else { 3 },
             poses: data.poses.len(),
-            rows: data.rows.iter().map(row).collect(),
+            rows: data.rows.iter().enumerate().map(row).collect(),
         }
     }
 
@@ -129,7 +143,7 @@ impl Samples {
                     twist * (torque / (torque / knee).hypot(1.0))
                 }
             };
-            row.at_marker(&twist)
+            row.read(&twist)
         })
     }
 
@@ -156,9 +170,14 @@ impl Samples {
 
     /// Stacks one vector of six a row, its first [`axes`](Self::axes) numbers.
     pub fn stacked(&self, of: impl Fn(&Geometry<'_, f64>, &Sample) -> Vector6<f64>) -> DVector<f64> {
+        self.stacked_by(|_, row| of(&self.geometry(row), row))
+    }
+
+    /// The same of a row and its index.
+    pub fn stacked_by(&self, of: impl Fn(usize, &Sample) -> Vector6<f64>) -> DVector<f64> {
         let mut stacked = DVector::zeros(self.rows.len() * self.axes);
         for (i, row) in self.rows.iter().enumerate() {
-            let six = of(&self.geometry(row), row);
+            let six = of(i, row);
             stacked.rows_mut(i * self.axes, self.axes).copy_from(&six.rows(0, self.axes));
         }
         stacked
@@ -166,17 +185,23 @@ impl Samples {
 }
 
 impl Sample {
-    /// A small twist of the TCP as the marker reads it, `[I, -[p_r - p]x]`.
-    pub fn at_marker(&self, twist: &Vector6<f64>) -> Vector6<f64> {
+    /// An elastic twist of the TCP as it is read at the marker: `[I, -[p_r -
+    /// p]x]`, turned as the row's setup has it.
+    pub fn read(&self, twist: &Vector6<f64>) -> Vector6<f64> {
+        let moved: Vector3<f64> = twist.fixed_rows::<3>(0).into_owned();
         let turn: Vector3<f64> = twist.fixed_rows::<3>(3).into_owned();
-        let mut read = *twist;
-        let mut moved = read.fixed_rows_mut::<3>(0);
-        moved += turn.cross(&self.marker);
-        read
+        let see = |vector: Vector3<f64>| self.seen * vector;
+        stack(&see(moved + turn.cross(&self.marker)), &see(turn))
     }
 }
 
-fn stack(translation: &Vector3<f64>, rotation: &Vector3<f64>) -> Vector6<f64> {
+/// The turn of a frame.
+pub fn turn_of(frame: &Matrix4<f64>) -> Matrix3<f64> {
+    frame.fixed_view::<3, 3>(0, 0).into_owned()
+}
+
+/// A translation and a rotation as one vector of six.
+pub fn stack(translation: &Vector3<f64>, rotation: &Vector3<f64>) -> Vector6<f64> {
     let mut six = Vector6::zeros();
     six.fixed_rows_mut::<3>(0).copy_from(translation);
     six.fixed_rows_mut::<3>(3).copy_from(rotation);

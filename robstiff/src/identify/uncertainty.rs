@@ -21,17 +21,12 @@ const POSES_PER_COEFFICIENT: usize = 2;
 /// The covariance of a fit's coefficients; `signs` are those of its columns.
 pub fn covariance(problem: &Problem, fit: &Fit, signs: &[Sign]) -> DMatrix<f64> {
     let poses = problem.blocks.len();
-    let without: Vec<DVector<f64>> = problem
-        .blocks
-        .iter()
-        .filter_map(|block| problem.total.without(&block.normal).solve_signed(&fit.columns, signs))
-        .map(|fit| fit.coefficients)
-        .collect();
+    let without: Vec<DVector<f64>> =
+        problem.blocks.iter().filter_map(|block| problem.solve_without(block, &fit.columns, Some(signs))).collect();
     if poses < POSES_PER_COEFFICIENT * fit.columns.len() || without.len() < poses {
-        let freedom = problem.total.rows.saturating_sub(fit.columns.len()).max(1) as f64;
         let inverse = problem.total.inverse(&fit.columns);
-        return inverse
-            .map_or_else(|| DMatrix::zeros(signs.len(), signs.len()), |inverse| inverse * (fit.rss / freedom));
+        let none = || DMatrix::zeros(signs.len(), signs.len());
+        return inverse.map_or_else(none, |inverse| inverse * (fit.rss / problem.freedom(fit)));
     }
     let mean = without.iter().sum::<DVector<f64>>() / poses as f64;
     let spread = without.iter().map(|b| (b - &mean) * (b - &mean).transpose());

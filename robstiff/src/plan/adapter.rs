@@ -1,27 +1,27 @@
 //! From the regression that tracing uses to what planning asks for; the only
 //! place in planning that knows how numbers become readings.
 
-use std::format;
 use std::string::{String, ToString};
 use std::vec;
 use std::vec::Vec;
 
-use nalgebra::{DMatrix, Matrix4, Vector3, Vector6};
-use robstiff_robots::Description;
+use nalgebra::{DMatrix, DVector, Matrix4, Vector3, Vector6};
 
 use super::regressors::{Regressors, Sensor, Visit};
 use super::rivals::{Contest, Group, Number, Rival, Rivals};
 use crate::campaign::{Campaign, Displacements, Frame, Observation};
 use crate::elements::{Geometry, Parameter};
-use crate::identify::baseline::columns_of;
-use crate::identify::normal::Sign;
 use crate::identify::prepare::Prepared;
-use crate::identify::problem::Problem;
-use crate::identify::samples::{Column, Sample, Samples};
+use crate::identify::samples::{Column, Sample, Samples, turn_of};
+use crate::identify::setup::Setup;
 use crate::identify::whitening::whiten;
-use crate::identify::{Error, element_name, parameter_name, unit_of};
+use crate::identify::{Error, element_name, unit_of};
 use crate::trace::Trace;
-use crate::trace::candidate::{Candidate, Variant, catalogue};
+use crate::trace::bench::Bench;
+use crate::trace::catalogue::{self, Catalogue, Scene, catalogue};
+use crate::trace::model::{Fitted, Named};
+use crate::trace::point::Point;
+use crate::trace::selection::best_with;
 
 /// One sigma of a rotation reading where the campaign states none (rad): that
 /// of a laser tracker's six-axis probe at some metres.
@@ -38,11 +38,33 @@ pub const REACH: f64 = 0.3;
 /// The levels of [`Sensor::Levels`], as shares of the greatest load.
 pub const LEVELS: [f64; 5] = [0.025, 0.25, 0.5, 1.0, -1.0];
 
+/// Kinds that depend on when something is measured, not on pose and load: what
+/// to propose for them is not computed.
+const OF_TIME: [&str; 4] = ["thermal_drift", "creep", "base_slip", "outliers"];
+
+/// A number that planning looks at.
+#[derive(Clone, Debug, PartialEq)]
+enum Kept {
+    /// One of the description.
+    Own(Column),
+    /// One of a candidate, by its full name, and which of its numbers.
+    Of(String, usize),
+}
+
 /// A traced campaign, with the numbers that planning looks at.
 pub struct Adapter<'c> {
-    description: &'c Description,
-    data: Displacements,
-    columns: Vec<Column>,
+    campaign: &'c Campaign,
+    data: &'c Displacements,
+    /// Rows of the campaign that load each joint most, with their visits: the
+    /// catalogue takes its grids of torques from them.
+    anchors: Vec<Observation>,
+    compliance: Vec<f64>,
+    /// The forward model at what was traced: its setup, the numbers in which its
+    /// compliance is linear, and all its elastic ones.
+    setup: Setup,
+    linear: Vec<(Parameter, f64)>,
+    elastic: Vec<(Kept, f64)>,
+    kept: Vec<Kept>,
     known: DMatrix<f64>,
     axes: usize,
     rotation_weight: f64,
@@ -50,35 +72,45 @@ pub struct Adapter<'c> {
     rotation_noise: f64,
 }
 
-/// The regression of a campaign with the catalogue behind it.
-struct Catalogue<'p> {
-    prepared: Prepared<'p>,
-    candidates: Vec<Candidate>,
-    problem: Problem,
-    signs: Vec<Sign>,
-}
-
 impl<'c> Adapter<'c> {
-    /// For a campaign and its trace, with groups of rivals.
+    /// For a campaign that was made ready and its trace, with groups of rivals.
     ///
     /// # Errors
-    /// A campaign of another kind, or one that sees none of the numbers.
-    pub fn new(campaign: &'c Campaign, trace: &Trace, groups: &[Group]) -> Result<(Self, Rivals), Error> {
-        let prepared = Prepared::new(campaign)?;
-        let (candidates, further) = catalogue(&campaign.robot, &prepared.samples, prepared.own.len());
-        let (problem, signs) = (prepared.problem(&further), prepared.signs(&further));
-        let catalogue = Catalogue { prepared, candidates, problem, signs };
-        let mut kept = catalogue.prepared.seen();
-        let rivals = catalogue.rivals(campaign, trace, groups, &mut kept);
-        let (prepared, problem) = (&catalogue.prepared, &catalogue.problem);
-        let white = problem.white.select_columns(&kept);
-        let data = Displacements { wrench_frame: Frame::Base, rows: Vec::new(), ..prepared.data.clone() };
+    /// Why the description's own model cannot be fitted.
+    pub fn new(
+        campaign: &'c Campaign,
+        prepared: &'c Prepared<'c>,
+        trace: &Trace,
+        groups: &[Group],
+    ) -> Result<(Self, Rivals), Error> {
+        let bench = Bench::new(campaign, prepared).map_err(Error)?;
+        let everything = catalogue(&bench.scene(), prepared.own.len());
+        let source = Source { bench: &bench, prepared, everything: &everything };
+        let mut columns = prepared.seen();
+        let (rivals, model) = source.rivals(campaign, trace, groups, &mut columns)?;
+        let setting = bench.at(&model).map_err(Error)?;
+        let fitted = bench.fit(&model).map_err(Error)?;
+        let numbers = fitted.fit.columns.iter().zip(fitted.fit.coefficients.iter());
+        let is_elastic = |column: usize| {
+            let number = column.checked_sub(prepared.own.len()).map(|k| &setting.numbers[k]);
+            number.is_none_or(|number| number.elastic && number.enters.is_none())
+        };
+        let elastic = numbers.filter(|(column, _)| is_elastic(**column));
+        let elastic = elastic.map(|(&column, &value)| (source.kept(column), value)).collect();
+        let white = setting.problem.white.select_columns(&columns);
+        // How far the joints sag is a row's own.
+        let setup = Setup { sag: None, ..setting.point.setup.clone() };
         let adapter = Self {
-            description: &campaign.robot,
-            data,
-            columns: kept.iter().map(|&column| problem.columns[column]).collect(),
+            campaign,
+            data: prepared.data,
+            anchors: anchors(prepared),
+            compliance: bench.scene().compliance,
+            setup,
+            linear: bench.linear_parameters(&fitted.fit),
+            elastic,
+            kept: columns.iter().map(|&column| source.kept(column)).collect(),
             known: white.tr_mul(&white),
-            axes: problem.axes,
+            axes: setting.problem.axes,
             rotation_weight: prepared.rotation_weight,
             noise: trace.noise,
             rotation_noise: campaign.noise.rotation.unwrap_or(ROTATION_NOISE),
@@ -98,7 +130,7 @@ impl<'c> Adapter<'c> {
 
     /// The number of joints.
     pub fn joints(&self) -> usize {
-        self.description.joints.len()
+        self.campaign.robot.joints.len()
     }
 
     /// How many numbers some visits read.
@@ -106,39 +138,91 @@ impl<'c> Adapter<'c> {
         self.axes * visits.iter().map(|visit| visit.loads.len()).sum::<usize>()
     }
 
-    /// The rows of some visits on the robot, with their visits.
-    fn samples(&self, visits: &[Visit], axes: usize, further_out: f64) -> Samples {
+    /// The rows of some visits, behind the anchors.
+    fn rows(&self, visits: &[Visit], further_out: f64) -> Displacements {
         let mut data = self.data.clone();
-        data.wrench_at[2] += further_out;
-        data.rows.extend(visits.iter().enumerate().flat_map(|(index, visit)| {
-            visit.loads.iter().map(move |&wrench| Observation {
-                line: 0,
-                pose: index,
-                visit: index,
-                time: None,
-                temperature: None,
-                q: visit.q.clone(),
-                wrench,
-                displacement: [0.0; 3],
-                rotation: (axes > 3).then_some([0.0; 3]),
-            })
-        }));
-        Samples::of_description(self.description, &data)
+        let still = self.data.rows.iter().filter_map(|row| row.time).fold(0.0, f64::max);
+        data.rows = self.anchors.clone();
+        // Every pose that is counted has a row.
+        let next = |of: &dyn Fn(&Observation) -> usize| self.anchors.iter().map(of).max().map_or(0, |last| last + 1);
+        let (mut pose, sequences) = (next(&|row| row.pose), next(&|row| row.visit));
+        for (index, visit) in visits.iter().enumerate() {
+            // What follows each other at one pose is one pose.
+            if index > 0 && visits[index - 1].q != visit.q {
+                pose += 1;
+            }
+            let tool = crate::with_robot!(&self.campaign.robot, |robot| tool_turn(&robot, &visit.q));
+            let out = tool * Vector3::new(0.0, 0.0, further_out);
+            for load in &visit.loads {
+                let force = Vector3::from_column_slice(&load[..3]);
+                let moment = Vector3::from_column_slice(&load[3..]) + out.cross(&force);
+                let frame =
+                    if data.wrench_frame == Frame::Tool { tool.transpose() } else { nalgebra::Matrix3::identity() };
+                let (force, moment) = (frame * force, frame * moment);
+                data.rows.push(Observation {
+                    line: 0,
+                    pose,
+                    visit: sequences + index,
+                    time: self.anchors.first().and_then(|row| row.time).map(|_| still),
+                    temperature: self.anchors.first().and_then(|row| row.temperature),
+                    q: visit.q.clone(),
+                    wrench: [force.x, force.y, force.z, moment.x, moment.y, moment.z],
+                    displacement: [0.0; 3],
+                    rotation: Some([0.0; 3]),
+                });
+            }
+        }
+        data.poses.resize(pose + 1, String::new());
+        data.visits.resize(sequences + visits.len(), String::new());
+        data.rows.iter_mut().for_each(|row| row.rotation = Some([0.0; 3]));
+        data
+    }
+
+    /// What a unit of each number does to some visits' rows, six numbers a row
+    /// (m, rad), and the rows; without the anchors.
+    fn columns(&self, visits: &[Visit], further_out: f64) -> (Samples, DMatrix<f64>) {
+        let (robot, data) = (&self.campaign.robot, self.rows(visits, further_out));
+        let declared = Samples::of_description(robot, &data);
+        let scene = Scene {
+            description: robot,
+            data: &data,
+            samples: &declared,
+            compliance: self.compliance.clone(),
+            moments: &[],
+        };
+        let everything = catalogue(&scene, 0);
+        let column = |point: &Point<'_>, kept: &Kept| match kept {
+            Kept::Own(column) => point.samples.column(*column),
+            Kept::Of(name, which) => start(&everything, name, 0).map_or_else(
+                || DVector::zeros(6 * data.rows.len()),
+                |first| (everything.numbers[first + which].regressor)(point),
+            ),
+        };
+        let bare = Point::bare(robot, &data, &declared, self.setup.clone());
+        let mut elastic = DVector::zeros(6 * data.rows.len());
+        for (kept, value) in &self.elastic {
+            elastic.axpy(*value, &column(&bare, kept), 1.0);
+        }
+        let point = bare.with_model(&declared, elastic, &self.linear);
+        let (first, rows) = (6 * self.anchors.len(), 6 * (data.rows.len() - self.anchors.len()));
+        let mut columns = DMatrix::zeros(rows, self.kept.len());
+        for (k, kept) in self.kept.iter().enumerate() {
+            columns.set_column(k, &column(&point, kept).rows(first, rows));
+        }
+        let mut samples = point.samples;
+        samples.rows.drain(..self.anchors.len());
+        (samples, columns)
     }
 
     /// What is read at the tool.
     fn at_the_tool(&self, visits: &[Visit], axes: usize, weight: f64, further_out: f64) -> Vec<DMatrix<f64>> {
-        let samples = self.samples(visits, axes, further_out);
-        let mut stacked = DMatrix::zeros(samples.rows.len() * axes, self.columns.len());
-        for (k, &column) in self.columns.iter().enumerate() {
-            stacked.set_column(k, &samples.column(column));
-        }
-        for (i, mut row) in stacked.row_iter_mut().enumerate() {
-            if i % axes >= 3 {
-                row *= weight;
-            }
-        }
-        grams(stacked, &samples, axes, visits)
+        let (_, columns) = self.columns(visits, further_out);
+        let rows = columns.nrows() / 6;
+        let stacked = DMatrix::from_fn(rows * axes, columns.ncols(), |i, k| {
+            let value = columns[(i / axes * 6 + i % axes, k)];
+            if i % axes < 3 { value } else { value * weight }
+        });
+        grams(stacked, axes, visits)
     }
 
     /// What is read elsewhere on the robot, `count` numbers a row.
@@ -146,19 +230,57 @@ impl<'c> Adapter<'c> {
         &self,
         visits: &[Visit],
         count: usize,
-        read: impl Fn(&Geometry<'_, f64>, &Sample, Column) -> Vec<f64>,
+        read: impl Fn(&Geometry<'_, f64>, &[(usize, Vector6<f64>)]) -> Vec<f64>,
     ) -> Vec<DMatrix<f64>> {
-        let samples = self.samples(visits, 3, 0.0);
-        let mut stacked = DMatrix::zeros(samples.rows.len() * count, self.columns.len());
+        let (samples, columns) = self.columns(visits, 0.0);
+        let mut stacked = DMatrix::zeros(samples.rows.len() * count, self.kept.len());
         for (i, row) in samples.rows.iter().enumerate() {
             let geometry = samples.geometry(row);
-            for (k, &column) in self.columns.iter().enumerate() {
-                let values = read(&geometry, row, column);
+            for (k, kept) in self.kept.iter().enumerate() {
+                let at_marker: Vector6<f64> = columns.fixed_view::<6, 1>(6 * i, k).into_owned();
+                let values = read(&geometry, &parts(&geometry, row, kept, &at_marker));
                 stacked.view_mut((i * count, k), (count, 1)).copy_from_slice(&values);
             }
         }
-        grams(stacked, &samples, count, visits)
+        grams(stacked, count, visits)
     }
+}
+
+fn tool_turn<const N: usize>(robot: &impl crate::Robot<N>, q: &[f64]) -> nalgebra::Matrix3<f64> {
+    turn_of(&robot.transform(&nalgebra::SVector::<f64, N>::from_column_slice(q)))
+}
+
+/// The visits with the rows that load each joint most, poses and visits counted
+/// anew.
+fn anchors(prepared: &Prepared<'_>) -> Vec<Observation> {
+    let samples = &prepared.samples;
+    let most = |joint: usize| {
+        let torques = samples.torques(joint);
+        (0..torques.len()).max_by(|&a, &b| torques[a].abs().total_cmp(&torques[b].abs()))
+    };
+    let visits: Vec<usize> = (1..=samples.joints()).filter_map(most).map(|row| samples.rows[row].visit).collect();
+    let mut rows: Vec<Observation> =
+        prepared.data.rows.iter().filter(|row| visits.contains(&row.visit)).cloned().collect();
+    let (mut poses, mut sequences) = (Vec::new(), Vec::new());
+    for row in &mut rows {
+        row.pose = index_of(&mut poses, row.pose);
+        row.visit = index_of(&mut sequences, row.visit);
+    }
+    rows
+}
+
+/// The place of a number among those met before.
+fn index_of(met: &mut Vec<usize>, number: usize) -> usize {
+    met.iter().position(|&other| other == number).unwrap_or_else(|| {
+        met.push(number);
+        met.len() - 1
+    })
+}
+
+/// The first number of a candidate, of numbers whose columns follow `own` ones.
+fn start(everything: &Catalogue, name: &str, own: usize) -> Option<usize> {
+    let candidate = everything.candidates.iter().find(|candidate| candidate.name() == name)?;
+    candidate.variants.iter().flat_map(|variant| &variant.columns).min().map(|first| first - own)
 }
 
 impl Regressors for Adapter<'_> {
@@ -167,6 +289,9 @@ impl Regressors for Adapter<'_> {
     }
 
     fn information(&self, visits: &[Visit], besides: Option<Sensor>) -> Vec<DMatrix<f64>> {
+        if visits.is_empty() {
+            return Vec::new();
+        }
         let tool = || self.at_the_tool(visits, self.axes, self.rotation_weight, 0.0);
         let further = match besides {
             None => return tool(),
@@ -183,15 +308,20 @@ impl Regressors for Adapter<'_> {
                 return self.at_the_tool(&visits, self.axes, self.rotation_weight, 0.0);
             }
             Some(Sensor::Lever) => self.at_the_tool(visits, self.axes, self.rotation_weight, REACH),
-            Some(Sensor::Markers(body)) => {
-                self.elsewhere(visits, 9, |geometry, row, column| markers(geometry, row, column, body))
-            }
+            Some(Sensor::Markers(body)) => self.elsewhere(visits, 9, |geometry, parts| markers(geometry, parts, body)),
             Some(Sensor::Encoders) => {
-                let weight = self.noise / ENCODER_NOISE;
-                let joints = self.joints();
-                self.elsewhere(visits, joints, |geometry, row, column| {
-                    let mut turns = gears(geometry, row, column, joints);
-                    turns.iter_mut().for_each(|turn| *turn *= weight);
+                let (weight, joints) = (self.noise / ENCODER_NOISE, self.joints());
+                self.elsewhere(visits, joints, |geometry, parts| {
+                    let mut turns = vec![0.0; joints];
+                    for (place, twist) in parts {
+                        // What turns a gear turns it about its axis alone.
+                        let Some(joint) = place.checked_sub(1).filter(|joint| *joint < joints) else { continue };
+                        let of_gear = geometry.joint_twist(joint + 1);
+                        let amount = twist.dot(&of_gear) / of_gear.norm_squared();
+                        if (twist - of_gear * amount).norm() <= 1e-6 * twist.norm() {
+                            turns[joint] += weight * amount;
+                        }
+                    }
                     turns
                 })
             }
@@ -202,8 +332,9 @@ impl Regressors for Adapter<'_> {
 
 /// The information of each visit from its rows' columns, stacked; the readings
 /// of a visit share their unloaded one.
-fn grams(mut stacked: DMatrix<f64>, samples: &Samples, axes: usize, visits: &[Visit]) -> Vec<DMatrix<f64>> {
-    whiten(&mut stacked, &samples.visits(), axes);
+fn grams(mut stacked: DMatrix<f64>, axes: usize, visits: &[Visit]) -> Vec<DMatrix<f64>> {
+    let of_row = visits.iter().enumerate().flat_map(|(index, visit)| core::iter::repeat_n(index, visit.loads.len()));
+    whiten(&mut stacked, &of_row.collect::<Vec<_>>(), axes);
     let mut first = 0;
     let mut gram = |visit: &Visit| {
         let count = visit.loads.len() * axes;
@@ -214,140 +345,182 @@ fn grams(mut stacked: DMatrix<f64>, samples: &Samples, axes: usize, visits: &[Vi
     visits.iter().map(&mut gram).collect()
 }
 
-/// What a unit of a column's number does, as twists of the TCP, each with the
-/// number of joints before the place where it happens.
-fn parts(geometry: &Geometry<'_, f64>, row: &Sample, column: Column) -> Vec<(usize, Vector6<f64>)> {
+/// What a unit of a number does, as twists of the TCP, each with the number of
+/// joints before the place where it happens. `read` is what it does at the
+/// marker.
+fn parts(geometry: &Geometry<'_, f64>, row: &Sample, kept: &Kept, read: &Vector6<f64>) -> Vec<(usize, Vector6<f64>)> {
     let joints = geometry.joint_frames.len();
-    let parameter = match column {
-        Column::Linear(parameter) => parameter,
-        Column::Knee { joint, .. } => {
-            return vec![(joint, geometry.joint_twist(joint) * gears(geometry, row, column, joints)[joint - 1])];
+    let turn: Vector3<f64> = read.fixed_rows::<3>(3).into_owned();
+    let mut twist = *read;
+    twist.fixed_rows_mut::<3>(0).copy_from(&(read.fixed_rows::<3>(0) - turn.cross(&row.marker)));
+    let gear = |joint: usize, by: usize| {
+        let torque = geometry.joint_twist(by).dot(&row.wrench);
+        (joint, geometry.joint_twist(joint) * torque)
+    };
+    let place = match kept {
+        Kept::Own(Column::Linear(Parameter::Coupling([i, j]))) => return vec![gear(*i, *j), gear(*j, *i)],
+        Kept::Own(Column::Knee { joint, .. }) => *joint,
+        Kept::Own(Column::Linear(parameter)) => match *parameter {
+            Parameter::Joint(i) | Parameter::Transverse(i) | Parameter::LinkBending(i) | Parameter::LinkTorsion(i) => i,
+            Parameter::BaseTilt | Parameter::BaseTranslation => 0,
+            Parameter::ToolRotation | Parameter::ToolTranslation => joints + 1,
+            Parameter::Coupling(_) => unreachable!("it has two places"),
+        },
+        Kept::Of(name, _) => {
+            let (kind, at) = name.split_once('@').unwrap_or((name, ""));
+            let numbers: Vec<usize> =
+                at.split([' ', ',']).filter_map(|word| word.parse().ok()).filter(|joint| *joint <= joints).collect();
+            match (kind, at, numbers.as_slice()) {
+                ("joint_coupling", _, &[i, j]) => return vec![gear(i, j), gear(j, i)],
+                (_, "base", _) => 0,
+                (_, _, &[i]) => i,
+                // The tool; and what changes all readings is taken for nothing
+                // that another place would show.
+                _ => joints + 1,
+            }
         }
     };
-    let place = match parameter {
-        Parameter::Joint(i) | Parameter::Transverse(i) => i,
-        Parameter::LinkBending(i) | Parameter::LinkTorsion(i) => i,
-        Parameter::BaseTilt | Parameter::BaseTranslation => 0,
-        Parameter::ToolRotation | Parameter::ToolTranslation => joints + 1,
-        Parameter::Coupling(pair) => {
-            let turns = gears(geometry, row, column, joints);
-            return pair.iter().map(|&i| (i, geometry.joint_twist(i) * turns[i - 1])).collect();
-        }
-    };
-    vec![(place, geometry.unit_compliance(parameter) * row.wrench)]
-}
-
-/// How far a unit of a column's number turns each gear.
-fn gears(geometry: &Geometry<'_, f64>, row: &Sample, column: Column, joints: usize) -> Vec<f64> {
-    let mut turns = vec![0.0; joints];
-    let torque = |joint: usize| geometry.joint_twist(joint).dot(&row.wrench);
-    match column {
-        Column::Linear(Parameter::Joint(joint)) => turns[joint - 1] = torque(joint),
-        Column::Linear(Parameter::Coupling([i, j])) => (turns[i - 1], turns[j - 1]) = (torque(j), torque(i)),
-        Column::Linear(_) => {}
-        Column::Knee { joint, knee } => turns[joint - 1] = torque(joint) / (torque(joint) / knee).hypot(1.0),
-    }
-    turns
+    vec![(place, twist)]
 }
 
 /// The displacements of three markers about the far end of the body behind
 /// `body` joints.
-fn markers(geometry: &Geometry<'_, f64>, row: &Sample, column: Column, body: usize) -> Vec<f64> {
+fn markers(geometry: &Geometry<'_, f64>, parts: &[(usize, Vector6<f64>)], body: usize) -> Vec<f64> {
     let origin = |frame: &Matrix4<f64>| -> Vector3<f64> { frame.fixed_view::<3, 1>(0, 3).into_owned() };
     let end = origin(geometry.joint_frames.get(body).unwrap_or(&geometry.flange));
     let mut read = Vec::with_capacity(9);
     for axis in 0..3 {
         let lever = end + Vector3::ith(axis, REACH) - origin(&geometry.tcp);
-        let seen = parts(geometry, row, column).into_iter().filter(|(place, _)| *place <= body);
+        let seen = parts.iter().filter(|(place, _)| *place <= body);
         let moved = seen.map(|(_, twist)| twist.fixed_rows::<3>(0) + twist.fixed_rows::<3>(3).cross(&lever));
         read.extend(moved.sum::<Vector3<f64>>().iter());
     }
     read
 }
 
-impl Catalogue<'_> {
-    /// The rivals of a trace. `kept` holds the problem's columns that planning
-    /// looks at, first those of the description; rivals refer to them by index.
-    fn rivals(&self, campaign: &Campaign, trace: &Trace, groups: &[Group], kept: &mut Vec<usize>) -> Rivals {
-        let base = kept.clone();
-        // Every effect named with its columns, and a group's rivals beside all
-        // named ones but its own.
-        let named: Vec<Vec<usize>> = trace
-            .effects
-            .iter()
-            .map(|named| {
-                let numbers = columns_of(&named.effect).into_iter().filter(|(_, value)| *value != 0.0);
-                let at = |column: Column| self.problem.columns.iter().position(|&other| other == column);
-                numbers.filter_map(|(column, _)| at(column)).collect()
-            })
-            .collect();
-        let model: Vec<usize> = base.iter().chain(named.iter().flatten()).copied().collect();
-        let effects: Vec<usize> = named.concat();
-        let numbers = self.numbers(campaign, trace, &model, base.len());
+/// The regression of a campaign, where rivals come from.
+struct Source<'s> {
+    bench: &'s Bench<'s>,
+    prepared: &'s Prepared<'s>,
+    everything: &'s Catalogue,
+}
+
+impl Source<'_> {
+    /// What a column of the regression is.
+    fn kept(&self, column: usize) -> Kept {
+        let own = self.prepared.own.len();
+        if column < own {
+            return Kept::Own(self.prepared.own[column].column);
+        }
+        let has = |candidate: &&catalogue::Candidate| {
+            candidate.variants.iter().any(|variant| variant.columns.contains(&column))
+        };
+        let candidate = self.everything.candidates.iter().find(has).expect("every column is somebody's");
+        let first = start(self.everything, &candidate.name(), own).expect("it has columns");
+        Kept::Of(candidate.name(), column - own - first)
+    }
+
+    /// The best fitting form of a candidate beside others, and its model.
+    fn best(&self, name: &str, beside: &[Named]) -> Option<(Named, Fitted)> {
+        let candidate = self.bench.candidates().iter().position(|candidate| candidate.name() == name)?;
+        let setting = self.bench.at(beside).ok()?;
+        let fitted = best_with(&setting, beside, candidate)?;
+        let named = *fitted.named.iter().find(|named| named.candidate == candidate)?;
+        Some((named, fitted))
+    }
+
+    /// The columns of a named candidate, and their values in a fit.
+    fn numbers_of(&self, named: Named, fitted: &Fitted) -> (Vec<usize>, Vec<f64>) {
+        let columns = self.bench.candidates()[named.candidate].variants[named.variant].columns.clone();
+        let value = |column: &usize| {
+            let at = fitted.fit.columns.iter().position(|other| other == column);
+            at.map_or(0.0, |k| fitted.fit.coefficients[k])
+        };
+        let values = columns.iter().map(value).collect();
+        (columns, values)
+    }
+
+    /// The rivals of a trace, and the effects named. `columns` holds the
+    /// regression's columns that planning looks at, first those of the
+    /// description; rivals refer to them by index.
+    fn rivals(
+        &self,
+        campaign: &Campaign,
+        trace: &Trace,
+        groups: &[Group],
+        columns: &mut Vec<usize>,
+    ) -> Result<(Rivals, Vec<Named>), Error> {
+        let base = columns.clone();
+        let mut named: Vec<(String, Named)> = Vec::new();
+        for effect in &trace.effects {
+            let mut beside: Vec<Named> = named.iter().map(|(_, named)| *named).collect();
+            beside.sort_unstable();
+            let name = effect.effect.to_string();
+            if let Some((found, _)) = self.best(&name, &beside) {
+                named.push((name, found));
+            }
+        }
+        let sorted = |without: Option<&str>| -> Vec<Named> {
+            let kept = named.iter().filter(|(name, _)| Some(name.as_str()) != without);
+            let mut kept: Vec<Named> = kept.map(|(_, named)| *named).collect();
+            kept.sort_unstable();
+            kept
+        };
+        let columns_of = |named: &[Named]| -> Vec<usize> {
+            let of = |one: &Named| self.bench.candidates()[one.candidate].variants[one.variant].columns.clone();
+            named.iter().flat_map(of).collect()
+        };
+        let model = sorted(None);
+        let effects = columns_of(&model);
+        let fitted = self.bench.fit(&model).map_err(Error)?;
+        let numbers = self.numbers(campaign, &fitted);
         let mut place = |column: usize| {
-            kept.iter().position(|&other| other == column).unwrap_or_else(|| {
-                kept.push(column);
-                kept.len() - 1
+            columns.iter().position(|&other| other == column).unwrap_or_else(|| {
+                columns.push(column);
+                columns.len() - 1
             })
         };
-        let mut places = |columns: &[usize]| -> Vec<usize> { columns.iter().map(|&column| place(column)).collect() };
+        let mut places = |of: &[usize]| -> Vec<usize> { of.iter().map(|&column| place(column)).collect() };
         let mut pairs = Vec::new();
         for Group { named: own, names } in groups {
-            let others = named.iter().enumerate().filter(|(k, _)| Some(*k) != *own).flat_map(|(_, columns)| columns);
-            let core: Vec<usize> = base.iter().chain(others).copied().collect();
-            let found = names.iter().filter_map(|name| Some((name, self.best(name, &core)?)));
-            let found: Vec<(&String, (&Variant, Vec<f64>))> = found.collect();
+            let own = own.map(|k| trace.effects[k].effect.to_string());
+            let beside = sorted(own.as_deref());
+            let core: Vec<usize> = base.iter().copied().chain(columns_of(&beside)).collect();
+            let computed = names.iter().filter(|name| !OF_TIME.iter().any(|kind| name.starts_with(kind)));
+            let found = computed.filter_map(|name| {
+                let (one, fitted) = self.best(name, &beside)?;
+                let (columns, values) = self.numbers_of(one, &fitted);
+                let parameters = self.bench.candidates()[one.candidate].variants[one.variant].parameters;
+                Some((name.clone(), Rival { columns, values, parameters }))
+            });
+            let found: Vec<(String, Rival)> = found.collect();
             for (k, (one, of_one)) in found.iter().enumerate() {
                 for (other, of_other) in &found[k + 1..] {
-                    let rivals = [of_one, of_other].map(|(variant, values)| Rival {
-                        columns: places(&variant.columns),
-                        values: values.clone(),
-                        parameters: variant.parameters,
-                    });
-                    pairs.push(Contest::new([one.to_string(), other.to_string()], rivals, places(&core)));
+                    let rivals =
+                        [of_one, of_other].map(|rival| Rival { columns: places(&rival.columns), ..rival.clone() });
+                    pairs.push(Contest::new([one.clone(), other.clone()], rivals, places(&core)));
                 }
             }
         }
-        Rivals { model: places(&model), effects: places(&effects), numbers, pairs }
+        let whole: Vec<usize> = base.iter().chain(&effects).copied().collect();
+        Ok((Rivals { model: places(&whole), effects: places(&effects), numbers, pairs }, model))
     }
 
-    /// The variant of a candidate that fits best beside other columns, with its
-    /// numbers; none that is unphysical.
-    fn best(&self, name: &str, core: &[usize]) -> Option<(&Variant, Vec<f64>)> {
-        let candidate = self.candidates.iter().find(|candidate| candidate.name() == name)?;
-        let rows = self.problem.total.rows as f64;
-        let fit = |variant: &'_ Variant| {
-            let columns = [core, &variant.columns].concat();
-            let signs: Vec<Sign> = columns.iter().map(|&column| self.signs[column]).collect();
-            let fit = self.problem.total.solve_signed(&columns, &signs)?;
-            let values: Vec<f64> = fit.coefficients.iter().skip(core.len()).copied().collect();
-            let price = variant.parameters as f64 * rows.ln();
-            let bic = rows * (fit.rss / rows).ln() + price;
-            values.iter().all(|value| *value != 0.0).then_some((bic, values))
+    /// What the numbers of a model are.
+    fn numbers(&self, campaign: &Campaign, fitted: &Fitted) -> Vec<Number> {
+        let own = self.prepared.own.len();
+        let number = |(&column, &value): (&usize, &f64)| match (self.kept(column), column.checked_sub(own)) {
+            (Kept::Of(name, _), Some(k)) => {
+                let number = &self.everything.numbers[k];
+                let name = if number.name == "h" { name } else { std::format!("{name} {}", number.name) };
+                Number { name, unit: number.unit, value }
+            }
+            _ => {
+                let number = &self.prepared.own[column];
+                let name = element_name(&campaign.robot, number);
+                Number { name, unit: unit_of(&campaign.robot, number.column), value }
+            }
         };
-        let fits = candidate.variants.iter().filter(|variant| !variant.sentinel);
-        let fits = fits.filter_map(|variant| fit(variant).map(|(bic, values)| (bic, variant, values)));
-        fits.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, variant, values)| (variant, values))
-    }
-
-    /// What the model's numbers are; the first `own` are the description's.
-    fn numbers(&self, campaign: &Campaign, trace: &Trace, model: &[usize], own: usize) -> Vec<Number> {
-        let declared = model[..own].iter().map(|&k| {
-            let number = &self.prepared.own[k];
-            let name = element_name(&campaign.robot, number);
-            let value = trace.estimates.get(k).map_or(number.value, |estimate| estimate.value);
-            Number { name, unit: unit_of(&campaign.robot, number.column), value }
-        });
-        let effects = trace.effects.iter().flat_map(|named| {
-            let numbers = columns_of(&named.effect).into_iter().filter(|(_, value)| *value != 0.0);
-            numbers.map(|(column, value)| {
-                let name: String = match parameter_name(column) {
-                    "value" => named.effect.to_string(),
-                    number => format!("{} {number}", named.effect),
-                };
-                Number { name, unit: unit_of(&campaign.robot, column), value }
-            })
-        });
-        declared.chain(effects).collect()
+        fitted.fit.columns.iter().zip(fitted.fit.coefficients.iter()).map(number).collect()
     }
 }

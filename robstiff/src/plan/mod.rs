@@ -40,6 +40,7 @@ use self::rivals::{Rivals, groups};
 use self::space::Space;
 use crate::campaign::Campaign;
 use crate::identify::Error;
+use crate::identify::prepare::Prepared;
 use crate::trace::{Proposal, Trace};
 
 /// What to plan.
@@ -175,7 +176,8 @@ pub fn plan(campaign: &Campaign, trace: &Trace, options: &Options) -> Result<Pla
 /// # Errors
 /// As [`plan`].
 pub fn plan_between(campaign: &Campaign, trace: &Trace, groups: &[Group], options: &Options) -> Result<Plan, Error> {
-    let (adapter, rivals) = Adapter::new(campaign, trace, groups)?;
+    let prepared = Prepared::new(campaign)?;
+    let (adapter, rivals) = Adapter::new(campaign, &prepared, trace, groups)?;
     let space = Space::new(campaign, options)?;
     let visits = space.visits();
     let judge = Judge::new(&adapter.known(), &rivals, adapter.variance());

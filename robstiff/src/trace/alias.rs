@@ -4,8 +4,9 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::Options;
+use super::bench::Bench;
 use super::model::{Fitted, Named, Setting};
-use super::selection::{Tests, WITHIN_REACH, best_with, score_test};
+use super::selection::{CURVATURE, Tests, WITHIN_REACH, best_with, score_test};
 
 /// Columns that differ by less than this fraction of their energy, once the
 /// rest of the model is fitted again, are the same but for rounding in the
@@ -22,22 +23,35 @@ const WITNESSES: f64 = 2.33;
 /// The names of what the data cannot tell effect `k` of a model from: exact
 /// aliases, and rivals that would have been accepted in its place and fit
 /// about as well. The best fitting first.
-pub fn same_as(setting: &Setting, model: &Fitted, k: usize, options: &Options) -> Vec<String> {
+pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -> Vec<String> {
     let mut rest = model.named.clone();
     let one = rest.remove(k);
-    let (Some(test), Some(tests)) = (score_test(setting, &rest), Tests::against(setting, &rest, options)) else {
+    let (Ok(setting), Ok(own)) = (bench.at(&rest), bench.at(&model.named)) else { return Vec::new() };
+    let (Some(test), Some(tests)) = (score_test(&setting, &rest), Tests::against(bench, &rest, options)) else {
         return Vec::new();
     };
     let Ok(without) = setting.fit(&rest) else { return Vec::new() };
     let unseen = setting.left_out_rms(&without.fit);
     let mut found: Vec<(f64, String)> = Vec::new();
     for candidate in (0..setting.candidates.len()).filter(|&candidate| candidate != one.candidate) {
-        let Some(rival) = best_with(setting, &rest, candidate) else { continue };
+        let Some(rival) = best_with(&setting, &rest, candidate) else { continue };
         let variant = variant_of(&rival, candidate);
         let exact = test.distance(setting.variant(one), setting.variant(variant)) < EXACT;
-        let admitted = tests.p_value(candidate) <= options.alpha && setting.left_out_rms(&rival.fit) < unseen;
-        let near = rival.bic - model.bic < WITHIN_REACH || witnesses(setting, model, &rival) < WITNESSES;
-        if exact || (admitted && near) {
+        let admitted = || tests.p_value(candidate) <= options.alpha && setting.left_out_rms(&rival.fit) < unseen;
+        let of_model = own.deviances(&model.fit);
+        let is_near = |rival: &Fitted, at: &Setting<'_>| {
+            rival.bic - model.bic < WITHIN_REACH || witnesses(&of_model, &at.deviances(&rival.fit)) < WITNESSES
+        };
+        let near = || {
+            // In its own form it may fit better than its tangent does.
+            let refit = || {
+                let at = bench.at(&rival.named).ok()?;
+                at.fit(&rival.named).ok().map(|rival| is_near(&rival, &at))
+            };
+            is_near(&rival, &setting)
+                || (bench.is_nonlinear(&rival.named) && rival.bic < model.bic + CURVATURE && refit().unwrap_or(false))
+        };
+        if exact || (admitted() && near()) {
             found.push((rival.bic, setting.candidates[candidate].name()));
         }
     }
@@ -52,11 +66,46 @@ fn variant_of(model: &Fitted, candidate: usize) -> Named {
 
 /// By how many standard errors the rival's misfit per pose exceeds the
 /// model's.
-fn witnesses(setting: &Setting, model: &Fitted, rival: &Fitted) -> f64 {
-    let (of_model, of_rival) = (setting.deviances(&model.fit), setting.deviances(&rival.fit));
-    let differences: Vec<f64> = of_rival.iter().zip(&of_model).map(|(rival, model)| rival - model).collect();
+fn witnesses(of_model: &[f64], of_rival: &[f64]) -> f64 {
+    let differences: Vec<f64> = of_rival.iter().zip(of_model).map(|(rival, model)| rival - model).collect();
     let count = differences.len() as f64;
     let mean = differences.iter().sum::<f64>() / count;
     let variance = differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
     mean / (variance / count).sqrt().max(f64::MIN_POSITIVE)
+}
+
+/// A whole model that the data cannot tell from the one that was named.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rival {
+    /// The full names of its effects.
+    pub names: Vec<String>,
+    /// By how much its information criterion is above that of the model named;
+    /// below 6, odds are worse than twenty to one against it.
+    pub bic_difference: f64,
+}
+
+/// The models of as many effects as the one named, each with one of them
+/// replaced, within reach by the criterion; the best first.
+pub fn rivals(bench: &Bench<'_>, model: &Fitted) -> Vec<Rival> {
+    let mut found: Vec<Rival> = Vec::new();
+    for k in 0..model.named.len() {
+        let mut rest = model.named.clone();
+        let one = rest.remove(k);
+        let Ok(setting) = bench.at(&rest) else { continue };
+        for candidate in (0..setting.candidates.len()).filter(|&candidate| candidate != one.candidate) {
+            let Some(rival) = best_with(&setting, &rest, candidate) else { continue };
+            if rival.bic - model.bic > CURVATURE {
+                continue;
+            }
+            let Ok(rival) = bench.refit(&setting, &rival) else { continue };
+            let bic_difference = rival.bic - model.bic;
+            if bic_difference < WITHIN_REACH {
+                let names = rival.named.iter().map(|one| setting.candidates[one.candidate].name()).collect();
+                found.push(Rival { names, bic_difference });
+            }
+        }
+    }
+    found.sort_by(|a, b| a.bic_difference.total_cmp(&b.bic_difference));
+    found.dedup_by(|a, b| a.names == b.names);
+    found
 }

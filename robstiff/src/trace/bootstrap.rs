@@ -26,7 +26,7 @@ use nalgebra::{DMatrix, DVector, DVectorView};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::candidate::{Candidate, Variant};
+use super::catalogue::{Candidate, Variant};
 use crate::identify::normal::{Scaled, Sign};
 use crate::identify::problem::Problem;
 
@@ -41,20 +41,69 @@ const PER_EXTRA_PARAMETER: f64 = 3.3;
 const EXPLAINED: f64 = 1e-6;
 
 /// Candidates against a null model.
-pub struct ScoreTest<'a> {
-    candidates: &'a [Candidate],
-    signs: &'a [Sign],
+pub struct ScoreTest {
+    /// By candidate, its variants.
+    groups: Vec<Vec<Option<Group>>>,
     /// The problem's column of local column 0.
     first: usize,
     /// `Z^T Z` with the null model projected out.
     gram: DMatrix<f64>,
-    /// Of each column, the fraction the null model leaves.
-    left: DVector<f64>,
     /// `Z^T y`, alike.
     score: DVector<f64>,
     /// Residual variance of the null model.
     variance: f64,
     blocks: Blocks,
+}
+
+/// The columns of a variant with the null model projected out.
+struct Group {
+    /// Local columns.
+    columns: Vec<usize>,
+    /// The inverse of their Gram matrix.
+    inverse: DMatrix<f64>,
+    /// Which of their numbers have to be positive.
+    positive: Vec<bool>,
+    /// What the statistic gives up for further numbers.
+    price: f64,
+}
+
+impl Group {
+    /// The columns of a variant that the null model leaves something of, each
+    /// and against each other.
+    fn new(test: &Remaining<'_>, variant: &Variant) -> Option<Self> {
+        let columns: Vec<usize> = variant.columns.iter().map(|column| column - test.first).collect();
+        // Not a number where a column is zero.
+        if !columns.iter().all(|&k| test.left[k] >= EXPLAINED) {
+            return None;
+        }
+        let gram = DMatrix::from_fn(columns.len(), columns.len(), |i, j| test.gram[(columns[i], columns[j])]);
+        let inverse = Scaled::apart(&gram, EXPLAINED)?.inverse();
+        let positive = variant.columns.iter().map(|&column| test.signs[column] == Sign::Nonnegative).collect();
+        let price = PER_EXTRA_PARAMETER * (variant.parameters - 1) as f64;
+        Some(Self { columns, inverse, positive, price })
+    }
+
+    /// What it gains, if with numbers of the right signs.
+    fn statistic(&self, score: DVectorView<'_, f64>, variance: f64) -> Option<f64> {
+        let mut gain = 0.0;
+        for (i, &column) in self.columns.iter().enumerate() {
+            let number: f64 = self.columns.iter().enumerate().map(|(j, &k)| self.inverse[(i, j)] * score[k]).sum();
+            if self.positive[i] && number <= 0.0 {
+                return None;
+            }
+            gain += number * score[column];
+        }
+        Some(gain / variance - self.price)
+    }
+}
+
+/// What a null model leaves of the tested columns.
+struct Remaining<'a> {
+    gram: &'a DMatrix<f64>,
+    /// Of each column, the fraction that is left.
+    left: &'a DVector<f64>,
+    signs: &'a [Sign],
+    first: usize,
 }
 
 /// What each pose adds to the scores of a bootstrap draw.
@@ -82,21 +131,21 @@ impl Reference {
     }
 }
 
-impl<'a> ScoreTest<'a> {
+impl ScoreTest {
     /// The test of candidates, whose columns start at `first`, against the
     /// model of the columns `null`; `signs` are those of all columns. `None`
     /// where the null model cannot be fitted.
     pub fn new(
         problem: &Problem,
-        candidates: &'a [Candidate],
-        signs: &'a [Sign],
+        candidates: &[Candidate],
+        signs: &[Sign],
         first: usize,
         null: &[usize],
     ) -> Option<Self> {
         let total = &problem.total;
         let fit = total.solve(null)?;
         let factor = Scaled::of(&total.gram_of(null))?;
-        let tested: Vec<usize> = (first..problem.columns.len()).collect();
+        let tested: Vec<usize> = (first..signs.len()).collect();
         let cross = DMatrix::from_fn(null.len(), tested.len(), |i, j| total.gram[(null[i], tested[j])]);
         let shares = factor.solve_columns(&cross);
         let gram = total.gram_of(&tested) - cross.tr_mul(&shares);
@@ -110,70 +159,52 @@ impl<'a> ScoreTest<'a> {
         let mut null_scores = DMatrix::zeros(count, null.len());
         let mut energy = 0.0;
         for (p, block) in problem.blocks.iter().enumerate() {
-            let without = total.without(&block.normal).solve(null);
             // A pose that alone sees a joint has no fit without it; its
             // residual then is that of the whole fit.
-            let coefficients = without.map_or_else(|| fit.coefficients.clone(), |fit| fit.coefficients);
-            let own = block_scores(&block.normal, null, null, &coefficients);
-            let theirs = block_scores(&block.normal, &tested, null, &coefficients) - shares.tr_mul(&own);
+            let without = problem.solve_without(block, null, None);
+            let coefficients = without.as_ref().unwrap_or(&fit.coefficients);
+            let residuals = problem.block_residuals(block, null, coefficients);
+            let of_block = |column: usize| -> f64 {
+                let white = problem.white.column(column);
+                block.stacked.iter().zip(residuals.iter()).map(|(&row, residual)| white[row] * residual).sum()
+            };
+            let own = DVector::from_fn(null.len(), |k, _| of_block(null[k]));
+            let theirs = DVector::from_fn(tested.len(), |k, _| of_block(tested[k])) - shares.tr_mul(&own);
             scores.set_row(p, &theirs.transpose());
             null_scores.set_row(p, &own.transpose());
-            energy += block.normal.rss(null, &coefficients);
+            energy += residuals.norm_squared();
         }
+        let remaining = Remaining { gram: &gram, left: &left, signs, first };
+        let variants = |candidate: &Candidate| candidate.variants.iter().map(|v| Group::new(&remaining, v)).collect();
+        let groups = candidates.iter().map(variants).collect();
         let blocks = Blocks { scores, null: null_scores * half, energy, freedom };
-        Some(Self { candidates, signs, first, gram, left, score, variance: fit.rss / freedom, blocks })
+        Some(Self { groups, first, gram, score, variance: fit.rss / freedom, blocks })
     }
 
     /// The statistic of each candidate, and the variant that has it; `None`
     /// for those that have no physical variant which gains anything.
     pub fn statistics(&self) -> Vec<Option<(f64, usize)>> {
-        let of = |candidate: &Candidate| {
-            let variants = candidate.variants.iter().enumerate();
-            let gains =
-                variants.filter_map(|(i, v)| Some((self.statistic(v, self.score.as_view(), self.variance)?, i)));
+        let of = |group: &Option<Group>| group.as_ref()?.statistic(self.score.as_view(), self.variance);
+        let best = |groups: &Vec<Option<Group>>| {
+            let gains = groups.iter().enumerate().filter_map(|(i, group)| Some((of(group)?, i)));
             gains.max_by(|a, b| a.0.total_cmp(&b.0))
         };
-        self.candidates.iter().map(of).collect()
+        self.groups.iter().map(best).collect()
     }
 
     /// The distribution of the largest statistic under the null model.
     pub fn reference(&self, draws: usize, seed: u64) -> Reference {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let signs = rademacher(&mut rng, draws, self.blocks.scores.nrows());
-        let scores = (&signs * &self.blocks.scores).transpose();
+        let scores = self.blocks.scores.transpose() * signs.transpose();
         let absorbed = &signs * &self.blocks.null;
+        let groups: Vec<&Group> = self.groups.iter().flatten().flatten().collect();
         let largest = (0..draws).map(|draw| {
             let variance = (self.blocks.energy - absorbed.row(draw).norm_squared()) / self.blocks.freedom;
             let score = scores.column(draw);
-            let variants = self.candidates.iter().flat_map(|candidate| &candidate.variants);
-            let statistics = variants.filter_map(|variant| self.statistic(variant, score.as_view(), variance));
-            statistics.fold(0.0, f64::max)
+            groups.iter().filter_map(|group| group.statistic(score, variance)).fold(0.0, f64::max)
         });
         Reference { largest: largest.collect() }
-    }
-
-    /// What a variant gains, if with numbers of the right signs.
-    fn statistic(&self, variant: &Variant, score: DVectorView<'_, f64>, variance: f64) -> Option<f64> {
-        let local = |k: usize| variant.columns[k] - self.first;
-        let allowed = |k: usize, number: f64| number > 0.0 || self.signs[variant.columns[k]] == Sign::Free;
-        if (0..variant.columns.len()).any(|k| self.left[local(k)] < EXPLAINED) {
-            return None;
-        }
-        let gain = if let [_] = variant.columns[..] {
-            let (u, g) = (score[local(0)], self.gram[(local(0), local(0))]);
-            allowed(0, u).then_some(u * u / g)?
-        } else {
-            let (i, j) = (local(0), local(1));
-            let (a, b, c) = (self.gram[(i, i)], self.gram[(i, j)], self.gram[(j, j)]);
-            let determinant = a * c - b * b;
-            if determinant < EXPLAINED * a * c {
-                return None;
-            }
-            let first = (c * score[i] - b * score[j]) / determinant;
-            let second = (a * score[j] - b * score[i]) / determinant;
-            (allowed(0, first) && allowed(1, second)).then_some(first * score[i] + second * score[j])?
-        };
-        Some(gain / variance - PER_EXTRA_PARAMETER * (variant.parameters - 1) as f64)
     }
 
     /// How far the columns of one variant are from the span of another's, with
@@ -191,19 +222,6 @@ impl<'a> ScoreTest<'a> {
         };
         from.iter().map(outside).fold(0.0, f64::max)
     }
-}
-
-/// `X_p^T (y_p - N_p b)` of one block of rows, for some columns `X`.
-fn block_scores(
-    normal: &crate::identify::normal::Normal,
-    columns: &[usize],
-    null: &[usize],
-    coefficients: &DVector<f64>,
-) -> DVector<f64> {
-    DVector::from_fn(columns.len(), |i, _| {
-        let fitted: f64 = (0..null.len()).map(|k| normal.gram[(columns[i], null[k])] * coefficients[k]).sum();
-        normal.moment[columns[i]] - fitted
-    })
 }
 
 /// Random signs, one row a draw.

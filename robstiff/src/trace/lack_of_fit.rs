@@ -71,7 +71,7 @@ const MOST_ROWS: usize = 1200;
 
 /// Tests the residuals of a model.
 pub fn test(
-    setting: &Setting,
+    setting: &Setting<'_>,
     model: &Fitted,
     data: &Displacements,
     yardstick: Yardstick,
@@ -94,11 +94,11 @@ pub fn test(
 }
 
 /// The residual degrees of freedom.
-fn freedom(setting: &Setting, model: &Fitted) -> f64 {
-    setting.problem.total.rows.saturating_sub(model.fit.columns.len()).max(1) as f64
+fn freedom(setting: &Setting<'_>, model: &Fitted) -> f64 {
+    setting.problem.freedom(&model.fit)
 }
 
-fn size(setting: &Setting, model: &Fitted, yardstick: Yardstick) -> Option<StructureTest> {
+fn size(setting: &Setting<'_>, model: &Fitted, yardstick: Yardstick) -> Option<StructureTest> {
     let (rss, freedom) = (model.fit.rss, freedom(setting, model));
     match yardstick {
         Yardstick::Declared(variance) => {
@@ -122,7 +122,7 @@ fn size(setting: &Setting, model: &Fitted, yardstick: Yardstick) -> Option<Struc
 
 /// Spearman's rank correlation of squared residuals, each over what the fit
 /// leaves of a unit variance there, with the force.
-fn growth(setting: &Setting, model: &Fitted) -> Option<StructureTest> {
+fn growth(setting: &Setting<'_>, model: &Fitted) -> Option<StructureTest> {
     let problem = &setting.problem;
     let residuals = problem.white_residuals(&model.fit.columns, &model.fit.coefficients);
     let inverse = problem.total.inverse(&model.fit.columns)?;
@@ -136,12 +136,34 @@ fn growth(setting: &Setting, model: &Fitted) -> Option<StructureTest> {
             })
             .sum();
         lengths.push(residuals.rows(at, 3).norm_squared() / left.max(f64::EPSILON));
-        forces.push(setting.samples.rows[*row].wrench.fixed_rows::<3>(0).norm());
+        forces.push(setting.point.samples.rows[*row].wrench.fixed_rows::<3>(0).norm());
     }
     let statistic = correlation(&ranks(&lengths), &ranks(&forces));
     let p_value = Gaussian::standard().sf(statistic * ((lengths.len() - 1) as f64).sqrt());
     Some(StructureTest { name: "residuals grow with the force".to_owned(), statistic, p_value })
         .filter(|_| statistic.is_finite())
+}
+
+/// The share of the residual variance that grows with the square of the force,
+/// by a straight line, where residuals grow with the force significantly.
+fn growing(setting: &Setting<'_>, model: &Fitted, alpha: f64) -> f64 {
+    if growth(setting, model).is_none_or(|test| test.p_value > alpha) {
+        return 0.0;
+    }
+    let problem = &setting.problem;
+    let residuals = problem.white_residuals(&model.fit.columns, &model.fit.coefficients);
+    let rows = problem.blocks.iter().flat_map(|block| &block.rows);
+    let (forces, squares): (Vec<f64>, Vec<f64>) = rows
+        .map(|row| {
+            let force = setting.point.samples.rows[*row].wrench.fixed_rows::<3>(0).norm_squared();
+            (force, residuals.rows(row * problem.axes, 3).norm_squared())
+        })
+        .unzip();
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let (force, square) = (mean(&forces), mean(&squares));
+    let product: f64 = forces.iter().zip(&squares).map(|(f, s)| (f - force) * (s - square)).sum();
+    let slope = product / forces.iter().map(|f| (f - force) * (f - force)).sum::<f64>();
+    (slope * force / square).clamp(0.0, 1.0)
 }
 
 /// Ranks, those of equal values averaged.
@@ -171,7 +193,13 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
 /// resemblance, by the method of moments (`E r_i . r_j = v K_ij` between
 /// poses); whichever is more, since what is no function of the load, such as
 /// hysteresis, makes repeated readings differ and so counts as noise there.
-fn fraction(setting: &Setting, model: &Fitted, yardstick: Yardstick, found: Option<&Resemblance>, alpha: f64) -> f64 {
+fn fraction(
+    setting: &Setting<'_>,
+    model: &Fitted,
+    yardstick: Yardstick,
+    found: Option<&Resemblance>,
+    alpha: f64,
+) -> f64 {
     let variance = model.fit.rss / freedom(setting, model);
     let noise = match yardstick {
         Yardstick::Declared(noise) => Some(noise),
@@ -179,7 +207,7 @@ fn fraction(setting: &Setting, model: &Fitted, yardstick: Yardstick, found: Opti
         Yardstick::Unknown => None,
     };
     let component = found.map_or(0.0, |found| found.component(alpha));
-    let resembling = component / variance;
+    let resembling = (component / variance).max(growing(setting, model, alpha));
     noise.map_or(resembling, |noise| 1.0 - noise / variance).max(resembling).clamp(0.0, 1.0)
 }
 
@@ -195,7 +223,7 @@ struct Resemblance {
 }
 
 impl Resemblance {
-    fn new(setting: &Setting, model: &Fitted, data: &Displacements, options: &super::Options) -> Option<Self> {
+    fn new(setting: &Setting<'_>, model: &Fitted, data: &Displacements, options: &super::Options) -> Option<Self> {
         let problem = &setting.problem;
         let columns = &model.fit.columns;
         let trained: Vec<usize> = problem.blocks.iter().flat_map(|block| block.rows.iter().copied()).collect();
@@ -207,7 +235,7 @@ impl Resemblance {
         let signs = rademacher(&mut rng, options.draws, problem.blocks.len());
         let axis_rows = |axis: usize| rows.iter().map(move |row| row * problem.axes + axis).collect::<Vec<_>>();
 
-        let features = features(&setting.samples, data, &rows);
+        let features = features(&setting.point.samples, data, &rows);
         let (mut observed, mut under_null) = (Vec::new(), Vec::new());
         let mut components = Vec::new();
         for feature in &features {
@@ -268,17 +296,16 @@ impl Resemblance {
 /// One column a pose: its residual from the fit without it, with the model
 /// fitted again when it alone is there; a bootstrap draw is their sum with
 /// random signs.
-fn drawn_residuals(setting: &Setting, model: &Fitted) -> Option<DMatrix<f64>> {
+fn drawn_residuals(setting: &Setting<'_>, model: &Fitted) -> Option<DMatrix<f64>> {
     let problem = &setting.problem;
     let columns = &model.fit.columns;
     let inverse = problem.total.inverse(columns)?;
     let design = problem.white.select_columns(columns);
     let mut drawn = DMatrix::zeros(problem.white_readings.len(), problem.blocks.len());
     for (p, block) in problem.blocks.iter().enumerate() {
-        let without = problem.total.without(&block.normal).solve(columns);
-        let coefficients = without.map_or_else(|| model.fit.coefficients.clone(), |fit| fit.coefficients);
+        let without = problem.solve_without(block, columns, None);
+        let residual = problem.block_residuals(block, columns, without.as_ref().unwrap_or(&model.fit.coefficients));
         let own = design.select_rows(&block.stacked);
-        let residual = problem.white_readings.select_rows(&block.stacked) - &own * &coefficients;
         let absorbed = &inverse * own.tr_mul(&residual);
         let mut column = &design * -absorbed;
         for (k, &i) in block.stacked.iter().enumerate() {
@@ -291,8 +318,8 @@ fn drawn_residuals(setting: &Setting, model: &Fitted) -> Option<DMatrix<f64>> {
 
 /// Makes a kernel zero within a pose, where residuals resemble each other by
 /// their noise as well.
-fn keep_between_poses(kernel: &mut DMatrix<f64>, setting: &Setting, rows: &[usize]) {
-    let pose = |i: usize| setting.samples.rows[rows[i]].pose;
+fn keep_between_poses(kernel: &mut DMatrix<f64>, setting: &Setting<'_>, rows: &[usize]) {
+    let pose = |i: usize| setting.point.samples.rows[rows[i]].pose;
     for j in 0..rows.len() {
         for i in (0..rows.len()).filter(|&i| pose(i) == pose(j)) {
             kernel[(i, j)] = 0.0;

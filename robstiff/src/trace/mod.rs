@@ -1,25 +1,30 @@
 //! Tracing: which effects a campaign shows that a description lacks.
 //!
-//! The way of the data: a campaign becomes a regression with a column for
-//! everything in the catalogue ([`candidate`], [`model`]); [`selection`]
-//! searches for the effects the data ask for, admitted by the family-wise
-//! [`bootstrap`] test and by poses held out; [`alias`] says what the data
-//! cannot tell apart; [`lack_of_fit`] asks whether structure is left, and
-//! [`verdict`] draws the conclusion.
+//! The way of the data: every row has a forward model ([`Setup`]) whose
+//! nonlinear numbers are fitted in their own form ([`bench`]); at what comes
+//! out, a campaign becomes a regression with a column for everything in the
+//! [`catalogue`] ([`point`], [`model`]). What is wrong in single visits is left
+//! out first ([`isolated`]); [`selection`] searches for the effects the data ask
+//! for, admitted by the family-wise [`bootstrap`] test and by poses held out;
+//! [`alias`] says what the data cannot tell apart; [`lack_of_fit`] asks whether
+//! structure is left, and [`verdict`] draws the conclusion.
 //!
 //! Levels: an effect is named, and structure is found, at a family-wise
 //! [`Options::alpha`] of 1 % each, so a robot that lacks nothing is called
 //! adequate in about 98 of 100 campaigns.
 
 pub mod alias;
+pub mod bench;
 pub mod bootstrap;
-pub mod candidate;
+pub mod catalogue;
 pub mod features;
+mod found;
+pub mod isolated;
 pub mod lack_of_fit;
 pub mod model;
+pub mod point;
 mod report;
 pub mod selection;
-mod setting;
 #[cfg(test)]
 mod tests;
 pub mod verdict;
@@ -30,15 +35,18 @@ use std::vec::Vec;
 
 use robstiff_robots::Description;
 
+pub use alias::Rival;
+pub use found::{EffectParameter, Found, Place};
 pub use lack_of_fit::StructureTest;
 pub use selection::{Step, Tested};
 pub use verdict::Verdict;
 
+use self::bench::Bench;
+use self::isolated::Event;
 use self::lack_of_fit::{LackOfFit, Yardstick};
 use self::model::{Fitted, Setting};
 use self::report::report;
 use self::selection::{Selection, p_values, select};
-use crate::Effect;
 use crate::campaign::Campaign;
 use crate::identify::prepare::Prepared;
 use crate::identify::{Error, Estimate, NoiseSource, is_at_bound};
@@ -95,6 +103,10 @@ pub struct Trace {
     pub unexplained: f64,
     /// The columns the residual depends on, the strongest first.
     pub depends_on: Vec<String>,
+    /// Other models of as many effects that fit about as well, the best first.
+    pub rivals: Vec<Rival>,
+    /// Full names of what these data could not show if it were there.
+    pub invisible: Vec<String>,
     /// Measurements that would separate what these cannot tell apart.
     pub next: Vec<Proposal>,
     /// The description with the effects and the compliances fitted with them;
@@ -127,10 +139,13 @@ pub struct Misfit {
 /// An effect that was named.
 #[derive(Clone, Debug)]
 pub struct NamedEffect {
-    /// The effect with its numbers.
-    pub effect: Effect,
+    /// The effect.
+    pub effect: Found,
     /// Its numbers with their uncertainty.
     pub parameters: Vec<EffectParameter>,
+    /// The lines of the CSV file that it concerns, where it is about single
+    /// rows.
+    pub lines: Vec<usize>,
     /// The family-wise p-value of the model without it.
     pub p_value: f64,
     /// The error on unseen poses (m) with it and those before it.
@@ -139,19 +154,6 @@ pub struct NamedEffect {
     pub same_as: Vec<String>,
     /// Whether structure is left beyond all named effects.
     pub partial: bool,
-}
-
-/// A number of an effect.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EffectParameter {
-    /// Its name; `h` where the effect has one compliance.
-    pub name: &'static str,
-    /// Its value.
-    pub value: f64,
-    /// One standard deviation; none for a knee, which is one of a grid.
-    pub std: Option<f64>,
-    /// Its unit.
-    pub unit: &'static str,
 }
 
 /// A measurement that would separate two effects.
@@ -199,20 +201,47 @@ pub struct PoseError {
 pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) -> Result<Trace, Error> {
     progress("identifying the joints");
     let prepared = Prepared::new(campaign)?;
-    let setting = setting::setting(campaign, &prepared);
-    let yardstick = yardstick(&prepared);
+    let mut bench = Bench::new(campaign, &prepared).map_err(Error)?;
+    let setting = bench.at(&[]).map_err(Error)?;
     let base = setting.fit(&[]).map_err(Error)?;
     if let Some(why) = too_little(&setting).or_else(|| against_the_loads(&prepared, &setting, &base)) {
-        let found = Found::nothing(base, Verdict::Insufficient, why);
-        return Ok(report(campaign, &prepared, &setting, &found, options));
+        let outcome = Outcome::nothing(base, Verdict::Insufficient, why);
+        return report(campaign, &prepared, &bench, &outcome, options).map_err(Error);
     }
-    let mut selection = select(&setting, options, progress).map_err(Error)?;
+    let mut outcome = search(&mut bench, &prepared, base, options, progress).map_err(Error)?;
+    if !outcome.structure() {
+        // With structure accounted for, rows need stand out from noise alone.
+        bench.strict = true;
+        if bench.look_again(&outcome.selection.model.named).map_err(Error)? {
+            let model = bench.fit(&outcome.selection.model.named).map_err(Error)?;
+            let mut steps = outcome.selection.steps;
+            outcome = search(&mut bench, &prepared, model, options, progress).map_err(Error)?;
+            steps.append(&mut outcome.selection.steps);
+            outcome.selection.steps = steps;
+        }
+    }
+    progress("asking what could be mistaken for what");
+    report(campaign, &prepared, &bench, &outcome, options).map_err(Error)
+}
+
+/// Searches for effects, and takes names back that leave too much.
+fn search(
+    bench: &mut Bench<'_>,
+    prepared: &Prepared<'_>,
+    start: Fitted,
+    options: &Options,
+    progress: &Progress<'_>,
+) -> Result<Outcome, String> {
+    let mut selection = select(bench, start, options, progress)?;
     progress("looking for structure in what is left");
-    let test = |model: &Fitted| lack_of_fit::test(&setting, model, prepared.data, yardstick, options);
-    let mut left = test(&selection.model);
+    let yardstick = yardstick(prepared);
+    let test = |bench: &Bench<'_>, model: &Fitted| -> Result<LackOfFit, String> {
+        Ok(lack_of_fit::test(&*bench.at(&model.named)?, model, prepared.data, yardstick, options))
+    };
+    let mut left = test(bench, &selection.model)?;
     let mut taken_back = 0;
     loop {
-        let weak = verdict::to_take_back(&setting, &selection.model, &left);
+        let weak = verdict::to_take_back(bench, &selection.model, &left);
         if weak.is_empty() {
             break;
         }
@@ -221,30 +250,37 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
         for k in weak.into_iter().rev() {
             named.remove(k);
         }
-        selection.model = setting.fit(&named).map_err(Error)?;
-        selection.p_values = p_values(&setting, &named, options);
-        left = test(&selection.model);
+        selection.model = bench.fit(&named)?;
+        selection.p_values = p_values(bench, &named, options);
+        left = test(bench, &selection.model)?;
         // What a name had accounted for is there, found by a test or not.
         left.structure = true;
     }
-    let (verdict, why) = verdict::judge(&selection, &left, taken_back);
-    let found = Found { selection, left: Some(left), verdict, why };
-    progress("asking what could be mistaken for what");
-    Ok(report(campaign, &prepared, &setting, &found, options))
+    let setting = bench.at(&selection.model.named)?;
+    let events = isolated::events(&setting, &selection.model, bench.strict);
+    let (verdict, why) = verdict::judge(&selection, &left, events.len(), taken_back);
+    Ok(Outcome { selection, left: Some(left), events, verdict, why })
 }
 
 /// What was found, before it is told.
-struct Found {
+struct Outcome {
     selection: Selection,
     left: Option<LackOfFit>,
+    /// What is wrong in single visits.
+    events: Vec<Event>,
     verdict: Verdict,
     why: String,
 }
 
-impl Found {
+impl Outcome {
     fn nothing(model: Fitted, verdict: Verdict, why: String) -> Self {
         let selection = Selection { model, p_values: Vec::new(), steps: Vec::new(), unnamed: false };
-        Self { selection, left: None, verdict, why }
+        Self { selection, left: None, events: Vec::new(), verdict, why }
+    }
+
+    /// Whether structure is left.
+    fn structure(&self) -> bool {
+        self.left.as_ref().is_some_and(|left| left.structure) || self.selection.unnamed
     }
 }
 
@@ -259,9 +295,9 @@ fn yardstick(prepared: &Prepared<'_>) -> Yardstick {
 /// That the readings do not follow the loads, if so: every joint they show
 /// would be less than rigid. Whatever is found then, is found in readings of
 /// something else, or of the wrong sign.
-fn against_the_loads(prepared: &Prepared<'_>, setting: &Setting, base: &Fitted) -> Option<String> {
+fn against_the_loads(prepared: &Prepared<'_>, setting: &Setting<'_>, base: &Fitted) -> Option<String> {
     let numbers = base.fit.columns.iter().zip(base.fit.coefficients.iter());
-    let mut joints = numbers.filter(|&(&column, _)| column < setting.samples.joints()).peekable();
+    let mut joints = numbers.filter(|&(&column, _)| column < setting.point.samples.joints()).peekable();
     joints.peek()?;
     joints
         .all(|(&column, &value)| is_at_bound(&prepared.own[column], value))
@@ -269,7 +305,7 @@ fn against_the_loads(prepared: &Prepared<'_>, setting: &Setting, base: &Fitted) 
 }
 
 /// Why a campaign cannot tell what is missing, if so.
-fn too_little(setting: &Setting) -> Option<String> {
+fn too_little(setting: &Setting<'_>) -> Option<String> {
     let (poses, numbers) = (setting.problem.blocks.len(), setting.base.len());
     if poses < verdict::FEWEST_POSES {
         let given = if poses == 1 { String::from("1 pose is") } else { format!("{poses} poses are") };

@@ -2,39 +2,49 @@
 //! catalogue, fitted together and held against physics.
 
 use std::format;
+use std::rc::Rc;
 use std::string::String;
 use std::vec::Vec;
 
 use nalgebra::DVector;
 
-use super::candidate::{Candidate, Variant};
-use crate::elements::Parameter;
+use super::catalogue::{Candidate, Number, Variant};
+use super::point::Point;
 use crate::identify::normal::{Fit, Sign};
 use crate::identify::problem::{Problem, rms};
-use crate::identify::samples::{Column, Samples};
+use crate::identify::samples::Column;
 
-/// A problem with the catalogue behind it; the first columns are the
-/// description's own numbers.
-pub struct Setting {
-    /// The rows on the robot.
-    pub samples: Samples,
+/// The regression of a campaign at one point, with the catalogue behind it; the
+/// first columns are the description's own numbers. Nonlinear numbers that are
+/// named have their tangents there for columns, and the readings are such that
+/// the coefficients are the numbers themselves.
+pub struct Setting<'c> {
+    /// The rows at the point.
+    pub point: Point<'c>,
     /// The regression.
     pub problem: Problem,
     /// What may be missing.
-    pub candidates: Vec<Candidate>,
+    pub candidates: Rc<[Candidate]>,
+    /// The numbers of the candidates, one a column behind the own ones.
+    pub numbers: Rc<[Number]>,
     /// The sign of each column.
-    pub signs: Vec<Sign>,
+    pub signs: Rc<[Sign]>,
     /// The columns of the description's numbers that the data can see.
     pub base: Vec<usize>,
-    /// How many numbers the description has.
-    pub own: usize,
+    /// The columns of the description's numbers.
+    pub own: Rc<[Column]>,
     /// The compliances of all joints, held ones included, from the fit of the
     /// description's own numbers.
     pub joint_values: Vec<f64>,
+    /// The tangents of nonlinear numbers that are named, by column.
+    pub tangents: Vec<(usize, DVector<f64>)>,
+    /// The second order of the joints' displacement, which the fit does not
+    /// see (m).
+    pub correction: DVector<f64>,
 }
 
 /// A candidate with one of its variants.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Named {
     /// Index of the candidate.
     pub candidate: usize,
@@ -51,13 +61,36 @@ pub struct Fitted {
     pub fit: Fit,
     /// The Bayesian information criterion.
     pub bic: f64,
+    /// Whether physics allows it.
+    pub physical: bool,
 }
 
 /// A joint's compliance below zero by this many standard deviations is no
 /// accident of the noise.
 const BELOW_ZERO: f64 = 2.0;
 
-impl Setting {
+impl Setting<'_> {
+    /// What a unit of a column's number does to the readings as measured,
+    /// stacked.
+    pub fn raw(&self, column: usize) -> DVector<f64> {
+        if let Some((_, tangent)) = self.tangents.iter().find(|(of, _)| *of == column) {
+            return tangent.clone();
+        }
+        match self.own.get(column) {
+            Some(&own) => self.point.with_creep(self.point.samples.column(own)),
+            None => self.numbers[column - self.own.len()].column(&self.point),
+        }
+    }
+
+    /// What a fit leaves of the readings as measured, stacked; (m, rad).
+    pub fn residuals(&self, fit: &Fit) -> DVector<f64> {
+        let mut left = self.problem.readings.clone();
+        for (&column, &coefficient) in fit.columns.iter().zip(fit.coefficients.iter()) {
+            left.axpy(-coefficient, &self.raw(column), 1.0);
+        }
+        left
+    }
+
     /// A named candidate's variant.
     pub fn variant(&self, named: Named) -> &Variant {
         &self.candidates[named.candidate].variants[named.variant]
@@ -81,31 +114,54 @@ impl Setting {
         let total = &self.problem.total;
         let collinear = || String::from("not to be told from the rest of the model");
         let fit = total.solve_signed(&columns, &signs).ok_or_else(collinear)?;
+        self.judge(named, fit)
+    }
+
+    /// A model with its fit, held against physics.
+    ///
+    /// # Errors
+    /// As for [`fit`](Self::fit).
+    pub fn judge(&self, named: &[Named], fit: Fit) -> Result<Fitted, String> {
         self.check(&fit, named)?;
+        let bic = self.bic(named, fit.rss);
+        Ok(Fitted { named: named.to_vec(), fit, bic, physical: true })
+    }
+
+    /// Fits a model that physics may not allow: what is missing besides can
+    /// drive the numbers of a true effect beyond what is possible.
+    pub fn fit_loosely(&self, named: &[Named]) -> Option<Fitted> {
+        let columns = self.columns(named);
+        let signs: Vec<Sign> = columns.iter().map(|&column| self.signs[column]).collect();
+        let fit = self.problem.total.solve_signed(&columns, &signs)?;
+        let (bic, physical) = (self.bic(named, fit.rss), self.check(&fit, named).is_ok());
+        Some(Fitted { named: named.to_vec(), fit, bic, physical })
+    }
+
+    /// The Bayesian information criterion of a model with a residual sum of
+    /// squares.
+    fn bic(&self, named: &[Named], rss: f64) -> f64 {
         let parameters = self.base.len() + named.iter().map(|&one| self.variant(one).parameters).sum::<usize>();
-        let rows = total.rows as f64;
-        let bic = rows * (fit.rss / rows).ln() + parameters as f64 * rows.ln();
-        Ok(Fitted { named: named.to_vec(), fit, bic })
+        let rows = self.problem.total.rows as f64;
+        rows * (rss / rows).ln() + parameters as f64 * rows.ln()
     }
 
     fn check(&self, fit: &Fit, named: &[Named]) -> Result<(), String> {
-        let effects = self.base.len()..fit.columns.len();
-        for k in effects {
-            let (column, number) = (self.problem.columns[fit.columns[k]], fit.coefficients[k]);
-            match column {
-                Column::Linear(Parameter::Coupling([i, j])) => {
-                    let bound = (self.joint_value(fit, i) * self.joint_value(fit, j)).sqrt();
-                    if number.abs() >= bound {
-                        return Err(format!("the coupling would be {number:.2e}, beyond {bound:.2e} rad/Nm"));
-                    }
+        let joint = |joint: usize| self.joint_value(fit, joint);
+        let mut at = self.base.len();
+        for &one in named {
+            let candidate = &self.candidates[one.candidate];
+            let mut numbers = Vec::new();
+            for &column in &self.variant(one).columns {
+                let (number, value) = (&self.numbers[column - self.own.len()], fit.coefficients[at]);
+                let [least, most] = number.range;
+                if !(least < value && value < most) {
+                    return Err(format!("its {} would be {value:.2e} {}", number.name, number.unit));
                 }
-                Column::Knee { joint, .. } => {
-                    if number <= -self.joint_value(fit, joint) {
-                        return Err(format!("the unloaded joint {joint} would have a negative compliance"));
-                    }
-                }
-                Column::Linear(_) if number <= 0.0 => return Err(String::from("its compliance would be negative")),
-                Column::Linear(_) => {}
+                numbers.push((number.name, value));
+                at += 1;
+            }
+            if let Some(check) = &candidate.check {
+                check(&numbers, &joint)?;
             }
         }
         if named.is_empty() {
@@ -130,18 +186,10 @@ impl Setting {
     }
 
     /// The compliance of a joint (from 1) in a fit; its own where it was held.
-    fn joint_value(&self, fit: &Fit, joint: usize) -> f64 {
+    pub fn joint_value(&self, fit: &Fit, joint: usize) -> f64 {
         let column = joint - 1;
         let fitted = fit.columns.iter().position(|&c| c == column);
         fitted.map_or(self.joint_values[column], |k| fit.coefficients[k])
-    }
-
-    /// The fit of the same columns without one of the blocks; the whole fit
-    /// where that block alone sees a column.
-    pub fn fit_without(&self, fit: &Fit, block: usize) -> DVector<f64> {
-        let rest = self.problem.total.without(&self.problem.blocks[block].normal);
-        let signs: Vec<Sign> = fit.columns.iter().map(|&column| self.signs[column]).collect();
-        rest.solve_signed(&fit.columns, &signs).map_or_else(|| fit.coefficients.clone(), |fit| fit.coefficients)
     }
 
     /// The residuals on poses the fit has not seen, stacked: of the poses held
@@ -153,7 +201,7 @@ impl Setting {
             return self.left_out_residuals(fit);
         }
         let rows = problem.held_out.iter().flat_map(|block| block.rows.iter().copied()).collect();
-        (problem.residuals(&fit.columns, &fit.coefficients), rows)
+        (self.residuals(fit), rows)
     }
 
     /// The root mean square of [`unseen_residuals`](Self::unseen_residuals) (m):
@@ -167,12 +215,15 @@ impl Setting {
     /// with the campaign's rows they are of.
     fn left_out_residuals(&self, fit: &Fit) -> (DVector<f64>, Vec<usize>) {
         let problem = &self.problem;
+        let signs: Vec<Sign> = fit.columns.iter().map(|&column| self.signs[column]).collect();
+        let raw: Vec<DVector<f64>> = fit.columns.iter().map(|&column| self.raw(column)).collect();
         let mut residuals = problem.readings.clone();
-        for (p, block) in problem.blocks.iter().enumerate() {
-            let coefficients = self.fit_without(fit, p);
+        for block in &problem.blocks {
+            // The whole fit where that block alone sees a column.
+            let without = problem.solve_without(block, &fit.columns, Some(&signs));
+            let coefficients = without.as_ref().unwrap_or(&fit.coefficients);
             for &i in &block.stacked {
-                let fitted: f64 =
-                    fit.columns.iter().zip(coefficients.iter()).map(|(&c, value)| problem.raw[(i, c)] * value).sum();
+                let fitted: f64 = raw.iter().zip(coefficients.iter()).map(|(column, value)| column[i] * value).sum();
                 residuals[i] -= fitted;
             }
         }
@@ -189,6 +240,8 @@ impl Setting {
 
     /// The squared whitened residuals of each block.
     pub fn deviances(&self, fit: &Fit) -> Vec<f64> {
-        self.problem.blocks.iter().map(|block| block.normal.rss(&fit.columns, &fit.coefficients)).collect()
+        let problem = &self.problem;
+        let of = |block| problem.block_residuals(block, &fit.columns, &fit.coefficients).norm_squared();
+        problem.blocks.iter().map(of).collect()
     }
 }

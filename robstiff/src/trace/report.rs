@@ -7,59 +7,85 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 use robstiff_robots::Description;
 
-use super::alias::same_as;
-use super::candidate::with_numbers;
+use super::alias::{rivals, same_as};
+use super::bench::Bench;
+use super::catalogue::{BASE_SLIP, OUTLIERS};
+use super::found::{EffectParameter, Found, Place};
+use super::isolated::Event;
 use super::model::{Fitted, Setting};
-use super::selection::Selection;
-use super::{EffectParameter, Found, Misfit, NamedEffect, Options, PoseError, RowResidual, Trace, Verdict};
+use super::{Misfit, NamedEffect, Options, Outcome, PoseError, RowResidual, Trace, Verdict};
 use crate::campaign::Campaign;
-use crate::identify::baseline::{sign_of, with_values};
+use crate::identify::baseline::with_values;
 use crate::identify::displacement::{declared_residuals, declared_rms};
-use crate::identify::normal::Sign;
+use crate::identify::normal::{Fit, Sign};
 use crate::identify::prepare::Prepared;
 use crate::identify::problem::{Block, Problem, rms};
-use crate::identify::samples::Column;
 use crate::identify::uncertainty::covariance;
-use crate::identify::{Estimate, estimates, parameter_name, unit_of};
+use crate::identify::{Estimate, NoiseSource, estimates};
 
 /// A tracing in full: errors before and after, the effects with their
 /// uncertainty, and the description that says it all.
+///
+/// # Errors
+/// Why a model that was fitted before cannot be again.
 pub fn report(
     campaign: &Campaign,
     prepared: &Prepared<'_>,
-    setting: &Setting,
-    found: &Found,
+    bench: &Bench<'_>,
+    outcome: &Outcome,
     options: &Options,
-) -> Trace {
-    let (problem, model) = (&setting.problem, &found.selection.model);
-    let base = setting.fit(&[]).expect("the description's own numbers were fitted before");
-    let fitted_rows = || problem.blocks.iter().flat_map(|block| block.rows.iter().copied());
-    let unseen_rows = || if problem.held_out.is_empty() { &problem.blocks } else { &problem.held_out };
-    let misfit = |fitted: &Fitted| Misfit {
-        rms: rms(&problem.residuals(&fitted.fit.columns, &fitted.fit.coefficients), problem.axes, fitted_rows()),
+) -> Result<Trace, String> {
+    // Before anything was corrected, wild rows and all.
+    let untouched = Bench::new(campaign, prepared)?;
+    let all = untouched.at(&[])?;
+    let base = all.fit(&[])?;
+    let found = &outcome.selection.model;
+    // Numbers are told where they fit best, not where a grid has them.
+    let polished = bench.polished(&found.named);
+    let fine = polished.at(&found.named).and_then(|setting| Ok((setting.fit(&found.named)?, setting)));
+    let (model, setting, bench_of_numbers) = match fine {
+        Ok((model, setting)) => (model, setting, &polished),
+        Err(_) => (found.clone(), bench.at(&found.named)?, bench),
+    };
+    let (model, problem) = (&model, &setting.problem);
+    let fitted_rows = || all.problem.blocks.iter().flat_map(|block| block.rows.iter().copied());
+    let unseen = if all.problem.held_out.is_empty() { &all.problem.blocks } else { &all.problem.held_out };
+    let unseen_rows = || unseen.iter().flat_map(|block| block.rows.iter().copied());
+    let misfit = |setting: &Setting<'_>, fitted: &Fitted| Misfit {
+        rms: rms(
+            &setting.residuals(&fitted.fit),
+            setting.problem.axes,
+            setting.problem.blocks.iter().flat_map(|block| block.rows.iter().copied()),
+        ),
         holdout_rms: setting.holdout_rms(&fitted.fit),
     };
-    let residual_variance = model.fit.rss / problem.total.rows.saturating_sub(model.fit.columns.len()).max(1) as f64;
-    let (noise, noise_source) = prepared.noise(residual_variance);
-    let (estimates_before, _) = numbers(campaign, prepared, setting, &base);
-    let (estimates, spread) = numbers(campaign, prepared, setting, model);
-    let structure = found.left.as_ref().is_some_and(|left| left.structure) || found.selection.unnamed;
-    let effects = effects(campaign, setting, &found.selection, &spread, structure, options);
+    let residual_variance = model.fit.rss / problem.freedom(&model.fit);
+    // Repeated readings differ by more than noise where they depend on time or
+    // order; a model that accounts for it knows better.
+    let (noise, noise_source) = match prepared.noise(residual_variance) {
+        (repeated, NoiseSource::Repetitions) if repeated * repeated > residual_variance => {
+            (residual_variance.sqrt(), NoiseSource::Residuals)
+        }
+        known => known,
+    };
+    let estimates_before = numbers(campaign, prepared, &all, &base, &spread_of(&untouched, &all, &base));
+    let spread = spread_of(bench_of_numbers, &setting, model);
+    let estimates = numbers(campaign, prepared, &setting, model, &spread);
+    let mut effects = effects(bench, &setting, model, outcome, &spread, options);
+    effects.extend(isolated(prepared, outcome, misfit(&setting, model).holdout_rms));
     let values: Vec<f64> = estimates.iter().map(|estimate| estimate.value).collect();
     let held_out = problem.held_out.iter().map(|block| prepared.data.poses[block.pose].clone()).collect();
-    let left = |fitted: &Fitted| problem.residuals(&fitted.fit.columns, &fitted.fit.coefficients);
-    let declared = Misfit {
-        rms: declared_rms(prepared, problem, fitted_rows()),
-        holdout_rms: declared_rms(prepared, problem, unseen_rows().iter().flat_map(|b| b.rows.iter().copied())),
-    };
+    let declared =
+        Misfit { rms: declared_rms(prepared, fitted_rows()), holdout_rms: declared_rms(prepared, unseen_rows()) };
     // Data that can tell nothing change nothing.
-    let (description, after, left_after) = if found.verdict == Verdict::Insufficient {
-        (campaign.robot.clone(), declared, declared_residuals(prepared, problem))
+    let (description, after, left_after) = if outcome.verdict == Verdict::Insufficient {
+        (campaign.robot.clone(), declared, declared_residuals(prepared))
     } else {
-        (described(campaign, &values, &effects), misfit(model), left(model))
+        (described(campaign, &values, &effects), misfit(&setting, model), setting.residuals(&model.fit))
     };
-    let (residuals, pose_errors) = residuals(prepared, problem, &left(&base), &left_after);
-    Trace {
+    let (residuals, pose_errors) = residuals(prepared, &all, &all.residuals(&base.fit), &left_after);
+    let left = outcome.left.as_ref();
+    Ok(Trace {
         robot: campaign.robot.name.clone(),
         rows: prepared.samples.rows.len(),
         poses: prepared.samples.poses,
@@ -67,57 +93,88 @@ pub fn report(
         noise,
         noise_source,
         declared,
-        identified: misfit(&base),
+        identified: misfit(&all, &base),
         after,
-        verdict: found.verdict,
-        why: found.why.clone(),
-        unexplained: found.left.as_ref().map_or(0.0, |left| left.fraction),
-        depends_on: found.left.as_ref().map_or_else(Vec::new, |left| left.depends_on.clone()),
+        verdict: outcome.verdict,
+        why: outcome.why.clone(),
+        unexplained: left.map_or(0.0, |left| left.fraction),
+        depends_on: left.map_or_else(Vec::new, |left| left.depends_on.clone()),
+        rivals: if outcome.verdict == Verdict::Insufficient { Vec::new() } else { rivals(bench, found) },
+        invisible: bench.invisible.clone(),
         next: Vec::new(),
         description,
         effects,
         estimates_before,
         estimates,
-        steps: found.selection.steps.clone(),
-        structure: found.left.as_ref().map_or_else(Vec::new, |left| left.tests.clone()),
+        steps: outcome.selection.steps.clone(),
+        structure: left.map_or_else(Vec::new, |left| left.tests.clone()),
         residuals,
         pose_errors,
-    }
+    })
 }
 
-/// The estimates of the description's own numbers in a model, and the
-/// covariance of all its coefficients.
+/// The covariance of a model's coefficients, and behind them of the logarithms
+/// of its numbers out of grids, in the order of its effects.
+fn spread_of(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted) -> DMatrix<f64> {
+    let mut signs: Vec<Sign> = model.fit.columns.iter().map(|&column| setting.signs[column]).collect();
+    let plain = || covariance(&setting.problem, &model.fit, &signs);
+    let shapes = model.named.iter().flat_map(|&one| {
+        (0..setting.variant(one).shape.len()).filter_map(move |k| bench.of_shape(setting, &model.fit, one, k))
+    });
+    let shapes: Vec<DVector<f64>> = shapes.collect();
+    if shapes.is_empty() {
+        return plain();
+    }
+    let raw: Vec<DVector<f64>> = model.fit.columns.iter().map(|&column| setting.raw(column)).chain(shapes).collect();
+    let readings = setting.problem.readings.clone();
+    let samples = &setting.point.samples;
+    let problem = Problem::new(samples, DMatrix::from_columns(&raw), readings, &setting.correction, bench.weights());
+    let columns: Vec<usize> = (0..raw.len()).collect();
+    if problem.total.inverse(&columns).is_none() {
+        return plain();
+    }
+    let coefficients = model.fit.coefficients.clone().resize_vertically(raw.len(), 0.0);
+    signs.resize(raw.len(), Sign::Free);
+    covariance(&problem, &Fit { columns, coefficients, rss: model.fit.rss }, &signs)
+}
+
+/// The estimates of the description's own numbers in a model.
 fn numbers(
     campaign: &Campaign,
     prepared: &Prepared<'_>,
-    setting: &Setting,
+    setting: &Setting<'_>,
     model: &Fitted,
-) -> (Vec<Estimate>, DMatrix<f64>) {
-    let signs: Vec<Sign> = model.fit.columns.iter().map(|&column| setting.signs[column]).collect();
-    let spread = covariance(&setting.problem, &model.fit, &signs);
+    spread: &DMatrix<f64>,
+) -> Vec<Estimate> {
     let mut values = prepared.values.clone();
     for (&column, &value) in model.fit.columns.iter().zip(model.fit.coefficients.iter()) {
-        if column < setting.own {
+        if column < setting.own.len() {
             values[column] = value;
         }
     }
-    (estimates(&campaign.robot, prepared, &values, &model.fit.columns, &spread), spread)
+    estimates(&campaign.robot, prepared, &values, &model.fit.columns, spread)
 }
 
 /// The named effects, the one whose removal costs most first.
 fn effects(
-    campaign: &Campaign,
-    setting: &Setting,
-    selection: &Selection,
+    bench: &Bench<'_>,
+    setting: &Setting<'_>,
+    fine: &Fitted,
+    outcome: &Outcome,
     spread: &DMatrix<f64>,
-    partial: bool,
     options: &Options,
 ) -> Vec<NamedEffect> {
-    let model = &selection.model;
+    let model = &outcome.selection.model;
+    // Where the numbers out of grids of each effect begin in the covariance.
+    let shapes = |k: usize| -> usize {
+        let before = model.named[..k].iter().map(|&one| setting.variant(one));
+        let refined = before.filter(|variant| variant.refine.is_some());
+        fine.fit.columns.len() + refined.map(|variant| variant.shape.len()).sum::<usize>()
+    };
     let cost = |k: usize| {
         let mut rest = model.named.clone();
         rest.remove(k);
-        setting.fit(&rest).map_or(f64::INFINITY, |without| without.bic)
+        bench.fit(&rest).map_or(f64::INFINITY, |without| without.bic)
     };
     let mut order: Vec<(f64, usize)> = (0..model.named.len()).map(|k| (cost(k), k)).collect();
     order.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -126,50 +183,98 @@ fn effects(
         let one = model.named[k];
         so_far.push(one);
         so_far.sort_unstable();
-        let holdout = setting.fit(&so_far).map_or(f64::NAN, |fitted| setting.holdout_rms(&fitted.fit));
-        let columns = &setting.variant(one).columns;
+        let unseen = |setting: &Setting<'_>| Some(setting.holdout_rms(&setting.fit(&so_far).ok()?.fit));
+        let holdout = bench.at(&so_far).ok().and_then(|setting| unseen(&setting)).unwrap_or(f64::NAN);
         let at = |column: &usize| model.fit.columns.iter().position(|c| c == column).expect("its own model has it");
-        let found: Vec<(Column, f64)> = columns
-            .iter()
-            .map(|column| (setting.problem.columns[*column], model.fit.coefficients[at(column)]))
-            .collect();
-        let mut parameters: Vec<EffectParameter> = columns
-            .iter()
-            .zip(&found)
-            .map(|(index, &(column, value))| {
-                let std = spread[(at(index), at(index))].sqrt();
-                let unit = unit_of(&campaign.robot, column);
-                EffectParameter { name: told(column), value, std: Some(std), unit }
-            })
-            .collect();
-        if let [(Column::Knee { knee, .. }, _)] = found[..] {
-            parameters.push(EffectParameter { name: "knee", value: knee, std: None, unit: "Nm" });
-        }
+        let variant = setting.variant(one);
+        let number = |(k, column): (usize, &usize)| {
+            let (number, at) = (&setting.numbers[column - setting.own.len()], at(column));
+            let (value, std) = match number.share_of {
+                Some(joint) => share_of(setting, fine, spread, at, joint),
+                None => (fine.fit.coefficients[at], spread[(at, at)].sqrt()),
+            };
+            let name = variant.names.get(k).copied().unwrap_or(number.name);
+            EffectParameter { name, value, std: Some(std), unit: number.unit }
+        };
+        let numbers = variant.columns.iter().enumerate().map(number);
+        let first = shapes(k);
+        let shape = |(s, number): (usize, &EffectParameter)| {
+            let known = variant.refine.is_some() && first + s < spread.nrows();
+            let std = known.then(|| number.value * spread[(first + s, first + s)].sqrt());
+            EffectParameter { std, ..number.clone() }
+        };
+        let parameters: Vec<EffectParameter> = numbers.chain(variant.shape.iter().enumerate().map(shape)).collect();
+        let candidate = &setting.candidates[one.candidate];
         NamedEffect {
-            effect: with_numbers(&setting.candidates[one.candidate].effect, &found),
+            effect: Found::new(candidate.kind, candidate.place, parameters.clone()),
             parameters,
-            p_value: selection.p_values[k],
+            lines: Vec::new(),
+            p_value: outcome.selection.p_values[k],
             holdout_rms: holdout,
-            same_as: same_as(setting, model, k, options),
-            partial,
+            same_as: same_as(bench, model, k, options),
+            partial: outcome.structure(),
         }
     });
     named.collect()
 }
 
-/// What a result calls a column's number: a sole compliance is `h`.
-fn told(column: Column) -> &'static str {
-    match parameter_name(column) {
-        "value" if sign_of(column) == Sign::Nonnegative => "h",
-        name => name,
+/// A compliance as a share of that of a joint (from 1), with its standard
+/// deviation to the first order.
+fn share_of(setting: &Setting<'_>, model: &Fitted, spread: &DMatrix<f64>, at: usize, joint: usize) -> (f64, f64) {
+    let (value, own) = (model.fit.coefficients[at], setting.joint_value(&model.fit, joint));
+    let share = value / own;
+    let variance = match model.fit.columns.iter().position(|&column| column == joint - 1) {
+        Some(k) => spread[(at, at)] - 2.0 * share * spread[(at, k)] + share * share * spread[(k, k)],
+        None => spread[(at, at)],
+    };
+    (share, variance.max(0.0).sqrt() / own)
+}
+
+/// The names of what is wrong in single visits. A robot slips once: several
+/// slips are several wild visits.
+fn isolated(prepared: &Prepared<'_>, outcome: &Outcome, holdout_rms: f64) -> Vec<NamedEffect> {
+    let line = |row: &usize| prepared.data.rows[*row].line;
+    let one = |effect: Found, lines: Vec<usize>, events: &[&Event], same_as: Vec<String>| NamedEffect {
+        parameters: effect.parameters.clone(),
+        effect,
+        lines,
+        p_value: events.iter().map(|event| event.p_value).fold(0.0, f64::max),
+        holdout_rms,
+        same_as,
+        partial: outcome.structure(),
+    };
+    let (slips, wild): (Vec<&Event>, Vec<&Event>) = outcome.events.iter().partition(|event| event.is_slip);
+    let mut found = Vec::new();
+    let mut outliers = wild;
+    if let [slip] = slips[..] {
+        let number =
+            |(name, value): (&'static str, &f64)| EffectParameter { name, value: *value, std: None, unit: "m" };
+        let mut parameters: Vec<EffectParameter> =
+            ["dx", "dy", "dz"].into_iter().zip(slip.shift.iter()).map(number).collect();
+        let first = slip.rows.iter().map(line).min().unwrap_or_default();
+        parameters.push(EffectParameter { name: "line", value: first as f64, std: None, unit: "1" });
+        let effect = Found::new(&BASE_SLIP, Place::Base, parameters);
+        found.push(one(effect, slip.rows.iter().map(line).collect(), &[slip], std::vec!["outliers@rig".to_string()]));
+    } else {
+        outliers.extend(slips);
     }
+    if !outliers.is_empty() {
+        let mut lines: Vec<usize> = outliers.iter().flat_map(|event| event.rows.iter().map(line)).collect();
+        lines.sort_unstable();
+        let rows = EffectParameter { name: "rows", value: lines.len() as f64, std: None, unit: "1" };
+        let effect = Found::new(&OUTLIERS, Place::Rig, std::vec![rows]);
+        // One visit alone may as well have been where the robot slipped.
+        let same = if outliers.len() == 1 { std::vec!["base_slip@base".to_string()] } else { Vec::new() };
+        found.push(one(effect, lines, &outliers, same));
+    }
+    found
 }
 
 /// The description with identified numbers and named effects, which says so.
 fn described(campaign: &Campaign, values: &[f64], effects: &[NamedEffect]) -> Description {
     let mut description = with_values(&campaign.robot, values);
-    description.effects.extend(effects.iter().map(|named| named.effect));
-    let names: Vec<String> = effects.iter().map(|named| named.effect.to_string()).collect();
+    let written = effects.iter().filter(|named| named.effect.write_into(&mut description));
+    let names: Vec<String> = written.map(|named| named.effect.to_string()).collect();
     let added = if names.is_empty() { String::new() } else { format!(", with {}", names.join(", ")) };
     let campaign = if campaign.name.is_empty() { "a campaign" } else { &campaign.name };
     let separator = if description.source.is_empty() { "" } else { "\n" };
@@ -180,10 +285,11 @@ fn described(campaign: &Campaign, values: &[f64], effects: &[NamedEffect]) -> De
 
 fn residuals(
     prepared: &Prepared<'_>,
-    problem: &Problem,
+    setting: &Setting<'_>,
     before: &DVector<f64>,
     after: &DVector<f64>,
 ) -> (Vec<RowResidual>, Vec<PoseError>) {
+    let problem = &setting.problem;
     let three =
         |residuals: &DVector<f64>, row: usize| core::array::from_fn(|axis| residuals[row * problem.axes + axis]);
     let rows = prepared.data.rows.iter().enumerate();

@@ -13,6 +13,7 @@
 use std::string::String;
 use std::vec::Vec;
 
+use super::bench::Bench;
 use super::bootstrap::{Reference, ScoreTest};
 use super::model::{Fitted, Named, Setting};
 use super::{Options, Progress};
@@ -84,8 +85,8 @@ pub struct Tests {
 impl Tests {
     /// The tests against the model of some effects; `None` where it cannot be
     /// fitted.
-    pub fn against(setting: &Setting, named: &[Named], options: &Options) -> Option<Self> {
-        let test = score_test(setting, named)?;
+    pub fn against(bench: &Bench<'_>, named: &[Named], options: &Options) -> Option<Self> {
+        let test = score_test(&*bench.at(named).ok()?, named)?;
         Some(Self { statistics: test.statistics(), reference: test.reference(options.draws, options.seed) })
     }
 
@@ -101,35 +102,48 @@ impl Tests {
 }
 
 /// The score test of the catalogue against the model of some effects.
-pub fn score_test<'a>(setting: &'a Setting, named: &[Named]) -> Option<ScoreTest<'a>> {
-    ScoreTest::new(&setting.problem, &setting.candidates, &setting.signs, setting.own, &setting.columns(named))
+pub fn score_test(setting: &Setting<'_>, named: &[Named]) -> Option<ScoreTest> {
+    ScoreTest::new(&setting.problem, &setting.candidates, &setting.signs, setting.own.len(), &setting.columns(named))
 }
 
-/// The effects the data ask for.
+/// The effects the data ask for, beginning with those of a model.
 ///
 /// # Errors
 /// Why not even the description's own model can be fitted.
-pub fn select(setting: &Setting, options: &Options, progress: &Progress<'_>) -> Result<Selection, String> {
-    let mut model = setting.fit(&[])?;
-    let mut p_values = Vec::new();
+pub fn select(
+    bench: &mut Bench<'_>,
+    mut model: Fitted,
+    options: &Options,
+    progress: &Progress<'_>,
+) -> Result<Selection, String> {
+    let mut p_values = p_values(bench, &model.named, options);
     let mut beam = std::vec![model.clone()];
     let mut steps = Vec::new();
     let mut unnamed = false;
     while model.named.len() < MOST_EFFECTS {
         progress(&std::format!("searching for effect {}", model.named.len() + 1));
-        let Some(tests) = Tests::against(setting, &model.named, options) else { break };
-        let mut step = table(setting, &model, &tests, options);
+        if bench.look_again(&model.named)? {
+            model = bench.fit(&model.named)?;
+        }
+        let mut setting = bench.at(&model.named)?;
+        if let Some((better, p)) = sideways(bench, &setting, &model, options) {
+            (model, p_values) = (better, p);
+            setting = bench.at(&model.named)?;
+        }
+        let Some(tests) = Tests::against(bench, &model.named, options) else { break };
+        let mut step = table(&setting, &model, &tests, options);
         if tests.smallest_p() > options.alpha {
             step.outcome = String::from("nothing is missing significantly");
             steps.push(step);
             break;
         }
-        beam = improve(setting, extend(setting, &beam));
-        let accepted = beam
-            .iter()
-            .take_while(|proposed| proposed.bic < beam[0].bic + WITHIN_REACH)
-            .take(PROPOSALS)
-            .find_map(|proposed| Some((proposed.clone(), accept(setting, &model, proposed, &tests, options)?)));
+        beam = improve(&setting, extend(&setting, &beam));
+        let mut accepted = propose(bench, &setting, &beam, &model, &tests, options);
+        if accepted.is_none() {
+            // What is missing besides can keep either of two from passing alone.
+            beam = improve(&setting, extend(&setting, &beam));
+            accepted = propose(bench, &setting, &beam, &model, &tests, options);
+        }
         let Some((proposed, p)) = accepted else {
             unnamed = true;
             step.outcome = String::from("something is missing, but no effect passes every test");
@@ -143,22 +157,76 @@ pub fn select(setting: &Setting, options: &Options, progress: &Progress<'_>) -> 
         step.outcome = std::format!("named {}", names.join(", "));
         steps.push(step);
         (model, p_values) = (proposed, p);
+        // What a grid's value leaves of an effect must not look like another.
+        let polished = bench.polished(&model.named);
+        if let Ok(better) = polished.fit(&model.named) {
+            (*bench, model) = (polished, better);
+        }
     }
     Ok(Selection { model, p_values, steps, unnamed })
 }
+
+/// The first of the best models of a beam that passes, with its p-values.
+fn propose(
+    bench: &Bench<'_>,
+    setting: &Setting<'_>,
+    beam: &[Fitted],
+    model: &Fitted,
+    tests: &Tests,
+    options: &Options,
+) -> Option<(Fitted, Vec<f64>)> {
+    let proposals = nonlinear(bench, setting, beam);
+    proposals
+        .iter()
+        .take_while(|proposed| proposed.bic < proposals[0].bic + WITHIN_REACH)
+        .take(PROPOSALS)
+        .find_map(|proposed| Some((proposed.clone(), accept(bench, model, proposed, tests, options)?)))
+}
+
+/// The model of as many effects that is better, one of them replaced or in
+/// another form, where there is one that passes.
+fn sideways(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted, options: &Options) -> Option<(Fitted, Vec<f64>)> {
+    if model.named.is_empty() {
+        return None;
+    }
+    let beam = improve(setting, std::vec![model.clone()]);
+    let proposals = nonlinear(bench, setting, &beam);
+    let best = proposals.into_iter().find(|proposed| proposed.bic < model.bic - BETTER)?;
+    let p_values = p_values(bench, &best.named, options);
+    p_values.iter().all(|&p| p <= options.alpha).then_some((best, p_values))
+}
+
+/// A criterion that is lower by this is worth another look: odds of e to one.
+const BETTER: f64 = 2.0;
+
+/// The best proposals of a linear search that physics allows, with nonlinear
+/// numbers in their own form, the best first.
+fn nonlinear(bench: &Bench<'_>, setting: &Setting<'_>, beam: &[Fitted]) -> Vec<Fitted> {
+    let Some(best) = beam.iter().find(|model| model.physical) else { return Vec::new() };
+    // Curvature can change a criterion by this much before it changes the order.
+    let near = beam.iter().filter(|model| model.physical && model.bic < best.bic + CURVATURE).take(REFITTED);
+    best_of(near.filter_map(|model| bench.refit(setting, model).ok()).collect())
+}
+
+/// How many proposals are refitted, and how far behind the best they may be by
+/// the linear criterion.
+const REFITTED: usize = 6;
+/// See [`REFITTED`].
+pub const CURVATURE: f64 = 60.0;
 
 /// How many of the best proposals are put to the tests in one step.
 const PROPOSALS: usize = 3;
 
 /// The p-values of a proposal's effects if it passes.
 fn accept(
-    setting: &Setting,
+    bench: &Bench<'_>,
     smaller: &Fitted,
     proposed: &Fitted,
     against_smaller: &Tests,
     options: &Options,
 ) -> Option<Vec<f64>> {
-    if setting.left_out_rms(&proposed.fit) >= setting.left_out_rms(&smaller.fit) {
+    let left_out = |model: &Fitted| Some(bench.at(&model.named).ok()?.left_out_rms(&model.fit));
+    if left_out(proposed)? >= left_out(smaller)? {
         return None;
     }
     let p_values = (0..proposed.named.len()).map(|k| {
@@ -167,7 +235,7 @@ fn accept(
         let p = if rest == smaller.named {
             against_smaller.p_value(one.candidate)
         } else {
-            Tests::against(setting, &rest, options)?.p_value(one.candidate)
+            Tests::against(bench, &rest, options)?.p_value(one.candidate)
         };
         (p <= options.alpha).then_some(p)
     });
@@ -175,28 +243,34 @@ fn accept(
 }
 
 /// The family-wise p-value of each effect, that of the model without it.
-pub fn p_values(setting: &Setting, named: &[Named], options: &Options) -> Vec<f64> {
+pub fn p_values(bench: &Bench<'_>, named: &[Named], options: &Options) -> Vec<f64> {
     let one = |k: usize| {
         let mut rest = named.to_vec();
         let one = rest.remove(k);
-        Tests::against(setting, &rest, options).map_or(1.0, |tests| tests.p_value(one.candidate))
+        Tests::against(bench, &rest, options).map_or(1.0, |tests| tests.p_value(one.candidate))
     };
     (0..named.len()).map(one).collect()
 }
 
 /// Every model with one effect more than one of `beam`, the best first.
-fn extend(setting: &Setting, beam: &[Fitted]) -> Vec<Fitted> {
+fn extend(setting: &Setting<'_>, beam: &[Fitted]) -> Vec<Fitted> {
     let mut found = Vec::new();
     for model in beam {
         for candidate in 0..setting.candidates.len() {
-            found.extend(best_with(setting, &model.named, candidate));
+            found.extend(best_loosely(setting, &model.named, candidate));
         }
     }
     best_of(found)
 }
 
 /// The best physical model of some effects and one candidate more.
-pub fn best_with(setting: &Setting, named: &[Named], candidate: usize) -> Option<Fitted> {
+pub fn best_with(setting: &Setting<'_>, named: &[Named], candidate: usize) -> Option<Fitted> {
+    best_loosely(setting, named, candidate).filter(|model| model.physical)
+}
+
+/// The best model of some effects and one candidate more; where physics allows
+/// none, the best all the same.
+fn best_loosely(setting: &Setting<'_>, named: &[Named], candidate: usize) -> Option<Fitted> {
     if named.iter().any(|one| one.candidate == candidate) {
         return None;
     }
@@ -206,50 +280,64 @@ pub fn best_with(setting: &Setting, named: &[Named], candidate: usize) -> Option
         named.push(Named { candidate, variant });
         // One order for one set, so that it is the same model however reached.
         named.sort_unstable();
-        setting.fit(&named).ok()
+        setting.fit_loosely(&named)
     });
-    let best = fits.min_by(|a, b| a.bic.total_cmp(&b.bic))?;
-    let is_sentinel = |one: &Named| one.candidate == candidate && setting.variant(*one).sentinel;
-    (!best.named.iter().any(is_sentinel)).then_some(best)
+    fits.min_by(|a, b| b.physical.cmp(&a.physical).then(a.bic.total_cmp(&b.bic)))
 }
 
 /// Replaces each effect of the best model with each candidate as long as that
 /// improves it.
-fn improve(setting: &Setting, mut beam: Vec<Fitted>) -> Vec<Fitted> {
+fn improve(setting: &Setting<'_>, mut beam: Vec<Fitted>) -> Vec<Fitted> {
     loop {
-        let Some(best) = beam.first().cloned() else { return beam };
-        let swapped = (0..best.named.len()).flat_map(|k| {
-            let mut rest = best.named.clone();
-            rest.remove(k);
-            (0..setting.candidates.len()).filter_map(move |candidate| best_with(setting, &rest, candidate))
-        });
-        let swapped: Vec<Fitted> = swapped.collect();
-        beam.extend(swapped);
+        let best = bests(&beam);
+        if best.is_empty() {
+            return beam;
+        }
+        for model in &best {
+            for k in 0..model.named.len() {
+                let mut rest = model.named.clone();
+                rest.remove(k);
+                let swapped =
+                    (0..setting.candidates.len()).filter_map(|candidate| best_loosely(setting, &rest, candidate));
+                beam.extend(swapped);
+            }
+        }
         beam = best_of(beam);
-        if beam[0].bic >= best.bic - TIE {
+        let better = |(new, old): (&Fitted, &Fitted)| new.bic < old.bic - TIE;
+        if !bests(&beam).iter().zip(&best).any(better) {
             return beam;
         }
     }
+}
+
+/// The best model that physics allows, and the best of all where that is
+/// another.
+fn bests(beam: &[Fitted]) -> Vec<Fitted> {
+    let physical = beam.iter().find(|model| model.physical);
+    let any = beam.first().filter(|model| !model.physical);
+    physical.into_iter().chain(any).cloned().collect()
 }
 
 /// Criteria closer than this are equal but for rounding.
 const TIE: f64 = 1e-3;
 
 /// The best of each set of candidates, the best set first; among equals the
-/// one that comes first in the catalogue.
+/// one that comes first in the catalogue. Those that physics does not allow are
+/// not counted against the others.
 fn best_of(mut models: Vec<Fitted>) -> Vec<Fitted> {
     let set = |model: &Fitted| -> Vec<usize> { model.named.iter().map(|one| one.candidate).collect() };
     models.sort_by_cached_key(|model| ((model.bic / TIE).round() as i64, model.named.clone()));
     let mut kept: Vec<Fitted> = Vec::new();
     for model in models {
-        if kept.len() < BEAM && kept.iter().all(|other| set(other) != set(&model)) {
+        let alike = kept.iter().filter(|other| other.physical == model.physical).count();
+        if alike < BEAM && kept.iter().all(|other| set(other) != set(&model)) {
             kept.push(model);
         }
     }
     kept
 }
 
-fn table(setting: &Setting, model: &Fitted, tests: &Tests, options: &Options) -> Step {
+fn table(setting: &Setting<'_>, model: &Fitted, tests: &Tests, options: &Options) -> Step {
     let name = |one: &Named| setting.candidates[one.candidate].name();
     let before = setting.left_out_rms(&model.fit);
     let candidates = (0..setting.candidates.len()).map(|candidate| {

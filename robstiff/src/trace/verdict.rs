@@ -6,11 +6,11 @@ use std::string::String;
 use std::vec;
 use std::vec::Vec;
 
+use super::bench::Bench;
 use super::features::LOAD_ORDER;
 use super::lack_of_fit::LackOfFit;
-use super::model::{Fitted, Named, Setting};
+use super::model::{Fitted, Named};
 use super::selection::Selection;
-use crate::Effect;
 
 /// What a tracing came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,15 +61,14 @@ const BORROWED: usize = 3;
 
 /// The effects of a model that are to be taken back because structure is left
 /// all the same: the one that accounts for too little of it, or all of several.
-pub fn to_take_back(setting: &Setting, model: &Fitted, left: &LackOfFit) -> Vec<usize> {
+pub fn to_take_back(bench: &Bench<'_>, model: &Fitted, left: &LackOfFit) -> Vec<usize> {
     if !left.structure {
         return Vec::new();
     }
     // A gear with hysteresis is softer at small torques, on the way back: what
     // changes with the load order is no function of the torque.
     let of_order = left.depends_on.iter().any(|column| column == LOAD_ORDER);
-    let nonlinear =
-        |named: &Named| matches!(setting.candidates[named.candidate].effect, Effect::StiffnessNonlinearity { .. });
+    let nonlinear = |named: &Named| bench.candidates()[named.candidate].kind.name == "stiffness_nonlinearity";
     if of_order && model.named.iter().any(nonlinear) {
         return (0..model.named.len()).filter(|&k| nonlinear(&model.named[k])).collect();
     }
@@ -77,7 +76,7 @@ pub fn to_take_back(setting: &Setting, model: &Fitted, left: &LackOfFit) -> Vec<
         let mut rest = model.named.clone();
         rest.remove(k);
         // Both over the same degrees of freedom but for a few.
-        let without = setting.fit(&rest).map_or(f64::INFINITY, |fitted| fitted.fit.rss);
+        let without = bench.fit(&rest).map_or(f64::INFINITY, |fitted| fitted.fit.rss);
         let noise = model.fit.rss * (1.0 - left.fraction);
         (without - model.fit.rss) / (without - noise)
     };
@@ -89,9 +88,10 @@ pub fn to_take_back(setting: &Setting, model: &Fitted, left: &LackOfFit) -> Vec<
     }
 }
 
-/// The verdict on a model that stands, and why.
-pub fn judge(selection: &Selection, left: &LackOfFit, taken_back: usize) -> (Verdict, String) {
-    let named = selection.model.named.len();
+/// The verdict on a model that stands, with so many names besides for what is
+/// wrong in single visits, and why.
+pub fn judge(selection: &Selection, left: &LackOfFit, isolated: usize, taken_back: usize) -> (Verdict, String) {
+    let named = selection.model.named.len() + isolated;
     let structure = left.structure || selection.unnamed;
     let strongest = left.tests.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value));
     let because = strongest.map_or_else(String::new, |test| format!("{} (p {})", test.name, Shown(test.p_value)));

@@ -1,66 +1,125 @@
-//! Faults that the catalogue does not have, put into the readings: they are
-//! not to be explained away with effects that it does have.
+//! Faults of the rig, put into the readings, are named and not explained away
+//! with effects of the robot; and what the catalogue does not have stays
+//! without a name, or is said to be more than its names.
 
 use nalgebra::{Rotation3, Vector3};
 use robstiff::trace::{Trace, Verdict};
 use robstiff_robots::Description;
 use robstiff_tests::simulator::{Arm, Row, Simulated, five_axis, six_axis};
 
-use crate::bench::{assert_most, plan, trace_files};
+use crate::bench::{FLOOR, assert_most, plan, trace_files};
 
 #[test]
 fn turned_force_of_five() {
-    is_not_explained("turned force", &five_axis(), turn_force);
+    is_named("load_cell_misalignment@rig", &five_axis(), turn_force);
 }
 
 #[test]
 fn turned_force_of_six() {
-    is_not_explained("turned force", &six_axis(), turn_force);
+    is_named("load_cell_misalignment@rig", &six_axis(), turn_force);
 }
 
 #[test]
 fn scaled_force_of_five() {
-    is_not_explained("scaled force", &five_axis(), scale_force);
+    is_named("load_cell_scale@rig", &five_axis(), scale_force);
 }
 
 #[test]
 fn scaled_force_of_six() {
-    is_not_explained("scaled force", &six_axis(), scale_force);
+    is_named("load_cell_scale@rig", &six_axis(), scale_force);
 }
 
 #[test]
 fn drift_of_five() {
-    is_not_explained("drift", &five_axis(), drift);
+    is_named("thermal_drift@rig", &five_axis(), drift);
 }
 
 #[test]
 fn drift_of_six() {
-    is_not_explained("drift", &six_axis(), drift);
+    is_named("thermal_drift@rig", &six_axis(), drift);
+}
+
+#[test]
+fn wild_rows_of_five() {
+    is_named("outliers@rig", &five_axis(), go_wild);
+}
+
+#[test]
+fn wild_rows_of_six() {
+    is_named("outliers@rig", &six_axis(), go_wild);
+}
+
+#[test]
+fn slip_of_five() {
+    is_named("base_slip@base", &five_axis(), slip);
+}
+
+#[test]
+fn slip_of_six() {
+    is_named("base_slip@base", &six_axis(), slip);
+}
+
+#[test]
+fn zero_offset_of_five() {
+    is_named("joint_zero_offset@joint 2", &five_axis(), offset);
+}
+
+#[test]
+fn zero_offset_of_six() {
+    is_named("joint_zero_offset@joint 2", &six_axis(), offset);
 }
 
 #[test]
 fn hysteresis_of_five() {
-    is_not_explained("hysteresis", &five_axis(), retain);
+    is_among_the_names("hysteresis@joint 2", &five_axis(), retain);
 }
 
 #[test]
 fn hysteresis_of_six() {
-    is_not_explained("hysteresis", &six_axis(), retain);
+    is_among_the_names("hysteresis@joint 2", &six_axis(), retain);
 }
 
+#[test]
+fn warming_of_five() {
+    is_not_explained("a warming gear", &five_axis(), warm);
+}
+
+#[test]
+fn warming_of_six() {
+    is_not_explained("a warming gear", &six_axis(), warm);
+}
+
+fn with_fault(arm: &Description, fault: fn(&mut Simulated)) -> Vec<(u64, Trace)> {
+    let trace = |seed| {
+        let mut simulated = plan(arm, &[], seed).run();
+        fault(&mut simulated);
+        (seed, trace_files(&simulated, arm, ""))
+    };
+    (300..310).map(trace).collect()
+}
+
+/// Named alone, the rest being noise.
+fn is_named(name: &str, arm: &Description, fault: fn(&mut Simulated)) {
+    assert_most(&format!("{name} of {}", arm.name), 9, &with_fault(arm, fault), |_, trace| {
+        let [named] = &trace.effects[..] else { return false };
+        (named.effect.to_string() == name || named.same_as.iter().any(|other| other == name))
+            && trace.verdict == Verdict::Explained
+            && (0.9..1.1).contains(&(trace.after.rms / FLOOR))
+            && (!named.effect.is_of_rig() || trace.description.effects.is_empty())
+    });
+}
+
+fn is_among_the_names(name: &str, arm: &Description, fault: fn(&mut Simulated)) {
+    assert_most(&format!("{name} of {}", arm.name), 9, &with_fault(arm, fault), |_, trace| {
+        trace.effects.iter().any(|named| named.effect.to_string() == name)
+    });
+}
+
+/// Seen, and not taken for the whole truth.
 fn is_not_explained(what: &str, arm: &Description, fault: fn(&mut Simulated)) {
-    let traces: Vec<(u64, Trace)> = (300..310)
-        .map(|seed| {
-            let mut simulated = plan(arm, &[], seed).run();
-            fault(&mut simulated);
-            (seed, trace_files(&simulated, arm, ""))
-        })
-        .collect();
-    // Seen, and not taken for the whole truth.
-    assert_most(&format!("{what} of {}", arm.name), 9, &traces, |_, trace| {
+    assert_most(&format!("{what} of {}", arm.name), 9, &with_fault(arm, fault), |_, trace| {
         matches!(trace.verdict, Verdict::Unexplained | Verdict::Partial)
             && trace.effects.iter().all(|named| named.partial)
-            && trace.unexplained > 0.0
     });
 }
 
@@ -86,14 +145,51 @@ fn drift(simulated: &mut Simulated) {
     }
 }
 
-/// The gear of joint 2 keeps a tenth of its greatest deflection on the way
-/// back.
-fn retain(simulated: &mut Simulated) {
+/// Three readings that have nothing to do with the others.
+fn go_wild(simulated: &mut Simulated) {
+    for row in [17, 133, 290] {
+        add(&mut simulated.rows[row], Vector3::new(3e-4, -2e-4, 4e-4));
+    }
+}
+
+/// The robot slips within a visit, after two of its loads.
+fn slip(simulated: &mut Simulated) {
+    for row in &mut simulated.rows[187..190] {
+        add(row, Vector3::new(150e-6, -80e-6, 60e-6));
+    }
+}
+
+/// The zero of joint 2 is 3 degrees off; poses that the file would then have
+/// outside the joint's limits are left out.
+fn offset(simulated: &mut Simulated) {
+    let [low, _] = simulated.scenario.truth.joints[1].limits.expect("it has limits");
+    simulated.rows.iter_mut().for_each(|row| row.q[1] -= 3_f64.to_radians());
+    simulated.rows.retain(|row| row.q[1] >= low);
+}
+
+/// A tenth of the compliance of joint 2, and nothing else.
+fn tenth_of_joint_2(simulated: &Simulated) -> Arm {
     let mut gear = simulated.scenario.truth.clone();
     for (index, joint) in gear.joints.iter_mut().enumerate() {
         joint.compliance.iter_mut().for_each(|part| part.value *= if index == 1 { 0.1 } else { 0.0 });
     }
-    let gear = Arm::new(&gear, &[]);
+    Arm::new(&gear, &[])
+}
+
+/// The gear of joint 2 becomes softer by 40 % in the course of the campaign.
+fn warm(simulated: &mut Simulated) {
+    let (gear, all) = (tenth_of_joint_2(simulated), simulated.rows.len() as f64);
+    for (count, row) in simulated.rows.iter_mut().enumerate() {
+        let tenth = Vector3::from(gear.deflect(&row.q, &row.wrench).displacement);
+        add(row, tenth * (4.0 * count as f64 / all));
+    }
+}
+
+/// The gear of joint 2 keeps a tenth of its greatest deflection on the way
+/// back. It has play operators whose radii go with the visit's load, so those
+/// of the catalogue are near it and not all of it.
+fn retain(simulated: &mut Simulated) {
+    let gear = tenth_of_joint_2(simulated);
     let loads = simulated.scenario.ramp.len();
     for visit in simulated.rows.chunks_mut(loads) {
         let peak = loads / 2;

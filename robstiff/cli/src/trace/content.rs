@@ -5,7 +5,6 @@ use robstiff::identify::{Estimate, Visibility, predict};
 use robstiff::trace::{EffectParameter, NamedEffect, Options, RowResidual, Step, Tested, Trace, Verdict};
 
 use super::story;
-use crate::effect;
 use crate::failure::Failure;
 use crate::identify::source_of;
 use crate::report::content::{
@@ -83,7 +82,7 @@ fn stages(trace: &Trace) -> Vec<Stage> {
 fn named(named: &NamedEffect) -> Effect {
     Effect {
         name: named.effect.to_string(),
-        words: effect::words(&named.effect),
+        words: named.effect.words(),
         numbers: named.parameters.iter().map(number).collect(),
         p_value: named.p_value,
         holdout_rms_um: named.holdout_rms * 1e6,

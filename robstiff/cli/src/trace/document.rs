@@ -2,7 +2,7 @@
 
 use robstiff::JointKind;
 use robstiff::campaign::Campaign;
-use robstiff::trace::{Misfit, NamedEffect, Proposal, Trace};
+use robstiff::trace::{Misfit, NamedEffect, Proposal, Rival, Trace};
 use serde_json::{Value, json};
 
 use crate::json::{number, numbers};
@@ -20,6 +20,8 @@ pub fn document(trace: &Trace, campaign: &Campaign) -> Value {
         "verdict": trace.verdict.to_string(),
         "why": trace.why,
         "unexplained": {"fraction": number(trace.unexplained), "depends_on": trace.depends_on},
+        "rivals": trace.rivals.iter().map(rival).collect::<Value>(),
+        "invisible": trace.invisible,
         "next": trace.next.iter().map(|next| proposal(next, campaign)).collect::<Value>(),
     })
 }
@@ -45,7 +47,13 @@ fn effect(named: &NamedEffect) -> Value {
         "holdout_rms_um": number(named.holdout_rms * 1e6),
         "same_as": named.same_as,
         "partial": named.partial,
+        "lines": named.lines,
     })
+}
+
+/// Another model that fits about as well.
+fn rival(rival: &Rival) -> Value {
+    json!({"effects": rival.names, "bic_difference": number(rival.bic_difference)})
 }
 
 /// Degrees for joints that turn; one that slides has its millimetres there.

@@ -4,19 +4,26 @@ use robstiff::JointKind;
 use robstiff::trace::{NamedEffect, Proposal, Trace, Verdict};
 use robstiff_robots::Joint;
 
-use crate::effect;
 use crate::identify::{at_bound, source_of};
 use crate::text::{Table, and, count, decimals, micrometres, probability, uncertain};
 
 /// The finding in one sentence.
 pub fn headline(trace: &Trace) -> String {
     let (before, after) = (micrometres(trace.identified.holdout_rms), micrometres(trace.after.holdout_rms));
-    let lacking = || and(&trace.effects.iter().map(|named| effect::words(&named.effect)).collect::<Vec<_>>());
+    let words = |of_rig: bool| -> Vec<String> {
+        let those = trace.effects.iter().filter(|named| named.effect.is_of_rig() == of_rig);
+        those.map(|named| named.effect.words()).collect()
+    };
+    let shown = || match [words(false), words(true)] {
+        [robot, rig] if rig.is_empty() => format!("The description lacks {}", and(&robot)),
+        [robot, rig] if robot.is_empty() => format!("The measurement has {}", and(&rig)),
+        [robot, rig] => format!("The description lacks {}, and the measurement has {}", and(&robot), and(&rig)),
+    };
     match trace.verdict {
         Verdict::Adequate => format!("Nothing is missing: identified joints predict unseen poses to {after} um"),
         Verdict::Explained | Verdict::Partial => format!(
-            "The description lacks {}; with {} the error on unseen poses falls from {before} to {after} um{}",
-            lacking(),
+            "{}; with {} the error on unseen poses falls from {before} to {after} um{}",
+            shown(),
             if trace.effects.len() == 1 { "it" } else { "them" },
             if trace.verdict == Verdict::Partial { ", but something more is missing" } else { "" }
         ),
@@ -37,6 +44,15 @@ pub fn summary(trace: &Trace) -> Vec<String> {
     }
     let clipped = trace.estimates.iter().filter(|estimate| estimate.at_bound);
     sentences.extend(clipped.map(|estimate| at_bound(&estimate.name) + "."));
+    for named in trace.effects.iter().filter(|named| !named.lines.is_empty()) {
+        let lines: Vec<String> = named.lines.iter().map(usize::to_string).collect();
+        sentences.push(format!(
+            "{} is seen on line{} {}.",
+            named.effect,
+            if lines.len() == 1 { "" } else { "s" },
+            and(&lines)
+        ));
+    }
     for named in &trace.effects {
         if !named.same_as.is_empty() {
             sentences.push(format!("These data cannot tell {} from {}.", named.effect, and(&named.same_as)));

@@ -1,0 +1,473 @@
+//! A campaign's forward model fitted with any effects: nonlinear numbers in
+//! their own form, by Gauss-Newton steps with all numbers together, and the
+//! whole catalogue linearised at what comes out.
+
+mod polish;
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::rc::Rc;
+use std::string::String;
+use std::vec;
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::catalogue::{Candidate, Catalogue, LIKELY, Number, Scene, Variant, catalogue};
+use super::isolated::{self, Moment};
+use super::model::{Fitted, Named, Setting};
+use super::point::Point;
+use crate::campaign::Campaign;
+use crate::elements::Parameter;
+use crate::identify::baseline::Visibility;
+use crate::identify::normal::{Fit, Sign};
+use crate::identify::prepare::Prepared;
+use crate::identify::problem::{Problem, Weights};
+use crate::identify::samples::{Column, Samples};
+use crate::identify::setup::Setup;
+
+/// Everything that is needed to fit a campaign with effects of the catalogue.
+pub struct Bench<'c> {
+    campaign: &'c Campaign,
+    prepared: &'c Prepared<'c>,
+    own: Rc<[Column]>,
+    candidates: Rc<[Candidate]>,
+    numbers: Rc<[Number]>,
+    signs: Rc<[Sign]>,
+    /// Full names of what these data cannot show at all.
+    pub invisible: Vec<String>,
+    /// Rows that are left out, for they are wild.
+    pub left_out: Vec<bool>,
+    /// Whether rows need only stand out from noise, not from structure.
+    pub strict: bool,
+    /// Where a slip that all later rows keep may have begun.
+    moments: Vec<Moment>,
+    settings: Known<Setting<'c>>,
+    states: Known<State>,
+}
+
+/// What was found of models, or why not.
+type Known<T> = RefCell<HashMap<Vec<Named>, Result<Rc<T>, String>>>;
+
+/// A model at its solution.
+struct State {
+    setup: Setup,
+    fit: Fit,
+    tangents: Vec<(usize, DVector<f64>)>,
+    /// The readings that the coefficients are those of.
+    readings: DVector<f64>,
+}
+
+/// Gauss-Newton steps before a model counts as one that has no solution; two
+/// to four do for what is physically possible.
+const PASSES: usize = 12;
+
+/// A step that moves the predictions by less than this share of the noise of a
+/// reading, all together, is none.
+const SETTLED: f64 = 1e-2;
+
+/// Moments at which a slip is looked for besides the likeliest, so that the
+/// tests know of the search.
+const MOMENTS: usize = 8;
+
+/// Steps of central differences, as shares of what is physically possible.
+const STEP: f64 = 1e-3;
+
+impl<'c> Bench<'c> {
+    /// The bench of a prepared campaign.
+    ///
+    /// # Errors
+    /// Why not even the description's own model can be fitted.
+    pub fn new(campaign: &'c Campaign, prepared: &'c Prepared<'c>) -> Result<Self, String> {
+        let rows = prepared.samples.rows.len();
+        let mut bench = Self {
+            campaign,
+            prepared,
+            own: prepared.own.iter().map(|number| number.column).collect(),
+            candidates: Rc::new([]),
+            numbers: Rc::new([]),
+            signs: Rc::new([]),
+            invisible: Vec::new(),
+            left_out: vec![false; rows],
+            strict: false,
+            moments: Vec::new(),
+            settings: RefCell::default(),
+            states: RefCell::default(),
+        };
+        let evenly = |count: usize, before: bool| {
+            (1..=count).map(move |k| Moment { row: (k * rows / (count + 1)).clamp(1, rows), before })
+        };
+        // What the likeliest will be take the first places.
+        bench.moments = evenly(LIKELY, false).chain(evenly(MOMENTS, false)).chain(evenly(MOMENTS, true)).collect();
+        bench.set_up()?;
+        Ok(bench)
+    }
+
+    /// The campaign that candidates are looked for in.
+    pub fn scene(&self) -> Scene<'_> {
+        Scene {
+            description: &self.campaign.robot,
+            data: self.prepared.data,
+            samples: &self.prepared.samples,
+            compliance: self.prepared.values[..self.prepared.samples.joints()].to_vec(),
+            moments: &self.moments,
+        }
+    }
+
+    /// Forms the catalogue, without what the data cannot show.
+    fn set_up(&mut self) -> Result<(), String> {
+        self.settings.get_mut().clear();
+        self.states.get_mut().clear();
+        let Catalogue { candidates, numbers, invisible } = catalogue(&self.scene(), self.own.len());
+        let signs = self.prepared.signs().into_iter().chain(numbers.iter().map(Number::sign));
+        self.signs = signs.collect();
+        self.numbers = numbers.into();
+        self.candidates = candidates.into();
+        self.invisible = invisible;
+
+        let setting = self.at(&[])?;
+        let base = setting.fit(&[])?;
+        let noise = (base.fit.rss / setting.problem.freedom(&base.fit)).sqrt();
+        let gram = &setting.problem.total.gram;
+        let largest = setting.base.iter().map(|&j| gram[(j, j)].sqrt()).fold(0.0, f64::max);
+        let visible = |&column: &usize| {
+            let (number, size) = (&self.numbers[column - self.own.len()], gram[(column, column)].sqrt());
+            match number.range[1].is_finite() {
+                // Even the most of it moves all readings together by less than
+                // the noise of one.
+                true => size * number.range[1] > noise,
+                false => size > ZERO * largest,
+            }
+        };
+        let (mut kept, mut lost) = (Vec::new(), Vec::new());
+        for candidate in self.candidates.iter() {
+            let is_seen = |variant: &&Variant| variant.columns.iter().all(visible);
+            let variants: Vec<Variant> = candidate.variants.iter().filter(is_seen).cloned().collect();
+            match variants.is_empty() {
+                true => lost.push(candidate.name()),
+                false => kept.push(Candidate { variants, ..candidate.clone() }),
+            }
+        }
+        self.candidates = kept.into();
+        self.invisible.extend(lost);
+        self.settings.get_mut().clear();
+        Ok(())
+    }
+
+    /// Looks again, with a model, for rows that are wild and for the moment at
+    /// which a slip may have begun; whether anything changed.
+    ///
+    /// # Errors
+    /// Why the description's own model cannot be fitted without such rows.
+    pub fn look_again(&mut self, named: &[Named]) -> Result<bool, String> {
+        let mut changed = false;
+        for _ in 0..ROUNDS {
+            let setting = self.at(named)?;
+            let fitted = setting.fit(named)?;
+            let wild = isolated::events(&setting, &fitted, self.strict);
+            let mut left_out = vec![false; self.left_out.len()];
+            wild.iter().flat_map(|event| &event.rows).for_each(|&row| left_out[row] = true);
+            let moments = self.likely_slips(named);
+            let moves = moments.iter().any(|moment| !self.moments[..LIKELY].contains(moment));
+            if left_out == self.left_out && !moves {
+                break;
+            }
+            drop(setting);
+            changed = true;
+            self.left_out = left_out;
+            self.moments[..moments.len()].copy_from_slice(&moments);
+            // Which forms of which candidates are seen stays as it was.
+            let (kept, invisible) = (Rc::clone(&self.candidates), self.invisible.clone());
+            self.set_up()?;
+            self.invisible = invisible;
+            let moved = |candidate: &Candidate| {
+                let same = self.candidates.iter().find(|other| other.name() == candidate.name());
+                let is_slip = candidate.kind == &super::catalogue::BASE_SLIP;
+                same.filter(|_| is_slip).unwrap_or(candidate).clone()
+            };
+            self.candidates = kept.iter().map(moved).collect();
+            self.numbers = self.refined_numbers(0..self.candidates.len());
+            self.settings.get_mut().clear();
+            self.states.get_mut().clear();
+        }
+        Ok(changed)
+    }
+
+    /// Where slips that all later rows keep may have begun: what a model says,
+    /// and what it says without one of its effects, which may be in place of a
+    /// slip or be one.
+    fn likely_slips(&self, named: &[Named]) -> Vec<Moment> {
+        let slips = |one: &Named| self.candidates[one.candidate].kind == &super::catalogue::BASE_SLIP;
+        let mut models: Vec<Vec<Named>> = Vec::new();
+        if !named.iter().any(slips) {
+            models.push(named.to_vec());
+        }
+        for k in 0..named.len() {
+            let mut rest = named.to_vec();
+            rest.remove(k);
+            if !rest.iter().any(slips) {
+                models.push(rest);
+            }
+        }
+        let mut moments: Vec<Moment> = Vec::new();
+        for named in models {
+            let Ok(setting) = self.at(&named) else { continue };
+            let Ok(fitted) = setting.fit(&named) else { continue };
+            moments.extend(isolated::likeliest_slip(&setting, &fitted).filter(|moment| !moments.contains(moment)));
+        }
+        moments.truncate(LIKELY);
+        moments
+    }
+
+    /// The candidates.
+    pub fn candidates(&self) -> &[Candidate] {
+        &self.candidates
+    }
+
+    /// The regression at a model's solution.
+    ///
+    /// # Errors
+    /// Why the model is no physical one.
+    pub fn at(&self, named: &[Named]) -> Result<Rc<Setting<'c>>, String> {
+        if let Some(known) = self.settings.borrow().get(named) {
+            return known.clone();
+        }
+        let found = self.setting(named).map(Rc::new);
+        let mut settings = self.settings.borrow_mut();
+        if settings.len() >= KEPT.max(1) && self.left_out.len() > MANY_ROWS {
+            settings.retain(|named, _| named.is_empty());
+        }
+        settings.insert(named.to_vec(), found.clone());
+        found
+    }
+
+    /// A model at its solution.
+    ///
+    /// # Errors
+    /// Why the model is no physical one.
+    pub fn fit(&self, named: &[Named]) -> Result<Fitted, String> {
+        self.at(named)?.fit(named)
+    }
+
+    /// A proposal with its nonlinear numbers in their own form; as it is where
+    /// neither it nor the setting it was fitted in has any.
+    pub fn refit(&self, setting: &Setting<'_>, proposed: &Fitted) -> Result<Fitted, String> {
+        if setting.tangents.is_empty() && !self.is_nonlinear(&proposed.named) {
+            return Ok(proposed.clone());
+        }
+        let state = self.state(&proposed.named)?;
+        setting.judge(&proposed.named, state.fit.clone())
+    }
+
+    /// Whether a model has nonlinear numbers.
+    pub fn is_nonlinear(&self, named: &[Named]) -> bool {
+        !self.nonlinear(named).is_empty()
+    }
+
+    /// The columns of nonlinear numbers of a model, with the numbers.
+    fn nonlinear(&self, named: &[Named]) -> Vec<(usize, &Number)> {
+        let columns = named.iter().flat_map(|one| &self.candidates[one.candidate].variants[one.variant].columns);
+        let numbers = columns.map(|&column| (column, &self.numbers[column - self.own.len()]));
+        numbers.filter(|(_, number)| number.enters.is_some()).collect()
+    }
+
+    /// How rows are weighed.
+    pub fn weights(&self) -> Weights<'_> {
+        Weights { rotation: self.prepared.rotation_weight, training: &self.prepared.training, left_out: &self.left_out }
+    }
+
+    fn state(&self, named: &[Named]) -> Result<Rc<State>, String> {
+        if let Some(known) = self.states.borrow().get(named) {
+            return known.clone();
+        }
+        let found = self.solve(named).map(Rc::new);
+        self.states.borrow_mut().insert(named.to_vec(), found.clone());
+        found
+    }
+
+    /// The solution of a model by Gauss-Newton steps from file and description
+    /// as declared.
+    fn solve(&self, named: &[Named]) -> Result<State, String> {
+        let prepared = self.prepared;
+        let effects = named.iter().flat_map(|one| &self.candidates[one.candidate].variants[one.variant].columns);
+        let columns: Vec<usize> = prepared.seen().into_iter().chain(effects.copied()).collect();
+        let signs: Vec<Sign> = columns.iter().map(|&column| self.signs[column]).collect();
+        let nonlinear = self.nonlinear(named);
+        let collinear = || String::from("not to be told from the rest of the model");
+        let mut theta = vec![0.0; nonlinear.len()];
+        let mut fit: Option<Fit> = None;
+        for _ in 0..PASSES {
+            let setup = self.setup(&nonlinear, &theta);
+            let point = self.point(setup.clone());
+            let mut readings = self.readings(&point);
+            let mut raw = DMatrix::zeros(readings.len(), columns.len());
+            for (k, &column) in columns.iter().enumerate() {
+                if !nonlinear.iter().any(|(of, _)| *of == column) {
+                    raw.set_column(k, &self.linear(&point, column));
+                }
+            }
+            // The tangents need coefficients, first those without them.
+            let known = match &fit {
+                Some(fit) => fit.clone(),
+                None => {
+                    let linear: Vec<usize> =
+                        columns.iter().copied().filter(|c| !nonlinear.iter().any(|(of, _)| of == c)).collect();
+                    let at = |c: &usize| columns.iter().position(|column| column == c).expect("one of them");
+                    let own: Vec<usize> = linear.iter().map(at).collect();
+                    let problem = self.regression(&point, raw.select_columns(&own), readings.clone());
+                    let all: Vec<usize> = (0..linear.len()).collect();
+                    let signs: Vec<Sign> = linear.iter().map(|&column| self.signs[column]).collect();
+                    let first = problem.total.solve_signed(&all, &signs).ok_or_else(collinear)?;
+                    Fit { columns: linear, ..first }
+                }
+            };
+            let mut tangents = Vec::new();
+            for (k, &(column, number)) in nonlinear.iter().enumerate() {
+                let step = STEP * number.range[1];
+                let [there, back] = [step, -step].map(|step| {
+                    let mut moved = theta.clone();
+                    moved[k] += step;
+                    self.prediction(&self.point(self.setup(&nonlinear, &moved)), &known, &nonlinear)
+                });
+                let tangent = (there - back) / (2.0 * step);
+                readings.axpy(theta[k], &tangent, 1.0);
+                let at = columns.iter().position(|c| *c == column).expect("one of the model's");
+                raw.set_column(at, &tangent);
+                tangents.push((column, tangent));
+            }
+            let problem = self.regression(&point, raw, readings.clone());
+            let all: Vec<usize> = (0..columns.len()).collect();
+            let solved = problem.total.solve_signed(&all, &signs).ok_or_else(collinear)?;
+            let solved = Fit { columns: columns.clone(), ..solved };
+            let mut moves = DVector::zeros(problem.white_readings.len());
+            let mut next = theta.clone();
+            for (k, &(column, number)) in nonlinear.iter().enumerate() {
+                let at = columns.iter().position(|c| *c == column).expect("one of the model's");
+                let most = number.range[1];
+                // Not beyond what is possible on the way.
+                next[k] = solved.coefficients[at].clamp(-most, most);
+                moves.axpy(next[k] - theta[k], &problem.white.column(at), 1.0);
+            }
+            let noise = solved.rss / problem.freedom(&solved);
+            if moves.norm_squared() <= SETTLED * SETTLED * noise {
+                return Ok(State { setup, fit: solved, tangents, readings });
+            }
+            theta = next;
+            fit = Some(solved);
+        }
+        Err(String::from("its numbers do not settle"))
+    }
+
+    fn setup(&self, nonlinear: &[(usize, &Number)], theta: &[f64]) -> Setup {
+        let mut setup = Setup::as_declared(self.prepared.samples.joints());
+        for ((_, number), &value) in nonlinear.iter().zip(theta) {
+            if let Some(enters) = &number.enters {
+                enters(&mut setup, value);
+            }
+        }
+        setup
+    }
+
+    fn point(&self, setup: Setup) -> Point<'c> {
+        Point::bare(&self.campaign.robot, self.prepared.data, &self.prepared.samples, setup)
+    }
+
+    /// A column that is no tangent, at a point.
+    fn linear(&self, point: &Point<'c>, column: usize) -> DVector<f64> {
+        match self.own.get(column) {
+            Some(&own) => point.with_creep(point.samples.column(own)),
+            None => self.numbers[column - self.own.len()].column(point),
+        }
+    }
+
+    /// The readings at a point less what numbers that are held do.
+    fn readings(&self, point: &Point<'c>) -> DVector<f64> {
+        let all = point.samples.readings();
+        let held = &all - self.prepared.readings(&point.samples);
+        all - point.with_creep(held)
+    }
+
+    /// What the arm does at a point, with the coefficients of a fit, numbers
+    /// that are held included.
+    fn prediction(&self, point: &Point<'c>, fit: &Fit, nonlinear: &[(usize, &Number)]) -> DVector<f64> {
+        let mut sum = point.samples.readings() - self.readings(point);
+        for (&column, &value) in fit.columns.iter().zip(fit.coefficients.iter()) {
+            let is_nonlinear = nonlinear.iter().any(|(of, _)| *of == column);
+            if value != 0.0 && !is_nonlinear && self.is_elastic(column) {
+                sum.axpy(value, &self.linear(point, column), 1.0);
+            }
+        }
+        sum
+    }
+
+    fn is_elastic(&self, column: usize) -> bool {
+        column < self.own.len() || self.numbers[column - self.own.len()].elastic
+    }
+
+    fn regression(&self, point: &Point<'c>, raw: DMatrix<f64>, readings: DVector<f64>) -> Problem {
+        Problem::new(&point.samples, raw, readings, &self.prepared.correction, self.weights())
+    }
+
+    /// The regression at a model's solution, with the whole catalogue.
+    fn setting(&self, named: &[Named]) -> Result<Setting<'c>, String> {
+        let State { setup, fit, tangents, readings } = &*self.state(named)?;
+        let nonlinear = self.nonlinear(named);
+        let declared: &Samples = &self.prepared.samples;
+        let point = self.point(setup.clone());
+        let elastic = self.prediction(&point, fit, &nonlinear);
+        let point = point.with_model(declared, elastic, &self.linear_parameters(fit));
+        let count = self.own.len() + self.numbers.len();
+        let mut raw = DMatrix::zeros(readings.len(), count);
+        for column in 0..count {
+            let tangent = tangents.iter().find(|(of, _)| *of == column);
+            match tangent {
+                Some((_, tangent)) => raw.set_column(column, tangent),
+                None => raw.set_column(column, &self.linear(&point, column)),
+            }
+        }
+        let problem = Problem::new(&point.samples, raw, readings.clone(), &self.prepared.correction, self.weights());
+        Ok(Setting {
+            point,
+            problem,
+            candidates: Rc::clone(&self.candidates),
+            numbers: Rc::clone(&self.numbers),
+            signs: Rc::clone(&self.signs),
+            base: self.prepared.seen(),
+            own: Rc::clone(&self.own),
+            joint_values: self.prepared.values[..declared.joints()].to_vec(),
+            tangents: tangents.clone(),
+            correction: self.prepared.correction.clone(),
+        })
+    }
+
+    /// The numbers of a model in which its compliance is linear.
+    pub fn linear_parameters(&self, fit: &Fit) -> Vec<(Parameter, f64)> {
+        let held = self.prepared.own.iter().zip(&self.prepared.visibility);
+        let held = held.filter(|(_, visibility)| **visibility != Visibility::Seen);
+        let held = held.filter_map(|(number, _)| match number.column {
+            Column::Linear(parameter) => Some((parameter, number.value)),
+            Column::Knee { .. } => None,
+        });
+        let fitted = fit.columns.iter().zip(fit.coefficients.iter()).filter_map(|(&column, &value)| {
+            let parameter = match self.own.get(column) {
+                Some(Column::Linear(parameter)) => Some(*parameter),
+                Some(Column::Knee { .. }) => None,
+                None => self.numbers[column - self.own.len()].parameter,
+            };
+            parameter.map(|parameter| (parameter, value))
+        });
+        held.chain(fitted).collect()
+    }
+}
+
+/// A column this small against the largest of a joint is zero but for rounding.
+const ZERO: f64 = 1e-7;
+
+/// Leaving rows out changes what the others look like; it settles at once or
+/// was no matter of single rows.
+const ROUNDS: usize = 4;
+
+/// Of a campaign with more rows than this, only so many regressions with the
+/// whole catalogue are kept.
+const MANY_ROWS: usize = 4000;
+const KEPT: usize = 3;

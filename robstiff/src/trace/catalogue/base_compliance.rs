@@ -1,0 +1,18 @@
+//! Foundation and pedestal: tilt about x and y of frame 0, and a displacement,
+//! the same in every direction. The turn about z is joint 1's.
+
+use super::{Kind, Offers, Place, Scene, two_compliances};
+use crate::elements::Parameter;
+
+/// The kind.
+pub static KIND: Kind = Kind {
+    name: "base_compliance",
+    of_rig: false,
+    words: |_| "the compliance of foundation and pedestal".into(),
+    offer,
+};
+
+fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    let two = [("tilt", Parameter::BaseTilt), ("translation", Parameter::BaseTranslation)];
+    two_compliances(scene, offers, Place::Base, two);
+}

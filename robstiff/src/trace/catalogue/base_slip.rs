@@ -1,0 +1,59 @@
+//! The robot, or what measures it, shifted at some moment: every reading after
+//! it that is held against an unloaded reading from before it has the shift.
+//! A slip within a visit is found with what is wrong in single visits; here are
+//! those that all later rows keep, of which the unloaded readings know nothing.
+
+use std::format;
+use std::vec::Vec;
+
+use nalgebra::Vector3;
+
+use super::{Form, Kind, Number, Offers, Place, SHIFT, Scene, TURN};
+use crate::identify::samples::stack;
+use crate::trace::isolated::Moment;
+
+/// The kind.
+pub static KIND: Kind = Kind {
+    name: "base_slip",
+    // A shift of the whole robot is no property of it.
+    of_rig: true,
+    words: |found| format!("a slip of the base before line {}", found.value("line")),
+    offer,
+};
+
+/// At so many of the moments, the first, the robot may have turned as well.
+pub const LIKELY: usize = 3;
+
+/// A longer way is a move (m), a larger turn a fall (rad).
+const MOST: f64 = 5e-3;
+
+fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    let shift = |(moment, k): (Moment, usize)| {
+        Number::of_reading(SHIFT[k], "m", [-MOST, MOST], move |point| {
+            point.of_reading(|row| if moment.has(row) { Vector3::ith(k, 1.0) } else { Vector3::zeros() })
+        })
+    };
+    // About the origin of the base frame, by a small turn.
+    let turn = |(moment, k): (Moment, usize)| {
+        Number::of_reading(TURN[k], "rad", [-MOST, MOST], move |point| {
+            point.samples.stacked_by(|row, sample| {
+                let turn = if moment.has(row) { Vector3::ith(k, 1.0) } else { Vector3::zeros() };
+                let at = sample.tcp.fixed_view::<3, 1>(0, 3) + sample.marker;
+                stack(&turn.cross(&at), &turn)
+            })
+        })
+    };
+    let three = |&moment: &Moment| (0..3).map(move |k| (moment, k));
+    let likely = &scene.moments[..LIKELY.min(scene.moments.len())];
+    let shifts = scene.moments.iter().flat_map(three).map(shift);
+    let numbers: Vec<Number> = shifts.chain(likely.iter().flat_map(three).map(turn)).collect();
+    let turns = 3 * scene.moments.len();
+    let line = |moment: Moment| scene.data.rows[moment.row.min(scene.data.rows.len() - 1)].line as f64;
+    let form = |(i, &moment): (usize, &Moment)| Form::of(3 * i..3 * i + 3).with("line", line(moment), "1");
+    let mut forms: Vec<Form> = scene.moments.iter().enumerate().map(form).collect();
+    forms.extend(likely.iter().enumerate().map(|(i, &moment)| {
+        let own = (3 * i..3 * i + 3).chain(turns + 3 * i..turns + 3 * i + 3);
+        Form::of(own).with("line", line(moment), "1")
+    }));
+    offers.add(Place::Base, numbers, forms);
+}

@@ -1,0 +1,42 @@
+//! The arm goes on yielding under a load that stays on: every step of the
+//! displacement grows by `share log10(1 + t / onset)` of itself in the time `t`
+//! since it was made, and recovers alike; in rows where the file tells no time.
+
+use std::vec::Vec;
+
+use super::{Form, Kind, Number, Offers, Place, Scene};
+use crate::trace::point::clock;
+
+/// The kind.
+pub static KIND: Kind = Kind { name: "creep", of_rig: true, words: |_| "creep under load".into(), offer };
+
+/// The onsets tried, in steps from one row to the next.
+const ONSETS: [f64; 4] = [1.0 / 20.0, 1.0 / 6.0, 1.0 / 2.0, 2.0];
+
+/// Beyond this share a decade it is no creep (1).
+const MOST: f64 = 0.4;
+
+fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    let (_, pace) = clock(scene.data);
+    if pace <= 0.0 {
+        // One load a visit grows alike everywhere, as all compliances would.
+        return offers.invisible(Place::Rig);
+    }
+    let unit = if scene.data.rows.iter().all(|row| row.time.is_some()) { "s" } else { "row" };
+    let onsets = ONSETS.map(|share| share * pace);
+    let number = move |onset: f64| {
+        let number = Number::of_setup(
+            "share",
+            "1",
+            MOST,
+            // Two at once do not occur: a candidate has one of its forms.
+            move |setup, share| setup.creep = [setup.creep[0] + share, onset],
+            move |point, _| point.crept(&point.elastic, onset),
+        );
+        Number { range: [0.0, MOST], creeps: false, ..number }
+    };
+    let numbers: Vec<Number> = onsets.map(number).into();
+    let forms = (0..).zip(onsets).map(|(k, onset)| Form::of([k]).with("onset", onset, unit));
+    let forms = forms.map(|form| form.refined(move |onsets| [number(onsets[0])].into())).collect();
+    offers.add(Place::Rig, numbers, forms);
+}

@@ -1,0 +1,36 @@
+//! A length or twist of the DH table is off; seen, as a zero offset is, only
+//! through `d(H F)`. The entry that a joint's coordinate adds to is its zero.
+
+use std::format;
+use std::vec;
+
+use super::{Form, Kind, Number, Offers, Place, Scene, place_words};
+use crate::identify::setup::coordinate_entry;
+
+/// The kind.
+pub static KIND: Kind = Kind {
+    name: "dh_error",
+    of_rig: false,
+    words: |found| format!("the error of {} in the DH table", place_words(found)),
+    offer,
+};
+
+/// Beyond this a table is not off but another robot's (rad, m, m, rad).
+const MOST: [f64; 4] = [0.2, 0.15, 0.15, 0.2];
+const UNITS: [&str; 4] = ["rad", "m", "m", "rad"];
+
+fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    for row in 1..=scene.joints() {
+        let coordinate = coordinate_entry(scene.samples.joint_kinds[row - 1]);
+        for entry in (0..4).filter(|&entry| entry != coordinate) {
+            let number = Number::of_setup(
+                "value",
+                UNITS[entry],
+                MOST[entry],
+                move |setup, error| setup.table[row - 1][entry] += error,
+                move |point, _| point.slope(row, entry, |_| 1.0),
+            );
+            offers.add(Place::Entry(entry, row), vec![number], vec![Form::of([0])]);
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! Hysteresis: the joint turns by `sum w_r P_r` on top of `h tau`, with play
+//! operators `P_r(k) = max(tau - r, min(tau + r, P_r(k - 1)))` on its torque in
+//! the order of the loads (Prandtl and Ishlinskii), linear in their weights.
+//! Each visit begins at rest with its unloaded reading.
+
+use std::format;
+use std::vec;
+use std::vec::Vec;
+
+use super::{Form, Kind, Number, Offers, Place, Scene, place_words};
+use crate::identify::samples::Samples;
+
+/// The kind.
+pub static KIND: Kind = Kind {
+    name: "hysteresis",
+    of_rig: false,
+    words: |found| format!("the hysteresis of {}", place_words(found)),
+    offer,
+};
+
+/// The radii tried, as fractions of the largest torque seen on the joint; up to
+/// three of them together.
+const RADII: [f64; 5] = [1.0 / 32.0, 1.0 / 16.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0];
+const MOST: u32 = 3;
+
+const NAMES: [&str; 3] = ["weight1", "weight2", "weight3"];
+const OF_RADII: [&str; 3] = ["radius1", "radius2", "radius3"];
+
+fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    // Without loads that follow one another there is no order to depend on.
+    let mut rows = vec![0_usize; scene.data.visits.len()];
+    scene.data.rows.iter().for_each(|row| rows[row.visit] += 1);
+    if rows.iter().all(|&rows| rows < 2) {
+        return (1..=scene.joints()).for_each(|joint| offers.invisible(Place::Joint(joint)));
+    }
+    for joint in 1..=scene.joints() {
+        let Some(largest) = scene.largest_torque(joint) else { continue };
+        let (unit, torque) = (scene.compliance_unit(joint), if scene.turns(joint) { "Nm" } else { "N" });
+        let radii = RADII.map(|fraction| fraction * largest);
+        let number = move |radius: f64| {
+            Number::elastic("weight", unit, [0.0, f64::INFINITY], move |point| {
+                let plays = plays(&point.samples, &point.torques(joint), radius);
+                point.of_joint(joint, |row| plays[row])
+            })
+        };
+        let form = |set: u32| {
+            let own: Vec<usize> = (0..RADII.len()).filter(|&k| set >> k & 1 == 1).collect();
+            let form = Form { names: &NAMES, ..Form::of(own.iter().copied()) };
+            let form = form.refined(move |radii| radii.iter().map(|&radius| number(radius)).collect());
+            own.iter().zip(OF_RADII).fold(form, |form, (&k, name)| form.with(name, radii[k], torque))
+        };
+        let sets = (1..1_u32 << RADII.len()).filter(|set| set.count_ones() <= MOST);
+        let numbers: Vec<Number> = radii.map(number).into();
+        offers.add(Place::Joint(joint), numbers, sets.map(form).collect());
+    }
+}
+
+/// The play operator of a radius after each row.
+pub fn plays(samples: &Samples, torques: &[f64], radius: f64) -> Vec<f64> {
+    let mut state = vec![0.0; samples.rows.iter().map(|row| row.visit + 1).max().unwrap_or(0)];
+    let play = |(row, &torque): (&crate::identify::samples::Sample, &f64)| {
+        let before: &mut f64 = &mut state[row.visit];
+        *before = (torque - radius).max((torque + radius).min(*before));
+        *before
+    };
+    samples.rows.iter().zip(torques).map(play).collect()
+}

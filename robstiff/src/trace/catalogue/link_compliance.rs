@@ -1,0 +1,29 @@
+//! A link as a uniform, round beam between two joint frames: `L / EI` and
+//! `L / GJ`.
+
+use std::format;
+
+use super::{Kind, Offers, Place, Scene, place_words, two_compliances};
+use crate::elements::Parameter;
+
+/// The kind.
+pub static KIND: Kind = Kind {
+    name: "link_compliance",
+    of_rig: false,
+    words: |found| {
+        let motion = match (found.value("bending") != 0.0, found.value("torsion") != 0.0) {
+            (true, false) => "bending",
+            (false, true) => "torsion",
+            _ => "bending and torsion",
+        };
+        format!("the {motion} of {}", place_words(found))
+    },
+    offer,
+};
+
+fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    for link in 1..scene.joints() {
+        let two = [("bending", Parameter::LinkBending(link)), ("torsion", Parameter::LinkTorsion(link))];
+        two_compliances(scene, offers, Place::Link(link), two);
+    }
+}

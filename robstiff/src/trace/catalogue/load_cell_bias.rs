@@ -1,0 +1,34 @@
+//! The load cell's zero is off: `b` acts on top of what the file says, constant
+//! in the base frame or in the tool's.
+
+use std::format;
+
+use super::{Form, Kind, Number, Offers, Place, Scene, WRENCH_STEP, frame_words};
+
+/// The kind.
+pub static KIND: Kind = Kind {
+    name: "load_cell_bias",
+    of_rig: true,
+    words: |found| format!("a bias of the load cell, constant in the {}", frame_words(found)),
+    offer,
+};
+
+fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    // A bias beyond the loads is no bias.
+    let force = |row: &crate::identify::samples::Sample| row.wrench.fixed_rows::<3>(0).norm();
+    let most = scene.samples.rows.iter().map(force).fold(0.0, f64::max);
+    let number = |k: usize| {
+        Number::of_setup(
+            ["Fx", "Fy", "Fz"][k % 3],
+            "N",
+            most,
+            move |setup, bias| {
+                let cell = if k < 3 { &mut setup.in_base } else { &mut setup.in_tool };
+                cell.bias[k % 3] += bias;
+            },
+            |point, enters| point.of_wrench(&**enters, WRENCH_STEP),
+        )
+    };
+    let forms = [Form::of(0..3), Form::of(3..6).in_tool()].into();
+    offers.add(Place::Rig, (0..6).map(number).collect(), forms);
+}

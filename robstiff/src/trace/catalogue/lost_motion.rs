@@ -1,0 +1,41 @@
+//! Lost motion: the steep part of a gear about zero torque. The joint turns by
+//! `gap / 2 tau / sqrt(tau^2 + knee^2)` on top of `h tau`, a smooth sign of the
+//! torque whose knee is well below the loads.
+
+use std::format;
+use std::vec::Vec;
+
+use super::{Form, Kind, Number, Offers, Place, Scene, place_words};
+
+/// The kind.
+pub static KIND: Kind = Kind {
+    name: "lost_motion",
+    of_rig: false,
+    words: |found| format!("the lost motion of {} about zero torque", place_words(found)),
+    offer,
+};
+
+/// The knees tried, as fractions of the largest torque seen on the joint: lost
+/// motion is over below some 3 % of what a gear is made for.
+const KNEES: [f64; 3] = [1.0 / 64.0, 1.0 / 32.0, 1.0 / 16.0];
+
+/// A gap of a degree is a gear that is broken (rad); on a sliding joint (m).
+const WIDEST: f64 = 0.0175;
+
+fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    for joint in 1..=scene.joints() {
+        let Some(largest) = scene.largest_torque(joint) else { continue };
+        let [gap, torque] = if scene.turns(joint) { ["rad", "Nm"] } else { ["m", "N"] };
+        let number = move |knee: f64| {
+            Number::elastic("gap", gap, [0.0, WIDEST], move |point| {
+                let torques = point.torques(joint);
+                point.of_joint(joint, |row| 0.5 * torques[row] / torques[row].hypot(knee))
+            })
+        };
+        let knees = KNEES.map(|fraction| fraction * largest);
+        let forms = (0..).zip(knees).map(|(k, knee)| Form::of([k]).with("knee", knee, torque));
+        let forms = forms.map(|form| form.refined(move |knees| [number(knees[0])].into())).collect();
+        let numbers: Vec<Number> = knees.map(number).into();
+        offers.add(Place::Joint(joint), numbers, forms);
+    }
+}

@@ -1,0 +1,435 @@
+//! The catalogue: every effect at every place it can be, one kind a file.
+//!
+//! A kind says where it can be, which numbers it takes and what a unit of each
+//! does to the readings, and in which forms it can be there: a link that bends
+//! but does not twist, a knee out of a grid. A candidate is a kind at a place,
+//! with the best of its forms.
+//!
+//! The rig's kinds come first, and of exact aliases the first is named. What is
+//! taken for a fault of the rig is left out of the description, which is then
+//! no worse than before; what is taken for an effect of the robot is written
+//! into it, and makes every prediction wrong. A wrong name costs less on that
+//! side. Among the robot's, those with fewer parts come first: a translation
+//! common to all poses is sooner the tool's than the base's, a tilt of the
+//! foundation sooner that than joint 1's bearing, and one compliance at a joint
+//! is simpler than a beam.
+
+mod base_compliance;
+mod base_slip;
+mod creep;
+mod dh_error;
+mod gravity_sag;
+mod hysteresis;
+mod joint_coupling;
+mod joint_zero_offset;
+mod lever_arm;
+mod link_compliance;
+mod load_cell_bias;
+mod load_cell_misalignment;
+mod load_cell_scale;
+mod lost_motion;
+mod outliers;
+mod pose_dependent_compliance;
+mod stiffness_nonlinearity;
+mod thermal_drift;
+mod tool_compliance;
+mod tracker_misalignment;
+mod transmission_error;
+mod transverse_compliance;
+
+use std::rc::Rc;
+use std::string::String;
+use std::vec;
+use std::vec::Vec;
+
+use nalgebra::{DVector, Matrix3};
+use robstiff_robots::Description;
+
+pub use self::base_slip::{KIND as BASE_SLIP, LIKELY};
+pub use self::outliers::KIND as OUTLIERS;
+use super::found::{EffectParameter, Found, Place};
+use super::isolated::Moment;
+use super::point::Point;
+use crate::campaign::Displacements;
+use crate::elements::Parameter;
+use crate::identify::normal::Sign;
+use crate::identify::samples::{Column, Samples, turn_of};
+use crate::identify::setup::Setup;
+use crate::identify::unit_of;
+use crate::{Effect, JointKind};
+
+/// A kind of effect.
+pub struct Kind {
+    /// Its name.
+    pub name: &'static str,
+    /// Whether it is a fault of the measurement and no effect of the robot.
+    pub of_rig: bool,
+    /// What it is, as a noun for a sentence: "the tilt of joint 3 ..".
+    pub words: fn(&Found) -> String,
+    /// Adds its candidates.
+    pub offer: fn(&Scene<'_>, &mut Offers<'_>),
+}
+
+impl PartialEq for Kind {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl core::fmt::Debug for Kind {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+/// Every kind, in the order of precedence among exact aliases. What is wrong
+/// with single rows (`outliers`) has no columns: it is found row by row.
+static KINDS: [&Kind; 22] = [
+    &thermal_drift::KIND,
+    &creep::KIND,
+    &load_cell_bias::KIND,
+    &load_cell_scale::KIND,
+    &load_cell_misalignment::KIND,
+    &lever_arm::KIND,
+    &tracker_misalignment::KIND,
+    &outliers::KIND,
+    &base_slip::KIND,
+    &tool_compliance::KIND,
+    &base_compliance::KIND,
+    &transverse_compliance::KIND,
+    &link_compliance::KIND,
+    &joint_coupling::KIND,
+    &stiffness_nonlinearity::KIND,
+    &lost_motion::KIND,
+    &hysteresis::KIND,
+    &pose_dependent_compliance::KIND,
+    &joint_zero_offset::KIND,
+    &dh_error::KIND,
+    &transmission_error::KIND,
+    &gravity_sag::KIND,
+];
+
+/// The campaign that candidates are looked for in.
+pub struct Scene<'c> {
+    /// The description as declared.
+    pub description: &'c Description,
+    /// The rows of the table.
+    pub data: &'c Displacements,
+    /// The rows on the robot as declared.
+    pub samples: &'c Samples,
+    /// The compliance of each joint (rad/Nm or m/N), identified, from 0.
+    pub compliance: Vec<f64>,
+    /// When the robot may have slipped, the likeliest first.
+    pub moments: &'c [Moment],
+}
+
+impl Scene<'_> {
+    /// The number of joints.
+    pub fn joints(&self) -> usize {
+        self.samples.joints()
+    }
+
+    /// Whether a joint (from 1) turns.
+    pub fn turns(&self, joint: usize) -> bool {
+        self.samples.joint_kinds[joint - 1] == JointKind::Revolute
+    }
+
+    /// The largest torque on a joint (from 1), without sign; none where no row
+    /// loads it.
+    pub fn largest_torque(&self, joint: usize) -> Option<f64> {
+        let largest = self.samples.torques(joint).into_iter().map(f64::abs).fold(0.0, f64::max);
+        // Below this share of what the load could do it is rounding.
+        let possible = self.samples.rows.iter().map(|row| row.wrench.norm()).fold(0.0, f64::max);
+        (largest > 1e-9 * possible).then_some(largest)
+    }
+
+    /// The unit of a compliance of a joint (from 1).
+    pub fn compliance_unit(&self, joint: usize) -> &'static str {
+        if self.turns(joint) { "rad/Nm" } else { "m/N" }
+    }
+
+    /// The turn of the tool in the base frame as declared, by row.
+    pub fn tools(&self) -> Vec<Matrix3<f64>> {
+        self.samples.rows.iter().map(|row| turn_of(&row.tcp)).collect()
+    }
+}
+
+/// What a unit of a number does to the readings, stacked.
+type Regressor = Rc<dyn Fn(&Point<'_>) -> DVector<f64>>;
+
+/// How a number enters the forward model.
+pub type Enters = Rc<dyn Fn(&mut Setup, f64)>;
+
+/// What physics says against numbers, each with its name, given the compliance
+/// of each joint (from 1).
+type Check = Rc<dyn Fn(&[(&str, f64)], &dyn Fn(usize) -> f64) -> Result<(), String>>;
+
+/// The numbers of a form with other values of those out of its grid.
+type Refine = Rc<dyn Fn(&[f64]) -> Vec<Number>>;
+
+/// A number of a candidate.
+#[derive(Clone)]
+pub struct Number {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The values that are physically possible, exclusive.
+    pub range: [f64; 2],
+    /// What a unit of it does to the readings, at a point.
+    pub regressor: Regressor,
+    /// How it enters the forward model, where it does so other than linearly.
+    pub enters: Option<Enters>,
+    /// The compliance it is, where it is one that holds for every load.
+    pub parameter: Option<Parameter>,
+    /// Whether it is elastic: it moves the arm, and is seen as the arm is.
+    pub elastic: bool,
+    /// Whether what it does creeps with the arm.
+    pub creeps: bool,
+    /// The joint (from 1) of whose compliance it is told as a share.
+    pub share_of: Option<usize>,
+}
+
+impl Number {
+    /// A number in which the readings are linear, the arm moving by it.
+    pub fn elastic(
+        name: &'static str,
+        unit: &'static str,
+        range: [f64; 2],
+        of: impl Fn(&Point<'_>) -> DVector<f64> + 'static,
+    ) -> Self {
+        Self {
+            name,
+            unit,
+            range,
+            regressor: Rc::new(of),
+            enters: None,
+            parameter: None,
+            elastic: true,
+            creeps: true,
+            share_of: None,
+        }
+    }
+
+    /// A number that adds to the readings, whatever the arm does.
+    pub fn of_reading(
+        name: &'static str,
+        unit: &'static str,
+        range: [f64; 2],
+        of: impl Fn(&Point<'_>) -> DVector<f64> + 'static,
+    ) -> Self {
+        Self { elastic: false, creeps: false, ..Self::elastic(name, unit, range, of) }
+    }
+
+    /// A compliance.
+    fn compliance(scene: &Scene<'_>, name: &'static str, range: [f64; 2], parameter: Parameter) -> Self {
+        let column = Column::Linear(parameter);
+        let unit = unit_of(scene.description, column);
+        let of = move |point: &Point<'_>| point.samples.column(column);
+        Self { parameter: Some(parameter), ..Self::elastic(name, unit, range, of) }
+    }
+
+    /// A number of the setup.
+    pub fn of_setup(
+        name: &'static str,
+        unit: &'static str,
+        most: f64,
+        enters: impl Fn(&mut Setup, f64) + 'static,
+        of: impl Fn(&Point<'_>, &Enters) -> DVector<f64> + 'static,
+    ) -> Self {
+        let enters: Enters = Rc::new(enters);
+        let own = Rc::clone(&enters);
+        let number = Self::elastic(name, unit, [-most, most], move |point| of(point, &own));
+        Self { enters: Some(enters), elastic: false, ..number }
+    }
+
+    /// What a unit of it does to the readings at a point, stacked.
+    pub fn column(&self, point: &Point<'_>) -> DVector<f64> {
+        let column = (self.regressor)(point);
+        if self.creeps { point.with_creep(column) } else { column }
+    }
+
+    /// Which values a fit may give it.
+    pub fn sign(&self) -> Sign {
+        if self.range[0] >= 0.0 { Sign::Nonnegative } else { Sign::Free }
+    }
+}
+
+/// Step of central differences of a wrench, in the number's own unit: rotations
+/// are the only ones not linear.
+pub const WRENCH_STEP: f64 = 1e-4;
+
+/// One way a candidate can be there.
+#[derive(Clone)]
+pub struct Variant {
+    /// The columns in the problem.
+    pub columns: Vec<usize>,
+    /// How many numbers it takes, those out of a grid counting each as one.
+    pub parameters: usize,
+    /// The numbers out of a grid.
+    pub shape: Vec<EffectParameter>,
+    /// Names of the numbers where they are not those of the columns.
+    pub names: &'static [&'static str],
+    /// Its numbers between the values of the grid, where there is a between; a
+    /// column then has one number out of the grid, its own.
+    pub refine: Option<Refine>,
+}
+
+/// An effect that may be missing.
+#[derive(Clone)]
+pub struct Candidate {
+    /// The kind.
+    pub kind: &'static Kind,
+    /// Where it is.
+    pub place: Place,
+    /// The forms it can have.
+    pub variants: Vec<Variant>,
+    /// What physics asks beyond the ranges of its numbers.
+    pub check: Option<Check>,
+}
+
+impl Candidate {
+    /// The full name, `kind@at`.
+    pub fn name(&self) -> String {
+        std::format!("{}@{}", self.kind.name, self.place)
+    }
+}
+
+/// What may be missing from a description.
+pub struct Catalogue {
+    /// The candidates.
+    pub candidates: Vec<Candidate>,
+    /// Their numbers; the columns of variants count from the description's own.
+    pub numbers: Vec<Number>,
+    /// Full names of what these data cannot show at all.
+    pub invisible: Vec<String>,
+}
+
+/// A catalogue in the making.
+pub struct Offers<'s> {
+    kind: &'static Kind,
+    declared: &'s [Effect],
+    first: usize,
+    catalogue: Catalogue,
+}
+
+/// A form of a candidate: some of its numbers, with those out of a grid.
+#[derive(Clone)]
+pub struct Form {
+    /// Which of the numbers.
+    pub numbers: Vec<usize>,
+    /// The numbers out of a grid.
+    pub shape: Vec<EffectParameter>,
+    /// What it says besides that is no number to be found.
+    pub marks: Vec<EffectParameter>,
+    /// Names of the numbers where they are not their own.
+    pub names: &'static [&'static str],
+    /// Its numbers between the values of the grid, where there is a between.
+    pub refine: Option<Refine>,
+}
+
+impl Form {
+    /// Some of the numbers.
+    pub fn of(numbers: impl IntoIterator<Item = usize>) -> Self {
+        Self { numbers: numbers.into_iter().collect(), shape: Vec::new(), marks: Vec::new(), names: &[], refine: None }
+    }
+
+    /// The same with a number out of a grid.
+    pub fn with(mut self, name: &'static str, value: f64, unit: &'static str) -> Self {
+        self.shape.push(EffectParameter { name, value, std: None, unit });
+        self
+    }
+
+    /// The same with what its numbers are between the values of the grid.
+    pub fn refined(mut self, refine: impl Fn(&[f64]) -> Vec<Number> + 'static) -> Self {
+        self.refine = Some(Rc::new(refine));
+        self
+    }
+
+    /// The same with its vector given in the tool frame, not in the base frame.
+    pub fn in_tool(mut self) -> Self {
+        self.marks.push(EffectParameter { name: TOOL_FRAME, value: 1.0, std: None, unit: "1" });
+        self
+    }
+}
+
+impl Offers<'_> {
+    /// A candidate, unless the description declares it.
+    pub fn add(&mut self, place: Place, numbers: Vec<Number>, forms: Vec<Form>) {
+        self.add_checked(place, numbers, forms, None);
+    }
+
+    /// A candidate with what physics asks of it.
+    pub fn add_checked(&mut self, place: Place, numbers: Vec<Number>, forms: Vec<Form>, check: Option<Check>) {
+        let same = |effect: &Effect| effect.kind() == self.kind.name && place == effect.place();
+        if self.declared.iter().any(same) {
+            return;
+        }
+        let start = self.first + self.catalogue.numbers.len();
+        let variant = |form: Form| Variant {
+            columns: form.numbers.iter().map(|k| start + k).collect(),
+            parameters: form.numbers.len() + form.shape.len(),
+            shape: form.shape.into_iter().chain(form.marks).collect(),
+            names: form.names,
+            refine: form.refine,
+        };
+        let variants = forms.into_iter().map(variant).collect();
+        self.catalogue.numbers.extend(numbers);
+        self.catalogue.candidates.push(Candidate { kind: self.kind, place, variants, check });
+    }
+
+    /// Something that these data cannot show.
+    pub fn invisible(&mut self, place: Place) {
+        self.catalogue.invisible.push(std::format!("{}@{}", self.kind.name, place));
+    }
+}
+
+/// What may be missing from a scene's description; its columns follow `first`
+/// columns of the description's own.
+pub fn catalogue(scene: &Scene<'_>, first: usize) -> Catalogue {
+    let catalogue = Catalogue { candidates: Vec::new(), numbers: Vec::new(), invisible: Vec::new() };
+    let mut offers = Offers { kind: KINDS[0], declared: &scene.description.effects, first, catalogue };
+    for kind in KINDS {
+        offers.kind = kind;
+        (kind.offer)(scene, &mut offers);
+    }
+    offers.catalogue
+}
+
+/// A candidate with one compliance.
+fn one_compliance(scene: &Scene<'_>, offers: &mut Offers<'_>, place: Place, name: &'static str, parameter: Parameter) {
+    let number = Number::compliance(scene, name, MORE_THAN_NONE, parameter);
+    offers.add(place, vec![number], vec![Form::of([0])]);
+}
+
+/// A candidate with two compliances, of which one or both can be there.
+fn two_compliances(scene: &Scene<'_>, offers: &mut Offers<'_>, place: Place, two: [(&'static str, Parameter); 2]) {
+    let number = |(name, parameter)| Number::compliance(scene, name, MORE_THAN_NONE, parameter);
+    let forms = vec![Form::of([0]), Form::of([1]), Form::of([0, 1])];
+    offers.add(place, two.into_iter().map(number).collect(), forms);
+}
+
+/// The range of a compliance.
+const MORE_THAN_NONE: [f64; 2] = [0.0, f64::INFINITY];
+
+/// The names of three components: of a point, a shift, a turn.
+const POINT: [&str; 3] = ["x", "y", "z"];
+const SHIFT: [&str; 3] = ["dx", "dy", "dz"];
+const TURN: [&str; 3] = ["rx", "ry", "rz"];
+
+/// The mark of components in the tool frame.
+const TOOL_FRAME: &str = "tool_frame";
+
+/// In which frame something is constant.
+fn frame_words(found: &Found) -> &'static str {
+    if found.value(TOOL_FRAME) == 1.0 { "tool frame" } else { "base frame" }
+}
+
+/// `the joint 3`, `the base`: a place in a sentence.
+fn place_words(found: &Found) -> String {
+    match found.place {
+        Place::Joints([i, j]) => std::format!("joints {i} and {j}"),
+        Place::Base | Place::Tool | Place::Rig | Place::Robot => std::format!("the {}", found.place),
+        place => std::format!("{place}"),
+    }
+}

@@ -1,0 +1,49 @@
+//! Hardening or softening of a joint with torque: it turns by `added tau /
+//! sqrt(1 + (tau / knee)^2)` on top of `h tau`.
+
+use std::format;
+use std::rc::Rc;
+use std::vec::Vec;
+
+use super::{Form, Kind, Number, Offers, Place, Scene, place_words};
+use crate::identify::samples::Column;
+
+/// The kind.
+pub static KIND: Kind = Kind {
+    name: "stiffness_nonlinearity",
+    of_rig: false,
+    words: |found| {
+        let change = if found.value("added") < 0.0 { "softening" } else { "hardening" };
+        format!("the {change} of {} with torque", place_words(found))
+    },
+    offer,
+};
+
+/// The knees tried, as fractions of the largest torque seen on the joint. A
+/// knee above it bends too little to be told from a joint; a change that is
+/// over before the loads begin is a step at zero torque, which is
+/// `lost_motion` and has the knees below.
+const KNEES: [f64; 4] = [1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0, 1.0];
+
+fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    for joint in 1..=scene.joints() {
+        let Some(largest) = scene.largest_torque(joint) else { continue };
+        let unit = scene.compliance_unit(joint);
+        let number = move |knee: f64| {
+            Number::elastic("added", unit, [f64::NEG_INFINITY, f64::INFINITY], move |point| {
+                point.samples.column(Column::Knee { joint, knee })
+            })
+        };
+        let knees = KNEES.map(|fraction| fraction * largest);
+        let torque = if scene.turns(joint) { "Nm" } else { "N" };
+        let forms = (0..).zip(knees).map(|(k, knee)| Form::of([k]).with("knee", knee, torque));
+        let forms = forms.map(|form| form.refined(move |knees| [number(knees[0])].into())).collect();
+        let check = move |numbers: &[(&str, f64)], of: &dyn Fn(usize) -> f64| {
+            (numbers[0].1 > -of(joint))
+                .then_some(())
+                .ok_or_else(|| format!("the unloaded joint {joint} would have a negative compliance"))
+        };
+        let numbers: Vec<Number> = knees.map(number).into();
+        offers.add_checked(Place::Joint(joint), numbers, forms, Some(Rc::new(check)));
+    }
+}

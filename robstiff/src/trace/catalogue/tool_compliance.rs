@@ -1,0 +1,18 @@
+//! Flange, spindle and tool: a turn and a displacement at the flange frame's
+//! origin, the same in every direction, `h s s^T` for three axes each.
+
+use super::{Kind, Offers, Place, Scene, two_compliances};
+use crate::elements::Parameter;
+
+/// The kind.
+pub static KIND: Kind = Kind {
+    name: "tool_compliance",
+    of_rig: false,
+    words: |_| "the compliance of flange, spindle and tool".into(),
+    offer,
+};
+
+fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    let two = [("rotation", Parameter::ToolRotation), ("translation", Parameter::ToolTranslation)];
+    two_compliances(scene, offers, Place::Tool, two);
+}

@@ -1,0 +1,58 @@
+//! A periodic error of a joint's coordinate (eccentric encoder, gear): `cos
+//! cos(k q) + sin sin(k q)`. In same-pose differences it is small, as a zero
+//! offset is.
+
+use std::format;
+use std::vec::Vec;
+
+use super::{Form, Kind, Number, Offers, Place, Scene, place_words};
+use crate::identify::setup::Wave;
+
+/// The kind.
+pub static KIND: Kind = Kind {
+    name: "transmission_error",
+    of_rig: false,
+    words: |found| {
+        format!(
+            "the error of the angle of {} that comes back {} times a turn",
+            place_words(found),
+            found.value("order")
+        )
+    },
+    offer,
+};
+
+/// The orders tried, one of them.
+const ORDERS: [f64; 3] = [1.0, 2.0, 3.0];
+
+/// More is no error of a gear (rad), and no gear has near as much; what a same-
+/// pose difference shows at all has to be that large.
+const MOST: f64 = 0.1;
+
+fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    for joint in (1..=scene.joints()).filter(|&joint| scene.turns(joint)) {
+        let number = |(order, name): (f64, &'static str)| {
+            let of_cos = name == "cos";
+            let wave = move |amplitude: f64| {
+                let (cos, sin) = if of_cos { (amplitude, 0.0) } else { (0.0, amplitude) };
+                Wave { joint, order, cos, sin }
+            };
+            Number::of_setup(
+                name,
+                "rad",
+                MOST,
+                move |setup, amplitude| setup.waves.push(wave(amplitude)),
+                move |point, _| {
+                    point.slope(joint, 0, |row| {
+                        let angle = order * point.data.rows[row].q[joint - 1];
+                        if of_cos { angle.cos() } else { angle.sin() }
+                    })
+                },
+            )
+        };
+        let numbers: Vec<Number> =
+            ORDERS.iter().flat_map(|&order| [(order, "cos"), (order, "sin")]).map(number).collect();
+        let form = |(k, &order): (usize, &f64)| Form::of([2 * k, 2 * k + 1]).with("order", order, "1");
+        offers.add(Place::Joint(joint), numbers, ORDERS.iter().enumerate().map(form).collect());
+    }
+}

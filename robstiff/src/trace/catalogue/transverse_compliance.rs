@@ -1,0 +1,21 @@
+//! Tilt of a joint about the x and y axes of its joint frame (bearing,
+//! housing): `h [s(x) s(x)^T + s(y) s(y)^T] F`.
+
+use std::format;
+
+use super::{Kind, Offers, Place, Scene, one_compliance, place_words};
+use crate::elements::Parameter;
+
+/// The kind.
+pub static KIND: Kind = Kind {
+    name: "transverse_compliance",
+    of_rig: false,
+    words: |found| format!("the tilt of {} about the axes across its own (bearing, housing)", place_words(found)),
+    offer,
+};
+
+fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    for joint in 1..=scene.joints() {
+        one_compliance(scene, offers, Place::Joint(joint), "h", Parameter::Transverse(joint));
+    }
+}

@@ -1,0 +1,171 @@
+//! What was found, in the contract's names, and how it goes into a description.
+
+use core::fmt;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use robstiff_robots::Description;
+use robstiff_robots::effect::physics::Parameter;
+use robstiff_robots::effect::{self, CATALOGUE, DhEntry};
+
+use super::catalogue::Kind;
+use crate::Effect;
+
+/// An effect that was found, with its numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    kind: &'static Kind,
+    /// Where it is.
+    pub place: Place,
+    /// Its numbers with their uncertainty.
+    pub parameters: Vec<EffectParameter>,
+}
+
+/// A number of an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectParameter {
+    /// Its name; `h` where the effect has one compliance.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// One standard deviation; none for a number out of a grid.
+    pub std: Option<f64>,
+    /// Its unit.
+    pub unit: &'static str,
+}
+
+/// Where an effect is; displays as the contract spells it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// One joint, from 1.
+    Joint(usize),
+    /// Two joints, from 1.
+    Joints([usize; 2]),
+    /// One link, from 1.
+    Link(usize),
+    /// The foundation.
+    Base,
+    /// The flange and what is mounted on it.
+    Tool,
+    /// An entry of the DH table, `[theta, d, a, alpha]`, of a row from 1.
+    Entry(usize, usize),
+    /// The whole robot.
+    Robot,
+    /// The measurement.
+    Rig,
+}
+
+/// The entries of a row of the DH table.
+const ENTRIES: [&str; 4] = ["theta", "d", "a", "alpha"];
+const ENTRY: [fn(usize) -> DhEntry; 4] = [DhEntry::Theta, DhEntry::D, DhEntry::A, DhEntry::Alpha];
+
+impl Place {
+    /// The place in a description, where it is one of a robot's parts.
+    fn of_description(self) -> Option<effect::Place> {
+        Some(match self {
+            Self::Joint(joint) => effect::Place::Joint(joint),
+            Self::Joints(joints) => effect::Place::Joints(joints),
+            Self::Link(link) => effect::Place::Link(link),
+            Self::Base => effect::Place::Base,
+            Self::Tool => effect::Place::Tool,
+            Self::Entry(entry, row) => effect::Place::Entry(ENTRY[entry](row)),
+            Self::Robot | Self::Rig => return None,
+        })
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Joint(i) => write!(f, "joint {i}"),
+            Self::Joints([i, j]) => write!(f, "joints {i},{j}"),
+            Self::Link(i) => write!(f, "link {i}"),
+            Self::Base => f.write_str("base"),
+            Self::Tool => f.write_str("tool"),
+            Self::Entry(entry, row) => write!(f, "{}{row}", ENTRIES[*entry]),
+            Self::Robot => f.write_str("robot"),
+            Self::Rig => f.write_str("rig"),
+        }
+    }
+}
+
+/// Places of descriptions are spelt alike.
+impl PartialEq<robstiff_robots::effect::Place> for Place {
+    fn eq(&self, other: &robstiff_robots::effect::Place) -> bool {
+        self.to_string() == other.to_string()
+    }
+}
+
+impl Found {
+    /// An effect of a kind.
+    pub(super) fn new(kind: &'static Kind, place: Place, parameters: Vec<EffectParameter>) -> Self {
+        Self { kind, place, parameters }
+    }
+
+    /// The kind, e.g. `transverse_compliance`.
+    pub fn kind(&self) -> &'static str {
+        self.kind.name
+    }
+
+    /// Where it is.
+    pub fn place(&self) -> Place {
+        self.place
+    }
+
+    /// Whether it is a fault of the measurement, which is corrected for and
+    /// not written into the robot.
+    pub fn is_of_rig(&self) -> bool {
+        self.kind.of_rig
+    }
+
+    /// What it is, as a noun for a sentence.
+    pub fn words(&self) -> String {
+        (self.kind.words)(self)
+    }
+
+    /// The value of one of its numbers; zero where it does not have it.
+    pub fn value(&self, name: &str) -> f64 {
+        self.parameters.iter().find(|parameter| parameter.name == name).map_or(0.0, |parameter| parameter.value)
+    }
+
+    /// The effect as a description writes it, where it has a word for it.
+    pub fn effect(&self) -> Option<Effect> {
+        let about = CATALOGUE.iter().find(|about| about.kind == self.kind.name)?;
+        let number = |parameter: &Parameter| {
+            let own = self.parameters.iter().find(|number| spelt(number.name) == parameter.name);
+            own.map(|number| number.value).or(parameter.default).unwrap_or(0.0)
+        };
+        let numbers: Vec<f64> = about.parameters.iter().map(number).collect();
+        Effect::of_kind(self.kind.name, self.place.of_description()?, &numbers)
+    }
+
+    /// Writes the effect into a description; whether that takes it.
+    pub(super) fn write_into(&self, description: &mut Description) -> bool {
+        let Some(effect) = self.effect().filter(|_| !self.is_of_rig()) else { return false };
+        let mut with = description.clone();
+        with.effects.push(effect);
+        // What a fit allows may still be beyond what a description takes, such
+        // as a periodic error too large for the code that is generated.
+        let taken = Description::parse("", &with.to_yaml()).is_ok();
+        if taken {
+            *description = with;
+        }
+        taken
+    }
+}
+
+/// A number's name as descriptions spell it: there the only one of an effect
+/// is its value.
+fn spelt(name: &'static str) -> &'static str {
+    match name {
+        "h" | "offset" => "value",
+        name => name,
+    }
+}
+
+/// The full name, `kind@at`.
+impl fmt::Display for Found {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}@{}", self.kind.name, self.place)
+    }
+}

@@ -1,0 +1,301 @@
+//! What is wrong in single visits: wild rows, a wild unloaded reading, a slip
+//! within a visit. The tests of the catalogue keep whole poses together and
+//! cannot see what one pose alone says; and a wild row must not vote for an
+//! effect there.
+//!
+//! A visit's residuals are held against each of these: one row off, all rows
+//! from one on off by the same, all rows off by the same (the unloaded reading),
+//! by generalised least squares. What is a straight line in the load is taken
+//! out before, for that is how a missing compliance looks, and the scale is the
+//! median over all rows, by axis: structure common to many visits raises it. So
+//! rows stand out from structure and noise together, and what was cut while an
+//! effect was missing is looked at again once it is named.
+
+use std::vec;
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector, Vector3};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use super::model::{Fitted, Setting};
+use crate::identify::whitening::{mean_share, whiten};
+
+/// Something wrong in one visit.
+#[derive(Clone, Debug)]
+pub struct Event {
+    /// The rows it is seen in, of the campaign.
+    pub rows: Vec<usize>,
+    /// By how much they are off (m).
+    pub shift: Vector3<f64>,
+    /// What it explains over the variance of a reading.
+    pub statistic: f64,
+    /// The probability of so much under noise alone, over all that was looked
+    /// at.
+    pub p_value: f64,
+    /// Whether several rows to the visit's end are off by the same, but not
+    /// all.
+    pub is_slip: bool,
+}
+
+/// What must be explained over the robust variance, where structure may be
+/// left: beyond twelve standard deviations with the straight line taken out,
+/// beyond fourteen where there are too few rows to do so.
+const STANDS_OUT: f64 = 150.0;
+const STANDS_OUT_AS_IT_IS: f64 = 200.0;
+
+/// The level over all rows where what is left otherwise is noise. It is less
+/// than that of the other tests, for noise with a few larger values is common.
+const STRICT: f64 = 1e-3;
+
+/// More than this share of the rows is no matter of single rows.
+const FEW: f64 = 0.1;
+
+/// The median of chi-square with one degree of freedom.
+const MEDIAN: f64 = 0.4549;
+
+/// With less than this share left, a straight line in the load says the same.
+const OF_ITS_OWN: f64 = 0.1;
+
+/// A step that explains less, over the residual variance, is nowhere near
+/// significant.
+const WORTH_A_LOOK: f64 = 15.0;
+
+/// What two names may differ by before the simpler is left for the other.
+const TIE: f64 = 6.0;
+
+/// One visit's residuals.
+struct Visit {
+    rows: Vec<usize>,
+    used: Vec<bool>,
+    residuals: Vec<Vector3<f64>>,
+    /// Along the load, the largest being 1.
+    loads: Vec<f64>,
+}
+
+/// What one hypothesis explains: by axis, and along which shift.
+struct Explained {
+    by_axis: Vector3<f64>,
+    shift: Vector3<f64>,
+    projected: bool,
+}
+
+impl Visit {
+    /// `a^T V^-1 b` over the rows used, with `V = I + 1 1^T`.
+    fn product(&self, a: &[f64], b: &[f64]) -> f64 {
+        let used = || (0..self.rows.len()).filter(|&i| self.used[i]);
+        let count = used().count() as f64;
+        let (mut dot, mut sum_a, mut sum_b) = (0.0, 0.0, 0.0);
+        for i in used() {
+            dot += a[i] * b[i];
+            sum_a += a[i];
+            sum_b += b[i];
+        }
+        dot - sum_a * sum_b / (1.0 + count)
+    }
+
+    fn explained(&self, pattern: &[f64], strict: bool) -> Option<Explained> {
+        let own = self.product(pattern, pattern);
+        let loads = self.product(&self.loads, &self.loads);
+        let along = if loads > 0.0 { self.product(pattern, &self.loads) / loads } else { 0.0 };
+        let left: Vec<f64> = pattern.iter().zip(&self.loads).map(|(p, load)| p - along * load).collect();
+        let remaining = self.product(&left, &left);
+        let enough = self.used.iter().filter(|used| **used).count() > 3 && remaining > OF_ITS_OWN * own;
+        let projected = !strict && enough;
+        let (pattern, size) = if projected { (&left[..], remaining) } else { (pattern, own) };
+        if size <= 0.0 {
+            return None;
+        }
+        let of_axis = |axis: usize| {
+            let residuals: Vec<f64> = self.residuals.iter().map(|residual| residual[axis]).collect();
+            self.product(pattern, &residuals)
+        };
+        let products = Vector3::from_fn(|axis, _| of_axis(axis));
+        Some(Explained { by_axis: products.component_mul(&products) / size, shift: products / size, projected })
+    }
+
+    fn single(&self, row: usize) -> Vec<f64> {
+        (0..self.rows.len()).map(|i| f64::from(u8::from(i == row))).collect()
+    }
+
+    fn from(&self, row: usize) -> Vec<f64> {
+        (0..self.rows.len()).map(|i| f64::from(u8::from(i >= row))).collect()
+    }
+}
+
+/// What is wrong in single visits, the worst first; nothing where that would
+/// be more than a few. With `strict`, the rest is taken to be noise.
+pub fn events(setting: &Setting<'_>, model: &Fitted, strict: bool) -> Vec<Event> {
+    let samples = &setting.point.samples;
+    let residuals = setting.residuals(&model.fit) - &setting.correction;
+    let mut visits: Vec<Visit> = Vec::new();
+    let mut at = vec![usize::MAX; samples.rows.iter().map(|row| row.visit + 1).max().unwrap_or(0)];
+    for (i, row) in samples.rows.iter().enumerate() {
+        if at[row.visit] == usize::MAX {
+            at[row.visit] = visits.len();
+            visits.push(Visit { rows: vec![], used: vec![], residuals: vec![], loads: vec![] });
+        }
+        let visit = &mut visits[at[row.visit]];
+        visit.rows.push(i);
+        visit.used.push(true);
+        visit.residuals.push(residuals.fixed_rows::<3>(i * samples.axes).into_owned());
+    }
+    for visit in &mut visits {
+        let wrench = |&row: &usize| samples.rows[row].wrench;
+        let norm = |row: &&usize| wrench(row).norm();
+        let Some(largest) = visit.rows.iter().max_by(|a, b| norm(a).total_cmp(&norm(b))) else { continue };
+        let largest = wrench(largest);
+        let size = largest.norm_squared().max(f64::MIN_POSITIVE);
+        visit.loads = visit.rows.iter().map(|row| wrench(row).dot(&largest) / size).collect();
+    }
+    let most = (FEW * samples.rows.len() as f64).floor() as usize;
+    let hypotheses = 2 * samples.rows.len();
+    let table = ChiSquared::new(3.0).expect("three degrees of freedom");
+    let threshold = table.inverse_cdf(1.0 - STRICT / hypotheses as f64);
+    let mut found: Vec<Event> = Vec::new();
+    loop {
+        let variance = scale(&visits, strict);
+        if variance.iter().any(|variance| *variance <= 0.0) {
+            return found;
+        }
+        let worst = (0..visits.len()).filter_map(|k| worst(&visits[k], &variance, strict, threshold).map(|e| (k, e)));
+        let Some((k, event)) = worst.max_by(|a, b| a.1.statistic.total_cmp(&b.1.statistic)) else { break };
+        let visit = &mut visits[k];
+        for (i, row) in visit.rows.iter().enumerate() {
+            visit.used[i] &= !event.rows.contains(row);
+        }
+        let p_value = (hypotheses as f64 * table.sf(event.statistic)).min(1.0);
+        found.push(Event { p_value, ..event });
+        if found.iter().map(|event| event.rows.len()).sum::<usize>() > most {
+            return Vec::new();
+        }
+    }
+    found
+}
+
+/// The variance of a reading by axis, from the median over single rows.
+fn scale(visits: &[Visit], strict: bool) -> Vector3<f64> {
+    let mut by_axis: [Vec<f64>; 3] = Default::default();
+    for visit in visits {
+        for i in (0..visit.rows.len()).filter(|&i| visit.used[i]) {
+            if let Some(explained) = visit.explained(&visit.single(i), strict) {
+                (0..3).for_each(|axis| by_axis[axis].push(explained.by_axis[axis]));
+            }
+        }
+    }
+    Vector3::from_fn(|axis, _| {
+        let values = &mut by_axis[axis];
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied().unwrap_or(0.0) / MEDIAN
+    })
+}
+
+/// The worst of a visit, if it stands out.
+fn worst(visit: &Visit, variance: &Vector3<f64>, strict: bool, threshold: f64) -> Option<Event> {
+    let count = visit.rows.len();
+    let used: Vec<usize> = (0..count).filter(|&i| visit.used[i]).collect();
+    let event = |pattern: Vec<f64>, is_slip: bool| {
+        let explained = visit.explained(&pattern, strict)?;
+        let statistic = explained.by_axis.component_div(variance).sum();
+        let enough = match (strict, explained.projected) {
+            (true, _) => threshold,
+            (false, true) => STANDS_OUT,
+            (false, false) => STANDS_OUT_AS_IT_IS,
+        };
+        let rows = (0..count).filter(|&i| visit.used[i] && pattern[i] != 0.0).map(|i| visit.rows[i]).collect();
+        (statistic > enough).then_some(Event { rows, shift: explained.shift, statistic, p_value: 1.0, is_slip })
+    };
+    let single = used.iter().filter_map(|&i| event(visit.single(i), false));
+    let single = single.max_by(|a, b| a.statistic.total_cmp(&b.statistic));
+    // The last row alone is a single one, all rows the unloaded reading.
+    let from = used.iter().enumerate().filter(|(k, _)| k + 2 <= used.len());
+    let several = from.filter_map(|(k, &i)| event(visit.from(i), k > 0));
+    let several = several.max_by(|a, b| a.statistic.total_cmp(&b.statistic));
+    match (single, several) {
+        (Some(single), Some(several)) if several.statistic > single.statistic + TIE => Some(several),
+        (Some(single), _) => Some(single),
+        (None, several) => several,
+    }
+}
+
+/// A slip that whole visits keep: the rows from one on have the shift, or where
+/// the unloaded readings were taken in a round before, and the slip was within
+/// the round, the rows before one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Moment {
+    /// The row.
+    pub row: usize,
+    /// Whether the rows before it have the shift.
+    pub before: bool,
+}
+
+impl Moment {
+    /// Whether a row has the shift.
+    pub fn has(&self, row: usize) -> bool {
+        (row < self.row) == self.before
+    }
+}
+
+/// The slip that whole visits keep which is most likely, if one is near
+/// significant.
+pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted) -> Option<Moment> {
+    let problem = &setting.problem;
+    let (axes, rows) = (problem.axes, setting.point.samples.rows.len());
+    let mut fitted_to = vec![false; rows];
+    problem.blocks.iter().flat_map(|block| &block.rows).for_each(|&row| fitted_to[row] = true);
+    let columns = &model.fit.columns;
+    let mut white = problem.white.select_columns(columns).insert_column(columns.len(), 0.0);
+    white.set_column(columns.len(), &problem.white_residuals(columns, &problem.total.solve(columns)?.coefficients));
+    for row in (0..rows).filter(|&row| !fitted_to[row]) {
+        white.rows_mut(row * axes, axes).fill(0.0);
+    }
+    // A step is whitened like the readings; its products with what is whitened
+    // are sums over rows of that whitened once more.
+    let visits = setting.point.samples.visits();
+    whiten(&mut white, &visits, axes);
+    let inverse = problem.total.inverse(columns)?;
+    let mut sizes = vec![0_usize; visits.iter().max()? + 1];
+    visits.iter().for_each(|&visit| sizes[visit] += 1);
+    let scan = |order: &mut dyn Iterator<Item = usize>, before: bool| {
+        let mut inside = vec![0_usize; sizes.len()];
+        let mut energy = 0.0;
+        let mut sums = DMatrix::<f64>::zeros(3, columns.len() + 1);
+        let mut best: Option<(f64, Moment)> = None;
+        for row in order {
+            if fitted_to[row] {
+                for axis in 0..3 {
+                    for column in 0..=columns.len() {
+                        sums[(axis, column)] += white[(row * axes + axis, column)];
+                    }
+                }
+                let visit = visits[row];
+                energy -= step_energy(sizes[visit], inside[visit]);
+                inside[visit] += 1;
+                energy += step_energy(sizes[visit], inside[visit]);
+            }
+            let gain: f64 = (0..3)
+                .map(|axis| {
+                    let along = DVector::from_fn(columns.len(), |k, _| sums[(axis, k)]);
+                    let left = energy - along.dot(&(&inverse * &along));
+                    if left > OF_ITS_OWN * energy { sums[(axis, columns.len())].powi(2) / left } else { 0.0 }
+                })
+                .sum();
+            if best.is_none_or(|(most, _)| gain > most) {
+                best = Some((gain, Moment { row: row + usize::from(before), before }));
+            }
+        }
+        best
+    };
+    let after = scan(&mut (1..rows).rev(), false);
+    let before = scan(&mut (0..rows - 1), true);
+    let variance = model.fit.rss / problem.freedom(&model.fit);
+    let best = after.into_iter().chain(before).max_by(|a, b| a.0.total_cmp(&b.0));
+    best.filter(|(gain, _)| *gain > WORTH_A_LOOK * variance).map(|(_, moment)| moment)
+}
+
+/// The squared length of a step over the last `inside` of a visit's `rows`
+/// rows, whitened.
+fn step_energy(rows: usize, inside: usize) -> f64 {
+    let (n, m) = (rows as f64, inside as f64);
+    let taken = mean_share(rows) * m / n;
+    m * (1.0 - taken).powi(2) + (n - m) * taken * taken
+}
