@@ -41,6 +41,8 @@ fn campaign(truth: &Description, declared: Description, frame: Frame, at: [f64; 
             wrench: [force.x, force.y, force.z, moment.x, moment.y, moment.z],
             displacement: seen(displacement).into(),
             rotation: Some(seen(turn).into()),
+            encoders: None,
+            motors: None,
         }
     });
     let data = Displacements {
@@ -140,6 +142,8 @@ fn the_second_order_is_that_of_a_lever() {
             wrench: [0.0, force, 0.0, 0.0, 0.0, 0.0],
             displacement: [0.0; 3],
             rotation: None,
+            encoders: None,
+            motors: None,
         }],
     };
     let beyond = beyond_linear(&Samples::of_description(&description, &data), &[h]);
