@@ -6,6 +6,8 @@
 
 mod clamped;
 mod displacements;
+#[cfg(test)]
+pub(crate) mod made;
 mod read;
 mod table;
 #[cfg(test)]

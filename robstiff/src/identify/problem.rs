@@ -5,9 +5,9 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::covariance::Covariance;
 use super::normal::Normal;
 use super::samples::{Column, Samples};
-use super::whitening::whiten;
 
 /// Readings and the columns that are to explain them.
 #[derive(Clone, Debug)]
@@ -18,7 +18,8 @@ pub struct Problem {
     pub raw: DMatrix<f64>,
     /// The readings as measured (m, rad).
     pub readings: DVector<f64>,
-    /// The columns, whitened; rotations in the displacements' unit (m).
+    /// The columns, whitened; rotations in the displacements' unit (m), axes in
+    /// the frame measured in.
     pub white: DMatrix<f64>,
     /// The readings, whitened alike.
     pub white_readings: DVector<f64>,
@@ -50,8 +51,7 @@ impl Problem {
     /// The problem of explaining `readings` (stacked like
     /// [`Samples::readings`]) on the poses for which `training` holds.
     /// `correction` is taken from what is whitened, but not from the readings
-    /// that residuals are reported of. `rotation_weight` (m/rad) is the noise
-    /// of a displacement over that of a rotation.
+    /// that residuals are reported of.
     ///
     /// # Panics
     /// If no row belongs to a training pose.
@@ -60,7 +60,7 @@ impl Problem {
         columns: Vec<Column>,
         readings: DVector<f64>,
         correction: &DVector<f64>,
-        rotation_weight: f64,
+        covariance: &Covariance,
         training: &[bool],
     ) -> Self {
         let axes = samples.axes;
@@ -70,12 +70,7 @@ impl Problem {
         }
         let mut white = raw.clone().insert_column(columns.len(), 0.0);
         white.set_column(columns.len(), &(&readings - correction));
-        for (i, mut row) in white.row_iter_mut().enumerate() {
-            if i % axes >= 3 {
-                row *= rotation_weight;
-            }
-        }
-        whiten(&mut white, &samples.visits(), axes);
+        covariance.whiten(&mut white);
         let white_readings = white.column(columns.len()).into_owned();
         let white = white.remove_column(columns.len());
 

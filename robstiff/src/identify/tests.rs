@@ -4,6 +4,7 @@ use std::vec;
 
 use nalgebra::{DVector, Vector3, Vector6};
 
+use super::covariance::Covariance;
 use super::noise::repetitions;
 use super::samples::Samples;
 use super::second_order::beyond_linear;
@@ -170,7 +171,9 @@ fn repetitions_give_the_noise() {
         data.rows.push(twin);
     }
     data.visits = (0..60).map(|i| format!("{i}")).collect();
-    let found = repetitions(&Samples::of_description(&five_axis(), data), |_| true).displacement;
+    let samples = Samples::of_description(&five_axis(), data);
+    let covariance = Covariance::estimate(&samples, Frame::Base, Noise::default(), |_| true);
+    let found = repetitions(&samples, &covariance, |_| true);
     assert_eq!(found.freedom, 90);
     assert!((found.variance().expect("enough repetitions").sqrt() - 1e-5).abs() < 1e-12);
 }
