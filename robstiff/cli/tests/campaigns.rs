@@ -121,7 +121,20 @@ fn traces_the_missing_effect_and_writes_everything() {
     assert_eq!(trace, json(&path));
     assert_eq!(
         keys(&trace),
-        ["robot", "rows", "poses", "noise_um", "before", "effects", "after", "verdict", "why", "unexplained", "next"]
+        [
+            "robot",
+            "rows",
+            "poses",
+            "noise_um",
+            "before",
+            "effects",
+            "after",
+            "verdict",
+            "why",
+            "unexplained",
+            "triage",
+            "next"
+        ]
     );
     assert_eq!(keys(&trace["before"]), ["declared", "identified"]);
     assert_eq!(keys(&trace["before"]["declared"]), ["rms_um", "holdout_rms_um"]);

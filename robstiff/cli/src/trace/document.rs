@@ -3,12 +3,14 @@
 use robstiff::JointKind;
 use robstiff::campaign::Campaign;
 use robstiff::trace::{Misfit, NamedEffect, Proposal, Trace};
+use robstiff::triage::Triage;
 use serde_json::{Value, json};
 
+use super::triage;
 use crate::json::{number, numbers};
 
 /// The result for other programs.
-pub fn document(trace: &Trace, campaign: &Campaign) -> Value {
+pub fn document(trace: &Trace, triage: &Triage, campaign: &Campaign) -> Value {
     json!({
         "robot": trace.robot,
         "rows": trace.rows,
@@ -20,6 +22,7 @@ pub fn document(trace: &Trace, campaign: &Campaign) -> Value {
         "verdict": trace.verdict.to_string(),
         "why": trace.why,
         "unexplained": {"fraction": number(trace.unexplained), "depends_on": trace.depends_on},
+        "triage": triage::document(triage),
         "next": trace.next.iter().map(|next| proposal(next, campaign)).collect::<Value>(),
     })
 }
