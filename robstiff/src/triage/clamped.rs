@@ -75,7 +75,7 @@ impl Axis {
         let freedom = rows.checked_sub(3).filter(|&freedom| freedom > 0)?;
         let svd = design.clone().svd(true, true);
         let least = svd.singular_values.iter().copied().fold(f64::INFINITY, f64::min);
-        if !(least > 1e-3 * svd.singular_values.max()) {
+        if least <= 1e-3 * svd.singular_values.max() {
             return None;
         }
         let fitted = svd.solve(&self.deflections, 0.0).ok()?;
