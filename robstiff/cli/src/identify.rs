@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use robstiff::campaign::{Campaign, Data, Displacements};
-use robstiff::identify::covariance::Covariance;
+use robstiff::identify::covariance::{Basis, Covariance};
 use robstiff::identify::{Estimate, Identification, NoiseSource, Visibility, identify};
 use robstiff_robots::Description;
 use serde_json::{Value, json};
@@ -67,7 +67,8 @@ fn noise(covariance: &Covariance, data: &Displacements) -> String {
     let mut said = String::new();
     if covariance.unequal {
         let axes: Vec<String> = covariance.own[..3].iter().map(|own| micrometres(*own)).collect();
-        said += &format!("the axes differ: {} um along x, y and z of what was measured\n", axes.join(", "));
+        let by = if covariance.basis == Basis::Model { ", by what the model leaves" } else { "" };
+        said += &format!("the axes differ: {} um along x, y and z is a row's own noise{by}\n", axes.join(", "));
     }
     if covariance.share.is_some() {
         let shared = decimals(covariance.shared, 2);
