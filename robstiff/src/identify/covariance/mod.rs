@@ -168,14 +168,6 @@ impl Covariance {
         }
     }
 
-    /// What is to be freed at a pose so that nothing but noise is left.
-    pub fn level(&self) -> Level {
-        match self.basis {
-            Basis::Contrasts(level) => level,
-            Basis::Model | Basis::Assumed => Level::Linear,
-        }
-    }
-
     /// Axes per row.
     pub fn axes(&self) -> usize {
         self.own.len()
