@@ -22,8 +22,9 @@
 //! - [`analysis`]: stiffness, directional stiffness, principal directions;
 //! - [`batch`]: slices of poses, several abreast; [`Lanes`] and [`Dual`]: vectors
 //!   and derivatives through the same generated code;
-//! - `campaign`, `identify`, `trace` (feature `identify`): measured data, the
-//!   joint compliances that fit it, and the effects it shows to be missing;
+//! - `campaign`, `triage`, `identify`, `trace` (feature `identify`): measured
+//!   data, what they say without a model, the joint compliances that fit them,
+//!   and the effects they show to be missing;
 //! - `plan`, `simulate` (likewise): what to measure next, and campaigns on an arm
 //!   that hides something, to try a measurement before making it.
 //!
@@ -59,6 +60,8 @@ pub mod simulate;
 mod state;
 #[cfg(feature = "identify")]
 pub mod trace;
+#[cfg(feature = "identify")]
+pub mod triage;
 mod trig;
 
 pub use dual::Dual;

@@ -2,14 +2,15 @@
 
 use std::path::PathBuf;
 
-use robstiff::campaign::Campaign;
+use robstiff::campaign::{Campaign, Data, Displacements};
+use robstiff::identify::covariance::{Basis, Covariance};
 use robstiff::identify::{Estimate, Identification, NoiseSource, Visibility, identify};
 use robstiff_robots::Description;
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
-use crate::text::{Table, and, count, micrometres, significant, uncertain};
+use crate::text::{Table, and, count, decimals, micrometres, significant, uncertain};
 use crate::{input, json};
 
 /// The compliances that fit a campaign, with their uncertainty
@@ -55,7 +56,28 @@ fn page(campaign: &Campaign, found: &Identification) -> String {
             None => "\n".to_owned(),
         };
     }
+    if let (Some(covariance), Data::Displacement(data)) = (&found.covariance, &campaign.data) {
+        page += &noise(covariance, data);
+    }
     page
+}
+
+/// Sentences on how the readings hang together, and on those that do not belong.
+fn noise(covariance: &Covariance, data: &Displacements) -> String {
+    let mut said = String::new();
+    if covariance.unequal {
+        let axes: Vec<String> = covariance.own[..3].iter().map(|own| micrometres(*own)).collect();
+        let by = if covariance.basis == Basis::Model { ", by what the model leaves" } else { "" };
+        said += &format!("the axes differ: {} um along x, y and z is a row's own noise{by}\n", axes.join(", "));
+    }
+    if covariance.share.is_some() {
+        let shared = decimals(covariance.shared, 2);
+        said += &format!("an unloaded reading has {shared} times the variance of what a row has to itself\n");
+    }
+    for outlier in &covariance.outliers {
+        said += &format!("does not belong: {}\n", outlier.told(data));
+    }
+    said
 }
 
 /// Where a noise is known from.
@@ -63,6 +85,7 @@ pub fn source_of(source: NoiseSource) -> &'static str {
     match source {
         NoiseSource::Declared => "as declared",
         NoiseSource::Repetitions => "from repeated readings",
+        NoiseSource::Poses => "from what loads at one pose leave when each pose has its own response",
         NoiseSource::Residuals => "from what the model leaves, so at most that",
     }
 }
@@ -145,10 +168,21 @@ fn document(found: &Identification) -> Value {
         "rows": found.rows,
         "poses": found.poses,
         "noise_um": found.noise.map(|(noise, _)| json::number(noise * 1e6)),
+        "covariance": found.covariance.as_ref().map(covariance),
         "declared": {"rms_um": found.rms_declared.map(|rms| json::number(rms * 1e6))},
         "identified": {"rms_um": found.rms.map(|rms| json::number(rms * 1e6))},
         "compliances": found.estimates.iter().map(|estimate| compliance(estimate, &found.estimates)).collect::<Value>(),
         "correlation": json::matrix(&found.correlation),
+    })
+}
+
+fn covariance(covariance: &Covariance) -> Value {
+    json!({
+        "own_um": json::numbers(covariance.own[..3].iter().map(|own| own * 1e6)),
+        "own_urad": json::numbers(covariance.own[3..].iter().map(|own| own * 1e6)),
+        "shared": json::number(covariance.shared),
+        "estimated": covariance.reading().is_some(),
+        "outliers": covariance.outliers.len(),
     })
 }
 

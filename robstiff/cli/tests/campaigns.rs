@@ -134,6 +134,7 @@ fn traces_the_missing_effect_and_writes_everything() {
             "unexplained",
             "rivals",
             "invisible",
+            "triage",
             "next"
         ]
     );

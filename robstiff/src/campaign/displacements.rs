@@ -26,6 +26,8 @@ struct Columns {
     moment: [Option<Numbers>; 3],
     displacement: [Numbers; 3],
     rotation: Option<[Numbers; 3]>,
+    encoders: Option<Vec<Numbers>>,
+    motors: Option<Vec<Numbers>>,
 }
 
 /// Reads the rows; `None` with the problems reported to the table.
@@ -85,12 +87,44 @@ pub fn read(
     for (index, (joint, &column)) in robot.joints.iter().zip(&columns.q).enumerate() {
         check_range(table, joint, index, column, &data.rows);
     }
+    for (name, columns, angles) in [
+        ('j', &columns.encoders, (|row| row.encoders.as_deref()) as fn(&Observation) -> Option<&[f64]>),
+        ('m', &columns.motors, |row| row.motors.as_deref()),
+    ] {
+        for (index, &column) in columns.iter().flatten().enumerate() {
+            check_under_load(table, (name, index, robot.joints[index].kind), column, &data.rows, angles);
+        }
+    }
     complete.then_some(data)
 }
 
 /// No joint is wound up further than this (rad); degrees that are read as
 /// radians are.
 const TWO_TURNS: f64 = 2.0 * core::f64::consts::TAU;
+
+/// No joint gives way by more than this under a load (rad or m).
+const FARTHEST: f64 = 0.05;
+
+/// Warns of angles under load that are not near those of the unloaded arm.
+fn check_under_load(
+    table: &Table<'_>,
+    (letter, index, kind): (char, usize, JointKind),
+    column: Numbers,
+    rows: &[Observation],
+    angles: fn(&Observation) -> Option<&[f64]>,
+) {
+    let far = |row: &&Observation| angles(row).is_some_and(|angles| (angles[index] - row.q[index]).abs() > FARTHEST);
+    let mut outside = rows.iter().filter(far);
+    let Some(first) = outside.next() else { return };
+    let (count, line, joint) = (1 + outside.count(), first.line, index + 1);
+    let rows = if count == 1 { "row" } else { "rows" };
+    let ask = match kind {
+        _ if table.has_unit(column) => String::from("they are angles of the joint, on its output side, like q"),
+        JointKind::Revolute => format!("are the angles in degrees? write `{letter}{joint} [deg]`"),
+        JointKind::Prismatic => format!("are the lengths in millimetres? write `{letter}{joint} [mm]`"),
+    };
+    table.warn(&format!("{letter}{joint} is far from q{joint} in {count} {rows}, first on line {line}: {ask}"));
+}
 
 /// Warns of coordinates that a joint (by its index) does not reach.
 fn check_range(table: &Table<'_>, joint: &Joint, index: usize, column: Numbers, rows: &[Observation]) {
@@ -114,14 +148,25 @@ fn check_range(table: &Table<'_>, joint: &Joint, index: usize, column: Numbers, 
     }
 }
 
+fn dimension_of(kind: JointKind) -> Dimension {
+    if kind == JointKind::Revolute { Dimension::Angle } else { Dimension::Length }
+}
+
 fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
-    let coordinate = |(i, kind): (usize, JointKind)| {
-        let dimension = if kind == JointKind::Revolute { Dimension::Angle } else { Dimension::Length };
-        table.require(&format!("q{}", i + 1), dimension)
-    };
+    let coordinate = |(i, kind): (usize, JointKind)| table.require(&format!("q{}", i + 1), dimension_of(kind));
     let all = |names: [&str; 3], dimension| {
         let found = names.map(|name| table.require(name, dimension));
         Some([found[0]?, found[1]?, found[2]?])
+    };
+    // All of a kind, or none.
+    let under_load = |letter: char| -> Result<Option<Vec<Numbers>>, ()> {
+        let name = |i: usize| format!("{letter}{}", i + 1);
+        if (0..robot.joints.len()).all(|i| table.position(&name(i)).is_none()) {
+            return Ok(None);
+        }
+        let found: Vec<Option<Numbers>> =
+            (0..robot.joints.len()).map(|i| table.require(&name(i), dimension_of(robot.joints[i].kind))).collect();
+        found.into_iter().collect::<Option<Vec<_>>>().map(Some).ok_or(())
     };
     let pose = table.require_name("pose");
     let visit = table.position("visit");
@@ -137,6 +182,7 @@ fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
         true => Some(all(turns, Dimension::Angle)?),
         false => None,
     };
+    let (encoders, motors) = (under_load('j'), under_load('m'));
     let q: Option<Vec<Numbers>> = q.into_iter().collect();
     Some(Columns {
         pose: pose?,
@@ -148,6 +194,8 @@ fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
         moment,
         displacement: displacement?,
         rotation,
+        encoders: encoders.ok()?,
+        motors: motors.ok()?,
     })
 }
 
@@ -167,6 +215,16 @@ fn observation(
     let moment = columns.moment.map(|column| column.map_or(Some(0.0), |column| table.number(record, column)));
     let displacement = table.all(record, columns.displacement);
     let rotation = columns.rotation.map(|rotation| table.all(record, rotation));
+    let under_load = |columns: &Option<Vec<Numbers>>| {
+        let read = |columns: &Vec<Numbers>| -> Vec<Option<f64>> {
+            columns.iter().map(|&column| table.number(record, column)).collect()
+        };
+        columns.as_ref().map(|columns| read(columns).into_iter().collect::<Option<Vec<f64>>>())
+    };
+    let (encoders, motors) = (under_load(&columns.encoders), under_load(&columns.motors));
+    if encoders == Some(None) || motors == Some(None) {
+        return None;
+    }
     if time == Some(None) || temperature == Some(None) || rotation == Some(None) {
         return None;
     }
@@ -181,6 +239,8 @@ fn observation(
         wrench: [force[0], force[1], force[2], moment[0]?, moment[1]?, moment[2]?],
         displacement: displacement?,
         rotation: rotation.flatten(),
+        encoders: encoders.flatten(),
+        motors: motors.flatten(),
     })
 }
 

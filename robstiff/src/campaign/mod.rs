@@ -6,6 +6,8 @@
 
 mod clamped;
 mod displacements;
+#[cfg(test)]
+pub(crate) mod made;
 pub(crate) mod read;
 mod table;
 #[cfg(test)]
@@ -120,6 +122,13 @@ pub struct Observation {
     pub displacement: [f64; 3],
     /// Rotation in the same frame (rad), where measured.
     pub rotation: Option<[f64; 3]>,
+    /// Joint coordinates under the load on the output side of the gears, by
+    /// secondary encoders (rad or m), one a joint, where read.
+    pub encoders: Option<Vec<f64>>,
+    /// Joint coordinates under the load by the motors' encoders, through the
+    /// gear ratio (rad or m), one a joint, where read: what the controller lets
+    /// through.
+    pub motors: Option<Vec<f64>>,
 }
 
 /// One row of kind `clamped`.

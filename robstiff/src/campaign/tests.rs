@@ -119,6 +119,35 @@ fn coordinates_that_joints_do_not_reach_are_warned_of() {
     );
 }
 
+/// Angles under load are read with their units, all of a kind or none.
+#[test]
+fn angles_under_load_are_read() {
+    let header = "pose,q1,q2,Fx,Fy,Fz,dx,dy,dz,j1 [deg],j2,m1,m2";
+    let folder = Folder::new("encoders", CAMPAIGN, &format!("{header}\na,0.5,0,1,2,3,4,5,6,30,0.001,0.5,0.0001\n"));
+    let campaign = folder.read().unwrap();
+    let Data::Displacement(data) = &campaign.data else { panic!("kind displacement") };
+    let row = &data.rows[0];
+    assert_eq!(row.encoders.as_deref(), Some(&[30_f64.to_radians(), 0.001][..]));
+    assert_eq!(row.motors.as_deref(), Some(&[0.5, 0.0001][..]));
+    assert_eq!(campaign.warnings, Vec::<String>::new());
+    let half = header.replace(",j2", ",k2");
+    assert_eq!(
+        problems("half", CAMPAIGN, &format!("{half}\na,0,0,1,2,3,4,5,6,0,0,0,0\n")),
+        ["1:1 the column `j2` is missing"]
+    );
+    assert_eq!(
+        problems("no-angle", CAMPAIGN, &format!("{header}\na,0,0,1,2,3,4,5,6,0,x,0,\n")),
+        ["2:21 `x` is not a number", "2:25 a number is missing"]
+    );
+    let folder = Folder::new("degrees-under-load", CAMPAIGN, &format!("{header}\na,1,0,1,2,3,4,5,6,57.3,0,57,0\n"));
+    let warnings = folder.read().unwrap().warnings;
+    assert_eq!(warnings.len(), 1);
+    assert!(
+        warnings[0]
+            .ends_with("m1 is far from q1 in 1 row, first on line 2: are the angles in degrees? write `m1 [deg]`")
+    );
+}
+
 /// Empty lines are skipped, and counted.
 #[test]
 fn empty_lines_count() {

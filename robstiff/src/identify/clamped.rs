@@ -57,6 +57,7 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
         rows: rows.len(),
         poses: 0,
         noise: None,
+        covariance: None,
         rms_declared: None,
         rms: None,
     })

@@ -17,9 +17,17 @@ use crate::campaign::Campaign;
 /// # Errors
 /// A campaign that sees none of them.
 pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
-    let prepared = Prepared::new(campaign)?;
-    let problem = prepared.problem();
-    let fitted = fit(&prepared, &problem)?;
+    let mut prepared = Prepared::new(campaign)?;
+    let mut problem = prepared.problem();
+    let mut fitted = fit(&prepared, &problem)?;
+    // The description is the final model here: once more with axes weighed by what
+    // it leaves, where there was nothing better to weigh them by.
+    let refined = prepared.covariance.refined(&problem, &fitted);
+    if refined.basis != prepared.covariance.basis {
+        prepared.covariance = refined;
+        problem = prepared.problem();
+        fitted = fit(&prepared, &problem)?;
+    }
     let signs: Vec<_> = fitted.columns.iter().map(|&i| prepared.own[i].sign).collect();
     let covariance = covariance(&problem, &fitted, &signs);
     let mut values = prepared.values.clone();
@@ -38,6 +46,7 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
         rows,
         poses: prepared.samples.poses,
         noise: Some((noise, noise_source)),
+        covariance: Some(prepared.covariance.clone()),
         rms_declared: Some(declared_rms(&prepared, 0..rows)),
         rms: Some(rms(&residuals, prepared.samples.axes, 0..rows)),
     })

@@ -2,13 +2,14 @@
 //! their uncertainty.
 //!
 //! The way of the data: [`samples`] brings rows to the base frame and turns
-//! parameters into columns, [`whitening`] accounts for shared unloaded
-//! readings, [`problem`] holds the regression in blocks of poses, [`normal`]
+//! parameters into columns, [`covariance`] asks the readings how noisy they are
+//! and [`whitening`] accounts for it, [`problem`] holds the regression in blocks of poses, [`normal`]
 //! solves it, [`prepare`] finds what the data can see, and [`displacement`] or
 //! [`clamped`] puts the result together.
 
 pub mod baseline;
 pub mod clamped;
+pub mod covariance;
 pub mod displacement;
 pub mod holdout;
 pub mod laws;
@@ -37,6 +38,7 @@ pub use baseline::Visibility;
 pub use predict::{Prediction, predict};
 
 use self::baseline::Declared;
+use self::covariance::Covariance;
 use self::normal::Sign;
 use self::prepare::Prepared;
 use self::samples::Column;
@@ -63,6 +65,8 @@ pub enum NoiseSource {
     Declared,
     /// From what repeated readings differ by.
     Repetitions,
+    /// From what is left when every pose has a free response to its loads.
+    Poses,
     /// From what the model leaves: an upper bound, since it counts what the
     /// model lacks as noise.
     Residuals,
@@ -84,6 +88,9 @@ pub struct Identification {
     pub poses: usize,
     /// The noise of one displacement reading (m), and where it is from.
     pub noise: Option<(f64, NoiseSource)>,
+    /// How the readings hang together, and which do not belong; none for clamped
+    /// axes.
+    pub covariance: Option<Covariance>,
     /// The error of the description as declared (m): rms over rows of the
     /// displacement residual's length over `sqrt(3)`.
     pub rms_declared: Option<f64>,

@@ -7,13 +7,15 @@ use nalgebra::DVector;
 use robstiff_robots::Description;
 
 use super::baseline::{Declared, Visibility, declared, visibility};
+use super::covariance::contrasts::Level;
+use super::covariance::{Basis, Covariance};
 use super::holdout::training;
 use super::laws::turned_by_laws;
 use super::noise::{PureError, repetitions};
 use super::normal::Sign;
 use super::problem::{Problem, Weights, raw};
 use super::samples::{Column, Samples};
-use super::second_order::beyond_linear;
+use super::second_order::{beyond_linear, straightened};
 use super::{Error, NoiseSource};
 use crate::campaign::{Campaign, Data, Displacements};
 
@@ -37,8 +39,8 @@ pub struct Prepared<'c> {
     pub repeated: PureError,
     /// The declared noise of one displacement reading (m).
     pub declared_noise: Option<f64>,
-    /// The noise of a displacement over that of a rotation (m/rad).
-    pub rotation_weight: f64,
+    /// How noisy the readings are, and how they hang together.
+    pub covariance: Covariance,
     /// The second order of the joints' displacement (m).
     pub correction: DVector<f64>,
 }
@@ -66,26 +68,25 @@ impl<'c> Prepared<'c> {
         let samples = Samples::of_description(description, data);
         let training = training(samples.poses, campaign.holdout);
         let own = declared(description);
-        let found = repetitions(&samples, |pose| training[pose]);
         let noise = campaign.noise;
-        let known = match (noise.displacement, noise.rotation) {
-            (Some(displacement), Some(rotation)) => Some(displacement / rotation),
-            _ => found.displacement.variance().zip(found.rotation.variance()).map(|(d, r)| (d / r).sqrt()),
-        };
+        let declared: Vec<f64> = description.joints.iter().map(robstiff_robots::Joint::compliance).collect();
+        let straight = straightened(&samples, &declared);
+        let covariance = Covariance::estimate(&straight, data.measured_frame, noise, |pose| training[pose]);
+        let weighed = covariance.reading().is_some() || (noise.displacement.is_some() && noise.rotation.is_some());
         let mut prepared = Self {
             data,
             description,
             correction: DVector::zeros(samples.rows.len() * samples.axes),
-            samples,
-            training,
             values: own.iter().map(|number| number.value).collect(),
             visibility: std::vec![Visibility::Seen; own.len()],
             own,
-            repeated: found.displacement,
+            repeated: repetitions(&samples, &covariance, |pose| training[pose]),
             declared_noise: noise.displacement,
-            rotation_weight: known.unwrap_or(1.0),
+            covariance,
+            samples,
+            training,
         };
-        if known.is_none() && prepared.samples.axes > 3 {
+        if !weighed && prepared.samples.axes > 3 {
             prepared.settle_weight()?;
         }
         prepared.look()?;
@@ -107,7 +108,7 @@ impl<'c> Prepared<'c> {
     pub fn problem(&self) -> Problem {
         let columns: Vec<Column> = self.own.iter().map(|number| number.column).collect();
         let (readings, none) = (self.readings(&self.samples), std::vec![false; self.samples.rows.len()]);
-        let weights = Weights { rotation: self.rotation_weight, training: &self.training, left_out: &none };
+        let weights = Weights { covariance: &self.covariance, training: &self.training, left_out: &none };
         Problem::new(&self.samples, raw(&self.samples, &columns), readings, &self.correction, weights)
     }
 
@@ -126,10 +127,11 @@ impl<'c> Prepared<'c> {
     /// The noise of one displacement reading (m), given the residual variance
     /// (m^2), and where it is from.
     pub fn noise(&self, residual_variance: f64) -> (f64, NoiseSource) {
-        match (self.declared_noise, self.repeated.variance()) {
-            (Some(declared), _) => (declared, NoiseSource::Declared),
-            (None, Some(repeated)) => (repeated.sqrt(), NoiseSource::Repetitions),
-            (None, None) => (residual_variance.sqrt(), NoiseSource::Residuals),
+        match (self.declared_noise, self.covariance.reading(), self.covariance.basis) {
+            (Some(declared), ..) => (declared, NoiseSource::Declared),
+            (None, Some(reading), Basis::Contrasts(Level::Repeated)) => (reading, NoiseSource::Repetitions),
+            (None, Some(reading), Basis::Contrasts(_)) => (reading, NoiseSource::Poses),
+            _ => (residual_variance.sqrt(), NoiseSource::Residuals),
         }
     }
 
@@ -145,9 +147,9 @@ impl<'c> Prepared<'c> {
                 let of_kind = |i: &usize| (i % problem.axes >= 3) == rotations;
                 (0..residuals.len()).filter(of_kind).map(|i| residuals[i] * residuals[i]).sum()
             };
-            let (displacement, rotation) = (sum(false), sum(true) / (self.rotation_weight * self.rotation_weight));
+            let (displacement, rotation) = (sum(false), sum(true));
             if displacement > 0.0 && rotation > 0.0 {
-                self.rotation_weight = (displacement / rotation).sqrt();
+                self.covariance.weigh_rotations((displacement / rotation).sqrt());
             }
         }
         Ok(())

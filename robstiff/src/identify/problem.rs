@@ -6,21 +6,24 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::covariance::Covariance;
 use super::normal::{Fit, Normal, Sign};
 use super::samples::{Column, Samples};
-use super::whitening::whiten;
 
 /// Readings and the columns that are to explain them.
 #[derive(Clone, Debug)]
 pub struct Problem {
     /// The readings as measured (m, rad), stacked like [`Samples::readings`].
     pub readings: DVector<f64>,
-    /// The columns, whitened; rotations in the displacements' unit (m).
+    /// The columns, whitened; rotations in the displacements' unit (m), axes in
+    /// the frame measured in.
     pub white: DMatrix<f64>,
     /// The readings, whitened alike.
     pub white_readings: DVector<f64>,
     /// Axes per row of the campaign.
     pub axes: usize,
+    /// The variance of an unloaded reading over that of a row's own.
+    pub shared: f64,
     /// The blocks the problem is fitted to.
     pub blocks: Vec<Block>,
     /// The blocks kept for judging.
@@ -44,8 +47,8 @@ pub struct Block {
 /// How a campaign's rows are weighed.
 #[derive(Clone, Copy, Debug)]
 pub struct Weights<'a> {
-    /// The noise of a displacement over that of a rotation (m/rad).
-    pub rotation: f64,
+    /// How noisy the readings are, and how they hang together.
+    pub covariance: &'a Covariance,
     /// Whether each pose is fitted to.
     pub training: &'a [bool],
     /// Rows that are left out of everything.
@@ -74,14 +77,7 @@ impl Problem {
         let count = columns.ncols();
         let mut white = columns.insert_column(count, 0.0);
         white.set_column(count, &(&readings - correction));
-        if axes > 3 {
-            for (i, mut row) in white.row_iter_mut().enumerate() {
-                if i % axes >= 3 {
-                    row *= weights.rotation;
-                }
-            }
-        }
-        whiten(&mut white, &visits_of(samples, weights.left_out), axes);
+        weights.covariance.whiten(&mut white, weights.left_out);
         let white_readings = white.column(count).into_owned();
         let white = white.remove_column(count);
 
@@ -104,7 +100,7 @@ impl Problem {
             .map(|rows| Normal::new(&white.select_rows(rows), &white_readings.select_rows(rows)))
             .collect();
         let total = Normal::sum(&parts).expect("a campaign has rows to train on");
-        Self { readings, white, white_readings, axes, blocks, held_out, total }
+        Self { readings, white, white_readings, axes, shared: weights.covariance.shared, blocks, held_out, total }
     }
 
     /// The normal equations of one block, of some of the columns in the order
@@ -160,17 +156,6 @@ pub fn raw(samples: &Samples, columns: &[Column]) -> DMatrix<f64> {
     }
     raw
 }
-
-/// The visit of each row, each of those left out being one of its own: it
-/// shares its unloaded reading with nothing that is used.
-fn visits_of(samples: &Samples, left_out: &[bool]) -> Vec<usize> {
-    let mut visits = samples.visits();
-    let next = visits.iter().max().map_or(0, |last| last + 1);
-    let alone = visits.iter_mut().zip(left_out).filter(|(_, out)| **out);
-    alone.enumerate().for_each(|(k, (visit, _))| *visit = next + k);
-    visits
-}
-
 /// The root mean square over rows of the length of the displacement residual,
 /// over `sqrt(3)` so that it compares with the noise of one axis (m); `rows`
 /// are the campaign's rows to count.

@@ -44,6 +44,18 @@ pub fn beyond_linear(samples: &Samples, compliance: &[f64]) -> DVector<f64> {
     })
 }
 
+/// The samples with the second order taken from their readings, so that these
+/// are linear in the load as far as the joints' compliances (rad/Nm or m/N, of
+/// about the right size) account for them.
+pub fn straightened(samples: &Samples, compliance: &[f64]) -> Samples {
+    let beyond = beyond_linear(samples, compliance);
+    let mut straightened = samples.clone();
+    for (i, row) in straightened.rows.iter_mut().enumerate() {
+        row.displacement -= beyond.fixed_rows::<3>(i * samples.axes);
+    }
+    straightened
+}
+
 /// The joints' deflections under the load when they have already moved.
 fn yielding(samples: &Samples, row: &Sample, compliance: &[f64], moved: &[f64]) -> std::vec::Vec<f64> {
     let force: Vector3<f64> = row.wrench.fixed_rows::<3>(0).into_owned();

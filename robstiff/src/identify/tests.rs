@@ -4,6 +4,7 @@ use std::vec;
 
 use nalgebra::{DVector, Vector3, Vector6};
 
+use super::covariance::Covariance;
 use super::noise::repetitions;
 use super::samples::Samples;
 use super::second_order::beyond_linear;
@@ -41,6 +42,8 @@ fn campaign(truth: &Description, declared: Description, frame: Frame, at: [f64; 
             wrench: [force.x, force.y, force.z, moment.x, moment.y, moment.z],
             displacement: seen(displacement).into(),
             rotation: Some(seen(turn).into()),
+            encoders: None,
+            motors: None,
         }
     });
     let data = Displacements {
@@ -169,6 +172,8 @@ fn the_second_order_is_that_of_a_lever() {
             wrench: [0.0, force, 0.0, 0.0, 0.0, 0.0],
             displacement: [0.0; 3],
             rotation: None,
+            encoders: None,
+            motors: None,
         }],
     };
     let beyond = beyond_linear(&Samples::of_description(&description, &data), &[h]);
@@ -195,7 +200,9 @@ fn repetitions_give_the_noise() {
         data.rows.push(twin);
     }
     data.visits = (0..60).map(|i| format!("{i}")).collect();
-    let found = repetitions(&Samples::of_description(&five_axis(), data), |_| true).displacement;
+    let samples = Samples::of_description(&five_axis(), data);
+    let covariance = Covariance::estimate(&samples, Frame::Base, Noise::default(), |_| true);
+    let found = repetitions(&samples, &covariance, |_| true);
     assert_eq!(found.freedom, 90);
     assert!((found.variance().expect("enough repetitions").sqrt() - 1e-5).abs() < 1e-12);
 }

@@ -1,46 +1,45 @@
 //! Generalised least squares for readings that share their unloaded reading.
 //!
 //! A displacement is a loaded reading minus the unloaded reading of its visit.
-//! With `n` rows in a visit and independent readings of variance `sigma^2`,
-//! the rows of one axis have the covariance `sigma^2 (I + 1 1^T)`. Its inverse
-//! square root is `I - (1 - 1/sqrt(1 + n)) / n 1 1^T`, so whitening subtracts
-//! that share of the visit's mean from each of its rows; ordinary least
-//! squares on whitened rows is then generalised least squares on the readings,
-//! and the residuals have variance `sigma^2`, that of one reading.
+//! With `n` rows in a visit, what a row has to itself of variance `v` and an
+//! unloaded reading of variance `lambda v` (`lambda` is 1 where one unloaded
+//! reading as noisy as a loaded one serves the visit, 0 where each row has its
+//! own, `1 / m` where it is a mean of `m`), the rows of one axis have the
+//! covariance `v (I + lambda 1 1^T)`. The inverse square root of the matrix is
+//! `I - (1 - 1/sqrt(1 + lambda n)) / n 1 1^T`, so whitening subtracts that share
+//! of the visit's mean from each of its rows; ordinary least squares on whitened
+//! rows is then generalised least squares on the readings.
 
-use nalgebra::{DMatrix, DMatrixViewMut};
+use nalgebra::DMatrix;
+use std::vec::Vec;
 
 /// What whitening takes from every row of a visit of `rows` rows: this factor
-/// times the visit's mean.
-pub fn mean_share(rows: usize) -> f64 {
-    1.0 - (1.0 / (1.0 + rows as f64)).sqrt()
+/// times the visit's mean; `shared` is `lambda`.
+pub fn mean_share(rows: usize, shared: f64) -> f64 {
+    1.0 - (1.0 / (1.0 + shared * rows as f64)).sqrt()
 }
 
 /// Whitens stacked rows in place. Row `i` of the campaign holds the rows
 /// `i * axes .. (i + 1) * axes` of every column, and belongs to
-/// `visits[i]`; each axis is a reading of its own.
-pub fn whiten(stacked: &mut DMatrix<f64>, visits: &[usize], axes: usize) {
+/// `visits[i]`; each axis is a reading of its own. `shared` is `lambda`.
+pub fn whiten(stacked: &mut DMatrix<f64>, visits: &[usize], axes: usize, shared: f64) {
     for members in members(visits) {
-        whiten_visit(stacked.as_view_mut(), &members, axes);
-    }
-}
-
-fn whiten_visit(mut stacked: DMatrixViewMut<'_, f64>, members: &[usize], axes: usize) {
-    let share = mean_share(members.len()) / members.len() as f64;
-    for mut column in stacked.column_iter_mut() {
-        for axis in 0..axes {
-            let sum: f64 = members.iter().map(|row| column[row * axes + axis]).sum();
-            for row in members {
-                column[row * axes + axis] -= share * sum;
+        let share = mean_share(members.len(), shared) / members.len() as f64;
+        for mut column in stacked.column_iter_mut() {
+            for axis in 0..axes {
+                let sum: f64 = members.iter().map(|row| column[row * axes + axis]).sum();
+                for row in &members {
+                    column[row * axes + axis] -= share * sum;
+                }
             }
         }
     }
 }
 
 /// The rows of each visit, visits in order of their index.
-fn members(visits: &[usize]) -> std::vec::Vec<std::vec::Vec<usize>> {
+fn members(visits: &[usize]) -> Vec<Vec<usize>> {
     let count = visits.iter().max().map_or(0, |last| last + 1);
-    let mut members = std::vec![std::vec::Vec::new(); count];
+    let mut members = std::vec![Vec::new(); count];
     for (row, &visit) in visits.iter().enumerate() {
         members[visit].push(row);
     }
@@ -57,22 +56,24 @@ mod tests {
     fn whitening_is_the_inverse_square_root_of_the_covariance() {
         let visits = [0, 0, 1, 0, 0, 2, 2];
         let rows = visits.len();
-        let covariance = DMatrix::from_fn(rows, rows, |i, j| {
-            f64::from(u8::from(i == j)) + f64::from(u8::from(visits[i] == visits[j]))
-        });
-        let mut whitener = DMatrix::identity(rows, rows);
-        whiten(&mut whitener, &visits, 1);
-        let inverse = covariance.try_inverse().expect("positive definite");
-        assert!((whitener.transpose() * &whitener - inverse).amax() < 1e-14);
+        for shared in [0.0, 0.3, 1.0] {
+            let covariance = DMatrix::from_fn(rows, rows, |i, j| {
+                f64::from(u8::from(i == j)) + shared * f64::from(u8::from(visits[i] == visits[j]))
+            });
+            let mut whitener = DMatrix::identity(rows, rows);
+            whiten(&mut whitener, &visits, 1, shared);
+            let inverse = covariance.try_inverse().expect("positive definite");
+            assert!((whitener.transpose() * &whitener - inverse).amax() < 1e-14);
+        }
     }
 
     #[test]
     fn axes_do_not_mix() {
         let mut stacked = DMatrix::from_column_slice(6, 1, &[1.0, 10.0, 100.0, 3.0, 30.0, 300.0]);
-        whiten(&mut stacked, &[0, 0], 3);
+        whiten(&mut stacked, &[0, 0], 3, 1.0);
         for axis in 0..3 {
             let scale = 10.0_f64.powi(axis);
-            let share = mean_share(2) * 2.0 * scale;
+            let share = mean_share(2, 1.0) * 2.0 * scale;
             assert!((stacked[axis as usize] - (scale - share)).abs() < 1e-12);
             assert!((stacked[3 + axis as usize] - (3.0 * scale - share)).abs() < 1e-12);
         }

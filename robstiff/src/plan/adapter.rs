@@ -68,6 +68,7 @@ pub struct Adapter<'c> {
     known: DMatrix<f64>,
     axes: usize,
     rotation_weight: f64,
+    shared: f64,
     noise: f64,
     rotation_noise: f64,
 }
@@ -111,7 +112,8 @@ impl<'c> Adapter<'c> {
             kept: columns.iter().map(|&column| source.kept(column)).collect(),
             known: white.tr_mul(&white),
             axes: setting.problem.axes,
-            rotation_weight: prepared.rotation_weight,
+            rotation_weight: prepared.covariance.rotation_weight(),
+            shared: prepared.covariance.shared,
             noise: trace.noise,
             rotation_noise: campaign.noise.rotation.unwrap_or(ROTATION_NOISE),
         };
@@ -168,6 +170,8 @@ impl<'c> Adapter<'c> {
                     q: visit.q.clone(),
                     wrench: [force.x, force.y, force.z, moment.x, moment.y, moment.z],
                     displacement: [0.0; 3],
+                    encoders: None,
+                    motors: None,
                     rotation: Some([0.0; 3]),
                 });
             }
@@ -222,7 +226,7 @@ impl<'c> Adapter<'c> {
             let value = columns[(i / axes * 6 + i % axes, k)];
             if i % axes < 3 { value } else { value * weight }
         });
-        grams(stacked, axes, visits)
+        grams(stacked, axes, self.shared, visits)
     }
 
     /// What is read elsewhere on the robot, `count` numbers a row.
@@ -242,7 +246,7 @@ impl<'c> Adapter<'c> {
                 stacked.view_mut((i * count, k), (count, 1)).copy_from_slice(&values);
             }
         }
-        grams(stacked, count, visits)
+        grams(stacked, count, self.shared, visits)
     }
 }
 
@@ -332,9 +336,9 @@ impl Regressors for Adapter<'_> {
 
 /// The information of each visit from its rows' columns, stacked; the readings
 /// of a visit share their unloaded one.
-fn grams(mut stacked: DMatrix<f64>, axes: usize, visits: &[Visit]) -> Vec<DMatrix<f64>> {
+fn grams(mut stacked: DMatrix<f64>, axes: usize, shared: f64, visits: &[Visit]) -> Vec<DMatrix<f64>> {
     let of_row = visits.iter().enumerate().flat_map(|(index, visit)| core::iter::repeat_n(index, visit.loads.len()));
-    whiten(&mut stacked, &of_row.collect::<Vec<_>>(), axes);
+    whiten(&mut stacked, &of_row.collect::<Vec<_>>(), axes, shared);
     let mut first = 0;
     let mut gram = |visit: &Visit| {
         let count = visit.loads.len() * axes;

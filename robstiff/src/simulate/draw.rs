@@ -68,6 +68,8 @@ pub fn loads(robot: &Description, scenario: &Scenario) -> Result<Displacements, 
                     q: q.clone(),
                     wrench: [force.x, force.y, force.z, moment.x, moment.y, moment.z],
                     displacement: [0.0; 3],
+                    encoders: None,
+                    motors: None,
                     rotation: scenario.rotation_noise.map(|_| [0.0; 3]),
                 });
             }

@@ -65,6 +65,8 @@ const TIE: f64 = 6.0;
 
 /// One visit's residuals.
 struct Visit {
+    /// `lambda`, the variance of its unloaded reading over that of a row's own.
+    shared: f64,
     rows: Vec<usize>,
     used: Vec<bool>,
     residuals: Vec<Vector3<f64>>,
@@ -80,7 +82,7 @@ struct Explained {
 }
 
 impl Visit {
-    /// `a^T V^-1 b` over the rows used, with `V = I + 1 1^T`.
+    /// `a^T V^-1 b` over the rows used, with `V = I + lambda 1 1^T`.
     fn product(&self, a: &[f64], b: &[f64]) -> f64 {
         let used = || (0..self.rows.len()).filter(|&i| self.used[i]);
         let count = used().count() as f64;
@@ -90,7 +92,7 @@ impl Visit {
             sum_a += a[i];
             sum_b += b[i];
         }
-        dot - sum_a * sum_b / (1.0 + count)
+        dot - self.shared * sum_a * sum_b / (1.0 + self.shared * count)
     }
 
     fn explained(&self, pattern: &[f64], strict: bool) -> Option<Explained> {
@@ -132,7 +134,13 @@ pub fn events(setting: &Setting<'_>, model: &Fitted, strict: bool) -> Vec<Event>
     for (i, row) in samples.rows.iter().enumerate() {
         if at[row.visit] == usize::MAX {
             at[row.visit] = visits.len();
-            visits.push(Visit { rows: vec![], used: vec![], residuals: vec![], loads: vec![] });
+            visits.push(Visit {
+                shared: setting.problem.shared,
+                rows: vec![],
+                used: vec![],
+                residuals: vec![],
+                loads: vec![],
+            });
         }
         let visit = &mut visits[at[row.visit]];
         visit.rows.push(i);
@@ -249,9 +257,12 @@ pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted) -> Option<Moment> {
         white.rows_mut(row * axes, axes).fill(0.0);
     }
     // A step is whitened like the readings; its products with what is whitened
-    // are sums over rows of that whitened once more.
+    // are sums over rows of that whitened once more. Where axes differ in noise
+    // their scale cancels; a measuring frame that turns with the tool makes this
+    // a first look only, like the moment it gives: the tests have the whole.
     let visits = setting.point.samples.visits();
-    whiten(&mut white, &visits, axes);
+    let shared = problem.shared;
+    whiten(&mut white, &visits, axes, shared);
     let inverse = problem.total.inverse(columns)?;
     let mut sizes = vec![0_usize; visits.iter().max()? + 1];
     visits.iter().for_each(|&visit| sizes[visit] += 1);
@@ -268,9 +279,9 @@ pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted) -> Option<Moment> {
                     }
                 }
                 let visit = visits[row];
-                energy -= step_energy(sizes[visit], inside[visit]);
+                energy -= step_energy(sizes[visit], inside[visit], shared);
                 inside[visit] += 1;
-                energy += step_energy(sizes[visit], inside[visit]);
+                energy += step_energy(sizes[visit], inside[visit], shared);
             }
             let gain: f64 = (0..3)
                 .map(|axis| {
@@ -294,8 +305,8 @@ pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted) -> Option<Moment> {
 
 /// The squared length of a step over the last `inside` of a visit's `rows`
 /// rows, whitened.
-fn step_energy(rows: usize, inside: usize) -> f64 {
+fn step_energy(rows: usize, inside: usize, shared: f64) -> f64 {
     let (n, m) = (rows as f64, inside as f64);
-    let taken = mean_share(rows) * m / n;
+    let taken = mean_share(rows, shared) * m / n;
     m * (1.0 - taken).powi(2) + (n - m) * taken * taken
 }

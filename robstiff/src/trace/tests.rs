@@ -58,6 +58,8 @@ fn campaign(robot: &Description, poses: usize, hidden: &[(Column, f64)], seed: u
                 wrench,
                 displacement: [0.0; 3],
                 rotation: None,
+                encoders: None,
+                motors: None,
             });
         }
     }

@@ -30,6 +30,10 @@ pub struct Report {
     pub noise_source: String,
     /// How the errors on unseen poses came about.
     pub unseen: String,
+    /// What the readings were asked before any model.
+    pub checks: Vec<Check>,
+    /// Readings that do not belong, a sentence each.
+    pub outliers: Vec<String>,
     /// The models, from the declared to the final one.
     pub stages: Vec<Stage>,
     /// The effects named.
@@ -193,4 +197,32 @@ pub struct Next {
     pub force: String,
     /// What it separates.
     pub separates: [String; 2],
+}
+
+/// A check of the readings before any model.
+#[derive(Clone, Debug)]
+pub struct Check {
+    /// Its name.
+    pub name: String,
+    /// What it asks.
+    pub question: String,
+    /// What came of it.
+    pub state: State,
+    /// The statistic with its unit; empty where it could not be asked.
+    pub found: String,
+    /// The probability of that under noise alone, all checks counted.
+    pub p_value: Option<f64>,
+    /// What it means, or what it needs.
+    pub said: String,
+}
+
+/// What came of a check.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Nothing is wrong as far as one can tell.
+    Holds,
+    /// It fails.
+    Violated,
+    /// These data cannot be asked.
+    NotAsked,
 }

@@ -10,6 +10,7 @@ mod sections;
 mod svg;
 #[cfg(test)]
 mod tests;
+mod triage;
 
 use content::Report;
 use html::{escape, text};
@@ -20,6 +21,7 @@ const STYLE: &str = include_str!("style.css");
 pub fn html(report: &Report) -> String {
     let body = [
         heading(report),
+        triage::section(report),
         sections::errors(report),
         sections::poses(report),
         sections::effects(report),

@@ -1,4 +1,6 @@
-use super::content::{Candidate, Compliance, Effect, Next, Number, PoseError, Report, Residual, SearchStep, Stage};
+use super::content::{
+    Candidate, Check, Compliance, Effect, Next, Number, PoseError, Report, Residual, SearchStep, Stage, State,
+};
 use super::html;
 
 /// A report in which every text tries to be markup, and numbers are missing.
@@ -17,6 +19,17 @@ fn hostile() -> Report {
         unseen: bad(),
         rows: 2,
         poses: 1,
+        checks: [State::Holds, State::Violated, State::NotAsked]
+            .map(|state| Check {
+                name: bad(),
+                question: bad(),
+                state,
+                found: bad(),
+                p_value: Some(f64::NAN),
+                said: bad(),
+            })
+            .to_vec(),
+        outliers: vec![bad()],
         stages: vec![Stage { name: bad(), remark: bad(), rms_um: f64::NAN, holdout_rms_um: f64::INFINITY }],
         effects: vec![Effect {
             name: bad(),

@@ -3,6 +3,7 @@
 use robstiff::campaign::{Campaign, Data};
 use robstiff::identify::{Estimate, Visibility, predict};
 use robstiff::trace::{EffectParameter, NamedEffect, Options, RowResidual, Step, Tested, Trace, Verdict};
+use robstiff::triage::Triage;
 
 use super::story;
 use crate::failure::Failure;
@@ -17,7 +18,7 @@ use crate::text::{count, decimals};
 /// # Errors
 /// What predicting the campaign says against it, which a campaign that was
 /// traced does not.
-pub fn report(trace: &Trace, campaign: &Campaign, options: &Options) -> Result<Report, Failure> {
+pub fn report(trace: &Trace, triage: &Triage, campaign: &Campaign, options: &Options) -> Result<Report, Failure> {
     Ok(Report {
         robot: trace.robot.clone(),
         description: campaign.robot.description.trim().to_owned(),
@@ -28,6 +29,8 @@ pub fn report(trace: &Trace, campaign: &Campaign, options: &Options) -> Result<R
         settled: matches!(trace.verdict, Verdict::Adequate | Verdict::Explained),
         rows: trace.rows,
         poses: trace.poses,
+        checks: triage.checks.iter().map(super::triage::check).collect(),
+        outliers: triage.outliers.clone(),
         reading_um: trace.noise * 1e6,
         noise_um: story::displacement_noise(trace) * 1e6,
         noise_source: source_of(trace.noise_source).to_owned(),

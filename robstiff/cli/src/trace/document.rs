@@ -3,12 +3,14 @@
 use robstiff::JointKind;
 use robstiff::campaign::Campaign;
 use robstiff::trace::{Misfit, NamedEffect, Proposal, Rival, Trace};
+use robstiff::triage::Triage;
 use serde_json::{Value, json};
 
+use super::triage;
 use crate::json::{number, numbers};
 
 /// The result for other programs.
-pub fn document(trace: &Trace, campaign: &Campaign) -> Value {
+pub fn document(trace: &Trace, triage: &Triage, campaign: &Campaign) -> Value {
     json!({
         "robot": trace.robot,
         "rows": trace.rows,
@@ -22,6 +24,7 @@ pub fn document(trace: &Trace, campaign: &Campaign) -> Value {
         "unexplained": {"fraction": number(trace.unexplained), "depends_on": trace.depends_on},
         "rivals": trace.rivals.iter().map(rival).collect::<Value>(),
         "invisible": trace.invisible,
+        "triage": triage::document(triage),
         "next": trace.next.iter().map(|next| proposal(next, campaign)).collect::<Value>(),
     })
 }

@@ -4,6 +4,7 @@
 mod content;
 mod document;
 mod story;
+mod triage;
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -62,6 +63,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let campaign = input::campaign(&arguments.campaign)?;
     let spinner = spinner();
+    spinner.set_message("asking the readings themselves");
+    let triage = robstiff::triage::triage(&campaign);
     let traced = trace(&campaign, &options, &|stage| spinner.set_message(stage.to_owned()));
     spinner.set_message("choosing what to measure next");
     // A trace stands without proposals, where none can be made.
@@ -72,8 +75,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     spinner.finish_and_clear();
     let traced = traced?;
 
-    let document = json::document(&document::document(&traced, &campaign));
-    let report = content::report(&traced, &campaign, &options)?;
+    let document = json::document(&document::document(&traced, &triage, &campaign));
+    let report = content::report(&traced, &triage, &campaign, &options)?;
     let mut files = Files::default();
     files.protect_campaign(&campaign);
     files.add(arguments.out.join("robot.yaml"), traced.description.to_yaml());
@@ -83,7 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     files.add(arguments.out.join("trace.json"), document);
     files.add(arguments.out.join("report.html"), report::html(&report));
     let said = files.write()?;
-    output::print(story::page(&traced) + "\n" + &said)
+    output::print(triage::page(&triage) + &story::page(&traced) + "\n" + &said)
 }
 
 /// Shows on a terminal that something goes on, and hides elsewhere.

@@ -273,7 +273,7 @@ impl<'c> Bench<'c> {
 
     /// How rows are weighed.
     pub fn weights(&self) -> Weights<'_> {
-        Weights { rotation: self.prepared.rotation_weight, training: &self.prepared.training, left_out: &self.left_out }
+        Weights { covariance: &self.prepared.covariance, training: &self.prepared.training, left_out: &self.left_out }
     }
 
     fn state(&self, named: &[Named]) -> Result<Rc<State>, String> {

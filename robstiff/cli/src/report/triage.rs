@@ -1,0 +1,98 @@
+//! The section on what the readings say before any model. A disc is a check that
+//! fails, a ring one that holds; the words say the same.
+
+use super::content::{Check, Report, State};
+use super::html::{Cell, Table, element, escape, number, text, words};
+use super::micro;
+use super::svg::Svg;
+use crate::text::{count, probability};
+
+const WIDTH: f64 = 860.0;
+const LEFT: f64 = 150.0;
+const RIGHT: f64 = 60.0;
+const STEP: f64 = 22.0;
+const TOP: f64 = 34.0;
+
+/// Probabilities are shown down to this power of ten.
+const POWERS: f64 = 4.0;
+
+/// The level of all checks together.
+const LEVEL: f64 = robstiff::triage::LEVEL;
+
+/// The section; empty where nothing was asked.
+pub fn section(report: &Report) -> String {
+    if report.checks.is_empty() {
+        return String::new();
+    }
+    let note = format!(
+        "What the readings say by themselves, before any compliance is fitted. p: the probability of as much under \
+         noise alone, all checks counted (Holm); a check fails at {LEVEL}, where what it found is also large enough to \
+         matter."
+    );
+    let (asked, not_asked): (Vec<&Check>, Vec<&Check>) =
+        report.checks.iter().partition(|check| check.state != State::NotAsked);
+    let mut table = Table::new([words("Check"), words("answer"), words("found"), number("p"), words("what it means")]);
+    for check in &asked {
+        let fails = check.state == State::Violated;
+        table.row(
+            fails,
+            [
+                name(check),
+                words(if fails { "fails" } else { "holds" }),
+                words(micro(&check.found)),
+                number(check.p_value.map_or_else(|| "-".to_owned(), probability)),
+                words(micro(&check.said)),
+            ],
+        );
+    }
+    let mut html = element("h2", "Before any model") + &text("p", &note);
+    if asked.iter().filter(|check| check.p_value.is_some()).count() > 1 {
+        html += &format!("<figure>\n{}</figure>\n", figure(report));
+    }
+    html += &table.html();
+    if !not_asked.is_empty() {
+        let mut table = Table::new([words("Check"), words("what would let these data be asked")]);
+        not_asked.iter().for_each(|check| table.row(false, [name(check), words(micro(&check.said))]));
+        let summary = text("summary", &format!("{} that these data cannot be asked", count(not_asked.len(), "check")));
+        html += &element("details", summary + &table.html());
+    }
+    if !report.outliers.is_empty() {
+        let items: String = report.outliers.iter().map(|outlier| text("li", &micro(outlier))).collect();
+        html += &format!("<h3>Readings that do not belong</h3>\n<ul class=\"warnings\">\n{items}</ul>\n");
+    }
+    html
+}
+
+fn name(check: &Check) -> Cell {
+    let question = escape(&micro(&check.question));
+    Cell::Html(format!("{} <small class=\"under\">{question}</small>", escape(&check.name)))
+}
+
+/// Each check that was asked, by its probability.
+fn figure(report: &Report) -> String {
+    let asked: Vec<(&Check, f64)> = report.checks.iter().filter_map(|check| Some((check, check.p_value?))).collect();
+    let (width, height) = (WIDTH - LEFT - RIGHT, STEP * asked.len() as f64);
+    let mut svg = Svg::new(WIDTH, TOP + height + 34.0, "Probability of what each check found under noise alone");
+    let right = |p: f64| {
+        let power = if p > 0.0 { -p.log10() } else { POWERS };
+        LEFT + width * if power.is_finite() { (power / POWERS).clamp(0.0, 1.0) } else { 0.0 }
+    };
+    for power in 0..=POWERS as i32 {
+        let x = right(10_f64.powi(-power));
+        svg.line("grid", [x, TOP], [x, TOP + height]);
+        let name = if power == 0 { "1".to_owned() } else { crate::text::decimals(10_f64.powi(-power), power as usize) };
+        svg.text("small", [x, TOP + height + 16.0], "middle", &name);
+    }
+    let level = right(LEVEL);
+    svg.line("noise", [level, TOP - 6.0], [level, TOP + height]);
+    svg.text("small", [level + 6.0, TOP - 8.0], "start", "fails beyond");
+    svg.text("axis", [LEFT + width / 2.0, TOP + height + 32.0], "middle", "p, all checks counted");
+    for (k, (check, p)) in asked.iter().enumerate() {
+        let y = TOP + STEP * (k as f64 + 0.5);
+        let class = if check.state == State::Violated { "after" } else { "before" };
+        svg.line("stem", [LEFT, y], [right(*p), y]);
+        svg.circle(class, [right(*p), y], 5.0, &format!("{}: p {}", check.name, probability(*p)));
+        svg.text("legend", [LEFT - 12.0, y + 4.0], "end", &check.name);
+    }
+    svg.html()
+}

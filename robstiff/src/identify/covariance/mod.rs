@@ -1,0 +1,406 @@
+//! How noisy the readings of a campaign are, and how they hang together.
+//!
+//! The rows of one axis and one visit have the covariance `v_a (I + lambda 1 1^T)`:
+//! each axis its own variance `v_a`, in the frame it was measured in, and a share
+//! `lambda` of the unloaded reading that a visit's rows have in common.
+//!
+//! *How it is estimated.* The restricted likelihood of a model of the robot takes
+//! whatever the model lacks for noise, and what is common to a visit, such as
+//! lost motion, for the unloaded reading. So it is not asked of a model of the
+//! robot, but of the largest one there is: at each pose a free response, linear in
+//! the load ([`contrasts`]). What that leaves knows nothing of compliances,
+//! frames and lever arms. A gear that is not linear would remain; so a part with
+//! the square of the load, and then a displacement for each distinct load, is
+//! freed where the contrasts ask for it (F test, [`NESTED`]). Then
+//!
+//! - `lambda` is held to `0..1`, since an unloaded reading is a reading: more in
+//!   common is structure, and is left for others to find ([`Share::beyond_one`]);
+//!   where the data tell 0 from 1 no better than chance it is 1;
+//! - the axes have one variance unless they differ (Bartlett's test,
+//!   [`EQUAL_AXES`]);
+//! - wild readings ([`outliers`]), sought before anything more is freed, are
+//!   listed and set aside, here and nowhere else: they would pass for noise.
+//!
+//! Where poses have too few rows for that (one load a pose), the axes are taken
+//! to be equal and `lambda` to be 1, and [`Covariance::refined`] weighs the axes
+//! by what the *final* model leaves; it does not touch `lambda`.
+
+pub mod contrasts;
+pub mod outliers;
+pub mod reml;
+mod tails;
+#[cfg(test)]
+mod tests;
+
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector, Matrix3};
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
+
+use self::contrasts::{Chunk, Level, contrasts};
+use self::reml::{count, profile, share, sums};
+use super::noise::PureError;
+use super::normal::Fit;
+use super::problem::Problem;
+use super::samples::Samples;
+use super::whitening;
+use crate::campaign::{Frame, Noise};
+
+pub use outliers::Outlier;
+pub use reml::Share;
+pub use tails::Tails;
+
+/// Level at which more is freed at a pose.
+pub const NESTED: f64 = 0.01;
+
+/// Level at which axes have variances of their own.
+pub const EQUAL_AXES: f64 = 0.05;
+
+/// Family-wise level at which a reading is wild.
+pub const WILD: f64 = 0.01;
+
+/// With fewer contrasts an axis a variance is uncertain by half and more
+/// (`sqrt(2 / 10)` is 45 %).
+const FEWEST: usize = 10;
+
+/// Readings nearer than this to each other have no noise (m): they were made by a
+/// program.
+const NOISELESS: f64 = 1e-9;
+
+/// Wild readings are looked for at most so many times over.
+const PASSES: usize = 8;
+
+/// Where a covariance is from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Basis {
+    /// Contrasts within poses, with so much free at each.
+    Contrasts(Level),
+    /// What a model leaves.
+    Model,
+    /// Nothing: equal axes, and one unloaded reading a visit.
+    Assumed,
+}
+
+/// The covariance of a campaign's readings.
+#[derive(Clone, Debug)]
+pub struct Covariance {
+    /// The standard deviation of what a row has to itself: x, y, z (m), and
+    /// where rotations are read rx, ry, rz (rad), in the frame measured.
+    pub own: Vec<f64>,
+    /// `lambda`: the variance of an unloaded reading over that.
+    pub shared: f64,
+    /// What the contrasts that are free of a linear response say of it.
+    pub share: Option<Share>,
+    /// Where it is from.
+    pub basis: Basis,
+    /// Contrasts of one axis.
+    pub freedom: usize,
+    /// The probability of variances as unequal as those of x, y, z, were they
+    /// equal.
+    pub equal_axes: Option<f64>,
+    /// Whether the axes have variances of their own.
+    pub unequal: bool,
+    /// The readings that were set aside.
+    pub outliers: Vec<Outlier>,
+    /// The tails of what is left.
+    pub tails: Option<Tails>,
+    visits: Vec<usize>,
+    /// From the base frame to that measured in, a row each.
+    turns: Option<Vec<Matrix3<f64>>>,
+}
+
+impl Covariance {
+    /// The covariance of a campaign's readings from the poses for which
+    /// `of_pose` holds; the second order of large deflections is best taken from
+    /// them ([`straightened`](super::second_order::straightened)); `frame` is the one displacements were measured in. Of
+    /// `declared` only the ratio of displacement to rotation is used, where there
+    /// is no other: how noisy the readings are, they say themselves.
+    pub fn estimate(samples: &Samples, frame: Frame, declared: Noise, of_pose: impl Fn(usize) -> bool) -> Self {
+        let mut covariance = Self::assumed(samples, frame, declared);
+        let readings = covariance.measured(samples);
+        let mut left_out = std::vec![false; samples.rows.len()];
+        let at = |level, left_out: &[bool]| {
+            let chunks = contrasts(samples, &readings, level, &of_pose, |row| left_out[row]);
+            Estimated::at(level, chunks, samples.axes)
+        };
+        // Wild readings first, where little is free: they make curvature, and where
+        // every load has its own displacement no one can say which of two is off.
+        for _ in 0..PASSES {
+            let Some(linear) = at(Level::Linear, &left_out) else { break };
+            let wild = linear.wild();
+            if wild.is_empty() {
+                break;
+            }
+            wild.iter().flat_map(|outlier| &outlier.rows).for_each(|row| left_out[*row] = true);
+            covariance.outliers.extend(wild);
+        }
+        let Some(mut estimated) = at(Level::Linear, &left_out) else { return covariance };
+        for level in [Level::Curved, Level::Repeated] {
+            if let Some(freer) = at(level, &left_out)
+                && estimated.hides_structure(&freer).is_some_and(|p| p <= NESTED)
+            {
+                // What rows of a visit have in common shows against the linear.
+                estimated = Estimated { share: estimated.share, ..freer };
+            }
+        }
+        covariance.take(estimated);
+        covariance.outliers.sort_by_key(|outlier| outlier.rows[0]);
+        covariance
+    }
+
+    /// Equal axes, one unloaded reading a visit; how noisy is not known.
+    pub fn assumed(samples: &Samples, frame: Frame, declared: Noise) -> Self {
+        let displacement = declared.displacement.unwrap_or(1.0);
+        let rotation = declared.rotation.filter(|_| declared.displacement.is_some()).unwrap_or(displacement);
+        let tool = |row: &super::samples::Sample| row.tcp.fixed_view::<3, 3>(0, 0).transpose();
+        Self {
+            own: (0..samples.axes).map(|axis| if axis < 3 { displacement } else { rotation }).collect(),
+            shared: 1.0,
+            share: None,
+            basis: Basis::Assumed,
+            freedom: 0,
+            equal_axes: None,
+            unequal: false,
+            outliers: Vec::new(),
+            tails: None,
+            visits: samples.visits(),
+            turns: (frame == Frame::Tool).then(|| samples.rows.iter().map(tool).collect()),
+        }
+    }
+
+    /// Axes per row.
+    pub fn axes(&self) -> usize {
+        self.own.len()
+    }
+
+    /// One sigma of one axis of one displacement reading (m): a displacement is
+    /// the difference of two, however they are shared. `None` where nothing is
+    /// known but the model.
+    pub fn reading(&self) -> Option<f64> {
+        (self.basis != Basis::Assumed).then(|| self.reference(0..3))
+    }
+
+    /// What brings rotations to the unit of displacements: the noise of a
+    /// displacement over that of a rotation (m/rad), 1 where none is read.
+    pub fn rotation_weight(&self) -> f64 {
+        if self.axes() > 3 { self.reference(0..3) / self.reference(3..6) } else { 1.0 }
+    }
+
+    /// The same of a rotation reading (rad), where there are any.
+    pub fn rotation_reading(&self) -> Option<f64> {
+        (self.basis != Basis::Assumed && self.axes() > 3).then(|| self.reference(3..6))
+    }
+
+    /// What displacements leave where so much is free at each pose for which
+    /// `of_pose` holds, whitened like [`whiten`](Self::whiten) does. A model of the
+    /// robot that is free of no more leaves at least as much.
+    pub fn pure_error(&self, samples: &Samples, level: Level, of_pose: impl Fn(usize) -> bool) -> PureError {
+        let chunks = contrasts(samples, &self.measured(samples), level, of_pose, |_| false);
+        let reference = self.reference(0..3);
+        let sums = sums(&chunks, 3, self.shared);
+        let sum = sums.iter().zip(&self.own).map(|(sum, own)| sum * (reference / own).powi(2)).sum();
+        PureError { sum, freedom: 3 * count(&chunks) }
+    }
+
+    /// The variance of a sum of readings of one axis with the given weights, a
+    /// pair of row and weight each (m^2, rad^2).
+    pub fn variance(&self, axis: usize, weights: &[(usize, f64)]) -> f64 {
+        let own: f64 = weights.iter().map(|(_, weight)| weight * weight).sum();
+        let mut visits: Vec<(usize, f64)> = Vec::new();
+        for &(row, weight) in weights {
+            let visit = self.visits[row];
+            match visits.iter_mut().find(|(known, _)| *known == visit) {
+                Some((_, sum)) => *sum += weight,
+                None => visits.push((visit, weight)),
+            }
+        }
+        let common: f64 = visits.iter().map(|(_, sum)| sum * sum).sum();
+        self.own[axis].powi(2) * (own + self.shared * common)
+    }
+
+    /// Turns stacked columns ([`Samples::readings`]) to the frame measured in,
+    /// whitens them, and brings all axes to the unit of displacements: the rows of
+    /// whitened readings are independent, and each has the variance of one
+    /// displacement reading, [`reading`](Self::reading) squared. A row left out
+    /// shares its unloaded reading with nothing that is used.
+    pub fn whiten(&self, stacked: &mut DMatrix<f64>, left_out: &[bool]) {
+        self.turn(stacked);
+        let mut visits = self.visits.clone();
+        let next = visits.iter().max().map_or(0, |last| last + 1);
+        let alone = visits.iter_mut().zip(left_out).filter(|(_, out)| **out);
+        alone.enumerate().for_each(|(k, (visit, _))| *visit = next + k);
+        whitening::whiten(stacked, &visits, self.axes(), self.shared);
+        let reference = self.reference(0..3);
+        let scale: Vec<f64> = self.own.iter().map(|own| reference / own).collect();
+        for mut column in stacked.column_iter_mut() {
+            for (i, value) in column.iter_mut().enumerate() {
+                *value *= scale[i % scale.len()];
+            }
+        }
+    }
+
+    /// The noise of a displacement over that of a rotation (m/rad) times
+    /// `factor`.
+    pub fn weigh_rotations(&mut self, factor: f64) {
+        self.own.iter_mut().skip(3).for_each(|own| *own /= factor);
+    }
+
+    /// The covariance for one more, last fit: the axes weighed by what a model
+    /// leaves of each, where that is all there is to go by. To be asked of a
+    /// final model, since what a model lacks would pass for the noise of the
+    /// axes it shows on. `problem` is whitened with this covariance.
+    #[must_use]
+    pub fn refined(&self, problem: &Problem, fit: &Fit) -> Self {
+        let mut refined = self.clone();
+        if matches!(self.basis, Basis::Contrasts(_)) {
+            return refined;
+        }
+        let axes = self.axes();
+        let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
+        let Some(inverse) = problem.total.inverse(&fit.columns) else { return refined };
+        let (mut sums, mut freedom) = (std::vec![0.0; axes], std::vec![0.0; axes]);
+        for &i in problem.blocks.iter().flat_map(|block| &block.stacked) {
+            let x = DVector::from_fn(fit.columns.len(), |k, _| problem.white[(i, fit.columns[k])]);
+            sums[i % axes] += residuals[i] * residuals[i];
+            freedom[i % axes] += 1.0 - x.dot(&(&inverse * &x));
+        }
+        let least = freedom.iter().copied().fold(f64::INFINITY, f64::min);
+        if least < FEWEST as f64 || sums.contains(&0.0) {
+            return refined;
+        }
+        let reference = self.reference(0..3);
+        let variances: Vec<f64> =
+            (0..axes).map(|axis| sums[axis] / freedom[axis] * (self.own[axis] / reference).powi(2)).collect();
+        refined.basis = Basis::Model;
+        refined.freedom = least as usize;
+        refined.set_variances(&variances, least);
+        refined
+    }
+
+    /// The root mean square of the readings' sigma over some axes.
+    fn reference(&self, axes: core::ops::Range<usize>) -> f64 {
+        let count = axes.len() as f64;
+        let mean = self.own[axes].iter().map(|own| own * own).sum::<f64>() / count;
+        (0.5 * mean * (1.0 + self.shared)).sqrt()
+    }
+
+    /// Variances of single axes, or of all alike where they do not differ.
+    fn set_variances(&mut self, variances: &[f64], freedom: f64) {
+        self.equal_axes = bartlett(&variances[..3], freedom);
+        self.unequal = self.equal_axes.is_some_and(|p| p <= EQUAL_AXES);
+        let mut variances = variances.to_vec();
+        for kind in variances.chunks_mut(3) {
+            let mean = kind.iter().sum::<f64>() / kind.len() as f64;
+            let alike = bartlett(kind, freedom).is_none_or(|p| p > EQUAL_AXES);
+            // Without noise, as on simulated readings, all weigh the same.
+            kind.iter_mut().for_each(|variance| *variance = if alike { mean } else { variance.max(1e-6 * mean) });
+        }
+        if variances[0] > 0.0 && variances.last().is_some_and(|last| *last > 0.0) {
+            self.own = variances.into_iter().map(f64::sqrt).collect();
+        }
+    }
+
+    fn take(&mut self, estimated: Estimated) {
+        self.basis = Basis::Contrasts(estimated.level);
+        self.freedom = count(&estimated.chunks);
+        self.shared = estimated.shared;
+        self.share = estimated.share;
+        self.set_variances(&estimated.variances, self.freedom as f64);
+        self.tails = estimated.tails();
+    }
+
+    /// Stacked columns from the base frame to that measured in.
+    fn turn(&self, stacked: &mut DMatrix<f64>) {
+        let Some(turns) = &self.turns else { return };
+        for mut column in stacked.column_iter_mut() {
+            for (row, turn) in turns.iter().enumerate() {
+                for first in (0..self.axes()).step_by(3) {
+                    let at = row * self.axes() + first;
+                    let turned = turn * column.fixed_rows::<3>(at);
+                    column.fixed_rows_mut::<3>(at).copy_from(&turned);
+                }
+            }
+        }
+    }
+
+    /// The readings in the frame measured in, a row each.
+    fn measured(&self, samples: &Samples) -> DMatrix<f64> {
+        let mut stacked =
+            DMatrix::from_column_slice(samples.rows.len() * samples.axes, 1, samples.readings().as_slice());
+        self.turn(&mut stacked);
+        DMatrix::from_row_slice(samples.rows.len(), samples.axes, stacked.as_slice())
+    }
+}
+
+/// What contrasts say.
+struct Estimated {
+    level: Level,
+    chunks: Vec<Chunk>,
+    axes: usize,
+    shared: f64,
+    share: Option<Share>,
+    variances: Vec<f64>,
+}
+
+impl Estimated {
+    /// `None` where there are too few contrasts.
+    fn at(level: Level, chunks: Vec<Chunk>, axes: usize) -> Option<Self> {
+        if count(&chunks) < FEWEST {
+            return None;
+        }
+        let share = share(&chunks, axes);
+        let single = chunks.iter().all(|chunk| chunk.shares.iter().all(|share| (share - 1.0).abs() < 1e-6));
+        let shared = match share {
+            // Neither no unloaded reading in common nor a whole one is ruled out.
+            Some(Share { interval: [from, to], .. }) if from == 0.0 && to >= 1.0 => 1.0,
+            Some(share) => share.value.min(1.0),
+            // Every row has its own: what is shared and what is not are one.
+            None if single => 0.0,
+            None => 1.0,
+        };
+        let variances = profile(&chunks, axes, shared).variances;
+        if variances[..3].iter().all(|variance| *variance < NOISELESS * NOISELESS) {
+            return None;
+        }
+        Some(Self { level, chunks, axes, shared, share, variances })
+    }
+
+    /// The probability of contrasts as much larger than those with more freed,
+    /// were they noise alike.
+    fn hides_structure(&self, freer: &Self) -> Option<f64> {
+        let (all, few) = (count(&self.chunks), count(&freer.chunks));
+        let between = (all.checked_sub(few).filter(|&more| more > 0)? * self.axes) as f64;
+        let within = (few * self.axes) as f64;
+        // An uncertain share is no evidence against the fewer.
+        let shared = self.share.map_or(self.shared, |share| share.interval[1].min(1.0));
+        let (all, few) = (sums(&self.chunks, self.axes, shared), sums(&freer.chunks, self.axes, shared));
+        let ratio: f64 =
+            all.iter().zip(&few).map(|(all, few)| (all - few).max(0.0) / few).sum::<f64>() / self.axes as f64;
+        let statistic = ratio * within / between;
+        Some(FisherSnedecor::new(between, within).ok()?.sf(statistic))
+    }
+
+    fn wild(&self) -> Vec<Outlier> {
+        if self.variances.iter().any(|&variance| variance <= 0.0) {
+            return Vec::new();
+        }
+        outliers::find(&self.chunks, self.axes, self.shared, &self.variances, WILD)
+    }
+
+    fn tails(&self) -> Option<Tails> {
+        tails::tails(&self.chunks, self.axes, self.shared, &self.variances)
+    }
+}
+
+/// Bartlett's test (Proceedings of the Royal Society A 160, 1937) of equal
+/// variances with as many degrees of freedom each.
+fn bartlett(variances: &[f64], freedom: f64) -> Option<f64> {
+    let count = variances.len() as f64;
+    let mean = variances.iter().sum::<f64>() / count;
+    if variances.iter().any(|&variance| variance <= 0.0) || freedom <= 0.0 {
+        return None;
+    }
+    let statistic = freedom * variances.iter().map(|variance| (mean / variance).ln()).sum::<f64>();
+    let correction = 1.0 + (count + 1.0) / (3.0 * count * freedom);
+    Some(ChiSquared::new(count - 1.0).ok()?.sf(statistic / correction))
+}

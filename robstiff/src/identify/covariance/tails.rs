@@ -1,0 +1,112 @@
+//! Whether the noise is normal: the kurtosis of studentised residuals, against
+//! that of as many normal readings under the same poses and loads.
+
+use std::vec::Vec;
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use statrs::function::gamma::ln_gamma;
+
+use super::contrasts::Chunk;
+
+/// The tails of the noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tails {
+    /// The fourth moment of the studentised residuals over the square of the
+    /// second, less the three of a normal distribution.
+    pub excess_kurtosis: f64,
+    /// The probability of so much under normal noise, by simulation.
+    pub p_value: f64,
+    /// The degrees of freedom of the Student distribution that fits the
+    /// residuals best; none where that is the normal one.
+    pub freedom: Option<f64>,
+}
+
+/// Simulated campaigns; a p-value is no smaller than one over their number.
+const DRAWS: usize = 199;
+
+/// Chunks up to about this many rows are looked at.
+const MOST_ROWS: usize = 2000;
+
+/// Of the degrees of freedom of Student's distribution.
+const GRID: [f64; 14] = [2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 12.0, 15.0, 20.0, 30.0, 60.0];
+
+/// The tails of contrasts with given variances.
+pub fn tails(chunks: &[Chunk], axes: usize, shared: f64, variances: &[f64]) -> Option<Tails> {
+    let mut rows = 0;
+    let seen = |chunk: &&Chunk| {
+        rows += chunk.rows.len();
+        rows <= MOST_ROWS.max(chunk.rows.len())
+    };
+    let chunks: Vec<&Chunk> = chunks.iter().take_while(seen).collect();
+    let root = |chunk: &Chunk, j: usize| (1.0 + shared * chunk.shares[j]).sqrt();
+    let measured = |chunk: &Chunk, j: usize, axis: usize| {
+        chunk.values[(j, axis)] / root(chunk, j) / variances[axis].max(f64::MIN_POSITIVE).sqrt()
+    };
+    let residuals = studentised(&chunks, axes, shared, measured);
+    if residuals.len() < 20 {
+        return None;
+    }
+    let kurtosis = excess(&residuals);
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let beyond = (0..DRAWS)
+        .filter(|_| excess(&studentised(&chunks, axes, shared, |_, _, _| normal(&mut random))) >= kurtosis)
+        .count();
+    let spread = (residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64).sqrt();
+    let normal = residuals.iter().map(|r| -0.5 * (r / spread).powi(2)).sum::<f64>()
+        - residuals.len() as f64 * 0.5 * core::f64::consts::TAU.ln();
+    let likely = |freedom: f64| residuals.iter().map(|r| log_student(r / spread, freedom)).sum::<f64>();
+    let best = GRID.iter().map(|&freedom| (likely(freedom), freedom)).max_by(|a, b| a.0.total_cmp(&b.0));
+    Some(Tails {
+        excess_kurtosis: kurtosis,
+        p_value: (1 + beyond) as f64 / (1 + DRAWS) as f64,
+        freedom: best.filter(|(likelihood, _)| *likelihood > normal).map(|(_, freedom)| freedom),
+    })
+}
+
+/// The residual of every row and axis over its standard deviation; `contrast`
+/// gives a contrast over its own.
+fn studentised(
+    chunks: &[&Chunk],
+    axes: usize,
+    shared: f64,
+    mut contrast: impl FnMut(&Chunk, usize, usize) -> f64,
+) -> Vec<f64> {
+    let mut residuals = Vec::new();
+    for chunk in chunks {
+        let count = chunk.shares.len();
+        let root: Vec<f64> = chunk.shares.iter().map(|share| (1.0 + shared * share).sqrt()).collect();
+        for axis in 0..axes {
+            let values: Vec<f64> = (0..count).map(|j| contrast(chunk, j, axis)).collect();
+            for i in 0..chunk.rows.len() {
+                let along = (0..count).map(|j| chunk.basis[(i, j)] / root[j]);
+                let leverage: f64 = along.clone().map(|a| a * a).sum();
+                if leverage > 0.05 {
+                    residuals.push(along.zip(&values).map(|(a, value)| a * value).sum::<f64>() / leverage.sqrt());
+                }
+            }
+        }
+    }
+    residuals
+}
+
+fn excess(residuals: &[f64]) -> f64 {
+    let moment = |power: i32| residuals.iter().map(|r| r.powi(power)).sum::<f64>() / residuals.len() as f64;
+    moment(4) / moment(2).powi(2).max(f64::MIN_POSITIVE) - 3.0
+}
+
+/// The logarithm of Student's density with unit variance.
+fn log_student(x: f64, freedom: f64) -> f64 {
+    let scale = ((freedom - 2.0) / freedom).sqrt();
+    ln_gamma(0.5 * (freedom + 1.0))
+        - ln_gamma(0.5 * freedom)
+        - 0.5 * (freedom * core::f64::consts::PI).ln()
+        - scale.ln()
+        - 0.5 * (freedom + 1.0) * (x / scale).powi(2).mul_add(freedom.recip(), 1.0).ln()
+}
+
+/// A standard normal variate (Box and Muller).
+fn normal(random: &mut ChaCha8Rng) -> f64 {
+    let radius = (-2.0 * (1.0 - random.random::<f64>()).ln()).sqrt();
+    radius * (core::f64::consts::TAU * random.random::<f64>()).cos()
+}

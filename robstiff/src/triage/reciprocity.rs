@@ -1,0 +1,102 @@
+//! Reciprocity (Betti): a linear elastic arm moves under a unit of load 1 along
+//! load 2 as far as under a unit of load 2 along load 1, `F1 . d2 = F2 . d1`.
+//!
+//! Two tests, the smaller p-value twice: against the noise of the readings (F;
+//! violations that look different at each pose), and by random signs of poses, of
+//! violations alike in the base or in the tool, as those of a turned sensor are:
+//! it makes the compliance `H R`, whose skew part has the vector `w` with
+//! `F1 . d2 - F2 . d1 = w . (F1 x F2)`.
+
+use std::format;
+use std::string::String;
+use std::vec::Vec;
+
+use nalgebra::{Vector3, Vector6};
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+
+use super::evidence::{Evidence, Line};
+use super::randomisation::{Witness, flip};
+use super::words::percent;
+use super::{Raw, Verdict};
+
+const MATTERS: f64 = 0.01;
+
+/// The sine of the smallest angle between two loads that are compared.
+const APART: f64 = 0.3;
+
+/// A line as a load and what it moves.
+struct Response {
+    load: Vector6<f64>,
+    /// Per newton (m/N, rad/N).
+    moved: Vector6<f64>,
+}
+
+pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
+    let Some(wrenches) = &evidence.wrenches else {
+        return Err(String::from("read the displacement where the force acts, or the rotation as well"));
+    };
+    let shared = evidence.covariance.shared;
+    let response = |line: &Line| {
+        let slope = line.slope(shared);
+        let moved = line.rows.iter().zip(&slope.weights).map(|(&row, w)| evidence.reading(row) * *w).sum();
+        // The load at the line's largest, per newton along it.
+        let first = (0..line.rows.len()).max_by(|&a, &b| line.loads[a].abs().total_cmp(&line.loads[b].abs()));
+        let first = first.unwrap_or_default();
+        Response { load: wrenches[line.rows[first]] / line.loads[first], moved }
+    };
+    let (mut witnesses, mut squares, mut pairs) = (Vec::new(), 0.0, 0_usize);
+    let (mut differences, mut sizes) = (0.0, 0.0);
+    for of_pose in evidence.lines.chunk_by(|a, b| a.pose == b.pose) {
+        // The lines of a pose two by two, each once, so that pairs are independent.
+        for pair in of_pose.chunks_exact(2) {
+            let [one, other] = [response(&pair[0]), response(&pair[1])];
+            let cross = pair[0].along.cross(&pair[1].along);
+            if cross.norm() < APART {
+                continue;
+            }
+            let difference = one.load.dot(&other.moved) - other.load.dot(&one.moved);
+            let noise = evidence.variance(&pair[1].rows, &pair[1].slope(shared).weights, &one.load)
+                + evidence.variance(&pair[0].rows, &pair[0].slope(shared).weights, &other.load);
+            squares += difference * difference / noise;
+            pairs += 1;
+            differences += difference * difference - noise;
+            sizes +=
+                0.5 * (one.moved.fixed_rows::<3>(0).norm_squared() + other.moved.fixed_rows::<3>(0).norm_squared());
+            let tool: Vector3<f64> =
+                evidence.samples.rows[pair[0].rows[0]].tcp.fixed_view::<3, 3>(0, 0).transpose() * cross;
+            witnesses.push(Witness {
+                pose: pair[0].pose,
+                visits: pair.iter().flat_map(|line| line.visits.clone()).collect(),
+                scores: cross.iter().chain(tool.iter()).map(|component| difference * component).collect(),
+            });
+        }
+    }
+    let flipped = flip(&witnesses);
+    let of_size = evidence.covariance.reading().and_then(|_| {
+        let freedom = (evidence.covariance.axes() * evidence.covariance.freedom) as f64;
+        Some(FisherSnedecor::new(pairs as f64, freedom).ok()?.sf(squares / pairs as f64))
+    });
+    let p_values = [flipped.map(|flipped| flipped.p_value), of_size];
+    let asked = p_values.iter().flatten().count();
+    let least = p_values.into_iter().flatten().fold(f64::INFINITY, f64::min);
+    if pairs == 0 || asked == 0 {
+        return Err(String::from("two loads in different directions at one pose, at 12 poses or more"));
+    }
+    let share = (differences.max(0.0) / sizes).sqrt();
+    Ok(Raw {
+        statistic: 100.0 * share,
+        unit: "% of the displacement",
+        p_value: Some((least * asked as f64).min(1.0)),
+        matters_from: 100.0 * MATTERS,
+        witnesses: pairs,
+        said: [
+            format!("Loads and displacements are reciprocal (Betti), to {}.", percent(share.max(MATTERS))),
+            format!(
+                "Loads and displacements are not reciprocal (Betti): what one load does along another differs from the \
+                 reverse by {} of the displacement. No spring does that, so the frame or the point of the forces or \
+                 of the displacements is not what the file says, or there is friction.",
+                percent(share)
+            ),
+        ],
+    })
+}
