@@ -2,11 +2,12 @@
 //! profile shows it under its name.
 
 use robstiff::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
-use robstiff::{Generic, Robot};
+use robstiff::{Generic, Robot, Statics};
 use robstiff_robots::Description;
 
 robstiff::robot!("rv130hsc.yaml");
 robstiff::robot!("fanuc-r2000ic.yaml");
+robstiff::robot!("kuka-kr270-r2700.yaml");
 
 /// Poses all over the workspace of an arm with `N` joints.
 pub fn poses<const N: usize>(count: usize) -> Vec<SVector<f64, N>> {
@@ -29,7 +30,17 @@ pub fn compliance(q: &SVector<f64, 5>, out: &mut Matrix6<f64>) {
 /// The upper triangle of `H_x`, five axes.
 #[inline(never)]
 pub fn triangle(q: &SVector<f64, 5>, out: &mut [f64; 21]) {
-    let compliance = Rv130hsc.compliance(q);
+    upper(&Rv130hsc.compliance(q), out);
+}
+
+/// The upper triangle of `H_x`, six axes with a spherical wrist.
+#[inline(never)]
+pub fn triangle_of_six(q: &SVector<f64, 6>, out: &mut [f64; 21]) {
+    upper(&KukaKr270R2700.compliance(q), out);
+}
+
+#[inline(always)]
+fn upper(compliance: &Matrix6<f64>, out: &mut [f64; 21]) {
     let mut k = 0;
     for i in 0..6 {
         for j in i..6 {
@@ -55,6 +66,12 @@ pub fn transform(q: &SVector<f64, 5>, out: &mut Matrix4<f64>) {
 #[inline(never)]
 pub fn jacobian(q: &SVector<f64, 5>, out: &mut SMatrix<f64, 6, 5>) {
     *out = Rv130hsc.jacobian(q);
+}
+
+/// Transform, Jacobian and `H_x` of one pose, five axes.
+#[inline(never)]
+pub fn statics(q: &SVector<f64, 5>, out: &mut Statics<5, f64>) {
+    *out = Rv130hsc.statics(q);
 }
 
 /// The deflection, five axes.

@@ -40,6 +40,7 @@ extern crate self as robstiff;
 
 pub mod analysis;
 pub mod batch;
+mod blocks;
 #[cfg(feature = "identify")]
 pub mod campaign;
 mod dual;

@@ -5,7 +5,7 @@ use core::ops::Neg;
 use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign};
 use num_traits::{One, Zero};
 
-use crate::trig;
+use crate::{blocks, trig};
 
 /// A scalar that generated code can compute with: `f32`, `f64`, several of
 /// them side by side ([`Lanes`](crate::Lanes)), with derivatives
@@ -36,6 +36,17 @@ pub trait Real:
     #[inline(always)]
     fn mul_add(self, factor: Self, summand: Self) -> Self {
         self * factor + summand
+    }
+
+    /// Turns a compliance about z, all four of its blocks: what generated code
+    /// calls where most entries are not zero, for scalars that hold the blocks
+    /// in the lanes of a vector.
+    ///
+    /// Rows: the entries xx, xy, yy, xz and yz of displacement per force, of
+    /// displacement per moment, of that transposed, and of rotation per moment.
+    #[inline(always)]
+    fn turn_blocks(rows: [[Self; 4]; 5], sin_cos: (Self, Self)) -> [[Self; 4]; 5] {
+        blocks::turn(rows, sin_cos)
     }
 
     /// The square root.
@@ -69,7 +80,7 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($float:ident, $sqrt:path) => {
+    ($float:ident, $turn:ident, $sqrt:path) => {
         impl Real for $float {
             #[inline(always)]
             fn of(value: f64) -> Self {
@@ -89,6 +100,11 @@ macro_rules! real {
             #[inline(always)]
             fn mul_add(self, factor: Self, summand: Self) -> Self {
                 trig::mul_add::<Self, { trig::FUSED }>(self, factor, summand)
+            }
+
+            #[inline(always)]
+            fn turn_blocks(rows: [[Self; 4]; 5], sin_cos: (Self, Self)) -> [[Self; 4]; 5] {
+                blocks::$turn(rows, sin_cos)
             }
 
             #[inline(always)]
@@ -123,5 +139,5 @@ macro_rules! real {
     };
 }
 
-real!(f32, libm::sqrtf);
-real!(f64, libm::sqrt);
+real!(f32, turn_f32, libm::sqrtf);
+real!(f64, turn_f64, libm::sqrt);

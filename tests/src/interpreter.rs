@@ -117,6 +117,7 @@ impl Scope<'_> {
     /// The numbers in a matrix, a list, or a single one.
     fn entries(&self, expression: &Expr) -> Vec<f64> {
         match expression {
+            Expr::Tuple(tuple) => tuple.elems.iter().flat_map(|entry| self.entries(entry)).collect(),
             Expr::Array(array) => array.elems.iter().flat_map(|entry| self.entries(entry)).collect(),
             Expr::Struct(fields) => fields.fields.iter().flat_map(|field| self.entries(&field.expr)).collect(),
             Expr::Call(call) => {
@@ -125,6 +126,7 @@ impl Scope<'_> {
                     "T::sin_cos" | "T::sin_cos_all" => {
                         arguments().flat_map(|angle| [angle.sin(), angle.cos()]).collect()
                     }
+                    "T::turn_blocks" => turn_blocks(&arguments().collect::<Vec<_>>()),
                     "T::zero" => vec![0.0],
                     "T::one" => vec![1.0],
                     "T::of" | "Matrix4::new" | "Matrix6::new" | "Vector6::new" | "SMatrix::from" | "SVector::from" => {
@@ -215,4 +217,22 @@ fn play(expression: &Expr) -> Option<(usize, usize)> {
     let Expr::Field(field) = &*inner.expr else { return None };
     let is_plays = matches!(&field.member, Member::Named(name) if name == "plays") && path(&field.base) == "state";
     is_plays.then(|| Some((index(&inner.index)?, index(&outer.index)?)))?
+}
+
+/// `R M R^T` about z, as `Real::turn_blocks` states it, for four blocks, the second and third of which are each
+/// other's transposes: rows xx, xy, yy, xz, yz of one entry a block, then sine
+/// and cosine.
+fn turn_blocks(numbers: &[f64]) -> Vec<f64> {
+    let [s, c] = [numbers[20], numbers[21]];
+    let mut turned = vec![0.0; 20];
+    for (block, transposed) in [0, 2, 1, 3].into_iter().enumerate() {
+        let [xx, xy, yy, xz, yz] = [0, 1, 2, 3, 4].map(|row| numbers[4 * row + block]);
+        let yx = numbers[4 + transposed];
+        let t = s * (xx - yy) + c * (xy + yx);
+        let entries = [xx - s * t, c * t - yx, yy + s * t, c * xz - s * yz, s * xz + c * yz];
+        for (row, entry) in entries.into_iter().enumerate() {
+            turned[4 * row + block] = entry;
+        }
+    }
+    turned
 }

@@ -85,6 +85,21 @@ pub struct Node {
     pub constant: Option<f64>,
 }
 
+/// A turn about z of all four blocks of a compliance, which are nodes like
+/// any others; a scalar that knows how performs them as one operation.
+///
+/// A row of four: displacement per force, displacement per moment, the same
+/// transposed, rotation per moment. Rows: xx, xy, yy, xz, yz.
+#[derive(Clone, Debug)]
+pub struct BlockTurn {
+    /// Sine and cosine.
+    pub sin_cos: (Id, Id),
+    /// The entries before.
+    pub before: [[Id; 4]; 5],
+    /// The entries afterwards.
+    pub after: [[Id; 4]; 5],
+}
+
 /// The expressions of one function.
 #[derive(Debug, Default)]
 pub struct Graph {
@@ -95,6 +110,7 @@ pub struct Graph {
     deviations: RefCell<BTreeMap<usize, (Id, Id)>>,
     hints: RefCell<BTreeMap<Id, String>>,
     remarks: RefCell<Vec<(Id, String)>>,
+    block_turns: RefCell<Vec<BlockTurn>>,
 }
 
 impl Graph {
@@ -209,6 +225,16 @@ impl Graph {
             2 => (-s, -c),
             _ => (-c, s),
         }
+    }
+
+    /// The turns of whole compliances.
+    pub fn block_turns(&self) -> Ref<'_, [BlockTurn]> {
+        Ref::map(self.block_turns.borrow(), Vec::as_slice)
+    }
+
+    /// Remembers what a turn of a whole compliance made of what.
+    pub fn block_turn(&self, turn: BlockTurn) {
+        self.block_turns.borrow_mut().push(turn);
     }
 
     /// Adds a remark that precedes whatever is computed from here on.

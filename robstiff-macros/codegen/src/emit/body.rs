@@ -1,10 +1,13 @@
 //! The statements of a generated function.
 
-use proc_macro2::{Literal, TokenStream};
+use std::collections::BTreeSet;
+
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::fuse::Fusion;
 use super::names::{Names, WRENCH, before};
+use super::turns::{Lane, Turn, Turns};
 use crate::angle::Angle;
 use crate::function::Function;
 use crate::graph::{Id, Op};
@@ -36,12 +39,16 @@ pub(super) enum Reader {
 
 /// Writes a function out.
 pub(super) fn body(function: &Function, reader: Reader) -> Body {
-    let names = Names::of(function);
+    let turns = match reader {
+        Reader::Compiler => Turns::of(function),
+        Reader::Person => Turns::none(),
+    };
+    let names = Names::of(function, &turns);
     let fusion = match reader {
-        Reader::Compiler => Fusion::of(function, &names),
+        Reader::Compiler => Fusion::of(function, &names, &turns),
         Reader::Person => Fusion::none(function),
     };
-    let writer = Writer { function, names, fusion };
+    let writer = Writer { function, names, fusion, turns };
     let statements = writer.statements(reader == Reader::Person);
     let outputs = function.outputs().iter().map(|&id| writer.operand(id, Binding::Sum)).collect();
     Body { statements, outputs }
@@ -51,6 +58,7 @@ struct Writer<'f> {
     function: &'f Function,
     names: Names,
     fusion: Fusion,
+    turns: Turns,
 }
 
 impl Writer<'_> {
@@ -66,9 +74,17 @@ impl Writer<'_> {
         out.extend(self.wrench());
         out.extend(self.plays());
         out.extend(self.sin_cos());
+        let mut turned = BTreeSet::new();
         let mut remarks = graph.remarks().to_vec().into_iter().peekable();
         for (id, node) in self.live() {
             if node.constant.is_some() {
+                continue;
+            }
+            if let Some(turn) = self.turns.with(id) {
+                // Where the first of its results is due.
+                if self.fusion.is_used(id) && turned.insert(turn.first()) {
+                    out.extend(self.block_turn(turn));
+                }
                 continue;
             }
             let Some(name) = self.names.get(id).filter(|_| self.fusion.is_used(id)) else { continue };
@@ -152,6 +168,37 @@ impl Writer<'_> {
             ([pattern], [sum]) => Some(quote!(let #pattern = T::sin_cos(#sum);)),
             _ => Some(quote!(let [#(#patterns),*] = T::sin_cos_all([#(#sums),*]);)),
         }
+    }
+
+    /// `let [[tt_xx, tr_xx, _, rr_xx], ..] = T::turn_blocks([[..], ..], (s1, c1));`
+    /// and the results that are negatives of what stands there.
+    fn block_turn(&self, turn: &Turn) -> TokenStream {
+        let mut after: [[Option<Ident>; 4]; 5] = Default::default();
+        let mut negatives = TokenStream::new();
+        let (negated, plain): (Vec<_>, Vec<_>) = turn
+            .results()
+            .filter(|&(id, _)| self.fusion.is_used(id))
+            .map(|(id, place)| (self.names.get(id).expect("a result has a line"), place))
+            .partition(|(_, place)| place.is_negated);
+        for (name, Lane { row, lane, .. }) in plain {
+            after[row][lane] = Some(format_ident!("{name}"));
+        }
+        for (name, Lane { row, lane, .. }) in negated {
+            let opposite = after[row][lane].get_or_insert_with(|| format_ident!("minus_{name}"));
+            let name = format_ident!("{name}");
+            negatives.extend(quote!(let #name = -#opposite;));
+        }
+        let after = after.map(|row| {
+            let row = row.map(|name| name.map_or(quote!(_), |name| quote!(#name)));
+            quote!([#(#row),*])
+        });
+        let before = turn.nodes.before.map(|row| {
+            let row = row.map(|id| self.operand(id, Binding::Sum));
+            quote!([#(#row),*])
+        });
+        let (sin, cos) = turn.nodes.sin_cos;
+        let (sin, cos) = (self.operand(sin, Binding::Sum), self.operand(cos, Binding::Sum));
+        quote!(let [#(#after),*] = T::turn_blocks([#(#before),*], (#sin, #cos)); #negatives)
     }
 
     /// A node where it is used: its name if it has a line, else its expression.

@@ -6,7 +6,10 @@
 //! `Real::mul_add` is the product and the sum that it was. Source for people
 //! keeps the operators.
 
+use std::collections::BTreeSet;
+
 use super::names::Names;
+use super::turns::Turns;
 use crate::function::Function;
 use crate::graph::{Id, Op};
 
@@ -33,7 +36,7 @@ impl Fusion {
     /// Lets every sum take up one product: of two, the one that makes the sum
     /// known earlier; if both do, the one with fewer other users, because it is
     /// more likely to have no line left.
-    pub fn of(function: &Function, names: &Names) -> Self {
+    pub fn of(function: &Function, names: &Names, turns: &Turns) -> Self {
         let graph = function.graph();
         let (nodes, uses) = (graph.nodes(), function.uses());
         let is_written_briefly = |id: Id| {
@@ -44,7 +47,7 @@ impl Fusion {
                 )
         };
         let is_product = |id: Id| match nodes[id].op {
-            _ if nodes[id].constant.is_some() => false,
+            _ if nodes[id].constant.is_some() || turns.with(id).is_some() => false,
             // Factors that have no line would be written out several times.
             Op::Mul(a, b) => uses[id] == 1 || (is_written_briefly(a) && is_written_briefly(b)),
             _ => false,
@@ -78,8 +81,16 @@ impl Fusion {
         for &output in function.outputs() {
             fusion.uses[output] += 1;
         }
-        for id in (0..nodes.len()).rev().filter(|&id| uses[id] > 0) {
+        let mut written = BTreeSet::new();
+        // Also signs that only a turn needs, which are not live in the graph.
+        for id in (0..nodes.len()).rev() {
             if fusion.uses[id] == 0 {
+                continue;
+            }
+            if let Some(turn) = turns.with(id) {
+                if written.insert(turn.first()) {
+                    turn.operands().for_each(|operand| fusion.uses[operand] += 1);
+                }
                 continue;
             }
             for operand in nodes[id].op.operands() {

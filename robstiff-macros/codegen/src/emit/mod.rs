@@ -8,6 +8,7 @@ mod names;
 mod robot;
 #[cfg(feature = "text")]
 mod text;
+mod turns;
 
 pub use robot::{Origin, skeleton, tokens};
 #[cfg(feature = "text")]

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::turns::Turns;
 use crate::function::Function;
 use crate::graph::{Id, Op};
 
@@ -26,8 +27,9 @@ const OPERANDS_PER_LINE: usize = 6;
 impl Names {
     /// Chooses the names: hints of the algorithms, names of parameters, and
     /// numbers for the rest; never one name twice.
-    pub fn of(function: &Function) -> Self {
-        let needed = lines(function);
+    pub fn of(function: &Function, turns: &Turns) -> Self {
+        let mut needed = lines(function);
+        needed.extend(turns.results());
         let graph = function.graph();
         let mut taken: BTreeSet<String> =
             ["q", "wrench", "state"].iter().chain(&WRENCH).map(|name| name.to_string()).collect();

@@ -15,7 +15,7 @@ use super::chain::{Step, Tilt, chain};
 use super::elastic::Elastic;
 use super::vector::{AXES, Matrix3, Symmetric3, Vec3};
 use crate::angle::Angle;
-use crate::graph::{Graph, Sym};
+use crate::graph::{BlockTurn, Graph, Id, Sym};
 
 /// The 36 entries of `H_x` at the TCP in the base frame, by rows.
 pub fn compliance<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
@@ -214,6 +214,7 @@ impl<'g> Walker<'g> {
 
     /// Turns everything about one axis: `M <- R M R^T`.
     fn turn(&mut self, axis: usize, sin_cos: (Sym<'g>, Sym<'g>)) {
+        let before = self.blocks();
         self.lever = self.lever.turned(axis, sin_cos);
         self.tt = turned_symmetric(&self.tt, axis, sin_cos);
         self.rr = turned_symmetric(&self.rr, axis, sin_cos);
@@ -222,6 +223,16 @@ impl<'g> Walker<'g> {
             twist.translation = twist.translation.turned(axis, sin_cos);
             twist.rotation = twist.rotation.turned(axis, sin_cos);
         }
+        if axis == 2 {
+            let sin_cos = (sin_cos.0.id(), sin_cos.1.id());
+            self.g.block_turn(BlockTurn { sin_cos, before, after: self.blocks() });
+        }
+    }
+
+    /// The entries that a turn about z changes, the four blocks side by side.
+    fn blocks(&self) -> [[Id; 4]; 5] {
+        [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2)]
+            .map(|(i, j)| [self.tt.at(i, j), self.tr[i][j], self.tr[j][i], self.rr.at(i, j)].map(Sym::id))
     }
 
     /// Names the entries for generated code.
