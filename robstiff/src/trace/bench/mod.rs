@@ -2,6 +2,7 @@
 //! their own form, by Gauss-Newton steps with all numbers together, and the
 //! whole catalogue linearised at what comes out.
 
+mod noise;
 mod polish;
 
 use std::cell::RefCell;
@@ -13,6 +14,7 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
+pub use self::noise::Known;
 use super::catalogue::{Candidate, Catalogue, LIKELY, Number, Scene, Variant, catalogue};
 use super::isolated::{self, Moment};
 use super::model::{Fitted, Named, Setting};
@@ -38,16 +40,18 @@ pub struct Bench<'c> {
     pub invisible: Vec<String>,
     /// Rows that are left out, for they are wild.
     pub left_out: Vec<bool>,
+    /// How noisy the readings are, as far as is known.
+    pub noise: Rc<Known>,
     /// Whether rows need only stand out from noise, not from structure.
     pub strict: bool,
     /// Where a slip that all later rows keep may have begun.
     moments: Vec<Moment>,
-    settings: Known<Setting<'c>>,
-    states: Known<State>,
+    settings: Solved<Setting<'c>>,
+    states: Solved<State>,
 }
 
 /// What was found of models, or why not.
-type Known<T> = RefCell<HashMap<Vec<Named>, Result<Rc<T>, String>>>;
+type Solved<T> = RefCell<HashMap<Vec<Named>, Result<Rc<T>, String>>>;
 
 /// A model at its solution.
 struct State {
@@ -89,6 +93,7 @@ impl<'c> Bench<'c> {
             signs: Rc::new([]),
             invisible: Vec::new(),
             left_out: vec![false; rows],
+            noise: Rc::new(Known::of(prepared)),
             strict: false,
             moments: Vec::new(),
             settings: RefCell::default(),
@@ -273,7 +278,7 @@ impl<'c> Bench<'c> {
 
     /// How rows are weighed.
     pub fn weights(&self) -> Weights<'_> {
-        Weights { covariance: &self.prepared.covariance, training: &self.prepared.training, left_out: &self.left_out }
+        Weights { covariance: &self.noise.covariance, training: &self.prepared.training, left_out: &self.left_out }
     }
 
     fn state(&self, named: &[Named]) -> Result<Rc<State>, String> {

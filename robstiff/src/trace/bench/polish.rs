@@ -92,6 +92,7 @@ impl Bench<'_> {
             signs: Rc::clone(&self.signs),
             invisible: self.invisible.clone(),
             left_out: self.left_out.clone(),
+            noise: Rc::clone(&self.noise),
             strict: self.strict,
             moments: self.moments.clone(),
             settings: RefCell::default(),
