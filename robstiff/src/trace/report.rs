@@ -36,7 +36,7 @@ pub fn report(
     options: &Options,
 ) -> Result<Trace, String> {
     // Before anything was corrected, wild rows and all.
-    let untouched = Bench::new(campaign, prepared)?;
+    let untouched = Bench::bare(campaign, prepared);
     let all = untouched.at(&[])?;
     let base = all.fit(&[])?;
     let found = &outcome.selection.model;
