@@ -258,7 +258,9 @@ fn search(
     }
     let setting = bench.at(&selection.model.named)?;
     let events = isolated::events(&setting, &selection.model, bench.strict);
-    let (verdict, why) = verdict::judge(&selection, &left, events.len(), taken_back);
+    let may_lag = !left.structure && verdict::may_lag(bench, &selection.model);
+    left.structure |= may_lag;
+    let (verdict, why) = verdict::judge(&selection, &left, events.len(), taken_back, may_lag);
     Ok(Outcome { selection, left: Some(left), events, verdict, why })
 }
 

@@ -46,6 +46,8 @@ use nalgebra::{DVector, Matrix3};
 use robstiff_robots::Description;
 
 pub use self::base_slip::{KIND as BASE_SLIP, LIKELY};
+pub use self::creep::KIND as CREEP;
+pub use self::hysteresis::KIND as HYSTERESIS;
 pub use self::lost_motion::{EITHER, KIND as LOST_MOTION};
 pub use self::outliers::KIND as OUTLIERS;
 pub use self::stiffness_nonlinearity::KIND as STIFFNESS_NONLINEARITY;
