@@ -70,9 +70,9 @@ impl Normal {
     }
 
     /// The sum over blocks of rows; `None` without any.
-    pub fn sum<'a>(blocks: impl IntoIterator<Item = &'a Self>) -> Option<Self> {
+    pub fn sum(blocks: impl IntoIterator<Item = Self>) -> Option<Self> {
         let mut blocks = blocks.into_iter();
-        let mut sum = blocks.next()?.clone();
+        let mut sum = blocks.next()?;
         for block in blocks {
             sum.gram += &block.gram;
             sum.moment += &block.moment;
@@ -288,7 +288,7 @@ mod tests {
         let part =
             |from: usize, rows: usize| Normal::new(&x.rows(from, rows).into_owned(), &y.rows(from, rows).into_owned());
         let (first, second) = (part(0, 15), part(15, 25));
-        let sum = Normal::sum([&first, &second]).expect("two blocks");
+        let sum = Normal::sum([first.clone(), second.clone()]).expect("two blocks");
         assert!((&sum.gram - &whole.gram).amax() < 1e-9 * whole.gram.amax());
         let rest = whole.without(&first);
         assert!((&rest.moment - &second.moment).amax() < 1e-9 * whole.moment.amax());

@@ -95,11 +95,10 @@ impl Problem {
             })
             .partition(|block: &Block| weights.training[block.pose]);
         let stacked: Vec<usize> = blocks.iter().flat_map(|block| block.stacked.iter().copied()).collect();
-        let parts: Vec<Normal> = stacked
+        let parts = stacked
             .chunks(ROWS_AT_ONCE)
-            .map(|rows| Normal::new(&white.select_rows(rows), &white_readings.select_rows(rows)))
-            .collect();
-        let total = Normal::sum(&parts).expect("a campaign has rows to train on");
+            .map(|rows| Normal::new(&white.select_rows(rows), &white_readings.select_rows(rows)));
+        let total = Normal::sum(parts).expect("a campaign has rows to train on");
         Self { readings, white, white_readings, axes, shared: weights.covariance.shared, blocks, held_out, total }
     }
 

@@ -5,6 +5,8 @@ use std::vec::Vec;
 
 use super::Options;
 use super::bench::Bench;
+use super::catalogue::{EITHER, LOST_MOTION, STIFFNESS_NONLINEARITY};
+use super::found::Place;
 use super::model::{Fitted, Named, Setting};
 use super::selection::{CURVATURE, Tests, WITHIN_REACH, best_with, score_test};
 
@@ -51,12 +53,30 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -
             is_near(&rival, &setting)
                 || (bench.is_nonlinear(&rival.named) && rival.bic < model.bic + CURVATURE && refit().unwrap_or(false))
         };
-        if exact || (admitted() && near()) {
+        if exact || one_formula(bench, &own, model, one, candidate) || (admitted() && near()) {
             found.push((rival.bic, setting.candidates[candidate].name()));
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     found.into_iter().map(|(_, name)| name).collect()
+}
+
+/// Whether a candidate is the other name of what lost motion and hardening both
+/// do, and the knee that a model found may be either's.
+fn one_formula(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted, one: Named, candidate: usize) -> bool {
+    let (own, other) = (&setting.candidates[one.candidate], &setting.candidates[candidate]);
+    let names = [own.kind.name, other.kind.name];
+    let both = [LOST_MOTION.name, STIFFNESS_NONLINEARITY.name];
+    let Place::Joint(joint) = own.place else { return false };
+    let variant = setting.variant(one);
+    let (Some(knee), &[column]) = (variant.shape.first(), &variant.columns[..]) else { return false };
+    if own.place != other.place || own.kind.name == other.kind.name || !names.iter().all(|name| both.contains(name)) {
+        return false;
+    }
+    let hardens =
+        model.fit.columns.iter().zip(&model.fit.coefficients).any(|(&of, &value)| of == column && value > 0.0);
+    let largest = bench.scene().largest_torque(joint);
+    hardens && largest.is_some_and(|largest| (EITHER[0]..=EITHER[1]).contains(&(knee.value / largest)))
 }
 
 fn variant_of(model: &Fitted, candidate: usize) -> Named {

@@ -230,10 +230,12 @@ impl Resemblance {
         let stride = trained.len().div_ceil(MOST_ROWS);
         let rows: Vec<usize> = trained.into_iter().step_by(stride).collect();
         let residuals = problem.white_residuals(columns, &problem.total.solve(columns)?.coefficients);
-        let drawn = drawn_residuals(setting, model)?;
+        let axis_rows = |axis: usize| rows.iter().map(move |row| row * problem.axes + axis).collect::<Vec<_>>();
+        let own = [0, 1, 2].map(|axis| residuals.select_rows(&axis_rows(axis)));
+        let drawn = drawn_residuals(setting, model, &rows)?;
         let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
         let signs = rademacher(&mut rng, options.draws, problem.blocks.len());
-        let axis_rows = |axis: usize| rows.iter().map(move |row| row * problem.axes + axis).collect::<Vec<_>>();
+        let draws = Draws::new(drawn, signs);
 
         let features = features(&setting.point.samples, data, &rows);
         let (mut observed, mut under_null) = (Vec::new(), Vec::new());
@@ -242,17 +244,9 @@ impl Resemblance {
             let mut kernel = feature.kernel();
             let of_one_row = kernel.trace() / rows.len() as f64;
             keep_between_poses(&mut kernel, setting, &rows);
-            let mut sum = 0.0;
-            let mut quadratic = DMatrix::zeros(problem.blocks.len(), problem.blocks.len());
-            for axis in 0..3 {
-                let at = axis_rows(axis);
-                let own = residuals.select_rows(&at);
-                sum += own.dot(&(&kernel * &own));
-                let each = drawn.select_rows(&at);
-                quadratic += each.tr_mul(&(&kernel * &each));
-            }
+            let sum: f64 = own.iter().map(|own| own.dot(&(&kernel * own))).sum();
             components.push(of_one_row * sum / (3.0 * kernel.norm_squared()).max(f64::MIN_POSITIVE));
-            let sums: DVector<f64> = (&signs * quadratic).component_mul(&signs).column_sum();
+            let sums = draws.quadratic(&kernel);
             let (mean, spread) = (sums.mean(), sums.variance().sqrt().max(f64::MIN_POSITIVE));
             observed.push((sum - mean) / spread);
             under_null.push(sums.map(|sum| (sum - mean) / spread));
@@ -293,25 +287,69 @@ impl Resemblance {
     }
 }
 
-/// One column a pose: its residual from the fit without it, with the model
-/// fitted again when it alone is there; a bootstrap draw is their sum with
-/// random signs.
-fn drawn_residuals(setting: &Setting<'_>, model: &Fitted) -> Option<DMatrix<f64>> {
+/// The bootstrap draws of the residuals of some rows, by axis: a draw is the
+/// sum over poses of what each adds, with random signs.
+enum Draws {
+    /// What each pose adds, a column a pose, and the signs, a row a draw.
+    ByPose([DMatrix<f64>; 3], DMatrix<f64>),
+    /// The sums, a column a draw: the less where poses outnumber the rows.
+    Summed([DMatrix<f64>; 3]),
+}
+
+impl Draws {
+    fn new(by_pose: [DMatrix<f64>; 3], signs: DMatrix<f64>) -> Self {
+        let (rows, poses) = by_pose[0].shape();
+        if poses <= rows {
+            return Self::ByPose(by_pose, signs);
+        }
+        let signs = signs.transpose();
+        Self::Summed(by_pose.map(|each| each * &signs))
+    }
+
+    /// `r^T K r` of each draw, summed over axes.
+    fn quadratic(&self, kernel: &DMatrix<f64>) -> DVector<f64> {
+        match self {
+            Self::ByPose(by_pose, signs) => {
+                let poses = signs.ncols();
+                let add = |sum, each: &DMatrix<f64>| sum + each.tr_mul(&(kernel * each));
+                let quadratic = by_pose.iter().fold(DMatrix::zeros(poses, poses), add);
+                (signs * quadratic).component_mul(signs).column_sum()
+            }
+            Self::Summed(drawn) => {
+                let of = |drawn: &DMatrix<f64>| (kernel * drawn).component_mul(drawn).row_sum_tr();
+                drawn.iter().map(of).fold(DVector::zeros(drawn[0].ncols()), |sum, of| sum + of)
+            }
+        }
+    }
+}
+
+/// By axis, one column a pose: its residual from the fit without it, with the
+/// model fitted again when it alone is there, at some rows.
+fn drawn_residuals(setting: &Setting<'_>, model: &Fitted, rows: &[usize]) -> Option<[DMatrix<f64>; 3]> {
     let problem = &setting.problem;
     let columns = &model.fit.columns;
     let inverse = problem.total.inverse(columns)?;
     let design = problem.white.select_columns(columns);
-    let mut drawn = DMatrix::zeros(problem.white_readings.len(), problem.blocks.len());
+    let at = [0, 1, 2].map(|axis| rows.iter().map(|row| row * problem.axes + axis).collect::<Vec<_>>());
+    let design_at = at.each_ref().map(|at| design.select_rows(at));
+    let mut place = std::vec![None; problem.white_readings.len()];
+    for (axis, at) in at.iter().enumerate() {
+        at.iter().enumerate().for_each(|(k, &i)| place[i] = Some((axis, k)));
+    }
+    let mut drawn = [0, 1, 2].map(|_| DMatrix::zeros(rows.len(), problem.blocks.len()));
     for (p, block) in problem.blocks.iter().enumerate() {
         let without = problem.solve_without(block, columns, None);
         let residual = problem.block_residuals(block, columns, without.as_ref().unwrap_or(&model.fit.coefficients));
         let own = design.select_rows(&block.stacked);
         let absorbed = &inverse * own.tr_mul(&residual);
-        let mut column = &design * -absorbed;
-        for (k, &i) in block.stacked.iter().enumerate() {
-            column[i] += residual[k];
+        for (drawn, design) in drawn.iter_mut().zip(&design_at) {
+            drawn.set_column(p, &(design * -&absorbed));
         }
-        drawn.set_column(p, &column);
+        for (k, &i) in block.stacked.iter().enumerate() {
+            if let Some((axis, row)) = place[i] {
+                drawn[axis][(row, p)] += residual[k];
+            }
+        }
     }
     Some(drawn)
 }

@@ -234,8 +234,8 @@ fn search(
 ) -> Result<Outcome, String> {
     let mut selection = select(bench, start, options, progress)?;
     progress("looking for structure in what is left");
-    let yardstick = yardstick(prepared);
     let test = |bench: &Bench<'_>, model: &Fitted| -> Result<LackOfFit, String> {
+        let yardstick = yardstick(prepared, bench);
         Ok(lack_of_fit::test(&*bench.at(&model.named)?, model, prepared.data, yardstick, options))
     };
     let mut left = test(bench, &selection.model)?;
@@ -258,7 +258,9 @@ fn search(
     }
     let setting = bench.at(&selection.model.named)?;
     let events = isolated::events(&setting, &selection.model, bench.strict);
-    let (verdict, why) = verdict::judge(&selection, &left, events.len(), taken_back);
+    let may_lag = !left.structure && verdict::may_lag(bench, &selection.model);
+    left.structure |= may_lag;
+    let (verdict, why) = verdict::judge(&selection, &left, events.len(), taken_back, may_lag);
     Ok(Outcome { selection, left: Some(left), events, verdict, why })
 }
 
@@ -284,10 +286,11 @@ impl Outcome {
     }
 }
 
-fn yardstick(prepared: &Prepared<'_>) -> Yardstick {
-    match (prepared.declared_noise, prepared.repeated.variance()) {
+fn yardstick(prepared: &Prepared<'_>, bench: &Bench<'_>) -> Yardstick {
+    let repeated = bench.noise.repeated;
+    match (prepared.declared_noise, repeated.variance()) {
         (Some(noise), _) => Yardstick::Declared(noise * noise),
-        (None, Some(_)) => Yardstick::Repeated(prepared.repeated),
+        (None, Some(_)) => Yardstick::Repeated(repeated),
         (None, None) => Yardstick::Unknown,
     }
 }

@@ -36,7 +36,7 @@ pub fn report(
     options: &Options,
 ) -> Result<Trace, String> {
     // Before anything was corrected, wild rows and all.
-    let untouched = Bench::new(campaign, prepared)?;
+    let untouched = Bench::bare(campaign, prepared);
     let all = untouched.at(&[])?;
     let base = all.fit(&[])?;
     let found = &outcome.selection.model;
@@ -72,7 +72,10 @@ pub fn report(
     let spread = spread_of(bench_of_numbers, &setting, model);
     let estimates = numbers(campaign, prepared, &setting, model, &spread);
     let mut effects = effects(bench, &setting, model, outcome, &spread, options);
-    effects.extend(isolated(prepared, outcome, misfit(&setting, model).holdout_rms));
+    let holdout_rms = misfit(&setting, model).holdout_rms;
+    let slipped = effects.iter_mut().find(|named| named.effect.kind() == BASE_SLIP.name);
+    let isolated = isolated(prepared, outcome, holdout_rms, slipped);
+    effects.extend(isolated);
     let values: Vec<f64> = estimates.iter().map(|estimate| estimate.value).collect();
     let held_out = problem.held_out.iter().map(|block| prepared.data.poses[block.pose].clone()).collect();
     let declared =
@@ -231,8 +234,14 @@ fn share_of(setting: &Setting<'_>, model: &Fitted, spread: &DMatrix<f64>, at: us
 }
 
 /// The names of what is wrong in single visits. A robot slips once: several
-/// slips are several wild visits.
-fn isolated(prepared: &Prepared<'_>, outcome: &Outcome, holdout_rms: f64) -> Vec<NamedEffect> {
+/// slips are several wild visits, and a slip in the visit that one was found at
+/// the end of, or within, is that one.
+fn isolated(
+    prepared: &Prepared<'_>,
+    outcome: &Outcome,
+    holdout_rms: f64,
+    slipped: Option<&mut NamedEffect>,
+) -> Vec<NamedEffect> {
     let line = |row: &usize| prepared.data.rows[*row].line;
     let one = |effect: Found, lines: Vec<usize>, events: &[&Event], same_as: Vec<String>| NamedEffect {
         parameters: effect.parameters.clone(),
@@ -246,7 +255,19 @@ fn isolated(prepared: &Prepared<'_>, outcome: &Outcome, holdout_rms: f64) -> Vec
     let (slips, wild): (Vec<&Event>, Vec<&Event>) = outcome.events.iter().partition(|event| event.is_slip);
     let mut found = Vec::new();
     let mut outliers = wild;
-    if let [slip] = slips[..] {
+    let already = slipped.is_some();
+    if let Some(known) = slipped {
+        let moment = known.effect.value("line") as usize;
+        let lines = |slip: &Event| slip.rows.iter().map(line).collect::<Vec<usize>>();
+        for slip in slips {
+            let lines = lines(slip);
+            let (first, last) = (lines.iter().min(), lines.iter().max());
+            match first.zip(last) {
+                Some((&first, &last)) if (first..=last + 1).contains(&moment) => known.lines.extend(lines),
+                _ => outliers.push(slip),
+            }
+        }
+    } else if let [slip] = slips[..] {
         let number =
             |(name, value): (&'static str, &f64)| EffectParameter { name, value: *value, std: None, unit: "m" };
         let mut parameters: Vec<EffectParameter> =
@@ -264,7 +285,7 @@ fn isolated(prepared: &Prepared<'_>, outcome: &Outcome, holdout_rms: f64) -> Vec
         let rows = EffectParameter { name: "rows", value: lines.len() as f64, std: None, unit: "1" };
         let effect = Found::new(&OUTLIERS, Place::Rig, std::vec![rows]);
         // One visit alone may as well have been where the robot slipped.
-        let same = if outliers.len() == 1 { std::vec!["base_slip@base".to_string()] } else { Vec::new() };
+        let same = if outliers.len() == 1 && !already { std::vec!["base_slip@base".to_string()] } else { Vec::new() };
         found.push(one(effect, lines, &outliers, same));
     }
     found

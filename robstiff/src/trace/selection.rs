@@ -162,6 +162,9 @@ pub fn select(
         if let Ok(better) = polished.fit(&model.named) {
             (*bench, model) = (polished, better);
         }
+        if bench.learn_noise(&model.named)? {
+            model = bench.fit(&model.named)?;
+        }
     }
     Ok(Selection { model, p_values, steps, unnamed })
 }

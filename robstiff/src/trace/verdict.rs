@@ -7,6 +7,7 @@ use std::vec;
 use std::vec::Vec;
 
 use super::bench::Bench;
+use super::catalogue::{CREEP, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY};
 use super::features::LOAD_ORDER;
 use super::lack_of_fit::LackOfFit;
 use super::model::{Fitted, Named};
@@ -68,7 +69,7 @@ pub fn to_take_back(bench: &Bench<'_>, model: &Fitted, left: &LackOfFit) -> Vec<
     // A gear with hysteresis is softer at small torques, on the way back: what
     // changes with the load order is no function of the torque.
     let of_order = left.depends_on.iter().any(|column| column == LOAD_ORDER);
-    let nonlinear = |named: &Named| bench.candidates()[named.candidate].kind.name == "stiffness_nonlinearity";
+    let nonlinear = |named: &Named| bench.candidates()[named.candidate].kind.name == STIFFNESS_NONLINEARITY.name;
     if of_order && model.named.iter().any(nonlinear) {
         return (0..model.named.len()).filter(|&k| nonlinear(&model.named[k])).collect();
     }
@@ -88,9 +89,30 @@ pub fn to_take_back(bench: &Bench<'_>, model: &Fitted, left: &LackOfFit) -> Vec<
     }
 }
 
+/// Whether a model takes a lag to pieces: a joint that comes to rest with a time
+/// constant of a minute or two depends on the order of loads like hysteresis,
+/// and is softer where loads rest longer, like a gear with a curve or creep. A
+/// gear can have both; no test of residuals tells, for next to nothing is left.
+pub fn may_lag(bench: &Bench<'_>, model: &Fitted) -> bool {
+    let candidates = || model.named.iter().map(|one| &bench.candidates()[one.candidate]);
+    candidates().filter(|one| one.kind.name == HYSTERESIS.name).any(|one| {
+        let beside = |other: &super::catalogue::Candidate| {
+            let curve = [STIFFNESS_NONLINEARITY.name, LOST_MOTION.name].contains(&other.kind.name);
+            other.kind.name == CREEP.name || (curve && other.place == one.place)
+        };
+        candidates().any(beside)
+    })
+}
+
 /// The verdict on a model that stands, with so many names besides for what is
 /// wrong in single visits, and why.
-pub fn judge(selection: &Selection, left: &LackOfFit, isolated: usize, taken_back: usize) -> (Verdict, String) {
+pub fn judge(
+    selection: &Selection,
+    left: &LackOfFit,
+    isolated: usize,
+    taken_back: usize,
+    may_lag: bool,
+) -> (Verdict, String) {
     let named = selection.model.named.len() + isolated;
     let structure = left.structure || selection.unnamed;
     let strongest = left.tests.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value));
@@ -107,6 +129,10 @@ pub fn judge(selection: &Selection, left: &LackOfFit, isolated: usize, taken_bac
         (0, true) => {
             (Verdict::Unexplained, format!("structure is left that no effect of the catalogue accounts for: {because}"))
         }
+        (_, true) if may_lag => (
+            Verdict::Partial,
+            String::from("hysteresis with a curve or creep besides is also how a joint looks that lags"),
+        ),
         (_, true) => (Verdict::Partial, format!("structure is left beyond the named effects: {because}")),
     }
 }

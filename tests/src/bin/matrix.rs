@@ -8,7 +8,7 @@ use std::{fs, process, thread};
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use robstiff_tests::matrix::{Case, Group, Record, groups, run, table};
+use robstiff_tests::matrix::{Case, Group, POSES, Record, groups, run, table};
 
 /// Traces simulated campaigns with something hidden in them, and judges what is said of them
 #[derive(Parser)]
@@ -26,6 +26,9 @@ struct Arguments {
     /// Only this arm
     #[arg(long)]
     arm: Option<ArmName>,
+    /// Poses of each campaign, of ten rows each
+    #[arg(long, default_value_t = POSES)]
+    poses: usize,
     /// Threads
     #[arg(long, default_value_t = 2)]
     jobs: usize,
@@ -77,7 +80,8 @@ fn cases(chosen: &[Group], arguments: &Arguments) -> Vec<Case> {
     let share = |group: &Group| (arguments.count * group.share()).div_ceil(all);
     let fits = |case: &Case| arguments.arm.is_none_or(|arm| case.six_axes == (arm == ArmName::Six));
     let of = |&group: &Group| {
-        let endless = (0..).map(move |replicate| Case::new(group, replicate, arguments.seed));
+        let endless =
+            (0..).map(move |replicate| Case { poses: arguments.poses, ..Case::new(group, replicate, arguments.seed) });
         endless.filter(fits).take(share(&group)).collect::<Vec<_>>()
     };
     chosen.iter().flat_map(of).collect()

@@ -25,6 +25,9 @@ pub const IS_OUTSIDE: f64 = 1.0;
 /// the noise's variance, that of an average reading a tenth of it.
 pub const HARDLY_SEEN: f64 = 0.3;
 
+/// The number of poses of a campaign of the usual size.
+pub const POSES: usize = 40;
+
 /// Draws before a kind is taken to be too small everywhere on an arm.
 const TRIES: usize = 12;
 
@@ -90,6 +93,8 @@ pub struct Case {
     pub shares_unloaded: bool,
     /// Whether rotations are measured.
     pub rotations: bool,
+    /// The number of poses, of ten rows each.
+    pub poses: usize,
 }
 
 /// What is to be expected of tracing.
@@ -136,7 +141,15 @@ impl Case {
         let hash =
             bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3));
         let bit = |place: usize| (replicate >> place) & 1 == 1;
-        Self { group, replicate, seed: hash, six_axes: bit(0), shares_unloaded: !bit(1), rotations: bit(2) }
+        Self {
+            group,
+            replicate,
+            seed: hash,
+            six_axes: bit(0),
+            shares_unloaded: !bit(1),
+            rotations: bit(2),
+            poses: POSES,
+        }
     }
 
     /// Draws what is hidden and finds its size.
@@ -151,6 +164,7 @@ impl Case {
             rotation_noise: self.rotations.then_some(5e-5),
             moment: (self.rotations && moments).then_some([50.0, 200.0]),
             shares_unloaded: self.shares_unloaded,
+            poses: self.poses,
             swing: 0.5,
             ..Scenario::new(truth, Vec::new(), self.seed)
         };

@@ -9,5 +9,5 @@ pub mod run;
 pub mod table;
 pub mod visible;
 
-pub use case::{Case, Expected, Group, Ready, groups};
+pub use case::{Case, Expected, Group, POSES, Ready, groups};
 pub use run::{Record, run};

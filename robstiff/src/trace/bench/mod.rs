@@ -2,6 +2,7 @@
 //! their own form, by Gauss-Newton steps with all numbers together, and the
 //! whole catalogue linearised at what comes out.
 
+mod noise;
 mod polish;
 
 use std::cell::RefCell;
@@ -13,6 +14,7 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
+pub use self::noise::Known;
 use super::catalogue::{Candidate, Catalogue, LIKELY, Number, Scene, Variant, catalogue};
 use super::isolated::{self, Moment};
 use super::model::{Fitted, Named, Setting};
@@ -38,16 +40,18 @@ pub struct Bench<'c> {
     pub invisible: Vec<String>,
     /// Rows that are left out, for they are wild.
     pub left_out: Vec<bool>,
+    /// How noisy the readings are, as far as is known.
+    pub noise: Rc<Known>,
     /// Whether rows need only stand out from noise, not from structure.
     pub strict: bool,
     /// Where a slip that all later rows keep may have begun.
     moments: Vec<Moment>,
-    settings: Known<Setting<'c>>,
-    states: Known<State>,
+    settings: Solved<Setting<'c>>,
+    states: Solved<State>,
 }
 
 /// What was found of models, or why not.
-type Known<T> = RefCell<HashMap<Vec<Named>, Result<Rc<T>, String>>>;
+type Solved<T> = RefCell<HashMap<Vec<Named>, Result<Rc<T>, String>>>;
 
 /// A model at its solution.
 struct State {
@@ -80,20 +84,7 @@ impl<'c> Bench<'c> {
     /// Why not even the description's own model can be fitted.
     pub fn new(campaign: &'c Campaign, prepared: &'c Prepared<'c>) -> Result<Self, String> {
         let rows = prepared.samples.rows.len();
-        let mut bench = Self {
-            campaign,
-            prepared,
-            own: prepared.own.iter().map(|number| number.column).collect(),
-            candidates: Rc::new([]),
-            numbers: Rc::new([]),
-            signs: Rc::new([]),
-            invisible: Vec::new(),
-            left_out: vec![false; rows],
-            strict: false,
-            moments: Vec::new(),
-            settings: RefCell::default(),
-            states: RefCell::default(),
-        };
+        let mut bench = Self::bare(campaign, prepared);
         let evenly = |count: usize, before: bool| {
             (1..=count).map(move |k| Moment { row: (k * rows / (count + 1)).clamp(1, rows), before })
         };
@@ -101,6 +92,26 @@ impl<'c> Bench<'c> {
         bench.moments = evenly(LIKELY, false).chain(evenly(MOMENTS, false)).chain(evenly(MOMENTS, true)).collect();
         bench.set_up()?;
         Ok(bench)
+    }
+
+    /// The bench of a prepared campaign with nothing in its catalogue: it fits
+    /// the description's own model.
+    pub fn bare(campaign: &'c Campaign, prepared: &'c Prepared<'c>) -> Self {
+        Self {
+            campaign,
+            prepared,
+            own: prepared.own.iter().map(|number| number.column).collect(),
+            candidates: Rc::new([]),
+            numbers: Rc::new([]),
+            signs: prepared.signs().into(),
+            invisible: Vec::new(),
+            left_out: vec![false; prepared.samples.rows.len()],
+            noise: Rc::new(Known::of(prepared)),
+            strict: false,
+            moments: Vec::new(),
+            settings: RefCell::default(),
+            states: RefCell::default(),
+        }
     }
 
     /// The campaign that candidates are looked for in.
@@ -273,7 +284,7 @@ impl<'c> Bench<'c> {
 
     /// How rows are weighed.
     pub fn weights(&self) -> Weights<'_> {
-        Weights { covariance: &self.prepared.covariance, training: &self.prepared.training, left_out: &self.left_out }
+        Weights { covariance: &self.noise.covariance, training: &self.prepared.training, left_out: &self.left_out }
     }
 
     fn state(&self, named: &[Named]) -> Result<Rc<State>, String> {
@@ -470,4 +481,4 @@ const ROUNDS: usize = 4;
 /// Of a campaign with more rows than this, only so many regressions with the
 /// whole catalogue are kept.
 const MANY_ROWS: usize = 4000;
-const KEPT: usize = 3;
+const KEPT: usize = 2;

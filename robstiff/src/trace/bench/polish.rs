@@ -35,7 +35,8 @@ impl Bench<'_> {
                     }
                     let at = bench.variant(one).shape[k].value;
                     let with = |value: f64| bench.with_shape(one, k, value);
-                    let (mut low, mut high) = ((at / REACH).ln(), (at * REACH).ln());
+                    let [least, most] = self.variant(one).within;
+                    let (mut low, mut high) = ((at / REACH).max(least).ln(), (at * REACH).min(most).ln());
                     let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
                     let [mut left, mut right] = inner(low, high);
                     let (mut of_left, mut of_right) = (rss(&with(left.exp())), rss(&with(right.exp())));
@@ -91,6 +92,7 @@ impl Bench<'_> {
             signs: Rc::clone(&self.signs),
             invisible: self.invisible.clone(),
             left_out: self.left_out.clone(),
+            noise: Rc::clone(&self.noise),
             strict: self.strict,
             moments: self.moments.clone(),
             settings: RefCell::default(),

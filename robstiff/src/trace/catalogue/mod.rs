@@ -46,7 +46,11 @@ use nalgebra::{DVector, Matrix3};
 use robstiff_robots::Description;
 
 pub use self::base_slip::{KIND as BASE_SLIP, LIKELY};
+pub use self::creep::KIND as CREEP;
+pub use self::hysteresis::KIND as HYSTERESIS;
+pub use self::lost_motion::{EITHER, KIND as LOST_MOTION};
 pub use self::outliers::KIND as OUTLIERS;
+pub use self::stiffness_nonlinearity::KIND as STIFFNESS_NONLINEARITY;
 use super::found::{EffectParameter, Found, Place};
 use super::isolated::Moment;
 use super::point::Point;
@@ -273,6 +277,8 @@ pub struct Variant {
     /// Its numbers between the values of the grid, where there is a between; a
     /// column then has one number out of the grid, its own.
     pub refine: Option<Refine>,
+    /// Where such numbers go by this name.
+    pub within: [f64; 2],
 }
 
 /// An effect that may be missing.
@@ -326,12 +332,21 @@ pub struct Form {
     pub names: &'static [&'static str],
     /// Its numbers between the values of the grid, where there is a between.
     pub refine: Option<Refine>,
+    /// Where such numbers go by this name.
+    pub within: [f64; 2],
 }
 
 impl Form {
     /// Some of the numbers.
     pub fn of(numbers: impl IntoIterator<Item = usize>) -> Self {
-        Self { numbers: numbers.into_iter().collect(), shape: Vec::new(), marks: Vec::new(), names: &[], refine: None }
+        Self {
+            numbers: numbers.into_iter().collect(),
+            shape: Vec::new(),
+            marks: Vec::new(),
+            names: &[],
+            refine: None,
+            within: MORE_THAN_NONE,
+        }
     }
 
     /// The same with a number out of a grid.
@@ -343,6 +358,13 @@ impl Form {
     /// The same with what its numbers are between the values of the grid.
     pub fn refined(mut self, refine: impl Fn(&[f64]) -> Vec<Number> + 'static) -> Self {
         self.refine = Some(Rc::new(refine));
+        self
+    }
+
+    /// The same with numbers between the values of the grid that go by this
+    /// name within bounds only.
+    pub fn within(mut self, bounds: [f64; 2]) -> Self {
+        self.within = bounds;
         self
     }
 
@@ -372,6 +394,7 @@ impl Offers<'_> {
             shape: form.shape.into_iter().chain(form.marks).collect(),
             names: form.names,
             refine: form.refine,
+            within: form.within,
         };
         let variants = forms.into_iter().map(variant).collect();
         self.catalogue.numbers.extend(numbers);

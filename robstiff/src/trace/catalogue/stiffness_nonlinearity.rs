@@ -5,6 +5,7 @@ use std::format;
 use std::rc::Rc;
 use std::vec::Vec;
 
+use super::lost_motion::EITHER;
 use super::{Form, Kind, Number, Offers, Place, Scene, place_words};
 use crate::identify::samples::Column;
 
@@ -37,7 +38,8 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         let knees = KNEES.map(|fraction| fraction * largest);
         let torque = if scene.turns(joint) { "Nm" } else { "N" };
         let forms = (0..).zip(knees).map(|(k, knee)| Form::of([k]).with("knee", knee, torque));
-        let forms = forms.map(|form| form.refined(move |knees| [number(knees[0])].into())).collect();
+        let forms = forms.map(|form| form.refined(move |knees| [number(knees[0])].into()));
+        let forms = forms.map(|form| form.within([EITHER[0] * largest, f64::INFINITY])).collect();
         let check = move |numbers: &[(&str, f64)], of: &dyn Fn(usize) -> f64| {
             (numbers[0].1 > -of(joint))
                 .then_some(())

@@ -1,0 +1,89 @@
+//! How noisy the readings are, once it is known what they are not.
+//!
+//! The noise is learnt from a free response, linear in the load, at each pose
+//! ([`covariance`](crate::identify::covariance)). What is no function of the
+//! load, as hysteresis and creep, no response at a pose takes up: the ways up
+//! and down differ, and pass for noise that rows of a visit do *not* have in
+//! common. A named effect is taken from the readings, and the noise is learnt
+//! again; otherwise the unloaded readings of whole visits would look wild.
+
+use std::rc::Rc;
+use std::string::String;
+
+use super::Bench;
+use crate::identify::covariance::{Basis, Covariance};
+use crate::identify::noise::{PureError, repetitions};
+use crate::identify::prepare::Prepared;
+use crate::identify::second_order::straightened;
+use crate::trace::model::Named;
+
+/// What is known of the noise.
+#[derive(Clone, Debug)]
+pub struct Known {
+    /// The covariance of the readings.
+    pub covariance: Covariance,
+    /// What repeated readings say.
+    pub repeated: PureError,
+}
+
+/// The noise has changed where the standard deviation of an axis, or of a
+/// visit's unloaded reading, changes by more than this share.
+const CHANGED: f64 = 0.02;
+
+impl Known {
+    /// What is known before anything is named.
+    pub fn of(prepared: &Prepared<'_>) -> Self {
+        Self { covariance: prepared.covariance.clone(), repeated: prepared.repeated }
+    }
+
+    fn differs(&self, other: &Self) -> bool {
+        let of = |known: &Self| {
+            let unloaded = known.covariance.shared.sqrt();
+            known.covariance.own.iter().map(|own| (*own, own * unloaded)).collect::<std::vec::Vec<_>>()
+        };
+        let moved = |a: f64, b: f64, size: f64| (a - b).abs() > CHANGED * size;
+        of(self).into_iter().zip(of(other)).any(|(a, b)| moved(a.0, b.0, a.0) || moved(a.1, b.1, a.0))
+    }
+}
+
+impl Bench<'_> {
+    /// Learns the noise from readings without what a model's effects do;
+    /// whether it is another than before.
+    ///
+    /// # Errors
+    /// Why the model cannot be fitted.
+    pub fn learn_noise(&mut self, named: &[Named]) -> Result<bool, String> {
+        let prepared = self.prepared;
+        let known = if named.is_empty() { Known::of(prepared) } else { self.noise_without(named)? };
+        // A covariance that was assumed has been weighed by what a fit leaves.
+        if !matches!(known.covariance.basis, Basis::Contrasts(_)) || !known.differs(&self.noise) {
+            return Ok(false);
+        }
+        self.noise = Rc::new(known);
+        self.settings.get_mut().clear();
+        self.states.get_mut().clear();
+        Ok(true)
+    }
+
+    fn noise_without(&self, named: &[Named]) -> Result<Known, String> {
+        let prepared = self.prepared;
+        let setting = self.at(named)?;
+        let fit = setting.fit(named)?.fit;
+        let mut samples = straightened(&prepared.samples, &prepared.values[..prepared.samples.joints()]);
+        let effects = fit.columns.iter().zip(&fit.coefficients).filter(|(column, _)| **column >= self.own.len());
+        for (&column, &value) in effects {
+            let raw = setting.raw(column);
+            for (i, row) in samples.rows.iter_mut().enumerate() {
+                row.displacement -= value * raw.fixed_rows::<3>(i * samples.axes);
+                if samples.axes > 3 {
+                    row.rotation -= value * raw.fixed_rows::<3>(i * samples.axes + 3);
+                }
+            }
+        }
+        let training = |pose: usize| prepared.training[pose];
+        let frame = prepared.data.measured_frame;
+        let covariance = Covariance::estimate(&samples, frame, self.campaign.noise, training);
+        let repeated = repetitions(&samples, &covariance, training);
+        Ok(Known { covariance, repeated })
+    }
+}
