@@ -18,7 +18,7 @@ fn proposes_poses_for_the_fanuc() {
     let (out, copy, table) = (inside(&folder, "out"), inside(&folder, "copy.json"), inside(&folder, "next.csv"));
     let page = succeed(&["plan", &campaign(), "--out", &out, "--json", &copy, "--csv", &table]);
     assert!(page.contains("10 poses to measure next, after 43"), "{page}");
-    assert!(page.contains("transverse_compliance@joint 3 / link_compliance@link 3"), "{page}");
+    assert!(page.contains("stiffness_nonlinearity@joint 1 / lost_motion@joint 1"), "{page}");
     // Translations of the tool and of the base are one, wherever the arm stands.
     assert!(page.contains("No pose and load can tell tool_compliance@tool from base_compliance@base"), "{page}");
     assert!(page.contains("joints without limits in the description stay in the campaign's range"), "{page}");
@@ -66,8 +66,12 @@ fn a_trace_proposes_the_first_of_them() {
     assert_eq!(next.len(), 3);
     assert_eq!(keys(&next[0]), ["q_deg", "force_N", "separates"]);
     assert_eq!(next[0]["q_deg"].as_array().unwrap().len(), 6);
-    assert_eq!(next[0]["separates"][0], trace["effects"][0]["kind"].as_str().unwrap().to_owned() + "@joint 3");
-    assert!(page.contains("To tell transverse_compliance@joint 3 from link_compliance@link 3: q = ("), "{page}");
+    let pair = ["stiffness_nonlinearity@joint 1", "lost_motion@joint 1"];
+    assert_eq!(next[0]["separates"], serde_json::json!(pair));
+    assert!(
+        page.contains("To tell stiffness nonlinearity of joint 1 from lost motion of joint 1, measure next:\n  q = ("),
+        "{page}"
+    );
     let report = fs::read_to_string(folder.join("out/report.html")).unwrap();
     assert!(report.contains("What to measure next"));
 }

@@ -239,7 +239,7 @@ pub fn page(trace: &Trace) -> String {
     page
 }
 
-fn of<'t>(trace: &'t Trace, which: impl Fn(&NamedEffect) -> bool) -> Vec<&'t NamedEffect> {
+fn of(trace: &Trace, which: impl Fn(&NamedEffect) -> bool) -> Vec<&NamedEffect> {
     trace.effects.iter().filter(|named| which(named)).collect()
 }
 
