@@ -46,20 +46,41 @@ pub fn uncertain(value: f64, std: f64) -> String {
     }
     let exponent = value.abs().max(std).log10().floor();
     let scale = 10_f64.powf(-exponent);
-    let decimals = (1.0 - (std * scale).log10().floor()).clamp(0.0, 4.0) as usize;
-    let (value, std) = (value * scale, std * scale);
     let suffix = if exponent == 0.0 { String::new() } else { format!("e{exponent}") };
-    format!("({value:.decimals$} ± {std:.decimals$}){suffix}")
+    let decimals = (1.0 - (std * scale).log10().floor()).clamp(0.0, 4.0) as usize;
+    format!("({:.decimals$} ± {:.decimals$}){suffix}", value * scale, std * scale)
 }
 
-/// A compliance in millionths of its unit with its standard deviation, to two
-/// digits of that: `0.637 ± 0.032`.
-pub fn millionths(value: f64, std: f64) -> String {
+/// The same without a power of ten: `0.637 ± 0.032`.
+pub fn plus_minus(value: f64, std: f64) -> String {
     if !(value.is_finite() && std.is_finite() && std > 0.0) {
-        return significant(value * 1e6, 4);
+        return significant(value, 4);
     }
-    let decimals = (1.0 - (std * 1e6).log10().floor()).clamp(0.0, 6.0) as usize;
-    format!("{:.decimals$} ± {:.decimals$}", value * 1e6, std * 1e6)
+    let decimals = (1.0 - std.log10().floor()).clamp(0.0, 6.0) as usize;
+    format!("{value:.decimals$} ± {std:.decimals$}")
+}
+
+/// A compliance in millionths of its unit with its standard deviation.
+pub fn millionths(value: f64, std: f64) -> String {
+    plus_minus(value * 1e6, std * 1e6)
+}
+
+/// A quantity in SI as one says it in a workshop, with its standard deviation
+/// where there is one: compliances in millionths, lengths in mm or um, angles
+/// in deg or urad.
+pub fn quantity(value: f64, std: Option<f64>, unit: &str) -> String {
+    let large = value.abs().max(std.unwrap_or(0.0)) >= 1e-3;
+    let (factor, shown) = match unit {
+        "1" => (1.0, ""),
+        "m" if large => (1e3, "mm"),
+        "rad" if large => (1.0_f64.to_degrees(), "deg"),
+        // Metres and radians, alone or over something.
+        _ if unit.starts_with("m/") || unit.starts_with("rad/") || matches!(unit, "m" | "rad") => (1e6, unit),
+        _ => (1.0, unit),
+    };
+    let number = plus_minus(value * factor, std.unwrap_or(f64::NAN) * factor);
+    let micro = if factor == 1e6 { "u" } else { "" };
+    format!("{number} {micro}{shown}").trim_end().to_owned()
 }
 
 /// A probability; what the draws of a bootstrap resolve has three decimals.
@@ -139,10 +160,22 @@ mod tests {
         assert_eq!(uncertain(6.314e-7, 3.2e-8), "(6.31 ± 0.32)e-7");
         assert_eq!(uncertain(2.0, 0.5), "(2.00 ± 0.50)");
         assert_eq!(uncertain(-1e-8, 4e-7), "(-0.1 ± 4.0)e-7");
+        assert_eq!(plus_minus(-251.3, 20.4), "-251 ± 20");
         assert_eq!(uncertain(3e-7, f64::NAN), "3e-7");
         assert_eq!(millionths(6.314e-7, 3.2e-8), "0.631 ± 0.032");
         assert_eq!(millionths(4.9e-6, 4.1e-6), "4.9 ± 4.1");
         assert_eq!(millionths(3e-7, f64::NAN), "0.3");
+    }
+
+    #[test]
+    fn quantities_are_in_units_of_the_workshop() {
+        assert_eq!(quantity(6.314e-7, Some(3.2e-8), "rad/Nm"), "0.631 ± 0.032 urad/Nm");
+        assert_eq!(quantity(-0.251, Some(0.020), "m"), "-251 ± 20 mm");
+        assert_eq!(quantity(2e-5, Some(1e-6), "m"), "20.0 ± 1.0 um");
+        assert_eq!(quantity(0.05, Some(0.0087), "rad"), "2.86 ± 0.50 deg");
+        assert_eq!(quantity(127.0, None, "Nm"), "127 Nm");
+        assert_eq!(quantity(0.25, None, "1"), "0.25");
+        assert_eq!(quantity(3e-6, Some(1e-6), "m/h"), "3.0 ± 1.0 um/h");
     }
 
     #[test]

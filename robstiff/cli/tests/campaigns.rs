@@ -80,7 +80,7 @@ fn readings_against_the_loads_are_said_to_be() {
     assert_eq!((&joint["at_bound"], &joint["visibility"]), (&true.into(), &"seen".into()));
     assert!(joint["std"].is_null() && joint["deviation"].is_null());
     let page = succeed(&["trace", &campaign, "--out", &out]);
-    assert!(page.contains(told) && page.contains("Verdict: insufficient"), "{page}");
+    assert!(page.contains(&told.replacen('j', "J", 1)) && page.contains("Verdict: insufficient"), "{page}");
     assert!(page.contains("The readings do not follow the loads."), "{page}");
 }
 
@@ -115,6 +115,12 @@ fn traces_the_missing_effect_and_writes_everything() {
     let (out, path) = (inside(&folder, "out"), inside(&folder, "copy.json"));
     let page = succeed(&["trace", &campaign(), "--out", &out, "--json", &path]);
     assert!(page.contains("as declared") && page.contains("Verdict: "), "{page}");
+    // What goes into the robot, and what is of the measurement, apart.
+    let (robot, rig) = page.split_once("\nFaults of the measurement, corrected for, not written").unwrap();
+    assert!(robot.contains("written into its description:") && robot.contains("transverse_compliance@joint 3: h = "));
+    assert!(rig.contains("@rig") && !robot.contains("@rig"), "{page}");
+    // One sentence for what cannot be asked.
+    assert_eq!(page.matches("further check").count(), 1, "{page}");
     let out = Path::new(&out);
     assert_eq!(names(out), ["report.html", "robot.yaml", "trace.json"]);
     let trace = json(&inside(out, "trace.json"));
@@ -159,6 +165,11 @@ fn traces_the_missing_effect_and_writes_everything() {
     assert!(succeed(&["emit", &inside(out, "robot.yaml")]).contains("transverse_compliance@joint 3"));
 
     let report = fs::read_to_string(out.join("report.html")).unwrap();
+    for part in
+        ["not written into the robot", "class=\"arrow before\"", "class=\"arrow after\"", "Where the residuals are"]
+    {
+        assert!(report.contains(part), "{part}");
+    }
     assert!(report.contains("FanucR2000ic") && report.contains("<svg") && report.contains("verdict: "));
     let report = report.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
     assert!(!report.contains("http:") && !report.contains("https:") && !report.contains("<script"));

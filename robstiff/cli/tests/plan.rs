@@ -68,7 +68,10 @@ fn a_trace_proposes_the_first_of_them() {
     assert_eq!(keys(&next[0]), ["q_deg", "force_N", "separates"]);
     assert_eq!(next[0]["q_deg"].as_array().unwrap().len(), 6);
     assert_eq!(next[0]["separates"], serde_json::json!(PAIR));
-    assert!(page.contains(&format!("To tell {} from {}: q = (", PAIR[0], PAIR[1])), "{page}");
+    assert!(
+        page.contains("To tell stiffness nonlinearity of joint 1 from lost motion of joint 1, measure next:\n  q = ("),
+        "{page}"
+    );
     let report = fs::read_to_string(folder.join("out/report.html")).unwrap();
     assert!(report.contains("What to measure next"));
 }

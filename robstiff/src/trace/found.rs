@@ -123,6 +123,12 @@ impl Found {
         (self.kind.words)(self)
     }
 
+    /// What causes it and what one does about it, in full sentences.
+    pub fn explanation(&self) -> &'static str {
+        let about = CATALOGUE.iter().find(|about| about.kind == self.kind.name);
+        about.map_or(self.kind.explanation, |about| about.explanation)
+    }
+
     /// The value of one of its numbers; zero where it does not have it.
     pub fn value(&self, name: &str) -> f64 {
         self.parameters.iter().find(|parameter| parameter.name == name).map_or(0.0, |parameter| parameter.value)

@@ -44,6 +44,12 @@ pub struct Report {
     pub errors: Vec<PoseError>,
     /// Residual vectors of single rows.
     pub residuals: Vec<Residual>,
+    /// The arm in its poses.
+    pub arms: Vec<Arm>,
+    /// What the residual depends on most.
+    pub dependences: Vec<Dependence>,
+    /// What else there could be, a sentence each.
+    pub doubts: Vec<String>,
     /// The search, step by step.
     pub steps: Vec<SearchStep>,
     /// What is left.
@@ -74,16 +80,22 @@ pub struct Stage {
 pub struct Effect {
     /// `kind@at`.
     pub name: String,
-    /// What that is, in words.
+    /// What that is, in words, with its lines of the table.
     pub words: String,
+    /// What causes it and what one does about it.
+    pub explanation: String,
+    /// Whether it is a fault of the measurement.
+    pub of_rig: bool,
+    /// Whether the description that is written has it.
+    pub written: bool,
     /// Its numbers.
     pub numbers: Vec<Number>,
     /// The family-wise p-value.
     pub p_value: f64,
     /// The error on unseen poses with it \[um\].
     pub holdout_rms_um: f64,
-    /// What these data cannot tell it from.
-    pub same_as: Vec<String>,
+    /// What these data cannot tell it from, in words.
+    pub same_as: String,
 }
 
 /// A number of an effect, in SI.
@@ -138,6 +150,35 @@ pub struct Residual {
     pub before: [f64; 3],
     /// With the effects.
     pub after: [f64; 3],
+}
+
+/// The arm in one pose.
+#[derive(Clone, Debug)]
+pub struct Arm {
+    /// The pose's id.
+    pub id: String,
+    /// From the ground to the TCP, joint by joint \[m\].
+    pub points: Vec<[f64; 3]>,
+    /// The residual of the row of its largest force, the joints identified
+    /// again \[um\].
+    pub before: [f64; 3],
+    /// The same with the effects.
+    pub after: [f64; 3],
+}
+
+/// The residual against one quantity.
+#[derive(Clone, Debug)]
+pub struct Dependence {
+    /// The quantity.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// The component of the residual.
+    pub axis: usize,
+    /// Which share of its variance a parabola accounts for, before and after.
+    pub share: [f64; 2],
+    /// The quantity, and the residual before and after \[um\].
+    pub points: Vec<[f64; 3]>,
 }
 
 /// One step of the search.
@@ -195,7 +236,7 @@ pub struct Next {
     pub pose: String,
     /// The force's components \[N\].
     pub force: String,
-    /// What it separates.
+    /// What it separates, in words.
     pub separates: [String; 2],
 }
 

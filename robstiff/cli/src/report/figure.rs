@@ -173,30 +173,30 @@ pub fn meter(error_um: f64, noise_um: [f64; 2], largest_um: f64) -> String {
 
 /// A rectangle with the range of values that it spans upwards (and to the
 /// right, where both are the same quantity).
-struct Frame {
-    x: f64,
-    y: f64,
-    width: f64,
-    height: f64,
-    range: [f64; 2],
+pub struct Frame {
+    pub x: f64,
+    pub y: f64,
+    pub width: f64,
+    pub height: f64,
+    pub range: [f64; 2],
 }
 
 impl Frame {
-    fn up(&self, value: f64) -> f64 {
+    pub fn up(&self, value: f64) -> f64 {
         self.y + self.height * (1.0 - self.fraction(value))
     }
 
-    fn right(&self, value: f64) -> f64 {
+    pub fn right(&self, value: f64) -> f64 {
         self.x + self.width * self.fraction(value)
     }
 
-    fn fraction(&self, value: f64) -> f64 {
+    pub fn fraction(&self, value: f64) -> f64 {
         let [low, high] = self.range;
         if value.is_finite() { ((value - low) / (high - low)).clamp(0.0, 1.0) } else { 0.0 }
     }
 
     /// Horizontal lines with their numbers, and what they are over the axis.
-    fn grid(&self, svg: &mut Svg, marks: &[f64], name: &str) {
+    pub fn grid(&self, svg: &mut Svg, marks: &[f64], name: &str) {
         for &mark in marks {
             let y = self.up(mark);
             svg.line(if mark == 0.0 { "zero" } else { "grid" }, [self.x, y], [self.x + self.width, y]);
@@ -206,6 +206,6 @@ impl Frame {
     }
 }
 
-fn ends(marks: &[f64]) -> [f64; 2] {
+pub fn ends(marks: &[f64]) -> [f64; 2] {
     [marks[0], marks[marks.len() - 1]]
 }

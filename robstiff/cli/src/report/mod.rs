@@ -3,9 +3,11 @@
 //! No scripts, no network; a style sheet that serves light and dark screens and
 //! paper, and figures that can be read without colour.
 
+mod arm;
 pub mod content;
 mod figure;
 mod html;
+mod scatter;
 mod sections;
 mod svg;
 #[cfg(test)]
@@ -23,11 +25,12 @@ pub fn html(report: &Report) -> String {
         heading(report),
         triage::section(report),
         sections::errors(report),
-        sections::poses(report),
         sections::effects(report),
-        sections::compliances(report),
         sections::left(report),
+        sections::doubts(report),
         sections::next(report),
+        sections::residuals(report),
+        sections::compliances(report),
         sections::search(report),
         sections::origins(report),
     ]
@@ -62,5 +65,8 @@ fn heading(report: &Report) -> String {
 
 /// Units as print writes them, and numbers on the line of what they belong to.
 fn micro(text: &str) -> String {
-    text.replace(" um", "\u{a0}µm").replace("p < ", "p\u{a0}<\u{a0}").replace("p = ", "p\u{a0}=\u{a0}")
+    text.replace(" um", "\u{a0}µm")
+        .replace(" urad", "\u{a0}µrad")
+        .replace("p < ", "p\u{a0}<\u{a0}")
+        .replace("p = ", "p\u{a0}=\u{a0}")
 }

@@ -1,29 +1,45 @@
 //! The sections of a report below its heading, each empty where there is
 //! nothing to say.
 
-use super::content::{Candidate, Number, Report, SearchStep};
-use super::figure;
+use super::content::{Candidate, Effect, Number, Report, SearchStep};
 use super::html::{Cell, Table, element, escape, number, text, words};
-use crate::text::{and, count, decimals, millionths, probability, significant};
+use super::{arm, figure, micro, scatter};
+use crate::text::{and, count, decimals, millionths, probability, quantity, significant};
 
 /// The error of each model.
 pub fn errors(report: &Report) -> String {
-    let largest = report.stages.iter().flat_map(|stage| [stage.rms_um, stage.holdout_rms_um]).fold(0.0, f64::max);
+    let stages = report.stages.iter().flat_map(|stage| [stage.rms_um, stage.holdout_rms_um]);
+    let largest = stages.chain(report.effects.iter().map(|effect| effect.holdout_rms_um)).fold(0.0, f64::max);
     let mut table = Table::new([
         words("Model"),
         number("fitted poses [µm]"),
         number("unseen poses [µm]"),
         words("unseen, against the noise"),
     ]);
+    let meter = |um: f64| Cell::Html(figure::meter(um, [report.reading_um, report.noise_um], largest));
     for (index, stage) in report.stages.iter().enumerate() {
+        let is_last = index + 1 == report.stages.len();
+        // What each effect does on the way from the joints alone to the last model.
+        for effect in report.effects.iter().filter(|_| is_last && report.effects.len() > 1) {
+            let name = format!("<span class=\"under step\">+ {}</span>", escape(&effect.words));
+            table.row(
+                false,
+                [
+                    Cell::Html(name),
+                    number(""),
+                    number(decimals(effect.holdout_rms_um, 1)),
+                    meter(effect.holdout_rms_um),
+                ],
+            );
+        }
         let name = format!("{} <small class=\"under\">{}</small>", escape(&stage.name), escape(&stage.remark));
         table.row(
-            index + 1 == report.stages.len(),
+            is_last,
             [
                 Cell::Html(name),
                 number(decimals(stage.rms_um, 1)),
                 number(decimals(stage.holdout_rms_um, 1)),
-                Cell::Html(figure::meter(stage.holdout_rms_um, [report.reading_um, report.noise_um], largest)),
+                meter(stage.holdout_rms_um),
             ],
         );
     }
@@ -37,77 +53,120 @@ pub fn errors(report: &Report) -> String {
         report.noise_source,
         decimals(report.noise_um, 1)
     );
-    element("h2", "Error before and after") + &table.html() + &text("p", &caption)
+    element("h2", "Error before and after") + &table.html() + &text("p", &caption) + &by_pose(report)
 }
 
-/// The figures.
-pub fn poses(report: &Report) -> String {
+/// The error of each pose.
+fn by_pose(report: &Report) -> String {
     if report.errors.is_empty() {
         return String::new();
     }
-    let mut first = "Root mean square error of one axis in each pose, in the order of the campaign.".to_owned();
+    let mut caption = "Root mean square error of one axis in each pose, in the order of the campaign.".to_owned();
     if report.errors.iter().any(|pose| pose.held_out) {
-        first += " Shaded: poses that were held out.";
+        caption += " Shaded: poses that were held out.";
     }
     if !report.effects.is_empty() {
-        first += " Below: how far the named effects move the tool; fitted together with them, the joints give part of it back.";
+        caption += " Below: how far the named effects move the tool; fitted together with them, the joints give part of \
+                    it back.";
     }
-    let captions = [
-        first.as_str(),
-        "Residual vectors of single rows in the base frame. A model that lacks nothing leaves a round cloud the size of the noise.",
-    ];
-    let figures = [figure::errors(report), figure::residuals(report)];
-    let figures: String = figures
-        .iter()
-        .zip(captions)
-        .map(|(svg, caption)| format!("<figure>\n{svg}{}</figure>\n", text("figcaption", caption)))
-        .collect();
-    element("h2", "Pose by pose") + &figures
+    framed(&figure::errors(report), &caption)
 }
 
-/// The effects named.
-pub fn effects(report: &Report) -> String {
-    if report.effects.is_empty() {
+fn framed(svg: &str, caption: &str) -> String {
+    format!("<figure>\n{svg}{}</figure>\n", text("figcaption", caption))
+}
+
+/// The pictures of residuals.
+pub fn residuals(report: &Report) -> String {
+    if report.residuals.is_empty() {
         return String::new();
     }
-    let mut table = Table::new([
-        words("Effect"),
-        words("Numbers"),
-        number("p"),
-        number("unseen poses [µm]"),
-        words("not told from"),
-    ]);
-    for effect in &report.effects {
-        let name = format!("<code>{}</code><br>{}", escape(&effect.name), escape(&effect.words));
-        let lines: Vec<String> = effect.numbers.iter().map(|number| escape(&number_line(number))).collect();
-        table.row(
-            false,
-            [
-                Cell::Html(name),
-                Cell::Html(format!("<span class=\"whole\">{}</span>", lines.join("<br>"))),
-                number(probability(effect.p_value)),
-                number(decimals(effect.holdout_rms_um, 1)),
-                codes(&effect.same_as),
-            ],
-        );
+    let mut figures = Vec::new();
+    if !report.arms.is_empty() {
+        figures.push(arm::figure(report));
     }
-    let note = "p: the probability that the model without this effect would show as much by chance, all candidates together. \
-                Unseen poses: the error with this effect and those above it.";
-    element("h2", "What was missing") + &table.html() + &text("p", note)
+    if !report.dependences.is_empty() {
+        figures.push(scatter::figure(report));
+    }
+    let cloud = "Residual vectors of single rows in the base frame. A model that lacks nothing leaves a round cloud the \
+                 size of the noise.";
+    figures.push((figure::residuals(report), cloud.to_owned()));
+    let figures: String = figures.iter().map(|(svg, caption)| framed(svg, caption)).collect();
+    element("h2", "Where the residuals are") + &figures
 }
 
-/// Compliances in millionths; a knee, in Nm, as it is.
+/// The effects named: those of the robot, and the faults of the measurement,
+/// which are something else.
+pub fn effects(report: &Report) -> String {
+    let (rig, robot): (Vec<&Effect>, Vec<&Effect>) = report.effects.iter().partition(|effect| effect.of_rig);
+    let mut html = String::new();
+    if !robot.is_empty() {
+        let note = if robot.iter().all(|effect| effect.written) {
+            "Written into the robot's description."
+        } else {
+            "Written into the robot's description, but for what is marked: descriptions have no word for it, or not for \
+             so much of it."
+        };
+        html += &(element("h2", "What the model of the robot lacks") + &text("p", note));
+        html += &robot.into_iter().map(effect).collect::<String>();
+    }
+    if !rig.is_empty() {
+        let note = "Corrected for, not written into the robot: the next measurement does better without them.";
+        html += &(element("h2", "What is wrong with the measurement") + &text("p", note));
+        html += &rig.into_iter().map(effect).collect::<String>();
+    }
+    if !html.is_empty() {
+        let note = "p: the probability that chance alone would show as much somewhere in the catalogue. Numbers with one standard deviation.";
+        html += &format!("<p class=\"note\">{}</p>\n", escape(note));
+    }
+    html
+}
+
+fn effect(effect: &Effect) -> String {
+    let mark = if effect.of_rig { "measurement" } else { "robot" };
+    let mut html = format!(
+        "<article class=\"effect {mark}\">\n<h3>{} <code>{}</code></h3>\n{}",
+        escape(&capital(&effect.words)),
+        escape(&effect.name),
+        text("p", &effect.explanation)
+    );
+    let mut facts: Vec<(&str, String)> = Vec::new();
+    if !effect.numbers.is_empty() {
+        let numbers: Vec<String> = effect.numbers.iter().map(number_line).collect();
+        facts.push(("Found", numbers.join(", ")));
+    }
+    let p = match probability(effect.p_value) {
+        small if small.starts_with('<') => small,
+        p => format!("= {p}"),
+    };
+    facts.push(("How sure", format!("p {p}")));
+    if !effect.same_as.is_empty() {
+        facts.push(("Or else", format!("{}: these data cannot tell", effect.same_as)));
+    }
+    if !effect.of_rig && !effect.written {
+        facts.push(("Not written", "the description does not take it".to_owned()));
+    }
+    let list: String = facts.iter().map(|(name, said)| text("dt", name) + &text("dd", &micro(said))).collect();
+    html += &element("dl", list);
+    html + "</article>\n"
+}
+
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map(|first| first.to_uppercase().to_string()).unwrap_or_default() + letters.as_str()
+}
+
 fn number_line(number: &Number) -> String {
-    let Number { name, value, std, unit } = number;
-    match unit.as_str() {
-        "rad/Nm" | "m/N" => format!("{name} = {} µ{unit}", millionths(*value, std.unwrap_or(f64::NAN))),
-        _ => format!("{name} = {} {unit}", significant(*value, 3)),
-    }
+    format!("{} = {}", number.name, quantity(number.value, number.std, &number.unit))
 }
 
-fn codes(names: &[String]) -> Cell {
-    let codes: Vec<String> = names.iter().map(|name| format!("<code>{}</code>", escape(name))).collect();
-    Cell::Html(if codes.is_empty() { "nothing".to_owned() } else { codes.join("<br>") })
+/// What else there could be.
+pub fn doubts(report: &Report) -> String {
+    if report.doubts.is_empty() {
+        return String::new();
+    }
+    let items: String = report.doubts.iter().map(|doubt| text("li", &micro(doubt))).collect();
+    element("h2", "What the data leave open") + &element("ul", items)
 }
 
 /// The description's own numbers in the three models.
@@ -164,8 +223,7 @@ pub fn next(report: &Report) -> String {
     let mut table = Table::new([words("To tell"), words("from"), words("pose"), words("force [N]")]);
     for next in &report.next {
         let [one, other] = &next.separates;
-        let code = |name: &str| Cell::Html(format!("<code>{}</code>", escape(name)));
-        table.row(false, [code(one), code(other), words(&next.pose), words(&next.force)]);
+        table.row(false, [words(one), words(other), words(&next.pose), words(&next.force)]);
     }
     element("h2", "What to measure next") + &table.html()
 }
@@ -178,7 +236,8 @@ pub fn search(report: &Report) -> String {
     let note =
         "Every effect of the catalogue at every place, against the model so far. p: family-wise, over all of them.";
     let steps: String = report.steps.iter().enumerate().map(|(index, step)| search_step(index + 1, step)).collect();
-    element("h2", "How it was found") + &text("p", note) + &steps
+    let summary = text("summary", &format!("{} of the search", count(report.steps.len(), "step")));
+    element("h2", "How it was found") + &element("details", summary + &text("p", note) + &steps)
 }
 
 /// How many candidates of a step show without unfolding.

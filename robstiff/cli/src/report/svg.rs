@@ -5,6 +5,9 @@ use std::fmt::Write as _;
 
 use super::html::escape;
 
+/// How long the head of an arrow is.
+const HEAD: f64 = 5.0;
+
 /// A figure under construction, in pixels from the top left.
 pub struct Svg {
     width: f64,
@@ -24,6 +27,24 @@ impl Svg {
         self.push(format_args!(
             "<line class=\"{class}\" x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\"/>"
         ));
+    }
+
+    /// A line through several points.
+    pub fn polyline(&mut self, class: &str, points: impl IntoIterator<Item = [f64; 2]>) {
+        let points: Vec<String> = points.into_iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
+        self.push(format_args!("<polyline class=\"{class}\" points=\"{}\"/>", points.join(" ")));
+    }
+
+    /// An arrow; one shorter than its head is a dot.
+    pub fn arrow(&mut self, class: &str, from: [f64; 2], to: [f64; 2]) {
+        let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+        let length = dx.hypot(dy);
+        if length < HEAD {
+            return self.circle("dot", from, 1.2, "");
+        }
+        let [ux, uy] = [dx / length * HEAD, dy / length * HEAD];
+        let barb = |side: f64| [to[0] - ux + 0.5 * side * uy, to[1] - uy - 0.5 * side * ux];
+        self.polyline(class, [from, to, barb(1.0), to, barb(-1.0)]);
     }
 
     /// A disc or ring, with what shows when it is pointed at.

@@ -1,5 +1,6 @@
 use super::content::{
-    Candidate, Check, Compliance, Effect, Next, Number, PoseError, Report, Residual, SearchStep, Stage, State,
+    Arm, Candidate, Check, Compliance, Dependence, Effect, Next, Number, PoseError, Report, Residual, SearchStep,
+    Stage, State,
 };
 use super::html;
 
@@ -34,10 +35,13 @@ fn hostile() -> Report {
         effects: vec![Effect {
             name: bad(),
             words: bad(),
+            explanation: bad(),
+            of_rig: true,
+            written: false,
             numbers: vec![Number { name: bad(), value: f64::NAN, std: None, unit: bad() }],
             p_value: f64::NAN,
             holdout_rms_um: f64::NAN,
-            same_as: vec![bad()],
+            same_as: bad(),
         }],
         compliances: vec![Compliance { name: bad(), unit: bad(), declared: 0.0, identified: None, after: None }],
         errors: vec![PoseError {
@@ -49,6 +53,15 @@ fn hostile() -> Report {
             held_out: true,
         }],
         residuals: vec![Residual { before: [f64::NAN; 3], after: [0.0; 3] }],
+        arms: vec![Arm { id: bad(), points: vec![[f64::NAN; 3]; 3], before: [f64::NAN; 3], after: [1.0; 3] }],
+        dependences: vec![Dependence {
+            name: bad(),
+            unit: bad(),
+            axis: 0,
+            share: [f64::NAN; 2],
+            points: vec![[f64::NAN, 1.0, f64::INFINITY], [0.0; 3]],
+        }],
+        doubts: vec![bad()],
         steps: vec![SearchStep {
             named: vec![bad()],
             outcome: bad(),

@@ -5,7 +5,7 @@ use super::content::{Check, Report, State};
 use super::html::{Cell, Table, element, escape, number, text, words};
 use super::micro;
 use super::svg::Svg;
-use crate::text::{count, probability};
+use crate::text::{and, count, probability};
 
 const WIDTH: f64 = 860.0;
 const LEFT: f64 = 150.0;
@@ -29,27 +29,23 @@ pub fn section(report: &Report) -> String {
          noise alone, all checks counted (Holm); a check fails at {LEVEL}, where what it found is also large enough to \
          matter."
     );
-    let (asked, not_asked): (Vec<&Check>, Vec<&Check>) =
-        report.checks.iter().partition(|check| check.state != State::NotAsked);
-    let mut table = Table::new([words("Check"), words("answer"), words("found"), number("p"), words("what it means")]);
-    for check in &asked {
-        let fails = check.state == State::Violated;
-        table.row(
-            fails,
-            [
-                name(check),
-                words(if fails { "fails" } else { "holds" }),
-                words(micro(&check.found)),
-                number(check.p_value.map_or_else(|| "-".to_owned(), probability)),
-                words(micro(&check.said)),
-            ],
-        );
+    let of = |state: State| report.checks.iter().filter(move |check| check.state == state).collect::<Vec<&Check>>();
+    let (fails, holds, not_asked) = (of(State::Violated), of(State::Holds), of(State::NotAsked));
+    let mut html = element("h2", "Before any model");
+    if fails.is_empty() {
+        html += &text("p", "The readings by themselves show nothing wrong.");
+    } else {
+        html += &text("p", &note);
+        html += &fails.iter().map(|check| failing(check)).collect::<String>();
     }
-    let mut html = element("h2", "Before any model") + &text("p", &note);
-    if asked.iter().filter(|check| check.p_value.is_some()).count() > 1 {
-        html += &format!("<figure>\n{}</figure>\n", figure(report));
+    if !holds.is_empty() {
+        let judged = report.checks.iter().filter(|check| check.p_value.is_some()).count();
+        let figure = if judged > 1 { format!("<figure>\n{}</figure>\n", figure(report)) } else { String::new() };
+        let verb = if holds.len() == 1 { "holds" } else { "hold" };
+        let names: Vec<String> = holds.iter().map(|check| check.name.clone()).collect();
+        let summary = text("summary", &format!("{} that {verb}: {}", count(holds.len(), "check"), and(&names)));
+        html += &element("details", summary + &figure + &table(&holds));
     }
-    html += &table.html();
     if !not_asked.is_empty() {
         let mut table = Table::new([words("Check"), words("what would let these data be asked")]);
         not_asked.iter().for_each(|check| table.row(false, [name(check), words(micro(&check.said))]));
@@ -63,9 +59,36 @@ pub fn section(report: &Report) -> String {
     html
 }
 
+/// A check that fails, with room for what it points to.
+fn failing(check: &Check) -> String {
+    let p = check.p_value.map_or_else(String::new, |p| match probability(p) {
+        small if small.starts_with('<') => format!(", p {small}"),
+        p => format!(", p = {p}"),
+    });
+    let heading = format!("{} fails: {}{p}", check.name, check.found);
+    let said = text("h3", &micro(&heading)) + &text("p", &micro(&check.said));
+    format!("<article class=\"effect check\">\n{said}</article>\n")
+}
+
+fn table(checks: &[&Check]) -> String {
+    let mut table = Table::new([words("Check"), words("found"), number("p"), words("what it means")]);
+    for check in checks {
+        table.row(
+            false,
+            [
+                name(check),
+                words(micro(&check.found)),
+                number(check.p_value.map_or_else(|| "-".to_owned(), probability)),
+                words(micro(&check.said)),
+            ],
+        );
+    }
+    table.html()
+}
+
 fn name(check: &Check) -> Cell {
     let question = escape(&micro(&check.question));
-    Cell::Html(format!("{} <small class=\"under\">{question}</small>", escape(&check.name)))
+    Cell::Html(format!("{} <small class=\"under question\">{question}</small>", escape(&check.name)))
 }
 
 /// Each check that was asked, by its probability.

@@ -5,7 +5,8 @@ use robstiff::identify::{Estimate, Visibility, predict};
 use robstiff::trace::{EffectParameter, NamedEffect, Options, RowResidual, Step, Tested, Trace, Verdict};
 use robstiff::triage::Triage;
 
-use super::story;
+use super::words::spoken;
+use super::{pictures, story};
 use crate::failure::Failure;
 use crate::identify::source_of;
 use crate::report::content::{
@@ -36,10 +37,13 @@ pub fn report(trace: &Trace, triage: &Triage, campaign: &Campaign, options: &Opt
         noise_source: source_of(trace.noise_source).to_owned(),
         unseen: story::unseen(trace),
         stages: stages(trace),
-        effects: trace.effects.iter().map(named).collect(),
+        effects: trace.effects.iter().map(|one| named(trace, one)).collect(),
+        doubts: story::doubts(trace),
         compliances: compliances(trace),
         errors: errors(trace, campaign)?,
         residuals: trace.residuals.iter().map(residual).collect(),
+        arms: pictures::arms(trace, campaign),
+        dependences: pictures::dependences(trace, campaign),
         steps: trace.steps.iter().map(step).collect(),
         left: Left {
             fraction: trace.unexplained,
@@ -56,7 +60,7 @@ pub fn report(trace: &Trace, triage: &Triage, campaign: &Campaign, options: &Opt
             .map(|next| Next {
                 pose: story::pose(next, &campaign.robot.joints),
                 force: next.force.map(|newton| decimals(newton, 0)).join(", "),
-                separates: next.separates.clone(),
+                separates: next.separates.each_ref().map(|name| spoken(name)),
             })
             .collect(),
         warnings: campaign.warnings.clone(),
@@ -77,19 +81,27 @@ fn stages(trace: &Trace) -> Vec<Stage> {
     ];
     if !trace.effects.is_empty() {
         let number = count(trace.effects.len(), "effect");
-        stages.push(stage("With effects", &format!("{number} added, everything fitted again"), &trace.after));
+        let left_out = match story::left_out(trace).len() {
+            0 => String::new(),
+            rows => format!(", without {}", count(rows, "wild row")),
+        };
+        let remark = format!("{number}, everything fitted again{left_out}");
+        stages.push(stage("With effects", &remark, &trace.after));
     }
     stages
 }
 
-fn named(named: &NamedEffect) -> Effect {
+fn named(trace: &Trace, named: &NamedEffect) -> Effect {
     Effect {
         name: named.effect.to_string(),
-        words: named.effect.words(),
-        numbers: named.parameters.iter().map(number).collect(),
+        words: named.effect.words() + &story::lines(named),
+        explanation: named.effect.explanation().to_owned(),
+        of_rig: named.effect.is_of_rig(),
+        written: story::is_written(trace, named),
+        numbers: story::told(named).map(number).collect(),
         p_value: named.p_value,
         holdout_rms_um: named.holdout_rms * 1e6,
-        same_as: named.same_as.clone(),
+        same_as: story::either(&named.same_as),
     }
 }
 

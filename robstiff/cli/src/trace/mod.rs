@@ -3,8 +3,10 @@
 
 mod content;
 mod document;
+mod pictures;
 mod story;
 mod triage;
+mod words;
 
 use std::path::PathBuf;
 use std::time::Duration;

@@ -1,11 +1,12 @@
 //! What a tracing came to, in sentences.
 
 use robstiff::JointKind;
-use robstiff::trace::{NamedEffect, Proposal, Trace, Verdict};
+use robstiff::trace::{EffectParameter, NamedEffect, Proposal, Rival, RowResidual, Trace, Verdict};
 use robstiff_robots::Joint;
 
+use super::words::{by_kind, spoken};
 use crate::identify::{at_bound, source_of};
-use crate::text::{Table, and, count, decimals, micrometres, probability, uncertain};
+use crate::text::{Table, and, count, decimals, micrometres, probability, quantity};
 
 /// The finding in one sentence.
 pub fn headline(trace: &Trace) -> String {
@@ -17,14 +18,23 @@ pub fn headline(trace: &Trace) -> String {
     let shown = || match [words(false), words(true)] {
         [robot, rig] if rig.is_empty() => format!("The description lacks {}", and(&robot)),
         [robot, rig] if robot.is_empty() => format!("The measurement has {}", and(&rig)),
-        [robot, rig] => format!("The description lacks {}, and the measurement has {}", and(&robot), and(&rig)),
+        // Beside the robot's, single faults of the rig would bury the finding.
+        [robot, rig] => format!(
+            "The description lacks {}, and the measurement has {} of its own",
+            and(&robot),
+            count(rig.len(), "fault")
+        ),
     };
     match trace.verdict {
         Verdict::Adequate => format!("Nothing is missing: identified joints predict unseen poses to {after} um"),
         Verdict::Explained | Verdict::Partial => format!(
-            "{}; with {} the error on unseen poses falls from {before} to {after} um{}",
+            "{}; with {} the error on unseen poses falls from {before} to {after} um{}{}",
             shown(),
             if trace.effects.len() == 1 { "it" } else { "them" },
+            match left_out(trace).len() {
+                0 => String::new(),
+                rows => format!(" (the latter without {})", count(rows, "wild row")),
+            },
             if trace.verdict == Verdict::Partial { ", but something more is missing" } else { "" }
         ),
         Verdict::Unexplained => {
@@ -39,29 +49,107 @@ pub fn headline(trace: &Trace) -> String {
 /// What follows the finding, a sentence each.
 pub fn summary(trace: &Trace) -> Vec<String> {
     let mut sentences = vec![sentence(&trace.why)];
+    sentences.extend(on_the_same_rows(trace));
     if trace.verdict == Verdict::Insufficient {
         sentences.push("The description keeps its declared values.".to_owned());
     }
     let clipped = trace.estimates.iter().filter(|estimate| estimate.at_bound);
-    sentences.extend(clipped.map(|estimate| at_bound(&estimate.name) + "."));
-    for named in trace.effects.iter().filter(|named| !named.lines.is_empty()) {
-        let lines: Vec<String> = named.lines.iter().map(usize::to_string).collect();
-        sentences.push(format!(
-            "{} is seen on line{} {}.",
-            named.effect,
-            if lines.len() == 1 { "" } else { "s" },
-            and(&lines)
-        ));
-    }
-    for named in &trace.effects {
-        if !named.same_as.is_empty() {
-            sentences.push(format!("These data cannot tell {} from {}.", named.effect, and(&named.same_as)));
-        }
-    }
+    sentences.extend(clipped.map(|estimate| sentence(&at_bound(&estimate.name))));
     if !trace.depends_on.is_empty() && matches!(trace.verdict, Verdict::Partial | Verdict::Unexplained) {
         sentences.push(format!("What is left depends on {}.", and(&trace.depends_on)));
     }
     sentences
+}
+
+/// The lines of the table that the final model is not fitted to, nor judged
+/// by.
+pub fn left_out(trace: &Trace) -> Vec<usize> {
+    trace.effects.iter().flat_map(|named| named.lines.iter().copied()).collect()
+}
+
+/// The errors on equal terms, where rows were left out: those before the
+/// effects are over all rows.
+fn on_the_same_rows(trace: &Trace) -> Option<String> {
+    let lines = left_out(trace);
+    if lines.is_empty() {
+        return None;
+    }
+    let rms = |of: fn(&RowResidual) -> [f64; 3], all: bool| {
+        let rows = trace.residuals.iter().filter(|row| all || !lines.contains(&row.line));
+        let squares: Vec<f64> = rows.flat_map(of).map(|component| component * component).collect();
+        micrometres((squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt())
+    };
+    let (before, after) = (|row: &RowResidual| row.before, |row: &RowResidual| row.after);
+    Some(format!(
+        "The error with the effects leaves out line{} {}, that before does not. On the same rows it falls from {} to {} um \
+         without {}, and from {} to {} um with all rows.",
+        if lines.len() == 1 { "" } else { "s" },
+        and(&lines.iter().map(usize::to_string).collect::<Vec<_>>()),
+        rms(before, false),
+        rms(after, false),
+        if lines.len() == 1 { "it" } else { "them" },
+        rms(before, true),
+        rms(after, true)
+    ))
+}
+
+/// What else there could be, a sentence each.
+pub fn doubts(trace: &Trace) -> Vec<String> {
+    let mut doubts: Vec<String> = trace.rivals.iter().take(RIVALS).map(|rival| rivalry(trace, rival)).collect();
+    if trace.rivals.len() > RIVALS {
+        doubts.push(format!("{} more such models come close.", trace.rivals.len() - RIVALS));
+    }
+    if !trace.invisible.is_empty() {
+        doubts.push(format!("These data could not show, if it were there: {}.", and(&by_kind(&trace.invisible))));
+    }
+    doubts
+}
+
+/// How many rivals are told.
+const RIVALS: usize = 5;
+
+/// A rival by what it has instead of what was named.
+fn rivalry(trace: &Trace, rival: &Rival) -> String {
+    let named: Vec<String> = trace.effects.iter().map(|named| named.effect.to_string()).collect();
+    let without = |names: &[String], others: &[String]| -> Vec<String> {
+        names.iter().filter(|name| !others.contains(name)).map(|name| spoken(name)).collect()
+    };
+    // What is wrong in single visits is in no model.
+    let replaced: Vec<String> = trace
+        .effects
+        .iter()
+        .filter(|one| one.lines.is_empty() && !rival.names.contains(&one.effect.to_string()))
+        .map(|one| spoken(&one.effect.to_string()))
+        .collect();
+    let odds = (0.5 * rival.bic_difference).exp();
+    let behind = if rival.bic_difference < 0.2 {
+        "fits as well".to_owned()
+    } else {
+        format!("comes close, with odds of {} to 1 against it", decimals(odds, usize::from(odds < 10.0)))
+    };
+    format!("A model with {} in place of {} {behind}.", and(&without(&rival.names, &named)), and(&replaced))
+}
+
+/// Whether the description that is written has the effect.
+pub fn is_written(trace: &Trace, named: &NamedEffect) -> bool {
+    let same =
+        |effect: &robstiff::Effect| effect.kind() == named.effect.kind() && named.effect.place() == effect.place();
+    !named.effect.is_of_rig() && trace.description.effects.iter().any(same)
+}
+
+/// The lines of the table that an effect is about, as ` (lines 3 and 7)`.
+pub fn lines(named: &NamedEffect) -> String {
+    let lines: Vec<String> = named.lines.iter().map(usize::to_string).collect();
+    match lines.len() {
+        0 => String::new(),
+        1 => format!(" (line {})", lines[0]),
+        _ => format!(" (lines {})", and(&lines)),
+    }
+}
+
+/// The numbers of an effect that its words do not say.
+pub fn told(named: &NamedEffect) -> impl Iterator<Item = &EffectParameter> {
+    named.parameters.iter().filter(|parameter| !matches!(parameter.name, "rows" | "line" | "tool_frame"))
 }
 
 /// A clause as a sentence.
@@ -85,22 +173,18 @@ pub fn unseen(trace: &Trace) -> String {
     }
 }
 
-/// The numbers of an effect, each with its uncertainty.
-pub fn numbers(named: &NamedEffect) -> Vec<String> {
-    let number = |parameter: &robstiff::trace::EffectParameter| {
-        let value = uncertain(parameter.value, parameter.std.unwrap_or(f64::NAN));
-        format!("{} = {value} {}", parameter.name, parameter.unit)
-    };
-    named.parameters.iter().map(number).collect()
-}
-
 /// The joint coordinates of a proposal.
 pub fn pose(next: &Proposal, joints: &[Joint]) -> String {
+    let slides = |joint: &Joint| joint.kind == JointKind::Prismatic;
+    if !joints.iter().any(slides) {
+        let degrees: Vec<String> = next.q.iter().map(|q| decimals(q.to_degrees(), 0)).collect();
+        return format!("({}) deg", degrees.join(", "));
+    }
     let coordinates = next.q.iter().zip(joints).map(|(&q, joint)| match joint.kind {
         JointKind::Revolute => format!("{} deg", decimals(q.to_degrees(), 0)),
         JointKind::Prismatic => format!("{} mm", decimals(q * 1e3, 0)),
     });
-    coordinates.collect::<Vec<_>>().join(", ")
+    format!("({})", coordinates.collect::<Vec<_>>().join(", "))
 }
 
 /// The story for a terminal.
@@ -121,28 +205,68 @@ pub fn page(trace: &Trace) -> String {
     for (name, misfit) in stages {
         errors.row([name.to_owned(), micrometres(misfit.rms), micrometres(misfit.holdout_rms)]);
     }
-    page += &format!("{errors}  (unseen: {})\n\n{}.\n", unseen(trace), headline(trace));
-    for named in &trace.effects {
-        page += &format!(
-            "  {}: {}, p {}\n",
-            named.effect,
-            numbers(named).join(", "),
-            match probability(named.p_value) {
-                small if small.starts_with('<') => small,
-                p => format!("= {p}"),
-            }
-        );
-    }
+    page += &format!("{errors}  (unseen: {})\n\nVerdict: {}. {}.\n", unseen(trace), trace.verdict, headline(trace));
     for said in summary(trace) {
         page += &format!("{said}\n");
     }
-    for next in &trace.next {
-        let [one, other] = &next.separates;
-        page += &format!(
-            "To tell {one} from {other}: q = ({}), force ({}) N\n",
-            pose(next, &trace.description.joints),
-            next.force.map(|newton| decimals(newton, 0)).join(", ")
-        );
+    let groups: [(&str, Vec<&NamedEffect>); 3] = [
+        ("Missing in the robot, written into its description:", of(trace, |one| is_written(trace, one))),
+        (
+            "Missing in the robot, which descriptions cannot say:",
+            of(trace, |one| !one.effect.is_of_rig() && !is_written(trace, one)),
+        ),
+        (
+            "Faults of the measurement, corrected for, not written into the robot:",
+            of(trace, |one| one.effect.is_of_rig()),
+        ),
+    ];
+    for (heading, effects) in groups.iter().filter(|(_, effects)| !effects.is_empty()) {
+        page += &format!("\n{heading}\n");
+        effects.iter().for_each(|named| page += &effect(named));
     }
-    page + &format!("Verdict: {}\n", trace.verdict)
+    let doubts = doubts(trace);
+    if !doubts.is_empty() {
+        page += &format!("\nWhat the data leave open:\n  {}\n", doubts.join("\n  "));
+    }
+    for group in trace.next.chunk_by(|a, b| a.separates == b.separates) {
+        let [one, other] = group[0].separates.each_ref().map(|name| spoken(name));
+        page += &format!("\nTo tell {one} from {other}, measure next:\n");
+        for next in group {
+            let force = next.force.map(|newton| decimals(newton, 0)).join(", ");
+            page += &format!("  q = {}, force ({force}) N\n", pose(next, &trace.description.joints));
+        }
+    }
+    page
+}
+
+fn of(trace: &Trace, which: impl Fn(&NamedEffect) -> bool) -> Vec<&NamedEffect> {
+    trace.effects.iter().filter(|named| which(named)).collect()
+}
+
+/// An effect for a terminal.
+fn effect(named: &NamedEffect) -> String {
+    let p = match probability(named.p_value) {
+        small if small.starts_with('<') => small,
+        p => format!("= {p}"),
+    };
+    let mut said = format!("  {}{}, p {p}\n    {}", named.effect.words(), lines(named), named.effect);
+    let number =
+        |number: &EffectParameter| format!("{} = {}", number.name, quantity(number.value, number.std, number.unit));
+    let numbers: Vec<String> = told(named).map(number).collect();
+    if !numbers.is_empty() {
+        said += &format!(": {}", numbers.join(", "));
+    }
+    if !named.same_as.is_empty() {
+        said += &format!("\n    these data cannot tell it from {}", either(&named.same_as));
+    }
+    said + "\n"
+}
+
+/// Names in words: `one, two or three`.
+pub fn either(names: &[String]) -> String {
+    let words: Vec<String> = names.iter().map(|name| spoken(name)).collect();
+    match &words[..] {
+        [start @ .., last] if !start.is_empty() => format!("{} or {last}", start.join(", ")),
+        _ => words.concat(),
+    }
 }

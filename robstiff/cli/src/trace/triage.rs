@@ -6,40 +6,40 @@ use serde_json::{Value, json};
 
 use crate::json::number;
 use crate::report::content;
-use crate::text::{Table, and, probability, significant};
+use crate::text::{Table, and, count, probability, significant};
 
-/// The answers for a terminal.
+/// The answers for a terminal: what fails, and the rest in a sentence each.
 pub fn page(triage: &Triage) -> String {
     let mut page = String::from("Before any model, the readings themselves:\n");
-    let mut table = Table::new(2, ["", "check", "found", "p"]);
-    for (check, finding) in triage.asked() {
-        let mark = if finding.violated { "!" } else { "" };
+    let mut table = Table::new(1, ["check", "found", "p"]);
+    for (check, finding) in triage.violated() {
         let p = finding.adjusted.map_or_else(|| "-".to_owned(), probability);
-        table.row([mark.to_owned(), check.name.to_owned(), found(finding), p]);
+        table.row([format!("{} fails", check.name), found(finding), p]);
     }
-    page += &format!("{table}  (p: of noise alone, all checks counted; ! beyond {LEVEL} and large enough to matter)\n");
+    if triage.violated().next().is_some() {
+        page += &table.to_string();
+    }
     for (_, finding) in triage.violated() {
-        page += &format!("{}\n", finding.said);
+        page += &format!("  {}\n", finding.said);
+    }
+    let holds: Vec<String> =
+        triage.asked().filter(|(_, finding)| !finding.violated).map(|(check, _)| check.name.to_owned()).collect();
+    if !holds.is_empty() {
+        page += &format!("  {} {}.\n", and(&holds), if holds.len() == 1 { "holds" } else { "hold" });
     }
     for outlier in &triage.outliers {
-        page += &format!("Does not belong: {outlier}.\n");
+        page += &format!("  Does not belong: {outlier}.\n");
     }
-    // Checks with one need in common are told together.
-    let mut needs: Vec<(&str, Vec<String>)> = Vec::new();
-    for check in &triage.checks {
-        let Answer::NotAsked(need) = &check.answer else { continue };
-        match needs.iter_mut().find(|(known, _)| known == need) {
-            Some((_, names)) => names.push(check.name.to_owned()),
-            None => needs.push((need, vec![check.name.to_owned()])),
-        }
-    }
-    if !needs.is_empty() {
-        page += "These data cannot be asked about\n";
-    }
-    for (need, names) in needs {
-        page += &format!("  {}; that needs {need}\n", and(&names));
+    let not_asked = triage.checks.len() - triage.asked().count();
+    if not_asked > 0 {
+        page += &format!("  {} other data than these; the report says which.\n", needing(not_asked));
     }
     page + "\n"
+}
+
+/// `3 checks need`, `1 check needs`.
+fn needing(number: usize) -> String {
+    format!("{} need{}", count(number, "further check"), if number == 1 { "s" } else { "" })
 }
 
 fn found(finding: &Finding) -> String {

@@ -9,6 +9,7 @@ pub static KIND: Kind = Kind {
     name: "base_compliance",
     of_rig: false,
     words: |_| "the compliance of foundation and pedestal".into(),
+    explanation: "",
     offer,
 };
 

@@ -18,6 +18,8 @@ pub static KIND: Kind = Kind {
     // A shift of the whole robot is no property of it.
     of_rig: true,
     words: |found| format!("a slip of the base before line {}", found.value("line")),
+    explanation: "Robot, tool or tracker moved on its mount between two readings. Tighten it, and read the unloaded \
+        arm anew after the slip.",
     offer,
 };
 

@@ -8,7 +8,14 @@ use super::{Form, Kind, Number, Offers, Place, Scene};
 use crate::trace::point::clock;
 
 /// The kind.
-pub static KIND: Kind = Kind { name: "creep", of_rig: true, words: |_| "creep under load".into(), offer };
+pub static KIND: Kind = Kind {
+    name: "creep",
+    of_rig: true,
+    words: |_| "creep under load".into(),
+    explanation: "The arm, its mount or the ground goes on yielding under a load that stays. Wait the same time \
+        before each reading, and write the time into the file.",
+    offer,
+};
 
 /// The onsets tried, in steps from one row to the next.
 const ONSETS: [f64; 4] = [1.0 / 20.0, 1.0 / 6.0, 1.0 / 2.0, 2.0];

@@ -12,6 +12,7 @@ pub static KIND: Kind = Kind {
     name: "dh_error",
     of_rig: false,
     words: |found| format!("the error of {} in the DH table", place_words(found)),
+    explanation: "",
     offer,
 };
 

@@ -17,8 +17,14 @@ use crate::identify::setup::{Setup, coordinate_entry};
 use crate::trace::point::Point;
 
 /// The kind.
-pub static KIND: Kind =
-    Kind { name: "gravity_sag", of_rig: false, words: |_| "the sag of the robot under its own weight".into(), offer };
+pub static KIND: Kind = Kind {
+    name: "gravity_sag",
+    of_rig: false,
+    words: |_| "the sag of the robot under its own weight".into(),
+    explanation: "The links weigh on the joints, so the arm hangs below where its encoders say. A controller that \
+        knows the masses corrects it; measurements from the encoders alone cannot show it.",
+    offer,
+};
 
 /// Standard gravity (m/s^2), along -z of the base frame.
 const GRAVITY: f64 = 9.80665;

@@ -15,6 +15,7 @@ pub static KIND: Kind = Kind {
     name: "hysteresis",
     of_rig: false,
     words: |found| format!("the hysteresis of {}", place_words(found)),
+    explanation: "",
     offer,
 };
 

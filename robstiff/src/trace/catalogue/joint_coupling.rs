@@ -13,6 +13,7 @@ pub static KIND: Kind = Kind {
     name: "joint_coupling",
     of_rig: false,
     words: |found| format!("the coupling of {} (belts, wrist gearing)", place_words(found)),
+    explanation: "",
     offer,
 };
 

@@ -12,6 +12,7 @@ pub static KIND: Kind = Kind {
     name: "joint_zero_offset",
     of_rig: false,
     words: |found| format!("the offset of the zero of {}", place_words(found)),
+    explanation: "",
     offer,
 };
 

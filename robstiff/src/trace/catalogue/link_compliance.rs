@@ -18,6 +18,7 @@ pub static KIND: Kind = Kind {
         };
         format!("the {motion} of {}", place_words(found))
     },
+    explanation: "",
     offer,
 };
 

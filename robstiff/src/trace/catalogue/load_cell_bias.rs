@@ -10,6 +10,8 @@ pub static KIND: Kind = Kind {
     name: "load_cell_bias",
     of_rig: true,
     words: |found| format!("a bias of the load cell, constant in the {}", frame_words(found)),
+    explanation: "The load cell reads a force where none acts: it was not tared, or the weight of hook and cable \
+        counts. Tare it unloaded at the pose, or enter the weight.",
     offer,
 };
 

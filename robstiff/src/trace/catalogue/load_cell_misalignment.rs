@@ -10,6 +10,8 @@ pub static KIND: Kind = Kind {
     name: "load_cell_misalignment",
     of_rig: true,
     words: |found| format!("a turn of the load cell, constant in the {}", frame_words(found)),
+    explanation: "The load cell is mounted at another angle than the file says, or its frame is named wrongly. Pull \
+        along a known line, a plumb line for one, and compare.",
     offer,
 };
 

@@ -14,6 +14,8 @@ pub static KIND: Kind = Kind {
     name: "load_cell_scale",
     of_rig: true,
     words: |found| format!("an unequal scale of the load cell's axes, those of the {}", frame_words(found)),
+    explanation: "The axes of the load cell are not calibrated alike. Hang one known weight along each axis, and \
+        correct the forces in the file.",
     offer,
 };
 

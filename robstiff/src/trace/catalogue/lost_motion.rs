@@ -14,6 +14,7 @@ pub static KIND: Kind = Kind {
     name: "lost_motion",
     of_rig: false,
     words: |found| format!("the lost motion of {} about zero torque", place_words(found)),
+    explanation: "",
     offer,
 };
 

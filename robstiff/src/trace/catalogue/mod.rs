@@ -70,6 +70,9 @@ pub struct Kind {
     pub of_rig: bool,
     /// What it is, as a noun for a sentence: "the tilt of joint 3 ..".
     pub words: fn(&Found) -> String,
+    /// What causes it and what one does about it; empty where descriptions take
+    /// the effect, whose catalogue says it.
+    pub explanation: &'static str,
     /// Adds its candidates.
     pub offer: fn(&Scene<'_>, &mut Offers<'_>),
 }
@@ -454,5 +457,20 @@ fn place_words(found: &Found) -> String {
         Place::Joints([i, j]) => std::format!("joints {i} and {j}"),
         Place::Base | Place::Tool | Place::Rig | Place::Robot => std::format!("the {}", found.place),
         place => std::format!("{place}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_is_explained_once() {
+        for kind in KINDS {
+            let found = Found::new(kind, Place::Robot, Vec::new());
+            assert!(found.explanation().ends_with('.'), "{}", kind.name);
+            let described = robstiff_robots::effect::CATALOGUE.iter().any(|about| about.kind == kind.name);
+            assert_eq!(kind.explanation.is_empty(), described, "{}", kind.name);
+        }
     }
 }

@@ -15,6 +15,8 @@ pub static KIND: Kind = Kind {
         let rows = found.value("rows");
         format!("{rows} wild reading{}", if rows == 1.0 { "" } else { "s" })
     },
+    explanation: "A knocked reflector, a gauge that stuck, a slip of the pen. Repeat these readings; they do not \
+        count in any fit until then.",
     offer,
 };
 

@@ -14,6 +14,7 @@ pub static KIND: Kind = Kind {
     name: "pose_dependent_compliance",
     of_rig: false,
     words: |found| format!("the change of the compliance of {} with its own angle", place_words(found)),
+    explanation: "",
     offer,
 };
 

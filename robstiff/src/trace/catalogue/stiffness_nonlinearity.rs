@@ -17,6 +17,7 @@ pub static KIND: Kind = Kind {
         let change = if found.value("added") < 0.0 { "softening" } else { "hardening" };
         format!("the {change} of {} with torque", place_words(found))
     },
+    explanation: "",
     offer,
 };
 

@@ -14,8 +14,14 @@ use crate::campaign::Displacements;
 use crate::trace::point::clock;
 
 /// The kind.
-pub static KIND: Kind =
-    Kind { name: "thermal_drift", of_rig: true, words: |_| "a drift of the readings".into(), offer };
+pub static KIND: Kind = Kind {
+    name: "thermal_drift",
+    of_rig: true,
+    words: |_| "a drift of the readings".into(),
+    explanation: "The readings move while nothing pulls: the robot or the stand of the tracker warms up, or settles. \
+        Warm up before, read the unloaded arm at every visit, and mix the order of poses.",
+    offer,
+};
 
 /// More than this over a campaign is a mishap (m).
 const MOST: f64 = 5e-3;

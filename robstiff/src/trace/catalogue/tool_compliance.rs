@@ -9,6 +9,7 @@ pub static KIND: Kind = Kind {
     name: "tool_compliance",
     of_rig: false,
     words: |_| "the compliance of flange, spindle and tool".into(),
+    explanation: "",
     offer,
 };
 

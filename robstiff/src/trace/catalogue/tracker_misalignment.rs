@@ -8,6 +8,8 @@ pub static KIND: Kind = Kind {
     name: "tracker_misalignment",
     of_rig: true,
     words: |_| "a turn of the displacement readings against their frame".into(),
+    explanation: "The tracker or the gauges were aligned to another frame than the file names. Align them anew to \
+        the robot's base on three points or more, and turn the readings.",
     offer,
 };
 

@@ -19,6 +19,7 @@ pub static KIND: Kind = Kind {
             found.value("order")
         )
     },
+    explanation: "",
     offer,
 };
 

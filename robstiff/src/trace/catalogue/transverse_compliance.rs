@@ -11,6 +11,7 @@ pub static KIND: Kind = Kind {
     name: "transverse_compliance",
     of_rig: false,
     words: |found| format!("the tilt of {} about the axes across its own (bearing, housing)", place_words(found)),
+    explanation: "",
     offer,
 };
 

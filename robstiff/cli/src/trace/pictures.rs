@@ -1,0 +1,144 @@
+//! What the pictures of a report are drawn from: the arm in its poses, and the
+//! residual against what it depends on most.
+
+use robstiff::JointKind;
+use robstiff::campaign::{Campaign, Data, Displacements};
+use robstiff::elements::Pose;
+use robstiff::nalgebra::{DMatrix, DVector, Matrix4, SVector};
+use robstiff::trace::Trace;
+use robstiff::{Robot, with_robot};
+use robstiff_robots::Description;
+
+use crate::report::content::{Arm, Dependence};
+
+/// The arm in every pose, with the residual of the row of its largest force.
+pub fn arms(trace: &Trace, campaign: &Campaign) -> Vec<Arm> {
+    let Data::Displacement(data) = &campaign.data else { return Vec::new() };
+    let force = |row: usize| data.rows[row].wrench[..3].iter().map(|f| f * f).sum::<f64>();
+    let arm = |(pose, id): (usize, &String)| {
+        let rows = (0..data.rows.len()).filter(|&row| data.rows[row].pose == pose);
+        let row = rows.max_by(|&a, &b| force(a).total_cmp(&force(b)))?;
+        let residual = trace.residuals.get(row)?;
+        Some(Arm {
+            id: id.clone(),
+            points: points(&trace.description, &data.rows[row].q),
+            before: residual.before.map(|metres| metres * 1e6),
+            after: residual.after.map(|metres| metres * 1e6),
+        })
+    };
+    data.poses.iter().enumerate().filter_map(arm).collect()
+}
+
+/// From the ground to the TCP, joint by joint \[m\], in the base frame.
+fn points(robot: &Description, q: &[f64]) -> Vec<[f64; 3]> {
+    with_robot!(robot, |robot| chain(&robot, q))
+}
+
+fn chain<const N: usize>(robot: &impl Robot<N>, q: &[f64]) -> Vec<[f64; 3]> {
+    let pose = Pose::of(robot, &SVector::<f64, N>::from_column_slice(q));
+    let geometry = pose.geometry();
+    let at = |frame: &Matrix4<f64>| -> [f64; 3] { std::array::from_fn(|k| frame[(k, 3)]) };
+    let mut points = vec![at(&geometry.base)];
+    points.extend(geometry.joint_frames.iter().map(at));
+    points.extend([at(&geometry.flange), at(&geometry.tcp)]);
+    points.dedup();
+    points
+}
+
+/// How many quantities are shown.
+const SHOWN: usize = 3;
+
+/// The quantities that account for most of the residual, each by a parabola in
+/// the component of the residual where it accounts for most; those on which what
+/// is left depends come first.
+pub fn dependences(trace: &Trace, campaign: &Campaign) -> Vec<Dependence> {
+    let Data::Displacement(data) = &campaign.data else { return Vec::new() };
+    let mut found: Vec<Dependence> = quantities(data, &trace.description)
+        .into_iter()
+        .filter_map(|(name, unit, values)| strongest(trace, name, unit, &values))
+        .collect();
+    let rank = |one: &Dependence| trace.depends_on.iter().position(|name| *name == one.name).unwrap_or(usize::MAX);
+    found.sort_by(|a, b| rank(a).cmp(&rank(b)).then(b.share[0].total_cmp(&a.share[0])));
+    found.truncate(SHOWN);
+    found
+}
+
+/// Name, unit and value by row of what a residual may depend on.
+fn quantities(data: &Displacements, robot: &Description) -> Vec<(String, &'static str, Vec<f64>)> {
+    let rows = &data.rows;
+    let mut found: Vec<(String, &'static str, Vec<f64>)> = Vec::new();
+    for (i, joint) in robot.joints.iter().enumerate() {
+        let (unit, factor) = match joint.kind {
+            JointKind::Revolute => ("deg", 1.0_f64.to_degrees()),
+            JointKind::Prismatic => ("mm", 1e3),
+        };
+        found.push((format!("q{}", i + 1), unit, rows.iter().map(|row| row.q[i] * factor).collect()));
+    }
+    for (k, name) in ["Fx", "Fy", "Fz"].into_iter().enumerate() {
+        found.push((name.to_owned(), "N", rows.iter().map(|row| row.wrench[k]).collect()));
+    }
+    let force = |row: &robstiff::campaign::Observation| row.wrench[..3].iter().map(|f| f * f).sum::<f64>().sqrt();
+    found.push(("|F|".to_owned(), "N", rows.iter().map(force).collect()));
+    if let Some(times) = rows.iter().map(|row| row.time).collect::<Option<Vec<f64>>>() {
+        found.push(("time".to_owned(), "min", times.iter().map(|seconds| seconds / 60.0).collect()));
+    }
+    if let Some(values) = rows.iter().map(|row| row.temperature).collect::<Option<Vec<f64>>>() {
+        found.push(("temperature".to_owned(), "°C", values));
+    }
+    found.push(("row order".to_owned(), "", (0..rows.len()).map(|row| row as f64 + 1.0).collect()));
+    found
+}
+
+/// A quantity with the component of the residual that depends on it most;
+/// none where it does not vary.
+fn strongest(trace: &Trace, name: String, unit: &'static str, values: &[f64]) -> Option<Dependence> {
+    // One wild reading would pass for a law of its own.
+    let is_wild = |line: usize| trace.effects.iter().any(|named| named.lines.contains(&line));
+    let residuals = || trace.residuals.iter().filter(|row| !is_wild(row.line));
+    let values: Vec<f64> =
+        values.iter().zip(&trace.residuals).filter(|(_, row)| !is_wild(row.line)).map(|(&x, _)| x).collect();
+    let component = |axis: usize| -> [Vec<f64>; 2] {
+        [
+            residuals().map(|row| row.before[axis] * 1e6).collect(),
+            residuals().map(|row| row.after[axis] * 1e6).collect(),
+        ]
+    };
+    let before = (0..3).filter_map(|axis| Some((axis, parabola(&values, &component(axis)[0])?)));
+    let (axis, share) = before.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let [before, after] = component(axis);
+    let share = [share, parabola(&values, &after)?];
+    let points = values.into_iter().zip(before).zip(after).map(|((x, before), after)| [x, before, after]).collect();
+    Some(Dependence { name, unit: unit.to_owned(), axis, share, points })
+}
+
+/// The share of the variance of `y` that a parabola in `x` accounts for, what
+/// chance gives it taken off.
+fn parabola(x: &[f64], y: &[f64]) -> Option<f64> {
+    let count = x.len() as f64;
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
+    let centred = |values: &[f64]| -> Vec<f64> { values.iter().map(|value| value - mean(values)).collect() };
+    let (x, y) = (centred(x), DVector::from_vec(centred(y)));
+    let largest = x.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    if x.len() < 6 || x.len() != y.len() || largest < 1e-9 || y.norm_squared() <= 0.0 {
+        return None;
+    }
+    let design = DMatrix::from_fn(x.len(), 3, |row, power| (x[row] / largest).powi(power as i32));
+    let fitted = design.clone().svd(true, true).solve(&y, 1e-9).ok()?;
+    let left = (&y - design * fitted).norm_squared() / (count - 3.0);
+    Some((1.0 - left / (y.norm_squared() / (count - 1.0))).max(0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parabola_is_found_and_noise_is_not() {
+        let x: Vec<f64> = (0..40).map(f64::from).collect();
+        let curve: Vec<f64> = x.iter().map(|x| 3.0 + (x - 10.0) * (x - 10.0)).collect();
+        let zigzag: Vec<f64> = (0..40).map(|k| if k % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        assert!(parabola(&x, &curve).unwrap() > 0.999);
+        assert!(parabola(&x, &zigzag).unwrap() < 0.05);
+        assert_eq!(parabola(&[2.0; 40], &zigzag), None);
+    }
+}
