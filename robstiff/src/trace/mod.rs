@@ -1,7 +1,7 @@
 //! Tracing: which effects a campaign shows that a description lacks.
 //!
-//! The way of the data: every row has a forward model ([`Setup`]) whose
-//! nonlinear numbers are fitted in their own form ([`bench`]); at what comes
+//! The way of the data: every row has a forward model ([`Setup`](crate::identify::setup::Setup)) whose
+//! nonlinear numbers are fitted in their own form ([`mod@bench`]); at what comes
 //! out, a campaign becomes a regression with a column for everything in the
 //! [`catalogue`] ([`point`], [`model`]). What is wrong in single visits is left
 //! out first ([`isolated`]); [`selection`] searches for the effects the data ask

@@ -211,10 +211,11 @@ fn nonlinear(bench: &Bench<'_>, setting: &Setting<'_>, beam: &[Fitted]) -> Vec<F
     best_of(near.filter_map(|model| bench.refit(setting, model).ok()).collect())
 }
 
-/// How many proposals are refitted, and how far behind the best they may be by
-/// the linear criterion.
+/// How many proposals are refitted in their own form.
 const REFITTED: usize = 6;
-/// See [`REFITTED`].
+
+/// How far behind the best by the linear criterion a proposal may be to be
+/// refitted.
 pub const CURVATURE: f64 = 60.0;
 
 /// How many of the best proposals are put to the tests in one step.

@@ -42,7 +42,7 @@ pub const LEVEL: f64 = 0.01;
 /// The answers of a campaign.
 #[derive(Clone, Debug)]
 pub struct Triage {
-    /// Every check, in the order of [`CHECKS`].
+    /// Every check, in the order of the registry.
     pub checks: Vec<Check>,
     /// One sigma of a displacement reading (m), where the readings say.
     pub reading: Option<f64>,

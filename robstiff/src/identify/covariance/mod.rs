@@ -8,7 +8,7 @@
 //! whatever the model lacks for noise, and what is common to a visit, such as
 //! lost motion, for the unloaded reading. So it is not asked of a model of the
 //! robot, but of the largest one there is: at each pose a free response, linear in
-//! the load ([`contrasts`]). What that leaves knows nothing of compliances,
+//! the load ([`mod@contrasts`]). What that leaves knows nothing of compliances,
 //! frames and lever arms. A gear that is not linear would remain; so a part with
 //! the square of the load, and then a displacement for each distinct load, is
 //! freed where the contrasts ask for it (F test, [`NESTED`]). Then
