@@ -1,27 +1,27 @@
 //! From the regression that tracing uses to what planning asks for; the only
 //! place in planning that knows how numbers become readings.
 
-use std::string::{String, ToString};
+use std::string::String;
 use std::vec;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector, Matrix4, Vector3, Vector6};
+use robstiff_robots::effect::Place as Part;
 
 use super::regressors::{Regressors, Sensor, Visit};
-use super::rivals::{Contest, Group, Number, Rival, Rivals};
+use super::rivals::{Group, Rivals};
+use super::source::{Kept, Source, start};
 use crate::campaign::{Campaign, Displacements, Frame, Observation};
 use crate::elements::{Geometry, Parameter};
+use crate::identify::Error;
 use crate::identify::prepare::Prepared;
 use crate::identify::samples::{Column, Sample, Samples, turn_of};
 use crate::identify::setup::Setup;
 use crate::identify::whitening::whiten;
-use crate::identify::{Error, element_name, unit_of};
-use crate::trace::Trace;
 use crate::trace::bench::Bench;
-use crate::trace::catalogue::{self, Catalogue, Scene, catalogue};
-use crate::trace::model::{Fitted, Named};
+use crate::trace::catalogue::{Scene, catalogue};
 use crate::trace::point::Point;
-use crate::trace::selection::best_with;
+use crate::trace::{Place, Trace};
 
 /// One sigma of a rotation reading where the campaign states none (rad): that
 /// of a laser tracker's six-axis probe at some metres.
@@ -38,26 +38,15 @@ pub const REACH: f64 = 0.3;
 /// The levels of [`Sensor::Levels`], as shares of the greatest load.
 pub const LEVELS: [f64; 5] = [0.025, 0.25, 0.5, 1.0, -1.0];
 
-/// Kinds that depend on when something is measured, not on pose and load: what
-/// to propose for them is not computed.
-const OF_TIME: [&str; 4] = ["thermal_drift", "creep", "base_slip", "outliers"];
-
-/// A number that planning looks at.
-#[derive(Clone, Debug, PartialEq)]
-enum Kept {
-    /// One of the description.
-    Own(Column),
-    /// One of a candidate, by its full name, and which of its numbers.
-    Of(String, usize),
-}
-
 /// A traced campaign, with the numbers that planning looks at.
 pub struct Adapter<'c> {
     campaign: &'c Campaign,
-    data: &'c Displacements,
-    /// Rows of the campaign that load each joint most, with their visits: the
-    /// catalogue takes its grids of torques from them.
-    anchors: Vec<Observation>,
+    /// The campaign's frames and points, with those of its rows that load each
+    /// joint most, and their visits: the catalogue takes its grids of torques
+    /// from them.
+    anchors: Displacements,
+    /// The time of the last reading (s).
+    last: f64,
     compliance: Vec<f64>,
     /// The forward model at what was traced: its setup, the numbers in which its
     /// compliance is linear, and all its elastic ones.
@@ -103,8 +92,8 @@ impl<'c> Adapter<'c> {
         let setup = Setup { sag: None, ..setting.point.setup.clone() };
         let adapter = Self {
             campaign,
-            data: prepared.data,
             anchors: anchors(prepared),
+            last: prepared.data.rows.iter().filter_map(|row| row.time).fold(0.0, f64::max),
             compliance: bench.scene().compliance,
             setup,
             linear: bench.linear_parameters(&fitted.fit),
@@ -142,11 +131,10 @@ impl<'c> Adapter<'c> {
 
     /// The rows of some visits, behind the anchors.
     fn rows(&self, visits: &[Visit], further_out: f64) -> Displacements {
-        let mut data = self.data.clone();
-        let still = self.data.rows.iter().filter_map(|row| row.time).fold(0.0, f64::max);
-        data.rows = self.anchors.clone();
+        let mut data = self.anchors.clone();
+        let anchors = &self.anchors.rows;
         // Every pose that is counted has a row.
-        let next = |of: &dyn Fn(&Observation) -> usize| self.anchors.iter().map(of).max().map_or(0, |last| last + 1);
+        let next = |of: &dyn Fn(&Observation) -> usize| anchors.iter().map(of).max().map_or(0, |last| last + 1);
         let (mut pose, sequences) = (next(&|row| row.pose), next(&|row| row.visit));
         for (index, visit) in visits.iter().enumerate() {
             // What follows each other at one pose is one pose.
@@ -165,8 +153,8 @@ impl<'c> Adapter<'c> {
                     line: 0,
                     pose,
                     visit: sequences + index,
-                    time: self.anchors.first().and_then(|row| row.time).map(|_| still),
-                    temperature: self.anchors.first().and_then(|row| row.temperature),
+                    time: anchors.first().and_then(|row| row.time).map(|_| self.last),
+                    temperature: anchors.first().and_then(|row| row.temperature),
                     q: visit.q.clone(),
                     wrench: [force.x, force.y, force.z, moment.x, moment.y, moment.z],
                     displacement: [0.0; 3],
@@ -197,7 +185,7 @@ impl<'c> Adapter<'c> {
         let everything = catalogue(&scene, 0);
         let column = |point: &Point<'_>, kept: &Kept| match kept {
             Kept::Own(column) => point.samples.column(*column),
-            Kept::Of(name, which) => start(&everything, name, 0).map_or_else(
+            Kept::Of(kind, place, which) => start(&everything, kind, *place, 0).map_or_else(
                 || DVector::zeros(6 * data.rows.len()),
                 |first| (everything.numbers[first + which].regressor)(point),
             ),
@@ -208,13 +196,14 @@ impl<'c> Adapter<'c> {
             elastic.axpy(*value, &column(&bare, kept), 1.0);
         }
         let point = bare.with_model(&declared, elastic, &self.linear);
-        let (first, rows) = (6 * self.anchors.len(), 6 * (data.rows.len() - self.anchors.len()));
+        let anchors = self.anchors.rows.len();
+        let (first, rows) = (6 * anchors, 6 * (data.rows.len() - anchors));
         let mut columns = DMatrix::zeros(rows, self.kept.len());
         for (k, kept) in self.kept.iter().enumerate() {
             columns.set_column(k, &column(&point, kept).rows(first, rows));
         }
         let mut samples = point.samples;
-        samples.rows.drain(..self.anchors.len());
+        samples.rows.drain(..anchors);
         (samples, columns)
     }
 
@@ -256,7 +245,7 @@ fn tool_turn<const N: usize>(robot: &impl crate::Robot<N>, q: &[f64]) -> nalgebr
 
 /// The visits with the rows that load each joint most, poses and visits counted
 /// anew.
-fn anchors(prepared: &Prepared<'_>) -> Vec<Observation> {
+fn anchors(prepared: &Prepared<'_>) -> Displacements {
     let samples = &prepared.samples;
     let most = |joint: usize| {
         let torques = samples.torques(joint);
@@ -270,7 +259,9 @@ fn anchors(prepared: &Prepared<'_>) -> Vec<Observation> {
         row.pose = index_of(&mut poses, row.pose);
         row.visit = index_of(&mut sequences, row.visit);
     }
-    rows
+    let &Displacements { wrench_frame, wrench_at, measured_frame, measured_at, .. } = prepared.data;
+    let (poses, visits) = (Vec::new(), Vec::new());
+    Displacements { wrench_frame, wrench_at, measured_frame, measured_at, poses, visits, rows }
 }
 
 /// The place of a number among those met before.
@@ -279,12 +270,6 @@ fn index_of(met: &mut Vec<usize>, number: usize) -> usize {
         met.push(number);
         met.len() - 1
     })
-}
-
-/// The first number of a candidate, of numbers whose columns follow `own` ones.
-fn start(everything: &Catalogue, name: &str, own: usize) -> Option<usize> {
-    let candidate = everything.candidates.iter().find(|candidate| candidate.name() == name)?;
-    candidate.variants.iter().flat_map(|variant| &variant.columns).min().map(|first| first - own)
 }
 
 impl Regressors for Adapter<'_> {
@@ -370,19 +355,12 @@ fn parts(geometry: &Geometry<'_, f64>, row: &Sample, kept: &Kept, read: &Vector6
             Parameter::ToolRotation | Parameter::ToolTranslation => joints + 1,
             Parameter::Coupling(_) => unreachable!("it has two places"),
         },
-        Kept::Of(name, _) => {
-            let (kind, at) = name.split_once('@').unwrap_or((name, ""));
-            let numbers: Vec<usize> =
-                at.split([' ', ',']).filter_map(|word| word.parse().ok()).filter(|joint| *joint <= joints).collect();
-            match (kind, at, numbers.as_slice()) {
-                ("joint_coupling", _, &[i, j]) => return vec![gear(i, j), gear(j, i)],
-                (_, "base", _) => 0,
-                (_, _, &[i]) => i,
-                // The tool; and what changes all readings is taken for nothing
-                // that another place would show.
-                _ => joints + 1,
-            }
-        }
+        Kept::Of(_, Place::Part(Part::Joints([i, j])), _) => return vec![gear(*i, *j), gear(*j, *i)],
+        Kept::Of(_, Place::Part(Part::Base), _) => 0,
+        Kept::Of(_, Place::Part(Part::Joint(i) | Part::Link(i)), _) => *i,
+        // The tool; and what changes all readings is taken for nothing that
+        // another place would show.
+        Kept::Of(..) => joints + 1,
     };
     vec![(place, twist)]
 }
@@ -400,131 +378,4 @@ fn markers(geometry: &Geometry<'_, f64>, parts: &[(usize, Vector6<f64>)], body: 
         read.extend(moved.sum::<Vector3<f64>>().iter());
     }
     read
-}
-
-/// The regression of a campaign, where rivals come from.
-struct Source<'s> {
-    bench: &'s Bench<'s>,
-    prepared: &'s Prepared<'s>,
-    everything: &'s Catalogue,
-}
-
-impl Source<'_> {
-    /// What a column of the regression is.
-    fn kept(&self, column: usize) -> Kept {
-        let own = self.prepared.own.len();
-        if column < own {
-            return Kept::Own(self.prepared.own[column].column);
-        }
-        let has = |candidate: &&catalogue::Candidate| {
-            candidate.variants.iter().any(|variant| variant.columns.contains(&column))
-        };
-        let candidate = self.everything.candidates.iter().find(has).expect("every column is somebody's");
-        let first = start(self.everything, &candidate.name(), own).expect("it has columns");
-        Kept::Of(candidate.name(), column - own - first)
-    }
-
-    /// The best fitting form of a candidate beside others, and its model.
-    fn best(&self, name: &str, beside: &[Named]) -> Option<(Named, Fitted)> {
-        let candidate = self.bench.candidates().iter().position(|candidate| candidate.name() == name)?;
-        let setting = self.bench.at(beside).ok()?;
-        let fitted = best_with(&setting, beside, candidate)?;
-        let named = *fitted.named.iter().find(|named| named.candidate == candidate)?;
-        Some((named, fitted))
-    }
-
-    /// The columns of a named candidate, and their values in a fit.
-    fn numbers_of(&self, named: Named, fitted: &Fitted) -> (Vec<usize>, Vec<f64>) {
-        let columns = self.bench.candidates()[named.candidate].variants[named.variant].columns.clone();
-        let value = |column: &usize| {
-            let at = fitted.fit.columns.iter().position(|other| other == column);
-            at.map_or(0.0, |k| fitted.fit.coefficients[k])
-        };
-        let values = columns.iter().map(value).collect();
-        (columns, values)
-    }
-
-    /// The rivals of a trace, and the effects named. `columns` holds the
-    /// regression's columns that planning looks at, first those of the
-    /// description; rivals refer to them by index.
-    fn rivals(
-        &self,
-        campaign: &Campaign,
-        trace: &Trace,
-        groups: &[Group],
-        columns: &mut Vec<usize>,
-    ) -> Result<(Rivals, Vec<Named>), Error> {
-        let base = columns.clone();
-        let mut named: Vec<(String, Named)> = Vec::new();
-        for effect in &trace.effects {
-            let mut beside: Vec<Named> = named.iter().map(|(_, named)| *named).collect();
-            beside.sort_unstable();
-            let name = effect.effect.to_string();
-            if let Some((found, _)) = self.best(&name, &beside) {
-                named.push((name, found));
-            }
-        }
-        let sorted = |without: Option<&str>| -> Vec<Named> {
-            let kept = named.iter().filter(|(name, _)| Some(name.as_str()) != without);
-            let mut kept: Vec<Named> = kept.map(|(_, named)| *named).collect();
-            kept.sort_unstable();
-            kept
-        };
-        let columns_of = |named: &[Named]| -> Vec<usize> {
-            let of = |one: &Named| self.bench.candidates()[one.candidate].variants[one.variant].columns.clone();
-            named.iter().flat_map(of).collect()
-        };
-        let model = sorted(None);
-        let effects = columns_of(&model);
-        let fitted = self.bench.fit(&model).map_err(Error)?;
-        let numbers = self.numbers(campaign, &fitted);
-        let mut place = |column: usize| {
-            columns.iter().position(|&other| other == column).unwrap_or_else(|| {
-                columns.push(column);
-                columns.len() - 1
-            })
-        };
-        let mut places = |of: &[usize]| -> Vec<usize> { of.iter().map(|&column| place(column)).collect() };
-        let mut pairs = Vec::new();
-        for Group { named: own, names } in groups {
-            let own = own.map(|k| trace.effects[k].effect.to_string());
-            let beside = sorted(own.as_deref());
-            let core: Vec<usize> = base.iter().copied().chain(columns_of(&beside)).collect();
-            let computed = names.iter().filter(|name| !OF_TIME.iter().any(|kind| name.starts_with(kind)));
-            let found = computed.filter_map(|name| {
-                let (one, fitted) = self.best(name, &beside)?;
-                let (columns, values) = self.numbers_of(one, &fitted);
-                let parameters = self.bench.candidates()[one.candidate].variants[one.variant].parameters;
-                Some((name.clone(), Rival { columns, values, parameters }))
-            });
-            let found: Vec<(String, Rival)> = found.collect();
-            for (k, (one, of_one)) in found.iter().enumerate() {
-                for (other, of_other) in &found[k + 1..] {
-                    let rivals =
-                        [of_one, of_other].map(|rival| Rival { columns: places(&rival.columns), ..rival.clone() });
-                    pairs.push(Contest::new([one.clone(), other.clone()], rivals, places(&core)));
-                }
-            }
-        }
-        let whole: Vec<usize> = base.iter().chain(&effects).copied().collect();
-        Ok((Rivals { model: places(&whole), effects: places(&effects), numbers, pairs }, model))
-    }
-
-    /// What the numbers of a model are.
-    fn numbers(&self, campaign: &Campaign, fitted: &Fitted) -> Vec<Number> {
-        let own = self.prepared.own.len();
-        let number = |(&column, &value): (&usize, &f64)| match (self.kept(column), column.checked_sub(own)) {
-            (Kept::Of(name, _), Some(k)) => {
-                let number = &self.everything.numbers[k];
-                let name = if number.name == "h" { name } else { std::format!("{name} {}", number.name) };
-                Number { name, unit: number.unit, value }
-            }
-            _ => {
-                let number = &self.prepared.own[column];
-                let name = element_name(&campaign.robot, number);
-                Number { name, unit: unit_of(&campaign.robot, number.column), value }
-            }
-        };
-        fitted.fit.columns.iter().zip(fitted.fit.coefficients.iter()).map(number).collect()
-    }
 }

@@ -18,6 +18,7 @@ pub mod criterion;
 pub mod exchange;
 pub mod regressors;
 pub mod rivals;
+pub mod source;
 pub mod space;
 #[cfg(test)]
 mod tests;

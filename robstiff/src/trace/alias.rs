@@ -9,6 +9,7 @@ use super::catalogue::{EITHER, LOST_MOTION, STIFFNESS_NONLINEARITY};
 use super::found::Place;
 use super::model::{Fitted, Named, Setting};
 use super::selection::{CURVATURE, Tests, WITHIN_REACH, best_with, score_test};
+use robstiff_robots::effect::Place as Part;
 
 /// Columns that differ by less than this fraction of their energy, once the
 /// rest of the model is fitted again, are the same but for rounding in the
@@ -67,7 +68,7 @@ fn one_formula(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted, one: Na
     let (own, other) = (&setting.candidates[one.candidate], &setting.candidates[candidate]);
     let names = [own.kind.name, other.kind.name];
     let both = [LOST_MOTION.name, STIFFNESS_NONLINEARITY.name];
-    let Place::Joint(joint) = own.place else { return false };
+    let Place::Part(Part::Joint(joint)) = own.place else { return false };
     let variant = setting.variant(one);
     let (Some(knee), &[column]) = (variant.shape.first(), &variant.columns[..]) else { return false };
     if own.place != other.place || own.kind.name == other.kind.name || !names.iter().all(|name| both.contains(name)) {

@@ -1,12 +1,12 @@
 //! What was found, in the contract's names, and how it goes into a description.
 
 use core::fmt;
-use std::string::{String, ToString};
+use std::string::String;
 use std::vec::Vec;
 
 use robstiff_robots::Description;
 use robstiff_robots::effect::physics::Parameter;
-use robstiff_robots::effect::{self, CATALOGUE, DhEntry};
+use robstiff_robots::effect::{CATALOGUE, Place as Part};
 
 use super::catalogue::Kind;
 use crate::Effect;
@@ -37,62 +37,37 @@ pub struct EffectParameter {
 /// Where an effect is; displays as the contract spells it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// One joint, from 1.
-    Joint(usize),
-    /// Two joints, from 1.
-    Joints([usize; 2]),
-    /// One link, from 1.
-    Link(usize),
-    /// The foundation.
-    Base,
-    /// The flange and what is mounted on it.
-    Tool,
-    /// An entry of the DH table, `[theta, d, a, alpha]`, of a row from 1.
-    Entry(usize, usize),
+    /// A part of the robot that descriptions have a word for.
+    Part(Part),
     /// The whole robot.
     Robot,
     /// The measurement.
     Rig,
 }
 
-/// The entries of a row of the DH table.
-const ENTRIES: [&str; 4] = ["theta", "d", "a", "alpha"];
-const ENTRY: [fn(usize) -> DhEntry; 4] = [DhEntry::Theta, DhEntry::D, DhEntry::A, DhEntry::Alpha];
-
 impl Place {
-    /// The place in a description, where it is one of a robot's parts.
-    fn of_description(self) -> Option<effect::Place> {
-        Some(match self {
-            Self::Joint(joint) => effect::Place::Joint(joint),
-            Self::Joints(joints) => effect::Place::Joints(joints),
-            Self::Link(link) => effect::Place::Link(link),
-            Self::Base => effect::Place::Base,
-            Self::Tool => effect::Place::Tool,
-            Self::Entry(entry, row) => effect::Place::Entry(ENTRY[entry](row)),
-            Self::Robot | Self::Rig => return None,
-        })
+    /// The part of the robot, where it is one.
+    fn part(self) -> Option<Part> {
+        match self {
+            Self::Part(part) => Some(part),
+            Self::Robot | Self::Rig => None,
+        }
+    }
+}
+
+impl From<Part> for Place {
+    fn from(part: Part) -> Self {
+        Self::Part(part)
     }
 }
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Joint(i) => write!(f, "joint {i}"),
-            Self::Joints([i, j]) => write!(f, "joints {i},{j}"),
-            Self::Link(i) => write!(f, "link {i}"),
-            Self::Base => f.write_str("base"),
-            Self::Tool => f.write_str("tool"),
-            Self::Entry(entry, row) => write!(f, "{}{row}", ENTRIES[*entry]),
+            Self::Part(part) => part.fmt(f),
             Self::Robot => f.write_str("robot"),
             Self::Rig => f.write_str("rig"),
         }
-    }
-}
-
-/// Places of descriptions are spelt alike.
-impl PartialEq<robstiff_robots::effect::Place> for Place {
-    fn eq(&self, other: &robstiff_robots::effect::Place) -> bool {
-        self.to_string() == other.to_string()
     }
 }
 
@@ -142,7 +117,7 @@ impl Found {
             own.map(|number| number.value).or(parameter.default).unwrap_or(0.0)
         };
         let numbers: Vec<f64> = about.parameters.iter().map(number).collect();
-        Effect::of_kind(self.kind.name, self.place.of_description()?, &numbers)
+        Effect::of_kind(self.kind.name, self.place.part()?, &numbers)
     }
 
     /// Writes the effect into a description; whether that takes it.

@@ -6,6 +6,7 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 use robstiff_robots::Description;
+use robstiff_robots::effect::Place as Part;
 
 use super::alias::{rivals, same_as};
 use super::bench::Bench;
@@ -274,7 +275,7 @@ fn isolated(
             ["dx", "dy", "dz"].into_iter().zip(slip.shift.iter()).map(number).collect();
         let first = slip.rows.iter().map(line).min().unwrap_or_default();
         parameters.push(EffectParameter { name: "line", value: first as f64, std: None, unit: "1" });
-        let effect = Found::new(&BASE_SLIP, Place::Base, parameters);
+        let effect = Found::new(&BASE_SLIP, Part::Base.into(), parameters);
         found.push(one(effect, slip.rows.iter().map(line).collect(), &[slip], std::vec!["outliers@rig".to_string()]));
     } else {
         outliers.extend(slips);

@@ -132,8 +132,9 @@ fn rivalry(trace: &Trace, rival: &Rival) -> String {
 
 /// Whether the description that is written has the effect.
 pub fn is_written(trace: &Trace, named: &NamedEffect) -> bool {
-    let same =
-        |effect: &robstiff::Effect| effect.kind() == named.effect.kind() && named.effect.place() == effect.place();
+    let same = |effect: &robstiff::Effect| {
+        effect.kind() == named.effect.kind() && named.effect.place() == effect.place().into()
+    };
     !named.effect.is_of_rig() && trace.description.effects.iter().any(same)
 }
 

@@ -1,7 +1,7 @@
 //! Foundation and pedestal: tilt about x and y of frame 0, and a displacement,
 //! the same in every direction. The turn about z is joint 1's.
 
-use super::{Kind, Offers, Place, Scene, two_compliances};
+use super::{Kind, Offers, Part, Scene, two_compliances};
 use crate::elements::Parameter;
 
 /// The kind.
@@ -15,5 +15,5 @@ pub static KIND: Kind = Kind {
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let two = [("tilt", Parameter::BaseTilt), ("translation", Parameter::BaseTranslation)];
-    two_compliances(scene, offers, Place::Base, two);
+    two_compliances(scene, offers, Part::Base, two);
 }

@@ -8,7 +8,7 @@ use std::vec::Vec;
 
 use nalgebra::Vector3;
 
-use super::{Form, Kind, Number, Offers, Place, SHIFT, Scene, TURN};
+use super::{Form, Kind, Number, Offers, Part, SHIFT, Scene, TURN};
 use crate::identify::samples::stack;
 use crate::trace::isolated::Moment;
 
@@ -57,5 +57,5 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         let own = (3 * i..3 * i + 3).chain(turns + 3 * i..turns + 3 * i + 3);
         Form::of(own).with("line", line(moment), "1")
     }));
-    offers.add(Place::Base, numbers, forms);
+    offers.add(Part::Base, numbers, forms);
 }

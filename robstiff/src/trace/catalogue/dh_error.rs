@@ -4,7 +4,9 @@
 use std::format;
 use std::vec;
 
-use super::{Form, Kind, Number, Offers, Place, Scene, place_words};
+use robstiff_robots::effect::DhEntry;
+
+use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
 use crate::identify::setup::coordinate_entry;
 
 /// The kind.
@@ -20,6 +22,9 @@ pub static KIND: Kind = Kind {
 const MOST: [f64; 4] = [0.2, 0.15, 0.15, 0.2];
 const UNITS: [&str; 4] = ["rad", "m", "m", "rad"];
 
+/// The entries of a row, in the order of a setup's table.
+const ENTRIES: [fn(usize) -> DhEntry; 4] = [DhEntry::Theta, DhEntry::D, DhEntry::A, DhEntry::Alpha];
+
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for row in 1..=scene.joints() {
         let coordinate = coordinate_entry(scene.samples.joint_kinds[row - 1]);
@@ -31,7 +36,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
                 move |setup, error| setup.table[row - 1][entry] += error,
                 move |point, _| point.slope(row, entry, |_| 1.0),
             );
-            offers.add(Place::Entry(entry, row), vec![number], vec![Form::of([0])]);
+            offers.add(Part::Entry(ENTRIES[entry](row)), vec![number], vec![Form::of([0])]);
         }
     }
 }

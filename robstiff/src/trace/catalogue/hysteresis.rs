@@ -7,7 +7,7 @@ use std::format;
 use std::vec;
 use std::vec::Vec;
 
-use super::{Form, Kind, Number, Offers, Place, Scene, place_words};
+use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
 use crate::identify::samples::Samples;
 
 /// The kind.
@@ -32,7 +32,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let mut rows = vec![0_usize; scene.data.visits.len()];
     scene.data.rows.iter().for_each(|row| rows[row.visit] += 1);
     if rows.iter().all(|&rows| rows < 2) {
-        return (1..=scene.joints()).for_each(|joint| offers.invisible(Place::Joint(joint)));
+        return (1..=scene.joints()).for_each(|joint| offers.invisible(Part::Joint(joint)));
     }
     for joint in 1..=scene.joints() {
         let Some(largest) = scene.largest_torque(joint) else { continue };
@@ -52,7 +52,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         };
         let sets = (1..1_u32 << RADII.len()).filter(|set| set.count_ones() <= MOST);
         let numbers: Vec<Number> = radii.map(number).into();
-        offers.add(Place::Joint(joint), numbers, sets.map(form).collect());
+        offers.add(Part::Joint(joint), numbers, sets.map(form).collect());
     }
 }
 

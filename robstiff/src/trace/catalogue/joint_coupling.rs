@@ -5,7 +5,7 @@ use std::format;
 use std::rc::Rc;
 use std::vec;
 
-use super::{Form, Kind, Number, Offers, Place, Scene, place_words};
+use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
 use crate::elements::Parameter;
 
 /// The kind.
@@ -28,7 +28,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
                     .then_some(())
                     .ok_or_else(|| format!("the coupling would be {:.2e}, beyond {bound:.2e} rad/Nm", numbers[0].1))
             };
-            offers.add_checked(Place::Joints([i, j]), vec![number], vec![Form::of([0])], Some(Rc::new(check)));
+            offers.add_checked(Part::Joints([i, j]), vec![number], vec![Form::of([0])], Some(Rc::new(check)));
         }
     }
 }

@@ -4,7 +4,7 @@
 use std::format;
 use std::vec;
 
-use super::{Form, Kind, Number, Offers, Place, Scene, place_words};
+use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
 use crate::identify::setup::coordinate_entry;
 
 /// The kind.
@@ -29,6 +29,6 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
             move |setup, offset| setup.table[joint - 1][entry] += offset,
             move |point, _| point.slope(joint, entry, |_| 1.0),
         );
-        offers.add(Place::Joint(joint), vec![number], vec![Form::of([0])]);
+        offers.add(Part::Joint(joint), vec![number], vec![Form::of([0])]);
     }
 }

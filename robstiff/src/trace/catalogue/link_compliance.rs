@@ -3,7 +3,7 @@
 
 use std::format;
 
-use super::{Kind, Offers, Place, Scene, place_words, two_compliances};
+use super::{Kind, Offers, Part, Scene, place_words, two_compliances};
 use crate::elements::Parameter;
 
 /// The kind.
@@ -25,6 +25,6 @@ pub static KIND: Kind = Kind {
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for link in 1..scene.joints() {
         let two = [("bending", Parameter::LinkBending(link)), ("torsion", Parameter::LinkTorsion(link))];
-        two_compliances(scene, offers, Place::Link(link), two);
+        two_compliances(scene, offers, Part::Link(link), two);
     }
 }

@@ -7,7 +7,7 @@
 use std::format;
 use std::vec::Vec;
 
-use super::{Form, Kind, Number, Offers, Place, Scene, place_words};
+use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -44,6 +44,6 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         let forms = forms.map(|form| form.refined(move |knees| [number(knees[0])].into()));
         let forms = forms.map(|form| form.within([0.0, EITHER[1] * largest])).collect();
         let numbers: Vec<Number> = knees.map(number).into();
-        offers.add(Place::Joint(joint), numbers, forms);
+        offers.add(Part::Joint(joint), numbers, forms);
     }
 }

@@ -44,6 +44,7 @@ use std::vec::Vec;
 
 use nalgebra::{DVector, Matrix3};
 use robstiff_robots::Description;
+use robstiff_robots::effect::Place as Part;
 
 pub use self::base_slip::{KIND as BASE_SLIP, LIKELY};
 pub use self::creep::KIND as CREEP;
@@ -380,13 +381,20 @@ impl Form {
 
 impl Offers<'_> {
     /// A candidate, unless the description declares it.
-    pub fn add(&mut self, place: Place, numbers: Vec<Number>, forms: Vec<Form>) {
+    pub fn add(&mut self, place: impl Into<Place>, numbers: Vec<Number>, forms: Vec<Form>) {
         self.add_checked(place, numbers, forms, None);
     }
 
     /// A candidate with what physics asks of it.
-    pub fn add_checked(&mut self, place: Place, numbers: Vec<Number>, forms: Vec<Form>, check: Option<Check>) {
-        let same = |effect: &Effect| effect.kind() == self.kind.name && place == effect.place();
+    pub fn add_checked(
+        &mut self,
+        place: impl Into<Place>,
+        numbers: Vec<Number>,
+        forms: Vec<Form>,
+        check: Option<Check>,
+    ) {
+        let place = place.into();
+        let same = |effect: &Effect| effect.kind() == self.kind.name && place == Place::Part(effect.place());
         if self.declared.iter().any(same) {
             return;
         }
@@ -405,8 +413,8 @@ impl Offers<'_> {
     }
 
     /// Something that these data cannot show.
-    pub fn invisible(&mut self, place: Place) {
-        self.catalogue.invisible.push(std::format!("{}@{}", self.kind.name, place));
+    pub fn invisible(&mut self, place: impl Into<Place>) {
+        self.catalogue.invisible.push(std::format!("{}@{}", self.kind.name, place.into()));
     }
 }
 
@@ -423,13 +431,13 @@ pub fn catalogue(scene: &Scene<'_>, first: usize) -> Catalogue {
 }
 
 /// A candidate with one compliance.
-fn one_compliance(scene: &Scene<'_>, offers: &mut Offers<'_>, place: Place, name: &'static str, parameter: Parameter) {
+fn one_compliance(scene: &Scene<'_>, offers: &mut Offers<'_>, place: Part, name: &'static str, parameter: Parameter) {
     let number = Number::compliance(scene, name, MORE_THAN_NONE, parameter);
     offers.add(place, vec![number], vec![Form::of([0])]);
 }
 
 /// A candidate with two compliances, of which one or both can be there.
-fn two_compliances(scene: &Scene<'_>, offers: &mut Offers<'_>, place: Place, two: [(&'static str, Parameter); 2]) {
+fn two_compliances(scene: &Scene<'_>, offers: &mut Offers<'_>, place: Part, two: [(&'static str, Parameter); 2]) {
     let number = |(name, parameter)| Number::compliance(scene, name, MORE_THAN_NONE, parameter);
     let forms = vec![Form::of([0]), Form::of([1]), Form::of([0, 1])];
     offers.add(place, two.into_iter().map(number).collect(), forms);
@@ -451,12 +459,12 @@ fn frame_words(found: &Found) -> &'static str {
     if found.value(TOOL_FRAME) == 1.0 { "tool frame" } else { "base frame" }
 }
 
-/// `the joint 3`, `the base`: a place in a sentence.
+/// `joint 3`, `the base`: a place in a sentence.
 fn place_words(found: &Found) -> String {
     match found.place {
-        Place::Joints([i, j]) => std::format!("joints {i} and {j}"),
-        Place::Base | Place::Tool | Place::Rig | Place::Robot => std::format!("the {}", found.place),
-        place => std::format!("{place}"),
+        Place::Part(entry @ Part::Entry(_)) => std::format!("{entry}"),
+        Place::Part(part) => std::format!("{}", part.words()),
+        place => std::format!("the {place}"),
     }
 }
 

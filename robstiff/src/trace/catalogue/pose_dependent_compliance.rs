@@ -7,7 +7,7 @@ use std::rc::Rc;
 use std::vec;
 use std::vec::Vec;
 
-use super::{Form, Kind, Number, Offers, Place, Scene, place_words};
+use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -51,6 +51,6 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
                 .then_some(())
                 .ok_or_else(|| format!("joint {joint} would have a negative compliance at some angle"))
         };
-        offers.add_checked(Place::Joint(joint), numbers, forms, Some(Rc::new(check)));
+        offers.add_checked(Part::Joint(joint), numbers, forms, Some(Rc::new(check)));
     }
 }

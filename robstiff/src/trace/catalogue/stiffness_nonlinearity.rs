@@ -6,7 +6,7 @@ use std::rc::Rc;
 use std::vec::Vec;
 
 use super::lost_motion::EITHER;
-use super::{Form, Kind, Number, Offers, Place, Scene, place_words};
+use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
 use crate::identify::samples::Column;
 
 /// The kind.
@@ -47,6 +47,6 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
                 .ok_or_else(|| format!("the unloaded joint {joint} would have a negative compliance"))
         };
         let numbers: Vec<Number> = knees.map(number).into();
-        offers.add_checked(Place::Joint(joint), numbers, forms, Some(Rc::new(check)));
+        offers.add_checked(Part::Joint(joint), numbers, forms, Some(Rc::new(check)));
     }
 }

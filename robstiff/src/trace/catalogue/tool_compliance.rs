@@ -1,7 +1,7 @@
 //! Flange, spindle and tool: a turn and a displacement at the flange frame's
 //! origin, the same in every direction, `h s s^T` for three axes each.
 
-use super::{Kind, Offers, Place, Scene, two_compliances};
+use super::{Kind, Offers, Part, Scene, two_compliances};
 use crate::elements::Parameter;
 
 /// The kind.
@@ -15,5 +15,5 @@ pub static KIND: Kind = Kind {
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let two = [("rotation", Parameter::ToolRotation), ("translation", Parameter::ToolTranslation)];
-    two_compliances(scene, offers, Place::Tool, two);
+    two_compliances(scene, offers, Part::Tool, two);
 }

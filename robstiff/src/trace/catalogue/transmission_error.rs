@@ -5,7 +5,7 @@
 use std::format;
 use std::vec::Vec;
 
-use super::{Form, Kind, Number, Offers, Place, Scene, place_words};
+use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
 use crate::identify::setup::Wave;
 
 /// The kind.
@@ -54,6 +54,6 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         let numbers: Vec<Number> =
             ORDERS.iter().flat_map(|&order| [(order, "cos"), (order, "sin")]).map(number).collect();
         let form = |(k, &order): (usize, &f64)| Form::of([2 * k, 2 * k + 1]).with("order", order, "1");
-        offers.add(Place::Joint(joint), numbers, ORDERS.iter().enumerate().map(form).collect());
+        offers.add(Part::Joint(joint), numbers, ORDERS.iter().enumerate().map(form).collect());
     }
 }

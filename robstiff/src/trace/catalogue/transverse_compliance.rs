@@ -3,7 +3,7 @@
 
 use std::format;
 
-use super::{Kind, Offers, Place, Scene, one_compliance, place_words};
+use super::{Kind, Offers, Part, Scene, one_compliance, place_words};
 use crate::elements::Parameter;
 
 /// The kind.
@@ -17,6 +17,6 @@ pub static KIND: Kind = Kind {
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for joint in 1..=scene.joints() {
-        one_compliance(scene, offers, Place::Joint(joint), "h", Parameter::Transverse(joint));
+        one_compliance(scene, offers, Part::Joint(joint), "h", Parameter::Transverse(joint));
     }
 }

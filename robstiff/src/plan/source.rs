@@ -1,0 +1,168 @@
+//! Which numbers of the regression planning looks at, and which effects rival:
+//! what the [`adapter`](super::adapter) takes from a trace.
+
+use std::format;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use super::rivals::{Contest, Group, Number, Rival, Rivals};
+use crate::campaign::Campaign;
+use crate::identify::prepare::Prepared;
+use crate::identify::samples::Column;
+use crate::identify::{Error, element_name, unit_of};
+use crate::trace::bench::Bench;
+use crate::trace::catalogue::{Candidate, Catalogue};
+use crate::trace::model::{Fitted, Named};
+use crate::trace::selection::best_with;
+use crate::trace::{Place, Trace};
+
+/// Kinds that depend on when something is measured, not on pose and load: what
+/// to propose for them is not computed.
+const OF_TIME: [&str; 4] = ["thermal_drift", "creep", "base_slip", "outliers"];
+
+/// A number that planning looks at.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Kept {
+    /// One of the description.
+    Own(Column),
+    /// One of a candidate, by its kind and place, and which of its numbers.
+    Of(&'static str, Place, usize),
+}
+
+/// The first number of a candidate, of numbers whose columns follow `own` ones.
+pub fn start(everything: &Catalogue, kind: &str, place: Place, own: usize) -> Option<usize> {
+    let is_it = |candidate: &&Candidate| candidate.kind.name == kind && candidate.place == place;
+    let candidate = everything.candidates.iter().find(is_it)?;
+    candidate.variants.iter().flat_map(|variant| &variant.columns).min().map(|first| first - own)
+}
+
+/// The regression of a campaign, where rivals come from.
+pub struct Source<'s> {
+    /// Where models are fitted.
+    pub bench: &'s Bench<'s>,
+    /// The campaign, made ready.
+    pub prepared: &'s Prepared<'s>,
+    /// Everything that may be missing.
+    pub everything: &'s Catalogue,
+}
+
+impl Source<'_> {
+    /// What a column of the regression is.
+    pub fn kept(&self, column: usize) -> Kept {
+        let own = self.prepared.own.len();
+        if column < own {
+            return Kept::Own(self.prepared.own[column].column);
+        }
+        let has = |candidate: &&Candidate| candidate.variants.iter().any(|variant| variant.columns.contains(&column));
+        let candidate = self.everything.candidates.iter().find(has).expect("every column is somebody's");
+        let first = start(self.everything, candidate.kind.name, candidate.place, own).expect("it has columns");
+        Kept::Of(candidate.kind.name, candidate.place, column - own - first)
+    }
+
+    /// The best fitting form of a candidate beside others, and its model.
+    fn best(&self, name: &str, beside: &[Named]) -> Option<(Named, Fitted)> {
+        let candidate = self.bench.candidates().iter().position(|candidate| candidate.name() == name)?;
+        let setting = self.bench.at(beside).ok()?;
+        let fitted = best_with(&setting, beside, candidate)?;
+        let named = *fitted.named.iter().find(|named| named.candidate == candidate)?;
+        Some((named, fitted))
+    }
+
+    /// The columns of a named candidate, and their values in a fit.
+    fn numbers_of(&self, named: Named, fitted: &Fitted) -> (Vec<usize>, Vec<f64>) {
+        let columns = self.bench.candidates()[named.candidate].variants[named.variant].columns.clone();
+        let value = |column: &usize| {
+            let at = fitted.fit.columns.iter().position(|other| other == column);
+            at.map_or(0.0, |k| fitted.fit.coefficients[k])
+        };
+        let values = columns.iter().map(value).collect();
+        (columns, values)
+    }
+
+    /// The rivals of a trace, and the effects named. `columns` holds the
+    /// regression's columns that planning looks at, first those of the
+    /// description; rivals refer to them by index.
+    pub fn rivals(
+        &self,
+        campaign: &Campaign,
+        trace: &Trace,
+        groups: &[Group],
+        columns: &mut Vec<usize>,
+    ) -> Result<(Rivals, Vec<Named>), Error> {
+        let base = columns.clone();
+        let mut named: Vec<(String, Named)> = Vec::new();
+        for effect in &trace.effects {
+            let mut beside: Vec<Named> = named.iter().map(|(_, named)| *named).collect();
+            beside.sort_unstable();
+            let name = effect.effect.to_string();
+            if let Some((found, _)) = self.best(&name, &beside) {
+                named.push((name, found));
+            }
+        }
+        let sorted = |without: Option<&str>| -> Vec<Named> {
+            let kept = named.iter().filter(|(name, _)| Some(name.as_str()) != without);
+            let mut kept: Vec<Named> = kept.map(|(_, named)| *named).collect();
+            kept.sort_unstable();
+            kept
+        };
+        let columns_of = |named: &[Named]| -> Vec<usize> {
+            let of = |one: &Named| self.bench.candidates()[one.candidate].variants[one.variant].columns.clone();
+            named.iter().flat_map(of).collect()
+        };
+        let model = sorted(None);
+        let effects = columns_of(&model);
+        let fitted = self.bench.fit(&model).map_err(Error)?;
+        let numbers = self.numbers(campaign, &fitted);
+        let mut place = |column: usize| {
+            columns.iter().position(|&other| other == column).unwrap_or_else(|| {
+                columns.push(column);
+                columns.len() - 1
+            })
+        };
+        let mut places = |of: &[usize]| -> Vec<usize> { of.iter().map(|&column| place(column)).collect() };
+        let mut pairs = Vec::new();
+        for Group { named: own, names } in groups {
+            let own = own.map(|k| trace.effects[k].effect.to_string());
+            let beside = sorted(own.as_deref());
+            let core: Vec<usize> = base.iter().copied().chain(columns_of(&beside)).collect();
+            let computed = names.iter().filter(|name| !OF_TIME.iter().any(|kind| name.starts_with(kind)));
+            let found = computed.filter_map(|name| {
+                let (one, fitted) = self.best(name, &beside)?;
+                let (columns, values) = self.numbers_of(one, &fitted);
+                let parameters = self.bench.candidates()[one.candidate].variants[one.variant].parameters;
+                Some((name.clone(), Rival { columns, values, parameters }))
+            });
+            let found: Vec<(String, Rival)> = found.collect();
+            for (k, (one, of_one)) in found.iter().enumerate() {
+                for (other, of_other) in &found[k + 1..] {
+                    let rivals =
+                        [of_one, of_other].map(|rival| Rival { columns: places(&rival.columns), ..rival.clone() });
+                    pairs.push(Contest::new([one.clone(), other.clone()], rivals, places(&core)));
+                }
+            }
+        }
+        let whole: Vec<usize> = base.iter().chain(&effects).copied().collect();
+        Ok((Rivals { model: places(&whole), effects: places(&effects), numbers, pairs }, model))
+    }
+
+    /// What the numbers of a model are.
+    fn numbers(&self, campaign: &Campaign, fitted: &Fitted) -> Vec<Number> {
+        let own = self.prepared.own.len();
+        let number = |(&column, &value): (&usize, &f64)| match (self.kept(column), column.checked_sub(own)) {
+            (Kept::Of(kind, place, _), Some(k)) => {
+                let number = &self.everything.numbers[k];
+                let name = match number.name {
+                    "h" => format!("{kind}@{place}"),
+                    of => format!("{kind}@{place} {of}"),
+                };
+                Number { name, unit: number.unit, value }
+            }
+            _ => {
+                let number = &self.prepared.own[column];
+                let name = element_name(&campaign.robot, number);
+                Number { name, unit: unit_of(&campaign.robot, number.column), value }
+            }
+        };
+        fitted.fit.columns.iter().zip(fitted.fit.coefficients.iter()).map(number).collect()
+    }
+}
