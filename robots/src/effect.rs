@@ -9,6 +9,7 @@
 
 pub mod base_compliance;
 pub mod dh_error;
+pub mod gravity_sag;
 pub mod hysteresis;
 pub mod joint_coupling;
 pub mod joint_zero_offset;
@@ -68,6 +69,7 @@ registry! {
     joint_zero_offset::JointZeroOffset, Joint(joint: usize), value;
     dh_error::DhError, Entry(entry: DhEntry), value;
     transmission_error::TransmissionError, Joint(joint: usize), order, sin, cos;
+    gravity_sag::GravitySag, Robot(), share;
 }
 
 impl Effect {

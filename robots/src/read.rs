@@ -76,7 +76,7 @@ impl Description {
     /// write it, against the joints of this robot; what is wrong is reported
     /// there.
     pub fn read_effects(&self, node: &Node<'_>) -> Option<Vec<Effect>> {
-        effects::effects(node, Some(&self.joints), Some(self.joints.len()))
+        effects::effects(node, Some(&self.joints), Some(&self.links), Some(self.joints.len()))
     }
 
     /// A free name for a robot's type that is like `text`, e.g. a file's name.
@@ -115,7 +115,7 @@ fn description(root: &Node) -> Option<Description> {
     let joints = joints.and_then(|node| self::joints(&node));
     let tool = optional(&map, "tool", placement);
     let links = optional(&map, "links", |node| links(node, count));
-    let effects = optional(&map, "effects", |node| effects::effects(node, joints.as_deref(), count));
+    let effects = optional(&map, "effects", |node| effects::effects(node, joints.as_deref(), links.as_deref(), count));
     Some(Description {
         name: name?,
         description: summary?,

@@ -21,7 +21,7 @@ mod laws;
 #[cfg(all(test, feature = "generic"))]
 mod tests;
 
-pub use laws::{commanded_rates, deviation, plays, turn, unloaded_turn};
+pub use laws::{commanded_rates, deviation, own_weight_torque, plays, share_of_weight, turn, unloaded_turn};
 pub use robstiff_robots::effect::physics::Spring as Parameter;
 
 /// Where the parts of a robot are in one pose; every frame a homogeneous

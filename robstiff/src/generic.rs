@@ -10,7 +10,9 @@ use robstiff_robots::{Description, Joint, Placement};
 
 use crate::elements::{Parameter, Pose, contributions, deviation, parameters, plays, turn};
 use crate::{Convention, Effect, JointKind, Real, Robot, State};
+use sag::Sag;
 
+mod sag;
 #[cfg(test)]
 mod tests;
 
@@ -30,6 +32,7 @@ pub struct Generic<const N: usize> {
     tool: Matrix4<f64>,
     compliance: SVector<f64, N>,
     effects: Vec<Effect>,
+    sag: Option<Sag<N>>,
 }
 
 /// One row of the DH table, `before * motion(q) * after`.
@@ -118,6 +121,18 @@ impl<const N: usize> Generic<N> {
             tool: placement(&description.tool),
             compliance: SVector::from_fn(|i, _| description.joints[i].compliance()),
             effects: description.effects.clone(),
+            sag: Sag::of(description),
+        })
+    }
+}
+
+impl<const N: usize> Generic<N> {
+    /// The frames behind the joints, which stand at these coordinates.
+    fn frames_behind<T: Real>(&self, stand: &SVector<T, N>) -> [Matrix4<T>; N] {
+        let mut frame = self.base.map(T::of);
+        core::array::from_fn(|i| {
+            frame *= self.joints[i].transform(stand[i]);
+            frame
         })
     }
 }
@@ -183,13 +198,15 @@ impl<const N: usize> Robot<N> for Generic<N> {
     }
 
     fn link_frames<T: Real>(&self, q: &SVector<T, N>) -> [Matrix4<T>; N] {
-        let mut frame = self.base.map(T::of);
-        core::array::from_fn(|i| {
+        let stand = SVector::from_fn(|i, _| {
             let aside = self.effects.iter().filter(|effect| effect.row() == Some(i + 1));
             let aside = aside.filter_map(|effect| deviation(effect, q[i]));
-            frame *= self.joints[i].transform(aside.fold(q[i], |sum, aside| sum + aside));
-            frame
-        })
+            aside.fold(q[i], |sum, aside| sum + aside)
+        });
+        let upright = self.frames_behind(&stand);
+        let Some(sag) = &self.sag else { return upright };
+        let yields = sag.yields(self.convention, self.joint_kinds(), &self.compliance, &self.base, &upright);
+        self.frames_behind(&(stand + SVector::from(yields)))
     }
 
     fn jacobian<T: Real>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, N> {

@@ -36,6 +36,7 @@ macro_rules! for_every_arm {
             staubli_rx160 StaubliRx160 "staubli-rx160.yaml",
             every_effect EveryEffect "every-effect.yaml",
             every_law EveryLaw "every-law.yaml",
+            hanging Hanging "hanging.yaml",
             modified_slider ModifiedSlider "modified-slider.yaml",
             pendulum Pendulum "pendulum.yaml",
             scara Scara "scara.yaml",

@@ -1,11 +1,11 @@
 //! The laws of joints and the errors of frames: what mechanics and the theory
 //! of play operators say of them, on generated and on generic robots.
 
-use nalgebra::{Matrix6, SVector, SymmetricEigen, Vector6};
+use nalgebra::{Matrix6, SVector, SymmetricEigen, Vector4, Vector6};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use robstiff::{DhEntry, Dual, Effect, Generic, Robot, State};
-use robstiff_robots::Description;
+use robstiff::{Convention, DhEntry, Dual, Effect, Generic, Robot, State};
+use robstiff_robots::{Description, Link};
 use robstiff_tests::arms::{EveryEffect, EveryLaw, description};
 use robstiff_tests::judge::{Sizes, trials};
 
@@ -265,4 +265,53 @@ fn errors_of_frames_are_frames_elsewhere() {
     for (q, _) in trials::<7>(20, 52) {
         assert_same(&errors, &longer, &q, &q);
     }
+}
+
+/// The potential energy of an arm's links \[J\], by nothing but frames and masses.
+fn potential_energy<const N: usize>(robot: &Generic<N>, links: &[Link], q: &SVector<f64, N>) -> f64 {
+    let heights = links.iter().zip(robot.link_frames(q)).map(|(link, frame)| {
+        let centre = frame * Vector4::from_fn(|k, _| link.center_of_mass.get(k).copied().unwrap_or(1.0));
+        9.80665 * link.mass * centre.z
+    });
+    heights.sum()
+}
+
+/// Each joint yields to the slope of the arm's potential energy; frames,
+/// Jacobian and compliance are those of the arm that stands there.
+fn sags_by_the_slope_of_its_energy<const N: usize>(mut description: Description) {
+    description.effects.retain(|effect| !matches!(effect, Effect::TransmissionError { .. }));
+    let sagging = Generic::<N>::new(&description).expect("as many joints");
+    let share = description.effects.iter().find_map(|effect| match effect {
+        Effect::GravitySag { share } => Some(*share),
+        _ => None,
+    });
+    description.effects.retain(|effect| !matches!(effect, Effect::GravitySag { .. }));
+    let upright = Generic::<N>::new(&description).expect("as many joints");
+    let mut most = 0.0_f64;
+    for (q, wrench) in trials::<N>(POSES, 48) {
+        let step = 1e-4;
+        let stands = SVector::<f64, N>::from_fn(|joint, _| {
+            let energy = |by: f64| {
+                let mut q = q;
+                q[joint] += by;
+                potential_energy(&upright, &description.links, &q)
+            };
+            let slope = (energy(step) - energy(-step)) / (2.0 * step);
+            q[joint] - share.expect("it sags") * description.joints[joint].compliance() * slope
+        });
+        most = most.max((stands - q).amax());
+        assert!((sagging.transform(&q) - upright.transform(&stands)).amax() < 1e-9);
+        assert!((sagging.jacobian(&q) - upright.jacobian(&stands)).amax() < 1e-9);
+        let (one, other) = (sagging.deflection(&q, &wrench), upright.deflection(&stands, &wrench));
+        assert!(off(&one, &other) < 1e-8, "{one} {other}");
+    }
+    assert!(most > 4e-4, "it hardly sags: {most}");
+}
+
+#[test]
+fn an_arm_sags_by_the_slope_of_its_potential_energy() {
+    let hanging = description("hanging.yaml");
+    let modified = Description { convention: Convention::Modified, ..hanging.clone() };
+    sags_by_the_slope_of_its_energy::<6>(hanging);
+    sags_by_the_slope_of_its_energy::<6>(modified);
 }

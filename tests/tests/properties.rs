@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use robstiff::{Convention, DhEntry, Effect, Generic, JointKind, Robot, State, with_robot};
 use robstiff_codegen::{Function, Origin, functions, symbolic, tokens};
-use robstiff_robots::{Description, Joint, Part, Placement};
+use robstiff_robots::{Description, Joint, Link, Part, Placement};
 use robstiff_tests::interpreter::Code;
 use robstiff_tests::judge::{DOUBLE, Sizes, assert_close, blocks};
 
@@ -126,7 +126,25 @@ fn effects(joints: Vec<Joint>) -> impl Strategy<Value = Vec<Effect>> {
     prop::sample::subsequence(all, 0..=count).prop_flat_map(|chosen| chosen)
 }
 
+/// Masses of which the arm sags by at most some mrad, wherever it stands.
+fn sagging(robot: Description) -> impl Strategy<Value = Description> {
+    let count = robot.joints.len();
+    let link = (0.0..300.0_f64, prop::array::uniform3(length()));
+    let link = link.prop_map(|(mass, center_of_mass)| Link { mass, center_of_mass });
+    (prop::collection::vec(link, count), Just(robot)).prop_map(|(links, robot)| {
+        let softest = robot.joints.iter().map(Joint::compliance).fold(0.0, f64::max);
+        let weight: f64 = links.iter().map(|link| 9.81 * link.mass).sum();
+        let share = 1e-2 / (softest * weight * (Sizes::of(&robot, &[4.0; 8]).reach + 3.0)).max(1e-3);
+        let effects = [robot.effects.clone(), vec![Effect::GravitySag { share }]].concat();
+        Description { links, effects, ..robot }
+    })
+}
+
 fn robot() -> impl Strategy<Value = Description> {
+    upright_robot().prop_flat_map(|robot| prop_oneof![3 => Just(robot.clone()), 1 => sagging(robot)])
+}
+
+fn upright_robot() -> impl Strategy<Value = Description> {
     let convention = prop_oneof![Just(Convention::Standard), Just(Convention::Modified)];
     (prop::collection::vec(joint(), 1..=8), convention, placement(), placement())
         .prop_flat_map(|(joints, convention, base, tool)| {

@@ -43,6 +43,8 @@ pub enum At {
     Tool,
     /// An entry of the DH table.
     Entry,
+    /// The whole robot.
+    Robot,
 }
 
 impl At {
@@ -55,6 +57,7 @@ impl At {
             Self::Base => "base",
             Self::Tool => "tool",
             Self::Entry => "a2",
+            Self::Robot => "robot",
         }
     }
 
@@ -68,6 +71,7 @@ impl At {
                 | (Self::Base, Place::Base)
                 | (Self::Tool, Place::Tool)
                 | (Self::Entry, Place::Entry(_))
+                | (Self::Robot, Place::Robot)
         )
     }
 }
@@ -256,6 +260,11 @@ pub trait Physics<const P: usize> {
         None
     }
 
+    /// The share of the arm's own weight that every joint yields to, unloaded.
+    fn share_of_weight<S: Scalar>(_parameters: [S; P]) -> Option<S> {
+        None
+    }
+
     /// The effect as a noun, where it depends on the numbers.
     fn noun(_numbers: [f64; P]) -> &'static str {
         Self::ABOUT.noun
@@ -280,3 +289,7 @@ pub trait Physics<const P: usize> {
 /// here the generator's series for its sine and cosine are exact to rounding,
 /// and more is no error of a gear.
 pub const MOST_DEVIATION: f64 = 5e-3;
+
+/// The most a joint may yield to the arm's own weight \[rad\], 1.1 degrees: as
+/// [`MOST_DEVIATION`], with longer series.
+pub const MOST_SAG: f64 = 2e-2;

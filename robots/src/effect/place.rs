@@ -3,7 +3,7 @@
 use core::fmt;
 
 /// Where an effect sits; displays as descriptions spell it (`joint 3`,
-/// `joints 2,3`, `link 2`, `base`, `tool`, `a2`).
+/// `joints 2,3`, `link 2`, `base`, `tool`, `a2`, `robot`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// One joint, from 1.
@@ -18,6 +18,8 @@ pub enum Place {
     Tool,
     /// One entry of the DH table.
     Entry(DhEntry),
+    /// The whole robot.
+    Robot,
 }
 
 impl Place {
@@ -30,6 +32,7 @@ impl Place {
                     Place::Joints([i, j]) => write!(f, "joints {i} and {j}"),
                     Place::Base => f.write_str("the base"),
                     Place::Tool => f.write_str("the tool"),
+                    Place::Robot => f.write_str("the robot"),
                     Place::Entry(entry) => write!(f, "{} of row {}", entry.column(), entry.row()),
                     place => place.fmt(f),
                 }
@@ -48,6 +51,7 @@ impl fmt::Display for Place {
             Self::Base => f.write_str("base"),
             Self::Tool => f.write_str("tool"),
             Self::Entry(entry) => entry.fmt(f),
+            Self::Robot => f.write_str("robot"),
         }
     }
 }

@@ -201,6 +201,19 @@ macro_rules! registry {
                 }
             }
 
+            /// The share of the arm's own weight that every joint yields to,
+            /// unloaded, if the effect is of that sort.
+            ///
+            /// # Panics
+            /// For another count of parameters.
+            pub fn share_of_weight<S: Scalar>(&self, parameters: &[S]) -> Option<S> {
+                match self {
+                    $(Self::$kind { .. } => {
+                        $file::$kind::share_of_weight::<S>(registry::exactly::<S, { count!($($parameter)+) }>(parameters))
+                    })+
+                }
+            }
+
             fn noun_of_numbers(&self) -> &'static str {
                 match *self {
                     $(Self::$kind { $($parameter,)+ .. } => $file::$kind::noun([$($parameter),+]),)+

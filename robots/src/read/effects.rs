@@ -1,13 +1,14 @@
 //! The effects of a description, and what physics asks of them.
 
-use crate::description::Joint;
+use crate::description::{Joint, Link};
 use crate::document::{Map, Node};
-use crate::effect::physics::{About, At, Parameter, Range};
+use crate::effect::gravity_sag::GRAVITY;
+use crate::effect::physics::{About, At, MOST_SAG, Parameter, Range};
 use crate::effect::{CATALOGUE, DhEntry, Effect, JointKind, Place};
 use crate::suggest::{closest, list};
 
-/// Kinds that are known, but that no description can hold yet.
-const NOT_YET: &[&str] = &["gravity_sag", "base_slip"];
+/// What happens once, at some moment; a description holds what lasts.
+const EVENTS: &[&str] = &["base_slip"];
 
 /// Faults of the measurement (`@rig`), which are no part of a robot.
 const OF_THE_RIG: &[&str] = &[
@@ -23,7 +24,12 @@ const OF_THE_RIG: &[&str] = &[
 
 /// Reads the effects. Without the joints (because they have problems of their
 /// own) only their count is checked against.
-pub(super) fn effects(node: &Node, joints: Option<&[Joint]>, count: Option<usize>) -> Option<Vec<Effect>> {
+pub(super) fn effects(
+    node: &Node,
+    joints: Option<&[Joint]>,
+    links: Option<&[Link]>,
+    count: Option<usize>,
+) -> Option<Vec<Effect>> {
     let items = node.sequence()?;
     let read: Vec<Option<Effect>> = items.iter().map(|item| effect(item, joints, count)).collect();
     for (index, effect) in read.iter().enumerate() {
@@ -38,6 +44,9 @@ pub(super) fn effects(node: &Node, joints: Option<&[Joint]>, count: Option<usize
     }
     if let Some(joints) = joints {
         check_couplings(&items, &read, joints);
+        if let Some(links) = links {
+            check_sag(&items, &read, joints, links);
+        }
     }
     read.into_iter().collect()
 }
@@ -115,8 +124,11 @@ fn kind(node: &Node) -> Option<&'static About> {
             format!("`{name}` is a fault of the measurement (`@rig`), which is no part of a robot"),
             "leave it out: faults of the rig are reported and corrected for, never described",
         );
-    } else if NOT_YET.contains(&name) {
-        node.error(format!("`{name}` is not supported in a description yet"), kinds_are);
+    } else if EVENTS.contains(&name) {
+        node.error(
+            format!("`{name}` happens at one moment of a measurement, and a description holds what lasts"),
+            kinds_are,
+        );
     } else {
         let help = closest(name, kinds()).map_or(String::new(), |meant| format!("did you mean `{meant}`? "));
         node.error(format!("unknown kind of effect `{name}`"), help + &kinds_are);
@@ -140,7 +152,7 @@ fn place(node: &Node, about: &About, count: Option<usize>) -> Option<Place> {
         Place::Joints(joints) => ("joint", joints, count),
         Place::Link(link) => ("link", [link, link], count.map(|count| count.saturating_sub(1))),
         Place::Entry(entry) => ("row", [entry.row(), entry.row()], count),
-        Place::Base | Place::Tool => return Some(place),
+        Place::Base | Place::Tool | Place::Robot => return Some(place),
     };
     if let (Some(most), Some(count)) = (most, count)
         && let Some(wrong) = numbers.into_iter().find(|number| !(1..=most).contains(number))
@@ -173,6 +185,7 @@ fn parse_place(text: &str) -> Option<Place> {
         }
         "base" if numbers.is_empty() => Some(Place::Base),
         "tool" if numbers.is_empty() => Some(Place::Tool),
+        "robot" if numbers.is_empty() => Some(Place::Robot),
         _ if numbers.is_empty() => Some(Place::Entry(parse_entry(word)?)),
         _ => None,
     }
@@ -259,6 +272,52 @@ fn check_couplings(items: &[Node], effects: &[Option<Effect>], joints: &[Joint])
     }
 }
 
+/// That the weights which a sag comes of are known, and that it is small.
+fn check_sag(items: &[Node], effects: &[Option<Effect>], joints: &[Joint], links: &[Link]) {
+    for (item, effect) in items.iter().zip(effects) {
+        let Some(Effect::GravitySag { share }) = effect else { continue };
+        if links.iter().all(|link| link.mass == 0.0) {
+            item.error(
+                "an arm without masses does not sag",
+                "give `links`, with the mass and centre of mass of the body that moves with each joint",
+            );
+            continue;
+        }
+        let largest = (0..joints.len()).filter(|&joint| joints[joint].kind == JointKind::Revolute);
+        let largest = largest.map(|joint| (joint + 1, share * most_sag(joints, links, joint)));
+        let Some((joint, sag)) = largest.max_by(|(_, one), (_, other)| one.total_cmp(other)) else { continue };
+        if sag > MOST_SAG {
+            item.error(
+                format!("joint {joint} could sag by {:.0} mrad, more than {} mrad", sag * 1e3, MOST_SAG * 1e3),
+                "check the masses, the joint's compliance, and the limits of joints that slide",
+            );
+        }
+    }
+}
+
+/// A bound of how far a joint (from 0) yields to the whole weight behind it
+/// \[rad\]: the arm stretched out level.
+fn most_sag(joints: &[Joint], links: &[Link], joint: usize) -> f64 {
+    let mut reach = 0.0;
+    let mut torque = 0.0;
+    for (row, link) in joints.iter().zip(links).skip(joint) {
+        let slide = match (row.kind, row.limits) {
+            (JointKind::Revolute, _) => 0.0,
+            (JointKind::Prismatic, None) => f64::INFINITY,
+            (JointKind::Prismatic, Some([low, high])) => low.abs().max(high.abs()),
+        };
+        reach += row.a.hypot(row.d.abs() + slide);
+        let [x, y, z] = link.center_of_mass;
+        if link.mass > 0.0 {
+            torque += link.mass * GRAVITY * (reach + x.hypot(y).hypot(z));
+        }
+    }
+    match joints[joint].compliance() {
+        0.0 => 0.0,
+        compliance => compliance * torque,
+    }
+}
+
 /// Cholesky decomposition in place, of the lower triangle.
 fn is_positive_definite(matrix: &mut [Vec<f64>]) -> bool {
     for i in 0..matrix.len() {
@@ -289,7 +348,7 @@ mod tests {
     #[test]
     fn places_read_as_they_are_written() {
         let entries = [DhEntry::A(2), DhEntry::Alpha(1), DhEntry::D(4), DhEntry::Theta(3)].map(Place::Entry);
-        let places = [Place::Joint(3), Place::Joints([2, 3]), Place::Link(1), Place::Base, Place::Tool];
+        let places = [Place::Joint(3), Place::Joints([2, 3]), Place::Link(1), Place::Base, Place::Tool, Place::Robot];
         for place in places.into_iter().chain(entries) {
             assert_eq!(parse_place(&place.to_string()), Some(place));
         }

@@ -2,11 +2,11 @@
 
 use core::ops::{Add, Mul, Neg, Sub};
 
-use nalgebra::SVector;
+use nalgebra::{Matrix4, SVector};
 use robstiff_robots::effect::physics::{Joint, PLAYS};
-use robstiff_robots::effect::{MOST_PARAMETERS, Scalar, Tangent};
+use robstiff_robots::effect::{MOST_PARAMETERS, Scalar, Tangent, gravity_sag};
 
-use crate::{Effect, Real, Robot};
+use crate::{Effect, JointKind, Real, Robot};
 
 /// By how much a joint turns more \[rad\] under a torque \[Nm\] than by its own
 /// compliance `own` [rad/Nm], where the effect has a part in the joint's law: at
@@ -42,9 +42,26 @@ pub fn deviation<T: Real>(effect: &Effect, q: T) -> Option<T> {
     effect.deviation(&numbers[..count], &harmonic(q)).map(|deviation| deviation.0)
 }
 
+/// The share of the arm's own weight that every joint yields to, unloaded, if
+/// the effect says so.
+pub fn share_of_weight<T: Real>(effect: &Effect) -> Option<T> {
+    let (numbers, count) = numbers(effect);
+    effect.share_of_weight(&numbers[..count]).map(|share| share.0)
+}
+
+/// The torque \[Nm\] of a weight \[N\] about the z axis of a joint frame (the
+/// force along it \[N\] for a prismatic joint), with the weight's first moment in
+/// x and y of the base frame \[Nm\]; see
+/// [`gravity_sag`](robstiff_robots::effect::gravity_sag).
+pub fn own_weight_torque<T: Real>(kind: JointKind, joint_frame: &Matrix4<T>, weight: T, moment: [T; 2]) -> T {
+    let column = |k: usize| core::array::from_fn(|row| Number(joint_frame[(row, k)]));
+    gravity_sag::torque(kind, column(2), column(3), Number(weight), moment.map(Number)).0
+}
+
 /// How fast each joint's output turns per unit of its coordinate: 1, but with a
 /// transmission error 1 and the error's slope. The TCP moves by
-/// [`Robot::jacobian`]'s column times this per unit of the coordinate.
+/// [`Robot::jacobian`]'s column times this per unit of the coordinate; of an arm
+/// that sags, but for the change of its sag.
 pub fn commanded_rates<const N: usize, T, R>(robot: &R, q: &SVector<T, N>) -> SVector<T, N>
 where
     T: Real,

@@ -39,8 +39,6 @@ pub struct EffectParameter {
 pub enum Place {
     /// A part of the robot that descriptions have a word for.
     Part(Part),
-    /// The whole robot.
-    Robot,
     /// The measurement.
     Rig,
 }
@@ -50,7 +48,7 @@ impl Place {
     fn part(self) -> Option<Part> {
         match self {
             Self::Part(part) => Some(part),
-            Self::Robot | Self::Rig => None,
+            Self::Rig => None,
         }
     }
 }
@@ -65,7 +63,6 @@ impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Part(part) => part.fmt(f),
-            Self::Robot => f.write_str("robot"),
             Self::Rig => f.write_str("rig"),
         }
     }

@@ -62,7 +62,7 @@ fn effect(effect: &Effect) -> TokenStream {
                 DhEntry::Theta(_) => quote!(DhEntry::Theta(#row)),
             }
         }
-        Place::Base | Place::Tool => TokenStream::new(),
+        Place::Base | Place::Tool | Place::Robot => TokenStream::new(),
     };
     let place = field.map(|field| {
         let field = format_ident!("{field}");

@@ -8,6 +8,7 @@ use robstiff_robots::{Convention, Description, JointKind, Placement};
 
 use super::elastic::{harmonic, parameters};
 use super::vector::Vec3;
+use super::weight;
 use crate::angle::Angle;
 use crate::graph::{Graph, Sym};
 
@@ -50,8 +51,17 @@ impl Tilt<'_> {
     }
 }
 
-/// The steps of a description, base first.
+/// The steps of a description, base first, with every joint where it stands.
 pub fn chain<'g>(g: &'g Graph, robot: &Description) -> Vec<Step<'g>> {
+    let aside: Vec<_> = (0..robot.joints.len()).map(|joint| deviation(g, robot, joint)).collect();
+    let upright = steps(g, robot, &aside, Series::Short);
+    let Some(sag) = weight::sag(g, robot, &upright) else { return upright };
+    let both = |(aside, sag): (&Option<Sym<'g>>, Sym<'g>)| Some(aside.map_or(sag, |aside| aside + sag));
+    steps(g, robot, &aside.iter().zip(sag).map(both).collect::<Vec<_>>(), Series::Long)
+}
+
+/// The steps with joints that stand aside of their coordinates (rad or m).
+fn steps<'g>(g: &'g Graph, robot: &Description, aside: &[Option<Sym<'g>>], series: Series) -> Vec<Step<'g>> {
     let mut steps = Vec::new();
     place(g, &mut steps, &robot.base, "BASE", "Frame 0 in the base frame");
     steps.push(Step::Base);
@@ -63,9 +73,15 @@ pub fn chain<'g>(g: &'g Graph, robot: &Description) -> Vec<Step<'g>> {
         };
         let d = entry("D", joint.d, stated.d, "DH offset d");
         let a = entry("A", joint.a, stated.a, "DH length a");
-        let (turn, d) = match joint.kind {
-            JointKind::Revolute => (aside(g, robot, i, Angle::of_joint(i, joint.theta)), d),
-            JointKind::Prismatic => (Angle::constant(joint.theta), g.coordinate(i) + d),
+        let aside = aside[i].filter(|aside| !aside.is_zero());
+        let (turn, d) = match (joint.kind, aside) {
+            (JointKind::Revolute, None) => (Angle::of_joint(i, joint.theta), d),
+            (JointKind::Revolute, Some(aside)) => {
+                g.set_deviation(i, series.sin_cos(g, aside.named(format!("e{number}"))));
+                (Angle::of_joint(i, joint.theta).with_deviation(i), d)
+            }
+            (JointKind::Prismatic, None) => (Angle::constant(joint.theta), g.coordinate(i) + d),
+            (JointKind::Prismatic, Some(aside)) => (Angle::constant(joint.theta), g.coordinate(i) + aside + d),
         };
         let twist = tilt(g, 0, joint.alpha, &format!("ALPHA{number}"), &format!("DH twist alpha of row {number}"));
         let along = Vec3([a, g.number(0.0), d]);
@@ -99,21 +115,40 @@ pub fn chain<'g>(g: &'g Graph, robot: &Description) -> Vec<Step<'g>> {
     steps
 }
 
-/// The angle of a joint (from 0) with that by which effects make it stand aside
-/// of its coordinate: at most 5 mrad, so that a few terms of the series give its
-/// sine and cosine to rounding.
-fn aside(g: &Graph, robot: &Description, joint: usize, angle: Angle) -> Angle {
+/// By how much effects of its own make a joint (from 0) stand aside of its
+/// coordinate (rad).
+fn deviation<'g>(g: &'g Graph, robot: &Description, joint: usize) -> Option<Sym<'g>> {
     let effects = robot.effects.iter().filter(|effect| effect.row() == Some(joint + 1));
     let own = effects.filter_map(|effect| {
         effect.is_kinematic().then(|| effect.deviation(&parameters(g, effect), &harmonic(g, joint)))?
     });
-    let Some(aside) = own.reduce(|sum, more| sum + more).filter(|aside| !aside.is_zero()) else { return angle };
-    let number = |value| g.number(value);
-    let square = aside.named(format!("e{}", joint + 1)).squared();
-    let cos = number(1.0) - square * (number(0.5) - square * number(1.0 / 24.0));
-    let sin = aside - aside * square * (number(1.0 / 6.0) - square * number(1.0 / 120.0));
-    g.set_deviation(joint, (sin, cos));
-    angle.with_deviation(joint)
+    own.reduce(|sum, more| sum + more)
+}
+
+/// How many terms give sine and cosine of a small angle to rounding.
+#[derive(Clone, Copy)]
+enum Series {
+    /// Of at most [`MOST_DEVIATION`](robstiff_robots::effect::physics::MOST_DEVIATION).
+    Short,
+    /// Of that and at most [`MOST_SAG`](robstiff_robots::effect::physics::MOST_SAG)
+    /// together.
+    Long,
+}
+
+impl Series {
+    fn sin_cos<'g>(self, g: &'g Graph, angle: Sym<'g>) -> (Sym<'g>, Sym<'g>) {
+        let number = |value| g.number(value);
+        let square = angle.squared();
+        let (sin, cos) = match self {
+            Self::Short => (number(1.0 / 120.0), number(1.0 / 24.0)),
+            Self::Long => {
+                (number(1.0 / 120.0) - square * number(1.0 / 5040.0), number(1.0 / 24.0) - square * number(1.0 / 720.0))
+            }
+        };
+        let cos = number(1.0) - square * (number(0.5) - square * cos);
+        let sin = angle - angle * square * (number(1.0 / 6.0) - square * sin);
+        (sin, cos)
+    }
 }
 
 fn place<'g>(g: &'g Graph, steps: &mut Vec<Step<'g>>, placement: &Placement, name: &str, what: &str) {

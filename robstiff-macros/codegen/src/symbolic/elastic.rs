@@ -57,6 +57,18 @@ impl<'g> Law<'g> {
     }
 }
 
+/// The joints' own compliance (rad/Nm or m/N).
+pub fn joint_compliances<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
+    let joint = |(i, joint): (usize, &Joint)| {
+        let unit = match joint.kind {
+            JointKind::Revolute => "rad/Nm",
+            JointKind::Prismatic => "m/N",
+        };
+        g.parameter(&format!("H{i}"), joint.compliance(), &format!("Compliance of joint {i} ({unit})."))
+    };
+    (1..).zip(&robot.joints).map(joint).collect()
+}
+
 /// Sine and cosine of whole multiples of a joint's coordinate.
 pub fn harmonic<'g>(g: &'g Graph, joint: usize) -> impl Fn(f64) -> (Sym<'g>, Sym<'g>) {
     move |order| g.sin_cos(&Angle::multiple(joint, order as i32))
@@ -69,7 +81,7 @@ pub fn parameters<'g>(g: &'g Graph, effect: &Effect) -> Vec<Sym<'g>> {
         Place::Joint(number) | Place::Link(number) => number.to_string(),
         Place::Joints([i, j]) => format!("{i}_{j}"),
         Place::Entry(entry) => format!("_{}", entry.to_string().to_uppercase()),
-        Place::Base | Place::Tool => String::new(),
+        Place::Base | Place::Tool | Place::Robot => String::new(),
     };
     let named = |(parameter, value): (&physics::Parameter, f64)| {
         let unit = match parameter.quantity.at(place).unit() {
@@ -87,15 +99,8 @@ impl<'g> Elastic<'g> {
     pub fn of(g: &'g Graph, robot: &Description) -> Self {
         let n = robot.joints.len();
         let zero = g.number(0.0);
-        let joint = |(i, joint): (usize, &Joint)| {
-            let unit = match joint.kind {
-                JointKind::Revolute => "rad/Nm",
-                JointKind::Prismatic => "m/N",
-            };
-            g.parameter(&format!("H{i}"), joint.compliance(), &format!("Compliance of joint {i} ({unit})."))
-        };
         let mut elastic = Self {
-            joint: (1..).zip(&robot.joints).map(joint).collect(),
+            joint: joint_compliances(g, robot),
             transverse: vec![zero; n],
             link: vec![(zero, zero); n],
             base: (zero, zero),

@@ -45,11 +45,13 @@ pub struct Forward<'g> {
     pub tcp: Frame<'g>,
 }
 
-/// A z axis and the lever from its origin to the TCP.
+/// A z axis, where it stands, and the lever from there to the TCP.
 #[derive(Clone, Copy, Debug)]
 pub struct Stand<'g> {
     /// The axis, of length one.
     pub axis: Vec3<'g>,
+    /// The frame's origin.
+    pub origin: Vec3<'g>,
     /// TCP minus the frame's origin.
     pub lever: Vec3<'g>,
 }
@@ -118,7 +120,7 @@ pub fn forward<'g>(g: &'g Graph, steps: &[Step<'g>]) -> Forward<'g> {
     let mut links = Vec::new();
     let mut link_frames = Vec::new();
     for step in steps {
-        let here = (moves.len(), walker.axes[2]);
+        let here = (moves.len(), walker.axes[2], walker.origin);
         match step {
             Step::Move(by) => {
                 let by = walker.in_base(*by);
@@ -139,7 +141,7 @@ pub fn forward<'g>(g: &'g Graph, steps: &[Step<'g>]) -> Forward<'g> {
         levers.push(by + levers[levers.len() - 1]);
     }
     levers.reverse();
-    let stand = |(at, axis): (usize, Vec3<'g>)| Stand { axis, lever: levers[at] };
+    let stand = |(at, axis, origin)| Stand { axis, origin, lever: levers[at] };
     Forward {
         base: stand(base.expect("every chain has a base")),
         joints: joints.into_iter().map(stand).collect(),

@@ -3,6 +3,7 @@
 //! - [`chain`](mod@chain): a description as elementary steps from base to TCP;
 //! - [`forward`](mod@forward): frames and levers, from the base to the TCP;
 //! - [`kinematics`]: transform, frames, Jacobian, torques and deflection;
+//! - [`weight`]: how the joints yield to the arm's own weight;
 //! - [`compliance`](mod@compliance): the Cartesian compliance, carried from the TCP to the
 //!   base.
 
@@ -12,6 +13,7 @@ pub mod elastic;
 pub mod forward;
 pub mod kinematics;
 pub mod vector;
+pub mod weight;
 
 pub use chain::{Step, Tilt, chain};
 pub use compliance::compliance;

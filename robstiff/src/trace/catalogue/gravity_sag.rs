@@ -7,11 +7,12 @@ use std::sync::Arc;
 use std::vec;
 use std::vec::Vec;
 
-use nalgebra::{DVector, Vector3};
-use robstiff_robots::{Convention, Link};
+use nalgebra::{DVector, Matrix4, Point3};
+use robstiff_robots::effect::gravity_sag::GRAVITY;
+use robstiff_robots::{Convention, Link, Place as Part};
 
-use super::{Form, Kind, Number, Offers, Place, Scene};
-use crate::JointKind;
+use super::{Form, Kind, Number, Offers, Scene};
+use crate::elements::own_weight_torque;
 use crate::identify::samples::{Sample, Samples};
 use crate::identify::setup::{Setup, coordinate_entry};
 use crate::trace::point::Point;
@@ -21,13 +22,9 @@ pub static KIND: Kind = Kind {
     name: "gravity_sag",
     of_rig: false,
     words: |_| "the sag of the robot under its own weight".into(),
-    explanation: "The links weigh on the joints, so the arm hangs below where its encoders say. A controller that \
-        knows the masses corrects it; measurements from the encoders alone cannot show it.",
+    explanation: "",
     offer,
 };
-
-/// Standard gravity (m/s^2), along -z of the base frame.
-const GRAVITY: f64 = 9.80665;
 
 /// More of the sag than all of it twice over is something else.
 const MOST: f64 = 2.0;
@@ -35,7 +32,7 @@ const MOST: f64 = 2.0;
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     if scene.description.links.iter().all(|link| link.mass == 0.0) {
         // Without masses nothing is known of the torques.
-        return offers.invisible(Place::Robot);
+        return offers.invisible(Part::Robot);
     }
     let of_row = |row: &Sample| -> Vec<f64> {
         let frames = link_frames(scene.description.convention, scene.samples, row);
@@ -59,11 +56,11 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     };
     let number = Number::of_setup("share", "1", MOST, enters, move |point, _| of(point));
     let number = Number { range: [0.0, MOST], ..number };
-    offers.add(Place::Robot, vec![number], vec![Form::of([0])]);
+    offers.add(Part::Robot, vec![number], vec![Form::of([0])]);
 }
 
 /// The frames 1 to n that masses are given in.
-fn link_frames(convention: Convention, samples: &Samples, row: &Sample) -> Vec<nalgebra::Matrix4<f64>> {
+fn link_frames(convention: Convention, samples: &Samples, row: &Sample) -> Vec<Matrix4<f64>> {
     match convention {
         Convention::Modified => row.joint_frames.clone(),
         Convention::Standard => row.joint_frames[1..samples.joints()].iter().copied().chain([row.flange]).collect(),
@@ -71,17 +68,12 @@ fn link_frames(convention: Convention, samples: &Samples, row: &Sample) -> Vec<n
 }
 
 /// The torque of the weights behind a joint (from 1) about it.
-fn torque(samples: &Samples, row: &Sample, frames: &[nalgebra::Matrix4<f64>], links: &[Link], joint: usize) -> f64 {
-    let frame = &row.joint_frames[joint - 1];
-    let axis: Vector3<f64> = frame.fixed_view::<3, 1>(0, 2).into_owned();
-    let through: Vector3<f64> = frame.fixed_view::<3, 1>(0, 3).into_owned();
-    let of_link = |(link, frame): (&Link, &nalgebra::Matrix4<f64>)| {
-        let centre = frame.transform_point(&Vector3::from(link.center_of_mass).into()).coords;
-        let weight = Vector3::new(0.0, 0.0, -GRAVITY * link.mass);
-        match samples.joint_kinds[joint - 1] {
-            JointKind::Revolute => axis.dot(&(centre - through).cross(&weight)),
-            JointKind::Prismatic => axis.dot(&weight),
-        }
-    };
-    links.iter().zip(frames).skip(joint - 1).map(of_link).sum()
+fn torque(samples: &Samples, row: &Sample, frames: &[Matrix4<f64>], links: &[Link], joint: usize) -> f64 {
+    let (mut weight, mut moment) = (0.0, [0.0; 2]);
+    for (link, frame) in links.iter().zip(frames).skip(joint - 1) {
+        let centre = frame.transform_point(&Point3::from(link.center_of_mass));
+        weight += GRAVITY * link.mass;
+        moment = [0, 1].map(|k| moment[k] + GRAVITY * link.mass * centre[k]);
+    }
+    own_weight_torque(samples.joint_kinds[joint - 1], &row.joint_frames[joint - 1], weight, moment)
 }

@@ -475,7 +475,7 @@ mod tests {
     #[test]
     fn every_kind_is_explained_once() {
         for kind in KINDS {
-            let found = Found::new(kind, Place::Robot, Vec::new());
+            let found = Found::new(kind, Place::Rig, Vec::new());
             assert!(found.explanation().ends_with('.'), "{}", kind.name);
             let described = robstiff_robots::effect::CATALOGUE.iter().any(|about| about.kind == kind.name);
             assert_eq!(kind.explanation.is_empty(), described, "{}", kind.name);

@@ -1,0 +1,60 @@
+//! How the joints yield to the arm's own weight.
+
+use robstiff_robots::effect::gravity_sag::{GRAVITY, torque};
+use robstiff_robots::{Description, Joint, JointKind, Place};
+
+use super::chain::Step;
+use super::elastic::{joint_compliances, parameters};
+use super::forward::{Frame, forward};
+use super::vector::Vec3;
+use crate::graph::{Graph, Sym};
+
+/// By how much each joint yields (rad or m), if the description says that the
+/// arm sags; `upright` is the chain of the arm without its sag.
+pub fn sag<'g>(g: &'g Graph, robot: &Description, upright: &[Step<'g>]) -> Option<Vec<Sym<'g>>> {
+    let of_robot = robot.effects.iter().filter(|effect| effect.place() == Place::Robot);
+    let shares = of_robot.filter_map(|effect| effect.share_of_weight(&parameters(g, effect)));
+    let share = shares.reduce(|sum, more| sum + more)?;
+    let stands = forward(g, upright);
+    let compliances = joint_compliances(g, robot);
+    let mut sags = Vec::new();
+    // Tip to base: what hangs on a joint is its link and what hangs on the next.
+    let (mut weight, mut moment) = (g.number(0.0), [g.number(0.0); 2]);
+    for (i, Joint { kind, .. }) in robot.joints.iter().enumerate().rev() {
+        let own = link(g, robot, i);
+        let centre = of_frame(&stands.link_frames[i], own.centre);
+        weight = weight + own.weight;
+        moment = [0, 1].map(|k| moment[k] + own.weight * centre[k]);
+        let stand = &stands.joints[i];
+        let torque = torque(*kind, stand.axis.0, stand.origin.0, weight, moment);
+        let what = match kind {
+            JointKind::Revolute => "g",
+            JointKind::Prismatic => "w",
+        };
+        sags.push(share * compliances[i] * torque.named(format!("{what}{}", i + 1)));
+    }
+    sags.reverse();
+    Some(sags)
+}
+
+struct Link<'g> {
+    weight: Sym<'g>,
+    /// In the link's frame.
+    centre: Vec3<'g>,
+}
+
+fn link<'g>(g: &'g Graph, robot: &Description, i: usize) -> Link<'g> {
+    let (link, number) = (robot.links[i], i + 1);
+    let weight = g.parameter(&format!("WEIGHT{number}"), GRAVITY * link.mass, &format!("Weight of link {number} (N)."));
+    let along = |axis: usize, letter: &str| {
+        let doc = format!("Centre of mass of link {number} in its frame, along {} (m).", letter.to_lowercase());
+        g.parameter(&format!("CENTRE{number}_{letter}"), link.center_of_mass[axis], &doc)
+    };
+    Link { weight, centre: Vec3([along(0, "X"), along(1, "Y"), along(2, "Z")]) }
+}
+
+/// A point of a frame in the base frame.
+fn of_frame<'g>(frame: &Frame<'g>, point: Vec3<'g>) -> Vec3<'g> {
+    let [x, y, z] = frame.axes;
+    frame.origin + x.scaled(point[0]) + y.scaled(point[1]) + z.scaled(point[2])
+}
