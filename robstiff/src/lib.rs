@@ -50,6 +50,8 @@ pub mod generic;
 #[cfg(feature = "identify")]
 pub mod identify;
 mod lanes;
+#[cfg(feature = "machining")]
+pub mod milling;
 #[cfg(feature = "identify")]
 pub mod plan;
 pub mod real;
@@ -59,6 +61,8 @@ mod samples;
 #[cfg(feature = "identify")]
 pub mod simulate;
 mod state;
+#[cfg(any(feature = "identify", feature = "machining"))]
+mod table;
 #[cfg(feature = "identify")]
 pub mod trace;
 #[cfg(feature = "identify")]
