@@ -1,4 +1,5 @@
 //! A CSV file as a table of checked numbers, every problem at its place.
+#![cfg_attr(not(feature = "identify"), allow(dead_code, reason = "campaigns need more of it than machining"))]
 
 use core::cell::RefCell;
 use std::borrow::ToOwned;
