@@ -23,6 +23,18 @@ pub enum Dimension {
     Torque,
     /// A time \[s\].
     Time,
+    /// A speed \[m/s\].
+    Speed,
+    /// A rotational speed \[rad/s\].
+    RotationalSpeed,
+    /// A frequency \[Hz\].
+    Frequency,
+    /// The feed of a mill per tooth \[m\].
+    FeedPerTooth,
+    /// A force per area, such as a cutting coefficient \[Pa\].
+    Pressure,
+    /// A force per length, such as an edge coefficient [N/m].
+    LineForce,
     /// A temperature of which only differences count: `C` and `K` are the same.
     Temperature,
 }
@@ -40,6 +52,12 @@ impl Dimension {
             Self::Force => "N",
             Self::Torque => "Nm",
             Self::Time => "s",
+            Self::Speed => "m/s",
+            Self::RotationalSpeed => "rad/s",
+            Self::Frequency => "Hz",
+            Self::FeedPerTooth => "m/tooth",
+            Self::Pressure => "Pa",
+            Self::LineForce => "N/m",
             Self::Temperature => "K",
         }
     }

@@ -19,6 +19,12 @@ impl Dimension {
             Self::Force => "a force",
             Self::Torque => "a torque",
             Self::Time => "a time",
+            Self::Speed => "a speed",
+            Self::RotationalSpeed => "a rotational speed",
+            Self::Frequency => "a frequency",
+            Self::FeedPerTooth => "a feed per tooth",
+            Self::Pressure => "a force per area",
+            Self::LineForce => "a force per length",
             Self::Temperature => "a temperature",
         }
     }
@@ -34,6 +40,12 @@ impl Dimension {
             Self::Force => "500 N",
             Self::Torque => "120 Nm",
             Self::Time => "0.5 s",
+            Self::Speed => "1200 mm/min",
+            Self::RotationalSpeed => "9000 rpm",
+            Self::Frequency => "15 Hz",
+            Self::FeedPerTooth => "0.1 mm",
+            Self::Pressure => "800 N/mm2",
+            Self::LineForce => "20 N/mm",
             Self::Temperature => "21.5 C",
         }
     }
@@ -108,6 +120,23 @@ const UNITS: &[Unit] = {
         unit("ms", Time, 1.0, 1e3),
         unit("min", Time, 60.0, 1.0),
         unit("h", Time, 3600.0, 1.0),
+        unit("m/s", Speed, 1.0, 1.0),
+        unit("m/min", Speed, 1.0, 60.0),
+        unit("mm/s", Speed, 1.0, 1e3),
+        unit("mm/min", Speed, 1.0, 6e4),
+        unit("rad/s", RotationalSpeed, 1.0, 1.0),
+        unit("rpm", RotationalSpeed, PI, 30.0),
+        unit("Hz", Frequency, 1.0, 1.0),
+        unit("m/tooth", FeedPerTooth, 1.0, 1.0),
+        unit("mm/tooth", FeedPerTooth, 1.0, 1e3),
+        unit("mm", FeedPerTooth, 1.0, 1e3),
+        unit("um", FeedPerTooth, 1.0, 1e6),
+        unit("Pa", Pressure, 1.0, 1.0),
+        unit("MPa", Pressure, 1e6, 1.0),
+        unit("N/mm2", Pressure, 1e6, 1.0),
+        unit("kN/mm2", Pressure, 1e9, 1.0),
+        unit("N/m", LineForce, 1.0, 1.0),
+        unit("N/mm", LineForce, 1e3, 1.0),
         unit("C", Temperature, 1.0, 1.0),
         unit("K", Temperature, 1.0, 1.0),
     ]
@@ -137,8 +166,12 @@ fn error<T>(message: String, help: impl Into<String>) -> Result<T, QuantityError
 fn find(name: &str, dimension: Dimension) -> Result<&'static Unit, QuantityError> {
     // Both micro signs are common on keyboards.
     let plain = name.replace(['µ', 'μ'], "u");
+    // Some names are units of two dimensions: `N/mm` of a stiffness, and of a
+    // force per length.
+    if let Some(unit) = UNITS.iter().find(|unit| unit.name == plain && unit.dimension == dimension) {
+        return Ok(unit);
+    }
     match UNITS.iter().find(|unit| unit.name == plain) {
-        Some(unit) if unit.dimension == dimension => Ok(unit),
         Some(unit) => {
             let kind = match (unit.inverse, unit.dimension) {
                 (true, Dimension::Compliance) => "a rotational stiffness",
@@ -310,6 +343,13 @@ mod tests {
             ("2 kNm", Torque, 2000.0),
             ("350 kg", Mass, 350.0),
             ("5 ms", Time, 5e-3),
+            ("1200 mm/min", Speed, 0.02),
+            ("15 rpm", RotationalSpeed, PI / 2.0),
+            ("15 Hz", Frequency, 15.0),
+            ("0.1 mm/tooth", FeedPerTooth, 1e-4),
+            ("0.1 mm", FeedPerTooth, 1e-4),
+            ("631 N/mm2", Pressure, 6.31e8),
+            ("13 N/mm", LineForce, 13e3),
             ("21.5 C", Temperature, 21.5),
             ("0.25", Number, 0.25),
         ] {

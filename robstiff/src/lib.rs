@@ -26,7 +26,9 @@
 //!   data, what they say without a model, the joint compliances that fit them,
 //!   and the effects they show to be missing;
 //! - `plan`, `simulate` (likewise): what to measure next, and campaigns on an arm
-//!   that hides something, to try a measurement before making it.
+//!   that hides something, to try a measurement before making it;
+//! - `milling`, `stability` (feature `machining`): the force of an end mill, and
+//!   the depths of cut at which the arm chatters by mode coupling.
 //!
 //! Without default features the crate is `no_std` and allocates nothing.
 #![no_std]
@@ -50,6 +52,8 @@ pub mod generic;
 #[cfg(feature = "identify")]
 pub mod identify;
 mod lanes;
+#[cfg(feature = "machining")]
+pub mod milling;
 #[cfg(feature = "identify")]
 pub mod plan;
 pub mod real;
@@ -58,7 +62,11 @@ pub mod robot;
 mod samples;
 #[cfg(feature = "identify")]
 pub mod simulate;
+#[cfg(feature = "machining")]
+pub mod stability;
 mod state;
+#[cfg(any(feature = "identify", feature = "machining"))]
+mod table;
 #[cfg(feature = "identify")]
 pub mod trace;
 #[cfg(feature = "identify")]

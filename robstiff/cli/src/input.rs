@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use robstiff::campaign::Campaign;
+use robstiff::milling::CutFile;
 use robstiff_robots::quantity::{self, Dimension};
 use robstiff_robots::{Description, Joint, JointKind, catalogue};
 
@@ -35,6 +36,15 @@ pub fn campaign(path: &Path) -> Result<Campaign, Failure> {
         output::complain(format_args!("warning: {warning}"));
     }
     Ok(campaign)
+}
+
+/// Reads a cut, and says what its reader noticed.
+pub fn cut(path: &Path) -> Result<CutFile, Failure> {
+    let file = CutFile::read(path)?;
+    for warning in &file.warnings {
+        output::complain(format_args!("warning: {warning}"));
+    }
+    Ok(file)
 }
 
 /// Joint coordinates as `--at` gives them: numbers in rad (or m), or

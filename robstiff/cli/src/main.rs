@@ -4,6 +4,7 @@
 mod effect;
 mod emit;
 mod failure;
+mod forces;
 mod identify;
 mod input;
 mod json;
@@ -13,6 +14,7 @@ mod predict;
 mod report;
 mod show;
 mod simulate;
+mod stability;
 mod text;
 mod trace;
 
@@ -39,6 +41,8 @@ enum Command {
     Emit(emit::Arguments),
     Plan(plan::Arguments),
     Simulate(simulate::Arguments),
+    Forces(forces::Arguments),
+    Stability(stability::Arguments),
 }
 
 impl Command {
@@ -51,6 +55,8 @@ impl Command {
             Self::Emit(arguments) => emit::run(arguments),
             Self::Plan(arguments) => plan::run(arguments),
             Self::Simulate(arguments) => simulate::run(arguments),
+            Self::Forces(arguments) => forces::run(arguments),
+            Self::Stability(arguments) => stability::run(arguments),
         }
     }
 }

@@ -9,7 +9,7 @@ mod figure;
 mod html;
 mod scatter;
 mod sections;
-mod svg;
+pub mod svg;
 #[cfg(test)]
 mod tests;
 mod triage;

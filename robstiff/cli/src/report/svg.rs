@@ -35,6 +35,12 @@ impl Svg {
         self.push(format_args!("<polyline class=\"{class}\" points=\"{}\"/>", points.join(" ")));
     }
 
+    /// An area between several points.
+    pub fn polygon(&mut self, class: &str, points: impl IntoIterator<Item = [f64; 2]>) {
+        let points: Vec<String> = points.into_iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
+        self.push(format_args!("<polygon class=\"{class}\" points=\"{}\"/>", points.join(" ")));
+    }
+
     /// An arrow; one shorter than its head is a dot.
     pub fn arrow(&mut self, class: &str, from: [f64; 2], to: [f64; 2]) {
         let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
@@ -74,6 +80,13 @@ impl Svg {
             "<svg viewBox=\"0 0 {width:.0} {height:.0}\" role=\"img\" aria-label=\"{label}\" \
              xmlns=\"http://www.w3.org/2000/svg\">\n{body}</svg>\n"
         )
+    }
+
+    /// The figure as a file of its own, with a style sheet of its own.
+    pub fn file(&self, style: &str) -> String {
+        let figure = self.html();
+        let (start, body) = figure.split_once('\n').expect("the element begins in a line of its own");
+        format!("{start}\n{style}{body}")
     }
 
     /// The figure as an element that only repeats what stands beside it.

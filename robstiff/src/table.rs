@@ -1,13 +1,15 @@
 //! A CSV file as a table of checked numbers, every problem at its place.
+#![cfg_attr(not(feature = "identify"), allow(dead_code, reason = "campaigns need more of it than machining"))]
 
 use core::cell::RefCell;
 use std::borrow::ToOwned;
 use std::format;
+use std::path::Path;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
 use robstiff_robots::quantity::{Dimension, scale};
-use robstiff_robots::{Diagnostic, Diagnostics};
+use robstiff_robots::{Diagnostic, Diagnostics, ReadError};
 
 /// Problems beyond this many are not recorded: nobody reads them, and a column
 /// that is wrong is wrong in every row.
@@ -25,6 +27,13 @@ pub struct Table<'t> {
     asked_for: RefCell<Vec<usize>>,
     problems: RefCell<Vec<Diagnostic>>,
     warnings: RefCell<Vec<String>>,
+}
+
+/// The text of a file; a byte order mark, as spreadsheets write it, is no part
+/// of it.
+pub fn text_of(path: &Path) -> Result<String, ReadError> {
+    let text = std::fs::read_to_string(path).map_err(|error| ReadError::Io { path: path.to_owned(), error })?;
+    Ok(text.strip_prefix('\u{feff}').map(ToOwned::to_owned).unwrap_or(text))
 }
 
 /// `name [unit]`.

@@ -1,0 +1,168 @@
+//! `robstiff forces`: what a cut pushes the tool with.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use robstiff::milling::{Cut, CutFile, ForceFrame, Forces, MeasuredForce, Revolution};
+use robstiff::nalgebra::Vector3;
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+use crate::output::{self, Files};
+use crate::text::{Table, decimals, significant};
+use crate::{input, json};
+
+/// The force of a cut on the tool: mean, peak, and over a revolution
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The cut: tool, material, engagement and feed, or measured forces (robstiff/cli/docs/forces.md)
+    #[arg(value_name = "CUT.yaml")]
+    cut: PathBuf,
+    /// How many angles of a revolution are looked at
+    #[arg(long, value_name = "COUNT", default_value_t = 360, value_parser = clap::value_parser!(u32).range(4..=1_000_000))]
+    samples: u32,
+    /// Write the force over a revolution as a table to FILE
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Write the same as JSON to FILE
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// What a force's components are along.
+fn axes(forces: &Forces) -> [&'static str; 3] {
+    match forces {
+        Forces::Measured { force: MeasuredForce { frame: ForceFrame::Base | ForceFrame::Tool, .. }, .. } => {
+            ["x", "y", "z"]
+        }
+        _ => ["feed", "normal", "axis"],
+    }
+}
+
+/// Prints forces.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let file = input::cut(&arguments.cut)?;
+    let count = arguments.samples as usize;
+    let (mean, revolution) = match &file.forces {
+        Forces::Model(cut) => (cut.mean_force(), Some(cut.revolution(count))),
+        Forces::Measured { force, speed } => (force.mean(), force.revolution(count, *speed)),
+    };
+    let mut files = Files::default();
+    protect(&mut files, &arguments.cut, &file);
+    if let Some(path) = &arguments.csv {
+        let Some(revolution) = &revolution else {
+            return Err(Failure::new(
+                "the record has neither `angle` nor `t` with a `speed`, so nobody can tell what a revolution is",
+            ));
+        };
+        files.add(path, table(&file.forces, revolution));
+    }
+    if let Some(path) = &arguments.json {
+        files.add(path, json::document(&document(&file, &mean, revolution.as_ref())));
+    }
+    let said = files.write()?;
+    output::print(page(&file, &mean, revolution.as_ref()) + &said)
+}
+
+/// The files of a cut, which are not to be overwritten.
+pub fn protect(files: &mut Files, path: &Path, file: &CutFile) {
+    files.protect(path);
+    file.measured_path.iter().for_each(|path| files.protect(path));
+}
+
+fn page(file: &CutFile, mean: &Vector3<f64>, revolution: Option<&Revolution>) -> String {
+    let mut page = String::new();
+    if !file.name.is_empty() {
+        page += &format!("{}\n", file.name);
+    }
+    if !file.source.is_empty() {
+        page += &format!("coefficients: {}\n", file.source);
+    }
+    match &file.forces {
+        Forces::Model(cut) => page += &engagement(cut),
+        Forces::Measured { force, .. } => {
+            page += &format!("measured, {}\n", crate::text::count(force.samples.len(), "sample"));
+        }
+    }
+    page += "\nForce on the tool [N]\n";
+    let mut rows = match revolution {
+        Some(_) => Table::new(1, ["along", "mean", "least", "greatest"]),
+        None => Table::new(1, ["along", "mean"]),
+    };
+    for (axis, name) in axes(&file.forces).into_iter().enumerate() {
+        let mut row = vec![name.to_owned(), decimals(mean[axis], 1)];
+        if let Some(revolution) = revolution {
+            let range = revolution.range(axis);
+            row.extend([range.least, range.greatest].map(|force| decimals(force, 1)));
+        }
+        rows.row(row);
+    }
+    page += &rows.to_string();
+    page += &format!("size of the mean force {} N", decimals(mean.norm(), 1));
+    if let Some(revolution) = revolution {
+        page += &format!(", greatest force {} N", decimals(revolution.peak(), 1));
+    }
+    page.push('\n');
+    if let Forces::Model(cut) = &file.forces {
+        page += &format!("torque {} Nm", significant(cut.mean_torque(), 3));
+        if let (Some(power), Some(speed)) = (cut.power(), cut.feed_speed()) {
+            page += &format!(", power {} W, feed {} mm/min", decimals(power, 0), decimals(speed * 6e4, 0));
+        }
+        page.push('\n');
+        page +=
+            "feed: where the tool goes; normal: left of it, seen from the spindle; axis: from the spindle to the tip\n";
+    }
+    page
+}
+
+fn engagement(cut: &Cut) -> String {
+    let teeth = crate::text::count(cut.mill.teeth, "tooth").replace("tooths", "teeth");
+    let [entry, exit] = [cut.engagement.entry, cut.engagement.exit].map(|angle| decimals(angle.to_degrees(), 1));
+    let wall = match cut.engagement.wall() {
+        Some(wall) if wall > 0.0 => ", up milling (wall to the left)",
+        Some(_) => ", down milling (wall to the right)",
+        None => "",
+    };
+    format!(
+        "mill {} mm, {teeth}, helix {} deg; {} mm deep, {} mm a tooth, teeth cut from {entry} to {exit} deg{wall}\n",
+        significant(cut.mill.diameter * 1e3, 4),
+        significant(cut.mill.helix.to_degrees(), 3),
+        significant(cut.depth * 1e3, 4),
+        significant(cut.feed_per_tooth * 1e3, 4),
+    )
+}
+
+fn table(forces: &Forces, revolution: &Revolution) -> String {
+    let [x, y, z] = match axes(forces) {
+        ["x", "y", "z"] => ["Fx", "Fy", "Fz"],
+        _ => ["Ffeed", "Fnormal", "Faxis"],
+    };
+    let mut table = format!("angle [deg],{x} [N],{y} [N],{z} [N]\n");
+    for (angle, force) in &revolution.samples {
+        let angle = (angle.to_degrees() * 1e9).round() / 1e9;
+        writeln!(table, "{angle},{:.4},{:.4},{:.4}", force.x, force.y, force.z).expect("a string takes any text");
+    }
+    table
+}
+
+/// Everything in SI units; what does not exist is null.
+fn document(file: &CutFile, mean: &Vector3<f64>, revolution: Option<&Revolution>) -> Value {
+    let model = match &file.forces {
+        Forces::Model(cut) => Some(cut),
+        Forces::Measured { .. } => None,
+    };
+    json!({
+        "name": file.name,
+        "source": file.source,
+        "axes": axes(&file.forces),
+        "mean_N": json::numbers(mean.iter().copied()),
+        "peak_N": revolution.map(Revolution::peak),
+        "torque_Nm": model.map(Cut::mean_torque),
+        "power_W": model.and_then(Cut::power),
+        "feed_m_per_s": model.and_then(Cut::feed_speed),
+        "engagement_rad": model.map(|cut| [cut.engagement.entry, cut.engagement.exit]),
+        "revolution": revolution.map(|revolution| revolution.samples.iter().map(|(angle, force)| json!({
+            "angle_rad": json::number(*angle), "force_N": json::numbers(force.iter().copied()),
+        })).collect::<Value>()),
+    })
+}

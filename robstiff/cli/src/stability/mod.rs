@@ -1,0 +1,175 @@
+//! `robstiff stability`: how deep a cut may be before the arm chatters by mode
+//! coupling, by the direction of the feed.
+
+mod page;
+mod picture;
+
+use std::path::PathBuf;
+
+use robstiff::analysis::translational_compliance;
+use robstiff::milling::{Cut, Forces};
+use robstiff::nalgebra::{Matrix3, SVector, Vector3};
+use robstiff::stability::{FeedLimit, Modes, mass_of_first_mode, mass_of_links, over_feeds};
+use robstiff::{Robot, with_robot};
+use robstiff_robots::Description;
+use robstiff_robots::quantity::{self, Dimension};
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+use crate::output::{self, Files};
+use crate::{forces, input, json};
+
+/// The depths of cut at which the arm chatters by mode coupling, by direction of feed
+///
+/// Mode coupling only: two weak directions of the arm that feed each other at
+/// its own low frequencies. Regenerative chatter of spindle, tool or workpiece
+/// is another matter, and not looked at.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The robot's description, or the name of a robot in the catalogue
+    #[arg(value_name = "ROBOT.yaml")]
+    robot: PathBuf,
+    /// The cut (robstiff/cli/docs/forces.md); its depth is the one that is judged
+    #[arg(value_name = "CUT.yaml")]
+    cut: PathBuf,
+    /// The pose: joint coordinates in rad (or m), or with their unit as in "0.5, 30 deg, -pi/2"; zero where left out
+    #[arg(long, value_name = "q1,q2,..", allow_hyphen_values = true)]
+    at: Option<String>,
+    /// The frequency of the arm's first mode as measured in this pose, e.g. "15 Hz"; by the links' masses where left out
+    #[arg(long, value_name = "FREQUENCY", value_parser = positive(Dimension::Frequency))]
+    frequency: Option<f64>,
+    /// The damping ratio of the arm's modes; without it, the arm is taken to have no damping
+    #[arg(long, value_name = "RATIO", default_value_t = 0.0, value_parser = ratio)]
+    damping: f64,
+    /// The axis of the spindle in the tool's frame, from the spindle to the tip
+    #[arg(long, value_name = "x,y,z", default_value = "0,0,1", allow_hyphen_values = true, value_parser = axis)]
+    tool_axis: Vector3<f64>,
+    /// The greatest depth looked at, e.g. "10 mm"; where left out, ten times the cut's
+    #[arg(long, value_name = "DEPTH", value_parser = positive(Dimension::Length))]
+    greatest: Option<f64>,
+    /// How many directions of the feed are looked at
+    #[arg(long, value_name = "COUNT", default_value_t = 72, value_parser = clap::value_parser!(u16).range(4..=3600))]
+    feeds: u16,
+    /// Draw the depths over the feed to FILE
+    #[arg(long, value_name = "FILE.svg")]
+    out: Option<PathBuf>,
+    /// Write the same as JSON to FILE
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+fn positive(dimension: Dimension) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |text| {
+        let value = quantity::parse(text, dimension).map_err(|error| error.to_string())?;
+        if value > 0.0 { Ok(value) } else { Err(format!("{} above zero is expected here", dimension.name())) }
+    }
+}
+
+fn ratio(text: &str) -> Result<f64, String> {
+    let ratio = quantity::parse(text, Dimension::Number).map_err(|error| error.to_string())?;
+    if (0.0..1.0).contains(&ratio) { Ok(ratio) } else { Err("a ratio from 0 to below 1 is expected here".to_owned()) }
+}
+
+fn axis(text: &str) -> Result<Vector3<f64>, String> {
+    let parts: Vec<&str> = text.split(',').collect();
+    let [x, y, z] = parts[..] else { return Err("three numbers are expected here, e.g. `0,0,1`".to_owned()) };
+    let number = |part: &str| quantity::parse(part, Dimension::Number).map_err(|error| error.to_string());
+    let axis = Vector3::new(number(x)?, number(y)?, number(z)?);
+    axis.try_normalize(1e-9).ok_or_else(|| "an axis has a length, e.g. `0,0,1`".to_owned())
+}
+
+/// What is predicted of an arm in a cut.
+pub struct Predicted {
+    /// The translational compliance at the TCP in the base frame [m/N].
+    compliance: Matrix3<f64>,
+    /// The mass at the TCP in the base frame \[kg\].
+    mass: Matrix3<f64>,
+    modes: Modes,
+    /// From the spindle to the tip, in the base frame.
+    axis: Vector3<f64>,
+    /// The greatest depth looked at \[m\].
+    greatest: f64,
+    feeds: Vec<FeedLimit>,
+}
+
+/// Predicts.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (robot, _) = input::robot(&arguments.robot)?;
+    let file = input::cut(&arguments.cut)?;
+    let Forces::Model(cut) = &file.forces else {
+        return Err(Failure::new(
+            "a measured force does not say how it changes with the chip; give the cut with tool and material",
+        ));
+    };
+    let q = match &arguments.at {
+        Some(text) => input::coordinates(text, &robot)?,
+        None => input::default_coordinates(&robot),
+    };
+    for note in input::outside_limits(&q, &robot) {
+        output::complain(format_args!("note: {note}"));
+    }
+    let predicted = with_robot!(&robot, |arm| predict(&arm, &robot, cut, &q, arguments))?;
+    let mut files = Files::default();
+    files.protect(&arguments.robot);
+    forces::protect(&mut files, &arguments.cut, &file);
+    if let Some(path) = &arguments.out {
+        files.add(path, picture::svg(&predicted, cut));
+    }
+    if let Some(path) = &arguments.json {
+        files.add(path, json::document(&document(&predicted, &robot, cut, &q)));
+    }
+    let said = files.write()?;
+    output::print(page::page(&predicted, &robot, cut, arguments.frequency.is_some()) + &said)
+}
+
+fn predict<const N: usize>(
+    arm: &impl Robot<N>,
+    robot: &Description,
+    cut: &Cut,
+    q: &[f64],
+    arguments: &Arguments,
+) -> Result<Predicted, Failure> {
+    let q = SVector::from_column_slice(q);
+    let compliance = translational_compliance(&arm.compliance(&q));
+    let mass = match arguments.frequency {
+        Some(frequency) => mass_of_first_mode(&compliance, frequency)
+            .ok_or_else(|| Failure::new(format!("{} does not yield in this pose", robot.name)))?,
+        None => mass_of_links(arm, &robot.links, &q).map_err(|error| {
+            Failure::new(format!("{error}; measure the first mode at the tool and give it: --frequency \"15 Hz\""))
+        })?,
+    };
+    let modes = Modes::new(&compliance, &mass, arguments.damping)
+        .ok_or_else(|| Failure::new("the compliance in this pose is not finite"))?;
+    let axis = arm.transform(&q).fixed_view::<3, 3>(0, 0) * arguments.tool_axis;
+    let greatest = arguments.greatest.unwrap_or(10.0 * cut.depth);
+    let feeds = over_feeds(&modes, cut, &axis, arguments.feeds.into(), greatest)
+        .ok_or_else(|| Failure::new("the tool has no axis"))?;
+    Ok(Predicted { compliance, mass, modes, axis, greatest, feeds })
+}
+
+/// Everything in SI units; what does not exist is null.
+fn document(predicted: &Predicted, robot: &Description, cut: &Cut, q: &[f64]) -> Value {
+    let feed = |feed: &FeedLimit| {
+        json!({
+            "angle_rad": json::number(feed.angle),
+            "feed": json::numbers(feed.feed.iter().copied()),
+            "limiting_depth_m": feed.limits.limiting(),
+            "unstable_m": feed.limits.unstable,
+            "stable": feed.limits.is_stable(cut.depth),
+        })
+    };
+    json!({
+        "robot": robot.name,
+        "q": json::numbers(q.iter().copied()),
+        "covers": page::COVERS,
+        "translational_compliance": json::matrix(&predicted.compliance),
+        "mass": json::matrix(&predicted.mass),
+        "frequencies_Hz": json::numbers(predicted.modes.frequencies().iter().map(|w| w / std::f64::consts::TAU)),
+        "damping": predicted.modes.damping(),
+        "tool_axis": json::numbers(predicted.axis.iter().copied()),
+        "depth_m": json::number(cut.depth),
+        "greatest_depth_m": json::number(predicted.greatest),
+        "best": robstiff::stability::best(&predicted.feeds).map(feed),
+        "feeds": predicted.feeds.iter().map(feed).collect::<Value>(),
+    })
+}

@@ -1,0 +1,107 @@
+//! The prediction as text.
+
+use std::f64::consts::TAU;
+
+use robstiff::milling::Cut;
+use robstiff::nalgebra::{SymmetricEigen, Vector3};
+use robstiff::stability::{FeedLimit, best};
+use robstiff_robots::Description;
+
+use super::Predicted;
+use crate::text::{Table, decimals, significant};
+
+/// What a prediction says, and what it does not.
+pub const COVERS: &str = "mode coupling of the arm's own modes in this pose, with forces averaged over a revolution; \
+                          not regenerative chatter of spindle, tool or workpiece";
+
+/// How many rows of directions a person reads.
+const ROWS: usize = 12;
+
+pub fn page(predicted: &Predicted, robot: &Description, cut: &Cut, measured: bool) -> String {
+    let mut page = format!("{}: {COVERS}\n\nThe arm at its tool\n", robot.name);
+    page += &directions(predicted);
+    let frequencies: Vec<String> =
+        predicted.modes.frequencies().iter().map(|frequency| decimals(frequency / TAU, 1)).collect();
+    let mass = SymmetricEigen::new(predicted.mass).eigenvalues;
+    let mass = match measured {
+        true => format!("{} kg, by the frequency of the first", significant(mass.max(), 3)),
+        false => format!("{} to {} kg, by the links", significant(mass.min(), 3), significant(mass.max(), 3)),
+    };
+    page += &match frequencies.is_empty() {
+        true => "no modes: the arm does not yield\n".to_owned(),
+        false => format!("modes at {} Hz, mass at the tool {mass}", frequencies.join(", ")),
+    };
+    let damping = predicted.modes.damping();
+    page += &match damping > 0.0 {
+        true => format!(", damping ratio {}\n", significant(damping, 3)),
+        false => ", no damping\n".to_owned(),
+    };
+    page += &format!("\nDepth at which it begins, by feed (up to {} mm looked at)\n", millimetres(predicted.greatest));
+    page += &feeds(&predicted.feeds);
+    page + &verdict(predicted, cut)
+}
+
+fn directions(predicted: &Predicted) -> String {
+    let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(predicted.compliance);
+    let mut order = [0, 1, 2];
+    order.sort_by(|&i, &j| eigenvalues[j].total_cmp(&eigenvalues[i]));
+    let mut table = Table::new(1, ["principal direction", "x", "y", "z", "stiffness [N/um]"]);
+    let rigid = eigenvalues.max() * robstiff::analysis::resolution::<f64>();
+    for (name, i) in ["softest", "second", "stiffest"].into_iter().zip(order) {
+        let unit: Vector3<f64> = eigenvectors.column(i).into_owned();
+        let stiffness = match eigenvalues[i] > rigid {
+            true => significant(1e-6 / eigenvalues[i], 4),
+            false => "rigid".to_owned(),
+        };
+        let mut row = vec![name.to_owned()];
+        row.extend(unit.iter().map(|&part| decimals(part, 3)));
+        row.push(stiffness);
+        table.row(row);
+    }
+    table.to_string()
+}
+
+fn feeds(feeds: &[FeedLimit]) -> String {
+    let mut table = Table::new(0, ["angle [deg]", "feed x", "y", "z", "depth [mm]"]);
+    for feed in feeds.iter().step_by(feeds.len().div_ceil(ROWS)) {
+        let mut row = vec![decimals(feed.angle.to_degrees(), 0)];
+        row.extend(feed.feed.iter().map(|&part| decimals(part, 3)));
+        row.push(depth(feed));
+        table.row(row);
+    }
+    table.to_string()
+}
+
+fn verdict(predicted: &Predicted, cut: &Cut) -> String {
+    let given = millimetres(cut.depth);
+    let stable = predicted.feeds.iter().filter(|feed| feed.limits.is_stable(cut.depth)).count();
+    let all = predicted.feeds.len();
+    let mut verdict = match stable {
+        0 => format!("At {given} mm no feed is stable.\n"),
+        _ if stable == all => format!("At {given} mm every feed is stable.\n"),
+        _ => format!("At {given} mm, {stable} of {all} directions of feed are stable.\n"),
+    };
+    if let Some(best) = best(&predicted.feeds) {
+        let [x, y, z] = [best.feed.x, best.feed.y, best.feed.z].map(|part| decimals(part, 3));
+        let angle = decimals(best.angle.to_degrees(), 0);
+        verdict += &match best.limits.limiting() {
+            Some(limit) => {
+                format!("Best feed: {angle} deg, along ({x}, {y}, {z}), to {} mm.\n", millimetres(limit))
+            }
+            None => format!(
+                "Best feed: {angle} deg, along ({x}, {y}, {z}), beyond {} mm.\n",
+                millimetres(predicted.greatest)
+            ),
+        };
+    }
+    verdict
+}
+
+fn depth(feed: &FeedLimit) -> String {
+    feed.limits.limiting().map_or_else(|| "none".to_owned(), millimetres)
+}
+
+/// A length in m as mm without the unit.
+fn millimetres(length: f64) -> String {
+    significant(length * 1e3, 3)
+}

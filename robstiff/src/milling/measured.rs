@@ -1,0 +1,115 @@
+//! Forces as a dynamometer recorded them.
+
+use core::f64::consts::TAU;
+use std::vec::Vec;
+
+use nalgebra::{Matrix3, Vector3};
+use robstiff_robots::Diagnostics;
+use robstiff_robots::quantity::Dimension;
+
+use super::{CutFrame, Revolution};
+use crate::table::Table;
+
+/// Which axes Fx, Fy and Fz of a measured force are along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ForceFrame {
+    /// Feed, normal and axis of the cut ([`CutFrame`]).
+    Cut,
+    /// The robot's base frame.
+    Base,
+    /// The tool's (TCP's) frame.
+    Tool,
+}
+
+/// A recorded force on the tool.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredForce {
+    /// The axes of the force.
+    pub frame: ForceFrame,
+    /// The samples, in the file's order.
+    pub samples: Vec<Sample>,
+}
+
+/// One sample of a recorded force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Time \[s\], where recorded.
+    pub time: Option<f64>,
+    /// Angle of the spindle \[rad\], where recorded.
+    pub angle: Option<f64>,
+    /// The force on the tool \[N\].
+    pub force: Vector3<f64>,
+}
+
+/// What the columns are.
+const COLUMNS: [&str; 3] = ["Fx", "Fy", "Fz"];
+
+impl MeasuredForce {
+    /// Reads a table with the columns `Fx`, `Fy`, `Fz` \[N\] and, where recorded,
+    /// `t` \[s\] or `angle` \[rad\] (or other units, `Fx [kN]`); `file` is the
+    /// name that problems show, `on_workpiece` says that the forces are those on
+    /// the workpiece, which the tool has with the opposite sign. With what the
+    /// reader noticed without refusing the table.
+    ///
+    /// # Errors
+    /// All that is wrong with the table, each problem with its place.
+    pub fn parse(
+        file: &str,
+        text: &str,
+        frame: ForceFrame,
+        on_workpiece: bool,
+    ) -> Result<(Self, Vec<std::string::String>), Diagnostics> {
+        let table = Table::parse(file, text)?;
+        let forces = COLUMNS.map(|name| table.require(name, Dimension::Force));
+        let (time, angle) = (table.numbers("t", Dimension::Time), table.numbers("angle", Dimension::Angle));
+        let sign = if on_workpiece { -1.0 } else { 1.0 };
+        let sample = |record| {
+            let force = table.all(record, [forces[0]?, forces[1]?, forces[2]?])?;
+            let time = time.map(|column| table.number(record, column));
+            let angle = angle.map(|column| table.number(record, column));
+            if time == Some(None) || angle == Some(None) {
+                return None;
+            }
+            Some(Sample { time: time.flatten(), angle: angle.flatten(), force: Vector3::from(force) * sign })
+        };
+        let samples: Vec<Option<Sample>> = table.records.iter().map(sample).collect();
+        let samples: Option<Vec<Sample>> = samples.into_iter().collect();
+        table.finish(samples.map(|samples| Self { frame, samples }))
+    }
+
+    /// The mean of the samples \[N\].
+    pub fn mean(&self) -> Vector3<f64> {
+        self.samples.iter().map(|sample| sample.force).sum::<Vector3<f64>>() / self.samples.len().max(1) as f64
+    }
+
+    /// The mean force over a revolution in so many equal parts, each at the angle
+    /// of its middle; a part without samples is left out. The angle is the
+    /// recorded one, or the time's at the speed of the spindle \[rad/s\]; `None`
+    /// where neither is known.
+    pub fn revolution(&self, count: usize, speed: Option<f64>) -> Option<Revolution> {
+        let mut sums = std::vec![(0_usize, Vector3::zeros()); count];
+        for sample in &self.samples {
+            let angle = sample.angle.or_else(|| Some(sample.time? * speed?))?;
+            let part = (angle.rem_euclid(TAU) / TAU * count as f64) as usize;
+            // Just below a whole turn the quotient may round up to it.
+            let (number, sum) = &mut sums[part.min(count - 1)];
+            *number += 1;
+            *sum += sample.force;
+        }
+        let parts = sums.into_iter().enumerate().filter(|(_, (number, _))| *number > 0);
+        let sample = |(part, (number, sum)): (usize, (usize, Vector3<f64>))| {
+            ((part as f64 + 0.5) * TAU / count as f64, sum / number as f64)
+        };
+        Some(Revolution { samples: parts.map(sample).collect() })
+    }
+
+    /// What turns a force of these axes into the robot's base frame: from the
+    /// frame of the cut there, and the rotation of the TCP's frame.
+    pub fn to_base(&self, cut: &CutFrame, tool: &Matrix3<f64>) -> Matrix3<f64> {
+        match self.frame {
+            ForceFrame::Cut => cut.matrix(),
+            ForceFrame::Base => Matrix3::identity(),
+            ForceFrame::Tool => *tool,
+        }
+    }
+}

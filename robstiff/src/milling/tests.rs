@@ -1,0 +1,311 @@
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::path::Path;
+use std::string::ToString;
+use std::vec::Vec;
+use std::{format, vec};
+
+use nalgebra::{Matrix3, Vector3};
+use robstiff_robots::ReadError;
+
+use super::*;
+
+const MATERIAL: Coefficients = Coefficients { ktc: 631e6, kte: 13e3, krc: 99e6, kre: 10e3, kac: 273e6, kae: 2.8e3 };
+
+fn cut(engagement: Engagement, helix_deg: f64, runout: &[f64]) -> Cut {
+    let mill = EndMill { diameter: 0.016, teeth: 3, helix: helix_deg.to_radians(), runout: runout.to_vec() };
+    let speed = Some(9000.0 * PI / 30.0);
+    Cut { mill, coefficients: MATERIAL, engagement, depth: 0.004, feed_per_tooth: 1e-4, speed }
+}
+
+/// The force on the tool and its torque, disc by disc and tooth by tooth, from
+/// where each edge is and where it goes; shares no formula with the module but
+/// that of the chip.
+fn summed(cut: &Cut, angle: f64, discs: usize) -> (Vector3<f64>, f64) {
+    let Cut { mill, coefficients: k, engagement, depth, feed_per_tooth, .. } = cut;
+    let radius = 0.5 * mill.diameter;
+    let slice = depth / discs as f64;
+    let out = |tooth: i64| mill.runout.get(tooth.rem_euclid(mill.teeth as i64) as usize).copied().unwrap_or(0.0);
+    let (mut force, mut torque) = (Vector3::zeros(), 0.0);
+    for disc in 0..discs {
+        let height = (disc as f64 + 0.5) * slice;
+        for tooth in 0..mill.teeth as i64 {
+            let phi = angle - TAU * tooth as f64 / mill.teeth as f64 - height * mill.helix.tan() / radius;
+            let outward = Vector3::new(phi.sin(), phi.cos(), 0.0);
+            let ahead = Vector3::new(phi.cos(), -phi.sin(), 0.0);
+            let phi = phi.rem_euclid(TAU);
+            if phi < engagement.entry || phi > engagement.exit {
+                continue;
+            }
+            let left_by = |k: i64| k as f64 * feed_per_tooth * outward.x + out(tooth) - out(tooth - k);
+            let chip = (1..=mill.teeth as i64).map(left_by).fold(f64::INFINITY, f64::min);
+            if chip <= 0.0 {
+                continue;
+            }
+            let tangential = (k.ktc * chip + k.kte) * slice;
+            force -= ahead * tangential + outward * ((k.krc * chip + k.kre) * slice);
+            force.z += (k.kac * chip + k.kae) * slice;
+            torque += tangential * radius;
+        }
+    }
+    (force, torque)
+}
+
+fn engagements() -> Vec<Engagement> {
+    vec![
+        Engagement::SLOT,
+        Engagement::of_width(Direction::Up, 0.004, 0.016).unwrap(),
+        Engagement::of_width(Direction::Down, 0.004, 0.016).unwrap(),
+        Engagement::between(0.7, 1.9).unwrap(),
+    ]
+}
+
+#[test]
+fn forces_are_the_sum_over_teeth_and_discs() {
+    for engagement in engagements() {
+        // The steepest goes round the tool more than once.
+        for helix in [0.0, 30.0, -20.0, 79.0] {
+            for runout in [&[][..], &[0.0, 12e-6, -7e-6], &[60e-6, -80e-6, 0.0]] {
+                let cut = cut(engagement, helix, runout);
+                for angle in [0.05, 1.3, 2.9, 4.4] {
+                    let (expected, _) = summed(&cut, angle, 40_000);
+                    let found = cut.force_at(angle);
+                    assert!((found - expected).norm() < 0.02, "{engagement:?} {helix} {runout:?}: {found} {expected}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_mean_is_that_over_a_revolution() {
+    for engagement in engagements() {
+        for runout in [&[][..], &[0.0, 12e-6, -7e-6], &[60e-6, -80e-6, 0.0]] {
+            let cut = cut(engagement, 30.0, runout);
+            let sums: Vec<_> = (0..3000).map(|k| summed(&cut, TAU * (f64::from(k) + 0.5) / 3000.0, 100)).collect();
+            let force = sums.iter().map(|(force, _)| force).sum::<Vector3<f64>>() / 3000.0;
+            let torque = sums.iter().map(|(_, torque)| torque).sum::<f64>() / 3000.0;
+            assert!((cut.mean_force() - force).norm() < 2e-3 * force.norm(), "{} {force}", cut.mean_force());
+            assert!((cut.mean_torque() - torque).abs() < 2e-3 * torque);
+            assert!((cut.revolution(3000).mean() - cut.mean_force()).norm() < 1e-3 * force.norm());
+        }
+    }
+}
+
+/// The brackets of Altintas, Manufacturing Automation, equations of the average
+/// milling forces, with their antiderivatives as printed there.
+#[test]
+fn the_mean_is_the_closed_form_of_altintas() {
+    for engagement in engagements() {
+        let cut = cut(engagement, 30.0, &[]);
+        let Coefficients { ktc, kte, krc, kre, kac, kae } = MATERIAL;
+        let (n, b, c) = (3.0, cut.depth, cut.feed_per_tooth);
+        let bracket = |phi: f64| {
+            let (sine, cosine) = phi.sin_cos();
+            let (sine2, cosine2) = (2.0 * phi).sin_cos();
+            Vector3::new(
+                n * b * c / (8.0 * PI) * (ktc * cosine2 - krc * (2.0 * phi - sine2))
+                    + n * b / (2.0 * PI) * (-kte * sine + kre * cosine),
+                n * b * c / (8.0 * PI) * (ktc * (2.0 * phi - sine2) + krc * cosine2)
+                    - n * b / (2.0 * PI) * (kte * cosine + kre * sine),
+                n * b / (2.0 * PI) * (-kac * c * cosine + kae * phi),
+            )
+        };
+        let expected = bracket(engagement.exit) - bracket(engagement.entry);
+        assert!((cut.mean_force() - expected).norm() < 1e-12 * expected.norm(), "{engagement:?}");
+    }
+}
+
+#[test]
+fn a_slot_has_its_own_short_form() {
+    let cut = cut(Engagement::SLOT, 30.0, &[]);
+    let Coefficients { ktc, kte, krc, kre, kac, kae } = MATERIAL;
+    let (nb, c) = (3.0 * cut.depth, cut.feed_per_tooth);
+    let expected = Vector3::new(
+        -nb * (krc * c / 4.0 + kre / PI),
+        nb * (ktc * c / 4.0 + kte / PI),
+        nb * (kac * c / PI + kae / 2.0),
+    );
+    assert!((cut.mean_force() - expected).norm() < 1e-12 * expected.norm());
+}
+
+/// Slots measured by Li Jianhui: 6000 rpm, 3 mm deep, two teeth, five feeds
+/// (github.com/leekunhwee/ForceCalculation, General/Flat end milling, 2018), the
+/// coefficients as printed for this cut with the author's code at
+/// blog.csdn.net/2401_82386822/article/details/141181694. The measured force is
+/// the mean of the first revolution (100 samples from 3 s on) of the record at
+/// 900 mm/min, with the dynamometer's Fx along the normal, Fy along the feed and
+/// Fz along the axis, as the code exchanges them.
+#[test]
+fn a_measured_slot_is_as_published() {
+    let mill = EndMill { diameter: 0.025, teeth: 2, helix: PI / 4.0, runout: Vec::new() };
+    let coefficients = Coefficients {
+        ktc: 958.8599e6,
+        kte: 15.7580e3,
+        krc: 250.8633e6,
+        kre: 19.4337e3,
+        kac: 146.3614e6,
+        kae: 18.2075e3,
+    };
+    let (depth, feed_per_tooth) = (0.003, 0.9 / (6000.0 * 2.0));
+    let cut = Cut { mill, coefficients, engagement: Engagement::SLOT, depth, feed_per_tooth, speed: None };
+    let measured = Vector3::new(-71.26, 136.98, 81.49);
+    let error = cut.mean_force() - measured;
+    // What the regression over five feeds leaves at this one, and the noise.
+    assert!(error.norm() < 0.06 * measured.norm(), "{} {measured}", cut.mean_force());
+    assert!(error.amax() < 7.0);
+}
+
+#[test]
+fn up_and_down_milling_push_as_they_do_in_a_workshop() {
+    let [up, down] = [Direction::Up, Direction::Down].map(|direction| {
+        let engagement = Engagement::of_width(direction, 0.001, 0.016).unwrap();
+        (cut(engagement, 30.0, &[]).mean_force(), engagement.wall().unwrap())
+    });
+    // Up milling resists the feed, down milling draws the tool along.
+    assert!(up.0.x < 0.0 && down.0.x > 0.0);
+    // Down milling pushes the tool off its wall. Up milling with a shallow cut
+    // pushes off its wall by the radial force, against the tangential one.
+    assert_eq!((up.1, down.1), (1.0, -1.0));
+    assert!(down.0.y * down.1 < 0.0);
+    // Both pull the tool out of its holder, alike.
+    assert!(up.0.z > 0.0 && (up.0.z - down.0.z).abs() < 1e-9);
+    // Mirrored, the tangential force is the same and the radial one.
+    assert!((up.0.y - down.0.y).abs() > 1.0);
+    assert_eq!(Engagement::SLOT.wall(), None);
+    let half = Engagement::of_width(Direction::Down, 0.008, 0.016).unwrap();
+    assert!((half.entry - FRAC_PI_2).abs() < 1e-12);
+}
+
+#[test]
+fn power_is_that_of_the_force_along_the_edge() {
+    // Without feed forces: what the spindle gives is what the chip takes.
+    let cut = cut(Engagement::SLOT, 0.0, &[]);
+    let chip_per_second = cut.feed_speed().unwrap() * cut.depth * cut.mill.diameter;
+    let edges = MATERIAL.kte * cut.depth * 3.0 * 0.5 * cut.speed.unwrap() * 0.5 * cut.mill.diameter;
+    let expected = MATERIAL.ktc * chip_per_second + edges;
+    assert!((cut.power().unwrap() - expected).abs() < 1e-9 * expected);
+    assert!((cut.feed_speed().unwrap() * 60.0 - 2.7).abs() < 1e-12);
+}
+
+#[test]
+fn the_frame_turns_forces_into_the_base() {
+    // A spindle that points down, a feed along x: left of it is +y.
+    let frame = CutFrame::new(&Vector3::new(0.0, 0.0, -2.0), &Vector3::new(3.0, 0.0, 1.0)).unwrap();
+    assert!((frame.normal - Vector3::y()).norm() < 1e-15);
+    let force = Vector3::new(1.0, 2.0, 3.0);
+    assert!((frame.force(&force) - Vector3::new(1.0, 2.0, -3.0)).norm() < 1e-15);
+    assert!((frame.components(&frame.force(&force)) - force).norm() < 1e-15);
+    assert!((frame.wrench(&force).norm() - force.norm()).abs() < 1e-15);
+    assert!((frame.matrix().determinant() + 1.0).abs() < 1e-12);
+    for (axis, feed) in
+        [(Vector3::z(), Vector3::z()), (Vector3::zeros(), Vector3::x()), (Vector3::z(), Vector3::zeros())]
+    {
+        assert_eq!(CutFrame::new(&axis, &feed), None);
+    }
+}
+
+#[test]
+fn materials_have_their_source() {
+    let materials = materials();
+    assert_eq!(materials.len(), 5);
+    for material in &materials {
+        assert!(material.source.contains("doi") && material.coefficients.ktc > 2e8, "{material:?}");
+    }
+    assert_eq!(materials[0].coefficients, MATERIAL);
+}
+
+const POCKET: &str = "\
+tool: {diameter: 16 mm, teeth: 3, helix: 30 deg}
+material: al6082-t6
+milling: down
+width: 4 mm
+depth: 4 mm
+feed: 0.1 mm/tooth
+speed: 9000 rpm
+";
+
+fn read(text: &str) -> Result<CutFile, ReadError> {
+    CutFile::parse("cut.yaml", text, Path::new(""))
+}
+
+#[test]
+fn a_cut_is_read() {
+    let expected = cut(Engagement::of_width(Direction::Down, 0.004, 0.016).unwrap(), 30.0, &[]);
+    let close = |file: &CutFile| match &file.forces {
+        Forces::Model(found) => {
+            assert!((found.mean_force() - expected.mean_force()).norm() < 1e-9);
+            assert!((found.speed.unwrap() - expected.speed.unwrap()).abs() < 1e-9);
+        }
+        Forces::Measured { .. } => panic!("nothing was measured"),
+    };
+    let file = read(POCKET).unwrap();
+    assert!(file.source.contains("10.1186"));
+    close(&file);
+    let by_speed = POCKET.replace("feed: 0.1 mm/tooth", "feed_speed: 2700 mm/min");
+    close(&read(&by_speed).unwrap());
+    let own = "coefficients: {tangential: {cutting: 631 N/mm2, edge: 13 N/mm}, \
+               radial: {cutting: 99 N/mm2, edge: 10 N/mm}, axial: {cutting: 273 N/mm2, edge: 2.8 N/mm}}";
+    close(&read(&POCKET.replace("material: al6082-t6", own)).unwrap());
+    let angles = POCKET.replace("milling: down\nwidth: 4 mm", "engagement: [120 deg, 180 deg]");
+    close(&read(&angles).unwrap());
+}
+
+#[test]
+fn mistakes_are_shown_where_they_are() {
+    for (from, to, place, part) in [
+        ("al6082-t6", "al6082-t", "cut.yaml:2:11", "did you mean `al6082-t6`"),
+        ("width: 4 mm", "width: 40 mm", "cut.yaml:4:8", "wider than the tool"),
+        ("width: 4 mm\n", "", "cut.yaml:1:1", "`width` is missing"),
+        ("teeth: 3", "teeth: 0", "cut.yaml:1:32", "1 to 100 teeth"),
+        ("feed: 0.1 mm/tooth", "feed: 0.1 m/tooth", "cut.yaml:6:7", "not below the tool's radius"),
+        ("depth: 4 mm", "depth: -4 mm", "cut.yaml:5:8", "above zero"),
+        ("speed: 9000 rpm", "feed_speed: 1 m/min", "cut.yaml:6:7", "given twice"),
+        ("feed: 0.1 mm/tooth\nspeed: 9000 rpm", "feed_speed: 1 m/min", "cut.yaml:6:13", "without the spindle's"),
+        ("helix: 30 deg", "runout: [0, 1 um]", "cut.yaml:1:43", "has 3 values, not 2"),
+        ("milling: down", "milling: slot", "cut.yaml:4:8", "as wide as the tool"),
+        ("milling: down", "engagement: [3, 1]", "cut.yaml:3:13", "lower first"),
+        ("speed: 9000 rpm", "measured: {file: no.csv, frame: cut, on: tool}", "cut.yaml:7:18", "there is no file"),
+    ] {
+        assert!(POCKET.contains(from), "{from}");
+        let error = read(&POCKET.replace(from, to)).unwrap_err().to_string();
+        assert!(error.contains(place) && error.contains(part), "{from} -> {to}: {error}");
+    }
+}
+
+#[test]
+fn records_are_averaged() {
+    let header = "angle [deg],Fx [N],Fy [kN],Fz\n";
+    let rows: Vec<_> = (0..720)
+        .map(|k| {
+            let angle = f64::from(k) * 0.5 + 0.1;
+            let wave = angle.to_radians().sin();
+            format!("{angle},{},{},7\n", 10.0 + wave, -0.002 * wave)
+        })
+        .collect();
+    let text = format!("{header}{}", rows.concat());
+    let (tool, warnings) = MeasuredForce::parse("f.csv", &text, ForceFrame::Cut, false).unwrap();
+    assert!(warnings.is_empty());
+    assert!((tool.mean() - Vector3::new(10.0, 0.0, 7.0)).norm() < 1e-9);
+    let revolution = tool.revolution(4, None).unwrap();
+    // The mean of a sine over a quarter is 2 / pi.
+    assert!((revolution.samples[0].1 - Vector3::new(10.0 + 2.0 / PI, -4.0 / PI, 7.0)).norm() < 0.02);
+    assert!((revolution.samples[3].0 - 1.75 * PI).abs() < 1e-12);
+
+    let (workpiece, _) = MeasuredForce::parse("f.csv", &text, ForceFrame::Tool, true).unwrap();
+    assert!((workpiece.mean() + tool.mean()).norm() < 1e-12);
+    let frame = CutFrame::new(&-Vector3::z(), &Vector3::x()).unwrap();
+    let turned = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+    assert_eq!(workpiece.to_base(&frame, &turned), turned);
+    assert_eq!(tool.to_base(&frame, &turned), frame.matrix());
+
+    // By time, two turns in 0.2 s; without a speed nobody can tell.
+    let timed = "t [ms],Fx,Fy,Fz\n0,1,0,0\n25,2,0,0\n50,3,0,0\n75,4,0,0\n100,1,0,0\n125,2,0,0\n150,3,0,0\n175,4,0,0\n";
+    let (timed, _) = MeasuredForce::parse("f.csv", timed, ForceFrame::Cut, false).unwrap();
+    assert_eq!(timed.revolution(4, None), None);
+    let turn = timed.revolution(4, Some(TAU / 0.1 * (1.0 + 1e-12))).unwrap();
+    assert_eq!(turn.samples.iter().map(|(_, force)| force.x).collect::<Vec<_>>(), [1.0, 2.0, 3.0, 4.0]);
+    assert_eq!((turn.range(0).least, turn.range(0).greatest, turn.peak()), (1.0, 4.0, 4.0));
+
+    let error = MeasuredForce::parse("f.csv", "Fx,Fy\n1,x\n", ForceFrame::Cut, false).unwrap_err().to_string();
+    assert!(error.contains("`Fz` is missing") && error.contains("f.csv:1:1"), "{error}");
+}

@@ -1,0 +1,160 @@
+//! The modes of an arm at its tool, and whether they are stable in a cut.
+
+use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Schur, SymmetricEigen};
+
+use crate::analysis::resolution;
+
+/// The modes of the tool on the arm, without a cut: one to three, as many as
+/// there are directions in which the arm yields.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Modes {
+    /// Natural frequencies [rad/s], the lowest first.
+    frequencies: DVector<f64>,
+    /// What a unit of each mode moves the tool by, 3 x modes, so that
+    /// `shapes^T M shapes` is the identity [1/sqrt(kg)].
+    shapes: DMatrix<f64>,
+    /// Damping ratio of every mode.
+    damping: f64,
+}
+
+/// How often the eigenvalue iteration may turn.
+const MOST_ITERATIONS: usize = 10_000;
+
+/// How far below zero the discriminant of a matrix with entries up to 1 may be
+/// for it to be rounding: what counts as meeting of modes is then within 1e-6 of
+/// their squared frequencies.
+const ROUNDING: f64 = 1e-13;
+
+impl Modes {
+    /// The modes with a translational compliance [m/N] and a mass at the tool
+    /// \[kg\], both 3 x 3, symmetric and in one frame; `damping` is the damping
+    /// ratio of every mode, 0 for none.
+    ///
+    /// A direction in which the arm yields less than
+    /// [`resolution`](crate::analysis::resolution) times what it yields in its
+    /// softest is rigid. `None` where an entry is not finite, the mass is not
+    /// positive definite, or the damping is negative.
+    pub fn new(compliance: &Matrix3<f64>, mass: &Matrix3<f64>, damping: f64) -> Option<Self> {
+        let finite = compliance.iter().chain(mass.iter()).all(|entry| entry.is_finite());
+        if !(finite && damping.is_finite() && damping >= 0.0) {
+            return None;
+        }
+        let SymmetricEigen { eigenvectors, eigenvalues } =
+            SymmetricEigen::new(0.5 * (compliance + compliance.transpose()));
+        let rigid = eigenvalues.amax() * resolution::<f64>();
+        let soft: std::vec::Vec<usize> = (0..3).filter(|&i| eigenvalues[i] > rigid).collect();
+        let count = soft.len();
+        mass.cholesky()?;
+        if count == 0 {
+            // Where nothing moves there is nothing to solve.
+            return Some(Self { frequencies: DVector::zeros(0), shapes: DMatrix::zeros(3, 0), damping });
+        }
+        let directions = DMatrix::from_fn(3, count, |row, i| eigenvectors[(row, soft[i])]);
+        let stiffness = DMatrix::from_fn(count, count, |i, j| if i == j { 1.0 / eigenvalues[soft[i]] } else { 0.0 });
+        let mass = directions.transpose() * mass * &directions;
+        let half = (0.5 * (&mass + mass.transpose())).cholesky()?.l();
+        // Coordinates in which the mass is the identity.
+        let to_tool = directions * half.clone().try_inverse()?.transpose();
+        let inverse = half.try_inverse()?;
+        let scaled = &inverse * stiffness * inverse.transpose();
+        let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(0.5 * (&scaled + scaled.transpose()));
+        let mut order: std::vec::Vec<usize> = (0..count).collect();
+        order.sort_by(|&i, &j| eigenvalues[i].total_cmp(&eigenvalues[j]));
+        let vectors = DMatrix::from_fn(count, count, |row, i| eigenvectors[(row, order[i])]);
+        let frequencies = DVector::from_fn(count, |i, _| eigenvalues[order[i]].max(0.0).sqrt());
+        let shapes = to_tool * vectors;
+        let finite = frequencies.iter().chain(shapes.iter()).all(|entry| entry.is_finite());
+        finite.then_some(Self { frequencies, shapes, damping })
+    }
+
+    /// The natural frequencies [rad/s], the lowest first.
+    pub fn frequencies(&self) -> &[f64] {
+        self.frequencies.as_slice()
+    }
+
+    /// The damping ratio of every mode.
+    pub fn damping(&self) -> f64 {
+        self.damping
+    }
+
+    /// What a unit of each mode moves the tool by, 3 x modes [1/sqrt(kg)].
+    pub fn shapes(&self) -> &DMatrix<f64> {
+        &self.shapes
+    }
+
+    /// A change of the force with the displacement of the tool, 3 x 3 [N/m], as
+    /// the modes see it [1/s^2].
+    pub(super) fn seen(&self, process: &Matrix3<f64>) -> DMatrix<f64> {
+        self.shapes.transpose() * process * &self.shapes
+    }
+
+    /// Whether small movements of the tool die down (without damping: do not
+    /// grow) under a force that changes with its displacement by `process x`,
+    /// 3 x 3 [N/m].
+    ///
+    /// Without damping, by the eigenvalues of `M^-1 (K - P)`, which must be real
+    /// and positive: a complex pair flutters, a negative one runs away. With
+    /// damping, by those of the state matrix, whose real parts must be negative.
+    pub fn is_stable(&self, process: &Matrix3<f64>) -> bool {
+        self.is_stable_seen(&self.seen(process))
+    }
+
+    pub(super) fn is_stable_seen(&self, seen: &DMatrix<f64>) -> bool {
+        let count = self.frequencies.len();
+        if count == 0 {
+            return true;
+        }
+        let squares = DMatrix::from_diagonal(&self.frequencies.component_mul(&self.frequencies));
+        let stiffness = squares - seen;
+        let scale = stiffness.amax();
+        if !(scale > 0.0 && scale.is_finite()) {
+            return false;
+        }
+        let stiffness = stiffness / scale;
+        if self.damping == 0.0 {
+            return eigenvalues_are_positive(&stiffness);
+        }
+        // x'' + 2 zeta Omega x' + A x = 0, with time in units of 1 / sqrt(scale).
+        let mut state = DMatrix::zeros(2 * count, 2 * count);
+        state.view_mut((0, count), (count, count)).fill_with_identity();
+        state.view_mut((count, 0), (count, count)).copy_from(&-stiffness);
+        for i in 0..count {
+            state[(count + i, count + i)] = -2.0 * self.damping * self.frequencies[i] / scale.sqrt();
+        }
+        // What does not converge is not called stable.
+        Schur::try_new(state, f64::EPSILON, MOST_ITERATIONS)
+            .is_some_and(|schur| schur.complex_eigenvalues().iter().all(|eigenvalue| eigenvalue.re < 0.0))
+    }
+}
+
+/// Whether a 2 x 2 matrix has a pair of complex eigenvalues: the criterion of
+/// mode coupling without damping, `(a - d)^2 + 4 b c < 0`. The product `b c` of
+/// the couplings must be negative, and larger than what keeps the modes apart.
+pub fn has_complex_pair(matrix: &Matrix2<f64>) -> bool {
+    let apart = matrix[(0, 0)] - matrix[(1, 1)];
+    apart * apart + 4.0 * matrix[(0, 1)] * matrix[(1, 0)] < 0.0
+}
+
+/// Whether all the eigenvalues of a matrix of one to three rows, with entries up
+/// to 1, are real and positive: by the discriminant and the signs of its
+/// characteristic polynomial, to rounding.
+fn eigenvalues_are_positive(a: &DMatrix<f64>) -> bool {
+    match a.nrows() {
+        1 => a[(0, 0)] > 0.0,
+        2 => {
+            let (trace, determinant) = (a.trace(), a[(0, 0)] * a[(1, 1)] - a[(0, 1)] * a[(1, 0)]);
+            let apart = a[(0, 0)] - a[(1, 1)];
+            let discriminant = apart * apart + 4.0 * a[(0, 1)] * a[(1, 0)];
+            discriminant >= -ROUNDING && trace > 0.0 && determinant > 0.0
+        }
+        _ => {
+            let minor = |i: usize, j: usize| a[(i, i)] * a[(j, j)] - a[(i, j)] * a[(j, i)];
+            let (c2, c1) = (a.trace(), minor(0, 1) + minor(0, 2) + minor(1, 2));
+            let c0 = a.determinant();
+            // l^3 - c2 l^2 + c1 l - c0.
+            let discriminant =
+                18.0 * c2 * c1 * c0 - 4.0 * c2.powi(3) * c0 + c2 * c2 * c1 * c1 - 4.0 * c1.powi(3) - 27.0 * c0 * c0;
+            discriminant >= -ROUNDING && c2 > 0.0 && c1 > 0.0 && c0 > 0.0
+        }
+    }
+}
