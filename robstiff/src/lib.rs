@@ -26,7 +26,9 @@
 //!   data, what they say without a model, the joint compliances that fit them,
 //!   and the effects they show to be missing;
 //! - `plan`, `simulate` (likewise): what to measure next, and campaigns on an arm
-//!   that hides something, to try a measurement before making it.
+//!   that hides something, to try a measurement before making it;
+//! - `inverse`, `path` (feature `machining`): the joint coordinates of a pose of
+//!   the tool, and of a whole tool path.
 //!
 //! Without default features the crate is `no_std` and allocates nothing.
 #![no_std]
@@ -49,7 +51,11 @@ pub mod elements;
 pub mod generic;
 #[cfg(feature = "identify")]
 pub mod identify;
+#[cfg(feature = "machining")]
+pub mod inverse;
 mod lanes;
+#[cfg(feature = "machining")]
+pub mod path;
 #[cfg(feature = "identify")]
 pub mod plan;
 pub mod real;
@@ -59,6 +65,8 @@ mod samples;
 #[cfg(feature = "identify")]
 pub mod simulate;
 mod state;
+#[cfg(any(feature = "identify", feature = "machining"))]
+mod table;
 #[cfg(feature = "identify")]
 pub mod trace;
 #[cfg(feature = "identify")]
