@@ -5,9 +5,11 @@ mod effect;
 mod emit;
 mod failure;
 mod identify;
+mod import;
 mod input;
 mod json;
 mod output;
+mod path;
 mod plan;
 mod predict;
 mod report;
@@ -39,6 +41,8 @@ enum Command {
     Emit(emit::Arguments),
     Plan(plan::Arguments),
     Simulate(simulate::Arguments),
+    Path(path::Arguments),
+    Import(import::Arguments),
 }
 
 impl Command {
@@ -51,6 +55,8 @@ impl Command {
             Self::Emit(arguments) => emit::run(arguments),
             Self::Plan(arguments) => plan::run(arguments),
             Self::Simulate(arguments) => simulate::run(arguments),
+            Self::Path(arguments) => path::run(arguments),
+            Self::Import(arguments) => import::run(arguments),
         }
     }
 }

@@ -159,10 +159,12 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
     }
 
     /// All solutions within the limits that were found, the nearest to the seed
-    /// first, each in the turn nearest to the seed. For a closed form these are
-    /// all there are, up to sixteen; where a joint may stand anywhere, only where the
-    /// seed has it. For other arms they are what descents from all over the
-    /// joint space found, for a redundant arm a choice of them.
+    /// first, each in the turn nearest to the seed. Where the closed form gives
+    /// the whole pose these are all there are, up to eight; where a joint may
+    /// stand anywhere, only where the seed has it. Where the turn about the
+    /// tool's axis is free and moves the wrist, they are what turns by 3 degrees
+    /// tell apart. For other arms they are what descents from all over the joint
+    /// space found, for a redundant arm a choice of them.
     ///
     /// # Errors
     /// Why there is none.

@@ -39,11 +39,8 @@ fn check_all<const N: usize>(robot: &impl Robot<N>, count: usize, target: impl F
                 assert!(limits.is_none_or(|[low, high]| (low - 1e-6..=high + 1e-6).contains(value)));
             }
         }
-        let same = |other: &SVector<f64, N>| {
-            (other - q).iter().all(|apart| (apart / core::f64::consts::TAU).fract().abs().min(1.0) % 1.0 < 1e-6)
-        };
         let turned = |other: &SVector<f64, N>| (other - q).iter().all(|apart| (apart * 0.5).sin().abs() < 1e-6);
-        assert!(!own || solutions.iter().any(|other| same(other) || turned(other)), "{q} {solutions:?}");
+        assert!(!own || solutions.iter().any(turned), "{q} {solutions:?}");
     }
 }
 
@@ -61,8 +58,10 @@ fn five_axes_reach_full_poses_and_directions_of_the_tool() {
     let robot = Generic::<5>::new(&catalogued("rv130hsc")).unwrap();
     assert!(Inverse::new(&robot).has_closed_form());
     check_all(&robot, 200, Target::pose, true);
-    for tool in [Vector3::x_axis(), Vector3::z_axis(), Unit::new_normalize(Vector3::new(0.3, -0.5, 0.7))] {
-        check_all(&robot, 100, |pose| pointing(pose, tool), true);
+    // Through the wrist, and past it.
+    check_all(&robot, 100, |pose| pointing(pose, Vector3::x_axis()), true);
+    for tool in [Vector3::z_axis(), Unit::new_normalize(Vector3::new(0.3, -0.5, 0.7))] {
+        check_all(&robot, 100, |pose| pointing(pose, tool), false);
     }
 }
 
