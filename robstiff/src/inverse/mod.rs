@@ -35,6 +35,14 @@ pub const TOLERANCE: f64 = 1e-10;
 /// descriptions.
 const ON_THE_LIMIT: f64 = 1e-6;
 
+/// Candidates of a closed form within this (m, rad) need no further step.
+const EXACT: f64 = 1e-12;
+
+/// Candidates further off than this times the reach (m) or this (rad) are no
+/// solutions: more than the errors of a measured table, or the step between the
+/// turns that are tried, can account for.
+const NEAR: f64 = 0.1;
+
 /// Solutions are the same when no joint differs by more (rad or m).
 const SAME: f64 = 1e-6;
 
@@ -67,6 +75,8 @@ pub enum Unreached {
         /// The joint that is furthest outside in the posture that is least so
         /// (from 1).
         joint: usize,
+        /// Turning or sliding.
+        kind: JointKind,
         /// Where it would have to stand (rad or m).
         coordinate: f64,
         /// Its limits (rad or m).
@@ -92,11 +102,18 @@ impl fmt::Display for Unreached {
                 f.write_str("out of reach: the nearest posture misses it by ")?;
                 left(f, remaining)
             }
-            Self::OutsideLimits { joint, coordinate, limits: [low, high] } => write!(
-                f,
-                "outside the limits of joint {joint}: it would have to stand at {coordinate:.4}, \
-                 its limits are [{low:.4}, {high:.4}] (rad or m)"
-            ),
+            Self::OutsideLimits { joint, kind, coordinate, limits } => {
+                let (unit, name) = match kind {
+                    JointKind::Revolute => (1_f64.to_radians(), "deg"),
+                    JointKind::Prismatic => (1e-3, "mm"),
+                };
+                let [at, low, high] = [coordinate / unit, limits[0] / unit, limits[1] / unit];
+                write!(
+                    f,
+                    "outside the limits of joint {joint}: it would have to stand at {at:.2} {name}, \
+                     its limits are [{low:.2}, {high:.2}] {name}"
+                )
+            }
             Self::NotConverged { remaining } => {
                 f.write_str("no posture was found; the nearest misses it by ")?;
                 left(f, remaining)
@@ -203,8 +220,15 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
 
     /// A candidate made exact; `None` if it is no solution.
     fn polished(&self, target: &Target, q: &SVector<f64, N>) -> Option<SVector<f64, N>> {
+        let remaining = target.remaining(&self.robot.transform(q));
+        if remaining.distance < EXACT && remaining.angle < EXACT {
+            return Some(*q);
+        }
+        // A branch that does not reach the target is nowhere near it.
+        if remaining.distance > NEAR * self.reach || remaining.angle > NEAR {
+            return None;
+        }
         let end = self.descend(target, q, &self.limits);
-        // What went elsewhere will be found from there.
         is_solved(&end).then_some(end.q)
     }
 
@@ -251,10 +275,14 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
             return;
         }
         let remaining = target.remaining(&self.robot.transform(q));
+        if remaining.distance > NEAR * self.reach || remaining.angle > NEAR {
+            return;
+        }
         let nearly = remaining.distance < 1e-6 * self.reach && remaining.angle < 1e-6;
         if nearly || is_solved(&self.descend(target, q, &unbounded())) {
             let limits = self.limits[joint];
-            *outside = Some((by, Unreached::OutsideLimits { joint: joint + 1, coordinate, limits }));
+            *outside =
+                Some((by, Unreached::OutsideLimits { joint: joint + 1, kind: self.kinds[joint], coordinate, limits }));
         }
     }
 

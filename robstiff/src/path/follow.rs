@@ -143,10 +143,11 @@ fn follow<const N: usize, R: Robot<N>>(
 }
 
 fn allowed<const N: usize, R: Robot<N>>(robot: &R, q: SVector<f64, N>) -> Result<SVector<f64, N>, Unreached> {
+    let kinds = robot.joint_kinds();
     let outside = |(i, limits): (usize, Option<[f64; 2]>)| {
         let limits = limits?;
         let is_inside = (limits[0] - ON_THE_LIMIT..=limits[1] + ON_THE_LIMIT).contains(&q[i]);
-        (!is_inside).then_some(Unreached::OutsideLimits { joint: i + 1, coordinate: q[i], limits })
+        (!is_inside).then_some(Unreached::OutsideLimits { joint: i + 1, kind: kinds[i], coordinate: q[i], limits })
     };
     robot.limits().into_iter().enumerate().find_map(outside).map_or(Ok(q), Err)
 }
