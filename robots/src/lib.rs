@@ -2,7 +2,8 @@
 //!
 //! [`effect`] holds the catalogue of effects, with their physics, and the plain
 //! types that the runtime shares (`no_std`, no allocation). With the feature `read` (on by default) come the
-//! [`Description`] and what reads, checks and writes one.
+//! [`Description`] and what reads, checks and writes one, with `urdf` what makes
+//! one from a URDF file.
 #![cfg_attr(not(feature = "read"), no_std)]
 
 pub mod angle;
@@ -23,6 +24,8 @@ pub mod quantity;
 mod read;
 #[cfg(feature = "read")]
 mod suggest;
+#[cfg(feature = "urdf")]
+pub mod urdf;
 #[cfg(feature = "read")]
 mod write;
 

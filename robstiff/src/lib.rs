@@ -27,8 +27,10 @@
 //!   and the effects they show to be missing;
 //! - `plan`, `simulate` (likewise): what to measure next, and campaigns on an arm
 //!   that hides something, to try a measurement before making it;
-//! - `milling`, `stability` (feature `machining`): the force of an end mill, and
-//!   the depths of cut at which the arm chatters by mode coupling.
+//! - `inverse`, `path` (feature `machining`): the joint coordinates of a pose of
+//!   the tool, and of a whole tool path;
+//! - `milling`, `stability` (likewise): the force of an end mill, and the depths
+//!   of cut at which the arm chatters by mode coupling.
 //!
 //! Without default features the crate is `no_std` and allocates nothing.
 #![no_std]
@@ -51,9 +53,13 @@ pub mod elements;
 pub mod generic;
 #[cfg(feature = "identify")]
 pub mod identify;
+#[cfg(feature = "machining")]
+pub mod inverse;
 mod lanes;
 #[cfg(feature = "machining")]
 pub mod milling;
+#[cfg(feature = "machining")]
+pub mod path;
 #[cfg(feature = "identify")]
 pub mod plan;
 pub mod real;

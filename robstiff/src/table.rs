@@ -202,6 +202,12 @@ impl<'t> Table<'t> {
         None
     }
 
+    /// A number of a row in SI, unchecked.
+    #[cfg(feature = "machining")]
+    pub fn peek(&self, record: &Record, column: Numbers) -> Option<f64> {
+        record.fields[column.index].parse::<f64>().ok().map(|number| number * column.scale)
+    }
+
     /// The numbers of several columns, all checked.
     pub fn all<const K: usize>(&self, record: &Record, columns: [Numbers; K]) -> Option<[f64; K]> {
         let numbers = columns.map(|column| self.number(record, column));
@@ -209,6 +215,7 @@ impl<'t> Table<'t> {
     }
 
     /// The id of a row in a column; a blank one is reported, and is no id.
+    #[cfg(feature = "identify")]
     pub fn id<'r>(&self, record: &'r Record, index: usize) -> &'r str {
         let id = self.text(record, index);
         if id.is_empty() {
@@ -220,6 +227,7 @@ impl<'t> Table<'t> {
     }
 
     /// The text of a row in a column.
+    #[cfg(feature = "identify")]
     pub fn text<'r>(&self, record: &'r Record, index: usize) -> &'r str {
         &record.fields[index]
     }
@@ -230,6 +238,12 @@ impl<'t> Table<'t> {
             let problem = self.problem(line, field, message, help);
             self.problems.borrow_mut().push(problem);
         }
+    }
+
+    /// Reports a problem with the header as a whole.
+    #[cfg(feature = "machining")]
+    pub fn report_header(&self, message: &str, help: &str) {
+        self.report(self.header_line, usize::MAX, message, help);
     }
 
     /// Reports a problem with a row in a column of numbers.

@@ -8,4 +8,5 @@ pub mod interpreter;
 pub mod judge;
 pub mod judge_tracing;
 pub mod matrix;
+pub mod reach;
 pub mod simulator;

@@ -51,6 +51,12 @@ impl From<robstiff::identify::Error> for Failure {
     }
 }
 
+impl From<robstiff::path::Unsolved> for Failure {
+    fn from(unsolved: robstiff::path::Unsolved) -> Self {
+        Self::Explained(unsolved.to_string())
+    }
+}
+
 impl From<Diagnostics> for Failure {
     fn from(problems: Diagnostics) -> Self {
         Self::Explained(problems.to_string())

@@ -50,11 +50,16 @@ pub fn cut(path: &Path) -> Result<CutFile, Failure> {
 /// Joint coordinates as `--at` gives them: numbers in rad (or m), or
 /// quantities with their unit, separated by commas.
 pub fn coordinates(given: &str, robot: &Description) -> Result<Vec<f64>, Failure> {
+    coordinates_of("--at", given, robot)
+}
+
+/// The same for another option.
+pub fn coordinates_of(option: &str, given: &str, robot: &Description) -> Result<Vec<f64>, Failure> {
     let parts: Vec<&str> = given.split(',').collect();
     let count = robot.joints.len();
     if parts.len() != count {
         return Err(Failure::Usage(format!(
-            "--at gives {}, {} has {}",
+            "{option} gives {}, {} has {}",
             text::count(parts.len(), "joint coordinate"),
             robot.name,
             text::count(count, "joint")
@@ -65,7 +70,7 @@ pub fn coordinates(given: &str, robot: &Description) -> Result<Vec<f64>, Failure
             JointKind::Revolute => Dimension::Angle,
             JointKind::Prismatic => Dimension::Length,
         };
-        quantity::parse(part, dimension).map_err(|error| Failure::Usage(format!("--at, q{}: {error}", index + 1)))
+        quantity::parse(part, dimension).map_err(|error| Failure::Usage(format!("{option}, q{}: {error}", index + 1)))
     };
     parts.iter().enumerate().map(coordinate).collect()
 }

@@ -6,9 +6,11 @@ mod emit;
 mod failure;
 mod forces;
 mod identify;
+mod import;
 mod input;
 mod json;
 mod output;
+mod path;
 mod plan;
 mod predict;
 mod report;
@@ -43,6 +45,8 @@ enum Command {
     Simulate(simulate::Arguments),
     Forces(forces::Arguments),
     Stability(stability::Arguments),
+    Path(path::Arguments),
+    Import(import::Arguments),
 }
 
 impl Command {
@@ -57,6 +61,8 @@ impl Command {
             Self::Simulate(arguments) => simulate::run(arguments),
             Self::Forces(arguments) => forces::run(arguments),
             Self::Stability(arguments) => stability::run(arguments),
+            Self::Path(arguments) => path::run(arguments),
+            Self::Import(arguments) => import::run(arguments),
         }
     }
 }

@@ -1,0 +1,319 @@
+//! Reading a URDF file.
+
+use core::f64::consts::FRAC_PI_2;
+use core::ops::Range;
+
+use nalgebra::{Isometry3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
+use roxmltree::{Document, Node};
+
+use super::{Body, Connection, Motion, Tree};
+use crate::suggest::list;
+use crate::{Diagnostic, Diagnostics, JointKind, ReadError};
+
+/// A reader with the problems found so far.
+struct Reader<'t> {
+    file: &'t str,
+    text: &'t str,
+    problems: Vec<Diagnostic>,
+    warnings: Vec<String>,
+    rounded: usize,
+}
+
+impl Tree {
+    /// Reads a URDF file.
+    ///
+    /// # Errors
+    /// A file that cannot be read; what is wrong with it, each problem at its
+    /// place.
+    pub fn read(path: impl AsRef<std::path::Path>) -> Result<Self, ReadError> {
+        let path = path.as_ref();
+        let text = std::fs::read_to_string(path).map_err(|error| ReadError::Io { path: path.to_owned(), error })?;
+        Self::parse(&path.display().to_string(), &text).map_err(ReadError::Invalid)
+    }
+
+    /// Reads a URDF text; `file` is the name that problems show.
+    ///
+    /// An angle that is a multiple of 90 degrees rounded to the decimals that it
+    /// is written with, such as `1.5708`, is that multiple.
+    ///
+    /// # Errors
+    /// What is wrong with it, each problem at its place.
+    pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
+        let document = Document::parse(text).map_err(|error| {
+            let at = error.pos();
+            let (line, column) = (at.row as usize, at.col as usize);
+            problem(file, text, line, column, 1, &format!("this is not XML: {error}"), "")
+        })?;
+        let mut reader = Reader { file, text, problems: Vec::new(), warnings: Vec::new(), rounded: 0 };
+        let tree = reader.tree(document.root_element());
+        let rounded = reader.rounded;
+        if rounded > 0 {
+            let (angles, are) = if rounded == 1 { ("angle", "is") } else { ("angles", "are") };
+            let warning = format!(
+                "{file}: {rounded} {angles} such as 1.5708 {are} taken as the multiple of 90 degrees that was rounded"
+            );
+            reader.warnings.push(warning);
+        }
+        match Diagnostics::new(reader.problems) {
+            Some(problems) => Err(problems),
+            None => Ok(Self { warnings: reader.warnings, ..tree }),
+        }
+    }
+
+    /// A problem at a place of the file.
+    pub(super) fn problem(&self, place: &Range<usize>, message: &str, help: &str) -> Diagnostics {
+        at(&self.file, &self.text, place, message, help).into()
+    }
+}
+
+/// A problem at a line and a column (in characters, from 1).
+fn problem(file: &str, text: &str, line: usize, column: usize, width: usize, message: &str, help: &str) -> Diagnostic {
+    Diagnostic {
+        file: file.to_owned(),
+        line,
+        column,
+        width,
+        path: String::new(),
+        message: message.to_owned(),
+        help: help.to_owned(),
+        source_line: text.lines().nth(line.saturating_sub(1)).unwrap_or_default().to_owned(),
+    }
+}
+
+/// A problem with a range of the text, shown in its first line.
+fn at(file: &str, text: &str, place: &Range<usize>, message: &str, help: &str) -> Diagnostic {
+    let before = &text[..place.start];
+    let line = 1 + before.matches('\n').count();
+    let column = 1 + before.rsplit('\n').next().unwrap_or_default().chars().count();
+    let shown = text[place.clone()].lines().next().unwrap_or_default();
+    // Of an element only its start tag.
+    let width = shown.find('>').map_or(shown.chars().count(), |end| shown[..=end].chars().count());
+    problem(file, text, line, column, width, message, help)
+}
+
+impl Reader<'_> {
+    fn report(&mut self, place: &Range<usize>, message: &str, help: &str) {
+        self.problems.push(at(self.file, self.text, place, message, help));
+    }
+
+    fn tree(&mut self, root: Node<'_, '_>) -> Tree {
+        if root.tag_name().name() != "robot" {
+            let message = format!("the root element is `{}`, not `robot`", root.tag_name().name());
+            self.report(&root.range(), &message, "a URDF file is `<robot name=\"..\"> .. </robot>`");
+        }
+        let is_macro = |node: &Node<'_, '_>| node.tag_name().namespace().is_some_and(|space| space.contains("xacro"));
+        if let Some(node) = root.descendants().find(is_macro) {
+            let help = "expand it first: `xacro FILE.xacro > FILE.urdf`";
+            self.report(&node.range(), "this is a xacro file, not a URDF file", help);
+        }
+        let elements = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
+        let mut links: Vec<Body> = Vec::new();
+        for node in elements("link") {
+            let Some(name) = self.attribute(node, "name") else { continue };
+            if links.iter().any(|link| link.name == name) {
+                self.report(&node.range(), &format!("the link `{name}` is there twice"), "give one another name");
+            }
+            let inertia = self.inertia(node);
+            links.push(Body { name, inertia, place: node.range() });
+        }
+        let mut joints: Vec<Connection> = Vec::new();
+        for node in elements("joint") {
+            let joint = self.joint(node, &links);
+            let Some(joint) = joint else { continue };
+            if joints.iter().any(|other| other.child == joint.child) {
+                let child = &links[joint.child].name;
+                let message = format!("the link `{child}` hangs on two joints");
+                self.report(&node.range(), &message, "a URDF file is a tree: give every link one parent");
+            }
+            joints.push(joint);
+        }
+        Tree {
+            name: root.attribute("name").unwrap_or_default().to_owned(),
+            links,
+            joints,
+            warnings: Vec::new(),
+            file: self.file.to_owned(),
+            text: self.text.to_owned(),
+        }
+    }
+
+    fn joint(&mut self, node: Node<'_, '_>, links: &[Body]) -> Option<Connection> {
+        let name = self.attribute(node, "name");
+        let kind = self.attribute(node, "type");
+        let parent = self.end(node, "parent", links);
+        let child = self.end(node, "child", links);
+        let origin = self.origin(node);
+        let axis = self.axis(node);
+        let limits = self.limits(node, kind.as_deref());
+        let (name, kind) = (name?, kind?);
+        let mimics = element(node, "mimic").is_some();
+        let moving = |kind, limits| Some(Motion::Axis { kind, axis: axis?, limits, mimics });
+        let motion = match kind.as_str() {
+            "fixed" => None,
+            "revolute" => Some(moving(JointKind::Revolute, limits)?),
+            "continuous" => Some(moving(JointKind::Revolute, None)?),
+            "prismatic" => Some(moving(JointKind::Prismatic, limits)?),
+            "floating" | "planar" => Some(Motion::Other(kind)),
+            other => {
+                let known = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar"];
+                let place = node.attribute_node("type").map_or(node.range(), |attribute| attribute.range_value());
+                self.report(&place, &format!("unknown type of joint `{other}`"), &format!("one of {}", list(known)));
+                return None;
+            }
+        };
+        Some(Connection { name, motion, parent: parent?, child: child?, origin: origin?, place: node.range() })
+    }
+
+    /// An attribute whose absence is reported.
+    fn attribute(&mut self, node: Node<'_, '_>, name: &str) -> Option<String> {
+        let value = node.attribute(name);
+        if value.is_none() {
+            let tag = node.tag_name().name();
+            self.report(&node.range(), &format!("`{tag}` has no `{name}`"), &format!("write `<{tag} {name}=\"..\">`"));
+        }
+        value.map(str::to_owned)
+    }
+
+    /// The link that `parent` or `child` names.
+    fn end(&mut self, node: Node<'_, '_>, tag: &str, links: &[Body]) -> Option<usize> {
+        let Some(end) = element(node, tag) else {
+            self.report(&node.range(), &format!("the joint has no `{tag}`"), &format!("write `<{tag} link=\"..\"/>`"));
+            return None;
+        };
+        let name = self.attribute(end, "link")?;
+        let index = links.iter().position(|link| link.name == name);
+        if index.is_none() {
+            let place = end.attribute_node("link").map_or(end.range(), |attribute| attribute.range_value());
+            let near = crate::suggest::closest(&name, links.iter().map(|link| link.name.as_str()));
+            let help = near.map_or("a joint's links are elements `link` of the same file".to_owned(), |near| {
+                format!("did you mean `{near}`?")
+            });
+            self.report(&place, &format!("there is no link `{name}`"), &help);
+        }
+        index
+    }
+
+    /// Mass and centre of mass.
+    fn inertia(&mut self, node: Node<'_, '_>) -> Option<(f64, Vector3<f64>)> {
+        let inertial = element(node, "inertial")?;
+        let mass = element(inertial, "mass")?;
+        let [value] = self.numbers(mass, "value")?;
+        if value < 0.0 {
+            self.report(&mass.range(), "the mass is negative", "write a mass in kg, or leave `inertial` out");
+            return None;
+        }
+        let center = self.origin(inertial)?.translation.vector;
+        Some((value, center))
+    }
+
+    fn origin(&mut self, node: Node<'_, '_>) -> Option<Isometry3<f64>> {
+        let Some(origin) = element(node, "origin") else { return Some(Isometry3::identity()) };
+        let xyz = if origin.has_attribute("xyz") { self.numbers(origin, "xyz") } else { Some([0.0; 3]) };
+        let rpy = if origin.has_attribute("rpy") { self.angles(origin) } else { Some([0.0; 3]) };
+        let ([x, y, z], [roll, pitch, yaw]) = (xyz?, rpy?);
+        let turn = Rotation3::from_matrix_unchecked(exact_turn(roll, pitch, yaw));
+        Some(Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_rotation_matrix(&turn)))
+    }
+
+    fn axis(&mut self, node: Node<'_, '_>) -> Option<Unit<Vector3<f64>>> {
+        let Some(axis) = element(node, "axis") else { return Some(Vector3::x_axis()) };
+        let direction = Vector3::from(self.numbers(axis, "xyz")?);
+        let unit = Unit::try_new(direction, 1e-9);
+        if unit.is_none() {
+            self.report(&axis.range(), "the axis has no direction", "e.g. `<axis xyz=\"0 0 1\"/>`");
+        }
+        unit
+    }
+
+    fn limits(&mut self, node: Node<'_, '_>, kind: Option<&str>) -> Option<[f64; 2]> {
+        let limit = element(node, "limit").filter(|_| matches!(kind, Some("revolute" | "prismatic")))?;
+        let mut end = |name: &str| {
+            if limit.has_attribute(name) { self.numbers(limit, name).map(|[value]| value) } else { Some(0.0) }
+        };
+        let (low, high) = (end("lower")?, end("upper")?);
+        if low > high {
+            self.report(&limit.range(), "the lower limit is above the upper", "write the smaller one as `lower`");
+            return None;
+        }
+        // Both zero or left out is how generators write that there is none.
+        (low < high).then_some([low, high])
+    }
+
+    /// Roll, pitch and yaw, with those that were rounded made exact.
+    fn angles(&mut self, node: Node<'_, '_>) -> Option<[f64; 3]> {
+        let mut angles: [f64; 3] = self.numbers(node, "rpy")?;
+        let texts = node.attribute("rpy").unwrap_or_default().split_whitespace();
+        for (angle, text) in angles.iter_mut().zip(texts) {
+            if let Some(exact) = unrounded(*angle, text) {
+                self.rounded += usize::from((exact - *angle).abs() > crate::angle::SNAP);
+                *angle = exact;
+            }
+        }
+        Some(angles)
+    }
+
+    /// The finite numbers of an attribute.
+    fn numbers<const K: usize>(&mut self, node: Node<'_, '_>, name: &str) -> Option<[f64; K]> {
+        let Some(attribute) = node.attribute_node(name) else {
+            let tag = node.tag_name().name();
+            let help = format!("write `<{tag} {name}=\"{}\"/>`", vec!["0"; K].join(" "));
+            self.report(&node.range(), &format!("`{tag}` has no `{name}`"), &help);
+            return None;
+        };
+        let place = attribute.range_value();
+        let words: Vec<&str> = attribute.value().split_whitespace().collect();
+        let mut values = [0.0; K];
+        if words.len() != K {
+            let (found, s) = (words.len(), if K == 1 { "" } else { "s" });
+            self.report(
+                &place,
+                &format!("`{name}` has {found} numbers, {K} expected"),
+                &format!("{K} number{s}, in SI"),
+            );
+            return None;
+        }
+        for (value, word) in values.iter_mut().zip(words) {
+            match word.parse::<f64>() {
+                Ok(number) if number.is_finite() => *value = number,
+                _ if word.contains("${") => {
+                    let help = "expand it first: `xacro FILE.xacro > FILE.urdf`";
+                    self.report(&place, &format!("`{word}` is a macro of xacro"), help);
+                    return None;
+                }
+                _ => {
+                    self.report(&place, &format!("`{word}` is not a finite number"), "lengths in m, angles in rad");
+                    return None;
+                }
+            }
+        }
+        Some(values)
+    }
+}
+
+fn element<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
+    node.children().find(|child| child.has_tag_name(name))
+}
+
+/// The multiple of 90 degrees that a number of at least two decimals is, when
+/// that is rounded to as many.
+fn unrounded(value: f64, text: &str) -> Option<f64> {
+    let (_, decimals) = text.split_once('.')?;
+    if decimals.len() < 2 || !decimals.bytes().all(|byte| byte.is_ascii_digit()) {
+        return None;
+    }
+    let exact = (value / FRAC_PI_2).round() * FRAC_PI_2;
+    let unit = 10_f64.powi(-(decimals.len() as i32));
+    // Truncated in place of rounded is common too.
+    ((value - exact).abs() < unit.max(crate::angle::SNAP)).then_some(exact)
+}
+
+/// `Rz(yaw) Ry(pitch) Rx(roll)`, exact at the multiples of 90 degrees.
+fn exact_turn(roll: f64, pitch: f64, yaw: f64) -> nalgebra::Matrix3<f64> {
+    let sin_cos =
+        |angle: f64| crate::angle::quarter_turns(angle).map_or_else(|| angle.sin_cos(), crate::angle::sin_cos_of_turns);
+    let ((sr, cr), (sp, cp), (sy, cy)) = (sin_cos(roll), sin_cos(pitch), sin_cos(yaw));
+    let x = nalgebra::Matrix3::new(1.0, 0.0, 0.0, 0.0, cr, -sr, 0.0, sr, cr);
+    let y = nalgebra::Matrix3::new(cp, 0.0, sp, 0.0, 1.0, 0.0, -sp, 0.0, cp);
+    let z = nalgebra::Matrix3::new(cy, -sy, 0.0, sy, cy, 0.0, 0.0, 0.0, 1.0);
+    z * y * x
+}

@@ -1,0 +1,223 @@
+use nalgebra::{Matrix4, Rotation3, Vector3};
+use proptest::prelude::*;
+
+use super::{Chain, Tree};
+use crate::{Description, JointKind, Placement};
+
+const ARM: &str = include_str!("../../../robstiff/cli/docs/files/arm.urdf");
+
+/// One turn and one shift after the other: the table's own meaning.
+fn by_table(robot: &Description, q: &[f64]) -> Matrix4<f64> {
+    let turn = |axis: Vector3<f64>, angle: f64| Rotation3::new(axis * angle).to_homogeneous();
+    let placement = |at: &Placement| {
+        let [roll, pitch, yaw] = at.rpy;
+        let turned = turn(Vector3::z(), yaw) * turn(Vector3::y(), pitch) * turn(Vector3::x(), roll);
+        Matrix4::new_translation(&Vector3::from(at.xyz)) * turned
+    };
+    let mut pose = placement(&robot.base);
+    for (joint, &q) in robot.joints.iter().zip(q) {
+        let (theta, d) = match joint.kind {
+            JointKind::Revolute => (joint.theta + q, joint.d),
+            JointKind::Prismatic => (joint.theta, joint.d + q),
+        };
+        pose *= turn(Vector3::z(), theta) * Matrix4::new_translation(&Vector3::new(joint.a, 0.0, d));
+        pose *= turn(Vector3::x(), joint.alpha);
+    }
+    pose * placement(&robot.tool)
+}
+
+fn apart(chain: &Chain, robot: &Description, q: &[f64]) -> f64 {
+    (by_table(robot, q) - chain.pose(q).to_homogeneous()).abs().max()
+}
+
+fn chain(text: &str, tip: Option<&str>) -> Chain {
+    let tree = Tree::parse("arm.urdf", text).unwrap_or_else(|problems| panic!("{problems}"));
+    tree.chain(None, tip).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+/// Numbers of a table in degrees and millimetres.
+fn rows(robot: &Description) -> Vec<[f64; 4]> {
+    let round = |value: f64| (value * 1e6).round() / 1e6 + 0.0;
+    let row = |joint: &crate::Joint| {
+        [joint.theta.to_degrees(), joint.d * 1e3, joint.a * 1e3, joint.alpha.to_degrees()].map(round)
+    };
+    robot.joints.iter().map(row).collect()
+}
+
+#[test]
+fn six_axes_become_the_table_a_person_would_write() {
+    let chain = chain(ARM, Some("flange"));
+    let robot = chain.description();
+    assert_eq!(robot.name, "MillingArm180");
+    assert_eq!(robot.base, Placement::default());
+    assert_eq!(
+        rows(&robot),
+        [
+            [0.0, 780.0, 320.0, -90.0],
+            [-90.0, 0.0, 1075.0, 0.0],
+            [0.0, 0.0, 200.0, -90.0],
+            [0.0, 1392.0, 0.0, 90.0],
+            [0.0, 0.0, 0.0, -90.0],
+            [180.0, 200.0, 0.0, 0.0],
+        ]
+    );
+    assert_eq!(robot.tool, Placement::default());
+    assert_eq!(robot.joints[0].limits, Some([-2.967, 2.967]));
+    assert_eq!(robot.joints[5].limits, None);
+    assert!(apart(&chain, &robot, &[0.3, -0.4, 0.5, 1.6, -0.7, 0.8]) < 1e-12);
+}
+
+#[test]
+fn masses_are_those_that_move_with_a_joint() {
+    let robot = chain(ARM, Some("cutter_tip")).description();
+    let masses: Vec<f64> = robot.links.iter().map(|link| link.mass).collect();
+    assert_eq!(masses, [280.0, 160.0, 130.0, 70.0, 30.0, 30.0]);
+    // Link 1's own, 0.1 m before the first axis and 0.1 m above 0.78 m; frame 1 is at (0.32, 0, 0.78).
+    let [x, y, z] = robot.links[0].center_of_mass;
+    assert!((x + 0.22).abs() < 1e-12 && (y + 0.1).abs() < 1e-12 && z.abs() < 1e-12, "{x} {y} {z}");
+    // The hand (5 kg, 180 mm along the last axis) with the spindle (25 kg, 150 mm before the flange).
+    let along = (5.0 * 0.18 + 25.0 * 0.35) / 30.0;
+    let [x, y, z] = robot.links[5].center_of_mass;
+    let bare = Description { tool: Placement::default(), ..robot };
+    let center = by_table(&bare, &[0.0; 6]) * nalgebra::Vector4::new(x, y, z, 1.0);
+    assert!((center.xyz() - Vector3::new(1.712 + along, 0.0, 2.055)).norm() < 1e-12, "{center}");
+}
+
+#[test]
+fn ends_and_links_are_chosen_or_asked_for() {
+    let tree = Tree::parse("arm.urdf", ARM).unwrap();
+    let said = tree.chain(None, None).unwrap_err().to_string();
+    assert!(said.contains("several ends") && said.contains("`cutter_tip` (behind 6 joints)"), "{said}");
+    assert!(said.contains("arm.urdf:4:3"), "{said}");
+    let said = tree.chain(None, Some("flang")).unwrap_err().to_string();
+    assert!(said.contains("did you mean `flange`?"), "{said}");
+    let said = tree.chain(Some("flange"), Some("link_2")).unwrap_err().to_string();
+    assert!(said.contains("no chain leads from `flange` down to `link_2`"), "{said}");
+    let part = tree.chain(Some("link_2"), Some("link_5")).unwrap();
+    assert_eq!(part.joints.len(), 3);
+    assert!(apart(&part, &part.description(), &[0.1, 0.2, 0.3]) < 1e-12);
+}
+
+#[test]
+fn a_scara_with_a_slide_is_imported() {
+    let text = r#"<robot name="scara"><link name="a"/><link name="b"/><link name="c"/><link name="d"/><link name="e"/>
+<joint name="j1" type="revolute"><parent link="a"/><child link="b"/><origin xyz="0 0 0.4"/><axis xyz="0 0 1"/>
+  <limit lower="-2" upper="2"/></joint>
+<joint name="j2" type="revolute"><parent link="b"/><child link="c"/><origin xyz="0.45 0 0"/><axis xyz="0 0 1"/>
+  <limit lower="-2.5" upper="2.5"/></joint>
+<joint name="j3" type="prismatic"><parent link="c"/><child link="d"/><origin xyz="0.4 0 0"/><axis xyz="0 0 -1"/>
+  <limit lower="0" upper="0.2"/></joint>
+<joint name="j4" type="continuous"><parent link="d"/><child link="e"/><axis xyz="0 0 -1"/></joint></robot>"#;
+    let chain = chain(text, None);
+    let robot = chain.description();
+    assert_eq!(robot.joints[2].kind, JointKind::Prismatic);
+    assert_eq!(robot.joints[2].limits, Some([0.0, 0.2]));
+    for q in [[0.0; 4], [0.3, -1.0, 0.15, 2.0], [-1.5, 2.0, 0.02, -3.0]] {
+        assert!(apart(&chain, &robot, &q) < 1e-12, "{}", apart(&chain, &robot, &q));
+    }
+    assert_eq!(Description::parse("x", &robot.to_yaml()).unwrap(), robot);
+}
+
+#[test]
+fn mistakes_are_shown_where_they_are() {
+    let refused = |from: &str, to: &str| {
+        assert!(ARM.contains(from), "{from}");
+        Tree::parse("arm.urdf", &ARM.replacen(from, to, 1)).unwrap_err().to_string()
+    };
+    for (from, to, part) in [
+        ("type=\"revolute\"", "type=\"revolut\"", "unknown type of joint `revolut`"),
+        ("<child link=\"link_1\"/>", "<child link=\"link_11\"/>", "did you mean `link_1`?"),
+        ("xyz=\"0 0 0.78\"", "xyz=\"0 0.78\"", "`xyz` has 2 numbers, 3 expected"),
+        ("xyz=\"0 0 0.78\"", "xyz=\"0 0 ${d1}\"", "macro of xacro"),
+        ("xyz=\"0 0 0.78\"", "xyz=\"0 0 up\"", "arm.urdf:34:18"),
+        ("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 0\"/>", "the axis has no direction"),
+        ("lower=\"-2.967\"", "lower=\"9\"", "the lower limit is above the upper"),
+        ("<mass value=\"400\"/>", "<mass value=\"-1\"/>", "the mass is negative"),
+        ("</robot>", "", "this is not XML"),
+        ("<child link=\"link_2\"/>", "<child link=\"link_1\"/>", "hangs on two joints"),
+    ] {
+        let said = refused(from, to);
+        assert!(said.contains(part), "{to}: {said}");
+    }
+    let floating = ARM.replacen("type=\"revolute\"", "type=\"floating\"", 1);
+    let said = Tree::parse("arm.urdf", &floating).unwrap().chain(None, Some("flange")).unwrap_err().to_string();
+    assert!(said.contains("the joint `joint_1` is floating") && said.contains("arm.urdf:32:3"), "{said}");
+    let mimic = ARM.replacen("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"joint_1\"/>", 1);
+    let said = Tree::parse("arm.urdf", &mimic).unwrap().chain(None, Some("flange")).unwrap_err().to_string();
+    assert!(said.contains("the joint `joint_2` follows another one"), "{said}");
+}
+
+#[test]
+fn angles_that_were_rounded_are_exact_again() {
+    for (text, quarters) in [("1.5708", 1.0), ("1.57", 1.0), ("-3.14159", -2.0), ("3.1415926535897931", 2.0)] {
+        let arm = ARM.replacen("rpy=\"0 1.5708 0\"", &format!("rpy=\"0 0 {text}\""), 1);
+        let tree = Tree::parse("arm.urdf", &arm).unwrap();
+        let turn = tree.joints[6].origin.rotation.to_rotation_matrix();
+        let exact = Rotation3::new(Vector3::z() * quarters * core::f64::consts::FRAC_PI_2);
+        assert!((turn.matrix() - exact.matrix()).abs().max() < 1e-15, "{text}");
+    }
+    let kept = Tree::parse("arm.urdf", &ARM.replacen("rpy=\"0 1.5708 0\"", "rpy=\"0 0 1.55\"", 1)).unwrap();
+    assert!((kept.joints[6].origin.rotation.angle() - 1.55).abs() < 1e-12);
+}
+
+/// Turns by quarters, and any others.
+fn angle() -> impl Strategy<Value = f64> {
+    let quarter = core::f64::consts::FRAC_PI_2;
+    prop_oneof![
+        4 => prop::sample::select(vec![0.0, quarter, -quarter, 2.0 * quarter]),
+        1 => -3.0..3.0_f64,
+    ]
+}
+
+fn direction() -> impl Strategy<Value = [f64; 3]> {
+    prop_oneof![
+        3 => prop::sample::select(vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]),
+        1 => prop::array::uniform3(-1.0..1.0_f64).prop_filter("a direction", |v| Vector3::from(*v).norm() > 0.2),
+    ]
+}
+
+/// A joint: how it moves (0 fixed, 1 turning, 2 sliding), axis, place, turn.
+type Link = (u8, [f64; 3], [f64; 3], [f64; 3]);
+
+fn link() -> impl Strategy<Value = Link> {
+    let length = || prop_oneof![2 => Just(0.0), 1 => Just(0.5), 2 => -1.5..1.5_f64];
+    let kind = prop_oneof![1 => Just(0_u8), 5 => Just(1), 2 => Just(2)];
+    (kind, direction(), prop::array::uniform3(length()), prop::array::uniform3(angle()))
+}
+
+fn urdf(links: &[Link]) -> String {
+    let mut text = String::from("<robot name=\"drawn\"><link name=\"l0\"/>");
+    for (i, (kind, axis, xyz, rpy)) in links.iter().enumerate() {
+        let kind = ["fixed", "continuous", "prismatic"][usize::from(*kind)];
+        let words = |numbers: &[f64; 3]| numbers.map(|number| format!("{number:?}")).join(" ");
+        let (axis, xyz, rpy) = (words(axis), words(xyz), words(rpy));
+        text += &format!(
+            "<link name=\"l{}\"/><joint name=\"j{i}\" type=\"{kind}\"><parent link=\"l{i}\"/><child link=\"l{}\"/>\
+             <origin xyz=\"{xyz}\" rpy=\"{rpy}\"/><axis xyz=\"{axis}\"/></joint>\n",
+            i + 1,
+            i + 1
+        );
+    }
+    text + "</robot>"
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_chain_moves_as_its_table(
+        links in prop::collection::vec(link(), 1..9),
+        q in prop::array::uniform8(-3.0..3.0_f64),
+    ) {
+        let moving = links.iter().filter(|link| link.0 > 0).count();
+        prop_assume!((1..=8).contains(&moving));
+        let tree = Tree::parse("drawn.urdf", &urdf(&links)).unwrap();
+        let tip = format!("l{}", links.len());
+        let chain = tree.chain(Some("l0"), Some(&tip)).unwrap();
+        let robot = chain.description();
+        let far = robot.joints.iter().map(|joint| joint.d.abs() + joint.a.abs()).fold(1.0, f64::max);
+        prop_assert!(apart(&chain, &robot, &q[..moving]) < 1e-10 * far, "{robot:?}");
+        let read = Description::parse("drawn.yaml", &robot.to_yaml()).unwrap();
+        prop_assert!(apart(&chain, &read, &q[..moving]) < 1e-9 * far);
+    }
+}

@@ -1,0 +1,145 @@
+//! `robstiff import`: a description from a URDF file.
+
+use std::path::PathBuf;
+
+use robstiff::nalgebra::{Matrix4, SVector};
+use robstiff::{Robot, with_robot};
+use robstiff_robots::urdf::{Chain, Tree};
+use robstiff_robots::{Description, JointKind};
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+use crate::output::{self, Files};
+use crate::text::{Table, count, decimals};
+use crate::{json, text};
+
+/// Writes the description of a serial chain of a URDF file: standard DH table, base, tool, limits, masses
+///
+/// The description is compared with the file at a thousand poses, and written
+/// only if both agree.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The robot (for a xacro file: `xacro FILE.xacro > FILE.urdf`)
+    #[arg(value_name = "FILE.urdf")]
+    urdf: PathBuf,
+    /// The link whose frame is the base frame; the root where left out
+    #[arg(long, value_name = "LINK")]
+    base: Option<String>,
+    /// The link whose frame is that of the tool; where left out, the end of the tree, if there is one only
+    #[arg(long, value_name = "LINK")]
+    tip: Option<String>,
+    /// Where the description is written
+    #[arg(long, value_name = "ROBOT.yaml")]
+    out: PathBuf,
+    /// Write what was done as JSON to FILE
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// Poses at which both are compared.
+const POSES: usize = 1000;
+
+/// How far apart they may be (m, and as entries of the rotation).
+const AGREES: f64 = 1e-9;
+
+/// Imports a robot.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let tree = Tree::read(&arguments.urdf)?;
+    let chain = tree.chain(arguments.base.as_deref(), arguments.tip.as_deref())?;
+    for warning in tree.warnings.iter().chain(&chain.warnings) {
+        output::complain(format_args!("warning: {warning}"));
+    }
+    let file = arguments.urdf.file_name().unwrap_or_default().to_string_lossy();
+    let mut robot = chain.description();
+    robot.source = format!(
+        "The chain from {} to {} of {file}, by robstiff import: geometry, limits{} are the file's. \
+         A URDF file says nothing of compliances: the joints are rigid until they are given.",
+        chain.base,
+        chain.tip,
+        if robot.links.is_empty() { "" } else { " and masses" },
+    );
+    // As it will be read, with every number as it is written.
+    let yaml = robot.to_yaml();
+    let robot = Description::parse(&arguments.out.display().to_string(), &yaml)?;
+    let apart = with_robot!(&robot, |robot| largest_difference(&robot, &chain));
+    if apart.is_nan() || apart > AGREES {
+        return Err(Failure::new(format!(
+            "the description would be off the file by up to {} m or rad, and is not written; \
+             are there axes that are almost parallel, by angles that were rounded?",
+            text::significant(apart, 2)
+        )));
+    }
+    let mut files = Files::default();
+    files.protect(&arguments.urdf);
+    files.add(&arguments.out, yaml);
+    if let Some(path) = &arguments.json {
+        files.add(path, json::document(&document(&robot, &chain, apart)));
+    }
+    let said = files.write()?;
+    output::print(page(&robot, &chain, apart) + &said)
+}
+
+/// The largest difference of an entry of the tool's frame, at poses within the
+/// limits.
+fn largest_difference<const N: usize>(robot: &impl Robot<N>, chain: &Chain) -> f64 {
+    let ranges: Vec<[f64; 2]> = chain
+        .joints
+        .iter()
+        .map(|joint| match (joint.kind, joint.limits) {
+            (_, Some(limits)) => limits,
+            (JointKind::Revolute, None) => [-std::f64::consts::PI, std::f64::consts::PI],
+            (JointKind::Prismatic, None) => [-1.0, 1.0],
+        })
+        .collect();
+    // The fractional parts of multiples of square roots are spread evenly.
+    let root = |joint: usize| f64::from([2_u8, 3, 5, 7, 11, 13, 17, 19][joint % 8]).sqrt();
+    let difference = |pose: usize| {
+        let q = SVector::<f64, N>::from_fn(|i, _| {
+            ranges[i][0] + (ranges[i][1] - ranges[i][0]) * (pose as f64 * root(i)).fract()
+        });
+        let expected: Matrix4<f64> = chain.pose(q.as_slice()).to_homogeneous();
+        let apart = (robot.transform(&q) - expected).abs();
+        // A NaN would be lost in a maximum.
+        if apart.iter().any(|entry| entry.is_nan()) { f64::NAN } else { apart.max() }
+    };
+    (0..POSES).map(difference).fold(0.0, |most, apart| if apart > most || apart.is_nan() { apart } else { most })
+}
+
+fn page(robot: &Description, chain: &Chain, apart: f64) -> String {
+    let mut page = format!(
+        "{}: {} from {} to {}, agrees with the file within {} m at {POSES} poses\n\n",
+        robot.name,
+        count(robot.joints.len(), "joint"),
+        chain.base,
+        chain.tip,
+        text::significant(apart.max(1e-16), 1),
+    );
+    let mut table = Table::new(2, ["", "", "theta [deg]", "d [mm]", "a [mm]", "alpha [deg]", "limits", ""]);
+    for (number, (joint, row)) in (1..).zip(chain.joints.iter().zip(&robot.joints)) {
+        let limits = row.limits.map(|limits| limits.map(|limit| decimals(row.for_people(limit), 1)));
+        table.row([
+            format!("joint {number}"),
+            joint.name.clone(),
+            decimals(row.theta.to_degrees(), 3),
+            decimals(row.d * 1e3, 3),
+            decimals(row.a * 1e3, 3),
+            decimals(row.alpha.to_degrees(), 3),
+            limits.map_or("none".to_owned(), |[low, high]| format!("[{low}, {high}]")),
+            row.people_unit().to_owned(),
+        ]);
+    }
+    page += &table.to_string();
+    page += "\nEvery joint is rigid until you give it a `compliance`.\n";
+    page
+}
+
+fn document(robot: &Description, chain: &Chain, apart: f64) -> Value {
+    json!({
+        "robot": robot.name,
+        "base": chain.base,
+        "tip": chain.tip,
+        "joints": chain.joints.iter().map(|joint| joint.name.as_str()).collect::<Value>(),
+        "poses": POSES,
+        "largest_difference": json::number(apart),
+    })
+}

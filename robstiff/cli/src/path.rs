@@ -1,0 +1,236 @@
+//! `robstiff path`: the joint coordinates of a tool path.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use robstiff::inverse::Inverse;
+use robstiff::nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
+use robstiff::path::{Jump, SolvedPath, ToolPath};
+use robstiff::{Robot, with_robot};
+use robstiff_robots::quantity::{self, Dimension};
+use robstiff_robots::{Description, JointKind};
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+use crate::output::{self, Files};
+use crate::text::{Table, count, decimals};
+use crate::{input, json};
+
+/// Joint coordinates and poses of a tool path, or the points that cannot be reached
+///
+/// PATH.csv has a point a row: `x y z` and an orientation (`qw qx qy qz`, a
+/// rotation vector `rx ry rz`, angles `a b c` about z, y, x, or the direction
+/// `ux uy uz` of the tool's axis), or joint coordinates `q1`..; each column as
+/// `name [unit]`. See robstiff/cli/docs/path.md.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The robot's description, or the name of a robot in the catalogue
+    #[arg(value_name = "ROBOT.yaml")]
+    robot: PathBuf,
+    /// The tool path
+    #[arg(value_name = "PATH.csv")]
+    path: PathBuf,
+    /// Write joint coordinates and poses of every point to FILE
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// The posture to begin near: joint coordinates in rad (or m), or with their unit as in "0.5, 30 deg, -pi/2"
+    #[arg(long, value_name = "q1,q2,..", allow_hyphen_values = true)]
+    start: Option<String>,
+    /// Where the frame of the path's poses stands in the base frame: x, y, z, then roll, pitch, yaw, as in
+    /// "1500 mm, 0, 800 mm, 0, 0, 90 deg"
+    #[arg(long, value_name = "x,y,z,roll,pitch,yaw", allow_hyphen_values = true)]
+    place: Option<String>,
+    /// The axis in the TCP's frame that `ux uy uz` point along: x, y, z, -x, -y or -z
+    #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = tool_axis)]
+    tool_axis: Unit<Vector3<f64>>,
+    /// Write the same as JSON to FILE
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// Solves the path.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (robot, _) = input::robot(&arguments.robot)?;
+    let start = match &arguments.start {
+        Some(text) => Some(input::coordinates_of("--start", text, &robot)?),
+        None => None,
+    };
+    let mut path = ToolPath::read(&arguments.path, &robot, arguments.tool_axis)?;
+    for warning in &path.warnings {
+        output::complain(format_args!("warning: {warning}"));
+    }
+    if let Some(text) = &arguments.place {
+        path = path.placed(&place(text)?);
+    }
+    let solved = with_robot!(&robot, |robot| solve(&robot, &path, start.as_deref()))?;
+    let mut files = Files::default();
+    files.protect(&arguments.robot);
+    files.protect(&arguments.path);
+    if let Some(out) = &arguments.out {
+        files.add(out, table(&robot, &solved));
+    }
+    if let Some(path) = &arguments.json {
+        files.add(path, json::document(&document(&robot, &solved)));
+    }
+    let said = files.write()?;
+    output::print(page(&robot, &arguments.path.display().to_string(), &solved) + &said)
+}
+
+/// A path solved, whatever the number of joints.
+struct Solved {
+    points: Vec<Point>,
+    jumps: Vec<Jump>,
+    closed_form: bool,
+}
+
+struct Point {
+    line: usize,
+    q: Vec<f64>,
+    pose: Matrix4<f64>,
+    tangent: Option<[f64; 3]>,
+    s: f64,
+    feed: Option<f64>,
+}
+
+fn solve<const N: usize>(robot: &impl Robot<N>, path: &ToolPath, start: Option<&[f64]>) -> Result<Solved, Failure> {
+    let start = start.map(SVector::<f64, N>::from_column_slice);
+    let SolvedPath { points, jumps } = path.solve(robot, start.as_ref())?;
+    let points = points.into_iter().map(|point| Point {
+        line: point.line,
+        q: point.q.iter().copied().collect(),
+        pose: point.pose,
+        tangent: point.tangent.map(|tangent| tangent.into_inner().into()),
+        s: point.s,
+        feed: point.feed,
+    });
+    Ok(Solved { points: points.collect(), jumps, closed_form: Inverse::new(robot).has_closed_form() })
+}
+
+fn tool_axis(text: &str) -> Result<Unit<Vector3<f64>>, String> {
+    let axis = match text.trim_start_matches('-') {
+        "x" => Vector3::x_axis(),
+        "y" => Vector3::y_axis(),
+        "z" => Vector3::z_axis(),
+        _ => return Err("one of x, y, z, -x, -y, -z".to_owned()),
+    };
+    Ok(if text.starts_with('-') { -axis } else { axis })
+}
+
+/// A frame from `x,y,z,roll,pitch,yaw`.
+fn place(given: &str) -> Result<Matrix4<f64>, Failure> {
+    let parts: Vec<&str> = given.split(',').collect();
+    let [x, y, z, roll, pitch, yaw] = parts[..] else {
+        return Err(Failure::Usage(format!("--place gives {}, six are needed", count(parts.len(), "number"))));
+    };
+    let read =
+        |text, dimension| quantity::parse(text, dimension).map_err(|error| Failure::Usage(format!("--place: {error}")));
+    let turn = Rotation3::from_euler_angles(
+        read(roll, Dimension::Angle)?,
+        read(pitch, Dimension::Angle)?,
+        read(yaw, Dimension::Angle)?,
+    );
+    let at = [x, y, z].map(|text| read(text, Dimension::Length));
+    let [x, y, z] = at;
+    Ok(Matrix4::new_translation(&Vector3::new(x?, y?, z?)) * turn.to_homogeneous())
+}
+
+/// What people are told: length, ranges of the joints, changes of posture.
+fn page(robot: &Description, file: &str, solved: &Solved) -> String {
+    let length = solved.points.last().map_or(0.0, |point| point.s - solved.points[0].s);
+    let points = count(solved.points.len(), "point");
+    let mut page = format!("{} on {file}: {points}, {} mm, all reached", robot.name, decimals(length * 1e3, 1));
+    page += if solved.closed_form { " (closed form)\n\n" } else { " (damped least squares)\n\n" };
+    let mut table = Table::new(1, ["", "from", "to", "limits", ""]);
+    for (i, joint) in robot.joints.iter().enumerate() {
+        let of = || solved.points.iter().map(|point| point.q[i]);
+        let [least, most] = [of().fold(f64::INFINITY, f64::min), of().fold(f64::NEG_INFINITY, f64::max)];
+        let limits = joint.limits.map(|limits| limits.map(|limit| joint.for_people(limit)));
+        table.row([
+            format!("joint {}", i + 1),
+            decimals(joint.for_people(least), 2),
+            decimals(joint.for_people(most), 2),
+            limits.map_or("none".to_owned(), |[low, high]| format!("[{low}, {high}]")),
+            joint.people_unit().to_owned(),
+        ]);
+    }
+    page += &table.to_string();
+    if !solved.jumps.is_empty() {
+        page += "\nThe arm changes its posture between\n";
+    }
+    for jump in solved.jumps.iter().take(20) {
+        let joint = &robot.joints[jump.joint - 1];
+        writeln!(
+            page,
+            "  lines {} and {}: joint {} moves by {} {}, halfway the tool is {} mm and {} deg off",
+            jump.lines[0],
+            jump.lines[1],
+            jump.joint,
+            decimals(joint.for_people(jump.change), 1),
+            joint.people_unit(),
+            decimals(jump.off.distance * 1e3, 1),
+            decimals(jump.off.angle.to_degrees(), 1),
+        )
+        .expect("a string takes any text");
+    }
+    if solved.jumps.len() > 20 {
+        page += &format!("  and {} more\n", solved.jumps.len() - 20);
+    }
+    page
+}
+
+fn quaternion(pose: &Matrix4<f64>) -> [f64; 4] {
+    let rotation = Rotation3::from_matrix_unchecked(pose.fixed_view::<3, 3>(0, 0).into_owned());
+    let turn = UnitQuaternion::from_rotation_matrix(&rotation);
+    [turn.w, turn.i, turn.j, turn.k]
+}
+
+/// A row for each point, which the command reads again.
+fn table(robot: &Description, solved: &Solved) -> String {
+    let mut csv = String::new();
+    for (number, joint) in (1..).zip(&robot.joints) {
+        csv += &format!("q{number} [{}],", joint.people_unit());
+    }
+    csv += "x [mm],y [mm],z [mm],qw,qx,qy,qz,s [mm]";
+    let has_feed = solved.points.iter().any(|point| point.feed.is_some());
+    csv += if has_feed { ",feed [mm/min]\n" } else { "\n" };
+    for point in &solved.points {
+        for (&q, joint) in point.q.iter().zip(&robot.joints) {
+            // All digits: the file is read again.
+            let unit = if joint.kind == JointKind::Revolute { 1_f64.to_radians() } else { 1e-3 };
+            csv += &format!("{},", decimals(q / unit, 10));
+        }
+        let position: Vec<String> = (0..3).map(|axis| decimals(point.pose[(axis, 3)] * 1e3, 6)).collect();
+        let turn = quaternion(&point.pose).map(|part| decimals(part, 12));
+        csv += &format!("{},{},{}", position.join(","), turn.join(","), decimals(point.s * 1e3, 6));
+        if let Some(feed) = point.feed {
+            csv += &format!(",{}", decimals(feed * 6e4, 6));
+        }
+        csv.push('\n');
+    }
+    csv
+}
+
+/// Everything in SI units.
+fn document(robot: &Description, solved: &Solved) -> Value {
+    json!({
+        "robot": robot.name,
+        "closed_form": solved.closed_form,
+        "length_m": json::number(solved.points.last().map_or(0.0, |point| point.s - solved.points[0].s)),
+        "points": solved.points.iter().map(|point| json!({
+            "line": point.line,
+            "q": json::numbers(point.q.iter().copied()),
+            "position_m": json::numbers((0..3).map(|axis| point.pose[(axis, 3)])),
+            "quaternion_wxyz": json::numbers(quaternion(&point.pose)),
+            "feed_direction": point.tangent.map(json::numbers),
+            "s_m": json::number(point.s),
+            "feed_m_per_s": point.feed.map(json::number),
+        })).collect::<Value>(),
+        "jumps": solved.jumps.iter().map(|jump| json!({
+            "lines": jump.lines,
+            "joint": jump.joint,
+            "change": json::number(jump.change),
+            "off_m": json::number(jump.off.distance),
+            "off_rad": json::number(jump.off.angle),
+        })).collect::<Value>(),
+    })
+}

@@ -1,0 +1,53 @@
+//! `import`: descriptions from URDF files.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::{fail, folder, inside, json, keys, run, succeed};
+
+fn arm() -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/files/arm.urdf").to_str().unwrap().to_owned()
+}
+
+#[test]
+fn an_arm_is_imported_and_can_be_used() {
+    let folder = folder("import");
+    let (out, told) = (inside(&folder, "arm.yaml"), inside(&folder, "told.json"));
+    let ran = run(&["import", &arm(), "--tip", "cutter_tip", "--out", &out, "--json", &told]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    assert!(ran.err.contains("2 angles such as 1.5708 are taken as"), "{}", ran.err);
+    assert!(ran.out.contains("6 joints from base_link to cutter_tip"), "{}", ran.out);
+    let document = json(&told);
+    assert_eq!(keys(&document), ["robot", "base", "tip", "joints", "poses", "largest_difference"]);
+    assert!(document["largest_difference"].as_f64().unwrap() < 1e-9);
+    let page = succeed(&["show", &out]);
+    assert!(page.contains("MillingArm180"), "{page}");
+}
+
+#[test]
+fn what_cannot_be_imported_is_explained_and_not_written() {
+    let folder = folder("import-refused");
+    let out = inside(&folder, "arm.yaml");
+    let said = fail(1, &["import", &arm(), "--out", &out]);
+    assert!(said.contains("the tree has several ends") && said.contains("`cutter_tip` (behind 6 joints)"), "{said}");
+    let broken = inside(&folder, "broken.urdf");
+    fs::write(&broken, fs::read_to_string(arm()).unwrap().replace("0 0 0.78", "0 0 high")).unwrap();
+    let said = fail(1, &["import", &broken, "--tip", "flange", "--out", &out]);
+    assert!(said.contains("`high` is not a finite number") && said.contains("broken.urdf:"), "{said}");
+    assert!(!Path::new(&out).exists());
+}
+
+#[test]
+fn axes_that_are_almost_parallel_are_refused() {
+    let folder = folder("import-nearly");
+    let (nearly, out) = (inside(&folder, "nearly.urdf"), inside(&folder, "nearly.yaml"));
+    // 3e-8 rad: the common normal is thousands of kilometres away.
+    let text = fs::read_to_string(arm()).unwrap().replacen("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"3e-8 1 0\"/>", 1);
+    fs::write(&nearly, text).unwrap();
+    let ran = run(&["import", &nearly, "--tip", "flange", "--out", &out]);
+    assert_eq!(ran.code, 1, "{}", ran.out);
+    assert!(ran.err.contains("almost parallel"), "{}", ran.err);
+    assert!(!Path::new(&out).exists());
+}
