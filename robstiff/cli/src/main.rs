@@ -11,6 +11,7 @@ mod output;
 mod plan;
 mod predict;
 mod report;
+mod scene;
 mod show;
 mod simulate;
 mod text;
@@ -39,6 +40,7 @@ enum Command {
     Emit(emit::Arguments),
     Plan(plan::Arguments),
     Simulate(simulate::Arguments),
+    View(scene::Arguments),
 }
 
 impl Command {
@@ -51,6 +53,7 @@ impl Command {
             Self::Emit(arguments) => emit::run(arguments),
             Self::Plan(arguments) => plan::run(arguments),
             Self::Simulate(arguments) => simulate::run(arguments),
+            Self::View(arguments) => scene::run(arguments),
         }
     }
 }

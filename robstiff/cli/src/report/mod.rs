@@ -6,10 +6,10 @@
 mod arm;
 pub mod content;
 mod figure;
-mod html;
+pub mod html;
 mod scatter;
 mod sections;
-mod svg;
+pub mod svg;
 #[cfg(test)]
 mod tests;
 mod triage;
