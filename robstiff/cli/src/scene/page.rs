@@ -70,8 +70,9 @@ fn legend(scene: &Scene) -> String {
         let heading = if unit.is_empty() { values.name.clone() } else { format!("{} [{unit}]", values.name) };
         said += &format!(
             "<div class=\"scale\">{}<div class=\"bar\" aria-hidden=\"true\">{steps}</div>\
-             <div class=\"marks\">{marks}</div>\n<p>The line is wider where it is more.</p></div>\n",
-            text("h2", &heading)
+             <div class=\"marks\">{marks}</div>\n<p>{} where it is more.</p></div>\n",
+            text("h2", &heading),
+            if scene.kind == Kind::Path { "The line is wider" } else { "The dots are larger" }
         );
     }
     said += &format!(
@@ -82,7 +83,9 @@ fn legend(scene: &Scene) -> String {
     if scene.poses.iter().any(|pose| pose.displacement.is_some()) {
         let measured = if scene.kind == Kind::Campaign { " Dashed: measured. Full: predicted." } else { "" };
         said += &format!(
-            "<div>{}<p>The displacement of the tool, enlarged.{measured} <span id=\"arrow-scale\"></span></p></div>\n",
+            "<div{}>{}<p>The displacement of the tool, enlarged.{measured} <span id=\"arrow-scale\"></span></p></div>\n",
+            // The drawing of a path has none.
+            if scene.kind == Kind::Path { " class=\"live\"" } else { "" },
             text("h2", "Arrow [µm]")
         );
     }

@@ -4,7 +4,7 @@
 
 use robstiff_robots::Description;
 
-use super::content::{Pose, Scene, length};
+use super::content::{Kind, Pose, Scene, length};
 use crate::report::svg::{Svg, ticks};
 use crate::text::significant;
 
@@ -26,14 +26,20 @@ pub fn svg(robot: &Description, scene: &Scene) -> String {
     floor(&mut svg, &view);
     let Some(shown) = shown(scene) else { return svg.html() };
     arm(&mut svg, &view, shown);
-    path(&mut svg, &view, scene);
     let per_unit = ellipsoid_scale(scene);
     let stride = scene.poses.len().div_ceil(MOST_ELLIPSOIDS);
-    for pose in scene.poses.iter().step_by(stride) {
-        ellipsoid(&mut svg, &view, pose, per_unit);
+    for pose in scene.poses.iter().step_by(stride).filter(|_| scene.poses.len() > 1) {
+        ellipsoid(&mut svg, "ellipsoid faint", &view, pose, per_unit);
     }
-    ellipsoid(&mut svg, &view, shown, per_unit);
-    displacements(&mut svg, &view, scene);
+    ellipsoid(&mut svg, "ellipsoid", &view, shown, per_unit);
+    path(&mut svg, &view, scene);
+    let per_um = displacements(&mut svg, &view, scene);
+    let mut scales = vec![format!("floor squares of {} m", significant(view.step, 3))];
+    if shown.principal.is_some() {
+        scales.push(format!("ellipsoids: 1 µm/N is {} mm", significant(per_unit * 1e3, 3)));
+    }
+    scales.extend(per_um.map(|per_um| format!("arrows: {} times their length", significant(per_um * 1e6, 3))));
+    svg.text("axis", [WIDTH, HEIGHT - 8.0], "end", &scales.join("; "));
     svg.html()
 }
 
@@ -43,10 +49,16 @@ fn shown(scene: &Scene) -> Option<&Pose> {
     scene.poses.iter().max_by(|a, b| value(a).total_cmp(&value(b)))
 }
 
-/// Metres a um/N: the longest semi-axis is a sixth of the arm.
+/// Metres a um/N: the longest semi-axis is at most a sixth of the arm.
 fn ellipsoid_scale(scene: &Scene) -> f64 {
     let longest = scene.poses.iter().filter_map(|pose| pose.principal).map(|[softest, ..]| softest).fold(0.0, f64::max);
-    reach(scene) / 6.0 / longest.max(f64::MIN_POSITIVE)
+    if longest > 0.0 { round(reach(scene) / 6.0 / longest) } else { 0.0 }
+}
+
+/// The next round number below.
+fn round(value: f64) -> f64 {
+    let power = 10_f64.powf(value.log10().floor());
+    [5.0, 2.0, 1.0].into_iter().map(|step| step * power).find(|&step| step <= value).unwrap_or(power)
 }
 
 /// The length of the arm along its links \[m\].
@@ -69,11 +81,11 @@ impl View {
     fn new(scene: &Scene) -> Self {
         let reach = reach(scene);
         let points = || scene.poses.iter().flat_map(|pose| &pose.points);
-        let step = ticks(0.0, reach, 5).get(1).copied().unwrap_or(0.5);
+        let step = ticks(0.0, reach, 8).get(1).copied().unwrap_or(0.5);
         let ends = |axis: usize| {
             let low = points().fold(0.0_f64, |low, point| low.min(point[axis]));
             let high = points().fold(0.0_f64, |high, point| high.max(point[axis]));
-            [(low / step).floor() * step - step, (high / step).ceil() * step + step]
+            [(low / step - 0.3).floor() * step, (high / step + 0.3).ceil() * step]
         };
         let lines = [ends(0), ends(1)];
         let corners = lines[0].into_iter().flat_map(|x| lines[1].map(|y| [x, y, 0.0]));
@@ -120,7 +132,6 @@ fn floor(svg: &mut Svg, view: &View) {
         let [x, y] = view.at(end.map(|component| component * 1.12));
         svg.text("axis", [x, y + 4.0], "middle", name);
     }
-    svg.text("axis", [WIDTH, HEIGHT - 8.0], "end", &format!("floor squares of {} m", significant(view.step, 3)));
 }
 
 fn arm(svg: &mut Svg, view: &View, pose: &Pose) {
@@ -138,12 +149,12 @@ fn path(svg: &mut Svg, view: &View, scene: &Scene) {
     let Some(values) = &scene.values else { return };
     let span = (values.most - values.least).max(f64::MIN_POSITIVE);
     let shade = |pose: &Pose| (SHADES * (pose.value.unwrap_or(values.least) - values.least) / span).round();
-    for pair in scene.poses.windows(2).filter(|_| scene.kind == super::content::Kind::Path) {
+    for pair in scene.poses.windows(2).filter(|_| scene.kind == Kind::Path) {
         let [one, other] = [&pair[0], &pair[1]].map(|pose| pose.points.last().copied().unwrap_or_default());
         let class = format!("path shade{:.0}", shade(&pair[0]).max(shade(&pair[1])));
         svg.line(&class, view.at(one), view.at(other));
     }
-    for pose in scene.poses.iter().filter(|_| scene.kind == super::content::Kind::Campaign) {
+    for pose in scene.poses.iter().filter(|_| scene.kind == Kind::Campaign) {
         let at = view.at(pose.points.last().copied().unwrap_or_default());
         svg.circle(&format!("spot shade{:.0}", shade(pose)), at, 4.5, pose.name.as_deref().unwrap_or_default());
     }
@@ -152,7 +163,7 @@ fn path(svg: &mut Svg, view: &View, scene: &Scene) {
 /// The outline of the ellipsoid of displacements under forces of one size: the
 /// image of the unit sphere under the compliance, projected, is that of the unit
 /// circle under the root of `B B^T`, `B` the projection of the compliance.
-fn ellipsoid(svg: &mut Svg, view: &View, pose: &Pose, per_unit: f64) {
+fn ellipsoid(svg: &mut Svg, class: &str, view: &View, pose: &Pose, per_unit: f64) {
     let [xx, yy, zz, xy, xz, yz] = pose.compliance.map(|entry| entry * per_unit * view.per_m);
     let columns = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(flat);
     let product = |i: usize, j: usize| columns.iter().map(|column| column[i] * column[j]).sum::<f64>();
@@ -165,16 +176,17 @@ fn ellipsoid(svg: &mut Svg, view: &View, pose: &Pose, per_unit: f64) {
         let (sin, cos) = (f64::from(k) / 48.0 * core::f64::consts::TAU).sin_cos();
         [x + first * cos, y - below * cos - second * sin]
     });
-    svg.polyline("ellipsoid", outline);
+    svg.polyline(class, outline);
 }
 
-fn displacements(svg: &mut Svg, view: &View, scene: &Scene) {
+/// The displacements as arrows; metres a um, where there are any.
+fn displacements(svg: &mut Svg, view: &View, scene: &Scene) -> Option<f64> {
     let all = || scene.poses.iter().flat_map(|pose| [pose.displacement, pose.measured]).flatten();
     let largest = all().map(length).fold(0.0, f64::max);
-    if largest == 0.0 || scene.kind == super::content::Kind::Path {
-        return;
+    if largest == 0.0 || scene.kind == Kind::Path {
+        return None;
     }
-    let per_um = reach(scene) / 7.0 / largest;
+    let per_um = round(reach(scene) / 7.0 / largest * 1e6) / 1e6;
     for pose in &scene.poses {
         let tip = pose.points.last().copied().unwrap_or_default();
         for (class, displacement) in [("arrow before", pose.measured), ("arrow after", pose.displacement)] {
@@ -183,4 +195,5 @@ fn displacements(svg: &mut Svg, view: &View, scene: &Scene) {
             svg.arrow(class, view.at(tip), view.at(end));
         }
     }
+    Some(per_um)
 }
