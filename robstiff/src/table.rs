@@ -158,6 +158,14 @@ impl<'t> Table<'t> {
         }
     }
 
+    /// A column of numbers in whatever unit it has, with its name and unit; its
+    /// absence is reported.
+    pub fn raw(&self, name: &str) -> Option<(Numbers, &str, &str)> {
+        let index = self.require_name(name)?;
+        let header = &self.header[index];
+        Some((Numbers { index, scale: 1.0 }, &header.name, header.unit.as_deref().unwrap_or_default()))
+    }
+
     /// A column of numbers whose absence is reported.
     pub fn require(&self, name: &str, dimension: Dimension) -> Option<Numbers> {
         self.require_name(name)?;

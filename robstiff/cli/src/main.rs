@@ -14,6 +14,7 @@ mod path;
 mod plan;
 mod predict;
 mod report;
+mod scene;
 mod show;
 mod simulate;
 mod stability;
@@ -47,6 +48,7 @@ enum Command {
     Stability(stability::Arguments),
     Path(path::Arguments),
     Import(import::Arguments),
+    View(scene::Arguments),
 }
 
 impl Command {
@@ -63,6 +65,7 @@ impl Command {
             Self::Stability(arguments) => stability::run(arguments),
             Self::Path(arguments) => path::run(arguments),
             Self::Import(arguments) => import::run(arguments),
+            Self::View(arguments) => scene::run(arguments),
         }
     }
 }

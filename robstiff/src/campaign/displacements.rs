@@ -148,7 +148,8 @@ fn check_range(table: &Table<'_>, joint: &Joint, index: usize, column: Numbers, 
     }
 }
 
-fn dimension_of(kind: JointKind) -> Dimension {
+/// What a joint's coordinates are.
+pub fn dimension_of(kind: JointKind) -> Dimension {
     if kind == JointKind::Revolute { Dimension::Angle } else { Dimension::Length }
 }
 

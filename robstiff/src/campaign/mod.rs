@@ -6,6 +6,7 @@
 
 mod clamped;
 mod displacements;
+mod joints;
 #[cfg(test)]
 pub(crate) mod made;
 pub(crate) mod read;
@@ -16,6 +17,7 @@ use std::path::PathBuf;
 use std::string::String;
 use std::vec::Vec;
 
+pub use joints::{Column, JointTable};
 use robstiff_robots::Description;
 pub use robstiff_robots::ReadError;
 

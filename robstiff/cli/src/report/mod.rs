@@ -6,7 +6,7 @@
 mod arm;
 pub mod content;
 mod figure;
-mod html;
+pub mod html;
 mod scatter;
 mod sections;
 pub mod svg;

@@ -1,0 +1,244 @@
+//! What a scene shows: the poses with compliance and displacement, computed.
+
+use robstiff::analysis::principal_directions;
+use robstiff::campaign::{Campaign, Data};
+use robstiff::identify::predict;
+use robstiff::nalgebra::{Matrix4, SVector, Vector3, Vector6};
+use robstiff::{Convention, Generic, JointKind, Robot, with_robot};
+use robstiff_robots::{Description, Joint};
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+use crate::json::{number, numbers};
+
+/// Longer paths are thinned out: no screen has more points across.
+const MOST_POSES: usize = 3000;
+
+/// What the poses are of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// One pose.
+    Pose,
+    /// A path, in its order.
+    Path,
+    /// A campaign.
+    Campaign,
+}
+
+/// A pose that is asked for.
+pub struct Row {
+    /// Joint coordinates (rad or m).
+    pub q: Vec<f64>,
+    /// The force on the tool in the base frame (N).
+    pub force: Option<[f64; 3]>,
+    /// What colours it, in its unit, in place of the displacement.
+    pub value: Option<(f64, String)>,
+}
+
+/// A pose that is drawn.
+pub struct Pose {
+    /// Joint coordinates (rad or m).
+    pub q: Vec<f64>,
+    /// Points of the arm in the base frame (m), from its foot to the TCP.
+    pub points: Vec<[f64; 3]>,
+    /// The translational compliance in the base frame, xx yy zz xy xz yz (um/N).
+    pub compliance: [f64; 6],
+    /// The compliance along the principal directions, the softest first (um/N).
+    pub principal: Option<[f64; 3]>,
+    /// The displacement of the TCP that is computed (um).
+    pub displacement: Option<[f64; 3]>,
+    /// The displacement that was measured (um).
+    pub measured: Option<[f64; 3]>,
+    /// What colours the pose.
+    pub value: Option<f64>,
+    /// What the campaign calls it.
+    pub name: Option<String>,
+}
+
+/// What colours the poses.
+pub struct Values {
+    /// Its name.
+    pub name: String,
+    /// Its unit; empty for a number.
+    pub unit: String,
+    /// The least.
+    pub least: f64,
+    /// The greatest.
+    pub most: f64,
+}
+
+/// Everything that is drawn.
+pub struct Scene {
+    /// What the poses are of.
+    pub kind: Kind,
+    /// The poses, in order.
+    pub poses: Vec<Pose>,
+    /// How many there were before the path was thinned out.
+    pub rows: usize,
+    /// Each of how many is drawn.
+    pub stride: usize,
+    /// What colours them.
+    pub values: Option<Values>,
+    /// The force, where it is one for all poses (N).
+    pub force: Option<[f64; 3]>,
+}
+
+impl Scene {
+    /// The poses asked for.
+    pub fn new(robot: &Description, kind: Kind, rows: &[Row]) -> Self {
+        let stride = rows.len().div_ceil(MOST_POSES).max(1);
+        let poses: Vec<Pose> =
+            with_robot!(robot, |arm| rows.iter().step_by(stride).map(|row| pose(robot, &arm, row)).collect());
+        let unit = rows.iter().find_map(|row| row.value.as_ref().map(|(_, unit)| unit.clone()));
+        let name = if rows.iter().any(|row| row.force.is_some()) { "deviation under the force" } else { "" };
+        let values = values(name, unit.unwrap_or_else(|| "um".to_owned()), &poses);
+        let force =
+            rows.first().and_then(|row| row.force).filter(|&force| rows.iter().all(|row| row.force == Some(force)));
+        Self { kind, poses, rows: rows.len(), stride, values, force }
+    }
+
+    /// The same with the name of the column that colours it.
+    pub fn coloured_by(mut self, column: Option<&str>) -> Self {
+        if let (Some(values), Some(column)) = (&mut self.values, column) {
+            column.clone_into(&mut values.name);
+        }
+        self
+    }
+
+    /// The poses of a campaign, each with the row of its largest displacement.
+    ///
+    /// # Errors
+    /// A campaign that displacements cannot be predicted for.
+    pub fn of_campaign(robot: &Description, campaign: &Campaign) -> Result<Self, Failure> {
+        let predicted = predict(robot, campaign)?.rows;
+        let Data::Displacement(data) = &campaign.data else {
+            unreachable!("only displacements are predicted");
+        };
+        let largest = |pose: usize| {
+            let rows = data.rows.iter().zip(&predicted).filter(|(row, _)| row.pose == pose);
+            rows.max_by(|(_, a), (_, b)| length(a.measured).total_cmp(&length(b.measured)))
+        };
+        let rows: Vec<_> = (0..data.poses.len()).filter_map(largest).collect();
+        let asked: Vec<Row> = rows.iter().map(|(row, _)| Row { q: row.q.clone(), force: None, value: None }).collect();
+        let mut scene = Self::new(robot, Kind::Campaign, &asked);
+        for (pose, (row, predicted)) in scene.poses.iter_mut().zip(rows.iter().step_by(scene.stride)) {
+            let residual: [f64; 3] = std::array::from_fn(|k| predicted.measured[k] - predicted.predicted[k]);
+            pose.displacement = Some(predicted.predicted.map(|d| d * 1e6));
+            pose.measured = Some(predicted.measured.map(|d| d * 1e6));
+            pose.value = Some(length(residual) * 1e6);
+            pose.name = Some(data.poses[row.pose].clone());
+        }
+        scene.values = values("measured less predicted", "um".to_owned(), &scene.poses);
+        Ok(scene)
+    }
+
+    /// All that is drawn, for scripts: lengths in m, compliances in um/N,
+    /// displacements in um, angles in rad.
+    pub fn document(&self, robot: &Description) -> Value {
+        let joints = robot.corrected_joints();
+        json!({
+            "robot": robot.name,
+            "convention": if robot.convention == Convention::Standard { "standard" } else { "modified" },
+            "base": with_robot!(robot, |arm| placement(&base(&arm))),
+            "tool": with_robot!(robot, |arm| placement(&tool(&arm))),
+            "joints": joints.iter().map(joint).collect::<Value>(),
+            // Their part in the compliance is in that of the poses.
+            "effects": robot.effects.iter().map(ToString::to_string).collect::<Vec<_>>(),
+            "kind": match self.kind { Kind::Pose => "pose", Kind::Path => "path", Kind::Campaign => "campaign" },
+            "rows": self.rows,
+            "stride": self.stride,
+            "force": self.force.map(numbers),
+            "value": self.values.as_ref().map(|values| json!({
+                "name": values.name, "unit": values.unit, "least": number(values.least), "most": number(values.most),
+            })),
+            "poses": self.poses.iter().map(|pose| json!({
+                "q": numbers(pose.q.iter().copied()),
+                "tcp": pose.points.last().map(|&point| numbers(point)),
+                "compliance": numbers(pose.compliance),
+                "displacement": pose.displacement.map(numbers),
+                "measured": pose.measured.map(numbers),
+                "value": pose.value.map(number),
+                "name": pose.name,
+            })).collect::<Value>(),
+        })
+    }
+}
+
+fn joint(joint: &Joint) -> Value {
+    json!({
+        "slides": joint.kind == JointKind::Prismatic,
+        "theta": joint.theta, "d": joint.d, "a": joint.a, "alpha": joint.alpha,
+        "limits": joint.limits.map(numbers), "compliance": joint.compliance(),
+    })
+}
+
+fn base<const N: usize>(robot: &Generic<N>) -> Matrix4<f64> {
+    robot.base()
+}
+
+fn tool<const N: usize>(robot: &Generic<N>) -> Matrix4<f64> {
+    robot.tool()
+}
+
+/// The first three rows, one after the other.
+fn placement(frame: &Matrix4<f64>) -> Value {
+    numbers(frame.fixed_rows::<3>(0).transpose().iter().copied())
+}
+
+fn pose<const N: usize>(description: &Description, robot: &Generic<N>, row: &Row) -> Pose {
+    let q = SVector::<f64, N>::from_column_slice(&row.q);
+    let compliance = robot.compliance(&q);
+    let displacement = row.force.map(|[x, y, z]| {
+        let displacement = robot.deflection(&q, &Vector6::new(x, y, z, 0.0, 0.0, 0.0));
+        [displacement[0] * 1e6, displacement[1] * 1e6, displacement[2] * 1e6]
+    });
+    let entry = |(i, j)| compliance[(i, j)] * 1e6;
+    Pose {
+        q: row.q.clone(),
+        points: points(description, robot, &q),
+        compliance: [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(entry),
+        // Rounding may leave a rigid direction a little below zero.
+        principal: principal_directions(&compliance).map(|found| {
+            let along = |k: usize| {
+                let unit: Vector3<f64> = found.directions.column(k).into_owned();
+                (unit.transpose() * compliance.fixed_view::<3, 3>(0, 0) * unit)[0].max(0.0) * 1e6
+            };
+            [along(0), along(1), along(2)]
+        }),
+        displacement,
+        measured: None,
+        value: row.value.as_ref().map(|(value, _)| *value).or(displacement.map(length)),
+        name: None,
+    }
+}
+
+/// Where each joint's axis begins and where the offset `d` along it ends, then
+/// flange and TCP.
+fn points<const N: usize>(description: &Description, robot: &Generic<N>, q: &SVector<f64, N>) -> Vec<[f64; 3]> {
+    let at =
+        |frame: &Matrix4<f64>, column: usize| Vector3::new(frame[(0, column)], frame[(1, column)], frame[(2, column)]);
+    let frames = robot.link_frames(q);
+    let mut before = robot.base();
+    let mut points = Vec::with_capacity(2 * N + 2);
+    for ((frame, joint), q) in frames.iter().zip(description.corrected_joints()).zip(q.iter()) {
+        let d = joint.d + if joint.kind == JointKind::Prismatic { *q } else { 0.0 };
+        match robot.convention() {
+            Convention::Standard => points.extend([at(&before, 3), at(&before, 3) + at(&before, 2) * d]),
+            Convention::Modified => points.extend([at(frame, 3) - at(frame, 2) * d, at(frame, 3)]),
+        }
+        before = *frame;
+    }
+    points.extend([at(&before, 3), at(&robot.transform(q), 3)]);
+    points.into_iter().map(|point| [point.x, point.y, point.z]).collect()
+}
+
+fn values(name: &str, unit: String, poses: &[Pose]) -> Option<Values> {
+    let values = || poses.iter().filter_map(|pose| pose.value);
+    let (least, most) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    (least <= most).then(|| Values { name: name.to_owned(), unit, least, most })
+}
+
+/// The length of a vector.
+pub fn length(vector: [f64; 3]) -> f64 {
+    vector.iter().map(|component| component * component).sum::<f64>().sqrt()
+}

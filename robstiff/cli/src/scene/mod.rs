@@ -1,0 +1,138 @@
+//! `robstiff view`: the arm, its compliance and a path as a page that turns.
+
+mod content;
+mod page;
+mod picture;
+
+use std::path::PathBuf;
+
+use robstiff::campaign::JointTable;
+use robstiff_robots::Description;
+use robstiff_robots::quantity::{self, Dimension};
+
+use crate::failure::Failure;
+use crate::output::{self, Files};
+use crate::text::{count, significant};
+use crate::{input, json};
+use content::{Kind, Row, Scene};
+
+/// The arm in 3-D with its compliance ellipsoids, at a pose, along a path or over a campaign, as a page
+///
+/// The page needs nothing beside it. It turns with the mouse, a finger or the
+/// arrow keys; without scripts and on paper it is a drawing.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The robot's description, or the name of a robot in the catalogue
+    #[arg(value_name = "ROBOT.yaml")]
+    robot: PathBuf,
+    /// The pose: joint coordinates in rad (or m), or with their unit as in "0.5, 30 deg, -pi/2"; zero where left out
+    #[arg(long, value_name = "q1,q2,..", allow_hyphen_values = true, conflicts_with_all = ["path", "campaign"])]
+    at: Option<String>,
+    /// A table of joint coordinates `q1 [deg]` .. and, where there are, forces `Fx [N]` .., row by row
+    #[arg(long, value_name = "SOLVED.csv", conflicts_with = "campaign")]
+    path: Option<PathBuf>,
+    /// The poses of a campaign, with the displacements that it measured and those that the robot predicts
+    #[arg(long, value_name = "CAMPAIGN.yaml", conflicts_with = "force")]
+    campaign: Option<PathBuf>,
+    /// The force on the tool in the base frame, e.g. "0, 0, -400 N"; the path's own where left out
+    #[arg(long, value_name = "Fx,Fy,Fz", allow_hyphen_values = true, value_parser = force)]
+    force: Option<Force>,
+    /// The column of the path that colours it; the deviation under the force where left out
+    #[arg(long, value_name = "NAME", requires = "path")]
+    column: Option<String>,
+    /// The page
+    #[arg(long, value_name = "PAGE.html")]
+    out: PathBuf,
+    /// Write what is drawn as JSON to FILE
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// A force in the base frame \[N\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Force([f64; 3]);
+
+fn force(text: &str) -> Result<Force, String> {
+    let parts: Vec<&str> = text.split(',').collect();
+    let [x, y, z] = parts[..] else { return Err("three components are expected, e.g. \"0, 0, -400 N\"".to_owned()) };
+    let component = |part: &str| quantity::parse(part, Dimension::Force).map_err(|error| error.to_string());
+    Ok(Force([component(x)?, component(y)?, component(z)?]))
+}
+
+/// Draws.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (robot, _) = input::robot(&arguments.robot)?;
+    let mut files = Files::default();
+    files.protect(&arguments.robot);
+    let scene = if let Some(path) = &arguments.campaign {
+        let campaign = input::campaign(path)?;
+        files.protect_campaign(&campaign);
+        Scene::of_campaign(&robot, &campaign)?
+    } else if let Some(path) = &arguments.path {
+        files.protect(path);
+        let table = JointTable::read(path, &robot, arguments.column.as_deref())?;
+        Scene::new(&robot, Kind::Path, &rows(table, arguments.force)).coloured_by(arguments.column.as_deref())
+    } else {
+        let q = pose(arguments, &robot)?;
+        let row = Row { q, force: arguments.force.map(|Force(force)| force), value: None };
+        Scene::new(&robot, Kind::Pose, &[row])
+    };
+    let document = scene.document(&robot);
+    files.add(&arguments.out, page::html(&robot, &scene, &document));
+    if let Some(path) = &arguments.json {
+        files.add(path, json::document(&document));
+    }
+    let said = files.write()?;
+    output::print(summary(&robot, &scene) + &said)
+}
+
+fn pose(arguments: &Arguments, robot: &Description) -> Result<Vec<f64>, Failure> {
+    let q = match &arguments.at {
+        Some(text) => input::coordinates(text, robot)?,
+        None => input::default_coordinates(robot),
+    };
+    for note in input::outside_limits(&q, robot) {
+        output::complain(format_args!("note: {note}"));
+    }
+    Ok(q)
+}
+
+fn rows(table: JointTable, force: Option<Force>) -> Vec<Row> {
+    let JointTable { q, forces, column } = table;
+    let rows = q.into_iter().enumerate().map(|(k, q)| Row {
+        q,
+        force: force.map(|Force(force)| force).or_else(|| Some(forces.as_ref()?[k])),
+        value: column.as_ref().map(|column| (column.values[k], column.unit.clone())),
+    });
+    rows.collect()
+}
+
+fn summary(robot: &Description, scene: &Scene) -> String {
+    let mut said = format!("{}: {}", robot.name, count(scene.rows, "pose"));
+    if scene.poses.len() < scene.rows {
+        said += &format!(", every {}th drawn", scene.stride);
+    }
+    said.push('\n');
+    let softest = scene.poses.iter().filter_map(|pose| pose.principal).map(|principal| principal[0]);
+    if let Some(softest) = softest.max_by(f64::total_cmp) {
+        said += &format!("softest direction: {} um/N\n", significant(softest, 4));
+    }
+    if let Some(values) = &scene.values {
+        let unit = if values.unit.is_empty() { String::new() } else { format!(" {}", values.unit) };
+        let [least, most] = [values.least, values.most].map(|value| significant(value, 4));
+        said += &format!("{}: {least} to {most}{unit}\n", values.name);
+    }
+    said
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_force_has_three_components() {
+        assert_eq!(force("0, 0, -0.4 kN"), Ok(Force([0.0, 0.0, -400.0])));
+        assert!(force("400 N").unwrap_err().contains("three components"));
+        assert!(force("0,0,4 mm").unwrap_err().contains("`mm` is a length"));
+    }
+}

@@ -1,0 +1,209 @@
+//! `view`: the page, and what a browser makes of it.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use common::{fail, folder, inside, json, measured, names, run, succeed};
+use serde_json::Value;
+
+/// Runs in the page after its own scripts, and leaves what it saw in the page.
+const PROBE: &str = r#"
+const seen = { errors: window.failures };
+const picture = () => { draw(); return canvas.toDataURL(); };
+const point = (type, x, y, id = 1) => canvas.dispatchEvent(new PointerEvent(type, { pointerId: id, clientX: x, clientY: y }));
+const pictures = [picture()];
+const pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+seen.colours = new Set(new Uint32Array(pixels.buffer)).size;
+point("pointerdown", 300, 200); point("pointermove", 420, 260); point("pointerup", 420, 260);
+pictures.push(picture());
+canvas.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft" }));
+pictures.push(picture());
+canvas.dispatchEvent(new WheelEvent("wheel", { deltaY: 200, cancelable: true }));
+pictures.push(picture());
+point("pointerdown", 300, 200, 1); point("pointerdown", 400, 200, 2); point("pointermove", 500, 200, 2);
+point("pointerup", 300, 200, 1); point("pointerup", 500, 200, 2);
+pictures.push(picture());
+const row = document.getElementById("row");
+if (row) { row.value = state.row ? 0 : 1; row.dispatchEvent(new Event("input")); pictures.push(picture()); }
+const q2 = document.getElementById("q2");
+q2.value = Number(q2.value) + 8; q2.dispatchEvent(new Event("input"));
+pictures.push(picture());
+seen.moved = document.getElementById("moved").textContent;
+document.getElementById("back").click();
+seen.different = new Set(pictures).size;
+seen.pictures = pictures.length;
+const most = (values) => Math.max(...values);
+seen.tcp = most(data.poses.map((pose) => norm(add(origin(standing(data, pose.q).tcp), pose.tcp, -1))));
+seen.compliance = most(data.poses.map((pose) => {
+  const own = jointCompliance(data, standing(data, pose.q));
+  return norm(own.map((h, k) => h - pose.compliance[k])) / norm(pose.compliance);
+}));
+seen.principal = data.poses.slice(0, 1).map((pose) => principal(pose.compliance).map(({ value }) => value))[0];
+seen.readout = document.getElementById("readout").textContent;
+seen.drawing = getComputedStyle(document.getElementById("drawing")).display;
+const result = document.createElement("pre");
+result.id = "seen";
+result.textContent = btoa(String.fromCharCode(...new TextEncoder().encode(JSON.stringify(seen))));
+document.body.append(result);
+"#;
+
+fn browser() -> Option<&'static str> {
+    let works = |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success());
+    ["chromium", "chromium-browser", "google-chrome"].into_iter().find(works)
+}
+
+/// What the probe saw in a page; nothing where there is no browser.
+fn look(folder: &Path, page: &str) -> Option<Value> {
+    let Some(browser) = browser() else {
+        eprintln!("skipped: no chromium is installed, so the page was not looked at in a browser");
+        return None;
+    };
+    let text = fs::read_to_string(page).unwrap();
+    let listen =
+        "<script>window.failures = []; addEventListener(\"error\", (event) => failures.push(event.message));</script>";
+    let text = text.replacen("<head>", &format!("<head>{listen}"), 1);
+    let end = text.rfind("</body>").unwrap();
+    let probed = inside(folder, "probed.html");
+    fs::write(&probed, format!("{}<script>{PROBE}</script>{}", &text[..end], &text[end..])).unwrap();
+    let output = Command::new(browser)
+        .args(["--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--window-size=1100,900"])
+        .args(["--virtual-time-budget=3000", "--dump-dom"])
+        .arg(format!("--user-data-dir={}", inside(folder, "browser")))
+        .arg(format!("file://{}", fs::canonicalize(&probed).unwrap().display()))
+        .output()
+        .unwrap();
+    let (dom, log) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(!log.contains("CONSOLE"), "{log}");
+    let seen = dom.rsplit_once("<pre id=\"seen\">").unwrap_or_else(|| panic!("the probe did not end:\n{log}")).1;
+    let seen = decoded(seen.split_once('<').unwrap().0);
+    Some(serde_json::from_slice(&seen).unwrap())
+}
+
+/// Base 64.
+fn decoded(text: &str) -> Vec<u8> {
+    let digit = |byte| match byte {
+        b'A'..=b'Z' => byte - b'A',
+        b'a'..=b'z' => byte - b'a' + 26,
+        b'0'..=b'9' => byte - b'0' + 52,
+        b'+' => 62,
+        _ => 63,
+    };
+    let digits: Vec<u32> = text.bytes().filter(|&byte| byte != b'=').map(|byte| u32::from(digit(byte))).collect();
+    let bytes = |group: &[u32]| {
+        let bits = group.iter().enumerate().map(|(k, digit)| digit << (18 - 6 * k)).sum::<u32>();
+        bits.to_be_bytes()[1..group.len()].to_vec()
+    };
+    digits.chunks(4).flat_map(bytes).collect()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value}"))
+}
+
+/// What holds for every page: it draws, and everything that can be moved moves.
+fn assert_alive(seen: &Value) {
+    assert_eq!(seen["errors"], serde_json::json!([]));
+    assert!(number(&seen["colours"]) > 200.0, "{seen}");
+    assert_eq!(seen["different"], seen["pictures"], "something moved and the picture did not: {seen}");
+    assert_eq!(seen["drawing"], "none");
+    assert!(number(&seen["tcp"]) < 1e-9, "{seen}");
+}
+
+fn docs(file: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/files").join(file).to_str().unwrap().to_owned()
+}
+
+#[test]
+fn a_pose_turns_and_its_numbers_are_those_of_show() {
+    let folder = folder("view-pose");
+    let (page, shown) = (inside(&folder, "page.html"), inside(&folder, "shown.json"));
+    let at = "0.2, -30 deg, 20 deg, 0, 1";
+    let said = succeed(&["view", "rv130hsc", "--at", at, "--force", "0, 0, -400 N", "--out", &page]);
+    assert!(said.contains("Rv130hsc: 1 pose\nsoftest direction: 2.029 um/N\n"), "{said}");
+    succeed(&["show", "rv130hsc", "--at", at, "--json", &shown]);
+    let text = fs::read_to_string(&page).unwrap();
+    for outside in ["http:", "https:", " src=", " href=", "url(", "import "] {
+        assert!(!text.replace("http://www.w3.org/2000/svg", "").contains(outside), "the page needs {outside}");
+    }
+    assert!(text.contains("role=\"img\" aria-label=\"Rv130hsc seen from the front left\"") && !text.contains("NaN"));
+    let Some(seen) = look(&folder, &page) else { return };
+    assert_alive(&seen);
+    // A robot without effects: the page's own compliance is the whole.
+    assert!(number(&seen["compliance"]) < 1e-12, "{seen}");
+    for (own, shown) in
+        seen["principal"].as_array().unwrap().iter().zip(json(&shown)["principal_directions"].as_array().unwrap())
+    {
+        let shown = number(&shown["compliance_m_per_N"]) * 1e6;
+        assert!((number(own) - shown).abs() < 1e-12 * shown.max(1.0), "{own} {shown}");
+    }
+    assert!(seen["readout"].as_str().unwrap().contains("µm in all"), "{seen}");
+}
+
+#[test]
+fn a_path_is_coloured_by_its_deviation() {
+    let folder = folder("view-path");
+    let (page, told) = (inside(&folder, "page.html"), inside(&folder, "told.json"));
+    let path = docs("pocket-solved.csv");
+    let said = succeed(&["view", "kuka-kr270-r2700", "--path", &path, "--out", &page, "--json", &told]);
+    assert!(said.contains("109 poses") && said.contains("deviation under the force: "), "{said}");
+    let told = json(&told);
+    let poses = told["poses"].as_array().unwrap();
+    assert_eq!(poses.len(), 109);
+    for pose in poses {
+        // The third column of the file's x y z: the arm is where the path says.
+        assert!((number(&pose["tcp"][2]) - 0.6).abs() < 1e-6, "{pose}");
+        let d = pose["displacement"].as_array().unwrap().iter().map(|d| number(d).powi(2)).sum::<f64>().sqrt();
+        assert!((number(&pose["value"]) / d - 1.0).abs() < 1e-12);
+    }
+    if let Some(seen) = look(&folder, &page) {
+        assert_alive(&seen);
+    }
+    let said = succeed(&["view", "kuka-kr270-r2700", "--path", &path, "--column", "Fx", "--out", &page]);
+    assert!(said.contains("Fx: -514.7 to 514.7 N"), "{said}");
+}
+
+#[test]
+fn a_campaign_shows_what_was_measured() {
+    let folder = folder("view-campaign");
+    let page = inside(&folder, "page.html");
+    let campaign = measured().join("campaign.yaml");
+    let arguments = ["view", "fanuc-r2000ic", "--campaign", campaign.to_str().unwrap(), "--out", &page];
+    let said = succeed(&arguments);
+    assert!(said.contains("43 poses") && said.contains("measured less predicted"), "{said}");
+    let Some(seen) = look(&folder, &page) else { return };
+    assert_alive(&seen);
+    assert!(seen["readout"].as_str().unwrap().contains("Measured"), "{seen}");
+}
+
+#[test]
+fn an_ellipsoid_without_the_effects_says_so() {
+    let folder = folder("view-effects");
+    let (robot, page) = (inside(&folder, "robot.yaml"), inside(&folder, "page.html"));
+    let text = robstiff_robots::catalogue::find("staubli-rx160").unwrap();
+    let effect = "\neffects:\n  - {kind: transverse_compliance, at: joint 3, value: 5e-7}\n";
+    fs::write(&robot, format!("{}{effect}", text.trim_end())).unwrap();
+    succeed(&["view", &robot, "--out", &page]);
+    let Some(seen) = look(&folder, &page) else { return };
+    assert_alive(&seen);
+    assert!(number(&seen["compliance"]) > 1e-3, "{seen}");
+    assert!(seen["moved"].as_str().unwrap().contains("of the joints alone"), "{seen}");
+}
+
+#[test]
+fn what_is_wrong_leaves_no_page() {
+    let folder = folder("view-wrong");
+    let (path, page) = (inside(&folder, "path.csv"), inside(&folder, "page.html"));
+    fs::write(&path, "q1 [deg],q2 [deg],q3 [deg],q4 [deg],q5 [mm]\n0,0,0,x,0\n").unwrap();
+    let message = fail(1, &["view", "rv130hsc", "--path", &path, "--out", &page]);
+    assert!(message.contains("path.csv:1:37") && message.contains("`mm` is a length"), "{message}");
+    fs::write(&path, "q1 [deg],q2 [deg],q3 [deg],q4 [deg],q5 [deg]\n0,0,0,x,0\n").unwrap();
+    let message = fail(1, &["view", "rv130hsc", "--path", &path, "--column", "dev", "--out", &page]);
+    assert!(message.contains("path.csv:2:7") && message.contains("the column `dev` is missing"), "{message}");
+    assert!(fail(2, &["view", "rv130hsc", "--at", "0,0", "--out", &page]).contains("has 5 joints"));
+    assert_eq!(run(&["view", "rv130hsc", "--force", "3 N", "--out", &page]).code, 2);
+    assert_eq!(run(&["view", "rv130hsc", "--at", "0,0,0,0,0", "--path", &path, "--out", &page]).code, 2);
+    assert_eq!(names(&folder), ["path.csv"]);
+}

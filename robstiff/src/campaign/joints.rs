@@ -1,0 +1,82 @@
+//! Tables of joint coordinates, such as a solved tool path.
+
+use std::borrow::ToOwned;
+use std::format;
+use std::path::Path;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use robstiff_robots::quantity::Dimension;
+use robstiff_robots::{Description, ReadError};
+
+use super::displacements::dimension_of;
+use crate::table::{Table, text_of};
+
+/// Joint coordinates row by row, with what is written beside them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointTable {
+    /// Joint coordinates (rad or m), one a joint.
+    pub q: Vec<Vec<f64>>,
+    /// The force on the tool in the base frame (N), where there is one.
+    pub forces: Option<Vec<[f64; 3]>>,
+    /// The column that was asked for.
+    pub column: Option<Column>,
+}
+
+/// A column of any numbers, as the file gives them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// Its unit; empty where the header has none.
+    pub unit: String,
+    /// Its numbers, in that unit.
+    pub values: Vec<f64>,
+}
+
+impl JointTable {
+    /// Reads columns `q1` .. `qn`, where they are there `Fx Fy Fz`, and the one
+    /// of any other name that is asked for. Columns beyond these are left alone.
+    ///
+    /// # Errors
+    /// A file that cannot be read, and every problem in it at its place.
+    pub fn read(path: &Path, robot: &Description, column: Option<&str>) -> Result<Self, ReadError> {
+        let (name, text) = (path.display().to_string(), text_of(path)?);
+        let table = Table::parse(&name, &text).map_err(ReadError::Invalid)?;
+        let read = rows(&table, robot, column);
+        table.finish(read).map(|(read, _)| read).map_err(ReadError::Invalid)
+    }
+}
+
+/// `None` with the problems reported to the table.
+fn rows(table: &Table<'_>, robot: &Description, column: Option<&str>) -> Option<JointTable> {
+    let joints = (1..).zip(&robot.joints);
+    let q = joints.map(|(k, joint)| table.require(&format!("q{k}"), dimension_of(joint.kind)));
+    // Collected before it is judged, so that every column is looked for.
+    let q: Vec<_> = q.collect();
+    let forces = ["Fx", "Fy", "Fz"].map(|name| table.numbers(name, Dimension::Force));
+    let column = column.map(|name| table.raw(name));
+    let q: Vec<_> = q.into_iter().collect::<Option<_>>()?;
+    // One component without the others is a force along an axis.
+    let forced = forces.iter().any(Option::is_some);
+    let rows: Vec<_> = table
+        .records
+        .iter()
+        .map(|record| {
+            let q: Vec<_> = q.iter().map(|&column| table.number(record, column)).collect();
+            let force = forces.map(|column| column.map_or(Some(0.0), |column| table.number(record, column)));
+            Some((q.into_iter().collect::<Option<Vec<_>>>()?, [force[0]?, force[1]?, force[2]?]))
+        })
+        .collect();
+    let column = match column {
+        None => None,
+        Some(column) => {
+            let (column, name, unit) = column?;
+            let values: Vec<_> = table.records.iter().map(|record| table.number(record, column)).collect();
+            let values = values.into_iter().collect::<Option<Vec<_>>>()?;
+            Some(Column { name: name.to_owned(), unit: unit.to_owned(), values })
+        }
+    };
+    let (q, forces): (Vec<_>, Vec<_>) = rows.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
+    Some(JointTable { q, forces: forced.then_some(forces), column })
+}
