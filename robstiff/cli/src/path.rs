@@ -181,7 +181,9 @@ fn page(robot: &Description, file: &str, solved: &Solved) -> String {
 fn quaternion(pose: &Matrix4<f64>) -> [f64; 4] {
     let rotation = Rotation3::from_matrix_unchecked(pose.fixed_view::<3, 3>(0, 0).into_owned());
     let turn = UnitQuaternion::from_rotation_matrix(&rotation);
-    [turn.w, turn.i, turn.j, turn.k]
+    // Of the two that are the same turn, the one with a positive scalar.
+    let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
+    [turn.w, turn.i, turn.j, turn.k].map(|part| part * sign)
 }
 
 /// A row for each point, which the command reads again.
