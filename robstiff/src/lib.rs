@@ -26,7 +26,9 @@
 //!   data, what they say without a model, the joint compliances that fit them,
 //!   and the effects they show to be missing;
 //! - `plan`, `simulate` (likewise): what to measure next, and campaigns on an arm
-//!   that hides something, to try a measurement before making it.
+//!   that hides something, to try a measurement before making it;
+//! - `map` (feature `machining`): stiffness and deviation over joint space, planes
+//!   and boxes, as a stream, and where a workpiece is best put.
 //!
 //! Without default features the crate is `no_std` and allocates nothing.
 #![no_std]
@@ -50,6 +52,8 @@ pub mod generic;
 #[cfg(feature = "identify")]
 pub mod identify;
 mod lanes;
+#[cfg(feature = "machining")]
+pub mod map;
 #[cfg(feature = "identify")]
 pub mod plan;
 pub mod real;

@@ -7,6 +7,7 @@ mod failure;
 mod identify;
 mod input;
 mod json;
+mod map;
 mod output;
 mod plan;
 mod predict;
@@ -39,6 +40,7 @@ enum Command {
     Emit(emit::Arguments),
     Plan(plan::Arguments),
     Simulate(simulate::Arguments),
+    Map(map::Arguments),
 }
 
 impl Command {
@@ -51,6 +53,7 @@ impl Command {
             Self::Emit(arguments) => emit::run(arguments),
             Self::Plan(arguments) => plan::run(arguments),
             Self::Simulate(arguments) => simulate::run(arguments),
+            Self::Map(arguments) => map::run(arguments),
         }
     }
 }
