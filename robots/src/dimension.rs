@@ -23,6 +23,8 @@ pub enum Dimension {
     Torque,
     /// A time \[s\].
     Time,
+    /// A speed \[m/s\].
+    Speed,
     /// A temperature of which only differences count: `C` and `K` are the same.
     Temperature,
 }
@@ -40,6 +42,7 @@ impl Dimension {
             Self::Force => "N",
             Self::Torque => "Nm",
             Self::Time => "s",
+            Self::Speed => "m/s",
             Self::Temperature => "K",
         }
     }

@@ -19,6 +19,7 @@ impl Dimension {
             Self::Force => "a force",
             Self::Torque => "a torque",
             Self::Time => "a time",
+            Self::Speed => "a speed",
             Self::Temperature => "a temperature",
         }
     }
@@ -34,6 +35,7 @@ impl Dimension {
             Self::Force => "500 N",
             Self::Torque => "120 Nm",
             Self::Time => "0.5 s",
+            Self::Speed => "1200 mm/min",
             Self::Temperature => "21.5 C",
         }
     }
@@ -108,6 +110,10 @@ const UNITS: &[Unit] = {
         unit("ms", Time, 1.0, 1e3),
         unit("min", Time, 60.0, 1.0),
         unit("h", Time, 3600.0, 1.0),
+        unit("m/s", Speed, 1.0, 1.0),
+        unit("m/min", Speed, 1.0, 60.0),
+        unit("mm/s", Speed, 1.0, 1e3),
+        unit("mm/min", Speed, 1.0, 6e4),
         unit("C", Temperature, 1.0, 1.0),
         unit("K", Temperature, 1.0, 1.0),
     ]
@@ -310,6 +316,7 @@ mod tests {
             ("2 kNm", Torque, 2000.0),
             ("350 kg", Mass, 350.0),
             ("5 ms", Time, 5e-3),
+            ("1200 mm/min", Speed, 0.02),
             ("21.5 C", Temperature, 21.5),
             ("0.25", Number, 0.25),
         ] {

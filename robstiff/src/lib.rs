@@ -27,8 +27,10 @@
 //!   and the effects they show to be missing;
 //! - `plan`, `simulate` (likewise): what to measure next, and campaigns on an arm
 //!   that hides something, to try a measurement before making it;
-//! - `map` (feature `machining`): stiffness and deviation over joint space, planes
-//!   and boxes, as a stream, and where a workpiece is best put.
+//! - `inverse`, `path` (feature `machining`): the joint coordinates of a pose of
+//!   the tool, and of a whole tool path;
+//! - `map` (likewise): stiffness and deviation over joint space, planes and boxes,
+//!   as a stream, and where a workpiece is best put.
 //!
 //! Without default features the crate is `no_std` and allocates nothing.
 #![no_std]
@@ -51,9 +53,13 @@ pub mod elements;
 pub mod generic;
 #[cfg(feature = "identify")]
 pub mod identify;
+#[cfg(feature = "machining")]
+pub mod inverse;
 mod lanes;
 #[cfg(feature = "machining")]
 pub mod map;
+#[cfg(feature = "machining")]
+pub mod path;
 #[cfg(feature = "identify")]
 pub mod plan;
 pub mod real;
@@ -63,6 +69,8 @@ mod samples;
 #[cfg(feature = "identify")]
 pub mod simulate;
 mod state;
+#[cfg(any(feature = "identify", feature = "machining"))]
+mod table;
 #[cfg(feature = "identify")]
 pub mod trace;
 #[cfg(feature = "identify")]

@@ -7,7 +7,7 @@ use robstiff_robots::Description;
 use robstiff_robots::quantity::Dimension;
 
 use super::ClampedRow;
-use super::table::Table;
+use crate::table::Table;
 
 /// Reads the rows; `None` with the problems reported to the table.
 pub fn read(table: &Table<'_>, robot: &Description) -> Option<Vec<ClampedRow>> {

@@ -8,9 +8,9 @@ use std::vec::Vec;
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, Joint};
 
-use super::table::{Numbers, Record, Table};
 use super::{Displacements, Frame, Observation};
 use crate::JointKind;
+use crate::table::{Numbers, Record, Table};
 
 /// Rows of one pose have the same joint coordinates within this (rad or m).
 const SAME_POSE: f64 = 1e-6;

@@ -9,7 +9,6 @@ mod displacements;
 #[cfg(test)]
 pub(crate) mod made;
 pub(crate) mod read;
-mod table;
 #[cfg(test)]
 mod tests;
 

@@ -9,8 +9,8 @@ use robstiff_robots::document::{Document, Map};
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, ReadError};
 
-use super::table::Table;
 use super::{Campaign, Data, Frame, Holdout, Noise, clamped, displacements};
+use crate::table::{Table, text_of};
 
 /// The fields of a campaign file.
 const FIELDS: [&str; 8] = ["name", "robot", "observations", "kind", "wrench", "measured", "noise", "holdout"];
@@ -74,13 +74,6 @@ impl Campaign {
             warnings,
         })
     }
-}
-
-/// The text of a file; a byte order mark, as spreadsheets write it, is no part
-/// of it.
-pub fn text_of(path: &Path) -> Result<String, ReadError> {
-    let text = std::fs::read_to_string(path).map_err(|error| ReadError::Io { path: path.to_owned(), error })?;
-    Ok(text.strip_prefix('\u{feff}').map(ToOwned::to_owned).unwrap_or(text))
 }
 
 fn plan(document: &Document, folder: &Path) -> Option<Plan> {

@@ -1,7 +1,8 @@
 //! Maps: how far the tool gives way, or how stiff it is, all over a space.
 //!
-//! A [`Space`] is a grid of cells: joint coordinates ([`JointSpace`]). At each
-//! cell a [`Measure`] is computed: the deviation under a force, or the stiffness
+//! A [`Space`] is a grid of cells: joint coordinates ([`JointSpace`]), or positions of
+//! the tool centre point (TCP), where inverse kinematics finds the joint coordinates
+//! ([`CartesianSpace`]). At each cell a [`Measure`] is computed: the deviation under a force, or the stiffness
 //! in the weakest direction. [`stream`] does it in chunks, on all cores with the
 //! feature `rayon`, and hands them over in order, so that a map of any size
 //! needs little memory:
@@ -31,8 +32,10 @@
 //! ```
 
 mod axis;
+mod cartesian;
 mod evaluate;
 mod measure;
+mod place;
 pub mod read;
 mod space;
 mod stream;
@@ -40,9 +43,11 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
-pub use axis::Axis;
+pub use axis::{Axis, people};
+pub use cartesian::{CartesianSpace, Tool};
 pub use evaluate::{Evaluate, Poses};
 pub use measure::{Column, Measure};
+pub use place::{Placement, best_placement};
 pub use space::{JointSpace, Space};
 pub use stream::{CHUNK, Chunk, stream};
 pub use summary::{Extreme, Summary};

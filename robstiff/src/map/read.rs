@@ -4,12 +4,12 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
-use nalgebra::Vector6;
+use nalgebra::{Unit, Vector3, Vector6};
 use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, Diagnostics, Joint, JointKind};
 
-use super::{Axis, Measure};
+use super::{Axis, Measure, Tool};
 
 /// The fields of a map file.
 const FIELDS: [&str; 6] = ["joints", "positions", "tool", "force", "moment", "measure"];
@@ -40,16 +40,6 @@ pub enum Over {
     },
 }
 
-/// How the tool stands in a Cartesian map.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Tool {
-    /// Where its z axis points, in the base frame: a unit vector.
-    pub axis: [f64; 3],
-    /// Turns about that axis to choose from (rad), [`None`] where the arm or the
-    /// solver may take any.
-    pub turn: Option<Axis>,
-}
-
 impl Task {
     /// Reads a map file for a robot; `file` is the name that problems show.
     ///
@@ -74,7 +64,7 @@ fn task(document: &Document, robot: &Description) -> Option<Task> {
             joints(&node, robot).map(Over::Joints)
         }
         (None, Some(node)) => {
-            let (axes, tool) = (positions(&node), map.require("tool", "tool: {axis: [0, 0, -1]}"));
+            let (axes, tool) = (positions(&node), map.require("tool", "tool: {direction: [0, 0, -1]}"));
             let tool = tool.and_then(|node| self::tool(&node));
             axes.zip(tool).map(|(axes, tool)| Over::Positions { axes, tool })
         }
@@ -177,18 +167,19 @@ fn positions(node: &Node<'_>) -> Option<[Axis; 3]> {
 }
 
 fn tool(node: &Node<'_>) -> Option<Tool> {
-    let map = node.map(&["axis", "turn"])?;
-    let axis = map.require("axis", "axis: [0, 0, -1]").and_then(|node| {
-        let axis = node.quantities::<3>(Dimension::Number)?;
-        let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if length == 0.0 {
+    let map = node.map(&["axis", "direction", "turn"])?;
+    let [x, y, z] = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
+    let axes = [("x", x), ("y", y), ("z", z), ("-x", -x), ("-y", -y), ("-z", -z)];
+    let axis = map.get("axis").map_or(Some(z), |node| node.choice(&axes));
+    let direction = map.require("direction", "direction: [0, 0, -1]").and_then(|node| {
+        let direction = Unit::try_new(Vector3::from(node.quantities::<3>(Dimension::Number)?), 0.0);
+        if direction.is_none() {
             node.error("this is no direction", "e.g. `[0, 0, -1]`, of any length but zero");
-            return None;
         }
-        Some(axis.map(|x| x / length))
+        direction
     });
     let turn = map.get("turn").map_or(Some(None), |node| self::axis(&node, "turn".into(), Dimension::Angle).map(Some));
-    Some(Tool { axis: axis?, turn: turn? })
+    Some(Tool { axis: axis?, direction: direction?, turns: turn?.map_or_else(Vec::new, |turn| turn.values) })
 }
 
 /// A value, or `{from, to, count}`.

@@ -5,7 +5,7 @@ use core::ops::Range;
 use std::vec;
 use std::vec::Vec;
 
-use super::{Axis, Column, Evaluate, Measure, Poses};
+use super::{Axis, CHUNK, Column, Evaluate, Measure, Poses};
 use crate::batch::Grid;
 
 /// A grid of cells, the first axis fastest.
@@ -26,6 +26,11 @@ pub trait Space<const N: usize>: Sync {
     /// The columns of the measure and its own at some cells, in SI; NaN where no
     /// pose reaches the cell.
     fn compute(&self, robot: &impl Evaluate<N>, measure: &Measure, cells: Range<usize>) -> Vec<Vec<f64>>;
+
+    /// How many cells are computed at a time.
+    fn chunk(&self) -> usize {
+        CHUNK
+    }
 
     /// Which value of each axis a cell has.
     fn indices(&self, cell: usize) -> Vec<usize> {

@@ -5,7 +5,7 @@ use std::vec::Vec;
 
 use super::{Evaluate, Measure, Space, Summary};
 
-/// Cells in a chunk.
+/// Cells in a chunk, where one costs little.
 pub const CHUNK: usize = 1 << 16;
 
 /// Some cells of a map in a row.
@@ -45,7 +45,8 @@ pub fn stream<const N: usize, E: Send, X: Send>(
         }
         Ok(())
     };
-    let chunks = (0..cells).step_by(CHUNK).map(|start| start..cells.min(start + CHUNK));
+    let size = space.chunk();
+    let chunks = (0..cells).step_by(size).map(|start| start..cells.min(start + size));
     in_order(chunks, step, &mut hand_over)?;
     Ok(summary)
 }

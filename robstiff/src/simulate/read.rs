@@ -11,7 +11,8 @@ use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, Diagnostics, Joint, ReadError};
 
 use super::{Poses, Pull, Scenario};
-use crate::campaign::read::{holdout, place, text_of};
+use crate::campaign::read::{holdout, place};
+use crate::table::text_of;
 use crate::{Effect, JointKind};
 
 /// The fields of a scenario.

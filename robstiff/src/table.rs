@@ -3,11 +3,12 @@
 use core::cell::RefCell;
 use std::borrow::ToOwned;
 use std::format;
+use std::path::Path;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
 use robstiff_robots::quantity::{Dimension, scale};
-use robstiff_robots::{Diagnostic, Diagnostics};
+use robstiff_robots::{Diagnostic, Diagnostics, ReadError};
 
 /// Problems beyond this many are not recorded: nobody reads them, and a column
 /// that is wrong is wrong in every row.
@@ -25,6 +26,13 @@ pub struct Table<'t> {
     asked_for: RefCell<Vec<usize>>,
     problems: RefCell<Vec<Diagnostic>>,
     warnings: RefCell<Vec<String>>,
+}
+
+/// The text of a file; a byte order mark, as spreadsheets write it, is no part
+/// of it.
+pub fn text_of(path: &Path) -> Result<String, ReadError> {
+    let text = std::fs::read_to_string(path).map_err(|error| ReadError::Io { path: path.to_owned(), error })?;
+    Ok(text.strip_prefix('\u{feff}').map(ToOwned::to_owned).unwrap_or(text))
 }
 
 /// `name [unit]`.
@@ -193,6 +201,12 @@ impl<'t> Table<'t> {
         None
     }
 
+    /// A number of a row in SI, unchecked.
+    #[cfg(feature = "machining")]
+    pub fn peek(&self, record: &Record, column: Numbers) -> Option<f64> {
+        record.fields[column.index].parse::<f64>().ok().map(|number| number * column.scale)
+    }
+
     /// The numbers of several columns, all checked.
     pub fn all<const K: usize>(&self, record: &Record, columns: [Numbers; K]) -> Option<[f64; K]> {
         let numbers = columns.map(|column| self.number(record, column));
@@ -200,6 +214,7 @@ impl<'t> Table<'t> {
     }
 
     /// The id of a row in a column; a blank one is reported, and is no id.
+    #[cfg(feature = "identify")]
     pub fn id<'r>(&self, record: &'r Record, index: usize) -> &'r str {
         let id = self.text(record, index);
         if id.is_empty() {
@@ -211,6 +226,7 @@ impl<'t> Table<'t> {
     }
 
     /// The text of a row in a column.
+    #[cfg(feature = "identify")]
     pub fn text<'r>(&self, record: &'r Record, index: usize) -> &'r str {
         &record.fields[index]
     }
@@ -221,6 +237,12 @@ impl<'t> Table<'t> {
             let problem = self.problem(line, field, message, help);
             self.problems.borrow_mut().push(problem);
         }
+    }
+
+    /// Reports a problem with the header as a whole.
+    #[cfg(feature = "machining")]
+    pub fn report_header(&self, message: &str, help: &str) {
+        self.report(self.header_line, usize::MAX, message, help);
     }
 
     /// Reports a problem with a row in a column of numbers.

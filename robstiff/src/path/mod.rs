@@ -1,0 +1,139 @@
+//! Tool paths: where the tool is to be, point by point, and the joint
+//! coordinates that bring it there.
+//!
+//! [`ToolPath`] is what the file says, [`solve`](ToolPath::solve) turns it into
+//! a [`SolvedPath`]: joint coordinates, poses, feed directions and arc lengths
+//! for every point, or the names of all points that cannot be reached.
+
+mod follow;
+mod read;
+#[cfg(test)]
+mod tests;
+
+use std::string::String;
+use std::vec::Vec;
+
+use nalgebra::{Matrix4, SVector, Unit, Vector3};
+use robstiff_robots::Diagnostics;
+
+pub use crate::inverse::{Orientation, Remaining, Target, Unreached};
+
+/// A tool path as a file says it: poses of the tool centre point (TCP) or joint
+/// coordinates, in order.
+#[derive(Clone, Debug)]
+pub struct ToolPath {
+    /// The file's name, as problems show it.
+    pub file: String,
+    /// The points, at least one.
+    pub points: Vec<Waypoint>,
+    /// What the reader noticed without refusing the file.
+    pub warnings: Vec<String>,
+    /// The file's text, to show its lines.
+    text: String,
+}
+
+/// One point of a [`ToolPath`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Waypoint {
+    /// The line of the file, from 1.
+    pub line: usize,
+    /// Where the robot is to be.
+    pub goal: Goal,
+    /// How fast the TCP moves along the path (m/s), where the file says it.
+    pub feed: Option<f64>,
+    /// The arc length (m), where the file says it.
+    pub s: Option<f64>,
+}
+
+/// Where the robot is to be at a point.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Goal {
+    /// A pose of the TCP in the base frame.
+    Tool(Target),
+    /// Joint coordinates (rad or m).
+    Joints(Vec<f64>),
+}
+
+/// A tool path with the joint coordinates of an arm of `N` joints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolvedPath<const N: usize> {
+    /// The points, as many as the tool path has and in its order.
+    pub points: Vec<PathPoint<N>>,
+    /// Where the arm changes its posture between two points.
+    pub jumps: Vec<Jump>,
+}
+
+/// One point of a [`SolvedPath`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathPoint<const N: usize> {
+    /// The line of the file, from 1.
+    pub line: usize,
+    /// Joint coordinates (rad or m).
+    pub q: SVector<f64, N>,
+    /// The TCP's frame in the base frame, homogeneous, 4 x 4 (m).
+    pub pose: Matrix4<f64>,
+    /// The feed direction, in the base frame: along the chord to the next
+    /// point at the start, from the last one at the end, and halfway between
+    /// the two elsewhere. `None` where the TCP stays in place all along.
+    pub tangent: Option<Unit<Vector3<f64>>>,
+    /// The arc length from the first point (m): as the file says it, else the
+    /// sum of the chords.
+    pub s: f64,
+    /// How fast the TCP moves along the path (m/s), where the file says it.
+    pub feed: Option<f64>,
+}
+
+impl<const N: usize> PathPoint<N> {
+    /// The TCP in the base frame (m).
+    pub fn position(&self) -> Vector3<f64> {
+        self.pose.fixed_view::<3, 1>(0, 3).into_owned()
+    }
+}
+
+/// Two neighbouring points between which the arm changes its posture: half of
+/// the way in joint coordinates is far from half of the way of the tool.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jump {
+    /// The lines of the two points.
+    pub lines: [usize; 2],
+    /// The joint that moves most (from 1).
+    pub joint: usize,
+    /// By how much it moves (rad or m).
+    pub change: f64,
+    /// How far the tool is off the middle when all joints are halfway.
+    pub off: Remaining,
+}
+
+/// A tool path with points that the arm does not reach.
+#[derive(Clone, Debug)]
+pub struct Unsolved {
+    /// Every such point: its line and why, in the order of the file.
+    pub points: Vec<(usize, Unreached)>,
+    /// How many points the path has.
+    pub of: usize,
+    /// The same for a person, the first hundred.
+    pub problems: Diagnostics,
+}
+
+impl core::fmt::Display for Unsolved {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let count = self.points.len();
+        write!(f, "{}\n\n{count} of {} points cannot be reached", self.problems, self.of)
+    }
+}
+
+impl core::error::Error for Unsolved {}
+
+impl ToolPath {
+    /// The same path when the frame that its poses are given in stands at
+    /// `place` (homogeneous, 4 x 4, m) in the base frame. Joint coordinates stay.
+    #[must_use]
+    pub fn placed(mut self, place: &Matrix4<f64>) -> Self {
+        for point in &mut self.points {
+            if let Goal::Tool(target) = &mut point.goal {
+                *target = target.placed(place);
+            }
+        }
+        self
+    }
+}
