@@ -57,7 +57,7 @@ pub struct CartesianSpace<'r, R, const N: usize> {
 const JOINTS: [&str; 8] = ["q1", "q2", "q3", "q4", "q5", "q6", "q7", "q8"];
 const DEGREES: f64 = 180.0 / core::f64::consts::PI;
 
-impl<'r, R: Robot<N>, const N: usize> CartesianSpace<'r, R, N> {
+impl<'r, R: Robot<N> + Sync, const N: usize> CartesianSpace<'r, R, N> {
     /// The space of positions along x, y and z (m), where the tool stands as it
     /// says. What is turned furthest comes back nearest to the middle of the joints'
     /// ranges.
@@ -150,8 +150,9 @@ impl<R: Robot<N> + Sync, const N: usize> Space<N> for CartesianSpace<'_, R, N> {
         columns
     }
 
-    /// Inverse kinematics takes long: fewer cells keep a core busy.
+    /// Whole rows, and few: inverse kinematics takes long.
     fn chunk(&self) -> usize {
-        1024
+        let row = self.axes[0].values.len().max(1);
+        row * (1024 / row).max(1)
     }
 }

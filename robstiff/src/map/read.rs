@@ -1,5 +1,6 @@
 //! Reading what to map.
 
+use std::boxed::Box;
 use std::format;
 use std::string::String;
 use std::vec::Vec;
@@ -32,12 +33,16 @@ pub enum Over {
     /// Joint coordinates, an axis each.
     Joints(Vec<Axis>),
     /// Positions of the TCP in the base frame.
-    Positions {
-        /// x, y and z.
-        axes: [Axis; 3],
-        /// How the tool stands there.
-        tool: Tool,
-    },
+    Positions(Box<Positions>),
+}
+
+/// Positions of the TCP, and how the tool stands there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Positions {
+    /// x, y and z (m), in the base frame.
+    pub axes: [Axis; 3],
+    /// How the tool stands there.
+    pub tool: Tool,
 }
 
 impl Task {
@@ -66,7 +71,7 @@ fn task(document: &Document, robot: &Description) -> Option<Task> {
         (None, Some(node)) => {
             let (axes, tool) = (positions(&node), map.require("tool", "tool: {direction: [0, 0, -1]}"));
             let tool = tool.and_then(|node| self::tool(&node));
-            axes.zip(tool).map(|(axes, tool)| Over::Positions { axes, tool })
+            axes.zip(tool).map(|(axes, tool)| Over::Positions(Box::new(Positions { axes, tool })))
         }
         (Some(_), Some(node)) => {
             node.error("a map is over joints or over positions, not both", "keep one of the two");

@@ -72,9 +72,8 @@ mod tests {
     #[test]
     fn a_cone_has_circles() {
         let (width, height) = (41, 31);
-        let values: Vec<f64> = (0..width * height)
-            .map(|i| ((i % width) as f64 - 20.0).hypot((i / width) as f64 - 15.0))
-            .collect();
+        let values: Vec<f64> =
+            (0..width * height).map(|i| ((i % width) as f64 - 20.0).hypot((i / width) as f64 - 15.0)).collect();
         let lines = contours(&values, width, 8.3);
         assert_eq!(lines.len(), 1);
         assert_eq!(lines[0].first(), lines[0].last());

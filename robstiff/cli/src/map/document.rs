@@ -1,6 +1,7 @@
 //! A map's summary as JSON, and for a terminal.
 
-use robstiff::map::{Axis, Column, Extreme, Measure, Summary};
+use robstiff::map::{Axis, Column, Extreme, Measure, Placement, Summary, people};
+use robstiff_robots::quantity::Dimension;
 use serde_json::{Map, Value, json};
 
 use super::table::{Counter, heading};
@@ -19,6 +20,33 @@ pub struct Mapped {
     pub columns: Vec<Column>,
     /// The result.
     pub summary: Summary,
+    /// Where a workpiece is best put, where that was asked.
+    pub placements: Vec<Placed>,
+}
+
+/// The best place for a workpiece.
+pub struct Placed {
+    /// Its size (m).
+    pub size: [f64; 3],
+    /// The one turn of the tool (rad) for the whole workpiece; none, where each
+    /// point has its own or there is none to choose.
+    pub turn: Option<f64>,
+    /// Whether each point has its own.
+    pub each: bool,
+    /// The place, where there is one.
+    pub best: Option<Placement>,
+}
+
+impl Placed {
+    fn how(&self) -> String {
+        match (self.turn, self.each) {
+            (Some(turn), _) => {
+                format!(", the tool turned by {} deg", significant(people(Dimension::Angle, turn), 6))
+            }
+            (None, true) => ", the tool turned as is best at each point".to_owned(),
+            (None, false) => String::new(),
+        }
+    }
 }
 
 impl Mapped {
@@ -41,6 +69,11 @@ impl Mapped {
         }
     }
 
+    /// Which value of each axis a cell has.
+    pub fn indices(&self, cell: usize) -> Vec<usize> {
+        Counter::new(self.axes.iter().map(|axis| axis.values.len()), cell).indices
+    }
+
     /// The unit of the first column.
     pub fn unit(&self) -> &'static str {
         self.columns[0].unit
@@ -53,7 +86,7 @@ impl Mapped {
 
     /// Where a cell is: `q1 = -30 deg, q2 = 12.5 deg`.
     pub fn place(&self, cell: usize) -> String {
-        let at = Counter::new(self.axes.iter().map(|axis| axis.values.len()), cell).indices;
+        let at = self.indices(cell);
         let one = |(axis, index): (&Axis, usize)| {
             format!("{} = {} {}", axis.name, significant(axis.for_people(index), 6), axis.unit())
         };
@@ -88,12 +121,13 @@ impl Mapped {
             "mean": json::number(self.summary.mean * self.columns[0].scale),
             "best": self.extreme(self.summary.best.as_ref()),
             "worst": self.extreme(self.summary.worst.as_ref()),
+            "placements": self.placements.iter().map(|placed| self.placed_json(placed)).collect::<Value>(),
         })
     }
 
     fn extreme(&self, extreme: Option<&Extreme>) -> Value {
         let Some(extreme) = extreme else { return Value::Null };
-        let at = Counter::new(self.axes.iter().map(|axis| axis.values.len()), extreme.cell).indices;
+        let at = self.indices(extreme.cell);
         let mut object = Map::new();
         for (axis, index) in self.axes.iter().zip(at) {
             object.insert(format!("{} [{}]", axis.name, axis.unit()), json::number(axis.for_people(index)));
@@ -102,6 +136,38 @@ impl Mapped {
             object.insert(heading(column), json::number(value * column.scale));
         }
         object.into()
+    }
+
+    fn placed_json(&self, placed: &Placed) -> Value {
+        let mm = |lengths: [f64; 3]| json::numbers(lengths.map(|length| people(Dimension::Length, length)));
+        json!({
+            "size_mm": mm(placed.size),
+            "turn_deg": placed.turn.map(|turn| json::number(people(Dimension::Angle, turn))),
+            "turned_at_each_point": placed.each,
+            "corner_mm": placed.best.map(|best| mm(best.corner)),
+            "points": placed.best.map(|best| best.span.iter().product::<usize>()),
+            "worst": placed.best.map(|best| json::number(best.worst * self.columns[0].scale)),
+        })
+    }
+
+    /// Sentences on where a workpiece is best put.
+    pub fn placed(&self) -> Vec<String> {
+        let mm = |lengths: [f64; 3]| lengths.map(|length| significant(people(Dimension::Length, length), 6));
+        let sentence = |placed: &Placed| {
+            let size = mm(placed.size).join(" x ");
+            let Some(best) = placed.best else {
+                return format!("A workpiece of {size} mm has no place that is reached everywhere{}.", placed.how());
+            };
+            format!(
+                "A workpiece of {size} mm is best put with its lower corner at ({}) mm{}: the worst of {} in it is {} {}.",
+                mm(best.corner).join(", "),
+                placed.how(),
+                count(best.span.iter().product(), "point"),
+                self.figure(best.worst),
+                self.unit()
+            )
+        };
+        self.placements.iter().map(sentence).collect()
     }
 
     /// The page for a terminal.
@@ -123,6 +189,9 @@ impl Mapped {
         if !matches!(self.measure, Measure::Deviation(_)) {
             let [x, y, z] = [1, 2, 3].map(|k| crate::text::decimals(worst.values[k], 3));
             page += &format!("the weakest direction there is ({x}, {y}, {z}) in the base frame\n");
+        }
+        for sentence in self.placed() {
+            page += &format!("\n{sentence}\n");
         }
         page + "\n"
     }

@@ -91,6 +91,7 @@ pub fn heat(mapped: &Mapped, slices: &Slices) -> Heat {
         }
         cells(&mut svg, &frame, slices, slice, &scale, unit);
         lines(&mut svg, &frame, slices, slice, &scale, unit);
+        place(&mut svg, &frame, mapped, slices, slice);
         marks(&mut svg, &frame, mapped, slices, slice);
         axes(&mut svg, &frame, right, up);
         frames.push(frame);
@@ -115,7 +116,7 @@ fn aspect(right: &Axis, up: &Axis) -> f64 {
 }
 
 /// Which slice it is: `z = 800 mm`.
-fn beside(mapped: &Mapped, slices: &Slices, slice: &Slice) -> String {
+pub fn beside(mapped: &Mapped, slices: &Slices, slice: &Slice) -> String {
     let aside = (0..mapped.axes.len()).filter(|axis| !slices.drawn.contains(axis) && mapped.axes[*axis].varies());
     let one = |axis: usize| {
         let (index, axis) = (slice.at[axis], &mapped.axes[axis]);
@@ -126,9 +127,7 @@ fn beside(mapped: &Mapped, slices: &Slices, slice: &Slice) -> String {
 
 fn cells(svg: &mut Svg, frame: &Frame, slices: &Slices, slice: &Slice, scale: &Scale, unit: f64) {
     let ([x, y], [width, height]) = (frame.corner, frame.size);
-    svg.raw(&format!(
-        "<rect class=\"hole\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\"/>"
-    ));
+    svg.raw(&format!("<rect class=\"hole\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\"/>"));
     let share = |value: &f64| if value.is_nan() { f64::NAN } else { scale.share(value * unit) };
     let shares: Vec<f64> = slice.values.iter().map(share).collect();
     svg.image(frame.corner, frame.size, &raster::picture(&shares, slices.pixels));
@@ -189,8 +188,18 @@ fn marks(svg: &mut Svg, frame: &Frame, mapped: &Mapped, slices: &Slices, slice: 
         };
         let x = frame.corner[0] + share(0) * frame.size[0];
         let y = frame.corner[1] + (1.0 - share(1)) * frame.size[1];
-        let anchor = if share(0) < 0.12 { "start" } else if share(0) > 0.88 { "end" } else { "middle" };
-        let dx = match anchor { "start" => -4.0, "end" => 4.0, _ => 0.0 };
+        let anchor = if share(0) < 0.12 {
+            "start"
+        } else if share(0) > 0.88 {
+            "end"
+        } else {
+            "middle"
+        };
+        let dx = match anchor {
+            "start" => -4.0,
+            "end" => 4.0,
+            _ => 0.0,
+        };
         for class in ["mark under", "mark"] {
             if name == "worst" {
                 let cross = format!("M{:.1} {:.1}l9 9m0 -9l-9 9", x - 4.5, y - 4.5);
@@ -204,11 +213,36 @@ fn marks(svg: &mut Svg, frame: &Frame, mapped: &Mapped, slices: &Slices, slice: 
     }
 }
 
+/// Where the workpiece is best put, seen in the slice.
+fn place(svg: &mut Svg, frame: &Frame, mapped: &Mapped, slices: &Slices, slice: &Slice) {
+    let Some(best) = mapped.placements.iter().find_map(|placed| placed.best) else { return };
+    let aside = (0..mapped.axes.len()).filter(|axis| !slices.drawn.contains(axis));
+    let within = |axis: usize| (best.first[axis]..best.first[axis] + best.span[axis]).contains(&slice.at[axis]);
+    if !aside.into_iter().all(within) {
+        return;
+    }
+    let share = |k: usize| {
+        let axis = slices.drawn[k];
+        let cells = mapped.axes[axis].values.len() as f64;
+        [best.first[axis] as f64 / cells, (best.first[axis] + best.span[axis]) as f64 / cells]
+    };
+    let ([left, right], [below, above]) = (share(0), share(1));
+    let ([x, y], [width, height]) = (frame.corner, frame.size);
+    let path = format!(
+        "M{:.1} {:.1}h{:.1}v{:.1}h{:.1}z",
+        x + left * width,
+        y + (1.0 - above) * height,
+        (right - left) * width,
+        (above - below) * height,
+        (left - right) * width
+    );
+    svg.path("place under", &path);
+    svg.path("place", &path);
+}
+
 fn axes(svg: &mut Svg, frame: &Frame, right: &Axis, up: &Axis) {
     let ([x, y], [width, height]) = (frame.corner, frame.size);
-    svg.raw(&format!(
-        "<rect class=\"frame\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\"/>"
-    ));
+    svg.raw(&format!("<rect class=\"frame\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\"/>"));
     let ends = |axis: &Axis| {
         let last = axis.values.len() - 1;
         let (from, to) = (axis.for_people(0), axis.for_people(last));
@@ -254,7 +288,6 @@ fn legend(svg: &mut Svg, [x, y]: [f64; 2], height: f64, mapped: &Mapped, scale: 
         svg.text("small", [x + 25.0, at + 4.0], "start", &tick_label(mark, &scale.marks));
     }
     let words = if mapped.measure.worse_is_larger() { ["gives way", "holds"] } else { ["holds", "gives way"] };
-    svg.text("small", [x + 25.0, y - 12.0 + 14.0 - 2.0], "start", "");
     for (word, at) in words.into_iter().zip([y + 12.0, y + height - 4.0]) {
         svg.raw(&format!(
             "<text class=\"small\" text-anchor=\"{}\" transform=\"translate({:.1} {at:.1}) rotate(90)\">{word}</text>",

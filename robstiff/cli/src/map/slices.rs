@@ -8,7 +8,7 @@ use super::table::Counter;
 const SLICES: usize = 6;
 
 /// Pixels along an axis, at most.
-const PIXELS: usize = 800;
+const PIXELS: usize = 400;
 
 /// Slices, side by side along the third axis that varies; where more vary, they
 /// are through the middle.
@@ -63,6 +63,12 @@ impl Slices {
         };
         let lengths = axes.iter().map(|axis| axis.values.len()).collect();
         Some(Self { drawn: [*right, *up], pixels, slices, lengths, measure: *measure })
+    }
+
+    /// The same slices without values, to look cells up in.
+    pub fn empty(&self) -> Self {
+        let slices = self.slices.iter().map(|slice| Slice { at: slice.at.clone(), values: Vec::new() });
+        Self { slices: slices.collect(), lengths: self.lengths.clone(), ..*self }
     }
 
     /// The cells of a chunk that are drawn.
