@@ -90,7 +90,7 @@ pub fn heat(mapped: &Mapped, slices: &Slices) -> Heat {
             svg.text("legend", [corner[0], corner[1] - 8.0], "start", &title);
         }
         cells(&mut svg, &frame, slices, slice, &scale, unit);
-        lines(&mut svg, &frame, slices, slice, &scale, unit);
+        lines(&mut svg, &frame, mapped, slices, slice, &scale);
         place(&mut svg, &frame, mapped, slices, slice);
         marks(&mut svg, &frame, mapped, slices, slice);
         axes(&mut svg, &frame, right, up);
@@ -112,7 +112,7 @@ const HATCH: &str = "<defs><pattern id=\"hatch\" width=\"7\" height=\"7\" patter
 /// Height over width: true to scale where both axes are lengths.
 fn aspect(right: &Axis, up: &Axis) -> f64 {
     let span = |axis: &Axis| axis.values[axis.values.len() - 1] - axis.values[0];
-    if right.dimension == up.dimension { (span(up) / span(right)).clamp(0.4, 1.25) } else { 0.8 }
+    if right.dimension == up.dimension && up.unit() == "mm" { (span(up) / span(right)).clamp(0.4, 1.25) } else { 0.7 }
 }
 
 /// Which slice it is: `z = 800 mm`.
@@ -135,13 +135,24 @@ fn cells(svg: &mut Svg, frame: &Frame, slices: &Slices, slice: &Slice, scale: &S
 
 /// Contour lines at the marks of the scale; a dark line in a light one can be
 /// seen on any colour.
-fn lines(svg: &mut Svg, frame: &Frame, slices: &Slices, slice: &Slice, scale: &Scale, unit: f64) {
+fn lines(svg: &mut Svg, frame: &Frame, mapped: &Mapped, slices: &Slices, slice: &Slice, scale: &Scale) {
+    let unit = mapped.columns[0].scale;
     let values: Vec<f64> = slice.values.iter().map(|value| value * unit).collect();
     let [right, up] = slices.pixels.map(|count| count as f64);
     let ([x, y], [width, height]) = (frame.corner, frame.size);
     // Values are those of the cells' middles.
     let place = |[i, j]: [f64; 2]| [x + (i + 0.5) / right * width, y + height - (j + 0.5) / up * height];
+    // The best and the worst cell have names of their own.
     let mut labels: Vec<([f64; 2], String)> = Vec::new();
+    let extremes = [&mapped.summary.worst, &mapped.summary.best];
+    for extreme in extremes.into_iter().flatten() {
+        let at = mapped.indices(extreme.cell);
+        let [i, j] = [0, 1].map(|k| {
+            let axis = slices.drawn[k];
+            (at[axis] * slices.pixels[k] / mapped.axes[axis].values.len()) as f64
+        });
+        labels.push((place([i, j]), String::new()));
+    }
     for &mark in &scale.marks {
         let mut path = String::new();
         for line in contours(&values, slices.pixels[0], mark) {
@@ -156,7 +167,7 @@ fn lines(svg: &mut Svg, frame: &Frame, slices: &Slices, slice: &Slice, scale: &S
                 order.sort_by_key(|&k| k.abs_diff(line.len() / 2));
                 let clear = |&[a, b]: &[f64; 2]| {
                     let inside = a - x > 22.0 && x + width - a > 22.0 && b - y > 12.0 && y + height - b > 12.0;
-                    inside && labels.iter().all(|([c, d], _)| (a - c).abs() > 44.0 || (b - d).abs() > 18.0)
+                    inside && labels.iter().all(|([c, d], _)| (a - c).abs() > 44.0 || (b - d).abs() > 20.0)
                 };
                 if let Some(at) = order.into_iter().map(|k| line[k]).find(clear) {
                     labels.push((at, tick_label(mark, &scale.marks)));
@@ -168,7 +179,7 @@ fn lines(svg: &mut Svg, frame: &Frame, slices: &Slices, slice: &Slice, scale: &S
             svg.path("contour", &path);
         }
     }
-    for ([x, y], label) in labels {
+    for ([x, y], label) in labels.into_iter().filter(|(_, label)| !label.is_empty()) {
         svg.text("level", [x, y + 4.0], "middle", &label);
     }
 }
