@@ -226,7 +226,8 @@ fn marks(svg: &mut Svg, frame: &Frame, mapped: &Mapped, slices: &Slices, slice: 
 
 /// Where the workpiece is best put, seen in the slice.
 fn place(svg: &mut Svg, frame: &Frame, mapped: &Mapped, slices: &Slices, slice: &Slice) {
-    let Some(best) = mapped.placements.iter().find_map(|placed| placed.best) else { return };
+    let found = mapped.placements.iter().find_map(|placed| Some((placed.size, placed.best?)));
+    let Some((size, best)) = found else { return };
     let aside = (0..mapped.axes.len()).filter(|axis| !slices.drawn.contains(axis));
     let within = |axis: usize| (best.first[axis]..best.first[axis] + best.span[axis]).contains(&slice.at[axis]);
     if !aside.into_iter().all(within) {
@@ -234,8 +235,11 @@ fn place(svg: &mut Svg, frame: &Frame, mapped: &Mapped, slices: &Slices, slice: 
     }
     let share = |k: usize| {
         let axis = slices.drawn[k];
-        let cells = mapped.axes[axis].values.len() as f64;
-        [best.first[axis] as f64 / cells, (best.first[axis] + best.span[axis]) as f64 / cells]
+        let values = &mapped.axes[axis].values;
+        // Cells are drawn about their values.
+        let pitch = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
+        let first = best.first[axis] as f64 + 0.5;
+        [first / values.len() as f64, (first + size[axis] / pitch) / values.len() as f64]
     };
     let ([left, right], [below, above]) = (share(0), share(1));
     let ([x, y], [width, height]) = (frame.corner, frame.size);
