@@ -179,8 +179,8 @@ impl<const N: usize> Tape<N> {
             let q: [SVector<f64, N>; WIDTH] = array::from_fn(|lane| poses.pose((first + lane).min(count - 1)));
             let q: [Abreast; N] = array::from_fn(|joint| Lanes(array::from_fn(|lane| q[lane][joint])));
             program.run(&q, &mut values, &mut turns);
-            for lane in 0..WIDTH.min(count - first) {
-                give(first + lane, outputs.map(|output| values[program.outputs[output]][lane]));
+            for pose in first..count.min(first + WIDTH) {
+                give(pose, outputs.map(|output| values[program.outputs[output]][pose - first]));
             }
         }
     }
