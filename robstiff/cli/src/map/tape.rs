@@ -221,11 +221,11 @@ mod tests {
         tape.triangles(Poses::List(&q), &mut triangles);
         for (k, q) in q.iter().enumerate() {
             let (d, h) = (generic.deflection(q, &wrench), generic.compliance(q));
-            assert!((deflections[k] - d).norm() < 1e-12 * d.norm(), "{}", robot.name);
+            assert!((deflections[k] - d).norm() <= 1e-12 * d.norm(), "{}", robot.name);
             let mut entry = 0;
             for row in 0..6 {
                 for column in row..6 {
-                    assert!((triangles[k][entry] - h[(row, column)]).abs() < 1e-12 * h.amax(), "{}", robot.name);
+                    assert!((triangles[k][entry] - h[(row, column)]).abs() <= 1e-12 * h.amax(), "{}", robot.name);
                     entry += 1;
                 }
             }
@@ -256,7 +256,7 @@ mod tests {
 
     #[test]
     fn grids_are_poses_too() {
-        let (file, text) = catalogue()[0];
+        let (file, text) = catalogue().iter().find(|(file, _)| file.starts_with("kuka-kr270")).unwrap();
         let robot = Description::parse(file, text).unwrap();
         let axes: [Axis; 6] = array::from_fn(|i| Axis::angles(&format!("q{}", i + 1), -0.4, 0.3, 1 + i % 3));
         let mut tables = Vec::new();
