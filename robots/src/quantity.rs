@@ -344,7 +344,7 @@ mod tests {
             ("350 kg", Mass, 350.0),
             ("5 ms", Time, 5e-3),
             ("1200 mm/min", Speed, 0.02),
-            ("15 rpm", RotationalSpeed, PI / 2.0),
+            ("30 rpm", RotationalSpeed, PI),
             ("15 Hz", Frequency, 15.0),
             ("0.1 mm/tooth", FeedPerTooth, 1e-4),
             ("0.1 mm", FeedPerTooth, 1e-4),

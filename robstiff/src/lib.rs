@@ -30,7 +30,9 @@
 //! - `inverse`, `path` (feature `machining`): the joint coordinates of a pose of
 //!   the tool, and of a whole tool path;
 //! - `milling`, `stability` (likewise): the force of an end mill, and the depths
-//!   of cut at which the arm chatters by mode coupling.
+//!   of cut at which the arm chatters by mode coupling;
+//! - `map` (likewise): stiffness and deviation over joint space, planes and boxes,
+//!   as a stream, and where a workpiece is best put.
 //!
 //! Without default features the crate is `no_std` and allocates nothing.
 #![no_std]
@@ -56,6 +58,8 @@ pub mod identify;
 #[cfg(feature = "machining")]
 pub mod inverse;
 mod lanes;
+#[cfg(feature = "machining")]
+pub mod map;
 #[cfg(feature = "machining")]
 pub mod milling;
 #[cfg(feature = "machining")]
