@@ -6,6 +6,7 @@
 //! any outcome was seen. A kind that tracing learns to name is added to
 //! [`NAMED`], and is then held to the same rates.
 
+use robstiff_tests::judge_tracing::{Held, within};
 use robstiff_tests::matrix::interval::fewest;
 use robstiff_tests::matrix::{Case, Expected, Group, Record, run};
 
@@ -54,7 +55,8 @@ fn nothing_is_named_where_nothing_is_hidden() {
     assert_rate("nothing", 0.99, &all, |record| record.is_as_expected() == Some(true));
     // Intervals of the joints: of some hundred, 95 % have the truth in them;
     // those of one campaign are hardly correlated.
-    let (within, joints) = records.iter().fold((0, 0), |sum, one| (sum.0 + one.joints.0, sum.1 + one.joints.1));
+    let joints: Vec<Held> = records.into_iter().flat_map(|record| record.joints).collect();
+    let (within, joints) = within(&joints);
     println!("{within} of {joints} joints are within their interval");
     assert!(joints > 100 && within >= fewest(joints, 0.95, LEVEL), "{within} of {joints}");
 }
