@@ -20,6 +20,10 @@ pub static KIND: Kind = Kind {
 /// The onsets tried, in steps from one row to the next.
 const ONSETS: [f64; 4] = [1.0 / 20.0, 1.0 / 6.0, 1.0 / 2.0, 2.0];
 
+/// How far from the middle of these, in logarithms, an onset is as a rule: a
+/// third of the grid's width.
+const LIKELY: f64 = 1.2;
+
 /// Beyond this share a decade it is no creep (1).
 const MOST: f64 = 0.4;
 
@@ -44,6 +48,11 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     };
     let numbers: Vec<Number> = onsets.map(number).into();
     let forms = (0..).zip(onsets).map(|(k, onset)| Form::of([k]).with("onset", onset, unit));
-    let forms = forms.map(|form| form.refined(move |onsets| [number(onsets[0])].into())).collect();
+    let forms = forms.map(|form| form.refined(move |onsets| [number(onsets[0])].into()));
+    // Long after the onset a share and an onset are the joints' compliances with
+    // another share and onset.
+    let [first, .., last] = onsets;
+    let forms = forms.map(|form| form.within([0.5 * first, 2.0 * last]).likely((first * last).sqrt(), LIKELY));
+    let forms = forms.collect();
     offers.add(Place::Rig, numbers, forms);
 }

@@ -65,7 +65,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
 /// The frames 1 to n that masses are given in.
 fn link_frames(convention: Convention, samples: &Samples, row: &Sample) -> Vec<nalgebra::Matrix4<f64>> {
     match convention {
-        Convention::Modified => row.joint_frames.clone(),
+        Convention::Modified => row.joint_frames.to_vec(),
         Convention::Standard => row.joint_frames[1..samples.joints()].iter().copied().chain([row.flange]).collect(),
     }
 }

@@ -173,7 +173,7 @@ pub type Enters = Rc<dyn Fn(&mut Setup, f64)>;
 type Check = Rc<dyn Fn(&[(&str, f64)], &dyn Fn(usize) -> f64) -> Result<(), String>>;
 
 /// The numbers of a form with other values of those out of its grid.
-type Refine = Rc<dyn Fn(&[f64]) -> Vec<Number>>;
+pub type Refine = Rc<dyn Fn(&[f64]) -> Vec<Number>>;
 
 /// A number of a candidate.
 #[derive(Clone)]
@@ -283,6 +283,9 @@ pub struct Variant {
     pub refine: Option<Refine>,
     /// Where such numbers go by this name.
     pub within: [f64; 2],
+    /// What such a number is likely to be, before any data, and by what factor
+    /// off, in logarithms; where data may say nothing of it.
+    pub likely: Option<[f64; 2]>,
 }
 
 /// An effect that may be missing.
@@ -338,6 +341,8 @@ pub struct Form {
     pub refine: Option<Refine>,
     /// Where such numbers go by this name.
     pub within: [f64; 2],
+    /// What such a number is likely to be.
+    pub likely: Option<[f64; 2]>,
 }
 
 impl Form {
@@ -350,6 +355,7 @@ impl Form {
             names: &[],
             refine: None,
             within: MORE_THAN_NONE,
+            likely: None,
         }
     }
 
@@ -369,6 +375,13 @@ impl Form {
     /// name within bounds only.
     pub fn within(mut self, bounds: [f64; 2]) -> Self {
         self.within = bounds;
+        self
+    }
+
+    /// The same with numbers between the values of the grid that are likely to be
+    /// this, up or down by a factor whose logarithm is `spread`.
+    pub fn likely(mut self, middle: f64, spread: f64) -> Self {
+        self.likely = Some([middle, spread]);
         self
     }
 
@@ -406,6 +419,7 @@ impl Offers<'_> {
             names: form.names,
             refine: form.refine,
             within: form.within,
+            likely: form.likely,
         };
         let variants = forms.into_iter().map(variant).collect();
         self.catalogue.numbers.extend(numbers);
