@@ -101,7 +101,7 @@ impl Tests {
     }
 
     /// The family-wise p-value of the largest statistic.
-    fn smallest_p(&self) -> f64 {
+    pub fn smallest_p(&self) -> f64 {
         (0..self.statistics.len()).map(|candidate| self.p_value(candidate)).fold(1.0, f64::min)
     }
 }

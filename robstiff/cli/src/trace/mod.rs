@@ -1,6 +1,7 @@
 //! `robstiff trace`: the closed loop, from the residual to the effect that the
 //! model lacks.
 
+mod clamped;
 mod content;
 mod document;
 mod pictures;
@@ -12,6 +13,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use robstiff::campaign::Data;
 use robstiff::plan::next;
 use robstiff::trace::{Options, trace};
 
@@ -77,8 +79,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     spinner.finish_and_clear();
     let traced = traced?;
 
-    let document = json::document(&document::document(&traced, &triage, &campaign));
+    let document = document::document(&traced, &triage, &campaign);
     let report = content::report(&traced, &triage, &campaign, &options)?;
+    let page = triage::page(&triage) + &story::page(&traced);
+    let report = report::html(&report);
+    let (document, report, page) = match &campaign.data {
+        Data::Displacement(_) => (document, report, page),
+        Data::Clamped(_) => (clamped::in_angles(document), clamped::about_axes(&report), clamped::about_axes(&page)),
+    };
+    let document = json::document(&document);
     let mut files = Files::default();
     files.protect_campaign(&campaign);
     files.add(arguments.out.join("robot.yaml"), traced.description.to_yaml());
@@ -86,9 +95,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         files.add(path, document.clone());
     }
     files.add(arguments.out.join("trace.json"), document);
-    files.add(arguments.out.join("report.html"), report::html(&report));
+    files.add(arguments.out.join("report.html"), report);
     let said = files.write()?;
-    output::print(triage::page(&triage) + &story::page(&traced) + "\n" + &said)
+    output::print(page + "\n" + &said)
 }
 
 /// Shows on a terminal that something goes on, and hides elsewhere.

@@ -24,6 +24,7 @@ pub static KIND: Kind = Kind {
     explanation: "The links weigh on the joints, so the arm hangs below where its encoders say. A controller that \
         knows the masses corrects it; measurements from the encoders alone cannot show it.",
     offer,
+    on_axes: None,
 };
 
 /// Standard gravity (m/s^2), along -z of the base frame.

@@ -52,6 +52,7 @@ pub use self::hysteresis::KIND as HYSTERESIS;
 pub use self::lost_motion::{EITHER, KIND as LOST_MOTION};
 pub use self::outliers::KIND as OUTLIERS;
 pub use self::stiffness_nonlinearity::KIND as STIFFNESS_NONLINEARITY;
+use super::clamped::{Axes, OnAxes};
 use super::found::{EffectParameter, Found, Place};
 use super::isolated::Moment;
 use super::point::Point;
@@ -76,6 +77,9 @@ pub struct Kind {
     pub explanation: &'static str,
     /// Adds its candidates.
     pub offer: fn(&Scene<'_>, &mut Offers<'_>),
+    /// What it does to axes that are loaded one by one, those before clamped;
+    /// none where such readings cannot show it.
+    pub on_axes: Option<fn(&Axes) -> Vec<OnAxes>>,
 }
 
 impl PartialEq for Kind {
@@ -92,7 +96,7 @@ impl core::fmt::Debug for Kind {
 
 /// Every kind, in the order of precedence among exact aliases. What is wrong
 /// with single rows (`outliers`) has no columns: it is found row by row.
-static KINDS: [&Kind; 22] = [
+pub static KINDS: [&Kind; 22] = [
     &thermal_drift::KIND,
     &creep::KIND,
     &load_cell_bias::KIND,

@@ -12,6 +12,7 @@ use nalgebra::Vector3;
 
 use super::{Form, Kind, Number, Offers, Place, SHIFT, Scene};
 use crate::campaign::Displacements;
+use crate::trace::clamped::{Axes, AxisNumber, OnAxes, axes_column};
 use crate::trace::point::clock;
 
 /// The kind.
@@ -22,6 +23,7 @@ pub static KIND: Kind = Kind {
     explanation: "The readings move while nothing pulls: the robot or the stand of the tracker warms up, or settles. \
         Warm up before, read the unloaded arm at every visit, and mix the order of poses.",
     offer,
+    on_axes: Some(on_axes),
 };
 
 /// More than this over a campaign is a mishap (m).
@@ -175,4 +177,18 @@ fn round(data: &Displacements, clock: &[f64], pace: f64) -> Option<Vec<f64>> {
     let started = begin > -1e-6 * clock.last()?.abs();
     let time = |row: &crate::campaign::Observation| begin + pace * place[row.visit].unwrap_or(0) as f64;
     started.then(|| data.rows.iter().map(time).collect())
+}
+
+/// From row to row since the unloaded reading of an axis, on all alike.
+fn on_axes(axes: &Axes) -> Vec<OnAxes> {
+    let count = axes.rows.len();
+    let numbers = [AxisNumber { name: "rate", unit: "rad/row", range: [-MOST, MOST] }].into();
+    let since: nalgebra::DVector<f64> = axes
+        .loaded()
+        .map(|axis| {
+            let rows = axes.rows_of(axis);
+            axes_column(count, &rows, rows.iter().map(|row| (row - rows[0] + 1) as f64))
+        })
+        .sum();
+    [OnAxes::new(Place::Rig, numbers, &[], [Vec::new()].into(), move |_| [since.clone()].into())].into()
 }
