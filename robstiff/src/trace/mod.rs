@@ -18,6 +18,7 @@ pub mod bench;
 pub mod bootstrap;
 pub mod catalogue;
 pub mod clamped;
+pub mod correction;
 pub mod features;
 mod found;
 pub mod isolated;
@@ -37,6 +38,7 @@ use std::vec::Vec;
 use robstiff_robots::Description;
 
 pub use alias::Rival;
+pub use correction::Correction;
 pub use found::{EffectParameter, Found, Place};
 pub use lack_of_fit::StructureTest;
 pub use selection::{Step, Tested};

@@ -3,6 +3,7 @@
 
 mod clamped;
 mod content;
+mod correction;
 mod document;
 mod pictures;
 mod story;
@@ -15,7 +16,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use robstiff::campaign::Data;
 use robstiff::plan::next;
-use robstiff::trace::{Options, trace};
+use robstiff::trace::{Correction, Options, trace};
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
@@ -42,6 +43,10 @@ pub struct Arguments {
     /// Level of the tests, over all candidates together
     #[arg(long, default_value_t = Options::default().alpha, value_parser = level)]
     alpha: f64,
+    /// Look for a correction of what is left that is no physics, and where it predicts unseen poses
+    /// better write it to `correction.json`
+    #[arg(long)]
+    correction: bool,
 }
 
 /// How many measurements are proposed; `robstiff plan` proposes more.
@@ -76,12 +81,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         traced.next = next(&campaign, &traced, PROPOSALS).unwrap_or_default();
         traced
     });
+    let correction = match &traced {
+        Ok(traced) if arguments.correction => Some(Correction::of(&campaign, traced)),
+        _ => None,
+    };
     spinner.finish_and_clear();
     let traced = traced?;
 
     let document = document::document(&traced, &triage, &campaign);
-    let report = content::report(&traced, &triage, &campaign, &options)?;
-    let page = triage::page(&triage) + &story::page(&traced);
+    let mut report = content::report(&traced, &triage, &campaign, &options)?;
+    let mut page = triage::page(&triage) + &story::page(&traced);
+    if let Some(found) = &correction {
+        let said = correction::sentence(found.as_ref());
+        page += &format!("\n{said}\n");
+        report.summary.push(said);
+    }
     let report = report::html(&report);
     let (document, report, page) = match &campaign.data {
         Data::Displacement(_) => (document, report, page),
@@ -96,6 +110,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     files.add(arguments.out.join("trace.json"), document);
     files.add(arguments.out.join("report.html"), report);
+    if let Some(Some(found)) = &correction {
+        files.add(arguments.out.join("correction.json"), json::document(&correction::document(found, &traced)));
+    }
     let said = files.write()?;
     output::print(page + "\n" + &said)
 }
