@@ -214,7 +214,8 @@ fn effects(
             let std = known.then(|| number.value * spread[(first + s, first + s)].sqrt());
             EffectParameter { std, ..number.clone() }
         };
-        let parameters: Vec<EffectParameter> = numbers.chain(variant.shape.iter().enumerate().map(shape)).collect();
+        let shapes: Vec<EffectParameter> = variant.shape.iter().enumerate().map(shape).collect();
+        let parameters = in_order(numbers.collect(), shapes);
         let candidate = &setting.candidates[one.candidate];
         NamedEffect {
             effect: Found::new(candidate.kind, candidate.place, parameters.clone()),
@@ -227,6 +228,23 @@ fn effects(
         }
     });
     named.collect()
+}
+
+/// Numbers with those out of a grid that go with each, the smallest of these
+/// first: fitting may have brought them out of order.
+fn in_order(numbers: Vec<EffectParameter>, shapes: Vec<EffectParameter>) -> Vec<EffectParameter> {
+    let mut order: Vec<usize> = (0..shapes.len()).collect();
+    if numbers.len() == shapes.len() {
+        order.sort_by(|&a, &b| shapes[a].value.total_cmp(&shapes[b].value));
+    }
+    let sorted = |all: &[EffectParameter]| -> Vec<EffectParameter> {
+        let one = |(place, &from): (usize, &usize)| EffectParameter { name: all[place].name, ..all[from].clone() };
+        order.iter().enumerate().map(one).collect()
+    };
+    match numbers.len() == shapes.len() {
+        true => sorted(&numbers).into_iter().chain(sorted(&shapes)).collect(),
+        false => numbers.into_iter().chain(shapes).collect(),
+    }
 }
 
 /// A compliance as a share of that of a joint (from 1), with its standard

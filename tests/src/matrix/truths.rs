@@ -3,8 +3,10 @@
 //!
 //! - A model that leaves out a number that was hidden, a link's torsion beside its
 //!   bending, has others in its place; so does one with fewer play operators. Their
-//!   values are those of another model. Then neither the joints are compared nor,
-//!   where it is the operators that are fewer, anything of that joint.
+//!   values are those of another model, as are those of a drift that is told to
+//!   follow something else. Then neither the joints are compared nor the numbers of
+//!   that effect nor, where it is the operators that are fewer, anything of that
+//!   joint. A soft base and a soft tool share one translation.
 //! - A load cell of which all axes read too much by the same factor is the same as
 //!   softer joints, so a trace tells the scale of two axes against the third, and
 //!   all loads and compliances as that one has them.
@@ -13,7 +15,7 @@
 //!   compared.
 
 use crate::judge_tracing::{Name, Told};
-use crate::simulator::Hidden;
+use crate::simulator::{Follows, Hidden};
 
 /// What numbers should come out.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,18 +32,16 @@ impl Truths {
     pub fn of(told: &Told, hidden: &[Hidden], joints: Vec<f64>) -> Self {
         let named = |hidden: &Hidden| told.names.iter().find(|named| named.name == hidden.name());
         let cells = hidden.iter().filter(|hidden| hidden.name().starts_with("load_cell")).count();
-        let common = match cells {
-            1 => hidden.iter().filter_map(|one| common_scale(one, named(one)?)).next().unwrap_or(1.0),
-            _ => 1.0,
-        };
+        let common = hidden.iter().find_map(|one| common_scale(one, named(one)?)).unwrap_or(1.0);
         let others: Vec<String> =
             hidden.iter().filter(|one| !same_operators(one, named(one))).map(Hidden::place).collect();
         let mut effects = Vec::new();
         let mut whole = cells < 2;
         for one in hidden {
             let (name, Some(told)) = (one.name(), named(one)) else { continue };
-            whole &= tells_all(one, told) && same_operators(one, Some(told));
-            if others.contains(&one.place()) || (cells > 1 && name.starts_with("load_cell")) {
+            whole &= tells_all(one, told) && same_operators(one, Some(told)) && same_course(one, told);
+            let is_another = others.contains(&one.place()) || !tells_all(one, told) || !same_course(one, told);
+            if is_another || (cells > 1 && name.starts_with("load_cell")) {
                 continue;
             }
             let as_told = |(number, value): (String, f64)| {
@@ -54,7 +54,10 @@ impl Truths {
                 };
                 (number, value)
             };
-            effects.push((name, one.parameters().into_iter().map(as_told).collect()));
+            let translates = |name: &str| hidden.iter().any(|hidden| hidden.name() == name);
+            let shared = translates("base_compliance@base") && translates("tool_compliance@tool");
+            let own = one.parameters().into_iter().filter(|(number, _)| !(shared && number == "translation"));
+            effects.push((name, own.map(as_told).collect()));
         }
         let joints = whole.then(|| joints.into_iter().map(|compliance| compliance * common).collect());
         Self { effects, joints }
@@ -75,6 +78,17 @@ fn same_operators(hidden: &Hidden, told: Option<&Name>) -> bool {
     let Hidden::Hysteresis { operators, .. } = hidden else { return true };
     let of = |told: &Name| told.parameters.iter().filter(|number| number.name.starts_with("weight")).count();
     told.is_some_and(|told| of(told) == operators.len())
+}
+
+/// Whether a drift is told to follow what it does follow.
+fn same_course(hidden: &Hidden, told: &Name) -> bool {
+    let Hidden::ThermalDrift { follows, .. } = hidden else { return true };
+    let unit = match follows {
+        Follows::Time => "m/h",
+        Follows::Temperature => "m/K",
+        Follows::Settling(_) => "m",
+    };
+    told.parameters.iter().find(|number| number.name == "dx").is_some_and(|number| number.unit == unit)
 }
 
 /// The factor of the load cell's axes that are not told to be off.

@@ -50,11 +50,14 @@ pub struct Bench<'c> {
     moments: Vec<Moment>,
     settings: Solved<Setting<'c>>,
     states: Solved<State>,
-    tests: RefCell<HashMap<(Vec<Named>, usize, u64), Option<Rc<Tests>>>>,
+    tests: Tested,
 }
 
 /// What was found of models, or why not.
 type Solved<T> = RefCell<HashMap<Vec<Named>, Result<Rc<T>, String>>>;
+
+/// The tests against models, with so many draws and a seed.
+type Tested = RefCell<HashMap<(Vec<Named>, usize, u64), Option<Rc<Tests>>>>;
 
 /// A model at its solution.
 struct State {

@@ -101,7 +101,7 @@ impl Axes {
 fn without_laws(robot: &Description, rows: &[ClampedRow]) -> Vec<ClampedRow> {
     let mut states = std::vec![[0.0; PLAYS]; robot.joints.len()];
     let less = |row: &ClampedRow| {
-        let (joint, mut less) = (row.axis - 1, row.clone());
+        let (joint, mut less) = (row.axis - 1, *row);
         for effect in robot.effects.iter().filter(|effect| effect.row() == Some(row.axis)) {
             if matches!(effect, Effect::PoseDependentCompliance { .. }) {
                 continue;
