@@ -114,7 +114,7 @@ fn is_found(arm: &Description, hidden: Effect) {
 /// standard deviation; those that were left out, zero.
 fn numbers_are_near(trace: &Trace, hidden: Effect) -> bool {
     let named = &trace.effects[0];
-    if named.effect.kind() != hidden.kind() || named.effect.place() != hidden.place() {
+    if named.effect.kind() != hidden.kind() || named.effect.place() != hidden.place().into() {
         // What the data cannot tell from it has numbers of its own.
         return true;
     }
