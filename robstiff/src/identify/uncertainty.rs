@@ -52,7 +52,9 @@ pub fn covariance_with(problem: &Problem, fit: &Fit, signs: &[Sign], known: &[f6
     let held = |&k: &usize| signs[k] == Sign::Nonnegative && fit.coefficients[k] == 0.0;
     let free: Vec<usize> = (0..signs.len()).filter(|k| !held(k)).collect();
     let mut whole = DMatrix::zeros(signs.len(), signs.len());
-    let Some(part) = of_free(problem, fit, &free, known) else { return whole };
+    // Where all are held there is nothing to be sure of.
+    let part = (!free.is_empty()).then(|| of_free(problem, fit, &free, known)).flatten();
+    let Some(part) = part else { return whole };
     for (i, &row) in free.iter().enumerate() {
         for (j, &column) in free.iter().enumerate() {
             whole[(row, column)] = part[(i, j)];
