@@ -13,6 +13,7 @@
 //! is: nothing of that moves. A load cell's scale is a scale of all compliances.
 
 mod axes;
+mod bench;
 mod report;
 mod search;
 

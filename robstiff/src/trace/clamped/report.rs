@@ -7,7 +7,8 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 use robstiff_robots::effect::Place as Part;
 
-use super::search::{Bench, Found as Searched};
+use super::bench::{Bench, problem};
+use super::search::Found as Searched;
 use crate::campaign::{Campaign, Data};
 use crate::identify::baseline::{declared, with_values};
 use crate::identify::normal::{Fit, Sign};
@@ -151,7 +152,7 @@ fn spread(bench: &Bench, model: &Fitted) -> DMatrix<f64> {
     signs.resize(raw.len(), Sign::Free);
     let coefficients = model.fit.coefficients.clone().resize_vertically(raw.len(), 0.0);
     let fit = Fit { columns: (0..raw.len()).collect(), coefficients, rss: model.fit.rss };
-    covariance_with(&super::search::problem(&bench.axes, DMatrix::from_columns(&raw)), &fit, &signs, &known)
+    covariance_with(&problem(&bench.axes, DMatrix::from_columns(&raw)), &fit, &signs, &known)
 }
 
 fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: f64) -> Vec<NamedEffect> {
