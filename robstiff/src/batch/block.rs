@@ -1,7 +1,5 @@
 //! A block of poses, three passes over it.
 
-use core::ops::Range;
-
 use nalgebra::SVector;
 
 use super::Float;
@@ -69,40 +67,39 @@ pub fn run<T, Q, S, K, const N: usize, const M: usize, const FUSED: bool>(
         match filled {
             Filled::Beyond(_) => one_by_one(quantity, count, |pose| source.pose(first + pose), &mut numbers.0),
             Filled::Row(_) if S::ROWS => evaluate_row::<T, Q, N, M, FUSED>(quantity, &joints, &mut numbers.0),
-            _ => evaluate::<T, Q, N, M, FUSED>(quantity, count, &joints, &mut numbers.0, |vector, numbers| {
-                if K::BY_VECTOR {
-                    sink.take(first + vector.start..first + vector.end, vector.start, numbers, instructions);
-                }
-            }),
+            _ => {}
         }
-        if !K::BY_VECTOR || !matches!(filled, Filled::Each(_)) {
+        for vector in 0..count.div_ceil(VECTOR).min(BLOCK / VECTOR) {
+            if matches!(filled, Filled::Each(_)) {
+                evaluate::<T, Q, N, M, FUSED>(quantity, vector, &joints, &mut numbers.0);
+            }
+            if K::BY_VECTOR {
+                let (start, end) = (vector * VECTOR, count.min((vector + 1) * VECTOR));
+                sink.take(first + start..first + end, start, &numbers.0, instructions);
+            }
+        }
+        if !K::BY_VECTOR {
             sink.take(first..first + count, 0, &numbers.0, instructions);
         }
         first += count;
     }
 }
 
-/// The quantity at the first `count` poses, and some more up to whole vectors.
-/// `done` is told which of the first are, vector by vector.
+/// The quantity at a vector of poses.
 #[inline(always)]
 fn evaluate<T, Q, const N: usize, const M: usize, const FUSED: bool>(
     quantity: &Q,
-    count: usize,
+    vector: usize,
     joints: &Joints<T, N>,
     numbers: &mut [[T; BLOCK]; M],
-    mut done: impl FnMut(Range<usize>, &[[T; BLOCK]; M]),
 ) where
     T: Float,
     Q: Quantity<T, N, M>,
 {
-    // Two loops, both of a length that leaves no doubt: no index needs a check,
-    // and no rest of a vector a loop of its own.
-    for vector in 0..count.div_ceil(VECTOR).min(BLOCK / VECTOR) {
-        for lane in 0..VECTOR {
-            let pose = vector * VECTOR + lane;
-            evaluate_one::<T, Q, N, M, FUSED, false>(quantity, pose, joints, numbers);
-        }
-        done(vector * VECTOR..count.min((vector + 1) * VECTOR), numbers);
+    // Of a length that leaves no doubt: no index needs a check, and no rest of a
+    // vector a loop of its own.
+    for lane in 0..VECTOR {
+        evaluate_one::<T, Q, N, M, FUSED, false>(quantity, vector * VECTOR + lane, joints, numbers);
     }
 }
 

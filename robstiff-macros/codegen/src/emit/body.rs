@@ -157,10 +157,10 @@ impl Writer<'_> {
         let (mut patterns, mut sums) = (Vec::new(), Vec::new());
         let angles = self.function.graph().angles();
         let mut order: Vec<usize> = (0..angles.len()).collect();
-        // A sum is known last, and first in a vector it is there at once. Not where the last joint's comes first,
-        // because everything waits for it.
-        let first_joint = |angle: &Angle| angle.terms().first().map(|&(joint, _)| joint);
-        if angles.first().map(first_joint) <= angles.last().map(first_joint) {
+        // A sum is known last, and first in a vector it is there at once. Not where
+        // the last joint's angle comes first, because everything waits for that.
+        let last_joint = |angle: &Angle| angle.terms().last().map(|&(joint, _)| joint);
+        if angles.first().map(last_joint) < angles.iter().map(last_joint).max() {
             order.sort_by_key(|&index| angles[index].terms().len() < 2);
         }
         for index in order {
