@@ -88,7 +88,7 @@ pub use dual::Dual;
 pub use generic::{Generic, WrongJointCount};
 pub use lanes::Lanes;
 pub use real::Real;
-pub use robot::{Cost, Robot, Statics};
+pub use robot::{Cost, Robot, Statics, upper_triangle};
 pub use robstiff_robots::{Convention, DhEntry, Effect, JointKind};
 pub use state::State;
 
