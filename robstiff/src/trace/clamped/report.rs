@@ -215,7 +215,7 @@ fn invisible(campaign: &Campaign, bench: &Bench) -> Vec<String> {
             "base_compliance" | "base_slip" => std::vec![Part::Base.into()],
             "tool_compliance" => std::vec![Part::Tool.into()],
             "joint_coupling" => (2..=joints).map(|j| Part::Joints([j - 1, j]).into()).collect(),
-            "gravity_sag" => std::vec![Place::Robot],
+            "gravity_sag" => std::vec![Part::Robot.into()],
             // Its places are entries of the table, of which none moves.
             "dh_error" => Vec::new(),
             _ if kind.of_rig => std::vec![Place::Rig],
