@@ -6,7 +6,7 @@
 //! of one vector ([`Abreast`]):
 //!
 //! 1. `k`, the multiple of pi/2 nearest to the angle, by adding and
-//!    subtracting a number so large that only whole ones fit ([`Float::SHIFT`]);
+//!    subtracting a number so large that only whole ones fit ([`places::SHIFT`]);
 //! 2. `r = x - k pi/2`, between -pi/4 and pi/4 (Cody and Waite): pi/2 in parts,
 //!    the first ones so short that `k` times them is exact, so that only the
 //!    last subtraction rounds;
@@ -18,8 +18,8 @@
 //! Both parts of the answer are within [`Float::BOUND`] of the truth for
 //! angles up to [`Float::DOMAIN`]; `sin 0 = 0`, `cos 0 = 1`, and the symmetries
 //! of sine and cosine hold exactly. An array with an angle beyond that, an
-//! infinity or a NaN goes to the platform's functions, which cost one
-//! comparison to find out.
+//! infinity or a NaN goes to the platform's functions, which costs one
+//! comparison to find out: of the bits of the number that `k` is added to.
 //!
 //! Gain: `benches/README.md`. The feature `platform-trig` takes all this out.
 

@@ -171,6 +171,9 @@ fn side_by_side_is_one_by_one() {
         ($($k:literal)*) => {$(
             check::<f64, $k>(|i| 1.7 * i as f64 - 5.0);
             check::<f32, $k>(|i| 1.7 * i as f32 - 5.0);
+            // As far as the domain goes, either way.
+            check::<f64, $k>(|i| [f64::DOMAIN, -f64::DOMAIN, 1e-310][i % 3]);
+            check::<f32, $k>(|i| [f32::DOMAIN, -f32::DOMAIN, 1e-40][i % 3]);
         )*};
     }
     counts!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 30);
