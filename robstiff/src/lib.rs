@@ -30,7 +30,8 @@
 //! - `inverse`, `path` (feature `machining`): the joint coordinates of a pose of
 //!   the tool, and of a whole tool path;
 //! - `milling`, `stability` (likewise): the force of an end mill, and the depths
-//!   of cut at which the arm chatters by mode coupling.
+//!   of cut at which the arm chatters by mode coupling;
+//! - `online` (likewise): correcting the joint targets while cutting.
 //!
 //! Without default features the crate is `no_std` and allocates nothing.
 #![no_std]
@@ -58,6 +59,8 @@ pub mod inverse;
 mod lanes;
 #[cfg(feature = "machining")]
 pub mod milling;
+#[cfg(feature = "machining")]
+pub mod online;
 #[cfg(feature = "machining")]
 pub mod path;
 #[cfg(feature = "identify")]
