@@ -146,8 +146,9 @@ pub fn simulate<const N: usize>(
         };
         underway.push_back((start + delay, wanted.step(asked)));
         for point in 1..=POINTS {
-            let end = start + step * point as f64 / POINTS as f64;
-            let mut whole = true;
+            // In the middle of each part, so that a value that is held is seen as late as it is.
+            let end = start + step * (point as f64 - 0.5) / POINTS as f64;
+            let mut whole = now > 0.0;
             while let Some(&(at, next)) = underway.front().filter(|(at, _)| *at < end) {
                 if at > now {
                     advance(&mut servo, &target, &transition(controller.servo, at - now));
