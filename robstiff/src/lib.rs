@@ -31,6 +31,8 @@
 //!   the tool, and of a whole tool path;
 //! - `milling`, `stability` (likewise): the force of an end mill, and the depths
 //!   of cut at which the arm chatters by mode coupling;
+//! - `deviation`, `compensation` (likewise): how far a cut pushes the tool off a
+//!   path, and the path that makes up for it;
 //! - `online` (likewise): correcting the joint targets while cutting.
 //!
 //! Without default features the crate is `no_std` and allocates nothing.
@@ -48,6 +50,10 @@ pub mod batch;
 mod blocks;
 #[cfg(feature = "identify")]
 pub mod campaign;
+#[cfg(feature = "machining")]
+pub mod compensation;
+#[cfg(feature = "machining")]
+pub mod deviation;
 mod dual;
 pub mod elements;
 #[cfg(feature = "generic")]
