@@ -73,7 +73,9 @@ fn a_cut_deviates_breaks_a_tolerance_and_is_corrected() {
     let cut = ["--cut", &file("roughing.yaml"), "--against", &file("fast.yaml"), "--tolerance", "20 um"];
     let arm = ["path", "rv130hsc", &pocket(), "--tool-axis", "x"];
     let page = succeed(&[&arm[..], &cut, &["--compensate", "--out", &out, "--json", &told]].concat());
-    for part in ["distance from the path", "tolerance 20.0 um: broken at", "there the error comes from joint", "Two cuts"] {
+    for part in
+        ["distance from the path", "tolerance 20.0 um: broken at", "there the error comes from joint", "Two cuts"]
+    {
         assert!(page.contains(part), "{part}\n{page}");
     }
     let deviation = &json(&told)["deviation"];
@@ -89,8 +91,8 @@ fn a_cut_deviates_breaks_a_tolerance_and_is_corrected() {
         assert!((all[which]["rms"].as_f64().unwrap() - expected).abs() < 0.01, "{all}");
     }
     let cuts = deviation["compared"].as_array().unwrap();
-    let [rate, error] = ["removal_m3_per_s", "error_m"]
-        .map(|key| cuts[1][key].as_f64().unwrap() / cuts[0][key].as_f64().unwrap());
+    let [rate, error] =
+        ["removal_m3_per_s", "error_m"].map(|key| cuts[1][key].as_f64().unwrap() / cuts[0][key].as_f64().unwrap());
     assert!((rate - 1.0).abs() < 1e-9 && (0.4..0.6).contains(&error), "{rate} {error}");
 
     // What is written is read again, and can be looked at.

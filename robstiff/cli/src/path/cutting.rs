@@ -23,7 +23,7 @@ pub const WRONG: f64 = 0.1;
 
 #[derive(clap::Args)]
 #[command(next_help_heading = "Deviation under forces")]
-pub struct Arguments {
+pub struct ForceArguments {
     /// The force on the tool along the path, a row for each point or by arc length
     #[arg(long, value_name = "FORCES.csv", conflicts_with = "cut")]
     forces: Option<PathBuf>,
@@ -135,7 +135,7 @@ pub struct CorrectedPoint {
     pub rounds: usize,
 }
 
-impl Arguments {
+impl ForceArguments {
     /// Reads what is named; `None` where there is no force.
     pub fn read(&self, tool_axis: Unit<Vector3<f64>>, files: &mut Files) -> Result<Option<Asked>, Failure> {
         let mut cut = |path: &PathBuf| -> Result<(CutFile, String), Failure> {

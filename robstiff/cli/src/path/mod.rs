@@ -52,7 +52,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     #[command(flatten)]
-    cutting: cutting::Arguments,
+    cutting: cutting::ForceArguments,
 }
 
 /// Solves the path.
