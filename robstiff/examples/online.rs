@@ -3,6 +3,12 @@
 //! gears.
 //!
 //!     cargo run --release -p robstiff --features machining --example online
+//!
+//! With position loops of 15 Hz and a delay of one control step it leaves, of the
+//! deviation under a force of 1 Hz, 21 % at 12 ms a step, 13 % at 4 ms and 10 % at
+//! 1 ms; of one of 10 Hz nothing is gained. At low frequencies a model that is 10 %
+//! too stiff leaves its 10 %; encoders need no model, but do not see a bearing that
+//! tilts (43 % left).
 
 use robstiff::nalgebra::{SVector, Vector6};
 use robstiff::online::{Controller, Left, Limits, Sensing, Servo, left_of_sine};

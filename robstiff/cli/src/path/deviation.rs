@@ -83,8 +83,12 @@ fn verdict(tolerance: f64, stretches: &[Stretch]) -> String {
     for stretch in broken.iter().take(MOST_SHOWN) {
         let [from, to] = stretch.s.map(|s| decimals(s * 1e3, 1));
         let [first, last] = stretch.lines;
-        let lines = if first == last { format!("line {first}") } else { format!("lines {first} to {last}") };
-        text += &format!("  {lines}, s = {from} to {to} mm: worst {} um\n", micrometres(stretch.worst));
+        let place = if first == last {
+            format!("line {first}, s = {from} mm")
+        } else {
+            format!("lines {first} to {last}, s = {from} to {to} mm")
+        };
+        text += &format!("  {place}: worst {} um\n", micrometres(stretch.worst));
     }
     if broken.len() > MOST_SHOWN {
         text += &format!("  and {} more\n", broken.len() - MOST_SHOWN);

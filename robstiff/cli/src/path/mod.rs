@@ -200,7 +200,10 @@ fn page(robot: &Description, file: &str, solved: &Solved) -> String {
 fn quaternion(pose: &Matrix4<f64>) -> [f64; 4] {
     let rotation = Rotation3::from_matrix_unchecked(pose.fixed_view::<3, 3>(0, 0).into_owned());
     let turn = UnitQuaternion::from_rotation_matrix(&rotation);
-    [turn.w, turn.i, turn.j, turn.k]
+    let parts = [turn.w, turn.i, turn.j, turn.k];
+    // A turn has two quaternions; the one whose first part that is not zero is positive.
+    let sign = parts.into_iter().find(|part| part.abs() > 1e-9).map_or(1.0, f64::signum);
+    parts.map(|part| part * sign)
 }
 
 /// A row for each point, which the command reads again; with the joint coordinates
