@@ -9,7 +9,7 @@
 //! three or four rounds are usual.
 //!
 //! What the correction is worth on an arm that is not as described tells
-//! [`sensitivity`].
+//! [`sensitivity()`].
 
 mod sensitivity;
 #[cfg(test)]

@@ -3,7 +3,7 @@
 //! A [`Load`] says what acts on the tool at every point of a
 //! [`SolvedPath`](crate::path::SolvedPath): the force of a cut, turned by feed and
 //! tool axis, or wrenches from a file. [`Deviation::of`] is where the tool is then;
-//! [`Deviation::stretches`] says where a tolerance holds, [`blame`] which joints and
+//! [`Deviation::stretches`] says where a tolerance holds, [`blame()`] which joints and
 //! effects the error comes from.
 //!
 //! # The error of the surface
