@@ -32,7 +32,10 @@
 //! - `milling`, `stability` (likewise): the force of an end mill, and the depths
 //!   of cut at which the arm chatters by mode coupling;
 //! - `map` (likewise): stiffness and deviation over joint space, planes and boxes,
-//!   as a stream, and where a workpiece is best put.
+//!   as a stream, and where a workpiece is best put;
+//! - `deviation`, `compensation` (likewise): how far a cut pushes the tool off a
+//!   path, and the path that makes up for it;
+//! - `online` (likewise): correcting the joint targets while cutting.
 //!
 //! Without default features the crate is `no_std` and allocates nothing.
 #![no_std]
@@ -49,6 +52,10 @@ pub mod batch;
 mod blocks;
 #[cfg(feature = "identify")]
 pub mod campaign;
+#[cfg(feature = "machining")]
+pub mod compensation;
+#[cfg(feature = "machining")]
+pub mod deviation;
 mod dual;
 pub mod elements;
 #[cfg(feature = "generic")]
@@ -62,6 +69,8 @@ mod lanes;
 pub mod map;
 #[cfg(feature = "machining")]
 pub mod milling;
+#[cfg(feature = "machining")]
+pub mod online;
 #[cfg(feature = "machining")]
 pub mod path;
 #[cfg(feature = "identify")]

@@ -60,3 +60,65 @@ fn a_path_is_placed_and_begun_as_asked() {
     let said = fail(2, &["path", "kuka-kr270-r2700", &pocket(), "--start", "0,0"]);
     assert!(said.contains("--start gives 2 joint coordinates"), "{said}");
 }
+
+/// A cut beside the example files.
+fn file(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/files").join(name).to_str().unwrap().to_owned()
+}
+
+#[test]
+fn a_cut_deviates_breaks_a_tolerance_and_is_corrected() {
+    let folder = folder("path-cut");
+    let (out, told) = (inside(&folder, "corrected.csv"), inside(&folder, "told.json"));
+    let cut = ["--cut", &file("roughing.yaml"), "--against", &file("fast.yaml"), "--tolerance", "20 um"];
+    let arm = ["path", "rv130hsc", &pocket(), "--tool-axis", "x"];
+    let page = succeed(&[&arm[..], &cut, &["--compensate", "--out", &out, "--json", &told]].concat());
+    for part in
+        ["distance from the path", "tolerance 20.0 um: broken at", "there the error comes from joint", "Two cuts"]
+    {
+        assert!(page.contains(part), "{part}\n{page}");
+    }
+    let deviation = &json(&told)["deviation"];
+    let shares = deviation["shares"].as_array().unwrap();
+    let sum: f64 = shares.iter().map(|share| share["share"].as_f64().unwrap()).sum();
+    assert!((sum - 1.0).abs() < 1e-9, "{sum}");
+    let worst = deviation["distance"]["worst_m"].as_f64().unwrap();
+    for point in deviation["corrected"]["points"].as_array().unwrap() {
+        assert!(point["remaining_m"].as_f64().unwrap() < 0.02 * worst);
+    }
+    let all = &deviation["corrected"]["left_if_wrong"]["all"];
+    for (which, expected) in [("softer", 0.1 / 1.1), ("stiffer", 0.1 / 0.9)] {
+        assert!((all[which]["rms"].as_f64().unwrap() - expected).abs() < 0.01, "{all}");
+    }
+    let cuts = deviation["compared"].as_array().unwrap();
+    let [rate, error] =
+        ["removal_m3_per_s", "error_m"].map(|key| cuts[1][key].as_f64().unwrap() / cuts[0][key].as_f64().unwrap());
+    assert!((rate - 1.0).abs() < 1e-9 && (0.4..0.6).contains(&error), "{rate} {error}");
+
+    // What is written is read again, and can be looked at.
+    let ran = run(&["path", "rv130hsc", &out]);
+    assert!(ran.code == 0 && !ran.err.contains("is not used"), "{}", ran.err);
+    let page = inside(&folder, "page.html");
+    succeed(&["view", "rv130hsc", "--path", &out, "--column", "deviation", "--out", &page]);
+}
+
+#[test]
+fn forces_that_do_not_fit_the_path_are_refused() {
+    let folder = folder("path-forces");
+    let forces = inside(&folder, "forces.csv");
+    let with = |text: &str| {
+        fs::write(&forces, text).unwrap();
+        ["path", "kuka-kr270-r2700", &pocket(), "--forces", &forces].map(str::to_owned)
+    };
+    let arguments = with("Fx,Fy,Fz\n1,2,3\n");
+    let said = fail(1, &arguments.each_ref().map(String::as_str));
+    assert!(said.contains("has 1 rows, the path has 40 points"), "{said}");
+    let arguments = with("Fx,Fy\n1,2\n");
+    let said = fail(1, &arguments.each_ref().map(String::as_str));
+    assert!(said.contains("the column `Fz` is missing"), "{said}");
+    let arguments = with("s [m],Fx [N],Fy [N],Fz [kN]\n0,100,0,-0.2\n5,100,0,-0.2\n");
+    let page = succeed(&arguments.each_ref().map(String::as_str));
+    assert!(page.contains("Deviation under"), "{page}");
+    let said = fail(2, &["path", "kuka-kr270-r2700", &pocket(), "--compensate"]);
+    assert!(said.contains("--compensate needs a force"), "{said}");
+}

@@ -67,7 +67,7 @@ impl Target {
 
     /// The translation (m) and the rotation vector (rad) in the base frame that
     /// bring a pose of the TCP to this target.
-    pub(super) fn apart(&self, pose: &Matrix4<f64>) -> (Vector3<f64>, Vector3<f64>) {
+    pub(crate) fn apart(&self, pose: &Matrix4<f64>) -> (Vector3<f64>, Vector3<f64>) {
         let current: Matrix3<f64> = pose.fixed_view::<3, 3>(0, 0).into_owned();
         let turn = match &self.orientation {
             Orientation::Full(rotation) => rotation_vector(&(rotation.matrix() * current.transpose())),

@@ -93,7 +93,6 @@ impl ToolPath {
     }
 
     fn problem(&self, line: usize, why: &Unreached) -> Diagnostic {
-        let source_line = self.line(line);
         let help = match why {
             Unreached::OutsideLimits { .. } => {
                 "move the workpiece, turn the tool, or widen `limits` if they are too tight"
@@ -101,13 +100,19 @@ impl ToolPath {
             Unreached::NotFinite => "",
             _ => "move the workpiece nearer, or turn the tool",
         };
+        self.diagnostic(line, why.to_string(), help)
+    }
+
+    /// A problem with a line of the file (from 1).
+    pub(crate) fn diagnostic(&self, line: usize, message: String, help: &str) -> Diagnostic {
+        let source_line = self.line(line);
         Diagnostic {
             file: self.file.clone(),
             line,
             column: 1,
             width: source_line.chars().count(),
             path: String::new(),
-            message: why.to_string(),
+            message,
             help: help.to_string(),
             source_line,
         }

@@ -23,6 +23,10 @@ const FAR: f64 = 20.0;
 /// Angles beyond this (rad) without a unit are probably in degrees.
 const TWO_TURNS: f64 = 4.0 * core::f64::consts::PI;
 
+/// Columns that a path may have beside it, as `robstiff path` writes them.
+const BESIDE: [&str; 13] =
+    ["Fx", "Fy", "Fz", "deviation", "along", "normal", "axial", "error", "peak", "dx", "dy", "dz", "remaining"];
+
 /// What the file gives, by columns.
 enum Columns {
     Joints(Vec<Numbers>),
@@ -66,6 +70,9 @@ impl ToolPath {
         let feed = table.numbers("feed", Dimension::Speed);
         let s = table.numbers("s", Dimension::Length);
         let columns = columns(&table, robot);
+        for name in BESIDE {
+            table.position(name);
+        }
         let points = columns.and_then(|columns| {
             check_units(&table, &columns, robot);
             let mut last_s = f64::NEG_INFINITY;

@@ -58,7 +58,8 @@ pub struct Arguments {
     json: Option<PathBuf>,
 }
 
-fn positive(dimension: Dimension) -> impl Fn(&str) -> Result<f64, String> + Clone {
+/// Reads a quantity above zero.
+pub fn positive(dimension: Dimension) -> impl Fn(&str) -> Result<f64, String> + Clone {
     move |text| {
         let value = quantity::parse(text, dimension).map_err(|error| error.to_string())?;
         if value > 0.0 { Ok(value) } else { Err(format!("{} above zero is expected here", dimension.name())) }

@@ -1,11 +1,15 @@
-//! `robstiff path`: the joint coordinates of a tool path.
+//! `robstiff path`: the joint coordinates of a tool path, how far forces push the
+//! tool off it, and what to command instead.
+
+mod cutting;
+mod deviation;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use robstiff::inverse::Inverse;
 use robstiff::nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
-use robstiff::path::{Jump, SolvedPath, ToolPath};
+use robstiff::path::{Jump, ToolPath};
 use robstiff::{Robot, with_robot};
 use robstiff_robots::quantity::{self, Dimension};
 use robstiff_robots::{Description, JointKind};
@@ -15,8 +19,9 @@ use crate::failure::Failure;
 use crate::output::{self, Files};
 use crate::text::{Table, count, decimals};
 use crate::{input, json};
+use cutting::{Asked, Cutting};
 
-/// Joint coordinates and poses of a tool path, or the points that cannot be reached
+/// Joint coordinates of a tool path, how far a cut pushes the tool off it, and the corrected path
 ///
 /// PATH.csv has a point a row: `x y z` and an orientation (`qw qx qy qz`, a
 /// rotation vector `rx ry rz`, angles `a b c` about z, y, x, or the direction
@@ -46,6 +51,8 @@ pub struct Arguments {
     /// Write the same as JSON to FILE
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    #[command(flatten)]
+    cutting: cutting::ForceArguments,
 }
 
 /// Solves the path.
@@ -62,8 +69,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(text) = &arguments.place {
         path = path.placed(&place(text)?);
     }
-    let solved = with_robot!(&robot, |robot| solve(&robot, &path, start.as_deref()))?;
     let mut files = Files::default();
+    let asked = arguments.cutting.read(arguments.tool_axis, &mut files)?;
+    let solved = with_robot!(&robot, |robot| solve(&robot, &path, start.as_deref(), asked.as_ref()))?;
     files.protect(&arguments.robot);
     files.protect(&arguments.path);
     if let Some(out) = &arguments.out {
@@ -81,6 +89,7 @@ struct Solved {
     points: Vec<Point>,
     jumps: Vec<Jump>,
     closed_form: bool,
+    cutting: Option<Cutting>,
 }
 
 struct Point {
@@ -92,10 +101,16 @@ struct Point {
     feed: Option<f64>,
 }
 
-fn solve<const N: usize>(robot: &impl Robot<N>, path: &ToolPath, start: Option<&[f64]>) -> Result<Solved, Failure> {
+fn solve<const N: usize>(
+    robot: &impl Robot<N>,
+    path: &ToolPath,
+    start: Option<&[f64]>,
+    asked: Option<&Asked>,
+) -> Result<Solved, Failure> {
     let start = start.map(SVector::<f64, N>::from_column_slice);
-    let SolvedPath { points, jumps } = path.solve(robot, start.as_ref())?;
-    let points = points.into_iter().map(|point| Point {
+    let solved = path.solve(robot, start.as_ref())?;
+    let cutting = asked.map(|asked| asked.compute(robot, path, &solved)).transpose()?;
+    let points = solved.points.into_iter().map(|point| Point {
         line: point.line,
         q: point.q.iter().copied().collect(),
         pose: point.pose,
@@ -103,7 +118,8 @@ fn solve<const N: usize>(robot: &impl Robot<N>, path: &ToolPath, start: Option<&
         s: point.s,
         feed: point.feed,
     });
-    Ok(Solved { points: points.collect(), jumps, closed_form: Inverse::new(robot).has_closed_form() })
+    let closed_form = Inverse::new(robot).has_closed_form();
+    Ok(Solved { points: points.collect(), jumps: solved.jumps, closed_form, cutting })
 }
 
 fn tool_axis(text: &str) -> Result<Unit<Vector3<f64>>, String> {
@@ -175,18 +191,23 @@ fn page(robot: &Description, file: &str, solved: &Solved) -> String {
     if solved.jumps.len() > 20 {
         page += &format!("  and {} more\n", solved.jumps.len() - 20);
     }
+    if let Some(cutting) = &solved.cutting {
+        page += &deviation::page(cutting);
+    }
     page
 }
 
 fn quaternion(pose: &Matrix4<f64>) -> [f64; 4] {
     let rotation = Rotation3::from_matrix_unchecked(pose.fixed_view::<3, 3>(0, 0).into_owned());
     let turn = UnitQuaternion::from_rotation_matrix(&rotation);
-    // Of the two that are the same turn, the one with a positive scalar.
-    let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
-    [turn.w, turn.i, turn.j, turn.k].map(|part| part * sign)
+    let parts = [turn.w, turn.i, turn.j, turn.k];
+    // A turn has two quaternions; the one whose first part that is not zero is positive.
+    let sign = parts.into_iter().find(|part| part.abs() > 1e-9).map_or(1.0, f64::signum);
+    parts.map(|part| part * sign)
 }
 
-/// A row for each point, which the command reads again.
+/// A row for each point, which the command reads again; with the joint coordinates
+/// and poses to command where the path is corrected.
 fn table(robot: &Description, solved: &Solved) -> String {
     let mut csv = String::new();
     for (number, joint) in (1..).zip(&robot.joints) {
@@ -194,18 +215,30 @@ fn table(robot: &Description, solved: &Solved) -> String {
     }
     csv += "x [mm],y [mm],z [mm],qw,qx,qy,qz,s [mm]";
     let has_feed = solved.points.iter().any(|point| point.feed.is_some());
-    csv += if has_feed { ",feed [mm/min]\n" } else { "\n" };
-    for point in &solved.points {
-        for (&q, joint) in point.q.iter().zip(&robot.joints) {
+    csv += if has_feed { ",feed [mm/min]" } else { "" };
+    if let Some(cutting) = &solved.cutting {
+        csv += &format!(",{}", deviation::columns(cutting));
+    }
+    csv.push('\n');
+    let corrected = solved.cutting.as_ref().and_then(|cutting| cutting.corrected.as_ref());
+    for (i, point) in solved.points.iter().enumerate() {
+        let (q, pose) = match corrected.map(|corrected| &corrected.points[i]) {
+            Some(corrected) => (&corrected.q, &corrected.pose),
+            None => (&point.q, &point.pose),
+        };
+        for (&q, joint) in q.iter().zip(&robot.joints) {
             // All digits: the file is read again.
             let unit = if joint.kind == JointKind::Revolute { 1_f64.to_radians() } else { 1e-3 };
             csv += &format!("{},", decimals(q / unit, 10));
         }
-        let position: Vec<String> = (0..3).map(|axis| decimals(point.pose[(axis, 3)] * 1e3, 6)).collect();
-        let turn = quaternion(&point.pose).map(|part| decimals(part, 12));
+        let position: Vec<String> = (0..3).map(|axis| decimals(pose[(axis, 3)] * 1e3, 6)).collect();
+        let turn = quaternion(pose).map(|part| decimals(part, 12));
         csv += &format!("{},{},{}", position.join(","), turn.join(","), decimals(point.s * 1e3, 6));
         if let Some(feed) = point.feed {
             csv += &format!(",{}", decimals(feed * 6e4, 6));
+        }
+        if let Some(cutting) = &solved.cutting {
+            csv += &format!(",{}", deviation::cells(cutting, i));
         }
         csv.push('\n');
     }
@@ -214,7 +247,7 @@ fn table(robot: &Description, solved: &Solved) -> String {
 
 /// Everything in SI units.
 fn document(robot: &Description, solved: &Solved) -> Value {
-    json!({
+    let mut document = json!({
         "robot": robot.name,
         "closed_form": solved.closed_form,
         "length_m": json::number(solved.points.last().map_or(0.0, |point| point.s - solved.points[0].s)),
@@ -234,5 +267,9 @@ fn document(robot: &Description, solved: &Solved) -> Value {
             "off_m": json::number(jump.off.distance),
             "off_rad": json::number(jump.off.angle),
         })).collect::<Value>(),
-    })
+    });
+    if let Some(cutting) = &solved.cutting {
+        document["deviation"] = deviation::document(cutting);
+    }
+    document
 }

@@ -1,0 +1,283 @@
+//! What forces do to the tool along a path: read, computed.
+
+use std::path::PathBuf;
+
+use robstiff::Robot;
+use robstiff::compensation::{CompensatedPoint, Keep, Sensitivity, compensate, sensitivity};
+use robstiff::deviation::{Deviation, ForceTable, Load, Stretch, Surface, blame, load_of_cut, removal_rate};
+use robstiff::milling::{CutFile, ForceFrame, Forces};
+use robstiff::nalgebra::{Matrix4, Unit, Vector3};
+use robstiff::path::{SolvedPath, ToolPath};
+use robstiff_robots::quantity::Dimension;
+
+use crate::failure::Failure;
+use crate::output::{self, Files};
+use crate::stability::positive;
+use crate::{forces, input};
+
+/// Angles of a revolution that are looked at.
+const ANGLES: usize = 72;
+
+/// How wrong the model is taken to be.
+pub const WRONG: f64 = 0.1;
+
+#[derive(clap::Args)]
+#[command(next_help_heading = "Deviation under forces")]
+pub struct ForceArguments {
+    /// The force on the tool along the path, a row for each point or by arc length
+    #[arg(long, value_name = "FORCES.csv", conflicts_with = "cut")]
+    forces: Option<PathBuf>,
+    /// What the columns of `--forces` are along
+    #[arg(long, value_name = "FRAME", default_value = "base", value_enum)]
+    force_frame: Frame,
+    /// The cut that pushes the tool (robstiff/cli/docs/forces.md)
+    #[arg(long, value_name = "CUT.yaml")]
+    cut: Option<PathBuf>,
+    /// Another cut to compare it with
+    #[arg(long, value_name = "CUT.yaml", requires = "cut")]
+    against: Option<PathBuf>,
+    /// Judge by the worst force of a revolution, not the mean
+    #[arg(long, requires = "cut")]
+    peak: bool,
+    /// The machined surface: a wall beside the tool, or the floor at its tip
+    #[arg(long, value_name = "SURFACE", default_value = "side", value_enum)]
+    surface: Machined,
+    /// From the spindle to the tip, in the TCP's frame; where left out, the axis of `--tool-axis` without its sign
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = super::tool_axis)]
+    spindle_axis: Option<Unit<Vector3<f64>>>,
+    /// Say where the error of the surface is within this, e.g. "0.1 mm"
+    #[arg(long, value_name = "LENGTH", value_parser = positive(Dimension::Length))]
+    tolerance: Option<f64>,
+    /// Correct the path for the force: `--out` has what to command
+    #[arg(long)]
+    compensate: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Frame {
+    Base,
+    Tool,
+    Cut,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Machined {
+    Side,
+    Face,
+}
+
+/// Where forces come from.
+enum Source {
+    Table(ForceTable, ForceFrame),
+    Cut(CutFile),
+}
+
+/// What is asked for, read.
+pub struct Asked {
+    source: Source,
+    name: String,
+    against: Option<(CutFile, String)>,
+    peak: bool,
+    surface: Surface,
+    axis: Unit<Vector3<f64>>,
+    tolerance: Option<f64>,
+    compensate: bool,
+}
+
+/// What the forces do, whatever the number of joints.
+pub struct Cutting {
+    /// The file that the forces are from.
+    pub name: String,
+    /// The machined surface.
+    pub surface: &'static str,
+    /// Point by point.
+    pub deviation: Deviation,
+    /// Lines without a force, for want of a direction.
+    pub undirected: Vec<usize>,
+    /// The tolerance, and where it holds (m).
+    pub tolerance: Option<(f64, Vec<Stretch>)>,
+    /// Shares of the error: over the points that break the tolerance, else all.
+    pub blame: Vec<(String, f64)>,
+    /// The two cuts side by side.
+    pub compared: Option<[Compared; 2]>,
+    /// The corrected path.
+    pub corrected: Option<Corrected>,
+}
+
+/// A cut among others.
+pub struct Compared {
+    /// Its file.
+    pub name: String,
+    /// What it removes (m^3/s).
+    pub removal: Option<f64>,
+    /// The size of the mean force, at the point where it is largest (N).
+    pub force: f64,
+    /// The largest distance from the path (m).
+    pub distance: f64,
+    /// The largest error, with its sign (m).
+    pub error: f64,
+}
+
+/// A corrected path.
+pub struct Corrected {
+    pub points: Vec<CorrectedPoint>,
+    pub rounds: usize,
+    pub sensitivity: Sensitivity,
+    /// Joints and effects, in the order of the sensitivity.
+    pub elements: Vec<String>,
+}
+
+pub struct CorrectedPoint {
+    pub q: Vec<f64>,
+    pub pose: Matrix4<f64>,
+    pub correction: [f64; 3],
+    pub remaining: f64,
+    pub rounds: usize,
+}
+
+impl ForceArguments {
+    /// Reads what is named; `None` where there is no force.
+    pub fn read(&self, tool_axis: Unit<Vector3<f64>>, files: &mut Files) -> Result<Option<Asked>, Failure> {
+        let mut cut = |path: &PathBuf| -> Result<(CutFile, String), Failure> {
+            let file = input::cut(path)?;
+            forces::protect(files, path, &file);
+            Ok((file, path.display().to_string()))
+        };
+        let against = self.against.as_ref().map(&mut cut).transpose()?;
+        let (source, name) = match (&self.forces, &self.cut) {
+            (Some(path), _) => {
+                let table = ForceTable::read(path)?;
+                for warning in &table.warnings {
+                    output::complain(format_args!("warning: {warning}"));
+                }
+                files.protect(path);
+                let frame = match self.force_frame {
+                    Frame::Base => ForceFrame::Base,
+                    Frame::Tool => ForceFrame::Tool,
+                    Frame::Cut => ForceFrame::Cut,
+                };
+                (Source::Table(table, frame), path.display().to_string())
+            }
+            (None, Some(path)) => {
+                let (file, name) = cut(path)?;
+                (Source::Cut(file), name)
+            }
+            (None, None) => {
+                let asked = if self.compensate { "--compensate" } else { "--tolerance" };
+                return if self.compensate || self.tolerance.is_some() {
+                    Err(Failure::Usage(format!(
+                        "{asked} needs a force: give `--cut CUT.yaml` or `--forces FORCES.csv`"
+                    )))
+                } else {
+                    Ok(None)
+                };
+            }
+        };
+        let surface = match self.surface {
+            Machined::Side => Surface::Side,
+            Machined::Face => Surface::Face,
+        };
+        // The sign of the tool's axis says how the file writes it.
+        let axis = self.spindle_axis.unwrap_or(Unit::new_unchecked(tool_axis.abs()));
+        let (peak, tolerance, compensate) = (self.peak, self.tolerance, self.compensate);
+        Ok(Some(Asked { source, name, against, peak, surface, axis, tolerance, compensate }))
+    }
+}
+
+impl Asked {
+    /// Computes what the forces do.
+    pub fn compute<const N: usize>(
+        &self,
+        robot: &impl Robot<N>,
+        path: &ToolPath,
+        solved: &SolvedPath<N>,
+    ) -> Result<Cutting, Failure> {
+        let load = match &self.source {
+            Source::Table(table, frame) => table.load(solved, *frame, self.axis, self.surface).map_err(Failure::new)?,
+            Source::Cut(file) => self.load(file, solved)?,
+        };
+        let deviation = Deviation::of(robot, solved, &load).map_err(Failure::new)?;
+        let tolerance = self.tolerance.map(|tolerance| (tolerance, deviation.stretches(tolerance)));
+        let broken = |i: usize| match self.tolerance {
+            Some(tolerance) => deviation.points[i].judged().is_some_and(|error| error.abs() > tolerance),
+            None => true,
+        };
+        let any = (0..deviation.points.len()).any(broken);
+        let shares = blame(robot, solved, &load, &deviation, |i| !any || broken(i));
+        let blame = shares.into_iter().map(|(element, share)| (element.to_string(), share)).collect();
+        let compared = match (&self.source, &self.against) {
+            (Source::Cut(file), Some((other, name))) => {
+                let other_load = self.load(other, solved)?;
+                let other_deviation = Deviation::of(robot, solved, &other_load).map_err(Failure::new)?;
+                Some([compared(&self.name, file, &deviation), compared(name, other, &other_deviation)])
+            }
+            _ => None,
+        };
+        let corrected = if self.compensate { Some(self.correct(robot, path, solved, &load)?) } else { None };
+        Ok(Cutting {
+            name: self.name.clone(),
+            surface: if self.surface == Surface::Side { "side" } else { "face" },
+            deviation,
+            undirected: load.undirected,
+            tolerance,
+            blame,
+            compared,
+            corrected,
+        })
+    }
+
+    fn load<const N: usize>(&self, file: &CutFile, solved: &SolvedPath<N>) -> Result<Load, Failure> {
+        let load = load_of_cut(&file.forces, solved, self.axis, self.surface);
+        if !self.peak {
+            return Ok(load);
+        }
+        let revolution = match &file.forces {
+            Forces::Model(cut) => Some(cut.revolution(ANGLES)),
+            Forces::Measured { force, speed } => force.revolution(ANGLES, *speed),
+        };
+        let Some(revolution) = revolution else {
+            return Err(Failure::new(
+                "the record has neither `angle` nor `t` with a `speed`, so nobody can tell the peak of a revolution",
+            ));
+        };
+        Ok(load.with_revolution(revolution.samples.into_iter().map(|(_, force)| force).collect()))
+    }
+
+    fn correct<const N: usize>(
+        &self,
+        robot: &impl Robot<N>,
+        path: &ToolPath,
+        solved: &SolvedPath<N>,
+        load: &Load,
+    ) -> Result<Corrected, Failure> {
+        let compensated = compensate(robot, solved, load, Keep::of(N, self.axis)).map_err(|missed| {
+            let count = format!("{} of {} points cannot be corrected", missed.points.len(), missed.of);
+            match missed.diagnostics(path) {
+                Some(problems) => Failure::Explained(format!("{problems}\n\n{count}")),
+                None => Failure::new(count),
+            }
+        })?;
+        let sensitivity = sensitivity(robot, solved, load, &compensated, WRONG).map_err(Failure::new)?;
+        let joints = (1..=N).map(|joint| format!("joint {joint}"));
+        let elements = joints.chain(robot.effects().iter().map(ToString::to_string)).collect();
+        let rounds = compensated.rounds();
+        let point = |point: CompensatedPoint<N>| CorrectedPoint {
+            q: point.q.iter().copied().collect(),
+            pose: point.pose,
+            correction: point.correction.into(),
+            remaining: point.remaining.distance,
+            rounds: point.rounds,
+        };
+        Ok(Corrected { points: compensated.points.into_iter().map(point).collect(), rounds, sensitivity, elements })
+    }
+}
+
+fn compared(name: &str, file: &CutFile, deviation: &Deviation) -> Compared {
+    let force = deviation.points.iter().map(|point| point.wrench.fixed_rows::<3>(0).norm()).fold(0.0, f64::max);
+    let removal = match &file.forces {
+        Forces::Model(cut) => removal_rate(cut),
+        Forces::Measured { .. } => None,
+    };
+    let (distance, error) = (deviation.distances().worst, deviation.errors().worst);
+    Compared { name: name.to_owned(), removal, force, distance, error }
+}

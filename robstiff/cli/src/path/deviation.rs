@@ -1,0 +1,225 @@
+//! What forces do to the tool along a path: told, and written.
+
+use robstiff::compensation::Left;
+use robstiff::deviation::{DeviationPoint, Stretch, Summary};
+use serde_json::{Value, json};
+
+use super::cutting::{Corrected, Cutting, WRONG};
+use crate::json::{number, numbers};
+use crate::text::{Table, count, decimals, micrometres};
+
+/// Stretches and elements that a person is shown.
+const MOST_SHOWN: usize = 12;
+
+/// What a person is told.
+pub fn page(cutting: &Cutting) -> String {
+    let points = &cutting.deviation.points;
+    let mut page = format!("\nDeviation under {} [um]\n", cutting.name);
+    let mut rows = Table::new(1, ["", "mean", "rms", "worst"]);
+    let mut row = |name: &str, summary: Summary| {
+        let cells = [summary.mean, summary.rms, summary.worst].map(micrometres);
+        rows.row([name.to_owned()].into_iter().chain(cells));
+    };
+    row("distance from the path", cutting.deviation.distances());
+    for (axis, name) in ["along the feed", "normal to it", "along the tool axis"].into_iter().enumerate() {
+        row(name, Summary::of(points.iter().filter_map(|point| point.components.map(|found| found[axis]))));
+    }
+    let judged = if points.iter().any(|point| point.peak.is_some()) { ", peak of a revolution" } else { "" };
+    row(&format!("error of the {}{judged}", surface(cutting)), cutting.deviation.errors());
+    page += &rows.to_string();
+    page += "positive errors are into the part, negative ones leave material\n";
+    if !cutting.undirected.is_empty() {
+        let lines: Vec<String> = cutting.undirected.iter().take(MOST_SHOWN).map(ToString::to_string).collect();
+        let more = if cutting.undirected.len() > MOST_SHOWN { ", .." } else { "" };
+        page += &format!(
+            "no force on line {}{more}: the tool plunges or stays in place, and the cut has no direction\n",
+            lines.join(", ")
+        );
+    }
+    if let Some((tolerance, stretches)) = &cutting.tolerance {
+        page += &verdict(*tolerance, stretches);
+    }
+    let broken =
+        cutting.tolerance.as_ref().is_some_and(|(_, stretches)| stretches.iter().any(|stretch| !stretch.holds));
+    let shares = cutting.blame.iter().filter(|(_, share)| share.abs() >= 0.005).take(MOST_SHOWN);
+    let shares: Vec<String> = shares.map(|(name, share)| format!("{name} {} %", decimals(share * 100.0, 0))).collect();
+    if !shares.is_empty() {
+        page += if broken { "there the error comes from " } else { "the error comes from " };
+        page += &format!("{}\n", shares.join(", "));
+    }
+    if let Some(compared) = &cutting.compared {
+        let mut rows = Table::new(1, ["", "removed [cm3/min]", "force [N]", "distance [um]", "error [um]"]);
+        for one in compared {
+            rows.row([
+                one.name.clone(),
+                one.removal.map_or("-".to_owned(), |rate| decimals(rate * 6e7, 2)),
+                decimals(one.force, 1),
+                micrometres(one.distance),
+                micrometres(one.error),
+            ]);
+        }
+        page += &format!("\nTwo cuts, at their worst\n{rows}");
+    }
+    if let Some(corrected) = &cutting.corrected {
+        page += &correction(corrected, cutting.deviation.distances().worst);
+    }
+    page
+}
+
+fn surface(cutting: &Cutting) -> &'static str {
+    if cutting.surface == "side" { "wall" } else { "floor" }
+}
+
+fn verdict(tolerance: f64, stretches: &[Stretch]) -> String {
+    let limit = format!("tolerance {} um", decimals(tolerance * 1e6, 1));
+    let broken: Vec<&Stretch> = stretches.iter().filter(|stretch| !stretch.holds).collect();
+    if broken.is_empty() {
+        return format!("\n{limit}: holds all along\n");
+    }
+    let points = |of: &Stretch| of.points[1] - of.points[0] + 1;
+    let (bad, all): (usize, usize) =
+        (broken.iter().map(|stretch| points(stretch)).sum(), stretches.iter().map(points).sum());
+    let mut text = format!("\n{limit}: broken at {bad} of {}\n", count(all, "point"));
+    for stretch in broken.iter().take(MOST_SHOWN) {
+        let [from, to] = stretch.s.map(|s| decimals(s * 1e3, 1));
+        let [first, last] = stretch.lines;
+        let place = if first == last {
+            format!("line {first}, s = {from} mm")
+        } else {
+            format!("lines {first} to {last}, s = {from} to {to} mm")
+        };
+        text += &format!("  {place}: worst {} um\n", micrometres(stretch.worst));
+    }
+    if broken.len() > MOST_SHOWN {
+        text += &format!("  and {} more\n", broken.len() - MOST_SHOWN);
+    }
+    text
+}
+
+fn correction(corrected: &Corrected, before: f64) -> String {
+    let worst = corrected.points.iter().map(|point| point.remaining).fold(0.0, f64::max);
+    let rounds = count(corrected.rounds, "round");
+    let mut text = format!(
+        "\nCorrected in at most {rounds}: of {} um at the worst, {} um are left if the model is true\n",
+        micrometres(before),
+        decimals(worst * 1e6, 3)
+    );
+    let per_cent = |left: Left| [left.rms, left.worst].map(|part| decimals(part * 100.0, 1));
+    let wrong = decimals(WRONG * 100.0, 0);
+    let heads = [
+        "true compliance".to_owned(),
+        format!("+{wrong} %: rms"),
+        "worst".to_owned(),
+        format!("-{wrong} %: rms"),
+        "worst".to_owned(),
+    ];
+    let mut rows = Table::new(1, heads);
+    let sensitivity = &corrected.sensitivity;
+    let each = corrected.elements.iter().map(String::as_str).zip(&sensitivity.each);
+    for (name, [softer, stiffer]) in [("of all", &sensitivity.all)].into_iter().chain(each) {
+        rows.row([name.to_owned()].into_iter().chain(per_cent(*softer)).chain(per_cent(*stiffer)));
+    }
+    text += &format!("left of the deviation [%] if the model is not true\n{rows}");
+    text
+}
+
+/// The columns of `--out`, after those of the path.
+pub fn columns(cutting: &Cutting) -> String {
+    let mut columns = "Fx [N],Fy [N],Fz [N],deviation [um],along [um],normal [um],axial [um],error [um]".to_owned();
+    if cutting.deviation.points.iter().any(|point| point.peak.is_some()) {
+        columns += ",peak [um]";
+    }
+    if cutting.corrected.is_some() {
+        columns += ",dx [um],dy [um],dz [um],remaining [um]";
+    }
+    columns
+}
+
+/// Their cells at a point; zero where there is no direction or surface.
+pub fn cells(cutting: &Cutting, index: usize) -> String {
+    let point = &cutting.deviation.points[index];
+    let mut cells: Vec<String> = point.wrench.iter().take(3).map(|force| decimals(*force, 4)).collect();
+    let components = point.components.unwrap_or_default();
+    let lengths = [point.distance(), components[0], components[1], components[2], point.error.unwrap_or(0.0)];
+    cells.extend(lengths.map(|length| decimals(length * 1e6, 4)));
+    if cutting.deviation.points.iter().any(|point| point.peak.is_some()) {
+        cells.push(decimals(point.peak.unwrap_or(0.0) * 1e6, 4));
+    }
+    if let Some(corrected) = &cutting.corrected {
+        let point = &corrected.points[index];
+        cells.extend(point.correction.map(|length| decimals(length * 1e6, 4)));
+        cells.push(decimals(point.remaining * 1e6, 6));
+    }
+    cells.join(",")
+}
+
+fn summary(of: Summary) -> Value {
+    json!({"mean_m": number(of.mean), "rms_m": number(of.rms), "worst_m": number(of.worst)})
+}
+
+/// Everything in SI units.
+pub fn document(cutting: &Cutting) -> Value {
+    json!({
+        "forces": cutting.name,
+        "surface": cutting.surface,
+        "distance": summary(cutting.deviation.distances()),
+        "error": summary(cutting.deviation.errors()),
+        "points": cutting.deviation.points.iter().map(point).collect::<Value>(),
+        "lines_without_direction": cutting.undirected,
+        "tolerance": cutting.tolerance.as_ref().map(|(tolerance, stretches)| json!({
+            "tolerance_m": number(*tolerance),
+            "holds": stretches.iter().all(|stretch| stretch.holds),
+            "stretches": stretches.iter().map(|stretch| json!({
+                "lines": stretch.lines,
+                "s_m": numbers(stretch.s),
+                "holds": stretch.holds,
+                "worst_m": number(stretch.worst),
+            })).collect::<Value>(),
+        })),
+        "shares": cutting.blame.iter().map(|(name, share)| json!({"element": name, "share": number(*share)})).collect::<Value>(),
+        "compared": cutting.compared.as_ref().map(|cuts| cuts.iter().map(|one| json!({
+            "cut": one.name,
+            "removal_m3_per_s": one.removal.map(number),
+            "force_n": number(one.force),
+            "distance_m": number(one.distance),
+            "error_m": number(one.error),
+        })).collect::<Value>()),
+        "corrected": cutting.corrected.as_ref().map(corrected),
+    })
+}
+
+fn point(point: &DeviationPoint) -> Value {
+    json!({
+        "line": point.line,
+        "wrench": numbers(point.wrench.iter().copied()),
+        "displacement": numbers(point.displacement.iter().copied()),
+        "feed_normal_axis_m": point.components.map(|components| numbers(components.iter().copied())),
+        "error_m": point.error.map(number),
+        "peak_m": point.peak.map(number),
+    })
+}
+
+fn corrected(corrected: &Corrected) -> Value {
+    let left = |[softer, stiffer]: &[Left; 2]| {
+        let one = |left: &Left| json!({"rms": number(left.rms), "worst": number(left.worst)});
+        json!({"softer": one(softer), "stiffer": one(stiffer)})
+    };
+    json!({
+        "rounds": corrected.rounds,
+        "points": corrected.points.iter().map(|point| json!({
+            "q": numbers(point.q.iter().copied()),
+            "position_m": numbers((0..3).map(|axis| point.pose[(axis, 3)])),
+            "quaternion_wxyz": numbers(super::quaternion(&point.pose)),
+            "correction_m": numbers(point.correction),
+            "remaining_m": number(point.remaining),
+            "rounds": point.rounds,
+        })).collect::<Value>(),
+        "left_if_wrong": {
+            "by": WRONG,
+            "all": left(&corrected.sensitivity.all),
+            "each": corrected.elements.iter().zip(&corrected.sensitivity.each).map(|(element, both)| json!({
+                "element": element, "left": left(both),
+            })).collect::<Value>(),
+        },
+    })
+}

@@ -1,0 +1,87 @@
+//! Where a tolerance holds.
+
+use std::vec::Vec;
+
+use super::{Deviation, DeviationPoint};
+
+/// Neighbouring points of a path that all keep a tolerance, or all break it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// The first and the last point, from 0.
+    pub points: [usize; 2],
+    /// Their lines in the path's file.
+    pub lines: [usize; 2],
+    /// Their arc lengths (m).
+    pub s: [f64; 2],
+    /// Whether the tolerance holds.
+    pub holds: bool,
+    /// The largest error, either way, with its sign (m).
+    pub worst: f64,
+}
+
+/// Errors along a path in three numbers (m).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Summary {
+    /// The mean.
+    pub mean: f64,
+    /// The root of the mean square.
+    pub rms: f64,
+    /// The largest, either way, with its sign.
+    pub worst: f64,
+}
+
+impl Summary {
+    /// Of any numbers; zero of none.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
+        let (mut count, mut sum, mut squares, mut worst) = (0_usize, 0.0, 0.0, 0.0_f64);
+        for value in values {
+            count += 1;
+            sum += value;
+            squares += value * value;
+            worst = larger(worst, value);
+        }
+        let count = count.max(1) as f64;
+        Self { mean: sum / count, rms: (squares / count).sqrt(), worst }
+    }
+}
+
+fn larger(one: f64, other: f64) -> f64 {
+    if other.abs() > one.abs() { other } else { one }
+}
+
+impl Deviation {
+    /// Where the error of the surface is within a tolerance either way (m), and
+    /// where it is not, in the order of the path. Where there is no surface, there
+    /// is nothing to break.
+    pub fn stretches(&self, tolerance: f64) -> Vec<Stretch> {
+        let mut stretches: Vec<Stretch> = Vec::new();
+        for (i, point) in self.points.iter().enumerate() {
+            let error = point.judged().unwrap_or(0.0);
+            let holds = error.abs() <= tolerance;
+            match stretches.last_mut().filter(|stretch| stretch.holds == holds) {
+                Some(stretch) => {
+                    (stretch.points[1], stretch.lines[1], stretch.s[1]) = (i, point.line, point.s);
+                    stretch.worst = larger(stretch.worst, error);
+                }
+                None => stretches.push(Stretch {
+                    points: [i; 2],
+                    lines: [point.line; 2],
+                    s: [point.s; 2],
+                    holds,
+                    worst: error,
+                }),
+            }
+        }
+        stretches
+    }
+
+    /// The error of the surface over all points that have one.
+    pub fn errors(&self) -> Summary {
+        Summary::of(self.points.iter().filter_map(DeviationPoint::judged))
+    }
+
+    /// The distance from the path over all points.
+    pub fn distances(&self) -> Summary {
+        Summary::of(self.points.iter().map(DeviationPoint::distance))
+    }
+}

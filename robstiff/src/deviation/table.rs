@@ -1,0 +1,187 @@
+//! Forces along a path from a file.
+
+use std::borrow::ToOwned;
+use std::path::Path;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use nalgebra::{Matrix3, Unit, Vector3, Vector6};
+use robstiff_robots::quantity::Dimension;
+use robstiff_robots::{Diagnostics, ReadError};
+
+use super::load::{contact, rotation};
+use super::{Load, Surface};
+use crate::milling::ForceFrame;
+use crate::path::SolvedPath;
+use crate::table::{Numbers, Record, Table, text_of};
+
+/// Wrenches on the tool along a path: one a point, or by arc length.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ForceTable {
+    /// The file's name.
+    pub file: String,
+    /// The arc length of each row (m), ascending; `None` where the rows are those of
+    /// the path.
+    pub s: Option<Vec<f64>>,
+    /// Force and moment on the tool at the TCP (N, Nm), a row each.
+    pub wrenches: Vec<Vector6<f64>>,
+    /// What the reader noticed without refusing the file.
+    pub warnings: Vec<String>,
+}
+
+/// A table of forces that does not cover the path.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mismatch {
+    /// Another number of rows than the path has points.
+    Rows {
+        /// The table's file.
+        file: String,
+        /// How many rows it has.
+        rows: usize,
+        /// How many points the path has.
+        points: usize,
+    },
+    /// The path goes on where the table has no row.
+    Beyond {
+        /// The table's file.
+        file: String,
+        /// The arc length of its first and last row (m).
+        table: [f64; 2],
+        /// That of the first and last point of the path (m).
+        path: [f64; 2],
+    },
+}
+
+impl core::fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Rows { file, rows, points } => write!(
+                f,
+                "{file} has {rows} rows, the path has {points} points; give a row for each point, or the arc length \
+                 of each row as `s [mm]`"
+            ),
+            Self::Beyond { file, table, path } => {
+                let [first, last, from, to] = [table[0], table[1], path[0], path[1]].map(|s| s * 1e3);
+                write!(
+                    f,
+                    "{file} goes from s = {first:.3} mm to {last:.3} mm, the path from {from:.3} mm to {to:.3} mm; \
+                     give forces for all of it"
+                )
+            }
+        }
+    }
+}
+
+impl core::error::Error for Mismatch {}
+
+/// Arc lengths that differ by less are the same (m).
+const SAME_LENGTH: f64 = 1e-6;
+
+impl ForceTable {
+    /// Reads columns `Fx Fy Fz` (N), where they are there `Mx My Mz` (Nm), and `s`
+    /// (m) where the rows are not those of the path.
+    ///
+    /// # Errors
+    /// A file that cannot be read; everything that is wrong with it, each problem at
+    /// its place.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
+        let path = path.as_ref();
+        Self::parse(&path.display().to_string(), &text_of(path)?).map_err(ReadError::Invalid)
+    }
+
+    /// The same from a text; `file` is the name that problems show.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it, each problem at its place.
+    pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
+        let table = Table::parse(file, text)?;
+        let forces = ["Fx", "Fy", "Fz"].map(|name| table.require(name, Dimension::Force));
+        let moments = ["Mx", "My", "Mz"].map(|name| table.numbers(name, Dimension::Torque));
+        let s = table.numbers("s", Dimension::Length);
+        let mut last = f64::NEG_INFINITY;
+        let row = |record| {
+            let force = table.all(record, [forces[0]?, forces[1]?, forces[2]?]);
+            let moment = moments.map(|column| column.map_or(Some(0.0), |column| table.number(record, column)));
+            let s = s.map(|column| ascending(&table, record, column, &mut last));
+            let (force, [x, y, z]) = (force?, [moment[0]?, moment[1]?, moment[2]?]);
+            Some((Vector6::new(force[0], force[1], force[2], x, y, z), s.map_or(Some(None), |s| s.map(Some))?))
+        };
+        // Every row is checked before any gives the file up.
+        let rows: Vec<_> = table.records.iter().map(row).collect();
+        let rows: Option<Vec<_>> = rows.into_iter().collect();
+        let (rows, warnings) = table.finish(rows)?;
+        let (wrenches, s): (Vec<_>, Vec<Option<f64>>) = rows.into_iter().unzip();
+        Ok(Self { file: file.to_owned(), s: s.into_iter().collect(), wrenches, warnings })
+    }
+
+    /// The load along a path, by rows or between those nearest by arc length; the
+    /// wrenches are along the axes of `frame`. `axis` is that of the tool in the TCP's
+    /// frame, from the spindle to the tip.
+    ///
+    /// # Errors
+    /// A table that does not cover the path.
+    pub fn load<const N: usize>(
+        &self,
+        path: &SolvedPath<N>,
+        frame: ForceFrame,
+        axis: Unit<Vector3<f64>>,
+        surface: Surface,
+    ) -> Result<Load, Mismatch> {
+        let (count, file) = (path.points.len(), || self.file.clone());
+        if let Some(s) = &self.s {
+            let ends = [s[0], s[s.len() - 1]];
+            let of = path.points.iter().map(|point| point.s);
+            let path = [of.clone().fold(f64::INFINITY, f64::min), of.fold(f64::NEG_INFINITY, f64::max)];
+            if path[0] < ends[0] - SAME_LENGTH || path[1] > ends[1] + SAME_LENGTH {
+                return Err(Mismatch::Beyond { file: file(), table: ends, path });
+            }
+        } else if self.wrenches.len() != count {
+            return Err(Mismatch::Rows { file: file(), rows: self.wrenches.len(), points: count });
+        }
+        let mut undirected = Vec::new();
+        let contacts = path.points.iter().enumerate().map(|(i, point)| {
+            let mut contact = contact(point, axis, surface, 1.0);
+            let turn = match (frame, &contact.frame) {
+                (ForceFrame::Base, _) => Matrix3::identity(),
+                (ForceFrame::Tool, _) => rotation(point),
+                (ForceFrame::Cut, Some(frame)) => frame.matrix(),
+                (ForceFrame::Cut, None) => {
+                    undirected.push(point.line);
+                    return contact;
+                }
+            };
+            let wrench = self.s.as_ref().map_or(self.wrenches[i.min(self.wrenches.len() - 1)], |s| self.at(s, point.s));
+            let (force, moment) = (turn * wrench.fixed_rows::<3>(0), turn * wrench.fixed_rows::<3>(3));
+            contact.wrench = Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
+            contact.turn = turn;
+            contact
+        });
+        let contacts = contacts.collect();
+        Ok(Load { contacts, revolution: Vec::new(), undirected })
+    }
+
+    /// The wrench at an arc length, linear between rows.
+    fn at(&self, s: &[f64], length: f64) -> Vector6<f64> {
+        let after = s.partition_point(|&row| row < length);
+        if after == 0 || after == s.len() {
+            return self.wrenches[after.min(s.len() - 1)];
+        }
+        let part = (length - s[after - 1]) / (s[after] - s[after - 1]);
+        self.wrenches[after - 1].lerp(&self.wrenches[after], part)
+    }
+}
+
+fn ascending(table: &Table<'_>, record: &Record, column: Numbers, last: &mut f64) -> Option<f64> {
+    let s = table.number(record, column)?;
+    if s <= *last {
+        table.report_number(
+            record,
+            column,
+            "the arc length is not beyond that of the row before",
+            "`s` is the length of the path so far, one row at a length",
+        );
+        return None;
+    }
+    *last = s;
+    Some(s)
+}

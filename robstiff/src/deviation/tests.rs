@@ -1,0 +1,242 @@
+use std::format;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use nalgebra::{SVector, Unit, Vector3, Vector6};
+use robstiff_robots::{Description, catalogue};
+
+use super::*;
+use crate::elements::Element;
+use crate::milling::{Cut, CutFile, Direction, Engagement, ForceFrame, Forces};
+use crate::path::ToolPath;
+use crate::{Generic, Robot, State, samples, with_robot};
+
+pub fn described(name: &str) -> Description {
+    Description::parse(name, catalogue::find(name).unwrap()).unwrap()
+}
+
+/// A rectangular pocket of 300 mm by 200 mm, a point every 20 mm, the tool down.
+pub fn pocket() -> String {
+    let mut text = String::from("x [mm],y [mm],z [mm],ux,uy,uz\n");
+    let mut at = [1400, -100];
+    for (axis, way, steps) in [(0, 20, 15), (1, 20, 10), (0, -20, 15), (1, -20, 10)] {
+        for _ in 0..steps {
+            text += &format!("{},{},600,0,0,-1\n", at[0], at[1]);
+            at[axis] += way;
+        }
+    }
+    text
+}
+
+pub fn solved<const N: usize>(name: &str, axis: Unit<Vector3<f64>>) -> (Generic<N>, ToolPath, SolvedPath<N>) {
+    let description = described(name);
+    let robot = Generic::new(&description).unwrap();
+    let path = ToolPath::parse("pocket.csv", &pocket(), &description, axis).unwrap();
+    let solved = path.solve(&robot, None).unwrap();
+    (robot, path, solved)
+}
+
+/// Aluminium, along a wall.
+pub fn cut(depth: &str, speed: &str, feed: &str) -> Cut {
+    let text = format!(
+        "tool: {{diameter: 20 mm, teeth: 4, helix: 30 deg}}\nmaterial: al7075-t6\nmilling: down\nwidth: 8 mm\n\
+         depth: {depth}\nfeed: {feed}\nspeed: {speed}\n"
+    );
+    match CutFile::parse("cut.yaml", &text, std::path::Path::new("")).unwrap().forces {
+        Forces::Model(cut) => cut,
+        Forces::Measured { .. } => panic!("a model"),
+    }
+}
+
+fn table(text: &str) -> Result<ForceTable, String> {
+    ForceTable::parse("forces.csv", text).map_err(|problems| problems.to_string())
+}
+
+#[test]
+fn a_force_displaces_as_the_robot_says() {
+    let (robot, _, path) = solved::<5>("rv130hsc", Vector3::x_axis());
+    let mut text = String::from("Fx [N],Fy [N],Fz [N],My [Nm]\n");
+    (0..path.points.len()).for_each(|i| text += &format!("{},-200,300,{i}\n", 10 * i));
+    let load = table(&text).unwrap().load(&path, ForceFrame::Base, Vector3::x_axis(), Surface::Side).unwrap();
+    let found = Deviation::of(&robot, &path, &load).unwrap();
+    assert_eq!(found.points.len(), path.points.len());
+    for (i, (point, found)) in path.points.iter().zip(&found.points).enumerate() {
+        let wrench = Vector6::new(10.0 * i as f64, -200.0, 300.0, 0.0, i as f64, 0.0);
+        let expected = robot.deflection(&point.q, &wrench);
+        assert!((found.displacement - expected).norm() < 1e-9 * expected.norm() + 1e-15, "{found:?} {expected}");
+        let shift = expected.fixed_rows::<3>(0).into_owned();
+        let feed = point.tangent.unwrap().into_inner();
+        let normal = feed.cross(&-Vector3::z());
+        let expected = Vector3::new(shift.dot(&feed), shift.dot(&normal), -shift.z);
+        assert!((found.components.unwrap() - expected).norm() < 1e-9 * shift.norm());
+        assert!((found.error.unwrap() - expected.y).abs() < 1e-9 * shift.norm());
+    }
+    let face = table(&text).unwrap().load(&path, ForceFrame::Base, Vector3::x_axis(), Surface::Face).unwrap();
+    let found = Deviation::of(&robot, &path, &face).unwrap();
+    assert!(found.points.iter().all(|point| (point.error.unwrap() + point.displacement.z).abs() < 1e-12));
+}
+
+#[test]
+fn arm_and_cut_settle_where_both_agree() {
+    let (robot, _, path) = solved::<6>("kuka-kr270-r2700", Vector3::z_axis());
+    let cut = cut("3 mm", "9000 rpm", "0.15 mm/tooth");
+    let load = load_of_cut(&Forces::Model(cut.clone()), &path, Vector3::z_axis(), Surface::Side);
+    assert!(load.undirected.is_empty());
+    let found = Deviation::of(&robot, &path, &load).unwrap();
+    for (point, found) in path.points.iter().zip(&found.points) {
+        let frame = crate::milling::CutFrame::new(&-Vector3::z(), &point.tangent.unwrap()).unwrap();
+        let off = found.components.unwrap();
+        assert!(off.norm() > 1e-6);
+        // Down milling: the wall is at -normal, and the width grows that way.
+        let engagement = Engagement::of_width(Direction::Down, width(&cut) - off.y, cut.mill.diameter).unwrap();
+        let met = Cut { engagement, depth: cut.depth + off.z, ..cut.clone() };
+        let wrench = frame.wrench(&met.mean_force());
+        assert!((wrench - found.wrench).norm() < 1e-3 * wrench.norm(), "{wrench} {}", found.wrench);
+        assert!((robot.deflection(&point.q, &found.wrench) - found.displacement).norm() < 1e-11);
+        assert!((found.error.unwrap() + off.y).abs() < 1e-15, "into the wall is against the normal");
+    }
+}
+
+#[test]
+fn a_force_that_grows_too_fast_pulls_the_tool_in() {
+    let (robot, _, path) = solved::<6>("kuka-kr270-r2700", Vector3::z_axis());
+    let mut load =
+        load_of_cut(&Forces::Model(cut("3 mm", "9000 rpm", "0.15 mm/tooth")), &path, Vector3::z_axis(), Surface::Side);
+    load.contacts[7].response = Matrix3::identity() * 1e9;
+    let failed = Deviation::of(&robot, &path, &load).unwrap_err();
+    assert_eq!(failed.lines, [path.points[7].line]);
+}
+
+#[test]
+fn parts_sum_to_the_deflection_with_every_effect() {
+    for file in ["every-effect.yaml", "every-law.yaml"] {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/robots");
+        let description = Description::read(folder.join(file)).unwrap();
+        assert!(!description.effects.is_empty());
+        with_robot!(&description, |robot| sum(&robot));
+    }
+    fn sum<const N: usize>(robot: &Generic<N>) {
+        let (mut one, mut other) = (State::new(), State::new());
+        for (k, q) in samples::poses::<N>().enumerate() {
+            let wrench = Vector6::from_fn(|i, _| 300.0 * f64::sin(1.3 * k as f64 + i as f64));
+            let whole = robot.deflection_with(&q, &wrench, &mut one);
+            let sum: Vector6<f64> = parts(robot, &q, &wrench, &mut other).map(|(_, part)| part).sum();
+            assert!((sum - whole).norm() < 1e-12 * whole.norm(), "{sum} {whole}");
+            assert_eq!(one, other);
+        }
+    }
+}
+
+#[test]
+fn shares_of_the_error_sum_to_one_and_find_the_soft_joint() {
+    let mut description = described("kuka-kr270-r2700");
+    let path = ToolPath::parse("pocket.csv", &pocket(), &description, Vector3::z_axis()).unwrap();
+    description.effects = samples::linear_effects();
+    description.joints[0].compliance[0].value *= 20.0;
+    let robot = Generic::<6>::new(&description).unwrap();
+    let path = path.solve(&robot, None).unwrap();
+    let forces = Forces::Model(cut("3 mm", "9000 rpm", "0.15 mm/tooth"));
+    let load = load_of_cut(&forces, &path, Vector3::z_axis(), Surface::Side);
+    let found = Deviation::of(&robot, &path, &load).unwrap();
+    for picked in [0..50, 10..20] {
+        let shares = blame(&robot, &path, &load, &found, |i| picked.contains(&i));
+        assert_eq!(shares.len(), 6 + description.effects.len());
+        assert!((shares.iter().map(|(_, share)| share).sum::<f64>() - 1.0).abs() < 1e-12);
+        assert_eq!(shares[0].0, Element::Joint(1), "{shares:?}");
+        assert!(shares[0].1 > 0.5 && shares.windows(2).all(|pair| pair[0].1 >= pair[1].1), "{shares:?}");
+    }
+    assert!(blame(&robot, &path, &load, &found, |_| false).is_empty());
+}
+
+#[test]
+fn stretches_hold_and_break_a_tolerance() {
+    let errors = [0.0, 4e-5, -2e-4, 3e-4, 5e-5, -1.1e-4];
+    let points = errors.iter().enumerate().map(|(i, &error)| DeviationPoint {
+        line: i + 2,
+        s: 0.01 * i as f64,
+        wrench: Vector6::zeros(),
+        displacement: Vector6::zeros(),
+        components: None,
+        error: Some(error),
+        peak: None,
+    });
+    let deviation = Deviation { points: points.collect() };
+    let stretches = deviation.stretches(1e-4);
+    let told: Vec<_> = stretches.iter().map(|found| (found.lines, found.holds, found.worst)).collect();
+    assert_eq!(told, [([2, 3], true, 4e-5), ([4, 5], false, 3e-4), ([6, 6], true, 5e-5), ([7, 7], false, -1.1e-4)]);
+    assert_eq!(stretches[1].s, [0.02, 0.03]);
+    assert_eq!(deviation.errors().worst, 3e-4);
+    assert!(deviation.stretches(1e-3).iter().all(|stretch| stretch.holds));
+}
+
+#[test]
+fn high_speed_cutting_removes_as_much_with_less_force_and_error() {
+    let (robot, _, path) = solved::<5>("rv130hsc", Vector3::x_axis());
+    let conventional = cut("3 mm", "6000 rpm", "0.1 mm/tooth");
+    let fast = cut("1 mm", "18000 rpm", "0.1 mm/tooth");
+    let [slow_rate, fast_rate] = [&conventional, &fast].map(|cut| removal_rate(cut).unwrap());
+    // 8 mm x 3 mm x 2400 mm/min.
+    assert!((slow_rate * 6e7 - 57.6).abs() < 1e-9 && (fast_rate / slow_rate - 1.0).abs() < 1e-12);
+    let error = |cut| {
+        let load = load_of_cut(&Forces::Model(cut), &path, Vector3::x_axis(), Surface::Side);
+        Deviation::of(&robot, &path, &load).unwrap().errors().rms
+    };
+    let ratio = error(fast) / error(conventional);
+    assert!((0.3..0.36).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn the_peak_of_a_revolution_is_beyond_the_mean() {
+    let (robot, _, path) = solved::<5>("rv130hsc", Vector3::x_axis());
+    let cut = cut("3 mm", "6000 rpm", "0.1 mm/tooth");
+    let load = load_of_cut(&Forces::Model(cut.clone()), &path, Vector3::x_axis(), Surface::Side);
+    let forces = cut.revolution(72).samples.into_iter().map(|(_, force)| force).collect();
+    let found = Deviation::of(&robot, &path, &load.with_revolution(forces)).unwrap();
+    for point in &found.points {
+        let [peak, mean] = [point.peak.unwrap(), point.error.unwrap()];
+        assert!(peak.abs() > mean.abs() && peak.abs() < 5.0 * mean.abs(), "{peak} {mean}");
+        assert_eq!(point.judged(), point.peak);
+    }
+}
+
+#[test]
+fn forces_come_by_row_or_by_arc_length() {
+    let (_, _, path) = solved::<6>("kuka-kr270-r2700", Vector3::z_axis());
+    let load = |text: &str, frame| table(text).unwrap().load(&path, frame, Vector3::z_axis(), Surface::Side);
+    let by_length = load("s [mm],Fx,Fy,Fz\n0,0,0,0\n500,100,0,50\n1000,300,0,50\n", ForceFrame::Base).unwrap();
+    for (point, contact) in path.points.iter().zip(&by_length.contacts) {
+        let s = point.s * 1e3;
+        let expected = if s < 500.0 { s / 5.0 } else { 100.0 + (s - 500.0) / 2.5 };
+        assert!((contact.wrench[0] - expected).abs() < 1e-6, "{s} {}", contact.wrench);
+    }
+    let along_feed = load("s,Fx,Fy,Fz\n0,100,0,0\n1,100,0,0\n", ForceFrame::Cut).unwrap();
+    let feed = path.points[3].tangent.unwrap().into_inner();
+    assert!((along_feed.contacts[3].wrench.fixed_rows::<3>(0) - feed * 100.0).norm() < 1e-9);
+    let along_tool = load("s,Fx,Fy,Fz\n0,0,0,100\n1,0,0,100\n", ForceFrame::Tool).unwrap();
+    assert!((along_tool.contacts[3].wrench[2] + 100.0).abs() < 1e-6, "the tool points down");
+
+    let short = load("s [mm],Fx,Fy,Fz\n0,0,0,0\n500,100,0,50\n", ForceFrame::Base).unwrap_err().to_string();
+    assert!(short.contains("forces.csv goes from s = 0.000 mm to 500.000 mm, the path from"), "{short}");
+    let few = load("Fx,Fy,Fz\n0,0,0\n", ForceFrame::Base).unwrap_err().to_string();
+    assert!(few.contains("forces.csv has 1 rows, the path has 50 points"), "{few}");
+    let problems = table("s,Fx,Fy\n0,1,2\n0,3,x\n").unwrap_err();
+    assert!(problems.contains("the column `Fz` is missing"), "{problems}");
+    let problems = table("s,Fx,Fy,Fz\n0,1,2,3\n0,3,2,x\n").unwrap_err();
+    assert!(problems.contains("forces.csv:3:1") && problems.contains("`x` is not a number"), "{problems}");
+}
+
+#[test]
+fn where_the_tool_plunges_the_cut_has_no_direction() {
+    let description = described("kuka-kr270-r2700");
+    let robot = Generic::<6>::new(&description).unwrap();
+    let text = "x,y,z,ux,uy,uz\n1.5,0,0.7,0,0,-1\n1.5,0,0.65,0,0,-1\n1.5,0,0.6,0,0,-1\n1.6,0,0.6,0,0,-1\n";
+    let path = ToolPath::parse("plunge.csv", text, &description, Vector3::z_axis()).unwrap();
+    let path = path.solve(&robot, None).unwrap();
+    let forces = Forces::Model(cut("3 mm", "6000 rpm", "0.1 mm/tooth"));
+    let load = load_of_cut(&forces, &path, Vector3::z_axis(), Surface::Side);
+    assert_eq!(load.undirected, [2, 3]);
+    let found = Deviation::of(&robot, &path, &load).unwrap();
+    assert_eq!((found.points[0].distance(), found.points[0].error), (0.0, None));
+    let q: SVector<f64, 6> = path.points[3].q;
+    assert!((found.points[3].displacement - robot.deflection(&q, &found.points[3].wrench)).norm() < 1e-11);
+}

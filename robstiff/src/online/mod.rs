@@ -1,0 +1,279 @@
+//! Correcting the joint targets while cutting, simulated: what control speed
+//! leaves of the deviation.
+//!
+//! Each control step reads the force, or the encoders on the output side of the
+//! gears, and shifts the joint targets so that the tool moves back, within limits
+//! of size and rate; the correction reaches the position loops after a delay, and
+//! these follow it with their bandwidth. With a reading that is true, no limit
+//! reached and a sine of angular frequency `w` as load, what is left of the
+//! deviation has the size
+//!
+//! `|1 - G(i w) exp(-i w T) sin(w s / 2) / (w s / 2) exp(-i w s / 2)|`,
+//!
+//! where `G` is the position loop, `T` the delay and `s` the control step, for
+//! which a correction is held. The force is taken to follow from the cut alone,
+//! not from where the correction puts the tool.
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::VecDeque;
+use std::vec::Vec;
+
+use core::f64::consts::TAU;
+use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3, Vector6};
+
+use crate::elements::{plays, turn};
+use crate::{Effect, Robot, State};
+
+/// Points within a control step at which the deviation is looked at.
+const POINTS: usize = 8;
+
+/// What the controller corrects by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sensing {
+    /// A force sensor and a model of the robot's compliance: corrects whatever
+    /// the model has, and leaves what it does not.
+    Force,
+    /// Encoders on the output side of the gears: corrects what the gears do
+    /// without a model of them, and leaves links, bearings, base and tool.
+    Encoders,
+}
+
+/// How the position of a joint follows its target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Servo {
+    /// At once.
+    Ideal,
+    /// With one pole.
+    FirstOrder {
+        /// The frequency where the gain has fallen to `1 / sqrt(2)` (Hz).
+        bandwidth: f64,
+    },
+    /// With two.
+    SecondOrder {
+        /// The natural frequency (Hz).
+        frequency: f64,
+        /// The damping ratio.
+        damping: f64,
+    },
+}
+
+/// What corrections must not exceed, one number for all joints.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Of a correction, either way (rad or m).
+    pub size: f64,
+    /// Of its speed (rad/s or m/s).
+    pub rate: f64,
+    /// For how long the last correction is held without a reading (s); then it
+    /// is withdrawn at that speed.
+    pub hold: f64,
+}
+
+/// A controller and what it acts on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Controller {
+    /// What is read.
+    pub sensing: Sensing,
+    /// The time from one control step to the next (s).
+    pub step: f64,
+    /// From a reading to the position loops (s).
+    pub delay: f64,
+    /// The position loops.
+    pub servo: Servo,
+    /// Of the correction.
+    pub limits: Limits,
+    /// Of the least squares (m^2): directions in which the joints move the tool
+    /// by less than the root of this are not corrected.
+    pub damping: f64,
+}
+
+/// The tool at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instant {
+    /// The time (s).
+    pub time: f64,
+    /// The displacement of the TCP without correction, in the base frame (m).
+    pub uncorrected: Vector3<f64>,
+    /// The displacement with it (m).
+    pub corrected: Vector3<f64>,
+}
+
+/// What a correction leaves of the deviation under a sine, as fractions of the
+/// deviation without correction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Left {
+    /// Of its amplitude at the load's own frequency.
+    pub amplitude: f64,
+    /// Of its root mean square, noise and steps included.
+    pub rms: f64,
+}
+
+/// Simulates for a `duration` (s) at joint coordinates `q`. `truth` is the robot,
+/// `model` what the controller takes it for; `load` is the wrench at the TCP in
+/// the base frame (N, Nm) at a time (s), `reading` what the sensor makes of it,
+/// or nothing where it is silent. With encoders only whether there is a reading
+/// counts, and the wrench it gives is that which turns the gears.
+///
+/// # Panics
+/// If the step is not above zero or the delay negative.
+pub fn simulate<const N: usize>(
+    (truth, model): (&impl Robot<N>, &impl Robot<N>),
+    q: &SVector<f64, N>,
+    controller: &Controller,
+    duration: f64,
+    load: impl Fn(f64) -> Vector6<f64>,
+    mut reading: impl FnMut(f64, &Vector6<f64>) -> Option<Vector6<f64>>,
+) -> Vec<Instant> {
+    let &Controller { step, delay, .. } = controller;
+    assert!(step > 0.0 && delay >= 0.0, "a control step takes time, and no correction is early");
+    let moves = truth.jacobian(q).fixed_rows::<3>(0).into_owned();
+    let (mut wanted, mut silent) = (Correction::new(controller), 0.0);
+    let mut servo = [Vector2::zeros(); N];
+    let (mut target, mut underway) = (SVector::<f64, N>::zeros(), VecDeque::new());
+    let (mut seen, mut now) = (Vec::new(), 0.0);
+    let mut state = State::new();
+    let between = transition(controller.servo, step / POINTS as f64);
+    for k in 0..(duration / step).ceil() as usize {
+        let start = k as f64 * step;
+        let read = reading(start, &load(start));
+        silent = if read.is_some() { 0.0 } else { silent + step };
+        let asked = match (read, controller.sensing) {
+            (Some(wrench), Sensing::Force) => Some(back(model, q, &wrench, controller.damping)),
+            (Some(wrench), Sensing::Encoders) => Some(-gears(truth, q, &wrench)),
+            (None, _) => (silent > controller.limits.hold).then(SVector::zeros),
+        };
+        underway.push_back((start + delay, wanted.step(asked)));
+        for point in 1..=POINTS {
+            // In the middle of each part, so that a value that is held is seen as late as it is.
+            let end = start + step * (point as f64 - 0.5) / POINTS as f64;
+            let mut whole = now > 0.0;
+            while let Some(&(at, next)) = underway.front().filter(|(at, _)| *at < end) {
+                if at > now {
+                    advance(&mut servo, &target, &transition(controller.servo, at - now));
+                    (now, whole) = (at, false);
+                }
+                target = next;
+                underway.pop_front();
+            }
+            let rest = if whole { between } else { transition(controller.servo, end - now) };
+            advance(&mut servo, &target, &rest);
+            now = end;
+            let moved = SVector::<f64, N>::from_fn(|i, _| servo[i].x);
+            let uncorrected = truth.deflection_with(q, &load(now), &mut state).fixed_rows::<3>(0).into_owned();
+            seen.push(Instant { time: now, uncorrected, corrected: uncorrected + moves * moved });
+        }
+    }
+    seen
+}
+
+/// What is left under a load that is `wrench` (N, Nm) times a sine of a
+/// `frequency` (Hz), in ten periods after what comes first has died down.
+///
+/// # Panics
+/// If the frequency is not above zero, and as [`simulate`].
+pub fn left_of_sine<const N: usize>(
+    robots: (&impl Robot<N>, &impl Robot<N>),
+    q: &SVector<f64, N>,
+    controller: &Controller,
+    (wrench, frequency): (&Vector6<f64>, f64),
+    reading: impl FnMut(f64, &Vector6<f64>) -> Option<Vector6<f64>>,
+) -> Left {
+    assert!(frequency > 0.0, "a sine has a frequency above zero");
+    let slowest = match controller.servo {
+        Servo::Ideal => 0.0,
+        Servo::FirstOrder { bandwidth } => 1.0 / (TAU * bandwidth),
+        Servo::SecondOrder { frequency, damping } => {
+            // The slower of two real poles, or what both decay with.
+            let slow = damping - (damping * damping - 1.0).max(0.0).sqrt();
+            1.0 / (TAU * frequency * slow)
+        }
+    };
+    let settled = (20.0 * slowest + controller.delay + controller.step).max(2.0 / frequency);
+    let duration = settled + 10.0 / frequency;
+    let seen = simulate(robots, q, controller, duration, |time| wrench * (TAU * frequency * time).sin(), reading);
+    let seen: Vec<_> = seen.iter().filter(|instant| instant.time > settled && instant.time <= duration).collect();
+    let amplitude = |of: fn(&Instant) -> Vector3<f64>| {
+        let part = |wave: fn(f64) -> f64| -> Vector3<f64> {
+            seen.iter().map(|instant| of(instant) * wave(TAU * frequency * instant.time)).sum()
+        };
+        part(f64::sin).norm().hypot(part(f64::cos).norm())
+    };
+    let square = |of: fn(&Instant) -> Vector3<f64>| seen.iter().map(|instant| of(instant).norm_squared()).sum::<f64>();
+    let (with, without): (fn(&Instant) -> _, fn(&Instant) -> _) = (|seen| seen.corrected, |seen| seen.uncorrected);
+    Left { amplitude: amplitude(with) / amplitude(without), rms: (square(with) / square(without)).sqrt() }
+}
+
+/// The correction as limits let it be.
+struct Correction<const N: usize> {
+    now: SVector<f64, N>,
+    size: f64,
+    step: f64,
+}
+
+impl<const N: usize> Correction<N> {
+    fn new(controller: &Controller) -> Self {
+        let Limits { size, rate, .. } = controller.limits;
+        Self { now: SVector::zeros(), size, step: rate * controller.step }
+    }
+
+    /// One control step towards what is asked for; nothing holds it.
+    fn step(&mut self, asked: Option<SVector<f64, N>>) -> SVector<f64, N> {
+        if let Some(asked) = asked {
+            let change = asked.map(|x| x.clamp(-self.size, self.size)) - self.now;
+            self.now += change.map(|x| x.clamp(-self.step, self.step));
+        }
+        self.now
+    }
+}
+
+/// The correction that takes the TCP back, by damped least squares on the rows
+/// of the Jacobian that move it: `J^T (J J^T + damping)^-1 (-d)`.
+fn back<const N: usize>(
+    model: &impl Robot<N>,
+    q: &SVector<f64, N>,
+    wrench: &Vector6<f64>,
+    damping: f64,
+) -> SVector<f64, N> {
+    let moves: SMatrix<f64, 3, N> = model.jacobian(q).fixed_rows::<3>(0).into_owned();
+    let displacement = model.deflection(q, wrench).fixed_rows::<3>(0).into_owned();
+    let square = moves * moves.transpose() + Matrix3::identity() * damping;
+    square.cholesky().map_or_else(SVector::zeros, |factor| moves.transpose() * factor.solve(&-displacement))
+}
+
+/// By how much the gears turn under a wrench (rad or m): what encoders on both
+/// of their sides see between them.
+fn gears<const N: usize>(robot: &impl Robot<N>, q: &SVector<f64, N>, wrench: &Vector6<f64>) -> SVector<f64, N> {
+    let (own, torques) = (robot.joint_compliance(), robot.joint_torques(q, wrench));
+    let mut turns = own.component_mul(&torques);
+    for effect in robot.effects() {
+        if let &Effect::JointCoupling { joints: [a, b], value } = effect {
+            turns[a - 1] += value * torques[b - 1];
+            turns[b - 1] += value * torques[a - 1];
+        }
+        let Some(i) = effect.row().map(|joint| joint - 1) else { continue };
+        let after = plays(effect, torques[i], Default::default());
+        turns[i] += turn(effect, own[i], q[i], torques[i], after).unwrap_or_default();
+    }
+    turns
+}
+
+/// How position and speed, less the target, go on over a time (s).
+fn transition(servo: Servo, time: f64) -> Matrix2<f64> {
+    match servo {
+        Servo::Ideal => Matrix2::zeros(),
+        Servo::FirstOrder { bandwidth } => Matrix2::new((-TAU * bandwidth * time).exp(), 0.0, 0.0, 0.0),
+        Servo::SecondOrder { frequency, damping } => {
+            let w = TAU * frequency;
+            (Matrix2::new(0.0, 1.0, -w * w, -2.0 * damping * w) * time).exp()
+        }
+    }
+}
+
+fn advance<const N: usize>(servo: &mut [Vector2<f64>; N], target: &SVector<f64, N>, transition: &Matrix2<f64>) {
+    for (state, &target) in servo.iter_mut().zip(target) {
+        let target = Vector2::new(target, 0.0);
+        *state = transition * (*state - target) + target;
+    }
+}

@@ -1,0 +1,140 @@
+//! Corrections against transfer functions and limits that are known.
+
+use std::vec;
+
+use nalgebra::Complex;
+
+use super::*;
+use crate::{Effect, Generic, samples};
+
+const FREE: Limits = Limits { size: f64::INFINITY, rate: f64::INFINITY, hold: 0.0 };
+
+fn controller(servo: Servo) -> Controller {
+    Controller { sensing: Sensing::Force, step: 1e-3, delay: 3e-3, servo, limits: FREE, damping: 1e-12 }
+}
+
+fn pose() -> SVector<f64, 5> {
+    SVector::from([0.3, -0.4, 0.5, 0.2, 1.2])
+}
+
+fn wrench() -> Vector6<f64> {
+    Vector6::new(150.0, -200.0, 300.0, 0.0, 0.0, 0.0)
+}
+
+fn robot() -> Generic<5> {
+    Generic::new(&samples::five_axis()).unwrap()
+}
+
+/// The same with every joint that much softer.
+fn softer(by: f64) -> Generic<5> {
+    let mut description = samples::five_axis();
+    description.joints.iter_mut().flat_map(|joint| &mut joint.compliance).for_each(|part| part.value *= by);
+    Generic::new(&description).unwrap()
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "a sensor that is never silent")]
+fn truly(_: f64, wrench: &Vector6<f64>) -> Option<Vector6<f64>> {
+    Some(*wrench)
+}
+
+fn transfer(servo: Servo, frequency: f64) -> Complex<f64> {
+    let s = Complex::new(0.0, TAU * frequency);
+    match servo {
+        Servo::Ideal => Complex::new(1.0, 0.0),
+        Servo::FirstOrder { bandwidth } => (s / (TAU * bandwidth) + 1.0).inv(),
+        Servo::SecondOrder { frequency, damping } => {
+            let x = s / (TAU * frequency);
+            (x * x + x * (2.0 * damping) + 1.0).inv()
+        }
+    }
+}
+
+#[test]
+fn what_is_left_is_what_the_transfer_function_says() {
+    let servos = [
+        Servo::Ideal,
+        Servo::FirstOrder { bandwidth: 20.0 },
+        Servo::SecondOrder { frequency: 15.0, damping: 0.7 },
+        Servo::SecondOrder { frequency: 15.0, damping: 1.6 },
+    ];
+    for servo in servos {
+        for frequency in [0.5, 3.0, 11.0, 40.0] {
+            let controller = controller(servo);
+            let robot = robot();
+            let left = left_of_sine((&robot, &robot), &pose(), &controller, (&wrench(), frequency), truly);
+            let half = 0.5 * TAU * frequency * controller.step;
+            let held = half.sin() / half;
+            let late = Complex::new(0.0, -TAU * frequency * controller.delay - half).exp();
+            let expected = (Complex::new(1.0, 0.0) - transfer(servo, frequency) * late * held).norm();
+            assert!((left.amplitude / expected - 1.0).abs() < 0.01, "{servo:?} {frequency}: {left:?} {expected}");
+        }
+    }
+}
+
+#[test]
+fn without_delay_the_error_of_the_model_is_left() {
+    let ideal = Controller { step: 1e-5, delay: 0.0, ..controller(Servo::Ideal) };
+    let (truth, model) = (robot(), softer(0.9));
+    let left = left_of_sine((&truth, &model), &pose(), &ideal, (&wrench(), 20.0), truly);
+    assert!((left.amplitude - 0.1).abs() < 1e-3 && (left.rms - 0.1).abs() < 1e-3, "{left:?}");
+    let left = left_of_sine((&truth, &truth), &pose(), &ideal, (&wrench(), 20.0), truly);
+    assert!(left.rms < 2e-3, "{left:?}");
+}
+
+#[test]
+fn encoders_need_no_model_of_gears_and_do_not_see_links() {
+    let ideal = Controller { sensing: Sensing::Encoders, step: 1e-5, delay: 0.0, ..controller(Servo::Ideal) };
+    let wrong = softer(0.3);
+    let left = left_of_sine((&robot(), &wrong), &pose(), &ideal, (&wrench(), 20.0), truly);
+    assert!(left.rms < 2e-3, "{left:?}");
+    let mut tilting = samples::five_axis();
+    tilting.effects = vec![Effect::TransverseCompliance { joint: 3, value: 6e-7 }];
+    let tilting = Generic::new(&tilting).unwrap();
+    let left = left_of_sine((&tilting, &wrong), &pose(), &ideal, (&wrench(), 20.0), truly);
+    let (whole, gears) = (tilting.deflection(&pose(), &wrench()), robot().deflection(&pose(), &wrench()));
+    let unseen = (whole - gears).fixed_rows::<3>(0).norm() / whole.fixed_rows::<3>(0).norm();
+    assert!(unseen > 0.05 && (left.amplitude - unseen).abs() < 3e-3, "{left:?} {unseen}");
+}
+
+#[test]
+fn size_and_rate_are_limited_and_a_silent_sensor_is_let_go() {
+    let limits = Limits { size: 1e-4, rate: 0.01, hold: 0.05 };
+    let controller = Controller { limits, delay: 0.0, ..controller(Servo::Ideal) };
+    let robot = robot();
+    let moves = robot.jacobian(&pose()).fixed_rows::<3>(0).into_owned();
+    let silent_from = 0.2;
+    let seen = simulate(
+        (&robot, &robot),
+        &pose(),
+        &controller,
+        0.5,
+        |_| wrench() * 10.0,
+        |time, wrench| (time < silent_from).then_some(*wrench),
+    );
+    let corrections: Vec<_> = seen.iter().map(|seen| (seen.time, seen.corrected - seen.uncorrected)).collect();
+    // If all joints moved it the same way.
+    let reach = moves.column_iter().map(|column| column.norm()).sum::<f64>();
+    for pair in corrections.windows(2) {
+        assert!((pair[1].1 - pair[0].1).norm() <= reach * limits.rate * controller.step * 1.001);
+        assert!(pair[0].1.norm() <= reach * limits.size * 1.001);
+    }
+    let at = |time: f64| corrections.iter().find(|(t, _)| *t >= time).unwrap().1;
+    assert!(at(0.19).norm() > 1e-5);
+    assert_eq!(at(silent_from + 0.9 * limits.hold), at(0.19));
+    assert_eq!(at(0.45).norm(), 0.0);
+}
+
+#[test]
+fn noise_is_left_as_rms_and_not_as_amplitude() {
+    let controller = controller(Servo::FirstOrder { bandwidth: 20.0 });
+    let robot = robot();
+    let quiet = left_of_sine((&robot, &robot), &pose(), &controller, (&wrench(), 2.0), truly);
+    // Every other reading is off by a tenth of the force, this way and that.
+    let mut sign = 1.0;
+    let noisy = left_of_sine((&robot, &robot), &pose(), &controller, (&wrench(), 2.0), |_, now| {
+        sign = -sign;
+        Some(now + wrench() * (0.5 * sign))
+    });
+    assert!((noisy.amplitude / quiet.amplitude - 1.0).abs() < 0.01, "{noisy:?} {quiet:?}");
+    assert!(noisy.rms > quiet.rms * 1.001, "{noisy:?} {quiet:?}");
+}
