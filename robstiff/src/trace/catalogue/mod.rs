@@ -28,6 +28,7 @@ mod load_cell_bias;
 mod load_cell_misalignment;
 mod load_cell_scale;
 mod lost_motion;
+mod offers;
 mod outliers;
 mod pose_dependent_compliance;
 mod stiffness_nonlinearity;
@@ -50,19 +51,20 @@ pub use self::base_slip::{KIND as BASE_SLIP, LIKELY};
 pub use self::creep::KIND as CREEP;
 pub use self::hysteresis::KIND as HYSTERESIS;
 pub use self::lost_motion::{EITHER, KIND as LOST_MOTION};
+pub use self::offers::{Candidate, Catalogue, Form, Offers, Variant, catalogue};
 pub use self::outliers::KIND as OUTLIERS;
 pub use self::stiffness_nonlinearity::KIND as STIFFNESS_NONLINEARITY;
 use super::clamped::{Axes, OnAxes};
-use super::found::{EffectParameter, Found, Place};
+use super::found::{Found, Place};
 use super::isolated::Moment;
 use super::point::Point;
+use crate::JointKind;
 use crate::campaign::Displacements;
 use crate::elements::Parameter;
 use crate::identify::normal::Sign;
 use crate::identify::samples::{Column, Samples, turn_of};
 use crate::identify::setup::Setup;
 use crate::identify::unit_of;
-use crate::{Effect, JointKind};
 
 /// A kind of effect.
 pub struct Kind {
@@ -270,183 +272,6 @@ impl Number {
 /// Step of central differences of a wrench, in the number's own unit: rotations
 /// are the only ones not linear.
 pub const WRENCH_STEP: f64 = 1e-4;
-
-/// One way a candidate can be there.
-#[derive(Clone)]
-pub struct Variant {
-    /// The columns in the problem.
-    pub columns: Vec<usize>,
-    /// How many numbers it takes, those out of a grid counting each as one.
-    pub parameters: usize,
-    /// The numbers out of a grid.
-    pub shape: Vec<EffectParameter>,
-    /// Names of the numbers where they are not those of the columns.
-    pub names: &'static [&'static str],
-    /// Its numbers between the values of the grid, where there is a between; a
-    /// column then has one number out of the grid, its own.
-    pub refine: Option<Refine>,
-    /// Where such numbers go by this name.
-    pub within: [f64; 2],
-    /// What such a number is likely to be, before any data, and by what factor
-    /// off, in logarithms; where data may say nothing of it.
-    pub likely: Option<[f64; 2]>,
-}
-
-/// An effect that may be missing.
-#[derive(Clone)]
-pub struct Candidate {
-    /// The kind.
-    pub kind: &'static Kind,
-    /// Where it is.
-    pub place: Place,
-    /// The forms it can have.
-    pub variants: Vec<Variant>,
-    /// What physics asks beyond the ranges of its numbers.
-    pub check: Option<Check>,
-}
-
-impl Candidate {
-    /// The full name, `kind@at`.
-    pub fn name(&self) -> String {
-        std::format!("{}@{}", self.kind.name, self.place)
-    }
-}
-
-/// What may be missing from a description.
-pub struct Catalogue {
-    /// The candidates.
-    pub candidates: Vec<Candidate>,
-    /// Their numbers; the columns of variants count from the description's own.
-    pub numbers: Vec<Number>,
-    /// Full names of what these data cannot show at all.
-    pub invisible: Vec<String>,
-}
-
-/// A catalogue in the making.
-pub struct Offers<'s> {
-    kind: &'static Kind,
-    declared: &'s [Effect],
-    first: usize,
-    catalogue: Catalogue,
-}
-
-/// A form of a candidate: some of its numbers, with those out of a grid.
-#[derive(Clone)]
-pub struct Form {
-    /// Which of the numbers.
-    pub numbers: Vec<usize>,
-    /// The numbers out of a grid.
-    pub shape: Vec<EffectParameter>,
-    /// What it says besides that is no number to be found.
-    pub marks: Vec<EffectParameter>,
-    /// Names of the numbers where they are not their own.
-    pub names: &'static [&'static str],
-    /// Its numbers between the values of the grid, where there is a between.
-    pub refine: Option<Refine>,
-    /// Where such numbers go by this name.
-    pub within: [f64; 2],
-    /// What such a number is likely to be.
-    pub likely: Option<[f64; 2]>,
-}
-
-impl Form {
-    /// Some of the numbers.
-    pub fn of(numbers: impl IntoIterator<Item = usize>) -> Self {
-        Self {
-            numbers: numbers.into_iter().collect(),
-            shape: Vec::new(),
-            marks: Vec::new(),
-            names: &[],
-            refine: None,
-            within: MORE_THAN_NONE,
-            likely: None,
-        }
-    }
-
-    /// The same with a number out of a grid.
-    pub fn with(mut self, name: &'static str, value: f64, unit: &'static str) -> Self {
-        self.shape.push(EffectParameter { name, value, std: None, unit });
-        self
-    }
-
-    /// The same with what its numbers are between the values of the grid.
-    pub fn refined(mut self, refine: impl Fn(&[f64]) -> Vec<Number> + 'static) -> Self {
-        self.refine = Some(Rc::new(refine));
-        self
-    }
-
-    /// The same with numbers between the values of the grid that go by this
-    /// name within bounds only.
-    pub fn within(mut self, bounds: [f64; 2]) -> Self {
-        self.within = bounds;
-        self
-    }
-
-    /// The same with numbers between the values of the grid that are likely to be
-    /// this, up or down by a factor whose logarithm is `spread`.
-    pub fn likely(mut self, middle: f64, spread: f64) -> Self {
-        self.likely = Some([middle, spread]);
-        self
-    }
-
-    /// The same with its vector given in the tool frame, not in the base frame.
-    pub fn in_tool(mut self) -> Self {
-        self.marks.push(EffectParameter { name: TOOL_FRAME, value: 1.0, std: None, unit: "1" });
-        self
-    }
-}
-
-impl Offers<'_> {
-    /// A candidate, unless the description declares it.
-    pub fn add(&mut self, place: impl Into<Place>, numbers: Vec<Number>, forms: Vec<Form>) {
-        self.add_checked(place, numbers, forms, None);
-    }
-
-    /// A candidate with what physics asks of it.
-    pub fn add_checked(
-        &mut self,
-        place: impl Into<Place>,
-        numbers: Vec<Number>,
-        forms: Vec<Form>,
-        check: Option<Check>,
-    ) {
-        let place = place.into();
-        let same = |effect: &Effect| effect.kind() == self.kind.name && place == Place::Part(effect.place());
-        if self.declared.iter().any(same) {
-            return;
-        }
-        let start = self.first + self.catalogue.numbers.len();
-        let variant = |form: Form| Variant {
-            columns: form.numbers.iter().map(|k| start + k).collect(),
-            parameters: form.numbers.len() + form.shape.len(),
-            shape: form.shape.into_iter().chain(form.marks).collect(),
-            names: form.names,
-            refine: form.refine,
-            within: form.within,
-            likely: form.likely,
-        };
-        let variants = forms.into_iter().map(variant).collect();
-        self.catalogue.numbers.extend(numbers);
-        self.catalogue.candidates.push(Candidate { kind: self.kind, place, variants, check });
-    }
-
-    /// Something that these data cannot show.
-    pub fn invisible(&mut self, place: impl Into<Place>) {
-        self.catalogue.invisible.push(std::format!("{}@{}", self.kind.name, place.into()));
-    }
-}
-
-/// What may be missing from a scene's description; its columns follow `first`
-/// columns of the description's own.
-pub fn catalogue(scene: &Scene<'_>, first: usize) -> Catalogue {
-    let catalogue = Catalogue { candidates: Vec::new(), numbers: Vec::new(), invisible: Vec::new() };
-    let mut offers = Offers { kind: KINDS[0], declared: &scene.description.effects, first, catalogue };
-    for kind in KINDS {
-        offers.kind = kind;
-        (kind.offer)(scene, &mut offers);
-    }
-    offers.catalogue
-}
 
 /// A candidate with one compliance.
 fn one_compliance(scene: &Scene<'_>, offers: &mut Offers<'_>, place: Part, name: &'static str, parameter: Parameter) {

@@ -1,0 +1,182 @@
+//! A model at its solution: nonlinear numbers in their own form, by Gauss-Newton
+//! steps with all numbers together.
+
+use std::string::String;
+use std::vec;
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::Bench;
+use crate::elements::Parameter;
+use crate::identify::normal::{Fit, Sign};
+use crate::identify::problem::Problem;
+use crate::identify::samples::Column;
+use crate::identify::setup::Setup;
+use crate::trace::catalogue::Number;
+use crate::trace::model::Named;
+use crate::trace::point::Point;
+
+/// A model at its solution.
+pub struct State {
+    /// What the nonlinear numbers make of the arm and the readings.
+    pub setup: Setup,
+    /// The coefficients.
+    pub fit: Fit,
+    /// What a unit of each nonlinear number does there, by its column.
+    pub tangents: Vec<(usize, DVector<f64>)>,
+    /// The readings that the coefficients are those of.
+    pub readings: DVector<f64>,
+}
+
+/// Gauss-Newton steps before a model counts as one that has no solution; two
+/// to four do for what is physically possible.
+const PASSES: usize = 12;
+
+/// A step that moves the predictions by less than this share of the noise of a
+/// reading, all together, is none.
+const SETTLED: f64 = 1e-2;
+
+/// Steps of central differences, as shares of what is physically possible.
+const STEP: f64 = 1e-3;
+
+impl<'c> Bench<'c> {
+    /// The solution of a model by Gauss-Newton steps from file and description
+    /// as declared.
+    pub(super) fn solve(&self, named: &[Named]) -> Result<State, String> {
+        let prepared = self.prepared;
+        let effects = named.iter().flat_map(|one| &self.candidates[one.candidate].variants[one.variant].columns);
+        let columns: Vec<usize> = prepared.seen().into_iter().chain(effects.copied()).collect();
+        let signs: Vec<Sign> = columns.iter().map(|&column| self.signs[column]).collect();
+        let nonlinear = self.nonlinear(named);
+        let collinear = || String::from("not to be told from the rest of the model");
+        let mut theta = vec![0.0; nonlinear.len()];
+        let mut fit: Option<Fit> = None;
+        for _ in 0..PASSES {
+            let setup = self.setup(&nonlinear, &theta);
+            let point = self.point(setup.clone());
+            let mut readings = self.readings(&point);
+            let mut raw = DMatrix::zeros(readings.len(), columns.len());
+            for (k, &column) in columns.iter().enumerate() {
+                if !nonlinear.iter().any(|(of, _)| *of == column) {
+                    raw.set_column(k, &self.linear(&point, column));
+                }
+            }
+            // The tangents need coefficients, first those without them.
+            let known = match &fit {
+                Some(fit) => fit.clone(),
+                None if nonlinear.is_empty() => Fit { columns: Vec::new(), coefficients: DVector::zeros(0), rss: 0.0 },
+                None => {
+                    let linear: Vec<usize> =
+                        columns.iter().copied().filter(|c| !nonlinear.iter().any(|(of, _)| of == c)).collect();
+                    let at = |c: &usize| columns.iter().position(|column| column == c).expect("one of them");
+                    let own: Vec<usize> = linear.iter().map(at).collect();
+                    let problem = self.regression(&point, raw.select_columns(&own), readings.clone());
+                    let all: Vec<usize> = (0..linear.len()).collect();
+                    let signs: Vec<Sign> = linear.iter().map(|&column| self.signs[column]).collect();
+                    let first = problem.total.solve_signed(&all, &signs).ok_or_else(collinear)?;
+                    Fit { columns: linear, ..first }
+                }
+            };
+            let mut tangents = Vec::new();
+            for (k, &(column, number)) in nonlinear.iter().enumerate() {
+                let step = STEP * number.range[1];
+                let [there, back] = [step, -step].map(|step| {
+                    let mut moved = theta.clone();
+                    moved[k] += step;
+                    self.prediction(&self.point(self.setup(&nonlinear, &moved)), &known, &nonlinear)
+                });
+                let tangent = (there - back) / (2.0 * step);
+                readings.axpy(theta[k], &tangent, 1.0);
+                let at = columns.iter().position(|c| *c == column).expect("one of the model's");
+                raw.set_column(at, &tangent);
+                tangents.push((column, tangent));
+            }
+            let problem = self.regression(&point, raw, readings.clone());
+            let all: Vec<usize> = (0..columns.len()).collect();
+            let solved = problem.total.solve_signed(&all, &signs).ok_or_else(collinear)?;
+            let solved = Fit { columns: columns.clone(), ..solved };
+            let mut moves = DVector::zeros(problem.white_readings.len());
+            let mut next = theta.clone();
+            for (k, &(column, number)) in nonlinear.iter().enumerate() {
+                let at = columns.iter().position(|c| *c == column).expect("one of the model's");
+                let most = number.range[1];
+                // Not beyond what is possible on the way.
+                next[k] = solved.coefficients[at].clamp(-most, most);
+                moves.axpy(next[k] - theta[k], &problem.white.column(at), 1.0);
+            }
+            let noise = solved.rss / problem.freedom(&solved);
+            if moves.norm_squared() <= SETTLED * SETTLED * noise {
+                return Ok(State { setup, fit: solved, tangents, readings });
+            }
+            theta = next;
+            fit = Some(solved);
+        }
+        Err(String::from("its numbers do not settle"))
+    }
+
+    pub(super) fn setup(&self, nonlinear: &[(usize, &Number)], theta: &[f64]) -> Setup {
+        let mut setup = Setup::as_declared(self.prepared.samples.joints());
+        for ((_, number), &value) in nonlinear.iter().zip(theta) {
+            if let Some(enters) = &number.enters {
+                enters(&mut setup, value);
+            }
+        }
+        setup
+    }
+
+    pub(super) fn point(&self, setup: Setup) -> Point<'c> {
+        Point::bare(&self.campaign.robot, self.prepared.data, &self.prepared.samples, setup)
+    }
+
+    /// A column that is no tangent, at a point.
+    pub(super) fn linear(&self, point: &Point<'c>, column: usize) -> DVector<f64> {
+        match self.own.get(column) {
+            Some(&own) => point.with_creep(point.samples.column(own)),
+            None => self.numbers[column - self.own.len()].column(point),
+        }
+    }
+
+    /// The readings at a point less what numbers that are held do.
+    pub(super) fn readings(&self, point: &Point<'c>) -> DVector<f64> {
+        let all = point.samples.readings();
+        let held = &all - self.prepared.readings(&point.samples);
+        all - point.with_creep(held)
+    }
+
+    /// What the arm does at a point, with the coefficients of a fit, numbers
+    /// that are held included.
+    pub(super) fn prediction(&self, point: &Point<'c>, fit: &Fit, nonlinear: &[(usize, &Number)]) -> DVector<f64> {
+        let mut sum = point.samples.readings() - self.readings(point);
+        // Numbers in which the compliance is linear, in one go.
+        let mut linear = Vec::new();
+        for (&column, &value) in fit.columns.iter().zip(fit.coefficients.iter()) {
+            let is_nonlinear = nonlinear.iter().any(|(of, _)| *of == column);
+            match self.parameter(column) {
+                Some(parameter) if !is_nonlinear => linear.push((parameter, value)),
+                None if value != 0.0 && !is_nonlinear && self.is_elastic(column) => {
+                    sum.axpy(value, &self.linear(point, column), 1.0);
+                }
+                _ => {}
+            }
+        }
+        sum + point.with_creep(point.samples.under(&linear))
+    }
+
+    /// The number that a column is of, where the compliance is linear in it.
+    pub(super) fn parameter(&self, column: usize) -> Option<Parameter> {
+        match self.own.get(column) {
+            Some(Column::Linear(parameter)) => Some(*parameter),
+            Some(Column::Knee { .. }) => None,
+            None => self.numbers[column - self.own.len()].parameter,
+        }
+    }
+
+    pub(super) fn is_elastic(&self, column: usize) -> bool {
+        column < self.own.len() || self.numbers[column - self.own.len()].elastic
+    }
+
+    pub(super) fn regression(&self, point: &Point<'c>, raw: DMatrix<f64>, readings: DVector<f64>) -> Problem {
+        Problem::new(&point.samples, raw, readings, &self.prepared.correction, self.weights())
+    }
+}
