@@ -2,7 +2,7 @@
 //! profile shows it under its name.
 
 use robstiff::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
-use robstiff::{Generic, Robot, Statics};
+use robstiff::{Generic, Robot, Statics, upper_triangle};
 use robstiff_robots::Description;
 
 robstiff::robot!("rv130hsc.yaml");
@@ -30,24 +30,13 @@ pub fn compliance(q: &SVector<f64, 5>, out: &mut Matrix6<f64>) {
 /// The upper triangle of `H_x`, five axes.
 #[inline(never)]
 pub fn triangle(q: &SVector<f64, 5>, out: &mut [f64; 21]) {
-    upper(&Rv130hsc.compliance(q), out);
+    *out = upper_triangle(&Rv130hsc.compliance(q));
 }
 
 /// The upper triangle of `H_x`, six axes with a spherical wrist.
 #[inline(never)]
 pub fn triangle_of_six(q: &SVector<f64, 6>, out: &mut [f64; 21]) {
-    upper(&KukaKr270R2700.compliance(q), out);
-}
-
-#[inline(always)]
-fn upper(compliance: &Matrix6<f64>, out: &mut [f64; 21]) {
-    let mut k = 0;
-    for i in 0..6 {
-        for j in i..6 {
-            out[k] = compliance[(i, j)];
-            k += 1;
-        }
-    }
+    *out = upper_triangle(&KukaKr270R2700.compliance(q));
 }
 
 /// `H_x`, six axes.

@@ -344,7 +344,6 @@ mod tests {
             ("350 kg", Mass, 350.0),
             ("5 ms", Time, 5e-3),
             ("1200 mm/min", Speed, 0.02),
-            ("15 rpm", RotationalSpeed, PI / 2.0),
             ("15 Hz", Frequency, 15.0),
             ("0.1 mm/tooth", FeedPerTooth, 1e-4),
             ("0.1 mm", FeedPerTooth, 1e-4),
@@ -357,6 +356,8 @@ mod tests {
         }
         let from_arcmin = parse("1000 Nm/arcmin", Dimension::Compliance).unwrap();
         assert!((from_arcmin * 1000.0 * 10_800.0 / PI - 1.0).abs() < 1e-15);
+        let from_rpm = parse("30 rpm", Dimension::RotationalSpeed).unwrap();
+        assert!((from_rpm / PI - 1.0).abs() < 1e-15);
     }
 
     #[test]

@@ -31,6 +31,8 @@
 //!   the tool, and of a whole tool path;
 //! - `milling`, `stability` (likewise): the force of an end mill, and the depths
 //!   of cut at which the arm chatters by mode coupling;
+//! - `map` (likewise): stiffness and deviation over joint space, planes and boxes,
+//!   as a stream, and where a workpiece is best put;
 //! - `deviation`, `compensation` (likewise): how far a cut pushes the tool off a
 //!   path, and the path that makes up for it;
 //! - `online` (likewise): correcting the joint targets while cutting.
@@ -64,6 +66,8 @@ pub mod identify;
 pub mod inverse;
 mod lanes;
 #[cfg(feature = "machining")]
+pub mod map;
+#[cfg(feature = "machining")]
 pub mod milling;
 #[cfg(feature = "machining")]
 pub mod online;
@@ -93,7 +97,7 @@ pub use dual::Dual;
 pub use generic::{Generic, WrongJointCount};
 pub use lanes::Lanes;
 pub use real::Real;
-pub use robot::{Cost, Robot, Statics};
+pub use robot::{Cost, Robot, Statics, upper_triangle};
 pub use robstiff_robots::{Convention, DhEntry, Effect, JointKind};
 pub use state::State;
 

@@ -18,7 +18,7 @@ pub trait Real:
 
     /// Sine and cosine of an angle in rad.
     ///
-    /// Those of `f64` are within 1.8e-16 of the truth up to 1e6 rad, those of
+    /// Those of `f64` are within 1.8e-16 of the truth up to 1.6e6 rad, those of
     /// `f32` within 9.4e-8 up to 3000 rad; beyond, and with the feature
     /// `platform-trig` everywhere, they are the platform's (without the
     /// feature `std`, those of the crate libm). An infinity or a NaN gives NaN.

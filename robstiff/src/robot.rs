@@ -96,6 +96,46 @@ pub struct Statics<const N: usize, T: Real = f64> {
     pub compliance: Matrix6<T>,
 }
 
+/// Row and column of the entries of the upper triangle, by rows.
+pub(crate) const TRIANGLE: [(usize, usize); 21] = {
+    let mut entries = [(0, 0); 21];
+    let (mut k, mut i) = (0, 0);
+    while i < 6 {
+        let mut j = i;
+        while j < 6 {
+            entries[k] = (i, j);
+            (k, j) = (k + 1, j + 1);
+        }
+        i += 1;
+    }
+    entries
+};
+
+/// The upper triangle of a compliance by rows: xx, xy, .. of which the rest is
+/// the mirror image. After [`Robot::compliance`] of generated code it costs
+/// nothing: the entries below are then not computed, nor is a matrix stored.
+///
+/// ```
+/// use robstiff::nalgebra::SVector;
+/// use robstiff::{Robot, upper_triangle};
+///
+/// robstiff::robot!("rv130hsc.yaml");
+///
+/// let compliance = Rv130hsc.compliance(&SVector::from([0.3, -0.4, 0.5, 0.0, 1.2]));
+/// let entries: [f64; 21] = upper_triangle(&compliance);
+/// assert_eq!(entries[7], compliance[(1, 2)]);
+/// ```
+#[inline(always)]
+pub fn upper_triangle<T: Real>(compliance: &Matrix6<T>) -> [T; 21] {
+    // Neither `map`, which is not always inlined, nor an iterator over rows,
+    // which the compiler does not always unroll.
+    let mut entries = [T::zero(); 21];
+    for (k, entry) in entries.iter_mut().enumerate() {
+        *entry = compliance[TRIANGLE[k]];
+    }
+    entries
+}
+
 /// The operations of one call of a generated function. Constants cost nothing:
 /// the compiler computes them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

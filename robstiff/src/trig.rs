@@ -6,7 +6,7 @@
 //! of one vector ([`Abreast`]):
 //!
 //! 1. `k`, the multiple of pi/2 nearest to the angle, by adding and
-//!    subtracting a number so large that only whole ones fit ([`Float::SHIFT`]);
+//!    subtracting a number so large that only whole ones fit ([`places::SHIFT`]);
 //! 2. `r = x - k pi/2`, between -pi/4 and pi/4 (Cody and Waite): pi/2 in parts,
 //!    the first ones so short that `k` times them is exact, so that only the
 //!    last subtraction rounds;
@@ -18,8 +18,8 @@
 //! Both parts of the answer are within [`Float::BOUND`] of the truth for
 //! angles up to [`Float::DOMAIN`]; `sin 0 = 0`, `cos 0 = 1`, and the symmetries
 //! of sine and cosine hold exactly. An array with an angle beyond that, an
-//! infinity or a NaN goes to the platform's functions, which cost one
-//! comparison to find out.
+//! infinity or a NaN goes to the platform's functions, which costs one
+//! comparison to find out: of the bits of the number that `k` is added to.
 //!
 //! Gain: `benches/README.md`. The feature `platform-trig` takes all this out.
 
@@ -28,7 +28,8 @@ mod float;
 #[cfg(all(test, feature = "std"))]
 mod tests;
 
-use abreast::{Abreast, Vector};
+use abreast::{Abreast, Pairs, Vector};
+use float::places;
 pub(crate) use float::{FUSED, Float};
 
 /// `a * b + c`, rounded once if `FUSED`.
@@ -37,20 +38,71 @@ pub(crate) fn mul_add<F: Float, const FUSED: bool>(a: F, b: F, c: F) -> F {
     abreast::mul_add::<F, F, FUSED>(a, b, c)
 }
 
+/// The nearest multiples of pi/2, as the last bits of a large number.
+#[inline(always)]
+fn quarters<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> V {
+    abreast::mul_add::<F, V, FUSED>(x, V::number(places::TWO_OVER_PI), V::number(places::SHIFT))
+}
+
+/// The angles less those multiples of pi/2.
+#[inline(always)]
+fn reduced<F: Float, V: Abreast<F>, const FUSED: bool>(x: V, shifted: V) -> V {
+    let k = shifted - V::number(places::SHIFT);
+    let mut r = x;
+    for part in 0..F::PARTS - 1 {
+        r = abreast::mul_add::<F, V, FUSED>(k, V::number(places::PARTS + part), r);
+    }
+    // Not fused: this product does not wait for the others.
+    r + k * V::number(places::PARTS + F::PARTS - 1)
+}
+
+/// A polynomial, the lowest coefficient first: pairs of terms, which do not
+/// wait for each other, and then one step in `z^2` for each pair.
+#[inline(always)]
+fn polynomial<F: Float, V: Abreast<F>, const FUSED: bool>(coefficient: impl Fn(usize) -> V, z: V, z2: V) -> V {
+    let mul_add = abreast::mul_add::<F, V, FUSED>;
+    let pair = |i: usize| {
+        let low = coefficient(i);
+        if i + 1 < F::TERMS { mul_add(z, coefficient(i + 1), low) } else { low }
+    };
+    let mut i = (F::TERMS - 1) / 2 * 2;
+    let mut value = pair(i);
+    while i > 0 {
+        i -= 2;
+        value = mul_add(value, z2, pair(i));
+    }
+    value
+}
+
 /// Sines and cosines of angles within the domain.
 ///
 /// `FUSED`: multiplies and adds in one instruction, which the target must have.
 #[inline(always)]
 pub(crate) fn within_domain<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> (V, V) {
     let mul_add = abreast::mul_add::<F, V, FUSED>;
-    let shifted = mul_add(x, V::splat(F::TWO_OVER_PI), V::splat(F::SHIFT));
-    let r = F::reduce::<V, FUSED>(x, shifted - V::splat(F::SHIFT));
+    let shifted = quarters::<F, V, FUSED>(x);
+    let r = reduced::<F, V, FUSED>(x, shifted);
     let z = r * r;
     let z2 = z * z;
-    let sin = mul_add(r * z, F::sin_tail::<V, FUSED>(z, z2), r);
-    let most = mul_add(z, V::splat(-F::HALF), V::splat(F::ONE));
-    let cos = mul_add(z2, F::cos_tail::<V, FUSED>(z, z2), most);
+    let sin_tail = polynomial::<F, V, FUSED>(|i| V::number(places::sin::<F>() + i), z, z2);
+    let sin = mul_add(r * z, sin_tail, r);
+    let cos_tail = polynomial::<F, V, FUSED>(|i| V::number(places::cos::<F>() + i), z, z2);
+    let most = mul_add(z, V::number(places::MINUS_HALF), V::number(places::ONE));
+    let cos = mul_add(z2, cos_tail, most);
     V::turn_quarters(shifted, sin, cos)
+}
+
+/// The same of angles that are there in pairs, sine and cosine side by side.
+#[inline(always)]
+fn pairs_within_domain<F: Float, V: Pairs<F>, const FUSED: bool>(x: V) -> V {
+    let mul_add = abreast::mul_add::<F, V, FUSED>;
+    let shifted = quarters::<F, V, FUSED>(x);
+    let r = reduced::<F, V, FUSED>(x, shifted);
+    let z = r * r;
+    let z2 = z * z;
+    let tail = polynomial::<F, V, FUSED>(|i| V::numbers(places::sin::<F>() + i, places::cos::<F>() + i), z, z2);
+    let most = mul_add(z, V::number(places::MINUS_HALF), V::number(places::ONE));
+    mul_add(z * V::sides(r, z), tail, V::sides(r, most)).turn_pairs(shifted)
 }
 
 /// Whether all angles are within the domain; false for a NaN.
@@ -58,7 +110,7 @@ pub(crate) fn within_domain<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) ->
 pub(crate) fn all_within_domain<F: Float, const K: usize>(angles: &[F; K]) -> bool {
     let mut within = true;
     for angle in angles {
-        within &= angle.is_within_domain();
+        within &= angle.is_in_domain();
     }
     within
 }
@@ -66,7 +118,7 @@ pub(crate) fn all_within_domain<F: Float, const K: usize>(angles: &[F; K]) -> bo
 /// Sine and cosine of one angle.
 #[inline]
 pub(crate) fn sin_cos<F: Float>(angle: F) -> (F, F) {
-    if cfg!(feature = "platform-trig") || !angle.is_within_domain() {
+    if cfg!(feature = "platform-trig") || !angle.is_in_domain() {
         return angle.platform_sin_cos();
     }
     within_domain::<F, F, FUSED>(angle)
@@ -74,33 +126,64 @@ pub(crate) fn sin_cos<F: Float>(angle: F) -> (F, F) {
 
 /// Sines and cosines of several angles, `(sin, cos)` each.
 ///
-/// Whole vectors of angles, the last one filled up with the last angle: a rest
-/// that goes alone costs as much as a vector.
+/// Whole vectors of angles; of what is left, sines and cosines in one vector if
+/// there is room, else one more vector filled up with the last angle.
 ///
 /// Nothing here has its address taken on the way that is usual, so that angles
 /// and results stay in registers: numbers stored one by one and loaded as a
 /// vector would have to wait for the cache.
 #[inline(always)]
 pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K]) -> [(F, F); K] {
-    let mut out = [(F::ZERO, F::ZERO); K];
+    let lanes = F::Vector::LANES;
+    let left = K % lanes;
+    let in_pairs = if 2 * left <= lanes { left } else { 0 };
+    let alone = K - in_pairs;
     let mut within = !cfg!(feature = "platform-trig");
-    for first in (0..K).step_by(F::Vector::LANES) {
-        within = within && F::Vector::gather(&angles, first).is_within_domain();
+    for first in (0..alone).step_by(lanes) {
+        within = within && is_within_domain::<F, F::Vector>(F::Vector::gather(&angles, first));
     }
+    if in_pairs > 0 {
+        within = within && is_within_domain::<F, F::Pairs>(F::Pairs::gather_pairs(&angles, alone));
+    }
+    // Both branches end in vectors. If they ended in numbers, the compiler would make other vectors of those.
+    let mut vectors = [(F::Vector::number(0), F::Vector::number(0)); K];
+    let mut pairs = F::Pairs::number(0);
     if within {
-        for first in (0..K).step_by(F::Vector::LANES) {
-            let (sin, cos) = within_domain::<F, F::Vector, FUSED>(F::Vector::gather(&angles, first));
-            F::Vector::scatter(sin, cos, &mut out, first);
+        for first in (0..alone).step_by(lanes) {
+            vectors[first / lanes] = within_domain::<F, F::Vector, FUSED>(F::Vector::gather(&angles, first));
+        }
+        if in_pairs > 0 {
+            pairs = pairs_within_domain::<F, F::Pairs, FUSED>(F::Pairs::gather_pairs(&angles, alone));
         }
     } else {
         let copies = angles;
-        out.copy_from_slice(&one_by_one(&copies));
+        let (sines, cosines) = one_by_one(&copies);
+        for first in (0..alone).step_by(lanes) {
+            vectors[first / lanes] = (F::Vector::gather(&sines, first), F::Vector::gather(&cosines, first));
+        }
+        if in_pairs > 0 {
+            pairs = F::Pairs::sides(F::Pairs::gather_pairs(&sines, alone), F::Pairs::gather_pairs(&cosines, alone));
+        }
+    }
+    let mut out = [(F::ZERO, F::ZERO); K];
+    for first in (0..alone).step_by(lanes) {
+        let (sin, cos) = vectors[first / lanes];
+        F::Vector::scatter(sin, cos, &mut out, first);
+    }
+    if in_pairs > 0 {
+        pairs.scatter_pairs(&mut out, alone);
     }
     out
 }
 
+#[inline(always)]
+fn is_within_domain<F: Float, V: Vector<F>>(angles: V) -> bool {
+    angles.is_within_domain(quarters::<F, V, FUSED>(angles))
+}
+
 #[cold]
 #[inline(never)]
-fn one_by_one<F: Float, const K: usize>(angles: &[F; K]) -> [(F, F); K] {
-    angles.map(F::platform_sin_cos)
+fn one_by_one<F: Float, const K: usize>(angles: &[F; K]) -> ([F; K], [F; K]) {
+    let both = angles.map(F::platform_sin_cos);
+    (both.map(|(sin, _)| sin), both.map(|(_, cos)| cos))
 }

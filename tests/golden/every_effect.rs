@@ -380,11 +380,11 @@ impl Robot<6> for EveryEffect {
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
         let k24 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let [(s1o, c1o), (s2, c2), (s23, c23), (s4o, c4o), (s5, c5), (s6, c6), (s6o, c6o),
+        let [(s23, c23), (s1o, c1o), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s6o, c6o),
         ] = T::sin_cos_all([
+            q[1] + q[2],
             q[0] + T::of(0.17453292519943295),
             q[1],
-            q[1] + q[2],
             q[3] + T::of(0.08726646259971647),
             q[4],
             q[5],
@@ -552,10 +552,10 @@ impl Robot<6> for EveryEffect {
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
         let k24 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let [(s1o, c1o), (s2, c2), (s23, c23), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
+        let [(s23, c23), (s1o, c1o), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
+            q[1] + q[2],
             q[0] + T::of(0.17453292519943295),
             q[1],
-            q[1] + q[2],
             q[3] + T::of(0.08726646259971647),
             q[4],
             q[5],
@@ -764,10 +764,10 @@ impl Robot<6> for EveryEffect {
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
         let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let [(s1o, c1o), (s2, c2), (s23, c23), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
+        let [(s23, c23), (s1o, c1o), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
+            q[1] + q[2],
             q[0] + T::of(0.17453292519943295),
             q[1],
-            q[1] + q[2],
             q[3] + T::of(0.08726646259971647),
             q[4],
             q[5],
@@ -1470,6 +1470,17 @@ impl Robot<6> for EveryEffect {
     /// 12 trig, 370 mul, 293 add, 4 root.
     #[inline(always)]
     fn deflection<T: Real>(&self, q: &SVector<T, 6>, wrench: &Vector6<T>) -> Vector6<T> {
+        let a2 = T::of(Self::A2);
+        let d3 = T::of(Self::D3);
+        let a3 = T::of(Self::A3);
+        let sin_alpha3 = T::of(Self::SIN_ALPHA3);
+        let cos_alpha3 = T::of(Self::COS_ALPHA3);
+        let d4 = T::of(Self::D4);
+        let d5 = T::of(Self::D5);
+        let d6 = T::of(Self::D6);
+        let tool_x = T::of(Self::TOOL_X);
+        let tool_y = T::of(Self::TOOL_Y);
+        let tool_z = T::of(Self::TOOL_Z);
         let h1 = T::of(Self::H1);
         let h2 = T::of(Self::H2);
         let h3 = T::of(Self::H3);
@@ -1490,17 +1501,6 @@ impl Robot<6> for EveryEffect {
         let k1 = T::of(1.0 / Self::KNEE2);
         let added5 = T::of(Self::ADDED5);
         let k2 = T::of(1.0 / Self::KNEE5);
-        let a2 = T::of(Self::A2);
-        let d3 = T::of(Self::D3);
-        let a3 = T::of(Self::A3);
-        let sin_alpha3 = T::of(Self::SIN_ALPHA3);
-        let cos_alpha3 = T::of(Self::COS_ALPHA3);
-        let d4 = T::of(Self::D4);
-        let d5 = T::of(Self::D5);
-        let d6 = T::of(Self::D6);
-        let tool_x = T::of(Self::TOOL_X);
-        let tool_y = T::of(Self::TOOL_Y);
-        let tool_z = T::of(Self::TOOL_Z);
         let k3 = T::of(Self::COS_BASE_PITCH * 0.7648421872844885);
         let k4 = T::of(Self::COS_BASE_PITCH * 0.644217687237691);
         let k5 = T::of(-Self::SIN_BASE_PITCH);
@@ -1604,10 +1604,10 @@ impl Robot<6> for EveryEffect {
                 * (Self::BENDING3 * 0.08333333333333333),
         );
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s1o, c1o), (s2, c2), (s23, c23), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
+        let [(s23, c23), (s1o, c1o), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
+            q[1] + q[2],
             q[0] + T::of(0.17453292519943295),
             q[1],
-            q[1] + q[2],
             q[3] + T::of(0.08726646259971647),
             q[4],
             q[5],
@@ -1919,10 +1919,10 @@ impl Robot<6> for EveryEffect {
         );
         let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s1o, c1o), (s2, c2), (s23, c23), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
+        let [(s23, c23), (s1o, c1o), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
+            q[1] + q[2],
             q[0] + T::of(0.17453292519943295),
             q[1],
-            q[1] + q[2],
             q[3] + T::of(0.08726646259971647),
             q[4],
             q[5],
@@ -2338,11 +2338,11 @@ impl Robot<6> for EveryEffect {
         let k67 = T::of(Self::A2 * 0.5);
         let k68 = T::of(Self::H2 + Self::ADDED2);
         let k69 = T::of(Self::COUPLING2_3 + Self::COUPLING2_3);
-        let [(s1o, c1o), (s2, c2), (s23, c23), (s4o, c4o), (s5, c5), (s6, c6),
+        let [(s23, c23), (s1o, c1o), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6),
         (s6o, c6o), (s3, c3)] = T::sin_cos_all([
+            q[1] + q[2],
             q[0] + T::of(0.17453292519943295),
             q[1],
-            q[1] + q[2],
             q[3] + T::of(0.08726646259971647),
             q[4],
             q[5],

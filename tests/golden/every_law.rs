@@ -53,28 +53,6 @@ pub struct EveryLaw;
 
 #[allow(clippy::approx_constant, dead_code)]
 impl EveryLaw {
-    /// Error of theta2 (rad).
-    pub const ERROR_THETA2: f64 = -0.003;
-    /// Error of a3 (m).
-    pub const ERROR_A3: f64 = 0.0007;
-    /// Angle error with the sine of joint 3 (rad).
-    pub const SIN_ERROR3: f64 = 0.0003;
-    /// Angle error with the cosine of joint 3 (rad).
-    pub const COS_ERROR3: f64 = -0.0002;
-    /// Zero offset of joint 4 (rad).
-    pub const ZERO_OFFSET4: f64 = 0.005235987755982988;
-    /// Error of alpha4 (rad).
-    pub const ERROR_ALPHA4: f64 = 0.002;
-    /// Periods of the angle error in a turn of joint 4.
-    pub const ORDER4: f64 = 2.0;
-    /// Angle error with the cosine of joint 4 (rad).
-    pub const COS_ERROR4: f64 = 0.001;
-    /// Error of d5 (m).
-    pub const ERROR_D5: f64 = -0.0011;
-    /// Periods of the angle error in a turn of joint 7.
-    pub const ORDER7: f64 = 41.0;
-    /// Angle error with the sine of joint 7 (rad).
-    pub const SIN_ERROR7: f64 = 8e-5;
     /// Frame 0 in the base frame, along X (m).
     pub const BASE_X: f64 = 0.1;
     /// Frame 0 in the base frame, along Y (m).
@@ -93,10 +71,26 @@ impl EveryLaw {
     pub const D1: f64 = 0.2;
     /// DH offset d of row 2 (m).
     pub const D2: f64 = 0.65;
+    /// Error of theta2 (rad).
+    pub const ERROR_THETA2: f64 = -0.003;
     /// DH length a of row 3, corrected (m).
     pub const A3: f64 = 0.3307;
+    /// Error of a3 (m).
+    pub const ERROR_A3: f64 = 0.0007;
+    /// Angle error with the sine of joint 3 (rad).
+    pub const SIN_ERROR3: f64 = 0.0003;
+    /// Angle error with the cosine of joint 3 (rad).
+    pub const COS_ERROR3: f64 = -0.0002;
     /// DH length a of row 4 (m).
     pub const A4: f64 = 1.15;
+    /// Zero offset of joint 4 (rad).
+    pub const ZERO_OFFSET4: f64 = 0.005235987755982988;
+    /// Error of alpha4 (rad).
+    pub const ERROR_ALPHA4: f64 = 0.002;
+    /// Periods of the angle error in a turn of joint 4.
+    pub const ORDER4: f64 = 2.0;
+    /// Angle error with the cosine of joint 4 (rad).
+    pub const COS_ERROR4: f64 = 0.001;
     /// Sine of DH twist alpha of row 4.
     pub const SIN_ALPHA4: f64 = 0.0019999986666669333;
     /// Cosine of DH twist alpha of row 4.
@@ -105,8 +99,14 @@ impl EveryLaw {
     pub const D5: f64 = 1.2188999999999999;
     /// DH length a of row 5 (m).
     pub const A5: f64 = 0.115;
+    /// Error of d5 (m).
+    pub const ERROR_D5: f64 = -0.0011;
     /// DH offset d of row 7 (m).
     pub const D7: f64 = 0.215;
+    /// Periods of the angle error in a turn of joint 7.
+    pub const ORDER7: f64 = 41.0;
+    /// Angle error with the sine of joint 7 (rad).
+    pub const SIN_ERROR7: f64 = 8e-5;
     /// TCP in the flange frame, along X (m).
     pub const TOOL_X: f64 = 0.05;
     /// TCP in the flange frame, along Y (m).
@@ -415,25 +415,25 @@ impl Robot<7> for EveryLaw {
     /// 16 trig, 167 mul, 105 add.
     #[inline(always)]
     fn transform<T: Real>(&self, q: &SVector<T, 7>) -> Matrix4<T> {
-        let sin_error3 = T::of(Self::SIN_ERROR3);
-        let cos_error3 = T::of(Self::COS_ERROR3);
-        let cos_error4 = T::of(Self::COS_ERROR4);
-        let sin_error7 = T::of(Self::SIN_ERROR7);
         let base_x = T::of(Self::BASE_X);
         let base_y = T::of(Self::BASE_Y);
         let base_z = T::of(Self::BASE_Z);
         let d1 = T::of(Self::D1);
         let a3 = T::of(Self::A3);
-        let k1 = T::of(0.008333333333333333);
+        let sin_error3 = T::of(Self::SIN_ERROR3);
+        let cos_error3 = T::of(Self::COS_ERROR3);
+        let k1 = T::of(0.5);
         let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.5);
-        let k4 = T::of(0.16666666666666666);
+        let k3 = T::of(0.16666666666666666);
+        let k4 = T::of(0.008333333333333333);
         let a4 = T::of(Self::A4);
+        let cos_error4 = T::of(Self::COS_ERROR4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
         let d7 = T::of(Self::D7);
+        let sin_error7 = T::of(Self::SIN_ERROR7);
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
@@ -492,19 +492,19 @@ impl Robot<7> for EveryLaw {
             q[6],
             q[6] + T::of(2.949606435870417),
         ]);
-        let e3 = sin_error3 * s3 + cos_error3 * c3;
-        let e4 = cos_error4 * c2x4;
-        let e7 = sin_error7 * s41x7;
         let t1 = d1 + q[0];
+        let e3 = sin_error3 * s3 + cos_error3 * c3;
         let t2 = e3 * e3;
-        let t3 = T::one() - t2 * (k3 - k2 * t2);
-        let t4 = e3 - e3 * t2 * (k4 - k1 * t2);
+        let t3 = T::one() - t2 * (k1 - k2 * t2);
+        let t4 = e3 - e3 * t2 * (k3 - k4 * t2);
+        let e4 = cos_error4 * c2x4;
         let t5 = e4 * e4;
-        let t6 = T::one() - t5 * (k3 - k2 * t5);
-        let t7 = e4 - e4 * t5 * (k4 - k1 * t5);
+        let t6 = T::one() - t5 * (k1 - k2 * t5);
+        let t7 = e4 - e4 * t5 * (k3 - k4 * t5);
+        let e7 = sin_error7 * s41x7;
         let t8 = e7 * e7;
-        let t9 = T::one() - t8 * (k3 - k2 * t8);
-        let t10 = e7 - e7 * t8 * (k4 - k1 * t8);
+        let t9 = T::one() - t8 * (k1 - k2 * t8);
+        let t10 = e7 - e7 * t8 * (k3 - k4 * t8);
         let t11 = k5 * c2o + k9 * s2o;
         let t12 = k6 * c2o + k10 * s2o;
         let t13 = k7 * c2o + k8 * s2o;
@@ -588,25 +588,25 @@ impl Robot<7> for EveryLaw {
     /// 14 trig, 138 mul, 91 add.
     #[inline(always)]
     fn link_frames<T: Real>(&self, q: &SVector<T, 7>) -> [Matrix4<T>; 7] {
-        let sin_error3 = T::of(Self::SIN_ERROR3);
-        let cos_error3 = T::of(Self::COS_ERROR3);
-        let cos_error4 = T::of(Self::COS_ERROR4);
-        let sin_error7 = T::of(Self::SIN_ERROR7);
         let base_x = T::of(Self::BASE_X);
         let base_y = T::of(Self::BASE_Y);
         let base_z = T::of(Self::BASE_Z);
         let d1 = T::of(Self::D1);
         let a3 = T::of(Self::A3);
-        let k1 = T::of(0.008333333333333333);
+        let sin_error3 = T::of(Self::SIN_ERROR3);
+        let cos_error3 = T::of(Self::COS_ERROR3);
+        let k1 = T::of(0.5);
         let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.5);
-        let k4 = T::of(0.16666666666666666);
+        let k3 = T::of(0.16666666666666666);
+        let k4 = T::of(0.008333333333333333);
         let a4 = T::of(Self::A4);
+        let cos_error4 = T::of(Self::COS_ERROR4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
         let d7 = T::of(Self::D7);
+        let sin_error7 = T::of(Self::SIN_ERROR7);
         let k5 = T::of(Self::COS_BASE_PITCH * 0.8253356149096783);
         let k6 = T::of(Self::COS_BASE_PITCH * -0.5646424733950354);
         let k7 = T::of(-Self::SIN_BASE_PITCH);
@@ -668,19 +668,19 @@ impl Robot<7> for EveryLaw {
             q[5],
             q[6],
         ]);
-        let e3 = sin_error3 * s3 + cos_error3 * c3;
-        let e4 = cos_error4 * c2x4;
-        let e7 = sin_error7 * s41x7;
         let t1 = d1 + q[0];
+        let e3 = sin_error3 * s3 + cos_error3 * c3;
         let t2 = e3 * e3;
-        let t3 = T::one() - t2 * (k3 - k2 * t2);
-        let t4 = e3 - e3 * t2 * (k4 - k1 * t2);
+        let t3 = T::one() - t2 * (k1 - k2 * t2);
+        let t4 = e3 - e3 * t2 * (k3 - k4 * t2);
+        let e4 = cos_error4 * c2x4;
         let t5 = e4 * e4;
-        let t6 = T::one() - t5 * (k3 - k2 * t5);
-        let t7 = e4 - e4 * t5 * (k4 - k1 * t5);
+        let t6 = T::one() - t5 * (k1 - k2 * t5);
+        let t7 = e4 - e4 * t5 * (k3 - k4 * t5);
+        let e7 = sin_error7 * s41x7;
         let t8 = e7 * e7;
-        let t9 = T::one() - t8 * (k3 - k2 * t8);
-        let t10 = e7 - e7 * t8 * (k4 - k1 * t8);
+        let t9 = T::one() - t8 * (k1 - k2 * t8);
+        let t10 = e7 - e7 * t8 * (k3 - k4 * t8);
         let p1_x = base_x + k14 * t1;
         let p1_y = base_y + k15 * t1;
         let p1_z = base_z + k16 * t1;
@@ -816,21 +816,21 @@ impl Robot<7> for EveryLaw {
     /// 14 trig, 172 mul, 104 add.
     #[inline(always)]
     fn jacobian<T: Real>(&self, q: &SVector<T, 7>) -> SMatrix<T, 6, 7> {
+        let a3 = T::of(Self::A3);
         let sin_error3 = T::of(Self::SIN_ERROR3);
         let cos_error3 = T::of(Self::COS_ERROR3);
-        let cos_error4 = T::of(Self::COS_ERROR4);
-        let sin_error7 = T::of(Self::SIN_ERROR7);
-        let a3 = T::of(Self::A3);
-        let k1 = T::of(0.008333333333333333);
+        let k1 = T::of(0.5);
         let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.5);
-        let k4 = T::of(0.16666666666666666);
+        let k3 = T::of(0.16666666666666666);
+        let k4 = T::of(0.008333333333333333);
         let a4 = T::of(Self::A4);
+        let cos_error4 = T::of(Self::COS_ERROR4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
         let d7 = T::of(Self::D7);
+        let sin_error7 = T::of(Self::SIN_ERROR7);
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
@@ -885,17 +885,17 @@ impl Robot<7> for EveryLaw {
             q[6],
         ]);
         let e3 = sin_error3 * s3 + cos_error3 * c3;
-        let e4 = cos_error4 * c2x4;
-        let e7 = sin_error7 * s41x7;
         let t1 = e3 * e3;
-        let t2 = T::one() - t1 * (k3 - k2 * t1);
-        let t3 = e3 - e3 * t1 * (k4 - k1 * t1);
+        let t2 = T::one() - t1 * (k1 - k2 * t1);
+        let t3 = e3 - e3 * t1 * (k3 - k4 * t1);
+        let e4 = cos_error4 * c2x4;
         let t4 = e4 * e4;
-        let t5 = T::one() - t4 * (k3 - k2 * t4);
-        let t6 = e4 - e4 * t4 * (k4 - k1 * t4);
+        let t5 = T::one() - t4 * (k1 - k2 * t4);
+        let t6 = e4 - e4 * t4 * (k3 - k4 * t4);
+        let e7 = sin_error7 * s41x7;
         let t7 = e7 * e7;
-        let t8 = T::one() - t7 * (k3 - k2 * t7);
-        let t9 = e7 - e7 * t7 * (k4 - k1 * t7);
+        let t8 = T::one() - t7 * (k1 - k2 * t7);
+        let t9 = e7 - e7 * t7 * (k3 - k4 * t7);
         let t10 = k5 * c2o + k9 * s2o;
         let t11 = k6 * c2o + k10 * s2o;
         let t12 = k7 * c2o + k8 * s2o;
@@ -1022,23 +1022,23 @@ impl Robot<7> for EveryLaw {
         let cos2_3 = T::of(Self::COS2_3);
         let sin2_3 = T::of(Self::SIN2_3);
         let h6_sin2_6 = T::of(Self::H6 * Self::SIN2_6);
-        let sin_error3 = T::of(Self::SIN_ERROR3);
-        let cos_error3 = T::of(Self::COS_ERROR3);
-        let cos_error4 = T::of(Self::COS_ERROR4);
-        let sin_error7 = T::of(Self::SIN_ERROR7);
         let sin_base_pitch = T::of(Self::SIN_BASE_PITCH);
         let cos_base_pitch = T::of(Self::COS_BASE_PITCH);
         let sin_base_roll = T::of(Self::SIN_BASE_ROLL);
         let cos_base_roll = T::of(Self::COS_BASE_ROLL);
         let a3 = T::of(Self::A3);
-        let k2 = T::of(0.008333333333333333);
-        let k3 = T::of(0.041666666666666664);
-        let k4 = T::of(0.16666666666666666);
+        let sin_error3 = T::of(Self::SIN_ERROR3);
+        let cos_error3 = T::of(Self::COS_ERROR3);
+        let k2 = T::of(0.041666666666666664);
+        let k3 = T::of(0.16666666666666666);
+        let k4 = T::of(0.008333333333333333);
         let a4 = T::of(Self::A4);
+        let cos_error4 = T::of(Self::COS_ERROR4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
+        let sin_error7 = T::of(Self::SIN_ERROR7);
         let k5 = T::of(
             0.981627183447664
                 * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
@@ -1186,19 +1186,19 @@ impl Robot<7> for EveryLaw {
         let t3 = s3 * c3;
         let t4 = s6 * c6;
         let e3 = sin_error3 * s3 + cos_error3 * c3;
-        let e4 = cos_error4 * c2x4;
-        let e7 = sin_error7 * s41x7;
         let t5 = e3 * e3;
-        let t6 = T::one() - t5 * (k1 - k3 * t5);
-        let t7 = e3 * t5 * (k4 - k2 * t5);
+        let t6 = T::one() - t5 * (k1 - k2 * t5);
+        let t7 = e3 * t5 * (k3 - k4 * t5);
         let t8 = e3 - t7;
+        let e4 = cos_error4 * c2x4;
         let t9 = e4 * e4;
-        let t10 = T::one() - t9 * (k1 - k3 * t9);
-        let t11 = e4 * t9 * (k4 - k2 * t9);
+        let t10 = T::one() - t9 * (k1 - k2 * t9);
+        let t11 = e4 * t9 * (k3 - k4 * t9);
         let t12 = e4 - t11;
+        let e7 = sin_error7 * s41x7;
         let t13 = e7 * e7;
-        let t14 = T::one() - t13 * (k1 - k3 * t13);
-        let t15 = e7 - e7 * t13 * (k4 - k2 * t13);
+        let t14 = T::one() - t13 * (k1 - k2 * t13);
+        let t15 = e7 - e7 * t13 * (k3 - k4 * t13);
 
         // From joint 7 to the TCP.
         let t16 = t14 * s7 + t15 * c7;
@@ -1563,6 +1563,24 @@ impl Robot<7> for EveryLaw {
     /// 14 trig, 341 mul, 257 add, 6 root.
     #[inline(always)]
     fn deflection<T: Real>(&self, q: &SVector<T, 7>, wrench: &Vector6<T>) -> Vector6<T> {
+        let a3 = T::of(Self::A3);
+        let sin_error3 = T::of(Self::SIN_ERROR3);
+        let cos_error3 = T::of(Self::COS_ERROR3);
+        let k1 = T::of(0.5);
+        let k2 = T::of(0.041666666666666664);
+        let k3 = T::of(0.16666666666666666);
+        let k4 = T::of(0.008333333333333333);
+        let a4 = T::of(Self::A4);
+        let cos_error4 = T::of(Self::COS_ERROR4);
+        let sin_alpha4 = T::of(Self::SIN_ALPHA4);
+        let cos_alpha4 = T::of(Self::COS_ALPHA4);
+        let d5 = T::of(Self::D5);
+        let a5 = T::of(Self::A5);
+        let d7 = T::of(Self::D7);
+        let sin_error7 = T::of(Self::SIN_ERROR7);
+        let tool_x = T::of(Self::TOOL_X);
+        let tool_y = T::of(Self::TOOL_Y);
+        let tool_z = T::of(Self::TOOL_Z);
         let h2 = T::of(Self::H2);
         let h3 = T::of(Self::H3);
         let h4 = T::of(Self::H4);
@@ -1573,12 +1591,11 @@ impl Robot<7> for EveryLaw {
         let bending3 = T::of(Self::BENDING3);
         let coupling5_6 = T::of(Self::COUPLING5_6);
         let added3 = T::of(Self::ADDED3);
-        let k1 = T::of(1.0 / Self::KNEE3);
-        let k2 = T::of(1.0 / Self::GAP_KNEE3);
-        let k3 = T::of(0.5);
-        let k4 = T::of(1.0 / Self::GAP_KNEE3 * (Self::GAP3 * 0.5));
-        let k5 = T::of(1.0 / Self::GAP_KNEE5);
-        let k6 = T::of(1.0 / Self::GAP_KNEE5 * (0.5 * Self::GAP5));
+        let k5 = T::of(1.0 / Self::KNEE3);
+        let k6 = T::of(1.0 / Self::GAP_KNEE3);
+        let k7 = T::of(1.0 / Self::GAP_KNEE3 * (0.5 * Self::GAP3));
+        let k8 = T::of(1.0 / Self::GAP_KNEE5);
+        let k9 = T::of(1.0 / Self::GAP_KNEE5 * (0.5 * Self::GAP5));
         let radius1_3 = T::of(Self::RADIUS1_3);
         let weight1_3 = T::of(Self::WEIGHT1_3);
         let radius2_3 = T::of(Self::RADIUS2_3);
@@ -1592,23 +1609,6 @@ impl Robot<7> for EveryLaw {
         let cos2_3 = T::of(Self::COS2_3);
         let sin2_3 = T::of(Self::SIN2_3);
         let h6_sin2_6 = T::of(Self::H6 * Self::SIN2_6);
-        let sin_error3 = T::of(Self::SIN_ERROR3);
-        let cos_error3 = T::of(Self::COS_ERROR3);
-        let cos_error4 = T::of(Self::COS_ERROR4);
-        let sin_error7 = T::of(Self::SIN_ERROR7);
-        let a3 = T::of(Self::A3);
-        let k7 = T::of(0.008333333333333333);
-        let k8 = T::of(0.041666666666666664);
-        let k9 = T::of(0.16666666666666666);
-        let a4 = T::of(Self::A4);
-        let sin_alpha4 = T::of(Self::SIN_ALPHA4);
-        let cos_alpha4 = T::of(Self::COS_ALPHA4);
-        let d5 = T::of(Self::D5);
-        let a5 = T::of(Self::A5);
-        let d7 = T::of(Self::D7);
-        let tool_x = T::of(Self::TOOL_X);
-        let tool_y = T::of(Self::TOOL_Y);
-        let tool_z = T::of(Self::TOOL_Z);
         let k10 = T::of(Self::COS_BASE_PITCH * 0.8253356149096783);
         let k11 = T::of(Self::COS_BASE_PITCH * -0.5646424733950354);
         let k12 = T::of(-Self::SIN_BASE_PITCH);
@@ -1677,41 +1677,41 @@ impl Robot<7> for EveryLaw {
         let k33 = T::of(Self::BENDING3 * 0.08333333333333333);
         let k34 = T::of(Self::A4 * Self::A4 * (Self::BENDING3 * 0.08333333333333333));
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s3, c3), (s6, c6), (_, c2x4), (s41x7, _), (s2o, c2o), (s4o, c4o), (s5, c5),
+        let [(s3, c3), (_, c2x4), (s41x7, _), (s6, c6), (s2o, c2o), (s4o, c4o), (s5, c5),
         (s7, c7)] = T::sin_cos_all([
             q[2],
-            q[5],
             T::of(2.0) * q[3],
             T::of(41.0) * q[6],
+            q[5],
             q[1] + T::of(0.2587993877991494),
             q[3] + T::of(0.005235987755982988),
             q[4],
             q[6],
         ]);
-        let t1 = cos2_3 * ((c3 - s3) * (s3 + c3));
-        let t2 = cos1_3 * c3 + sin1_3 * s3 + t1;
-        let t3 = s3 * c3;
-        let t4 = s6 * c6;
         let e3 = sin_error3 * s3 + cos_error3 * c3;
+        let t1 = e3 * e3;
+        let t2 = T::one() - t1 * (k1 - k2 * t1);
+        let t3 = e3 - e3 * t1 * (k3 - k4 * t1);
         let e4 = cos_error4 * c2x4;
+        let t4 = e4 * e4;
+        let t5 = T::one() - t4 * (k1 - k2 * t4);
+        let t6 = e4 - e4 * t4 * (k3 - k4 * t4);
         let e7 = sin_error7 * s41x7;
-        let t5 = e3 * e3;
-        let t6 = T::one() - t5 * (k3 - k8 * t5);
-        let t7 = e3 - e3 * t5 * (k9 - k7 * t5);
-        let t8 = e4 * e4;
-        let t9 = T::one() - t8 * (k3 - k8 * t8);
-        let t10 = e4 - e4 * t8 * (k9 - k7 * t8);
-        let t11 = e7 * e7;
-        let t12 = T::one() - t11 * (k3 - k8 * t11);
-        let t13 = e7 - e7 * t11 * (k9 - k7 * t11);
+        let t7 = e7 * e7;
+        let t8 = T::one() - t7 * (k1 - k2 * t7);
+        let t9 = e7 - e7 * t7 * (k3 - k4 * t7);
+        let t10 = cos2_3 * ((c3 - s3) * (s3 + c3));
+        let t11 = cos1_3 * c3 + sin1_3 * s3 + t10;
+        let t12 = s3 * c3;
+        let t13 = s6 * c6;
         let t14 = k10 * c2o + k14 * s2o;
         let t15 = k11 * c2o + k15 * s2o;
         let t16 = k12 * c2o + k13 * s2o;
         let z3x = k14 * c2o - k10 * s2o;
         let z3y = k15 * c2o - k11 * s2o;
         let z3z = k13 * c2o - k12 * s2o;
-        let t17 = s3 * t7 - c3 * t6;
-        let t18 = s3 * t6 + c3 * t7;
+        let t17 = s3 * t3 - c3 * t2;
+        let t18 = s3 * t2 + c3 * t3;
         let t19 = t14 * t18 + k22 * t17;
         let t20 = t15 * t18 + k23 * t17;
         let t21 = t16 * t18 + k24 * t17;
@@ -1733,8 +1733,8 @@ impl Robot<7> for EveryLaw {
         let t34 = a4 * t19;
         let t35 = a4 * t20;
         let t36 = a4 * t21;
-        let t37 = t9 * s4o + t10 * c4o;
-        let t38 = t9 * c4o - t10 * s4o;
+        let t37 = t5 * s4o + t6 * c4o;
+        let t38 = t5 * c4o - t6 * s4o;
         let t39 = t19 * t38 + t25 * t37;
         let t40 = t20 * t38 + t26 * t37;
         let t41 = t21 * t38 + t27 * t37;
@@ -1759,8 +1759,8 @@ impl Robot<7> for EveryLaw {
         let z7x = c6 * z5x - s6 * t45;
         let z7y = c6 * z5y - s6 * t46;
         let z7z = c6 * z5z - s6 * t47;
-        let t54 = t12 * s7 + t13 * c7;
-        let t55 = t13 * s7 - t12 * c7;
+        let t54 = t8 * s7 + t9 * c7;
+        let t55 = t9 * s7 - t8 * c7;
         let t56 = tool_x * t55 + tool_y * t54;
         let t57 = tool_y * t55 - tool_x * t54;
         let t58 = (c6 * t45 + s6 * z5x) * t56;
@@ -1815,12 +1815,12 @@ impl Robot<7> for EveryLaw {
         let dq2 = h2 * tau2;
         let dq4 = h4 * tau4;
         let dq7 = h7 * tau7;
-        let t67 = k1 * tau3;
+        let t67 = k5 * tau3;
         let t68 = added3 * tau3 * (T::one() + t67 * t67).sqrt().recip();
-        let t69 = k2 * tau3;
-        let t70 = k4 * tau3 * (T::one() + t69 * t69).sqrt().recip();
-        let t71 = k5 * tau5;
-        let t72 = k6 * tau5 * (T::one() + t71 * t71).sqrt().recip();
+        let t69 = k6 * tau3;
+        let t70 = k7 * tau3 * (T::one() + t69 * t69).sqrt().recip();
+        let t71 = k8 * tau5;
+        let t72 = k9 * tau5 * (T::one() + t71 * t71).sqrt().recip();
         let dq5 = h5 * tau5 + coupling5_6 * tau6 + t72;
         let play3_1 = (tau3 - radius1_3).max((radius1_3 + tau3).min(T::zero()));
         let play3_2 = (tau3 - radius2_3).max((radius2_3 + tau3).min(T::zero()));
@@ -1828,9 +1828,9 @@ impl Robot<7> for EveryLaw {
         let t73 = weight1_3 * play3_1 + weight2_3 * play3_2 + weight3_3 * play3_3;
         let play6_1 = (tau6 - radius1_6).max((radius1_6 + tau6).min(T::zero()));
         let t74 = h6 * tau6 + coupling5_6 * tau5 + weight1_6 * play6_1;
-        let t75 = h3 * (t2 + sin2_3 * (t3 + t3)) * tau3;
+        let t75 = h3 * (t11 + sin2_3 * (t12 + t12)) * tau3;
         let dq3 = h3 * tau3 + t68 + t70 + t73 + t75;
-        let dq6 = t74 + h6_sin2_6 * (t4 + t4) * tau6;
+        let dq6 = t74 + h6_sin2_6 * (t13 + t13) * tau6;
         let t76 = k25 * tau1 + j2x * dq2 + j3x * dq3;
         let t77 = k26 * tau1 + j2y * dq2 + j3y * dq3;
         let t78 = k27 * tau1 + j2z * dq2 + j3z * dq3;
@@ -1891,21 +1891,21 @@ impl Robot<7> for EveryLaw {
         q: &SVector<T, 7>,
         wrench: &Vector6<T>,
     ) -> SVector<T, 7> {
+        let a3 = T::of(Self::A3);
         let sin_error3 = T::of(Self::SIN_ERROR3);
         let cos_error3 = T::of(Self::COS_ERROR3);
-        let cos_error4 = T::of(Self::COS_ERROR4);
-        let sin_error7 = T::of(Self::SIN_ERROR7);
-        let a3 = T::of(Self::A3);
-        let k1 = T::of(0.008333333333333333);
+        let k1 = T::of(0.5);
         let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.5);
-        let k4 = T::of(0.16666666666666666);
+        let k3 = T::of(0.16666666666666666);
+        let k4 = T::of(0.008333333333333333);
         let a4 = T::of(Self::A4);
+        let cos_error4 = T::of(Self::COS_ERROR4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
         let d7 = T::of(Self::D7);
+        let sin_error7 = T::of(Self::SIN_ERROR7);
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
@@ -1961,17 +1961,17 @@ impl Robot<7> for EveryLaw {
             q[6],
         ]);
         let e3 = sin_error3 * s3 + cos_error3 * c3;
-        let e4 = cos_error4 * c2x4;
-        let e7 = sin_error7 * s41x7;
         let t1 = e3 * e3;
-        let t2 = T::one() - t1 * (k3 - k2 * t1);
-        let t3 = e3 - e3 * t1 * (k4 - k1 * t1);
+        let t2 = T::one() - t1 * (k1 - k2 * t1);
+        let t3 = e3 - e3 * t1 * (k3 - k4 * t1);
+        let e4 = cos_error4 * c2x4;
         let t4 = e4 * e4;
-        let t5 = T::one() - t4 * (k3 - k2 * t4);
-        let t6 = e4 - e4 * t4 * (k4 - k1 * t4);
+        let t5 = T::one() - t4 * (k1 - k2 * t4);
+        let t6 = e4 - e4 * t4 * (k3 - k4 * t4);
+        let e7 = sin_error7 * s41x7;
         let t7 = e7 * e7;
-        let t8 = T::one() - t7 * (k3 - k2 * t7);
-        let t9 = e7 - e7 * t7 * (k4 - k1 * t7);
+        let t8 = T::one() - t7 * (k1 - k2 * t7);
+        let t9 = e7 - e7 * t7 * (k3 - k4 * t7);
         let t10 = k5 * c2o + k9 * s2o;
         let t11 = k6 * c2o + k10 * s2o;
         let t12 = k7 * c2o + k8 * s2o;
@@ -2085,10 +2085,6 @@ impl Robot<7> for EveryLaw {
     /// 16 trig, 570 mul, 492 add.
     #[inline(always)]
     fn statics<T: Real>(&self, q: &SVector<T, 7>) -> Statics<7, T> {
-        let sin_error3 = T::of(Self::SIN_ERROR3);
-        let cos_error3 = T::of(Self::COS_ERROR3);
-        let cos_error4 = T::of(Self::COS_ERROR4);
-        let sin_error7 = T::of(Self::SIN_ERROR7);
         let base_x = T::of(Self::BASE_X);
         let base_y = T::of(Self::BASE_Y);
         let base_z = T::of(Self::BASE_Z);
@@ -2098,16 +2094,20 @@ impl Robot<7> for EveryLaw {
         let cos_base_roll = T::of(Self::COS_BASE_ROLL);
         let d1 = T::of(Self::D1);
         let a3 = T::of(Self::A3);
-        let k1 = T::of(0.008333333333333333);
+        let sin_error3 = T::of(Self::SIN_ERROR3);
+        let cos_error3 = T::of(Self::COS_ERROR3);
+        let k1 = T::of(0.5);
         let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.5);
-        let k4 = T::of(0.16666666666666666);
+        let k3 = T::of(0.16666666666666666);
+        let k4 = T::of(0.008333333333333333);
         let a4 = T::of(Self::A4);
+        let cos_error4 = T::of(Self::COS_ERROR4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
         let d7 = T::of(Self::D7);
+        let sin_error7 = T::of(Self::SIN_ERROR7);
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
@@ -2320,21 +2320,21 @@ impl Robot<7> for EveryLaw {
             q[6],
             q[6] + T::of(2.949606435870417),
         ]);
-        let e3 = sin_error3 * s3 + cos_error3 * c3;
-        let e4 = cos_error4 * c2x4;
-        let e7 = sin_error7 * s41x7;
         let t1 = d1 + q[0];
+        let e3 = sin_error3 * s3 + cos_error3 * c3;
         let t2 = e3 * e3;
-        let t3 = T::one() - t2 * (k3 - k2 * t2);
-        let t4 = e3 * t2 * (k4 - k1 * t2);
+        let t3 = T::one() - t2 * (k1 - k2 * t2);
+        let t4 = e3 * t2 * (k3 - k4 * t2);
         let t5 = e3 - t4;
+        let e4 = cos_error4 * c2x4;
         let t6 = e4 * e4;
-        let t7 = T::one() - t6 * (k3 - k2 * t6);
-        let t8 = e4 * t6 * (k4 - k1 * t6);
+        let t7 = T::one() - t6 * (k1 - k2 * t6);
+        let t8 = e4 * t6 * (k3 - k4 * t6);
         let t9 = e4 - t8;
+        let e7 = sin_error7 * s41x7;
         let t10 = e7 * e7;
-        let t11 = T::one() - t10 * (k3 - k2 * t10);
-        let t12 = e7 - e7 * t10 * (k4 - k1 * t10);
+        let t11 = T::one() - t10 * (k1 - k2 * t10);
+        let t12 = e7 - e7 * t10 * (k3 - k4 * t10);
         let t13 = k7 * c2o + k11 * s2o;
         let t14 = k8 * c2o + k12 * s2o;
         let t15 = k9 * c2o + k10 * s2o;
@@ -2847,6 +2847,24 @@ impl Robot<7> for EveryLaw {
         wrench: &Vector6<T>,
         state: &mut State<7, T>,
     ) -> Vector6<T> {
+        let a3 = T::of(Self::A3);
+        let sin_error3 = T::of(Self::SIN_ERROR3);
+        let cos_error3 = T::of(Self::COS_ERROR3);
+        let k1 = T::of(0.5);
+        let k2 = T::of(0.041666666666666664);
+        let k3 = T::of(0.16666666666666666);
+        let k4 = T::of(0.008333333333333333);
+        let a4 = T::of(Self::A4);
+        let cos_error4 = T::of(Self::COS_ERROR4);
+        let sin_alpha4 = T::of(Self::SIN_ALPHA4);
+        let cos_alpha4 = T::of(Self::COS_ALPHA4);
+        let d5 = T::of(Self::D5);
+        let a5 = T::of(Self::A5);
+        let d7 = T::of(Self::D7);
+        let sin_error7 = T::of(Self::SIN_ERROR7);
+        let tool_x = T::of(Self::TOOL_X);
+        let tool_y = T::of(Self::TOOL_Y);
+        let tool_z = T::of(Self::TOOL_Z);
         let h2 = T::of(Self::H2);
         let h3 = T::of(Self::H3);
         let h4 = T::of(Self::H4);
@@ -2857,12 +2875,11 @@ impl Robot<7> for EveryLaw {
         let bending3 = T::of(Self::BENDING3);
         let coupling5_6 = T::of(Self::COUPLING5_6);
         let added3 = T::of(Self::ADDED3);
-        let k1 = T::of(1.0 / Self::KNEE3);
-        let k2 = T::of(1.0 / Self::GAP_KNEE3);
-        let k3 = T::of(0.5);
-        let k4 = T::of(1.0 / Self::GAP_KNEE3 * (Self::GAP3 * 0.5));
-        let k5 = T::of(1.0 / Self::GAP_KNEE5);
-        let k6 = T::of(1.0 / Self::GAP_KNEE5 * (0.5 * Self::GAP5));
+        let k5 = T::of(1.0 / Self::KNEE3);
+        let k6 = T::of(1.0 / Self::GAP_KNEE3);
+        let k7 = T::of(1.0 / Self::GAP_KNEE3 * (0.5 * Self::GAP3));
+        let k8 = T::of(1.0 / Self::GAP_KNEE5);
+        let k9 = T::of(1.0 / Self::GAP_KNEE5 * (0.5 * Self::GAP5));
         let radius1_3 = T::of(Self::RADIUS1_3);
         let weight1_3 = T::of(Self::WEIGHT1_3);
         let radius2_3 = T::of(Self::RADIUS2_3);
@@ -2876,23 +2893,6 @@ impl Robot<7> for EveryLaw {
         let cos2_3 = T::of(Self::COS2_3);
         let sin2_3 = T::of(Self::SIN2_3);
         let h6_sin2_6 = T::of(Self::H6 * Self::SIN2_6);
-        let sin_error3 = T::of(Self::SIN_ERROR3);
-        let cos_error3 = T::of(Self::COS_ERROR3);
-        let cos_error4 = T::of(Self::COS_ERROR4);
-        let sin_error7 = T::of(Self::SIN_ERROR7);
-        let a3 = T::of(Self::A3);
-        let k7 = T::of(0.008333333333333333);
-        let k8 = T::of(0.041666666666666664);
-        let k9 = T::of(0.16666666666666666);
-        let a4 = T::of(Self::A4);
-        let sin_alpha4 = T::of(Self::SIN_ALPHA4);
-        let cos_alpha4 = T::of(Self::COS_ALPHA4);
-        let d5 = T::of(Self::D5);
-        let a5 = T::of(Self::A5);
-        let d7 = T::of(Self::D7);
-        let tool_x = T::of(Self::TOOL_X);
-        let tool_y = T::of(Self::TOOL_Y);
-        let tool_z = T::of(Self::TOOL_Z);
         let k10 = T::of(Self::COS_BASE_PITCH * 0.8253356149096783);
         let k11 = T::of(Self::COS_BASE_PITCH * -0.5646424733950354);
         let k12 = T::of(-Self::SIN_BASE_PITCH);
@@ -2965,41 +2965,41 @@ impl Robot<7> for EveryLaw {
         let before3_2 = state.plays[2][1];
         let before3_3 = state.plays[2][2];
         let before6_1 = state.plays[5][0];
-        let [(s3, c3), (s6, c6), (_, c2x4), (s41x7, _), (s2o, c2o), (s4o, c4o), (s5, c5),
+        let [(s3, c3), (_, c2x4), (s41x7, _), (s6, c6), (s2o, c2o), (s4o, c4o), (s5, c5),
         (s7, c7)] = T::sin_cos_all([
             q[2],
-            q[5],
             T::of(2.0) * q[3],
             T::of(41.0) * q[6],
+            q[5],
             q[1] + T::of(0.2587993877991494),
             q[3] + T::of(0.005235987755982988),
             q[4],
             q[6],
         ]);
-        let t1 = cos2_3 * ((c3 - s3) * (s3 + c3));
-        let t2 = cos1_3 * c3 + sin1_3 * s3 + t1;
-        let t3 = s3 * c3;
-        let t4 = s6 * c6;
         let e3 = sin_error3 * s3 + cos_error3 * c3;
+        let t1 = e3 * e3;
+        let t2 = T::one() - t1 * (k1 - k2 * t1);
+        let t3 = e3 - e3 * t1 * (k3 - k4 * t1);
         let e4 = cos_error4 * c2x4;
+        let t4 = e4 * e4;
+        let t5 = T::one() - t4 * (k1 - k2 * t4);
+        let t6 = e4 - e4 * t4 * (k3 - k4 * t4);
         let e7 = sin_error7 * s41x7;
-        let t5 = e3 * e3;
-        let t6 = T::one() - t5 * (k3 - k8 * t5);
-        let t7 = e3 - e3 * t5 * (k9 - k7 * t5);
-        let t8 = e4 * e4;
-        let t9 = T::one() - t8 * (k3 - k8 * t8);
-        let t10 = e4 - e4 * t8 * (k9 - k7 * t8);
-        let t11 = e7 * e7;
-        let t12 = T::one() - t11 * (k3 - k8 * t11);
-        let t13 = e7 - e7 * t11 * (k9 - k7 * t11);
+        let t7 = e7 * e7;
+        let t8 = T::one() - t7 * (k1 - k2 * t7);
+        let t9 = e7 - e7 * t7 * (k3 - k4 * t7);
+        let t10 = cos2_3 * ((c3 - s3) * (s3 + c3));
+        let t11 = cos1_3 * c3 + sin1_3 * s3 + t10;
+        let t12 = s3 * c3;
+        let t13 = s6 * c6;
         let t14 = k10 * c2o + k14 * s2o;
         let t15 = k11 * c2o + k15 * s2o;
         let t16 = k12 * c2o + k13 * s2o;
         let z3x = k14 * c2o - k10 * s2o;
         let z3y = k15 * c2o - k11 * s2o;
         let z3z = k13 * c2o - k12 * s2o;
-        let t17 = s3 * t7 - c3 * t6;
-        let t18 = s3 * t6 + c3 * t7;
+        let t17 = s3 * t3 - c3 * t2;
+        let t18 = s3 * t2 + c3 * t3;
         let t19 = t14 * t18 + k22 * t17;
         let t20 = t15 * t18 + k23 * t17;
         let t21 = t16 * t18 + k24 * t17;
@@ -3021,8 +3021,8 @@ impl Robot<7> for EveryLaw {
         let t34 = a4 * t19;
         let t35 = a4 * t20;
         let t36 = a4 * t21;
-        let t37 = t9 * s4o + t10 * c4o;
-        let t38 = t9 * c4o - t10 * s4o;
+        let t37 = t5 * s4o + t6 * c4o;
+        let t38 = t5 * c4o - t6 * s4o;
         let t39 = t19 * t38 + t25 * t37;
         let t40 = t20 * t38 + t26 * t37;
         let t41 = t21 * t38 + t27 * t37;
@@ -3047,8 +3047,8 @@ impl Robot<7> for EveryLaw {
         let z7x = c6 * z5x - s6 * t45;
         let z7y = c6 * z5y - s6 * t46;
         let z7z = c6 * z5z - s6 * t47;
-        let t54 = t12 * s7 + t13 * c7;
-        let t55 = t13 * s7 - t12 * c7;
+        let t54 = t8 * s7 + t9 * c7;
+        let t55 = t9 * s7 - t8 * c7;
         let t56 = tool_x * t55 + tool_y * t54;
         let t57 = tool_y * t55 - tool_x * t54;
         let t58 = (c6 * t45 + s6 * z5x) * t56;
@@ -3103,12 +3103,12 @@ impl Robot<7> for EveryLaw {
         let dq2 = h2 * tau2;
         let dq4 = h4 * tau4;
         let dq7 = h7 * tau7;
-        let t67 = k1 * tau3;
+        let t67 = k5 * tau3;
         let t68 = added3 * tau3 * (T::one() + t67 * t67).sqrt().recip();
-        let t69 = k2 * tau3;
-        let t70 = k4 * tau3 * (T::one() + t69 * t69).sqrt().recip();
-        let t71 = k5 * tau5;
-        let t72 = k6 * tau5 * (T::one() + t71 * t71).sqrt().recip();
+        let t69 = k6 * tau3;
+        let t70 = k7 * tau3 * (T::one() + t69 * t69).sqrt().recip();
+        let t71 = k8 * tau5;
+        let t72 = k9 * tau5 * (T::one() + t71 * t71).sqrt().recip();
         let dq5 = h5 * tau5 + coupling5_6 * tau6 + t72;
         let play3_1 = (tau3 - radius1_3).max((radius1_3 + tau3).min(before3_1));
         let play3_2 = (tau3 - radius2_3).max((radius2_3 + tau3).min(before3_2));
@@ -3116,9 +3116,9 @@ impl Robot<7> for EveryLaw {
         let t73 = weight1_3 * play3_1 + weight2_3 * play3_2 + weight3_3 * play3_3;
         let play6_1 = (tau6 - radius1_6).max((radius1_6 + tau6).min(before6_1));
         let t74 = h6 * tau6 + coupling5_6 * tau5 + weight1_6 * play6_1;
-        let t75 = h3 * (t2 + sin2_3 * (t3 + t3)) * tau3;
+        let t75 = h3 * (t11 + sin2_3 * (t12 + t12)) * tau3;
         let dq3 = h3 * tau3 + t68 + t70 + t73 + t75;
-        let dq6 = t74 + h6_sin2_6 * (t4 + t4) * tau6;
+        let dq6 = t74 + h6_sin2_6 * (t13 + t13) * tau6;
         let t76 = k25 * tau1 + j2x * dq2 + j3x * dq3;
         let t77 = k26 * tau1 + j2y * dq2 + j3y * dq3;
         let t78 = k27 * tau1 + j2z * dq2 + j3z * dq3;

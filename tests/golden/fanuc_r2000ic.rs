@@ -12,10 +12,10 @@
 // Operations of one call:
 //   transform      12 trig, 66 mul, 40 add, 3 neg
 //   link_frames    12 trig, 57 mul, 30 add, 8 neg
-//   jacobian       12 trig, 80 mul, 45 add, 8 neg
+//   jacobian       12 trig, 82 mul, 42 add, 6 neg
 //   compliance     12 trig, 150 mul, 131 add
-//   deflection     12 trig, 144 mul, 94 add
-//   joint_torques  12 trig, 108 mul, 69 add
+//   deflection     12 trig, 120 mul, 78 add
+//   joint_torques  12 trig, 83 mul, 54 add
 //   statics        14 trig, 238 mul, 191 add, 10 neg
 
 use robstiff::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
@@ -82,9 +82,9 @@ impl FanucR2000ic {
     /// Operations of `jacobian`.
     pub const JACOBIAN_COST: robstiff::Cost = robstiff::Cost {
         trig: 12,
-        mul: 80,
-        add: 45,
-        neg: 8,
+        mul: 82,
+        add: 42,
+        neg: 6,
         root: 0,
     };
     /// Operations of `compliance`.
@@ -98,16 +98,16 @@ impl FanucR2000ic {
     /// Operations of `deflection`.
     pub const DEFLECTION_COST: robstiff::Cost = robstiff::Cost {
         trig: 12,
-        mul: 144,
-        add: 94,
+        mul: 120,
+        add: 78,
         neg: 0,
         root: 0,
     };
     /// Operations of `joint_torques`.
     pub const JOINT_TORQUES_COST: robstiff::Cost = robstiff::Cost {
         trig: 12,
-        mul: 108,
-        add: 69,
+        mul: 83,
+        add: 54,
         neg: 0,
         root: 0,
     };
@@ -201,10 +201,10 @@ impl Robot<6> for FanucR2000ic {
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
-        let [(s1, c1), (s2, c2), (s23, c23), (s4, c4), (s5, c5), (s6, c6)] = T::sin_cos_all([
+        let [(s23, c23), (s1, c1), (s2, c2), (s4, c4), (s5, c5), (s6, c6)] = T::sin_cos_all([
+            q[1] + q[2],
             q[0],
             q[1],
-            q[1] + q[2],
             q[3],
             q[4],
             q[5],
@@ -262,10 +262,10 @@ impl Robot<6> for FanucR2000ic {
         let d4 = T::of(Self::D4);
         let a4 = T::of(Self::A4);
         let d6 = T::of(Self::D6);
-        let [(s1, c1), (s2, c2), (s23, c23), (s4, c4), (s5, c5), (s6, c6)] = T::sin_cos_all([
+        let [(s23, c23), (s1, c1), (s2, c2), (s4, c4), (s5, c5), (s6, c6)] = T::sin_cos_all([
+            q[1] + q[2],
             q[0],
             q[1],
-            q[1] + q[2],
             q[3],
             q[4],
             q[5],
@@ -351,7 +351,7 @@ impl Robot<6> for FanucR2000ic {
 
     /// Jacobian of the tool centre point in the base frame, 6 rows: translation (m/rad), rotation.
     ///
-    /// 12 trig, 80 mul, 45 add, 8 neg.
+    /// 12 trig, 82 mul, 42 add, 6 neg.
     #[inline(always)]
     fn jacobian<T: Real>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 6> {
         let a2 = T::of(Self::A2);
@@ -362,67 +362,74 @@ impl Robot<6> for FanucR2000ic {
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
-        let [(s1, c1), (s2, c2), (s23, c23), (s4, c4), (s5, c5), (s6, c6)] = T::sin_cos_all([
-            q[0],
-            q[1],
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_all([
             q[1] + q[2],
+            q[1],
             q[3],
             q[4],
             q[5],
+            q[0],
         ]);
-        let t1 = a3 * s2;
-        let t2 = c1 * s23;
-        let t3 = s1 * s23;
-        let z4x = c1 * c23;
-        let z4y = s1 * c23;
-        let t4 = c23 * c4;
-        let t5 = t2 * c4 + s1 * s4;
-        let t6 = t3 * c4 - c1 * s4;
-        let t7 = s1 * c4;
-        let t8 = t2 * s4;
+        let t1 = s23 * c4;
+        let t2 = c23 * c4;
+        let z5x = s23 * s4;
         let z5z = c23 * s4;
-        let z5y = c1 * c4 + t3 * s4;
-        let z5x = t8 - t7;
-        let z6x = z4x * c5 - t5 * s5;
-        let z6y = z4y * c5 - t6 * s5;
-        let t9 = s23 * c5 + t4 * s5;
-        let t10 = tool_x * c6 - tool_y * s6;
-        let t11 = tool_x * s6 + tool_y * c6;
-        let t12 = (t5 * c5 + z4x * s5) * t10;
-        let t13 = (t6 * c5 + z4y * s5) * t10;
-        let t14 = (t4 * c5 - s23 * s5) * t10;
-        let r6x = t12 + (t7 - t8) * t11 + tool_z * z6x;
-        let r6y = t13 - z5y * t11 + tool_z * z6y;
-        let r6z = t14 - z5z * t11 - tool_z * t9;
+        let z6y = s4 * s5;
+        let z6x = c23 * c5 - t1 * s5;
+        let t3 = s23 * c5 + t2 * s5;
+        let t4 = tool_x * c6 - tool_y * s6;
+        let t5 = tool_x * s6 + tool_y * c6;
+        let t6 = (t1 * c5 + c23 * s5) * t4;
+        let t7 = (t2 * c5 - s23 * s5) * t4;
+        let t8 = s4 * c5 * t4 + c4 * t5;
+        let r6x = t6 - z5x * t5 + tool_z * z6x;
+        let r6y = tool_z * z6y - t8;
+        let r6z = t7 - z5z * t5 - tool_z * t3;
+        let r1y = d6 * z6y + r6y;
         let r4x = d6 * z6x + r6x;
-        let r4y = d6 * z6y + r6y;
-        let r4z = r6z - d6 * t9;
-        let r3x = a4 * t2 + d4 * z4x + r4x;
-        let r3y = a4 * t3 + d4 * z4y + r4y;
+        let r4z = r6z - d6 * t3;
+        let r3x = a4 * s23 + d4 * c23 + r4x;
         let r3z = a4 * c23 - d4 * s23 + r4z;
-        let r2x = c1 * t1 + r3x;
-        let r2y = s1 * t1 + r3y;
+        let r2x = a3 * s2 + r3x;
         let r1z = a3 * c2 + r3z;
-        let r1x = a2 * c1 + r2x;
-        let r1y = a2 * s1 + r2y;
-        let j2x = c1 * r1z;
-        let j2y = s1 * r1z;
-        let j3x = c1 * r3z;
-        let j3y = s1 * r3z;
-        let j4x = z4y * r4z + s23 * r4y;
-        let j4z = z4x * r4y - z4y * r4x;
-        let j5x = z5y * r4z - z5z * r4y;
+        let r1x = a2 + r2x;
+        let j4x = s23 * r1y;
+        let t9 = s23 * r4x + c23 * r4z;
+        let j4z = c23 * r1y;
+        let j5x = c4 * r4z - z5z * r1y;
         let j5y = z5z * r4x - z5x * r4z;
-        let j5z = z5x * r4y - z5y * r4x;
-        let j6x = z6y * r6z + t9 * r6y;
+        let j5z = z5x * r1y - c4 * r4x;
+        let j6x = z6y * r6z + t3 * r6y;
+        let t10 = t3 * r6x + z6x * r6z;
         let j6z = z6x * r6y - z6y * r6x;
         SMatrix::from([
-            [-r1y, r1x, T::zero(), T::zero(), T::zero(), T::one()],
-            [j2x, j2y, -(s1 * r2y + c1 * r2x), -s1, c1, T::zero()],
-            [j3x, j3y, -(s1 * r3y + c1 * r3x), -s1, c1, T::zero()],
-            [j4x, -(s23 * r4x + z4x * r4z), j4z, z4x, z4y, -s23],
-            [j5x, j5y, j5z, z5x, z5y, z5z],
-            [j6x, -(t9 * r6x + z6x * r6z), j6z, z6x, z6y, -t9],
+            [
+                -(r1y * c1 + r1x * s1),
+                r1x * c1 - r1y * s1,
+                T::zero(),
+                T::zero(),
+                T::zero(),
+                T::one(),
+            ],
+            [r1z * c1, r1z * s1, -r2x, -s1, c1, T::zero()],
+            [r3z * c1, r3z * s1, -r3x, -s1, c1, T::zero()],
+            [j4x * c1 + t9 * s1, j4x * s1 - t9 * c1, j4z, c23 * c1, c23 * s1, -s23],
+            [
+                j5x * c1 - j5y * s1,
+                j5x * s1 + j5y * c1,
+                j5z,
+                z5x * c1 - c4 * s1,
+                z5x * s1 + c4 * c1,
+                z5z,
+            ],
+            [
+                j6x * c1 + t10 * s1,
+                j6x * s1 - t10 * c1,
+                j6z,
+                z6x * c1 - z6y * s1,
+                z6x * s1 + z6y * c1,
+                -t3,
+            ],
         ])
     }
 
@@ -631,15 +638,9 @@ impl Robot<6> for FanucR2000ic {
 
     /// Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm).
     ///
-    /// 12 trig, 144 mul, 94 add.
+    /// 12 trig, 120 mul, 78 add.
     #[inline(always)]
     fn deflection<T: Real>(&self, q: &SVector<T, 6>, wrench: &Vector6<T>) -> Vector6<T> {
-        let h1 = T::of(Self::H1);
-        let h2 = T::of(Self::H2);
-        let h3 = T::of(Self::H3);
-        let h4 = T::of(Self::H4);
-        let h5 = T::of(Self::H5);
-        let h6 = T::of(Self::H6);
         let a2 = T::of(Self::A2);
         let a3 = T::of(Self::A3);
         let d4 = T::of(Self::D4);
@@ -648,104 +649,94 @@ impl Robot<6> for FanucR2000ic {
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
+        let h1 = T::of(Self::H1);
+        let h2 = T::of(Self::H2);
+        let h3 = T::of(Self::H3);
+        let h4 = T::of(Self::H4);
+        let h5 = T::of(Self::H5);
+        let h6 = T::of(Self::H6);
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s1, c1), (s2, c2), (s23, c23), (s4, c4), (s5, c5), (s6, c6)] = T::sin_cos_all([
-            q[0],
-            q[1],
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_all([
             q[1] + q[2],
+            q[1],
             q[3],
             q[4],
             q[5],
+            q[0],
         ]);
-        let t1 = a3 * s2;
-        let t2 = c1 * s23;
-        let t3 = s1 * s23;
-        let z4x = c1 * c23;
-        let z4y = s1 * c23;
-        let t4 = c23 * c4;
-        let t5 = t2 * c4 + s1 * s4;
-        let t6 = t3 * c4 - c1 * s4;
-        let t7 = s1 * c4;
-        let t8 = t2 * s4;
+        let t1 = s23 * c4;
+        let t2 = c23 * c4;
+        let z5x = s23 * s4;
         let z5z = c23 * s4;
-        let z5y = c1 * c4 + t3 * s4;
-        let z5x = t8 - t7;
-        let z6x = z4x * c5 - t5 * s5;
-        let z6y = z4y * c5 - t6 * s5;
-        let t9 = s23 * c5 + t4 * s5;
-        let t10 = tool_x * c6 - tool_y * s6;
-        let t11 = tool_x * s6 + tool_y * c6;
-        let t12 = (t5 * c5 + z4x * s5) * t10;
-        let t13 = (t6 * c5 + z4y * s5) * t10;
-        let t14 = (t4 * c5 - s23 * s5) * t10;
-        let r6x = t12 + (t7 - t8) * t11 + tool_z * z6x;
-        let r6y = t13 - z5y * t11 + tool_z * z6y;
-        let r6z = t14 - z5z * t11 - tool_z * t9;
+        let z6y = s4 * s5;
+        let z6x = c23 * c5 - t1 * s5;
+        let t3 = s23 * c5 + t2 * s5;
+        let t4 = tool_x * c6 - tool_y * s6;
+        let t5 = tool_x * s6 + tool_y * c6;
+        let t6 = (t1 * c5 + c23 * s5) * t4;
+        let t7 = (t2 * c5 - s23 * s5) * t4;
+        let t8 = s4 * c5 * t4 + c4 * t5;
+        let r6x = t6 - z5x * t5 + tool_z * z6x;
+        let r6y = tool_z * z6y - t8;
+        let r6z = t7 - z5z * t5 - tool_z * t3;
+        let r1y = d6 * z6y + r6y;
         let r4x = d6 * z6x + r6x;
-        let r4y = d6 * z6y + r6y;
-        let r4z = r6z - d6 * t9;
-        let r3x = a4 * t2 + d4 * z4x + r4x;
-        let r3y = a4 * t3 + d4 * z4y + r4y;
+        let r4z = r6z - d6 * t3;
+        let r3x = a4 * s23 + d4 * c23 + r4x;
         let r3z = a4 * c23 - d4 * s23 + r4z;
-        let r2x = c1 * t1 + r3x;
-        let r2y = s1 * t1 + r3y;
+        let r2x = a3 * s2 + r3x;
         let r1z = a3 * c2 + r3z;
-        let r1x = a2 * c1 + r2x;
-        let r1y = a2 * s1 + r2y;
-        let j2x = c1 * r1z;
-        let j2y = s1 * r1z;
-        let t15 = s1 * r2y + c1 * r2x;
-        let j3x = c1 * r3z;
-        let j3y = s1 * r3z;
-        let t16 = s1 * r3y + c1 * r3x;
-        let j4x = z4y * r4z + s23 * r4y;
-        let t17 = s23 * r4x + z4x * r4z;
-        let j4z = z4x * r4y - z4y * r4x;
-        let j5x = z5y * r4z - z5z * r4y;
+        let r1x = a2 + r2x;
+        let t9 = fx * c1 + fy * s1;
+        let t10 = fy * c1 - fx * s1;
+        let t11 = c1 * mx + s1 * my;
+        let t12 = c1 * my - s1 * mx;
+        let j4x = s23 * r1y;
+        let t13 = s23 * r4x + c23 * r4z;
+        let j4z = c23 * r1y;
+        let j5x = c4 * r4z - z5z * r1y;
         let j5y = z5z * r4x - z5x * r4z;
-        let j5z = z5x * r4y - z5y * r4x;
-        let j6x = z6y * r6z + t9 * r6y;
-        let t18 = t9 * r6x + z6x * r6z;
+        let j5z = z5x * r1y - c4 * r4x;
+        let j6x = z6y * r6z + t3 * r6y;
+        let t14 = t3 * r6x + z6x * r6z;
         let j6z = z6x * r6y - z6y * r6x;
-        let tau1 = mz + (r1x * fy - r1y * fx);
-        let t19 = fx * j2x + fy * j2y - fz * t15;
-        let t20 = c1 * my - s1 * mx;
-        let tau2 = t19 + t20;
-        let t21 = fx * j3x + fy * j3y - fz * t16;
-        let tau3 = t20 + t21;
-        let t22 = z4x * mx + z4y * my - s23 * mz;
-        let tau4 = fx * j4x - fy * t17 + fz * j4z + t22;
-        let t23 = z5x * mx + z5y * my + z5z * mz;
-        let tau5 = fx * j5x + fy * j5y + fz * j5z + t23;
-        let t24 = z6x * mx + z6y * my - t9 * mz;
-        let tau6 = fx * j6x - fy * t18 + fz * j6z + t24;
+        let tau1 = mz + (r1x * t10 - r1y * t9);
+        let tau2 = t12 + (r1z * t9 - r2x * fz);
+        let tau3 = t12 + (r3z * t9 - r3x * fz);
+        let t15 = t9 * j4x - t10 * t13 + fz * j4z;
+        let tau4 = t15 + (c23 * t11 - s23 * mz);
+        let t16 = z5x * t11 + c4 * t12 + z5z * mz;
+        let tau5 = t9 * j5x + t10 * j5y + fz * j5z + t16;
+        let t17 = z6x * t11 + z6y * t12 - t3 * mz;
+        let tau6 = t9 * j6x - t10 * t14 + fz * j6z + t17;
         let dq1 = h1 * tau1;
         let dq2 = h2 * tau2;
         let dq3 = h3 * tau3;
         let dq4 = h4 * tau4;
         let dq5 = h5 * tau5;
         let dq6 = h6 * tau6;
-        let t25 = j2x * dq2 - r1y * dq1 + j3x * dq3;
-        let t26 = r1x * dq1 + j2y * dq2 + j3y * dq3;
-        let t27 = j4z * dq4 - (t15 * dq2 + t16 * dq3);
-        let t28 = z4x * dq4 - (s1 * dq2 + s1 * dq3);
-        let t29 = c1 * dq2 + c1 * dq3 + z4y * dq4;
-        let t30 = t25 + j4x * dq4 + j5x * dq5;
-        let t31 = t26 - t17 * dq4 + j5y * dq5;
-        let t32 = dq1 - s23 * dq4 + z5z * dq5;
+        let t18 = r1z * dq2 - r1y * dq1 + r3z * dq3;
+        let t19 = j4z * dq4 - (r2x * dq2 + r3x * dq3);
+        let t20 = t18 + j4x * dq4 + j5x * dq5;
+        let t21 = r1x * dq1 - t13 * dq4 + j5y * dq5;
+        let t22 = dq1 - s23 * dq4 + z5z * dq5;
+        let t23 = t20 + j6x * dq6;
+        let t24 = t21 - t14 * dq6;
+        let t25 = c23 * dq4 + z5x * dq5 + z6x * dq6;
+        let t26 = dq2 + dq3 + c4 * dq5 + z6y * dq6;
         Vector6::new(
-            t30 + j6x * dq6,
-            t31 - t18 * dq6,
-            t27 + j5z * dq5 + j6z * dq6,
-            t28 + z5x * dq5 + z6x * dq6,
-            t29 + z5y * dq5 + z6y * dq6,
-            t32 - t9 * dq6,
+            c1 * t23 - s1 * t24,
+            s1 * t23 + c1 * t24,
+            t19 + j5z * dq5 + j6z * dq6,
+            c1 * t25 - s1 * t26,
+            s1 * t25 + c1 * t26,
+            t22 - t3 * dq6,
         )
     }
 
     /// Joint torques (Nm) (forces (N) of sliding joints) that hold a wrench at the tool centre point.
     ///
-    /// 12 trig, 108 mul, 69 add.
+    /// 12 trig, 83 mul, 54 add.
     #[inline(always)]
     fn joint_torques<T: Real>(
         &self,
@@ -761,74 +752,59 @@ impl Robot<6> for FanucR2000ic {
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s1, c1), (s2, c2), (s23, c23), (s4, c4), (s5, c5), (s6, c6)] = T::sin_cos_all([
+        let [(s23, c23), (s1, c1), (s2, c2), (s4, c4), (s5, c5), (s6, c6)] = T::sin_cos_all([
+            q[1] + q[2],
             q[0],
             q[1],
-            q[1] + q[2],
             q[3],
             q[4],
             q[5],
         ]);
-        let t1 = a3 * s2;
-        let t2 = c1 * s23;
-        let t3 = s1 * s23;
-        let z4x = c1 * c23;
-        let z4y = s1 * c23;
-        let t4 = c23 * c4;
-        let t5 = t2 * c4 + s1 * s4;
-        let t6 = t3 * c4 - c1 * s4;
-        let t7 = s1 * c4;
-        let t8 = t2 * s4;
+        let t1 = fx * c1 + fy * s1;
+        let t2 = fy * c1 - fx * s1;
+        let t3 = c1 * mx + s1 * my;
+        let t4 = c1 * my - s1 * mx;
+        let t5 = s23 * c4;
+        let t6 = c23 * c4;
+        let z5x = s23 * s4;
         let z5z = c23 * s4;
-        let z5y = c1 * c4 + t3 * s4;
-        let z5x = t8 - t7;
-        let z6x = z4x * c5 - t5 * s5;
-        let z6y = z4y * c5 - t6 * s5;
-        let t9 = s23 * c5 + t4 * s5;
-        let t10 = tool_x * c6 - tool_y * s6;
-        let t11 = tool_x * s6 + tool_y * c6;
-        let t12 = (t5 * c5 + z4x * s5) * t10;
-        let t13 = (t6 * c5 + z4y * s5) * t10;
-        let t14 = (t4 * c5 - s23 * s5) * t10;
-        let r6x = t12 + (t7 - t8) * t11 + tool_z * z6x;
-        let r6y = t13 - z5y * t11 + tool_z * z6y;
-        let r6z = t14 - z5z * t11 - tool_z * t9;
+        let z6y = s4 * s5;
+        let z6x = c23 * c5 - t5 * s5;
+        let t7 = s23 * c5 + t6 * s5;
+        let t8 = tool_x * c6 - tool_y * s6;
+        let t9 = tool_x * s6 + tool_y * c6;
+        let t10 = (t5 * c5 + c23 * s5) * t8;
+        let t11 = (t6 * c5 - s23 * s5) * t8;
+        let t12 = s4 * c5 * t8 + c4 * t9;
+        let r6x = t10 - z5x * t9 + tool_z * z6x;
+        let r6y = tool_z * z6y - t12;
+        let r6z = t11 - z5z * t9 - tool_z * t7;
+        let r1y = d6 * z6y + r6y;
         let r4x = d6 * z6x + r6x;
-        let r4y = d6 * z6y + r6y;
-        let r4z = r6z - d6 * t9;
-        let r3x = a4 * t2 + d4 * z4x + r4x;
-        let r3y = a4 * t3 + d4 * z4y + r4y;
+        let r4z = r6z - d6 * t7;
+        let r3x = a4 * s23 + d4 * c23 + r4x;
         let r3z = a4 * c23 - d4 * s23 + r4z;
-        let r2x = c1 * t1 + r3x;
-        let r2y = s1 * t1 + r3y;
+        let r2x = a3 * s2 + r3x;
         let r1z = a3 * c2 + r3z;
-        let r1x = a2 * c1 + r2x;
-        let r1y = a2 * s1 + r2y;
-        let j2x = c1 * r1z;
-        let j2y = s1 * r1z;
-        let j3x = c1 * r3z;
-        let j3y = s1 * r3z;
-        let j4x = z4y * r4z + s23 * r4y;
-        let j4z = z4x * r4y - z4y * r4x;
-        let j5x = z5y * r4z - z5z * r4y;
+        let r1x = a2 + r2x;
+        let j4x = s23 * r1y;
+        let j4z = c23 * r1y;
+        let j5x = c4 * r4z - z5z * r1y;
         let j5y = z5z * r4x - z5x * r4z;
-        let j5z = z5x * r4y - z5y * r4x;
-        let j6x = z6y * r6z + t9 * r6y;
+        let j5z = z5x * r1y - c4 * r4x;
+        let j6x = z6y * r6z + t7 * r6y;
         let j6z = z6x * r6y - z6y * r6x;
-        let tau1 = mz + (fy * r1x - fx * r1y);
-        let t15 = fz * (s1 * r2y + c1 * r2x);
-        let t16 = my * c1 - mx * s1;
-        let tau2 = fx * j2x + fy * j2y - t15 + t16;
-        let t17 = fz * (s1 * r3y + c1 * r3x);
-        let tau3 = t16 + (fx * j3x + fy * j3y - t17);
-        let t18 = fy * (s23 * r4x + z4x * r4z);
-        let t19 = mx * z4x + my * z4y - mz * s23;
-        let tau4 = fx * j4x - t18 + fz * j4z + t19;
-        let t20 = mx * z5x + my * z5y + mz * z5z;
-        let tau5 = fx * j5x + fy * j5y + fz * j5z + t20;
-        let t21 = fy * (t9 * r6x + z6x * r6z);
-        let t22 = mx * z6x + my * z6y - mz * t9;
-        let tau6 = fx * j6x - t21 + fz * j6z + t22;
+        let tau1 = mz + (t2 * r1x - t1 * r1y);
+        let tau2 = t4 + (t1 * r1z - fz * r2x);
+        let tau3 = t4 + (t1 * r3z - fz * r3x);
+        let t13 = t2 * (s23 * r4x + c23 * r4z);
+        let t14 = t1 * j4x - t13 + fz * j4z;
+        let tau4 = t14 + (t3 * c23 - mz * s23);
+        let t15 = t3 * z5x + t4 * c4 + mz * z5z;
+        let tau5 = t1 * j5x + t2 * j5y + fz * j5z + t15;
+        let t16 = t2 * (t7 * r6x + z6x * r6z);
+        let t17 = t3 * z6x + t4 * z6y - mz * t7;
+        let tau6 = t1 * j6x - t16 + fz * j6z + t17;
         SVector::from([tau1, tau2, tau3, tau4, tau5, tau6])
     }
 
@@ -871,10 +847,10 @@ impl Robot<6> for FanucR2000ic {
             -(Self::D6 + Self::TOOL_Z) * -(Self::H5 * (Self::D6 + Self::TOOL_Z)),
         );
         let k9 = T::of(-Self::H6);
-        let [(s1, c1), (s2, c2), (s23, c23), (s4, c4), (s5, c5), (s6, c6), (s3, c3)] = T::sin_cos_all([
+        let [(s23, c23), (s1, c1), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s3, c3)] = T::sin_cos_all([
+            q[1] + q[2],
             q[0],
             q[1],
-            q[1] + q[2],
             q[3],
             q[4],
             q[5],

@@ -11,11 +11,11 @@
 // Operations of one call:
 //   transform      10 trig, 45 mul, 26 add, 1 neg
 //   link_frames    10 trig, 47 mul, 26 add, 5 neg
-//   jacobian       10 trig, 53 mul, 27 add, 6 neg
+//   jacobian       10 trig, 47 mul, 22 add, 7 neg
 //   compliance     10 trig, 96 mul, 78 add, 3 neg
-//   deflection     10 trig, 104 mul, 65 add
-//   joint_torques  10 trig, 75 mul, 46 add
-//   statics        12 trig, 159 mul, 122 add, 10 neg
+//   deflection     10 trig, 80 mul, 51 add, 1 neg
+//   joint_torques  10 trig, 50 mul, 33 add
+//   statics        12 trig, 160 mul, 117 add, 11 neg
 
 use robstiff::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
 use robstiff::{Convention, Effect, JointKind, Real, Robot, Statics};
@@ -71,9 +71,9 @@ impl Rv130hsc {
     /// Operations of `jacobian`.
     pub const JACOBIAN_COST: robstiff::Cost = robstiff::Cost {
         trig: 10,
-        mul: 53,
-        add: 27,
-        neg: 6,
+        mul: 47,
+        add: 22,
+        neg: 7,
         root: 0,
     };
     /// Operations of `compliance`.
@@ -87,25 +87,25 @@ impl Rv130hsc {
     /// Operations of `deflection`.
     pub const DEFLECTION_COST: robstiff::Cost = robstiff::Cost {
         trig: 10,
-        mul: 104,
-        add: 65,
-        neg: 0,
+        mul: 80,
+        add: 51,
+        neg: 1,
         root: 0,
     };
     /// Operations of `joint_torques`.
     pub const JOINT_TORQUES_COST: robstiff::Cost = robstiff::Cost {
         trig: 10,
-        mul: 75,
-        add: 46,
+        mul: 50,
+        add: 33,
         neg: 0,
         root: 0,
     };
     /// Operations of `statics`.
     pub const STATICS_COST: robstiff::Cost = robstiff::Cost {
         trig: 12,
-        mul: 159,
-        add: 122,
-        neg: 10,
+        mul: 160,
+        add: 117,
+        neg: 11,
         root: 0,
     };
 }
@@ -178,10 +178,10 @@ impl Robot<5> for Rv130hsc {
         let a3 = T::of(Self::A3);
         let d4 = T::of(Self::D4);
         let a5 = T::of(Self::A5);
-        let [(s1, c1), (s2, c2), (s23, c23), (s4, c4), (s5, c5)] = T::sin_cos_all([
+        let [(s23, c23), (s1, c1), (s2, c2), (s4, c4), (s5, c5)] = T::sin_cos_all([
+            q[1] + q[2],
             q[0],
             q[1],
-            q[1] + q[2],
             q[3],
             q[4],
         ]);
@@ -229,10 +229,10 @@ impl Robot<5> for Rv130hsc {
         let a3 = T::of(Self::A3);
         let d4 = T::of(Self::D4);
         let a5 = T::of(Self::A5);
-        let [(s1, c1), (s2, c2), (s23, c23), (s4, c4), (s5, c5)] = T::sin_cos_all([
+        let [(s23, c23), (s1, c1), (s2, c2), (s4, c4), (s5, c5)] = T::sin_cos_all([
+            q[1] + q[2],
             q[0],
             q[1],
-            q[1] + q[2],
             q[3],
             q[4],
         ]);
@@ -308,61 +308,65 @@ impl Robot<5> for Rv130hsc {
 
     /// Jacobian of the tool centre point in the base frame, 6 rows: translation (m/rad), rotation.
     ///
-    /// 10 trig, 53 mul, 27 add, 6 neg.
+    /// 10 trig, 47 mul, 22 add, 7 neg.
     #[inline(always)]
     fn jacobian<T: Real>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 5> {
         let a1 = T::of(Self::A1);
         let a3 = T::of(Self::A3);
         let d4 = T::of(Self::D4);
         let a5 = T::of(Self::A5);
-        let [(s1, c1), (s2, c2), (s23, c23), (s4, c4), (s5, c5)] = T::sin_cos_all([
-            q[0],
-            q[1],
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_all([
             q[1] + q[2],
+            q[1],
             q[3],
             q[4],
+            q[0],
         ]);
-        let t1 = a3 * s23;
-        let t2 = c1 * s23;
-        let t3 = s1 * s23;
-        let z4x = c1 * c23;
-        let z4y = s1 * c23;
+        let z5x = s23 * s4;
         let z5z = c23 * s4;
-        let z5y = c1 * c4 + t3 * s4;
-        let z5x = t2 * s4 - s1 * c4;
-        let t4 = a5 * c5;
-        let t5 = a5 * s5;
-        let t6 = (t2 * c4 + s1 * s4) * t4;
-        let t7 = (t3 * c4 - c1 * s4) * t4;
-        let r5x = t6 + z4x * t5;
-        let r5y = t7 + z4y * t5;
-        let r5z = c23 * c4 * t4 - s23 * t5;
-        let r4x = d4 * z4x + r5x;
-        let r4y = d4 * z4y + r5y;
+        let t1 = a5 * c5;
+        let t2 = a5 * s5;
+        let j1x = s4 * t1;
+        let r5x = s23 * c4 * t1 + c23 * t2;
+        let r5z = c23 * c4 * t1 - s23 * t2;
+        let r4x = d4 * c23 + r5x;
         let r4z = r5z - d4 * s23;
-        let r3x = c1 * t1 + r4x;
-        let r3y = s1 * t1 + r4y;
+        let r3x = a3 * s23 + r4x;
         let r3z = a3 * c23 + r4z;
-        let r2x = c1 * s2 + r3x;
-        let r2y = s1 * s2 + r3y;
+        let r2x = s2 + r3x;
         let r2z = c2 + r3z;
-        let r1x = a1 * c1 + r2x;
-        let r1y = a1 * s1 + r2y;
-        let j2x = c1 * r2z;
-        let j2y = s1 * r2z;
-        let j3x = c1 * r3z;
-        let j3y = s1 * r3z;
-        let j4x = z4y * r4z + s23 * r4y;
-        let j4z = z4x * r4y - z4y * r4x;
-        let j5x = z5y * r5z - z5z * r5y;
+        let r1x = a1 + r2x;
+        let t3 = s23 * j1x;
+        let t4 = s23 * r4x + c23 * r4z;
+        let j5x = c4 * r5z + z5z * j1x;
         let j5y = z5z * r5x - z5x * r5z;
-        let j5z = z5x * r5y - z5y * r5x;
         SMatrix::from([
-            [-r1y, r1x, T::zero(), T::zero(), T::zero(), T::one()],
-            [j2x, j2y, -(s1 * r2y + c1 * r2x), -s1, c1, T::zero()],
-            [j3x, j3y, -(s1 * r3y + c1 * r3x), -s1, c1, T::zero()],
-            [j4x, -(s23 * r4x + z4x * r4z), j4z, z4x, z4y, -s23],
-            [j5x, j5y, j5z, z5x, z5y, z5z],
+            [
+                j1x * c1 - r1x * s1,
+                j1x * s1 + r1x * c1,
+                T::zero(),
+                T::zero(),
+                T::zero(),
+                T::one(),
+            ],
+            [r2z * c1, r2z * s1, -r2x, -s1, c1, T::zero()],
+            [r3z * c1, r3z * s1, -r3x, -s1, c1, T::zero()],
+            [
+                t4 * s1 - t3 * c1,
+                -(t3 * s1 + t4 * c1),
+                -(c23 * j1x),
+                c23 * c1,
+                c23 * s1,
+                -s23,
+            ],
+            [
+                j5x * c1 - j5y * s1,
+                j5x * s1 + j5y * c1,
+                -(z5x * j1x + c4 * r5x),
+                z5x * c1 - c4 * s1,
+                z5x * s1 + c4 * c1,
+                z5z,
+            ],
         ])
     }
 
@@ -511,97 +515,81 @@ impl Robot<5> for Rv130hsc {
 
     /// Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm).
     ///
-    /// 10 trig, 104 mul, 65 add.
+    /// 10 trig, 80 mul, 51 add, 1 neg.
     #[inline(always)]
     fn deflection<T: Real>(&self, q: &SVector<T, 5>, wrench: &Vector6<T>) -> Vector6<T> {
+        let a1 = T::of(Self::A1);
+        let a3 = T::of(Self::A3);
+        let d4 = T::of(Self::D4);
+        let a5 = T::of(Self::A5);
         let h1 = T::of(Self::H1);
         let h2 = T::of(Self::H2);
         let h3 = T::of(Self::H3);
         let h4 = T::of(Self::H4);
         let h5 = T::of(Self::H5);
-        let a1 = T::of(Self::A1);
-        let a3 = T::of(Self::A3);
-        let d4 = T::of(Self::D4);
-        let a5 = T::of(Self::A5);
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s1, c1), (s2, c2), (s23, c23), (s4, c4), (s5, c5)] = T::sin_cos_all([
-            q[0],
-            q[1],
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_all([
             q[1] + q[2],
+            q[1],
             q[3],
             q[4],
+            q[0],
         ]);
-        let t1 = a3 * s23;
-        let t2 = c1 * s23;
-        let t3 = s1 * s23;
-        let z4x = c1 * c23;
-        let z4y = s1 * c23;
+        let z5x = s23 * s4;
         let z5z = c23 * s4;
-        let z5y = c1 * c4 + t3 * s4;
-        let z5x = t2 * s4 - s1 * c4;
-        let t4 = a5 * c5;
-        let t5 = a5 * s5;
-        let t6 = (t2 * c4 + s1 * s4) * t4;
-        let t7 = (t3 * c4 - c1 * s4) * t4;
-        let r5x = t6 + z4x * t5;
-        let r5y = t7 + z4y * t5;
-        let r5z = c23 * c4 * t4 - s23 * t5;
-        let r4x = d4 * z4x + r5x;
-        let r4y = d4 * z4y + r5y;
+        let t1 = a5 * c5;
+        let t2 = a5 * s5;
+        let j1x = s4 * t1;
+        let r5x = s23 * c4 * t1 + c23 * t2;
+        let r5z = c23 * c4 * t1 - s23 * t2;
+        let r4x = d4 * c23 + r5x;
         let r4z = r5z - d4 * s23;
-        let r3x = c1 * t1 + r4x;
-        let r3y = s1 * t1 + r4y;
+        let r3x = a3 * s23 + r4x;
         let r3z = a3 * c23 + r4z;
-        let r2x = c1 * s2 + r3x;
-        let r2y = s1 * s2 + r3y;
+        let r2x = s2 + r3x;
         let r2z = c2 + r3z;
-        let r1x = a1 * c1 + r2x;
-        let r1y = a1 * s1 + r2y;
-        let j2x = c1 * r2z;
-        let j2y = s1 * r2z;
-        let t8 = s1 * r2y + c1 * r2x;
-        let j3x = c1 * r3z;
-        let j3y = s1 * r3z;
-        let t9 = s1 * r3y + c1 * r3x;
-        let j4x = z4y * r4z + s23 * r4y;
-        let t10 = s23 * r4x + z4x * r4z;
-        let j4z = z4x * r4y - z4y * r4x;
-        let j5x = z5y * r5z - z5z * r5y;
+        let r1x = a1 + r2x;
+        let t3 = fx * c1 + fy * s1;
+        let t4 = fy * c1 - fx * s1;
+        let t5 = c1 * mx + s1 * my;
+        let t6 = c1 * my - s1 * mx;
+        let t7 = s23 * j1x;
+        let t8 = s23 * r4x + c23 * r4z;
+        let t9 = c23 * j1x;
+        let j5x = c4 * r5z + z5z * j1x;
         let j5y = z5z * r5x - z5x * r5z;
-        let j5z = z5x * r5y - z5y * r5x;
-        let tau1 = mz + (r1x * fy - r1y * fx);
-        let t11 = fx * j2x + fy * j2y - fz * t8;
-        let t12 = c1 * my - s1 * mx;
-        let tau2 = t11 + t12;
-        let t13 = fx * j3x + fy * j3y - fz * t9;
-        let tau3 = t12 + t13;
-        let t14 = z4x * mx + z4y * my - s23 * mz;
-        let tau4 = fx * j4x - fy * t10 + fz * j4z + t14;
-        let t15 = z5x * mx + z5y * my + z5z * mz;
-        let tau5 = fx * j5x + fy * j5y + fz * j5z + t15;
+        let t10 = z5x * j1x + c4 * r5x;
+        let tau1 = mz + (j1x * t3 + r1x * t4);
+        let tau2 = t6 + (r2z * t3 - r2x * fz);
+        let tau3 = t6 + (r3z * t3 - r3x * fz);
+        let t11 = t3 * t7 + t4 * t8 + fz * t9;
+        let tau4 = c23 * t5 - s23 * mz - t11;
+        let t12 = z5x * t5 + c4 * t6 + z5z * mz;
+        let tau5 = t3 * j5x + t4 * j5y - fz * t10 + t12;
         let dq1 = h1 * tau1;
         let dq2 = h2 * tau2;
         let dq3 = h3 * tau3;
         let dq4 = h4 * tau4;
         let dq5 = h5 * tau5;
-        let t16 = j2x * dq2 - r1y * dq1 + j3x * dq3;
-        let t17 = r1x * dq1 + j2y * dq2 + j3y * dq3;
-        let t18 = j4z * dq4 - (t8 * dq2 + t9 * dq3);
-        let t19 = z4x * dq4 - (s1 * dq2 + s1 * dq3);
-        let t20 = c1 * dq2 + c1 * dq3 + z4y * dq4;
+        let t13 = j1x * dq1 + r2z * dq2 + r3z * dq3;
+        let t14 = r2x * dq2 + r3x * dq3 + t9 * dq4;
+        let t15 = t13 - t7 * dq4 + j5x * dq5;
+        let t16 = r1x * dq1 - t8 * dq4 + j5y * dq5;
+        let t17 = c23 * dq4 + z5x * dq5;
+        let t18 = dq2 + dq3 + c4 * dq5;
         Vector6::new(
-            t16 + j4x * dq4 + j5x * dq5,
-            t17 - t10 * dq4 + j5y * dq5,
-            t18 + j5z * dq5,
-            t19 + z5x * dq5,
-            t20 + z5y * dq5,
+            c1 * t15 - s1 * t16,
+            s1 * t15 + c1 * t16,
+            -(t14 + t10 * dq5),
+            c1 * t17 - s1 * t18,
+            s1 * t17 + c1 * t18,
             dq1 - s23 * dq4 + z5z * dq5,
         )
     }
 
     /// Joint torques (Nm) (forces (N) of sliding joints) that hold a wrench at the tool centre point.
     ///
-    /// 10 trig, 75 mul, 46 add.
+    /// 10 trig, 50 mul, 33 add.
     #[inline(always)]
     fn joint_torques<T: Real>(
         &self,
@@ -613,65 +601,49 @@ impl Robot<5> for Rv130hsc {
         let d4 = T::of(Self::D4);
         let a5 = T::of(Self::A5);
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s1, c1), (s2, c2), (s23, c23), (s4, c4), (s5, c5)] = T::sin_cos_all([
+        let [(s23, c23), (s1, c1), (s2, c2), (s4, c4), (s5, c5)] = T::sin_cos_all([
+            q[1] + q[2],
             q[0],
             q[1],
-            q[1] + q[2],
             q[3],
             q[4],
         ]);
-        let t1 = a3 * s23;
-        let t2 = c1 * s23;
-        let t3 = s1 * s23;
-        let z4x = c1 * c23;
-        let z4y = s1 * c23;
+        let t1 = fx * c1 + fy * s1;
+        let t2 = fy * c1 - fx * s1;
+        let t3 = c1 * mx + s1 * my;
+        let t4 = c1 * my - s1 * mx;
+        let z5x = s23 * s4;
         let z5z = c23 * s4;
-        let z5y = c1 * c4 + t3 * s4;
-        let z5x = t2 * s4 - s1 * c4;
-        let t4 = a5 * c5;
-        let t5 = a5 * s5;
-        let t6 = (t2 * c4 + s1 * s4) * t4;
-        let t7 = (t3 * c4 - c1 * s4) * t4;
-        let r5x = t6 + z4x * t5;
-        let r5y = t7 + z4y * t5;
-        let r5z = c23 * c4 * t4 - s23 * t5;
-        let r4x = d4 * z4x + r5x;
-        let r4y = d4 * z4y + r5y;
+        let t5 = a5 * c5;
+        let t6 = a5 * s5;
+        let j1x = s4 * t5;
+        let r5x = s23 * c4 * t5 + c23 * t6;
+        let r5z = c23 * c4 * t5 - s23 * t6;
+        let r4x = d4 * c23 + r5x;
         let r4z = r5z - d4 * s23;
-        let r3x = c1 * t1 + r4x;
-        let r3y = s1 * t1 + r4y;
+        let r3x = a3 * s23 + r4x;
         let r3z = a3 * c23 + r4z;
-        let r2x = c1 * s2 + r3x;
-        let r2y = s1 * s2 + r3y;
+        let r2x = s2 + r3x;
         let r2z = c2 + r3z;
-        let r1x = a1 * c1 + r2x;
-        let r1y = a1 * s1 + r2y;
-        let j2x = c1 * r2z;
-        let j2y = s1 * r2z;
-        let j3x = c1 * r3z;
-        let j3y = s1 * r3z;
-        let j4x = z4y * r4z + s23 * r4y;
-        let j4z = z4x * r4y - z4y * r4x;
-        let j5x = z5y * r5z - z5z * r5y;
+        let r1x = a1 + r2x;
+        let j5x = c4 * r5z + z5z * j1x;
         let j5y = z5z * r5x - z5x * r5z;
-        let j5z = z5x * r5y - z5y * r5x;
-        let tau1 = mz + (fy * r1x - fx * r1y);
-        let t8 = fz * (s1 * r2y + c1 * r2x);
-        let t9 = my * c1 - mx * s1;
-        let tau2 = fx * j2x + fy * j2y - t8 + t9;
-        let t10 = fz * (s1 * r3y + c1 * r3x);
-        let tau3 = t9 + (fx * j3x + fy * j3y - t10);
-        let t11 = fy * (s23 * r4x + z4x * r4z);
-        let t12 = mx * z4x + my * z4y - mz * s23;
-        let tau4 = fx * j4x - t11 + fz * j4z + t12;
-        let t13 = mx * z5x + my * z5y + mz * z5z;
-        let tau5 = fx * j5x + fy * j5y + fz * j5z + t13;
+        let tau1 = mz + (t1 * j1x + t2 * r1x);
+        let tau2 = t4 + (t1 * r2z - fz * r2x);
+        let tau3 = t4 + (t1 * r3z - fz * r3x);
+        let t7 = t2 * (s23 * r4x + c23 * r4z);
+        let t8 = t1 * (s23 * j1x) + t7;
+        let t9 = t8 + fz * (c23 * j1x);
+        let tau4 = t3 * c23 - mz * s23 - t9;
+        let t10 = fz * (z5x * j1x + c4 * r5x);
+        let t11 = t3 * z5x + t4 * c4 + mz * z5z;
+        let tau5 = t1 * j5x + t2 * j5y - t10 + t11;
         SVector::from([tau1, tau2, tau3, tau4, tau5])
     }
 
     /// Transform, Jacobian and compliance of one pose, with what they have in common.
     ///
-    /// 12 trig, 159 mul, 122 add, 10 neg.
+    /// 12 trig, 160 mul, 117 add, 11 neg.
     #[inline(always)]
     fn statics<T: Real>(&self, q: &SVector<T, 5>) -> Statics<5, T> {
         let d1 = T::of(Self::D1);
@@ -687,193 +659,200 @@ impl Robot<5> for Rv130hsc {
         let a5_h5 = T::of(Self::A5 * Self::H5);
         let a5_h4 = T::of(Self::A5 * Self::H4);
         let k1 = T::of(-Self::H5);
-        let [(s1, c1), (s2, c2), (s23, c23), (s4, c4), (s5, c5), (s3, c3)] = T::sin_cos_all([
-            q[0],
-            q[1],
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1), (s3, c3)] = T::sin_cos_all([
             q[1] + q[2],
+            q[1],
             q[3],
             q[4],
+            q[0],
             q[2],
         ]);
-        let t1 = a1 * c1;
-        let t2 = a1 * s1;
-        let t3 = c1 * s2;
-        let t4 = s1 * s2;
-        let t5 = a3 * s23;
-        let t6 = a3 * c23;
-        let t7 = c1 * t5;
-        let t8 = s1 * t5;
-        let t9 = c1 * s23;
-        let t10 = s1 * s23;
-        let z4x = c1 * c23;
-        let z4y = s1 * c23;
-        let t11 = d4 * z4x;
-        let t12 = d4 * z4y;
-        let t13 = d4 * s23;
-        let t14 = c23 * c4;
-        let t15 = t9 * c4 + s1 * s4;
-        let t16 = t10 * c4 - c1 * s4;
+        let t1 = a3 * s23;
+        let t2 = a3 * c23;
+        let t3 = d4 * c23;
+        let t4 = d4 * s23;
+        let t5 = s23 * c4;
+        let t6 = c23 * c4;
+        let z5x = s23 * s4;
         let z_z = c23 * s4;
-        let z_y = c1 * c4 + t10 * s4;
-        let z_x = t9 * s4 - s1 * c4;
         let r5x = a5 * c5;
         let r5y = a5 * s5;
-        let r5x_2 = t15 * r5x + z4x * r5y;
-        let r5y_2 = t16 * r5x + z4y * r5y;
-        let r5z = t14 * r5x - s23 * r5y;
-        let p_x = t1 + t3 + t7 + t11 + r5x_2;
-        let p_y = t2 + t4 + t8 + t12 + r5y_2;
-        let p_z = d1 + c2 + t6 - t13 + r5z;
-        let x_x = t15 * c5 + z4x * s5;
-        let x_y = t16 * c5 + z4y * s5;
-        let x_z = t14 * c5 - s23 * s5;
-        let y_x = z4x * c5 - t15 * s5;
-        let y_y = z4y * c5 - t16 * s5;
-        let r4x = t11 + r5x_2;
-        let r4y = t12 + r5y_2;
-        let r4z = r5z - t13;
-        let r3x = t7 + r4x;
-        let r3y = t8 + r4y;
-        let r3z = t6 + r4z;
-        let r2x = t3 + r3x;
-        let r2y = t4 + r3y;
+        let j1x = s4 * r5x;
+        let r5x_2 = t5 * r5x + c23 * r5y;
+        let r5z = t6 * r5x - s23 * r5y;
+        let t7 = a1 + s2 + t1 + t3 + r5x_2;
+        let p_z = d1 + c2 + t2 - t4 + r5z;
+        let t8 = s4 * c5;
+        let t9 = t5 * c5 + c23 * s5;
+        let x_z = t6 * c5 - s23 * s5;
+        let t10 = s4 * s5;
+        let t11 = c23 * c5 - t5 * s5;
+        let r4x = t3 + r5x_2;
+        let r4z = r5z - t4;
+        let r3x = t1 + r4x;
+        let r3z = t2 + r4z;
+        let r2x = s2 + r3x;
         let r2z = c2 + r3z;
-        let r1x = t1 + r2x;
-        let r1y = t2 + r2y;
-        let j2x = c1 * r2z;
-        let j2y = s1 * r2z;
-        let j3x = c1 * r3z;
-        let j3y = s1 * r3z;
-        let j4x = z4y * r4z + s23 * r4y;
-        let j4z = z4x * r4y - z4y * r4x;
-        let j5x = z_y * r5z - z_z * r5y_2;
-        let j5y = z_z * r5x_2 - z_x * r5z;
-        let j5z = z_x * r5y_2 - z_y * r5x_2;
+        let r1x = a1 + r2x;
+        let x_x = t9 * c1 + t8 * s1;
+        let x_y = t9 * s1 - t8 * c1;
+        let y_x = t11 * c1 - t10 * s1;
+        let y_y = t11 * s1 + t10 * c1;
+        let z_x = z5x * c1 - c4 * s1;
+        let z_y = z5x * s1 + c4 * c1;
+        let t12 = j1x * s1;
+        let p_x = t7 * c1 + t12;
+        let t13 = j1x * c1;
+        let p_y = t7 * s1 - t13;
+        let t14 = s23 * j1x;
+        let t15 = s23 * r4x + c23 * r4z;
+        let j5x = c4 * r5z + z_z * j1x;
+        let j5y = z_z * r5x_2 - z5x * r5z;
 
         // From joint 5 to the TCP.
         let tr4_xy = a5_h5 * s5;
         let tr5_yz = a5_h5 * c5;
         let tt5_xx = r5y * tr4_xy;
-        let t17 = r5x * tr4_xy;
+        let t16 = r5x * tr4_xy;
         let tt5_yy = r5x * tr5_yz;
         let r4z_2 = d4 + r5y;
 
         // From joint 4 to the TCP.
         let tr4_yz = a5_h4 * c5;
         let tt4_yy = r5x * tr4_yz;
-        let t18 = s4 * r5x;
-        let t19 = s4 * (tt5_xx - tt4_yy);
-        let t20 = s4 * t19;
-        let t21 = c4 * t19;
-        let tt3_zz = tt4_yy + t20;
-        let tt3_yz = s4 * t17;
-        let t22 = k1 * s4;
-        let t23 = s4 * t22;
-        let t24 = c4 * t22;
-        let t25 = c4 * tr4_xy;
-        let tr3_zz = s4 * t25;
-        let t26 = c4 * t25;
-        let t27 = s4 * tr4_yz;
-        let t28 = c4 * tr4_yz;
+        let t17 = s4 * (tt5_xx - tt4_yy);
+        let t18 = s4 * t17;
+        let t19 = c4 * t17;
+        let tt3_zz = tt4_yy + t18;
+        let tt3_yz = s4 * t16;
+        let t20 = k1 * s4;
+        let t21 = s4 * t20;
+        let t22 = c4 * t20;
+        let t23 = c4 * tr4_xy;
+        let tr3_zz = s4 * t23;
+        let t24 = c4 * t23;
+        let t25 = s4 * tr4_yz;
+        let t26 = c4 * tr4_yz;
         let tr3_yx = s4 * tr5_yz;
-        let tr3_zx = tr4_xy - t26;
+        let tr3_zx = tr4_xy - t24;
         let r3x_2 = a3 + c4 * r5x;
 
         // From joint 3 to the TCP.
-        let t29 = h3 * r4z_2;
-        let t30 = h3 * r3x_2;
-        let tt3_xx = tt5_xx - t20 + r4z_2 * t29;
-        let tt3_yy = tt5_yy + r3x_2 * t30;
-        let rr3_zz = h3 + (h5 + t23);
-        let tr3_yz = c4 * tr5_yz + t30;
+        let t27 = h3 * r4z_2;
+        let t28 = h3 * r3x_2;
+        let tt3_xx = tt5_xx - t18 + r4z_2 * t27;
+        let tt3_yy = tt5_yy + r3x_2 * t28;
+        let rr3_zz = h3 + (h5 + t21);
+        let tr3_yz = c4 * tr5_yz + t28;
         let r2x_2 = r3x_2 + c3;
-        let r2y_2 = r4z_2 - s3;
+        let r2y = r4z_2 - s3;
 
         // From joint 2 to the TCP.
-        let t31 = h2 * r2y_2;
-        let t32 = h2 * r2x_2;
-        let tt2_xx = tt3_xx - t31 * (s3 - r4z_2);
-        let t33 = c4 * t17 + r3x_2 * t29 + r2x_2 * t31;
-        let tt2_yy = tt3_yy + r2x_2 * t32;
+        let t29 = h2 * r2y;
+        let t30 = h2 * r2x_2;
+        let tt2_xx = tt3_xx - t29 * (s3 - r4z_2);
+        let t31 = c4 * t16 + r3x_2 * t27 + r2x_2 * t29;
+        let tt2_yy = tt3_yy + r2x_2 * t30;
         let rr2_zz = h2 + rr3_zz;
-        let t34 = t26 + t29 + t31;
-        let tr2_yz = tr3_yz + t32;
-        let t35 = c23 * (tt2_xx - tt2_yy) + s23 * (t33 + t33);
-        let t36 = c23 * t35;
-        let tt1_zz = tt2_yy + t36;
-        let t37 = c23 * t21 + s23 * tt3_yz;
-        let t38 = c23 * (h4 + t23);
-        let t39 = c23 * t38;
-        let t40 = s23 * t38;
-        let rr1_xx = t39 - t23;
-        let t41 = s23 * t24;
-        let t42 = c23 * t24;
-        let t43 = c23 * tr3_zz + s23 * (tr3_yx - t27);
-        let t44 = c23 * t43;
-        let t45 = s23 * t43;
-        let tr1_xx = t44 - tr3_zz;
-        let t46 = t27 + t45;
-        let tr1_xy = c23 * tr2_yz - s23 * t34;
-        let t47 = c23 * t34 + s23 * tr2_yz;
-        let tr1_yx = s23 * tr3_zx - c23 * t28;
-        let tt1_xz = s23 * t35 - t33;
-        let r1x_2 = a1 + (s23 * r2x_2 + c23 * r2y_2);
+        let t32 = t24 + t27 + t29;
+        let tr2_yz = tr3_yz + t30;
+        let t33 = c23 * (tt2_xx - tt2_yy) + s23 * (t31 + t31);
+        let t34 = c23 * t33;
+        let tt1_zz = tt2_yy + t34;
+        let t35 = c23 * t19 + s23 * tt3_yz;
+        let t36 = c23 * (h4 + t21);
+        let t37 = c23 * t36;
+        let t38 = s23 * t36;
+        let rr1_xx = t37 - t21;
+        let t39 = s23 * t22;
+        let t40 = c23 * t22;
+        let t41 = c23 * tr3_zz + s23 * (tr3_yx - t25);
+        let t42 = c23 * t41;
+        let t43 = s23 * t41;
+        let tr1_xx = t42 - tr3_zz;
+        let t44 = t25 + t43;
+        let tr1_xy = c23 * tr2_yz - s23 * t32;
+        let t45 = c23 * t32 + s23 * tr2_yz;
+        let tr1_yx = s23 * tr3_zx - c23 * t26;
+        let tt1_xz = s23 * t33 - t31;
+        let r1x_2 = a1 + (s23 * r2x_2 + c23 * r2y);
 
         // From joint 1 to the TCP.
-        let t48 = h1 * t18;
-        let t49 = h1 * r1x_2;
-        let tt1_xx = tt2_xx - t36 + t18 * t48;
-        let tt1_xy = c23 * tt3_yz - s23 * t21 + r1x_2 * t48;
-        let tt1_yy = tt3_zz + r1x_2 * t49;
-        let rr1_zz = h1 + (h4 - t39);
-        let tr1_xz = tr3_yx - t45 + t48;
-        let tr1_yz = c23 * tr3_zx + s23 * t28 + t49;
-        let t50 = s1 * (tt1_xx - tt1_yy) + c1 * (tt1_xy + tt1_xy);
+        let t46 = h1 * j1x;
+        let t47 = h1 * r1x_2;
+        let tt1_xx = tt2_xx - t34 + j1x * t46;
+        let tt1_xy = c23 * tt3_yz - s23 * t19 + r1x_2 * t46;
+        let tt1_yy = tt3_zz + r1x_2 * t47;
+        let rr1_zz = h1 + (h4 - t37);
+        let tr1_xz = tr3_yx - t43 + t46;
+        let tr1_yz = c23 * tr3_zx + s23 * t26 + t47;
+        let t48 = s1 * (tt1_xx - tt1_yy) + c1 * (tt1_xy + tt1_xy);
+        let t49 = s1 * t48;
+        let tt_xx = tt1_xx - t49;
+        let tt_xy = c1 * t48 - tt1_xy;
+        let tt_yy = tt1_yy + t49;
+        let tt_xz = c1 * tt1_xz + s1 * t35;
+        let tt_yz = s1 * tt1_xz - c1 * t35;
+        let t50 = s1 * (rr1_xx - rr2_zz) - c1 * (t39 + t39);
         let t51 = s1 * t50;
-        let tt_xx = tt1_xx - t51;
-        let tt_xy = c1 * t50 - tt1_xy;
-        let tt_yy = tt1_yy + t51;
-        let tt_xz = c1 * tt1_xz + s1 * t37;
-        let tt_yz = s1 * tt1_xz - c1 * t37;
-        let t52 = s1 * (rr1_xx - rr2_zz) - c1 * (t41 + t41);
-        let t53 = s1 * t52;
-        let rr_xx = rr1_xx - t53;
-        let rr_xy = t41 + c1 * t52;
-        let rr_yy = rr2_zz + t53;
-        let rr_xz = s1 * t42 - c1 * t40;
-        let t54 = s1 * t40 + c1 * t42;
-        let t55 = s1 * (tr1_xx - tr3_zz) + c1 * (tr1_xy + tr1_yx);
-        let t56 = s1 * t55;
-        let t57 = c1 * t55;
-        let tr_xx = tr1_xx - t56;
-        let tr_xy = t57 - tr1_yx;
-        let tr_yx = t57 - tr1_xy;
-        let tr_yy = tr3_zz + t56;
+        let rr_xx = rr1_xx - t51;
+        let rr_xy = t39 + c1 * t50;
+        let rr_yy = rr2_zz + t51;
+        let rr_xz = s1 * t40 - c1 * t38;
+        let t52 = s1 * t38 + c1 * t40;
+        let t53 = s1 * (tr1_xx - tr3_zz) + c1 * (tr1_xy + tr1_yx);
+        let t54 = s1 * t53;
+        let t55 = c1 * t53;
+        let tr_xx = tr1_xx - t54;
+        let tr_xy = t55 - tr1_yx;
+        let tr_yx = t55 - tr1_xy;
+        let tr_yy = tr3_zz + t54;
         let tr_xz = c1 * tr1_xz - s1 * tr1_yz;
         let tr_yz = s1 * tr1_xz + c1 * tr1_yz;
-        let tr_zx = s1 * t47 - c1 * t46;
-        let t58 = s1 * t46 + c1 * t47;
+        let tr_zx = s1 * t45 - c1 * t44;
+        let t56 = s1 * t44 + c1 * t45;
         Statics {
             transform: Matrix4::new(
                 x_x, y_x, z_x, p_x,
                 x_y, y_y, z_y, p_y,
-                x_z, -(s23 * c5 + t14 * s5), z_z, p_z,
+                x_z, -(s23 * c5 + t6 * s5), z_z, p_z,
                 T::zero(), T::zero(), T::zero(), T::one(),
             ),
             jacobian: SMatrix::from([
-                [-r1y, r1x, T::zero(), T::zero(), T::zero(), T::one()],
-                [j2x, j2y, -(s1 * r2y + c1 * r2x), -s1, c1, T::zero()],
-                [j3x, j3y, -(s1 * r3y + c1 * r3x), -s1, c1, T::zero()],
-                [j4x, -(s23 * r4x + z4x * r4z), j4z, z4x, z4y, -s23],
-                [j5x, j5y, j5z, z_x, z_y, z_z],
+                [
+                    t13 - r1x * s1,
+                    t12 + r1x * c1,
+                    T::zero(),
+                    T::zero(),
+                    T::zero(),
+                    T::one(),
+                ],
+                [r2z * c1, r2z * s1, -r2x, -s1, c1, T::zero()],
+                [r3z * c1, r3z * s1, -r3x, -s1, c1, T::zero()],
+                [
+                    s1 * t15 - c1 * t14,
+                    -(s1 * t14 + c1 * t15),
+                    -(c23 * j1x),
+                    c23 * c1,
+                    c23 * s1,
+                    -s23,
+                ],
+                [
+                    c1 * j5x - s1 * j5y,
+                    s1 * j5x + c1 * j5y,
+                    -(z5x * j1x + c4 * r5x_2),
+                    z_x,
+                    z_y,
+                    z_z,
+                ],
             ]),
             compliance: Matrix6::new(
                 tt_xx, tt_xy, tt_xz, tr_xx, tr_xy, tr_xz,
                 tt_xy, tt_yy, tt_yz, tr_yx, tr_yy, tr_yz,
-                tt_xz, tt_yz, tt1_zz, tr_zx, -t58, -t44,
+                tt_xz, tt_yz, tt1_zz, tr_zx, -t56, -t42,
                 tr_xx, tr_yx, tr_zx, rr_xx, rr_xy, rr_xz,
-                tr_xy, tr_yy, -t58, rr_xy, rr_yy, -t54,
-                tr_xz, tr_yz, -t44, rr_xz, -t54, rr1_zz,
+                tr_xy, tr_yy, -t56, rr_xy, rr_yy, -t52,
+                tr_xz, tr_yz, -t42, rr_xz, -t52, rr1_zz,
             ),
         }
     }

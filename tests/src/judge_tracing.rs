@@ -11,7 +11,7 @@
 //!
 //! [`would_do`]: crate::matrix::alias::would_do
 
-use robstiff::trace::{Trace, Verdict};
+use robstiff::trace::{EffectParameter, Trace, Verdict};
 
 /// Standard deviations that have 95 % of a normal distribution within.
 const WITHIN: f64 = 1.959_964;
@@ -34,17 +34,31 @@ pub struct Name {
     pub name: String,
     /// What the data are said not to tell it from.
     pub same_as: Vec<String>,
-    /// Numbers by name, with their standard deviation.
-    pub parameters: Vec<(String, f64, Option<f64>)>,
+    /// Its numbers.
+    pub parameters: Vec<Number>,
+}
+
+/// A number of a name.
+#[derive(Clone, Debug)]
+pub struct Number {
+    /// What it is called.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// Its standard deviation.
+    pub std: Option<f64>,
+    /// Its unit.
+    pub unit: &'static str,
 }
 
 impl Told {
     /// What a trace says.
     pub fn of(trace: &Trace) -> Self {
+        let number = |p: &EffectParameter| Number { name: p.name.into(), value: p.value, std: p.std, unit: p.unit };
         let names = trace.effects.iter().map(|named| Name {
             name: named.effect.to_string(),
             same_as: named.same_as.clone(),
-            parameters: named.parameters.iter().map(|p| (p.name.to_string(), p.value, p.std)).collect(),
+            parameters: named.parameters.iter().map(number).collect(),
         });
         let joints = trace.estimates.iter().filter(|estimate| estimate.name.starts_with("joint "));
         Self {
@@ -107,27 +121,54 @@ fn covers(table: &[Vec<bool>], hidden: usize, taken: &mut Vec<bool>, index: usiz
     })
 }
 
-/// How many numbers of the names that are the hidden things' own are within
-/// their 95 % interval, and how many have one.
-pub fn numbers_within(told: &Told, hidden: &[(String, Vec<(String, f64)>)]) -> (usize, usize) {
-    let mut found = (0, 0);
+/// A number that was told with its uncertainty, held against what it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Held {
+    /// Whose it is: `kind@at name`, `joint 3`.
+    pub name: String,
+    /// What was told.
+    pub value: f64,
+    /// Its standard deviation.
+    pub std: f64,
+    /// What it is.
+    pub truth: f64,
+}
+
+impl Held {
+    /// Whether the truth is within the 95 % interval.
+    pub fn is_within(&self) -> bool {
+        (self.value - self.truth).abs() <= WITHIN * self.std
+    }
+}
+
+/// How many of some numbers are within their 95 % interval, of how many.
+pub fn within(held: &[Held]) -> (usize, usize) {
+    (held.iter().filter(|held| held.is_within()).count(), held.len())
+}
+
+/// The numbers of the names that are the hidden things' own, where they have an
+/// interval.
+pub fn held_numbers(told: &Told, hidden: &[(String, Vec<(String, f64)>)]) -> Vec<Held> {
+    let mut held = Vec::new();
     for (name, truths) in hidden {
         let Some(named) = told.names.iter().find(|named| named.name == *name) else { continue };
-        for (number, value, std) in &named.parameters {
-            let truth = truths.iter().find(|(truth, _)| truth == number);
-            if let (Some((_, truth)), Some(std)) = (truth, std) {
-                found.0 += usize::from((value - truth).abs() <= WITHIN * std);
-                found.1 += 1;
+        for number in &named.parameters {
+            let truth = truths.iter().find(|(truth, _)| *truth == number.name);
+            if let (Some(&(_, truth)), Some(std)) = (truth, number.std) {
+                held.push(Held { name: format!("{name} {}", number.name), value: number.value, std, truth });
             }
         }
     }
-    found
+    held
 }
 
 /// The same of the joints' compliances.
-pub fn joints_within(told: &Told, truths: &[f64]) -> (usize, usize) {
-    let known = told.joints.iter().zip(truths).filter_map(|((value, std), truth)| Some((value - truth, (*std)?)));
-    known.fold((0, 0), |(within, all), (off, std)| (within + usize::from(off.abs() <= WITHIN * std), all + 1))
+pub fn held_joints(told: &Told, truths: &[f64]) -> Vec<Held> {
+    let joints = (1..).zip(told.joints.iter().zip(truths));
+    let known = joints.filter_map(|(joint, (&(value, std), &truth))| {
+        Some(Held { name: format!("joint {joint}"), value, std: std?, truth })
+    });
+    known.collect()
 }
 
 #[cfg(test)]
@@ -138,7 +179,9 @@ mod tests {
         let name = |(name, same_as): &(&str, &[&str])| Name {
             name: name.to_string(),
             same_as: same_as.iter().map(ToString::to_string).collect(),
-            parameters: vec![("h".into(), 1.0, Some(0.1)), ("free".into(), 1.0, None)],
+            parameters: [("h", Some(0.1)), ("free", None)]
+                .map(|(name, std)| Number { name: name.into(), value: 1.0, std, unit: "1" })
+                .into(),
         };
         Told { verdict, names: names.iter().map(name).collect(), joints: vec![(2.0, Some(0.1)), (3.0, None)] }
     }
@@ -174,9 +217,10 @@ mod tests {
     fn intervals_count_where_there_is_one() {
         let told = told(Verdict::Explained, &[("a", &[])]);
         let truth = |value: f64| [("a".to_string(), vec![("h".to_string(), value), ("free".to_string(), 1.0)])];
-        assert_eq!(numbers_within(&told, &truth(1.19)), (1, 1));
-        assert_eq!(numbers_within(&told, &truth(1.2)), (0, 1));
-        assert_eq!(numbers_within(&told, &[("b".to_string(), Vec::new())]), (0, 0));
-        assert_eq!((joints_within(&told, &[2.1, 9.0]), joints_within(&told, &[2.3, 3.0])), ((1, 1), (0, 1)));
+        let counts = |value: f64| within(&held_numbers(&told, &truth(value)));
+        assert_eq!((counts(1.19), counts(1.2)), ((1, 1), (0, 1)));
+        assert!(held_numbers(&told, &[("b".to_string(), Vec::new())]).is_empty());
+        let joints = |value: f64| within(&held_joints(&told, &[value, 9.0]));
+        assert_eq!((joints(2.1), joints(2.3)), ((1, 1), (0, 1)));
     }
 }

@@ -4,7 +4,7 @@
 use nalgebra::{Matrix6, SVector, Vector3, Vector6};
 use robstiff::batch::{self, Grid};
 use robstiff::{Generic, Robot};
-use robstiff_tests::arms::{EveryEffect, ModifiedSlider, Snake, description};
+use robstiff_tests::arms::{EveryEffect, FanucR2000ic, ModifiedSlider, Rv130hsc, Scara, Snake, description};
 use robstiff_tests::for_every_arm;
 use robstiff_tests::judge::{DOUBLE, Sizes, assert_close, blocks, trials};
 
@@ -13,19 +13,16 @@ const POSES: usize = 203;
 
 for_every_arm!(agrees);
 
+/// The compliance, and the deflection under one wrench.
 fn agrees<const N: usize, R: Robot<N>>(robot: R, file: &str) {
     let description = description(file);
     let generic = Generic::<N>::new(&description).expect("as many joints as the generated robot");
     let poses: Vec<SVector<f64, N>> = trials::<N>(POSES, 7).map(|(q, _)| q).collect();
-    let direction = Vector3::new(0.6, 0.0, -0.8);
     // So small that the nonlinear joints are on both sides of their knees.
     let wrench = Vector6::new(30.0, -20.0, 10.0, 4.0, 5.0, -6.0);
 
     let mut compliances = vec![Matrix6::zeros(); POSES];
     batch::compliance(&robot, &poses, &mut compliances);
-    let (mut traces, mut along) = (vec![0.0; POSES], vec![0.0; POSES]);
-    batch::translational_trace(&robot, &poses, &mut traces);
-    batch::directional_compliance(&robot, &poses, &direction, &mut along);
     let mut deflections = vec![Vector6::zeros(); POSES];
     batch::deflection(&robot, &poses, &wrench, &mut deflections);
 
@@ -35,12 +32,37 @@ fn agrees<const N: usize, R: Robot<N>>(robot: R, file: &str) {
         for (block, (found, expected)) in blocks(&compliances[k]).iter().zip(&blocks(&expected)).enumerate() {
             assert_close("compliance", found, expected, sizes.compliance()[block], DOUBLE);
         }
+        assert_deflection(&generic, &sizes, q, &wrench, &deflections[k]);
+    }
+}
+
+/// What is made of entries of the compliance: of an arm of each build, because
+/// every further one is compiled for each set of instructions.
+#[test]
+fn parts_of_the_compliance_agree() {
+    parts_agree(Rv130hsc, "rv130hsc.yaml");
+    parts_agree(FanucR2000ic, "fanuc-r2000ic.yaml");
+    parts_agree(EveryEffect, "every-effect.yaml");
+    parts_agree(ModifiedSlider, "modified-slider.yaml");
+    parts_agree(Scara, "scara.yaml");
+    parts_agree(Snake, "snake.yaml");
+}
+
+fn parts_agree<const N: usize>(robot: impl Robot<N>, file: &str) {
+    let description = description(file);
+    let generic = Generic::<N>::new(&description).expect("as many joints as the generated robot");
+    let poses: Vec<SVector<f64, N>> = trials::<N>(POSES, 7).map(|(q, _)| q).collect();
+    let direction = Vector3::new(0.6, 0.0, -0.8);
+    let (mut traces, mut along) = (vec![0.0; POSES], vec![0.0; POSES]);
+    batch::translational_trace(&robot, &poses, &mut traces);
+    batch::directional_compliance(&robot, &poses, &direction, &mut along);
+    for (k, q) in poses.iter().enumerate() {
+        let size = Sizes::of(&description, q.as_slice()).compliance()[0];
+        let expected: Matrix6<f64> = generic.compliance(q);
         let translational = expected.fixed_view::<3, 3>(0, 0);
-        let size = sizes.compliance()[0];
         assert_close("trace", &[traces[k]], &[translational.trace()], size, DOUBLE);
         let directional = direction.dot(&(translational * direction));
         assert_close("directional compliance", &[along[k]], &[directional], size, DOUBLE);
-        assert_deflection(&generic, &sizes, q, &wrench, &deflections[k]);
     }
 }
 

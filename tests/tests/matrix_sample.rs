@@ -3,21 +3,16 @@
 //!
 //! The thresholds are not fitted to outcomes: of the rate that is claimed, a
 //! count below them has a probability of 1 in 1000. The seed was fixed before
-//! any outcome was seen. A kind that tracing learns to name is added to
-//! [`NAMED`], and is then held to the same rates.
+//! any outcome was seen.
 
+use robstiff_tests::judge_tracing::{Held, within};
+use robstiff_tests::matrix::draw::KINDS;
 use robstiff_tests::matrix::interval::fewest;
 use robstiff_tests::matrix::{Case, Expected, Group, Record, run};
 
-/// The kinds that tracing knows.
-const NAMED: [&str; 6] = [
-    "transverse_compliance",
-    "link_compliance",
-    "base_compliance",
-    "tool_compliance",
-    "joint_coupling",
-    "stiffness_nonlinearity",
-];
+/// Those beside which the joints, or what a description can say, are known but
+/// for a factor.
+const SCALED: [&str; 3] = ["transmission_error", "load_cell_scale", "creep"];
 
 /// Some that it must not take for one of these; each for a part of its own.
 const OUTSIDE: [&str; 4] = ["viscous_joint", "cable", "loose_flange", "cross_dependence"];
@@ -54,20 +49,28 @@ fn nothing_is_named_where_nothing_is_hidden() {
     assert_rate("nothing", 0.99, &all, |record| record.is_as_expected() == Some(true));
     // Intervals of the joints: of some hundred, 95 % have the truth in them;
     // those of one campaign are hardly correlated.
-    let (within, joints) = records.iter().fold((0, 0), |sum, one| (sum.0 + one.joints.0, sum.1 + one.joints.1));
+    let joints: Vec<Held> = records.into_iter().flat_map(|record| record.joints).collect();
+    let (within, joints) = within(&joints);
     println!("{within} of {joints} joints are within their interval");
     assert!(joints > 100 && within >= fewest(joints, 0.95, LEVEL), "{within} of {joints}");
 }
 
 #[test]
 fn what_matters_is_named() {
-    let records = sample(&NAMED.map(Group::One), 4);
+    let records = sample(&KINDS.map(Group::One), 2);
     let matter: Vec<&Record> = records.iter().filter(|record| record.ready.expected == Expected::Names).collect();
-    assert!(matter.len() >= 20, "{} are large enough to matter", matter.len());
+    assert!(matter.len() >= 36, "{} are large enough to matter", matter.len());
     assert_rate("named", 0.97, &matter, |record| record.judgement.right);
     assert_rate("alone", 0.95, &matter, |record| record.judgement.alone);
-    // What is written predicts other poses.
-    assert_rate("elsewhere", 0.95, &matter, |record| record.elsewhere.hypot(1.0) <= 1.03);
+    // What is written predicts other poses, where the files can say it: not a
+    // large periodic error, nor joints that a creep or a load cell scales.
+    let told = |record: &&&Record| !SCALED.contains(&record.ready.case.group.name());
+    let written: Vec<&Record> = matter.iter().filter(told).copied().collect();
+    assert_rate("elsewhere", 0.95, &written, |record| record.elsewhere.hypot(1.0) <= 1.03);
+    let numbers: Vec<Held> = records.into_iter().flat_map(|record| record.numbers).collect();
+    let (within, numbers) = within(&numbers);
+    println!("{within} of {numbers} numbers are within their interval");
+    assert!(numbers > 50 && within >= fewest(numbers, 0.95, LEVEL), "{within} of {numbers}");
 }
 
 /// Weight is no part of displacements, but for next to nothing.

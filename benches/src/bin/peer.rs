@@ -5,7 +5,7 @@ use std::hint::black_box;
 
 use robstiff::batch::Float;
 use robstiff::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
-use robstiff::{Generic, Robot, Statics, batch};
+use robstiff::{Generic, Robot, Statics, batch, upper_triangle};
 use robstiff_benches::{Rv130hsc, WRENCH};
 use robstiff_robots::Description;
 
@@ -20,14 +20,6 @@ robstiff::robot!("six-axis.yaml");
 
 const OURS: &str = "robstiff";
 
-/// The upper triangle by rows.
-fn triangle(compliance: &Matrix6<f64>) -> [f64; 21] {
-    let mut out = [0.0; 21];
-    let upper = (0..6).flat_map(|i| (i..6).map(move |j| (i, j)));
-    out.iter_mut().zip(upper).for_each(|(out, at)| *out = compliance[at]);
-    out
-}
-
 /// T and J by columns, the triangle of H_x, one after the other.
 fn all<const N: usize, const ALL: usize>(
     transform: &Matrix4<f64>,
@@ -39,7 +31,7 @@ fn all<const N: usize, const ALL: usize>(
     first.copy_from_slice(transform.as_slice());
     let (columns, upper) = rest.split_at_mut(6 * N);
     columns.copy_from_slice(jacobian.as_slice());
-    upper.copy_from_slice(&triangle(compliance));
+    upper.copy_from_slice(&upper_triangle(compliance));
 }
 
 /// One pose after the other; `J` and `ALL` are the numbers of entries of the
@@ -51,7 +43,7 @@ fn singles<const N: usize, const J: usize, const ALL: usize>(label: &str, name: 
         out.copy_from_slice(robot.transform(q).as_slice());
     });
     harness::one(way("J"), &poses, |q, out: &mut [f64; J]| out.copy_from_slice(robot.jacobian(q).as_slice()));
-    harness::one(way("H"), &poses, |q, out: &mut [f64; 21]| *out = triangle(&robot.compliance(q)));
+    harness::one(way("H"), &poses, |q, out: &mut [f64; 21]| *out = upper_triangle(&robot.compliance(q)));
     harness::one(way("TJH"), &poses, |q, out: &mut [f64; ALL]| {
         let Statics { transform, jacobian, compliance } = robot.statics(q);
         all(&transform, &jacobian, &compliance, out);
@@ -64,7 +56,7 @@ fn plain<const N: usize, const J: usize, const ALL: usize>(label: &str, arm: &na
     let way = |quantity| [label, quantity, "a loop in nalgebra 0.35"];
     harness::one(way("T"), &poses, |q, out: &mut [f64; 16]| out.copy_from_slice(arm.transform(q).as_slice()));
     harness::one(way("J"), &poses, |q, out: &mut [f64; J]| out.copy_from_slice(arm.jacobian(q).0.as_slice()));
-    harness::one(way("H"), &poses, |q, out: &mut [f64; 21]| *out = triangle(&arm.compliance(&arm.jacobian(q).0)));
+    harness::one(way("H"), &poses, |q, out: &mut [f64; 21]| *out = upper_triangle(&arm.compliance(&arm.jacobian(q).0)));
     harness::one(way("TJH"), &poses, |q, out: &mut [f64; ALL]| {
         let (jacobian, tip) = arm.jacobian(q);
         all(&tip, &jacobian, &arm.compliance(&jacobian), out);

@@ -9,6 +9,7 @@ mod identify;
 mod import;
 mod input;
 mod json;
+mod map;
 mod output;
 mod path;
 mod plan;
@@ -49,6 +50,7 @@ enum Command {
     Path(path::Arguments),
     Import(import::Arguments),
     View(scene::Arguments),
+    Map(map::Arguments),
 }
 
 impl Command {
@@ -66,6 +68,7 @@ impl Command {
             Self::Path(arguments) => path::run(arguments),
             Self::Import(arguments) => import::run(arguments),
             Self::View(arguments) => scene::run(arguments),
+            Self::Map(arguments) => map::run(arguments),
         }
     }
 }

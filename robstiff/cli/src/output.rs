@@ -3,7 +3,7 @@
 
 use std::ffi::OsString;
 use std::fmt;
-use std::fs::{self, OpenOptions};
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process;
@@ -11,6 +11,10 @@ use std::process;
 use robstiff::campaign::Campaign;
 
 use crate::failure::Failure;
+
+mod growing;
+
+pub use growing::Growing;
 
 /// Prints to standard output. A reader that has gone away (`| head`) has seen
 /// what it wanted.
@@ -34,6 +38,7 @@ pub fn complain(message: impl fmt::Display) {
 pub struct Files {
     files: Vec<(PathBuf, String)>,
     inputs: Vec<PathBuf>,
+    grown: Vec<Growing>,
 }
 
 impl Files {
@@ -66,16 +71,10 @@ impl Files {
     /// What cannot be written, two outputs of the same name, or an input among
     /// the outputs; no file is touched then.
     pub fn write(self) -> Result<String, Failure> {
-        for (index, (path, _)) in self.files.iter().enumerate() {
-            if self.files[..index].iter().any(|(other, _)| same_file(other, path)) {
-                return Err(Failure::Usage(format!("{} would be written twice", path.display())));
-            }
-            if self.inputs.iter().any(|input| same_file(input, path)) {
-                return Err(Failure::new(format!(
-                    "{} is one of the files that were read, and would be overwritten; choose another name or folder",
-                    path.display()
-                )));
-            }
+        let paths: Vec<&Path> =
+            self.grown.iter().map(Growing::path).chain(self.files.iter().map(|(path, _)| path.as_path())).collect();
+        for (index, path) in paths.iter().enumerate() {
+            self.refuse(path, &paths[..index])?;
         }
         // Dropped after the drafts, when what was made for them is empty.
         let mut made = Folders::default();
@@ -85,6 +84,10 @@ impl Files {
             drafts.push(Draft::new(path, text, &mut made).map_err(|error| cannot_write(path, &error))?);
         }
         let mut said = String::new();
+        for Growing { path, draft, .. } in &self.grown {
+            draft.publish().map_err(|error| cannot_write(path, &error))?;
+            said += &format!("wrote {}\n", path.display());
+        }
         for ((path, _), draft) in self.files.iter().zip(drafts) {
             draft.publish().map_err(|error| cannot_write(path, &error))?;
             said += &format!("wrote {}\n", path.display());
@@ -148,12 +151,26 @@ enum Draft {
 }
 
 impl Draft {
+    /// A draft with its whole text.
     fn new(path: &Path, text: &str, made: &mut Folders) -> io::Result<Self> {
+        let (mut draft, file) = Self::open(path, made)?;
+        if let Some(mut file) = file {
+            file.write_all(text.as_bytes())?;
+            file.sync_all()?;
+        }
+        if let Self::Stream { text: held, .. } = &mut draft {
+            text.clone_into(held);
+        }
+        Ok(draft)
+    }
+
+    /// An empty draft, and the file to write to where there is one beside.
+    fn open(path: &Path, made: &mut Folders) -> io::Result<(Self, Option<File>)> {
         // Through a link, so that the link stays one.
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         match fs::metadata(&target) {
             Ok(found) if found.is_dir() => return Err(io::Error::from(io::ErrorKind::IsADirectory)),
-            Ok(found) if !found.is_file() => return Ok(Self::Stream { target, text: text.to_owned() }),
+            Ok(found) if !found.is_file() => return Ok((Self::Stream { target, text: String::new() }, None)),
             _ => {}
         }
         let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -163,16 +180,14 @@ impl Draft {
         hidden.push(name);
         hidden.push(format!(".{}.tmp", process::id()));
         let temporary = folder.join(hidden);
-        let mut file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
-        let draft = Self::Beside { temporary, target };
-        file.write_all(text.as_bytes())?;
-        file.sync_all()?;
-        Ok(draft)
+        let file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
+        Ok((Self::Beside { temporary, target }, Some(file)))
     }
 
-    fn publish(self) -> io::Result<()> {
-        match &self {
+    fn publish(&self) -> io::Result<()> {
+        match self {
             Self::Beside { temporary, target } => fs::rename(temporary, target),
+            Self::Stream { text, .. } if text.is_empty() => Ok(()),
             Self::Stream { target, text } => OpenOptions::new().write(true).open(target)?.write_all(text.as_bytes()),
         }
     }

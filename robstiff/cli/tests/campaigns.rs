@@ -275,7 +275,7 @@ fn another_robot_is_refused_by_its_joints() {
 }
 
 #[test]
-fn clamped_axes_are_identified_but_not_traced() {
+fn clamped_axes_are_identified_and_traced() {
     let folder = folder("clamped");
     let robot = fs::read_to_string(measured().join("../../rv130hsc.yaml")).unwrap();
     let robot = robot.replace("compliance: 78.0e-7 rad/Nm", "compliance: {gear: 60e-7 rad/Nm, belt: 20e-7 rad/Nm}");
@@ -293,8 +293,14 @@ fn clamped_axes_are_identified_but_not_traced() {
     let found = json(&path);
     assert!((found["compliances"][0]["value"].as_f64().unwrap() - 3e-7).abs() < 1e-18);
     assert_eq!(found["compliances"][1]["visibility"], "unseen");
-    fail(1, &["trace", &campaign, "--out", &inside(&folder, "traced")]);
-    assert!(!folder.join("traced").exists());
+    // Five rows tell no more than that; errors are angles.
+    let page = succeed(&["trace", &campaign, "--out", &inside(&folder, "traced")]);
+    assert!(page.contains("5 rows at 2 axes") && page.contains("error [urad]") && !page.contains(" um"), "{page}");
+    let traced = json(&inside(&folder, "traced/trace.json"));
+    assert_eq!(traced["verdict"], "insufficient");
+    assert!(traced["before"]["identified"]["rms_urad"].is_number() && traced["noise_um"].is_null(), "{traced}");
+    let report = fs::read_to_string(folder.join("traced/report.html")).unwrap();
+    assert!(report.contains("\u{b5}rad") && !report.contains("\u{b5}m"));
 
     fs::write(folder.join("axes.csv"), "axis,torque,deflection\n1,0,3e-5\n2,0,0\n").unwrap();
     let message = fail(1, &["identify", &campaign, "--out", &inside(&folder, "unloaded")]);

@@ -14,7 +14,7 @@ use super::source::{Filled, Source};
 pub const BLOCK: usize = 64;
 
 /// The poses of a vector, at least: blocks are filled up to a multiple.
-const VECTOR: usize = 16;
+pub const VECTOR: usize = 16;
 
 /// The joint coordinates of a block of poses, number by number.
 ///
@@ -42,15 +42,16 @@ struct Numbers<T, const M: usize>([[T; BLOCK]; M]);
 /// All is inlined, because it takes the instructions that may be used from the
 /// function around it.
 #[inline(always)]
-pub fn run<T, Q, S, const N: usize, const M: usize, const FUSED: bool>(
+pub fn run<T, Q, S, K, const N: usize, const M: usize, const FUSED: bool>(
     quantity: &mut Q,
     source: &mut S,
-    sink: &mut impl Sink<T, M>,
+    sink: &mut K,
     instructions: impl Instructions,
 ) where
     T: Float,
     Q: Quantity<T, N, M>,
     S: Source<T, N>,
+    K: Sink<T, M>,
 {
     let mut joints =
         Joints { values: [[T::ZERO; BLOCK]; N], sines: [[T::ZERO; BLOCK]; N], cosines: [[T::ZERO; BLOCK]; N] };
@@ -66,31 +67,39 @@ pub fn run<T, Q, S, const N: usize, const M: usize, const FUSED: bool>(
         match filled {
             Filled::Beyond(_) => one_by_one(quantity, count, |pose| source.pose(first + pose), &mut numbers.0),
             Filled::Row(_) if S::ROWS => evaluate_row::<T, Q, N, M, FUSED>(quantity, &joints, &mut numbers.0),
-            _ => evaluate::<T, Q, N, M, FUSED>(quantity, count, &joints, &mut numbers.0),
+            _ => {}
         }
-        sink.take(first..first + count, &numbers.0, instructions);
+        for vector in 0..count.div_ceil(VECTOR).min(BLOCK / VECTOR) {
+            if matches!(filled, Filled::Each(_)) {
+                evaluate::<T, Q, N, M, FUSED>(quantity, vector, &joints, &mut numbers.0);
+            }
+            if K::BY_VECTOR {
+                let (start, end) = (vector * VECTOR, count.min((vector + 1) * VECTOR));
+                sink.take(first + start..first + end, start, &numbers.0, instructions);
+            }
+        }
+        if !K::BY_VECTOR {
+            sink.take(first..first + count, 0, &numbers.0, instructions);
+        }
         first += count;
     }
 }
 
-/// The quantity at the first `count` poses, and some more up to whole vectors.
+/// The quantity at a vector of poses.
 #[inline(always)]
 fn evaluate<T, Q, const N: usize, const M: usize, const FUSED: bool>(
     quantity: &Q,
-    count: usize,
+    vector: usize,
     joints: &Joints<T, N>,
     numbers: &mut [[T; BLOCK]; M],
 ) where
     T: Float,
     Q: Quantity<T, N, M>,
 {
-    // Two loops, both of a length that leaves no doubt: no index needs a check,
-    // and no rest of a vector a loop of its own.
-    for vector in 0..count.div_ceil(VECTOR).min(BLOCK / VECTOR) {
-        for lane in 0..VECTOR {
-            let pose = vector * VECTOR + lane;
-            evaluate_one::<T, Q, N, M, FUSED, false>(quantity, pose, joints, numbers);
-        }
+    // Of a length that leaves no doubt: no index needs a check, and no rest of a
+    // vector a loop of its own.
+    for lane in 0..VECTOR {
+        evaluate_one::<T, Q, N, M, FUSED, false>(quantity, vector * VECTOR + lane, joints, numbers);
     }
 }
 

@@ -6,7 +6,8 @@ use nalgebra::{Matrix6, SVector, Vector3, Vector6};
 
 use super::Float;
 use super::block::BLOCK;
-use crate::{Real, Robot};
+use crate::robot::TRIANGLE;
+use crate::{Real, Robot, upper_triangle};
 
 /// Something that is computed of a pose: `M` numbers, in any scalar that holds
 /// a `T`.
@@ -74,21 +75,6 @@ impl<T: Float> Results<T, 21> for Matrix6<T> {
     }
 }
 
-/// Row and column of the entries of the upper triangle, by rows.
-const TRIANGLE: [(usize, usize); 21] = {
-    let mut entries = [(0, 0); 21];
-    let (mut k, mut i) = (0, 0);
-    while i < 6 {
-        let mut j = i;
-        while j < 6 {
-            entries[k] = (i, j);
-            (k, j) = (k + 1, j + 1);
-        }
-        i += 1;
-    }
-    entries
-};
-
 /// Where the entry of a full matrix, by columns, is in the triangle.
 const ENTRY: [usize; 36] = {
     let mut places = [0; 36];
@@ -101,16 +87,6 @@ const ENTRY: [usize; 36] = {
     places
 };
 
-#[inline(always)]
-fn triangle<S: Real>(compliance: &Matrix6<S>) -> [S; 21] {
-    // Not `map`, which is not always inlined.
-    let mut entries = [S::zero(); 21];
-    for (k, entry) in entries.iter_mut().enumerate() {
-        *entry = compliance[TRIANGLE[k]];
-    }
-    entries
-}
-
 /// The upper triangle of the compliance.
 pub struct Triangle<'r, R> {
     pub robot: &'r R,
@@ -119,7 +95,7 @@ pub struct Triangle<'r, R> {
 impl<T: Float, R: Robot<N>, const N: usize> Quantity<T, N, 21> for Triangle<'_, R> {
     #[inline(always)]
     fn numbers<S: Real>(&self, _: usize, q: &SVector<S, N>, _: impl Fn(T) -> S) -> [S; 21] {
-        triangle(&self.robot.compliance(q))
+        upper_triangle(&self.robot.compliance(q))
     }
 }
 

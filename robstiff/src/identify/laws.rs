@@ -23,10 +23,9 @@ pub fn turned_by_laws(description: &Description, samples: &Samples) -> DVector<f
     }
     let mut states: BTreeMap<usize, Vec<[f64; PLAYS]>> = BTreeMap::new();
     let twists = samples.rows.iter().map(|row| {
-        let geometry = samples.geometry(row);
         let state = states.entry(row.visit).or_insert_with(|| std::vec![[0.0; PLAYS]; samples.joints()]);
         laws.iter().fold(Vector6::zeros(), |sum, &(effect, joint)| {
-            let twist = geometry.joint_twist(joint + 1);
+            let twist = row.twists[joint];
             let torque = twist.dot(&row.wrench);
             state[joint] = plays(effect, torque, state[joint]);
             let own = description.joints[joint].compliance();

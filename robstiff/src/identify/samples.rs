@@ -1,13 +1,14 @@
 //! A campaign's displacements seen from the robot: every row brought to the
 //! base frame, with the geometry that turns parameters into displacements.
 
+use std::sync::Arc;
 use std::vec::Vec;
 
-use nalgebra::{DVector, Matrix3, Matrix4, SVector, Vector3, Vector6};
+use nalgebra::{DVector, Matrix3, Matrix4, Matrix6, SVector, Vector3, Vector6};
 use robstiff_robots::Description;
 
 use super::setup::Setup;
-use crate::campaign::{Displacements, Frame, Observation};
+use crate::campaign::{Displacements, Frame};
 use crate::elements::{Geometry, Parameter, Pose};
 use crate::{JointKind, Robot};
 
@@ -52,8 +53,11 @@ pub struct Sample {
     pub q: Vec<f64>,
     /// Frame 0.
     pub base: Matrix4<f64>,
-    /// The frames on whose z axes the joints act.
-    pub joint_frames: Vec<Matrix4<f64>>,
+    /// The frames on whose z axes the joints act; one for all rows in a row
+    /// with the same joint coordinates.
+    pub joint_frames: Arc<[Matrix4<f64>]>,
+    /// The columns of the Jacobian, `[d; r]` of the TCP per unit of each joint.
+    pub twists: Arc<[Vector6<f64>]>,
     /// Frame n.
     pub flange: Matrix4<f64>,
     /// The tool centre point's frame.
@@ -91,33 +95,45 @@ impl Samples {
 
     fn on<const N: usize>(robot: &impl Robot<N>, data: &Displacements, setup: &Setup, declared: Option<&Self>) -> Self {
         let with_rotations = data.rows.iter().all(|row| row.rotation.is_some());
-        let row = |(i, row): (usize, &Observation)| {
+        let mut rows: Vec<Sample> = Vec::with_capacity(data.rows.len());
+        for (i, row) in data.rows.iter().enumerate() {
             let q = setup.coordinates(i, &row.q);
-            let pose = Pose::of(robot, &SVector::<f64, N>::from_column_slice(&q));
-            let geometry = pose.geometry();
-            let tool = turn_of(&geometry.tcp);
+            // The arm stands where it stood, as a rule: a pose has many rows.
+            let (base, joint_frames, twists, flange, tcp) = match rows.last().filter(|last| last.q == q) {
+                Some(last) => {
+                    (last.base, Arc::clone(&last.joint_frames), Arc::clone(&last.twists), last.flange, last.tcp)
+                }
+                None => {
+                    let pose = Pose::of(robot, &SVector::<f64, N>::from_column_slice(&q));
+                    let geometry = pose.geometry();
+                    let twists = (1..=N).map(|joint| geometry.joint_twist(joint)).collect();
+                    (geometry.base, geometry.joint_frames.into(), twists, geometry.flange, geometry.tcp)
+                }
+            };
+            let tool = turn_of(&tcp);
             let declared = declared.map_or(tool, |declared| turn_of(&declared.rows[i].tcp));
             let reads = if data.measured_frame == Frame::Tool { declared } else { Matrix3::identity() };
-            Sample {
+            rows.push(Sample {
                 pose: row.pose,
                 visit: row.visit,
                 q,
-                base: geometry.base,
-                joint_frames: geometry.joint_frames.to_vec(),
-                flange: geometry.flange,
-                tcp: geometry.tcp,
+                base,
+                joint_frames,
+                twists,
+                flange,
+                tcp,
                 wrench: setup.wrench(data, &tool, &row.wrench),
                 marker: tool * Vector3::from(data.measured_at),
                 displacement: reads * Vector3::from(row.displacement),
                 rotation: reads * Vector3::from(row.rotation.unwrap_or_default()),
                 seen: setup.seen(data, &declared, &tool),
-            }
-        };
+            });
+        }
         Self {
             joint_kinds: robot.joint_kinds().to_vec(),
             axes: if with_rotations { 6 } else { 3 },
             poses: data.poses.len(),
-            rows: data.rows.iter().enumerate().map(row).collect(),
+            rows,
         }
     }
 
@@ -134,22 +150,42 @@ impl Samples {
 
     /// What a unit of a column's number adds to the readings, stacked alike.
     pub fn column(&self, column: Column) -> DVector<f64> {
-        self.stacked(|geometry, row| {
-            let twist = match column {
-                Column::Linear(parameter) => geometry.unit_compliance(parameter) * row.wrench,
-                Column::Knee { joint, knee } => {
-                    let twist = geometry.joint_twist(joint);
-                    let torque = twist.dot(&row.wrench);
-                    twist * (torque / (torque / knee).hypot(1.0))
-                }
-            };
-            row.read(&twist)
+        match column {
+            Column::Linear(Parameter::Joint(joint)) => self.of_joint(joint, |torque| torque),
+            Column::Knee { joint, knee } => self.of_joint(joint, |torque| torque / (torque / knee).hypot(1.0)),
+            Column::Linear(parameter) => self.under(&[(parameter, 1.0)]),
+        }
+    }
+
+    /// What a joint (from 1) adds that turns by an amount that depends on its
+    /// torque, stacked alike.
+    fn of_joint(&self, joint: usize, amount: impl Fn(f64) -> f64) -> DVector<f64> {
+        self.stacked_by(|_, row| {
+            let twist = &row.twists[joint - 1];
+            row.read(&(twist * amount(twist.dot(&row.wrench))))
         })
+    }
+
+    /// What numbers in which the compliance is linear add to the readings,
+    /// stacked alike.
+    pub fn under(&self, numbers: &[(Parameter, f64)]) -> DVector<f64> {
+        let mut stacked = DVector::zeros(self.rows.len() * self.axes);
+        let mut compliance = Matrix6::zeros();
+        for (i, row) in self.rows.iter().enumerate() {
+            if i == 0 || !Arc::ptr_eq(&row.joint_frames, &self.rows[i - 1].joint_frames) {
+                let geometry = self.geometry(row);
+                let numbers = numbers.iter().filter(|(_, value)| *value != 0.0);
+                compliance = numbers.map(|&(number, value)| geometry.unit_compliance(number) * value).sum();
+            }
+            let six = row.read(&(compliance * row.wrench));
+            stacked.rows_mut(i * self.axes, self.axes).copy_from(&six.rows(0, self.axes));
+        }
+        stacked
     }
 
     /// The torque of each row about a joint (from 1), `J_i^T F` (Nm or N).
     pub fn torques(&self, joint: usize) -> Vec<f64> {
-        self.rows.iter().map(|row| self.geometry(row).joint_twist(joint).dot(&row.wrench)).collect()
+        self.rows.iter().map(|row| row.twists[joint - 1].dot(&row.wrench)).collect()
     }
 
     /// The visit of each row.

@@ -1,36 +1,174 @@
-//! How sure coefficients are: the delete-one-pose jackknife.
+//! How sure coefficients are: a covariance that is robust against what the rows
+//! of a pose have in common, with few poses accounted for.
 //!
 //! What a model lacks is common to the rows of a pose, so a standard deviation
-//! from the residuals of single rows would be too small. Fitting again without
-//! each pose in turn asks the poses themselves: with `P` poses the covariance
-//! is `(P - 1) / P sum (b_p - b)(b_p - b)^T` with the mean `b` of the `b_p`
-//! (Efron and Stein, Annals of Statistics 9, 1981); it is the cluster-robust
-//! covariance, slightly on the safe side.
+//! from the residuals of single rows would be too small. The sandwich takes the
+//! poses themselves for witnesses, `V = M sum_p (X_p^T A_p e_p) (..)^T M` with
+//! `M = (X^T X)^-1` and `A_p = (I - X_p M X_p^T)^-1/2`, which makes up for the
+//! pull of a pose on its own fit (CR2; Bell and McCaffrey, Survey Methodology 28,
+//! 2002, 169-181). Few poses, or a few that decide, leave `V` itself uncertain:
+//! it is that of Student's distribution with the degrees of freedom of
+//! Satterthwaite, `(sum l)^2 / sum l^2` over the eigenvalues `l` of what `V` is
+//! as a quadratic form in independent readings (Pustejovsky and Tipton, Journal
+//! of Business and Economic Statistics 36, 2018, 672-683).
+//!
+//! What is told is the standard deviation of the normal distribution that has
+//! the same 95 % interval: `V^1/2` times the quantile of Student's distribution
+//! over that of the normal one. So the 95 % interval is 1.96 of it on either
+//! side, whatever the number of poses.
 
 use std::vec::Vec;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::normal::{Fit, Sign};
-use super::problem::Problem;
+use super::normal::{Fit, Scaled, Sign};
+use super::problem::{Block, Problem};
 
-/// With fewer poses than this for each coefficient the jackknife has no basis;
+/// With fewer poses than this for each coefficient the sandwich has no basis;
 /// the residual variance then has to do.
 const POSES_PER_COEFFICIENT: usize = 2;
 
-/// The covariance of a fit's coefficients; `signs` are those of its columns.
+/// Fewer degrees of freedom are taken for so many: below, Satterthwaite's
+/// approximation is poor, and an interval says next to nothing.
+const FEWEST: f64 = 3.0;
+
+/// Of what a pose alone decides, this share of its readings' variance is left
+/// by the fit or less.
+const ALONE: f64 = 1e-9;
+
+/// The quantile of the standard normal distribution that has 95 % within.
+pub const WITHIN: f64 = 1.959_963_984_540_054;
+
+/// The covariance of a fit's coefficients; `signs` are those of its columns. A
+/// coefficient that is held at zero by its sign has none.
 pub fn covariance(problem: &Problem, fit: &Fit, signs: &[Sign]) -> DMatrix<f64> {
-    let poses = problem.blocks.len();
-    let without: Vec<DVector<f64>> =
-        problem.blocks.iter().filter_map(|block| problem.solve_without(block, &fit.columns, Some(signs))).collect();
-    if poses < POSES_PER_COEFFICIENT * fit.columns.len() || without.len() < poses {
-        let inverse = problem.total.inverse(&fit.columns);
-        let none = || DMatrix::zeros(signs.len(), signs.len());
-        return inverse.map_or_else(none, |inverse| inverse * (fit.rss / problem.freedom(fit)));
+    covariance_with(problem, fit, signs, &std::vec![0.0; signs.len()])
+}
+
+/// The same where it is known of some coefficients beforehand that they are near
+/// their value: `known` holds one over their variance, 0 where nothing is.
+pub fn covariance_with(problem: &Problem, fit: &Fit, signs: &[Sign], known: &[f64]) -> DMatrix<f64> {
+    let held = |&k: &usize| signs[k] == Sign::Nonnegative && fit.coefficients[k] == 0.0;
+    let free: Vec<usize> = (0..signs.len()).filter(|k| !held(k)).collect();
+    let mut whole = DMatrix::zeros(signs.len(), signs.len());
+    // Where all are held there is nothing to be sure of.
+    let part = (!free.is_empty()).then(|| of_free(problem, fit, &free, known)).flatten();
+    let Some(part) = part else { return whole };
+    for (i, &row) in free.iter().enumerate() {
+        for (j, &column) in free.iter().enumerate() {
+            whole[(row, column)] = part[(i, j)];
+        }
     }
-    let mean = without.iter().sum::<DVector<f64>>() / poses as f64;
-    let spread = without.iter().map(|b| (b - &mean) * (b - &mean).transpose());
-    spread.sum::<DMatrix<f64>>() * ((poses - 1) as f64 / poses as f64)
+    whole
+}
+
+fn of_free(problem: &Problem, fit: &Fit, free: &[usize], known: &[f64]) -> Option<DMatrix<f64>> {
+    let columns: Vec<usize> = free.iter().map(|&k| fit.columns[k]).collect();
+    let freedom = problem.freedom(fit);
+    let variance = fit.rss / freedom;
+    let known = DVector::from_fn(free.len(), |i, _| known[free[i]] * variance);
+    let gram = problem.total.gram_of(&columns) + DMatrix::from_diagonal(&known);
+    let inverse = Scaled::of(&gram)?.inverse();
+    let plain = || &inverse * (variance * (student(freedom) / WITHIN).powi(2));
+    if problem.blocks.len() < POSES_PER_COEFFICIENT * columns.len() {
+        return Some(plain());
+    }
+    let half = nalgebra::Cholesky::new(inverse.clone())?.l();
+    let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
+    let (mut scores, mut shares) = (Vec::new(), Vec::new());
+    for block in &problem.blocks {
+        let pull = Pull::new(problem, block, &columns, &half);
+        let own = DVector::from_fn(block.stacked.len(), |i, _| residuals[block.stacked[i]]);
+        scores.push(pull.design.tr_mul(&pull.adjusted(&DMatrix::from_column_slice(own.len(), 1, own.as_slice()))));
+        shares.push(pull.adjusted(&pull.design));
+    }
+    let meat: DMatrix<f64> = scores.iter().map(|score| score * score.transpose()).sum();
+    let meat = meat + DMatrix::from_diagonal(&(known * variance));
+    let sandwich = &inverse * meat * &inverse;
+    // By pose, `X_p^T A_p A_p X_p` and `X_p^T A_p X_p`.
+    let squares: Vec<DMatrix<f64>> = shares.iter().map(|share| share.tr_mul(share)).collect();
+    let crossed: Vec<DMatrix<f64>> = problem
+        .blocks
+        .iter()
+        .zip(&shares)
+        .map(|(block, share)| of_block(problem, block, &columns).tr_mul(share))
+        .collect();
+    let factor = DVector::from_fn(columns.len(), |k, _| {
+        let along = inverse.column(k).into_owned();
+        student(satterthwaite(&along, &squares, &crossed, &inverse)) / WITHIN
+    });
+    Some(DMatrix::from_fn(columns.len(), columns.len(), |i, j| sandwich[(i, j)] * factor[i] * factor[j]))
+}
+
+/// The quantile of Student's distribution that has 95 % within.
+fn student(freedom: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, freedom.max(FEWEST)).map_or(WITHIN, |table| table.inverse_cdf(0.975))
+}
+
+/// The degrees of freedom of the variance of the coefficients along a vector
+/// `M c`: of the quadratic form with the entries `v_p^T (I - X M X^T) v_q`, `v_p =
+/// A_p X_p M c`.
+fn satterthwaite(
+    along: &DVector<f64>,
+    squares: &[DMatrix<f64>],
+    crossed: &[DMatrix<f64>],
+    inverse: &DMatrix<f64>,
+) -> f64 {
+    let own: Vec<f64> = squares.iter().map(|square| along.dot(&(square * along))).collect();
+    let seen: Vec<DVector<f64>> = crossed.iter().map(|cross| cross * along).collect();
+    let taken: Vec<DVector<f64>> = seen.iter().map(|seen| inverse * seen).collect();
+    // Off the diagonal they are `-s_p^T M s_q`, whose squares sum to the square
+    // of `M sum s s^T` but for those of one pose.
+    let sum: DMatrix<f64> = seen.iter().map(|seen| seen * seen.transpose()).sum();
+    let product = inverse * sum;
+    let (mut trace, mut squared) = (0.0, (&product * &product).trace());
+    for ((own, seen), taken) in own.iter().zip(&seen).zip(&taken) {
+        let pulled = seen.dot(taken);
+        let diagonal = own - pulled;
+        trace += diagonal;
+        squared += diagonal * diagonal - pulled * pulled;
+    }
+    trace * trace / squared.max(f64::MIN_POSITIVE)
+}
+
+fn of_block(problem: &Problem, block: &Block, columns: &[usize]) -> DMatrix<f64> {
+    DMatrix::from_fn(block.stacked.len(), columns.len(), |i, j| problem.white[(block.stacked[i], columns[j])])
+}
+
+/// The pull of a pose on its own fit.
+struct Pull {
+    design: DMatrix<f64>,
+    /// `X_p M^1/2 U`, with the eigenvectors `U` of `M^1/2 X_p^T X_p M^1/2`.
+    directions: DMatrix<f64>,
+    /// What `A_p - I` is along each: `((1 - s)^-1/2 - 1) / s` for the eigenvalue
+    /// `s`.
+    weights: DVector<f64>,
+}
+
+impl Pull {
+    /// `half` is a square root of `M`.
+    fn new(problem: &Problem, block: &Block, columns: &[usize], half: &DMatrix<f64>) -> Self {
+        let design = of_block(problem, block, columns);
+        let scaled = &design * half;
+        let eigen = SymmetricEigen::new(scaled.tr_mul(&scaled));
+        let weights = eigen.eigenvalues.map(|s| match (s > ALONE, 1.0 - s > ALONE) {
+            (false, _) => 0.5,
+            (true, true) => ((1.0 - s).sqrt().recip() - 1.0) / s,
+            // Nothing is left along it.
+            (true, false) => -1.0 / s,
+        });
+        Self { design, directions: scaled * eigen.eigenvectors, weights }
+    }
+
+    /// `A_p` times a matrix.
+    fn adjusted(&self, of: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut along = self.directions.tr_mul(of);
+        for mut column in along.column_iter_mut() {
+            column.component_mul_assign(&self.weights);
+        }
+        of + &self.directions * along
+    }
 }
 
 /// The correlations in a covariance; zero with a coefficient that does not

@@ -218,7 +218,8 @@ fn tangents(positions: &[Vector3<f64>]) -> Vec<Option<Unit<Vector3<f64>>>> {
     for i in (0..count.saturating_sub(1)).rev() {
         leaving[i] = chord(i).or(leaving[i + 1]);
     }
-    let between = |(arriving, leaving): (Option<Unit<Vector3<f64>>>, Option<Unit<Vector3<f64>>>)| {
+    type Direction = Option<Unit<Vector3<f64>>>;
+    let between = |(arriving, leaving): (Direction, Direction)| {
         let (Some(before), Some(after)) = (arriving, leaving) else { return leaving.or(arriving) };
         // Where the path turns back there is nothing halfway.
         Unit::try_new(before.into_inner() + after.into_inner(), 1e-9).or(leaving)

@@ -8,7 +8,7 @@ use super::bench::Bench;
 use super::catalogue::{EITHER, LOST_MOTION, STIFFNESS_NONLINEARITY};
 use super::found::Place;
 use super::model::{Fitted, Named, Setting};
-use super::selection::{CURVATURE, Tests, WITHIN_REACH, best_with, score_test};
+use super::selection::{CURVATURE, WITHIN_REACH, best_with};
 use robstiff_robots::effect::Place as Part;
 
 /// Columns that differ by less than this fraction of their energy, once the
@@ -30,16 +30,14 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -
     let mut rest = model.named.clone();
     let one = rest.remove(k);
     let (Ok(setting), Ok(own)) = (bench.at(&rest), bench.at(&model.named)) else { return Vec::new() };
-    let (Some(test), Some(tests)) = (score_test(&setting, &rest), Tests::against(bench, &rest, options)) else {
-        return Vec::new();
-    };
+    let Some(tests) = bench.tests(&rest, options) else { return Vec::new() };
     let Ok(without) = setting.fit(&rest) else { return Vec::new() };
     let unseen = setting.left_out_rms(&without.fit);
     let mut found: Vec<(f64, String)> = Vec::new();
     for candidate in (0..setting.candidates.len()).filter(|&candidate| candidate != one.candidate) {
         let Some(rival) = best_with(&setting, &rest, candidate) else { continue };
         let variant = variant_of(&rival, candidate);
-        let exact = test.distance(setting.variant(one), setting.variant(variant)) < EXACT;
+        let exact = tests.scores.distance(setting.variant(one), setting.variant(variant)) < EXACT;
         let admitted = || tests.p_value(candidate) <= options.alpha && setting.left_out_rms(&rival.fit) < unseen;
         let of_model = own.deviances(&model.fit);
         let is_near = |rival: &Fitted, at: &Setting<'_>| {

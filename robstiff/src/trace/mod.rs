@@ -17,6 +17,8 @@ pub mod alias;
 pub mod bench;
 pub mod bootstrap;
 pub mod catalogue;
+pub mod clamped;
+pub mod correction;
 pub mod features;
 mod found;
 pub mod isolated;
@@ -36,6 +38,7 @@ use std::vec::Vec;
 use robstiff_robots::Description;
 
 pub use alias::Rival;
+pub use correction::Correction;
 pub use found::{EffectParameter, Found, Place};
 pub use lack_of_fit::StructureTest;
 pub use selection::{Step, Tested};
@@ -47,7 +50,7 @@ use self::lack_of_fit::{LackOfFit, Yardstick};
 use self::model::{Fitted, Setting};
 use self::report::report;
 use self::selection::{Selection, p_values, select};
-use crate::campaign::Campaign;
+use crate::campaign::{Campaign, Data};
 use crate::identify::prepare::Prepared;
 use crate::identify::{Error, Estimate, NoiseSource, is_at_bound};
 
@@ -199,6 +202,9 @@ pub struct PoseError {
 /// A campaign of another kind, or one that shows none of the robot's
 /// compliances.
 pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) -> Result<Trace, Error> {
+    if let Data::Clamped(rows) = &campaign.data {
+        return clamped::trace(campaign, rows, options, progress);
+    }
     progress("identifying the joints");
     let prepared = Prepared::new(campaign)?;
     let mut bench = Bench::new(campaign, &prepared).map_err(Error)?;

@@ -152,7 +152,7 @@ impl<'c> Point<'c> {
     /// The displacement of a joint (from 1) by an amount that depends on the
     /// row, as it is read; (rad or m).
     pub fn of_joint(&self, joint: usize, amount: impl Fn(usize) -> f64) -> DVector<f64> {
-        self.samples.stacked_by(|at, row| row.read(&(self.samples.geometry(row).joint_twist(joint) * amount(at))))
+        self.samples.stacked_by(|at, row| row.read(&(row.twists[joint - 1] * amount(at))))
     }
 
     /// A displacement of the point that is read, in the base frame (m).

@@ -21,7 +21,7 @@ use crate::identify::displacement::{declared_residuals, declared_rms};
 use crate::identify::normal::{Fit, Sign};
 use crate::identify::prepare::Prepared;
 use crate::identify::problem::{Block, Problem, rms};
-use crate::identify::uncertainty::covariance;
+use crate::identify::uncertainty::{covariance, covariance_with};
 use crate::identify::{Estimate, NoiseSource, estimates};
 
 /// A tracing in full: errors before and after, the effects with their
@@ -121,26 +121,33 @@ pub fn report(
 /// of its numbers out of grids, in the order of its effects.
 fn spread_of(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted) -> DMatrix<f64> {
     let mut signs: Vec<Sign> = model.fit.columns.iter().map(|&column| setting.signs[column]).collect();
-    let plain = || covariance(&setting.problem, &model.fit, &signs);
-    let shapes = model.named.iter().flat_map(|&one| {
-        (0..setting.variant(one).shape.len()).filter_map(move |k| bench.of_shape(setting, &model.fit, one, k))
-    });
-    let shapes: Vec<DVector<f64>> = shapes.collect();
+    let mut known = std::vec![0.0; signs.len()];
+    let mut shapes: Vec<DVector<f64>> = Vec::new();
+    for &one in &model.named {
+        for k in 0..setting.variant(one).shape.len() {
+            if let Some(change) = bench.of_shape(setting, model, one, k) {
+                shapes.push(change);
+                let spread = setting.variant(one).likely.map_or(ANYTHING, |[_, spread]| spread);
+                known.push(spread.powi(-2));
+            }
+        }
+    }
     if shapes.is_empty() {
-        return plain();
+        return covariance(&setting.problem, &model.fit, &signs);
     }
     let raw: Vec<DVector<f64>> = model.fit.columns.iter().map(|&column| setting.raw(column)).chain(shapes).collect();
     let readings = setting.problem.readings.clone();
     let samples = &setting.point.samples;
     let problem = Problem::new(samples, DMatrix::from_columns(&raw), readings, &setting.correction, bench.weights());
     let columns: Vec<usize> = (0..raw.len()).collect();
-    if problem.total.inverse(&columns).is_none() {
-        return plain();
-    }
     let coefficients = model.fit.coefficients.clone().resize_vertically(raw.len(), 0.0);
     signs.resize(raw.len(), Sign::Free);
-    covariance(&problem, &Fit { columns, coefficients, rss: model.fit.rss }, &signs)
+    covariance_with(&problem, &Fit { columns, coefficients, rss: model.fit.rss }, &signs, &known)
 }
+
+/// A number out of a grid of which nothing is known beforehand is within ten
+/// times of what it is, up and down: this many logarithms.
+const ANYTHING: f64 = 2.3;
 
 /// The estimates of the description's own numbers in a model.
 fn numbers(
@@ -207,7 +214,8 @@ fn effects(
             let std = known.then(|| number.value * spread[(first + s, first + s)].sqrt());
             EffectParameter { std, ..number.clone() }
         };
-        let parameters: Vec<EffectParameter> = numbers.chain(variant.shape.iter().enumerate().map(shape)).collect();
+        let shapes: Vec<EffectParameter> = variant.shape.iter().enumerate().map(shape).collect();
+        let parameters = in_order(numbers.collect(), shapes);
         let candidate = &setting.candidates[one.candidate];
         NamedEffect {
             effect: Found::new(candidate.kind, candidate.place, parameters.clone()),
@@ -220,6 +228,23 @@ fn effects(
         }
     });
     named.collect()
+}
+
+/// Numbers with those out of a grid that go with each, the smallest of these
+/// first: fitting may have brought them out of order.
+fn in_order(numbers: Vec<EffectParameter>, shapes: Vec<EffectParameter>) -> Vec<EffectParameter> {
+    let mut order: Vec<usize> = (0..shapes.len()).collect();
+    if numbers.len() == shapes.len() {
+        order.sort_by(|&a, &b| shapes[a].value.total_cmp(&shapes[b].value));
+    }
+    let sorted = |all: &[EffectParameter]| -> Vec<EffectParameter> {
+        let one = |(place, &from): (usize, &usize)| EffectParameter { name: all[place].name, ..all[from].clone() };
+        order.iter().enumerate().map(one).collect()
+    };
+    match numbers.len() == shapes.len() {
+        true => sorted(&numbers).into_iter().chain(sorted(&shapes)).collect(),
+        false => numbers.into_iter().chain(shapes).collect(),
+    }
 }
 
 /// A compliance as a share of that of a joint (from 1), with its standard

@@ -76,6 +76,8 @@ pub struct Tested {
 
 /// A test of the whole catalogue against one model.
 pub struct Tests {
+    /// The candidates without the model.
+    pub scores: ScoreTest,
     /// The statistic of each candidate and the variant that has it.
     pub statistics: Vec<Option<(f64, usize)>>,
     /// The distribution of the largest.
@@ -85,9 +87,12 @@ pub struct Tests {
 impl Tests {
     /// The tests against the model of some effects; `None` where it cannot be
     /// fitted.
-    pub fn against(bench: &Bench<'_>, named: &[Named], options: &Options) -> Option<Self> {
-        let test = score_test(&*bench.at(named).ok()?, named)?;
-        Some(Self { statistics: test.statistics(), reference: test.reference(options.draws, options.seed) })
+    pub fn against(setting: &Setting<'_>, named: &[Named], options: &Options) -> Option<Self> {
+        let columns = setting.columns(named);
+        let scores =
+            ScoreTest::new(&setting.problem, &setting.candidates, &setting.signs, setting.own.len(), &columns)?;
+        let (statistics, reference) = (scores.statistics(), scores.reference(options.draws, options.seed));
+        Some(Self { scores, statistics, reference })
     }
 
     /// The family-wise p-value of a candidate.
@@ -96,14 +101,9 @@ impl Tests {
     }
 
     /// The family-wise p-value of the largest statistic.
-    fn smallest_p(&self) -> f64 {
+    pub fn smallest_p(&self) -> f64 {
         (0..self.statistics.len()).map(|candidate| self.p_value(candidate)).fold(1.0, f64::min)
     }
-}
-
-/// The score test of the catalogue against the model of some effects.
-pub fn score_test(setting: &Setting<'_>, named: &[Named]) -> Option<ScoreTest> {
-    ScoreTest::new(&setting.problem, &setting.candidates, &setting.signs, setting.own.len(), &setting.columns(named))
 }
 
 /// The effects the data ask for, beginning with those of a model.
@@ -130,7 +130,7 @@ pub fn select(
             (model, p_values) = (better, p);
             setting = bench.at(&model.named)?;
         }
-        let Some(tests) = Tests::against(bench, &model.named, options) else { break };
+        let Some(tests) = bench.tests(&model.named, options) else { break };
         let mut step = table(&setting, &model, &tests, options);
         if tests.smallest_p() > options.alpha {
             step.outcome = String::from("nothing is missing significantly");
@@ -239,7 +239,7 @@ fn accept(
         let p = if rest == smaller.named {
             against_smaller.p_value(one.candidate)
         } else {
-            Tests::against(bench, &rest, options)?.p_value(one.candidate)
+            bench.tests(&rest, options)?.p_value(one.candidate)
         };
         (p <= options.alpha).then_some(p)
     });
@@ -251,7 +251,7 @@ pub fn p_values(bench: &Bench<'_>, named: &[Named], options: &Options) -> Vec<f6
     let one = |k: usize| {
         let mut rest = named.to_vec();
         let one = rest.remove(k);
-        Tests::against(bench, &rest, options).map_or(1.0, |tests| tests.p_value(one.candidate))
+        bench.tests(&rest, options).map_or(1.0, |tests| tests.p_value(one.candidate))
     };
     (0..named.len()).map(one).collect()
 }

@@ -276,9 +276,8 @@ fn the_bootstrap_has_its_nominal_size() {
         }
         let prepared = Prepared::new(&campaign).expect("displacements");
         let bench = Bench::new(&campaign, &prepared).expect("joints are seen");
-        let test = selection::score_test(&bench.at(&[]).expect("joints are seen"), &[]).expect("joints are seen");
-        let largest = test.statistics().into_iter().flatten().map(|(s, _)| s).fold(0.0, f64::max);
-        test.reference(199, seed).p_value(largest) <= level
+        let options = Options { seed, draws: 199, alpha: level };
+        bench.tests(&[], &options).expect("joints are seen").smallest_p() <= level
     });
     let share = rejected.count() as f64 / runs as f64;
     // Three standard errors of a binomial above; the CR3 residuals err below.

@@ -47,6 +47,21 @@ struct Further {
     freedom: usize,
 }
 
+impl Further {
+    /// The finding of it, with what to say where the axes are all right, and of
+    /// this one where it is not.
+    fn said_of(&self, unit: &'static str, p_value: f64, witnesses: usize, holds: &str, fails: String) -> Raw {
+        Raw {
+            statistic: 100.0 * self.share,
+            unit,
+            p_value: Some(p_value),
+            matters_from: 100.0 * MATTERS,
+            witnesses,
+            said: [String::from(holds), fails],
+        }
+    }
+}
+
 impl Axis {
     fn new(number: usize, rows: &[ClampedRow]) -> Option<Self> {
         let (places, mine): (Vec<f64>, Vec<&ClampedRow>) =
@@ -111,21 +126,17 @@ fn proportionality(axes: &[Axis]) -> Verdict {
         return Err(String::from("four torques or more on an axis, one below 3 % of the rated"));
     };
     let changes = if found.share > 0.0 { "softens" } else { "hardens" };
-    Ok(Raw {
-        statistic: 100.0 * found.share,
-        unit: "% of the compliance",
-        p_value: Some(p_value),
-        matters_from: 100.0 * MATTERS,
+    Ok(found.said_of(
+        "% of the compliance",
+        p_value,
         witnesses,
-        said: [
-            String::from("The deflections grow in proportion to the torques as far as one can tell."),
-            format!(
-                "Axis {} {changes} with the torque, by {} up to the largest: lost motion or a gear that is not linear.",
-                found.axis,
-                percent(found.share.abs())
-            ),
-        ],
-    })
+        "The deflections grow in proportion to the torques as far as one can tell.",
+        format!(
+            "Axis {} {changes} with the torque, by {} up to the largest: lost motion or a gear that is not linear.",
+            found.axis,
+            percent(found.share.abs())
+        ),
+    ))
 }
 
 fn reversal(axes: &[Axis]) -> Verdict {
@@ -137,21 +148,17 @@ fn reversal(axes: &[Axis]) -> Verdict {
     let Some((found, p_value, witnesses)) = strongest(axes.iter().filter(both).filter_map(even).collect()) else {
         return Err(String::from("torques both ways on an axis, four or more"));
     };
-    Ok(Raw {
-        statistic: 100.0 * found.share,
-        unit: "% of the compliance",
-        p_value: Some(p_value),
-        matters_from: 100.0 * MATTERS,
+    Ok(found.said_of(
+        "% of the compliance",
+        p_value,
         witnesses,
-        said: [
-            String::from("Opposite torques give opposite deflections as far as one can tell."),
-            format!(
-                "Axis {} gives way by {} more one way than the other: preload, or a contact on one side.",
-                found.axis,
-                percent(2.0 * found.share.abs())
-            ),
-        ],
-    })
+        "Opposite torques give opposite deflections as far as one can tell.",
+        format!(
+            "Axis {} gives way by {} more one way than the other: preload, or a contact on one side.",
+            found.axis,
+            percent(2.0 * found.share.abs())
+        ),
+    ))
 }
 
 fn order(axes: &[Axis]) -> Verdict {
@@ -162,20 +169,16 @@ fn order(axes: &[Axis]) -> Verdict {
     let Some((found, p_value, witnesses)) = strongest(axes.iter().filter_map(trend).collect()) else {
         return Err(String::from("four torques or more on an axis, not in rising order"));
     };
-    Ok(Raw {
-        statistic: 100.0 * found.share,
-        unit: "% of the deflection",
-        p_value: Some(p_value),
-        matters_from: 100.0 * MATTERS,
+    Ok(found.said_of(
+        "% of the deflection",
+        p_value,
         witnesses,
-        said: [
-            String::from("What is left does not depend on the order of rows as far as one can tell."),
-            format!(
-                "What is left of axis {} depends on the order of rows: readings drift, or the gear creeps.",
-                found.axis
-            ),
-        ],
-    })
+        "What is left does not depend on the order of rows as far as one can tell.",
+        format!(
+            "What is left of axis {} depends on the order of rows: readings drift, or the gear creeps.",
+            found.axis
+        ),
+    ))
 }
 
 /// The slope of every axis, one-sided (Student's t, times the number of axes).

@@ -6,12 +6,12 @@
 
 use core::ops::{Add, Mul, Sub};
 
-use super::float::Float;
+use super::float::{Float, double, single};
 
 /// One number or several, which one operation computes with.
 pub(crate) trait Abreast<F>: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
-    /// The same number in every lane.
-    fn splat(x: F) -> Self;
+    /// One of [`Float::NUMBERS`] in every lane.
+    fn number(place: usize) -> Self;
 
     /// `self * a + b`, rounded once.
     fn fused(self, a: Self, b: Self) -> Self;
@@ -20,9 +20,6 @@ pub(crate) trait Abreast<F>: Copy + Add<Output = Self> + Sub<Output = Self> + Mu
     /// `shifted` say. The last bit exchanges the two, one of them with a
     /// changed sign; the one before changes the signs of both.
     fn turn_quarters(shifted: Self, sin: Self, cos: Self) -> (Self, Self);
-
-    /// Whether every lane is an angle within the domain; false for a NaN.
-    fn is_within_domain(self) -> bool;
 }
 
 /// `a * b + c`, rounded once if `FUSED`.
@@ -41,14 +38,37 @@ pub(crate) trait Vector<F>: Abreast<F> {
 
     /// Writes `(sin, cos)` of the angles from `first` on.
     fn scatter<const K: usize>(sin: Self, cos: Self, out: &mut [(F, F); K], first: usize);
+
+    /// Whether every lane is an angle within the domain; false for a NaN.
+    /// `shifted`: as in [`quarters`](super::quarters).
+    fn is_within_domain(self, shifted: Self) -> bool;
+}
+
+/// Numbers in pairs of neighbouring lanes, for the sine and the cosine of one
+/// angle: both polynomials at once.
+pub(crate) trait Pairs<F>: Vector<F> {
+    /// The angles from `first` on, each twice.
+    fn gather_pairs<const K: usize>(angles: &[F; K], first: usize) -> Self;
+
+    /// Writes `(sin, cos)` of the angles from `first` on.
+    fn scatter_pairs<const K: usize>(self, out: &mut [(F, F); K], first: usize);
+
+    /// One of [`Float::NUMBERS`] for the sines, another for the cosines.
+    fn numbers(sin: usize, cos: usize) -> Self;
+
+    /// The sines' lanes of one, the cosines' of another.
+    fn sides(sin: Self, cos: Self) -> Self;
+
+    /// As [`turn_quarters`](Abreast::turn_quarters).
+    fn turn_pairs(self, shifted: Self) -> Self;
 }
 
 macro_rules! single {
     ($float:ident, $bits:ident, $signed:ident, $fma:path) => {
         impl Abreast<$float> for $float {
             #[inline(always)]
-            fn splat(x: $float) -> Self {
-                x
+            fn number(place: usize) -> Self {
+                Self::NUMBERS[place]
             }
 
             #[inline(always)]
@@ -69,11 +89,6 @@ macro_rules! single {
                 let exchange = (sin ^ cos) & ((last as $signed) >> ($bits::BITS - 1)) as $bits;
                 (Self::from_bits(sin ^ exchange ^ sign), Self::from_bits(cos ^ exchange ^ sign))
             }
-
-            #[inline(always)]
-            fn is_within_domain(self) -> bool {
-                self.abs() <= Self::DOMAIN
-            }
         }
     };
 }
@@ -91,17 +106,32 @@ impl<F: Float> Vector<F> for F {
     fn scatter<const K: usize>(sin: Self, cos: Self, out: &mut [(F, F); K], first: usize) {
         out[first] = (sin, cos);
     }
+
+    #[inline(always)]
+    fn is_within_domain(self, _: Self) -> bool {
+        self.is_in_domain()
+    }
 }
 
 single!(f32, u32, i32, libm::fmaf);
 single!(f64, u64, i64, libm::fma);
 
+/// Lanes to exchange. A blend looks at the first bit only; without one, all bits.
+macro_rules! exchange {
+    ($vector:ident, $bits:ident, $shifted:ident, $last:ident) => {
+        if cfg!(target_feature = "sse4.1") {
+            wide::$vector::from_bits($last)
+        } else {
+            wide::$vector::from_bits(wide::$bits::splat(0) - ($shifted & wide::$bits::splat(1)))
+        }
+    };
+}
 macro_rules! vectors {
-    ($($vector:ident $bits:ident $float:ident $lanes:literal $width:literal)*) => {$(
+    ($($vector:ident $bits:ident $float:ident $unsigned:ident $module:ident $lanes:literal)*) => {$(
         impl Abreast<$float> for wide::$vector {
             #[inline(always)]
-            fn splat(x: $float) -> Self {
-                wide::$vector::splat(x)
+            fn number(place: usize) -> Self {
+                Self::new(*$module::SPREAD.0[place].first_chunk().expect("at least as many lanes"))
             }
 
             #[inline(always)]
@@ -111,24 +141,14 @@ macro_rules! vectors {
 
             #[inline(always)]
             fn turn_quarters(shifted: Self, sin: Self, cos: Self) -> (Self, Self) {
-                let top = wide::$bits::splat(1 << ($width - 1));
+                let top = wide::$bits::splat(1 << ($unsigned::BITS - 1));
                 let shifted = shifted.to_bits();
-                let last = shifted << ($width - 1);
+                let last = shifted << ($unsigned::BITS - 1);
                 let sin = Self::from_bits(sin.to_bits() ^ last);
-                let sign = (shifted << ($width - 2)) & top;
-                // A blend looks at the first bit only; without one, all bits.
-                let exchange = if cfg!(target_feature = "sse4.1") {
-                    Self::from_bits(last)
-                } else {
-                    Self::from_bits(wide::$bits::splat(0) - (shifted & wide::$bits::splat(1)))
-                };
+                let sign = (shifted << ($unsigned::BITS - 2)) & top;
+                let exchange = exchange!($vector, $bits, shifted, last);
                 let (sin, cos) = (exchange.select(cos, sin), exchange.select(sin, cos));
                 (Self::from_bits(sin.to_bits() ^ sign), Self::from_bits(cos.to_bits() ^ sign))
-            }
-
-            #[inline(always)]
-            fn is_within_domain(self) -> bool {
-                self.abs().simd_le(Self::splat($float::DOMAIN)).all()
             }
         }
 
@@ -153,6 +173,69 @@ macro_rules! vectors {
                     }
                 }
             }
+
+            #[inline(always)]
+            fn is_within_domain(self, shifted: Self) -> bool {
+                let strange = (shifted.to_bits() ^ wide::$bits::splat($module::QUARTERS.0))
+                    & wide::$bits::splat($module::QUARTERS.1);
+                strange.simd_eq(wide::$bits::splat(0)).all()
+            }
+        }
+
+        impl Pairs<$float> for wide::$vector {
+            #[inline(always)]
+            fn gather_pairs<const K: usize>(angles: &[$float; K], first: usize) -> Self {
+                let mut lanes = [0.0; $lanes];
+                for (lane, own) in lanes.iter_mut().enumerate() {
+                    *own = angles[if first + lane / 2 < K { first + lane / 2 } else { K - 1 }];
+                }
+                Self::new(lanes)
+            }
+
+            #[inline(always)]
+            fn scatter_pairs<const K: usize>(self, out: &mut [($float, $float); K], first: usize) {
+                let (pairs, _) = self.as_array().as_chunks::<2>();
+                for (out, &[sin, cos]) in out[first..].iter_mut().zip(pairs) {
+                    *out = (sin, cos);
+                }
+            }
+
+            #[inline(always)]
+            fn numbers(sin: usize, cos: usize) -> Self {
+                let mut lanes = [0.0; $lanes];
+                for (lane, own) in lanes.iter_mut().enumerate() {
+                    *own = $module::NUMBERS[if lane % 2 == 0 { sin } else { cos }];
+                }
+                Self::new(lanes)
+            }
+
+            #[inline(always)]
+            fn sides(sin: Self, cos: Self) -> Self {
+                let (mut lanes, cos) = (sin.to_array(), cos.to_array());
+                for lane in 0..$lanes / 2 {
+                    lanes[2 * lane + 1] = cos[2 * lane + 1];
+                }
+                Self::new(lanes)
+            }
+
+            #[inline(always)]
+            fn turn_pairs(self, shifted: Self) -> Self {
+                let shifted = shifted.to_bits();
+                let last = shifted << ($unsigned::BITS - 1);
+                let (own, mut lanes) = (self.to_array(), self.to_array());
+                for lane in 0..$lanes {
+                    lanes[lane] = own[lane ^ 1];
+                }
+                let turned = exchange!($vector, $bits, shifted, last).select(Self::new(lanes), self);
+                // A cosine is the sine of a quarter turn more.
+                let mut more = [0; $lanes];
+                for lane in 0..$lanes / 2 {
+                    more[2 * lane + 1] = 1;
+                }
+                let top = wide::$bits::splat(1 << ($unsigned::BITS - 1));
+                let sign = ((shifted + wide::$bits::new(more)) << ($unsigned::BITS - 2)) & top;
+                Self::from_bits(turned.to_bits() ^ sign)
+            }
         }
     )*};
 }
@@ -161,17 +244,34 @@ macro_rules! vectors {
 /// at once and take more time to fill, to compute with and to empty than two of
 /// these (H_x 35 ns, with these 30).
 pub(crate) mod target {
-    #[cfg(all(not(target_feature = "avx"), any(target_feature = "sse2", target_feature = "neon")))]
-    pub use wide::{f32x4 as F32, f64x2 as F64};
-    #[cfg(target_feature = "avx")]
-    pub use wide::{f32x8 as F32, f64x4 as F64};
-    #[cfg(not(any(target_feature = "avx", target_feature = "sse2", target_feature = "neon")))]
-    pub use {f32 as F32, f64 as F64};
+    macro_rules! target {
+        ($cfg:meta, $single:ty, $double:ty, pairs: $single_pairs:ident, $double_pairs:ident) => {
+            #[cfg($cfg)]
+            pub mod single {
+                pub type Vector = $single;
+                pub type Pairs = wide::$single_pairs;
+            }
+            #[cfg($cfg)]
+            pub mod double {
+                pub type Vector = $double;
+                pub type Pairs = wide::$double_pairs;
+            }
+        };
+    }
+    target!(target_feature = "avx", wide::f32x8, wide::f64x4, pairs: f32x8, f64x4);
+    target!(
+        all(not(target_feature = "avx"), any(target_feature = "sse2", target_feature = "neon")),
+        wide::f32x4, wide::f64x2, pairs: f32x4, f64x2
+    );
+    target!(
+        not(any(target_feature = "avx", target_feature = "sse2", target_feature = "neon")),
+        f32, f64, pairs: f32x4, f64x2
+    );
 }
 
 vectors! {
-    f32x4 u32x4 f32 4 32
-    f64x2 u64x2 f64 2 64
-    f32x8 u32x8 f32 8 32
-    f64x4 u64x4 f64 4 64
+    f32x4 u32x4 f32 u32 single 4
+    f64x2 u64x2 f64 u64 double 2
+    f32x8 u32x8 f32 u32 single 8
+    f64x4 u64x4 f64 u64 double 4
 }

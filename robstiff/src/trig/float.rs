@@ -2,7 +2,7 @@
 
 use core::ops::Neg;
 
-use super::abreast::{Abreast, Vector, mul_add, target};
+use super::abreast::{Abreast, Pairs, Vector, target};
 
 /// Whether the target multiplies and adds in one instruction. Without it
 /// `mul_add` would be a call of a slow function. It is not in `core`, so there
@@ -11,70 +11,112 @@ pub(crate) const FUSED: bool =
     cfg!(all(feature = "std", any(target_feature = "fma", all(target_arch = "aarch64", target_feature = "neon"))));
 
 /// A floating point number that [`sin_cos`](super::sin_cos) knows.
-pub(crate) trait Float: Abreast<Self> + Neg<Output = Self> {
+pub(crate) trait Float: Abreast<Self> + Neg<Output = Self> + 'static {
     /// A vector of the target.
     type Vector: Vector<Self>;
+    /// A vector for what is left when vectors are full.
+    type Pairs: Pairs<Self>;
     /// 0.
     const ZERO: Self;
     /// 1.
     const ONE: Self;
-    /// 1/2.
-    const HALF: Self;
-    /// 2 / pi.
-    const TWO_OVER_PI: Self;
-    /// 1.5 times the first number whose neighbours are 1 apart.
-    const SHIFT: Self;
+    /// What is computed with, in the order of [`places`].
+    const NUMBERS: &'static [Self];
+    /// In how many parts pi/2 is.
+    const PARTS: usize;
+    /// How many coefficients each of the two polynomials has.
+    const TERMS: usize;
     /// The largest angle (rad) that is not left to the platform.
     const DOMAIN: Self;
     /// How far sines and cosines within the domain are off at most.
     #[cfg_attr(not(all(test, feature = "std")), expect(dead_code, reason = "what the tests hold the functions to"))]
     const BOUND: f64;
 
-    /// `x - k pi/2`.
-    fn reduce<V: Abreast<Self>, const FUSED: bool>(x: V, k: V) -> V;
-
-    /// `S` in `sin r = r + r z S(z)`, from `z` and its square.
-    fn sin_tail<V: Abreast<Self>, const FUSED: bool>(z: V, z2: V) -> V;
-
-    /// `C` in `cos r = 1 - z/2 + z^2 C(z)`, from `z` and its square.
-    fn cos_tail<V: Abreast<Self>, const FUSED: bool>(z: V, z2: V) -> V;
+    /// Whether it is an angle within the domain; false for a NaN.
+    fn is_in_domain(self) -> bool;
 
     /// The platform's or libm's function.
     fn platform_sin_cos(self) -> (Self, Self);
 }
 
+/// Where a number stands in [`Float::NUMBERS`].
+pub(crate) mod places {
+    use super::Float;
+
+    /// 2 / pi.
+    pub const TWO_OVER_PI: usize = 0;
+    /// A number so large that only whole ones fit: 1.5 times the first number
+    /// whose neighbours are 1 apart, and as many quarter turns as are the domain.
+    pub const SHIFT: usize = 1;
+    /// 1.
+    pub const ONE: usize = 2;
+    /// -1/2.
+    pub const MINUS_HALF: usize = 3;
+    /// The parts of -pi/2.
+    pub const PARTS: usize = 4;
+
+    /// The coefficients of `S` in `sin r = r + r z S(z)`.
+    pub const fn sin<F: Float>() -> usize {
+        PARTS + F::PARTS
+    }
+
+    /// The coefficients of `C` in `cos r = 1 - z/2 + z^2 C(z)`.
+    pub const fn cos<F: Float>() -> usize {
+        sin::<F>() + F::TERMS
+    }
+}
+
+/// Numbers once for each lane of a vector, in memory. The compiler, where it
+/// sees that the lanes are equal, loads one and spreads it, with an instruction
+/// of its own; a static of another crate it takes straight from memory, as an
+/// operand. Gain: `benches/README.md`.
+#[repr(align(64))]
+pub(crate) struct Spread<F, const LANES: usize, const N: usize>(pub [[F; LANES]; N]);
+
 macro_rules! float {
     (
-        $float:ident, $vector:path, $platform:path,
-        shift: $shift:expr, domain: $domain:expr, bound: $bound:expr,
+        $float:ident, $bits:ident, $module:ident, $lanes:literal, $platform:path,
+        shift: $shift:expr, quarters: $quarters:literal, domain: $domain:expr, bound: $bound:expr,
         pi_over_2: [$($part:expr),*],
         sin: [$($sin:expr),*],
         cos: [$($cos:expr),*],
     ) => {
+        pub(crate) mod $module {
+            use super::Spread;
+
+            pub(crate) const NUMBERS: &[$float] =
+                &[core::$float::consts::FRAC_2_PI, $shift, 1.0, -0.5, $(-$part,)* $($sin,)* $($cos,)*];
+
+            /// Which bits the shift has while there are at most so many quarter turns,
+            /// back or forth, and those of them that stay.
+            pub(crate) const QUARTERS: ($bits, $bits) =
+                (($shift as $float).to_bits() - $quarters, !(2 * $quarters - 1));
+
+            pub(crate) static SPREAD: Spread<$float, $lanes, { NUMBERS.len() }> = {
+                let mut spread = [[0.0; $lanes]; NUMBERS.len()];
+                let mut i = 0;
+                while i < NUMBERS.len() {
+                    spread[i] = [NUMBERS[i]; $lanes];
+                    i += 1;
+                }
+                Spread(spread)
+            };
+        }
+
         impl Float for $float {
-            type Vector = $vector;
+            type Vector = target::$module::Vector;
+            type Pairs = target::$module::Pairs;
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
-            const HALF: Self = 0.5;
-            const TWO_OVER_PI: Self = core::$float::consts::FRAC_2_PI;
-            const SHIFT: Self = $shift;
+            const NUMBERS: &'static [Self] = $module::NUMBERS;
+            const PARTS: usize = [$($part),*].len();
+            const TERMS: usize = [$($sin),*].len();
             const DOMAIN: Self = $domain;
             const BOUND: f64 = $bound;
 
             #[inline(always)]
-            fn reduce<V: Abreast<Self>, const FUSED: bool>(x: V, k: V) -> V {
-                $(let x = mul_add::<Self, V, FUSED>(k, V::splat(-$part), x);)*
-                x
-            }
-
-            #[inline(always)]
-            fn sin_tail<V: Abreast<Self>, const FUSED: bool>(z: V, z2: V) -> V {
-                polynomial::<Self, V, FUSED, _>([$($sin),*], z, z2)
-            }
-
-            #[inline(always)]
-            fn cos_tail<V: Abreast<Self>, const FUSED: bool>(z: V, z2: V) -> V {
-                polynomial::<Self, V, FUSED, _>([$($cos),*], z, z2)
+            fn is_in_domain(self) -> bool {
+                self.abs() <= Self::DOMAIN
             }
 
             #[cold]
@@ -88,30 +130,13 @@ macro_rules! float {
     };
 }
 
-/// A polynomial, the lowest coefficient first: pairs of terms, which do not
-/// wait for each other, and then one step in `z^2` for each pair.
-#[inline(always)]
-fn polynomial<F: Float, V: Abreast<F>, const FUSED: bool, const N: usize>(coefficients: [F; N], z: V, z2: V) -> V {
-    let pair = |i: usize| {
-        let low = V::splat(coefficients[i]);
-        if i + 1 < N { mul_add::<F, V, FUSED>(z, V::splat(coefficients[i + 1]), low) } else { low }
-    };
-    let mut i = (N - 1) / 2 * 2;
-    let mut value = pair(i);
-    while i > 0 {
-        i -= 2;
-        value = mul_add::<F, V, FUSED>(value, z2, pair(i));
-    }
-    value
-}
-
 // All numbers from benches/polynomials/minimax.py.
 //
 // f64: 33 bits of pi/2, whose products with 20 bits of k are exact, and the
 // rest. Error of the polynomials 2^-58 of the sine, 2^-64 of the cosine.
 float! {
-    f64, target::F64, libm::sincos,
-    shift: 6_755_399_441_055_744.0, domain: 1e6, bound: 1.8e-16,
+    f64, u64, double, 4, libm::sincos,
+    shift: 6_755_399_442_104_320.0, quarters: 0x10_0000, domain: 1.6e6, bound: 1.8e-16,
     pi_over_2: [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11],
     sin: [
         -0.166_666_666_666_666_32, 0.008_333_333_333_322_472, -0.000_198_412_698_298_356_47,
@@ -126,8 +151,8 @@ float! {
 // f32: twice 11 bits of pi/2, exact with 11 bits of k, and the rest. Error of
 // the polynomials 2^-28 of the sine, 2^-33 of the cosine.
 float! {
-    f32, target::F32, libm::sincosf,
-    shift: 12_582_912.0, domain: 3000.0, bound: 9.4e-8,
+    f32, u32, single, 8, libm::sincosf,
+    shift: 12_584_960.0, quarters: 0x800, domain: 3000.0, bound: 9.4e-8,
     pi_over_2: [1.570_312_5, 4.837_513e-4, 7.549_79e-8],
     sin: [-0.166_666_55, 0.008_332_191, -0.000_195_185_99],
     cos: [0.041_666_646, -0.001_388_731_4, 2.443_315_8e-5],

@@ -1,14 +1,14 @@
 //! Traces simulated campaigns by the hundred and counts what came of them.
 
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::{fs, process, thread};
 
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use robstiff_tests::matrix::{Case, Group, POSES, Record, groups, run, table};
+use robstiff_tests::matrix::{Case, Group, POSES, Record, groups, run_keeping, table};
 
 /// Traces simulated campaigns with something hidden in them, and judges what is said of them
 #[derive(Parser)]
@@ -32,9 +32,12 @@ struct Arguments {
     /// Threads
     #[arg(long, default_value_t = 2)]
     jobs: usize,
-    /// Where all runs are written
+    /// Where all runs are written, and beside it all numbers with an interval
     #[arg(long, default_value = "target/matrix.csv")]
     csv: PathBuf,
+    /// A folder for all campaigns, to trace one by hand
+    #[arg(long)]
+    keep: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -52,15 +55,17 @@ fn main() {
         process::exit(2);
     }
     let cases = cases(&chosen, &arguments);
-    let records = run_all(&cases, arguments.jobs.max(1));
+    let records = run_all(&cases, arguments.jobs.max(1), arguments.keep.as_deref());
     print!("{}", table::markdown(&records));
     if let Some(folder) = arguments.csv.parent() {
         fs::create_dir_all(folder).unwrap_or_else(|problem| fail(&arguments.csv, &problem));
     }
-    fs::write(&arguments.csv, table::csv(&records)).unwrap_or_else(|problem| fail(&arguments.csv, &problem));
+    let write = |path: &Path, text: String| fs::write(path, text).unwrap_or_else(|problem| fail(path, &problem));
+    write(&arguments.csv, table::csv(&records));
+    write(&arguments.csv.with_extension("numbers.csv"), table::numbers_csv(&records));
 }
 
-fn fail(path: &std::path::Path, problem: &std::io::Error) -> ! {
+fn fail(path: &Path, problem: &std::io::Error) -> ! {
     eprintln!("{}: {problem}", path.display());
     process::exit(1)
 }
@@ -87,7 +92,7 @@ fn cases(chosen: &[Group], arguments: &Arguments) -> Vec<Case> {
     chosen.iter().flat_map(of).collect()
 }
 
-fn run_all(cases: &[Case], jobs: usize) -> Vec<Record> {
+fn run_all(cases: &[Case], jobs: usize, keep: Option<&Path>) -> Vec<Record> {
     let progress =
         if std::io::stderr().is_terminal() { ProgressBar::new(cases.len() as u64) } else { ProgressBar::hidden() };
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len}, {eta} left").expect("a template that is right");
@@ -100,7 +105,7 @@ fn run_all(cases: &[Case], jobs: usize) -> Vec<Record> {
                 loop {
                     let index = next.fetch_add(1, Ordering::Relaxed);
                     let Some(case) = cases.get(index) else { break };
-                    let record = run(case.clone());
+                    let record = run_keeping(case.clone(), keep);
                     records.lock().expect("no thread panics with it").push((index, record));
                     progress.inc(1);
                 }

@@ -7,7 +7,8 @@ pub mod draw;
 pub mod interval;
 pub mod run;
 pub mod table;
+pub mod truths;
 pub mod visible;
 
 pub use case::{Case, Expected, Group, POSES, Ready, groups};
-pub use run::{Record, run};
+pub use run::{Record, run, run_keeping};

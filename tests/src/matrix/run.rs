@@ -1,6 +1,6 @@
 //! One campaign, written, read, traced and judged.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 use std::{env, fs, process, thread};
 
@@ -11,7 +11,8 @@ use robstiff_robots::Description;
 
 use super::alias::would_do;
 use super::case::{Case, Expected, Group, Ready};
-use crate::judge_tracing::{Judgement, Told, joints_within, judge, numbers_within};
+use super::truths::Truths;
+use crate::judge_tracing::{Held, Judgement, Told, held_joints, held_numbers, judge};
 use crate::simulator::{Hidden, Scenario, Simulated};
 
 /// What is added to a campaign's seed for poses that it does not have.
@@ -32,10 +33,10 @@ pub struct Record {
     /// What the written description errs by on ten other poses, without noise
     /// and without the faults of the rig, over what noise alone would leave.
     pub elsewhere: f64,
-    /// Numbers of effects within their 95 % interval, of how many.
-    pub numbers: (usize, usize),
+    /// The numbers of effects that have an interval.
+    pub numbers: Vec<Held>,
     /// The same of joints' compliances.
-    pub joints: (usize, usize),
+    pub joints: Vec<Held>,
     /// How long tracing took (s).
     pub seconds: f64,
 }
@@ -70,8 +71,20 @@ impl Record {
 /// # Panics
 /// Where a file cannot be written or the campaign cannot be read.
 pub fn run(case: Case) -> Record {
+    run_keeping(case, None)
+}
+
+/// Runs a case, and writes its campaign to a folder of its own in `kept`.
+///
+/// # Panics
+/// Where a file cannot be written or the campaign cannot be read.
+pub fn run_keeping(case: Case, kept: Option<&Path>) -> Record {
     let ready = case.ready();
     let simulated = ready.scenario.run();
+    if let Some(kept) = kept {
+        let folder = kept.join(format!("{}-{}", ready.case.group.name(), ready.case.replicate));
+        simulated.write(&folder, &ready.declared.to_yaml()).expect("a folder to write to");
+    }
     let campaign = read(&simulated, &ready.declared);
     let begun = Instant::now();
     let traced = trace(&campaign, &Options::default(), &|_| {});
@@ -79,29 +92,36 @@ pub fn run(case: Case) -> Record {
     // A displacement is the difference of two readings.
     let floor = ready.scenario.noise * std::f64::consts::SQRT_2;
     let Ok(traced) = traced else {
-        let nothing = (0, 0);
         let (unseen, elsewhere) = (f64::NAN, f64::NAN);
         let judgement = Judgement::default();
-        return Record { ready, told: None, judgement, unseen, elsewhere, numbers: nothing, joints: nothing, seconds };
+        return Record {
+            ready,
+            told: None,
+            judgement,
+            unseen,
+            elsewhere,
+            numbers: Vec::new(),
+            joints: Vec::new(),
+            seconds,
+        };
     };
     let told = Told::of(&traced);
     let outside = matches!(ready.case.group, Group::Outside(_));
-    let hidden: Vec<(String, Vec<(String, f64)>)> = match outside {
+    let hidden: &[Hidden] = match outside {
         // It has no name to be found.
-        true => Vec::new(),
-        false => ready.scenario.hidden.iter().map(|hidden| (hidden.name(), hidden.parameters())).collect(),
+        true => &[],
+        false => &ready.scenario.hidden,
     };
-    let names: Vec<String> = hidden.iter().map(|(name, _)| name.clone()).collect();
+    let names: Vec<String> = hidden.iter().map(Hidden::name).collect();
     let judgement = judge(&told, &names, |name, index| would_do(&ready, name, index));
+    let joints = ready.scenario.truth.joints.iter().map(|joint| joint.compliance()).collect();
+    let truths = Truths::of(&told, hidden, joints);
     // The joints are where they are only in a model that is the right one.
-    let truths: Vec<f64> = ready.scenario.truth.joints.iter().map(|joint| joint.compliance()).collect();
-    let joints = match !outside && judgement.own && told.verdict != Verdict::Insufficient {
-        true => joints_within(&told, &truths),
-        false => (0, 0),
-    };
+    let comparable = !outside && judgement.own && told.verdict != Verdict::Insufficient;
+    let joints = truths.joints.filter(|_| comparable);
     Record {
-        numbers: numbers_within(&told, &hidden),
-        joints,
+        numbers: held_numbers(&told, &truths.effects),
+        joints: joints.map_or_else(Vec::new, |truths| held_joints(&told, &truths)),
         unseen: traced.after.holdout_rms / floor,
         elsewhere: elsewhere(&ready, &traced) / floor,
         judgement,

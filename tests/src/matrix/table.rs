@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::case::{Expected, Group};
 use super::interval::interval;
 use super::run::Record;
+use crate::judge_tracing::{Held, within};
 
 /// The table of all records, a line a group and some for several together.
 pub fn markdown(records: &[Record]) -> String {
@@ -12,20 +13,20 @@ pub fn markdown(records: &[Record]) -> String {
         "| hidden | runs | as expected | named | alone | a wrong name | misled | verdicts A/E/P/U/I | unseen | elsewhere | numbers in 95 % | joints in 95 % |\n\
          |---|---:|---|---|---|---|---|---|---:|---:|---|---|\n",
     );
-    let mut line = |name: &str, chosen: Vec<&Record>| {
+    let mut add = |name: &str, chosen: Vec<&Record>| {
         if !chosen.is_empty() {
             text += &row(name, &chosen);
         }
     };
     let of = |group: Group| records.iter().filter(|record| record.ready.case.group == group).collect::<Vec<_>>();
     for group in super::groups() {
-        line(group.name(), of(group));
+        add(group.name(), of(group));
     }
     let ones = |record: &&Record| matches!(record.ready.case.group, Group::One(_));
-    line("**all of one**", records.iter().filter(ones).collect());
+    add("**all of one**", records.iter().filter(ones).collect());
     let outside = |record: &&Record| matches!(record.ready.case.group, Group::Outside(_));
-    line("**all outside**", records.iter().filter(outside).collect());
-    line("**all**", records.iter().collect());
+    add("**all outside**", records.iter().filter(outside).collect());
+    add("**all**", records.iter().collect());
     text + "\n\
         As expected: named, or nothing named where nothing can be seen, or no whole truth told outside the catalogue; \
         of the runs of which something is expected. Named, alone: of the runs whose effects matter, up to aliases. \
@@ -46,8 +47,9 @@ fn row(name: &str, records: &[&Record]) -> String {
     let verdicts = ["adequate", "explained", "partial", "unexplained", "insufficient"].map(|verdict| {
         count(&|record| record.told.as_ref().is_some_and(|told| told.verdict.to_string() == verdict)).to_string()
     });
-    let within = |of: &dyn Fn(&Record) -> (usize, usize)| {
-        let all = records.iter().map(|record| of(record)).fold((0, 0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
+    let held = |of: &dyn Fn(&Record) -> &[Held]| {
+        let all =
+            records.iter().map(|record| within(of(record))).fold((0, 0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
         share(all.0, all.1)
     };
     let unseen: Vec<f64> =
@@ -63,8 +65,8 @@ fn row(name: &str, records: &[&Record]) -> String {
         verdicts.join("/"),
         (unseen.iter().sum::<f64>() / unseen.len() as f64).sqrt(),
         share(count(&|record| record.elsewhere.hypot(1.0) <= 1.03), records.len()),
-        within(&|record| record.numbers),
-        within(&|record| record.joints),
+        held(&|record| &record.numbers),
+        held(&|record| &record.joints),
     )
 }
 
@@ -103,15 +105,43 @@ pub fn csv(records: &[Record]) -> String {
             record.misleads().to_string(),
             format!("{:.4}", record.unseen),
             format!("{:.4}", record.elsewhere),
-            record.numbers.0.to_string(),
-            record.numbers.1.to_string(),
-            record.joints.0.to_string(),
-            record.joints.1.to_string(),
+            within(&record.numbers).0.to_string(),
+            record.numbers.len().to_string(),
+            within(&record.joints).0.to_string(),
+            record.joints.len().to_string(),
             format!("{:.2}", record.seconds),
         ];
-        let quoted = cells
-            .map(|cell| if cell.contains([',', '"']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell });
-        writeln!(text, "{}", quoted.join(",")).expect("a string takes all that is written to it");
+        line(&mut text, cells);
     }
     text
+}
+
+/// All numbers with an interval, a line each.
+pub fn numbers_csv(records: &[Record]) -> String {
+    let mut text = String::from("group,replicate,verdict,number,value,std,truth,within\n");
+    for record in records {
+        let (case, told) = (&record.ready.case, record.told.as_ref());
+        let verdict = told.map_or_else(String::new, |told| told.verdict.to_string());
+        for held in record.numbers.iter().chain(&record.joints) {
+            let cells = [
+                case.group.name().to_string(),
+                case.replicate.to_string(),
+                verdict.clone(),
+                held.name.clone(),
+                format!("{:e}", held.value),
+                format!("{:e}", held.std),
+                format!("{:e}", held.truth),
+                held.is_within().to_string(),
+            ];
+            line(&mut text, cells);
+        }
+    }
+    text
+}
+
+/// A line of cells, quoted where they have to be.
+fn line<const N: usize>(text: &mut String, cells: [String; N]) {
+    let quoted =
+        cells.map(|cell| if cell.contains([',', '"']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell });
+    writeln!(text, "{}", quoted.join(",")).expect("a string takes all that is written to it");
 }

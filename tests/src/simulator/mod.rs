@@ -17,6 +17,7 @@ mod arms;
 mod campaign;
 #[cfg(test)]
 mod campaign_tests;
+mod clamped;
 mod equilibrium;
 mod files;
 mod frame;
@@ -35,6 +36,7 @@ mod tests;
 pub use arm::{Arm, GRAVITY, SEGMENTS};
 pub use arms::{five_axis, six_axis};
 pub use campaign::{Row, Scenario, Simulated, scattered};
+pub use clamped::Axes;
 pub use equilibrium::{Equilibrium, PosedArm};
 pub use gear::{Memory, Moment};
 pub use hidden::{DhColumn, Follows, Hidden, Mount};

@@ -155,12 +155,20 @@ impl Writer<'_> {
             }
         };
         let (mut patterns, mut sums) = (Vec::new(), Vec::new());
-        for (index, angle) in self.function.graph().angles().iter().enumerate() {
+        let angles = self.function.graph().angles();
+        let mut order: Vec<usize> = (0..angles.len()).collect();
+        // A sum is known last, and first in a vector it is there at once. Not where
+        // the last joint's angle comes first, because everything waits for that.
+        let last_joint = |angle: &Angle| angle.terms().last().map(|&(joint, _)| joint);
+        if angles.first().map(last_joint) < angles.iter().map(last_joint).max() {
+            order.sort_by_key(|&index| angles[index].terms().len() < 2);
+        }
+        for index in order {
             if is_live(Op::Sin(index)) || is_live(Op::Cos(index)) {
                 let label = self.names.angle(index);
                 let (sin, cos) = (pattern(Op::Sin(index), 's', label), pattern(Op::Cos(index), 'c', label));
                 patterns.push(quote!((#sin, #cos)));
-                sums.push(sum(angle));
+                sums.push(sum(&angles[index]));
             }
         }
         match (patterns.as_slice(), sums.as_slice()) {

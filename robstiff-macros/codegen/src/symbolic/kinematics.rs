@@ -7,11 +7,17 @@ use super::chain::chain;
 use super::elastic::Elastic;
 use super::forward::{Forward, Frame, forward};
 use super::vector::Vec3;
+use super::waist::{Start, cheapest};
 use crate::graph::{Graph, Sym};
 
 /// The 16 entries of the TCP's frame in the base frame, by rows.
 pub fn transform<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
-    homogeneous(g, &forward(g, &chain(g, robot)).tcp, "")
+    transform_from(g, &Start::at_base(g, robot))
+}
+
+pub(super) fn transform_from<'g>(g: &'g Graph, start: &Start<'g>) -> Vec<Sym<'g>> {
+    let Frame { axes, origin } = start.forward().tcp;
+    homogeneous(g, &Frame { axes: axes.map(|axis| start.to_base(axis)), origin: start.to_base(origin) }, "")
 }
 
 /// The frames behind the joints in the base frame, 16 entries each, by rows.
@@ -41,6 +47,11 @@ struct Columns<'g> {
 }
 
 impl<'g> Columns<'g> {
+    fn to_base(&self, start: &Start<'g>) -> Self {
+        let to_base = |vectors: &[Vec3<'g>]| vectors.iter().map(|&v| start.to_base(v)).collect();
+        Self { translation: to_base(&self.translation), rotation: to_base(&self.rotation) }
+    }
+
     /// `[z x lever; z]` for a revolute joint, `[z; 0]` for a prismatic one.
     fn of(g: &'g Graph, robot: &Description, forward: &Forward<'g>) -> Self {
         let mut columns = Self { translation: Vec::new(), rotation: Vec::new() };
@@ -66,32 +77,41 @@ impl<'g> Columns<'g> {
 
 /// The Jacobian, 6 entries a column, column by column.
 pub fn jacobian<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
-    let columns = Columns::of(g, robot, &forward(g, &chain(g, robot)));
+    cheapest(g, robot, |g, start| jacobian_from(g, start, robot))
+}
+
+pub(super) fn jacobian_from<'g>(g: &'g Graph, start: &Start<'g>, robot: &Description) -> Vec<Sym<'g>> {
+    let columns = Columns::of(g, robot, &start.forward()).to_base(start);
     columns.translation.iter().zip(&columns.rotation).flat_map(|(t, r)| t.0.into_iter().chain(r.0)).collect()
 }
 
-fn wrench<'g>(g: &'g Graph) -> (Vec3<'g>, Vec3<'g>) {
-    (Vec3(std::array::from_fn(|i| g.wrench(i))), Vec3(std::array::from_fn(|i| g.wrench(3 + i))))
+fn wrench<'g>(g: &'g Graph, start: &Start<'g>) -> (Vec3<'g>, Vec3<'g>) {
+    let part = |first: usize| start.from_base(Vec3(std::array::from_fn(|i| g.wrench(first + i))));
+    (part(0), part(3))
 }
 
 /// The joint torques `J^T F` that a wrench at the TCP asks for.
 pub fn joint_torques<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
-    let (force, moment) = wrench(g);
-    Columns::of(g, robot, &forward(g, &chain(g, robot))).torques(force, moment)
+    cheapest(g, robot, |g, start| {
+        let (force, moment) = wrench(g, start);
+        Columns::of(g, robot, &start.forward()).torques(force, moment)
+    })
 }
 
 /// Displacement and rotation of the TCP under a wrench, `J (H_q (J^T F))` and
 /// what the effects add, without forming a compliance matrix; of a robot that
 /// was never loaded.
 pub fn deflection<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
-    loaded(g, robot, |_| [g.number(0.0); PLAYS]).0
+    cheapest(g, robot, |g, start| loaded(g, robot, start, |_| [g.number(0.0); PLAYS]).0)
 }
 
 /// The same after other loads, and then the play operators that are in use, in
 /// the order of [`plays`].
 pub fn deflection_with<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
-    let (displacement, plays) = loaded(g, robot, |joint| std::array::from_fn(|k| g.play(joint, k)));
-    [displacement, plays].concat()
+    cheapest(g, robot, |g, start| {
+        let (displacement, plays) = loaded(g, robot, start, |joint| std::array::from_fn(|k| g.play(joint, k)));
+        [displacement, plays].concat()
+    })
 }
 
 /// The play operators in use, each by its joint and its number there, from 0.
@@ -103,11 +123,12 @@ pub fn plays(robot: &Description) -> Vec<(usize, usize)> {
 fn loaded<'g>(
     g: &'g Graph,
     robot: &Description,
+    start: &Start<'g>,
     before: impl Fn(usize) -> [Sym<'g>; PLAYS],
 ) -> (Vec<Sym<'g>>, Vec<Sym<'g>>) {
     let elastic = Elastic::of(g, robot);
-    let forward = forward(g, &chain(g, robot));
-    let (force, moment) = wrench(g);
+    let forward = start.forward();
+    let (force, moment) = wrench(g, start);
     let mut sum = Displacement { translation: Vec3::zero(g), rotation: Vec3::zero(g) };
 
     let columns = Columns::of(g, robot, &forward);
@@ -142,7 +163,8 @@ fn loaded<'g>(
     let (turn, shift) = elastic.tool;
     sum.turn(moment_at(forward.flange.lever).scaled(turn), forward.flange.lever);
     sum.translation = sum.translation + force.scaled(shift);
-    (sum.translation.0.into_iter().chain(sum.rotation.0).collect(), plays)
+    let displacement = [sum.translation, sum.rotation].map(|part| start.to_base(part).0);
+    (displacement.concat(), plays)
 }
 
 struct Displacement<'g> {

@@ -2,6 +2,7 @@
 //!
 //! - [`chain`](mod@chain): a description as elementary steps from base to TCP;
 //! - [`forward`](mod@forward): frames and levers, from the base to the TCP;
+//! - [`waist`]: the first joint's turn, left for the end where that is cheaper;
 //! - [`kinematics`]: transform, frames, Jacobian, torques and deflection;
 //! - [`weight`]: how the joints yield to the arm's own weight;
 //! - [`compliance`](mod@compliance): the Cartesian compliance, carried from the TCP to the
@@ -13,6 +14,7 @@ pub mod elastic;
 pub mod forward;
 pub mod kinematics;
 pub mod vector;
+pub mod waist;
 pub mod weight;
 
 pub use chain::{Step, Tilt, chain};
@@ -28,7 +30,10 @@ use crate::graph::{Graph, Sym};
 /// Transform (16 entries), Jacobian (6 a joint) and compliance (36), which share
 /// what they have in common by being in one graph.
 pub fn statics<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
-    [transform(g, robot), jacobian(g, robot), compliance(g, robot)].concat()
+    waist::cheapest(g, robot, |g, start| {
+        let transform = kinematics::transform_from(g, start);
+        [transform, kinematics::jacobian_from(g, start, robot), compliance(g, robot)].concat()
+    })
 }
 
 /// How the entries of a result are calculated.

@@ -17,7 +17,8 @@ mod triage;
 use content::Report;
 use html::{escape, text};
 
-const STYLE: &str = include_str!("style.css");
+/// How pages look.
+pub const STYLE: &str = include_str!("style.css");
 
 /// The page. Figures and tables say µm where other texts say um.
 pub fn html(report: &Report) -> String {

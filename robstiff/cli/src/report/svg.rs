@@ -73,6 +73,33 @@ impl Svg {
         ));
     }
 
+    /// Lines and areas as SVG writes a path.
+    pub fn path(&mut self, class: &str, path: &str) {
+        self.push(format_args!("<path class=\"{class}\" d=\"{path}\"/>"));
+    }
+
+    /// A picture whose pixels are shown as squares; `source` is a data URI.
+    pub fn image(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], source: &str) {
+        self.push(format_args!(
+            "<image class=\"cells\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" \
+             preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"{source}\"/>"
+        ));
+    }
+
+    /// Elements as they are.
+    pub fn raw(&mut self, elements: &str) {
+        self.push(format_args!("{elements}"));
+    }
+
+    /// The figure as a file of its own.
+    pub fn document(&self, style: &str) -> String {
+        let Self { width, height, label, body } = self;
+        format!(
+            "<svg viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" height=\"{height:.0}\" role=\"img\" \
+             aria-label=\"{label}\" xmlns=\"http://www.w3.org/2000/svg\">\n<style>\n{style}</style>\n{body}</svg>\n"
+        )
+    }
+
     /// The figure as an element.
     pub fn html(&self) -> String {
         let Self { width, height, label, body } = self;

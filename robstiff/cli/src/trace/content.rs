@@ -6,7 +6,7 @@ use robstiff::trace::{EffectParameter, NamedEffect, Options, RowResidual, Step, 
 use robstiff::triage::Triage;
 
 use super::words::spoken;
-use super::{pictures, story};
+use super::{clamped, pictures, story};
 use crate::failure::Failure;
 use crate::identify::source_of;
 use crate::report::content::{
@@ -127,8 +127,9 @@ fn compliances(trace: &Trace) -> Vec<Compliance> {
 
 /// The errors of every pose, in the campaign's order.
 fn errors(trace: &Trace, campaign: &Campaign) -> Result<Vec<PoseError>, Failure> {
-    let Data::Displacement(data) = &campaign.data else {
-        unreachable!("only campaigns of displacements are traced");
+    let data = match &campaign.data {
+        Data::Displacement(data) => data,
+        Data::Clamped(rows) => return Ok(clamped::errors(trace, campaign, rows)),
     };
     let declared = predict(&campaign.robot, campaign)?;
     let mut without_effects = trace.description.clone();

@@ -1,7 +1,9 @@
 //! `robstiff trace`: the closed loop, from the residual to the effect that the
 //! model lacks.
 
+mod clamped;
 mod content;
+mod correction;
 mod document;
 mod pictures;
 mod story;
@@ -12,8 +14,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use robstiff::campaign::Data;
 use robstiff::plan::next;
-use robstiff::trace::{Options, trace};
+use robstiff::trace::{Correction, Options, trace};
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
@@ -40,6 +43,10 @@ pub struct Arguments {
     /// Level of the tests, over all candidates together
     #[arg(long, default_value_t = Options::default().alpha, value_parser = level)]
     alpha: f64,
+    /// Look for a correction of what is left that is no physics, and where it predicts unseen poses
+    /// better write it to `correction.json`
+    #[arg(long)]
+    correction: bool,
 }
 
 /// How many measurements are proposed; `robstiff plan` proposes more.
@@ -74,11 +81,27 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         traced.next = next(&campaign, &traced, PROPOSALS).unwrap_or_default();
         traced
     });
+    let correction = match &traced {
+        Ok(traced) if arguments.correction => Some(Correction::of(&campaign, traced)),
+        _ => None,
+    };
     spinner.finish_and_clear();
     let traced = traced?;
 
-    let document = json::document(&document::document(&traced, &triage, &campaign));
-    let report = content::report(&traced, &triage, &campaign, &options)?;
+    let document = document::document(&traced, &triage, &campaign);
+    let mut report = content::report(&traced, &triage, &campaign, &options)?;
+    let mut page = triage::page(&triage) + &story::page(&traced);
+    if let Some(found) = &correction {
+        let said = correction::sentence(found.as_ref());
+        page += &format!("\n{said}\n");
+        report.summary.push(said);
+    }
+    let report = report::html(&report);
+    let (document, report, page) = match &campaign.data {
+        Data::Displacement(_) => (document, report, page),
+        Data::Clamped(_) => (clamped::in_angles(document), clamped::about_axes(&report), clamped::about_axes(&page)),
+    };
+    let document = json::document(&document);
     let mut files = Files::default();
     files.protect_campaign(&campaign);
     files.add(arguments.out.join("robot.yaml"), traced.description.to_yaml());
@@ -86,9 +109,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         files.add(path, document.clone());
     }
     files.add(arguments.out.join("trace.json"), document);
-    files.add(arguments.out.join("report.html"), report::html(&report));
+    files.add(arguments.out.join("report.html"), report);
+    if let Some(Some(found)) = &correction {
+        files.add(arguments.out.join("correction.json"), json::document(&correction::document(found, &traced)));
+    }
     let said = files.write()?;
-    output::print(triage::page(&triage) + &story::page(&traced) + "\n" + &said)
+    output::print(page + "\n" + &said)
 }
 
 /// Shows on a terminal that something goes on, and hides elsewhere.

@@ -15,10 +15,12 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 pub use self::noise::Known;
+use super::Options;
 use super::catalogue::{Candidate, Catalogue, LIKELY, Number, Scene, Variant, catalogue};
 use super::isolated::{self, Moment};
 use super::model::{Fitted, Named, Setting};
 use super::point::Point;
+use super::selection::Tests;
 use crate::campaign::Campaign;
 use crate::elements::Parameter;
 use crate::identify::baseline::Visibility;
@@ -48,10 +50,14 @@ pub struct Bench<'c> {
     moments: Vec<Moment>,
     settings: Solved<Setting<'c>>,
     states: Solved<State>,
+    tests: Tested,
 }
 
 /// What was found of models, or why not.
 type Solved<T> = RefCell<HashMap<Vec<Named>, Result<Rc<T>, String>>>;
+
+/// The tests against models, with so many draws and a seed.
+type Tested = RefCell<HashMap<(Vec<Named>, usize, u64), Option<Rc<Tests>>>>;
 
 /// A model at its solution.
 struct State {
@@ -111,6 +117,7 @@ impl<'c> Bench<'c> {
             moments: Vec::new(),
             settings: RefCell::default(),
             states: RefCell::default(),
+            tests: RefCell::default(),
         }
     }
 
@@ -127,8 +134,7 @@ impl<'c> Bench<'c> {
 
     /// Forms the catalogue, without what the data cannot show.
     fn set_up(&mut self) -> Result<(), String> {
-        self.settings.get_mut().clear();
-        self.states.get_mut().clear();
+        self.forget();
         let Catalogue { candidates, numbers, invisible } = catalogue(&self.scene(), self.own.len());
         let signs = self.prepared.signs().into_iter().chain(numbers.iter().map(Number::sign));
         self.signs = signs.collect();
@@ -162,6 +168,7 @@ impl<'c> Bench<'c> {
         self.candidates = kept.into();
         self.invisible.extend(lost);
         self.settings.get_mut().clear();
+        self.tests.get_mut().clear();
         Ok(())
     }
 
@@ -198,10 +205,16 @@ impl<'c> Bench<'c> {
             };
             self.candidates = kept.iter().map(moved).collect();
             self.numbers = self.refined_numbers(0..self.candidates.len());
-            self.settings.get_mut().clear();
-            self.states.get_mut().clear();
+            self.forget();
         }
         Ok(changed)
+    }
+
+    /// Forgets what was found of models, for they are others now.
+    fn forget(&mut self) {
+        self.settings.get_mut().clear();
+        self.states.get_mut().clear();
+        self.tests.get_mut().clear();
     }
 
     /// Where slips that all later rows keep may have begun: what a model says,
@@ -245,10 +258,26 @@ impl<'c> Bench<'c> {
         }
         let found = self.setting(named).map(Rc::new);
         let mut settings = self.settings.borrow_mut();
-        if settings.len() >= KEPT.max(1) && self.left_out.len() > MANY_ROWS {
+        if settings.len() >= KEPT && self.left_out.len() > MANY_ROWS {
             settings.retain(|named, _| named.is_empty());
         }
         settings.insert(named.to_vec(), found.clone());
+        found
+    }
+
+    /// The tests of the whole catalogue against a model; `None` where it cannot
+    /// be fitted.
+    pub fn tests(&self, named: &[Named], options: &Options) -> Option<Rc<Tests>> {
+        let key = (named.to_vec(), options.draws, options.seed);
+        if let Some(known) = self.tests.borrow().get(&key) {
+            return known.clone();
+        }
+        let found = self.at(named).ok().and_then(|setting| Tests::against(&setting, named, options)).map(Rc::new);
+        let mut tests = self.tests.borrow_mut();
+        if tests.len() >= KEPT && self.left_out.len() > MANY_ROWS {
+            tests.clear();
+        }
+        tests.insert(key, found.clone());
         found
     }
 
@@ -320,6 +349,7 @@ impl<'c> Bench<'c> {
             // The tangents need coefficients, first those without them.
             let known = match &fit {
                 Some(fit) => fit.clone(),
+                None if nonlinear.is_empty() => Fit { columns: Vec::new(), coefficients: DVector::zeros(0), rss: 0.0 },
                 None => {
                     let linear: Vec<usize> =
                         columns.iter().copied().filter(|c| !nonlinear.iter().any(|(of, _)| of == c)).collect();
@@ -402,13 +432,28 @@ impl<'c> Bench<'c> {
     /// that are held included.
     fn prediction(&self, point: &Point<'c>, fit: &Fit, nonlinear: &[(usize, &Number)]) -> DVector<f64> {
         let mut sum = point.samples.readings() - self.readings(point);
+        // Numbers in which the compliance is linear, in one go.
+        let mut linear = Vec::new();
         for (&column, &value) in fit.columns.iter().zip(fit.coefficients.iter()) {
             let is_nonlinear = nonlinear.iter().any(|(of, _)| *of == column);
-            if value != 0.0 && !is_nonlinear && self.is_elastic(column) {
-                sum.axpy(value, &self.linear(point, column), 1.0);
+            match self.parameter(column) {
+                Some(parameter) if !is_nonlinear => linear.push((parameter, value)),
+                None if value != 0.0 && !is_nonlinear && self.is_elastic(column) => {
+                    sum.axpy(value, &self.linear(point, column), 1.0);
+                }
+                _ => {}
             }
         }
-        sum
+        sum + point.with_creep(point.samples.under(&linear))
+    }
+
+    /// The number that a column is of, where the compliance is linear in it.
+    fn parameter(&self, column: usize) -> Option<Parameter> {
+        match self.own.get(column) {
+            Some(Column::Linear(parameter)) => Some(*parameter),
+            Some(Column::Knee { .. }) => None,
+            None => self.numbers[column - self.own.len()].parameter,
+        }
     }
 
     fn is_elastic(&self, column: usize) -> bool {
@@ -459,14 +504,8 @@ impl<'c> Bench<'c> {
             Column::Linear(parameter) => Some((parameter, number.value)),
             Column::Knee { .. } => None,
         });
-        let fitted = fit.columns.iter().zip(fit.coefficients.iter()).filter_map(|(&column, &value)| {
-            let parameter = match self.own.get(column) {
-                Some(Column::Linear(parameter)) => Some(*parameter),
-                Some(Column::Knee { .. }) => None,
-                None => self.numbers[column - self.own.len()].parameter,
-            };
-            parameter.map(|parameter| (parameter, value))
-        });
+        let fitted = fit.columns.iter().zip(fit.coefficients.iter());
+        let fitted = fitted.filter_map(|(&column, &value)| Some((self.parameter(column)?, value)));
         held.chain(fitted).collect()
     }
 }

@@ -60,8 +60,7 @@ impl Bench<'_> {
             return Ok(false);
         }
         self.noise = Rc::new(known);
-        self.settings.get_mut().clear();
-        self.states.get_mut().clear();
+        self.forget();
         Ok(true)
     }
 

@@ -5,12 +5,13 @@ use std::ops::Range;
 use std::rc::Rc;
 use std::vec::Vec;
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use super::Bench;
-use crate::identify::normal::Fit;
-use crate::trace::catalogue::{Number, Variant};
-use crate::trace::model::{Named, Setting};
+use crate::identify::normal::{Normal, Sign};
+use crate::trace::catalogue::{Number, Refine, Variant};
+use crate::trace::model::{Fitted, Named, Setting};
+use crate::trace::point::Point;
 
 /// Times that numbers out of grids are looked at in turn, how far from the
 /// grid's value (grids double) and how finely, in logarithms; the golden
@@ -21,7 +22,54 @@ const FINE: f64 = 0.02;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 const LOG_STEP: f64 = 0.02;
 
-impl Bench<'_> {
+/// A model in which one number out of a grid takes other values, everything
+/// that enters other than linearly held.
+struct Tried<'b, 'c> {
+    bench: &'b Bench<'c>,
+    point: Point<'c>,
+    /// The model's columns whitened, a row each, of the rows fitted to.
+    white: DMatrix<f64>,
+    readings: DVector<f64>,
+    stacked: Vec<usize>,
+    normal: Normal,
+    signs: Vec<Sign>,
+    shape: Vec<f64>,
+    refine: Refine,
+    /// The places of the form's columns, and which of its numbers it is.
+    at: Vec<usize>,
+    k: usize,
+}
+
+impl Tried<'_, '_> {
+    /// The sum of squares left with a value of the number.
+    fn rss(&self, value: f64) -> f64 {
+        let mut shape = self.shape.clone();
+        shape[self.k] = value;
+        let numbers = (self.refine)(&shape);
+        let moved: Vec<DVector<f64>> = numbers.iter().map(|number| number.column(&self.point)).collect();
+        let mut moved = DMatrix::from_columns(&moved);
+        let weights = self.bench.weights();
+        weights.covariance.whiten(&mut moved, weights.left_out);
+        let moved = moved.select_rows(&self.stacked);
+        let mut normal = self.normal.clone();
+        let (along, moment) = (&self.white * &moved, moved.tr_mul(&self.readings));
+        for (k, &at) in self.at.iter().enumerate().take(moved.ncols()) {
+            normal.gram.set_column(at, &along.column(k));
+            normal.gram.set_row(at, &along.column(k).transpose());
+            normal.moment[at] = moment[k];
+        }
+        let among = moved.tr_mul(&moved);
+        for (i, &row) in self.at.iter().enumerate().take(moved.ncols()) {
+            for (j, &column) in self.at.iter().enumerate().take(moved.ncols()) {
+                normal.gram[(row, column)] = among[(i, j)];
+            }
+        }
+        let all: Vec<usize> = (0..self.signs.len()).collect();
+        normal.solve_signed(&all, &self.signs).map_or(f64::INFINITY, |fit| fit.rss)
+    }
+}
+
+impl<'c> Bench<'c> {
     /// The same with numbers out of grids taken to where they fit best, and
     /// what they are then; as it is where a model has none.
     pub fn polished(&self, named: &[Named]) -> Self {
@@ -37,22 +85,31 @@ impl Bench<'_> {
                     let with = |value: f64| bench.with_shape(one, k, value);
                     let [least, most] = self.variant(one).within;
                     let (mut low, mut high) = ((at / REACH).max(least).ln(), (at * REACH).min(most).ln());
+                    let tried = bench.tried(named, one, k);
+                    let unlikely = bench.unlikely(named, one);
+                    let left_by = |log: f64| {
+                        let left = match &tried {
+                            Some(tried) => tried.rss(log.exp()),
+                            None => rss(&with(log.exp())),
+                        };
+                        left + unlikely(log)
+                    };
                     let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
                     let [mut left, mut right] = inner(low, high);
-                    let (mut of_left, mut of_right) = (rss(&with(left.exp())), rss(&with(right.exp())));
+                    let (mut of_left, mut of_right) = (left_by(left), left_by(right));
                     while high - low > FINE {
                         if of_left < of_right {
                             (high, right, of_right) = (right, left, of_left);
                             left = inner(low, high)[0];
-                            of_left = rss(&with(left.exp()));
+                            of_left = left_by(left);
                         } else {
                             (low, left, of_left) = (left, right, of_right);
                             right = inner(low, high)[1];
-                            of_right = rss(&with(right.exp()));
+                            of_right = left_by(right);
                         }
                     }
                     let better = with((0.5 * (low + high)).exp());
-                    if rss(&better) < rss(&bench) {
+                    if rss(&better) + unlikely((0.5 * (low + high)).exp().ln()) < rss(&bench) + unlikely(at.ln()) {
                         bench = better;
                     }
                 }
@@ -61,19 +118,72 @@ impl Bench<'_> {
         bench
     }
 
+    /// What is to be added to a sum of squares for a number out of a grid that is
+    /// unlikely, by its logarithm.
+    fn unlikely(&self, named: &[Named], one: Named) -> impl Fn(f64) -> f64 + use<> {
+        let variance = self.state(named).map_or(0.0, |state| {
+            let readings = self.left_out.iter().filter(|out| !**out).count() * self.prepared.samples.axes;
+            state.fit.rss / readings as f64
+        });
+        let likely = self.variant(one).likely;
+        move |log| likely.map_or(0.0, |[middle, spread]| variance * ((log - middle.ln()) / spread).powi(2))
+    }
+
+    /// A model at its solution, ready for other values of a number out of a grid;
+    /// none where what goes with that number enters other than linearly.
+    fn tried(&self, named: &[Named], one: Named, k: usize) -> Option<Tried<'_, 'c>> {
+        let variant = self.variant(one);
+        let column = variant.columns[k];
+        if self.numbers[column - self.own.len()].enters.is_some() {
+            return None;
+        }
+        let state = self.state(named).ok()?;
+        let point = self.point(state.setup.clone());
+        let columns = &state.fit.columns;
+        let of = |&column: &usize| match state.tangents.iter().find(|(of, _)| *of == column) {
+            Some((_, tangent)) => tangent.clone(),
+            None => self.linear(&point, column),
+        };
+        let raw: Vec<DVector<f64>> = columns.iter().map(of).collect();
+        let problem = self.regression(&point, DMatrix::from_columns(&raw), state.readings.clone());
+        let stacked: Vec<usize> = problem.blocks.iter().flat_map(|block| block.stacked.iter().copied()).collect();
+        let at = variant.columns.iter().filter_map(|column| columns.iter().position(|c| c == column)).collect();
+        Some(Tried {
+            bench: self,
+            white: problem.white.select_rows(&stacked).transpose(),
+            readings: problem.white_readings.select_rows(&stacked),
+            normal: problem.total,
+            signs: columns.iter().map(|&column| self.signs[column]).collect(),
+            shape: variant.shape.iter().map(|number| number.value).collect(),
+            refine: variant.refine.clone()?,
+            stacked,
+            point,
+            at,
+            k,
+        })
+    }
+
     /// What the readings change by with the logarithm of a number out of a grid,
     /// stacked, at a model's solution.
-    pub fn of_shape(&self, setting: &Setting<'_>, fit: &Fit, one: Named, k: usize) -> Option<DVector<f64>> {
+    pub fn of_shape(&self, setting: &Setting<'_>, model: &Fitted, one: Named, k: usize) -> Option<DVector<f64>> {
         let variant = self.variant(one);
         let refine = variant.refine.as_ref()?;
+        let fit = &model.fit;
+        let value_of =
+            |column: usize| fit.columns.iter().position(|&c| c == column).map_or(0.0, |at| fit.coefficients[at]);
+        let enters = self.numbers[variant.columns[0] - self.own.len()].enters.is_some();
         let [there, back] = [LOG_STEP, -LOG_STEP].map(|step| {
             let mut shape: Vec<f64> = variant.shape.iter().map(|number| number.value).collect();
             shape[k] *= step.exp();
-            let columns = refine(&shape).into_iter().zip(&variant.columns);
+            if enters {
+                let moved = self.with_shape(one, k, shape[k]);
+                let nonlinear = moved.nonlinear(&model.named);
+                let theta: Vec<f64> = nonlinear.iter().map(|(column, _)| value_of(*column)).collect();
+                return moved.prediction(&moved.point(moved.setup(&nonlinear, &theta)), fit, &nonlinear);
+            }
             let mut sum = DVector::zeros(setting.problem.readings.len());
-            for (number, column) in columns {
-                let value = fit.columns.iter().position(|c| c == column).map_or(0.0, |at| fit.coefficients[at]);
-                sum.axpy(value, &number.column(&setting.point), 1.0);
+            for (number, &column) in refine(&shape).into_iter().zip(&variant.columns) {
+                sum.axpy(value_of(column), &number.column(&setting.point), 1.0);
             }
             sum
         });
@@ -97,6 +207,7 @@ impl Bench<'_> {
             moments: self.moments.clone(),
             settings: RefCell::default(),
             states: RefCell::default(),
+            tests: RefCell::default(),
             ..*self
         }
     }

@@ -21,6 +21,7 @@ pub static KIND: Kind = Kind {
     explanation: "Robot, tool or tracker moved on its mount between two readings. Tighten it, and read the unloaded \
         arm anew after the slip.",
     offer,
+    on_axes: None,
 };
 
 /// At so many of the moments, the first, the robot may have turned as well.

@@ -5,6 +5,7 @@
 use std::vec::Vec;
 
 use super::{Form, Kind, Number, Offers, Place, Scene};
+use crate::trace::clamped::{Axes, AxisNumber, OnAxes};
 use crate::trace::point::clock;
 
 /// The kind.
@@ -15,10 +16,15 @@ pub static KIND: Kind = Kind {
     explanation: "The arm, its mount or the ground goes on yielding under a load that stays. Wait the same time \
         before each reading, and write the time into the file.",
     offer,
+    on_axes: Some(on_axes),
 };
 
 /// The onsets tried, in steps from one row to the next.
 const ONSETS: [f64; 4] = [1.0 / 20.0, 1.0 / 6.0, 1.0 / 2.0, 2.0];
+
+/// How far from the middle of these, in logarithms, an onset is as a rule: a
+/// third of the grid's width.
+const LIKELY: f64 = 1.2;
 
 /// Beyond this share a decade it is no creep (1).
 const MOST: f64 = 0.4;
@@ -44,6 +50,35 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     };
     let numbers: Vec<Number> = onsets.map(number).into();
     let forms = (0..).zip(onsets).map(|(k, onset)| Form::of([k]).with("onset", onset, unit));
-    let forms = forms.map(|form| form.refined(move |onsets| [number(onsets[0])].into())).collect();
+    let forms = forms.map(|form| form.refined(move |onsets| [number(onsets[0])].into()));
+    // Long after the onset a share and an onset are the joints' compliances with
+    // another share and onset.
+    let [first, .., last] = onsets;
+    let forms = forms.map(|form| form.within([0.5 * first, 2.0 * last]).likely((first * last).sqrt(), LIKELY));
+    let forms = forms.collect();
     offers.add(Place::Rig, numbers, forms);
+}
+
+/// Every axis creeps alike, in rows; the file tells no time.
+fn on_axes(axes: &Axes) -> Vec<OnAxes> {
+    let steps: Vec<(Vec<usize>, Vec<f64>)> = axes.loaded().map(|axis| (axes.rows_of(axis), axes.turns(axis))).collect();
+    let count = axes.rows.len();
+    let numbers = [AxisNumber { name: "share", unit: "1", range: [0.0, MOST] }].into();
+    let onsets = ONSETS.map(|onset| std::vec![onset]).into();
+    let [first, .., last] = ONSETS;
+    let crept = OnAxes::new(Place::Rig, numbers, &[("onset", "row")], onsets, move |shape| {
+        let mut grown = nalgebra::DVector::zeros(count);
+        for (rows, turns) in &steps {
+            for (k, &row) in rows.iter().enumerate() {
+                for step in 0..=k {
+                    // A load is put on when the row before it was read.
+                    let share = ((k - step + 1) as f64 / shape[0]).ln_1p() / core::f64::consts::LN_10;
+                    let before = if step == 0 { 0.0 } else { turns[step - 1] };
+                    grown[row] += share * (turns[step] - before);
+                }
+            }
+        }
+        std::vec![grown]
+    });
+    [crept.within([0.5 * first, 2.0 * last]).likely([(first * last).sqrt(), LIKELY])].into()
 }

@@ -16,6 +16,7 @@ pub static KIND: Kind = Kind {
     words: |found| format!("the error of {} in the DH table", place_words(found)),
     explanation: "",
     offer,
+    on_axes: None,
 };
 
 /// Beyond this a table is not off but another robot's (rad, m, m, rad).

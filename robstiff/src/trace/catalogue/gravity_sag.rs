@@ -24,6 +24,7 @@ pub static KIND: Kind = Kind {
     words: |_| "the sag of the robot under its own weight".into(),
     explanation: "",
     offer,
+    on_axes: None,
 };
 
 /// More of the sag than all of it twice over is something else.
@@ -62,7 +63,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
 /// The frames 1 to n that masses are given in.
 fn link_frames(convention: Convention, samples: &Samples, row: &Sample) -> Vec<Matrix4<f64>> {
     match convention {
-        Convention::Modified => row.joint_frames.clone(),
+        Convention::Modified => row.joint_frames.to_vec(),
         Convention::Standard => row.joint_frames[1..samples.joints()].iter().copied().chain([row.flange]).collect(),
     }
 }

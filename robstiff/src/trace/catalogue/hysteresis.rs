@@ -9,6 +9,7 @@ use std::vec::Vec;
 
 use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
 use crate::identify::samples::Samples;
+use crate::trace::clamped::{Axes, AxisNumber, OnAxes, axes_column};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -17,6 +18,7 @@ pub static KIND: Kind = Kind {
     words: |found| format!("the hysteresis of {}", place_words(found)),
     explanation: "",
     offer,
+    on_axes: Some(on_axes),
 };
 
 /// The radii tried, as fractions of the largest torque seen on the joint; up to
@@ -61,8 +63,44 @@ pub fn plays(samples: &Samples, torques: &[f64], radius: f64) -> Vec<f64> {
     let mut state = vec![0.0; samples.rows.iter().map(|row| row.visit + 1).max().unwrap_or(0)];
     let play = |(row, &torque): (&crate::identify::samples::Sample, &f64)| {
         let before: &mut f64 = &mut state[row.visit];
-        *before = (torque - radius).max((torque + radius).min(*before));
+        *before = play(torque, radius, *before);
         *before
     };
     samples.rows.iter().zip(torques).map(play).collect()
+}
+
+/// The play operator after a torque.
+fn play(torque: f64, radius: f64, before: f64) -> f64 {
+    (torque - radius).max((torque + radius).min(before))
+}
+
+/// An axis begins at rest; its rows follow each other.
+fn on_axes(axes: &Axes) -> Vec<OnAxes> {
+    let of = |axis: usize, radii: &[f64]| {
+        let torques = axes.torques(axis);
+        let (at, count) = (axes.rows_of(axis), axes.rows.len());
+        let number = |name| AxisNumber { name, unit: axes.unit(axis), range: [0.0, f64::INFINITY] };
+        let numbers = NAMES[..radii.len()].iter().copied().map(number).collect();
+        let shape: Vec<_> = OF_RADII[..radii.len()].iter().map(|&name| (name, axes.torque_unit(axis))).collect();
+        OnAxes::new(Part::Joint(axis), numbers, &shape, vec![radii.to_vec()], move |radii| {
+            let of_radius = |&radius: &f64| {
+                let mut state = 0.0;
+                let after = |&torque: &f64| {
+                    state = play(torque, radius, state);
+                    state
+                };
+                axes_column(count, &at, torques.iter().map(after))
+            };
+            radii.iter().map(of_radius).collect()
+        })
+    };
+    let sets = || (1..1_u32 << RADII.len()).filter(|set| set.count_ones() <= MOST);
+    let radii = |set: u32, largest: f64| -> Vec<f64> {
+        (0..RADII.len()).filter(|&k| set >> k & 1 == 1).map(|k| RADII[k] * largest).collect()
+    };
+    let of_axis = |axis: usize| {
+        let forms = sets().map(|set| of(axis, &radii(set, axes.largest(axis))));
+        OnAxes::one_of(forms.collect())
+    };
+    axes.loaded().filter(|&axis| axes.rows_of(axis).len() > 1).filter_map(of_axis).collect()
 }

@@ -15,6 +15,7 @@ pub static KIND: Kind = Kind {
     words: |found| format!("the coupling of {} (belts, wrist gearing)", place_words(found)),
     explanation: "",
     offer,
+    on_axes: None,
 };
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {

@@ -14,6 +14,7 @@ pub static KIND: Kind = Kind {
     words: |found| format!("the offset of the zero of {}", place_words(found)),
     explanation: "",
     offer,
+    on_axes: None,
 };
 
 /// Beyond this a zero is not off but elsewhere (rad, m).

@@ -11,6 +11,7 @@ pub static KIND: Kind = Kind {
     explanation: "The cable or the stinger holds the tool at another point than the file says. Measure that point in \
         the tool frame, and enter it as where the wrench acts.",
     offer,
+    on_axes: None,
 };
 
 /// Further off it is another tool (m).

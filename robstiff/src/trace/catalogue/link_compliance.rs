@@ -20,6 +20,7 @@ pub static KIND: Kind = Kind {
     },
     explanation: "",
     offer,
+    on_axes: None,
 };
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {

@@ -2,17 +2,23 @@
 //! in the base frame or in the tool's.
 
 use std::format;
+use std::vec::Vec;
 
 use super::{Form, Kind, Number, Offers, Place, Scene, WRENCH_STEP, frame_words};
+use crate::trace::clamped::{Axes, AxisNumber, OnAxes, axes_column};
 
 /// The kind.
 pub static KIND: Kind = Kind {
     name: "load_cell_bias",
     of_rig: true,
-    words: |found| format!("a bias of the load cell, constant in the {}", frame_words(found)),
+    words: |found| match found.parameters.iter().any(|number| number.name == TORQUE) {
+        true => "a bias of the torque".into(),
+        false => format!("a bias of the load cell, constant in the {}", frame_words(found)),
+    },
     explanation: "The load cell reads a force where none acts: it was not tared, or the weight of hook and cable \
         counts. Tare it unloaded at the pose, or enter the weight.",
     offer,
+    on_axes: Some(on_axes),
 };
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
@@ -34,3 +40,19 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let forms = [Form::of(0..3), Form::of(3..6).in_tool()].into();
     offers.add(Place::Rig, (0..6).map(number).collect(), forms);
 }
+
+/// Of a torque that is read: every axis stands aside by what it does to it.
+fn on_axes(axes: &Axes) -> Vec<OnAxes> {
+    let most = axes.loaded().map(|axis| axes.largest(axis)).fold(0.0, f64::max);
+    let aside: Vec<(Vec<usize>, f64)> =
+        axes.loaded().map(|axis| (axes.rows_of(axis), axes.compliance[axis - 1])).collect();
+    let count = axes.rows.len();
+    let numbers = [AxisNumber { name: TORQUE, unit: "Nm", range: [-most, most] }].into();
+    let bias = OnAxes::new(Place::Rig, numbers, &[], [Vec::new()].into(), move |_| {
+        let of = |(rows, turn): &(Vec<usize>, f64)| axes_column(count, rows, rows.iter().map(|_| *turn));
+        [aside.iter().map(of).sum()].into()
+    });
+    [bias].into()
+}
+
+const TORQUE: &str = "torque";

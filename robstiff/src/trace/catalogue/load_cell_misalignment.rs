@@ -13,6 +13,7 @@ pub static KIND: Kind = Kind {
     explanation: "The load cell is mounted at another angle than the file says, or its frame is named wrongly. Pull \
         along a known line, a plumb line for one, and compare.",
     offer,
+    on_axes: None,
 };
 
 /// Beyond this the frame is another one (rad).

@@ -17,6 +17,7 @@ pub static KIND: Kind = Kind {
     explanation: "The axes of the load cell are not calibrated alike. Hang one known weight along each axis, and \
         correct the forces in the file.",
     offer,
+    on_axes: None,
 };
 
 /// Beyond this it is no scale but a fault (1).

@@ -8,6 +8,7 @@ use std::format;
 use std::vec::Vec;
 
 use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
+use crate::trace::clamped::{Axes, AxisNumber, OnAxes, axes_column};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -16,6 +17,7 @@ pub static KIND: Kind = Kind {
     words: |found| format!("the lost motion of {} about zero torque", place_words(found)),
     explanation: "",
     offer,
+    on_axes: Some(on_axes),
 };
 
 /// The knees tried, as fractions of the largest torque seen on the joint: lost
@@ -46,4 +48,23 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         let numbers: Vec<Number> = knees.map(number).into();
         offers.add(Part::Joint(joint), numbers, forms);
     }
+}
+
+fn on_axes(axes: &Axes) -> Vec<OnAxes> {
+    let of = |axis: usize| {
+        let (torques, largest) = (axes.torques(axis), axes.largest(axis));
+        let (at, count) = (axes.rows_of(axis), axes.rows.len());
+        let numbers = [AxisNumber { name: "gap", unit: axes.turn_unit(axis), range: [0.0, WIDEST] }];
+        let column = move |knee: f64| axes_column(count, &at, torques.iter().map(|t| 0.5 * t / t.hypot(knee)));
+        let knees = KNEES.map(|fraction| std::vec![fraction * largest]);
+        OnAxes::new(
+            Part::Joint(axis),
+            numbers.into(),
+            &[("knee", axes.torque_unit(axis))],
+            knees.into(),
+            move |shape| std::vec![column(shape[0])],
+        )
+        .within([0.0, EITHER[1] * largest])
+    };
+    axes.loaded().map(of).collect()
 }

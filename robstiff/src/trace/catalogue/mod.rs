@@ -52,6 +52,7 @@ pub use self::hysteresis::KIND as HYSTERESIS;
 pub use self::lost_motion::{EITHER, KIND as LOST_MOTION};
 pub use self::outliers::KIND as OUTLIERS;
 pub use self::stiffness_nonlinearity::KIND as STIFFNESS_NONLINEARITY;
+use super::clamped::{Axes, OnAxes};
 use super::found::{EffectParameter, Found, Place};
 use super::isolated::Moment;
 use super::point::Point;
@@ -76,6 +77,9 @@ pub struct Kind {
     pub explanation: &'static str,
     /// Adds its candidates.
     pub offer: fn(&Scene<'_>, &mut Offers<'_>),
+    /// What it does to axes that are loaded one by one, those before clamped;
+    /// none where such readings cannot show it.
+    pub on_axes: Option<fn(&Axes) -> Vec<OnAxes>>,
 }
 
 impl PartialEq for Kind {
@@ -92,7 +96,7 @@ impl core::fmt::Debug for Kind {
 
 /// Every kind, in the order of precedence among exact aliases. What is wrong
 /// with single rows (`outliers`) has no columns: it is found row by row.
-static KINDS: [&Kind; 22] = [
+pub static KINDS: [&Kind; 22] = [
     &thermal_drift::KIND,
     &creep::KIND,
     &load_cell_bias::KIND,
@@ -173,7 +177,7 @@ pub type Enters = Rc<dyn Fn(&mut Setup, f64)>;
 type Check = Rc<dyn Fn(&[(&str, f64)], &dyn Fn(usize) -> f64) -> Result<(), String>>;
 
 /// The numbers of a form with other values of those out of its grid.
-type Refine = Rc<dyn Fn(&[f64]) -> Vec<Number>>;
+pub type Refine = Rc<dyn Fn(&[f64]) -> Vec<Number>>;
 
 /// A number of a candidate.
 #[derive(Clone)]
@@ -283,6 +287,9 @@ pub struct Variant {
     pub refine: Option<Refine>,
     /// Where such numbers go by this name.
     pub within: [f64; 2],
+    /// What such a number is likely to be, before any data, and by what factor
+    /// off, in logarithms; where data may say nothing of it.
+    pub likely: Option<[f64; 2]>,
 }
 
 /// An effect that may be missing.
@@ -338,6 +345,8 @@ pub struct Form {
     pub refine: Option<Refine>,
     /// Where such numbers go by this name.
     pub within: [f64; 2],
+    /// What such a number is likely to be.
+    pub likely: Option<[f64; 2]>,
 }
 
 impl Form {
@@ -350,6 +359,7 @@ impl Form {
             names: &[],
             refine: None,
             within: MORE_THAN_NONE,
+            likely: None,
         }
     }
 
@@ -369,6 +379,13 @@ impl Form {
     /// name within bounds only.
     pub fn within(mut self, bounds: [f64; 2]) -> Self {
         self.within = bounds;
+        self
+    }
+
+    /// The same with numbers between the values of the grid that are likely to be
+    /// this, up or down by a factor whose logarithm is `spread`.
+    pub fn likely(mut self, middle: f64, spread: f64) -> Self {
+        self.likely = Some([middle, spread]);
         self
     }
 
@@ -406,6 +423,7 @@ impl Offers<'_> {
             names: form.names,
             refine: form.refine,
             within: form.within,
+            likely: form.likely,
         };
         let variants = forms.into_iter().map(variant).collect();
         self.catalogue.numbers.extend(numbers);

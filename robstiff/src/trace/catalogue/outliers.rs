@@ -18,6 +18,7 @@ pub static KIND: Kind = Kind {
     explanation: "A knocked reflector, a gauge that stuck, a slip of the pen. Repeat these readings; they do not \
         count in any fit until then.",
     offer,
+    on_axes: None,
 };
 
 fn offer(_: &Scene<'_>, _: &mut Offers<'_>) {}

@@ -16,6 +16,7 @@ pub static KIND: Kind = Kind {
     words: |found| format!("the change of the compliance of {} with its own angle", place_words(found)),
     explanation: "",
     offer,
+    on_axes: None,
 };
 
 const NAMES: [&str; 4] = ["cos1", "sin1", "cos2", "sin2"];

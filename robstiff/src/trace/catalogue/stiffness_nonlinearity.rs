@@ -8,6 +8,7 @@ use std::vec::Vec;
 use super::lost_motion::EITHER;
 use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
 use crate::identify::samples::Column;
+use crate::trace::clamped::{Axes, AxisNumber, OnAxes, axes_column};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -19,6 +20,7 @@ pub static KIND: Kind = Kind {
     },
     explanation: "",
     offer,
+    on_axes: Some(on_axes),
 };
 
 /// The knees tried, as fractions of the largest torque seen on the joint. A
@@ -49,4 +51,25 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         let numbers: Vec<Number> = knees.map(number).into();
         offers.add_checked(Part::Joint(joint), numbers, forms, Some(Rc::new(check)));
     }
+}
+
+fn on_axes(axes: &Axes) -> Vec<OnAxes> {
+    let of = |axis: usize| {
+        let (torques, largest) = (axes.torques(axis), axes.largest(axis));
+        let at = axes.rows_of(axis);
+        let count = axes.rows.len();
+        let unit = axes.unit(axis);
+        let numbers = [AxisNumber { name: "added", unit, range: [-axes.compliance[axis - 1], f64::INFINITY] }];
+        let column = move |knee: f64| axes_column(count, &at, torques.iter().map(|t| t / (t / knee).hypot(1.0)));
+        let knees = KNEES.map(|fraction| std::vec![fraction * largest]);
+        OnAxes::new(
+            Part::Joint(axis),
+            numbers.into(),
+            &[("knee", axes.torque_unit(axis))],
+            knees.into(),
+            move |shape| std::vec![column(shape[0])],
+        )
+        .within([EITHER[0] * largest, f64::INFINITY])
+    };
+    axes.loaded().map(of).collect()
 }

@@ -5,12 +5,14 @@
 //! have drifted among themselves by what no row tells; an offset, and one that
 //! grows from visit to visit, take that up.
 
+use std::rc::Rc;
 use std::vec::Vec;
 
 use nalgebra::Vector3;
 
 use super::{Form, Kind, Number, Offers, Place, SHIFT, Scene};
 use crate::campaign::Displacements;
+use crate::trace::clamped::{Axes, AxisNumber, OnAxes, axes_column};
 use crate::trace::point::clock;
 
 /// The kind.
@@ -21,6 +23,7 @@ pub static KIND: Kind = Kind {
     explanation: "The readings move while nothing pulls: the robot or the stand of the tracker warms up, or settles. \
         Warm up before, read the unloaded arm at every visit, and mix the order of poses.",
     offer,
+    on_axes: Some(on_axes),
 };
 
 /// More than this over a campaign is a mishap (m).
@@ -28,57 +31,77 @@ const MOST: f64 = 5e-3;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let mut numbers: Vec<Number> = Vec::new();
-    let mut three = |name: [&'static str; 3], values: Vec<f64>, unit: &'static str| -> Vec<usize> {
-        let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-        let most = MOST / largest.max(f64::MIN_POSITIVE);
-        let number = |k: usize| {
-            let values = values.clone();
-            Number::of_reading(name[k], unit, [-most, most], move |point| {
-                point.of_reading(|row| Vector3::ith(k, values[row]))
-            })
-        };
-        numbers.extend((0..3).map(number));
+    let mut add = |three: Vec<Number>| -> Vec<usize> {
+        numbers.extend(three);
         (numbers.len() - 3..numbers.len()).collect()
     };
-    let offset = three(OFFSET, std::vec![1.0; scene.data.rows.len()], "m");
-    let visits = scene.data.rows.iter().map(|row| row.visit as f64).collect();
-    let order = three(BY_VISIT, visits, "m/visit");
+    let offset = add(three(OFFSET, "m", &std::vec![1.0; scene.data.rows.len()]));
+    let visits: Vec<f64> = scene.data.rows.iter().map(|row| row.visit as f64).collect();
+    let order = add(three(BY_VISIT, "m/visit", &visits));
     let mut forms: Vec<Form> = Vec::new();
     for course in courses(scene.data) {
-        let from = |before: &[f64]| course.values.iter().zip(before).map(|(value, before)| value - before).collect();
-        let in_visit = three(SHIFT, from(&course.before_visit), course.unit);
-        let whole = three(SHIFT, from(&std::vec![course.begins; course.values.len()]), course.unit);
-        let with = |more: &[&Vec<usize>]| {
-            let form = Form::of(whole.iter().chain(more.iter().copied().flatten()).copied());
-            course.settles.map_or(form.clone(), |constant| form.with("constant", constant, "s"))
+        let since = |before: &Rc<Vec<f64>>| {
+            let (at, before, law, unit) = (Rc::clone(&course.at), Rc::clone(before), course.law, course.unit);
+            move |constant: f64| {
+                let moved =
+                    at.iter().zip(before.iter()).map(|(&at, &before)| law(at, constant) - law(before, constant));
+                three(SHIFT, unit, &moved.collect::<Vec<f64>>())
+            }
         };
-        forms.extend([Form::of(in_visit), with(&[]), with(&[&offset]), with(&[&offset, &order])]);
-        if let Some(before) = &course.before_round {
-            let in_round = three(SHIFT, from(before), course.unit);
-            let form = Form::of(in_round);
-            forms.push(course.settles.map_or(form.clone(), |constant| form.with("constant", constant, "s")));
-        }
+        let mut form = |before: &Rc<Vec<f64>>| {
+            let own = add(since(before)(course.settles.unwrap_or_default()));
+            let form = Form::of(own);
+            let Some(constant) = course.settles else { return form };
+            let of = since(before);
+            let [least, .., most] = CONSTANTS;
+            form.with("constant", constant, "s").refined(move |shape| of(shape[0])).within([0.5 * least, 2.0 * most])
+        };
+        let whole = form(&Rc::new(std::vec![course.begins; course.at.len()]));
+        let with = |more: &[&Vec<usize>]| {
+            let mut form = whole.clone();
+            form.numbers.extend(more.iter().copied().flatten());
+            form
+        };
+        forms.extend([form(&course.before_visit), with(&[]), with(&[&offset]), with(&[&offset, &order])]);
+        forms.extend(course.before_round.as_ref().map(form));
     }
     offers.add(Place::Rig, numbers, forms);
+}
+
+/// By so much, a number a row, in each direction of the base frame.
+fn three(name: [&'static str; 3], unit: &'static str, values: &[f64]) -> Vec<Number> {
+    let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let most = MOST / largest.max(f64::MIN_POSITIVE);
+    let values: Rc<[f64]> = values.into();
+    let number = |k: usize| {
+        let values = Rc::clone(&values);
+        Number::of_reading(name[k], unit, [-most, most], move |point| {
+            point.of_reading(|row| Vector3::ith(k, values[row]))
+        })
+    };
+    (0..3).map(number).collect()
 }
 
 const OFFSET: [&str; 3] = ["offset_x", "offset_y", "offset_z"];
 const BY_VISIT: [&str; 3] = ["visit_x", "visit_y", "visit_z"];
 
-/// Time constants tried of what settles (s).
+/// Time constants tried of what settles, the shortest first (s).
 const CONSTANTS: [f64; 3] = [1800.0, 3600.0, 7200.0];
 
-/// What a drift may follow, by row.
+/// What a drift may follow.
 struct Course {
-    values: Vec<f64>,
-    /// At the unloaded reading of the row's visit, taken one step before its
-    /// first row.
-    before_visit: Vec<f64>,
-    /// At the unloaded reading of the row's visit, all of which were taken in a
-    /// round before the first row, where there was time for that.
-    before_round: Option<Vec<f64>>,
-    /// At the beginning of the campaign.
+    /// The time or the temperature, by row.
+    at: Rc<Vec<f64>>,
+    /// The same at the unloaded reading of the row's visit, taken one step before
+    /// its first row.
+    before_visit: Rc<Vec<f64>>,
+    /// The same where all unloaded readings were taken in a round before the
+    /// first row, where there was time for that.
+    before_round: Option<Rc<Vec<f64>>>,
+    /// The same at the beginning of the campaign.
     begins: f64,
+    /// How far the drift is, with a time constant.
+    law: fn(f64, f64) -> f64,
     unit: &'static str,
     /// The time constant, where it settles.
     settles: Option<f64>,
@@ -87,25 +110,31 @@ struct Course {
 fn courses(data: &Displacements) -> Vec<Course> {
     let (clock, pace) = clock(data);
     let timed = data.rows.iter().all(|row| row.time.is_some());
-    let first = |values: &[f64], step: &dyn Fn(usize) -> f64| -> Vec<f64> {
+    let first = |values: &[f64], step: &dyn Fn(usize) -> f64| -> Rc<Vec<f64>> {
         let mut first = std::vec![None; data.visits.len()];
         let before = |row: usize| *first[data.rows[row].visit].get_or_insert_with(|| values[row] - step(row));
-        (0..values.len()).map(before).collect()
+        Rc::new((0..values.len()).map(before).collect())
     };
-    let round = round(data, &clock, pace).filter(|_| timed);
-    let of_time = |law: &dyn Fn(f64) -> f64, unit, settles| Course {
-        before_round: round.as_ref().map(|times| times.iter().map(|&time| law(time)).collect()),
-        values: clock.iter().map(|&time| law(time)).collect(),
-        before_visit: first(&clock, &|_| pace).into_iter().map(law).collect(),
-        // A file that tells the time tells it from the beginning on.
-        begins: law(if timed { 0.0_f64.min(clock[0]) } else { clock[0] }),
+    let round = round(data, &clock, pace).filter(|_| timed).map(Rc::new);
+    let before_visit = first(&clock, &|_| pace);
+    // A file that tells the time tells it from the beginning on.
+    let begins = if timed { 0.0_f64.min(clock[0]) } else { clock[0] };
+    let clock = Rc::new(clock);
+    let of_time = |law: fn(f64, f64) -> f64, unit, settles| Course {
+        at: Rc::clone(&clock),
+        before_visit: Rc::clone(&before_visit),
+        before_round: round.clone(),
+        begins,
+        law,
         unit,
         settles,
     };
-    let hours = if timed { 1.0 / 3600.0 } else { 1.0 };
-    let mut courses = std::vec![of_time(&|time| time * hours, if timed { "m/h" } else { "m/row" }, None)];
+    let mut courses = match timed {
+        true => std::vec![of_time(|time, _| time / 3600.0, "m/h", None)],
+        false => std::vec![of_time(|row, _| row, "m/row", None)],
+    };
     if timed {
-        let settling = |&constant: &f64| of_time(&|time: f64| -(-time / constant).exp_m1(), "m", Some(constant));
+        let settling = |&constant: &f64| of_time(|time, constant| -(-time / constant).exp_m1(), "m", Some(constant));
         courses.extend(CONSTANTS.iter().map(settling));
     }
     let temperature: Option<Vec<f64>> = data.rows.iter().map(|row| row.temperature).collect();
@@ -116,9 +145,15 @@ fn courses(data: &Displacements) -> Vec<Course> {
             Some(next) if data.rows[row + 1].visit == data.rows[row].visit => next - values[row],
             _ => 0.0,
         };
-        let before_visit = first(&values, &slope);
-        let begins = values[0];
-        courses.push(Course { before_visit, before_round: None, begins, values, unit: "m/K", settles: None });
+        courses.push(Course {
+            before_visit: first(&values, &slope),
+            before_round: None,
+            begins: values[0],
+            at: Rc::new(values),
+            law: |warmth, _| warmth,
+            unit: "m/K",
+            settles: None,
+        });
     }
     courses
 }
@@ -142,4 +177,18 @@ fn round(data: &Displacements, clock: &[f64], pace: f64) -> Option<Vec<f64>> {
     let started = begin > -1e-6 * clock.last()?.abs();
     let time = |row: &crate::campaign::Observation| begin + pace * place[row.visit].unwrap_or(0) as f64;
     started.then(|| data.rows.iter().map(time).collect())
+}
+
+/// From row to row since the unloaded reading of an axis, on all alike.
+fn on_axes(axes: &Axes) -> Vec<OnAxes> {
+    let count = axes.rows.len();
+    let numbers = [AxisNumber { name: "rate", unit: "rad/row", range: [-MOST, MOST] }].into();
+    let since: nalgebra::DVector<f64> = axes
+        .loaded()
+        .map(|axis| {
+            let rows = axes.rows_of(axis);
+            axes_column(count, &rows, rows.iter().map(|row| (row - rows[0] + 1) as f64))
+        })
+        .sum();
+    [OnAxes::new(Place::Rig, numbers, &[], [Vec::new()].into(), move |_| [since.clone()].into())].into()
 }

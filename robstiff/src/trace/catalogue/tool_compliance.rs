@@ -11,6 +11,7 @@ pub static KIND: Kind = Kind {
     words: |_| "the compliance of flange, spindle and tool".into(),
     explanation: "",
     offer,
+    on_axes: None,
 };
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {

@@ -11,6 +11,7 @@ pub static KIND: Kind = Kind {
     explanation: "The tracker or the gauges were aligned to another frame than the file names. Align them anew to \
         the robot's base on three points or more, and turn the readings.",
     offer,
+    on_axes: None,
 };
 
 /// Beyond this the frame is another one (rad).

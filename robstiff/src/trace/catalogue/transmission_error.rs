@@ -21,6 +21,7 @@ pub static KIND: Kind = Kind {
     },
     explanation: "",
     offer,
+    on_axes: None,
 };
 
 /// The orders tried, one of them.

@@ -13,6 +13,7 @@ pub static KIND: Kind = Kind {
     words: |found| format!("the tilt of {} about the axes across its own (bearing, housing)", place_words(found)),
     explanation: "",
     offer,
+    on_axes: None,
 };
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {

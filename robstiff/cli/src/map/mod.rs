@@ -1,0 +1,273 @@
+//! `robstiff map`: stiffness and deviation all over a space.
+
+mod columns;
+mod contour;
+mod document;
+mod heat;
+mod page;
+mod raster;
+mod slices;
+mod table;
+mod tape;
+
+use std::convert::Infallible;
+use std::fs;
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use robstiff::Generic;
+use robstiff::map::read::{Over, Positions, Task};
+use robstiff::map::{Axis, CartesianSpace, Chunk, Evaluate, JointSpace, Measure, Space, Tool, best_placement, stream};
+use robstiff_robots::Description;
+use robstiff_robots::quantity::{self, Dimension};
+
+use crate::failure::Failure;
+use crate::output::{self, Files, Growing};
+use crate::{input, json};
+use columns::{Columns, RowGroup};
+use document::{Mapped, Placed};
+use slices::{Dot, Slices};
+use table::Table;
+use tape::Tape;
+
+/// Stiffness, weakest direction or deviation all over joint space, a plane or a box
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The robot's description, or the name of a robot in the catalogue
+    #[arg(value_name = "ROBOT.yaml")]
+    robot: PathBuf,
+    /// What to map
+    #[arg(value_name = "MAP.yaml")]
+    map: PathBuf,
+    /// Write every cell to FILE
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Write every cell as Parquet to FILE
+    #[arg(long, value_name = "FILE")]
+    parquet: Option<PathBuf>,
+    /// Draw the map to FILE
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// Write a page with the map, that tells the value wherever one points, to FILE
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+    /// Look for the best place for a workpiece of this size along x, y and z, e.g. "400 x 300 x 100 mm"
+    #[arg(long, value_name = "SIZE", value_parser = size)]
+    place: Option<[f64; 3]>,
+    /// Write the summary as JSON to FILE
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// Maps.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (robot, _) = input::robot(&arguments.robot)?;
+    let task = task(&arguments.map, &robot)?;
+    let mut files = Files::default();
+    files.protect(&arguments.robot);
+    files.protect(&arguments.map);
+    let mapped = match robot.joints.len() {
+        1 => map::<1>(&robot, &task, arguments, &mut files),
+        2 => map::<2>(&robot, &task, arguments, &mut files),
+        3 => map::<3>(&robot, &task, arguments, &mut files),
+        4 => map::<4>(&robot, &task, arguments, &mut files),
+        5 => map::<5>(&robot, &task, arguments, &mut files),
+        6 => map::<6>(&robot, &task, arguments, &mut files),
+        7 => map::<7>(&robot, &task, arguments, &mut files),
+        _ => map::<8>(&robot, &task, arguments, &mut files),
+    }?;
+    if let Some(path) = &arguments.json {
+        files.add(path, json::document(&mapped.json()));
+    }
+    let said = files.write()?;
+    output::print(mapped.page() + &said)
+}
+
+fn task(path: &Path, robot: &Description) -> Result<Task, Failure> {
+    let text =
+        fs::read_to_string(path).map_err(|error| Failure::new(format!("cannot read {}: {error}", path.display())))?;
+    Ok(Task::parse(&path.display().to_string(), &text, robot)?)
+}
+
+fn map<const N: usize>(
+    robot: &Description,
+    task: &Task,
+    arguments: &Arguments,
+    files: &mut Files,
+) -> Result<Mapped, Failure> {
+    let tape = Tape::<N>::new(robot);
+    let mut mapped = match &task.over {
+        Over::Joints(axes) => {
+            if arguments.place.is_some() {
+                return Err(Failure::Usage("--place needs a map over positions, this one is over joints".to_owned()));
+            }
+            let axes: &[Axis; N] = axes.as_slice().try_into().expect("the reader checked the count");
+            let mut tables = Vec::new();
+            let space = JointSpace::new(axes, &mut tables);
+            write(&tape, &space, &task.measure, arguments, files)?
+        }
+        Over::Positions(positions) => {
+            let Positions { axes, tool } = positions.as_ref();
+            let generic = Generic::<N>::new(robot).expect("this arm has the same count");
+            let space = CartesianSpace::new(&generic, axes.clone(), tool.clone());
+            let mut mapped = write(&tape, &space, &task.measure, arguments, files)?;
+            if let Some(size) = arguments.place {
+                mapped.mapped.placements = place(&tape, &generic, positions, &task.measure, size, &mapped.values);
+            }
+            mapped
+        }
+    };
+    mapped.mapped.robot.clone_from(&robot.name);
+    let pictures = [(&arguments.svg, page::svg as fn(&Mapped, &Slices) -> String), (&arguments.html, page::html)];
+    for (path, draw) in pictures.into_iter().filter_map(|(path, draw)| Some((path.as_ref()?, draw))) {
+        let Some(slices) = &mapped.slices else {
+            return Err(Failure::Usage("a picture needs two coordinates that vary".to_owned()));
+        };
+        files.add(path, draw(&mapped.mapped, slices));
+    }
+    Ok(mapped.mapped)
+}
+
+/// The best places for a workpiece: with the tool turned at each point as is best
+/// there, and with one turn for all of it.
+fn place<const N: usize>(
+    tape: &Tape<N>,
+    robot: &Generic<N>,
+    Positions { axes, tool }: &Positions,
+    measure: &Measure,
+    size: [f64; 3],
+    values: &[f64],
+) -> Vec<Placed> {
+    let several = tool.turns.len() > 1;
+    let best = best_placement(axes, values, size, measure);
+    let each = Placed { size, turn: None, each: several, best };
+    if !several {
+        return vec![each];
+    }
+    let with = |&turn: &f64| {
+        let one = Tool { turns: vec![turn], ..tool.clone() };
+        let space = CartesianSpace::new(robot, axes.clone(), one);
+        let mut values = Vec::with_capacity(space.cells());
+        let figures = |chunk: &Chunk| chunk.columns[0].clone();
+        let done: Result<_, Infallible> = stream(tape, &space, measure, figures, |figures| {
+            values.extend(figures);
+            Ok(())
+        });
+        let Ok(_) = done;
+        Placed { size, turn: Some(turn), each: false, best: best_placement(axes, &values, size, measure) }
+    };
+    let better = |one: Placed, other: Placed| match (&one.best, &other.best) {
+        (Some(a), Some(b)) if !measure.is_worse(a.worst, b.worst) => one,
+        (Some(_), None) => one,
+        _ => other,
+    };
+    tool.turns.iter().map(with).reduce(better).into_iter().chain([each]).collect()
+}
+
+/// A map that was written.
+struct Written {
+    mapped: Mapped,
+    slices: Option<Slices>,
+    /// The first column at all cells, where a workpiece is to be placed.
+    values: Vec<f64>,
+}
+
+/// What is made of a chunk.
+struct Pieces {
+    cells: usize,
+    lines: Vec<u8>,
+    group: Option<parquet::errors::Result<RowGroup>>,
+    dots: Vec<Dot>,
+    values: Vec<f64>,
+}
+
+/// Maps a space to the files that are asked for.
+fn write<const N: usize>(
+    robot: &impl Evaluate<N>,
+    space: &impl Space<N>,
+    measure: &Measure,
+    arguments: &Arguments,
+    files: &mut Files,
+) -> Result<Written, Failure> {
+    let columns = [measure.columns(), &space.columns()].concat();
+    let table = Table::new(space.axes(), &columns);
+    let cannot = |error: parquet::errors::ParquetError| Failure::new(format!("cannot write the Parquet file: {error}"));
+    let groups = Columns::new(space.axes(), &columns).map_err(cannot)?;
+    let mut csv = arguments.csv.as_deref().map(|path| files.grow(path)).transpose()?;
+    let parquet = arguments.parquet.as_deref().map(|path| files.grow(path)).transpose()?;
+    let mut parquet = parquet.map(|file| groups.file(file).map_err(cannot)).transpose()?;
+    let drawn = arguments.svg.is_some() || arguments.html.is_some();
+    let slices = drawn.then(|| Slices::new(space.axes(), measure)).flatten();
+    // What is drawn is looked up while the drawing goes on.
+    let wanted = slices.as_ref().map(Slices::empty);
+    let mut slices = slices;
+    let mut values = Vec::new();
+    if let Some(csv) = &mut csv {
+        put(csv, table.header().as_bytes())?;
+    }
+    let progress = progress(space.cells(), space.chunk());
+    let encode = |chunk: &Chunk| Pieces {
+        cells: chunk.cells.len(),
+        lines: if arguments.csv.is_some() { table.lines(chunk) } else { Vec::new() },
+        group: arguments.parquet.as_ref().map(|_| groups.encode(chunk)),
+        dots: wanted.as_ref().map_or_else(Vec::new, |slices| slices.dots(chunk)),
+        values: if arguments.place.is_some() { chunk.columns[0].clone() } else { Vec::new() },
+    };
+    let take = |pieces: Pieces| {
+        progress.inc(pieces.cells as u64);
+        values.extend(pieces.values);
+        if let Some(slices) = &mut slices {
+            slices.draw(pieces.dots);
+        }
+        if let Some((file, group)) = parquet.as_mut().zip(pieces.group) {
+            group.and_then(|group| columns::append(file, group)).map_err(cannot)?;
+        }
+        csv.as_mut().map_or(Ok(()), |csv| put(csv, &pieces.lines))
+    };
+    let summary = stream(robot, space, measure, encode, take);
+    progress.finish_and_clear();
+    let summary = summary?;
+    if let Some(csv) = csv {
+        files.grown(csv)?;
+    }
+    if let Some(parquet) = parquet {
+        files.grown(parquet.into_inner().map_err(cannot)?)?;
+    }
+    let axes = space.axes().to_vec();
+    let mapped = Mapped { robot: String::new(), axes, measure: *measure, columns, summary, placements: Vec::new() };
+    Ok(Written { mapped, slices, values })
+}
+
+fn put(file: &mut Growing, bytes: &[u8]) -> Result<(), Failure> {
+    file.write_all(bytes)
+        .map_err(|error: io::Error| Failure::new(format!("cannot write {}: {error}", file.path().display())))
+}
+
+/// The size of a workpiece: `400 x 300 x 100 mm`.
+fn size(text: &str) -> Result<[f64; 3], String> {
+    let help = "a size is three lengths with their unit, e.g. `400 x 300 x 100 mm`";
+    let parts: Vec<&str> = text.split(['x', '×']).map(str::trim).collect();
+    let [x, y, z] = parts.as_slice() else { return Err(help.to_owned()) };
+    // The last unit is that of all without one.
+    let unit = z.trim_start_matches(|c: char| c.is_ascii_digit() || ".+-eE".contains(c)).trim();
+    let mut lengths = [0.0; 3];
+    for (length, part) in lengths.iter_mut().zip([x, y, z]) {
+        let bare = part.ends_with(|c: char| c.is_ascii_digit() || c == '.');
+        let whole = if bare { format!("{part} {unit}") } else { (*part).to_owned() };
+        *length = quantity::parse(&whole, Dimension::Length).map_err(|error| error.to_string())?;
+        if *length < 0.0 {
+            return Err(format!("{whole} is negative; {help}"));
+        }
+    }
+    Ok(lengths)
+}
+
+/// Shows on a terminal how far it is, where that takes a while.
+fn progress(cells: usize, chunk: usize) -> ProgressBar {
+    if cells < 4 * chunk {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{wide_bar} {human_pos} of {human_len} cells ({eta})");
+    ProgressBar::new(cells as u64).with_style(style.expect("the template is one"))
+}

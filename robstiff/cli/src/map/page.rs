@@ -1,0 +1,156 @@
+//! A map as a page that needs nothing beside it.
+
+use std::fmt::Write as _;
+
+use super::document::Mapped;
+use super::heat::{self, Heat, beside, heat};
+use super::slices::Slices;
+use super::table::{heading, single};
+use crate::report;
+use crate::report::html::{Table, escape, number, text, words};
+use crate::text::count;
+
+const SCRIPT: &str = include_str!("page.js");
+
+/// The picture as a file of its own.
+pub fn svg(mapped: &Mapped, slices: &Slices) -> String {
+    heat(mapped, slices).svg.document(&format!("svg {{ background: #fff; }}\n{}", heat::STYLE))
+}
+
+/// The page: the picture, what it comes to, and a value wherever one points.
+pub fn html(mapped: &Mapped, slices: &Slices) -> String {
+    let Heat { svg, frames } = heat(mapped, slices);
+    let title = escape(&format!("{}: {}", mapped.robot, mapped.words()));
+    let mut body = format!("<header>\n{}{}", text("p", "Map of a robot's elastostatics"), text("h1", &mapped.robot));
+    let mut said = capital(&mapped.words());
+    if !mapped.fixed().is_empty() {
+        write!(said, ", with {}", mapped.fixed()).expect("a string takes any text");
+    }
+    body += &text("p", &format!("{said}."));
+    body += "</header>\n<section class=\"finding\">\n";
+    for sentence in [headline(mapped)].into_iter().chain(mapped.placed()) {
+        body += &text("p", &micro(&sentence));
+    }
+    body += "</section>\n";
+    writeln!(body, "<figure class=\"map\">\n{}<output class=\"tip\" hidden></output></figure>", svg.html())
+        .expect("a string takes any text");
+    body += &text("figcaption", &caption(mapped, slices));
+    body += &extremes(mapped);
+    let data = data(mapped, slices, &frames);
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>{title}</title>\n<style>\n{}{}{TIP}</style>\n</head>\n<body>\n{body}\
+         <script type=\"application/json\" id=\"map\">{data}</script>\n<script>\n{SCRIPT}</script>\n</body>\n</html>\n",
+        report::STYLE,
+        heat::STYLE
+    )
+}
+
+const TIP: &str = "figure.map { position: relative; }\nfigure.map svg { min-width: 0; }\n\
+                   .tip { position: absolute; pointer-events: none; padding: .3rem .6rem; font-size: .85rem; \
+                   line-height: 1.35; white-space: pre; background: var(--paper); color: var(--ink); \
+                   border: 1px solid var(--soft); border-radius: 4px; }\n.tip[hidden] { display: none; }\n\
+                   .finding p { font-size: 1.05rem; }\n";
+
+fn headline(mapped: &Mapped) -> String {
+    let summary = &mapped.summary;
+    let (Some(best), Some(worst)) = (&summary.best, &summary.worst) else {
+        return "No pose reaches any of it.".to_owned();
+    };
+    let mut said = format!(
+        "From {} {unit} at {} to {} {unit} at {}.",
+        mapped.figure(best.values[0]),
+        mapped.place(best.cell),
+        mapped.figure(worst.values[0]),
+        mapped.place(worst.cell),
+        unit = mapped.unit()
+    );
+    if summary.unreachable > 0 {
+        let share = 100.0 * summary.unreachable as f64 / summary.cells as f64;
+        write!(said, " {share:.0} % of the {} are out of reach.", count(summary.cells, "cell"))
+            .expect("a string takes any text");
+    }
+    said
+}
+
+fn caption(mapped: &Mapped, slices: &Slices) -> String {
+    let mut said = format!("{} cells", mapped.summary.cells);
+    if slices.slices.len() > 1 {
+        said += &format!(", {} slices of them", slices.slices.len());
+    }
+    let coarse = slices.drawn.iter().zip(slices.pixels).any(|(&axis, pixels)| mapped.axes[axis].values.len() > pixels);
+    if coarse {
+        said += ", each colour the worst of the cells that it stands for";
+    }
+    said += ". Lines connect equal values; a cross marks the worst cell, a ring the best";
+    if mapped.placements.iter().any(|placed| placed.best.is_some()) {
+        said += ", a dashed frame the best place for the workpiece";
+    }
+    said + ". Point at the map to read a value."
+}
+
+fn extremes(mapped: &Mapped) -> String {
+    let (Some(best), Some(worst)) = (&mapped.summary.best, &mapped.summary.worst) else { return String::new() };
+    let mut table = Table::new([words(""), number("best"), number("worst")]);
+    let cells = [mapped.indices(best.cell), mapped.indices(worst.cell)];
+    for (k, axis) in mapped.axes.iter().enumerate().filter(|(_, axis)| axis.varies()) {
+        let at = |cell: &Vec<usize>| number(crate::text::significant(axis.for_people(cell[k]), 6));
+        table.row(false, [words(format!("{} [{}]", axis.name, axis.unit())), at(&cells[0]), at(&cells[1])]);
+    }
+    for (k, column) in mapped.columns.iter().enumerate() {
+        let value = |values: &[f64]| number(crate::text::significant(values[k] * column.scale, 4));
+        table.row(k == 0, [words(micro(&heading(column))), value(&best.values), value(&worst.values)]);
+    }
+    table.html()
+}
+
+/// What the script reads: frames in shares of the figure, axes, and values by rows
+/// from below.
+fn data(mapped: &Mapped, slices: &Slices, frames: &[heat::Frame]) -> String {
+    let column = &mapped.columns[0];
+    let axis = |k: usize| {
+        let axis = &mapped.axes[slices.drawn[k]];
+        let last = axis.values.len() - 1;
+        serde_json::json!({
+            "name": axis.name, "unit": axis.unit(), "from": axis.for_people(0), "to": axis.for_people(last),
+            "count": slices.pixels[k],
+        })
+    };
+    let slice = |(slice, frame): (&super::slices::Slice, &heat::Frame)| {
+        let values = slice.values.iter().map(|&value| {
+            let value = f64::from(single(value, column));
+            if value.is_finite() {
+                crate::text::significant(value, 4)
+                    .parse::<f64>()
+                    .map_or(serde_json::Value::Null, serde_json::Value::from)
+            } else {
+                serde_json::Value::Null
+            }
+        });
+        serde_json::json!({
+            "title": beside(mapped, slices, slice),
+            "corner": frame.corner,
+            "size": frame.size,
+            "values": values.collect::<Vec<_>>(),
+        })
+    };
+    let document = serde_json::json!({
+        "name": column.name,
+        "unit": column.unit.replace('u', "µ"),
+        "right": axis(0),
+        "up": axis(1),
+        "slices": slices.slices.iter().zip(frames).map(slice).collect::<Vec<_>>(),
+    });
+    // Nothing in it ends the element it stands in.
+    document.to_string().replace('<', "\\u003c")
+}
+
+fn micro(text: &str) -> String {
+    text.replace(" um", "\u{a0}µm").replace("[um]", "[µm]").replace("/um", "/µm")
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}

@@ -1,0 +1,134 @@
+//! `map`: what the files say, and what is said of wrong ones.
+
+mod common;
+
+use std::fs;
+
+use common::{fail, folder, inside, json, names, succeed};
+
+const JOINTS: &str = "force: [0, 400 N, -200 N]\njoints:\n  - 0\n  - {from: -80 deg, to: 60 deg, count: 7}\n  \
+                      - {from: -60 deg, to: 90 deg, count: 6}\n  - 0\n  - {from: 30 deg, to: 60 deg, count: 2}\n";
+
+const BOX: &str = "force: 500 N\npositions:\n  x: {from: 1200 mm, to: 3000 mm, count: 4}\n  \
+                   y: {from: -400 mm, to: 400 mm, count: 3}\n  z: 600 mm\n\
+                   tool: {direction: [0, 0, -1], turn: {from: 0 deg, to: 90 deg, count: 2}}\n";
+
+fn rows(path: &str) -> (Vec<String>, Vec<Vec<Option<f32>>>) {
+    let text = fs::read_to_string(path).unwrap();
+    let mut lines = text.lines();
+    let header = lines.next().unwrap().split(',').map(str::to_owned).collect();
+    let row = |line: &str| line.split(',').map(|field| field.parse().ok()).collect();
+    (header, lines.map(row).collect())
+}
+
+fn parquet(path: &str) -> (Vec<String>, Vec<Vec<Option<f32>>>) {
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    use parquet::record::Field;
+
+    let reader = SerializedFileReader::new(fs::File::open(path).unwrap()).unwrap();
+    let schema = reader.metadata().file_metadata().schema_descr_ptr();
+    let header = schema.columns().iter().map(|column| column.name().to_owned()).collect();
+    let value = |(_, field): (&String, &Field)| match field {
+        Field::Float(value) => Some(*value),
+        Field::Null => None,
+        other => panic!("{other} is no number"),
+    };
+    let rows = reader.get_row_iter(None).unwrap();
+    (header, rows.map(|row| row.unwrap().get_column_iter().map(value).collect()).collect())
+}
+
+#[test]
+fn csv_and_parquet_hold_the_same() {
+    for (name, robot, map, cells) in [("joints", "rv130hsc", JOINTS, 84), ("box", "kuka-kr270-r2700", BOX, 12)] {
+        let folder = folder(&format!("map-{name}"));
+        let at = |file: &str| inside(&folder, file);
+        fs::write(at("map.yaml"), map).unwrap();
+        let page = succeed(&[
+            "map",
+            robot,
+            &at("map.yaml"),
+            "--csv",
+            &at("m.csv"),
+            "--parquet",
+            &at("m.parquet"),
+            "--json",
+            &at("m.json"),
+            "--svg",
+            &at("m.svg"),
+            "--html",
+            &at("m.html"),
+        ]);
+        assert!(page.contains("worst"), "{page}");
+        let (csv, columns) = (rows(&at("m.csv")), parquet(&at("m.parquet")));
+        assert_eq!((csv.1.len(), &csv.0), (cells, &columns.0));
+        assert_eq!(csv.1, columns.1);
+        let document = json(&at("m.json"));
+        let figure = csv.0.iter().position(|name| name == "deviation [um]").unwrap();
+        let reached: Vec<f32> = csv.1.iter().filter_map(|row| row[figure]).collect();
+        let unreachable = document["unreachable"].as_u64().unwrap() as usize;
+        assert_eq!(reached.len() + unreachable, cells);
+        // 3 m is further than the arm is long.
+        assert_eq!(unreachable > 0, name == "box");
+        let most = reached.iter().copied().fold(0.0, f32::max);
+        let worst = document["worst"]["deviation [um]"].as_f64().unwrap();
+        assert!((worst as f32 - most).abs() <= 1e-6 * most, "{worst} {most}");
+        for (file, part) in [("m.svg", "<svg"), ("m.html", "</html>")] {
+            let text = fs::read_to_string(at(file)).unwrap();
+            assert!(text.contains(part) && !text.contains("NaN"), "{file}");
+        }
+    }
+}
+
+#[test]
+fn a_workpiece_is_placed_where_it_is_in_reach() {
+    let folder = folder("map-place");
+    let at = |file: &str| inside(&folder, file);
+    fs::write(at("map.yaml"), BOX).unwrap();
+    let arguments =
+        ["map", "kuka-kr270-r2700", &at("map.yaml"), "--json", &at("m.json"), "--csv", &at("m.csv"), "--place"];
+    let page = succeed(&[&arguments[..], &["600 x 400 x 0 mm"]].concat());
+    assert!(page.contains("A workpiece of 600 x 400 x 0 mm is best put"), "{page}");
+    let document = json(&at("m.json"));
+    let placements = document["placements"].as_array().unwrap();
+    // One turn for all of it, and the best at each point, which is no worse.
+    let worst: Vec<f64> = placements.iter().map(|placed| placed["worst"].as_f64().unwrap()).collect();
+    assert!(placements.len() == 2 && worst[1] <= worst[0] && !placements[0]["turn_deg"].is_null());
+    // By hand: two by two cells of the map, all in reach.
+    let (_, rows) = rows(&at("m.csv"));
+    let value = |x: usize, y: usize| rows[x + 4 * y][2];
+    let mut least = f32::MAX;
+    for (x, y) in (0..3).flat_map(|x| (0..2).map(move |y| (x, y))) {
+        let corners = [value(x, y), value(x + 1, y), value(x, y + 1), value(x + 1, y + 1)];
+        if let Some(worst) = corners.into_iter().reduce(|a, b| Some(a?.max(b?))).flatten() {
+            least = least.min(worst);
+        }
+    }
+    assert!((worst[1] as f32 - least).abs() < 1e-5 * least, "{worst:?} {least}");
+    let page = succeed(&[&arguments[..], &["1800 x 800 x 0 mm"]].concat());
+    assert!(page.contains("has no place that is reached everywhere"), "{page}");
+}
+
+#[test]
+fn wrong_maps_are_explained_and_leave_nothing() {
+    let folder = folder("map-wrong");
+    let map = inside(&folder, "map.yaml");
+    for (text, part) in [
+        ("force: 500 N\n", "what the map is over is missing"),
+        ("joints: [0, 0]\n", "map.yaml:1:9"),
+        ("measure: deviation\njoints: [0, 0, 0, 0, 0]\n", "a deviation is that under a force"),
+        ("force: 5 mm\njoints: [0, 0, 0, 0, 0]\n", "`mm` is a length"),
+        ("joints: [{from: 10 deg, to: 0, count: 5}, 0, 0, 0, 0]\n", "`from` is not below `to`"),
+        ("joints: [{from: 0, to: 1, count: 1}, 0, 0, 0, 0]\n", "from 2 to"),
+        ("positions: {x: 1 m, y: 0, z: 1 m}\ntool: {direction: [0, 0, 0]}\n", "no direction"),
+        ("positions: {x: 1 m, y: 0, z: 1 m}\n", "tool"),
+    ] {
+        fs::write(&map, text).unwrap();
+        let message = fail(1, &["map", "rv130hsc", &map, "--csv", &inside(&folder, "out/m.csv")]);
+        assert!(message.contains(part), "{text}: {message}");
+    }
+    fs::write(&map, "joints: [0, 0, 0, 0, {from: 0, to: 1, count: 3}]\n").unwrap();
+    fail(2, &["map", "rv130hsc", &map, "--csv", &inside(&folder, "m.csv"), "--svg", &inside(&folder, "m.svg")]);
+    fail(2, &["map", "rv130hsc", &map, "--place", "4 x 3"]);
+    fail(1, &["map", "rv130hsc", &map, "--csv", &map]);
+    assert_eq!(names(&folder), ["map.yaml"]);
+}

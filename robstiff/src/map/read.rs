@@ -1,0 +1,214 @@
+//! Reading what to map.
+
+use std::boxed::Box;
+use std::format;
+use std::string::String;
+use std::vec::Vec;
+
+use nalgebra::{Unit, Vector3, Vector6};
+use robstiff_robots::document::{Document, Map, Node};
+use robstiff_robots::quantity::Dimension;
+use robstiff_robots::{Description, Diagnostics, Joint, JointKind};
+
+use super::{Axis, Measure, Tool};
+
+/// The fields of a map file.
+const FIELDS: [&str; 6] = ["joints", "positions", "tool", "force", "moment", "measure"];
+
+/// Values of an axis: more than any map has, and less than what fills a memory.
+const MOST: i64 = 1_000_000;
+
+/// What a map file asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Task {
+    /// The space.
+    pub over: Over,
+    /// What is computed of each cell.
+    pub measure: Measure,
+}
+
+/// The space of a map file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Over {
+    /// Joint coordinates, an axis each.
+    Joints(Vec<Axis>),
+    /// Positions of the TCP in the base frame.
+    Positions(Box<Positions>),
+}
+
+/// Positions of the TCP, and how the tool stands there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Positions {
+    /// x, y and z (m), in the base frame.
+    pub axes: [Axis; 3],
+    /// How the tool stands there.
+    pub tool: Tool,
+}
+
+impl Task {
+    /// Reads a map file for a robot; `file` is the name that problems show.
+    ///
+    /// # Errors
+    /// All that is wrong with the text, each problem with its place.
+    pub fn parse(file: &str, text: &str, robot: &Description) -> Result<Self, Diagnostics> {
+        let document = Document::parse(file, text)?;
+        let task = task(&document, robot);
+        document.finish(task)
+    }
+}
+
+fn task(document: &Document, robot: &Description) -> Option<Task> {
+    let map = document.root().map(&FIELDS)?;
+    // Everything is read before anything is given up, to report all problems.
+    let measure = measure(&map);
+    let over = match (map.get("joints"), map.get("positions")) {
+        (Some(node), None) => {
+            if let Some(tool) = map.get("tool") {
+                tool.error("joint coordinates say how the tool stands", "leave `tool` out, or give `positions`");
+            }
+            joints(&node, robot).map(Over::Joints)
+        }
+        (None, Some(node)) => {
+            let (axes, tool) = (positions(&node), map.require("tool", "tool: {direction: [0, 0, -1]}"));
+            let tool = tool.and_then(|node| self::tool(&node));
+            axes.zip(tool).map(|(axes, tool)| Over::Positions(Box::new(Positions { axes, tool })))
+        }
+        (Some(_), Some(node)) => {
+            node.error("a map is over joints or over positions, not both", "keep one of the two");
+            None
+        }
+        (None, None) => {
+            map.node().error(
+                "what the map is over is missing",
+                "give `joints`, one value or `{from, to, count}` each, or `positions: {x: .., y: .., z: ..}`",
+            );
+            None
+        }
+    };
+    Some(Task { over: over?, measure: measure? })
+}
+
+#[derive(Clone, Copy)]
+enum Asked {
+    Deviation,
+    Stiffness,
+    Compliance,
+}
+
+fn measure(map: &Map<'_>) -> Option<Measure> {
+    let words = [("deviation", Asked::Deviation), ("stiffness", Asked::Stiffness), ("compliance", Asked::Compliance)];
+    let force = map.get("force");
+    let asked = match map.get("measure") {
+        Some(node) => node.choice(&words)?,
+        None if force.is_some() => Asked::Deviation,
+        None => Asked::Stiffness,
+    };
+    let moment = map.get("moment");
+    if !matches!(asked, Asked::Deviation) {
+        if let Some(load) = force.or(moment) {
+            load.error("a stiffness has no load", "leave it out, or write `measure: deviation`");
+            return None;
+        }
+        return Some(if matches!(asked, Asked::Stiffness) { Measure::Stiffness } else { Measure::Compliance });
+    }
+    let Some(force) = force else {
+        map.node().error("a deviation is that under a force", "e.g. `force: [0, 400 N, -200 N]`, or `force: 500 N`");
+        return None;
+    };
+    if !force.is_sequence() {
+        if let Some(moment) = moment {
+            moment.error("a force of any direction comes without a moment", "give the force as `[x, y, z]`");
+        }
+        return force.positive(Dimension::Force).map(Measure::AnyDirection);
+    }
+    let moment = moment.map_or(Some([0.0; 3]), |node| node.quantities::<3>(Dimension::Torque));
+    let ([fx, fy, fz], [mx, my, mz]) = (force.quantities::<3>(Dimension::Force)?, moment?);
+    Some(Measure::Deviation(Vector6::new(fx, fy, fz, mx, my, mz)))
+}
+
+fn joints(node: &Node<'_>, robot: &Description) -> Option<Vec<Axis>> {
+    let items = node.sequence()?;
+    let (expected, found) = (robot.joints.len(), items.len());
+    if found != expected {
+        node.error(
+            format!("{expected} items are expected here, not {found}"),
+            format!("{} has {expected} joints: a value or `{{from, to, count}}` for each", robot.name),
+        );
+        return None;
+    }
+    let axes: Vec<Option<Axis>> = (1..)
+        .zip(items.iter().zip(&robot.joints))
+        .map(|(number, (item, joint))| {
+            let dimension = match joint.kind {
+                JointKind::Revolute => Dimension::Angle,
+                JointKind::Prismatic => Dimension::Length,
+            };
+            let axis = axis(item, format!("q{number}"), dimension)?;
+            within_limits(item, joint, &axis).then_some(axis)
+        })
+        .collect();
+    axes.into_iter().collect()
+}
+
+fn within_limits(node: &Node<'_>, joint: &Joint, axis: &Axis) -> bool {
+    let outside = axis.values.iter().find(|&&q| !joint.reaches(q));
+    if let Some((what, &q)) = joint.outside_limits().zip(outside) {
+        node.error(
+            format!("{} {} is {what}", joint.for_people(q), joint.people_unit()),
+            "the limits are those of the robot's description",
+        );
+        return false;
+    }
+    true
+}
+
+fn positions(node: &Node<'_>) -> Option<[Axis; 3]> {
+    let map = node.map(&["x", "y", "z"])?;
+    let [x, y, z] = ["x", "y", "z"].map(|name| {
+        let example = format!("{name}: 800 mm`, or `{name}: {{from: 1200 mm, to: 2000 mm, count: 81}}");
+        map.require(name, &example).and_then(|node| axis(&node, name.into(), Dimension::Length))
+    });
+    Some([x?, y?, z?])
+}
+
+fn tool(node: &Node<'_>) -> Option<Tool> {
+    let map = node.map(&["axis", "direction", "turn"])?;
+    let [x, y, z] = [Vector3::x_axis(), Vector3::y_axis(), Vector3::z_axis()];
+    let axes = [("x", x), ("y", y), ("z", z), ("-x", -x), ("-y", -y), ("-z", -z)];
+    let axis = map.get("axis").map_or(Some(z), |node| node.choice(&axes));
+    let direction = map.require("direction", "direction: [0, 0, -1]").and_then(|node| {
+        let direction = Unit::try_new(Vector3::from(node.quantities::<3>(Dimension::Number)?), 0.0);
+        if direction.is_none() {
+            node.error("this is no direction", "e.g. `[0, 0, -1]`, of any length but zero");
+        }
+        direction
+    });
+    let turn = map.get("turn").map_or(Some(None), |node| self::axis(&node, "turn".into(), Dimension::Angle).map(Some));
+    Some(Tool { axis: axis?, direction: direction?, turns: turn?.map_or_else(Vec::new, |turn| turn.values) })
+}
+
+/// A value, or `{from, to, count}`.
+fn axis(node: &Node<'_>, name: String, dimension: Dimension) -> Option<Axis> {
+    if !node.is_map() {
+        let value = node.quantity(dimension)?;
+        return Some(Axis { name, dimension, values: std::vec![value] });
+    }
+    let map = node.map(&["from", "to", "count"])?;
+    let end = |field: &str, example: &str| map.require(field, example).and_then(|node| node.quantity(dimension));
+    let examples = if dimension == Dimension::Angle { ["-60 deg", "60 deg"] } else { ["1200 mm", "2000 mm"] };
+    let (from, to) = (end("from", &format!("from: {}", examples[0])), end("to", &format!("to: {}", examples[1])));
+    let count = map.require("count", "count: 50").and_then(|node| {
+        let count = node.integer()?;
+        if !(2..=MOST).contains(&count) {
+            node.error(format!("a number from 2 to {MOST} is expected here, not {count}"), "e.g. `50`");
+            return None;
+        }
+        usize::try_from(count).ok()
+    });
+    let (from, to, count) = (from?, to?, count?);
+    if from >= to {
+        node.error("`from` is not below `to`", "a single value is written without `from` and `to`");
+        return None;
+    }
+    Some(Axis::between(&name, dimension, from, to, count))
+}

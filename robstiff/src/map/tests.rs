@@ -1,0 +1,164 @@
+use std::vec::Vec;
+
+use nalgebra::{SVector, Vector3, Vector6};
+
+use super::{Axis, CartesianSpace, JointSpace, Measure, Space, Tool, best_placement, stream};
+use crate::analysis::principal_directions;
+use crate::robots::{Description, catalogue};
+use crate::{Generic, Robot};
+
+crate::robot!("rv130hsc.yaml");
+
+fn description(file: &str) -> Description {
+    Description::parse(file, catalogue::find(file).unwrap()).unwrap()
+}
+
+fn axes() -> [Axis; 5] {
+    // More than a chunk, and no multiple of it.
+    [
+        Axis::angles("q1", -1.0, 2.0, 41),
+        Axis::angles("q2", -0.9, 0.1, 37),
+        Axis::angles("q3", 0.1, 0.8, 29),
+        Axis::angles("q4", 0.3, 0.3, 1),
+        Axis::angles("q5", 0.9, 1.3, 2),
+    ]
+}
+
+fn all<const N: usize>(robot: &(impl Robot<N> + Sync), space: &impl Space<N>, measure: &Measure) -> Vec<Vec<f64>> {
+    let mut columns = std::vec![Vec::new(); measure.columns().len()];
+    let summary = stream(
+        robot,
+        space,
+        measure,
+        |chunk| chunk.clone(),
+        |chunk| {
+            assert_eq!(chunk.cells.start, columns[0].len());
+            for (all, column) in columns.iter_mut().zip(chunk.columns) {
+                all.extend(column);
+            }
+            Ok::<(), ()>(())
+        },
+    );
+    let (summary, figures) = (summary.unwrap(), &columns[0]);
+    assert_eq!((summary.cells, summary.unreachable), (space.cells(), 0));
+    let (low, high) = figures.iter().fold((f64::MAX, 0.0_f64), |(low, high), &x| (low.min(x), high.max(x)));
+    let (best, worst) = (summary.best.unwrap(), summary.worst.unwrap());
+    assert_eq!([best.values[0], worst.values[0]], if measure.worse_is_larger() { [low, high] } else { [high, low] });
+    assert_eq!([figures[best.cell], figures[worst.cell]], [best.values[0], worst.values[0]]);
+    let mean = figures.iter().sum::<f64>() / figures.len() as f64;
+    assert!((summary.mean - mean).abs() < 1e-12 * mean);
+    columns
+}
+
+#[test]
+fn cells_are_what_the_reference_says_there() {
+    let generic = Generic::<5>::new(&description("rv130hsc.yaml")).unwrap();
+    let (axes, mut tables) = (axes(), Vec::new());
+    let space = JointSpace::new(&axes, &mut tables);
+    let wrench = Vector6::new(300.0, -500.0, 700.0, 4.0, -6.0, 8.0);
+    let deviation = all(&Rv130hsc, &space, &Measure::Deviation(wrench));
+    let any = all(&Rv130hsc, &space, &Measure::AnyDirection(500.0));
+    let compliance = all(&Rv130hsc, &space, &Measure::Compliance);
+    for cell in (0..space.cells()).step_by(997) {
+        let indices = space.indices(cell);
+        let q = SVector::<f64, 5>::from_fn(|joint, _| axes[joint].values[indices[joint]]);
+        let d = generic.deflection(&q, &wrench);
+        let close = |one: f64, other: f64, size: f64| assert!((one - other).abs() < 1e-12 * size, "{one} {other}");
+        close(deviation[0][cell], d.fixed_rows::<3>(0).norm(), d.norm());
+        close(deviation[3][cell], d[2], d.norm());
+        let h = generic.compliance(&q);
+        let principal = principal_directions(&h).unwrap();
+        close(any[0][cell], 500.0 * principal.compliances[0], any[0][cell]);
+        close(compliance[0][cell] * principal.compliances[0], 1.0, 1.0);
+        let weak = SVector::<f64, 3>::new(any[1][cell], any[2][cell], any[3][cell]);
+        let along = weak.dot(&(h.fixed_view::<3, 3>(0, 0) * weak));
+        close(along, principal.compliances[0], along);
+        close(compliance[4 + 3][cell], h[(0, 3)], h.amax());
+        close(compliance[4 + 20][cell], h[(5, 5)], h.amax());
+    }
+}
+
+/// An arm that turns about z and slides outwards: a force moves it only around z,
+/// most where it acts around, by the compliance times the radius squared.
+const POLAR: &str = "name: Polar\nconvention: standard\njoints:\n  \
+    - {alpha: 90 deg, compliance: 2e-7 rad/Nm}\n  - {type: prismatic, limits: [0.4 m, 1.8 m]}\n";
+
+#[test]
+fn a_workpiece_is_put_where_a_simple_arm_is_stiffest() {
+    let polar = Generic::<2>::new(&Description::parse("polar.yaml", POLAR).unwrap()).unwrap();
+    let axes = [Axis::lengths("x", 0.5, 1.8, 14), Axis::lengths("y", -0.5, 0.5, 11), Axis::lengths("z", 0.0, 0.0, 1)];
+    let tool = Tool { axis: Vector3::y_axis(), direction: Vector3::z_axis(), turns: Vec::new() };
+    let space = CartesianSpace::new(&polar, axes.clone(), tool);
+    let measure = Measure::AnyDirection(500.0);
+    let mut columns = std::vec![Vec::new(); 4 + 2];
+    let summary = stream(
+        &polar,
+        &space,
+        &measure,
+        |chunk| chunk.columns.clone(),
+        |chunk| {
+            for (all, column) in columns.iter_mut().zip(chunk) {
+                all.extend(column);
+            }
+            Ok::<(), ()>(())
+        },
+    );
+    let radius = |cell: usize| {
+        let at = space.indices(cell);
+        axes[0].values[at[0]].hypot(axes[1].values[at[1]])
+    };
+    let mut missed = 0;
+    for cell in 0..space.cells() {
+        let (radius, deviation) = (radius(cell), columns[0][cell]);
+        if radius > 1.8 + 1e-9 {
+            assert!(columns.iter().all(|column| column[cell].is_nan()), "{radius}");
+            missed += 1;
+        } else {
+            assert!((deviation - 500.0 * 2e-7 * radius * radius).abs() < 1e-12, "{radius}: {deviation}");
+            assert!((columns[5][cell].abs() - radius).abs() < 1e-9);
+        }
+    }
+    assert_eq!(summary.unwrap().unreachable, missed);
+    let best = best_placement(&axes, &columns[0], [0.3, 0.2, 0.0], &measure).unwrap();
+    let near = |one: [f64; 3], other: [f64; 3]| one.iter().zip(other).all(|(one, other)| (one - other).abs() < 1e-9);
+    assert!(near(best.corner, [0.5, -0.1, 0.0]) && best.span == [4, 3, 1], "{best:?}");
+    assert!((best.worst - 500.0 * 2e-7 * (0.8 * 0.8 + 0.1 * 0.1)).abs() < 1e-12);
+    // Too large for the map, and too large for the arm.
+    assert_eq!(best_placement(&axes, &columns[0], [1.6, 0.2, 0.0], &measure), None);
+    assert_eq!(best_placement(&axes, &columns[0], [1.3, 0.2, 0.0], &measure), None);
+}
+
+#[test]
+fn the_best_turn_is_no_worse_than_any() {
+    let arm = Generic::<6>::new(&description("kuka-kr270-r2700.yaml")).unwrap();
+    let axes = [Axis::lengths("x", 1.4, 2.0, 3), Axis::lengths("y", 0.2, 0.2, 1), Axis::lengths("z", 0.6, 0.6, 1)];
+    let measure = Measure::Deviation(Vector6::new(0.0, 400.0, 0.0, 0.0, 0.0, 0.0));
+    let with = |turns: &[f64]| {
+        let tool = Tool { axis: Vector3::z_axis(), direction: -Vector3::z_axis(), turns: turns.to_vec() };
+        let space = CartesianSpace::new(&arm, axes.clone(), tool);
+        space.compute(&arm, &measure, 0..3)
+    };
+    let turns = [0.0, 0.7, 1.4];
+    let (best, single) = (with(&turns), turns.map(|turn| with(&[turn])));
+    for cell in 0..3 {
+        let least = single.iter().map(|columns| columns[0][cell]).fold(f64::MAX, f64::min);
+        assert!((best[0][cell] - least).abs() < 1e-12, "{cell}");
+        // The turn and the joints are those of that pose.
+        let q = SVector::<f64, 6>::from_fn(|joint, _| best[5 + joint][cell]);
+        let pose = arm.transform(&q);
+        assert!((pose[(0, 3)] - axes[0].values[cell]).abs() < 1e-9 && (pose[(2, 2)] + 1.0).abs() < 1e-9);
+        assert!(
+            (arm.deflection(&q, &Vector6::new(0.0, 400.0, 0.0, 0.0, 0.0, 0.0)).fixed_rows::<3>(0).norm() - least).abs()
+                < 1e-12
+        );
+        assert!(turns.contains(&best[4][cell]));
+    }
+}
+
+#[test]
+fn ends_of_axes_are_met() {
+    let axis = Axis::angles("q1", -0.1, 0.7, 29);
+    assert_eq!((axis.values[0], axis.values[28], axis.values.len()), (-0.1, 0.7, 29));
+    assert_eq!(Axis::lengths("x", 0.3, 0.9, 1).values, [0.3]);
+    assert_eq!(Axis::lengths("x", 0.0, 0.3, 4).for_people(1), 100.0);
+}

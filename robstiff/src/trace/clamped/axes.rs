@@ -1,0 +1,213 @@
+//! The rows of clamped axes, and what effects do to them.
+
+use std::rc::Rc;
+use std::vec::Vec;
+
+use nalgebra::DVector;
+
+use crate::campaign::ClampedRow;
+use crate::elements::{plays, turn};
+use crate::identify::Identification;
+use crate::identify::baseline::Visibility;
+use crate::trace::found::{EffectParameter, Place};
+use crate::{Effect, JointKind};
+use robstiff_robots::Description;
+use robstiff_robots::effect::physics::PLAYS;
+
+/// The rows of a campaign, axis by axis.
+#[derive(Clone, Debug)]
+pub struct Axes {
+    /// The rows that are used, in the file's order.
+    pub rows: Vec<ClampedRow>,
+    /// The compliance of each axis (rad/Nm or m/N), from 0.
+    pub compliance: Vec<f64>,
+    kinds: Vec<JointKind>,
+    seen: Vec<bool>,
+    declared: Vec<Effect>,
+}
+
+impl Axes {
+    /// The rows of a campaign on a robot whose axes were identified.
+    pub fn new(robot: &Description, rows: &[ClampedRow], identified: &Identification) -> Self {
+        let joints = &identified.estimates[..robot.joints.len()];
+        Self {
+            rows: without_laws(robot, rows),
+            compliance: joints.iter().map(|estimate| estimate.value).collect(),
+            kinds: robot.joints.iter().map(|joint| joint.kind).collect(),
+            declared: robot.effects.clone(),
+            seen: joints.iter().map(|estimate| estimate.visibility == Visibility::Seen).collect(),
+        }
+    }
+
+    /// The same axes with other rows.
+    pub fn with_rows(&self, rows: Vec<ClampedRow>) -> Self {
+        Self { rows, ..self.clone() }
+    }
+
+    /// Whether the description has an effect of a kind at a place.
+    pub fn declares(&self, kind: &str, place: Place) -> bool {
+        self.declared.iter().any(|effect| effect.kind() == kind && place == effect.place().into())
+    }
+
+    /// The axes (from 1) that are loaded.
+    pub fn loaded(&self) -> impl Iterator<Item = usize> + '_ {
+        (1..=self.seen.len()).filter(|axis| self.seen[axis - 1])
+    }
+
+    /// The rows of an axis, by index.
+    pub fn rows_of(&self, axis: usize) -> Vec<usize> {
+        (0..self.rows.len()).filter(|&row| self.rows[row].axis == axis).collect()
+    }
+
+    /// The torques on an axis (Nm), in order.
+    pub fn torques(&self, axis: usize) -> Vec<f64> {
+        self.rows.iter().filter(|row| row.axis == axis).map(|row| row.torque).collect()
+    }
+
+    /// How far an axis turns by its compliance alone (rad), in order.
+    pub fn turns(&self, axis: usize) -> Vec<f64> {
+        self.torques(axis).into_iter().map(|torque| torque * self.compliance[axis - 1]).collect()
+    }
+
+    /// The largest torque on an axis (Nm), without sign.
+    pub fn largest(&self, axis: usize) -> f64 {
+        self.torques(axis).into_iter().map(f64::abs).fold(0.0, f64::max)
+    }
+
+    /// Whether an axis turns, and does not slide.
+    fn turns_about(&self, axis: usize) -> bool {
+        self.kinds[axis - 1] == JointKind::Revolute
+    }
+
+    /// The unit of the compliance of an axis.
+    pub fn unit(&self, axis: usize) -> &'static str {
+        if self.turns_about(axis) { "rad/Nm" } else { "m/N" }
+    }
+
+    /// The unit of what moves an axis.
+    pub fn torque_unit(&self, axis: usize) -> &'static str {
+        if self.turns_about(axis) { "Nm" } else { "N" }
+    }
+
+    /// The unit of how far it moves.
+    pub fn turn_unit(&self, axis: usize) -> &'static str {
+        if self.turns_about(axis) { "rad" } else { "m" }
+    }
+}
+
+/// The rows less what laws of joints do that the description declares, each axis
+/// beginning at rest; but for a compliance that varies with the axis's angle,
+/// which such rows do not tell.
+fn without_laws(robot: &Description, rows: &[ClampedRow]) -> Vec<ClampedRow> {
+    let mut states = std::vec![[0.0; PLAYS]; robot.joints.len()];
+    let less = |row: &ClampedRow| {
+        let (joint, mut less) = (row.axis - 1, *row);
+        for effect in robot.effects.iter().filter(|effect| effect.row() == Some(row.axis)) {
+            if matches!(effect, Effect::PoseDependentCompliance { .. }) {
+                continue;
+            }
+            states[joint] = plays(effect, row.torque, states[joint]);
+            let own = robot.joints[joint].compliance();
+            less.deflection -= turn(effect, own, 0.0, row.torque, states[joint]).unwrap_or(0.0);
+        }
+        less
+    };
+    rows.iter().map(less).collect()
+}
+
+/// A column that is zero but in some of `count` rows.
+pub fn axes_column(count: usize, rows: &[usize], values: impl IntoIterator<Item = f64>) -> DVector<f64> {
+    let mut column = DVector::zeros(count);
+    rows.iter().zip(values).for_each(|(&row, value)| column[row] = value);
+    column
+}
+
+/// A number of an effect.
+#[derive(Clone, Copy, Debug)]
+pub struct AxisNumber {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The values that are physically possible, exclusive.
+    pub range: [f64; 2],
+}
+
+/// What a unit of each number does to the rows, given the numbers out of grids.
+type Columns = Rc<dyn Fn(&[f64]) -> Vec<DVector<f64>>>;
+
+/// An effect on clamped axes: its forms, of which it has one.
+#[derive(Clone)]
+pub struct OnAxes {
+    /// Where it is.
+    pub place: Place,
+    /// The forms.
+    pub forms: Vec<OnAxesForm>,
+}
+
+/// One form of it.
+#[derive(Clone)]
+pub struct OnAxesForm {
+    /// Its numbers.
+    pub numbers: Vec<AxisNumber>,
+    /// Those out of a grid.
+    pub shape: Vec<EffectParameter>,
+    /// What a unit of each number does to the rows.
+    pub columns: Columns,
+    /// Where numbers out of a grid go by this name.
+    pub within: [f64; 2],
+    /// What such a number is likely to be, and by what factor off, in logarithms.
+    pub likely: Option<[f64; 2]>,
+}
+
+impl OnAxes {
+    /// An effect with numbers and, by name and unit, those out of a grid, a form
+    /// for each set of them.
+    pub fn new(
+        place: impl Into<Place>,
+        numbers: Vec<AxisNumber>,
+        shape: &[(&'static str, &'static str)],
+        grid: Vec<Vec<f64>>,
+        columns: impl Fn(&[f64]) -> Vec<DVector<f64>> + 'static,
+    ) -> Self {
+        let columns: Columns = Rc::new(columns);
+        let form = |values: Vec<f64>| OnAxesForm {
+            numbers: numbers.clone(),
+            shape: shape
+                .iter()
+                .zip(values)
+                .map(|(&(name, unit), value)| EffectParameter { name, value, std: None, unit })
+                .collect(),
+            columns: Rc::clone(&columns),
+            within: [0.0, f64::INFINITY],
+            likely: None,
+        };
+        Self { place: place.into(), forms: grid.into_iter().map(form).collect() }
+    }
+
+    /// One effect with the forms of several.
+    pub fn one_of(several: Vec<Self>) -> Option<Self> {
+        let place = several.first()?.place;
+        Some(Self { place, forms: several.into_iter().flat_map(|one| one.forms).collect() })
+    }
+
+    /// The same with numbers out of the grid that go by this name within bounds
+    /// only.
+    pub fn within(mut self, bounds: [f64; 2]) -> Self {
+        self.forms.iter_mut().for_each(|form| form.within = bounds);
+        self
+    }
+
+    /// The same with numbers out of the grid that are likely to be this.
+    pub fn likely(mut self, likely: [f64; 2]) -> Self {
+        self.forms.iter_mut().for_each(|form| form.likely = Some(likely));
+        self
+    }
+}
+
+impl OnAxesForm {
+    /// The values of the numbers out of the grid.
+    pub fn values(&self) -> Vec<f64> {
+        self.shape.iter().map(|number| number.value).collect()
+    }
+}

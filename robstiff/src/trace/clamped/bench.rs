@@ -1,0 +1,257 @@
+//! The regression of clamped axes: rows, columns and models.
+
+use std::vec;
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::axes::{Axes, OnAxes, OnAxesForm};
+use crate::identify::normal::{Fit, Normal, Sign};
+use crate::identify::problem::{Block, Problem};
+use crate::identify::whitening::whiten;
+use crate::trace::Options;
+use crate::trace::bootstrap::ScoreTest;
+use crate::trace::catalogue::{Candidate, KINDS, Kind, Variant};
+use crate::trace::model::{Fitted, Named};
+use crate::trace::selection::WITHIN_REACH;
+
+/// How many of the best proposals are put to the tests in one step.
+const PROPOSALS: usize = 3;
+
+/// Times that numbers out of grids are looked at in turn, how far from the grid's
+/// value, and how finely, in logarithms.
+const SWEEPS: usize = 2;
+const REACH: f64 = 0.9;
+const FINE: f64 = 0.02;
+
+/// The rows with everything that may explain them.
+pub struct Bench {
+    /// The rows.
+    pub axes: Axes,
+    /// What may be missing.
+    pub offers: Vec<(&'static Kind, OnAxes)>,
+    /// The same as the tests have it.
+    pub candidates: Vec<Candidate>,
+    /// The sign of each column.
+    pub signs: Vec<Sign>,
+    /// The columns as measured; those of the loaded axes come first.
+    pub raw: DMatrix<f64>,
+    /// The regression, every row a block.
+    pub problem: Problem,
+    /// How many axes are loaded.
+    pub base: usize,
+}
+
+impl Bench {
+    /// The rows with what the catalogue does to them; forms keep the numbers out
+    /// of grids that they had.
+    pub fn new(axes: Axes, before: Option<&[(&'static Kind, OnAxes)]>) -> Self {
+        let of = |kind: &&'static Kind| {
+            let offers = kind.on_axes.map_or_else(Vec::new, |offer| offer(&axes));
+            offers.into_iter().map(|one| (*kind, one)).collect::<Vec<_>>()
+        };
+        let mut offers: Vec<(&'static Kind, OnAxes)> = KINDS.iter().flat_map(of).collect();
+        offers.retain(|(kind, one)| !axes.declares(kind.name, one.place));
+        for ((_, one), (_, old)) in offers.iter_mut().zip(before.into_iter().flatten()) {
+            one.forms.iter_mut().zip(&old.forms).for_each(|(form, old)| form.shape.clone_from(&old.shape));
+        }
+        let loaded: Vec<usize> = axes.loaded().collect();
+        let torque = |&axis: &usize| super::axes_column(axes.rows.len(), &axes.rows_of(axis), axes.torques(axis));
+        let mut columns: Vec<DVector<f64>> = loaded.iter().map(torque).collect();
+        let mut signs = vec![Sign::Nonnegative; columns.len()];
+        let mut candidates = Vec::new();
+        for (kind, one) in &offers {
+            let variant = |form: &OnAxesForm| {
+                let first = columns.len();
+                columns.extend((form.columns)(&form.values()));
+                signs.extend(form.numbers.iter().map(|number| match number.range[0] >= 0.0 {
+                    true => Sign::Nonnegative,
+                    false => Sign::Free,
+                }));
+                Variant {
+                    columns: (first..columns.len()).collect(),
+                    parameters: form.numbers.len() + form.shape.len(),
+                    shape: form.shape.clone(),
+                    names: &[],
+                    refine: None,
+                    within: form.within,
+                    likely: form.likely,
+                }
+            };
+            let variants = one.forms.iter().map(variant).collect();
+            candidates.push(Candidate { kind, place: one.place, variants, check: None });
+        }
+        let raw = DMatrix::from_columns(&columns);
+        let problem = problem(&axes, raw.clone());
+        Self { base: loaded.len(), axes, offers, candidates, signs, raw, problem }
+    }
+
+    /// The columns of a model.
+    pub fn columns(&self, named: &[Named]) -> Vec<usize> {
+        let effects = named.iter().flat_map(|one| &self.candidates[one.candidate].variants[one.variant].columns);
+        (0..self.base).chain(effects.copied()).collect()
+    }
+
+    /// The form of a named effect.
+    pub fn form(&self, one: Named) -> &OnAxesForm {
+        &self.offers[one.candidate].1.forms[one.variant]
+    }
+
+    /// Fits a model; `None` where physics does not allow it.
+    pub fn fit(&self, named: &[Named]) -> Option<Fitted> {
+        let columns = self.columns(named);
+        let signs: Vec<Sign> = columns.iter().map(|&column| self.signs[column]).collect();
+        let fit = self.problem.total.solve_signed(&columns, &signs)?;
+        let numbers = named.iter().flat_map(|&one| &self.form(one).numbers);
+        let values = fit.coefficients.iter().skip(self.base);
+        let physical = numbers.zip(values).all(|(number, &value)| number.range[0] < value && value < number.range[1]);
+        let parameters = self.base + named.iter().map(|&one| self.variant(one).parameters).sum::<usize>();
+        let rows = self.axes.rows.len() as f64;
+        let bic = rows * (fit.rss / rows).max(f64::MIN_POSITIVE).ln() + parameters as f64 * rows.ln();
+        physical.then(|| Fitted { named: named.to_vec(), fit, bic, physical })
+    }
+
+    fn variant(&self, one: Named) -> &Variant {
+        &self.candidates[one.candidate].variants[one.variant]
+    }
+
+    pub fn test(&self, named: &[Named]) -> Option<ScoreTest> {
+        ScoreTest::new(&self.problem, &self.candidates, &self.signs, self.base, &self.columns(named))
+    }
+
+    /// The root mean square of each row's residual by the fit without it (rad).
+    pub fn left_out_rms(&self, fit: &Fit) -> f64 {
+        let signs: Vec<Sign> = fit.columns.iter().map(|&column| self.signs[column]).collect();
+        let squares = self.problem.blocks.iter().map(|block| {
+            let without = self.problem.solve_without(block, &fit.columns, Some(&signs));
+            let row = block.rows[0];
+            let with = without.as_ref().unwrap_or(&fit.coefficients).iter();
+            let fitted: f64 = fit.columns.iter().zip(with).map(|(&column, b)| self.raw[(row, column)] * b).sum();
+            (self.problem.readings[row] - fitted).powi(2)
+        });
+        (squares.sum::<f64>() / self.problem.blocks.len() as f64).sqrt()
+    }
+
+    /// What a fit leaves of the rows (rad).
+    pub fn residuals(&self, fit: &Fit) -> DVector<f64> {
+        let mut left = self.problem.readings.clone();
+        for (&column, &value) in fit.columns.iter().zip(fit.coefficients.iter()) {
+            left.axpy(-value, &self.raw.column(column), 1.0);
+        }
+        left
+    }
+
+    /// The best model with one effect more, by candidate, the best first.
+    pub fn extended(&self, named: &[Named]) -> Vec<Fitted> {
+        let free = |candidate: &usize| named.iter().all(|one| one.candidate != *candidate);
+        let best = |candidate: usize| {
+            let with = |variant: usize| {
+                let mut named = named.to_vec();
+                named.push(Named { candidate, variant });
+                named.sort_unstable();
+                self.fit(&named)
+            };
+            let fits = (0..self.candidates[candidate].variants.len()).filter_map(with);
+            fits.min_by(|a, b| a.bic.total_cmp(&b.bic))
+        };
+        let mut found: Vec<Fitted> = (0..self.candidates.len()).filter(free).filter_map(best).collect();
+        found.sort_by(|a, b| a.bic.total_cmp(&b.bic));
+        found
+    }
+
+    /// What a model could be taken for: every model with one effect replaced, with
+    /// the index of that.
+    pub fn replaced(&self, named: &[Named]) -> Vec<(usize, Fitted)> {
+        let without = |k: usize| {
+            let mut rest = named.to_vec();
+            let one = rest.remove(k);
+            let others = self.extended(&rest).into_iter();
+            others.filter(move |other| !other.named.iter().any(|n| n.candidate == one.candidate)).map(move |m| (k, m))
+        };
+        (0..named.len()).flat_map(without).collect()
+    }
+
+    /// The family-wise p-value of each effect, that of the model without it;
+    /// `None` where one of them is above the level.
+    pub fn p_values(&self, named: &[Named], options: &Options) -> Option<Vec<f64>> {
+        let one = |k: usize| {
+            let mut rest = named.to_vec();
+            let one = rest.remove(k);
+            let test = self.test(&rest)?;
+            let (statistic, _) = test.statistics()[one.candidate]?;
+            Some(test.reference(options.draws, options.seed).p_value(statistic)).filter(|&p| p <= options.alpha)
+        };
+        (0..named.len()).map(one).collect()
+    }
+
+    /// The first of some models that passes every test.
+    pub fn accepted(&self, proposals: &[Fitted], smaller: &Fitted, options: &Options) -> Option<(Fitted, Vec<f64>)> {
+        let best = proposals.first()?.bic;
+        let near = proposals.iter().take_while(|one| one.bic < best + WITHIN_REACH).take(PROPOSALS);
+        let before = self.left_out_rms(&smaller.fit);
+        let mut near = near.filter(|one| self.left_out_rms(&one.fit) < before);
+        near.find_map(|one| Some((one.clone(), self.p_values(&one.named, options)?)))
+    }
+
+    /// The same with numbers out of grids where they fit best.
+    pub fn polished(self, named: &[Named]) -> Self {
+        let mut offers = self.offers.clone();
+        let left = |offers: &[(&'static Kind, OnAxes)]| {
+            let forms = named.iter().map(|one| &offers[one.candidate].1.forms[one.variant]);
+            let columns = forms.flat_map(|form| (form.columns)(&form.values()));
+            let base = (0..self.base).map(|k| self.raw.column(k).into_owned());
+            let raw: Vec<DVector<f64>> = base.chain(columns).collect();
+            let signs: Vec<Sign> = self.columns(named).iter().map(|&column| self.signs[column]).collect();
+            let all: Vec<usize> = (0..raw.len()).collect();
+            let total = problem(&self.axes, DMatrix::from_columns(&raw)).total;
+            total.solve_signed(&all, &signs).map_or(f64::INFINITY, |fit| fit.rss)
+        };
+        let variance = left(&offers) / self.axes.rows.len() as f64;
+        for _ in 0..SWEEPS {
+            for one in named {
+                for k in 0..self.form(*one).shape.len() {
+                    let form = &offers[one.candidate].1.forms[one.variant];
+                    let ([least, most], likely, at) = (form.within, form.likely, form.shape[k].value.ln());
+                    let mut of = |log: f64| {
+                        offers[one.candidate].1.forms[one.variant].shape[k].value = log.exp();
+                        let unlikely = likely.map_or(0.0, |[middle, spread]| ((log - middle.ln()) / spread).powi(2));
+                        left(&offers) + variance * unlikely
+                    };
+                    let (low, high) = ((at - REACH).max(least.ln()), (at + REACH).min(most.ln()));
+                    let steps = ((high - low) / FINE).ceil().max(1.0) as usize;
+                    let tried = (0..=steps).map(|k| low + (high - low) * k as f64 / steps as f64);
+                    let best = tried.map(|log| (of(log), log)).min_by(|a, b| a.0.total_cmp(&b.0));
+                    let better = best.filter(|(found, _)| *found < of(at)).map_or(at, |(_, log)| log);
+                    of(better);
+                }
+            }
+        }
+        Self::new(self.axes, Some(&offers))
+    }
+
+    /// The same with the compliances of a fit in what effects do, which some
+    /// depend on.
+    pub fn with_compliances(self, fit: &Fit) -> Self {
+        let mut axes = self.axes;
+        let loaded: Vec<usize> = axes.loaded().collect();
+        for (axis, &value) in loaded.into_iter().zip(fit.coefficients.iter()) {
+            axes.compliance[axis - 1] = value;
+        }
+        Self::new(axes, Some(&self.offers))
+    }
+}
+
+/// The regression of the rows on some columns.
+pub fn problem(axes: &Axes, raw: DMatrix<f64>) -> Problem {
+    let count = raw.ncols();
+    let readings = DVector::from_iterator(axes.rows.len(), axes.rows.iter().map(|row| row.deflection));
+    let mut white = raw.insert_column(count, 0.0);
+    white.set_column(count, &readings);
+    let visits: Vec<usize> = axes.rows.iter().map(|row| row.axis - 1).collect();
+    whiten(&mut white, &visits, 1, 1.0);
+    let white_readings = white.column(count).into_owned();
+    let white = white.remove_column(count);
+    let blocks = (0..axes.rows.len()).map(|row| Block { pose: row, rows: vec![row], stacked: vec![row] }).collect();
+    let total = Normal::new(&white, &white_readings);
+    Problem { readings, white, white_readings, axes: 1, shared: 1.0, blocks, held_out: Vec::new(), total }
+}

@@ -1,0 +1,44 @@
+//! Tracing of axes that were loaded one by one, those before each clamped: what
+//! such readings can show of the catalogue.
+//!
+//! An axis turns by `h tau` and by what its gear does besides. Its rows follow
+//! each other and share one unloaded reading, so they are whitened like the rows
+//! of a visit; what is left is independent, which makes every row a witness of
+//! its own where a campaign of displacements has poses. The tests are the same:
+//! the largest score over all candidates against its own distribution under
+//! random signs ([`bootstrap`](super::bootstrap)), rows left out that must be
+//! predicted better, numbers that must be physical, rivals that are shown.
+//!
+//! Nothing here shows where links bend, how joints are coupled or where the tool
+//! is: nothing of that moves. A load cell's scale is a scale of all compliances.
+
+mod axes;
+mod bench;
+mod report;
+mod search;
+
+use std::string::String;
+
+pub use self::axes::{Axes, AxisNumber, OnAxes, axes_column};
+use super::{Options, Progress, Trace};
+use crate::campaign::{Campaign, ClampedRow};
+use crate::identify::{Error, identify};
+
+/// Traces a campaign of clamped axes. Lengths of the result are angles (rad), its
+/// poses the axes.
+///
+/// # Errors
+/// A campaign that loads no axis, or an axis that deflects against its torque.
+pub fn trace(
+    campaign: &Campaign,
+    rows: &[ClampedRow],
+    options: &Options,
+    progress: &Progress<'_>,
+) -> Result<Trace, Error> {
+    progress("identifying the axes");
+    // It refuses what no search should be begun with.
+    let identified = identify(campaign)?;
+    let axes = Axes::new(&campaign.robot, rows, &identified);
+    let found = search::search(axes, options, progress);
+    found.map(|found| report::report(campaign, &identified, &found, options)).map_err(|why: String| Error(why))
+}

@@ -1,0 +1,228 @@
+//! Putting the result together.
+
+use std::format;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector};
+use robstiff_robots::effect::Place as Part;
+
+use super::bench::{Bench, problem};
+use super::search::Found as Searched;
+use crate::campaign::{Campaign, Data};
+use crate::identify::baseline::{declared, with_values};
+use crate::identify::normal::{Fit, Sign};
+use crate::identify::uncertainty::{covariance, covariance_with};
+use crate::identify::{Estimate, Identification, NoiseSource};
+use crate::trace::catalogue::{KINDS, OUTLIERS};
+use crate::trace::found::{EffectParameter, Found, Place};
+use crate::trace::model::Fitted;
+use crate::trace::selection::WITHIN_REACH;
+use crate::trace::{Misfit, NamedEffect, Options, PoseError, Rival, RowResidual, Trace, Verdict, verdict};
+
+/// Step of differences in the logarithm of a number out of a grid; and how far
+/// one may be off of which nothing is known, in logarithms.
+const LOG_STEP: f64 = 0.02;
+const ANYTHING: f64 = 2.3;
+
+/// A tracing in full.
+pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched, _: &Options) -> Trace {
+    let (bench, model) = (&found.bench, &found.selection.model);
+    let wild = &found.wild.0;
+    let (verdict, why) = match &found.too_little {
+        Some(why) => (Verdict::Insufficient, why.clone()),
+        None => verdict::judge(&found.selection, &found.left, usize::from(!wild.is_empty()), 0, false),
+    };
+    let structure = found.left.structure || found.selection.unnamed;
+    let tells = verdict != Verdict::Insufficient;
+    let Data::Clamped(rows) = &campaign.data else { unreachable!("only clamped axes come here") };
+    let base = bench.fit(&[]).unwrap_or_else(|| model.clone());
+    let after = Misfit { rms: rms(&bench.residuals(&model.fit)), holdout_rms: bench.left_out_rms(&model.fit) };
+    let before = Misfit { rms: rms(&bench.residuals(&base.fit)), holdout_rms: bench.left_out_rms(&base.fit) };
+
+    let spread = spread(bench, model);
+    let values = values(campaign, bench, model);
+    let effects = if tells { effects(found, &spread, structure, after.holdout_rms) } else { Vec::new() };
+    let mut description = campaign.robot.clone();
+    if tells {
+        description = with_values(&campaign.robot, &values);
+        let written = effects.iter().filter(|named| named.effect.write_into(&mut description));
+        let names: Vec<String> = written.map(|named| named.effect.to_string()).collect();
+        let with = if names.is_empty() { String::new() } else { format!(", with {}", names.join(", ")) };
+        let from = if campaign.name.is_empty() { "clamped axes" } else { &campaign.name };
+        let own = description.source.trim_end().to_string();
+        let separator = if own.is_empty() { "" } else { "\n" };
+        description.source = format!("{own}{separator}Compliances identified from {from}{with}.");
+    }
+    let fitted_axes: Vec<usize> = bench.axes.loaded().collect();
+    let estimates = identified.estimates.iter().enumerate().map(|(i, estimate)| {
+        let at = fitted_axes.iter().position(|&axis| axis == i + 1);
+        let std = at.filter(|&k| model.fit.coefficients[k] > 0.0).map(|k| spread[(k, k)].sqrt());
+        Estimate { value: values[i], std: std.or(estimate.std), ..estimate.clone() }
+    });
+    let as_declared = |row: &crate::campaign::ClampedRow| {
+        row.deflection - campaign.robot.joints[row.axis - 1].compliance() * row.torque
+    };
+    let declared_rms = rms(&DVector::from_iterator(rows.len(), rows.iter().map(as_declared)));
+    let (left_before, left_after) = (bench.residuals(&base.fit), bench.residuals(&model.fit));
+    let residual = |(i, row): (usize, &crate::campaign::ClampedRow)| RowResidual {
+        line: row.line,
+        pose: row.axis - 1,
+        before: [left_before[i], 0.0, 0.0],
+        after: [left_after[i], 0.0, 0.0],
+    };
+    let error = |&axis: &usize| {
+        let of = |left: &DVector<f64>| rms(&left.select_rows(&bench.axes.rows_of(axis)));
+        PoseError { pose: format!("axis {axis}"), held_out: false, before: of(&left_before), after: of(&left_after) }
+    };
+    let rivals = bench.replaced(&model.named).into_iter().filter(|(_, other)| other.bic < model.bic + WITHIN_REACH);
+    let mut rivals: Vec<Rival> = rivals
+        .map(|(_, other)| Rival {
+            names: other.named.iter().map(|one| bench.candidates[one.candidate].name()).collect(),
+            bic_difference: other.bic - model.bic,
+        })
+        .collect();
+    rivals.sort_by(|a, b| a.bic_difference.total_cmp(&b.bic_difference));
+    Trace {
+        robot: campaign.robot.name.clone(),
+        rows: rows.len(),
+        poses: fitted_axes.len(),
+        held_out: Vec::new(),
+        noise: (model.fit.rss / bench.problem.freedom(&model.fit)).sqrt(),
+        noise_source: NoiseSource::Residuals,
+        declared: Misfit { rms: declared_rms, holdout_rms: declared_rms },
+        identified: before,
+        after,
+        verdict,
+        why,
+        unexplained: found.left.fraction,
+        depends_on: if structure { found.left.depends_on.clone() } else { Vec::new() },
+        rivals: if tells { rivals } else { Vec::new() },
+        invisible: invisible(campaign, bench),
+        next: Vec::new(),
+        description,
+        effects,
+        estimates_before: identified.estimates.clone(),
+        estimates: estimates.collect(),
+        steps: found.selection.steps.clone(),
+        structure: found.left.tests.clone(),
+        residuals: bench.axes.rows.iter().enumerate().map(residual).collect(),
+        pose_errors: fitted_axes.iter().map(error).collect(),
+    }
+}
+
+fn rms(residuals: &DVector<f64>) -> f64 {
+    (residuals.norm_squared() / residuals.len().max(1) as f64).sqrt()
+}
+
+/// The description's numbers in a model.
+fn values(campaign: &Campaign, bench: &Bench, model: &Fitted) -> Vec<f64> {
+    let mut values: Vec<f64> = declared(&campaign.robot).iter().map(|number| number.value).collect();
+    for (axis, &value) in bench.axes.loaded().zip(model.fit.coefficients.iter()) {
+        values[axis - 1] = value;
+    }
+    values
+}
+
+/// The covariance of a model's coefficients, and behind them of the logarithms of
+/// its numbers out of grids.
+fn spread(bench: &Bench, model: &Fitted) -> DMatrix<f64> {
+    let columns = bench.columns(&model.named);
+    let mut signs: Vec<Sign> = columns.iter().map(|&column| bench.signs[column]).collect();
+    let mut known = std::vec![0.0; columns.len()];
+    let mut raw: Vec<DVector<f64>> = columns.iter().map(|&column| bench.raw.column(column).into_owned()).collect();
+    let mut at = bench.base;
+    for &one in &model.named {
+        let form = bench.form(one);
+        let own = model.fit.coefficients.rows(at, form.numbers.len()).into_owned();
+        at += form.numbers.len();
+        for k in 0..form.shape.len() {
+            let moved = |step: f64| -> DVector<f64> {
+                let mut shape = form.values();
+                shape[k] *= step.exp();
+                (form.columns)(&shape).iter().zip(own.iter()).map(|(column, value)| column * *value).sum()
+            };
+            raw.push((moved(LOG_STEP) - moved(-LOG_STEP)) / (2.0 * LOG_STEP));
+            known.push(form.likely.map_or(ANYTHING, |[_, spread]| spread).powi(-2));
+        }
+    }
+    if raw.len() == columns.len() {
+        return covariance(&bench.problem, &model.fit, &signs);
+    }
+    signs.resize(raw.len(), Sign::Free);
+    let coefficients = model.fit.coefficients.clone().resize_vertically(raw.len(), 0.0);
+    let fit = Fit { columns: (0..raw.len()).collect(), coefficients, rss: model.fit.rss };
+    covariance_with(&problem(&bench.axes, DMatrix::from_columns(&raw)), &fit, &signs, &known)
+}
+
+fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: f64) -> Vec<NamedEffect> {
+    let (bench, model) = (&found.bench, &found.selection.model);
+    let replaced = bench.replaced(&model.named);
+    let (mut at, mut shape_at) = (bench.base, model.fit.columns.len());
+    let mut named = Vec::new();
+    for (k, &one) in model.named.iter().enumerate() {
+        let (form, candidate) = (bench.form(one), &bench.candidates[one.candidate]);
+        let mut parameters: Vec<EffectParameter> = Vec::new();
+        for number in &form.numbers {
+            let std = Some(spread[(at, at)].sqrt());
+            let value = model.fit.coefficients[at];
+            parameters.push(EffectParameter { name: number.name, value, std, unit: number.unit });
+            at += 1;
+        }
+        for number in &form.shape {
+            let std = Some(number.value * spread[(shape_at, shape_at)].sqrt());
+            parameters.push(EffectParameter { std, ..number.clone() });
+            shape_at += 1;
+        }
+        let near = replaced.iter().filter(|(of, other)| *of == k && other.bic < model.bic + WITHIN_REACH);
+        let other = |other: &Fitted| {
+            let new = other.named.iter().find(|new| model.named.iter().all(|old| old.candidate != new.candidate))?;
+            Some(bench.candidates[new.candidate].name())
+        };
+        named.push(NamedEffect {
+            effect: Found::new(candidate.kind, candidate.place, parameters.clone()),
+            parameters,
+            lines: Vec::new(),
+            p_value: found.selection.p_values[k],
+            holdout_rms,
+            same_as: near.filter_map(|(_, model)| other(model)).collect(),
+            partial,
+        });
+    }
+    let (lines, p_value) = &found.wild;
+    if !lines.is_empty() {
+        let mut lines = lines.clone();
+        lines.sort_unstable();
+        let rows = EffectParameter { name: "rows", value: lines.len() as f64, std: None, unit: "1" };
+        let effect = Found::new(&OUTLIERS, Place::Rig, std::vec![rows.clone()]);
+        let (parameters, p_value) = (std::vec![rows], *p_value);
+        named.push(NamedEffect { effect, parameters, lines, p_value, holdout_rms, same_as: Vec::new(), partial });
+    }
+    named
+}
+
+/// What clamped axes do not show: what is at another place than the loaded axis,
+/// and what needs more rows of it.
+fn invisible(campaign: &Campaign, bench: &Bench) -> Vec<String> {
+    let offered: Vec<String> = bench.candidates.iter().map(crate::trace::catalogue::Candidate::name).collect();
+    let joints = campaign.robot.joints.len();
+    let declared = |name: &String| campaign.robot.effects.iter().any(|effect| effect.to_string() == *name);
+    let mut names = Vec::new();
+    for kind in KINDS.iter().filter(|kind| **kind != &OUTLIERS) {
+        let at_joints = |of: &dyn Fn(usize) -> Place, last: usize| (1..=last).map(of).collect::<Vec<Place>>();
+        let places = match kind.name {
+            "link_compliance" => at_joints(&|link| Part::Link(link).into(), joints.saturating_sub(1)),
+            "base_compliance" | "base_slip" => std::vec![Part::Base.into()],
+            "tool_compliance" => std::vec![Part::Tool.into()],
+            "joint_coupling" => (2..=joints).map(|j| Part::Joints([j - 1, j]).into()).collect(),
+            "gravity_sag" => std::vec![Part::Robot.into()],
+            // Its places are entries of the table, of which none moves.
+            "dh_error" => Vec::new(),
+            _ if kind.of_rig => std::vec![Place::Rig],
+            _ => at_joints(&|joint| Part::Joint(joint).into(), joints),
+        };
+        names.extend(places.into_iter().map(|place| format!("{}@{place}", kind.name)));
+    }
+    names.retain(|name| !offered.contains(name) && !declared(name));
+    names
+}

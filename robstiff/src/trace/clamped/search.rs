@@ -1,0 +1,264 @@
+//! The search for effects on clamped axes.
+
+use std::format;
+use std::string::{String, ToString};
+use std::vec;
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use super::axes::Axes;
+use super::bench::{Bench, problem};
+use crate::identify::normal::{Fit, Sign};
+use crate::trace::bootstrap::ScoreTest;
+use crate::trace::catalogue::{Candidate, KINDS, Variant};
+use crate::trace::found::Place;
+use crate::trace::lack_of_fit::{LackOfFit, StructureTest};
+use crate::trace::model::{Fitted, Named};
+use crate::trace::selection::{Selection, Step, Tested};
+use crate::trace::verdict::FEWEST_POSES;
+use crate::trace::{Options, Progress};
+
+/// Names beyond this are borrowed ones, where there are so few axes.
+const MOST_EFFECTS: usize = 4;
+
+/// How many of the best are extended where none of them passes alone.
+const EXTENDED: usize = 8;
+
+/// A model that is better by this is worth another look: odds of e to one.
+const BETTER: f64 = 2.0;
+
+/// The level at which a row is wild, over all rows; and how far off it must be
+/// while effects may be missing, in variances.
+const WILD: f64 = 1e-3;
+const STANDS_OUT: f64 = 150.0;
+
+/// More than this share of the rows is no matter of single rows.
+const FEW: f64 = 0.1;
+
+/// The median of chi-square with one degree of freedom.
+const MEDIAN: f64 = 0.4549;
+
+/// What was found.
+pub struct Found {
+    /// The regression of the final model.
+    pub bench: Bench,
+    /// The model and how it was come to.
+    pub selection: Selection,
+    /// What it leaves.
+    pub left: LackOfFit,
+    /// The lines of rows that are wild, with the probability of the likeliest.
+    pub wild: (Vec<usize>, f64),
+    /// Why the data cannot tell, if so.
+    pub too_little: Option<String>,
+}
+
+/// Searches for effects.
+///
+/// # Errors
+/// Why not even the axes' compliances can be fitted.
+pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<Found, String> {
+    let every = axes.rows.clone();
+    let all = every.len();
+    let mut bench = Bench::new(axes, None);
+    let none = || String::from("these rows show no axis's compliance");
+    let base = bench.fit(&[]).ok_or_else(none)?;
+    if let Some(why) = too_little(&bench) {
+        let selection = Selection { model: base, p_values: Vec::new(), steps: Vec::new(), unnamed: false };
+        let left = LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() };
+        return Ok(Found { bench, selection, left, wild: (Vec::new(), 1.0), too_little: Some(why) });
+    }
+    let mut wild: (Vec<usize>, f64) = (Vec::new(), 0.0);
+    let (mut model, mut p_values, mut steps, mut unnamed) = (base, Vec::new(), Vec::new(), false);
+    let mut strict = false;
+    loop {
+        // Wild rows must not vote for an effect; those that were wild while one was
+        // missing are looked at again once it is named.
+        if !wild.0.is_empty() {
+            wild = (Vec::new(), 0.0);
+            bench = Bench::new(bench.axes.with_rows(every.clone()), Some(&bench.offers));
+            model = bench.fit(&model.named).ok_or_else(none)?;
+        }
+        while let Some((row, p)) = worst(&bench, &model.fit, strict) {
+            if (wild.0.len() + 1) as f64 > FEW * all as f64 {
+                break;
+            }
+            wild = (wild.0, p.max(wild.1));
+            let mut axes = bench.axes.clone();
+            wild.0.push(axes.rows.remove(row).line);
+            bench = Bench::new(axes, Some(&bench.offers));
+            model = bench.fit(&model.named).or_else(|| bench.fit(&[])).ok_or_else(none)?;
+        }
+        if model.named.len() >= MOST_EFFECTS {
+            break;
+        }
+        progress(&format!("searching for effect {}", model.named.len() + 1));
+        let Some(test) = bench.test(&model.named) else { break };
+        let reference = test.reference(options.draws, options.seed);
+        let statistics = test.statistics();
+        let smallest = statistics.iter().flatten().map(|(s, _)| reference.p_value(*s)).fold(1.0, f64::min);
+        let mut step = table(&bench, &model, |candidate| {
+            statistics[candidate].map(|(statistic, _)| (statistic, reference.p_value(statistic)))
+        });
+        if smallest > options.alpha {
+            step.outcome = "nothing is missing significantly".to_string();
+            steps.push(step);
+            if strict {
+                break;
+            }
+            // With structure accounted for, rows need stand out from noise alone.
+            strict = true;
+            if worst(&bench, &model.fit, strict).is_none() {
+                break;
+            }
+            continue;
+        }
+        let single = bench.extended(&model.named);
+        let accepted = bench.accepted(&single, &model, options).or_else(|| {
+            let mut pairs: Vec<Fitted> =
+                single.iter().take(EXTENDED).flat_map(|one| bench.extended(&one.named)).collect();
+            pairs.sort_by(|a, b| a.bic.total_cmp(&b.bic));
+            bench.accepted(&pairs, &model, options)
+        });
+        let Some((mut better, mut p)) = accepted else {
+            unnamed = true;
+            step.outcome = "something is missing, but no effect passes every test".to_string();
+            steps.push(step);
+            break;
+        };
+        let replaced = bench.replaced(&better.named).into_iter().map(|(_, model)| model);
+        if let Some(other) = replaced.min_by(|a, b| a.bic.total_cmp(&b.bic)).filter(|o| o.bic < better.bic - BETTER)
+            && let Some(of_other) = bench.p_values(&other.named, options)
+        {
+            (better, p) = (other, of_other);
+        }
+        bench = bench.polished(&better.named);
+        let fine = bench.fit(&better.named).unwrap_or(better);
+        bench = bench.with_compliances(&fine.fit);
+        model = bench.fit(&fine.named).unwrap_or(fine);
+        p_values = p;
+        let names: Vec<String> = model.named.iter().map(|one| bench.candidates[one.candidate].name()).collect();
+        step.outcome = format!("named {}", names.join(", "));
+        for tested in step.candidates.iter_mut().filter(|tested| names.contains(&tested.name)) {
+            tested.reason.clear();
+        }
+        steps.push(step);
+    }
+    p_values.resize(model.named.len(), 1.0);
+    progress("looking for structure in what is left");
+    let left = structure(&bench, &model, options);
+    let selection = Selection { model, p_values, steps, unnamed };
+    Ok(Found { bench, selection, left, wild, too_little: None })
+}
+
+/// Why rows cannot tell what is missing, if so: every row is a witness.
+fn too_little(bench: &Bench) -> Option<String> {
+    let (rows, numbers) = (bench.axes.rows.len(), bench.base);
+    (rows < FEWEST_POSES.max(3 * numbers)).then(|| {
+        format!(
+            "{rows} rows are too few to judge {numbers} axes by, at least {} are needed",
+            FEWEST_POSES.max(3 * numbers)
+        )
+    })
+}
+
+/// The row that stands out most, if one does, with the probability of that.
+fn worst(bench: &Bench, fit: &Fit, strict: bool) -> Option<(usize, f64)> {
+    let residuals = bench.problem.white_residuals(&fit.columns, &fit.coefficients);
+    let inverse = bench.problem.total.inverse(&fit.columns)?;
+    let left = |row: usize| {
+        let x = DVector::from_fn(fit.columns.len(), |k, _| bench.problem.white[(row, fit.columns[k])]);
+        residuals[row].powi(2) / (1.0 - x.dot(&(&inverse * &x))).max(f64::EPSILON)
+    };
+    let all: Vec<f64> = (0..residuals.len()).map(left).collect();
+    let mut sorted = all.clone();
+    sorted.sort_by(f64::total_cmp);
+    let variance = sorted[sorted.len() / 2] / MEDIAN;
+    let (row, most) = all.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
+    let table = ChiSquared::new(1.0).ok()?;
+    let p = all.len() as f64 * table.sf(most / variance);
+    let stands_out = if strict { p <= WILD } else { *most > STANDS_OUT * variance };
+    (variance > 0.0 && stands_out).then_some((row, p.min(1.0)))
+}
+
+fn table(bench: &Bench, model: &Fitted, tested: impl Fn(usize) -> Option<(f64, f64)>) -> Step {
+    let fits = bench.extended(&model.named);
+    let candidates = (0..bench.candidates.len()).map(|candidate| {
+        let with = fits.iter().find(|fit| fit.named.iter().any(|one| one.candidate == candidate));
+        let already = model.named.iter().any(|one| one.candidate == candidate);
+        let statistic = tested(candidate);
+        let reason = match (already, statistic.is_some() && with.is_some()) {
+            (true, _) => "already named",
+            (false, false) => "it explains nothing with numbers that are physically possible",
+            (false, true) => "another explains more, or it is not significant",
+        };
+        Tested {
+            name: bench.candidates[candidate].name(),
+            statistic: statistic.map(|(statistic, _)| statistic),
+            p_value: statistic.map_or(1.0, |(_, p)| p),
+            bic: with.filter(|_| !already).map(|fit| fit.bic),
+            left_out_rms: with.filter(|_| !already).map(|fit| bench.left_out_rms(&fit.fit)),
+            reason: reason.to_string(),
+        }
+    });
+    let name = |one: &Named| bench.candidates[one.candidate].name();
+    Step { named: model.named.iter().map(name).collect(), candidates: candidates.collect(), outcome: String::new() }
+}
+
+/// Whether what is left depends on the torque, by any smooth curve, or on the
+/// order of rows, of any axis.
+fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit {
+    let columns = bench.columns(&model.named);
+    let mut raw: Vec<DVector<f64>> = columns.iter().map(|&column| bench.raw.column(column).into_owned()).collect();
+    let mut signs: Vec<Sign> = columns.iter().map(|&column| bench.signs[column]).collect();
+    let (first, axes) = (raw.len(), &bench.axes);
+    let (mut candidates, mut names) = (Vec::new(), Vec::new());
+    for axis in axes.loaded() {
+        let (rows, torques, largest) = (axes.rows_of(axis), axes.torques(axis), axes.largest(axis));
+        let mut add = |name: String, values: Vec<f64>| {
+            let variant = Variant {
+                columns: vec![raw.len()],
+                parameters: 1,
+                shape: Vec::new(),
+                names: &[],
+                refine: None,
+                within: [0.0, f64::INFINITY],
+                likely: None,
+            };
+            raw.push(super::axes_column(axes.rows.len(), &rows, values));
+            signs.push(Sign::Free);
+            candidates.push(Candidate { kind: KINDS[0], place: Place::Rig, variants: vec![variant], check: None });
+            names.push(name);
+        };
+        let of = |law: fn(f64) -> f64| torques.iter().map(|torque| law(torque / largest)).collect::<Vec<f64>>();
+        for law in [|t: f64| t * t.abs(), |t: f64| t * t * t, f64::abs, |t: f64| t / t.hypot(0.1)] {
+            add(format!("torque of axis {axis}"), of(law));
+        }
+        add(format!("row order of axis {axis}"), (0..rows.len()).map(|k| k as f64).collect());
+    }
+    let none = LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() };
+    let problem = problem(axes, DMatrix::from_columns(&raw));
+    let null: Vec<usize> = (0..first).collect();
+    let Some(test) = ScoreTest::new(&problem, &candidates, &signs, first, &null) else { return none };
+    let reference = test.reference(options.draws, options.seed);
+    let mut found: Vec<(f64, f64, String)> = test
+        .statistics()
+        .into_iter()
+        .zip(names)
+        .filter_map(|(statistic, name)| Some((statistic?.0, reference.p_value(statistic?.0), name)))
+        .collect();
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let Some(&(statistic, p_value, _)) = found.first() else { return none };
+    let structure = p_value <= options.alpha;
+    let mut depends_on: Vec<String> =
+        found.iter().filter(|(_, p, _)| *p <= options.alpha).map(|(.., name)| name.clone()).collect();
+    depends_on.dedup();
+    let freedom = problem.freedom(&model.fit);
+    LackOfFit {
+        tests: vec![StructureTest { name: "what is left depends on torque or order".to_string(), statistic, p_value }],
+        structure,
+        fraction: if structure { (statistic / freedom).clamp(0.0, 1.0) } else { 0.0 },
+        depends_on,
+    }
+}
