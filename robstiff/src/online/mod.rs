@@ -201,8 +201,10 @@ pub fn left_of_sine<const N: usize>(
         part(f64::sin).norm().hypot(part(f64::cos).norm())
     };
     let square = |of: fn(&Instant) -> Vector3<f64>| seen.iter().map(|instant| of(instant).norm_squared()).sum::<f64>();
-    let (with, without): (fn(&Instant) -> _, fn(&Instant) -> _) = (|seen| seen.corrected, |seen| seen.uncorrected);
-    Left { amplitude: amplitude(with) / amplitude(without), rms: (square(with) / square(without)).sqrt() }
+    Left {
+        amplitude: amplitude(|seen| seen.corrected) / amplitude(|seen| seen.uncorrected),
+        rms: (square(|seen| seen.corrected) / square(|seen| seen.uncorrected)).sqrt(),
+    }
 }
 
 /// The correction as limits let it be.
