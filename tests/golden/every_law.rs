@@ -53,6 +53,28 @@ pub struct EveryLaw;
 
 #[allow(clippy::approx_constant, dead_code)]
 impl EveryLaw {
+    /// Error of theta2 (rad).
+    pub const ERROR_THETA2: f64 = -0.003;
+    /// Error of a3 (m).
+    pub const ERROR_A3: f64 = 0.0007;
+    /// Angle error with the sine of joint 3 (rad).
+    pub const SIN_ERROR3: f64 = 0.0003;
+    /// Angle error with the cosine of joint 3 (rad).
+    pub const COS_ERROR3: f64 = -0.0002;
+    /// Zero offset of joint 4 (rad).
+    pub const ZERO_OFFSET4: f64 = 0.005235987755982988;
+    /// Error of alpha4 (rad).
+    pub const ERROR_ALPHA4: f64 = 0.002;
+    /// Periods of the angle error in a turn of joint 4.
+    pub const ORDER4: f64 = 2.0;
+    /// Angle error with the cosine of joint 4 (rad).
+    pub const COS_ERROR4: f64 = 0.001;
+    /// Error of d5 (m).
+    pub const ERROR_D5: f64 = -0.0011;
+    /// Periods of the angle error in a turn of joint 7.
+    pub const ORDER7: f64 = 41.0;
+    /// Angle error with the sine of joint 7 (rad).
+    pub const SIN_ERROR7: f64 = 8e-5;
     /// Frame 0 in the base frame, along X (m).
     pub const BASE_X: f64 = 0.1;
     /// Frame 0 in the base frame, along Y (m).
@@ -71,26 +93,10 @@ impl EveryLaw {
     pub const D1: f64 = 0.2;
     /// DH offset d of row 2 (m).
     pub const D2: f64 = 0.65;
-    /// Error of theta2 (rad).
-    pub const ERROR_THETA2: f64 = -0.003;
     /// DH length a of row 3, corrected (m).
     pub const A3: f64 = 0.3307;
-    /// Error of a3 (m).
-    pub const ERROR_A3: f64 = 0.0007;
-    /// Angle error with the sine of joint 3 (rad).
-    pub const SIN_ERROR3: f64 = 0.0003;
-    /// Angle error with the cosine of joint 3 (rad).
-    pub const COS_ERROR3: f64 = -0.0002;
     /// DH length a of row 4 (m).
     pub const A4: f64 = 1.15;
-    /// Zero offset of joint 4 (rad).
-    pub const ZERO_OFFSET4: f64 = 0.005235987755982988;
-    /// Error of alpha4 (rad).
-    pub const ERROR_ALPHA4: f64 = 0.002;
-    /// Periods of the angle error in a turn of joint 4.
-    pub const ORDER4: f64 = 2.0;
-    /// Angle error with the cosine of joint 4 (rad).
-    pub const COS_ERROR4: f64 = 0.001;
     /// Sine of DH twist alpha of row 4.
     pub const SIN_ALPHA4: f64 = 0.0019999986666669333;
     /// Cosine of DH twist alpha of row 4.
@@ -99,14 +105,8 @@ impl EveryLaw {
     pub const D5: f64 = 1.2188999999999999;
     /// DH length a of row 5 (m).
     pub const A5: f64 = 0.115;
-    /// Error of d5 (m).
-    pub const ERROR_D5: f64 = -0.0011;
     /// DH offset d of row 7 (m).
     pub const D7: f64 = 0.215;
-    /// Periods of the angle error in a turn of joint 7.
-    pub const ORDER7: f64 = 41.0;
-    /// Angle error with the sine of joint 7 (rad).
-    pub const SIN_ERROR7: f64 = 8e-5;
     /// TCP in the flange frame, along X (m).
     pub const TOOL_X: f64 = 0.05;
     /// TCP in the flange frame, along Y (m).
@@ -415,25 +415,25 @@ impl Robot<7> for EveryLaw {
     /// 16 trig, 167 mul, 105 add.
     #[inline(always)]
     fn transform<T: Real>(&self, q: &SVector<T, 7>) -> Matrix4<T> {
+        let sin_error3 = T::of(Self::SIN_ERROR3);
+        let cos_error3 = T::of(Self::COS_ERROR3);
+        let cos_error4 = T::of(Self::COS_ERROR4);
+        let sin_error7 = T::of(Self::SIN_ERROR7);
         let base_x = T::of(Self::BASE_X);
         let base_y = T::of(Self::BASE_Y);
         let base_z = T::of(Self::BASE_Z);
         let d1 = T::of(Self::D1);
         let a3 = T::of(Self::A3);
-        let sin_error3 = T::of(Self::SIN_ERROR3);
-        let cos_error3 = T::of(Self::COS_ERROR3);
-        let k1 = T::of(0.5);
+        let k1 = T::of(0.008333333333333333);
         let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.16666666666666666);
-        let k4 = T::of(0.008333333333333333);
+        let k3 = T::of(0.5);
+        let k4 = T::of(0.16666666666666666);
         let a4 = T::of(Self::A4);
-        let cos_error4 = T::of(Self::COS_ERROR4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
         let d7 = T::of(Self::D7);
-        let sin_error7 = T::of(Self::SIN_ERROR7);
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
@@ -492,19 +492,19 @@ impl Robot<7> for EveryLaw {
             q[6],
             q[6] + T::of(2.949606435870417),
         ]);
-        let t1 = d1 + q[0];
         let e3 = sin_error3 * s3 + cos_error3 * c3;
-        let t2 = e3 * e3;
-        let t3 = T::one() - t2 * (k1 - k2 * t2);
-        let t4 = e3 - e3 * t2 * (k3 - k4 * t2);
         let e4 = cos_error4 * c2x4;
-        let t5 = e4 * e4;
-        let t6 = T::one() - t5 * (k1 - k2 * t5);
-        let t7 = e4 - e4 * t5 * (k3 - k4 * t5);
         let e7 = sin_error7 * s41x7;
+        let t1 = d1 + q[0];
+        let t2 = e3 * e3;
+        let t3 = T::one() - t2 * (k3 - k2 * t2);
+        let t4 = e3 - e3 * t2 * (k4 - k1 * t2);
+        let t5 = e4 * e4;
+        let t6 = T::one() - t5 * (k3 - k2 * t5);
+        let t7 = e4 - e4 * t5 * (k4 - k1 * t5);
         let t8 = e7 * e7;
-        let t9 = T::one() - t8 * (k1 - k2 * t8);
-        let t10 = e7 - e7 * t8 * (k3 - k4 * t8);
+        let t9 = T::one() - t8 * (k3 - k2 * t8);
+        let t10 = e7 - e7 * t8 * (k4 - k1 * t8);
         let t11 = k5 * c2o + k9 * s2o;
         let t12 = k6 * c2o + k10 * s2o;
         let t13 = k7 * c2o + k8 * s2o;
@@ -588,25 +588,25 @@ impl Robot<7> for EveryLaw {
     /// 14 trig, 138 mul, 91 add.
     #[inline(always)]
     fn link_frames<T: Real>(&self, q: &SVector<T, 7>) -> [Matrix4<T>; 7] {
+        let sin_error3 = T::of(Self::SIN_ERROR3);
+        let cos_error3 = T::of(Self::COS_ERROR3);
+        let cos_error4 = T::of(Self::COS_ERROR4);
+        let sin_error7 = T::of(Self::SIN_ERROR7);
         let base_x = T::of(Self::BASE_X);
         let base_y = T::of(Self::BASE_Y);
         let base_z = T::of(Self::BASE_Z);
         let d1 = T::of(Self::D1);
         let a3 = T::of(Self::A3);
-        let sin_error3 = T::of(Self::SIN_ERROR3);
-        let cos_error3 = T::of(Self::COS_ERROR3);
-        let k1 = T::of(0.5);
+        let k1 = T::of(0.008333333333333333);
         let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.16666666666666666);
-        let k4 = T::of(0.008333333333333333);
+        let k3 = T::of(0.5);
+        let k4 = T::of(0.16666666666666666);
         let a4 = T::of(Self::A4);
-        let cos_error4 = T::of(Self::COS_ERROR4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
         let d7 = T::of(Self::D7);
-        let sin_error7 = T::of(Self::SIN_ERROR7);
         let k5 = T::of(Self::COS_BASE_PITCH * 0.8253356149096783);
         let k6 = T::of(Self::COS_BASE_PITCH * -0.5646424733950354);
         let k7 = T::of(-Self::SIN_BASE_PITCH);
@@ -668,19 +668,19 @@ impl Robot<7> for EveryLaw {
             q[5],
             q[6],
         ]);
-        let t1 = d1 + q[0];
         let e3 = sin_error3 * s3 + cos_error3 * c3;
-        let t2 = e3 * e3;
-        let t3 = T::one() - t2 * (k1 - k2 * t2);
-        let t4 = e3 - e3 * t2 * (k3 - k4 * t2);
         let e4 = cos_error4 * c2x4;
-        let t5 = e4 * e4;
-        let t6 = T::one() - t5 * (k1 - k2 * t5);
-        let t7 = e4 - e4 * t5 * (k3 - k4 * t5);
         let e7 = sin_error7 * s41x7;
+        let t1 = d1 + q[0];
+        let t2 = e3 * e3;
+        let t3 = T::one() - t2 * (k3 - k2 * t2);
+        let t4 = e3 - e3 * t2 * (k4 - k1 * t2);
+        let t5 = e4 * e4;
+        let t6 = T::one() - t5 * (k3 - k2 * t5);
+        let t7 = e4 - e4 * t5 * (k4 - k1 * t5);
         let t8 = e7 * e7;
-        let t9 = T::one() - t8 * (k1 - k2 * t8);
-        let t10 = e7 - e7 * t8 * (k3 - k4 * t8);
+        let t9 = T::one() - t8 * (k3 - k2 * t8);
+        let t10 = e7 - e7 * t8 * (k4 - k1 * t8);
         let p1_x = base_x + k14 * t1;
         let p1_y = base_y + k15 * t1;
         let p1_z = base_z + k16 * t1;
@@ -816,21 +816,21 @@ impl Robot<7> for EveryLaw {
     /// 14 trig, 172 mul, 104 add.
     #[inline(always)]
     fn jacobian<T: Real>(&self, q: &SVector<T, 7>) -> SMatrix<T, 6, 7> {
-        let a3 = T::of(Self::A3);
         let sin_error3 = T::of(Self::SIN_ERROR3);
         let cos_error3 = T::of(Self::COS_ERROR3);
-        let k1 = T::of(0.5);
-        let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.16666666666666666);
-        let k4 = T::of(0.008333333333333333);
-        let a4 = T::of(Self::A4);
         let cos_error4 = T::of(Self::COS_ERROR4);
+        let sin_error7 = T::of(Self::SIN_ERROR7);
+        let a3 = T::of(Self::A3);
+        let k1 = T::of(0.008333333333333333);
+        let k2 = T::of(0.041666666666666664);
+        let k3 = T::of(0.5);
+        let k4 = T::of(0.16666666666666666);
+        let a4 = T::of(Self::A4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
         let d7 = T::of(Self::D7);
-        let sin_error7 = T::of(Self::SIN_ERROR7);
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
@@ -885,17 +885,17 @@ impl Robot<7> for EveryLaw {
             q[6],
         ]);
         let e3 = sin_error3 * s3 + cos_error3 * c3;
-        let t1 = e3 * e3;
-        let t2 = T::one() - t1 * (k1 - k2 * t1);
-        let t3 = e3 - e3 * t1 * (k3 - k4 * t1);
         let e4 = cos_error4 * c2x4;
-        let t4 = e4 * e4;
-        let t5 = T::one() - t4 * (k1 - k2 * t4);
-        let t6 = e4 - e4 * t4 * (k3 - k4 * t4);
         let e7 = sin_error7 * s41x7;
+        let t1 = e3 * e3;
+        let t2 = T::one() - t1 * (k3 - k2 * t1);
+        let t3 = e3 - e3 * t1 * (k4 - k1 * t1);
+        let t4 = e4 * e4;
+        let t5 = T::one() - t4 * (k3 - k2 * t4);
+        let t6 = e4 - e4 * t4 * (k4 - k1 * t4);
         let t7 = e7 * e7;
-        let t8 = T::one() - t7 * (k1 - k2 * t7);
-        let t9 = e7 - e7 * t7 * (k3 - k4 * t7);
+        let t8 = T::one() - t7 * (k3 - k2 * t7);
+        let t9 = e7 - e7 * t7 * (k4 - k1 * t7);
         let t10 = k5 * c2o + k9 * s2o;
         let t11 = k6 * c2o + k10 * s2o;
         let t12 = k7 * c2o + k8 * s2o;
@@ -1022,23 +1022,23 @@ impl Robot<7> for EveryLaw {
         let cos2_3 = T::of(Self::COS2_3);
         let sin2_3 = T::of(Self::SIN2_3);
         let h6_sin2_6 = T::of(Self::H6 * Self::SIN2_6);
+        let sin_error3 = T::of(Self::SIN_ERROR3);
+        let cos_error3 = T::of(Self::COS_ERROR3);
+        let cos_error4 = T::of(Self::COS_ERROR4);
+        let sin_error7 = T::of(Self::SIN_ERROR7);
         let sin_base_pitch = T::of(Self::SIN_BASE_PITCH);
         let cos_base_pitch = T::of(Self::COS_BASE_PITCH);
         let sin_base_roll = T::of(Self::SIN_BASE_ROLL);
         let cos_base_roll = T::of(Self::COS_BASE_ROLL);
         let a3 = T::of(Self::A3);
-        let sin_error3 = T::of(Self::SIN_ERROR3);
-        let cos_error3 = T::of(Self::COS_ERROR3);
-        let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.16666666666666666);
-        let k4 = T::of(0.008333333333333333);
+        let k2 = T::of(0.008333333333333333);
+        let k3 = T::of(0.041666666666666664);
+        let k4 = T::of(0.16666666666666666);
         let a4 = T::of(Self::A4);
-        let cos_error4 = T::of(Self::COS_ERROR4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
-        let sin_error7 = T::of(Self::SIN_ERROR7);
         let k5 = T::of(
             0.981627183447664
                 * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
@@ -1186,19 +1186,19 @@ impl Robot<7> for EveryLaw {
         let t3 = s3 * c3;
         let t4 = s6 * c6;
         let e3 = sin_error3 * s3 + cos_error3 * c3;
-        let t5 = e3 * e3;
-        let t6 = T::one() - t5 * (k1 - k2 * t5);
-        let t7 = e3 * t5 * (k3 - k4 * t5);
-        let t8 = e3 - t7;
         let e4 = cos_error4 * c2x4;
-        let t9 = e4 * e4;
-        let t10 = T::one() - t9 * (k1 - k2 * t9);
-        let t11 = e4 * t9 * (k3 - k4 * t9);
-        let t12 = e4 - t11;
         let e7 = sin_error7 * s41x7;
+        let t5 = e3 * e3;
+        let t6 = T::one() - t5 * (k1 - k3 * t5);
+        let t7 = e3 * t5 * (k4 - k2 * t5);
+        let t8 = e3 - t7;
+        let t9 = e4 * e4;
+        let t10 = T::one() - t9 * (k1 - k3 * t9);
+        let t11 = e4 * t9 * (k4 - k2 * t9);
+        let t12 = e4 - t11;
         let t13 = e7 * e7;
-        let t14 = T::one() - t13 * (k1 - k2 * t13);
-        let t15 = e7 - e7 * t13 * (k3 - k4 * t13);
+        let t14 = T::one() - t13 * (k1 - k3 * t13);
+        let t15 = e7 - e7 * t13 * (k4 - k2 * t13);
 
         // From joint 7 to the TCP.
         let t16 = t14 * s7 + t15 * c7;
@@ -1563,21 +1563,21 @@ impl Robot<7> for EveryLaw {
     /// 14 trig, 341 mul, 257 add, 6 root.
     #[inline(always)]
     fn deflection<T: Real>(&self, q: &SVector<T, 7>, wrench: &Vector6<T>) -> Vector6<T> {
-        let a3 = T::of(Self::A3);
         let sin_error3 = T::of(Self::SIN_ERROR3);
         let cos_error3 = T::of(Self::COS_ERROR3);
-        let k1 = T::of(0.5);
-        let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.16666666666666666);
-        let k4 = T::of(0.008333333333333333);
-        let a4 = T::of(Self::A4);
         let cos_error4 = T::of(Self::COS_ERROR4);
+        let sin_error7 = T::of(Self::SIN_ERROR7);
+        let a3 = T::of(Self::A3);
+        let k1 = T::of(0.008333333333333333);
+        let k2 = T::of(0.041666666666666664);
+        let k3 = T::of(0.5);
+        let k4 = T::of(0.16666666666666666);
+        let a4 = T::of(Self::A4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
         let d7 = T::of(Self::D7);
-        let sin_error7 = T::of(Self::SIN_ERROR7);
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
@@ -1689,17 +1689,17 @@ impl Robot<7> for EveryLaw {
             q[6],
         ]);
         let e3 = sin_error3 * s3 + cos_error3 * c3;
-        let t1 = e3 * e3;
-        let t2 = T::one() - t1 * (k1 - k2 * t1);
-        let t3 = e3 - e3 * t1 * (k3 - k4 * t1);
         let e4 = cos_error4 * c2x4;
-        let t4 = e4 * e4;
-        let t5 = T::one() - t4 * (k1 - k2 * t4);
-        let t6 = e4 - e4 * t4 * (k3 - k4 * t4);
         let e7 = sin_error7 * s41x7;
+        let t1 = e3 * e3;
+        let t2 = T::one() - t1 * (k3 - k2 * t1);
+        let t3 = e3 - e3 * t1 * (k4 - k1 * t1);
+        let t4 = e4 * e4;
+        let t5 = T::one() - t4 * (k3 - k2 * t4);
+        let t6 = e4 - e4 * t4 * (k4 - k1 * t4);
         let t7 = e7 * e7;
-        let t8 = T::one() - t7 * (k1 - k2 * t7);
-        let t9 = e7 - e7 * t7 * (k3 - k4 * t7);
+        let t8 = T::one() - t7 * (k3 - k2 * t7);
+        let t9 = e7 - e7 * t7 * (k4 - k1 * t7);
         let t10 = cos2_3 * ((c3 - s3) * (s3 + c3));
         let t11 = cos1_3 * c3 + sin1_3 * s3 + t10;
         let t12 = s3 * c3;
@@ -1891,21 +1891,21 @@ impl Robot<7> for EveryLaw {
         q: &SVector<T, 7>,
         wrench: &Vector6<T>,
     ) -> SVector<T, 7> {
-        let a3 = T::of(Self::A3);
         let sin_error3 = T::of(Self::SIN_ERROR3);
         let cos_error3 = T::of(Self::COS_ERROR3);
-        let k1 = T::of(0.5);
-        let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.16666666666666666);
-        let k4 = T::of(0.008333333333333333);
-        let a4 = T::of(Self::A4);
         let cos_error4 = T::of(Self::COS_ERROR4);
+        let sin_error7 = T::of(Self::SIN_ERROR7);
+        let a3 = T::of(Self::A3);
+        let k1 = T::of(0.008333333333333333);
+        let k2 = T::of(0.041666666666666664);
+        let k3 = T::of(0.5);
+        let k4 = T::of(0.16666666666666666);
+        let a4 = T::of(Self::A4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
         let d7 = T::of(Self::D7);
-        let sin_error7 = T::of(Self::SIN_ERROR7);
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
@@ -1961,17 +1961,17 @@ impl Robot<7> for EveryLaw {
             q[6],
         ]);
         let e3 = sin_error3 * s3 + cos_error3 * c3;
-        let t1 = e3 * e3;
-        let t2 = T::one() - t1 * (k1 - k2 * t1);
-        let t3 = e3 - e3 * t1 * (k3 - k4 * t1);
         let e4 = cos_error4 * c2x4;
-        let t4 = e4 * e4;
-        let t5 = T::one() - t4 * (k1 - k2 * t4);
-        let t6 = e4 - e4 * t4 * (k3 - k4 * t4);
         let e7 = sin_error7 * s41x7;
+        let t1 = e3 * e3;
+        let t2 = T::one() - t1 * (k3 - k2 * t1);
+        let t3 = e3 - e3 * t1 * (k4 - k1 * t1);
+        let t4 = e4 * e4;
+        let t5 = T::one() - t4 * (k3 - k2 * t4);
+        let t6 = e4 - e4 * t4 * (k4 - k1 * t4);
         let t7 = e7 * e7;
-        let t8 = T::one() - t7 * (k1 - k2 * t7);
-        let t9 = e7 - e7 * t7 * (k3 - k4 * t7);
+        let t8 = T::one() - t7 * (k3 - k2 * t7);
+        let t9 = e7 - e7 * t7 * (k4 - k1 * t7);
         let t10 = k5 * c2o + k9 * s2o;
         let t11 = k6 * c2o + k10 * s2o;
         let t12 = k7 * c2o + k8 * s2o;
@@ -2085,6 +2085,10 @@ impl Robot<7> for EveryLaw {
     /// 16 trig, 570 mul, 492 add.
     #[inline(always)]
     fn statics<T: Real>(&self, q: &SVector<T, 7>) -> Statics<7, T> {
+        let sin_error3 = T::of(Self::SIN_ERROR3);
+        let cos_error3 = T::of(Self::COS_ERROR3);
+        let cos_error4 = T::of(Self::COS_ERROR4);
+        let sin_error7 = T::of(Self::SIN_ERROR7);
         let base_x = T::of(Self::BASE_X);
         let base_y = T::of(Self::BASE_Y);
         let base_z = T::of(Self::BASE_Z);
@@ -2094,20 +2098,16 @@ impl Robot<7> for EveryLaw {
         let cos_base_roll = T::of(Self::COS_BASE_ROLL);
         let d1 = T::of(Self::D1);
         let a3 = T::of(Self::A3);
-        let sin_error3 = T::of(Self::SIN_ERROR3);
-        let cos_error3 = T::of(Self::COS_ERROR3);
-        let k1 = T::of(0.5);
+        let k1 = T::of(0.008333333333333333);
         let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.16666666666666666);
-        let k4 = T::of(0.008333333333333333);
+        let k3 = T::of(0.5);
+        let k4 = T::of(0.16666666666666666);
         let a4 = T::of(Self::A4);
-        let cos_error4 = T::of(Self::COS_ERROR4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
         let d7 = T::of(Self::D7);
-        let sin_error7 = T::of(Self::SIN_ERROR7);
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
@@ -2320,21 +2320,21 @@ impl Robot<7> for EveryLaw {
             q[6],
             q[6] + T::of(2.949606435870417),
         ]);
-        let t1 = d1 + q[0];
         let e3 = sin_error3 * s3 + cos_error3 * c3;
-        let t2 = e3 * e3;
-        let t3 = T::one() - t2 * (k1 - k2 * t2);
-        let t4 = e3 * t2 * (k3 - k4 * t2);
-        let t5 = e3 - t4;
         let e4 = cos_error4 * c2x4;
-        let t6 = e4 * e4;
-        let t7 = T::one() - t6 * (k1 - k2 * t6);
-        let t8 = e4 * t6 * (k3 - k4 * t6);
-        let t9 = e4 - t8;
         let e7 = sin_error7 * s41x7;
+        let t1 = d1 + q[0];
+        let t2 = e3 * e3;
+        let t3 = T::one() - t2 * (k3 - k2 * t2);
+        let t4 = e3 * t2 * (k4 - k1 * t2);
+        let t5 = e3 - t4;
+        let t6 = e4 * e4;
+        let t7 = T::one() - t6 * (k3 - k2 * t6);
+        let t8 = e4 * t6 * (k4 - k1 * t6);
+        let t9 = e4 - t8;
         let t10 = e7 * e7;
-        let t11 = T::one() - t10 * (k1 - k2 * t10);
-        let t12 = e7 - e7 * t10 * (k3 - k4 * t10);
+        let t11 = T::one() - t10 * (k3 - k2 * t10);
+        let t12 = e7 - e7 * t10 * (k4 - k1 * t10);
         let t13 = k7 * c2o + k11 * s2o;
         let t14 = k8 * c2o + k12 * s2o;
         let t15 = k9 * c2o + k10 * s2o;
@@ -2847,21 +2847,21 @@ impl Robot<7> for EveryLaw {
         wrench: &Vector6<T>,
         state: &mut State<7, T>,
     ) -> Vector6<T> {
-        let a3 = T::of(Self::A3);
         let sin_error3 = T::of(Self::SIN_ERROR3);
         let cos_error3 = T::of(Self::COS_ERROR3);
-        let k1 = T::of(0.5);
-        let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.16666666666666666);
-        let k4 = T::of(0.008333333333333333);
-        let a4 = T::of(Self::A4);
         let cos_error4 = T::of(Self::COS_ERROR4);
+        let sin_error7 = T::of(Self::SIN_ERROR7);
+        let a3 = T::of(Self::A3);
+        let k1 = T::of(0.008333333333333333);
+        let k2 = T::of(0.041666666666666664);
+        let k3 = T::of(0.5);
+        let k4 = T::of(0.16666666666666666);
+        let a4 = T::of(Self::A4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
         let d7 = T::of(Self::D7);
-        let sin_error7 = T::of(Self::SIN_ERROR7);
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
@@ -2977,17 +2977,17 @@ impl Robot<7> for EveryLaw {
             q[6],
         ]);
         let e3 = sin_error3 * s3 + cos_error3 * c3;
-        let t1 = e3 * e3;
-        let t2 = T::one() - t1 * (k1 - k2 * t1);
-        let t3 = e3 - e3 * t1 * (k3 - k4 * t1);
         let e4 = cos_error4 * c2x4;
-        let t4 = e4 * e4;
-        let t5 = T::one() - t4 * (k1 - k2 * t4);
-        let t6 = e4 - e4 * t4 * (k3 - k4 * t4);
         let e7 = sin_error7 * s41x7;
+        let t1 = e3 * e3;
+        let t2 = T::one() - t1 * (k3 - k2 * t1);
+        let t3 = e3 - e3 * t1 * (k4 - k1 * t1);
+        let t4 = e4 * e4;
+        let t5 = T::one() - t4 * (k3 - k2 * t4);
+        let t6 = e4 - e4 * t4 * (k4 - k1 * t4);
         let t7 = e7 * e7;
-        let t8 = T::one() - t7 * (k1 - k2 * t7);
-        let t9 = e7 - e7 * t7 * (k3 - k4 * t7);
+        let t8 = T::one() - t7 * (k3 - k2 * t7);
+        let t9 = e7 - e7 * t7 * (k4 - k1 * t7);
         let t10 = cos2_3 * ((c3 - s3) * (s3 + c3));
         let t11 = cos1_3 * c3 + sin1_3 * s3 + t10;
         let t12 = s3 * c3;
