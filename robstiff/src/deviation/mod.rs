@@ -1,7 +1,7 @@
 //! How far forces push the tool off its path, and what that does to the part.
 //!
 //! A [`Load`] says what acts on the tool at every point of a
-//! [`SolvedPath`](crate::path::SolvedPath): the force of a cut, turned by feed and
+//! [`SolvedPath`]: the force of a cut, turned by feed and
 //! tool axis, or wrenches from a file. [`Deviation::of`] is where the tool is then;
 //! [`Deviation::stretches`] says where a tolerance holds, [`blame()`] which joints and
 //! effects the error comes from.
