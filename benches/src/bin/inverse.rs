@@ -54,10 +54,18 @@ fn main() {
             (0..POSES).for_each(solve);
             least[which] = least[which].min(start.elapsed().as_secs_f64() * 1e9 / POSES as f64);
         };
-        time(0, &mut |k| drop(black_box(ours.all(&cases[k].1, &cases[k].0))));
-        time(1, &mut |k| drop(black_box(theirs.inverse(&cases[k].3))));
-        time(2, &mut |k| drop(black_box(ours.nearest(&cases[k].1, &cases[k].0))));
-        time(3, &mut |k| drop(black_box(theirs.inverse_continuing(&cases[k].3, &cases[k].2))));
+        time(0, &mut |k| {
+            let _ = black_box(ours.all(&cases[k].1, &cases[k].0));
+        });
+        time(1, &mut |k| {
+            let _ = black_box(theirs.inverse(&cases[k].3));
+        });
+        time(2, &mut |k| {
+            let _ = black_box(ours.nearest(&cases[k].1, &cases[k].0));
+        });
+        time(3, &mut |k| {
+            let _ = black_box(theirs.inverse_continuing(&cases[k].3, &cases[k].2));
+        });
     }
     let found = |count: &dyn Fn(usize) -> usize| (0..POSES).map(count).sum::<usize>();
     println!(
