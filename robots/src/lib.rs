@@ -1,9 +1,9 @@
 //! Robot descriptions: what robstiff knows of a robot, and how it reads it.
 //!
 //! [`effect`] holds the catalogue of effects, with their physics, and the plain
-//! types that the runtime shares (`no_std`, no allocation). With the feature `read` (on by default) come the
-//! [`Description`] and what reads, checks and writes one, with `urdf` what makes
-//! one from a URDF file.
+//! types that the runtime shares (`no_std`, no allocation). With the feature
+//! `read` (on by default) come the [`Description`] and what reads, checks and
+//! writes one, with `urdf` what makes one from a URDF file.
 #![cfg_attr(not(feature = "read"), no_std)]
 
 pub mod angle;
@@ -24,6 +24,8 @@ pub mod quantity;
 mod read;
 #[cfg(feature = "read")]
 mod suggest;
+#[cfg(feature = "read")]
+mod units;
 #[cfg(feature = "urdf")]
 pub mod urdf;
 #[cfg(feature = "read")]
@@ -32,7 +34,7 @@ mod write;
 #[cfg(feature = "read")]
 pub use description::{Description, Joint, Link, Part, Placement};
 #[cfg(feature = "read")]
-pub use diagnostic::{Diagnostic, Diagnostics};
+pub use diagnostic::{Diagnostic, Diagnostics, Line};
 pub use effect::{Convention, DhEntry, Effect, JointKind, Place};
 #[cfg(feature = "read")]
 pub use read::{Outline, ReadError};

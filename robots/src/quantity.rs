@@ -1,8 +1,10 @@
 //! Quantities as people write them: a number in SI units, or `value unit`.
 
-use crate::suggest::list;
 use std::f64::consts::PI;
 use std::fmt;
+
+use crate::suggest::list;
+use crate::units::{UNITS, Unit};
 
 pub use crate::dimension::Dimension;
 
@@ -63,84 +65,6 @@ impl Dimension {
         }
     }
 }
-
-/// A unit: `value * times / per` is the value in SI, or one over it for a
-/// stiffness where compliances are meant. Both factors are exact where they
-/// can be, so that `865 mm` is the double nearest to 0.865 m.
-struct Unit {
-    name: &'static str,
-    dimension: Dimension,
-    times: f64,
-    per: f64,
-    inverse: bool,
-}
-
-const fn unit(name: &'static str, dimension: Dimension, times: f64, per: f64) -> Unit {
-    Unit { name, dimension, times, per, inverse: false }
-}
-
-const fn stiffness(name: &'static str, dimension: Dimension, times: f64, per: f64) -> Unit {
-    Unit { name, dimension, times, per, inverse: true }
-}
-
-/// Every unit there is; the first of each dimension is SI.
-#[rustfmt::skip]
-const UNITS: &[Unit] = {
-    use Dimension::*;
-    &[
-        unit("m", Length, 1.0, 1.0),
-        unit("mm", Length, 1.0, 1e3),
-        unit("um", Length, 1.0, 1e6),
-        unit("rad", Angle, 1.0, 1.0),
-        unit("mrad", Angle, 1.0, 1e3),
-        unit("urad", Angle, 1.0, 1e6),
-        unit("deg", Angle, PI, 180.0),
-        unit("arcmin", Angle, PI, 10_800.0),
-        unit("rad/Nm", Compliance, 1.0, 1.0),
-        unit("mrad/Nm", Compliance, 1.0, 1e3),
-        unit("urad/Nm", Compliance, 1.0, 1e6),
-        unit("urad/kNm", Compliance, 1.0, 1e9),
-        unit("arcmin/Nm", Compliance, PI, 10_800.0),
-        stiffness("Nm/rad", Compliance, 1.0, 1.0),
-        stiffness("kNm/rad", Compliance, 1e3, 1.0),
-        stiffness("MNm/rad", Compliance, 1e6, 1.0),
-        stiffness("Nm/arcmin", Compliance, 10_800.0, PI),
-        unit("m/N", LinearCompliance, 1.0, 1.0),
-        unit("mm/N", LinearCompliance, 1.0, 1e3),
-        unit("um/N", LinearCompliance, 1.0, 1e6),
-        stiffness("N/m", LinearCompliance, 1.0, 1.0),
-        stiffness("N/mm", LinearCompliance, 1e3, 1.0),
-        stiffness("N/um", LinearCompliance, 1e6, 1.0),
-        unit("kg", Mass, 1.0, 1.0),
-        unit("N", Force, 1.0, 1.0),
-        unit("kN", Force, 1e3, 1.0),
-        unit("Nm", Torque, 1.0, 1.0),
-        unit("kNm", Torque, 1e3, 1.0),
-        unit("s", Time, 1.0, 1.0),
-        unit("ms", Time, 1.0, 1e3),
-        unit("min", Time, 60.0, 1.0),
-        unit("h", Time, 3600.0, 1.0),
-        unit("m/s", Speed, 1.0, 1.0),
-        unit("m/min", Speed, 1.0, 60.0),
-        unit("mm/s", Speed, 1.0, 1e3),
-        unit("mm/min", Speed, 1.0, 6e4),
-        unit("rad/s", RotationalSpeed, 1.0, 1.0),
-        unit("rpm", RotationalSpeed, PI, 30.0),
-        unit("Hz", Frequency, 1.0, 1.0),
-        unit("m/tooth", FeedPerTooth, 1.0, 1.0),
-        unit("mm/tooth", FeedPerTooth, 1.0, 1e3),
-        unit("mm", FeedPerTooth, 1.0, 1e3),
-        unit("um", FeedPerTooth, 1.0, 1e6),
-        unit("Pa", Pressure, 1.0, 1.0),
-        unit("MPa", Pressure, 1e6, 1.0),
-        unit("N/mm2", Pressure, 1e6, 1.0),
-        unit("kN/mm2", Pressure, 1e9, 1.0),
-        unit("N/m", LineForce, 1.0, 1.0),
-        unit("N/mm", LineForce, 1e3, 1.0),
-        unit("C", Temperature, 1.0, 1.0),
-        unit("K", Temperature, 1.0, 1.0),
-    ]
-};
 
 /// Why a text is not the quantity that is expected.
 #[derive(Clone, Debug, PartialEq, Eq)]
