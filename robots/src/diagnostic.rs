@@ -25,6 +25,38 @@ pub struct Diagnostic {
     pub source_line: String,
 }
 
+/// A line of a file.
+#[derive(Clone, Copy, Debug)]
+pub struct Line<'t> {
+    /// Its number, from 1.
+    pub number: usize,
+    /// What it says, without its line break.
+    pub text: &'t str,
+}
+
+impl Diagnostic {
+    /// A problem with a part of a line: with as many characters as `width` from
+    /// `column` (from 1) on. It has no path inside the document.
+    pub fn new(
+        file: impl Into<String>,
+        line: Line<'_>,
+        (column, width): (usize, usize),
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Self {
+        Self {
+            file: file.into(),
+            line: line.number,
+            column,
+            width,
+            path: String::new(),
+            message: message.into(),
+            help: help.into(),
+            source_line: line.text.to_owned(),
+        }
+    }
+}
+
 /// How many columns a terminal gives to a character; an approximation that
 /// keeps carets in place behind accents, Greek, CJK text and emoji.
 fn columns(character: char) -> usize {

@@ -25,7 +25,7 @@ mod node;
 pub(crate) use content::Content;
 pub use node::{Map, Node};
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{Diagnostic, Diagnostics, Line};
 use content::{Step, extent, locate, source_line};
 use serde::Deserialize;
 use std::cell::RefCell;
@@ -84,16 +84,9 @@ impl Document {
         let (line, column) = locate(&self.text, steps);
         let source_line = source_line(&self.text, line);
         let rest: String = source_line.chars().skip(column - 1).collect();
-        self.problems.borrow_mut().push(Diagnostic {
-            file: self.file.clone(),
-            line,
-            column,
-            width: extent(&rest, content),
-            path: path.to_owned(),
-            message,
-            help,
-            source_line: source_line.to_owned(),
-        });
+        let place = (column, extent(&rest, content));
+        let problem = Diagnostic::new(&self.file, Line { number: line, text: source_line }, place, message, help);
+        self.problems.borrow_mut().push(Diagnostic { path: path.to_owned(), ..problem });
     }
 }
 
@@ -106,15 +99,11 @@ fn syntax_problem(file: &str, text: &str, error: &serde_yaml::Error) -> Diagnost
     let (line, column) = error.location().map_or((1, 1), |at| (at.line(), at.column()));
     // The place is shown on its own; a second place in the message is of use.
     let message = error.to_string().replacen(&format!(" at line {line} column {column}"), "", 1);
-    Diagnostic {
-        file: file.to_owned(),
-        line,
-        column,
-        width: 1,
-        path: String::new(),
-        message: format!("this cannot be read as YAML: {message}"),
-        help: "one document a file; indent with spaces, put a space after every `:`, close every bracket and quote"
-            .to_owned(),
-        source_line: source_line(text, line).to_owned(),
-    }
+    Diagnostic::new(
+        file,
+        Line { number: line, text: source_line(text, line) },
+        (column, 1),
+        format!("this cannot be read as YAML: {message}"),
+        "one document a file; indent with spaces, put a space after every `:`, close every bracket and quote",
+    )
 }

@@ -9,7 +9,7 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use robstiff_robots::quantity::{Dimension, scale};
-use robstiff_robots::{Diagnostic, Diagnostics, ReadError};
+use robstiff_robots::{Diagnostic, Diagnostics, Line, ReadError};
 
 /// Problems beyond this many are not recorded: nobody reads them, and a column
 /// that is wrong is wrong in every row.
@@ -271,17 +271,8 @@ impl<'t> Table<'t> {
 
     fn problem(&self, line: usize, field: usize, message: &str, help: &str) -> Diagnostic {
         let source_line = self.lines.get(line - 1).copied().unwrap_or_default();
-        let (column, width) = extent(source_line, field);
-        Diagnostic {
-            file: self.file.to_owned(),
-            line,
-            column,
-            width,
-            path: String::new(),
-            message: message.to_owned(),
-            help: help.to_owned(),
-            source_line: source_line.to_owned(),
-        }
+        let line = Line { number: line, text: source_line };
+        Diagnostic::new(self.file, line, extent(source_line, field), message, help)
     }
 
     /// What was read with the warnings, if no problem was found on the way.

@@ -8,7 +8,7 @@ use roxmltree::{Document, Node};
 
 use super::{Body, Connection, Motion, Tree};
 use crate::suggest::list;
-use crate::{Diagnostic, Diagnostics, JointKind, ReadError};
+use crate::{Diagnostic, Diagnostics, JointKind, Line, ReadError};
 
 /// A reader with the problems found so far.
 struct Reader<'t> {
@@ -41,8 +41,8 @@ impl Tree {
     pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
         let document = Document::parse(text).map_err(|error| {
             let at = error.pos();
-            let (line, column) = (at.row as usize, at.col as usize);
-            problem(file, text, line, column, 1, &format!("this is not XML: {error}"), "")
+            let line = line(text, at.row as usize);
+            Diagnostic::new(file, line, (at.col as usize, 1), format!("this is not XML: {error}"), "")
         })?;
         let mut reader = Reader { file, text, problems: Vec::new(), warnings: Vec::new(), rounded: 0 };
         let tree = reader.tree(document.root_element());
@@ -66,29 +66,20 @@ impl Tree {
     }
 }
 
-/// A problem at a line and a column (in characters, from 1).
-fn problem(file: &str, text: &str, line: usize, column: usize, width: usize, message: &str, help: &str) -> Diagnostic {
-    Diagnostic {
-        file: file.to_owned(),
-        line,
-        column,
-        width,
-        path: String::new(),
-        message: message.to_owned(),
-        help: help.to_owned(),
-        source_line: text.lines().nth(line.saturating_sub(1)).unwrap_or_default().to_owned(),
-    }
+/// A line of the text, empty where there is none.
+fn line(text: &str, number: usize) -> Line<'_> {
+    Line { number, text: text.lines().nth(number.saturating_sub(1)).unwrap_or_default() }
 }
 
 /// A problem with a range of the text, shown in its first line.
 fn at(file: &str, text: &str, place: &Range<usize>, message: &str, help: &str) -> Diagnostic {
     let before = &text[..place.start];
-    let line = 1 + before.matches('\n').count();
+    let number = 1 + before.matches('\n').count();
     let column = 1 + before.rsplit('\n').next().unwrap_or_default().chars().count();
     let shown = text[place.clone()].lines().next().unwrap_or_default();
     // Of an element only its start tag.
     let width = shown.find('>').map_or(shown.chars().count(), |end| shown[..=end].chars().count());
-    problem(file, text, line, column, width, message, help)
+    Diagnostic::new(file, line(text, number), (column, width), message, help)
 }
 
 impl Reader<'_> {

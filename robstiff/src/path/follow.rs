@@ -4,7 +4,7 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
-use robstiff_robots::{Diagnostic, Diagnostics};
+use robstiff_robots::{Diagnostic, Diagnostics, Line};
 
 use super::{Goal, Jump, PathPoint, SolvedPath, ToolPath, Unreached, Unsolved, Waypoint};
 use crate::inverse::{Inverse, Target};
@@ -106,16 +106,8 @@ impl ToolPath {
     /// A problem with a line of the file (from 1).
     pub(crate) fn diagnostic(&self, line: usize, message: String, help: &str) -> Diagnostic {
         let source_line = self.line(line);
-        Diagnostic {
-            file: self.file.clone(),
-            line,
-            column: 1,
-            width: source_line.chars().count(),
-            path: String::new(),
-            message,
-            help: help.to_string(),
-            source_line,
-        }
+        let width = source_line.chars().count();
+        Diagnostic::new(&self.file, Line { number: line, text: &source_line }, (1, width), message, help)
     }
 }
 
