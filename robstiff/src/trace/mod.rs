@@ -28,6 +28,7 @@ pub mod point;
 mod report;
 pub mod selection;
 #[cfg(test)]
+pub mod slip;
 mod tests;
 pub mod verdict;
 

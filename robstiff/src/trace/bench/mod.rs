@@ -19,10 +19,11 @@ pub use self::noise::Known;
 use self::solve::State;
 use super::Options;
 use super::catalogue::{Candidate, Catalogue, LIKELY, Number, Scene, Variant, catalogue};
-use super::isolated::{self, Moment};
+use super::isolated;
 use super::model::{Fitted, Named, Setting};
 use super::selection::Tests;
 use crate::campaign::Campaign;
+use super::slip::{Moment, likeliest_slip};
 use crate::elements::Parameter;
 use crate::identify::baseline::Visibility;
 use crate::identify::normal::{Fit, Sign};
@@ -217,7 +218,7 @@ impl<'c> Bench<'c> {
         for named in models {
             let Ok(setting) = self.at(&named) else { continue };
             let Ok(fitted) = setting.fit(&named) else { continue };
-            moments.extend(isolated::likeliest_slip(&setting, &fitted).filter(|moment| !moments.contains(moment)));
+            moments.extend(likeliest_slip(&setting, &fitted).filter(|moment| !moments.contains(moment)));
         }
         moments.truncate(LIKELY);
         moments
