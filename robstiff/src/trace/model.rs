@@ -123,7 +123,7 @@ impl Setting<'_> {
     /// As for [`fit`](Self::fit).
     pub fn judge(&self, named: &[Named], fit: Fit) -> Result<Fitted, String> {
         self.check(&fit, named)?;
-        let bic = self.bic(named, fit.rss);
+        let bic = self.bic(named, &fit);
         Ok(Fitted { named: named.to_vec(), fit, bic, physical: true })
     }
 
@@ -133,21 +133,20 @@ impl Setting<'_> {
         let columns = self.columns(named);
         let signs: Vec<Sign> = columns.iter().map(|&column| self.signs[column]).collect();
         let fit = self.problem.total.solve_signed(&columns, &signs)?;
-        let (bic, physical) = (self.bic(named, fit.rss), self.check(&fit, named).is_ok());
+        let (bic, physical) = (self.bic(named, &fit), self.check(&fit, named).is_ok());
         Some(Fitted { named: named.to_vec(), fit, bic, physical })
     }
 
-    /// The Bayesian information criterion of a model with a residual sum of
-    /// squares.
-    fn bic(&self, named: &[Named], rss: f64) -> f64 {
-        let parameters = self.base.len() + named.iter().map(|&one| self.variant(one).parameters).sum::<usize>();
+    /// The Bayesian information criterion of a model with its fit.
+    fn bic(&self, named: &[Named], fit: &Fit) -> f64 {
+        let parameters = self.base_of(fit) + named.iter().map(|&one| self.variant(one).parameters).sum::<usize>();
         let rows = self.problem.total.rows as f64;
         rows * (rss / rows).ln() + parameters as f64 * rows.ln()
     }
 
     fn check(&self, fit: &Fit, named: &[Named]) -> Result<(), String> {
         let joint = |joint: usize| self.joint_value(fit, joint);
-        let mut at = self.base.len();
+        let mut at = self.base_of(fit);
         for &one in named {
             let candidate = &self.candidates[one.candidate];
             let mut numbers = Vec::new();
@@ -169,7 +168,7 @@ impl Setting<'_> {
         }
         // A clipped joint is only held against the model where noise does not
         // explain it.
-        let clipped = (0..self.base.len())
+        let clipped = (0..self.base_of(fit))
             .filter(|&k| self.signs[fit.columns[k]] == Sign::Nonnegative && fit.coefficients[k] == 0.0);
         for k in clipped {
             let total = &self.problem.total;

@@ -25,7 +25,6 @@ use super::selection::Tests;
 use crate::campaign::Campaign;
 use super::slip::{Moment, likeliest_slip};
 use crate::elements::Parameter;
-use crate::identify::baseline::Visibility;
 use crate::identify::normal::{Fit, Sign};
 use crate::identify::prepare::Prepared;
 use crate::identify::problem::{Problem, Weights};
@@ -308,7 +307,7 @@ impl<'c> Bench<'c> {
 
     /// The regression at a model's solution, with the whole catalogue.
     fn setting(&self, named: &[Named]) -> Result<Setting<'c>, String> {
-        let State { setup, fit, tangents, readings } = &*self.state(named)?;
+        let State { setup, fit, tangents, readings, base } = &*self.state(named)?;
         let nonlinear = self.nonlinear(named);
         let declared: &Samples = &self.prepared.samples;
         let point = self.point(setup.clone());
@@ -330,7 +329,7 @@ impl<'c> Bench<'c> {
             candidates: Rc::clone(&self.candidates),
             numbers: Rc::clone(&self.numbers),
             signs: Rc::clone(&self.signs),
-            base: self.prepared.seen(),
+            base: base.clone(),
             own: Rc::clone(&self.own),
             joint_values: self.prepared.values[..declared.joints()].to_vec(),
             tangents: tangents.clone(),
@@ -340,9 +339,8 @@ impl<'c> Bench<'c> {
 
     /// The numbers of a model in which its compliance is linear.
     pub fn linear_parameters(&self, fit: &Fit) -> Vec<(Parameter, f64)> {
-        let held = self.prepared.own.iter().zip(&self.prepared.visibility);
-        let held = held.filter(|(_, visibility)| **visibility != Visibility::Seen);
-        let held = held.filter_map(|(number, _)| match number.column {
+        let held = self.prepared.own.iter().enumerate().filter(|(column, _)| !fit.columns.contains(column));
+        let held = held.filter_map(|(_, number)| match number.column {
             Column::Linear(parameter) => Some((parameter, number.value)),
             Column::Knee { .. } => None,
         });
