@@ -158,12 +158,23 @@ pub fn select(
         steps.push(step);
         (model, p_values) = (proposed, p);
         // What a grid's value leaves of an effect must not look like another.
-        let polished = bench.polished(&model.named);
-        if let Ok(better) = polished.fit(&model.named) {
+        let (polished, named) = bench.polished(&model.named).simplified(&model.named);
+        if let Ok(better) = polished.fit(&named) {
             (*bench, model) = (polished, better);
         }
         if bench.learn_noise(&model.named)? {
-            model = bench.fit(&model.named)?;
+            match bench.fit(&model.named) {
+                Ok(better) => model = better,
+                // With other weights physics may not allow what was accepted.
+                Err(_) => *bench = before,
+            }
+        }
+    }
+    if bench.may_be_simpler(&model.named) {
+        // The noise is better known than when they were named.
+        let (polished, named) = bench.polished(&model.named).simplified(&model.named);
+        if let Ok(better) = polished.fit(&named) {
+            (*bench, model) = (polished, better);
         }
     }
     Ok(Selection { model, p_values, steps, unnamed })
