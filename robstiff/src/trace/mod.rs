@@ -219,12 +219,18 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
     if !outcome.structure() {
         // With structure accounted for, rows need stand out from noise alone.
         bench.strict = true;
+        let before = bench.copy();
         if bench.look_again(&outcome.selection.model.named).map_err(Error)? {
-            let model = bench.fit(&outcome.selection.model.named).map_err(Error)?;
-            let mut steps = outcome.selection.steps;
-            outcome = search(&mut bench, &prepared, model, options, progress).map_err(Error)?;
-            steps.append(&mut outcome.selection.steps);
-            outcome.selection.steps = steps;
+            match bench.fit(&outcome.selection.model.named) {
+                Ok(model) => {
+                    let mut steps = outcome.selection.steps;
+                    outcome = search(&mut bench, &prepared, model, options, progress).map_err(Error)?;
+                    steps.append(&mut outcome.selection.steps);
+                    outcome.selection.steps = steps;
+                }
+                // Without these rows physics may not allow what was accepted.
+                Err(_) => bench = before,
+            }
         }
     }
     progress("asking what could be mistaken for what");
@@ -257,7 +263,9 @@ fn search(
         for k in weak.into_iter().rev() {
             named.remove(k);
         }
-        selection.model = bench.fit(&named)?;
+        // What is missing now may drive the rest beyond what physics allows.
+        let loosely = |why: String| bench.at(&named)?.fit_loosely(&named).ok_or(why);
+        selection.model = bench.fit(&named).or_else(loosely)?;
         selection.p_values = p_values(bench, &named, options);
         left = test(bench, &selection.model)?;
         // What a name had accounted for is there, found by a test or not.

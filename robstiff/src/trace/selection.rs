@@ -122,8 +122,13 @@ pub fn select(
     let mut unnamed = false;
     while model.named.len() < MOST_EFFECTS {
         progress(&std::format!("searching for effect {}", model.named.len() + 1));
+        let before = bench.copy();
         if bench.look_again(&model.named)? {
-            model = bench.fit(&model.named)?;
+            match bench.fit(&model.named) {
+                Ok(better) => model = better,
+                // Without these rows physics may not allow what was accepted.
+                Err(_) => *bench = before,
+            }
         }
         let mut setting = bench.at(&model.named)?;
         if let Some((better, p)) = sideways(bench, &setting, &model, options) {
@@ -162,6 +167,7 @@ pub fn select(
         if let Ok(better) = polished.fit(&named) {
             (*bench, model) = (polished, better);
         }
+        let before = bench.copy();
         if bench.learn_noise(&model.named)? {
             match bench.fit(&model.named) {
                 Ok(better) => model = better,

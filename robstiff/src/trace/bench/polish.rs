@@ -238,7 +238,8 @@ impl<'c> Bench<'c> {
         &self.candidates[one.candidate].variants[one.variant]
     }
 
-    fn copy(&self) -> Self {
+    /// The same, with nothing known of models.
+    pub fn copy(&self) -> Self {
         Self {
             own: Rc::clone(&self.own),
             candidates: Rc::clone(&self.candidates),
