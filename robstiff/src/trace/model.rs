@@ -65,8 +65,8 @@ pub struct Fitted {
     pub physical: bool,
 }
 
-/// A joint's compliance below zero by this many standard deviations is no
-/// accident of the noise.
+/// A joint's compliance below zero, or another number beyond what is possible, by
+/// this many standard deviations is no accident of the noise.
 const BELOW_ZERO: f64 = 2.0;
 
 impl Setting<'_> {
@@ -141,7 +141,21 @@ impl Setting<'_> {
     fn bic(&self, named: &[Named], fit: &Fit) -> f64 {
         let parameters = self.base_of(fit) + named.iter().map(|&one| self.variant(one).parameters).sum::<usize>();
         let rows = self.problem.total.rows as f64;
-        rows * (rss / rows).ln() + parameters as f64 * rows.ln()
+        rows * (fit.rss / rows).ln() + parameters as f64 * rows.ln()
+    }
+
+    /// How far each coefficient of a fit may be off by noise, at most.
+    fn widths(&self, fit: &Fit) -> Option<Vec<f64>> {
+        let total = &self.problem.total;
+        let inverse = total.inverse(&fit.columns)?;
+        let freedom = (total.rows - fit.columns.len()).max(1) as f64;
+        Some((0..fit.columns.len()).map(|k| BELOW_ZERO * (inverse[(k, k)] * fit.rss / freedom).sqrt()).collect())
+    }
+
+    /// How many of the description's own numbers a fit has; one with nonlinear
+    /// numbers may see more of them than this point does.
+    fn base_of(&self, fit: &Fit) -> usize {
+        fit.columns.iter().filter(|&&column| column < self.own.len()).count()
     }
 
     fn check(&self, fit: &Fit, named: &[Named]) -> Result<(), String> {
@@ -159,8 +173,21 @@ impl Setting<'_> {
                 numbers.push((number.name, value));
                 at += 1;
             }
-            if let Some(check) = &candidate.check {
-                check(&numbers, &joint)?;
+            if let Some(check) = &candidate.check
+                && let Err(why) = check(&numbers, &joint)
+            {
+                // Noise can take a number that is near what is possible beyond it.
+                let width = self.widths(fit).ok_or_else(|| why.clone())?;
+                let first = at - numbers.len();
+                let nearer = |(k, &(name, value)): (usize, &(&'static str, f64))| {
+                    (name, value - value.clamp(-width[first + k], width[first + k]))
+                };
+                let nearer: Vec<_> = numbers.iter().enumerate().map(nearer).collect();
+                let softer = |joint: usize| {
+                    let fitted = fit.columns.iter().position(|&column| column == joint - 1);
+                    self.joint_value(fit, joint) + fitted.map_or(0.0, |k| width[k])
+                };
+                check(&nearer, &softer)?;
             }
         }
         if named.is_empty() {
