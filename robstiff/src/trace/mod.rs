@@ -13,6 +13,7 @@
 //! [`Options::alpha`] of 1 % each, so a robot that lacks nothing is called
 //! adequate in about 98 of 100 campaigns.
 
+pub mod agreement;
 pub mod alias;
 pub mod bench;
 pub mod bootstrap;
@@ -27,8 +28,8 @@ pub mod model;
 pub mod point;
 mod report;
 pub mod selection;
-#[cfg(test)]
 pub mod slip;
+#[cfg(test)]
 mod tests;
 pub mod verdict;
 
@@ -218,8 +219,8 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
     let mut outcome = search(&mut bench, &prepared, base, options, progress).map_err(Error)?;
     if !outcome.structure() {
         // With structure accounted for, rows need stand out from noise alone.
-        bench.strict = true;
         let before = bench.copy();
+        bench.strict = true;
         if bench.look_again(&outcome.selection.model.named).map_err(Error)? {
             match bench.fit(&outcome.selection.model.named) {
                 Ok(model) => {
