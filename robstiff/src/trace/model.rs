@@ -36,6 +36,10 @@ pub struct Setting<'c> {
     /// The compliances of all joints, held ones included, from the fit of the
     /// description's own numbers.
     pub joint_values: Vec<f64>,
+    /// Columns behind all others of what the readings may have besides that no
+    /// column says, a model's effects being what they are; no model is fitted with
+    /// them, but what is to be named must account for more than they do.
+    pub besides: Vec<usize>,
     /// The tangents of nonlinear numbers that are named, by column.
     pub tangents: Vec<(usize, DVector<f64>)>,
     /// The second order of the joints' displacement, which the fit does not
@@ -69,6 +73,9 @@ pub struct Fitted {
 /// this many standard deviations is no accident of the noise.
 const BELOW_ZERO: f64 = 2.0;
 
+/// Of what may be besides, that of which less is left says nothing new.
+const OF_ITS_OWN: f64 = 1e-3;
+
 impl Setting<'_> {
     /// What a unit of a column's number does to the readings as measured,
     /// stacked.
@@ -100,6 +107,21 @@ impl Setting<'_> {
     pub fn columns(&self, named: &[Named]) -> Vec<usize> {
         let effects = named.iter().flat_map(|&one| self.variant(one).columns.iter());
         self.base.iter().chain(effects).copied().collect()
+    }
+
+    /// Columns with those of what may be [`besides`](Self::besides) that they do not
+    /// say themselves.
+    pub fn with_besides(&self, mut columns: Vec<usize>) -> Vec<usize> {
+        let total = &self.problem.total;
+        for &more in &self.besides {
+            let Some(inverse) = total.inverse(&columns) else { break };
+            let along = DVector::from_fn(columns.len(), |k, _| total.gram[(columns[k], more)]);
+            let own = total.gram[(more, more)];
+            if own - along.dot(&(&inverse * &along)) > OF_ITS_OWN * own {
+                columns.push(more);
+            }
+        }
+        columns
     }
 
     /// Fits a model by least squares with nonnegative compliances.

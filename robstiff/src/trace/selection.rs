@@ -88,7 +88,7 @@ impl Tests {
     /// The tests against the model of some effects; `None` where it cannot be
     /// fitted.
     pub fn against(setting: &Setting<'_>, named: &[Named], options: &Options) -> Option<Self> {
-        let columns = setting.columns(named);
+        let columns = setting.with_besides(setting.columns(named));
         let scores =
             ScoreTest::new(&setting.problem, &setting.candidates, &setting.signs, setting.own.len(), &columns)?;
         let (statistics, reference) = (scores.statistics(), scores.reference(options.draws, options.seed));

@@ -13,7 +13,7 @@ use std::string::String;
 use std::vec;
 use std::vec::Vec;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 pub use self::noise::Known;
 use self::solve::State;
@@ -21,9 +21,10 @@ use super::Options;
 use super::catalogue::{Candidate, Catalogue, LIKELY, Number, Scene, Variant, catalogue};
 use super::isolated;
 use super::model::{Fitted, Named, Setting};
+use super::point::Point;
 use super::selection::Tests;
-use crate::campaign::Campaign;
 use super::slip::{Moment, likeliest_slip};
+use crate::campaign::Campaign;
 use crate::elements::Parameter;
 use crate::identify::normal::{Fit, Sign};
 use crate::identify::prepare::Prepared;
@@ -322,10 +323,17 @@ impl<'c> Bench<'c> {
                 None => raw.set_column(column, &self.linear(&point, column)),
             }
         }
+        let more = self.besides(named, &point, fit);
+        let raw = raw.resize_horizontally(count + more.len(), 0.0);
+        let raw = more.iter().enumerate().fold(raw, |mut raw, (k, column)| {
+            raw.set_column(count + k, column);
+            raw
+        });
         let problem = Problem::new(&point.samples, raw, readings.clone(), &self.prepared.correction, self.weights());
         Ok(Setting {
             point,
             problem,
+            besides: (count..count + more.len()).collect(),
             candidates: Rc::clone(&self.candidates),
             numbers: Rc::clone(&self.numbers),
             signs: Rc::clone(&self.signs),
@@ -335,6 +343,28 @@ impl<'c> Bench<'c> {
             tangents: tangents.clone(),
             correction: self.prepared.correction.clone(),
         })
+    }
+
+    /// The directions, stacked, of what the readings may have besides that no
+    /// column of a model says.
+    fn besides(&self, named: &[Named], point: &Point<'c>, fit: &Fit) -> Vec<DVector<f64>> {
+        let mut found = Vec::new();
+        for one in named {
+            let variant = &self.candidates[one.candidate].variants[one.variant];
+            let Some(unsure) = &variant.unsure else { continue };
+            let value =
+                |column: &usize| fit.columns.iter().position(|of| of == column).map_or(0.0, |at| fit.coefficients[at]);
+            let examples = unsure(point, &variant.columns.iter().map(value).collect::<Vec<f64>>());
+            if examples.is_empty() {
+                continue;
+            }
+            let examples = DMatrix::from_columns(&examples);
+            let parts = SymmetricEigen::new(examples.tr_mul(&examples));
+            let whole = parts.eigenvalues.sum();
+            let matter = (0..parts.eigenvalues.len()).filter(|&k| parts.eigenvalues[k] > OF_ALL * whole);
+            found.extend(matter.map(|k| &examples * parts.eigenvectors.column(k)));
+        }
+        found
     }
 
     /// The numbers of a model in which its compliance is linear.
@@ -349,6 +379,9 @@ impl<'c> Bench<'c> {
         held.chain(fitted).collect()
     }
 }
+
+/// A direction with less than this share of all that may be besides is none.
+const OF_ALL: f64 = 0.02;
 
 /// A column this small against the largest of a joint is zero but for rounding.
 const ZERO: f64 = 1e-7;

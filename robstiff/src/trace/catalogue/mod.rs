@@ -181,6 +181,9 @@ type Check = Rc<dyn Fn(&[(&str, f64)], &dyn Fn(usize) -> f64) -> Result<(), Stri
 /// The numbers of a form with other values of those out of its grid.
 pub type Refine = Rc<dyn Fn(&[f64]) -> Vec<Number>>;
 
+/// Examples of what readings may have besides what the numbers of a form say.
+pub type Unsure = Rc<dyn Fn(&Point<'_>, &[f64]) -> Vec<DVector<f64>>>;
+
 /// A number of a candidate.
 #[derive(Clone)]
 pub struct Number {
