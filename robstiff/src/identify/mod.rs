@@ -166,7 +166,8 @@ pub(crate) fn estimates(
             value: values[i],
             std: fitted.filter(|_| !at_bound).map(|k| covariance[(k, k)].sqrt()),
             unit: unit_of(description, number.column),
-            visibility: prepared.visibility[i].clone(),
+            // An effect may have brought it to light.
+            visibility: if fitted.is_some() { Visibility::Seen } else { prepared.visibility[i].clone() },
             at_bound,
         }
     };

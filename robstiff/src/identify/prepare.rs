@@ -115,9 +115,14 @@ impl<'c> Prepared<'c> {
     /// The readings less what laws of joints do that the description declares,
     /// and numbers that are held at their declared value, stacked.
     pub fn readings(&self, samples: &Samples) -> DVector<f64> {
+        self.readings_beside(samples, &self.seen())
+    }
+
+    /// The same where the numbers of these columns are fitted, and no others.
+    pub fn readings_beside(&self, samples: &Samples, fitted: &[usize]) -> DVector<f64> {
         let mut readings = samples.readings() - turned_by_laws(self.description, samples);
-        for (number, visibility) in self.own.iter().zip(&self.visibility) {
-            if *visibility != Visibility::Seen && number.value != 0.0 {
+        for (column, number) in self.own.iter().enumerate() {
+            if !fitted.contains(&column) && number.value != 0.0 {
                 readings.axpy(-number.value, &samples.column(number.column), 1.0);
             }
         }

@@ -68,6 +68,9 @@ impl fmt::Display for Place {
     }
 }
 
+/// The largest share of what would leave two joints unstable that is written.
+const NEXT_TO: f64 = 0.999;
+
 impl Found {
     /// An effect of a kind.
     pub(super) fn new(kind: &'static Kind, place: Place, parameters: Vec<EffectParameter>) -> Self {
@@ -119,7 +122,13 @@ impl Found {
 
     /// Writes the effect into a description; whether that takes it.
     pub(super) fn write_into(&self, description: &mut Description) -> bool {
-        let Some(effect) = self.effect().filter(|_| !self.is_of_rig()) else { return false };
+        let Some(mut effect) = self.effect().filter(|_| !self.is_of_rig()) else { return false };
+        if let Effect::JointCoupling { joints, value } = &mut effect {
+            // Noise can take it beyond what leaves the joints stable.
+            let [first, second] = joints.map(|joint| description.joints[joint - 1].compliance());
+            let most = NEXT_TO * (first * second).sqrt();
+            *value = value.clamp(-most, most);
+        }
         let mut with = description.clone();
         with.effects.push(effect);
         // What a fit allows may still be beyond what a description takes, such

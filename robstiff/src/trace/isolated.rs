@@ -14,11 +14,10 @@
 use std::vec;
 use std::vec::Vec;
 
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::Vector3;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::model::{Fitted, Setting};
-use crate::identify::whitening::{mean_share, whiten};
 
 /// Something wrong in one visit.
 #[derive(Clone, Debug)]
@@ -55,10 +54,6 @@ const MEDIAN: f64 = 0.4549;
 
 /// With less than this share left, a straight line in the load says the same.
 const OF_ITS_OWN: f64 = 0.1;
-
-/// A step that explains less, over the residual variance, is nowhere near
-/// significant.
-const WORTH_A_LOOK: f64 = 15.0;
 
 /// What two names may differ by before the simpler is left for the other.
 const TIE: f64 = 6.0;
@@ -223,90 +218,4 @@ fn worst(visit: &Visit, variance: &Vector3<f64>, strict: bool, threshold: f64) -
         (Some(single), _) => Some(single),
         (None, several) => several,
     }
-}
-
-/// A slip that whole visits keep: the rows from one on have the shift, or where
-/// the unloaded readings were taken in a round before, and the slip was within
-/// the round, the rows before one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Moment {
-    /// The row.
-    pub row: usize,
-    /// Whether the rows before it have the shift.
-    pub before: bool,
-}
-
-impl Moment {
-    /// Whether a row has the shift.
-    pub fn has(&self, row: usize) -> bool {
-        (row < self.row) == self.before
-    }
-}
-
-/// The slip that whole visits keep which is most likely, if one is near
-/// significant.
-pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted) -> Option<Moment> {
-    let problem = &setting.problem;
-    let (axes, rows) = (problem.axes, setting.point.samples.rows.len());
-    let mut fitted_to = vec![false; rows];
-    problem.blocks.iter().flat_map(|block| &block.rows).for_each(|&row| fitted_to[row] = true);
-    let columns = &model.fit.columns;
-    let mut white = problem.white.select_columns(columns).insert_column(columns.len(), 0.0);
-    white.set_column(columns.len(), &problem.white_residuals(columns, &problem.total.solve(columns)?.coefficients));
-    for row in (0..rows).filter(|&row| !fitted_to[row]) {
-        white.rows_mut(row * axes, axes).fill(0.0);
-    }
-    // A step is whitened like the readings; its products with what is whitened
-    // are sums over rows of that whitened once more. Where axes differ in noise
-    // their scale cancels; a measuring frame that turns with the tool makes this
-    // a first look only, like the moment it gives: the tests have the whole.
-    let visits = setting.point.samples.visits();
-    let shared = problem.shared;
-    whiten(&mut white, &visits, axes, shared);
-    let inverse = problem.total.inverse(columns)?;
-    let mut sizes = vec![0_usize; visits.iter().max()? + 1];
-    visits.iter().for_each(|&visit| sizes[visit] += 1);
-    let scan = |order: &mut dyn Iterator<Item = usize>, before: bool| {
-        let mut inside = vec![0_usize; sizes.len()];
-        let mut energy = 0.0;
-        let mut sums = DMatrix::<f64>::zeros(3, columns.len() + 1);
-        let mut best: Option<(f64, Moment)> = None;
-        for row in order {
-            if fitted_to[row] {
-                for axis in 0..3 {
-                    for column in 0..=columns.len() {
-                        sums[(axis, column)] += white[(row * axes + axis, column)];
-                    }
-                }
-                let visit = visits[row];
-                energy -= step_energy(sizes[visit], inside[visit], shared);
-                inside[visit] += 1;
-                energy += step_energy(sizes[visit], inside[visit], shared);
-            }
-            let gain: f64 = (0..3)
-                .map(|axis| {
-                    let along = DVector::from_fn(columns.len(), |k, _| sums[(axis, k)]);
-                    let left = energy - along.dot(&(&inverse * &along));
-                    if left > OF_ITS_OWN * energy { sums[(axis, columns.len())].powi(2) / left } else { 0.0 }
-                })
-                .sum();
-            if best.is_none_or(|(most, _)| gain > most) {
-                best = Some((gain, Moment { row: row + usize::from(before), before }));
-            }
-        }
-        best
-    };
-    let after = scan(&mut (1..rows).rev(), false);
-    let before = scan(&mut (0..rows - 1), true);
-    let variance = model.fit.rss / problem.freedom(&model.fit);
-    let best = after.into_iter().chain(before).max_by(|a, b| a.0.total_cmp(&b.0));
-    best.filter(|(gain, _)| *gain > WORTH_A_LOOK * variance).map(|(_, moment)| moment)
-}
-
-/// The squared length of a step over the last `inside` of a visit's `rows`
-/// rows, whitened.
-fn step_energy(rows: usize, inside: usize, shared: f64) -> f64 {
-    let (n, m) = (rows as f64, inside as f64);
-    let taken = mean_share(rows, shared) * m / n;
-    m * (1.0 - taken).powi(2) + (n - m) * taken * taken
 }

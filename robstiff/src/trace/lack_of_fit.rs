@@ -1,6 +1,6 @@
 //! Is there structure left in the residuals?
 //!
-//! Three tests, each of what noise alone cannot do, together at the level
+//! Four tests, each of what noise alone cannot do, together at the level
 //! asked for (Bonferroni):
 //!
 //! 1. *Size*: where the noise is declared, or readings were repeated, the
@@ -14,6 +14,8 @@
 //!    the model fitted again in every draw).
 //! 3. *Growth*: the length of the residual grows with the force (Spearman's
 //!    rank correlation); the noise of a reading does not know the load.
+//! 4. *Agreement*: readings of a pose agree more than noise does
+//!    ([`agreement`](mod@super::agreement)).
 
 use std::borrow::ToOwned;
 use std::string::String;
@@ -24,6 +26,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal as Gaussian};
 
+use super::agreement::{Agreement, agreement};
 use super::bootstrap::rademacher;
 use super::features::features;
 use super::model::{Fitted, Setting};
@@ -80,6 +83,10 @@ pub fn test(
     let mut tests = Vec::new();
     tests.extend(size(setting, model, yardstick));
     tests.extend(growth(setting, model));
+    let agreement = agreement(setting, model, options);
+    if let Some(Agreement { statistic, p_value, .. }) = agreement {
+        tests.push(StructureTest { name: "readings of a pose agree".to_owned(), statistic, p_value });
+    }
     let resemblance = Resemblance::new(setting, model, data, options);
     if let Some(resemblance) = &resemblance {
         let (statistic, p_value) = resemblance.largest();
@@ -89,6 +96,11 @@ pub fn test(
     let structure = tests.iter().any(|test| test.p_value <= level);
     let fraction =
         if structure { fraction(setting, model, yardstick, resemblance.as_ref(), options.alpha) } else { 0.0 };
+    let beyond_noise = agreement.filter(|found| found.p_value <= level).map_or(0.0, |found| {
+        let variance = model.fit.rss / freedom(setting, model);
+        1.0 - found.noise / variance
+    });
+    let fraction = fraction.max(beyond_noise);
     let depends_on = resemblance.filter(|_| structure).map_or_else(Vec::new, |found| found.significant(options.alpha));
     LackOfFit { tests, structure, fraction, depends_on }
 }

@@ -13,6 +13,7 @@
 //! [`Options::alpha`] of 1 % each, so a robot that lacks nothing is called
 //! adequate in about 98 of 100 campaigns.
 
+pub mod agreement;
 pub mod alias;
 pub mod bench;
 pub mod bootstrap;
@@ -27,6 +28,7 @@ pub mod model;
 pub mod point;
 mod report;
 pub mod selection;
+pub mod slip;
 #[cfg(test)]
 mod tests;
 pub mod verdict;
@@ -217,13 +219,19 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
     let mut outcome = search(&mut bench, &prepared, base, options, progress).map_err(Error)?;
     if !outcome.structure() {
         // With structure accounted for, rows need stand out from noise alone.
+        let before = bench.copy();
         bench.strict = true;
         if bench.look_again(&outcome.selection.model.named).map_err(Error)? {
-            let model = bench.fit(&outcome.selection.model.named).map_err(Error)?;
-            let mut steps = outcome.selection.steps;
-            outcome = search(&mut bench, &prepared, model, options, progress).map_err(Error)?;
-            steps.append(&mut outcome.selection.steps);
-            outcome.selection.steps = steps;
+            match bench.fit(&outcome.selection.model.named) {
+                Ok(model) => {
+                    let mut steps = outcome.selection.steps;
+                    outcome = search(&mut bench, &prepared, model, options, progress).map_err(Error)?;
+                    steps.append(&mut outcome.selection.steps);
+                    outcome.selection.steps = steps;
+                }
+                // Without these rows physics may not allow what was accepted.
+                Err(_) => bench = before,
+            }
         }
     }
     progress("asking what could be mistaken for what");
@@ -256,7 +264,9 @@ fn search(
         for k in weak.into_iter().rev() {
             named.remove(k);
         }
-        selection.model = bench.fit(&named)?;
+        // What is missing now may drive the rest beyond what physics allows.
+        let loosely = |why: String| bench.at(&named)?.fit_loosely(&named).ok_or(why);
+        selection.model = bench.fit(&named).or_else(loosely)?;
         selection.p_values = p_values(bench, &named, options);
         left = test(bench, &selection.model)?;
         // What a name had accounted for is there, found by a test or not.

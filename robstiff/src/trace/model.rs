@@ -36,6 +36,10 @@ pub struct Setting<'c> {
     /// The compliances of all joints, held ones included, from the fit of the
     /// description's own numbers.
     pub joint_values: Vec<f64>,
+    /// Columns behind all others of what the readings may have besides that no
+    /// column says, a model's effects being what they are; no model is fitted with
+    /// them, but what is to be named must account for more than they do.
+    pub besides: Vec<usize>,
     /// The tangents of nonlinear numbers that are named, by column.
     pub tangents: Vec<(usize, DVector<f64>)>,
     /// The second order of the joints' displacement, which the fit does not
@@ -65,9 +69,12 @@ pub struct Fitted {
     pub physical: bool,
 }
 
-/// A joint's compliance below zero by this many standard deviations is no
-/// accident of the noise.
+/// A joint's compliance below zero, or another number beyond what is possible, by
+/// this many standard deviations is no accident of the noise.
 const BELOW_ZERO: f64 = 2.0;
+
+/// Of what may be besides, that of which less is left says nothing new.
+const OF_ITS_OWN: f64 = 1e-3;
 
 impl Setting<'_> {
     /// What a unit of a column's number does to the readings as measured,
@@ -102,6 +109,21 @@ impl Setting<'_> {
         self.base.iter().chain(effects).copied().collect()
     }
 
+    /// Columns with those of what may be [`besides`](Self::besides) that they do not
+    /// say themselves.
+    pub fn with_besides(&self, mut columns: Vec<usize>) -> Vec<usize> {
+        let total = &self.problem.total;
+        for &more in &self.besides {
+            let Some(inverse) = total.inverse(&columns) else { break };
+            let along = DVector::from_fn(columns.len(), |k, _| total.gram[(columns[k], more)]);
+            let own = total.gram[(more, more)];
+            if own - along.dot(&(&inverse * &along)) > OF_ITS_OWN * own {
+                columns.push(more);
+            }
+        }
+        columns
+    }
+
     /// Fits a model by least squares with nonnegative compliances.
     ///
     /// # Errors
@@ -123,7 +145,7 @@ impl Setting<'_> {
     /// As for [`fit`](Self::fit).
     pub fn judge(&self, named: &[Named], fit: Fit) -> Result<Fitted, String> {
         self.check(&fit, named)?;
-        let bic = self.bic(named, fit.rss);
+        let bic = self.bic(named, &fit);
         Ok(Fitted { named: named.to_vec(), fit, bic, physical: true })
     }
 
@@ -133,21 +155,34 @@ impl Setting<'_> {
         let columns = self.columns(named);
         let signs: Vec<Sign> = columns.iter().map(|&column| self.signs[column]).collect();
         let fit = self.problem.total.solve_signed(&columns, &signs)?;
-        let (bic, physical) = (self.bic(named, fit.rss), self.check(&fit, named).is_ok());
+        let (bic, physical) = (self.bic(named, &fit), self.check(&fit, named).is_ok());
         Some(Fitted { named: named.to_vec(), fit, bic, physical })
     }
 
-    /// The Bayesian information criterion of a model with a residual sum of
-    /// squares.
-    fn bic(&self, named: &[Named], rss: f64) -> f64 {
-        let parameters = self.base.len() + named.iter().map(|&one| self.variant(one).parameters).sum::<usize>();
+    /// The Bayesian information criterion of a model with its fit.
+    fn bic(&self, named: &[Named], fit: &Fit) -> f64 {
+        let parameters = self.base_of(fit) + named.iter().map(|&one| self.variant(one).parameters).sum::<usize>();
         let rows = self.problem.total.rows as f64;
-        rows * (rss / rows).ln() + parameters as f64 * rows.ln()
+        rows * (fit.rss / rows).ln() + parameters as f64 * rows.ln()
+    }
+
+    /// How far each coefficient of a fit may be off by noise, at most.
+    fn widths(&self, fit: &Fit) -> Option<Vec<f64>> {
+        let total = &self.problem.total;
+        let inverse = total.inverse(&fit.columns)?;
+        let freedom = (total.rows - fit.columns.len()).max(1) as f64;
+        Some((0..fit.columns.len()).map(|k| BELOW_ZERO * (inverse[(k, k)] * fit.rss / freedom).sqrt()).collect())
+    }
+
+    /// How many of the description's own numbers a fit has; one with nonlinear
+    /// numbers may see more of them than this point does.
+    fn base_of(&self, fit: &Fit) -> usize {
+        fit.columns.iter().filter(|&&column| column < self.own.len()).count()
     }
 
     fn check(&self, fit: &Fit, named: &[Named]) -> Result<(), String> {
         let joint = |joint: usize| self.joint_value(fit, joint);
-        let mut at = self.base.len();
+        let mut at = self.base_of(fit);
         for &one in named {
             let candidate = &self.candidates[one.candidate];
             let mut numbers = Vec::new();
@@ -160,8 +195,21 @@ impl Setting<'_> {
                 numbers.push((number.name, value));
                 at += 1;
             }
-            if let Some(check) = &candidate.check {
-                check(&numbers, &joint)?;
+            if let Some(check) = &candidate.check
+                && let Err(why) = check(&numbers, &joint)
+            {
+                // Noise can take a number that is near what is possible beyond it.
+                let width = self.widths(fit).ok_or_else(|| why.clone())?;
+                let first = at - numbers.len();
+                let nearer = |(k, &(name, value)): (usize, &(&'static str, f64))| {
+                    (name, value - value.clamp(-width[first + k], width[first + k]))
+                };
+                let nearer: Vec<_> = numbers.iter().enumerate().map(nearer).collect();
+                let softer = |joint: usize| {
+                    let fitted = fit.columns.iter().position(|&column| column == joint - 1);
+                    self.joint_value(fit, joint) + fitted.map_or(0.0, |k| width[k])
+                };
+                check(&nearer, &softer)?;
             }
         }
         if named.is_empty() {
@@ -169,7 +217,7 @@ impl Setting<'_> {
         }
         // A clipped joint is only held against the model where noise does not
         // explain it.
-        let clipped = (0..self.base.len())
+        let clipped = (0..self.base_of(fit))
             .filter(|&k| self.signs[fit.columns[k]] == Sign::Nonnegative && fit.coefficients[k] == 0.0);
         for k in clipped {
             let total = &self.problem.total;

@@ -155,9 +155,10 @@ impl<'c> Point<'c> {
         self.samples.stacked_by(|at, row| row.read(&(row.twists[joint - 1] * amount(at))))
     }
 
-    /// A displacement of the point that is read, in the base frame (m).
+    /// A displacement of the point that is read, in the base frame (m), as it is
+    /// seen.
     pub fn of_reading(&self, of: impl Fn(usize) -> Vector3<f64>) -> DVector<f64> {
-        self.samples.stacked_by(|at, _| stack(&of(at), &Vector3::zeros()))
+        self.samples.stacked_by(|at, row| stack(&(row.seen * of(at)), &Vector3::zeros()))
     }
 
     /// What creep adds of stacked elastic displacements at a share of 1: every

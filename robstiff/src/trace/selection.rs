@@ -88,7 +88,7 @@ impl Tests {
     /// The tests against the model of some effects; `None` where it cannot be
     /// fitted.
     pub fn against(setting: &Setting<'_>, named: &[Named], options: &Options) -> Option<Self> {
-        let columns = setting.columns(named);
+        let columns = setting.with_besides(setting.columns(named));
         let scores =
             ScoreTest::new(&setting.problem, &setting.candidates, &setting.signs, setting.own.len(), &columns)?;
         let (statistics, reference) = (scores.statistics(), scores.reference(options.draws, options.seed));
@@ -122,8 +122,13 @@ pub fn select(
     let mut unnamed = false;
     while model.named.len() < MOST_EFFECTS {
         progress(&std::format!("searching for effect {}", model.named.len() + 1));
+        let before = bench.copy();
         if bench.look_again(&model.named)? {
-            model = bench.fit(&model.named)?;
+            match bench.fit(&model.named) {
+                Ok(better) => model = better,
+                // Without these rows physics may not allow what was accepted.
+                Err(_) => *bench = before,
+            }
         }
         let mut setting = bench.at(&model.named)?;
         if let Some((better, p)) = sideways(bench, &setting, &model, options) {
@@ -158,12 +163,24 @@ pub fn select(
         steps.push(step);
         (model, p_values) = (proposed, p);
         // What a grid's value leaves of an effect must not look like another.
-        let polished = bench.polished(&model.named);
-        if let Ok(better) = polished.fit(&model.named) {
+        let (polished, named) = bench.polished(&model.named).simplified(&model.named);
+        if let Ok(better) = polished.fit(&named) {
             (*bench, model) = (polished, better);
         }
+        let before = bench.copy();
         if bench.learn_noise(&model.named)? {
-            model = bench.fit(&model.named)?;
+            match bench.fit(&model.named) {
+                Ok(better) => model = better,
+                // With other weights physics may not allow what was accepted.
+                Err(_) => *bench = before,
+            }
+        }
+    }
+    if bench.may_be_simpler(&model.named) {
+        // The noise is better known than when they were named.
+        let (polished, named) = bench.polished(&model.named).simplified(&model.named);
+        if let Ok(better) = polished.fit(&named) {
+            (*bench, model) = (polished, better);
         }
     }
     Ok(Selection { model, p_values, steps, unnamed })

@@ -42,9 +42,9 @@ impl Seen {
             let moves = displacement.map(|moved| moved / scenario.noise);
             moves.into_iter().chain(turns.into_iter().flatten()).collect()
         };
-        let plain = Arm::new(&scenario.truth, &[]);
+        let plain = scenario.arm(&scenario.truth);
         let single: Vec<Arm> = (0..if joints { scenario.truth.joints.len() } else { 0 })
-            .map(|joint| Arm::new(&only(&scenario.truth, joint), &[]))
+            .map(|joint| scenario.arm(&only(&scenario.truth, joint)))
             .collect();
         let count = simulated.rows.len() * axes;
         let (mut missed, mut joints) = (DVector::zeros(count), DMatrix::zeros(count, single.len()));
@@ -52,14 +52,14 @@ impl Seen {
             let posed = plain.at(&row.q);
             let wrench = if scenario.wrench_in_tool { to_base(&posed.axes(), &row.wrench) } else { row.wrench };
             let put = |column: &mut [f64], values: Vec<f64>| column[index * axes..][..axes].copy_from_slice(&values);
-            let settled = posed.settle(&wrench);
+            let said = scenario.reads(&posed, &posed.settle(&wrench));
             let off = |read: [f64; 3], said: [f64; 3]| std::array::from_fn(|axis| read[axis] - said[axis]);
-            let values =
-                scale(off(row.exact_displacement, settled.displacement), off(row.exact_rotation, settled.rotation));
+            let values = scale(off(row.exact_displacement, said.0), off(row.exact_rotation, said.1));
             put(missed.as_mut_slice(), values);
             for (arm, mut column) in single.iter().zip(joints.column_iter_mut()) {
-                let settled = arm.deflect(&row.q, &wrench);
-                let values = scale(settled.displacement, settled.rotation);
+                let posed = arm.at(&row.q);
+                let (displacement, rotation) = scenario.reads(&posed, &posed.settle(&wrench));
+                let values = scale(displacement, rotation);
                 put(column.as_mut_slice(), values.iter().map(|value| value / TINY).collect());
             }
         }

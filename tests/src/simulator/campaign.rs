@@ -70,6 +70,13 @@ pub struct Scenario {
     /// Whether the file gives wrenches in the tool frame, not in the base
     /// frame.
     pub wrench_in_tool: bool,
+    /// Where the loads act, and moments are taken about (m), in the tool frame.
+    pub hook: [f64; 3],
+    /// Where the readings are taken (m), in the tool frame.
+    pub marker: [f64; 3],
+    /// Whether the file gives displacements and rotations in the tool frame of
+    /// the unloaded arm, not in the base frame.
+    pub measured_in_tool: bool,
     /// From one row to the next (s).
     pub pace: f64,
     /// By how much the temperature in the hall swings about its rise (K).
@@ -105,6 +112,9 @@ impl Scenario {
             unloaded_first: false,
             shuffled: false,
             wrench_in_tool: false,
+            hook: [0.0; 3],
+            marker: [0.0; 3],
+            measured_in_tool: false,
             pace: 60.0,
             swing: 0.0,
             floor: 0.1,
@@ -127,7 +137,7 @@ impl Scenario {
     /// Where an effect does not fit the arm, the arm buckles, or no pose within
     /// the joints' limits keeps the TCP within the working region.
     pub fn run(&self) -> Simulated {
-        let declared = Arm::new(&self.truth, &[]);
+        let declared = self.arm(&self.truth);
         let arm = self.hidden.iter().fold(declared.clone(), |arm, hidden| arm.hiding(hidden));
         let mut plan = self.plan(&declared);
         if self.shuffled {
@@ -140,7 +150,8 @@ impl Scenario {
             (true, false) => count,
         };
         let start = self.pace * round as f64;
-        let rig = Rig::new(&arm, &self.hidden, start + self.pace * count as f64, self.swing);
+        let end = start + self.pace * count as f64;
+        let rig = Rig::new(&arm, &self.hidden, end, self.swing, self.measured_in_tool);
         let mut rows = Vec::with_capacity(count);
         let mut posed: Option<(usize, PosedArm)> = None;
         for (turn, visit) in plan.iter().enumerate() {
@@ -193,8 +204,10 @@ impl Scenario {
             };
             let [displacement, rotation] = &mut creep;
             let (displacement, rotation) = (grown((moved[0], displacement)), grown((moved[1], rotation)));
-            let (tcp, tool) = (Vector3::from(posed.tcp()), posed.tool());
-            Stand { time, q: &visit.q, tcp, tool, displacement, rotation }
+            let tool = posed.tool();
+            let at = Vector3::from(posed.tcp()) + tool * Vector3::from(self.marker);
+            let displacement = self.at_marker(&tool, displacement, &rotation);
+            Stand { time, q: &visit.q, at, tool, displacement, rotation }
         };
         let first = turn * loads;
         let before = |time: f64, index: usize| if self.unloaded_first { pace * (index + 1) as f64 } else { time };
@@ -338,14 +351,15 @@ pub struct Row {
     pub temperature: f64,
     /// Joint coordinates (rad or m).
     pub q: Vec<f64>,
-    /// Wrench `[f; m]` (N, Nm) at the TCP as the load cell has it, in the
-    /// file's frame.
+    /// Wrench `[f; m]` (N, Nm) as the load cell has it, where the loads act, in
+    /// the file's frame.
     pub wrench: [f64; 6],
-    /// The wrench that really acts (N, Nm), in the base frame.
+    /// The wrench that really acts there (N, Nm), in the base frame.
     pub acting: [f64; 6],
-    /// Measured displacement of the TCP (m), in the base frame.
+    /// Measured displacement where the readings are taken (m), in the file's
+    /// frame.
     pub displacement: [f64; 3],
-    /// Measured rotation of the tool (rad), in the base frame, if measured.
+    /// Measured rotation of the tool (rad), in the file's frame, if measured.
     pub rotation: Option<[f64; 3]>,
     /// The displacement as it would be read without noise (m).
     pub exact_displacement: [f64; 3],

@@ -33,11 +33,12 @@ impl Simulated {
              robot: robot.yaml\n\
              observations: loads.csv\n\
              kind: displacement\n\
-             wrench: {{frame: {}, at: tcp}}\n\
-             measured: {{frame: base, at: tcp}}\n",
+             wrench: {}\n\
+             measured: {}\n",
             scenario.truth.name,
             scenario.seed,
-            if scenario.wrench_in_tool { "tool" } else { "base" }
+            place(scenario.wrench_in_tool, scenario.hook),
+            place(scenario.measured_in_tool, scenario.marker),
         );
         if scenario.states_noise {
             let rotation = scenario.rotation_noise.map(|sigma| format!(", rotation: {} urad", sigma * 1e6));
@@ -75,6 +76,13 @@ impl Simulated {
         }
         text
     }
+}
+
+/// A frame and a point of the tool, as `campaign.yaml` has them.
+fn place(in_tool: bool, at: [f64; 3]) -> String {
+    let frame = if in_tool { "tool" } else { "base" };
+    let at = if at == [0.0; 3] { String::from("tcp") } else { format!("{at:?}") };
+    format!("{{frame: {frame}, at: {at}}}")
 }
 
 /// One row of the table, with all the digits it has.

@@ -30,6 +30,7 @@ mod outside;
 mod rig;
 #[cfg(test)]
 mod rig_tests;
+mod sight;
 #[cfg(test)]
 mod tests;
 

@@ -25,6 +25,8 @@ pub(super) struct Rig<'a> {
     end: f64,
     /// Amplitude of the hall's temperature about its rise (K).
     swing: f64,
+    /// Whether what is read is given in the tool frame of the unloaded arm.
+    in_tool: bool,
 }
 
 /// The arm at one moment: a point of it, and how it has moved.
@@ -33,17 +35,18 @@ pub(super) struct Stand<'a> {
     pub time: f64,
     /// Joint coordinates.
     pub q: &'a [f64],
-    /// The TCP (m) and the tool's axes without a load, in the base frame.
-    pub tcp: Vector3<f64>,
+    /// Where readings are taken (m) and the tool's axes without a load, in the
+    /// base frame.
+    pub at: Vector3<f64>,
     pub tool: Matrix3<f64>,
-    /// What the load has done: displacement (m) and rotation vector (rad).
+    /// What the load has done: displacement there (m) and rotation vector (rad).
     pub displacement: Vector3<f64>,
     pub rotation: Vector3<f64>,
 }
 
 impl<'a> Rig<'a> {
-    pub fn new(arm: &'a Arm, hidden: &'a [Hidden], end: f64, swing: f64) -> Self {
-        Self { arm, hidden, end, swing }
+    pub fn new(arm: &'a Arm, hidden: &'a [Hidden], end: f64, swing: f64, in_tool: bool) -> Self {
+        Self { arm, hidden, end, swing, in_tool }
     }
 
     /// The temperature in the hall (C): it warms up over a morning.
@@ -61,11 +64,12 @@ impl<'a> Rig<'a> {
     /// but for noise.
     pub fn between(&self, unloaded: &Stand<'_>, loaded: &Stand<'_>) -> ([f64; 3], [f64; 3]) {
         let (from, to) = (self.stands(unloaded), self.stands(loaded));
-        let turn = self.tracker();
+        let frame = if self.in_tool { unloaded.tool.transpose() } else { Matrix3::identity() };
+        let turn = self.tracker() * frame;
         ((turn * (to.0 - from.0)).into(), (turn * log(&(to.1 * from.1.transpose()))).into())
     }
 
-    /// The turn from the base frame into the measuring frame as it stands.
+    /// The turn from the frame of the file into that which is measured in.
     fn tracker(&self) -> Matrix3<f64> {
         let turns = self.hidden.iter().map(|hidden| match hidden {
             Hidden::TrackerMisalignment(turn) => exp(&Vector3::from(*turn)),
@@ -74,10 +78,10 @@ impl<'a> Rig<'a> {
         turns.fold(Matrix3::identity(), |all, turn| turn * all)
     }
 
-    /// Where the marker is, seen from where the unloaded TCP was when the robot
+    /// Where the marker is, seen from where it was on the unloaded arm when that
     /// was new, and how the tool has turned since.
     fn stands(&self, stand: &Stand<'_>) -> (Vector3<f64>, Matrix3<f64>) {
-        let mut point = stand.tcp + stand.displacement;
+        let mut point = stand.at + stand.displacement;
         let mut turned = exp(&stand.rotation);
         for hidden in self.hidden {
             match hidden {
@@ -99,7 +103,7 @@ impl<'a> Rig<'a> {
                 _ => {}
             }
         }
-        (point - stand.tcp, turned)
+        (point - stand.at, turned)
     }
 
     fn drift(&self, follows: Follows, time: f64) -> f64 {

@@ -36,10 +36,15 @@ pub fn traced(declared: &Description, hidden: &[Effect], seed: u64) -> Trace {
 /// Writes a campaign, with `more` lines in its `campaign.yaml`, and traces what
 /// is read.
 pub fn trace_files(simulated: &Simulated, declared: &Description, more: &str) -> Trace {
+    trace_text(simulated, declared, &(simulated.campaign_yaml() + more))
+}
+
+/// The same with another text of `campaign.yaml`.
+pub fn trace_text(simulated: &Simulated, declared: &Description, said: &str) -> Trace {
     let folder = Folder::new();
     simulated.write(&folder.0, &declared.to_yaml()).expect("a temporary folder");
     let path = folder.0.join("campaign.yaml");
-    fs::write(&path, simulated.campaign_yaml() + more).expect("a temporary file");
+    fs::write(&path, said).expect("a temporary file");
     let campaign = Campaign::read(&path).unwrap_or_else(|problem| panic!("{problem}"));
     assert_eq!((&campaign.robot, campaign.warnings.len()), (declared, 0), "{:?}", campaign.warnings);
     trace(&campaign, &Options::default(), &|_| {}).unwrap_or_else(|problem| panic!("{problem}"))

@@ -7,7 +7,7 @@ use robstiff::trace::{Trace, Verdict};
 use robstiff_robots::Description;
 use robstiff_tests::simulator::{Scenario, five_axis, six_axis};
 
-use crate::bench::{FLOOR, NOISE, assert_most, names_all, plan, trace_files};
+use crate::bench::{FLOOR, NOISE, assert_most, names_all, plan, trace_files, trace_text};
 
 const TILT: Effect = Effect::TransverseCompliance { joint: 3, value: 3e-7 };
 
@@ -86,6 +86,30 @@ fn rotations_are_used() {
     assert_most("with rotations", 9, &traces, |_, trace| is_found(trace) && sees_the_last_joint(trace));
     for (_, trace) in campaigns(&[TILT], |scenario| scenario, "") {
         assert_eq!(sees_the_last_joint(&trace), trace.robot == "Rv130hsc");
+    }
+}
+
+/// Readings at a marker beside the tool and pulls at a hook, as a rig has them,
+/// each given in the frame and at the point that the campaign says.
+#[test]
+fn readings_and_loads_off_the_tcp() {
+    let off = |scenario| Scenario {
+        marker: [0.18, -0.12, 0.1],
+        hook: [-0.06, 0.1, 0.15],
+        measured_in_tool: true,
+        wrench_in_tool: true,
+        ..scenario
+    };
+    assert_most("off the tcp", 9, &campaigns(&[TILT], off, ""), |_, trace| is_found(trace));
+    assert_most("nothing, off the tcp", 9, &campaigns(&[], off, ""), |_, trace| trace.verdict == Verdict::Adequate);
+    // Taken for readings of the TCP, they are another arm's.
+    let seen_wrongly = "measured: {frame: tool, at: tcp}";
+    for (seed, declared) in [(500, five_axis()), (501, six_axis())] {
+        let simulated = off(plan(&declared, &[], seed)).run();
+        let said = simulated.campaign_yaml().replace("measured: {frame: tool, at: [0.18, -0.12, 0.1]}", seen_wrongly);
+        assert!(said.contains(seen_wrongly));
+        let trace = trace_text(&simulated, &declared, &said);
+        assert!(trace.verdict != Verdict::Adequate, "{seed}: {}", trace.why);
     }
 }
 

@@ -13,18 +13,19 @@ use std::string::String;
 use std::vec;
 use std::vec::Vec;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 pub use self::noise::Known;
 use self::solve::State;
 use super::Options;
 use super::catalogue::{Candidate, Catalogue, LIKELY, Number, Scene, Variant, catalogue};
-use super::isolated::{self, Moment};
+use super::isolated;
 use super::model::{Fitted, Named, Setting};
+use super::point::Point;
 use super::selection::Tests;
+use super::slip::{Moment, likeliest_slip};
 use crate::campaign::Campaign;
 use crate::elements::Parameter;
-use crate::identify::baseline::Visibility;
 use crate::identify::normal::{Fit, Sign};
 use crate::identify::prepare::Prepared;
 use crate::identify::problem::{Problem, Weights};
@@ -217,7 +218,7 @@ impl<'c> Bench<'c> {
         for named in models {
             let Ok(setting) = self.at(&named) else { continue };
             let Ok(fitted) = setting.fit(&named) else { continue };
-            moments.extend(isolated::likeliest_slip(&setting, &fitted).filter(|moment| !moments.contains(moment)));
+            moments.extend(likeliest_slip(&setting, &fitted).filter(|moment| !moments.contains(moment)));
         }
         moments.truncate(LIKELY);
         moments
@@ -307,7 +308,7 @@ impl<'c> Bench<'c> {
 
     /// The regression at a model's solution, with the whole catalogue.
     fn setting(&self, named: &[Named]) -> Result<Setting<'c>, String> {
-        let State { setup, fit, tangents, readings } = &*self.state(named)?;
+        let State { setup, fit, tangents, readings, base } = &*self.state(named)?;
         let nonlinear = self.nonlinear(named);
         let declared: &Samples = &self.prepared.samples;
         let point = self.point(setup.clone());
@@ -322,14 +323,21 @@ impl<'c> Bench<'c> {
                 None => raw.set_column(column, &self.linear(&point, column)),
             }
         }
+        let more = self.besides(named, &point, fit);
+        let raw = raw.resize_horizontally(count + more.len(), 0.0);
+        let raw = more.iter().enumerate().fold(raw, |mut raw, (k, column)| {
+            raw.set_column(count + k, column);
+            raw
+        });
         let problem = Problem::new(&point.samples, raw, readings.clone(), &self.prepared.correction, self.weights());
         Ok(Setting {
             point,
             problem,
+            besides: (count..count + more.len()).collect(),
             candidates: Rc::clone(&self.candidates),
             numbers: Rc::clone(&self.numbers),
             signs: Rc::clone(&self.signs),
-            base: self.prepared.seen(),
+            base: base.clone(),
             own: Rc::clone(&self.own),
             joint_values: self.prepared.values[..declared.joints()].to_vec(),
             tangents: tangents.clone(),
@@ -337,11 +345,32 @@ impl<'c> Bench<'c> {
         })
     }
 
+    /// The directions, stacked, of what the readings may have besides that no
+    /// column of a model says.
+    fn besides(&self, named: &[Named], point: &Point<'c>, fit: &Fit) -> Vec<DVector<f64>> {
+        let mut found = Vec::new();
+        for one in named {
+            let variant = &self.candidates[one.candidate].variants[one.variant];
+            let Some(unsure) = &variant.unsure else { continue };
+            let value =
+                |column: &usize| fit.columns.iter().position(|of| of == column).map_or(0.0, |at| fit.coefficients[at]);
+            let examples = unsure(point, &variant.columns.iter().map(value).collect::<Vec<f64>>());
+            if examples.is_empty() {
+                continue;
+            }
+            let examples = DMatrix::from_columns(&examples);
+            let parts = SymmetricEigen::new(examples.tr_mul(&examples));
+            let whole = parts.eigenvalues.sum();
+            let matter = (0..parts.eigenvalues.len()).filter(|&k| parts.eigenvalues[k] > OF_ALL * whole);
+            found.extend(matter.map(|k| &examples * parts.eigenvectors.column(k)));
+        }
+        found
+    }
+
     /// The numbers of a model in which its compliance is linear.
     pub fn linear_parameters(&self, fit: &Fit) -> Vec<(Parameter, f64)> {
-        let held = self.prepared.own.iter().zip(&self.prepared.visibility);
-        let held = held.filter(|(_, visibility)| **visibility != Visibility::Seen);
-        let held = held.filter_map(|(number, _)| match number.column {
+        let held = self.prepared.own.iter().enumerate().filter(|(column, _)| !fit.columns.contains(column));
+        let held = held.filter_map(|(_, number)| match number.column {
             Column::Linear(parameter) => Some((parameter, number.value)),
             Column::Knee { .. } => None,
         });
@@ -350,6 +379,9 @@ impl<'c> Bench<'c> {
         held.chain(fitted).collect()
     }
 }
+
+/// A direction with less than this share of all that may be besides is none.
+const OF_ALL: f64 = 0.02;
 
 /// A column this small against the largest of a joint is zero but for rounding.
 const ZERO: f64 = 1e-7;

@@ -118,6 +118,50 @@ impl<'c> Bench<'c> {
         bench
     }
 
+    /// The same with forms that have a number out of a grid for each of their
+    /// own, play operators, in the simplest that the criterion asks for: of three
+    /// on a grid that none of them fits, two taken to where they fit best may do.
+    /// With the model as it is then.
+    pub fn simplified(self, named: &[Named]) -> (Self, Vec<Named>) {
+        let (mut bench, mut named) = (self, named.to_vec());
+        for k in 0..named.len() {
+            loop {
+                // One that has come out at zero is no model at all.
+                let whole = bench.fit(&named).map_or(f64::INFINITY, |fitted| fitted.bic);
+                let simpler = bench.simpler_forms(named[k]).into_iter().filter_map(|form| {
+                    let mut fewer = named.clone();
+                    fewer[k] = form;
+                    let bench = bench.polished(&fewer);
+                    let bic = bench.fit(&fewer).ok()?.bic;
+                    (bic <= whole).then_some((bic, bench, fewer))
+                });
+                let Some((_, simpler, fewer)) = simpler.min_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+                (bench, named) = (simpler, fewer);
+            }
+        }
+        (bench, named)
+    }
+
+    /// Whether a model has numbers that [`simplified`](Self::simplified) looks at.
+    pub fn may_be_simpler(&self, named: &[Named]) -> bool {
+        named.iter().any(|&one| !self.simpler_forms(one).is_empty())
+    }
+
+    /// The forms of a candidate with one less of such numbers.
+    fn simpler_forms(&self, one: Named) -> Vec<Named> {
+        let own = self.variant(one);
+        if own.refine.is_none() || own.shape.len() != own.columns.len() || own.columns.len() < 2 {
+            return Vec::new();
+        }
+        let variants = &self.candidates[one.candidate].variants;
+        let is_simpler = |form: &Variant| {
+            form.columns.len() + 1 == own.columns.len()
+                && form.columns.iter().all(|column| own.columns.contains(column))
+        };
+        let simpler = (0..variants.len()).filter(|&variant| is_simpler(&variants[variant]));
+        simpler.map(|variant| Named { variant, ..one }).collect()
+    }
+
     /// What is to be added to a sum of squares for a number out of a grid that is
     /// unlikely, by its logarithm.
     fn unlikely(&self, named: &[Named], one: Named) -> impl Fn(f64) -> f64 + use<> {
@@ -194,7 +238,8 @@ impl<'c> Bench<'c> {
         &self.candidates[one.candidate].variants[one.variant]
     }
 
-    fn copy(&self) -> Self {
+    /// The same, with nothing known of models.
+    pub fn copy(&self) -> Self {
         Self {
             own: Rc::clone(&self.own),
             candidates: Rc::clone(&self.candidates),

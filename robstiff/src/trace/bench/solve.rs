@@ -9,6 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::Bench;
 use crate::elements::Parameter;
+use crate::identify::baseline::Visibility;
 use crate::identify::normal::{Fit, Sign};
 use crate::identify::problem::Problem;
 use crate::identify::samples::Column;
@@ -27,6 +28,8 @@ pub struct State {
     pub tangents: Vec<(usize, DVector<f64>)>,
     /// The readings that the coefficients are those of.
     pub readings: DVector<f64>,
+    /// The columns of the description's numbers that are fitted.
+    pub base: Vec<usize>,
 }
 
 /// Gauss-Newton steps before a model counts as one that has no solution; two
@@ -37,6 +40,10 @@ const PASSES: usize = 12;
 /// reading, all together, is none.
 const SETTLED: f64 = 1e-2;
 
+/// A joint that stands this many times the noise of a reading out, over all
+/// readings and at its declared compliance, is turned.
+const STANDS_OUT: f64 = 5.0;
+
 /// Steps of central differences, as shares of what is physically possible.
 const STEP: f64 = 1e-3;
 
@@ -44,10 +51,39 @@ impl<'c> Bench<'c> {
     /// The solution of a model by Gauss-Newton steps from file and description
     /// as declared.
     pub(super) fn solve(&self, named: &[Named]) -> Result<State, String> {
+        let hidden = self.prepared.visibility.contains(&Visibility::Unseen);
+        let more = if hidden && self.is_nonlinear(named) { self.solve_with(named, true).ok() } else { None };
+        more.map_or_else(|| self.solve_with(named, false), Ok)
+    }
+
+    /// The description's numbers that are fitted at a point. A joint that no load
+    /// turned as the file and the description have it may well be turned as they
+    /// are: by a force that acts beside its axis, say. Held at what was declared,
+    /// it would spoil the rest.
+    fn base_at(&self, point: &Point<'c>) -> Vec<usize> {
         let prepared = self.prepared;
-        let effects = named.iter().flat_map(|one| &self.candidates[one.candidate].variants[one.variant].columns);
-        let columns: Vec<usize> = prepared.seen().into_iter().chain(effects.copied()).collect();
-        let signs: Vec<Sign> = columns.iter().map(|&column| self.signs[column]).collect();
+        let Some(noise) = self.noise.covariance.reading() else { return prepared.seen() };
+        let trained = |row: usize| prepared.training[point.samples.rows[row].pose] && !self.left_out[row];
+        let is_turned = |column: usize| {
+            let mut white = DMatrix::from_columns(&[self.linear(point, column)]);
+            self.noise.covariance.whiten(&mut white, &self.left_out);
+            let axes = point.samples.axes;
+            let square: f64 =
+                (0..white.nrows()).filter(|i| trained(i / axes)).map(|i| white[(i, 0)] * white[(i, 0)]).sum();
+            square.sqrt() * prepared.own[column].value.abs() > STANDS_OUT * noise
+        };
+        let seen = |column: &usize| match prepared.visibility[*column] {
+            Visibility::Seen => true,
+            Visibility::Unseen => is_turned(*column),
+            Visibility::Confounded(_) => false,
+        };
+        (0..prepared.own.len()).filter(seen).collect()
+    }
+
+    /// The same with or without numbers of the description that are seen at the
+    /// solution only.
+    fn solve_with(&self, named: &[Named], more: bool) -> Result<State, String> {
+        let prepared = self.prepared;
         let nonlinear = self.nonlinear(named);
         let collinear = || String::from("not to be told from the rest of the model");
         let mut theta = vec![0.0; nonlinear.len()];
@@ -55,7 +91,11 @@ impl<'c> Bench<'c> {
         for _ in 0..PASSES {
             let setup = self.setup(&nonlinear, &theta);
             let point = self.point(setup.clone());
-            let mut readings = self.readings(&point);
+            let base = if more { self.base_at(&point) } else { prepared.seen() };
+            let effects = named.iter().flat_map(|one| &self.candidates[one.candidate].variants[one.variant].columns);
+            let columns: Vec<usize> = base.iter().chain(effects).copied().collect();
+            let signs: Vec<Sign> = columns.iter().map(|&column| self.signs[column]).collect();
+            let mut readings = self.readings(&point, &base);
             let mut raw = DMatrix::zeros(readings.len(), columns.len());
             for (k, &column) in columns.iter().enumerate() {
                 if !nonlinear.iter().any(|(of, _)| *of == column) {
@@ -107,7 +147,7 @@ impl<'c> Bench<'c> {
             }
             let noise = solved.rss / problem.freedom(&solved);
             if moves.norm_squared() <= SETTLED * SETTLED * noise {
-                return Ok(State { setup, fit: solved, tangents, readings });
+                return Ok(State { setup, fit: solved, tangents, readings, base });
             }
             theta = next;
             fit = Some(solved);
@@ -137,17 +177,18 @@ impl<'c> Bench<'c> {
         }
     }
 
-    /// The readings at a point less what numbers that are held do.
-    pub(super) fn readings(&self, point: &Point<'c>) -> DVector<f64> {
+    /// The readings at a point less what numbers do that are held, those of the
+    /// description that are not among the columns fitted.
+    pub(super) fn readings(&self, point: &Point<'c>, fitted: &[usize]) -> DVector<f64> {
         let all = point.samples.readings();
-        let held = &all - self.prepared.readings(&point.samples);
+        let held = &all - self.prepared.readings_beside(&point.samples, fitted);
         all - point.with_creep(held)
     }
 
     /// What the arm does at a point, with the coefficients of a fit, numbers
     /// that are held included.
     pub(super) fn prediction(&self, point: &Point<'c>, fit: &Fit, nonlinear: &[(usize, &Number)]) -> DVector<f64> {
-        let mut sum = point.samples.readings() - self.readings(point);
+        let mut sum = point.samples.readings() - self.readings(point, &fit.columns);
         // Numbers in which the compliance is linear, in one go.
         let mut linear = Vec::new();
         for (&column, &value) in fit.columns.iter().zip(fit.coefficients.iter()) {

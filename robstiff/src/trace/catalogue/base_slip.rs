@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 
 use super::{Form, Kind, Number, Offers, Part, SHIFT, Scene, TURN};
 use crate::identify::samples::stack;
-use crate::trace::isolated::Moment;
+use crate::trace::slip::Moment;
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -42,7 +42,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
             point.samples.stacked_by(|row, sample| {
                 let turn = if moment.has(row) { Vector3::ith(k, 1.0) } else { Vector3::zeros() };
                 let at = sample.tcp.fixed_view::<3, 1>(0, 3) + sample.marker;
-                stack(&turn.cross(&at), &turn)
+                stack(&(sample.seen * turn.cross(&at)), &(sample.seen * turn))
             })
         })
     };

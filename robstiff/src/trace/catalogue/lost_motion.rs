@@ -24,9 +24,11 @@ pub static KIND: Kind = Kind {
 /// motion is over below some 3 % of what a gear is made for.
 const KNEES: [f64; 3] = [1.0 / 64.0, 1.0 / 32.0, 1.0 / 16.0];
 
-/// Knees that may be either's, as fractions of the largest torque: between the
-/// grids of the two and half a step into each, for no knee is known better.
-pub const EITHER: [f64; 2] = [1.0 / 24.0, 1.0 / 6.0];
+/// Knees that may be either's, as fractions of the largest torque. What is over
+/// by 3 % of the rated torque has a knee of half that; above it, a gear may be one
+/// that hardens at once, and what it is rated for is known from the largest torque
+/// by a factor at best. From half a step above the grid on it only hardens.
+pub const EITHER: [f64; 2] = [1.0 / 64.0, 1.0 / 6.0];
 
 /// A gap of a degree is a gear that is broken (rad); on a sliding joint (m).
 const WIDEST: f64 = 0.0175;

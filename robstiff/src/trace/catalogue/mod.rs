@@ -56,8 +56,8 @@ pub use self::outliers::KIND as OUTLIERS;
 pub use self::stiffness_nonlinearity::KIND as STIFFNESS_NONLINEARITY;
 use super::clamped::{Axes, OnAxes};
 use super::found::{Found, Place};
-use super::isolated::Moment;
 use super::point::Point;
+use super::slip::Moment;
 use crate::JointKind;
 use crate::campaign::Displacements;
 use crate::elements::Parameter;
@@ -180,6 +180,9 @@ type Check = Rc<dyn Fn(&[(&str, f64)], &dyn Fn(usize) -> f64) -> Result<(), Stri
 
 /// The numbers of a form with other values of those out of its grid.
 pub type Refine = Rc<dyn Fn(&[f64]) -> Vec<Number>>;
+
+/// Examples of what readings may have besides what the numbers of a form say.
+pub type Unsure = Rc<dyn Fn(&Point<'_>, &[f64]) -> Vec<DVector<f64>>>;
 
 /// A number of a candidate.
 #[derive(Clone)]

@@ -5,9 +5,12 @@ use std::rc::Rc;
 use std::string::String;
 use std::vec::Vec;
 
-use super::{Check, KINDS, Kind, MORE_THAN_NONE, Number, Refine, Scene, TOOL_FRAME};
+use nalgebra::DVector;
+
+use super::{Check, KINDS, Kind, MORE_THAN_NONE, Number, Refine, Scene, TOOL_FRAME, Unsure};
 use crate::Effect;
 use crate::trace::found::{EffectParameter, Place};
+use crate::trace::point::Point;
 
 /// One way a candidate can be there.
 #[derive(Clone)]
@@ -28,6 +31,8 @@ pub struct Variant {
     /// What such a number is likely to be, before any data, and by what factor
     /// off, in logarithms; where data may say nothing of it.
     pub likely: Option<[f64; 2]>,
+    /// What the readings may have besides that no column says, given the numbers.
+    pub unsure: Option<Unsure>,
 }
 
 /// An effect that may be missing.
@@ -85,6 +90,8 @@ pub struct Form {
     pub within: [f64; 2],
     /// What such a number is likely to be.
     pub likely: Option<[f64; 2]>,
+    /// What the readings may have besides that no column says, given the numbers.
+    pub unsure: Option<Unsure>,
 }
 
 impl Form {
@@ -98,6 +105,7 @@ impl Form {
             refine: None,
             within: MORE_THAN_NONE,
             likely: None,
+            unsure: None,
         }
     }
 
@@ -124,6 +132,13 @@ impl Form {
     /// this, up or down by a factor whose logarithm is `spread`.
     pub fn likely(mut self, middle: f64, spread: f64) -> Self {
         self.likely = Some([middle, spread]);
+        self
+    }
+
+    /// The same where readings may have something besides that no column says:
+    /// examples of it, all as likely, given the numbers.
+    pub fn unsure(mut self, of: impl Fn(&Point<'_>, &[f64]) -> Vec<DVector<f64>> + 'static) -> Self {
+        self.unsure = Some(Rc::new(of));
         self
     }
 
@@ -162,6 +177,7 @@ impl Offers<'_> {
             refine: form.refine,
             within: form.within,
             likely: form.likely,
+            unsure: form.unsure,
         };
         let variants = forms.into_iter().map(variant).collect();
         self.catalogue.numbers.extend(numbers);

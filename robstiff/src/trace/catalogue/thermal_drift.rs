@@ -2,13 +2,16 @@
 //! temperature, or as something that settles; since the visit's unloaded reading
 //! where each visit takes its own, or since the campaign began where none is
 //! taken again. Where the unloaded readings were taken in a round before, they
-//! have drifted among themselves by what no row tells; an offset, and one that
-//! grows from visit to visit, take that up.
+//! have drifted among themselves by what no row tells; an offset, and what grows
+//! from visit to visit up to its third power, take most of that up. What they do
+//! not, of a drift with a temperature that nobody wrote down then, makes its rate
+//! and all else less sure: by as much as temperatures do that went up and down as
+//! those of the rows did, at any other part of the campaign.
 
 use std::rc::Rc;
 use std::vec::Vec;
 
-use nalgebra::Vector3;
+use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::{Form, Kind, Number, Offers, Place, SHIFT, Scene};
 use crate::campaign::Displacements;
@@ -38,7 +41,14 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let offset = add(three(OFFSET, "m", &std::vec![1.0; scene.data.rows.len()]));
     let visits: Vec<f64> = scene.data.rows.iter().map(|row| row.visit as f64).collect();
     let order = add(three(BY_VISIT, "m/visit", &visits));
+    // From -1 to 1 over the campaign.
+    let middle = 0.5 * (scene.data.visits.len() - 1) as f64;
+    let power =
+        |power: i32| -> Vec<f64> { visits.iter().map(|visit| (visit / middle.max(1.0) - 1.0).powi(power)).collect() };
+    let squared = add(three(SQUARED, "m", &power(2)));
+    let cubed = add(three(CUBED, "m", &power(3)));
     let mut forms: Vec<Form> = Vec::new();
+    let (clock_of, _) = clock(scene.data);
     for course in courses(scene.data) {
         let since = |before: &Rc<Vec<f64>>| {
             let (at, before, law, unit) = (Rc::clone(&course.at), Rc::clone(before), course.law, course.unit);
@@ -62,7 +72,17 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
             form.numbers.extend(more.iter().copied().flatten());
             form
         };
-        forms.extend([form(&course.before_visit), with(&[]), with(&[&offset]), with(&[&offset, &order])]);
+        forms.push(form(&course.before_visit));
+        if course.told {
+            forms.extend([with(&[]), with(&[&offset]), with(&[&offset, &order])]);
+        } else {
+            let untold = elsewhen(scene.data, &clock_of, &course.at);
+            let slow = with(&[&offset, &order, &squared, &cubed]);
+            forms.push(slow.unsure(move |point, numbers| {
+                let rate = Vector3::from_column_slice(&numbers[..3]);
+                untold.iter().map(|warmth| point.of_reading(|row| rate * -warmth[row])).collect()
+            }));
+        }
         forms.extend(course.before_round.as_ref().map(form));
     }
     offers.add(Place::Rig, numbers, forms);
@@ -84,6 +104,8 @@ fn three(name: [&'static str; 3], unit: &'static str, values: &[f64]) -> Vec<Num
 
 const OFFSET: [&str; 3] = ["offset_x", "offset_y", "offset_z"];
 const BY_VISIT: [&str; 3] = ["visit_x", "visit_y", "visit_z"];
+const SQUARED: [&str; 3] = ["square_x", "square_y", "square_z"];
+const CUBED: [&str; 3] = ["cube_x", "cube_y", "cube_z"];
 
 /// Time constants tried of what settles, the shortest first (s).
 const CONSTANTS: [f64; 3] = [1800.0, 3600.0, 7200.0];
@@ -98,6 +120,8 @@ struct Course {
     /// The same where all unloaded readings were taken in a round before the
     /// first row, where there was time for that.
     before_round: Option<Rc<Vec<f64>>>,
+    /// Whether the file tells how far it was whenever a reading was taken.
+    told: bool,
     /// The same at the beginning of the campaign.
     begins: f64,
     /// How far the drift is, with a time constant.
@@ -124,6 +148,7 @@ fn courses(data: &Displacements) -> Vec<Course> {
         at: Rc::clone(&clock),
         before_visit: Rc::clone(&before_visit),
         before_round: round.clone(),
+        told: true,
         begins,
         law,
         unit,
@@ -148,6 +173,7 @@ fn courses(data: &Displacements) -> Vec<Course> {
         courses.push(Course {
             before_visit: first(&values, &slope),
             before_round: None,
+            told: false,
             begins: values[0],
             at: Rc::new(values),
             law: |warmth, _| warmth,
@@ -179,11 +205,56 @@ fn round(data: &Displacements, clock: &[f64], pace: f64) -> Option<Vec<f64>> {
     started.then(|| data.rows.iter().map(time).collect())
 }
 
+/// Parts of the campaign that a round of unloaded readings is laid to.
+const PARTS: usize = 24;
+
+/// How warm the unloaded reading of each row's visit may have been, had the round
+/// been at another part of the campaign, in the order of the visits and as far
+/// apart as rows are, but for what grows slowly; the campaign goes round. Empty
+/// where there is no clock.
+fn elsewhen(data: &Displacements, clock: &[f64], warmth: &[f64]) -> Vec<Vec<f64>> {
+    let mut place = std::vec![usize::MAX; data.visits.len()];
+    let mut count = 0;
+    for row in &data.rows {
+        if place[row.visit] == usize::MAX {
+            place[row.visit] = count;
+            count += 1;
+        }
+    }
+    let span = clock[clock.len() - 1] - clock[0];
+    let Some(warmth) = wiggle(clock, warmth, span) else { return Vec::new() };
+    let pace = span / (clock.len() - 1) as f64;
+    let at = |time: f64| {
+        let time = clock[0] + (time - clock[0]).rem_euclid(span);
+        let next = clock.partition_point(|&known| known <= time).clamp(1, clock.len() - 1);
+        let (from, to) = (clock[next - 1], clock[next]);
+        let share = if to > from { (time - from) / (to - from) } else { 0.0 };
+        warmth[next - 1] + share * (warmth[next] - warmth[next - 1])
+    };
+    let part = |part: usize| {
+        let begin = clock[0] + span * part as f64 / PARTS as f64;
+        data.rows.iter().map(|row| at(begin + pace * place[row.visit] as f64)).collect()
+    };
+    (0..PARTS).map(part).collect()
+}
+
+/// What the third power of time leaves of a temperature: what grows slowly is
+/// taken up from visit to visit.
+fn wiggle(clock: &[f64], warmth: &[f64], span: f64) -> Option<Vec<f64>> {
+    if span <= 0.0 {
+        return None;
+    }
+    let powers = DMatrix::from_fn(clock.len(), 4, |row, k| (2.0 * (clock[row] - clock[0]) / span - 1.0).powi(k as i32));
+    let warmth = DVector::from_column_slice(warmth);
+    let slow = powers.clone().svd(true, true).solve(&warmth, 1e-9).ok()?;
+    Some((warmth - powers * slow).as_slice().to_vec())
+}
+
 /// From row to row since the unloaded reading of an axis, on all alike.
 fn on_axes(axes: &Axes) -> Vec<OnAxes> {
     let count = axes.rows.len();
     let numbers = [AxisNumber { name: "rate", unit: "rad/row", range: [-MOST, MOST] }].into();
-    let since: nalgebra::DVector<f64> = axes
+    let since: DVector<f64> = axes
         .loaded()
         .map(|axis| {
             let rows = axes.rows_of(axis);

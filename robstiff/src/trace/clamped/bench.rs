@@ -76,6 +76,7 @@ impl Bench {
                     refine: None,
                     within: form.within,
                     likely: form.likely,
+                    unsure: None,
                 }
             };
             let variants = one.forms.iter().map(variant).collect();

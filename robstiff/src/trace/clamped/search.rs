@@ -225,6 +225,7 @@ fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit {
                 refine: None,
                 within: [0.0, f64::INFINITY],
                 likely: None,
+                unsure: None,
             };
             raw.push(super::axes_column(axes.rows.len(), &rows, values));
             signs.push(Sign::Free);
