@@ -8,9 +8,11 @@
 //! errors, zero offsets, transmission errors) is part of the robot, so that the
 //! solutions are those of the robot as described.
 
+mod base;
 mod descent;
 mod screws;
 mod starts;
+mod sweep;
 mod target;
 #[cfg(test)]
 mod tests;
@@ -42,6 +44,9 @@ const EXACT: f64 = 1e-12;
 /// solutions: more than the errors of a measured table, or the step between the
 /// turns that are tried, can account for.
 const NEAR: f64 = 0.1;
+
+/// The same where the closed form leaves nothing but rounding.
+const EXACTLY_NEAR: f64 = 1e-6;
 
 /// Solutions are the same when no joint differs by more (rad or m).
 const SAME: f64 = 1e-6;
@@ -148,8 +153,7 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
     /// Why there is none.
     pub fn nearest(&self, target: &Target, seed: &SVector<f64, N>) -> Result<SVector<f64, N>, Unreached> {
         check(target, seed)?;
-        let exact = self.is_exact(target);
-        if !exact {
+        if !self.is_exact(target) {
             // Down from the seed is the next solution, but not from far away.
             let end = self.descend(target, seed, &self.limits);
             if is_solved(&end) && (end.q - seed).amax() < 0.5 {
@@ -178,10 +182,11 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
     /// All solutions within the limits that were found, the nearest to the seed
     /// first, each in the turn nearest to the seed. Where the closed form gives
     /// the whole pose these are all there are, up to eight; where a joint may
-    /// stand anywhere, only where the seed has it. Where the turn about the
-    /// tool's axis is free and moves the wrist, they are what turns by 3 degrees
-    /// tell apart. For other arms they are what descents from all over the joint
-    /// space found, for a redundant arm a choice of them.
+    /// stand anywhere, only where the seed has it. So they are for five axes where
+    /// the turn about the tool's axis is free, but for pairs so near to each
+    /// other that a search all around sees none of them; for six, what turns by 3
+    /// degrees tell apart. For other arms they are what descents from all over
+    /// the joint space found, for a redundant arm a choice of them.
     ///
     /// # Errors
     /// Why there is none.
@@ -205,7 +210,15 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
 
     /// Whether the candidates of the closed form are all there can be.
     fn is_exact(&self, target: &Target) -> bool {
-        self.wrist.is_some() && matches!(target.orientation, Orientation::Full(_))
+        self.wrist.is_some() && (N == 5 || matches!(target.orientation, Orientation::Full(_)))
+    }
+
+    /// Whether a candidate of the closed form comes so near that it is worth a
+    /// descent: a branch that does not reach the target is nowhere near it.
+    fn is_near(&self, remaining: &Remaining) -> bool {
+        let exactly = self.wrist.as_ref().is_some_and(|wrist| !wrist.only_near());
+        let near = if exactly { EXACTLY_NEAR } else { NEAR };
+        remaining.distance <= near * self.reach && remaining.angle <= near
     }
 
     fn closed(&self, target: &Target, seed: &SVector<f64, N>, found: impl FnMut(SVector<f64, N>)) {
@@ -224,8 +237,7 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
         if remaining.distance < EXACT && remaining.angle < EXACT {
             return Some(*q);
         }
-        // A branch that does not reach the target is nowhere near it.
-        if remaining.distance > NEAR * self.reach || remaining.angle > NEAR {
+        if !self.is_near(&remaining) {
             return None;
         }
         let end = self.descend(target, q, &self.limits);
@@ -275,7 +287,7 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
             return;
         }
         let remaining = target.remaining(&self.robot.transform(q));
-        if remaining.distance > NEAR * self.reach || remaining.angle > NEAR {
+        if !self.is_near(&remaining) {
             return;
         }
         let nearly = remaining.distance < 1e-6 * self.reach && remaining.angle < 1e-6;

@@ -4,9 +4,9 @@
 //! frame, and of the pose at zero (Brockett 1984), whatever the convention of
 //! the DH table.
 
-use nalgebra::{Matrix4, SVector, Vector3};
+use nalgebra::{Matrix3, Matrix4, SVector, UnitComplex, Vector3};
 
-use super::target::{any_across, translation};
+use super::target::translation;
 use crate::{JointKind, Robot};
 
 /// The axis of a revolute joint in the base frame.
@@ -18,39 +18,48 @@ pub struct Axis {
     pub point: Vector3<f64>,
 }
 
+/// A turn, as its cosine and sine: closed forms need no angles until the end.
+pub type Turn = UnitComplex<f64>;
+
 impl Axis {
     /// A vector turned about the axis' direction (Rodrigues).
-    pub fn turn(&self, vector: &Vector3<f64>, angle: f64) -> Vector3<f64> {
-        let (sin, cos) = angle.sin_cos();
+    pub fn turn(&self, vector: &Vector3<f64>, by: Turn) -> Vector3<f64> {
         let along = self.direction * self.direction.dot(vector);
-        along + (vector - along) * cos + self.direction.cross(vector) * sin
+        along + (vector - along) * by.re + self.direction.cross(vector) * by.im
     }
 
-    /// The angle of the turn about the axis that brings one vector to another,
-    /// each seen along the axis; `None` where one of them is on it.
-    pub fn angle(&self, from: &Vector3<f64>, to: &Vector3<f64>) -> Option<f64> {
+    /// The columns of a matrix turned.
+    pub fn turn_all(&self, matrix: &Matrix3<f64>, by: Turn) -> Matrix3<f64> {
+        Matrix3::from_columns(&[0, 1, 2].map(|k| self.turn(&matrix.column(k).into_owned(), by)))
+    }
+
+    /// The turn about the axis that brings one vector to another, each seen
+    /// along the axis; `None` where one of them is on it.
+    pub fn turn_between(&self, from: &Vector3<f64>, to: &Vector3<f64>) -> Option<Turn> {
         let from = from - self.direction * self.direction.dot(from);
         let (sin, cos) = (self.direction.dot(&from.cross(to)), from.dot(to));
-        let vanishes = 1e-12 * to.norm();
-        (from.norm() > 1e-12 && sin.hypot(cos) > vanishes * from.norm()).then(|| sin.atan2(cos))
+        let (square, size) = (sin * sin + cos * cos, from.norm_squared());
+        let length = square.sqrt();
+        (size > 1e-24 && square > 1e-24 * to.norm_squared() * size)
+            .then(|| Turn::from_cos_sin_unchecked(cos / length, sin / length))
     }
 
-    /// The two angles of the turn about the axis after which a vector's part
-    /// along `other` is `value`, and how far the value is from what can be
-    /// reached, from where on both angles are the nearest one; `None` where
-    /// every angle gives the same.
-    pub fn angles_towards(&self, vector: &Vector3<f64>, other: &Vector3<f64>, value: f64) -> Option<([f64; 2], f64)> {
+    /// The two turns about the axis after which a vector's part along `other`
+    /// is `value`, or those that bring it nearest to that; `None` where every
+    /// turn gives the same.
+    pub fn turns_towards(&self, vector: &Vector3<f64>, other: &Vector3<f64>, value: f64) -> Option<[Turn; 2]> {
         let along = self.direction * self.direction.dot(vector);
         let cos = other.dot(&(vector - along));
         let sin = other.dot(&self.direction.cross(vector));
         let value = value - other.dot(&along);
-        let length = cos.hypot(sin);
+        let length = (cos * cos + sin * sin).sqrt();
         if length <= 1e-12 * vector.norm() * other.norm() {
             return None;
         }
-        let square = (length - value) * (length + value);
-        let (middle, half) = (sin.atan2(cos), square.max(0.0).sqrt().atan2(value));
-        Some(([middle + half, middle - half], (value.abs() - length).max(0.0)))
+        let across = ((length - value) * (length + value)).max(0.0).sqrt();
+        let middle = Turn::from_cos_sin_unchecked(cos / length, sin / length);
+        let half = Turn::from_cos_sin_unchecked((value / length).clamp(-1.0, 1.0), across / length);
+        Some([middle * half, middle * half.inverse()])
     }
 }
 
@@ -83,9 +92,4 @@ pub fn meeting(one: &Axis, other: &Axis) -> Option<(Vector3<f64>, f64)> {
     let on_one = one.point + one.direction * (apart.cross(&other.direction).dot(&across) / square);
     let on_other = other.point + other.direction * (apart.cross(&one.direction).dot(&across) / square);
     Some(((on_one + on_other) * 0.5, (on_one - on_other).norm()))
-}
-
-/// A vector across the axis.
-pub fn across(axis: &Axis) -> Vector3<f64> {
-    any_across(&axis.direction)
 }

@@ -16,6 +16,7 @@
 
 #[cfg(test)]
 mod tests;
+mod timeline;
 
 use std::collections::VecDeque;
 use std::vec::Vec;
@@ -25,6 +26,7 @@ use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3, Vector6};
 
 use crate::elements::{plays, turn};
 use crate::{Effect, Robot, State};
+pub use timeline::{NoFeed, Timeline};
 
 /// Points within a control step at which the deviation is looked at.
 const POINTS: usize = 8;
@@ -124,24 +126,51 @@ pub fn simulate<const N: usize>(
     controller: &Controller,
     duration: f64,
     load: impl Fn(f64) -> Vector6<f64>,
+    reading: impl FnMut(f64, &Vector6<f64>) -> Option<Vector6<f64>>,
+) -> Vec<Instant> {
+    simulate_moving((truth, model), |_| *q, controller, duration, load, reading)
+}
+
+/// The same while the arm moves as the [`Timeline`] says, from its begin to its
+/// end and under its load. The controller knows where the joints are to be.
+///
+/// # Panics
+/// As [`simulate`].
+pub fn simulate_along<const N: usize>(
+    robots: (&impl Robot<N>, &impl Robot<N>),
+    timeline: &Timeline<N>,
+    controller: &Controller,
+    reading: impl FnMut(f64, &Vector6<f64>) -> Option<Vector6<f64>>,
+) -> Vec<Instant> {
+    let (posture, load) = (|time: f64| timeline.posture(time), |time: f64| timeline.wrench(time));
+    simulate_moving(robots, posture, controller, timeline.duration(), load, reading)
+}
+
+fn simulate_moving<const N: usize>(
+    (truth, model): (&impl Robot<N>, &impl Robot<N>),
+    posture: impl Fn(f64) -> SVector<f64, N>,
+    controller: &Controller,
+    duration: f64,
+    load: impl Fn(f64) -> Vector6<f64>,
     mut reading: impl FnMut(f64, &Vector6<f64>) -> Option<Vector6<f64>>,
 ) -> Vec<Instant> {
     let &Controller { step, delay, .. } = controller;
     assert!(step > 0.0 && delay >= 0.0, "a control step takes time, and no correction is early");
-    let moves = truth.jacobian(q).fixed_rows::<3>(0).into_owned();
     let (mut wanted, mut silent) = (Correction::new(controller), 0.0);
     let mut servo = [Vector2::zeros(); N];
     let (mut target, mut underway) = (SVector::<f64, N>::zeros(), VecDeque::new());
     let (mut seen, mut now) = (Vec::new(), 0.0);
     let mut state = State::new();
+    let mut moves: Option<(SVector<f64, N>, SMatrix<f64, 3, N>)> = None;
     let between = transition(controller.servo, step / POINTS as f64);
     for k in 0..(duration / step).ceil() as usize {
         let start = k as f64 * step;
         let read = reading(start, &load(start));
         silent = if read.is_some() { 0.0 } else { silent + step };
+        let q = posture(start);
         let asked = match (read, controller.sensing) {
-            (Some(wrench), Sensing::Force) => Some(back(model, q, &wrench, controller.damping)),
-            (Some(wrench), Sensing::Encoders) => Some(-gears(truth, q, &wrench)),
+            (Some(wrench), Sensing::Force) => Some(back(model, &q, &wrench, controller.damping)),
+            (Some(wrench), Sensing::Encoders) => Some(-gears(truth, &q, &wrench)),
             (None, _) => (silent > controller.limits.hold).then(SVector::zeros),
         };
         underway.push_back((start + delay, wanted.step(asked)));
@@ -161,8 +190,13 @@ pub fn simulate<const N: usize>(
             advance(&mut servo, &target, &rest);
             now = end;
             let moved = SVector::<f64, N>::from_fn(|i, _| servo[i].x);
-            let uncorrected = truth.deflection_with(q, &load(now), &mut state).fixed_rows::<3>(0).into_owned();
-            seen.push(Instant { time: now, uncorrected, corrected: uncorrected + moves * moved });
+            let q = posture(now);
+            if moves.is_none_or(|(at, _)| at != q) {
+                moves = Some((q, truth.jacobian(&q).fixed_rows::<3>(0).into_owned()));
+            }
+            let uncorrected = truth.deflection_with(&q, &load(now), &mut state).fixed_rows::<3>(0).into_owned();
+            let back = moves.map_or_else(Vector3::zeros, |(_, moves)| moves * moved);
+            seen.push(Instant { time: now, uncorrected, corrected: uncorrected + back });
         }
     }
     seen

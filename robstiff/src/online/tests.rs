@@ -138,3 +138,70 @@ fn noise_is_left_as_rms_and_not_as_amplitude() {
     assert!((noisy.amplitude / quiet.amplitude - 1.0).abs() < 0.01, "{noisy:?} {quiet:?}");
     assert!(noisy.rms > quiet.rms * 1.001, "{noisy:?} {quiet:?}");
 }
+
+/// A square, 10 mm/s, that is longer than what the controller takes to settle.
+fn square() -> (Generic<5>, Timeline<5>) {
+    let robot = robot();
+    let corners = [[0.0, 0.0], [0.04, 0.0], [0.04, 0.04], [0.0, 0.04], [0.0, 0.0]];
+    let inverse = crate::inverse::Inverse::new(&robot);
+    let start = robot.transform(&pose());
+    let point = |(k, [x, y]): (usize, [f64; 2])| {
+        let mut at = start;
+        (at[(0, 3)], at[(1, 3)]) = (at[(0, 3)] + x, at[(1, 3)] + y);
+        let direction = nalgebra::Unit::new_normalize(at.fixed_view::<3, 1>(0, 0).into_owned());
+        let position = at.fixed_view::<3, 1>(0, 3).into_owned();
+        let target = crate::inverse::Target::axis(position, Vector3::x_axis(), direction);
+        let q = inverse.nearest(&target, &pose()).unwrap();
+        let feed = (k > 2).then_some(0.02);
+        crate::path::PathPoint { line: k + 2, q, pose: at, tangent: None, s: 0.04 * k as f64, feed }
+    };
+    let points = corners.into_iter().enumerate().map(point).collect();
+    let path = crate::path::SolvedPath { points, jumps: vec![] };
+    let wrenches = [wrench(), wrench() * 2.0, wrench(), -wrench(), wrench()];
+    assert_eq!(Timeline::of_path(&path, &wrenches, None), Err(NoFeed { lines: vec![3, 4] }));
+    (robot, Timeline::of_path(&path, &wrenches, Some(0.01)).unwrap())
+}
+
+#[test]
+fn a_path_takes_its_time() {
+    let (_, timeline) = square();
+    assert!((timeline.duration() - 12.0).abs() < 1e-12);
+    assert_eq!(timeline.times().collect::<Vec<_>>(), [0.0, 4.0, 8.0, 10.0, 12.0]);
+    assert!((timeline.wrench(2.0) - wrench() * 1.5).norm() < 1e-9);
+    assert!(timeline.wrench(9.0).norm() < 1e-9);
+    assert_eq!(timeline.posture(-1.0), timeline.posture(0.0));
+    assert_eq!(timeline.posture(99.0), timeline.posture(12.0));
+    assert!((timeline.posture(9.0) * 2.0 - timeline.posture(8.0) - timeline.posture(10.0)).norm() < 1e-12);
+}
+
+#[test]
+fn along_a_path_the_tool_is_brought_back_wherever_the_arm_is() {
+    let (robot, timeline) = square();
+    let ideal = Controller { step: 1e-3, delay: 0.0, ..controller(Servo::Ideal) };
+    let seen = simulate_along((&robot, &robot), &timeline, &ideal, truly);
+    for seen in &seen {
+        let q = timeline.posture(seen.time);
+        let expected = robot.deflection(&q, &timeline.wrench(seen.time)).fixed_rows::<3>(0).into_owned();
+        assert!((seen.uncorrected - expected).norm() < 1e-15);
+    }
+    let worst = |of: fn(&Instant) -> Vector3<f64>| seen.iter().map(|seen| of(seen).norm()).fold(0.0, f64::max);
+    // What a force of 600 N/s changes in a step.
+    assert!(worst(|seen| seen.corrected) < 2e-3 * worst(|seen| seen.uncorrected));
+    // A sensor that is lost for a second leaves the whole of it.
+    let lost = |time: f64, wrench: &Vector6<f64>| (!(5.0..6.0).contains(&time)).then_some(*wrench);
+    let seen = simulate_along((&robot, &robot), &timeline, &ideal, lost);
+    let at = |time: f64| seen.iter().find(|seen| seen.time > time).unwrap();
+    assert!((at(5.5).corrected - at(5.5).uncorrected).norm() < 1e-12);
+    assert!(at(6.5).corrected.norm() < 2e-3 * at(6.5).uncorrected.norm());
+}
+
+#[test]
+fn a_recorded_force_is_played_at_a_pose() {
+    let samples = [(0.3, wrench()), (0.1, wrench() * 0.0), (0.2, wrench() * 3.0)];
+    let timeline = Timeline::at_pose(&pose(), samples).unwrap();
+    assert!((timeline.duration() - 0.2).abs() < 1e-12);
+    assert!((timeline.wrench(0.05) - wrench() * 1.5).norm() < 1e-9);
+    assert_eq!(timeline.posture(0.1), pose());
+    assert_eq!(Timeline::at_pose(&pose(), []), None);
+    assert_eq!(Timeline::at_pose(&pose(), [(f64::NAN, wrench())]), None);
+}
