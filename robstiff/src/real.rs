@@ -43,7 +43,7 @@ pub trait Real:
     /// in the lanes of a vector.
     ///
     /// Rows: the entries xx, xy, yy, xz and yz of displacement per force, of
-    /// displacement per moment, of that transposed, and of rotation per moment.
+    /// rotation per moment, of displacement per moment, and of that transposed.
     #[inline(always)]
     fn turn_blocks(rows: [[Self; 4]; 5], sin_cos: (Self, Self)) -> [[Self; 4]; 5] {
         blocks::turn(rows, sin_cos)

@@ -281,13 +281,13 @@ fn play(expression: &Expr) -> Option<(usize, usize)> {
     is_plays.then(|| Some((index(&inner.index)?, index(&outer.index)?)))?
 }
 
-/// `R M R^T` about z, as `Real::turn_blocks` states it, for four blocks, the second and third of which are each
+/// `R M R^T` about z, as `Real::turn_blocks` states it, for four blocks, the last two of which are each
 /// other's transposes: rows xx, xy, yy, xz, yz of one entry a block, then sine
 /// and cosine.
 fn turn_blocks(numbers: &[f64]) -> Vec<f64> {
     let [s, c] = [numbers[20], numbers[21]];
     let mut turned = vec![0.0; 20];
-    for (block, transposed) in [0, 2, 1, 3].into_iter().enumerate() {
+    for (block, transposed) in [0, 1, 3, 2].into_iter().enumerate() {
         let [xx, xy, yy, xz, yz] = [0, 1, 2, 3, 4].map(|row| numbers[4 * row + block]);
         let yx = numbers[4 + transposed];
         let t = s * (xx - yy) + c * (xy + yx);

@@ -110,8 +110,8 @@ pub struct Node {
 /// A turn about z of all four blocks of a compliance, which are nodes like
 /// any others; a scalar that knows how performs them as one operation.
 ///
-/// A row of four: displacement per force, displacement per moment, the same
-/// transposed, rotation per moment. Rows: xx, xy, yy, xz, yz.
+/// A row of four: displacement per force, rotation per moment, displacement
+/// per moment, the same transposed. Rows: xx, xy, yy, xz, yz.
 #[derive(Clone, Debug)]
 pub struct BlockTurn {
     /// Sine and cosine.

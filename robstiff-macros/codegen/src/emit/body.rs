@@ -182,7 +182,7 @@ impl Writer<'_> {
         }
     }
 
-    /// `let [[tt_xx, tr_xx, _, rr_xx], ..] = T::turn_blocks([[..], ..], (s1, c1));`
+    /// `let [[tt_xx, rr_xx, tr_xx, _], ..] = T::turn_blocks([[..], ..], (s1, c1));`
     /// and the results that are negatives of what stands there.
     fn block_turn(&self, turn: &Turn) -> TokenStream {
         let mut after: [[Option<Ident>; 4]; 5] = Default::default();
