@@ -125,6 +125,12 @@ impl<'g> Column<'g> {
     }
 }
 
+impl PartialEq for Column<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        self.whole() == other.whole()
+    }
+}
+
 /// Whether the product of the two is no operation.
 fn is_free(entry: Sym<'_>, factor: Sym<'_>) -> bool {
     match (entry.constant(), factor.constant()) {

@@ -235,14 +235,23 @@ fn levers<'g>(g: &'g Graph, steps: &[Step<'g>]) -> (Vec3<'g>, Vec<Vec3<'g>>) {
 fn of_joints<'g>(g: &'g Graph, joints: &[Twist<'g>], elastic: &Elastic<'g>) -> Vec<Sym<'g>> {
     let zero = Column::zero(g);
     let (mut tt, mut tr, mut rr) = ([zero; 3], [zero; 3], [zero; 3]);
+    // Parallel axes turn the TCP alike.
+    let mut directions: Vec<(Column<'g>, Sym<'g>)> = Vec::new();
     for (i, joint) in joints.iter().enumerate() {
         let h = elastic.unloaded_joint(i);
-        let (by_translation, by_rotation) = (joint.translation.scaled(h), joint.rotation.scaled(h));
+        let moved = joint.translation.scaled(h);
         for row in 0..3 {
-            let (moved, turned) = (by_translation.at(row), by_rotation.at(row));
-            tt[row] = tt[row].plus_scaled(joint.translation, moved);
-            tr[row] = tr[row].plus_scaled(joint.rotation, moved);
-            rr[row] = rr[row].plus_scaled(joint.rotation, turned);
+            tt[row] = tt[row].plus_scaled(joint.translation, moved.at(row));
+            tr[row] = tr[row].plus_scaled(joint.rotation, moved.at(row));
+        }
+        match directions.iter_mut().find(|(axis, _)| *axis == joint.rotation) {
+            Some((_, sum)) => *sum = *sum + h,
+            None => directions.push((joint.rotation, h)),
+        }
+    }
+    for (axis, h) in directions {
+        for (row, sum) in rr.iter_mut().enumerate() {
+            *sum = sum.plus_scaled(axis.scaled(h), axis.at(row));
         }
     }
     let entry = |i: usize, j: usize| match (i < 3, j < 3) {
