@@ -7,8 +7,9 @@
 
 use crate::Real;
 
-/// The lane of each block's transpose.
-const TRANSPOSED: [usize; 4] = [0, 2, 1, 3];
+/// The lane of each block's transpose. The two that change places are in one
+/// half of a vector, which takes a cycle; across the halves it takes four.
+const TRANSPOSED: [usize; 4] = [0, 1, 3, 2];
 
 /// Lane by lane.
 #[inline(always)]
@@ -80,7 +81,7 @@ mod tests {
         let tr = Matrix3::new(0.3, -0.7, 1.1, 0.2, 0.9, -0.4, 0.6, -1.3, 0.8);
         let tt = Matrix3::new(2.0, 0.5, -0.3, 0.5, 1.5, 0.7, -0.3, 0.7, 1.0);
         let rr = Matrix3::new(0.4, 0.1, 0.2, 0.1, 0.8, -0.6, 0.2, -0.6, 1.2);
-        let blocks = [tt, tr, tr.transpose(), rr];
+        let blocks = [tt, rr, tr, tr.transpose()];
         for angle in [0.0, 0.4, -2.0, 3.0] {
             let turn_about_z = Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
             let turned = blocks.map(|block| turn_about_z * block * turn_about_z.inverse());

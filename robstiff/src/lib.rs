@@ -52,6 +52,7 @@ pub mod batch;
 mod blocks;
 #[cfg(feature = "identify")]
 pub mod campaign;
+mod columns;
 #[cfg(feature = "machining")]
 pub mod compensation;
 #[cfg(feature = "machining")]

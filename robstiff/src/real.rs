@@ -5,7 +5,7 @@ use core::ops::Neg;
 use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign};
 use num_traits::{One, Zero};
 
-use crate::{blocks, trig};
+use crate::{blocks, columns, trig};
 
 /// A scalar that generated code can compute with: `f32`, `f64`, several of
 /// them side by side ([`Lanes`](crate::Lanes)), with derivatives
@@ -43,10 +43,32 @@ pub trait Real:
     /// in the lanes of a vector.
     ///
     /// Rows: the entries xx, xy, yy, xz and yz of displacement per force, of
-    /// displacement per moment, of that transposed, and of rotation per moment.
+    /// rotation per moment, of displacement per moment, and of that transposed.
     #[inline(always)]
     fn turn_blocks(rows: [[Self; 4]; 5], sin_cos: (Self, Self)) -> [[Self; 4]; 5] {
         blocks::turn(rows, sin_cos)
+    }
+
+    /// Whether four numbers side by side are scaled and added in one
+    /// instruction: generated code then computes frames column by column.
+    const COLUMNS: bool = false;
+
+    /// A column of a homogeneous matrix times a factor.
+    #[inline(always)]
+    fn scaled(column: [Self; 4], factor: Self) -> [Self; 4] {
+        columns::scaled(column, factor)
+    }
+
+    /// `column + other * factor`.
+    #[inline(always)]
+    fn plus_scaled(column: [Self; 4], other: [Self; 4], factor: Self) -> [Self; 4] {
+        columns::plus_scaled(column, other, factor)
+    }
+
+    /// The column with 0 for its last entry, of which turns may make -0.
+    #[inline(always)]
+    fn direction(column: [Self; 4]) -> [Self; 4] {
+        columns::direction(column)
     }
 
     /// The square root.
@@ -105,6 +127,23 @@ macro_rules! real {
             #[inline(always)]
             fn turn_blocks(rows: [[Self; 4]; 5], sin_cos: (Self, Self)) -> [[Self; 4]; 5] {
                 blocks::$turn(rows, sin_cos)
+            }
+
+            const COLUMNS: bool = cfg!(all(target_feature = "avx", target_feature = "fma"));
+
+            #[inline(always)]
+            fn scaled(column: [Self; 4], factor: Self) -> [Self; 4] {
+                columns::$float::scaled(column, factor)
+            }
+
+            #[inline(always)]
+            fn plus_scaled(column: [Self; 4], other: [Self; 4], factor: Self) -> [Self; 4] {
+                columns::$float::plus_scaled(column, other, factor)
+            }
+
+            #[inline(always)]
+            fn direction(column: [Self; 4]) -> [Self; 4] {
+                columns::$float::direction(column)
             }
 
             #[inline(always)]

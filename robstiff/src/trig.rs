@@ -138,22 +138,25 @@ pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K]) -> [(F, F); 
     let left = K % lanes;
     let in_pairs = if 2 * left <= lanes { left } else { 0 };
     let alone = K - in_pairs;
-    let mut within = !cfg!(feature = "platform-trig");
+    let mut strange = F::Vector::number(0);
     for first in (0..alone).step_by(lanes) {
-        within = within && is_within_domain::<F, F::Vector>(F::Vector::gather(&angles, first));
+        let next = strangeness(F::Vector::gather(&angles, first));
+        strange = if first == 0 { next } else { strange.or(next) };
     }
     if in_pairs > 0 {
-        within = within && is_within_domain::<F, F::Pairs>(F::Pairs::gather_pairs(&angles, alone));
+        let last = strangeness(F::Vector::gather_pairs(&angles, alone));
+        strange = if alone == 0 { last } else { strange.or(last) };
     }
+    let within = !cfg!(feature = "platform-trig") && (K == 0 || strange.is_usual());
     // Both branches end in vectors. If they ended in numbers, the compiler would make other vectors of those.
     let mut vectors = [(F::Vector::number(0), F::Vector::number(0)); K];
-    let mut pairs = F::Pairs::number(0);
+    let mut pairs = F::Vector::number(0);
     if within {
         for first in (0..alone).step_by(lanes) {
             vectors[first / lanes] = within_domain::<F, F::Vector, FUSED>(F::Vector::gather(&angles, first));
         }
         if in_pairs > 0 {
-            pairs = pairs_within_domain::<F, F::Pairs, FUSED>(F::Pairs::gather_pairs(&angles, alone));
+            pairs = pairs_within_domain::<F, F::Vector, FUSED>(F::Vector::gather_pairs(&angles, alone));
         }
     } else {
         let copies = angles;
@@ -162,7 +165,7 @@ pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K]) -> [(F, F); 
             vectors[first / lanes] = (F::Vector::gather(&sines, first), F::Vector::gather(&cosines, first));
         }
         if in_pairs > 0 {
-            pairs = F::Pairs::sides(F::Pairs::gather_pairs(&sines, alone), F::Pairs::gather_pairs(&cosines, alone));
+            pairs = F::Vector::sides(F::Vector::gather_pairs(&sines, alone), F::Vector::gather_pairs(&cosines, alone));
         }
     }
     let mut out = [(F::ZERO, F::ZERO); K];
@@ -177,8 +180,8 @@ pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K]) -> [(F, F); 
 }
 
 #[inline(always)]
-fn is_within_domain<F: Float, V: Vector<F>>(angles: V) -> bool {
-    angles.is_within_domain(quarters::<F, V, FUSED>(angles))
+fn strangeness<F: Float, V: Vector<F>>(angles: V) -> V {
+    angles.strange(quarters::<F, V, FUSED>(angles))
 }
 
 #[cold]

@@ -6,7 +6,7 @@
 
 use std::collections::HashMap;
 
-use syn::{BinOp, Block, Expr, File, ImplItem, Item, Lit, Member, Pat, Stmt, UnOp};
+use syn::{BinOp, Block, Expr, ExprIndex, ExprLit, File, ImplItem, Item, Lit, Member, Pat, Stmt, UnOp};
 
 /// The generated code of one robot.
 pub struct Code {
@@ -42,8 +42,15 @@ impl Code {
             // What a call costs is no number of the calculation.
             ImplItem::Const(item) if matches!(item.expr, Expr::Struct(_)) => {}
             ImplItem::Const(item) => {
-                let value = Scope { code: self, bound: HashMap::new(), q: &[], wrench: &[], plays: Vec::new() }
-                    .value(&item.expr);
+                let value = Scope {
+                    code: self,
+                    bound: HashMap::new(),
+                    columns: HashMap::new(),
+                    q: &[],
+                    wrench: &[],
+                    plays: Vec::new(),
+                }
+                .value(&item.expr);
                 assert!(self.constants.insert(item.ident.to_string(), value).is_none(), "{} twice", item.ident);
             }
             ImplItem::Fn(item) => {
@@ -68,13 +75,37 @@ impl Code {
     /// # Panics
     /// Where the code is none that the generator writes.
     pub fn call_with(&self, method: &str, q: &[f64], wrench: &[f64], plays: &mut [[f64; 3]]) -> Vec<f64> {
-        let mut scope = Scope { code: self, bound: HashMap::new(), q, wrench, plays: plays.to_vec() };
+        let block = &self.methods[method];
+        match formulations(block) {
+            Some((_, plain)) => self.run(plain, q, wrench, plays),
+            None => self.run(block, q, wrench, plays),
+        }
+    }
+
+    /// The same as scalars calculate that compute with columns as with one
+    /// number, if the method has a formulation for them; frames by columns.
+    ///
+    /// # Panics
+    /// Where the code is none that the generator writes.
+    pub fn call_in_columns(&self, method: &str, q: &[f64]) -> Option<Vec<f64>> {
+        let (in_columns, _) = formulations(&self.methods[method])?;
+        Some(self.run(in_columns, q, &[], &mut []))
+    }
+
+    fn run(&self, block: &Block, q: &[f64], wrench: &[f64], plays: &mut [[f64; 3]]) -> Vec<f64> {
+        let mut scope =
+            Scope { code: self, bound: HashMap::new(), columns: HashMap::new(), q, wrench, plays: plays.to_vec() };
         let mut result = Vec::new();
-        for statement in &self.methods[method].stmts {
+        for statement in &block.stmts {
             match statement {
                 Stmt::Local(local) => {
                     let value = &local.init.as_ref().expect("a value").expr;
                     let values = scope.entries(value);
+                    if let (Pat::Ident(name), &[x, y, z, w]) = (&local.pat, values.as_slice()) {
+                        let name = name.ident.to_string();
+                        assert!(scope.columns.insert(name.clone(), [x, y, z, w]).is_none(), "{name} is bound twice");
+                        continue;
+                    }
                     assert_eq!(scope.bind(&local.pat, &values), values.len(), "as many names as values");
                 }
                 Stmt::Expr(Expr::Assign(assignment), Some(_)) => {
@@ -89,9 +120,20 @@ impl Code {
     }
 }
 
+/// A method's block in columns and its block in single numbers, if it has both.
+fn formulations(block: &Block) -> Option<(&Block, &Block)> {
+    let [Stmt::Expr(Expr::If(choice), None)] = block.stmts.as_slice() else { return None };
+    assert_eq!(path(&choice.cond), "T::COLUMNS");
+    let (_, Expr::Block(plain)) = choice.else_branch.as_ref().map(|(token, block)| (token, &**block))? else {
+        panic!("both formulations")
+    };
+    Some((&choice.then_branch, &plain.block))
+}
+
 struct Scope<'c> {
     code: &'c Code,
     bound: HashMap<String, f64>,
+    columns: HashMap<String, [f64; 4]>,
     q: &'c [f64],
     wrench: &'c [f64],
     plays: Vec<[f64; 3]>,
@@ -126,16 +168,27 @@ impl Scope<'_> {
                     "T::sin_cos" | "T::sin_cos_all" => {
                         arguments().flat_map(|angle| [angle.sin(), angle.cos()]).collect()
                     }
+                    "T::scaled" => {
+                        let numbers: Vec<f64> = arguments().collect();
+                        numbers[..4].iter().map(|entry| entry * numbers[4]).collect()
+                    }
+                    "T::plus_scaled" => {
+                        let numbers: Vec<f64> = arguments().collect();
+                        (0..4).map(|k| numbers[k] + numbers[4 + k] * numbers[8]).collect()
+                    }
+                    "T::direction" => arguments().take(3).chain([0.0]).collect(),
                     "T::turn_blocks" => turn_blocks(&arguments().collect::<Vec<_>>()),
                     "T::zero" => vec![0.0],
                     "T::one" => vec![1.0],
-                    "T::of" | "Matrix4::new" | "Matrix6::new" | "Vector6::new" | "SMatrix::from" | "SVector::from" => {
-                        arguments().collect()
-                    }
+                    "T::of" | "Matrix4::new" | "Matrix4::from" | "Matrix6::new" | "Vector6::new" | "SMatrix::from"
+                    | "SVector::from" => arguments().collect(),
                     other => panic!("a call of {other}"),
                 }
             }
-            Expr::Index(index) if !is_q(&index.expr) && play(expression).is_none() => self.wrench.to_vec(),
+            Expr::Path(_) if self.columns.contains_key(&path(expression)) => self.columns[&path(expression)].to_vec(),
+            Expr::Index(index) if !is_column_entry(index) && !is_q(&index.expr) && play(expression).is_none() => {
+                self.wrench.to_vec()
+            }
             _ => vec![self.value(expression)],
         }
     }
@@ -172,6 +225,10 @@ impl Scope<'_> {
                 },
                 _ => panic!("an index"),
             },
+            Expr::Index(index) if is_column_entry(index) => {
+                let Expr::Lit(ExprLit { lit: Lit::Int(entry), .. }) = &*index.index else { panic!("an index") };
+                self.columns[&path(&index.expr)][entry.base10_parse::<usize>().expect("an index")]
+            }
             Expr::Index(_) => {
                 let (joint, index) = play(expression).expect("a play operator");
                 self.plays[joint][index]
@@ -203,6 +260,11 @@ fn is_q(expression: &Expr) -> bool {
     matches!(expression, Expr::Path(_)) && path(expression) == "q"
 }
 
+/// Whether it is `x1[2]`, neither `q[1]` nor a field's.
+fn is_column_entry(index: &ExprIndex) -> bool {
+    matches!(&*index.expr, Expr::Path(_)) && !is_q(&index.expr)
+}
+
 /// The joint and the number of `state.plays[1][0]`, from 0.
 fn play(expression: &Expr) -> Option<(usize, usize)> {
     let index = |expression: &Expr| match expression {
@@ -219,13 +281,13 @@ fn play(expression: &Expr) -> Option<(usize, usize)> {
     is_plays.then(|| Some((index(&inner.index)?, index(&outer.index)?)))?
 }
 
-/// `R M R^T` about z, as `Real::turn_blocks` states it, for four blocks, the second and third of which are each
+/// `R M R^T` about z, as `Real::turn_blocks` states it, for four blocks, the last two of which are each
 /// other's transposes: rows xx, xy, yy, xz, yz of one entry a block, then sine
 /// and cosine.
 fn turn_blocks(numbers: &[f64]) -> Vec<f64> {
     let [s, c] = [numbers[20], numbers[21]];
     let mut turned = vec![0.0; 20];
-    for (block, transposed) in [0, 2, 1, 3].into_iter().enumerate() {
+    for (block, transposed) in [0, 1, 3, 2].into_iter().enumerate() {
         let [xx, xy, yy, xz, yz] = [0, 1, 2, 3, 4].map(|row| numbers[4 * row + block]);
         let yx = numbers[4 + transposed];
         let t = s * (xx - yy) + c * (xy + yx);

@@ -180,7 +180,25 @@ fn compare_code(robot: &Description, q: &[f64], wrench: &[f64; 6]) {
         let plays = symbolic::plays(robot).into_iter().map(|(joint, k)| after[joint][k]);
         let found: Vec<f64> = found.into_iter().chain(plays.filter(|_| name == "deflection_with")).collect();
         assert_eq!(found, expected, "{name}");
+        if let Some(found) = code.call_in_columns(name, q) {
+            compare_columns(robot, name, q, &found, &expected);
+        }
     }
+}
+
+/// That the formulation in columns, with its frames by columns, says the same.
+fn compare_columns(robot: &Description, name: &str, q: &[f64], found: &[f64], expected: &[f64]) {
+    let sizes = Sizes::of(robot, q);
+    let frame = if name == "jacobian" { 0 } else { 16 };
+    let transposed = |k: usize| if k < frame { expected[4 * (k % 4) + k / 4] } else { expected[k] };
+    let expected: Vec<f64> = (0..expected.len()).map(transposed).collect();
+    let kinematic = if name == "transform" { frame } else { frame + 6 * q.len() };
+    assert_close(name, &found[..kinematic], &expected[..kinematic], sizes.reach, DOUBLE);
+    for (k, (found, expected)) in found.iter().zip(&expected).skip(kinematic).enumerate() {
+        let size = sizes.compliance()[k / 18 + k % 6 / 3];
+        assert_close(name, &[*found], &[*expected], size, DOUBLE);
+    }
+    assert_eq!(found.len(), expected.len(), "{name}");
 }
 
 /// Panics where the two disagree, which a property takes for a failure.

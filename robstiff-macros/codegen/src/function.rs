@@ -1,12 +1,13 @@
 //! A function as a graph with outputs: what is live in it, what it costs, and
 //! its value at a point.
 
+use std::collections::HashMap;
 use std::fmt;
 
 use robstiff_robots::Description;
 use robstiff_robots::effect::physics::PLAYS;
 
-use crate::graph::{Graph, Id, Op, Sym};
+use crate::graph::{Graph, Id, Node, Op, Sym};
 use crate::symbolic::{ALGORITHMS, STATEFUL, remembers};
 
 /// The expressions of one function and which of them are its results.
@@ -67,7 +68,19 @@ impl Function {
                 Op::Add(..) | Op::Sub(..) | Op::Max(..) | Op::Min(..) => cost.add += 1,
                 Op::Neg(_) => cost.neg += 1,
                 Op::Sqrt(_) | Op::Recip(_) => cost.root += 1,
-                Op::Number(_) | Op::Parameter(_) | Op::Coordinate(_) | Op::Wrench(_) | Op::Play(..) => {}
+                Op::Scaled(..) => cost.mul += 4,
+                Op::PlusScaled(..) => {
+                    cost.mul += 4;
+                    cost.add += 4;
+                }
+                Op::Number(_)
+                | Op::Parameter(_)
+                | Op::Coordinate(_)
+                | Op::Wrench(_)
+                | Op::Play(..)
+                | Op::Column(_)
+                | Op::Direction(_)
+                | Op::Entry(..) => {}
             }
         }
         // An angle of two joints takes additions, a multiple a multiplication.
@@ -86,8 +99,25 @@ impl Function {
         cost
     }
 
-    /// The values of the outputs: the graph interpreted, node by node, on a
-    /// robot that was never loaded.
+    /// What one evaluation costs where a column is computed with as one number:
+    /// an operation, and one more for a number that goes into all or into one of
+    /// its entries. Results are stored as whole or as single numbers alike.
+    pub fn cost_in_columns(&self) -> usize {
+        let nodes = self.graph.nodes();
+        let is_there = |id: Id| usize::from(nodes[id].constant.is_none());
+        let cost = |node: &Node| match node.op {
+            _ if node.constant.is_some() => 0,
+            Op::Mul(..) | Op::Add(..) | Op::Sub(..) | Op::Max(..) | Op::Min(..) => 1,
+            Op::Neg(_) | Op::Sqrt(_) | Op::Recip(_) | Op::Direction(_) => 1,
+            Op::Column(entries) => entries.into_iter().map(is_there).sum(),
+            Op::Scaled(_, by) | Op::PlusScaled(_, _, by) => 1 + is_there(by),
+            _ => 0,
+        };
+        nodes.iter().zip(self.uses()).filter(|(_, used)| *used > 0).map(|(node, _)| cost(node)).sum()
+    }
+
+    /// The values of the outputs, columns entry by entry: the graph interpreted,
+    /// node by node, on a robot that was never loaded.
     pub fn evaluate(&self, coordinates: &[f64], wrench: &[f64]) -> Vec<f64> {
         self.evaluate_with(coordinates, wrench, &vec![[0.0; PLAYS]; coordinates.len()])
     }
@@ -102,7 +132,8 @@ impl Function {
             terms.sum::<f64>() + angle.offset()
         };
         let mut values: Vec<f64> = Vec::with_capacity(nodes.len());
-        for node in nodes.iter() {
+        let mut columns: HashMap<Id, [f64; 4]> = HashMap::new();
+        for (id, node) in nodes.iter().enumerate() {
             values.push(match node.op {
                 Op::Number(bits) => f64::from_bits(bits),
                 Op::Parameter(index) => self.graph.parameters()[index].value,
@@ -119,9 +150,27 @@ impl Function {
                 Op::Recip(a) => values[a].recip(),
                 Op::Max(a, b) => values[a].max(values[b]),
                 Op::Min(a, b) => values[a].min(values[b]),
+                Op::Entry(column, entry) => columns[&column][entry],
+                Op::Column(_) | Op::Scaled(..) | Op::PlusScaled(..) | Op::Direction(_) => {
+                    let column = match node.op {
+                        Op::Scaled(column, by) => columns[&column].map(|entry| entry * values[by]),
+                        Op::PlusScaled(column, other, by) => {
+                            std::array::from_fn(|k| columns[&column][k] + columns[&other][k] * values[by])
+                        }
+                        Op::Column(entries) => entries.map(|entry| values[entry]),
+                        Op::Direction(column) => {
+                            let [x, y, z, _] = columns[&column];
+                            [x, y, z, 0.0]
+                        }
+                        _ => unreachable!("no column"),
+                    };
+                    columns.insert(id, column);
+                    f64::NAN
+                }
             });
         }
-        self.outputs.iter().map(|&id| values[id]).collect()
+        let entries = |id: &Id| columns.get(id).map_or(vec![values[*id]], |column| column.to_vec());
+        self.outputs.iter().flat_map(entries).collect()
     }
 }
 

@@ -48,19 +48,41 @@ pub enum Op {
     Max(Id, Id),
     /// The smaller of two.
     Min(Id, Id),
+    /// Four numbers side by side, see [`Column`](crate::symbolic::column::Column).
+    Column([Id; 4]),
+    /// A column times a number.
+    Scaled(Id, Id),
+    /// The sum of a column and of another times a number.
+    PlusScaled(Id, Id, Id),
+    /// A column with 0 for its last entry.
+    Direction(Id),
+    /// An entry of a column, from 0.
+    Entry(Id, usize),
 }
 
 impl Op {
     /// The nodes that this one is computed from.
     pub fn operands(self) -> impl Iterator<Item = Id> {
-        let (first, second) = match self {
-            Self::Add(a, b) | Self::Sub(a, b) | Self::Mul(a, b) | Self::Max(a, b) | Self::Min(a, b) => {
-                (Some(a), Some(b))
+        let operands = match self {
+            Self::Add(a, b)
+            | Self::Sub(a, b)
+            | Self::Mul(a, b)
+            | Self::Max(a, b)
+            | Self::Min(a, b)
+            | Self::Scaled(a, b) => [Some(a), Some(b), None, None],
+            Self::Neg(a) | Self::Sqrt(a) | Self::Recip(a) | Self::Direction(a) | Self::Entry(a, _) => {
+                [Some(a), None, None, None]
             }
-            Self::Neg(a) | Self::Sqrt(a) | Self::Recip(a) => (Some(a), None),
-            _ => (None, None),
+            Self::PlusScaled(a, b, c) => [Some(a), Some(b), Some(c), None],
+            Self::Column(entries) => entries.map(Some),
+            _ => [None; 4],
         };
-        first.into_iter().chain(second)
+        operands.into_iter().flatten()
+    }
+
+    /// Whether it is four numbers side by side.
+    pub fn is_column(self) -> bool {
+        matches!(self, Self::Column(_) | Self::Scaled(..) | Self::PlusScaled(..) | Self::Direction(_))
     }
 }
 
@@ -88,8 +110,8 @@ pub struct Node {
 /// A turn about z of all four blocks of a compliance, which are nodes like
 /// any others; a scalar that knows how performs them as one operation.
 ///
-/// A row of four: displacement per force, displacement per moment, the same
-/// transposed, rotation per moment. Rows: xx, xy, yy, xz, yz.
+/// A row of four: displacement per force, rotation per moment, displacement
+/// per moment, the same transposed. Rows: xx, xy, yy, xz, yz.
 #[derive(Clone, Debug)]
 pub struct BlockTurn {
     /// Sine and cosine.

@@ -39,9 +39,15 @@ pub(crate) trait Vector<F>: Abreast<F> {
     /// Writes `(sin, cos)` of the angles from `first` on.
     fn scatter<const K: usize>(sin: Self, cos: Self, out: &mut [(F, F); K], first: usize);
 
-    /// Whether every lane is an angle within the domain; false for a NaN.
-    /// `shifted`: as in [`quarters`](super::quarters).
-    fn is_within_domain(self, shifted: Self) -> bool;
+    /// Bits that are 0 where an angle is within the domain, and some not where it
+    /// is not or is a NaN. `shifted`: as in [`quarters`](super::quarters).
+    fn strange(self, shifted: Self) -> Self;
+
+    /// The bits of both.
+    fn or(self, other: Self) -> Self;
+
+    /// Whether all bits that [`strange`](Self::strange) left are 0.
+    fn is_usual(self) -> bool;
 }
 
 /// Numbers in pairs of neighbouring lanes, for the sine and the cosine of one
@@ -108,8 +114,44 @@ impl<F: Float> Vector<F> for F {
     }
 
     #[inline(always)]
-    fn is_within_domain(self, _: Self) -> bool {
-        self.is_in_domain()
+    fn strange(self, _: Self) -> Self {
+        if self.is_in_domain() { F::ZERO } else { F::ONE }
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        self + other
+    }
+
+    #[inline(always)]
+    fn is_usual(self) -> bool {
+        self == F::ZERO
+    }
+}
+
+/// A single number is a full vector: nothing is left.
+impl<F: Float> Pairs<F> for F {
+    #[inline(always)]
+    fn gather_pairs<const K: usize>(angles: &[F; K], first: usize) -> Self {
+        angles[first]
+    }
+
+    #[inline(always)]
+    fn scatter_pairs<const K: usize>(self, _: &mut [(F, F); K], _: usize) {}
+
+    #[inline(always)]
+    fn numbers(sin: usize, _: usize) -> Self {
+        F::number(sin)
+    }
+
+    #[inline(always)]
+    fn sides(sin: Self, _: Self) -> Self {
+        sin
+    }
+
+    #[inline(always)]
+    fn turn_pairs(self, _: Self) -> Self {
+        self
     }
 }
 
@@ -175,9 +217,18 @@ macro_rules! vectors {
             }
 
             #[inline(always)]
-            fn is_within_domain(self, shifted: Self) -> bool {
-                let strange = (shifted.to_bits() ^ wide::$bits::splat($module::QUARTERS.0))
-                    & wide::$bits::splat($module::QUARTERS.1);
+            fn strange(self, shifted: Self) -> Self {
+                Self::from_bits(shifted.to_bits() ^ wide::$bits::splat($module::QUARTERS.0))
+            }
+
+            #[inline(always)]
+            fn or(self, other: Self) -> Self {
+                Self::from_bits(self.to_bits() | other.to_bits())
+            }
+
+            #[inline(always)]
+            fn is_usual(self) -> bool {
+                let strange = self.to_bits() & wide::$bits::splat($module::QUARTERS.1);
                 strange.simd_eq(wide::$bits::splat(0)).all()
             }
         }
@@ -245,28 +296,22 @@ macro_rules! vectors {
 /// these (H_x 35 ns, with these 30).
 pub(crate) mod target {
     macro_rules! target {
-        ($cfg:meta, $single:ty, $double:ty, pairs: $single_pairs:ident, $double_pairs:ident) => {
+        ($cfg:meta, $single:ty, $double:ty) => {
             #[cfg($cfg)]
-            pub mod single {
-                pub type Vector = $single;
-                pub type Pairs = wide::$single_pairs;
-            }
+            #[expect(non_camel_case_types, reason = "named as what they hold")]
+            pub type single = $single;
             #[cfg($cfg)]
-            pub mod double {
-                pub type Vector = $double;
-                pub type Pairs = wide::$double_pairs;
-            }
+            #[expect(non_camel_case_types, reason = "named as what they hold")]
+            pub type double = $double;
         };
     }
-    target!(target_feature = "avx", wide::f32x8, wide::f64x4, pairs: f32x8, f64x4);
+    target!(target_feature = "avx", wide::f32x8, wide::f64x4);
     target!(
         all(not(target_feature = "avx"), any(target_feature = "sse2", target_feature = "neon")),
-        wide::f32x4, wide::f64x2, pairs: f32x4, f64x2
+        wide::f32x4,
+        wide::f64x2
     );
-    target!(
-        not(any(target_feature = "avx", target_feature = "sse2", target_feature = "neon")),
-        f32, f64, pairs: f32x4, f64x2
-    );
+    target!(not(any(target_feature = "avx", target_feature = "sse2", target_feature = "neon")), f32, f64);
 }
 
 vectors! {

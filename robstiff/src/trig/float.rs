@@ -2,7 +2,7 @@
 
 use core::ops::Neg;
 
-use super::abreast::{Abreast, Pairs, Vector, target};
+use super::abreast::{Abreast, Pairs, target};
 
 /// Whether the target multiplies and adds in one instruction. Without it
 /// `mul_add` would be a call of a slow function. It is not in `core`, so there
@@ -11,11 +11,9 @@ pub(crate) const FUSED: bool =
     cfg!(all(feature = "std", any(target_feature = "fma", all(target_arch = "aarch64", target_feature = "neon"))));
 
 /// A floating point number that [`sin_cos`](super::sin_cos) knows.
-pub(crate) trait Float: Abreast<Self> + Neg<Output = Self> + 'static {
-    /// A vector of the target.
-    type Vector: Vector<Self>;
-    /// A vector for what is left when vectors are full.
-    type Pairs: Pairs<Self>;
+pub(crate) trait Float: Abreast<Self> + Neg<Output = Self> + PartialEq + 'static {
+    /// A vector of the target, also for what is left when vectors are full.
+    type Vector: Pairs<Self>;
     /// 0.
     const ZERO: Self;
     /// 1.
@@ -104,8 +102,7 @@ macro_rules! float {
         }
 
         impl Float for $float {
-            type Vector = target::$module::Vector;
-            type Pairs = target::$module::Pairs;
+            type Vector = target::$module;
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const NUMBERS: &'static [Self] = $module::NUMBERS;

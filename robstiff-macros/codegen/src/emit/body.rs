@@ -161,7 +161,11 @@ impl Writer<'_> {
         // the last joint's angle comes first, because everything waits for that.
         let last_joint = |angle: &Angle| angle.terms().last().map(|&(joint, _)| joint);
         if angles.first().map(last_joint) < angles.iter().map(last_joint).max() {
-            order.sort_by_key(|&index| angles[index].terms().len() < 2);
+            // The others as they lie in memory; the first joint's own, which stands apart, last.
+            order.sort_by_key(|&index| {
+                let (is_sum, last) = (angles[index].terms().len() > 1, last_joint(&angles[index]));
+                (!is_sum, !is_sum && last == Some(0), last)
+            });
         }
         for index in order {
             if is_live(Op::Sin(index)) || is_live(Op::Cos(index)) {
@@ -178,7 +182,7 @@ impl Writer<'_> {
         }
     }
 
-    /// `let [[tt_xx, tr_xx, _, rr_xx], ..] = T::turn_blocks([[..], ..], (s1, c1));`
+    /// `let [[tt_xx, rr_xx, tr_xx, _], ..] = T::turn_blocks([[..], ..], (s1, c1));`
     /// and the results that are negatives of what stands there.
     fn block_turn(&self, turn: &Turn) -> TokenStream {
         let mut after: [[Option<Ident>; 4]; 5] = Default::default();
@@ -272,6 +276,26 @@ impl Writer<'_> {
             Op::Recip(a) => {
                 let a = self.operand(a, Binding::Unit);
                 (quote!(#a.recip()), Binding::Unit)
+            }
+            Op::Column(entries) => {
+                let entries = entries.map(|entry| self.operand(entry, Binding::Sum));
+                (quote!([#(#entries),*]), Binding::Unit)
+            }
+            Op::Scaled(column, by) => {
+                let (column, by) = (self.operand(column, Binding::Sum), self.operand(by, Binding::Sum));
+                (quote!(T::scaled(#column, #by)), Binding::Unit)
+            }
+            Op::PlusScaled(column, other, by) => {
+                let [column, other, by] = [column, other, by].map(|id| self.operand(id, Binding::Sum));
+                (quote!(T::plus_scaled(#column, #other, #by)), Binding::Unit)
+            }
+            Op::Direction(column) => {
+                let column = self.operand(column, Binding::Sum);
+                (quote!(T::direction(#column)), Binding::Unit)
+            }
+            Op::Entry(column, entry) => {
+                let (column, entry) = (self.operand(column, Binding::Unit), Literal::usize_unsuffixed(entry));
+                (quote!(#column[#entry]), Binding::Unit)
             }
             op => unreachable!("{op:?} is arithmetic"),
         }

@@ -69,7 +69,7 @@ impl Fusion {
             let done = match (taken, node.op) {
                 _ if node.constant.is_some() => 0,
                 (Some((done, ..)), _) => done,
-                (None, Op::Mul(..)) => last(&mut node.op.operands()) + PRODUCT,
+                (None, Op::Mul(..) | Op::Scaled(..) | Op::PlusScaled(..)) => last(&mut node.op.operands()) + PRODUCT,
                 (None, Op::Add(..) | Op::Sub(..)) => last(&mut node.op.operands()) + SUM,
                 (None, Op::Sqrt(_) | Op::Recip(_)) => last(&mut node.op.operands()) + ROOT,
                 (None, _) => last(&mut node.op.operands()),

@@ -110,6 +110,11 @@ fn lines(function: &Function) -> BTreeSet<Id> {
                 widths[id] = width(&needed, a) + width(&needed, b);
             }
             Op::Sqrt(a) | Op::Recip(a) => widths[id] = width(&needed, a),
+            op if op.is_column() => {
+                needed.insert(id);
+                continue;
+            }
+            Op::Entry(..) => continue,
             // A sign is written where it is used; what it stands before is not
             // written twice.
             Op::Neg(a) => {
@@ -133,7 +138,7 @@ fn unsigned(op: Op, id: Id) -> Id {
 }
 
 fn is_leaf(op: Op) -> bool {
-    op.operands().next().is_none()
+    op.operands().next().is_none() || matches!(op, Op::Entry(..))
 }
 
 /// 0 and +-1 are written in place, other constants have a line.

@@ -234,13 +234,19 @@ pub(super) fn implementation(robot: &Description, functions: &[Generated], reade
         let signature = signature(&count);
         let Body { statements, outputs } = body(&generated.function, reader);
         let result = generated.result(&outputs);
+        let mut calculation = quote!(#statements #result);
+        if let (Some(in_columns), Reader::Compiler) = (&generated.in_columns, reader) {
+            let Body { statements, outputs } = body(&in_columns.function, reader);
+            let result = in_columns.result(&outputs);
+            calculation = quote!(if T::COLUMNS { #statements #result } else { #calculation });
+        }
         let mut docs = paragraph(generated.doc);
         docs.push(format!(" {}.", generated.function.cost()));
         // What a function does not depend on is unused.
         let silence = ignores_an_input(&generated.function).then(|| quote!(#[allow(unused_variables)]));
         // Only a caller that sees the code can leave out what it does not
         // need, and compute several poses abreast.
-        quote!(#(#[doc = #docs])* #silence #[inline(always)] #signature { #statements #result })
+        quote!(#(#[doc = #docs])* #silence #[inline(always)] #signature { #calculation })
     });
     let silence = lints();
     quote! {

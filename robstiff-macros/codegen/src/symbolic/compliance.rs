@@ -232,7 +232,7 @@ impl<'g> Walker<'g> {
     /// The entries that a turn about z changes, the four blocks side by side.
     fn blocks(&self) -> [[Id; 4]; 5] {
         [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2)]
-            .map(|(i, j)| [self.tt.at(i, j), self.tr[i][j], self.tr[j][i], self.rr.at(i, j)].map(Sym::id))
+            .map(|(i, j)| [self.tt.at(i, j), self.rr.at(i, j), self.tr[i][j], self.tr[j][i]].map(Sym::id))
     }
 
     /// Names the entries for generated code.

@@ -136,6 +136,14 @@ impl<'g> Elastic<'g> {
         *sum = *sum + h;
     }
 
+    /// Whether nothing but the joints yields, each about its own axis.
+    pub fn is_of_joints(&self) -> bool {
+        let pairs = self.link.iter().chain([&self.base, &self.tool]);
+        self.transverse.iter().all(|h| h.is_zero())
+            && pairs.into_iter().all(|(first, second)| first.is_zero() && second.is_zero())
+            && self.coupling.is_empty()
+    }
+
     /// The compliance of a joint about the unloaded state: its own and what
     /// its law has on top there.
     pub fn unloaded_joint(&self, joint: usize) -> Sym<'g> {

@@ -9,6 +9,8 @@
 //!   base.
 
 pub mod chain;
+pub mod column;
+pub mod columns;
 pub mod compliance;
 pub mod elastic;
 pub mod forward;

@@ -1,0 +1,180 @@
+//! Four numbers side by side, which a scalar may compute with as one.
+//!
+//! A column of a homogeneous matrix: an axis, or a point. Where nothing needs
+//! to be computed, nothing is, as with single numbers.
+
+use super::vector::Vec3;
+use crate::graph::{Graph, Id, Op, Sym};
+
+/// A node that is four numbers.
+#[derive(Clone, Copy)]
+pub struct Column<'g> {
+    g: &'g Graph,
+    id: Id,
+}
+
+impl<'g> Column<'g> {
+    /// From its entries.
+    pub fn of(g: &'g Graph, entries: [Sym<'g>; 4]) -> Self {
+        Self { g, id: g.intern(Op::Column(entries.map(Sym::id)), None).id() }
+    }
+
+    /// The unit vector along `axis`, from 0; 3 is the origin.
+    pub fn unit(g: &'g Graph, axis: usize) -> Self {
+        Self::of(g, std::array::from_fn(|i| g.number(f64::from(u8::from(i == axis)))))
+    }
+
+    /// The column of zeros.
+    pub fn zero(g: &'g Graph) -> Self {
+        Self::of(g, [g.number(0.0); 4])
+    }
+
+    /// Suggests a name for generated code.
+    pub fn named(self, name: &str) -> Self {
+        self.sym(self.id).named(name);
+        self
+    }
+
+    fn sym(self, id: Id) -> Sym<'g> {
+        Sym { graph: self.g, id }
+    }
+
+    fn op(self) -> Op {
+        self.sym(self.id).op()
+    }
+
+    /// The entries, if they are nodes of their own.
+    fn entries(self) -> Option<[Sym<'g>; 4]> {
+        if let Op::Column(entries) = self.op() { Some(entries.map(|entry| self.sym(entry))) } else { None }
+    }
+
+    /// Entry `i`, from 0.
+    pub fn at(self, i: usize) -> Sym<'g> {
+        match self.entries() {
+            Some(entries) => entries[i],
+            None if self.is_zero_at(i) => self.g.number(0.0),
+            None => self.g.intern(Op::Entry(self.id, i), None),
+        }
+    }
+
+    /// The first three entries.
+    pub fn vector(self) -> Vec3<'g> {
+        Vec3(std::array::from_fn(|i| self.at(i)))
+    }
+
+    /// With 0 for the last entry: turns may make -0 of it.
+    pub fn direction(self) -> Self {
+        match self.entries() {
+            Some([x, y, z, _]) => Self::of(self.g, [x, y, z, self.g.number(0.0)]),
+            None => Self { g: self.g, id: self.g.intern(Op::Direction(self.id), None).id() },
+        }
+    }
+
+    /// The node of the whole column.
+    pub fn whole(self) -> Sym<'g> {
+        self.sym(self.id)
+    }
+
+    fn is_zero_at(self, i: usize) -> bool {
+        let column = |id| Self { g: self.g, id };
+        match self.op() {
+            Op::Direction(_) if i == 3 => true,
+            Op::Scaled(a, _) | Op::Direction(a) => column(a).is_zero_at(i),
+            Op::PlusScaled(a, b, _) => column(a).is_zero_at(i) && column(b).is_zero_at(i),
+            Op::Column(entries) => self.sym(entries[i]).is_zero(),
+            _ => unreachable!("a column"),
+        }
+    }
+
+    fn is_zero(self) -> bool {
+        (0..4).all(|i| self.is_zero_at(i))
+    }
+
+    /// Times a factor.
+    pub fn scaled(self, factor: Sym<'g>) -> Self {
+        if factor.constant() == Some(1.0) {
+            return self;
+        }
+        if factor.is_zero() || self.is_zero() {
+            return Self::zero(self.g);
+        }
+        if let Some(entries) = self.entries().filter(|entries| entries.iter().all(|&entry| is_free(entry, factor))) {
+            return Self::of(self.g, entries.map(|entry| entry * factor));
+        }
+        Self { g: self.g, id: self.g.intern(Op::Scaled(self.id, factor.id()), None).id() }
+    }
+
+    /// `self + other * factor`.
+    pub fn plus_scaled(self, other: Self, factor: Sym<'g>) -> Self {
+        if factor.is_zero() || other.is_zero() {
+            return self;
+        }
+        if self.is_zero() {
+            return other.scaled(factor);
+        }
+        if let (Some(own), Some(others)) = (self.entries(), other.entries()) {
+            let is_free = |i: usize| {
+                is_free(others[i], factor)
+                    && (own[i].is_zero() || others[i].is_zero() || (own[i].constant().and(factor.constant())).is_some())
+            };
+            if (0..4).all(is_free) {
+                return Self::of(self.g, std::array::from_fn(|i| own[i] + others[i] * factor));
+            }
+        }
+        Self { g: self.g, id: self.g.intern(Op::PlusScaled(self.id, other.id, factor.id()), None).id() }
+    }
+}
+
+impl PartialEq for Column<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        self.whole() == other.whole()
+    }
+}
+
+/// Whether the product of the two is no operation.
+fn is_free(entry: Sym<'_>, factor: Sym<'_>) -> bool {
+    match (entry.constant(), factor.constant()) {
+        (Some(entry), _) if entry == 0.0 || entry.abs() == 1.0 => true,
+        (_, Some(factor)) if factor.abs() == 1.0 => true,
+        (entry, factor) => entry.and(factor).is_some(),
+    }
+}
+
+/// A column or its negative: a sign costs nothing until it is to be seen.
+#[derive(Clone, Copy)]
+pub struct Signed<'g> {
+    column: Column<'g>,
+    is_negative: bool,
+}
+
+impl<'g> Signed<'g> {
+    /// The column itself.
+    pub fn of(column: Column<'g>) -> Self {
+        Self { column, is_negative: false }
+    }
+
+    /// Its negative, if so.
+    pub fn negated_if(self, is_negated: bool) -> Self {
+        Self { is_negative: self.is_negative ^ is_negated, ..self }
+    }
+
+    fn sign(self, factor: Sym<'g>) -> Sym<'g> {
+        if self.is_negative { -factor } else { factor }
+    }
+
+    /// `a * s + b * t` with any sign.
+    pub fn combined((a, s): (Self, Sym<'g>), (b, t): (Self, Sym<'g>)) -> Self {
+        let t = if a.is_negative { -b.sign(t) } else { b.sign(t) };
+        Self { column: a.column.scaled(s).plus_scaled(b.column, t), is_negative: a.is_negative }
+    }
+
+    /// `sum + self * factor`.
+    pub fn added(self, sum: Column<'g>, factor: Sym<'g>) -> Column<'g> {
+        sum.plus_scaled(self.column, self.sign(factor))
+    }
+
+    /// The column with its sign.
+    pub fn column(self) -> Column<'g> {
+        self.column.scaled(self.sign(self.column.g.number(1.0)))
+    }
+}

@@ -1,0 +1,265 @@
+//! Frames column by column: a second formulation for scalars that compute with
+//! four numbers as with one.
+//!
+//! From the base to the tip a turn is `x <- c x + s y`, `y <- c y - s x` of
+//! whole axes, without the zeros that single numbers leave out and without
+//! their products of angles. What a joint moves at the TCP is `z x lever`, and
+//! with the lever in the joint's own axes that is `u y - v x`: the levers are
+//! carried from the tip to the base in single numbers, two products a turn.
+//! The compliance is the sum of `h (T, R) (T, R)^T` over the joints, row by
+//! row. Gain: `benches/README.md`.
+
+use robstiff_robots::{Description, JointKind};
+
+use super::chain::{Step, Tilt, chain};
+use super::column::{Column, Signed};
+use super::compliance::compliance;
+use super::elastic::Elastic;
+use super::vector::{AXES, Vec3};
+use crate::angle::Angle;
+use crate::graph::{Graph, Sym};
+
+/// The four columns of the TCP's frame in the base frame.
+pub fn transform<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
+    let mut walker = Walker::at_base(g);
+    let steps = chain(g, robot);
+    for (k, step) in steps.iter().enumerate() {
+        // A move by the axes as they stay takes fewer products.
+        if !turns_further(&steps[k..]) {
+            walker.settle();
+        }
+        walker.step(step);
+    }
+    walker.settle();
+    homogeneous(walker.axes, walker.origin)
+}
+
+/// The Jacobian, 6 entries a column, column by column.
+pub fn jacobian<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
+    entries(&Arm::of(g, robot).joints)
+}
+
+/// The four columns of the transform, the entries of the Jacobian and of the compliance.
+pub fn statics<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
+    let Arm { joints, axes, origin } = Arm::of(g, robot);
+    let elastic = Elastic::of(g, robot);
+    let compliance = if elastic.is_of_joints() { of_joints(g, &joints, &elastic) } else { compliance(g, robot) };
+    [homogeneous(axes, origin), entries(&joints), compliance].concat()
+}
+
+/// Whether a turn about the same axis follows.
+fn turns_further(steps: &[Step<'_>]) -> bool {
+    let mut turns = steps.iter().filter(|step| match step {
+        Step::Tilt(tilt) => !tilt.is_half_turn_about_x(),
+        step => matches!(step, Step::Turn(_)),
+    });
+    matches!(turns.next(), Some(Step::Turn(_)))
+}
+
+/// The columns of the TCP's frame.
+fn homogeneous<'g>(axes: [Signed<'g>; 3], origin: Column<'g>) -> Vec<Sym<'g>> {
+    let [x, y, z] = axes.map(|axis| axis.column().direction());
+    [x.named("x_"), y.named("y_"), z.named("z_"), origin.named("p_")].map(Column::whole).to_vec()
+}
+
+fn entries<'g>(joints: &[Twist<'g>]) -> Vec<Sym<'g>> {
+    joints.iter().flat_map(|joint| [joint.translation, joint.rotation].map(|part| part.vector().0)).flatten().collect()
+}
+
+/// What a unit of a joint coordinate moves at the TCP, in the base frame.
+#[derive(Clone, Copy)]
+struct Twist<'g> {
+    translation: Column<'g>,
+    rotation: Column<'g>,
+}
+
+/// From the base to the tip.
+struct Walker<'g> {
+    g: &'g Graph,
+    axes: [Signed<'g>; 3],
+    origin: Column<'g>,
+    /// A turn about z that the axes do not contain yet.
+    pending: Angle,
+}
+
+impl<'g> Walker<'g> {
+    fn at_base(g: &'g Graph) -> Self {
+        Self {
+            g,
+            axes: std::array::from_fn(|axis| Signed::of(Column::unit(g, axis))),
+            origin: Column::unit(g, 3),
+            pending: Angle::default(),
+        }
+    }
+
+    fn step(&mut self, step: &Step<'g>) {
+        match step {
+            Step::Move(by) => {
+                let by = by.turned(2, self.g.sin_cos(&self.pending));
+                self.origin = along(self.origin, self.axes, by);
+            }
+            Step::Turn(angle) => self.pending = std::mem::take(&mut self.pending) + angle,
+            Step::Tilt(tilt) => self.tilt(*tilt),
+            _ => {}
+        }
+    }
+
+    fn settle(&mut self) {
+        let pending = std::mem::take(&mut self.pending);
+        if !pending.is_zero() {
+            self.turn(2, self.g.sin_cos(&pending));
+        }
+    }
+
+    fn tilt(&mut self, tilt: Tilt<'g>) {
+        if tilt.is_half_turn_about_x() {
+            // Rz(a) Rx(180) = Rx(180) Rz(-a): the turn may stay pending.
+            self.pending = -std::mem::take(&mut self.pending);
+        } else {
+            self.settle();
+        }
+        self.turn(tilt.axis, tilt.sin_cos);
+    }
+
+    fn turn(&mut self, axis: usize, (s, c): (Sym<'g>, Sym<'g>)) {
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let (u, v) = (self.axes[i], self.axes[j]);
+        self.axes[i] = Signed::combined((u, c), (v, s));
+        self.axes[j] = Signed::combined((v, c), (u, -s));
+    }
+}
+
+/// A point and a vector from there, in the given axes.
+fn along<'g>(point: Column<'g>, axes: [Signed<'g>; 3], by: Vec3<'g>) -> Column<'g> {
+    (0..3).fold(point, |point, axis| axes[axis].added(point, by[axis]))
+}
+
+/// The twists of all joints and the TCP's frame.
+struct Arm<'g> {
+    joints: Vec<Twist<'g>>,
+    axes: [Signed<'g>; 3],
+    origin: Column<'g>,
+}
+
+impl<'g> Arm<'g> {
+    fn of(g: &'g Graph, robot: &Description) -> Self {
+        let steps = chain(g, robot);
+        // Where levers begin: at the base, and at every joint.
+        let (base, levers) = levers(g, &steps);
+        let mut walker = Walker::at_base(g);
+        let (mut joints, mut waiting) =
+            (Vec::new(), vec![Waiting { joint: None, z: walker.axes[2], is_mirrored: false }]);
+        let zero = Column::zero(g);
+        let mut origin = zero;
+        let mut settled = |walker: &Walker<'g>, waiting: &mut Vec<Waiting<'g>>| {
+            let [x, y, _] = walker.axes;
+            for Waiting { joint, z, is_mirrored } in waiting.drain(..) {
+                let y = y.negated_if(is_mirrored);
+                let Some(joint) = joint else {
+                    origin = along(Column::unit(g, 3), [x, y, z], base);
+                    continue;
+                };
+                joints.push(match robot.joints[joint].kind {
+                    JointKind::Revolute => {
+                        let Vec3([along_x, along_y, _]) = levers[joint];
+                        let translation = Signed::combined((y, along_x), (x, -along_y)).column();
+                        Twist { translation: translation.named(&format!("j{}", joint + 1)), rotation: z.column() }
+                    }
+                    JointKind::Prismatic => Twist { translation: z.column(), rotation: zero },
+                });
+            }
+        };
+        for step in &steps {
+            if let Step::Joint(i) = step {
+                waiting.push(Waiting { joint: Some(*i), z: walker.axes[2], is_mirrored: false });
+            }
+            match step {
+                Step::Tilt(tilt) if tilt.is_half_turn_about_x() => {
+                    waiting.iter_mut().for_each(|stand| stand.is_mirrored = !stand.is_mirrored);
+                }
+                Step::Tilt(_) => {
+                    walker.settle();
+                    settled(&walker, &mut waiting);
+                }
+                _ => {}
+            }
+            walker.step(step);
+        }
+        walker.settle();
+        settled(&walker, &mut waiting);
+        Self { joints, axes: walker.axes, origin }
+    }
+}
+
+/// A place whose lever is in the axes behind the turns that follow.
+struct Waiting<'g> {
+    /// The joint that stands there, or the base.
+    joint: Option<usize>,
+    z: Signed<'g>,
+    /// Whether the y axis has changed its sign since.
+    is_mirrored: bool,
+}
+
+/// From the base and from each joint to the TCP, in the axes behind the turns
+/// about z that follow.
+fn levers<'g>(g: &'g Graph, steps: &[Step<'g>]) -> (Vec3<'g>, Vec<Vec3<'g>>) {
+    let (mut lever, mut pending) = (Vec3::zero(g), Angle::default());
+    let mut levers = Vec::new();
+    for step in steps.iter().rev() {
+        match step {
+            Step::Move(by) => lever = lever + by.turned(2, g.sin_cos(&-pending.clone())),
+            Step::Turn(angle) => pending = std::mem::take(&mut pending) + angle,
+            Step::Tilt(tilt) => {
+                let turn = std::mem::take(&mut pending);
+                if tilt.is_half_turn_about_x() {
+                    pending = -turn;
+                } else {
+                    lever = lever.turned(2, g.sin_cos(&turn));
+                }
+                lever = lever.turned(tilt.axis, tilt.sin_cos);
+            }
+            Step::Joint(i) => {
+                levers.push(lever);
+                for (entry, axis) in lever.0.into_iter().zip(AXES) {
+                    entry.named(format!("r{}{axis}", i + 1));
+                }
+            }
+            _ => {}
+        }
+    }
+    levers.reverse();
+    (lever, levers)
+}
+
+/// The 36 entries of the compliance of joints alone, by rows.
+fn of_joints<'g>(g: &'g Graph, joints: &[Twist<'g>], elastic: &Elastic<'g>) -> Vec<Sym<'g>> {
+    let zero = Column::zero(g);
+    let (mut tt, mut tr, mut rr) = ([zero; 3], [zero; 3], [zero; 3]);
+    // Parallel axes turn the TCP alike.
+    let mut directions: Vec<(Column<'g>, Sym<'g>)> = Vec::new();
+    for (i, joint) in joints.iter().enumerate() {
+        let h = elastic.unloaded_joint(i);
+        let moved = joint.translation.scaled(h);
+        for row in 0..3 {
+            tt[row] = tt[row].plus_scaled(joint.translation, moved.at(row));
+            tr[row] = tr[row].plus_scaled(joint.rotation, moved.at(row));
+        }
+        match directions.iter_mut().find(|(axis, _)| *axis == joint.rotation) {
+            Some((_, sum)) => *sum = *sum + h,
+            None => directions.push((joint.rotation, h)),
+        }
+    }
+    for (axis, h) in directions {
+        for (row, sum) in rr.iter_mut().enumerate() {
+            *sum = sum.plus_scaled(axis.scaled(h), axis.at(row));
+        }
+    }
+    let entry = |i: usize, j: usize| match (i < 3, j < 3) {
+        // Of two entries that are the same, the one above the diagonal.
+        (true, true) => tt[i.min(j)].at(i.max(j)),
+        (true, false) => tr[i].at(j - 3),
+        (false, true) => tr[j].at(i - 3),
+        (false, false) => rr[i.min(j) - 3].at(i.max(j) - 3),
+    };
+    (0..36).map(|k| entry(k / 6, k % 6)).collect()
+}
