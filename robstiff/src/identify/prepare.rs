@@ -1,5 +1,6 @@
 //! From a campaign to a regression: noise, weights, and what the data can see.
 
+use std::rc::Rc;
 use std::string::String;
 use std::vec::Vec;
 
@@ -26,7 +27,7 @@ pub struct Prepared<'c> {
     /// The rows of the table.
     pub data: &'c Displacements,
     /// The rows on the robot.
-    pub samples: Samples,
+    pub samples: Rc<Samples>,
     /// Whether each pose is fitted to.
     pub training: Vec<bool>,
     /// The description's own numbers.
@@ -83,7 +84,7 @@ impl<'c> Prepared<'c> {
             repeated: repetitions(&samples, &covariance, |pose| training[pose]),
             declared_noise: noise.displacement,
             covariance,
-            samples,
+            samples: Rc::new(samples),
             training,
         };
         if !weighed && prepared.samples.axes > 3 {

@@ -1,6 +1,8 @@
 //! The regression a campaign poses: whitened columns and readings, in blocks
 //! of poses.
 
+use core::ops::Deref;
+use std::rc::Rc;
 use std::vec;
 use std::vec::Vec;
 
@@ -10,26 +12,41 @@ use super::covariance::Covariance;
 use super::normal::{Fit, Normal, Sign};
 use super::samples::{Column, Samples};
 
-/// Readings and the columns that are to explain them.
+/// Readings, and the normal equations of the columns that are to explain them.
 #[derive(Clone, Debug)]
-pub struct Problem {
+pub struct Equations {
     /// The readings as measured (m, rad), stacked like [`Samples::readings`].
-    pub readings: DVector<f64>,
-    /// The columns, whitened; rotations in the displacements' unit (m), axes in
+    pub readings: Rc<DVector<f64>>,
+    /// The readings, whitened; rotations in the displacements' unit (m), axes in
     /// the frame measured in.
-    pub white: DMatrix<f64>,
-    /// The readings, whitened alike.
-    pub white_readings: DVector<f64>,
+    pub white_readings: Rc<DVector<f64>>,
     /// Axes per row of the campaign.
     pub axes: usize,
     /// The variance of an unloaded reading over that of a row's own.
     pub shared: f64,
     /// The blocks the problem is fitted to.
-    pub blocks: Vec<Block>,
+    pub blocks: Rc<[Block]>,
     /// The blocks kept for judging.
-    pub held_out: Vec<Block>,
+    pub held_out: Rc<[Block]>,
     /// The normal equations of all blocks fitted to.
     pub total: Normal,
+}
+
+/// The same with the columns themselves at hand.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// All but the columns.
+    pub equations: Equations,
+    /// The columns, whitened like the readings.
+    pub white: DMatrix<f64>,
+}
+
+impl Deref for Problem {
+    type Target = Equations;
+
+    fn deref(&self) -> &Equations {
+        &self.equations
+    }
 }
 
 /// All rows of one pose. Visits do not span poses, so blocks are independent
@@ -74,12 +91,10 @@ impl Problem {
         weights: Weights<'_>,
     ) -> Self {
         let axes = samples.axes;
-        let count = columns.ncols();
-        let mut white = columns.insert_column(count, 0.0);
-        white.set_column(count, &(&readings - correction));
-        weights.covariance.whiten(&mut white, weights.left_out);
-        let white_readings = white.column(count).into_owned();
-        let white = white.remove_column(count);
+        let whitener = weights.covariance.whitener(weights.left_out);
+        let mut white = columns;
+        whitener.whiten(&mut white);
+        let white_readings = whitener.whitened(&readings - correction);
 
         let mut rows = vec![Vec::new(); samples.poses];
         for (i, row) in samples.rows.iter().enumerate().filter(|&(i, _)| !weights.left_out[i]) {
@@ -99,7 +114,16 @@ impl Problem {
             .chunks(ROWS_AT_ONCE)
             .map(|rows| Normal::new(&white.select_rows(rows), &white_readings.select_rows(rows)));
         let total = Normal::sum(parts).expect("a campaign has rows to train on");
-        Self { readings, white, white_readings, axes, shared: weights.covariance.shared, blocks, held_out, total }
+        let equations = Equations {
+            readings: Rc::new(readings),
+            white_readings: Rc::new(white_readings),
+            axes,
+            shared: weights.covariance.shared,
+            blocks: blocks.into(),
+            held_out: held_out.into(),
+            total,
+        };
+        Self { equations, white }
     }
 
     /// The normal equations of one block, of some of the columns in the order
@@ -125,7 +149,7 @@ impl Problem {
 
     /// What is left of the whitened readings, stacked (m).
     pub fn white_residuals(&self, columns: &[usize], coefficients: &DVector<f64>) -> DVector<f64> {
-        let mut left = self.white_readings.clone();
+        let mut left = (*self.white_readings).clone();
         for (&column, &coefficient) in columns.iter().zip(coefficients.iter()) {
             left.axpy(-coefficient, &self.white.column(column), 1.0);
         }
@@ -139,6 +163,23 @@ impl Problem {
             let fitted = columns.iter().zip(coefficients.iter()).map(|(&column, b)| self.white[(row, column)] * b);
             self.white_readings[row] - fitted.sum::<f64>()
         })
+    }
+}
+
+impl Equations {
+    /// The same of some of the columns, in the order given; `white` holds these,
+    /// whitened.
+    pub fn with(&self, columns: &[usize], white: DMatrix<f64>) -> Problem {
+        let equations = Self {
+            readings: Rc::clone(&self.readings),
+            white_readings: Rc::clone(&self.white_readings),
+            axes: self.axes,
+            shared: self.shared,
+            blocks: Rc::clone(&self.blocks),
+            held_out: Rc::clone(&self.held_out),
+            total: self.total.of(columns),
+        };
+        Problem { equations, white }
     }
 
     /// The residual degrees of freedom of a fit.

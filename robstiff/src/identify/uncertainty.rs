@@ -77,7 +77,7 @@ fn of_free(problem: &Problem, fit: &Fit, free: &[usize], known: &[f64]) -> Optio
     let half = nalgebra::Cholesky::new(inverse.clone())?.l();
     let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
     let (mut scores, mut shares) = (Vec::new(), Vec::new());
-    for block in &problem.blocks {
+    for block in problem.blocks.iter() {
         let pull = Pull::new(problem, block, &columns, &half);
         let own = DVector::from_fn(block.stacked.len(), |i, _| residuals[block.stacked[i]]);
         scores.push(pull.design.tr_mul(&pull.adjusted(&DMatrix::from_column_slice(own.len(), 1, own.as_slice()))));

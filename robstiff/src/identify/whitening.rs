@@ -23,13 +23,35 @@ pub fn mean_share(rows: usize, shared: f64) -> f64 {
 /// `i * axes .. (i + 1) * axes` of every column, and belongs to
 /// `visits[i]`; each axis is a reading of its own. `shared` is `lambda`.
 pub fn whiten(stacked: &mut DMatrix<f64>, visits: &[usize], axes: usize, shared: f64) {
-    for members in members(visits) {
-        let share = mean_share(members.len(), shared) / members.len() as f64;
+    ByVisit::new(visits, shared).whiten(stacked, axes);
+}
+
+/// The rows of each visit, and what whitening takes from them: a whitening that
+/// is done often.
+#[derive(Clone, Debug)]
+pub struct ByVisit {
+    /// A visit each, with the share of the sum.
+    visits: Vec<(Vec<usize>, f64)>,
+}
+
+impl ByVisit {
+    /// Of rows that belong to `visits`; `shared` is `lambda`.
+    pub fn new(visits: &[usize], shared: f64) -> Self {
+        let share = |rows: &Vec<usize>| mean_share(rows.len(), shared) / rows.len() as f64;
+        Self {
+            visits: members(visits).into_iter().map(|rows| (share(&rows), rows)).map(|(s, rows)| (rows, s)).collect(),
+        }
+    }
+
+    /// As [`whiten`].
+    pub fn whiten(&self, stacked: &mut DMatrix<f64>, axes: usize) {
         for mut column in stacked.column_iter_mut() {
-            for axis in 0..axes {
-                let sum: f64 = members.iter().map(|row| column[row * axes + axis]).sum();
-                for row in &members {
-                    column[row * axes + axis] -= share * sum;
+            for (rows, share) in &self.visits {
+                for axis in 0..axes {
+                    let sum: f64 = rows.iter().map(|row| column[row * axes + axis]).sum();
+                    for row in rows {
+                        column[row * axes + axis] -= share * sum;
+                    }
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! From the regression that tracing uses to what planning asks for; the only
 //! place in planning that knows how numbers become readings.
 
+use std::rc::Rc;
 use std::string::String;
 use std::vec;
 use std::vec::Vec;
@@ -87,7 +88,7 @@ impl<'c> Adapter<'c> {
         };
         let elastic = numbers.filter(|(column, _)| is_elastic(**column));
         let elastic = elastic.map(|(&column, &value)| (source.kept(column), value)).collect();
-        let white = setting.problem.white.select_columns(&columns);
+        let white = setting.on(&columns).white;
         // How far the joints sag is a row's own.
         let setup = Setup { sag: None, ..setting.point.setup.clone() };
         let adapter = Self {
@@ -174,7 +175,7 @@ impl<'c> Adapter<'c> {
     /// (m, rad), and the rows; without the anchors.
     fn columns(&self, visits: &[Visit], further_out: f64) -> (Samples, DMatrix<f64>) {
         let (robot, data) = (&self.campaign.robot, self.rows(visits, further_out));
-        let declared = Samples::of_description(robot, &data);
+        let declared = Rc::new(Samples::of_description(robot, &data));
         let scene = Scene {
             description: robot,
             data: &data,
@@ -202,7 +203,7 @@ impl<'c> Adapter<'c> {
         for (k, kept) in self.kept.iter().enumerate() {
             columns.set_column(k, &column(&point, kept).rows(first, rows));
         }
-        let mut samples = point.samples;
+        let mut samples = Rc::unwrap_or_clone(point.samples);
         samples.rows.drain(..anchors);
         (samples, columns)
     }

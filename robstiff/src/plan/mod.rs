@@ -199,6 +199,9 @@ pub fn plan_between(campaign: &Campaign, trace: &Trace, groups: &[Group], option
 /// # Errors
 /// As [`plan`].
 pub fn next(campaign: &Campaign, trace: &Trace, count: usize) -> Result<Vec<Proposal>, Error> {
+    if groups(trace).iter().all(|group| group.names.len() < 2) {
+        return Ok(Vec::new());
+    }
     let plan = plan(campaign, trace, &Options { poses: count, starts: 1, ..Options::default() })?;
     let proposal = |planned: &Planned| {
         let [x, y, z, ..] = planned.greatest;

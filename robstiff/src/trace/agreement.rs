@@ -16,8 +16,9 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::model::{Fitted, Setting};
-use crate::identify::normal::Scaled;
-use crate::identify::problem::Block;
+use crate::identify::normal::{Fit, Scaled};
+use crate::identify::problem::{Block, Problem};
+use crate::identify::samples::Samples;
 
 /// With fewer poses that have both parts there is no test.
 const FEWEST: usize = 8;
@@ -52,9 +53,10 @@ struct Pose {
 
 /// Asks the poses fitted to; `None` where they have too few rows for a rest.
 pub fn agreement(setting: &Setting<'_>, model: &Fitted, options: &super::Options) -> Option<Agreement> {
-    let problem = &setting.problem;
-    let half = Cholesky::new(Scaled::of(&problem.total.gram_of(&model.fit.columns))?.inverse())?.l();
-    let poses: Vec<Pose> = problem.blocks.iter().filter_map(|block| of_pose(setting, model, block, &half)).collect();
+    let (problem, fit) = setting.alone(&model.fit);
+    let half = Cholesky::new(Scaled::of(&problem.total.gram_of(&fit.columns))?.inverse())?.l();
+    let of_pose = |block| of_pose(&setting.point.samples, &problem, &fit, block, &half);
+    let poses: Vec<Pose> = problem.blocks.iter().filter_map(of_pose).collect();
     if poses.len() < FEWEST {
         return None;
     }
@@ -107,18 +109,16 @@ fn ask(poses: &[Pose], first: usize, options: &super::Options) -> Option<Agreeme
     Some(Agreement { statistic, p_value, noise })
 }
 
-fn of_pose(setting: &Setting<'_>, model: &Fitted, block: &Block, half: &DMatrix<f64>) -> Option<Pose> {
-    let problem = &setting.problem;
+/// What one pose leaves of a fit to all columns of a regression; `half` is a root
+/// of their covariance.
+fn of_pose(samples: &Samples, problem: &Problem, fit: &Fit, block: &Block, half: &DMatrix<f64>) -> Option<Pose> {
     let (axes, count) = (problem.axes, block.rows.len());
-    let taken = responses(setting, &block.rows);
+    let taken = responses(samples, &block.rows);
     if taken.len() >= count {
         return None;
     }
-    let left = problem.block_residuals(block, &model.fit.columns, &model.fit.coefficients);
-    let design = DMatrix::from_fn(block.stacked.len(), model.fit.columns.len(), |i, j| {
-        problem.white[(block.stacked[i], model.fit.columns[j])]
-    });
-    let pull = design * half;
+    let left = problem.block_residuals(block, &fit.columns, &fit.coefficients);
+    let pull = problem.white.select_rows(&block.stacked) * half;
     let pulled = |axis: usize| {
         let (mut whole, mut along) = (0.0, 0.0);
         for column in pull.column_iter() {
@@ -139,8 +139,7 @@ fn of_pose(setting: &Setting<'_>, model: &Fitted, block: &Block, half: &DMatrix<
 /// rows, or of all rows that are a visit each, can look like over a pose's rows:
 /// orthonormal. Whitening makes the same of it, for within a visit it takes away
 /// a share of the mean.
-fn responses(setting: &Setting<'_>, rows: &[usize]) -> Vec<DVector<f64>> {
-    let samples = &setting.point.samples;
+fn responses(samples: &Samples, rows: &[usize]) -> Vec<DVector<f64>> {
     let visit = |row: usize| samples.rows[row].visit;
     let mut visits: Vec<usize> = rows.iter().map(|&row| visit(row)).collect();
     visits.sort_unstable();

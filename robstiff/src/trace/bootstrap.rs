@@ -27,7 +27,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::catalogue::{Candidate, Variant};
-use crate::identify::normal::{Scaled, Sign};
+use crate::identify::normal::{Normal, Scaled, Sign};
 use crate::identify::problem::Problem;
 
 /// What a statistic gives up for each number beyond the first. At the tail
@@ -131,20 +131,28 @@ impl Reference {
     }
 }
 
+/// What is tested against a null model.
+pub struct Alternatives<'a> {
+    /// The normal equations of all columns.
+    pub total: &'a Normal,
+    /// A column, whitened.
+    pub white: &'a dyn Fn(usize) -> DVector<f64>,
+    /// The candidates.
+    pub candidates: &'a [Candidate],
+    /// The signs of all columns.
+    pub signs: &'a [Sign],
+    /// The first column of a candidate.
+    pub first: usize,
+}
+
 impl ScoreTest {
-    /// The test of candidates, whose columns start at `first`, against the
-    /// model of the columns `null`; `signs` are those of all columns. `None`
-    /// where the null model cannot be fitted.
-    pub fn new(
-        problem: &Problem,
-        candidates: &[Candidate],
-        signs: &[Sign],
-        first: usize,
-        null: &[usize],
-    ) -> Option<Self> {
-        let total = &problem.total;
-        let fit = total.solve(null)?;
-        let factor = Scaled::of(&total.gram_of(null))?;
+    /// The test of candidates against a null model, given with its regression and
+    /// its columns among all. `None` where it cannot be fitted.
+    pub fn new(problem: &Problem, null: &[usize], alternatives: &Alternatives<'_>) -> Option<Self> {
+        let Alternatives { total, white, candidates, signs, first } = *alternatives;
+        let own_columns: Vec<usize> = (0..null.len()).collect();
+        let fit = problem.total.solve(&own_columns)?;
+        let factor = Scaled::of(&problem.total.gram)?;
         let tested: Vec<usize> = (first..signs.len()).collect();
         let cross = DMatrix::from_fn(null.len(), tested.len(), |i, j| total.gram[(null[i], tested[j])]);
         let shares = factor.solve_columns(&cross);
@@ -155,30 +163,52 @@ impl ScoreTest {
 
         let half = nalgebra::Cholesky::new(factor.inverse())?.l();
         let count = problem.blocks.len();
-        let mut scores = DMatrix::zeros(count, tested.len());
-        let mut null_scores = DMatrix::zeros(count, null.len());
         let mut energy = 0.0;
-        for (p, block) in problem.blocks.iter().enumerate() {
+        let mut residuals = Vec::with_capacity(count);
+        for block in problem.blocks.iter() {
             // A pose that alone sees a joint has no fit without it; its
             // residual then is that of the whole fit.
-            let without = problem.solve_without(block, null, None);
+            let without = problem.solve_without(block, &own_columns, None);
             let coefficients = without.as_ref().unwrap_or(&fit.coefficients);
-            let residuals = problem.block_residuals(block, null, coefficients);
-            let of_block = |column: usize| -> f64 {
-                let white = problem.white.column(column);
-                block.stacked.iter().zip(residuals.iter()).map(|(&row, residual)| white[row] * residual).sum()
-            };
-            let own = DVector::from_fn(null.len(), |k, _| of_block(null[k]));
-            let theirs = DVector::from_fn(tested.len(), |k, _| of_block(tested[k])) - shares.tr_mul(&own);
-            scores.set_row(p, &theirs.transpose());
-            null_scores.set_row(p, &own.transpose());
-            energy += residuals.norm_squared();
+            let left = problem.block_residuals(block, &own_columns, coefficients);
+            energy += left.norm_squared();
+            residuals.push(left);
         }
+        let of_block = |white: &[f64], p: usize| -> f64 {
+            let block = problem.blocks[p].stacked.iter().zip(residuals[p].iter());
+            block.map(|(&row, residual)| white[row] * residual).sum()
+        };
+        let mut null_scores = DMatrix::zeros(count, null.len());
+        for (k, column) in problem.white.column_iter().enumerate() {
+            let white = column.as_slice();
+            null_scores.set_column(k, &DVector::from_fn(count, |p, _| of_block(white, p)));
+        }
+        // One column at a time: all of a large campaign's take much memory.
+        let mut scores = DMatrix::zeros(count, tested.len());
+        for (k, &column) in tested.iter().enumerate() {
+            let white = white(column);
+            scores.set_column(k, &DVector::from_fn(count, |p, _| of_block(white.as_slice(), p)));
+        }
+        scores -= &null_scores * &shares;
         let remaining = Remaining { gram: &gram, left: &left, signs, first };
         let variants = |candidate: &Candidate| candidate.variants.iter().map(|v| Group::new(&remaining, v)).collect();
         let groups = candidates.iter().map(variants).collect();
         let blocks = Blocks { scores, null: null_scores * half, energy, freedom };
         Some(Self { groups, first, gram, score, variance: fit.rss / freedom, blocks })
+    }
+
+    /// The same where the columns of all are at hand; candidates' start at
+    /// `first`.
+    pub fn among(
+        problem: &Problem,
+        candidates: &[Candidate],
+        signs: &[Sign],
+        first: usize,
+        null: &[usize],
+    ) -> Option<Self> {
+        let white = |column: usize| problem.white.column(column).into_owned();
+        let own = problem.with(null, problem.white.select_columns(null));
+        Self::new(&own, null, &Alternatives { total: &problem.total, white: &white, candidates, signs, first })
     }
 
     /// The statistic of each candidate, and the variant that has it; `None`

@@ -32,6 +32,8 @@ use super::features::features;
 use super::model::{Fitted, Setting};
 use crate::campaign::Displacements;
 use crate::identify::noise::PureError;
+use crate::identify::normal::Fit;
+use crate::identify::problem::Problem;
 
 /// What the noise of one displacement reading is held to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,15 +137,15 @@ fn size(setting: &Setting<'_>, model: &Fitted, yardstick: Yardstick) -> Option<S
 /// Spearman's rank correlation of squared residuals, each over what the fit
 /// leaves of a unit variance there, with the force.
 fn growth(setting: &Setting<'_>, model: &Fitted) -> Option<StructureTest> {
-    let problem = &setting.problem;
-    let residuals = problem.white_residuals(&model.fit.columns, &model.fit.coefficients);
-    let inverse = problem.total.inverse(&model.fit.columns)?;
+    let (problem, fit) = setting.alone(&model.fit);
+    let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
+    let inverse = problem.total.inverse(&fit.columns)?;
     let (mut lengths, mut forces) = (Vec::new(), Vec::new());
     for row in problem.blocks.iter().flat_map(|block| &block.rows) {
         let at = row * problem.axes;
         let left: f64 = (at..at + 3)
             .map(|i| {
-                let x = DVector::from_fn(model.fit.columns.len(), |k, _| problem.white[(i, model.fit.columns[k])]);
+                let x = problem.white.row(i).transpose();
                 1.0 - x.dot(&(&inverse * &x))
             })
             .sum();
@@ -162,8 +164,8 @@ fn growing(setting: &Setting<'_>, model: &Fitted, alpha: f64) -> f64 {
     if growth(setting, model).is_none_or(|test| test.p_value > alpha) {
         return 0.0;
     }
-    let problem = &setting.problem;
-    let residuals = problem.white_residuals(&model.fit.columns, &model.fit.coefficients);
+    let (problem, fit) = setting.alone(&model.fit);
+    let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
     let rows = problem.blocks.iter().flat_map(|block| &block.rows);
     let (forces, squares): (Vec<f64>, Vec<f64>) = rows
         .map(|row| {
@@ -236,15 +238,15 @@ struct Resemblance {
 
 impl Resemblance {
     fn new(setting: &Setting<'_>, model: &Fitted, data: &Displacements, options: &super::Options) -> Option<Self> {
-        let problem = &setting.problem;
-        let columns = &model.fit.columns;
+        let (problem, fit) = setting.alone(&model.fit);
+        let columns = &fit.columns;
         let trained: Vec<usize> = problem.blocks.iter().flat_map(|block| block.rows.iter().copied()).collect();
         let stride = trained.len().div_ceil(MOST_ROWS);
         let rows: Vec<usize> = trained.into_iter().step_by(stride).collect();
         let residuals = problem.white_residuals(columns, &problem.total.solve(columns)?.coefficients);
-        let axis_rows = |axis: usize| rows.iter().map(move |row| row * problem.axes + axis).collect::<Vec<_>>();
+        let axis_rows = |axis: usize| rows.iter().map(|row| row * problem.axes + axis).collect::<Vec<_>>();
         let own = [0, 1, 2].map(|axis| residuals.select_rows(&axis_rows(axis)));
-        let drawn = drawn_residuals(setting, model, &rows)?;
+        let drawn = drawn_residuals(&problem, &fit, &rows)?;
         let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
         let signs = rademacher(&mut rng, options.draws, problem.blocks.len());
         let draws = Draws::new(drawn, signs);
@@ -335,13 +337,13 @@ impl Draws {
     }
 }
 
-/// By axis, one column a pose: its residual from the fit without it, with the
-/// model fitted again when it alone is there, at some rows.
-fn drawn_residuals(setting: &Setting<'_>, model: &Fitted, rows: &[usize]) -> Option<[DMatrix<f64>; 3]> {
-    let problem = &setting.problem;
-    let columns = &model.fit.columns;
+/// By axis, of a model on its columns alone, one column a pose: its residual from
+/// the fit without it, with the model fitted again when it alone is there, at some
+/// rows.
+fn drawn_residuals(problem: &Problem, fit: &Fit, rows: &[usize]) -> Option<[DMatrix<f64>; 3]> {
+    let columns = &fit.columns;
     let inverse = problem.total.inverse(columns)?;
-    let design = problem.white.select_columns(columns);
+    let design = &problem.white;
     let at = [0, 1, 2].map(|axis| rows.iter().map(|row| row * problem.axes + axis).collect::<Vec<_>>());
     let design_at = at.each_ref().map(|at| design.select_rows(at));
     let mut place = std::vec![None; problem.white_readings.len()];
@@ -351,7 +353,7 @@ fn drawn_residuals(setting: &Setting<'_>, model: &Fitted, rows: &[usize]) -> Opt
     let mut drawn = [0, 1, 2].map(|_| DMatrix::zeros(rows.len(), problem.blocks.len()));
     for (p, block) in problem.blocks.iter().enumerate() {
         let without = problem.solve_without(block, columns, None);
-        let residual = problem.block_residuals(block, columns, without.as_ref().unwrap_or(&model.fit.coefficients));
+        let residual = problem.block_residuals(block, columns, without.as_ref().unwrap_or(&fit.coefficients));
         let own = design.select_rows(&block.stacked);
         let absorbed = &inverse * own.tr_mul(&residual);
         for (drawn, design) in drawn.iter_mut().zip(&design_at) {

@@ -1,17 +1,19 @@
 //! A model: the description's own numbers and effects named from the
 //! catalogue, fitted together and held against physics.
 
+use std::cell::RefCell;
 use std::format;
 use std::rc::Rc;
 use std::string::String;
 use std::vec::Vec;
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use super::catalogue::{Candidate, Number, Variant};
 use super::point::Point;
+use crate::identify::covariance::Whitener;
 use crate::identify::normal::{Fit, Sign};
-use crate::identify::problem::{Problem, rms};
+use crate::identify::problem::{Equations, Problem, rms};
 use crate::identify::samples::Column;
 
 /// The regression of a campaign at one point, with the catalogue behind it; the
@@ -22,7 +24,11 @@ pub struct Setting<'c> {
     /// The rows at the point.
     pub point: Point<'c>,
     /// The regression.
-    pub problem: Problem,
+    pub problem: Equations,
+    /// Its columns, whitened; none where they are formed when asked for.
+    pub columns: Stored,
+    /// What whitens a column.
+    pub whitener: Rc<Whitener>,
     /// What may be missing.
     pub candidates: Rc<[Candidate]>,
     /// The numbers of the candidates, one a column behind the own ones.
@@ -36,16 +42,19 @@ pub struct Setting<'c> {
     /// The compliances of all joints, held ones included, from the fit of the
     /// description's own numbers.
     pub joint_values: Vec<f64>,
-    /// Columns behind all others of what the readings may have besides that no
-    /// column says, a model's effects being what they are; no model is fitted with
-    /// them, but what is to be named must account for more than they do.
-    pub besides: Vec<usize>,
+    /// What the readings may have besides that no column says, a model's effects
+    /// being what they are, stacked: columns behind all others. No model is fitted
+    /// with them, but what is to be named must account for more than they do.
+    pub besides: Vec<DVector<f64>>,
     /// The tangents of nonlinear numbers that are named, by column.
     pub tangents: Vec<(usize, DVector<f64>)>,
     /// The second order of the joints' displacement, which the fit does not
     /// see (m).
     pub correction: DVector<f64>,
 }
+
+/// The whitened columns of a regression, as long as there is memory for them.
+pub type Stored = Rc<RefCell<Option<DMatrix<f64>>>>;
 
 /// A candidate with one of its variants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -83,15 +92,34 @@ impl Setting<'_> {
         if let Some((_, tangent)) = self.tangents.iter().find(|(of, _)| *of == column) {
             return tangent.clone();
         }
-        match self.own.get(column) {
-            Some(&own) => self.point.with_creep(self.point.samples.column(own)),
-            None => self.numbers[column - self.own.len()].column(&self.point),
+        let effect = column.checked_sub(self.own.len());
+        match effect.map(|effect| self.numbers.get(effect).ok_or(effect - self.numbers.len())) {
+            None => self.point.with_creep(self.point.samples.column(self.own[column])),
+            Some(Ok(number)) => number.column(&self.point),
+            Some(Err(besides)) => self.besides[besides].clone(),
         }
+    }
+
+    /// A column, whitened.
+    pub fn white(&self, column: usize) -> DVector<f64> {
+        let stored = self.columns.borrow().as_ref().map(|all| all.column(column).into_owned());
+        stored.unwrap_or_else(|| self.whitener.whitened(self.raw(column)))
+    }
+
+    /// The regression on some columns alone, in the order given.
+    pub fn on(&self, columns: &[usize]) -> Problem {
+        let white: Vec<DVector<f64>> = columns.iter().map(|&column| self.white(column)).collect();
+        self.problem.with(columns, from_columns(&white, self.problem.readings.len()))
+    }
+
+    /// The regression on the columns of a fit alone, and the fit in these.
+    pub fn alone(&self, fit: &Fit) -> (Problem, Fit) {
+        (self.on(&fit.columns), in_place(fit))
     }
 
     /// What a fit leaves of the readings as measured, stacked; (m, rad).
     pub fn residuals(&self, fit: &Fit) -> DVector<f64> {
-        let mut left = self.problem.readings.clone();
+        let mut left = (*self.problem.readings).clone();
         for (&column, &coefficient) in fit.columns.iter().zip(fit.coefficients.iter()) {
             left.axpy(-coefficient, &self.raw(column), 1.0);
         }
@@ -113,7 +141,8 @@ impl Setting<'_> {
     /// say themselves.
     pub fn with_besides(&self, mut columns: Vec<usize>) -> Vec<usize> {
         let total = &self.problem.total;
-        for &more in &self.besides {
+        let first = self.own.len() + self.numbers.len();
+        for more in first..first + self.besides.len() {
             let Some(inverse) = total.inverse(&columns) else { break };
             let along = DVector::from_fn(columns.len(), |k, _| total.gram[(columns[k], more)]);
             let own = total.gram[(more, more)];
@@ -262,13 +291,21 @@ impl Setting<'_> {
     /// The residuals of each pose fitted to, by the fit without it, stacked;
     /// with the campaign's rows they are of.
     fn left_out_residuals(&self, fit: &Fit) -> (DVector<f64>, Vec<usize>) {
-        let problem = &self.problem;
         let signs: Vec<Sign> = fit.columns.iter().map(|&column| self.signs[column]).collect();
         let raw: Vec<DVector<f64>> = fit.columns.iter().map(|&column| self.raw(column)).collect();
-        let mut residuals = problem.readings.clone();
-        for block in &problem.blocks {
+        let problem = match self.columns.borrow().as_ref() {
+            Some(white) => self.problem.with(&fit.columns, white.select_columns(&fit.columns)),
+            None => {
+                let mut white = from_columns(&raw, self.problem.readings.len());
+                self.whitener.whiten(&mut white);
+                self.problem.with(&fit.columns, white)
+            }
+        };
+        let columns = in_place(fit).columns;
+        let mut residuals = (*problem.readings).clone();
+        for block in problem.blocks.iter() {
             // The whole fit where that block alone sees a column.
-            let without = problem.solve_without(block, &fit.columns, Some(&signs));
+            let without = problem.solve_without(block, &columns, Some(&signs));
             let coefficients = without.as_ref().unwrap_or(&fit.coefficients);
             for &i in &block.stacked {
                 let fitted: f64 = raw.iter().zip(coefficients.iter()).map(|(column, value)| column[i] * value).sum();
@@ -288,8 +325,18 @@ impl Setting<'_> {
 
     /// The squared whitened residuals of each block.
     pub fn deviances(&self, fit: &Fit) -> Vec<f64> {
-        let problem = &self.problem;
+        let (problem, fit) = self.alone(fit);
         let of = |block| problem.block_residuals(block, &fit.columns, &fit.coefficients).norm_squared();
         problem.blocks.iter().map(of).collect()
     }
+}
+
+/// A fit in the regression on its columns alone.
+fn in_place(fit: &Fit) -> Fit {
+    Fit { columns: (0..fit.columns.len()).collect(), ..fit.clone() }
+}
+
+/// Columns side by side; so many rows where there is none.
+fn from_columns(columns: &[DVector<f64>], rows: usize) -> DMatrix<f64> {
+    if columns.is_empty() { DMatrix::zeros(rows, 0) } else { DMatrix::from_columns(columns) }
 }

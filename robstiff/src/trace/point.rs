@@ -1,6 +1,7 @@
 //! A campaign at one setting of the nonlinear numbers, and what small changes
 //! of these do to what is read: where regressors come from.
 
+use std::rc::Rc;
 use std::vec::Vec;
 
 use nalgebra::{DVector, Matrix3, Matrix6, Vector3, Vector6};
@@ -20,7 +21,7 @@ pub struct Point<'c> {
     /// The setting.
     pub setup: Setup,
     /// The rows on the robot, at the setting.
-    pub samples: Samples,
+    pub samples: Rc<Samples>,
     /// What a model's elastic effects do to the readings, stacked; empty where
     /// no model was given.
     pub elastic: DVector<f64>,
@@ -39,8 +40,13 @@ const STEP: f64 = 1e-4;
 
 impl<'c> Point<'c> {
     /// The rows at a setting, without a model.
-    pub fn bare(description: &'c Description, data: &'c Displacements, declared: &Samples, setup: Setup) -> Self {
-        let samples = declared.with_setup(description, data, &setup);
+    pub fn bare(description: &'c Description, data: &'c Displacements, declared: &Rc<Samples>, setup: Setup) -> Self {
+        // A setup that changes nothing is that of every model without nonlinear
+        // numbers.
+        let samples = match setup == Setup::as_declared(declared.joints()) {
+            true => Rc::clone(declared),
+            false => Rc::new(declared.with_setup(description, data, &setup)),
+        };
         let (elastic, compliance) = (DVector::zeros(0), Vec::new());
         Self { description, data, setup, samples, elastic, compliance, readings: Vec::new(), slopes: Vec::new() }
     }

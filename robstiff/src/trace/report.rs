@@ -143,13 +143,14 @@ fn spread_of(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted) -> DMatri
         }
     }
     if shapes.is_empty() && unsure.is_empty() {
-        return covariance(&setting.problem, &model.fit, &signs);
+        let (problem, fit) = setting.alone(&model.fit);
+        return covariance(&problem, &fit, &signs);
     }
     let count = model.fit.columns.len() + shapes.len();
     let examples = unsure.iter().flatten().cloned();
     let raw: Vec<DVector<f64>> =
         model.fit.columns.iter().map(|&column| setting.raw(column)).chain(shapes).chain(examples).collect();
-    let readings = setting.problem.readings.clone();
+    let readings = (*setting.problem.readings).clone();
     let samples = &setting.point.samples;
     let problem = Problem::new(samples, DMatrix::from_columns(&raw), readings, &setting.correction, bench.weights());
     let columns: Vec<usize> = (0..count).collect();

@@ -14,7 +14,7 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::bench::Bench;
-use super::bootstrap::{Reference, ScoreTest};
+use super::bootstrap::{Alternatives, Reference, ScoreTest};
 use super::model::{Fitted, Named, Setting};
 use super::{Options, Progress};
 
@@ -89,8 +89,14 @@ impl Tests {
     /// fitted.
     pub fn against(setting: &Setting<'_>, named: &[Named], options: &Options) -> Option<Self> {
         let columns = setting.with_besides(setting.columns(named));
-        let scores =
-            ScoreTest::new(&setting.problem, &setting.candidates, &setting.signs, setting.own.len(), &columns)?;
+        let alternatives = Alternatives {
+            total: &setting.problem.total,
+            white: &|column| setting.white(column),
+            candidates: &setting.candidates,
+            signs: &setting.signs,
+            first: setting.own.len(),
+        };
+        let scores = ScoreTest::new(&setting.on(&columns), &columns, &alternatives)?;
         let (statistics, reference) = (scores.statistics(), scores.reference(options.draws, options.seed));
         Some(Self { scores, statistics, reference })
     }

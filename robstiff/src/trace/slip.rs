@@ -44,12 +44,12 @@ impl Moment {
 /// out next to its moment have no part in finding it; they are laid to the side
 /// that they look like.
 pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted) -> Option<Moment> {
-    let problem = &setting.problem;
+    let (problem, fit) = setting.alone(&model.fit);
     let (axes, rows) = (problem.axes, setting.point.samples.rows.len());
     let mut fitted_to = vec![false; rows];
     problem.blocks.iter().flat_map(|block| &block.rows).for_each(|&row| fitted_to[row] = true);
-    let columns = &model.fit.columns;
-    let mut white = problem.white.select_columns(columns).insert_column(columns.len(), 0.0);
+    let columns = &fit.columns;
+    let mut white = problem.white.clone().insert_column(columns.len(), 0.0);
     white.set_column(columns.len(), &problem.white_residuals(columns, &problem.total.solve(columns)?.coefficients));
     for row in (0..rows).filter(|&row| !fitted_to[row]) {
         white.rows_mut(row * axes, axes).fill(0.0);

@@ -15,9 +15,15 @@ use crate::report::content::{Arm, Dependence};
 pub fn arms(trace: &Trace, campaign: &Campaign) -> Vec<Arm> {
     let Data::Displacement(data) = &campaign.data else { return Vec::new() };
     let force = |row: usize| data.rows[row].wrench[..3].iter().map(|f| f * f).sum::<f64>();
-    let arm = |(pose, id): (usize, &String)| {
-        let rows = (0..data.rows.len()).filter(|&row| data.rows[row].pose == pose);
-        let row = rows.max_by(|&a, &b| force(a).total_cmp(&force(b)))?;
+    let mut largest: Vec<Option<usize>> = vec![None; data.poses.len()];
+    for row in 0..data.rows.len() {
+        let so_far = &mut largest[data.rows[row].pose];
+        if so_far.is_none_or(|other| force(row) >= force(other)) {
+            *so_far = Some(row);
+        }
+    }
+    let arm = |(row, id): (&Option<usize>, &String)| {
+        let row = (*row)?;
         let residual = trace.residuals.get(row)?;
         Some(Arm {
             id: id.clone(),
@@ -26,7 +32,7 @@ pub fn arms(trace: &Trace, campaign: &Campaign) -> Vec<Arm> {
             after: residual.after.map(|metres| metres * 1e6),
         })
     };
-    data.poses.iter().enumerate().filter_map(arm).collect()
+    largest.iter().zip(&data.poses).filter_map(arm).collect()
 }
 
 /// From the ground to the TCP, joint by joint \[m\], in the base frame.
@@ -115,8 +121,10 @@ fn strongest(trace: &Trace, name: String, unit: &'static str, values: &[f64]) ->
 /// chance gives it taken off.
 fn parabola(x: &[f64], y: &[f64]) -> Option<f64> {
     let count = x.len() as f64;
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
-    let centred = |values: &[f64]| -> Vec<f64> { values.iter().map(|value| value - mean(values)).collect() };
+    let centred = |values: &[f64]| -> Vec<f64> {
+        let mean = values.iter().sum::<f64>() / count;
+        values.iter().map(|value| value - mean).collect()
+    };
     let (x, y) = (centred(x), DVector::from_vec(centred(y)));
     let largest = x.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     if x.len() < 6 || x.len() != y.len() || largest < 1e-9 || y.norm_squared() <= 0.0 {

@@ -32,6 +32,7 @@ mod tails;
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector, Matrix3};
@@ -106,7 +107,7 @@ pub struct Covariance {
     pub tails: Option<Tails>,
     visits: Vec<usize>,
     /// From the base frame to that measured in, a row each.
-    turns: Option<Vec<Matrix3<f64>>>,
+    turns: Option<Arc<[Matrix3<f64>]>>,
 }
 
 impl Covariance {
@@ -192,7 +193,7 @@ impl Covariance {
     }
 
     /// What displacements leave where so much is free at each pose for which
-    /// `of_pose` holds, whitened like [`whiten`](Self::whiten) does. A model of the
+    /// `of_pose` holds, whitened like [`whitener`](Self::whitener) does. A model of the
     /// robot that is free of no more leaves at least as much.
     pub fn pure_error(&self, samples: &Samples, level: Level, of_pose: impl Fn(usize) -> bool) -> PureError {
         let chunks = contrasts(samples, &self.measured(samples), level, of_pose, |_| false);
@@ -218,25 +219,19 @@ impl Covariance {
         self.own[axis].powi(2) * (own + self.shared * common)
     }
 
-    /// Turns stacked columns ([`Samples::readings`]) to the frame measured in,
+    /// What turns stacked columns ([`Samples::readings`]) to the frame measured in,
     /// whitens them, and brings all axes to the unit of displacements: the rows of
     /// whitened readings are independent, and each has the variance of one
     /// displacement reading, [`reading`](Self::reading) squared. A row left out
     /// shares its unloaded reading with nothing that is used.
-    pub fn whiten(&self, stacked: &mut DMatrix<f64>, left_out: &[bool]) {
-        self.turn(stacked);
+    pub fn whitener(&self, left_out: &[bool]) -> Whitener {
         let mut visits = self.visits.clone();
         let next = visits.iter().max().map_or(0, |last| last + 1);
         let alone = visits.iter_mut().zip(left_out).filter(|(_, out)| **out);
         alone.enumerate().for_each(|(k, (visit, _))| *visit = next + k);
-        whitening::whiten(stacked, &visits, self.axes(), self.shared);
         let reference = self.reference(0..3);
-        let scale: Vec<f64> = self.own.iter().map(|own| reference / own).collect();
-        for mut column in stacked.column_iter_mut() {
-            for (i, value) in column.iter_mut().enumerate() {
-                *value *= scale[i % scale.len()];
-            }
-        }
+        let scale = self.own.iter().map(|own| reference / own).collect();
+        Whitener { turns: self.turns.clone(), by_visit: whitening::ByVisit::new(&visits, self.shared), scale }
     }
 
     /// The noise of a displacement over that of a rotation (m/rad) times
@@ -309,26 +304,57 @@ impl Covariance {
         self.tails = estimated.tails();
     }
 
-    /// Stacked columns from the base frame to that measured in.
-    fn turn(&self, stacked: &mut DMatrix<f64>) {
-        let Some(turns) = &self.turns else { return };
-        for mut column in stacked.column_iter_mut() {
-            for (row, turn) in turns.iter().enumerate() {
-                for first in (0..self.axes()).step_by(3) {
-                    let at = row * self.axes() + first;
-                    let turned = turn * column.fixed_rows::<3>(at);
-                    column.fixed_rows_mut::<3>(at).copy_from(&turned);
-                }
-            }
-        }
-    }
-
     /// The readings in the frame measured in, a row each.
     fn measured(&self, samples: &Samples) -> DMatrix<f64> {
         let mut stacked =
             DMatrix::from_column_slice(samples.rows.len() * samples.axes, 1, samples.readings().as_slice());
-        self.turn(&mut stacked);
+        turn(&mut stacked, self.turns.as_deref(), self.axes());
         DMatrix::from_row_slice(samples.rows.len(), samples.axes, stacked.as_slice())
+    }
+}
+
+/// What makes independent rows of equal variance of a campaign's readings, and
+/// whatever is to explain them.
+#[derive(Clone, Debug)]
+pub struct Whitener {
+    turns: Option<Arc<[Matrix3<f64>]>>,
+    by_visit: whitening::ByVisit,
+    /// To the unit of displacements, by axis.
+    scale: Vec<f64>,
+}
+
+impl Whitener {
+    /// Whitens stacked columns in place.
+    pub fn whiten(&self, stacked: &mut DMatrix<f64>) {
+        let axes = self.scale.len();
+        turn(stacked, self.turns.as_deref(), axes);
+        self.by_visit.whiten(stacked, axes);
+        for mut column in stacked.column_iter_mut() {
+            for (i, value) in column.iter_mut().enumerate() {
+                *value *= self.scale[i % axes];
+            }
+        }
+    }
+
+    /// One column, whitened.
+    pub fn whitened(&self, stacked: DVector<f64>) -> DVector<f64> {
+        let rows = stacked.len();
+        let mut column = DMatrix::from_vec(rows, 1, stacked.data.into());
+        self.whiten(&mut column);
+        DVector::from_vec(column.data.into())
+    }
+}
+
+/// Stacked columns from the base frame to that measured in.
+fn turn(stacked: &mut DMatrix<f64>, turns: Option<&[Matrix3<f64>]>, axes: usize) {
+    for mut column in stacked.column_iter_mut() {
+        for (row, turn) in turns.unwrap_or_default().iter().enumerate() {
+            for first in (0..axes).step_by(3) {
+                let at = row * axes + first;
+                let turned = turn * column.fixed_rows::<3>(at);
+                column.fixed_rows_mut::<3>(at).copy_from(&turned);
+            }
+        }
     }
 }
 

@@ -20,7 +20,7 @@ use self::solve::State;
 use super::Options;
 use super::catalogue::{Candidate, Catalogue, LIKELY, Number, Scene, Variant, catalogue};
 use super::isolated;
-use super::model::{Fitted, Named, Setting};
+use super::model::{Fitted, Named, Setting, Stored};
 use super::point::Point;
 use super::selection::Tests;
 use super::slip::{Moment, likeliest_slip};
@@ -50,6 +50,8 @@ pub struct Bench<'c> {
     /// Where a slip that all later rows keep may have begun.
     moments: Vec<Moment>,
     settings: Solved<Setting<'c>>,
+    /// The columns that were formed last.
+    stored: Rc<RefCell<Stored>>,
     states: Solved<State>,
     tests: Tested,
 }
@@ -97,6 +99,7 @@ impl<'c> Bench<'c> {
             strict: false,
             moments: Vec::new(),
             settings: RefCell::default(),
+            stored: Rc::default(),
             states: RefCell::default(),
             tests: RefCell::default(),
         }
@@ -191,6 +194,11 @@ impl<'c> Bench<'c> {
         Ok(changed)
     }
 
+    /// Whether there are so many rows that memory has to be spared.
+    fn is_large(&self) -> bool {
+        self.left_out.len() > MANY_ROWS
+    }
+
     /// Forgets what was found of models, for they are others now.
     fn forget(&mut self) {
         self.settings.get_mut().clear();
@@ -239,7 +247,7 @@ impl<'c> Bench<'c> {
         }
         let found = self.setting(named).map(Rc::new);
         let mut settings = self.settings.borrow_mut();
-        if settings.len() >= KEPT && self.left_out.len() > MANY_ROWS {
+        if settings.len() >= KEPT && self.is_large() {
             settings.retain(|named, _| named.is_empty());
         }
         settings.insert(named.to_vec(), found.clone());
@@ -255,7 +263,7 @@ impl<'c> Bench<'c> {
         }
         let found = self.at(named).ok().and_then(|setting| Tests::against(&setting, named, options)).map(Rc::new);
         let mut tests = self.tests.borrow_mut();
-        if tests.len() >= KEPT && self.left_out.len() > MANY_ROWS {
+        if tests.len() >= KEPT && self.is_large() {
             tests.clear();
         }
         tests.insert(key, found.clone());
@@ -315,6 +323,10 @@ impl<'c> Bench<'c> {
         let elastic = self.prediction(&point, fit, &nonlinear);
         let point = point.with_model(declared, elastic, &self.linear_parameters(fit));
         let count = self.own.len() + self.numbers.len();
+        if self.is_large() {
+            // Those of the model before are formed again where they are asked for.
+            self.stored.borrow().borrow_mut().take();
+        }
         let mut raw = DMatrix::zeros(readings.len(), count);
         for column in 0..count {
             let tangent = tangents.iter().find(|(of, _)| *of == column);
@@ -323,17 +335,20 @@ impl<'c> Bench<'c> {
                 None => raw.set_column(column, &self.linear(&point, column)),
             }
         }
-        let more = self.besides(named, &point, fit);
-        let raw = raw.resize_horizontally(count + more.len(), 0.0);
-        let raw = more.iter().enumerate().fold(raw, |mut raw, (k, column)| {
-            raw.set_column(count + k, column);
-            raw
-        });
-        let problem = Problem::new(&point.samples, raw, readings.clone(), &self.prepared.correction, self.weights());
+        let besides = self.besides(named, &point, fit);
+        let mut raw = raw.resize_horizontally(count + besides.len(), 0.0);
+        besides.iter().enumerate().for_each(|(k, column)| raw.set_column(count + k, column));
+        let weights = self.weights();
+        let whitener = Rc::new(weights.covariance.whitener(weights.left_out));
+        let problem = Problem::new(&point.samples, raw, readings.clone(), &self.prepared.correction, weights);
+        let columns = Rc::new(RefCell::new(Some(problem.white)));
+        *self.stored.borrow_mut() = Rc::clone(&columns);
         Ok(Setting {
             point,
-            problem,
-            besides: (count..count + more.len()).collect(),
+            problem: problem.equations,
+            columns,
+            whitener,
+            besides,
             candidates: Rc::clone(&self.candidates),
             numbers: Rc::clone(&self.numbers),
             signs: Rc::clone(&self.signs),

@@ -8,6 +8,7 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 use super::Bench;
+use crate::identify::covariance::Whitener;
 use crate::identify::normal::{Normal, Sign};
 use crate::trace::catalogue::{Number, Refine, Variant};
 use crate::trace::model::{Fitted, Named, Setting};
@@ -24,9 +25,9 @@ const LOG_STEP: f64 = 0.02;
 
 /// A model in which one number out of a grid takes other values, everything
 /// that enters other than linearly held.
-struct Tried<'b, 'c> {
-    bench: &'b Bench<'c>,
+struct Tried<'c> {
     point: Point<'c>,
+    whitener: Whitener,
     /// The model's columns whitened, a row each, of the rows fitted to.
     white: DMatrix<f64>,
     readings: DVector<f64>,
@@ -40,7 +41,7 @@ struct Tried<'b, 'c> {
     k: usize,
 }
 
-impl Tried<'_, '_> {
+impl Tried<'_> {
     /// The sum of squares left with a value of the number.
     fn rss(&self, value: f64) -> f64 {
         let mut shape = self.shape.clone();
@@ -48,8 +49,7 @@ impl Tried<'_, '_> {
         let numbers = (self.refine)(&shape);
         let moved: Vec<DVector<f64>> = numbers.iter().map(|number| number.column(&self.point)).collect();
         let mut moved = DMatrix::from_columns(&moved);
-        let weights = self.bench.weights();
-        weights.covariance.whiten(&mut moved, weights.left_out);
+        self.whitener.whiten(&mut moved);
         let moved = moved.select_rows(&self.stacked);
         let mut normal = self.normal.clone();
         let (along, moment) = (&self.white * &moved, moved.tr_mul(&self.readings));
@@ -175,7 +175,7 @@ impl<'c> Bench<'c> {
 
     /// A model at its solution, ready for other values of a number out of a grid;
     /// none where what goes with that number enters other than linearly.
-    fn tried(&self, named: &[Named], one: Named, k: usize) -> Option<Tried<'_, 'c>> {
+    fn tried(&self, named: &[Named], one: Named, k: usize) -> Option<Tried<'c>> {
         let variant = self.variant(one);
         let column = variant.columns[k];
         if self.numbers[column - self.own.len()].enters.is_some() {
@@ -192,11 +192,12 @@ impl<'c> Bench<'c> {
         let problem = self.regression(&point, DMatrix::from_columns(&raw), state.readings.clone());
         let stacked: Vec<usize> = problem.blocks.iter().flat_map(|block| block.stacked.iter().copied()).collect();
         let at = variant.columns.iter().filter_map(|column| columns.iter().position(|c| c == column)).collect();
+        let weights = self.weights();
         Some(Tried {
-            bench: self,
+            whitener: weights.covariance.whitener(weights.left_out),
             white: problem.white.select_rows(&stacked).transpose(),
             readings: problem.white_readings.select_rows(&stacked),
-            normal: problem.total,
+            normal: problem.equations.total,
             signs: columns.iter().map(|&column| self.signs[column]).collect(),
             shape: variant.shape.iter().map(|number| number.value).collect(),
             refine: variant.refine.clone()?,
@@ -250,6 +251,7 @@ impl<'c> Bench<'c> {
             noise: Rc::clone(&self.noise),
             strict: self.strict,
             moments: self.moments.clone(),
+            stored: Rc::clone(&self.stored),
             settings: RefCell::default(),
             states: RefCell::default(),
             tests: RefCell::default(),

@@ -63,13 +63,12 @@ impl<'c> Bench<'c> {
     fn base_at(&self, point: &Point<'c>) -> Vec<usize> {
         let prepared = self.prepared;
         let Some(noise) = self.noise.covariance.reading() else { return prepared.seen() };
+        let whitener = self.noise.covariance.whitener(&self.left_out);
         let trained = |row: usize| prepared.training[point.samples.rows[row].pose] && !self.left_out[row];
         let is_turned = |column: usize| {
-            let mut white = DMatrix::from_columns(&[self.linear(point, column)]);
-            self.noise.covariance.whiten(&mut white, &self.left_out);
-            let axes = point.samples.axes;
-            let square: f64 =
-                (0..white.nrows()).filter(|i| trained(i / axes)).map(|i| white[(i, 0)] * white[(i, 0)]).sum();
+            let white = whitener.whitened(self.linear(point, column));
+            let of_those = white.iter().enumerate().filter(|(i, _)| trained(i / point.samples.axes));
+            let square: f64 = of_those.map(|(_, value)| value * value).sum();
             square.sqrt() * prepared.own[column].value.abs() > STANDS_OUT * noise
         };
         let seen = |column: &usize| match prepared.visibility[*column] {

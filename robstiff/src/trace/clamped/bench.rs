@@ -1,5 +1,6 @@
 //! The regression of clamped axes: rows, columns and models.
 
+use std::rc::Rc;
 use std::vec;
 use std::vec::Vec;
 
@@ -7,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::axes::{Axes, OnAxes, OnAxesForm};
 use crate::identify::normal::{Fit, Normal, Sign};
-use crate::identify::problem::{Block, Problem};
+use crate::identify::problem::{Block, Equations, Problem};
 use crate::identify::whitening::whiten;
 use crate::trace::Options;
 use crate::trace::bootstrap::ScoreTest;
@@ -117,7 +118,7 @@ impl Bench {
     }
 
     pub fn test(&self, named: &[Named]) -> Option<ScoreTest> {
-        ScoreTest::new(&self.problem, &self.candidates, &self.signs, self.base, &self.columns(named))
+        ScoreTest::among(&self.problem, &self.candidates, &self.signs, self.base, &self.columns(named))
     }
 
     /// The root mean square of each row's residual by the fit without it (rad).
@@ -135,7 +136,7 @@ impl Bench {
 
     /// What a fit leaves of the rows (rad).
     pub fn residuals(&self, fit: &Fit) -> DVector<f64> {
-        let mut left = self.problem.readings.clone();
+        let mut left = (*self.problem.readings).clone();
         for (&column, &value) in fit.columns.iter().zip(fit.coefficients.iter()) {
             left.axpy(-value, &self.raw.column(column), 1.0);
         }
@@ -204,7 +205,7 @@ impl Bench {
             let raw: Vec<DVector<f64>> = base.chain(columns).collect();
             let signs: Vec<Sign> = self.columns(named).iter().map(|&column| self.signs[column]).collect();
             let all: Vec<usize> = (0..raw.len()).collect();
-            let total = problem(&self.axes, DMatrix::from_columns(&raw)).total;
+            let total = problem(&self.axes, DMatrix::from_columns(&raw)).equations.total;
             total.solve_signed(&all, &signs).map_or(f64::INFINITY, |fit| fit.rss)
         };
         let variance = left(&offers) / self.axes.rows.len() as f64;
@@ -253,6 +254,14 @@ pub fn problem(axes: &Axes, raw: DMatrix<f64>) -> Problem {
     let white_readings = white.column(count).into_owned();
     let white = white.remove_column(count);
     let blocks = (0..axes.rows.len()).map(|row| Block { pose: row, rows: vec![row], stacked: vec![row] }).collect();
-    let total = Normal::new(&white, &white_readings);
-    Problem { readings, white, white_readings, axes: 1, shared: 1.0, blocks, held_out: Vec::new(), total }
+    let equations = Equations {
+        axes: 1,
+        shared: 1.0,
+        blocks,
+        held_out: Rc::new([]),
+        total: Normal::new(&white, &white_readings),
+        readings: Rc::new(readings),
+        white_readings: Rc::new(white_readings),
+    };
+    Problem { equations, white }
 }

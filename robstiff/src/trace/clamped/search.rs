@@ -241,7 +241,7 @@ fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit {
     let none = LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() };
     let problem = problem(axes, DMatrix::from_columns(&raw));
     let null: Vec<usize> = (0..first).collect();
-    let Some(test) = ScoreTest::new(&problem, &candidates, &signs, first, &null) else { return none };
+    let Some(test) = ScoreTest::among(&problem, &candidates, &signs, first, &null) else { return none };
     let reference = test.reference(options.draws, options.seed);
     let mut found: Vec<(f64, f64, String)> = test
         .statistics()
