@@ -219,19 +219,12 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
     let mut outcome = search(&mut bench, &prepared, base, options, progress).map_err(Error)?;
     if !outcome.structure() {
         // With structure accounted for, rows need stand out from noise alone.
-        let before = bench.copy();
         bench.strict = true;
-        if bench.look_again(&outcome.selection.model.named).map_err(Error)? {
-            match bench.fit(&outcome.selection.model.named) {
-                Ok(model) => {
-                    let mut steps = outcome.selection.steps;
-                    outcome = search(&mut bench, &prepared, model, options, progress).map_err(Error)?;
-                    steps.append(&mut outcome.selection.steps);
-                    outcome.selection.steps = steps;
-                }
-                // Without these rows physics may not allow what was accepted.
-                Err(_) => bench = before,
-            }
+        if let Some(model) = bench.tried(&outcome.selection.model.named, Bench::look_again) {
+            let mut steps = outcome.selection.steps;
+            outcome = search(&mut bench, &prepared, model, options, progress).map_err(Error)?;
+            steps.append(&mut outcome.selection.steps);
+            outcome.selection.steps = steps;
         }
     }
     progress("asking what could be mistaken for what");

@@ -128,13 +128,9 @@ pub fn select(
     let mut unnamed = false;
     while model.named.len() < MOST_EFFECTS {
         progress(&std::format!("searching for effect {}", model.named.len() + 1));
-        let before = bench.copy();
-        if bench.look_again(&model.named)? {
-            match bench.fit(&model.named) {
-                Ok(better) => model = better,
-                // Without these rows physics may not allow what was accepted.
-                Err(_) => *bench = before,
-            }
+        // Without rows that look wild physics may not allow what was accepted.
+        if let Some(better) = bench.tried(&model.named, Bench::look_again) {
+            model = better;
         }
         let mut setting = bench.at(&model.named)?;
         if let Some((better, p)) = sideways(bench, &setting, &model, options) {
@@ -173,13 +169,9 @@ pub fn select(
         if let Ok(better) = polished.fit(&named) {
             (*bench, model) = (polished, better);
         }
-        let before = bench.copy();
-        if bench.learn_noise(&model.named)? {
-            match bench.fit(&model.named) {
-                Ok(better) => model = better,
-                // With other weights physics may not allow what was accepted.
-                Err(_) => *bench = before,
-            }
+        // Nor with other weights.
+        if let Some(better) = bench.tried(&model.named, Bench::learn_noise) {
+            model = better;
         }
     }
     if bench.may_be_simpler(&model.named) {

@@ -56,9 +56,10 @@ pub const FEWEST_POSES: usize = 10;
 /// joint 2, whose axis is parallel.
 const SHARE: f64 = 0.4;
 
-/// So many names with structure still left are borrowed names, whatever each
-/// accounts for.
+/// So many names with structure still left are borrowed names, unless what is
+/// left is little against what each accounts for.
 const BORROWED: usize = 3;
+const LITTLE: f64 = 0.2;
 
 /// The effects of a model that are to be taken back because structure is left
 /// all the same: the one that accounts for too little of it, or all of several.
@@ -84,7 +85,7 @@ pub fn to_take_back(bench: &Bench<'_>, model: &Fitted, left: &LackOfFit) -> Vec<
     let weakest = (0..model.named.len()).map(|k| (share(k), k)).min_by(|a, b| a.0.total_cmp(&b.0));
     match weakest {
         Some((share, k)) if share < SHARE => vec![k],
-        _ if model.named.len() >= BORROWED => (0..model.named.len()).collect(),
+        Some((share, _)) if model.named.len() >= BORROWED && share < 1.0 - LITTLE => (0..model.named.len()).collect(),
         _ => Vec::new(),
     }
 }

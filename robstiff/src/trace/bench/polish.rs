@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::ops::Range;
 use std::rc::Rc;
+use std::string::String;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
@@ -85,7 +86,7 @@ impl<'c> Bench<'c> {
                     let with = |value: f64| bench.with_shape(one, k, value);
                     let [least, most] = self.variant(one).within;
                     let (mut low, mut high) = ((at / REACH).max(least).ln(), (at * REACH).min(most).ln());
-                    let tried = bench.tried(named, one, k);
+                    let tried = bench.at_hand(named, one, k);
                     let unlikely = bench.unlikely(named, one);
                     let left_by = |log: f64| {
                         let left = match &tried {
@@ -142,6 +143,23 @@ impl<'c> Bench<'c> {
         (bench, named)
     }
 
+    /// A model after a change of how it is fitted, if there was one; none, and all
+    /// as it was, where physics does not allow the model then.
+    pub fn tried(
+        &mut self,
+        named: &[Named],
+        change: impl FnOnce(&mut Self, &[Named]) -> Result<bool, String>,
+    ) -> Option<Fitted> {
+        let before = self.copy();
+        match change(self, named).and_then(|changed| if changed { self.fit(named).map(Some) } else { Ok(None) }) {
+            Ok(better) => better,
+            Err(_) => {
+                *self = before;
+                None
+            }
+        }
+    }
+
     /// Whether a model has numbers that [`simplified`](Self::simplified) looks at.
     pub fn may_be_simpler(&self, named: &[Named]) -> bool {
         named.iter().any(|&one| !self.simpler_forms(one).is_empty())
@@ -175,7 +193,7 @@ impl<'c> Bench<'c> {
 
     /// A model at its solution, ready for other values of a number out of a grid;
     /// none where what goes with that number enters other than linearly.
-    fn tried(&self, named: &[Named], one: Named, k: usize) -> Option<Tried<'c>> {
+    fn at_hand(&self, named: &[Named], one: Named, k: usize) -> Option<Tried<'c>> {
         let variant = self.variant(one);
         let column = variant.columns[k];
         if self.numbers[column - self.own.len()].enters.is_some() {
@@ -240,7 +258,7 @@ impl<'c> Bench<'c> {
     }
 
     /// The same, with nothing known of models.
-    pub fn copy(&self) -> Self {
+    fn copy(&self) -> Self {
         Self {
             own: Rc::clone(&self.own),
             candidates: Rc::clone(&self.candidates),
