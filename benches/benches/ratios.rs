@@ -116,5 +116,33 @@ fn grids(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(ratios, single, batches, grids);
+/// One core against all: so many poses that every core gets several pieces.
+fn cores(criterion: &mut Criterion) {
+    const COUNT: usize = 16384;
+    let mut group = criterion.benchmark_group("cores, 16384 poses");
+    group.throughput(Throughput::Elements(COUNT as u64));
+    let poses = poses::<5>(COUNT);
+    let (mut triangles, mut traces) = (vec![[0.0; 21]; COUNT], vec![0.0; COUNT]);
+    macro_rules! cores {
+        ($name:literal, $quantity:ident, $out:ident) => {
+            group.bench_function(concat!($name, ", one"), |bencher| {
+                bencher.iter(|| {
+                    batch::$quantity(&Rv130hsc, &poses, &mut $out);
+                    black_box(&mut $out);
+                });
+            });
+            group.bench_function(concat!($name, ", all"), |bencher| {
+                bencher.iter(|| {
+                    batch::parallel::$quantity(&Rv130hsc, &poses, &mut $out);
+                    black_box(&mut $out);
+                });
+            });
+        };
+    }
+    cores!("triangle", compliance_triangle, triangles);
+    cores!("trace", translational_trace, traces);
+    group.finish();
+}
+
+criterion_group!(ratios, single, batches, grids, cores);
 criterion_main!(ratios);

@@ -6,7 +6,8 @@
 //! - [`kinematics`]: transform, frames, Jacobian, torques and deflection;
 //! - [`weight`]: how the joints yield to the arm's own weight;
 //! - [`compliance`](mod@compliance): the Cartesian compliance, carried from the TCP to the
-//!   base.
+//!   base;
+//! - [`columns`]: frames, Jacobian and all together once more, of whole [`column`]s.
 
 pub mod chain;
 pub mod column;
