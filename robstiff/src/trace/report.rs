@@ -67,6 +67,8 @@ pub fn report(
         (repeated, NoiseSource::Repetitions) if repeated * repeated > residual_variance => {
             (residual_variance.sqrt(), NoiseSource::Residuals)
         }
+        // Learnt again without what the effects do.
+        (before, NoiseSource::Poses) => (bench.noise.covariance.reading().unwrap_or(before), NoiseSource::Poses),
         known => known,
     };
     let estimates_before = numbers(campaign, prepared, &all, &base, &spread_of(&untouched, &all, &base));

@@ -14,7 +14,6 @@ use super::Bench;
 use crate::identify::covariance::{Basis, Covariance};
 use crate::identify::noise::{PureError, repetitions};
 use crate::identify::prepare::Prepared;
-use crate::identify::second_order::straightened;
 use crate::trace::model::Named;
 
 /// What is known of the noise.
@@ -68,15 +67,15 @@ impl Bench<'_> {
         let prepared = self.prepared;
         let setting = self.at(named)?;
         let fit = setting.fit(named)?.fit;
-        let mut samples = straightened(&prepared.samples, &prepared.values[..prepared.samples.joints()]);
-        let effects = fit.columns.iter().zip(&fit.coefficients).filter(|(column, _)| **column >= self.own.len());
-        for (&column, &value) in effects {
-            let raw = setting.raw(column);
-            for (i, row) in samples.rows.iter_mut().enumerate() {
-                row.displacement -= value * raw.fixed_rows::<3>(i * samples.axes);
-                if samples.axes > 3 {
-                    row.rotation -= value * raw.fixed_rows::<3>(i * samples.axes + 3);
-                }
+        // What the model leaves, not the readings less each effect's column: what
+        // creeps has its creep in every column. That the joints are taken out as
+        // well is no matter, for a response in proportion to the load is free.
+        let left = setting.residuals(&fit) - &setting.correction;
+        let mut samples = prepared.samples.clone();
+        for (i, row) in samples.rows.iter_mut().enumerate() {
+            row.displacement = left.fixed_rows::<3>(i * prepared.samples.axes).into_owned();
+            if prepared.samples.axes > 3 {
+                row.rotation = left.fixed_rows::<3>(i * prepared.samples.axes + 3).into_owned();
             }
         }
         let training = |pose: usize| prepared.training[pose];
