@@ -10,6 +10,7 @@ mod import;
 mod input;
 mod json;
 mod map;
+mod online;
 mod output;
 mod path;
 mod plan;
@@ -51,6 +52,7 @@ enum Command {
     Import(import::Arguments),
     View(scene::Arguments),
     Map(map::Arguments),
+    Online(online::Arguments),
 }
 
 impl Command {
@@ -69,6 +71,7 @@ impl Command {
             Self::Import(arguments) => import::run(arguments),
             Self::View(arguments) => scene::run(arguments),
             Self::Map(arguments) => map::run(arguments),
+            Self::Online(arguments) => online::run(arguments),
         }
     }
 }

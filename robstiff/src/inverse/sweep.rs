@@ -54,6 +54,17 @@ struct Sample {
 impl<const N: usize> Wrist<N> {
     /// Candidates at every turn at which the fifth axis is in its place.
     pub(super) fn sweep(&self, free: &Free, seed: &SVector<f64, N>, found: &mut impl FnMut(SVector<f64, N>)) {
+        // All four ways at once, as they have much in common.
+        let ways = |angle: f64| {
+            let (turn, center) = self.freely_turned(free, Turn::new(angle));
+            let (shoulders, near) = self.base().shoulders(&center, seed[0]);
+            let [one, other] = shoulders.map(|first| {
+                let (elbows, short) = self.base().elbows(&center, first, seed);
+                elbows.map(|way| Sample { angle, wrong: self.fifth_off(&way, &turn), beyond: near.max(short) })
+            });
+            [one[0], one[1], other[0], other[1]]
+        };
+        let samples = all_around(&ways);
         for index in 0..4 {
             let way = |angle: f64| {
                 let (turn, center) = self.freely_turned(free, Turn::new(angle));
@@ -65,7 +76,7 @@ impl<const N: usize> Wrist<N> {
                 let (turn, way, beyond) = way(angle);
                 Sample { angle, wrong: self.fifth_off(&way, &turn), beyond }
             };
-            for angle in zeros(&all_around(&sample), &sample) {
+            for angle in zeros(samples.iter().map(|ways| ways[index]), &sample) {
                 let (turn, way, _) = way(angle);
                 self.full(&way, &turn, seed, found);
             }
@@ -73,41 +84,51 @@ impl<const N: usize> Wrist<N> {
     }
 }
 
-/// Samples all around, closer where they are far from a straight line; a little
-/// more than once, for lowest places at the first.
-fn all_around(function: &impl Fn(f64) -> Sample) -> Vec<Sample> {
+/// Samples of all ways all around, closer where one is far from a straight line;
+/// a little more than once, for lowest places at the first.
+fn all_around(function: &impl Fn(f64) -> [Sample; 4]) -> Vec<[Sample; 4]> {
     let step = TAU / STEPS as f64;
     let mut last = function(0.0);
-    let mut samples = std::vec![last];
+    let mut samples = Vec::with_capacity(4 * STEPS);
+    samples.push(last);
     for k in 1..=STEPS + 1 {
         let next = function(step * k as f64);
-        refine(last, next, HALVINGS, function, &mut samples);
+        refine([&last, &next], HALVINGS, function, &mut samples);
         last = next;
     }
     samples
 }
 
 /// Adds what is needed between two samples, and the second of them.
-fn refine(one: Sample, other: Sample, halvings: usize, function: &impl Fn(f64) -> Sample, samples: &mut Vec<Sample>) {
+fn refine(
+    [one, other]: [&[Sample; 4]; 2],
+    halvings: usize,
+    function: &impl Fn(f64) -> [Sample; 4],
+    samples: &mut Vec<[Sample; 4]>,
+) {
     if halvings > 0 {
-        let middle = function(0.5 * (one.angle + other.angle));
-        let [first, between, second] = [one, middle, other].map(|sample| sample.beyond);
-        // Between two of them it may go in and out of reach.
-        let may_turn = first.abs().min(between.abs()).min(second.abs()) < (first + second - 2.0 * between).abs();
-        let bent = (middle.wrong - 0.5 * (one.wrong + other.wrong)).abs() > BENT;
-        if (first * second > 0.0 && may_turn) || (first <= 0.0 && second <= 0.0 && bent) {
-            refine(one, middle, halvings - 1, function, samples);
-            refine(middle, other, halvings - 1, function, samples);
+        let middle = function(0.5 * (one[0].angle + other[0].angle));
+        let asks = |way: usize| {
+            let (one, middle, other) = (one[way], middle[way], other[way]);
+            let [first, between, second] = [one, middle, other].map(|sample| sample.beyond);
+            // Between two of them it may go in and out of reach.
+            let may_turn = first.abs().min(between.abs()).min(second.abs()) < (first + second - 2.0 * between).abs();
+            let bent = (middle.wrong - 0.5 * (one.wrong + other.wrong)).abs() > BENT;
+            (first * second > 0.0 && may_turn) || (first <= 0.0 && second <= 0.0 && bent)
+        };
+        if (0..4).any(asks) {
+            refine([one, &middle], halvings - 1, function, samples);
+            refine([&middle, other], halvings - 1, function, samples);
             return;
         }
         samples.push(middle);
     }
-    samples.push(other);
+    samples.push(*other);
 }
 
 /// Where something is wrong no more: between samples, up to the ends of what is
 /// in reach, and where it only touches zero.
-fn zeros(samples: &[Sample], function: &impl Fn(f64) -> Sample) -> Vec<f64> {
+fn zeros(samples: impl Iterator<Item = Sample>, function: &impl Fn(f64) -> Sample) -> Vec<f64> {
     let mut zeros = Vec::new();
     for run in runs(samples, function) {
         for pair in run.windows(2) {
@@ -125,10 +146,10 @@ fn zeros(samples: &[Sample], function: &impl Fn(f64) -> Sample) -> Vec<f64> {
 }
 
 /// The samples within reach, each row of them up to its ends.
-fn runs(samples: &[Sample], function: &impl Fn(f64) -> Sample) -> Vec<Vec<Sample>> {
+fn runs(samples: impl Iterator<Item = Sample>, function: &impl Fn(f64) -> Sample) -> Vec<Vec<Sample>> {
     let mut runs: Vec<Vec<Sample>> = Vec::new();
     let mut last: Option<Sample> = None;
-    for &sample in samples {
+    for sample in samples {
         // From where one ends or begins on.
         let end = |inside: Sample, outside: Sample| {
             let end = crossing(inside, outside, function, |sample| sample.beyond);

@@ -28,8 +28,17 @@ use crate::elements::{plays, turn};
 use crate::{Effect, Robot, State};
 pub use timeline::{NoFeed, Timeline};
 
-/// Points within a control step at which the deviation is looked at.
+/// Points within a control step at which the deviation is looked at, at most.
 const POINTS: usize = 8;
+
+/// Between two of them along a path, if the control step is longer (s).
+const APART: f64 = 0.5e-3;
+
+/// Of a sine, so many in a period at least, or one each control step.
+const IN_A_PERIOD: f64 = 200.0;
+
+/// How long a sine is looked at (s), but for two to ten periods.
+const LOOKED_AT: f64 = 4.0;
 
 /// What the controller corrects by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,7 +137,7 @@ pub fn simulate<const N: usize>(
     load: impl Fn(f64) -> Vector6<f64>,
     reading: impl FnMut(f64, &Vector6<f64>) -> Option<Vector6<f64>>,
 ) -> Vec<Instant> {
-    simulate_moving((truth, model), |_| *q, controller, duration, load, reading)
+    simulate_moving((truth, model), |_| *q, (controller, POINTS), duration, load, reading)
 }
 
 /// The same while the arm moves as the [`Timeline`] says, from its begin to its
@@ -143,13 +152,19 @@ pub fn simulate_along<const N: usize>(
     reading: impl FnMut(f64, &Vector6<f64>) -> Option<Vector6<f64>>,
 ) -> Vec<Instant> {
     let (posture, load) = (|time: f64| timeline.posture(time), |time: f64| timeline.wrench(time));
-    simulate_moving(robots, posture, controller, timeline.duration(), load, reading)
+    let points = points(controller.step / APART);
+    simulate_moving(robots, posture, (controller, points), timeline.duration(), load, reading)
+}
+
+/// Points within a control step, for want of so many.
+fn points(wanted: f64) -> usize {
+    wanted.ceil().clamp(1.0, POINTS as f64) as usize
 }
 
 fn simulate_moving<const N: usize>(
     (truth, model): (&impl Robot<N>, &impl Robot<N>),
     posture: impl Fn(f64) -> SVector<f64, N>,
-    controller: &Controller,
+    (controller, points): (&Controller, usize),
     duration: f64,
     load: impl Fn(f64) -> Vector6<f64>,
     mut reading: impl FnMut(f64, &Vector6<f64>) -> Option<Vector6<f64>>,
@@ -162,7 +177,7 @@ fn simulate_moving<const N: usize>(
     let (mut seen, mut now) = (Vec::new(), 0.0);
     let mut state = State::new();
     let mut moves: Option<(SVector<f64, N>, SMatrix<f64, 3, N>)> = None;
-    let between = transition(controller.servo, step / POINTS as f64);
+    let between = transition(controller.servo, step / points as f64);
     for k in 0..(duration / step).ceil() as usize {
         let start = k as f64 * step;
         let read = reading(start, &load(start));
@@ -174,9 +189,9 @@ fn simulate_moving<const N: usize>(
             (None, _) => (silent > controller.limits.hold).then(SVector::zeros),
         };
         underway.push_back((start + delay, wanted.step(asked)));
-        for point in 1..=POINTS {
+        for point in 1..=points {
             // In the middle of each part, so that a value that is held is seen as late as it is.
-            let end = start + step * (point as f64 - 0.5) / POINTS as f64;
+            let end = start + step * (point as f64 - 0.5) / points as f64;
             let mut whole = now > 0.0;
             while let Some(&(at, next)) = underway.front().filter(|(at, _)| *at < end) {
                 if at > now {
@@ -203,7 +218,7 @@ fn simulate_moving<const N: usize>(
 }
 
 /// What is left under a load that is `wrench` (N, Nm) times a sine of a
-/// `frequency` (Hz), in ten periods after what comes first has died down.
+/// `frequency` (Hz), in two to ten periods after what comes first has died down.
 ///
 /// # Panics
 /// If the frequency is not above zero, and as [`simulate`].
@@ -224,9 +239,11 @@ pub fn left_of_sine<const N: usize>(
             1.0 / (TAU * frequency * slow)
         }
     };
-    let settled = (20.0 * slowest + controller.delay + controller.step).max(2.0 / frequency);
-    let duration = settled + 10.0 / frequency;
-    let seen = simulate(robots, q, controller, duration, |time| wrench * (TAU * frequency * time).sin(), reading);
+    let settled = (20.0 * slowest + controller.delay + controller.step).max(1.0 / frequency);
+    let duration = settled + (LOOKED_AT * frequency).round().clamp(2.0, 10.0) / frequency;
+    let load = |time: f64| wrench * (TAU * frequency * time).sin();
+    let points = points(IN_A_PERIOD * frequency * controller.step);
+    let seen = simulate_moving(robots, |_| *q, (controller, points), duration, load, reading);
     let seen: Vec<_> = seen.iter().filter(|instant| instant.time > settled && instant.time <= duration).collect();
     let amplitude = |of: fn(&Instant) -> Vector3<f64>| {
         let part = |wave: fn(f64) -> f64| -> Vector3<f64> {

@@ -20,6 +20,9 @@ const MOST_SHOWN: usize = 100;
 /// descriptions.
 const ON_THE_LIMIT: f64 = 1e-6;
 
+/// Largest changes of a joint that differ by less are the same (rad or m).
+const SAME_CHANGE: f64 = 1e-6;
+
 /// One posture a point, or why there is none.
 struct Followed<const N: usize> {
     postures: Vec<Result<SVector<f64, N>, Unreached>>,
@@ -35,7 +38,8 @@ impl ToolPath {
     /// With a `start` (rad or m) the first point is solved nearest to it. Without,
     /// every posture at the first point is followed along the path, and the one is
     /// kept that reaches most points, changes its posture least often, and moves
-    /// its joints least at a time.
+    /// its joints least at a time; of those that are equal in this the one nearest
+    /// to the middle of the joints' ranges.
     ///
     /// # Errors
     /// The points that cannot be reached, all of them.
@@ -60,7 +64,9 @@ impl ToolPath {
         let followed = seeds.iter().take(MOST_POSTURES).map(|seed| follow(robot, &inverse, &self.points, seed));
         let best = followed.min_by(|one, other| {
             let rank = |of: &Followed<N>| (of.postures.iter().filter(|q| q.is_err()).count(), of.jumps.len());
-            rank(one).cmp(&rank(other)).then(one.largest.total_cmp(&other.largest))
+            // Rounding is no reason to prefer one; the first is the nearest to the middle.
+            let moves = |of: &Followed<N>| (of.largest / SAME_CHANGE).round();
+            rank(one).cmp(&rank(other)).then(moves(one).total_cmp(&moves(other)))
         });
         let best = best.expect("there is at least one seed");
         self.finish(robot, best)

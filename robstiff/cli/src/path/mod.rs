@@ -122,7 +122,8 @@ fn solve<const N: usize>(
     Ok(Solved { points: points.collect(), jumps: solved.jumps, closed_form, cutting })
 }
 
-fn tool_axis(text: &str) -> Result<Unit<Vector3<f64>>, String> {
+/// An axis of the tool's frame by its name.
+pub fn tool_axis(text: &str) -> Result<Unit<Vector3<f64>>, String> {
     let axis = match text.trim_start_matches('-') {
         "x" => Vector3::x_axis(),
         "y" => Vector3::y_axis(),

@@ -50,9 +50,10 @@ pub struct Arguments {
 
 /// A force in the base frame \[N\].
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Force([f64; 3]);
+pub struct Force(pub [f64; 3]);
 
-fn force(text: &str) -> Result<Force, String> {
+/// Reads its three components.
+pub fn force(text: &str) -> Result<Force, String> {
     let parts: Vec<&str> = text.split(',').collect();
     let [x, y, z] = parts[..] else { return Err("three components are expected, e.g. \"0, 0, -400 N\"".to_owned()) };
     let component = |part: &str| quantity::parse(part, Dimension::Force).map_err(|error| error.to_string());

@@ -71,7 +71,8 @@ fn ratio(text: &str) -> Result<f64, String> {
     if (0.0..1.0).contains(&ratio) { Ok(ratio) } else { Err("a ratio from 0 to below 1 is expected here".to_owned()) }
 }
 
-fn axis(text: &str) -> Result<Vector3<f64>, String> {
+/// Reads a direction, of any length.
+pub fn axis(text: &str) -> Result<Vector3<f64>, String> {
     let parts: Vec<&str> = text.split(',').collect();
     let [x, y, z] = parts[..] else { return Err("three numbers are expected here, e.g. `0,0,1`".to_owned()) };
     let number = |part: &str| quantity::parse(part, Dimension::Number).map_err(|error| error.to_string());

@@ -1,0 +1,320 @@
+//! What pushes the tool: read, and simulated with each of the controllers.
+
+use std::ops::Range;
+
+use robstiff::deviation::{Deviation, ForceTable, Surface, load_of_cut};
+use robstiff::milling::{CutFile, CutFrame, ForceFrame, Forces};
+use robstiff::nalgebra::{Matrix3, SVector, Unit, Vector3, Vector6};
+use robstiff::online::{Instant, Timeline, left_of_sine, simulate_along};
+use robstiff::path::ToolPath;
+use robstiff::{Robot, with_robot};
+use robstiff_robots::Description;
+
+use super::{Arguments, Variant, pose};
+use crate::failure::Failure;
+use crate::output::{self, Files};
+use crate::scene::Force;
+use crate::{forces, input};
+
+/// Frequencies between which is looked for where a correction no longer gains (Hz).
+const LOWEST: f64 = 0.1;
+const HIGHEST: f64 = 1000.0;
+
+/// In how many parts a record is told.
+const PARTS: usize = 100;
+
+/// What pushes the tool, read.
+pub enum Asked {
+    /// A wrench that comes and goes.
+    Sine { q: Vec<f64>, wrench: Vector6<f64>, frequencies: Vec<f64>, name: String },
+    /// A record of forces over time (s; N, Nm).
+    Record { q: Vec<f64>, samples: Vec<(f64, Vector6<f64>)>, name: String },
+    /// A path.
+    Path { path: Box<ToolPath>, source: Source, axis: Unit<Vector3<f64>>, feed: Option<f64>, name: String },
+}
+
+pub enum Source {
+    Cut(CutFile),
+    Table(ForceTable),
+}
+
+/// What came of it.
+pub struct Seen {
+    /// What was simulated.
+    pub name: String,
+    pub left: What,
+}
+
+pub enum What {
+    /// By frequency (Hz).
+    Sine {
+        q: Vec<f64>,
+        wrench: Vector6<f64>,
+        /// The displacement without correction (m).
+        deviation: f64,
+        frequencies: Vec<f64>,
+        /// For each variant and frequency.
+        left: Vec<Vec<robstiff::online::Left>>,
+        /// For each variant, up to which frequency (Hz) less than half and less
+        /// than all is left; `None` where never, or beyond what was looked at.
+        useful: Vec<[Option<f64>; 2]>,
+    },
+    /// Along a path or over a record.
+    Along {
+        stops: Vec<Stop>,
+        without: Course,
+        /// For each variant.
+        with: Vec<Course>,
+    },
+}
+
+/// A point of the path, or the end of a part of the record.
+#[derive(Clone, Copy, Debug)]
+pub struct Stop {
+    pub time: f64,
+    /// The line and the arc length (m) of a path's point.
+    pub place: Option<(usize, f64)>,
+}
+
+/// Distances of the tool from where it should be (m).
+pub struct Course {
+    pub rms: f64,
+    pub worst: f64,
+    /// The stop that the worst comes before or at.
+    pub at: usize,
+    /// The worst since the stop before; not a number where there is nothing
+    /// between the two.
+    pub since: Vec<f64>,
+}
+
+impl Asked {
+    /// Reads what is named.
+    pub fn read(arguments: &Arguments, robot: &Description, files: &mut Files) -> Result<Self, Failure> {
+        let load = &arguments.load;
+        let cut = match &load.cut {
+            Some(path) => {
+                let file = input::cut(path)?;
+                forces::protect(files, path, &file);
+                Some((file, path.display().to_string()))
+            }
+            None => None,
+        };
+        if let Some(path) = &arguments.path {
+            let (source, by) = match (&load.forces, cut) {
+                (Some(path), _) => {
+                    let table = ForceTable::read(path)?;
+                    table.warnings.iter().for_each(|warning| output::complain(format_args!("warning: {warning}")));
+                    files.protect(path);
+                    (Source::Table(table), path.display().to_string())
+                }
+                (None, Some((file, name))) => (Source::Cut(file), name),
+                (None, None) => {
+                    return Err(Failure::Usage(
+                        "a path needs a force: give `--cut CUT.yaml` or `--forces FORCES.csv`".to_owned(),
+                    ));
+                }
+            };
+            let name = format!("{} under {by}", path.display());
+            let path = ToolPath::read(path, robot, load.tool_axis)?;
+            path.warnings.iter().for_each(|warning| output::complain(format_args!("warning: {warning}")));
+            // The sign of the tool's axis says how the file writes it.
+            let axis = Unit::new_unchecked(load.tool_axis.abs());
+            return Ok(Self::Path { path: Box::new(path), source, axis, feed: load.feed, name });
+        }
+        let q = pose(load.at.as_deref(), robot)?;
+        let frequencies = load.frequencies.0.clone();
+        let sine = |wrench, name| Self::Sine { q: q.clone(), wrench, frequencies: frequencies.clone(), name };
+        match (cut, load.force) {
+            (Some((file, name)), _) => {
+                let (turn, frame) = frame(robot, &q, arguments)?;
+                if let Forces::Measured { force, .. } = &file.forces {
+                    let turn = force.to_base(&frame, &turn);
+                    let sample = |sample: &robstiff::milling::Sample| {
+                        let force = turn * sample.force;
+                        Some((sample.time?, Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0)))
+                    };
+                    if let Some(samples) = force.samples.iter().map(sample).collect() {
+                        return Ok(Self::Record { q, samples, name });
+                    }
+                }
+                let force = file.forces.mean_in_base(&frame, &turn);
+                Ok(sine(Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0), format!("the mean force of {name}")))
+            }
+            (None, Some(Force([x, y, z]))) => Ok(sine(Vector6::new(x, y, z, 0.0, 0.0, 0.0), "the force".to_owned())),
+            (None, None) => Err(Failure::Usage(
+                "a pose needs a force: give `--force \"0, 0, -400 N\"` or `--cut CUT.yaml`, or a path".to_owned(),
+            )),
+        }
+    }
+
+    /// Simulates each variant. `robots` are the robot and what a controller that
+    /// does not know it takes it for; the sensor is silent in this time (s).
+    pub fn simulate<const N: usize>(
+        &self,
+        (robot, model): (&impl Robot<N>, &impl Robot<N>),
+        variants: &[Variant],
+        silent: Option<&Range<f64>>,
+    ) -> Result<Seen, Failure> {
+        let (timeline, stops, name): (_, Vec<Stop>, _) = match self {
+            Self::Sine { q, wrench, frequencies, name } => {
+                if silent.is_some() {
+                    return Err(Failure::Usage(
+                        "--lost needs a path or a record of forces over time, not a force by its frequency".to_owned(),
+                    ));
+                }
+                let q = SVector::from_column_slice(q);
+                let what = by_frequency((robot, model), &q, wrench, frequencies, variants)?;
+                return Ok(Seen { name: name.clone(), left: what });
+            }
+            Self::Record { q, samples, name } => {
+                let timeline = Timeline::at_pose(&SVector::from_column_slice(q), samples.iter().copied())
+                    .filter(|timeline| timeline.duration() > 0.0)
+                    .ok_or_else(|| Failure::new(format!("the record of {name} has no duration")))?;
+                let part = timeline.duration() / PARTS as f64;
+                let stops = (1..=PARTS).map(|k| Stop { time: part * k as f64, place: None }).collect();
+                (timeline, stops, name)
+            }
+            Self::Path { path, source, axis, feed, name } => {
+                let solved = path.solve(robot, None)?;
+                let load = match source {
+                    Source::Table(table) => {
+                        table.load(&solved, ForceFrame::Base, *axis, Surface::Side).map_err(Failure::new)?
+                    }
+                    Source::Cut(file) => load_of_cut(&file.forces, &solved, *axis, Surface::Side),
+                };
+                let speed = match source {
+                    Source::Cut(CutFile { forces: Forces::Model(cut), .. }) => feed.or(cut.feed_speed()),
+                    _ => *feed,
+                };
+                // The force of the tool where the arm lets it go, as without correction.
+                let deviation = Deviation::of(robot, &solved, &load).map_err(Failure::new)?;
+                let wrenches: Vec<Vector6<f64>> = deviation.points.iter().map(|point| point.wrench).collect();
+                let timeline = Timeline::of_path(&solved, &wrenches, speed)
+                    .map_err(|error| Failure::new(format!("{error}; give --feed \"600 mm/min\"")))?;
+                let stops = timeline.times().zip(&solved.points);
+                let stops = stops.map(|(time, point)| Stop { time, place: Some((point.line, point.s)) }).collect();
+                (timeline, stops, name)
+            }
+        };
+        let reading = |time: f64, wrench: &Vector6<f64>| {
+            (!silent.is_some_and(|silent| silent.contains(&time))).then_some(*wrench)
+        };
+        let mut without = None;
+        let mut with = Vec::new();
+        for variant in variants {
+            let seen = if variant.knows {
+                simulate_along((robot, robot), &timeline, &variant.controller, reading)
+            } else {
+                simulate_along((robot, model), &timeline, &variant.controller, reading)
+            };
+            without.get_or_insert_with(|| Course::of(&seen, &stops, |instant| instant.uncorrected));
+            with.push(Course::of(&seen, &stops, |instant| instant.corrected));
+        }
+        let without = without.expect("there is at least one variant");
+        Ok(Seen { name: name.clone(), left: What::Along { stops, without, with } })
+    }
+}
+
+fn by_frequency<const N: usize>(
+    (robot, model): (&impl Robot<N>, &impl Robot<N>),
+    q: &SVector<f64, N>,
+    wrench: &Vector6<f64>,
+    frequencies: &[f64],
+    variants: &[Variant],
+) -> Result<What, Failure> {
+    let deviation = robot.deflection(q, wrench).fixed_rows::<3>(0).norm();
+    if !(deviation > 0.0 && deviation.is_finite()) {
+        return Err(Failure::new("the force does not move the tool in this pose"));
+    }
+    let left_of = |variant: &Variant, frequency: f64| {
+        let reading = |_: f64, wrench: &Vector6<f64>| Some(*wrench);
+        match variant.knows {
+            true => left_of_sine((robot, robot), q, &variant.controller, (wrench, frequency), reading),
+            false => left_of_sine((robot, model), q, &variant.controller, (wrench, frequency), reading),
+        }
+    };
+    let left = variants.iter().map(|variant| frequencies.iter().map(|&each| left_of(variant, each)).collect());
+    let useful = variants.iter().map(|variant| {
+        let of = |frequency: f64| left_of(variant, frequency).rms;
+        let half = reaches(0.5, 1.0, of);
+        [half, reaches(1.0, half.unwrap_or(1.0), of)]
+    });
+    let (left, useful) = (left.collect(), useful.collect());
+    Ok(What::Sine {
+        q: q.iter().copied().collect(),
+        wrench: *wrench,
+        deviation,
+        frequencies: frequencies.to_vec(),
+        left,
+        useful,
+    })
+}
+
+/// The frequency (Hz) at which what is left comes to a part; by doubling and
+/// halving from a first one, to a hundredth.
+fn reaches(part: f64, first: f64, left: impl Fn(f64) -> f64) -> Option<f64> {
+    let (mut low, mut high) = (first, first);
+    if left(first) < part {
+        while {
+            high *= 2.0;
+            left(high) < part
+        } {
+            low = high;
+            if high > HIGHEST {
+                return None;
+            }
+        }
+    } else {
+        while {
+            low *= 0.5;
+            left(low) >= part
+        } {
+            high = low;
+            if low < LOWEST {
+                return None;
+            }
+        }
+    }
+    while high > 1.02 * low {
+        let middle = (low * high).sqrt();
+        if left(middle) < part { low = middle } else { high = middle }
+    }
+    Some((low * high).sqrt())
+}
+
+impl Course {
+    fn of(seen: &[Instant], stops: &[Stop], of: impl Fn(&Instant) -> Vector3<f64>) -> Self {
+        let mut since = vec![f64::NAN; stops.len()];
+        let mut squares = 0.0;
+        let mut count = 0_usize;
+        for instant in seen {
+            let at = stops.partition_point(|stop| stop.time < instant.time);
+            if at == stops.len() {
+                break;
+            }
+            let distance = of(instant).norm();
+            since[at] = distance.max(since[at]);
+            squares += distance * distance;
+            count += 1;
+        }
+        let of_stop = |at: &usize| if since[*at].is_nan() { -1.0 } else { since[*at] };
+        let at = (0..stops.len()).max_by(|one, other| of_stop(one).total_cmp(&of_stop(other))).unwrap_or(0);
+        Self {
+            rms: (squares / count.max(1) as f64).sqrt(),
+            worst: since.get(at).copied().unwrap_or(f64::NAN),
+            at,
+            since,
+        }
+    }
+}
+
+/// The turn of the tool at a pose, and the frame of a cut there.
+fn frame(robot: &Description, q: &[f64], arguments: &Arguments) -> Result<(Matrix3<f64>, CutFrame), Failure> {
+    let pose = with_robot!(robot, |arm| arm.transform(&SVector::from_column_slice(q)));
+    let turn: Matrix3<f64> = pose.fixed_view::<3, 3>(0, 0).into_owned();
+    let axis = turn * arguments.load.tool_axis.as_ref();
+    match CutFrame::new(&axis, &arguments.load.toward) {
+        Some(frame) => Ok((turn, frame)),
+        None => Err(Failure::Usage("--toward goes along the tool's axis; a cut feeds across it".to_owned())),
+    }
+}

@@ -1,0 +1,237 @@
+//! `robstiff online`: what a correction while cutting leaves of the deviation.
+
+mod loads;
+mod page;
+
+use std::path::PathBuf;
+
+use robstiff::nalgebra::{Unit, Vector3};
+use robstiff::online::{Controller, Limits, Sensing, Servo};
+use robstiff::{Generic, with_robot};
+use robstiff_robots::Description;
+use robstiff_robots::quantity::{self, Dimension};
+
+use crate::failure::Failure;
+use crate::output::{self, Files};
+use crate::path::tool_axis;
+use crate::scene::{Force, force};
+use crate::stability::positive;
+use crate::{input, json};
+use loads::Asked;
+
+/// How much too stiff a controller takes the robot for where nothing else is said.
+const TOO_STIFF: f64 = 0.1;
+
+/// What a correction of the joint targets while cutting leaves of the deviation
+///
+/// Each control step reads a force sensor, or encoders on the output side of the
+/// gears, and shifts the joint targets; that acts after a delay and through the
+/// position loops. Along a path with a cut or recorded forces, or at a pose under
+/// a force by its frequency. See robstiff/cli/docs/online.md.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The robot's description, or the name of a robot in the catalogue
+    #[arg(value_name = "ROBOT.yaml")]
+    robot: PathBuf,
+    /// The tool path (robstiff/cli/docs/path.md); without it, a pose
+    #[arg(value_name = "PATH.csv")]
+    path: Option<PathBuf>,
+    #[command(flatten)]
+    load: LoadArguments,
+    #[command(flatten)]
+    control: ControlArguments,
+    /// What the controller takes the robot for; where left out, the robot with all its joints 10 % too stiff
+    #[arg(long, value_name = "MODEL.yaml")]
+    model: Option<PathBuf>,
+    /// Write what is left to FILE: by frequency, or at each point of the path or record
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Write the same as JSON to FILE
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+#[derive(clap::Args)]
+#[command(next_help_heading = "What pushes the tool")]
+struct LoadArguments {
+    /// The cut; at a pose a record of forces over time is played once, any other cut comes and goes with a frequency
+    #[arg(long, value_name = "CUT.yaml", conflicts_with_all = ["forces", "force"])]
+    cut: Option<PathBuf>,
+    /// The force along the path, a row for each point or by arc length, in the base frame
+    #[arg(long, value_name = "FORCES.csv", requires = "path", conflicts_with = "force")]
+    forces: Option<PathBuf>,
+    /// A force at a pose, in the base frame, e.g. "0, 0, -400 N"
+    #[arg(long, value_name = "Fx,Fy,Fz", allow_hyphen_values = true, value_parser = force, conflicts_with = "path")]
+    force: Option<Force>,
+    /// The pose: joint coordinates in rad (or m), or with their unit as in "0.5, 30 deg, -pi/2"; zero where left out
+    #[arg(long, value_name = "q1,q2,..", allow_hyphen_values = true, conflicts_with = "path")]
+    at: Option<String>,
+    /// Where the feed of a cut at a pose goes, in the base frame
+    #[arg(long, value_name = "x,y,z", default_value = "1,0,0", allow_hyphen_values = true, value_parser = direction)]
+    toward: Vector3<f64>,
+    /// Frequencies at which the force at a pose comes and goes
+    #[arg(long, value_name = "FREQUENCIES", default_value = "0.2, 0.5, 1, 2, 5, 10 Hz", value_parser = frequencies)]
+    frequencies: Frequencies,
+    /// The speed along a path that does not say it, e.g. "600 mm/min"
+    #[arg(long, value_name = "SPEED", value_parser = positive(Dimension::Speed))]
+    feed: Option<f64>,
+    /// The axis of the tool from the spindle to the tip, in the TCP's frame: x, y, z, -x, -y or -z
+    #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = tool_axis)]
+    tool_axis: Unit<Vector3<f64>>,
+}
+
+#[derive(clap::Args)]
+#[command(next_help_heading = "The control")]
+struct ControlArguments {
+    /// Control steps to compare, e.g. "12 ms, 4 ms, 1 ms"
+    #[arg(long, value_name = "TIMES", default_value = "4 ms", value_parser = steps)]
+    step: Steps,
+    /// From a reading to the position loops; one control step where left out
+    #[arg(long, value_name = "TIME", value_parser = not_negative)]
+    delay: Option<f64>,
+    /// The natural frequency of the position loops, of second order
+    #[arg(long, value_name = "FREQUENCY", default_value = "15 Hz", value_parser = positive(Dimension::Frequency))]
+    bandwidth: f64,
+    /// Their damping ratio
+    #[arg(long, value_name = "RATIO", default_value = "0.7", value_parser = positive(Dimension::Number))]
+    loop_damping: f64,
+    /// How far a joint may be corrected (a sliding one by as many m as this has rad)
+    #[arg(long, value_name = "ANGLE", default_value = "5 mrad", value_parser = positive(Dimension::Angle))]
+    most: f64,
+    /// How fast a correction may change (rad/s, or m/s of a sliding joint)
+    #[arg(long, value_name = "SPEED", default_value = "1 rad/s", value_parser = positive(Dimension::RotationalSpeed))]
+    fastest: f64,
+    /// For how long the last correction stays when the sensor falls silent, before it is withdrawn
+    #[arg(long, value_name = "TIME", default_value = "20 ms", value_parser = not_negative)]
+    hold: f64,
+    /// When the sensor falls silent, and for how long, e.g. "2 s, 0.5 s"; not with a force by its frequency
+    #[arg(long, value_name = "FROM,FOR", value_parser = loss)]
+    lost: Option<Loss>,
+}
+
+/// Control steps (s).
+#[derive(Clone, Debug)]
+struct Steps(Vec<f64>);
+
+/// Frequencies (Hz).
+#[derive(Clone, Debug)]
+struct Frequencies(Vec<f64>);
+
+/// From when and for how long the sensor is silent (s).
+#[derive(Clone, Copy, Debug)]
+struct Loss([f64; 2]);
+
+fn steps(text: &str) -> Result<Steps, String> {
+    list(text, Dimension::Time).map(Steps)
+}
+
+fn frequencies(text: &str) -> Result<Frequencies, String> {
+    list(text, Dimension::Frequency).map(Frequencies)
+}
+
+/// Quantities above zero between commas; those without a unit have that of the
+/// last one.
+fn list(text: &str, dimension: Dimension) -> Result<Vec<f64>, String> {
+    let unit = text.rsplit(',').next().and_then(|last| last.trim().split_once(' ')).map_or("", |(_, unit)| unit);
+    let read = |part: &str| {
+        let bare = part.trim().bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
+        positive(dimension)(&if bare { format!("{} {unit}", part.trim()).trim().to_owned() } else { part.to_owned() })
+    };
+    text.split(',').map(read).collect()
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    let time = quantity::parse(text, Dimension::Time).map_err(|error| error.to_string())?;
+    if time >= 0.0 { Ok(time) } else { Err("a time of 0 or more is expected here".to_owned()) }
+}
+
+fn loss(text: &str) -> Result<Loss, String> {
+    let parts: Vec<&str> = text.split(',').collect();
+    let [from, length] = parts[..] else { return Err("two times are expected, e.g. \"2 s, 0.5 s\"".to_owned()) };
+    Ok(Loss([not_negative(from)?, not_negative(length)?]))
+}
+
+fn direction(text: &str) -> Result<Vector3<f64>, String> {
+    crate::stability::axis(text)
+}
+
+/// What is compared: a control step, what it reads, and what the controller knows.
+#[derive(Clone, Debug)]
+struct Variant {
+    name: String,
+    controller: Controller,
+    /// Whether the controller has the robot as it is.
+    knows: bool,
+}
+
+impl ControlArguments {
+    fn variants(&self, model: &str) -> Vec<Variant> {
+        let of_step = |&step: &f64| {
+            let variant = |sensor: &str, sensing, knows| Variant {
+                name: format!("{} ms, {sensor}", crate::text::significant(step * 1e3, 4)),
+                controller: Controller {
+                    sensing,
+                    step,
+                    delay: self.delay.unwrap_or(step),
+                    servo: Servo::SecondOrder { frequency: self.bandwidth, damping: self.loop_damping },
+                    limits: Limits { size: self.most, rate: self.fastest, hold: self.hold },
+                    damping: 1e-9,
+                },
+                knows,
+            };
+            [
+                variant("force sensor", Sensing::Force, true),
+                variant(&format!("force sensor, {model}"), Sensing::Force, false),
+                variant("encoders behind the gears", Sensing::Encoders, true),
+            ]
+        };
+        self.step.0.iter().flat_map(of_step).collect()
+    }
+}
+
+/// Simulates.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (robot, _) = input::robot(&arguments.robot)?;
+    let (model, name) = match &arguments.model {
+        Some(path) => (input::robot(path)?.0, path.display().to_string()),
+        None => (stiffer(&robot), "model 10 % too stiff".to_owned()),
+    };
+    let mut files = Files::default();
+    let asked = Asked::read(arguments, &robot, &mut files)?;
+    let variants = arguments.control.variants(&name);
+    let silent = arguments.control.lost.map(|Loss([from, length])| from..from + length);
+    let seen = with_robot!(&robot, |arm| {
+        let model = Generic::new(&model).map_err(|error| Failure::new(format!("{name}: {error}")))?;
+        asked.simulate((&arm, &model), &variants, silent.as_ref())
+    })?;
+    files.protect(&arguments.robot);
+    arguments.model.iter().chain(&arguments.path).for_each(|path| files.protect(path));
+    if let Some(path) = &arguments.csv {
+        files.add(path, page::table(&seen, &variants));
+    }
+    if let Some(path) = &arguments.json {
+        files.add(path, json::document(&page::document(&robot, &seen, &variants)));
+    }
+    let said = files.write()?;
+    output::print(page::page(&robot, &seen, &variants, &arguments.control) + &said)
+}
+
+/// The same with every joint a tenth stiffer.
+fn stiffer(robot: &Description) -> Description {
+    let mut stiffer = robot.clone();
+    let parts = stiffer.joints.iter_mut().flat_map(|joint| &mut joint.compliance);
+    parts.for_each(|part| part.value *= 1.0 - TOO_STIFF);
+    stiffer
+}
+
+/// The joint coordinates of a pose.
+fn pose(at: Option<&str>, robot: &Description) -> Result<Vec<f64>, Failure> {
+    let q = match at {
+        Some(text) => input::coordinates(text, robot)?,
+        None => input::default_coordinates(robot),
+    };
+    for note in input::outside_limits(&q, robot) {
+        output::complain(format_args!("note: {note}"));
+    }
+    Ok(q)
+}

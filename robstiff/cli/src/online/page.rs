@@ -1,0 +1,206 @@
+//! What is left, as text, as a table and as JSON.
+
+use robstiff_robots::Description;
+use serde_json::{Value, json};
+
+use super::loads::{Course, Seen, Stop, What};
+use super::{ControlArguments, Loss, Variant};
+use crate::json::{number, numbers};
+use crate::text::{Table, decimals, micrometres, significant};
+
+/// How many rows of places a person reads.
+const ROWS: usize = 12;
+
+pub fn page(robot: &Description, seen: &Seen, variants: &[Variant], control: &ControlArguments) -> String {
+    let mut page = match &seen.left {
+        What::Sine { q, wrench, deviation, .. } => {
+            let q: Vec<String> =
+                robot.joints.iter().zip(q).map(|(joint, &q)| significant(joint.for_people(q), 4)).collect();
+            let force: Vec<String> = wrench.iter().take(3).map(|&part| significant(part, 4)).collect();
+            format!(
+                "{} at q = ({}) under {}, ({}) N, that comes and goes: {} um without correction\n",
+                robot.name,
+                q.join(", "),
+                seen.name,
+                force.join(", "),
+                micrometres(*deviation)
+            )
+        }
+        What::Along { stops, .. } => {
+            let duration = stops.last().map_or(0.0, |stop| stop.time);
+            format!("{} on {}: {} s\n", robot.name, seen.name, significant(duration, 4))
+        }
+    };
+    let delay =
+        control.delay.map_or("one control step".to_owned(), |delay| format!("{} ms", significant(delay * 1e3, 4)));
+    page += &format!(
+        "position loops of {} Hz (damping ratio {}), a delay of {delay}; corrections to {} mrad, by {} rad/s\n",
+        significant(control.bandwidth, 4),
+        significant(control.loop_damping, 3),
+        significant(control.most * 1e3, 4),
+        significant(control.fastest, 4),
+    );
+    if let Some(Loss([from, length])) = control.lost {
+        page += &format!(
+            "the sensor falls silent after {} s for {} s; a correction is held {} ms\n",
+            significant(from, 4),
+            significant(length, 4),
+            significant(control.hold * 1e3, 4)
+        );
+    }
+    page + &match &seen.left {
+        What::Sine { frequencies, left, useful, .. } => {
+            let mut table = Table::new(
+                1,
+                std::iter::once(String::new()).chain(frequencies.iter().map(|f| format!("{} Hz", significant(*f, 4)))),
+            );
+            for (variant, left) in variants.iter().zip(left) {
+                let cells = left.iter().map(|left| decimals(100.0 * left.rms, 1));
+                table.row(std::iter::once(variant.name.clone()).chain(cells));
+            }
+            let mut page = format!("\nLeft of the deviation [%] (rms), by the frequency of the force\n{table}\n");
+            let mut table = Table::new(1, ["", "half is gone to", "less is left to"]);
+            for (variant, useful) in variants.iter().zip(useful) {
+                let cells = useful.map(|useful| useful.map_or("-".to_owned(), |f| format!("{} Hz", significant(f, 3))));
+                table.row(std::iter::once(variant.name.clone()).chain(cells));
+            }
+            page += &format!("How fast a force it keeps up with\n{table}");
+            page
+        }
+        What::Along { stops, without, with } => along(variants, stops, without, with),
+    }
+}
+
+fn along(variants: &[Variant], stops: &[Stop], without: &Course, with: &[Course]) -> String {
+    let place = |at: usize| match stops[at].place {
+        Some((line, _)) => format!("line {line}"),
+        None => format!("{} s", significant(stops[at].time, 4)),
+    };
+    let mut table = Table::new(1, ["", "rms", "left [%]", "worst", "left [%]", "worst before"]);
+    let mut row = |name: &str, course: &Course| {
+        let share = |part: f64, whole: f64| decimals(100.0 * part / whole, 1);
+        table.row([
+            name.to_owned(),
+            micrometres(course.rms),
+            share(course.rms, without.rms),
+            micrometres(course.worst),
+            share(course.worst, without.worst),
+            place(course.at),
+        ]);
+    };
+    row("without correction", without);
+    variants.iter().zip(with).for_each(|(variant, course)| row(&variant.name, course));
+    let mut page = format!("\nDistance from where the tool should be [um]\n{table}");
+    let first = variants.len().min(3);
+    let mut header = vec![if stops[0].place.is_some() { "line".to_owned() } else { "time [s]".to_owned() }];
+    if stops[0].place.is_some() {
+        header.push("s [mm]".to_owned());
+    }
+    header.push("without".to_owned());
+    header.extend((1..=first).map(|k| format!("({k})")));
+    let mut table = Table::new(0, header);
+    let places: Vec<usize> = (0..stops.len()).filter(|&at| !without.since[at].is_nan()).collect();
+    let stride = places.len().div_ceil(ROWS).max(1);
+    for &at in places.iter().step_by(stride) {
+        let mut row = match stops[at].place {
+            Some((line, s)) => vec![line.to_string(), decimals(s * 1e3, 1)],
+            None => vec![significant(stops[at].time, 4)],
+        };
+        row.push(micrometres(without.since[at]));
+        row.extend(with[..first].iter().map(|course| micrometres(course.since[at])));
+        table.row(row);
+    }
+    let what = if stops[0].place.is_some() { "point" } else { "time" };
+    page += &format!("\nThe worst of it [um] from the {what} before on");
+    let names: Vec<String> =
+        (1..).zip(&variants[..first]).map(|(k, variant)| format!("({k}) {}", variant.name)).collect();
+    page += &format!("; {}\n{table}", names.join("; "));
+    page
+}
+
+/// The same as a table: a row for each frequency, or each point of the path.
+pub fn table(seen: &Seen, variants: &[Variant]) -> String {
+    let names = |unit: &str| -> String {
+        variants.iter().map(|variant| format!(",{} [{unit}]", variant.name.replace(", ", "; "))).collect()
+    };
+    match &seen.left {
+        What::Sine { frequencies, left, .. } => {
+            let mut csv = format!("frequency [Hz]{}\n", names("%"));
+            for (k, frequency) in frequencies.iter().enumerate() {
+                csv += &frequency.to_string();
+                left.iter().for_each(|left| csv += &format!(",{}", decimals(100.0 * left[k].rms, 4)));
+                csv.push('\n');
+            }
+            csv
+        }
+        What::Along { stops, without, with } => {
+            let mut csv = format!("t [s],line,s [mm],without [um]{}\n", names("um"));
+            for (at, stop) in stops.iter().enumerate() {
+                let (line, s) =
+                    stop.place.map_or_else(Default::default, |(line, s)| (line.to_string(), decimals(s * 1e3, 6)));
+                csv += &format!("{},{line},{s}", decimals(stop.time, 6));
+                for course in std::iter::once(without).chain(with) {
+                    let since = course.since[at];
+                    csv += &if since.is_nan() { ",".to_owned() } else { format!(",{}", decimals(since * 1e6, 4)) };
+                }
+                csv.push('\n');
+            }
+            csv
+        }
+    }
+}
+
+/// Everything in SI units; what does not exist is null.
+pub fn document(robot: &Description, seen: &Seen, variants: &[Variant]) -> Value {
+    let mut document = json!({ "robot": robot.name, "load": seen.name });
+    let entries = document.as_object_mut().expect("it is an object");
+    let named = |variant: &Variant, what: Value| {
+        let mut entry = json!({
+            "name": variant.name,
+            "step_s": number(variant.controller.step),
+            "delay_s": number(variant.controller.delay),
+        });
+        entry.as_object_mut().expect("it is an object").append(&mut what.as_object().expect("so is this").clone());
+        entry
+    };
+    match &seen.left {
+        What::Sine { q, wrench, deviation, frequencies, left, useful } => {
+            entries.insert("q".to_owned(), numbers(q.iter().copied()));
+            entries.insert("wrench".to_owned(), numbers(wrench.iter().copied()));
+            entries.insert("deviation_m".to_owned(), number(*deviation));
+            entries.insert("frequencies_Hz".to_owned(), numbers(frequencies.iter().copied()));
+            let of = |((variant, left), useful): ((&Variant, &Vec<robstiff::online::Left>), &[Option<f64>; 2])| {
+                let what = json!({
+                    "left_rms": numbers(left.iter().map(|left| left.rms)),
+                    "left_amplitude": numbers(left.iter().map(|left| left.amplitude)),
+                    "half_gone_to_Hz": useful[0],
+                    "less_left_to_Hz": useful[1],
+                });
+                named(variant, what)
+            };
+            entries.insert("control".to_owned(), variants.iter().zip(left).zip(useful).map(of).collect());
+        }
+        What::Along { stops, without, with } => {
+            let course = |course: &Course| {
+                json!({
+                    "rms_m": number(course.rms),
+                    "worst_m": number(course.worst),
+                    "worst_before": course.at,
+                    "since_m": numbers(course.since.iter().copied()),
+                })
+            };
+            let stop = |stop: &Stop| {
+                json!({
+                    "t_s": number(stop.time),
+                    "line": stop.place.map(|(line, _)| line),
+                    "s_m": stop.place.map(|(_, s)| number(s)),
+                })
+            };
+            entries.insert("points".to_owned(), stops.iter().map(stop).collect());
+            entries.insert("without".to_owned(), course(without));
+            let of = |(variant, of): (&Variant, &Course)| named(variant, course(of));
+            entries.insert("control".to_owned(), variants.iter().zip(with).map(of).collect());
+        }
+    }
+    document
+}
