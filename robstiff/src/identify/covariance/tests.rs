@@ -136,7 +136,7 @@ fn whitening_inverts_the_covariance() {
     let found = of(&campaign);
     let rows = found.visits.len();
     let mut whitener = DMatrix::identity(3 * rows, 3 * rows);
-    found.whiten(&mut whitener, &[]);
+    found.whitener(&[]).whiten(&mut whitener);
     let turns = found.turns.as_ref().expect("the tool's frame");
     let covariance = DMatrix::from_fn(3 * rows, 3 * rows, |i, j| {
         let common = f64::from(u8::from(i / 3 == j / 3))

@@ -39,7 +39,9 @@ impl Known {
     fn differs(&self, other: &Self) -> bool {
         let of = |known: &Self| {
             let unloaded = known.covariance.shared.sqrt();
-            known.covariance.own.iter().map(|own| (*own, own * unloaded)).collect::<std::vec::Vec<_>>()
+            let of_tool = known.covariance.own.iter().map(|own| (*own, own * unloaded));
+            let encoders = known.covariance.encoders.iter().flat_map(|noise| noise.own.iter().map(|own| (*own, *own)));
+            of_tool.chain(encoders).collect::<std::vec::Vec<_>>()
         };
         let moved = |a: f64, b: f64, size: f64| (a - b).abs() > CHANGED * size;
         of(self).into_iter().zip(of(other)).any(|(a, b)| moved(a.0, b.0, a.0) || moved(a.1, b.1, a.0))
@@ -69,19 +71,23 @@ impl Bench<'_> {
         let setting = self.at(named)?;
         let fit = setting.fit(named)?.fit;
         let mut samples = straightened(&prepared.samples, &prepared.values[..prepared.samples.joints()]);
+        let (axes, count) = (samples.axes, samples.encoders.len());
+        let first = axes * samples.rows.len();
         let effects = fit.columns.iter().zip(&fit.coefficients).filter(|(column, _)| **column >= self.own.len());
         for (&column, &value) in effects {
             let raw = setting.raw(column);
             for (i, row) in samples.rows.iter_mut().enumerate() {
-                row.displacement -= value * raw.fixed_rows::<3>(i * samples.axes);
-                if samples.axes > 3 {
-                    row.rotation -= value * raw.fixed_rows::<3>(i * samples.axes + 3);
+                row.displacement -= value * raw.fixed_rows::<3>(i * axes);
+                if axes > 3 {
+                    row.rotation -= value * raw.fixed_rows::<3>(i * axes + 3);
                 }
+                row.turned.iter_mut().zip(first + i * count..).for_each(|(turned, at)| *turned -= value * raw[at]);
             }
         }
         let training = |pose: usize| prepared.training[pose];
         let frame = prepared.data.measured_frame;
-        let covariance = Covariance::estimate(&samples, frame, self.campaign.noise, training);
+        let mut covariance = Covariance::estimate(&samples, frame, self.campaign.noise, training);
+        covariance.encoders = covariance.encoders.or_else(|| self.noise.covariance.encoders.clone());
         let repeated = repetitions(&samples, &covariance, training);
         Ok(Known { covariance, repeated })
     }
