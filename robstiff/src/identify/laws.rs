@@ -9,7 +9,7 @@ use robstiff_robots::Description;
 use robstiff_robots::effect::physics::PLAYS;
 
 use super::baseline::columns_of;
-use super::samples::Samples;
+use super::samples::{Sample, Samples};
 use crate::elements::{plays, turn};
 
 /// The displacement of the marker (m), and rotation (rad), through them;
@@ -19,22 +19,24 @@ pub fn turned_by_laws(description: &Description, samples: &Samples) -> DVector<f
     let laws = description.effects.iter().filter(|effect| columns_of(effect).is_empty());
     let laws: Vec<_> = laws.filter_map(|effect| Some((effect, effect.row()? - 1))).collect();
     if laws.is_empty() {
-        return DVector::zeros(samples.rows.len() * samples.axes);
+        return DVector::zeros(samples.length());
     }
     let mut states: BTreeMap<usize, Vec<[f64; PLAYS]>> = BTreeMap::new();
-    let twists = samples.rows.iter().map(|row| {
+    let turns = samples.rows.iter().map(|row| {
         let state = states.entry(row.visit).or_insert_with(|| std::vec![[0.0; PLAYS]; samples.joints()]);
-        laws.iter().fold(Vector6::zeros(), |sum, &(effect, joint)| {
+        let mut turns = std::vec![0.0; samples.joints()];
+        for &(effect, joint) in &laws {
             let twist = row.twists[joint];
             let torque = twist.dot(&row.wrench);
             state[joint] = plays(effect, torque, state[joint]);
             let own = description.joints[joint].compliance();
-            sum + twist * turn(effect, own, row.q[joint], torque, state[joint]).unwrap_or(0.0)
-        })
+            turns[joint] += turn(effect, own, row.q[joint], torque, state[joint]).unwrap_or(0.0);
+        }
+        turns
     });
-    let read: Vec<Vector6<f64>> = twists.zip(&samples.rows).map(|(twist, row)| row.read(&twist)).collect();
-    DVector::from_iterator(
-        samples.rows.len() * samples.axes,
-        read.iter().flat_map(|six| six.iter().copied().take(samples.axes)),
-    )
+    let turns: Vec<Vec<f64>> = turns.collect();
+    let by_all = |at: usize, row: &Sample| -> Vector6<f64> {
+        row.twists.iter().zip(&turns[at]).map(|(twist, turn)| twist * *turn).sum()
+    };
+    samples.stacked_with(|at, row| row.read(&by_all(at, row)), |at, k| turns[at][samples.encoders[k] - 1])
 }

@@ -2,7 +2,7 @@
 //! their uncertainty.
 //!
 //! The way of the data: [`samples`] brings rows to the base frame and turns
-//! parameters into columns, [`covariance`] asks the readings how noisy they are
+//! parameters into columns, with what [`encoders`] read, [`covariance`] asks the readings how noisy they are
 //! and [`whitening`] accounts for it, [`problem`] holds the regression in blocks of poses, [`normal`]
 //! solves it, [`prepare`] finds what the data can see, and [`displacement`] or
 //! [`clamped`] puts the result together.
@@ -11,6 +11,7 @@ pub mod baseline;
 pub mod clamped;
 pub mod covariance;
 pub mod displacement;
+pub mod encoders;
 pub mod holdout;
 pub mod laws;
 pub mod noise;

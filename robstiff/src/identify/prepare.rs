@@ -73,11 +73,13 @@ impl<'c> Prepared<'c> {
         let declared: Vec<f64> = description.joints.iter().map(robstiff_robots::Joint::compliance).collect();
         let straight = straightened(&samples, &declared);
         let covariance = Covariance::estimate(&straight, data.measured_frame, noise, |pose| training[pose]);
+        // Readings that no one knows the noise of have no weight.
+        let samples = if covariance.encoders.is_none() { samples.without_encoders() } else { samples };
         let weighed = covariance.reading().is_some() || (noise.displacement.is_some() && noise.rotation.is_some());
         let mut prepared = Self {
             data,
             description,
-            correction: DVector::zeros(samples.rows.len() * samples.axes),
+            correction: DVector::zeros(samples.length()),
             values: own.iter().map(|number| number.value).collect(),
             visibility: std::vec![Visibility::Seen; own.len()],
             own,
@@ -151,7 +153,7 @@ impl<'c> Prepared<'c> {
             let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
             let sum = |rotations: bool| -> f64 {
                 let of_kind = |i: &usize| (i % problem.axes >= 3) == rotations;
-                (0..residuals.len()).filter(of_kind).map(|i| residuals[i] * residuals[i]).sum()
+                (0..problem.axes * self.samples.rows.len()).filter(of_kind).map(|i| residuals[i] * residuals[i]).sum()
             };
             let (displacement, rotation) = (sum(false), sum(true));
             if displacement > 0.0 && rotation > 0.0 {

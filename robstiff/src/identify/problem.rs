@@ -86,7 +86,7 @@ impl Problem {
     pub fn new(
         samples: &Samples,
         columns: DMatrix<f64>,
-        readings: DVector<f64>,
+        readings: impl Into<Rc<DVector<f64>>>,
         correction: &DVector<f64>,
         weights: Weights<'_>,
     ) -> Self {
@@ -94,7 +94,8 @@ impl Problem {
         let whitener = weights.covariance.whitener(weights.left_out);
         let mut white = columns;
         whitener.whiten(&mut white);
-        let white_readings = whitener.whitened(&readings - correction);
+        let readings = readings.into();
+        let white_readings = whitener.whitened(&*readings - correction);
 
         let mut rows = vec![Vec::new(); samples.poses];
         for (i, row) in samples.rows.iter().enumerate().filter(|&(i, _)| !weights.left_out[i]) {
@@ -105,7 +106,8 @@ impl Problem {
             .enumerate()
             .filter(|(_, rows)| !rows.is_empty())
             .map(|(pose, rows)| {
-                let stacked = rows.iter().flat_map(|row| row * axes..(row + 1) * axes).collect();
+                let of_tool = rows.iter().flat_map(|row| row * axes..(row + 1) * axes);
+                let stacked = of_tool.chain(rows.iter().flat_map(|&row| samples.encoders_of(row))).collect();
                 Block { pose, rows, stacked }
             })
             .partition(|block: &Block| weights.training[block.pose]);
@@ -115,7 +117,7 @@ impl Problem {
             .map(|rows| Normal::new(&white.select_rows(rows), &white_readings.select_rows(rows)));
         let total = Normal::sum(parts).expect("a campaign has rows to train on");
         let equations = Equations {
-            readings: Rc::new(readings),
+            readings,
             white_readings: Rc::new(white_readings),
             axes,
             shared: weights.covariance.shared,
@@ -190,7 +192,7 @@ impl Equations {
 
 /// The columns of a description's numbers, stacked like [`Samples::readings`].
 pub fn raw(samples: &Samples, columns: &[Column]) -> DMatrix<f64> {
-    let mut raw = DMatrix::zeros(samples.rows.len() * samples.axes, columns.len());
+    let mut raw = DMatrix::zeros(samples.length(), columns.len());
     for (j, &column) in columns.iter().enumerate() {
         raw.set_column(j, &samples.column(column));
     }

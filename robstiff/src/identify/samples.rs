@@ -7,6 +7,7 @@ use std::vec::Vec;
 use nalgebra::{DVector, Matrix3, Matrix4, Matrix6, SVector, Vector3, Vector6};
 use robstiff_robots::Description;
 
+use super::encoders::Encoders;
 use super::setup::Setup;
 use crate::campaign::{Displacements, Frame};
 use crate::elements::{Geometry, Parameter, Pose};
@@ -35,6 +36,8 @@ pub struct Samples {
     pub joint_kinds: Vec<JointKind>,
     /// Axes per row: 3, or 6 where every row has a rotation.
     pub axes: usize,
+    /// The joints (from 1) whose angle is read on the output side of the gear.
+    pub encoders: Arc<[usize]>,
     /// The number of poses.
     pub poses: usize,
     /// The rows, in the campaign's order.
@@ -66,13 +69,19 @@ pub struct Sample {
     pub wrench: Vector6<f64>,
     /// From the TCP to the point whose displacement is read (m).
     pub marker: Vector3<f64>,
-    /// The displacement read there (m).
+    /// The displacement read there (m), without what the motors let through.
     pub displacement: Vector3<f64>,
     /// The rotation read (rad).
     pub rotation: Vector3<f64>,
     /// How a displacement or rotation in the base frame is seen in the
     /// readings.
     pub seen: Matrix3<f64>,
+    /// What the motors let through of the load, as it is read: displacement (m)
+    /// and rotation (rad).
+    pub given: Vector6<f64>,
+    /// By how much each joint that has an encoder turns beyond its motor (rad or
+    /// m).
+    pub turned: Vec<f64>,
 }
 
 impl Samples {
@@ -93,9 +102,10 @@ impl Samples {
         crate::with_robot!(&setup.description(description), |robot| Self::on(&robot, data, setup, Some(self)))
     }
 
-    fn on<const N: usize>(robot: &impl Robot<N>, data: &Displacements, setup: &Setup, declared: Option<&Self>) -> Self {
+    fn on<const N: usize>(robot: &impl Robot<N>, data: &Displacements, setup: &Setup, known: Option<&Self>) -> Self {
         let with_rotations = data.rows.iter().all(|row| row.rotation.is_some());
         let mut rows: Vec<Sample> = Vec::with_capacity(data.rows.len());
+        let mut encoders = known.is_none().then(|| Encoders::of(data)).unwrap_or_default();
         for (i, row) in data.rows.iter().enumerate() {
             let q = setup.coordinates(i, &row.q);
             // The arm stands where it stood, as a rule: a pose has many rows.
@@ -111,9 +121,9 @@ impl Samples {
                 }
             };
             let tool = turn_of(&tcp);
-            let declared = declared.map_or(tool, |declared| turn_of(&declared.rows[i].tcp));
+            let declared = known.map_or(tool, |declared| turn_of(&declared.rows[i].tcp));
             let reads = if data.measured_frame == Frame::Tool { declared } else { Matrix3::identity() };
-            rows.push(Sample {
+            let mut sample = Sample {
                 pose: row.pose,
                 visit: row.visit,
                 q,
@@ -127,11 +137,25 @@ impl Samples {
                 displacement: reads * Vector3::from(row.displacement),
                 rotation: reads * Vector3::from(row.rotation.unwrap_or_default()),
                 seen: setup.seen(data, &declared, &tool),
-            });
+                given: Vector6::zeros(),
+                turned: Vec::new(),
+            };
+            // What is read does not depend on the setup.
+            if let Some(known) = known {
+                (sample.given, sample.turned) = (known.rows[i].given, known.rows[i].turned.clone());
+            } else {
+                let by_motors = encoders.given.get(i).into_iter().flatten().zip(sample.twists.iter());
+                sample.given = sample.read(&by_motors.map(|(turned, twist)| twist * *turned).sum());
+                sample.turned = encoders.turned.get_mut(i).map(core::mem::take).unwrap_or_default();
+            }
+            sample.displacement -= sample.given.fixed_rows::<3>(0);
+            sample.rotation -= sample.given.fixed_rows::<3>(3);
+            rows.push(sample);
         }
         Self {
             joint_kinds: robot.joint_kinds().to_vec(),
             axes: if with_rotations { 6 } else { 3 },
+            encoders: known.map_or_else(|| encoders.joints.into(), |known| Arc::clone(&known.encoders)),
             poses: data.poses.len(),
             rows,
         }
@@ -143,9 +167,29 @@ impl Samples {
     }
 
     /// What was read, stacked row by row with [`axes`](Self::axes) numbers
-    /// each: displacement (m), then rotation (rad).
+    /// each: displacement (m), then rotation (rad); and behind all of these, row by
+    /// row, what each encoder reads (rad or m).
     pub fn readings(&self) -> DVector<f64> {
-        self.stacked(|_, row| stack(&row.displacement, &row.rotation))
+        self.stacked_with(|_, row| stack(&row.displacement, &row.rotation), |at, k| self.rows[at].turned[k])
+    }
+
+    /// How many numbers are read.
+    pub fn length(&self) -> usize {
+        self.rows.len() * (self.axes + self.encoders.len())
+    }
+
+    /// The same without the encoders.
+    #[must_use]
+    pub fn without_encoders(mut self) -> Self {
+        self.encoders = Arc::new([]);
+        self.rows.iter_mut().for_each(|row| row.turned.clear());
+        self
+    }
+
+    /// Where the readings of a row's encoders are in a stacked vector.
+    pub fn encoders_of(&self, row: usize) -> core::ops::Range<usize> {
+        let first = self.rows.len() * self.axes + row * self.encoders.len();
+        first..first + self.encoders.len()
     }
 
     /// What a unit of a column's number adds to the readings, stacked alike.
@@ -160,16 +204,23 @@ impl Samples {
     /// What a joint (from 1) adds that turns by an amount that depends on its
     /// torque, stacked alike.
     fn of_joint(&self, joint: usize, amount: impl Fn(f64) -> f64) -> DVector<f64> {
-        self.stacked_by(|_, row| {
-            let twist = &row.twists[joint - 1];
-            row.read(&(twist * amount(twist.dot(&row.wrench))))
+        self.turned(joint, |at| {
+            let row = &self.rows[at];
+            amount(row.twists[joint - 1].dot(&row.wrench))
         })
+    }
+
+    /// What a joint (from 1) adds that turns by an amount that depends on the row
+    /// (rad or m), stacked alike.
+    pub fn turned(&self, joint: usize, amount: impl Fn(usize) -> f64) -> DVector<f64> {
+        let by_encoder = |at: usize, k: usize| if self.encoders[k] == joint { amount(at) } else { 0.0 };
+        self.stacked_with(|at, row| row.read(&(row.twists[joint - 1] * amount(at))), by_encoder)
     }
 
     /// What numbers in which the compliance is linear add to the readings,
     /// stacked alike.
     pub fn under(&self, numbers: &[(Parameter, f64)]) -> DVector<f64> {
-        let mut stacked = DVector::zeros(self.rows.len() * self.axes);
+        let mut stacked = DVector::zeros(self.length());
         let mut compliance = Matrix6::zeros();
         for (i, row) in self.rows.iter().enumerate() {
             if i == 0 || !Arc::ptr_eq(&row.joint_frames, &self.rows[i - 1].joint_frames) {
@@ -179,6 +230,10 @@ impl Samples {
             }
             let six = row.read(&(compliance * row.wrench));
             stacked.rows_mut(i * self.axes, self.axes).copy_from(&six.rows(0, self.axes));
+            for (at, &joint) in self.encoders_of(i).zip(self.encoders.iter()) {
+                let torque = |joint: usize| row.twists[joint - 1].dot(&row.wrench);
+                stacked[at] = numbers.iter().map(|&(number, value)| value * turn_of_joint(number, joint, torque)).sum();
+            }
         }
         stacked
     }
@@ -211,12 +266,34 @@ impl Samples {
 
     /// The same of a row and its index.
     pub fn stacked_by(&self, of: impl Fn(usize, &Sample) -> Vector6<f64>) -> DVector<f64> {
-        let mut stacked = DVector::zeros(self.rows.len() * self.axes);
+        self.stacked_with(of, |_, _| 0.0)
+    }
+
+    /// The same with what the encoders read: of a row, by its index, and an
+    /// encoder.
+    pub fn stacked_with(
+        &self,
+        of: impl Fn(usize, &Sample) -> Vector6<f64>,
+        encoder: impl Fn(usize, usize) -> f64,
+    ) -> DVector<f64> {
+        let mut stacked = DVector::zeros(self.length());
         for (i, row) in self.rows.iter().enumerate() {
             let six = of(i, row);
             stacked.rows_mut(i * self.axes, self.axes).copy_from(&six.rows(0, self.axes));
+            self.encoders_of(i).enumerate().for_each(|(k, at)| stacked[at] = encoder(i, k));
         }
         stacked
+    }
+}
+
+/// What a joint (from 1) turns by for a unit of a number in which the compliance
+/// is linear (rad or m), given the torque of each joint.
+pub fn turn_of_joint(number: Parameter, joint: usize, torque: impl Fn(usize) -> f64) -> f64 {
+    match number {
+        Parameter::Joint(own) if own == joint => torque(joint),
+        Parameter::Coupling([i, j]) if i == joint => torque(j),
+        Parameter::Coupling([i, j]) if j == joint => torque(i),
+        _ => 0.0,
     }
 }
 

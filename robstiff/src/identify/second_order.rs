@@ -6,6 +6,8 @@
 //! tests therefore see readings from which the part due to the joints, which
 //! carry most of the compliance, has been taken.
 
+use std::vec::Vec;
+
 use nalgebra::{DVector, Rotation3, Unit, Vector3, Vector6};
 
 use super::samples::{Sample, Samples};
@@ -21,7 +23,7 @@ const PASSES: usize = 2;
 /// microradians, is below every sensor's noise). `compliance` holds one number
 /// a joint (rad/Nm or m/N).
 pub fn beyond_linear(samples: &Samples, compliance: &[f64]) -> DVector<f64> {
-    samples.stacked(|_, row| {
+    let moves = |row: &Sample| {
         let still = std::vec![0.0; compliance.len()];
         let first = yielding(samples, row, compliance, &still);
         let linear: Vector3<f64> = (0..compliance.len())
@@ -33,15 +35,30 @@ pub fn beyond_linear(samples: &Samples, compliance: &[f64]) -> DVector<f64> {
                 }
             })
             .sum();
-        let mut moved = first;
+        let mut moved = first.clone();
         for _ in 0..PASSES {
             moved = yielding(samples, row, compliance, &moved);
         }
+        (first, moved, linear)
+    };
+    let by_tool = |row: &Sample| {
+        let (_, moved, linear) = moves(row);
         let full = carried(samples, row, &moved, compliance.len(), marker(row)) - marker(row);
         let mut six = Vector6::zeros();
         six.fixed_rows_mut::<3>(0).copy_from(&(full - linear));
         six
-    })
+    };
+    let beyond: Vec<Vec<f64>> = match samples.encoders.is_empty() {
+        true => Vec::new(),
+        false => {
+            let of_row = |row| {
+                let (first, moved, _) = moves(row);
+                moved.iter().zip(first).map(|(moved, first)| moved - first).collect()
+            };
+            samples.rows.iter().map(of_row).collect()
+        }
+    };
+    samples.stacked_with(|_, row| by_tool(row), |at, k| beyond[at][samples.encoders[k] - 1])
 }
 
 /// The samples with the second order taken from their readings, so that these
@@ -52,6 +69,7 @@ pub fn straightened(samples: &Samples, compliance: &[f64]) -> Samples {
     let mut straightened = samples.clone();
     for (i, row) in straightened.rows.iter_mut().enumerate() {
         row.displacement -= beyond.fixed_rows::<3>(i * samples.axes);
+        row.turned.iter_mut().zip(samples.encoders_of(i)).for_each(|(turned, at)| *turned -= beyond[at]);
     }
     straightened
 }

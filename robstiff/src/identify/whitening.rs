@@ -23,7 +23,7 @@ pub fn mean_share(rows: usize, shared: f64) -> f64 {
 /// `i * axes .. (i + 1) * axes` of every column, and belongs to
 /// `visits[i]`; each axis is a reading of its own. `shared` is `lambda`.
 pub fn whiten(stacked: &mut DMatrix<f64>, visits: &[usize], axes: usize, shared: f64) {
-    ByVisit::new(visits, shared).whiten(stacked, axes);
+    ByVisit::new(visits, shared).whiten(stacked, 0, axes);
 }
 
 /// The rows of each visit, and what whitening takes from them: a whitening that
@@ -43,14 +43,14 @@ impl ByVisit {
         }
     }
 
-    /// As [`whiten`].
-    pub fn whiten(&self, stacked: &mut DMatrix<f64>, axes: usize) {
+    /// As [`whiten`], of rows that begin at `first` of every column.
+    pub fn whiten(&self, stacked: &mut DMatrix<f64>, first: usize, axes: usize) {
         for mut column in stacked.column_iter_mut() {
             for (rows, share) in &self.visits {
                 for axis in 0..axes {
-                    let sum: f64 = rows.iter().map(|row| column[row * axes + axis]).sum();
+                    let sum: f64 = rows.iter().map(|row| column[first + row * axes + axis]).sum();
                     for row in rows {
-                        column[row * axes + axis] -= share * sum;
+                        column[first + row * axes + axis] -= share * sum;
                     }
                 }
             }

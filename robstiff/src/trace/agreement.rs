@@ -117,8 +117,10 @@ fn of_pose(samples: &Samples, problem: &Problem, fit: &Fit, block: &Block, half:
     if taken.len() >= count {
         return None;
     }
+    // Encoders, whose readings come behind, are not asked.
+    let stacked = &block.stacked[..count * axes];
     let left = problem.block_residuals(block, &fit.columns, &fit.coefficients);
-    let pull = problem.white.select_rows(&block.stacked) * half;
+    let pull = problem.white.select_rows(stacked) * half;
     let pulled = |axis: usize| {
         let (mut whole, mut along) = (0.0, 0.0);
         for column in pull.column_iter() {
@@ -131,7 +133,7 @@ fn of_pose(samples: &Samples, problem: &Problem, fit: &Fit, block: &Block, half:
         [along, whole - along]
     };
     let pulled = (0..axes).map(pulled).collect();
-    let left = DMatrix::from_row_slice(count, axes, left.as_slice());
+    let left = DMatrix::from_row_slice(count, axes, &left.as_slice()[..stacked.len()]);
     Some(Pose { taken, left, pulled })
 }
 

@@ -31,6 +31,7 @@ use super::bootstrap::rademacher;
 use super::features::features;
 use super::model::{Fitted, Setting};
 use crate::campaign::Displacements;
+use crate::identify::covariance::Covariance;
 use crate::identify::noise::PureError;
 use crate::identify::normal::Fit;
 use crate::identify::problem::Problem;
@@ -80,10 +81,13 @@ pub fn test(
     model: &Fitted,
     data: &Displacements,
     yardstick: Yardstick,
+    covariance: &Covariance,
     options: &super::Options,
 ) -> LackOfFit {
     let mut tests = Vec::new();
-    tests.extend(size(setting, model, yardstick));
+    let shares = Shares::of(setting, model);
+    tests.extend(shares.as_ref().and_then(|shares| size(shares, yardstick)));
+    tests.extend(shares.as_ref().and_then(|shares| of_encoders(shares, covariance)));
     tests.extend(growth(setting, model));
     let agreement = agreement(setting, model, options);
     if let Some(Agreement { statistic, p_value, .. }) = agreement {
@@ -112,8 +116,53 @@ fn freedom(setting: &Setting<'_>, model: &Fitted) -> f64 {
     setting.problem.freedom(&model.fit)
 }
 
-fn size(setting: &Setting<'_>, model: &Fitted, yardstick: Yardstick) -> Option<StructureTest> {
-    let (rss, freedom) = (model.fit.rss, freedom(setting, model));
+/// Sums of squares with their degrees of freedom, of the readings of the tool and
+/// of those of encoders.
+struct Shares {
+    tool: (f64, f64),
+    encoders: Option<(f64, f64)>,
+}
+
+impl Shares {
+    fn of(setting: &Setting<'_>, model: &Fitted) -> Option<Self> {
+        let whole = (model.fit.rss, freedom(setting, model));
+        let samples = &setting.point.samples;
+        if samples.encoders.is_empty() {
+            return Some(Self { tool: whole, encoders: None });
+        }
+        let (problem, fit) = setting.alone(&model.fit);
+        let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
+        let inverse = problem.total.inverse(&fit.columns)?;
+        let mut encoders = (0.0, 0.0);
+        for row in problem.blocks.iter().flat_map(|block| &block.rows) {
+            for i in samples.encoders_of(*row) {
+                let x = problem.white.row(i).transpose();
+                encoders.0 += residuals[i] * residuals[i];
+                encoders.1 += 1.0 - x.dot(&(&inverse * &x));
+            }
+        }
+        Some(Self { tool: (whole.0 - encoders.0, whole.1 - encoders.1), encoders: Some(encoders) })
+    }
+}
+
+/// Encoders against what they leave where every pose has a free response to its
+/// loads.
+fn of_encoders(shares: &Shares, covariance: &Covariance) -> Option<StructureTest> {
+    let (rss, freedom) = shares.encoders?;
+    let noise = covariance.encoders.as_ref()?;
+    let (sum, pure) = noise.pure;
+    let (rss, freedom) = (rss / covariance.reading()?.powi(2), freedom - noise.unknown_levels());
+    let rest = freedom - pure;
+    if rest < 1.0 {
+        return None;
+    }
+    let statistic = (rss - sum).max(0.0) / rest / (sum / pure);
+    let p_value = FisherSnedecor::new(rest, pure).ok()?.sf(statistic);
+    Some(StructureTest { name: "encoders against their own noise".to_owned(), statistic, p_value })
+}
+
+fn size(shares: &Shares, yardstick: Yardstick) -> Option<StructureTest> {
+    let (rss, freedom) = shares.tool;
     match yardstick {
         Yardstick::Declared(variance) => {
             let statistic = rss / variance;

@@ -53,6 +53,7 @@ use self::model::{Fitted, Setting};
 use self::report::report;
 use self::selection::{Selection, p_values, select};
 use crate::campaign::{Campaign, Data};
+use crate::identify::encoders::EncodersRead;
 use crate::identify::prepare::Prepared;
 use crate::identify::{Error, Estimate, NoiseSource, is_at_bound};
 
@@ -92,6 +93,8 @@ pub struct Trace {
     pub noise: f64,
     /// Where the noise is known from.
     pub noise_source: NoiseSource,
+    /// The encoders that took part; none where none were read.
+    pub encoders: Option<EncodersRead>,
     /// The error of the description as declared.
     pub declared: Misfit,
     /// The error with the description's own numbers identified again.
@@ -243,7 +246,15 @@ fn search(
     progress("looking for structure in what is left");
     let test = |bench: &Bench<'_>, model: &Fitted| -> Result<LackOfFit, String> {
         let yardstick = yardstick(prepared, bench);
-        Ok(lack_of_fit::test(&*bench.at(&model.named)?, model, prepared.data, yardstick, options))
+        bench.spare_memory();
+        Ok(lack_of_fit::test(
+            &*bench.at(&model.named)?,
+            model,
+            prepared.data,
+            yardstick,
+            &bench.noise.covariance,
+            options,
+        ))
     };
     let mut left = test(bench, &selection.model)?;
     let mut taken_back = 0;

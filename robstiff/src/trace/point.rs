@@ -4,12 +4,12 @@
 use std::rc::Rc;
 use std::vec::Vec;
 
-use nalgebra::{DVector, Matrix3, Matrix6, Vector3, Vector6};
+use nalgebra::{Const, DVector, Dyn, Matrix3, Matrix6, OMatrix, Vector3, Vector6};
 use robstiff_robots::Description;
 
 use crate::campaign::Displacements;
 use crate::elements::Parameter;
-use crate::identify::samples::{Sample, Samples, stack, turn_of};
+use crate::identify::samples::{Sample, Samples, stack, turn_of, turn_of_joint};
 use crate::identify::setup::Setup;
 
 /// A campaign's rows at one setting.
@@ -29,10 +29,17 @@ pub struct Point<'c> {
     pub compliance: Vec<f64>,
     /// By row, the readings (six) per wrench at the TCP in the base frame.
     readings: Vec<Matrix6<f64>>,
+    /// By pose, those of the encoders.
+    turned: Vec<Turned>,
     /// By pose, joint and entry `[theta, d, a, alpha]` of its row, the change
     /// of the readings per wrench as the file gives it.
     slopes: Vec<Vec<[Matrix6<f64>; 4]>>,
+    /// Those of the encoders; empty where there are none.
+    turned_slopes: Vec<Vec<[Turned; 4]>>,
 }
+
+/// What encoders read (a row each) per wrench.
+type Turned = OMatrix<f64, Dyn, Const<6>>;
 
 /// Steps of central differences: in (rad) and (m), some ten micrometres at the
 /// tool; their error is of the third order, below 1e-7 of the slope.
@@ -48,7 +55,18 @@ impl<'c> Point<'c> {
             false => Rc::new(declared.with_setup(description, data, &setup)),
         };
         let (elastic, compliance) = (DVector::zeros(0), Vec::new());
-        Self { description, data, setup, samples, elastic, compliance, readings: Vec::new(), slopes: Vec::new() }
+        Self {
+            description,
+            data,
+            setup,
+            samples,
+            elastic,
+            compliance,
+            readings: Vec::new(),
+            turned: Vec::new(),
+            slopes: Vec::new(),
+            turned_slopes: Vec::new(),
+        }
     }
 
     /// The same with a model: what its elastic effects do to the readings, and
@@ -69,7 +87,9 @@ impl<'c> Point<'c> {
             Matrix6::from_columns(&columns)
         };
         self.readings = self.samples.rows.iter().map(reading).collect();
-        self.slopes = self.find_slopes(declared, linear, &first);
+        let rows = first.iter().map(|&row| &self.samples.rows[row]);
+        self.turned = rows.map(|row| turned(&self.samples, row, linear)).collect();
+        (self.slopes, self.turned_slopes) = self.find_slopes(declared, linear, &first);
         self
     }
 
@@ -79,12 +99,18 @@ impl<'c> Point<'c> {
         declared: &Samples,
         linear: &[(Parameter, f64)],
         first: &[usize],
-    ) -> Vec<Vec<[Matrix6<f64>; 4]>> {
+    ) -> (Vec<Vec<[Matrix6<f64>; 4]>>, Vec<Vec<[Turned; 4]>>) {
         let mut data = self.data.clone();
         data.rows = first.iter().map(|&row| self.data.rows[row].clone()).collect();
         let mut one_a_pose = declared.clone();
         one_a_pose.rows = first.iter().map(|&row| declared.rows[row].clone()).collect();
         let mut slopes = std::vec![std::vec![[Matrix6::zeros(); 4]; declared.joints()]; first.len()];
+        let encoders = declared.encoders.len();
+        let still = || core::array::from_fn(|_| Turned::zeros(encoders));
+        let mut by_encoders: Vec<Vec<[Turned; 4]>> = Vec::new();
+        if encoders > 0 {
+            by_encoders = first.iter().map(|_| (0..declared.joints()).map(|_| still()).collect()).collect();
+        }
         for joint in 0..declared.joints() {
             for entry in 0..4 {
                 let [there, back] = [STEP, -STEP].map(|step| {
@@ -101,38 +127,52 @@ impl<'c> Point<'c> {
                         let column = |k: usize| {
                             let mut unit = [0.0; 6];
                             unit[k] = 1.0;
-                            row.read(&(compliance * (setup.wrench(&data, &tool, &unit) - offset)))
+                            setup.wrench(&data, &tool, &unit) - offset
                         };
-                        Matrix6::from_columns(&core::array::from_fn::<_, 6, _>(column))
+                        let wrenches = Matrix6::from_columns(&core::array::from_fn::<_, 6, _>(column));
+                        let read = wrenches.column_iter().map(|wrench| row.read(&(compliance * wrench)));
+                        let read = Matrix6::from_columns(&read.collect::<Vec<_>>());
+                        (read, turned(&samples, row, linear) * wrenches)
                     };
                     samples.rows.iter().map(per_file).collect::<Vec<_>>()
                 });
-                for (slopes, (there, back)) in slopes.iter_mut().zip(there.iter().zip(&back)) {
-                    slopes[joint][entry] = (there - back) / (2.0 * STEP);
+                for (pose, (there, back)) in there.into_iter().zip(back).enumerate() {
+                    slopes[pose][joint][entry] = (there.0 - back.0) / (2.0 * STEP);
+                    if encoders > 0 {
+                        by_encoders[pose][joint][entry] = (there.1 - back.1) / (2.0 * STEP);
+                    }
                 }
             }
         }
-        slopes
+        (slopes, by_encoders)
     }
 
     /// The change of the readings with an entry `[theta, d, a, alpha]` of the
     /// row of a joint (from 1), times a factor of each of the campaign's rows.
     pub fn slope(&self, joint: usize, entry: usize, factor: impl Fn(usize) -> f64) -> DVector<f64> {
-        self.samples.stacked_by(|at, row| {
-            let wrench = Vector6::from(self.data.rows[at].wrench);
-            self.slopes[row.pose][joint - 1][entry] * wrench * factor(at)
-        })
+        let wrench = |at: usize| Vector6::from(self.data.rows[at].wrench);
+        self.samples.stacked_with(
+            |at, row| self.slopes[row.pose][joint - 1][entry] * wrench(at) * factor(at),
+            |at, k| {
+                let slopes = &self.turned_slopes[self.samples.rows[at].pose][joint - 1][entry];
+                slopes.row(k).tr_dot(&wrench(at)) * factor(at)
+            },
+        )
     }
 
     /// The change of the readings with a number of the setup that the wrench
     /// depends on.
     pub fn of_wrench(&self, enters: impl Fn(&mut Setup, f64), step: f64) -> DVector<f64> {
         let [there, back] = self.setups(enters, step);
-        self.samples.stacked_by(|at, row| {
-            let tool = turn_of(&row.tcp);
+        let change = |at: usize| {
+            let tool = turn_of(&self.samples.rows[at].tcp);
             let wrench = |setup: &Setup| setup.wrench(self.data, &tool, &self.data.rows[at].wrench);
-            self.readings[at] * (wrench(&there) - wrench(&back)) / (2.0 * step)
-        })
+            (wrench(&there) - wrench(&back)) / (2.0 * step)
+        };
+        self.samples.stacked_with(
+            |at, _| self.readings[at] * change(at),
+            |at, k| self.turned[self.samples.rows[at].pose].row(k).tr_dot(&change(at)),
+        )
     }
 
     /// The change of the readings with a number of the setup that decides how
@@ -158,7 +198,7 @@ impl<'c> Point<'c> {
     /// The displacement of a joint (from 1) by an amount that depends on the
     /// row, as it is read; (rad or m).
     pub fn of_joint(&self, joint: usize, amount: impl Fn(usize) -> f64) -> DVector<f64> {
-        self.samples.stacked_by(|at, row| row.read(&(row.twists[joint - 1] * amount(at))))
+        self.samples.turned(joint, amount)
     }
 
     /// A displacement of the point that is read, in the base frame (m), as it is
@@ -174,6 +214,7 @@ impl<'c> Point<'c> {
     pub fn crept(&self, elastic: &DVector<f64>, onset: f64) -> DVector<f64> {
         let (clock, pace) = clock(self.data);
         let axes = self.samples.axes;
+        let places = |row: usize| (row * axes..(row + 1) * axes).chain(self.samples.encoders_of(row));
         let mut grown = DVector::zeros(elastic.len());
         let mut visits = std::vec![Vec::new(); self.data.visits.len()];
         for (row, observation) in self.data.rows.iter().enumerate() {
@@ -182,9 +223,10 @@ impl<'c> Point<'c> {
             for (k, &step) in before.iter().enumerate() {
                 let made = if k == 0 { clock[step] - pace } else { clock[before[k - 1]] };
                 let share = ((clock[row] - made).max(0.0) / onset).ln_1p() / core::f64::consts::LN_10;
-                for axis in 0..axes {
-                    let last = if k == 0 { 0.0 } else { elastic[before[k - 1] * axes + axis] };
-                    grown[row * axes + axis] += share * (elastic[step * axes + axis] - last);
+                let mut last = (k > 0).then(|| places(before[k - 1])).into_iter().flatten();
+                for (at, own) in places(row).zip(places(step)) {
+                    let last = last.next().map_or(0.0, |last| elastic[last]);
+                    grown[at] += share * (elastic[own] - last);
                 }
             }
         }
@@ -234,6 +276,15 @@ fn first_rows(data: &Displacements) -> Vec<usize> {
         first[row.pose] = i;
     }
     first
+}
+
+/// What encoders read per wrench, of numbers in which the compliance is linear, at
+/// a row.
+fn turned(samples: &Samples, row: &Sample, linear: &[(Parameter, f64)]) -> Turned {
+    let of = |joint: usize, k: usize| -> f64 {
+        linear.iter().map(|&(number, value)| value * turn_of_joint(number, joint, |j| row.twists[j - 1][k])).sum()
+    };
+    Turned::from_fn(samples.encoders.len(), |encoder, k| of(samples.encoders[encoder], k))
 }
 
 /// The Cartesian compliance of numbers in which it is linear, at a row.

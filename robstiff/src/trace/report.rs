@@ -18,6 +18,7 @@ use super::{Misfit, NamedEffect, Options, Outcome, PoseError, RowResidual, Trace
 use crate::campaign::Campaign;
 use crate::identify::baseline::with_values;
 use crate::identify::displacement::{declared_residuals, declared_rms};
+use crate::identify::encoders::EncodersRead;
 use crate::identify::normal::{Fit, Sign};
 use crate::identify::prepare::Prepared;
 use crate::identify::problem::{Block, Problem, rms};
@@ -92,6 +93,7 @@ pub fn report(
     let (residuals, pose_errors) = residuals(prepared, &all, &all.residuals(&base.fit), &left_after);
     let left = outcome.left.as_ref();
     Ok(Trace {
+        encoders: EncodersRead::of(prepared.data, &prepared.samples, &bench.noise.covariance),
         robot: campaign.robot.name.clone(),
         rows: prepared.samples.rows.len(),
         poses: prepared.samples.poses,
@@ -152,7 +154,7 @@ fn spread_of(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted) -> DMatri
     let examples = unsure.iter().flatten().cloned();
     let raw: Vec<DVector<f64>> =
         model.fit.columns.iter().map(|&column| setting.raw(column)).chain(shapes).chain(examples).collect();
-    let readings = (*setting.problem.readings).clone();
+    let readings = std::rc::Rc::clone(&setting.problem.readings);
     let samples = &setting.point.samples;
     let problem = Problem::new(samples, DMatrix::from_columns(&raw), readings, &setting.correction, bench.weights());
     let columns: Vec<usize> = (0..count).collect();

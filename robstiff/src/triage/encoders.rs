@@ -31,7 +31,9 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
         let slope = line.slope(shared).weights;
         let sum =
             |of: &dyn Fn(usize) -> f64| -> f64 { line.rows.iter().zip(&slope).map(|(&row, w)| w * of(row)).sum() };
-        let read = sum(&|row| evidence.along(row, &line.along));
+        // With what the motors let through, which is taken from readings elsewhere.
+        let given = |row: usize| evidence.samples.rows[row].given.fixed_rows::<3>(0).dot(&line.along);
+        let read = sum(&|row| evidence.along(row, &line.along) + given(row));
         let joints = sum(&|row| by_joints(evidence, line, row, angles));
         // Weighed by the stroke, so that small ones do not drown it in noise.
         let size = read.abs();

@@ -29,6 +29,8 @@ pub struct Arm {
     /// What is hidden besides, as far as it is the arm's.
     hidden: Vec<Hidden>,
     segments: usize,
+    /// What the controller gives way by, over the compliance of each joint.
+    droop: f64,
 }
 
 impl Arm {
@@ -45,7 +47,7 @@ impl Arm {
         for effect in &effects {
             assert!(fits(description, effect), "{effect} with {effect:?} does not fit {}", description.name);
         }
-        Self { description: description.clone(), effects, hidden: Vec::new(), segments: SEGMENTS }
+        Self { description: description.clone(), effects, hidden: Vec::new(), segments: SEGMENTS, droop: 0.0 }
     }
 
     /// The same arm with something more hidden in it. What is of the rig leaves
@@ -117,6 +119,12 @@ impl Arm {
     pub fn with_segments(self, segments: usize) -> Self {
         assert!(segments > 0, "a beam has at least one segment");
         Self { segments, ..self }
+    }
+
+    /// The same arm with a controller whose motors give way by a share of what
+    /// each joint's compliance does.
+    pub fn with_droop(self, share: f64) -> Self {
+        Self { droop: share, ..self }
     }
 
     /// The unloaded position of the TCP (m) in the base frame at the joint
@@ -293,6 +301,10 @@ impl Arm {
     fn law(&self, q: &[f64]) -> JointLaw {
         let plain: Vec<f64> = self.description.joints.iter().map(|joint| joint.compliance()).collect();
         let mut law = JointLaw::new((1..=plain.len()).map(|joint| plain[joint - 1] * self.varies(joint, q)).collect());
+        if self.droop > 0.0 {
+            let held = |(joint, h): (usize, &f64)| (joint, Gear::Droop { compliance: self.droop * h });
+            law.gears.extend(plain.iter().enumerate().map(held));
+        }
         for effect in &self.effects {
             match *effect {
                 Effect::JointCoupling { joints: [i, j], value } => law.couplings.push((i - 1, j - 1, value)),

@@ -8,6 +8,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::{Description, Effect, JointKind};
 
+use super::encoders::{Encoders, MOST_JOINTS, Turns};
 use super::gear::Moment;
 use super::hidden::Hidden;
 use super::noise::{Stream, direction, normal, tail, wild};
@@ -55,6 +56,8 @@ pub struct Scenario {
     /// Degrees of freedom of Student's distribution, 3 or more, that the noise
     /// of a reading has; normal noise where there is none.
     pub tails: Option<usize>,
+    /// Encoders that are read with every row, where there are any.
+    pub encoders: Option<Encoders>,
     /// Whether `campaign.yaml` states the noise.
     pub states_noise: bool,
     /// Whether the rows of a visit share one unloaded reading, or each row has
@@ -107,6 +110,7 @@ impl Scenario {
             rotation_noise: None,
             axis_noise: [1.0; 3],
             tails: None,
+            encoders: None,
             states_noise: false,
             shares_unloaded: true,
             unloaded_first: false,
@@ -139,6 +143,7 @@ impl Scenario {
     pub fn run(&self) -> Simulated {
         let declared = self.arm(&self.truth);
         let arm = self.hidden.iter().fold(declared.clone(), |arm, hidden| arm.hiding(hidden));
+        let arm = arm.with_droop(self.encoders.and_then(|encoders| encoders.motors).unwrap_or(0.0));
         let mut plan = self.plan(&declared);
         if self.shuffled {
             plan.shuffle(&mut Stream::Order.of(self.seed));
@@ -168,9 +173,12 @@ impl Scenario {
     fn plan(&self, declared: &Arm) -> Vec<Visit> {
         let [mut poses, mut loads, mut noise, mut rare, mut tails] =
             [Stream::Poses, Stream::Loads, Stream::Noise, Stream::Wild, Stream::Tails].map(|one| one.of(self.seed));
+        let mut angles = Stream::Encoders.of(self.seed);
+        let encoders = self.encoders.unwrap_or(Encoders { output: None, apart: 0.0, motors: None });
         let mut plan = Vec::with_capacity(self.poses * self.visits);
         for pose in 0..self.poses {
             let q = self.pose(declared, &mut poses);
+            let apart = encoders.of_pose(&mut angles);
             for visit in 0..self.visits {
                 let greatest = self.greatest(&mut loads);
                 let mut unloaded = self.reading(&mut noise, &mut tails);
@@ -179,7 +187,12 @@ impl Scenario {
                         unloaded = self.reading(&mut noise, &mut tails);
                     }
                     let loaded = self.reading(&mut noise, &mut tails);
-                    Reading { noise: std::array::from_fn(|axis| loaded[axis] - unloaded[axis]), wild: wild(&mut rare) }
+                    let of_row = encoders.of_row(&mut angles);
+                    Reading {
+                        noise: std::array::from_fn(|axis| loaded[axis] - unloaded[axis]),
+                        wild: wild(&mut rare),
+                        angles: std::array::from_fn(|joint| apart[joint] + of_row[joint]),
+                    }
                 });
                 let readings = readings.collect();
                 plan.push(Visit { pose, visit: pose * self.visits + visit, q: q.clone(), greatest, readings });
@@ -194,6 +207,8 @@ impl Scenario {
         let (pace, loads) = (self.pace, self.ramp.len());
         let mut memory = posed.rested();
         let mut creep = [Creep::new(&self.hidden), Creep::new(&self.hidden)];
+        // Gears give way further with the rest of the arm.
+        let mut of_joints: [Option<Creep>; MOST_JOINTS] = std::array::from_fn(|_| Creep::new(&self.hidden));
         // The load of this moment, put on at `since`, read at `time`.
         let mut stand = |wrench: &[f64; 6], since: f64, time: f64| {
             let moment = Moment { held: time - since, warmer: rig.warmer(time) };
@@ -207,12 +222,15 @@ impl Scenario {
             let tool = posed.tool();
             let at = Vector3::from(posed.tcp()) + tool * Vector3::from(self.marker);
             let displacement = self.at_marker(&tool, displacement, &rotation);
-            Stand { time, q: &visit.q, at, tool, displacement, rotation }
+            let grown = |(turn, creep): (f64, &mut Option<Creep>)| grown((Vector3::new(turn, 0.0, 0.0), creep)).x;
+            let mut joints = settled.joints.into_iter().zip(&mut of_joints).map(grown);
+            let turned = [std::array::from_fn(|_| joints.next().unwrap_or(0.0)), settled.motors];
+            (Stand { time, q: &visit.q, at, tool, displacement, rotation }, turned)
         };
         let first = turn * loads;
         let before = |time: f64, index: usize| if self.unloaded_first { pace * (index + 1) as f64 } else { time };
         let begins = start + pace * first as f64;
-        let mut unloaded = stand(&[0.0; 6], begins - pace, begins);
+        let (mut unloaded, _) = stand(&[0.0; 6], begins - pace, begins);
         let index = if self.shares_unloaded { turn } else { first };
         unloaded.time = before(if self.shares_unloaded { begins } else { begins + 0.5 * pace }, index);
         for (count, (share, reading)) in self.ramp.iter().zip(&visit.readings).enumerate() {
@@ -222,13 +240,13 @@ impl Scenario {
                 if !self.unloaded_first {
                     since += 0.5 * pace;
                     if count > 0 {
-                        unloaded = stand(&[0.0; 6], time - pace, since);
+                        (unloaded, _) = stand(&[0.0; 6], time - pace, since);
                     }
                 }
                 unloaded.time = before(since, first + count);
             }
             let acting = visit.greatest.map(|component| component * share);
-            let loaded = stand(&acting, since, time);
+            let (loaded, [joints, motors]) = stand(&acting, since, time);
             let (mut displacement, rotation) = rig.between(&unloaded, &loaded);
             for hidden in &self.hidden {
                 if let Hidden::Outliers { share, size } = *hidden
@@ -252,6 +270,14 @@ impl Scenario {
                 rotation: self.rotation_noise.map(|_| read(rotation, 3)),
                 exact_displacement: displacement,
                 exact_rotation: rotation,
+                encoders: self
+                    .encoders
+                    .and_then(|one| one.output)
+                    .map(|_| visit.q.iter().enumerate().map(|(k, q)| q + joints[k] + reading.angles[k]).collect()),
+                motors: self
+                    .encoders
+                    .and_then(|one| one.motors)
+                    .map(|_| visit.q.iter().zip(motors).map(|(q, turned)| q + turned).collect()),
             });
         }
     }
@@ -308,6 +334,8 @@ struct Reading {
     /// Of the loaded less the unloaded reading.
     noise: [f64; 6],
     wild: (f64, Vector3<f64>),
+    /// Of the encoders behind the gears (rad or m).
+    angles: Turns,
 }
 
 /// A wrench seen from a frame with these axes.
@@ -361,6 +389,11 @@ pub struct Row {
     pub displacement: [f64; 3],
     /// Measured rotation of the tool (rad), in the file's frame, if measured.
     pub rotation: Option<[f64; 3]>,
+    /// The joints' coordinates behind the gears under the load (rad or m), where
+    /// they are read.
+    pub encoders: Option<Vec<f64>>,
+    /// The same of the motors.
+    pub motors: Option<Vec<f64>>,
     /// The displacement as it would be read without noise (m).
     pub exact_displacement: [f64; 3],
     /// The rotation as it would be read without noise (rad).

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use robstiff_robots::Effect;
 
-use super::{Arm, Row, Scenario, five_axis, scattered, six_axis};
+use super::{Arm, Encoders, Row, Scenario, five_axis, scattered, six_axis};
 
 fn tilt() -> Vec<Effect> {
     vec![Effect::TransverseCompliance { joint: 3, value: 6e-7 }]
@@ -146,4 +146,29 @@ fn ramps_reverse_and_check_without_load() {
     assert!(own.iter().enumerate().all(|(index, row)| row.visit == index));
     // The reading before is taken without load, too.
     assert!(own.iter().skip(1).step_by(4).all(|row| Vector3::from(row.displacement).norm() < 1e-12));
+}
+
+/// Under a small load a joint turns by its torque times its compliance, and its
+/// motor by the share of it that the controller gives way by.
+#[test]
+fn encoders_read_what_joints_and_motors_turn_by() {
+    let encoders = Encoders { output: Some(0.0), apart: 0.0, motors: Some(0.5) };
+    let plan =
+        Scenario { poses: 3, force: [1.0, 2.0], encoders: Some(encoders), ..Scenario::new(five_axis(), vec![], 3) };
+    let arm = Arm::new(&plan.truth, &[]);
+    for row in plan.run().rows {
+        let [output, motors] = [&row.encoders, &row.motors].map(|read| read.as_ref().expect("it is read"));
+        for (joint, q) in row.q.iter().enumerate() {
+            // The torque as the work of the load in a turn of the joint.
+            let turned = |by: f64| {
+                let mut q = row.q.clone();
+                q[joint] += by;
+                Vector3::from(arm.tcp(&q))
+            };
+            let moves = (turned(1e-5) - turned(-1e-5)) / 2e-5;
+            let give = plan.truth.joints[joint].compliance() * moves.dot(&Vector3::from_column_slice(&row.acting[..3]));
+            assert!((motors[joint] - q - 0.5 * give).abs() < 1e-4 * give.abs() + 1e-13, "motor {joint}");
+            assert!((output[joint] - q - 1.5 * give).abs() < 1e-4 * give.abs() + 1e-13, "joint {joint}");
+        }
+    }
 }

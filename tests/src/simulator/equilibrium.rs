@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::encoders::{MOST_JOINTS, Turns};
 use super::frame::{Frame, exp, log, work_on};
 use super::gear::{JointLaw, Memory, Moment};
 
@@ -101,6 +102,10 @@ pub struct Equilibrium {
     /// Rotation vector (rad), in the base frame, of the turn that takes the
     /// tool from its unloaded to its deformed orientation.
     pub rotation: [f64; 3],
+    /// By how much each joint has turned, its motor included.
+    pub joints: Turns,
+    /// By how much each motor has.
+    pub motors: Turns,
     /// Energy in all the springs (J).
     pub energy: f64,
 }
@@ -119,6 +124,8 @@ pub struct PosedArm {
     rigid: Frame,
     /// The TCP's frame without a load.
     unloaded: Frame,
+    /// By how much joints and motors are turned without a load.
+    still: [Turns; 2],
 }
 
 impl PosedArm {
@@ -130,13 +137,22 @@ impl PosedArm {
         lever: Vector3<f64>,
     ) -> Self {
         let still = vec![Vector3::zeros(); springs.len()];
-        let mut arm =
-            Self { springs, end, law, attached, lever, rigid: Frame::identity(), unloaded: Frame::identity() };
+        let mut arm = Self {
+            springs,
+            end,
+            law,
+            attached,
+            lever,
+            rigid: Frame::identity(),
+            unloaded: Frame::identity(),
+            still: [[0.0; MOST_JOINTS]; 2],
+        };
         arm.rigid = arm.walk(&still, &mut Vec::new());
         arm.unloaded = arm.rigid;
         if !arm.attached.is_empty() {
-            let load = arm.settled(&[0.0; 6], &arm.law.fresh(), AT_LAST).1;
+            let (moved, load) = arm.settled(&[0.0; 6], &arm.law.fresh(), AT_LAST);
             arm.unloaded = load.tcp;
+            arm.still = arm.turned(&moved, &load);
         }
         arm
     }
@@ -195,11 +211,28 @@ impl PosedArm {
         for ((spring, work), by) in self.springs.iter().zip(&load.generalised).zip(&moved) {
             energy += work.dot(by) - spring.response.alone(work).1;
         }
+        let [joints, motors] = [0, 1].map(|which| {
+            let (turned, still) = (self.turned(&moved, &load)[which], self.still[which]);
+            std::array::from_fn(|joint| turned[joint] - still[joint])
+        });
         Equilibrium {
+            joints,
+            motors,
             displacement: (load.tcp.origin - self.unloaded.origin).into(),
             rotation: log(&(load.tcp.turn * self.unloaded.turn.transpose())).into(),
             energy,
         }
+    }
+
+    /// By how much joints and motors have turned.
+    fn turned(&self, moved: &[Vector3<f64>], load: &Load) -> [Turns; 2] {
+        let mut joints = [0.0; MOST_JOINTS];
+        for (spring, by) in self.springs.iter().zip(moved) {
+            if let Response::Joint(joint) = spring.response {
+                joints[joint] += by.z;
+            }
+        }
+        [joints, self.law.of_motors(&load.torques)]
     }
 
     /// How far every spring has let go, and what the load does to it there.

@@ -55,12 +55,20 @@ impl Simulated {
         let kinds: Vec<_> = self.scenario.truth.joints.iter().map(|joint| joint.kind).collect();
         let moments = self.scenario.moment.is_some();
         let mut header = String::from("pose,visit,time [s],temperature [C]");
-        for (index, kind) in kinds.iter().enumerate() {
-            let unit = match kind {
-                JointKind::Revolute => "deg",
-                JointKind::Prismatic => "mm",
-            };
-            header += &format!(",q{} [{unit}]", index + 1);
+        let encoders = self.scenario.encoders;
+        let read = [
+            ("q", true),
+            ("j", encoders.is_some_and(|encoders| encoders.output.is_some())),
+            ("m", encoders.is_some_and(|encoders| encoders.motors.is_some())),
+        ];
+        for (name, _) in read.into_iter().filter(|(_, is_read)| *is_read) {
+            for (index, kind) in kinds.iter().enumerate() {
+                let unit = match kind {
+                    JointKind::Revolute => "deg",
+                    JointKind::Prismatic => "mm",
+                };
+                header += &format!(",{name}{} [{unit}]", index + 1);
+            }
         }
         header += ",Fx [N],Fy [N],Fz [N]";
         if moments {
@@ -87,9 +95,12 @@ fn place(in_tool: bool, at: [f64; 3]) -> String {
 
 /// One row of the table, with all the digits it has.
 fn line(text: &mut String, row: &Row, kinds: &[JointKind], moments: bool) {
-    let coordinates = row.q.iter().zip(kinds).map(|(q, kind)| match kind {
-        JointKind::Revolute => q.to_degrees(),
-        JointKind::Prismatic => q * 1e3,
+    let angles = [Some(&row.q), row.encoders.as_ref(), row.motors.as_ref()];
+    let coordinates = angles.into_iter().flatten().flat_map(|all| {
+        all.iter().zip(kinds).map(|(q, kind)| match kind {
+            JointKind::Revolute => q.to_degrees(),
+            JointKind::Prismatic => q * 1e3,
+        })
     });
     let wrench = &row.wrench[..if moments { 6 } else { 3 }];
     let micro = row.displacement.iter().chain(row.rotation.iter().flatten()).map(|value| value * 1e6);

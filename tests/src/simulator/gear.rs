@@ -1,6 +1,8 @@
 //! How joints give way under their torques, and what they remember of earlier
 //! ones.
 
+use super::encoders::{MOST_JOINTS, Turns};
+
 /// A joint's deflection beyond its plain compliance.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Gear {
@@ -14,6 +16,8 @@ pub(super) enum Gear {
     /// A spring and a dashpot side by side (Kelvin, Voigt), in line with the
     /// gear: comes to `compliance tau` with a time constant (s).
     Lag { compliance: f64, constant: f64 },
+    /// The controller's, which holds the motor like a spring of this compliance.
+    Droop { compliance: f64 },
     /// Compliance per kelvin above the temperature of the beginning.
     Warming { per_kelvin: f64 },
 }
@@ -73,9 +77,21 @@ impl JointLaw {
                 Gear::LostMotion { gap, knee } => 0.5 * gap * torque / torque.hypot(knee),
                 Gear::Play { weight, .. } => weight * gear.state(torque, kept, moment),
                 Gear::Lag { .. } => gear.state(torque, kept, moment),
+                Gear::Droop { compliance } => compliance * torque,
                 Gear::Warming { per_kelvin } => per_kelvin * moment.warmer * torque,
             };
         }
+    }
+
+    /// What of the deflections is the motors', and not behind them (rad or m).
+    pub fn of_motors(&self, torques: &[f64]) -> Turns {
+        let mut turns = [0.0; MOST_JOINTS];
+        for &(joint, gear) in &self.gears {
+            if let Gear::Droop { compliance } = gear {
+                turns[joint] += compliance * torques[joint];
+            }
+        }
+        turns
     }
 
     /// Takes note of the torques that the joints have come to.
@@ -93,6 +109,7 @@ impl JointLaw {
         let of_gear = |&(joint, gear): &(usize, Gear)| match gear {
             Gear::Softening { added, knee } => added * knee * knee * (1_f64.hypot(torques[joint] / knee) - 1.0),
             Gear::LostMotion { gap, knee } => 0.5 * gap * (torques[joint].hypot(knee) - knee),
+            Gear::Droop { compliance } => 0.5 * compliance * torques[joint] * torques[joint],
             Gear::Play { .. } | Gear::Lag { .. } | Gear::Warming { .. } => 0.0,
         };
         straight + coupled + self.gears.iter().map(of_gear).sum::<f64>()
@@ -109,7 +126,7 @@ impl Gear {
                 let end = compliance * torque;
                 end + (kept - end) * (-moment.held / constant).exp()
             }
-            Self::Softening { .. } | Self::LostMotion { .. } | Self::Warming { .. } => kept,
+            Self::Softening { .. } | Self::LostMotion { .. } | Self::Droop { .. } | Self::Warming { .. } => kept,
         }
     }
 }

@@ -18,6 +18,7 @@ mod campaign;
 #[cfg(test)]
 mod campaign_tests;
 mod clamped;
+mod encoders;
 mod equilibrium;
 mod files;
 mod frame;
@@ -38,6 +39,7 @@ pub use arm::{Arm, GRAVITY, SEGMENTS};
 pub use arms::{five_axis, six_axis};
 pub use campaign::{Row, Scenario, Simulated, scattered};
 pub use clamped::Axes;
+pub use encoders::Encoders;
 pub use equilibrium::{Equilibrium, PosedArm};
 pub use gear::{Memory, Moment};
 pub use hidden::{DhColumn, Follows, Hidden, Mount};

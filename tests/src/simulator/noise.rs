@@ -13,6 +13,7 @@ pub(super) enum Stream {
     Wild,
     Tails,
     Order,
+    Encoders,
 }
 
 impl Stream {

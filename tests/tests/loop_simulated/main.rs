@@ -10,6 +10,7 @@
 
 mod aliases;
 mod bench;
+mod encoders;
 mod nothing;
 mod one_effect;
 mod outside;

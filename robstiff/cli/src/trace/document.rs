@@ -2,6 +2,7 @@
 
 use robstiff::JointKind;
 use robstiff::campaign::Campaign;
+use robstiff::identify::encoders::EncodersRead;
 use robstiff::trace::{Misfit, NamedEffect, Proposal, Rival, Trace};
 use robstiff::triage::Triage;
 use serde_json::{Value, json};
@@ -11,7 +12,7 @@ use crate::json::{number, numbers};
 
 /// The result for other programs.
 pub fn document(trace: &Trace, triage: &Triage, campaign: &Campaign) -> Value {
-    json!({
+    let mut document = json!({
         "robot": trace.robot,
         "rows": trace.rows,
         "poses": trace.poses,
@@ -26,6 +27,23 @@ pub fn document(trace: &Trace, triage: &Triage, campaign: &Campaign) -> Value {
         "invisible": trace.invisible,
         "triage": triage::document(triage),
         "next": trace.next.iter().map(|next| proposal(next, campaign)).collect::<Value>(),
+    });
+    if let Some(read) = &trace.encoders {
+        document["encoders"] = encoders(read, campaign);
+    }
+    document
+}
+
+/// The joints whose encoders behind the gears took part, with their noise (um for
+/// a joint that slides), and whether the motors' were read.
+fn encoders(read: &EncodersRead, campaign: &Campaign) -> Value {
+    let of = |(&joint, &noise): (&usize, &f64)| match campaign.robot.joints[joint - 1].kind {
+        JointKind::Revolute => json!({"joint": joint, "noise_urad": number(noise * 1e6)}),
+        JointKind::Prismatic => json!({"joint": joint, "noise_um": number(noise * 1e6)}),
+    };
+    json!({
+        "output": read.joints.iter().zip(&read.noise).map(of).collect::<Value>(),
+        "motors": read.motors,
     })
 }
 

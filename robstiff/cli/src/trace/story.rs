@@ -1,6 +1,7 @@
 //! What a tracing came to, in sentences.
 
 use robstiff::JointKind;
+use robstiff::identify::encoders::EncodersRead;
 use robstiff::trace::{EffectParameter, NamedEffect, Proposal, Rival, RowResidual, Trace, Verdict};
 use robstiff_robots::Joint;
 
@@ -49,6 +50,7 @@ pub fn headline(trace: &Trace) -> String {
 /// What follows the finding, a sentence each.
 pub fn summary(trace: &Trace) -> Vec<String> {
     let mut sentences = vec![sentence(&trace.why)];
+    sentences.extend(trace.encoders.iter().flat_map(|read| encoders(read, trace)));
     sentences.extend(on_the_same_rows(trace));
     if trace.verdict == Verdict::Insufficient {
         sentences.push("The description keeps its declared values.".to_owned());
@@ -57,6 +59,34 @@ pub fn summary(trace: &Trace) -> Vec<String> {
     sentences.extend(clipped.map(|estimate| sentence(&at_bound(&estimate.name))));
     if !trace.depends_on.is_empty() && matches!(trace.verdict, Verdict::Partial | Verdict::Unexplained) {
         sentences.push(format!("What is left depends on {}.", and(&trace.depends_on)));
+    }
+    sentences
+}
+
+/// What encoders were to the trace.
+fn encoders(read: &EncodersRead, trace: &Trace) -> Vec<String> {
+    let mut sentences = Vec::new();
+    if let (false, Some(most)) = (read.joints.is_empty(), read.noise.iter().copied().reduce(f64::max)) {
+        let turns = |joint: &usize| trace.description.joints[joint - 1].kind == JointKind::Revolute;
+        let unit = if read.joints.iter().all(turns) { "urad" } else { "urad or um" };
+        let joints: Vec<String> = read.joints.iter().map(usize::to_string).collect();
+        sentences.push(format!(
+            "The fit has to agree with the encoders behind the gears, too (joint{} {}, {} {unit} a reading): what they \
+             do not see is in no gear.",
+            if joints.len() == 1 { "" } else { "s" },
+            and(&joints),
+            decimals(most * 1e6, 1)
+        ));
+    }
+    if read.unused {
+        sentences.push(
+            "The encoders behind the gears took no part: too few loads at a pose, or nothing but copies of q, to tell \
+             how noisy they are."
+                .to_owned(),
+        );
+    }
+    if read.motors {
+        sentences.push("What the motors let through of the load is taken from the readings.".to_owned());
     }
     sentences
 }

@@ -26,6 +26,7 @@
 //! by what the *final* model leaves; it does not touch `lambda`.
 
 pub mod contrasts;
+pub mod encoders;
 pub mod outliers;
 pub mod reml;
 mod tails;
@@ -47,6 +48,7 @@ use super::samples::Samples;
 use super::whitening;
 use crate::campaign::{Frame, Noise};
 
+pub use encoders::EncoderNoise;
 pub use outliers::Outlier;
 pub use reml::Share;
 pub use tails::Tails;
@@ -105,6 +107,9 @@ pub struct Covariance {
     pub outliers: Vec<Outlier>,
     /// The tails of what is left.
     pub tails: Option<Tails>,
+    /// The noise of encoders on the output side of the gears, where they are read
+    /// and it is known.
+    pub encoders: Option<EncoderNoise>,
     visits: Vec<usize>,
     /// From the base frame to that measured in, a row each.
     turns: Option<Arc<[Matrix3<f64>]>>,
@@ -145,6 +150,7 @@ impl Covariance {
             }
         }
         covariance.take(estimated);
+        covariance.encoders = EncoderNoise::estimate(samples, &of_pose);
         covariance.outliers.sort_by_key(|outlier| outlier.rows[0]);
         covariance
     }
@@ -164,6 +170,7 @@ impl Covariance {
             unequal: false,
             outliers: Vec::new(),
             tails: None,
+            encoders: None,
             visits: samples.visits(),
             turns: (frame == Frame::Tool).then(|| samples.rows.iter().map(tool).collect()),
         }
@@ -225,13 +232,17 @@ impl Covariance {
     /// displacement reading, [`reading`](Self::reading) squared. A row left out
     /// shares its unloaded reading with nothing that is used.
     pub fn whitener(&self, left_out: &[bool]) -> Whitener {
-        let mut visits = self.visits.clone();
-        let next = visits.iter().max().map_or(0, |last| last + 1);
-        let alone = visits.iter_mut().zip(left_out).filter(|(_, out)| **out);
-        alone.enumerate().for_each(|(k, (visit, _))| *visit = next + k);
+        let visits = alone(&self.visits, left_out);
         let reference = self.reference(0..3);
-        let scale = self.own.iter().map(|own| reference / own).collect();
-        Whitener { turns: self.turns.clone(), by_visit: whitening::ByVisit::new(&visits, self.shared), scale }
+        let over = |own: &[f64]| own.iter().map(|own| reference / own).collect();
+        let of_encoders = |noise: &EncoderNoise| (noise.by_group(left_out), over(&noise.own));
+        Whitener {
+            turns: self.turns.clone(),
+            by_visit: whitening::ByVisit::new(&visits, self.shared),
+            scale: over(&self.own),
+            rows: visits.len(),
+            encoders: self.encoders.as_ref().map(of_encoders),
+        }
     }
 
     /// The noise of a displacement over that of a rotation (m/rad) times
@@ -254,7 +265,8 @@ impl Covariance {
         let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
         let Some(inverse) = problem.total.inverse(&fit.columns) else { return refined };
         let (mut sums, mut freedom) = (std::vec![0.0; axes], std::vec![0.0; axes]);
-        for &i in problem.blocks.iter().flat_map(|block| &block.stacked) {
+        let of_tool = |i: &&usize| **i < self.visits.len() * axes;
+        for &i in problem.blocks.iter().flat_map(|block| &block.stacked).filter(of_tool) {
             let x = DVector::from_fn(fit.columns.len(), |k, _| problem.white[(i, fit.columns[k])]);
             sums[i % axes] += residuals[i] * residuals[i];
             freedom[i % axes] += 1.0 - x.dot(&(&inverse * &x));
@@ -306,8 +318,8 @@ impl Covariance {
 
     /// The readings in the frame measured in, a row each.
     fn measured(&self, samples: &Samples) -> DMatrix<f64> {
-        let mut stacked =
-            DMatrix::from_column_slice(samples.rows.len() * samples.axes, 1, samples.readings().as_slice());
+        let rows = samples.rows.len() * samples.axes;
+        let mut stacked = DMatrix::from_column_slice(rows, 1, &samples.readings().as_slice()[..rows]);
         turn(&mut stacked, self.turns.as_deref(), self.axes());
         DMatrix::from_row_slice(samples.rows.len(), samples.axes, stacked.as_slice())
     }
@@ -321,6 +333,9 @@ pub struct Whitener {
     by_visit: whitening::ByVisit,
     /// To the unit of displacements, by axis.
     scale: Vec<f64>,
+    rows: usize,
+    /// The same of the encoders, whose readings follow.
+    encoders: Option<(whitening::ByVisit, Vec<f64>)>,
 }
 
 impl Whitener {
@@ -328,10 +343,16 @@ impl Whitener {
     pub fn whiten(&self, stacked: &mut DMatrix<f64>) {
         let axes = self.scale.len();
         turn(stacked, self.turns.as_deref(), axes);
-        self.by_visit.whiten(stacked, axes);
+        let first = self.rows * axes;
+        self.by_visit.whiten(stacked, 0, axes);
+        if let Some((by_group, scale)) = &self.encoders {
+            by_group.whiten(stacked, first, scale.len());
+        }
         for mut column in stacked.column_iter_mut() {
-            for (i, value) in column.iter_mut().enumerate() {
-                *value *= self.scale[i % axes];
+            let (of_tool, of_encoders) = column.as_mut_slice().split_at_mut(first);
+            of_tool.iter_mut().enumerate().for_each(|(i, value)| *value *= self.scale[i % axes]);
+            if let Some((_, scale)) = &self.encoders {
+                of_encoders.iter_mut().enumerate().for_each(|(i, value)| *value *= scale[i % scale.len()]);
             }
         }
     }
@@ -343,6 +364,15 @@ impl Whitener {
         self.whiten(&mut column);
         DVector::from_vec(column.data.into())
     }
+}
+
+/// The visits of rows, each row left out a visit of its own.
+fn alone(visits: &[usize], left_out: &[bool]) -> Vec<usize> {
+    let mut visits = visits.to_vec();
+    let next = visits.iter().max().map_or(0, |last| last + 1);
+    let alone = visits.iter_mut().zip(left_out).filter(|(_, out)| **out);
+    alone.enumerate().for_each(|(k, (visit, _))| *visit = next + k);
+    visits
 }
 
 /// Stacked columns from the base frame to that measured in.

@@ -6,7 +6,7 @@ mod noise;
 mod polish;
 mod solve;
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::collections::HashMap;
 use std::rc::Rc;
 use std::string::String;
@@ -54,6 +54,8 @@ pub struct Bench<'c> {
     stored: Rc<RefCell<Stored>>,
     states: Solved<State>,
     tests: Tested,
+    /// The readings that linear models are fitted to.
+    readings: OnceCell<Rc<DVector<f64>>>,
 }
 
 /// What was found of models, or why not.
@@ -102,6 +104,7 @@ impl<'c> Bench<'c> {
             stored: Rc::default(),
             states: RefCell::default(),
             tests: RefCell::default(),
+            readings: OnceCell::new(),
         }
     }
 
@@ -197,6 +200,14 @@ impl<'c> Bench<'c> {
     /// Whether there are so many rows that memory has to be spared.
     fn is_large(&self) -> bool {
         self.left_out.len() > MANY_ROWS
+    }
+
+    /// Lets go of the columns that were formed last, where they take much memory;
+    /// those that are asked for are formed again.
+    pub fn spare_memory(&self) {
+        if self.is_large() {
+            self.stored.borrow().borrow_mut().take();
+        }
     }
 
     /// Forgets what was found of models, for they are others now.
@@ -323,10 +334,7 @@ impl<'c> Bench<'c> {
         let elastic = self.prediction(&point, fit, &nonlinear);
         let point = point.with_model(declared, elastic, &self.linear_parameters(fit));
         let count = self.own.len() + self.numbers.len();
-        if self.is_large() {
-            // Those of the model before are formed again where they are asked for.
-            self.stored.borrow().borrow_mut().take();
-        }
+        self.spare_memory();
         let mut raw = DMatrix::zeros(readings.len(), count);
         for column in 0..count {
             let tangent = tangents.iter().find(|(of, _)| *of == column);
@@ -340,7 +348,8 @@ impl<'c> Bench<'c> {
         besides.iter().enumerate().for_each(|(k, column)| raw.set_column(count + k, column));
         let weights = self.weights();
         let whitener = Rc::new(weights.covariance.whitener(weights.left_out));
-        let problem = Problem::new(&point.samples, raw, readings.clone(), &self.prepared.correction, weights);
+        let readings = Rc::clone(readings);
+        let problem = Problem::new(&point.samples, raw, readings, &self.prepared.correction, weights);
         let columns = Rc::new(RefCell::new(Some(problem.white)));
         *self.stored.borrow_mut() = Rc::clone(&columns);
         Ok(Setting {
@@ -408,4 +417,4 @@ const ROUNDS: usize = 4;
 /// Of a campaign with more rows than this, only so many regressions with the
 /// whole catalogue are kept.
 const MANY_ROWS: usize = 4000;
-const KEPT: usize = 2;
+const KEPT: usize = 4;

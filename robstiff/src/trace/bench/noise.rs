@@ -14,6 +14,7 @@ use super::Bench;
 use crate::identify::covariance::{Basis, Covariance};
 use crate::identify::noise::{PureError, repetitions};
 use crate::identify::prepare::Prepared;
+use crate::identify::samples::Samples;
 use crate::trace::model::Named;
 
 /// What is known of the noise.
@@ -38,7 +39,9 @@ impl Known {
     fn differs(&self, other: &Self) -> bool {
         let of = |known: &Self| {
             let unloaded = known.covariance.shared.sqrt();
-            known.covariance.own.iter().map(|own| (*own, own * unloaded)).collect::<std::vec::Vec<_>>()
+            let of_tool = known.covariance.own.iter().map(|own| (*own, own * unloaded));
+            let encoders = known.covariance.encoders.iter().flat_map(|noise| noise.own.iter().map(|own| (*own, *own)));
+            of_tool.chain(encoders).collect::<std::vec::Vec<_>>()
         };
         let moved = |a: f64, b: f64, size: f64| (a - b).abs() > CHANGED * size;
         of(self).into_iter().zip(of(other)).any(|(a, b)| moved(a.0, b.0, a.0) || moved(a.1, b.1, a.0))
@@ -71,16 +74,21 @@ impl Bench<'_> {
         // creeps has its creep in every column. That the joints are taken out as
         // well is no matter, for a response in proportion to the load is free.
         let left = setting.residuals(&fit) - &setting.correction;
-        let mut samples = prepared.samples.clone();
-        for (i, row) in samples.rows.iter_mut().enumerate() {
-            row.displacement = left.fixed_rows::<3>(i * prepared.samples.axes).into_owned();
-            if prepared.samples.axes > 3 {
-                row.rotation = left.fixed_rows::<3>(i * prepared.samples.axes + 3).into_owned();
+        let mut samples = Samples::clone(&prepared.samples);
+        let axes = samples.axes;
+        for i in 0..samples.rows.len() {
+            let of_encoders = samples.encoders_of(i);
+            let row = &mut samples.rows[i];
+            row.turned.iter_mut().zip(of_encoders).for_each(|(turned, at)| *turned = left[at]);
+            row.displacement = left.fixed_rows::<3>(i * axes).into_owned();
+            if axes > 3 {
+                row.rotation = left.fixed_rows::<3>(i * axes + 3).into_owned();
             }
         }
         let training = |pose: usize| prepared.training[pose];
         let frame = prepared.data.measured_frame;
-        let covariance = Covariance::estimate(&samples, frame, self.campaign.noise, training);
+        let mut covariance = Covariance::estimate(&samples, frame, self.campaign.noise, training);
+        covariance.encoders = covariance.encoders.or_else(|| self.noise.covariance.encoders.clone());
         let repeated = repetitions(&samples, &covariance, training);
         Ok(Known { covariance, repeated })
     }

@@ -184,7 +184,8 @@ impl<'c> Bench<'c> {
     /// unlikely, by its logarithm.
     fn unlikely(&self, named: &[Named], one: Named) -> impl Fn(f64) -> f64 + use<> {
         let variance = self.state(named).map_or(0.0, |state| {
-            let readings = self.left_out.iter().filter(|out| !**out).count() * self.prepared.samples.axes;
+            let samples = &self.prepared.samples;
+            let readings = self.left_out.iter().filter(|out| !**out).count() * samples.length() / samples.rows.len();
             state.fit.rss / readings as f64
         });
         let likely = self.variant(one).likely;
@@ -207,7 +208,7 @@ impl<'c> Bench<'c> {
             None => self.linear(&point, column),
         };
         let raw: Vec<DVector<f64>> = columns.iter().map(of).collect();
-        let problem = self.regression(&point, DMatrix::from_columns(&raw), state.readings.clone());
+        let problem = self.regression(&point, DMatrix::from_columns(&raw), Rc::clone(&state.readings));
         let stacked: Vec<usize> = problem.blocks.iter().flat_map(|block| block.stacked.iter().copied()).collect();
         let at = variant.columns.iter().filter_map(|column| columns.iter().position(|c| c == column)).collect();
         let weights = self.weights();
@@ -273,6 +274,7 @@ impl<'c> Bench<'c> {
             settings: RefCell::default(),
             states: RefCell::default(),
             tests: RefCell::default(),
+            readings: self.readings.clone(),
             ..*self
         }
     }

@@ -1,6 +1,7 @@
 //! A model at its solution: nonlinear numbers in their own form, by Gauss-Newton
 //! steps with all numbers together.
 
+use std::rc::Rc;
 use std::string::String;
 use std::vec;
 use std::vec::Vec;
@@ -27,7 +28,7 @@ pub struct State {
     /// What a unit of each nonlinear number does there, by its column.
     pub tangents: Vec<(usize, DVector<f64>)>,
     /// The readings that the coefficients are those of.
-    pub readings: DVector<f64>,
+    pub readings: Rc<DVector<f64>>,
     /// The columns of the description's numbers that are fitted.
     pub base: Vec<usize>,
 }
@@ -64,11 +65,13 @@ impl<'c> Bench<'c> {
         let prepared = self.prepared;
         let Some(noise) = self.noise.covariance.reading() else { return prepared.seen() };
         let whitener = self.noise.covariance.whitener(&self.left_out);
-        let trained = |row: usize| prepared.training[point.samples.rows[row].pose] && !self.left_out[row];
+        let samples = &point.samples;
+        let trained = |row: &usize| prepared.training[samples.rows[*row].pose] && !self.left_out[*row];
+        let places = |row: usize| (row * samples.axes..(row + 1) * samples.axes).chain(samples.encoders_of(row));
         let is_turned = |column: usize| {
             let white = whitener.whitened(self.linear(point, column));
-            let of_those = white.iter().enumerate().filter(|(i, _)| trained(i / point.samples.axes));
-            let square: f64 = of_those.map(|(_, value)| value * value).sum();
+            let square: f64 =
+                (0..samples.rows.len()).filter(trained).flat_map(places).map(|at| white[at] * white[at]).sum();
             square.sqrt() * prepared.own[column].value.abs() > STANDS_OUT * noise
         };
         let seen = |column: &usize| match prepared.visibility[*column] {
@@ -94,7 +97,11 @@ impl<'c> Bench<'c> {
             let effects = named.iter().flat_map(|one| &self.candidates[one.candidate].variants[one.variant].columns);
             let columns: Vec<usize> = base.iter().chain(effects).copied().collect();
             let signs: Vec<Sign> = columns.iter().map(|&column| self.signs[column]).collect();
-            let mut readings = self.readings(&point, &base);
+            // As declared, and with the numbers fitted that the data can see there.
+            let mut readings = match nonlinear.is_empty() {
+                true => Rc::clone(self.readings.get_or_init(|| Rc::new(self.readings(&point, &base)))),
+                false => Rc::new(self.readings(&point, &base)),
+            };
             let mut raw = DMatrix::zeros(readings.len(), columns.len());
             for (k, &column) in columns.iter().enumerate() {
                 if !nonlinear.iter().any(|(of, _)| *of == column) {
@@ -126,7 +133,7 @@ impl<'c> Bench<'c> {
                     self.prediction(&self.point(self.setup(&nonlinear, &moved)), &known, &nonlinear)
                 });
                 let tangent = (there - back) / (2.0 * step);
-                readings.axpy(theta[k], &tangent, 1.0);
+                Rc::make_mut(&mut readings).axpy(theta[k], &tangent, 1.0);
                 let at = columns.iter().position(|c| *c == column).expect("one of the model's");
                 raw.set_column(at, &tangent);
                 tangents.push((column, tangent));
@@ -216,7 +223,7 @@ impl<'c> Bench<'c> {
         column < self.own.len() || self.numbers[column - self.own.len()].elastic
     }
 
-    pub(super) fn regression(&self, point: &Point<'c>, raw: DMatrix<f64>, readings: DVector<f64>) -> Problem {
+    pub(super) fn regression(&self, point: &Point<'c>, raw: DMatrix<f64>, readings: Rc<DVector<f64>>) -> Problem {
         Problem::new(&point.samples, raw, readings, &self.prepared.correction, self.weights())
     }
 }

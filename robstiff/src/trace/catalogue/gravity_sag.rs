@@ -49,7 +49,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         }
     };
     let of = move |point: &Point<'_>| {
-        let length = point.samples.rows.len() * point.samples.axes;
+        let length = point.samples.length();
         (1..=point.samples.joints()).fold(DVector::zeros(length), |sum, joint| {
             let entry = coordinate_entry(point.samples.joint_kinds[joint - 1]);
             sum + point.slope(joint, entry, |row| sag[row][joint - 1])

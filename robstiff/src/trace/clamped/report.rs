@@ -84,6 +84,7 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         .collect();
     rivals.sort_by(|a, b| a.bic_difference.total_cmp(&b.bic_difference));
     Trace {
+        encoders: None,
         robot: campaign.robot.name.clone(),
         rows: rows.len(),
         poses: fitted_axes.len(),
