@@ -380,15 +380,15 @@ impl Robot<6> for EveryEffect {
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
         let k24 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let [(s23, c23), (s1o, c1o), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s6o, c6o),
+        let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s6o, c6o), (s1o, c1o),
         ] = T::sin_cos_all([
             q[1] + q[2],
-            q[0] + T::of(0.17453292519943295),
             q[1],
             q[3] + T::of(0.08726646259971647),
             q[4],
             q[5],
             q[5] + T::of(2.949606435870417),
+            q[0] + T::of(0.17453292519943295),
         ]);
         let t1 = base_x + (k7 * c1o + k10 * s1o + k13);
         let t2 = base_y + (k8 * c1o + k11 * s1o + k14);
@@ -552,13 +552,13 @@ impl Robot<6> for EveryEffect {
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
         let k24 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let [(s23, c23), (s1o, c1o), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
+        let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_all([
             q[1] + q[2],
-            q[0] + T::of(0.17453292519943295),
             q[1],
             q[3] + T::of(0.08726646259971647),
             q[4],
             q[5],
+            q[0] + T::of(0.17453292519943295),
         ]);
         let p1_x = base_x + (k7 * c1o + k10 * s1o + k13);
         let p1_y = base_y + (k8 * c1o + k11 * s1o + k14);
@@ -764,13 +764,13 @@ impl Robot<6> for EveryEffect {
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
         );
         let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let [(s23, c23), (s1o, c1o), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
+        let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_all([
             q[1] + q[2],
-            q[0] + T::of(0.17453292519943295),
             q[1],
             q[3] + T::of(0.08726646259971647),
             q[4],
             q[5],
+            q[0] + T::of(0.17453292519943295),
         ]);
         let t1 = k1 * c1o + k5 * s1o;
         let t2 = k2 * c1o + k6 * s1o;
@@ -1604,13 +1604,13 @@ impl Robot<6> for EveryEffect {
                 * (Self::BENDING3 * 0.08333333333333333),
         );
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s23, c23), (s1o, c1o), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
+        let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_all([
             q[1] + q[2],
-            q[0] + T::of(0.17453292519943295),
             q[1],
             q[3] + T::of(0.08726646259971647),
             q[4],
             q[5],
+            q[0] + T::of(0.17453292519943295),
         ]);
         let t1 = k3 * c1o + k7 * s1o;
         let t2 = k4 * c1o + k8 * s1o;
@@ -1919,13 +1919,13 @@ impl Robot<6> for EveryEffect {
         );
         let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s23, c23), (s1o, c1o), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6)] = T::sin_cos_all([
+        let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_all([
             q[1] + q[2],
-            q[0] + T::of(0.17453292519943295),
             q[1],
             q[3] + T::of(0.08726646259971647),
             q[4],
             q[5],
+            q[0] + T::of(0.17453292519943295),
         ]);
         let t1 = k1 * c1o + k5 * s1o;
         let t2 = k2 * c1o + k6 * s1o;
@@ -2338,16 +2338,16 @@ impl Robot<6> for EveryEffect {
         let k67 = T::of(Self::A2 * 0.5);
         let k68 = T::of(Self::H2 + Self::ADDED2);
         let k69 = T::of(Self::COUPLING2_3 + Self::COUPLING2_3);
-        let [(s23, c23), (s1o, c1o), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6),
-        (s6o, c6o), (s3, c3)] = T::sin_cos_all([
+        let [(s23, c23), (s2, c2), (s3, c3), (s4o, c4o), (s5, c5), (s6, c6), (s6o, c6o),
+        (s1o, c1o)] = T::sin_cos_all([
             q[1] + q[2],
-            q[0] + T::of(0.17453292519943295),
             q[1],
+            q[2],
             q[3] + T::of(0.08726646259971647),
             q[4],
             q[5],
             q[5] + T::of(2.949606435870417),
-            q[2],
+            q[0] + T::of(0.17453292519943295),
         ]);
         let t1 = k12 * c1o + k15 * s1o + k18;
         let t2 = k13 * c1o + k16 * s1o + k19;

@@ -480,15 +480,15 @@ impl Robot<7> for EveryLaw {
                     - Self::SIN_BASE_ROLL * 0.8253356149096783),
         );
         let k19 = T::of(Self::D2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let [(s3, c3), (_, c2x4), (s41x7, _), (s2o, c2o), (s4o, c4o), (s5, c5), (s6, c6),
+        let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7), (s7o, c7o)] = T::sin_cos_all([
+            q[1] + T::of(0.2587993877991494),
             q[2],
             T::of(2.0) * q[3],
-            T::of(41.0) * q[6],
-            q[1] + T::of(0.2587993877991494),
             q[3] + T::of(0.005235987755982988),
             q[4],
             q[5],
+            T::of(41.0) * q[6],
             q[6],
             q[6] + T::of(2.949606435870417),
         ]);
@@ -657,15 +657,15 @@ impl Robot<7> for EveryLaw {
                     - Self::SIN_BASE_ROLL * 0.8253356149096783),
         );
         let k22 = T::of(Self::D2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let [(s3, c3), (_, c2x4), (s41x7, _), (s2o, c2o), (s4o, c4o), (s5, c5), (s6, c6),
+        let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7)] = T::sin_cos_all([
+            q[1] + T::of(0.2587993877991494),
             q[2],
             T::of(2.0) * q[3],
-            T::of(41.0) * q[6],
-            q[1] + T::of(0.2587993877991494),
             q[3] + T::of(0.005235987755982988),
             q[4],
             q[5],
+            T::of(41.0) * q[6],
             q[6],
         ]);
         let e3 = sin_error3 * s3 + cos_error3 * c3;
@@ -873,15 +873,15 @@ impl Robot<7> for EveryLaw {
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354),
         );
         let k19 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let [(s3, c3), (_, c2x4), (s41x7, _), (s2o, c2o), (s4o, c4o), (s5, c5), (s6, c6),
+        let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7)] = T::sin_cos_all([
+            q[1] + T::of(0.2587993877991494),
             q[2],
             T::of(2.0) * q[3],
-            T::of(41.0) * q[6],
-            q[1] + T::of(0.2587993877991494),
             q[3] + T::of(0.005235987755982988),
             q[4],
             q[5],
+            T::of(41.0) * q[6],
             q[6],
         ]);
         let e3 = sin_error3 * s3 + cos_error3 * c3;
@@ -1170,16 +1170,16 @@ impl Robot<7> for EveryLaw {
         );
         let k25 = T::of(0.8253356149096783);
         let k26 = T::of(-0.5646424733950354);
-        let [(s3, c3), (s6, c6), (_, c2x4), (s41x7, _), (s7, c7), (s5, c5), (s4o, c4o),
-        (s2o, c2o)] = T::sin_cos_all([
+        let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
+        (s7, c7)] = T::sin_cos_all([
+            q[1] + T::of(0.2587993877991494),
             q[2],
-            q[5],
             T::of(2.0) * q[3],
+            q[3] + T::of(0.005235987755982988),
+            q[4],
+            q[5],
             T::of(41.0) * q[6],
             q[6],
-            q[4],
-            q[3] + T::of(0.005235987755982988),
-            q[1] + T::of(0.2587993877991494),
         ]);
         let t1 = cos2_3 * ((c3 - s3) * (s3 + c3));
         let t2 = cos1_3 * c3 + sin1_3 * s3 + t1;
@@ -1677,15 +1677,15 @@ impl Robot<7> for EveryLaw {
         let k33 = T::of(Self::BENDING3 * 0.08333333333333333);
         let k34 = T::of(Self::A4 * Self::A4 * (Self::BENDING3 * 0.08333333333333333));
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s3, c3), (_, c2x4), (s41x7, _), (s6, c6), (s2o, c2o), (s4o, c4o), (s5, c5),
+        let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7)] = T::sin_cos_all([
+            q[1] + T::of(0.2587993877991494),
             q[2],
             T::of(2.0) * q[3],
-            T::of(41.0) * q[6],
-            q[5],
-            q[1] + T::of(0.2587993877991494),
             q[3] + T::of(0.005235987755982988),
             q[4],
+            q[5],
+            T::of(41.0) * q[6],
             q[6],
         ]);
         let e3 = sin_error3 * s3 + cos_error3 * c3;
@@ -1949,15 +1949,15 @@ impl Robot<7> for EveryLaw {
         );
         let k19 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s3, c3), (_, c2x4), (s41x7, _), (s2o, c2o), (s4o, c4o), (s5, c5), (s6, c6),
+        let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7)] = T::sin_cos_all([
+            q[1] + T::of(0.2587993877991494),
             q[2],
             T::of(2.0) * q[3],
-            T::of(41.0) * q[6],
-            q[1] + T::of(0.2587993877991494),
             q[3] + T::of(0.005235987755982988),
             q[4],
             q[5],
+            T::of(41.0) * q[6],
             q[6],
         ]);
         let e3 = sin_error3 * s3 + cos_error3 * c3;
@@ -2308,15 +2308,15 @@ impl Robot<7> for EveryLaw {
         let k44 = T::of(
             1.0 / Self::GAP_KNEE3 * (0.5 * Self::GAP3) + (Self::H3 + Self::ADDED3),
         );
-        let [(s3, c3), (_, c2x4), (s41x7, _), (s2o, c2o), (s4o, c4o), (s5, c5), (s6, c6),
+        let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7), (s7o, c7o)] = T::sin_cos_all([
+            q[1] + T::of(0.2587993877991494),
             q[2],
             T::of(2.0) * q[3],
-            T::of(41.0) * q[6],
-            q[1] + T::of(0.2587993877991494),
             q[3] + T::of(0.005235987755982988),
             q[4],
             q[5],
+            T::of(41.0) * q[6],
             q[6],
             q[6] + T::of(2.949606435870417),
         ]);
@@ -2965,15 +2965,15 @@ impl Robot<7> for EveryLaw {
         let before3_2 = state.plays[2][1];
         let before3_3 = state.plays[2][2];
         let before6_1 = state.plays[5][0];
-        let [(s3, c3), (_, c2x4), (s41x7, _), (s6, c6), (s2o, c2o), (s4o, c4o), (s5, c5),
+        let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7)] = T::sin_cos_all([
+            q[1] + T::of(0.2587993877991494),
             q[2],
             T::of(2.0) * q[3],
-            T::of(41.0) * q[6],
-            q[5],
-            q[1] + T::of(0.2587993877991494),
             q[3] + T::of(0.005235987755982988),
             q[4],
+            q[5],
+            T::of(41.0) * q[6],
             q[6],
         ]);
         let e3 = sin_error3 * s3 + cos_error3 * c3;

@@ -201,13 +201,13 @@ impl Robot<6> for FanucR2000ic {
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
-        let [(s23, c23), (s1, c1), (s2, c2), (s4, c4), (s5, c5), (s6, c6)] = T::sin_cos_all([
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_all([
             q[1] + q[2],
-            q[0],
             q[1],
             q[3],
             q[4],
             q[5],
+            q[0],
         ]);
         let t1 = a3 * s2;
         let t2 = c1 * s23;
@@ -262,13 +262,13 @@ impl Robot<6> for FanucR2000ic {
         let d4 = T::of(Self::D4);
         let a4 = T::of(Self::A4);
         let d6 = T::of(Self::D6);
-        let [(s23, c23), (s1, c1), (s2, c2), (s4, c4), (s5, c5), (s6, c6)] = T::sin_cos_all([
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_all([
             q[1] + q[2],
-            q[0],
             q[1],
             q[3],
             q[4],
             q[5],
+            q[0],
         ]);
         let p2_x = a2 * c1;
         let p2_y = a2 * s1;
@@ -752,13 +752,13 @@ impl Robot<6> for FanucR2000ic {
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s23, c23), (s1, c1), (s2, c2), (s4, c4), (s5, c5), (s6, c6)] = T::sin_cos_all([
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_all([
             q[1] + q[2],
-            q[0],
             q[1],
             q[3],
             q[4],
             q[5],
+            q[0],
         ]);
         let t1 = fx * c1 + fy * s1;
         let t2 = fy * c1 - fx * s1;
@@ -847,14 +847,14 @@ impl Robot<6> for FanucR2000ic {
             -(Self::D6 + Self::TOOL_Z) * -(Self::H5 * (Self::D6 + Self::TOOL_Z)),
         );
         let k9 = T::of(-Self::H6);
-        let [(s23, c23), (s1, c1), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s3, c3)] = T::sin_cos_all([
+        let [(s23, c23), (s2, c2), (s3, c3), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_all([
             q[1] + q[2],
-            q[0],
             q[1],
+            q[2],
             q[3],
             q[4],
             q[5],
-            q[2],
+            q[0],
         ]);
         let t1 = a2 * c1;
         let t2 = a2 * s1;

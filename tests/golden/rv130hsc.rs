@@ -178,12 +178,12 @@ impl Robot<5> for Rv130hsc {
         let a3 = T::of(Self::A3);
         let d4 = T::of(Self::D4);
         let a5 = T::of(Self::A5);
-        let [(s23, c23), (s1, c1), (s2, c2), (s4, c4), (s5, c5)] = T::sin_cos_all([
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_all([
             q[1] + q[2],
-            q[0],
             q[1],
             q[3],
             q[4],
+            q[0],
         ]);
         let t1 = a3 * s23;
         let t2 = a1 * c1 + c1 * s2 + c1 * t1;
@@ -229,12 +229,12 @@ impl Robot<5> for Rv130hsc {
         let a3 = T::of(Self::A3);
         let d4 = T::of(Self::D4);
         let a5 = T::of(Self::A5);
-        let [(s23, c23), (s1, c1), (s2, c2), (s4, c4), (s5, c5)] = T::sin_cos_all([
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_all([
             q[1] + q[2],
-            q[0],
             q[1],
             q[3],
             q[4],
+            q[0],
         ]);
         let p1_x = a1 * c1;
         let p1_y = a1 * s1;
@@ -601,12 +601,12 @@ impl Robot<5> for Rv130hsc {
         let d4 = T::of(Self::D4);
         let a5 = T::of(Self::A5);
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s23, c23), (s1, c1), (s2, c2), (s4, c4), (s5, c5)] = T::sin_cos_all([
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_all([
             q[1] + q[2],
-            q[0],
             q[1],
             q[3],
             q[4],
+            q[0],
         ]);
         let t1 = fx * c1 + fy * s1;
         let t2 = fy * c1 - fx * s1;
@@ -659,13 +659,13 @@ impl Robot<5> for Rv130hsc {
         let a5_h5 = T::of(Self::A5 * Self::H5);
         let a5_h4 = T::of(Self::A5 * Self::H4);
         let k1 = T::of(-Self::H5);
-        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1), (s3, c3)] = T::sin_cos_all([
+        let [(s23, c23), (s2, c2), (s3, c3), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_all([
             q[1] + q[2],
             q[1],
+            q[2],
             q[3],
             q[4],
             q[0],
-            q[2],
         ]);
         let t1 = a3 * s23;
         let t2 = a3 * c23;
