@@ -154,7 +154,7 @@ fn a_simulation_in_time_agrees() {
 fn growth_in_cut(k: [f64; 2], mass: f64, damping: f64, cut: &Cut, frame: &CutFrame, depth: f64) -> f64 {
     let Coefficients { ktc, krc, .. } = cut.coefficients;
     let (speed, step) = (TAU * 100.0, 1e-4);
-    let (mut x, mut v) = (Vector3::new(1e-6, -0.7e-6, 0.0), Vector3::zeros());
+    let (mut x, mut v) = (Vector3::new(1e-6, -0.7e-6, 0.0), Vector3::<f64>::zeros());
     let mut largest = [0.0_f64; 2];
     for at in 0..300_000_u32 {
         let moved = frame.components(&x);
