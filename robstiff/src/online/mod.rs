@@ -28,13 +28,14 @@ use crate::elements::{plays, turn};
 use crate::{Effect, Robot, State};
 pub use timeline::{NoFeed, Timeline};
 
-/// Points within a control step at which the deviation is looked at, at most.
-const POINTS: usize = 8;
+/// Points within a control step at which the deviation is looked at, at least (so
+/// that what a step does within is seen) and at most.
+const POINTS: [usize; 2] = [2, 8];
 
 /// Between two of them along a path, if the control step is longer (s).
 const APART: f64 = 0.5e-3;
 
-/// Of a sine, so many in a period at least, or one each control step.
+/// Of a sine, so many in a period at least, as far as the above lets them be.
 const IN_A_PERIOD: f64 = 200.0;
 
 /// How long a sine is looked at (s), but for two to ten periods.
@@ -137,7 +138,7 @@ pub fn simulate<const N: usize>(
     load: impl Fn(f64) -> Vector6<f64>,
     reading: impl FnMut(f64, &Vector6<f64>) -> Option<Vector6<f64>>,
 ) -> Vec<Instant> {
-    simulate_moving((truth, model), |_| *q, (controller, POINTS), duration, load, reading)
+    simulate_moving((truth, model), |_| *q, (controller, POINTS[1]), duration, load, reading)
 }
 
 /// The same while the arm moves as the [`Timeline`] says, from its begin to its
@@ -158,7 +159,7 @@ pub fn simulate_along<const N: usize>(
 
 /// Points within a control step, for want of so many.
 fn points(wanted: f64) -> usize {
-    wanted.ceil().clamp(1.0, POINTS as f64) as usize
+    (wanted.ceil() as usize).clamp(POINTS[0], POINTS[1])
 }
 
 fn simulate_moving<const N: usize>(

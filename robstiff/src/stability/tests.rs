@@ -148,6 +148,63 @@ fn a_simulation_in_time_agrees() {
     assert!(seen.0 > 6 && seen.1 > 6, "{seen:?}");
 }
 
+/// How much a small displacement grows while the teeth turn, one by one and 400 of
+/// them a second, over the last 20 of 30 seconds: chips are as thick as each edge
+/// is further out, and there is no mean.
+fn growth_in_cut(k: [f64; 2], mass: f64, damping: f64, cut: &Cut, frame: &CutFrame, depth: f64) -> f64 {
+    let Coefficients { ktc, krc, .. } = cut.coefficients;
+    let (speed, step) = (TAU * 100.0, 1e-4);
+    let (mut x, mut v) = (Vector3::new(1e-6, -0.7e-6, 0.0), Vector3::<f64>::zeros());
+    let mut largest = [0.0_f64; 2];
+    for at in 0..300_000_u32 {
+        let moved = frame.components(&x);
+        let mut force = Vector3::zeros();
+        for tooth in 0..cut.mill.teeth {
+            let phi = (speed * step * f64::from(at) + TAU * tooth as f64 / cut.mill.teeth as f64).rem_euclid(TAU);
+            if phi >= cut.engagement.entry && phi <= cut.engagement.exit {
+                let outward = Vector3::new(phi.sin(), phi.cos(), 0.0);
+                let ahead = Vector3::new(phi.cos(), -phi.sin(), 0.0);
+                force -= (ahead * ktc + outward * krc) * (outward.dot(&moved) * depth);
+            }
+        }
+        let force = frame.force(&force);
+        for i in 0..2 {
+            let back = k[i] * x[i] + 2.0 * damping * (k[i] * mass).sqrt() * v[i];
+            v[i] += (force[i] - back) / mass * step;
+            x[i] += v[i] * step;
+        }
+        match at {
+            80_000..100_000 => largest[0] = largest[0].max(x.norm()),
+            280_000.. => largest[1] = largest[1].max(x.norm()),
+            _ => {}
+        }
+    }
+    largest[1] / largest[0]
+}
+
+#[test]
+fn with_teeth_that_turn_it_flutters_where_their_mean_says() {
+    let (k, mass, damping) = ([0.6e6, 0.8e6], 120.0, 0.02);
+    let modes = plane(k[0], k[1], mass, damping);
+    let mut seen = 0;
+    for engagement in [
+        Engagement::SLOT,
+        Engagement::of_width(Direction::Up, 0.008, 0.02).unwrap(),
+        Engagement::of_width(Direction::Down, 0.008, 0.02).unwrap(),
+    ] {
+        for angle in [0.0, 0.8, 2.1, 4.0] {
+            let (cut, feed) = (cut(engagement), in_plane(angle));
+            let frame = CutFrame::new(&-Vector3::z(), &feed).unwrap();
+            let limits = modes.limits(&process(&cut, &frame), 0.01);
+            let Some(limit) = limits.limiting().filter(|limit| !limits.is_stable(1.1 * limit)) else { continue };
+            let [below, above] = [0.9, 1.1].map(|part| growth_in_cut(k, mass, damping, &cut, &frame, part * limit));
+            assert!(below < 1.0 && above > 1.0, "{engagement:?} {angle} {limit}: {below} {above}");
+            seen += 1;
+        }
+    }
+    assert!(seen > 5, "{seen}");
+}
+
 /// In a full slot the tangential forces couple any two perpendicular directions
 /// alike, with `N Kt b / 4`, and the radial ones stiffen both by `N Kr b / 4`:
 /// they flutter where the coupling exceeds half the difference of the
