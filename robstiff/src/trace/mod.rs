@@ -27,6 +27,7 @@ pub mod model;
 pub mod point;
 mod report;
 pub mod selection;
+mod sizes;
 #[cfg(test)]
 mod tests;
 pub mod verdict;
