@@ -22,7 +22,7 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal as Gaussian};
+use statrs::distribution::{ContinuousCDF, Normal as Gaussian};
 
 use super::bootstrap::rademacher;
 use super::features::features;
