@@ -105,7 +105,7 @@ impl Samples {
     fn on<const N: usize>(robot: &impl Robot<N>, data: &Displacements, setup: &Setup, known: Option<&Self>) -> Self {
         let with_rotations = data.rows.iter().all(|row| row.rotation.is_some());
         let mut rows: Vec<Sample> = Vec::with_capacity(data.rows.len());
-        let mut encoders = known.is_none().then(|| Encoders::of(data)).unwrap_or_default();
+        let mut encoders = if known.is_none() { Encoders::of(data) } else { Encoders::default() };
         for (i, row) in data.rows.iter().enumerate() {
             let q = setup.coordinates(i, &row.q);
             // The arm stands where it stood, as a rule: a pose has many rows.

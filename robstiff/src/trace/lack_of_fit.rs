@@ -24,12 +24,13 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal as Gaussian};
+use statrs::distribution::{ContinuousCDF, Normal as Gaussian};
 
 use super::agreement::{Agreement, agreement};
 use super::bootstrap::rademacher;
 use super::features::features;
 use super::model::{Fitted, Setting};
+use super::sizes::{Shares, of_encoders, size};
 use crate::campaign::Displacements;
 use crate::identify::covariance::Covariance;
 use crate::identify::noise::PureError;
@@ -112,75 +113,8 @@ pub fn test(
 }
 
 /// The residual degrees of freedom.
-fn freedom(setting: &Setting<'_>, model: &Fitted) -> f64 {
+pub(super) fn freedom(setting: &Setting<'_>, model: &Fitted) -> f64 {
     setting.problem.freedom(&model.fit)
-}
-
-/// Sums of squares with their degrees of freedom, of the readings of the tool and
-/// of those of encoders.
-struct Shares {
-    tool: (f64, f64),
-    encoders: Option<(f64, f64)>,
-}
-
-impl Shares {
-    fn of(setting: &Setting<'_>, model: &Fitted) -> Option<Self> {
-        let whole = (model.fit.rss, freedom(setting, model));
-        let samples = &setting.point.samples;
-        if samples.encoders.is_empty() {
-            return Some(Self { tool: whole, encoders: None });
-        }
-        let (problem, fit) = setting.alone(&model.fit);
-        let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
-        let inverse = problem.total.inverse(&fit.columns)?;
-        let mut encoders = (0.0, 0.0);
-        for row in problem.blocks.iter().flat_map(|block| &block.rows) {
-            for i in samples.encoders_of(*row) {
-                let x = problem.white.row(i).transpose();
-                encoders.0 += residuals[i] * residuals[i];
-                encoders.1 += 1.0 - x.dot(&(&inverse * &x));
-            }
-        }
-        Some(Self { tool: (whole.0 - encoders.0, whole.1 - encoders.1), encoders: Some(encoders) })
-    }
-}
-
-/// Encoders against what they leave where every pose has a free response to its
-/// loads.
-fn of_encoders(shares: &Shares, covariance: &Covariance) -> Option<StructureTest> {
-    let (rss, freedom) = shares.encoders?;
-    let noise = covariance.encoders.as_ref()?;
-    let (sum, pure) = noise.pure;
-    let (rss, freedom) = (rss / covariance.reading()?.powi(2), freedom - noise.unknown_levels());
-    let rest = freedom - pure;
-    if rest < 1.0 {
-        return None;
-    }
-    let statistic = (rss - sum).max(0.0) / rest / (sum / pure);
-    let p_value = FisherSnedecor::new(rest, pure).ok()?.sf(statistic);
-    Some(StructureTest { name: "encoders against their own noise".to_owned(), statistic, p_value })
-}
-
-fn size(shares: &Shares, yardstick: Yardstick) -> Option<StructureTest> {
-    let (rss, freedom) = shares.tool;
-    match yardstick {
-        Yardstick::Declared(variance) => {
-            let statistic = rss / variance;
-            let p_value = ChiSquared::new(freedom).ok()?.sf(statistic);
-            Some(StructureTest { name: "residuals against the declared noise".to_owned(), statistic, p_value })
-        }
-        Yardstick::Repeated(pure) => {
-            let variance = pure.variance()?;
-            let rest = freedom - pure.freedom as f64;
-            if rest < 1.0 {
-                return None;
-            }
-            let statistic = (rss - pure.sum).max(0.0) / rest / variance;
-            let p_value = FisherSnedecor::new(rest, pure.freedom as f64).ok()?.sf(statistic);
-            Some(StructureTest { name: "residuals against repeated readings".to_owned(), statistic, p_value })
-        }
-        Yardstick::Unknown => None,
-    }
 }
 
 /// Spearman's rank correlation of squared residuals, each over what the fit

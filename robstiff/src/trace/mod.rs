@@ -28,6 +28,7 @@ pub mod model;
 pub mod point;
 mod report;
 pub mod selection;
+mod sizes;
 pub mod slip;
 #[cfg(test)]
 mod tests;

@@ -33,10 +33,13 @@ pub struct Point<'c> {
     turned: Vec<Turned>,
     /// By pose, joint and entry `[theta, d, a, alpha]` of its row, the change
     /// of the readings per wrench as the file gives it.
-    slopes: Vec<Vec<[Matrix6<f64>; 4]>>,
+    slopes: Slopes<Matrix6<f64>>,
     /// Those of the encoders; empty where there are none.
-    turned_slopes: Vec<Vec<[Turned; 4]>>,
+    turned_slopes: Slopes<Turned>,
 }
+
+/// By pose, joint and entry of its row.
+type Slopes<T> = Vec<Vec<[T; 4]>>;
 
 /// What encoders read (a row each) per wrench.
 type Turned = OMatrix<f64, Dyn, Const<6>>;
@@ -99,7 +102,7 @@ impl<'c> Point<'c> {
         declared: &Samples,
         linear: &[(Parameter, f64)],
         first: &[usize],
-    ) -> (Vec<Vec<[Matrix6<f64>; 4]>>, Vec<Vec<[Turned; 4]>>) {
+    ) -> (Slopes<Matrix6<f64>>, Slopes<Turned>) {
         let mut data = self.data.clone();
         data.rows = first.iter().map(|&row| self.data.rows[row].clone()).collect();
         let mut one_a_pose = declared.clone();
@@ -107,7 +110,7 @@ impl<'c> Point<'c> {
         let mut slopes = std::vec![std::vec![[Matrix6::zeros(); 4]; declared.joints()]; first.len()];
         let encoders = declared.encoders.len();
         let still = || core::array::from_fn(|_| Turned::zeros(encoders));
-        let mut by_encoders: Vec<Vec<[Turned; 4]>> = Vec::new();
+        let mut by_encoders: Slopes<Turned> = Vec::new();
         if encoders > 0 {
             by_encoders = first.iter().map(|_| (0..declared.joints()).map(|_| still()).collect()).collect();
         }

@@ -1,0 +1,76 @@
+//! Whether residuals are larger than noise, where it is known how much that is.
+
+use std::borrow::ToOwned;
+
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
+
+use super::lack_of_fit::{StructureTest, Yardstick, freedom};
+use super::model::{Fitted, Setting};
+use crate::identify::covariance::Covariance;
+
+/// Sums of squares with their degrees of freedom, of the readings of the tool and
+/// of those of encoders.
+pub(super) struct Shares {
+    tool: (f64, f64),
+    encoders: Option<(f64, f64)>,
+}
+
+impl Shares {
+    pub(super) fn of(setting: &Setting<'_>, model: &Fitted) -> Option<Self> {
+        let whole = (model.fit.rss, freedom(setting, model));
+        let samples = &setting.point.samples;
+        if samples.encoders.is_empty() {
+            return Some(Self { tool: whole, encoders: None });
+        }
+        let (problem, fit) = setting.alone(&model.fit);
+        let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
+        let inverse = problem.total.inverse(&fit.columns)?;
+        let mut encoders = (0.0, 0.0);
+        for row in problem.blocks.iter().flat_map(|block| &block.rows) {
+            for i in samples.encoders_of(*row) {
+                let x = problem.white.row(i).transpose();
+                encoders.0 += residuals[i] * residuals[i];
+                encoders.1 += 1.0 - x.dot(&(&inverse * &x));
+            }
+        }
+        Some(Self { tool: (whole.0 - encoders.0, whole.1 - encoders.1), encoders: Some(encoders) })
+    }
+}
+
+/// Encoders against what they leave where every pose has a free response to its
+/// loads.
+pub(super) fn of_encoders(shares: &Shares, covariance: &Covariance) -> Option<StructureTest> {
+    let (rss, freedom) = shares.encoders?;
+    let noise = covariance.encoders.as_ref()?;
+    let (sum, pure) = noise.pure;
+    let (rss, freedom) = (rss / covariance.reading()?.powi(2), freedom - noise.unknown_levels());
+    let rest = freedom - pure;
+    if rest < 1.0 {
+        return None;
+    }
+    let statistic = (rss - sum).max(0.0) / rest / (sum / pure);
+    let p_value = FisherSnedecor::new(rest, pure).ok()?.sf(statistic);
+    Some(StructureTest { name: "encoders against their own noise".to_owned(), statistic, p_value })
+}
+
+pub(super) fn size(shares: &Shares, yardstick: Yardstick) -> Option<StructureTest> {
+    let (rss, freedom) = shares.tool;
+    match yardstick {
+        Yardstick::Declared(variance) => {
+            let statistic = rss / variance;
+            let p_value = ChiSquared::new(freedom).ok()?.sf(statistic);
+            Some(StructureTest { name: "residuals against the declared noise".to_owned(), statistic, p_value })
+        }
+        Yardstick::Repeated(pure) => {
+            let variance = pure.variance()?;
+            let rest = freedom - pure.freedom as f64;
+            if rest < 1.0 {
+                return None;
+            }
+            let statistic = (rss - pure.sum).max(0.0) / rest / variance;
+            let p_value = FisherSnedecor::new(rest, pure.freedom as f64).ok()?.sf(statistic);
+            Some(StructureTest { name: "residuals against repeated readings".to_owned(), statistic, p_value })
+        }
+        Yardstick::Unknown => None,
+    }
+}
