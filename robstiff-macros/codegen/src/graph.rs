@@ -75,9 +75,42 @@ impl Op {
             }
             Self::PlusScaled(a, b, c) => [Some(a), Some(b), Some(c), None],
             Self::Column(entries) => entries.map(Some),
-            _ => [None; 4],
+            Self::Number(_)
+            | Self::Parameter(_)
+            | Self::Coordinate(_)
+            | Self::Wrench(_)
+            | Self::Play(..)
+            | Self::Sin(_)
+            | Self::Cos(_) => [None; 4],
         };
         operands.into_iter().flatten()
+    }
+
+    /// The same on other nodes.
+    #[must_use]
+    pub fn map_operands(self, of: impl Fn(Id) -> Id) -> Self {
+        match self {
+            Self::Add(a, b) => Self::Add(of(a), of(b)),
+            Self::Sub(a, b) => Self::Sub(of(a), of(b)),
+            Self::Mul(a, b) => Self::Mul(of(a), of(b)),
+            Self::Max(a, b) => Self::Max(of(a), of(b)),
+            Self::Min(a, b) => Self::Min(of(a), of(b)),
+            Self::Scaled(a, b) => Self::Scaled(of(a), of(b)),
+            Self::Neg(a) => Self::Neg(of(a)),
+            Self::Sqrt(a) => Self::Sqrt(of(a)),
+            Self::Recip(a) => Self::Recip(of(a)),
+            Self::Direction(a) => Self::Direction(of(a)),
+            Self::Entry(a, entry) => Self::Entry(of(a), entry),
+            Self::PlusScaled(a, b, c) => Self::PlusScaled(of(a), of(b), of(c)),
+            Self::Column(entries) => Self::Column(entries.map(of)),
+            Self::Number(_)
+            | Self::Parameter(_)
+            | Self::Coordinate(_)
+            | Self::Wrench(_)
+            | Self::Play(..)
+            | Self::Sin(_)
+            | Self::Cos(_) => self,
+        }
     }
 
     /// Whether it is four numbers side by side.
