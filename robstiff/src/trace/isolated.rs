@@ -39,18 +39,18 @@ pub struct Event {
 /// What must be explained over the robust variance, where structure may be
 /// left: beyond twelve standard deviations with the straight line taken out,
 /// beyond fourteen where there are too few rows to do so.
-const STANDS_OUT: f64 = 150.0;
+pub const STANDS_OUT: f64 = 150.0;
 const STANDS_OUT_AS_IT_IS: f64 = 200.0;
 
 /// The level over all rows where what is left otherwise is noise. It is less
 /// than that of the other tests, for noise with a few larger values is common.
-const STRICT: f64 = 1e-3;
+pub const STRICT: f64 = 1e-3;
 
 /// More than this share of the rows is no matter of single rows.
-const FEW: f64 = 0.1;
+pub const FEW: f64 = 0.1;
 
 /// The median of chi-square with one degree of freedom.
-const MEDIAN: f64 = 0.4549;
+pub const MEDIAN: f64 = 0.4549;
 
 /// With less than this share left, a straight line in the load says the same.
 const OF_ITS_OWN: f64 = 0.1;

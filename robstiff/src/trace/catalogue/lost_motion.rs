@@ -8,7 +8,7 @@ use std::format;
 use std::vec::Vec;
 
 use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
-use crate::trace::clamped::{Axes, AxisNumber, OnAxes, axes_column};
+use crate::trace::clamped::{Axes, AxisNumber, OnAxes};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -54,19 +54,10 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
 
 fn on_axes(axes: &Axes) -> Vec<OnAxes> {
     let of = |axis: usize| {
-        let (torques, largest) = (axes.torques(axis), axes.largest(axis));
-        let (at, count) = (axes.rows_of(axis), axes.rows.len());
-        let numbers = [AxisNumber { name: "gap", unit: axes.turn_unit(axis), range: [0.0, WIDEST] }];
-        let column = move |knee: f64| axes_column(count, &at, torques.iter().map(|t| 0.5 * t / t.hypot(knee)));
-        let knees = KNEES.map(|fraction| std::vec![fraction * largest]);
-        OnAxes::new(
-            Part::Joint(axis),
-            numbers.into(),
-            &[("knee", axes.torque_unit(axis))],
-            knees.into(),
-            move |shape| std::vec![column(shape[0])],
-        )
-        .within([0.0, EITHER[1] * largest])
+        let number = AxisNumber { name: "gap", unit: axes.turn_unit(axis), range: [0.0, WIDEST] };
+        OnAxes::with_knee(axes, axis, number, [&KNEES, &[0.0, EITHER[1]]], |torque, knee| {
+            0.5 * torque / torque.hypot(knee)
+        })
     };
     axes.loaded().map(of).collect()
 }

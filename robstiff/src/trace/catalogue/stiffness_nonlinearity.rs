@@ -8,7 +8,7 @@ use std::vec::Vec;
 use super::lost_motion::EITHER;
 use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
 use crate::identify::samples::Column;
-use crate::trace::clamped::{Axes, AxisNumber, OnAxes, axes_column};
+use crate::trace::clamped::{Axes, AxisNumber, OnAxes};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -55,21 +55,10 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
 
 fn on_axes(axes: &Axes) -> Vec<OnAxes> {
     let of = |axis: usize| {
-        let (torques, largest) = (axes.torques(axis), axes.largest(axis));
-        let at = axes.rows_of(axis);
-        let count = axes.rows.len();
-        let unit = axes.unit(axis);
-        let numbers = [AxisNumber { name: "added", unit, range: [-axes.compliance[axis - 1], f64::INFINITY] }];
-        let column = move |knee: f64| axes_column(count, &at, torques.iter().map(|t| t / (t / knee).hypot(1.0)));
-        let knees = KNEES.map(|fraction| std::vec![fraction * largest]);
-        OnAxes::new(
-            Part::Joint(axis),
-            numbers.into(),
-            &[("knee", axes.torque_unit(axis))],
-            knees.into(),
-            move |shape| std::vec![column(shape[0])],
-        )
-        .within([EITHER[0] * largest, f64::INFINITY])
+        let range = [-axes.compliance[axis - 1], f64::INFINITY];
+        let number = AxisNumber { name: "added", unit: axes.unit(axis), range };
+        let turn = |torque: f64, knee: f64| torque / (torque / knee).hypot(1.0);
+        OnAxes::with_knee(axes, axis, number, [&KNEES, &[EITHER[0], f64::INFINITY]], turn)
     };
     axes.loaded().map(of).collect()
 }

@@ -1,6 +1,7 @@
 //! The rows of clamped axes, and what effects do to them.
 
 use std::rc::Rc;
+use std::vec;
 use std::vec::Vec;
 
 use nalgebra::DVector;
@@ -12,6 +13,7 @@ use crate::identify::baseline::Visibility;
 use crate::trace::found::{EffectParameter, Place};
 use crate::{Effect, JointKind};
 use robstiff_robots::Description;
+use robstiff_robots::effect::Place as Part;
 use robstiff_robots::effect::physics::PLAYS;
 
 /// The rows of a campaign, axis by axis.
@@ -183,6 +185,25 @@ impl OnAxes {
             likely: None,
         };
         Self { place: place.into(), forms: grid.into_iter().map(form).collect() }
+    }
+
+    /// A law of a joint with one number and a knee, which is tried at fractions of
+    /// the largest torque and goes by its name between two others: `turn` is what a
+    /// unit of the number does at a torque with a knee.
+    pub fn with_knee(
+        axes: &Axes,
+        axis: usize,
+        number: AxisNumber,
+        [tried, within]: [&[f64]; 2],
+        turn: fn(torque: f64, knee: f64) -> f64,
+    ) -> Self {
+        let (torques, largest) = (axes.torques(axis), axes.largest(axis));
+        let (at, count) = (axes.rows_of(axis), axes.rows.len());
+        let column = move |knee: f64| axes_column(count, &at, torques.iter().map(|&torque| turn(torque, knee)));
+        let knees = tried.iter().map(|fraction| vec![fraction * largest]).collect();
+        let shape = [("knee", axes.torque_unit(axis))];
+        Self::new(Part::Joint(axis), vec![number], &shape, knees, move |shape| vec![column(shape[0])])
+            .within([within[0] * largest, within[1] * largest])
     }
 
     /// One effect with the forms of several.

@@ -14,6 +14,7 @@ use crate::identify::normal::{Fit, Sign};
 use crate::trace::bootstrap::ScoreTest;
 use crate::trace::catalogue::{Candidate, KINDS, Variant};
 use crate::trace::found::Place;
+use crate::trace::isolated::{FEW, MEDIAN, STANDS_OUT, STRICT};
 use crate::trace::lack_of_fit::{LackOfFit, StructureTest};
 use crate::trace::model::{Fitted, Named};
 use crate::trace::selection::{Selection, Step, Tested};
@@ -28,17 +29,6 @@ const EXTENDED: usize = 8;
 
 /// A model that is better by this is worth another look: odds of e to one.
 const BETTER: f64 = 2.0;
-
-/// The level at which a row is wild, over all rows; and how far off it must be
-/// while effects may be missing, in variances.
-const WILD: f64 = 1e-3;
-const STANDS_OUT: f64 = 150.0;
-
-/// More than this share of the rows is no matter of single rows.
-const FEW: f64 = 0.1;
-
-/// The median of chi-square with one degree of freedom.
-const MEDIAN: f64 = 0.4549;
 
 /// What was found.
 pub struct Found {
@@ -178,7 +168,7 @@ fn worst(bench: &Bench, fit: &Fit, strict: bool) -> Option<(usize, f64)> {
     let (row, most) = all.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
     let table = ChiSquared::new(1.0).ok()?;
     let p = all.len() as f64 * table.sf(most / variance);
-    let stands_out = if strict { p <= WILD } else { *most > STANDS_OUT * variance };
+    let stands_out = if strict { p <= STRICT } else { *most > STANDS_OUT * variance };
     (variance > 0.0 && stands_out).then_some((row, p.min(1.0)))
 }
 
