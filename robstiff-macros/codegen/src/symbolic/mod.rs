@@ -7,7 +7,7 @@
 //! - [`weight`]: how the joints yield to the arm's own weight;
 //! - [`compliance`](mod@compliance): the Cartesian compliance, carried from the TCP to the
 //!   base;
-//! - [`columns`]: frames, Jacobian and all together once more, of whole [`column`]s.
+//! - [`columns`]: frames, Jacobian and all together once more, of whole [`mod@column`]s.
 
 pub mod chain;
 pub mod column;
