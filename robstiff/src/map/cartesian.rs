@@ -4,7 +4,7 @@ use core::ops::Range;
 use std::vec;
 use std::vec::Vec;
 
-use nalgebra::{Rotation3, SVector, Unit, Vector3};
+use nalgebra::{Isometry3, Point3, Rotation3, SVector, Unit, Vector3};
 
 use super::{Axis, Column, Evaluate, Measure, Poses, Space};
 use crate::inverse::{Inverse, Orientation, Target};
@@ -15,11 +15,11 @@ use crate::{JointKind, Robot};
 pub struct Tool {
     /// The tool's axis in the TCP's frame.
     pub axis: Unit<Vector3<f64>>,
-    /// Its direction in the base frame.
+    /// Its direction in the frame of the positions.
     pub direction: Unit<Vector3<f64>>,
     /// Turns of the tool about that direction to choose from (rad), counted from
-    /// the orientation that is the smallest turn from that of the base; empty, where
-    /// any will do.
+    /// the orientation that is the smallest turn from that of the frame; empty,
+    /// where any will do.
     pub turns: Vec<f64>,
 }
 
@@ -39,15 +39,17 @@ impl Tool {
     }
 }
 
-/// A grid of positions of the TCP in the base frame, with joint coordinates from
-/// inverse kinematics.
+/// A grid of positions of the TCP, with joint coordinates from inverse kinematics.
 ///
 /// Of the turns that the tool may take, and of the postures of the arm, each cell
 /// has the one where the measure is best. Behind the measure's columns come the
 /// turn, where there is a choice, and the joint coordinates.
 pub struct CartesianSpace<'r, R, const N: usize> {
     axes: [Axis; 3],
+    /// Where the positions are counted from, in the base frame.
+    frame: Isometry3<f64>,
     tool: Tool,
+    /// In the base frame.
     orientations: Vec<Orientation>,
     inverse: Inverse<'r, R, N>,
     seed: SVector<f64, N>,
@@ -58,14 +60,15 @@ const JOINTS: [&str; 8] = ["q1", "q2", "q3", "q4", "q5", "q6", "q7", "q8"];
 const DEGREES: f64 = 180.0 / core::f64::consts::PI;
 
 impl<'r, R: Robot<N> + Sync, const N: usize> CartesianSpace<'r, R, N> {
-    /// The space of positions along x, y and z (m), where the tool stands as it
-    /// says. What is turned furthest comes back nearest to the middle of the joints'
+    /// The space of positions along x, y and z (m) of the base frame, where the tool
+    /// stands as it says. What is turned furthest comes back nearest to the middle of the joints'
     /// ranges.
     pub fn new(robot: &'r R, axes: [Axis; 3], tool: Tool) -> Self {
         let limits = robot.limits();
         let middle = |i: usize| limits[i].map_or(0.0, |[low, high]| 0.5 * (low + high));
         Self {
             axes,
+            frame: Isometry3::identity(),
             orientations: tool.orientations(),
             tool,
             inverse: Inverse::new(robot),
@@ -74,9 +77,23 @@ impl<'r, R: Robot<N> + Sync, const N: usize> CartesianSpace<'r, R, N> {
         }
     }
 
+    /// The same with positions and tool in a frame of their own, a workpiece's,
+    /// which is given in the base frame. What is computed of a cell stays in the
+    /// base frame.
+    pub fn in_frame(mut self, frame: Isometry3<f64>) -> Self {
+        let turn = frame.rotation.to_rotation_matrix();
+        let turned = |orientation| match orientation {
+            Orientation::Full(rotation) => Orientation::Full(turn * rotation),
+            Orientation::Axis { tool, direction } => Orientation::Axis { tool, direction: turn * direction },
+        };
+        self.orientations = self.tool.orientations().into_iter().map(turned).collect();
+        Self { frame, ..self }
+    }
+
+    /// In the base frame.
     fn position(&self, cell: usize) -> Vector3<f64> {
         let at = self.indices(cell);
-        Vector3::from_fn(|k, _| self.axes[k].values[at[k]])
+        (self.frame * Point3::from(core::array::from_fn(|k| self.axes[k].values[at[k]]))).coords
     }
 
     /// The joint coordinates that bring the tool to a cell, with the number of the

@@ -5,7 +5,7 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
-use nalgebra::{Unit, Vector3, Vector6};
+use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3, Vector6};
 use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, Diagnostics, Joint, JointKind};
@@ -32,14 +32,16 @@ pub struct Task {
 pub enum Over {
     /// Joint coordinates, an axis each.
     Joints(Vec<Axis>),
-    /// Positions of the TCP in the base frame.
+    /// Positions of the TCP.
     Positions(Box<Positions>),
 }
 
 /// Positions of the TCP, and how the tool stands there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Positions {
-    /// x, y and z (m), in the base frame.
+    /// Where they are counted from, in the base frame.
+    pub frame: Isometry3<f64>,
+    /// x, y and z (m), in that frame.
     pub axes: [Axis; 3],
     /// How the tool stands there.
     pub tool: Tool,
@@ -69,9 +71,9 @@ fn task(document: &Document, robot: &Description) -> Option<Task> {
             joints(&node, robot).map(Over::Joints)
         }
         (None, Some(node)) => {
-            let (axes, tool) = (positions(&node), map.require("tool", "tool: {direction: [0, 0, -1]}"));
+            let (grid, tool) = (grid(&node), map.require("tool", "tool: {direction: [0, 0, -1]}"));
             let tool = tool.and_then(|node| self::tool(&node));
-            axes.zip(tool).map(|(axes, tool)| Over::Positions(Box::new(Positions { axes, tool })))
+            grid.zip(tool).map(|((frame, axes), tool)| Over::Positions(Box::new(Positions { frame, axes, tool })))
         }
         (Some(_), Some(node)) => {
             node.error("a map is over joints or over positions, not both", "keep one of the two");
@@ -162,13 +164,26 @@ fn within_limits(node: &Node<'_>, joint: &Joint, axis: &Axis) -> bool {
     true
 }
 
-fn positions(node: &Node<'_>) -> Option<[Axis; 3]> {
-    let map = node.map(&["x", "y", "z"])?;
+/// Where positions are counted from, and their axes.
+fn grid(node: &Node<'_>) -> Option<(Isometry3<f64>, [Axis; 3])> {
+    let map = node.map(&["frame", "x", "y", "z"])?;
+    let frame = map.get("frame").map_or(Some(Isometry3::identity()), |node| frame(&node));
     let [x, y, z] = ["x", "y", "z"].map(|name| {
         let example = format!("{name}: 800 mm`, or `{name}: {{from: 1200 mm, to: 2000 mm, count: 81}}");
         map.require(name, &example).and_then(|node| axis(&node, name.into(), Dimension::Length))
     });
-    Some([x?, y?, z?])
+    Some((frame?, [x?, y?, z?]))
+}
+
+/// A frame in the base frame: `rpy` are turns about its fixed x, y and z axes, in
+/// this order.
+fn frame(node: &Node<'_>) -> Option<Isometry3<f64>> {
+    let map = node.map(&["xyz", "rpy"])?;
+    let three =
+        |name: &str, dimension: Dimension| map.get(name).map_or(Some([0.0; 3]), |node| node.quantities::<3>(dimension));
+    let (xyz, rpy) = (three("xyz", Dimension::Length), three("rpy", Dimension::Angle));
+    let ([x, y, z], [roll, pitch, yaw]) = (xyz?, rpy?);
+    Some(Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_euler_angles(roll, pitch, yaw)))
 }
 
 fn tool(node: &Node<'_>) -> Option<Tool> {

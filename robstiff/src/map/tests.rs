@@ -2,6 +2,7 @@ use std::vec::Vec;
 
 use nalgebra::{SVector, Vector3, Vector6};
 
+use super::read::{Over, Positions, Task};
 use super::{Axis, CartesianSpace, JointSpace, Measure, Space, Tool, best_placement, stream};
 use crate::analysis::principal_directions;
 use crate::robots::{Description, catalogue};
@@ -152,6 +153,35 @@ fn the_best_turn_is_no_worse_than_any() {
                 < 1e-12
         );
         assert!(turns.contains(&best[4][cell]));
+    }
+}
+
+/// A frame that is aside and turned: the tool stands where and as it says there.
+#[test]
+fn a_plane_may_lie_anywhere() {
+    let arm = Generic::<6>::new(&description("kuka-kr270-r2700.yaml")).unwrap();
+    let text = "positions:\n  frame: {xyz: [1.5 m, 0.2 m, 0.9 m], rpy: [0, 50 deg, 20 deg]}\n  \
+        x: {from: -100 mm, to: 150 mm, count: 3}\n  y: {from: -200 mm, to: 200 mm, count: 2}\n  z: 50 mm\n\
+        tool: {direction: [0, 0, -1], turn: {from: -30 deg, to: 30 deg, count: 2}}\nmeasure: stiffness\n";
+    let task = Task::parse("plane.yaml", text, &description("kuka-kr270-r2700.yaml")).unwrap();
+    let Over::Positions(positions) = &task.over else { panic!("{task:?}") };
+    let Positions { frame, axes, tool } = positions.as_ref();
+    let space = CartesianSpace::new(&arm, axes.clone(), tool.clone()).in_frame(*frame);
+    let columns = space.compute(&arm, &task.measure, 0..6);
+    let (pitch, yaw) = (50_f64.to_radians(), 20_f64.to_radians());
+    for cell in 0..6 {
+        let at = space.indices(cell);
+        let [x, y, z] = [0, 1, 2].map(|k| axes[k].values[at[k]]);
+        // About y, then about z.
+        let (along, up) = (x * pitch.cos() + z * pitch.sin(), z * pitch.cos() - x * pitch.sin());
+        let expected = [1.5 + along * yaw.cos() - y * yaw.sin(), 0.2 + along * yaw.sin() + y * yaw.cos(), 0.9 + up];
+        let q = SVector::<f64, 6>::from_fn(|joint, _| columns[5 + joint][cell]);
+        let pose = arm.transform(&q);
+        let normal = [pitch.sin() * yaw.cos(), pitch.sin() * yaw.sin(), pitch.cos()];
+        for k in 0..3 {
+            assert!((pose[(k, 3)] - expected[k]).abs() < 1e-9, "{cell}: {pose}");
+            assert!((pose[(k, 2)] + normal[k]).abs() < 1e-9, "{cell}: {pose}");
+        }
     }
 }
 

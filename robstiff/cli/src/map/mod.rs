@@ -108,9 +108,9 @@ fn map<const N: usize>(
             write(&tape, &space, &task.measure, arguments, files)?
         }
         Over::Positions(positions) => {
-            let Positions { axes, tool } = positions.as_ref();
+            let Positions { frame, axes, tool } = positions.as_ref();
             let generic = Generic::<N>::new(robot).expect("this arm has the same count");
-            let space = CartesianSpace::new(&generic, axes.clone(), tool.clone());
+            let space = CartesianSpace::new(&generic, axes.clone(), tool.clone()).in_frame(*frame);
             let mut mapped = write(&tape, &space, &task.measure, arguments, files)?;
             if let Some(size) = arguments.place {
                 mapped.mapped.placements = place(&tape, &generic, positions, &task.measure, size, &mapped.values);
@@ -134,7 +134,7 @@ fn map<const N: usize>(
 fn place<const N: usize>(
     tape: &Tape<N>,
     robot: &Generic<N>,
-    Positions { axes, tool }: &Positions,
+    Positions { frame, axes, tool }: &Positions,
     measure: &Measure,
     size: [f64; 3],
     values: &[f64],
@@ -147,7 +147,7 @@ fn place<const N: usize>(
     }
     let with = |&turn: &f64| {
         let one = Tool { turns: vec![turn], ..tool.clone() };
-        let space = CartesianSpace::new(robot, axes.clone(), one);
+        let space = CartesianSpace::new(robot, axes.clone(), one).in_frame(*frame);
         let mut values = Vec::with_capacity(space.cells());
         let figures = |chunk: &Chunk| chunk.columns[0].clone();
         let done: Result<_, Infallible> = stream(tape, &space, measure, figures, |figures| {
