@@ -92,11 +92,12 @@ impl Setting<'_> {
         if let Some((_, tangent)) = self.tangents.iter().find(|(of, _)| *of == column) {
             return tangent.clone();
         }
-        let effect = column.checked_sub(self.own.len());
-        match effect.map(|effect| self.numbers.get(effect).ok_or(effect - self.numbers.len())) {
-            None => self.point.with_creep(self.point.samples.column(self.own[column])),
-            Some(Ok(number)) => number.column(&self.point),
-            Some(Err(besides)) => self.besides[besides].clone(),
+        let Some(effect) = column.checked_sub(self.own.len()) else {
+            return self.point.with_creep(self.point.samples.column(self.own[column]));
+        };
+        match self.numbers.get(effect) {
+            Some(number) => number.column(&self.point),
+            None => self.besides[effect - self.numbers.len()].clone(),
         }
     }
 
