@@ -167,21 +167,20 @@ fn a_plane_may_lie_anywhere() {
     let Over::Positions(positions) = &task.over else { panic!("{task:?}") };
     let Positions { frame, axes, tool } = positions.as_ref();
     let space = CartesianSpace::new(&arm, axes.clone(), tool.clone()).in_frame(*frame);
-    let columns = space.compute(&arm, &task.measure, 0..6);
+    let columns = space.compute(&arm, &task.measure, 0..space.cells());
     let (pitch, yaw) = (50_f64.to_radians(), 20_f64.to_radians());
-    for cell in 0..6 {
+    let poses = (0..space.cells()).map(|cell| SVector::<f64, 6>::from_fn(|joint, _| columns[5 + joint][cell]));
+    for (cell, q) in poses.enumerate() {
         let at = space.indices(cell);
         let [x, y, z] = [0, 1, 2].map(|k| axes[k].values[at[k]]);
         // About y, then about z.
         let (along, up) = (x * pitch.cos() + z * pitch.sin(), z * pitch.cos() - x * pitch.sin());
         let expected = [1.5 + along * yaw.cos() - y * yaw.sin(), 0.2 + along * yaw.sin() + y * yaw.cos(), 0.9 + up];
-        let q = SVector::<f64, 6>::from_fn(|joint, _| columns[5 + joint][cell]);
         let pose = arm.transform(&q);
         let normal = [pitch.sin() * yaw.cos(), pitch.sin() * yaw.sin(), pitch.cos()];
-        for k in 0..3 {
-            assert!((pose[(k, 3)] - expected[k]).abs() < 1e-9, "{cell}: {pose}");
-            assert!((pose[(k, 2)] + normal[k]).abs() < 1e-9, "{cell}: {pose}");
-        }
+        let (position, axis) = (pose.fixed_view::<3, 1>(0, 3), pose.fixed_view::<3, 1>(0, 2));
+        assert!((position - Vector3::from(expected)).amax() < 1e-9, "{cell}: {pose}");
+        assert!((axis + Vector3::from(normal)).amax() < 1e-9, "{cell}: {pose}");
     }
 }
 
