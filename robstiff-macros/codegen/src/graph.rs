@@ -63,32 +63,17 @@ pub enum Op {
 impl Op {
     /// The nodes that this one is computed from.
     pub fn operands(self) -> impl Iterator<Item = Id> {
-        let operands = match self {
-            Self::Add(a, b)
-            | Self::Sub(a, b)
-            | Self::Mul(a, b)
-            | Self::Max(a, b)
-            | Self::Min(a, b)
-            | Self::Scaled(a, b) => [Some(a), Some(b), None, None],
-            Self::Neg(a) | Self::Sqrt(a) | Self::Recip(a) | Self::Direction(a) | Self::Entry(a, _) => {
-                [Some(a), None, None, None]
-            }
-            Self::PlusScaled(a, b, c) => [Some(a), Some(b), Some(c), None],
-            Self::Column(entries) => entries.map(Some),
-            Self::Number(_)
-            | Self::Parameter(_)
-            | Self::Coordinate(_)
-            | Self::Wrench(_)
-            | Self::Play(..)
-            | Self::Sin(_)
-            | Self::Cos(_) => [None; 4],
-        };
+        let (mut operands, mut count) = ([None; 4], 0);
+        self.map_operands(|id| {
+            operands[count] = Some(id);
+            count += 1;
+            id
+        });
         operands.into_iter().flatten()
     }
 
     /// The same on other nodes.
-    #[must_use]
-    pub fn map_operands(self, of: impl Fn(Id) -> Id) -> Self {
+    pub fn map_operands(self, mut of: impl FnMut(Id) -> Id) -> Self {
         match self {
             Self::Add(a, b) => Self::Add(of(a), of(b)),
             Self::Sub(a, b) => Self::Sub(of(a), of(b)),
