@@ -251,6 +251,50 @@ fn the_process_is_the_change_of_the_mean_force() {
     }
 }
 
+/// Two links of length `l` on springs `c`, masses on both ends and a force `P`
+/// that follows the last link: `P l / c` is to this pendulum what a cutting
+/// stiffness is to a tool, a stiffness along one direction from a displacement
+/// along another.
+fn zieglers_pendulum(masses: [f64; 2], springs: [f64; 2]) -> Limits {
+    let [m1, m2] = masses;
+    let [c1, c2] = springs;
+    // The angles of the links for coordinates, l = 1, and rigid across.
+    let mass = Matrix3::new(m1 + m2, m2, 0.0, m2, m2, 0.0, 0.0, 0.0, 1.0);
+    let stiffness = Matrix2::new(c1 + c2, -c2, -c2, c2);
+    let mut compliance = Matrix3::zeros();
+    compliance.fixed_view_mut::<2, 2>(0, 0).copy_from(&stiffness.try_inverse().unwrap());
+    let follower = Vector3::x() * (Vector3::x() - Vector3::y()).transpose();
+    Modes::new(&compliance, &mass, 0.0).unwrap().limits(&follower, 20.0)
+}
+
+/// H. Ziegler, Die Stabilitaetskriterien der Elastomechanik, Ingenieur-Archiv 20
+/// (1952) 49-56: with masses 2 m and m and equal springs `c` it flutters from
+/// `P l / c = 7/2 - sqrt 2 = 2.086` on. At `7/2 + sqrt 2` the pair of complex
+/// eigenvalues meets again, both on the negative side.
+#[test]
+fn zieglers_pendulum_flutters_where_he_printed_it() {
+    let limits = zieglers_pendulum([2.0, 1.0], [1.0, 1.0]);
+    let printed = 3.5 - f64::sqrt(2.0);
+    assert!((printed - 2.086).abs() < 5e-4);
+    assert!((limits.limiting().unwrap() - printed).abs() < 1e-9, "{limits:?}");
+    assert_eq!(limits.unstable.len(), 1);
+    assert_eq!(limits.unstable[0][1], 20.0);
+}
+
+/// O. N. Kirillov, Structural optimization of the Ziegler's pendulum
+/// (arXiv:1101.0246): the load at which it begins to flutter is least where the
+/// masses are to each other as the springs.
+#[test]
+fn zieglers_pendulum_is_weakest_with_masses_like_its_springs() {
+    for ratio in [0.5, 1.0, 3.0] {
+        let load = |masses: f64| zieglers_pendulum([masses, 1.0], [ratio, 1.0]).limiting().unwrap();
+        let least = load(ratio);
+        for factor in [0.5, 0.9, 0.99, 1.01, 1.1, 2.0] {
+            assert!(load(ratio * factor) > least, "{ratio} {factor}");
+        }
+    }
+}
+
 #[test]
 fn equal_stiffnesses_couple_at_once_and_damping_holds_them() {
     let slot = process(&cut(Engagement::SLOT), &CutFrame::new(&-Vector3::z(), &Vector3::x()).unwrap());
