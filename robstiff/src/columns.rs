@@ -19,6 +19,23 @@ pub(crate) fn plus_scaled<T: Real>(column: [T; 4], other: [T; 4], factor: T) -> 
     [a.mul_add(factor, x), b.mul_add(factor, y), c.mul_add(factor, z), d.mul_add(factor, w)]
 }
 
+/// Entry by entry.
+#[inline(always)]
+pub(crate) fn product<T: Real>(column: [T; 4], other: [T; 4]) -> [T; 4] {
+    let [x, y, z, w] = column;
+    let [a, b, c, d] = other;
+    [x * a, y * b, z * c, w * d]
+}
+
+/// Entry by entry.
+#[inline(always)]
+pub(crate) fn plus_product<T: Real>(column: [T; 4], other: [T; 4], by: [T; 4]) -> [T; 4] {
+    let [x, y, z, w] = column;
+    let [a, b, c, d] = other;
+    let [e, f, g, h] = by;
+    [a.mul_add(e, x), b.mul_add(f, y), c.mul_add(g, z), d.mul_add(h, w)]
+}
+
 /// The first three entries.
 #[inline(always)]
 pub(crate) fn direction<T: Real>([x, y, z, _]: [T; 4]) -> [T; 4] {
@@ -27,12 +44,12 @@ pub(crate) fn direction<T: Real>([x, y, z, _]: [T; 4]) -> [T; 4] {
 
 #[cfg(not(all(target_feature = "avx", target_feature = "fma")))]
 pub(crate) mod f32 {
-    pub(crate) use super::{direction, plus_scaled, scaled};
+    pub(crate) use super::{direction, plus_product, plus_scaled, product, scaled};
 }
 
 #[cfg(not(all(target_feature = "avx", target_feature = "fma")))]
 pub(crate) mod f64 {
-    pub(crate) use super::{direction, plus_scaled, scaled};
+    pub(crate) use super::{direction, plus_product, plus_scaled, product, scaled};
 }
 
 #[cfg(all(target_feature = "avx", target_feature = "fma"))]
@@ -52,6 +69,16 @@ macro_rules! in_lanes {
             }
 
             #[inline(always)]
+            pub(crate) fn product(column: [$float; 4], other: [$float; 4]) -> [$float; 4] {
+                ($vector::new(column) * $vector::new(other)).to_array()
+            }
+
+            #[inline(always)]
+            pub(crate) fn plus_product(column: [$float; 4], other: [$float; 4], by: [$float; 4]) -> [$float; 4] {
+                $vector::new(other).mul_add($vector::new(by), $vector::new(column)).to_array()
+            }
+
+            #[inline(always)]
             pub(crate) fn direction(column: [$float; 4]) -> [$float; 4] {
                 let bits = $vector::new(column).to_bits() & $bits::new([!0, !0, !0, 0]);
                 $vector::from_bits(bits).to_array()
@@ -68,6 +95,18 @@ in_lanes!(f64, f64x4, u64x4);
 #[cfg(test)]
 mod tests {
     use crate::Real;
+
+    #[test]
+    fn entries_are_multiplied_and_moved_on() {
+        let (column, other, by) = ([1.0, -2.0, 0.5, 1.0], [4.0, 0.25, -8.0, 0.0], [0.5, -1.0, 2.0, 3.0]);
+        assert_eq!(f64::product(column, other), [4.0, -0.5, -4.0, 0.0]);
+        assert_eq!(f64::plus_product(column, other, by), [3.0, -2.25, -15.5, 1.0]);
+        assert_eq!(f64::cycled(column), [-2.0, 0.5, 1.0, 1.0]);
+        let [column, other, by] = [column, other, by].map(|column| column.map(|entry| entry as f32));
+        assert_eq!(f32::product(column, other), [4.0, -0.5, -4.0, 0.0]);
+        assert_eq!(f32::plus_product(column, other, by), [3.0, -2.25, -15.5, 1.0]);
+        assert_eq!(f32::cycled(column), [-2.0, 0.5, 1.0, 1.0]);
+    }
 
     #[test]
     fn every_entry_is_scaled_and_added() {

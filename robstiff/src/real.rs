@@ -65,6 +65,24 @@ pub trait Real:
         columns::plus_scaled(column, other, factor)
     }
 
+    /// The product of two columns, entry by entry.
+    #[inline(always)]
+    fn product(column: [Self; 4], other: [Self; 4]) -> [Self; 4] {
+        columns::product(column, other)
+    }
+
+    /// `column + other * by`, entry by entry.
+    #[inline(always)]
+    fn plus_product(column: [Self; 4], other: [Self; 4], by: [Self; 4]) -> [Self; 4] {
+        columns::plus_product(column, other, by)
+    }
+
+    /// The column with y, z, x for its first three entries.
+    #[inline(always)]
+    fn cycled([x, y, z, w]: [Self; 4]) -> [Self; 4] {
+        [y, z, x, w]
+    }
+
     /// The column with 0 for its last entry, of which turns may make -0.
     #[inline(always)]
     fn direction(column: [Self; 4]) -> [Self; 4] {
@@ -139,6 +157,16 @@ macro_rules! real {
             #[inline(always)]
             fn plus_scaled(column: [Self; 4], other: [Self; 4], factor: Self) -> [Self; 4] {
                 columns::$float::plus_scaled(column, other, factor)
+            }
+
+            #[inline(always)]
+            fn product(column: [Self; 4], other: [Self; 4]) -> [Self; 4] {
+                columns::$float::product(column, other)
+            }
+
+            #[inline(always)]
+            fn plus_product(column: [Self; 4], other: [Self; 4], by: [Self; 4]) -> [Self; 4] {
+                columns::$float::plus_product(column, other, by)
             }
 
             #[inline(always)]

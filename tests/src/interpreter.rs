@@ -176,6 +176,18 @@ impl Scope<'_> {
                         let numbers: Vec<f64> = arguments().collect();
                         (0..4).map(|k| numbers[k] + numbers[4 + k] * numbers[8]).collect()
                     }
+                    "T::product" => {
+                        let numbers: Vec<f64> = arguments().collect();
+                        (0..4).map(|k| numbers[k] * numbers[4 + k]).collect()
+                    }
+                    "T::plus_product" => {
+                        let numbers: Vec<f64> = arguments().collect();
+                        (0..4).map(|k| numbers[k] + numbers[4 + k] * numbers[8 + k]).collect()
+                    }
+                    "T::cycled" => {
+                        let numbers: Vec<f64> = arguments().collect();
+                        [1, 2, 0, 3].map(|k| numbers[k]).to_vec()
+                    }
                     "T::direction" => arguments().take(3).chain([0.0]).collect(),
                     "T::turn_blocks" => turn_blocks(&arguments().collect::<Vec<_>>()),
                     "T::zero" => vec![0.0],

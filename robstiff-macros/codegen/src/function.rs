@@ -68,8 +68,8 @@ impl Function {
                 Op::Add(..) | Op::Sub(..) | Op::Max(..) | Op::Min(..) => cost.add += 1,
                 Op::Neg(_) => cost.neg += 1,
                 Op::Sqrt(_) | Op::Recip(_) => cost.root += 1,
-                Op::Scaled(..) => cost.mul += 4,
-                Op::PlusScaled(..) => {
+                Op::Scaled(..) | Op::Product(..) => cost.mul += 4,
+                Op::PlusScaled(..) | Op::PlusProduct(..) => {
                     cost.mul += 4;
                     cost.add += 4;
                 }
@@ -79,6 +79,7 @@ impl Function {
                 | Op::Wrench(_)
                 | Op::Play(..)
                 | Op::Column(_)
+                | Op::Cycled(_)
                 | Op::Direction(_)
                 | Op::Entry(..) => {}
             }
@@ -108,7 +109,8 @@ impl Function {
         let cost = |node: &Node| match node.op {
             _ if node.constant.is_some() => 0,
             Op::Mul(..) | Op::Add(..) | Op::Sub(..) | Op::Max(..) | Op::Min(..) => 1,
-            Op::Neg(_) | Op::Sqrt(_) | Op::Recip(_) | Op::Direction(_) => 1,
+            Op::Neg(_) | Op::Sqrt(_) | Op::Recip(_) => 1,
+            Op::Product(..) | Op::PlusProduct(..) | Op::Cycled(_) | Op::Direction(_) => 1,
             Op::Column(entries) => entries.into_iter().map(is_there).sum(),
             Op::Scaled(_, by) | Op::PlusScaled(_, _, by) => 1 + is_there(by),
             _ => 0,
@@ -151,26 +153,29 @@ impl Function {
                 Op::Max(a, b) => values[a].max(values[b]),
                 Op::Min(a, b) => values[a].min(values[b]),
                 Op::Entry(column, entry) => columns[&column][entry],
-                Op::Column(_) | Op::Scaled(..) | Op::PlusScaled(..) | Op::Direction(_) => {
-                    let column = match node.op {
-                        Op::Scaled(column, by) => columns[&column].map(|entry| entry * values[by]),
-                        Op::PlusScaled(column, other, by) => {
-                            std::array::from_fn(|k| columns[&column][k] + columns[&other][k] * values[by])
-                        }
-                        Op::Column(entries) => entries.map(|entry| values[entry]),
-                        Op::Direction(column) => {
-                            let [x, y, z, _] = columns[&column];
-                            [x, y, z, 0.0]
-                        }
-                        _ => unreachable!("no column"),
-                    };
-                    columns.insert(id, column);
+                op => {
+                    columns.insert(id, column(op, &columns, &values));
                     f64::NAN
                 }
             });
         }
         let entries = |id: &Id| columns.get(id).map_or(vec![values[*id]], |column| column.to_vec());
         self.outputs.iter().flat_map(entries).collect()
+    }
+}
+
+/// What an operation on columns gives.
+fn column(op: Op, columns: &HashMap<Id, [f64; 4]>, values: &[f64]) -> [f64; 4] {
+    let each = |entry: &dyn Fn(usize) -> f64| std::array::from_fn(entry);
+    match op {
+        Op::Column(entries) => entries.map(|entry| values[entry]),
+        Op::Scaled(a, by) => columns[&a].map(|entry| entry * values[by]),
+        Op::PlusScaled(a, b, by) => each(&|k| columns[&a][k] + columns[&b][k] * values[by]),
+        Op::Product(a, b) => each(&|k| columns[&a][k] * columns[&b][k]),
+        Op::PlusProduct(a, b, c) => each(&|k| columns[&a][k] + columns[&b][k] * columns[&c][k]),
+        Op::Cycled(a) => each(&|k| columns[&a][[1, 2, 0, 3][k]]),
+        Op::Direction(a) => each(&|k| if k < 3 { columns[&a][k] } else { 0.0 }),
+        op => unreachable!("{op:?} gives a number"),
     }
 }
 

@@ -54,6 +54,12 @@ pub enum Op {
     Scaled(Id, Id),
     /// The sum of a column and of another times a number.
     PlusScaled(Id, Id, Id),
+    /// The product of two columns, entry by entry.
+    Product(Id, Id),
+    /// The sum of a column and of the product of two others.
+    PlusProduct(Id, Id, Id),
+    /// A column with y, z, x for its first three entries.
+    Cycled(Id),
     /// A column with 0 for its last entry.
     Direction(Id),
     /// An entry of a column, from 0.
@@ -81,12 +87,15 @@ impl Op {
             Self::Max(a, b) => Self::Max(of(a), of(b)),
             Self::Min(a, b) => Self::Min(of(a), of(b)),
             Self::Scaled(a, b) => Self::Scaled(of(a), of(b)),
+            Self::Product(a, b) => Self::Product(of(a), of(b)),
             Self::Neg(a) => Self::Neg(of(a)),
             Self::Sqrt(a) => Self::Sqrt(of(a)),
             Self::Recip(a) => Self::Recip(of(a)),
+            Self::Cycled(a) => Self::Cycled(of(a)),
             Self::Direction(a) => Self::Direction(of(a)),
             Self::Entry(a, entry) => Self::Entry(of(a), entry),
             Self::PlusScaled(a, b, c) => Self::PlusScaled(of(a), of(b), of(c)),
+            Self::PlusProduct(a, b, c) => Self::PlusProduct(of(a), of(b), of(c)),
             Self::Column(entries) => Self::Column(entries.map(of)),
             Self::Number(_)
             | Self::Parameter(_)
@@ -98,9 +107,24 @@ impl Op {
         }
     }
 
+    /// Cycles until the result is known once the operands are, much the same on
+    /// all current machines; a product, fused or not, a sum, a root.
+    pub fn latency(self) -> usize {
+        match self {
+            Self::Mul(..) | Self::Scaled(..) | Self::PlusScaled(..) | Self::Product(..) | Self::PlusProduct(..) => 4,
+            Self::Add(..) | Self::Sub(..) | Self::Cycled(_) => 3,
+            Self::Sqrt(_) | Self::Recip(_) => 13,
+            _ => 0,
+        }
+    }
+
     /// Whether it is four numbers side by side.
     pub fn is_column(self) -> bool {
-        matches!(self, Self::Column(_) | Self::Scaled(..) | Self::PlusScaled(..) | Self::Direction(_))
+        use Op::{Column, Cycled, Direction, PlusProduct, PlusScaled, Product, Scaled};
+        matches!(
+            self,
+            Column(_) | Scaled(..) | PlusScaled(..) | Product(..) | PlusProduct(..) | Cycled(_) | Direction(_)
+        )
     }
 }
 
@@ -123,6 +147,9 @@ pub struct Node {
     pub op: Op,
     /// The value of a constant.
     pub constant: Option<f64>,
+    /// When the result is known, if everything begins as soon as it can
+    /// (cycles after the sines and cosines; see [`Op::latency`]).
+    pub known: usize,
 }
 
 /// A turn about z of all four blocks of a compliance, which are nodes like
@@ -285,7 +312,9 @@ impl Graph {
     pub(crate) fn intern(&self, op: Op, constant: Option<f64>) -> Sym<'_> {
         let id = *self.known.borrow_mut().entry(op).or_insert_with(|| {
             let mut nodes = self.nodes.borrow_mut();
-            nodes.push(Node { op, constant });
+            let begin = op.operands().map(|id| nodes[id].known).max().unwrap_or(0);
+            let known = if constant.is_some() { 0 } else { begin + op.latency() };
+            nodes.push(Node { op, constant, known });
             nodes.len() - 1
         });
         Sym { graph: self, id }
@@ -303,6 +332,11 @@ impl<'g> Sym<'g> {
     /// The node's index.
     pub fn id(self) -> Id {
         self.id
+    }
+
+    /// When it is known (cycles), see [`Node`].
+    pub fn known(self) -> usize {
+        self.graph.nodes.borrow()[self.id].known
     }
 
     /// The value, if it is a constant.

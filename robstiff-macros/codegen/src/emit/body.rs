@@ -289,6 +289,18 @@ impl Writer<'_> {
                 let [column, other, by] = [column, other, by].map(|id| self.operand(id, Binding::Sum));
                 (quote!(T::plus_scaled(#column, #other, #by)), Binding::Unit)
             }
+            Op::Product(column, other) => {
+                let [column, other] = [column, other].map(|id| self.operand(id, Binding::Sum));
+                (quote!(T::product(#column, #other)), Binding::Unit)
+            }
+            Op::PlusProduct(column, other, by) => {
+                let [column, other, by] = [column, other, by].map(|id| self.operand(id, Binding::Sum));
+                (quote!(T::plus_product(#column, #other, #by)), Binding::Unit)
+            }
+            Op::Cycled(column) => {
+                let column = self.operand(column, Binding::Sum);
+                (quote!(T::cycled(#column)), Binding::Unit)
+            }
             Op::Direction(column) => {
                 let column = self.operand(column, Binding::Sum);
                 (quote!(T::direction(#column)), Binding::Unit)

@@ -79,6 +79,7 @@ fn stateless(robot: &Description) -> [Generated; 7] {
     };
     let transform = Function::of(|g| symbolic::transform(g, robot));
     let jacobian = Function::of(|g| symbolic::jacobian(g, robot));
+    let compliance = Function::of(|g| symbolic::compliance(g, robot));
     let statics = Function::of(|g| symbolic::statics(g, robot));
     [
         Generated {
@@ -111,8 +112,8 @@ fn stateless(robot: &Description) -> [Generated; 7] {
 
                 It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
                 rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.",
-            function: Function::of(|g| symbolic::compliance(g, robot)),
-            in_columns: None,
+            in_columns: in_columns(&compliance, columns::compliance, |entries| quote!(Matrix6::new(#(#entries),*))),
+            function: compliance,
             result: Box::new(|entries| quote!(Matrix6::new(#(#entries),*))),
         },
         Generated {

@@ -13,12 +13,6 @@ use super::turns::Turns;
 use crate::function::Function;
 use crate::graph::{Id, Op};
 
-/// Cycles until the result of a product, fused or not, a sum, a root or
-/// reciprocal is known; much the same on all current machines.
-const PRODUCT: usize = 4;
-const SUM: usize = 3;
-const ROOT: usize = 13;
-
 /// For every node, the operand that is a product and is computed together
 /// with it.
 pub(super) struct Fusion {
@@ -56,7 +50,8 @@ impl Fusion {
         let mut product = Vec::with_capacity(nodes.len());
         for node in nodes.iter() {
             let last = |operands: &mut dyn Iterator<Item = Id>| operands.map(|id| ready[id]).max().unwrap_or(0);
-            let fused = |taken: Id, other: Id| last(&mut nodes[taken].op.operands().chain([other])) + PRODUCT;
+            let fused =
+                |taken: Id, other: Id| last(&mut nodes[taken].op.operands().chain([other])) + nodes[taken].op.latency();
             let taken = match node.op {
                 Op::Add(a, b) | Op::Sub(a, b) if node.constant.is_none() && a != b => {
                     let candidates = [(b, a), (a, b)].into_iter().filter(|&(taken, _)| is_product(taken));
@@ -69,10 +64,7 @@ impl Fusion {
             let done = match (taken, node.op) {
                 _ if node.constant.is_some() => 0,
                 (Some((done, ..)), _) => done,
-                (None, Op::Mul(..) | Op::Scaled(..) | Op::PlusScaled(..)) => last(&mut node.op.operands()) + PRODUCT,
-                (None, Op::Add(..) | Op::Sub(..)) => last(&mut node.op.operands()) + SUM,
-                (None, Op::Sqrt(_) | Op::Recip(_)) => last(&mut node.op.operands()) + ROOT,
-                (None, _) => last(&mut node.op.operands()),
+                (None, op) => last(&mut op.operands()) + op.latency(),
             };
             product.push(taken.map(|(.., taken)| taken));
             ready.push(done);

@@ -81,13 +81,28 @@ impl<'g> Column<'g> {
             Op::Direction(_) if i == 3 => true,
             Op::Scaled(a, _) | Op::Direction(a) => column(a).is_zero_at(i),
             Op::PlusScaled(a, b, _) => column(a).is_zero_at(i) && column(b).is_zero_at(i),
+            Op::Product(a, b) => column(a).is_zero_at(i) || column(b).is_zero_at(i),
+            Op::PlusProduct(a, b, c) => column(a).is_zero_at(i) && (column(b).is_zero_at(i) || column(c).is_zero_at(i)),
+            Op::Cycled(a) => column(a).is_zero_at([1, 2, 0, 3][i]),
             Op::Column(entries) => self.sym(entries[i]).is_zero(),
             _ => unreachable!("a column"),
         }
     }
 
+    /// Whether it depends on no input.
+    pub fn is_constant(self) -> bool {
+        self.entries().is_some_and(|entries| entries.iter().all(|entry| entry.constant().is_some()))
+    }
+
     fn is_zero(self) -> bool {
         (0..4).all(|i| self.is_zero_at(i))
+    }
+
+    /// The vector with the same number in each of its three entries. Unlike a
+    /// number that goes into all four lanes, it is one operand from memory.
+    pub fn thrice(number: Sym<'g>) -> Self {
+        let g = number.graph;
+        Self::of(g, [number, number, number, g.number(0.0)])
     }
 
     /// Times a factor.
@@ -122,6 +137,43 @@ impl<'g> Column<'g> {
             }
         }
         Self { g: self.g, id: self.g.intern(Op::PlusScaled(self.id, other.id, factor.id()), None).id() }
+    }
+
+    /// The product, entry by entry.
+    pub fn times(self, other: Self) -> Self {
+        if self.is_zero_in_product(other) {
+            return Self::zero(self.g);
+        }
+        if let (Some(own), Some(others)) = (self.entries(), other.entries())
+            && (0..4).all(|i| is_free(own[i], others[i]) || is_free(others[i], own[i]))
+        {
+            return Self::of(self.g, std::array::from_fn(|i| own[i] * others[i]));
+        }
+        Self { g: self.g, id: self.g.intern(Op::Product(self.id, other.id), None).id() }
+    }
+
+    /// `self + other * by`, entry by entry.
+    pub fn plus_product(self, other: Self, by: Self) -> Self {
+        if other.is_zero_in_product(by) {
+            return self;
+        }
+        if self.is_zero() {
+            return other.times(by);
+        }
+        Self { g: self.g, id: self.g.intern(Op::PlusProduct(self.id, other.id, by.id), None).id() }
+    }
+
+    fn is_zero_in_product(self, other: Self) -> bool {
+        (0..4).all(|i| self.is_zero_at(i) || other.is_zero_at(i))
+    }
+
+    /// With y, z, x for the first three entries.
+    pub fn cycled(self) -> Self {
+        match self.entries() {
+            // Numbers are moved as a whole, constants not at all.
+            Some([x, y, z, w]) if self.is_constant() => Self::of(self.g, [y, z, x, w]),
+            _ => Self { g: self.g, id: self.g.intern(Op::Cycled(self.id), None).id() },
+        }
     }
 }
 
@@ -164,6 +216,20 @@ impl<'g> Signed<'g> {
 
     /// `a * s + b * t` with any sign.
     pub fn combined((a, s): (Self, Sym<'g>), (b, t): (Self, Sym<'g>)) -> Self {
+        // A quarter turn is another name.
+        for ((one, factor), other) in [((a, s), t), ((b, t), s)] {
+            if other.is_zero() && factor.squared().constant() == Some(1.0) {
+                return one.negated_if(factor.constant() == Some(-1.0));
+            }
+        }
+        // Entries that are there take no product as the second of the two, and
+        // what is known later goes in later.
+        let is_there = |column: Self, factor| column.column.scaled(factor).entries().is_some();
+        let known = |column: Self, factor: Sym<'g>| column.column.whole().known().max(factor.known());
+        let ((a, s), (b, t)) = match !is_there(b, t) && (is_there(a, s) || known(a, s) > known(b, t)) {
+            true => ((b, t), (a, s)),
+            false => ((a, s), (b, t)),
+        };
         let t = if a.is_negative { -b.sign(t) } else { b.sign(t) };
         Self { column: a.column.scaled(s).plus_scaled(b.column, t), is_negative: a.is_negative }
     }

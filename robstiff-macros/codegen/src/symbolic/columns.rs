@@ -6,14 +6,13 @@
 //! their products of angles. What a joint moves at the TCP is `z x lever`, and
 //! with the lever in the joint's own axes that is `u y - v x`: the levers are
 //! carried from the tip to the base in single numbers, two products a turn.
-//! The compliance is the sum of `h (T, R) (T, R)^T` over the joints, row by
-//! row. Gain: `benches/README.md`.
+//! The compliance is the sum of `h (T, R) (T, R)^T` over the joints, by cyclic
+//! diagonals. Gain: `benches/README.md`.
 
 use robstiff_robots::{Description, JointKind};
 
 use super::chain::{Step, Tilt, chain};
 use super::column::{Column, Signed};
-use super::compliance::compliance;
 use super::elastic::Elastic;
 use super::vector::{AXES, Vec3};
 use crate::angle::Angle;
@@ -41,10 +40,20 @@ pub fn jacobian<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
 
 /// The four columns of the transform, the entries of the Jacobian and of the compliance.
 pub fn statics<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
-    let Arm { joints, axes, origin } = Arm::of(g, robot);
+    let arm = Arm::of(g, robot);
+    let compliance = compliance_of(g, robot, &arm);
+    [homogeneous(arm.axes, arm.origin), entries(&arm.joints), compliance].concat()
+}
+
+/// The 36 entries of the compliance by rows; as without columns, where it is not
+/// of joints alone.
+pub fn compliance<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
+    compliance_of(g, robot, &Arm::of(g, robot))
+}
+
+fn compliance_of<'g>(g: &'g Graph, robot: &Description, arm: &Arm<'g>) -> Vec<Sym<'g>> {
     let elastic = Elastic::of(g, robot);
-    let compliance = if elastic.is_of_joints() { of_joints(g, &joints, &elastic) } else { compliance(g, robot) };
-    [homogeneous(axes, origin), entries(&joints), compliance].concat()
+    if elastic.is_of_joints() { of_joints(g, &arm.joints, &elastic) } else { super::compliance(g, robot) }
 }
 
 /// Whether a turn about the same axis follows.
@@ -233,33 +242,71 @@ fn levers<'g>(g: &'g Graph, steps: &[Step<'g>]) -> (Vec3<'g>, Vec<Vec3<'g>>) {
 
 /// The 36 entries of the compliance of joints alone, by rows.
 fn of_joints<'g>(g: &'g Graph, joints: &[Twist<'g>], elastic: &Elastic<'g>) -> Vec<Sym<'g>> {
-    let zero = Column::zero(g);
-    let (mut tt, mut tr, mut rr) = ([zero; 3], [zero; 3], [zero; 3]);
+    let [mut tt, mut tr, mut rr] = std::array::from_fn(|_| Outer::zero(g));
     // Parallel axes turn the TCP alike.
     let mut directions: Vec<(Column<'g>, Sym<'g>)> = Vec::new();
-    for (i, joint) in joints.iter().enumerate() {
-        let h = elastic.unloaded_joint(i);
-        let moved = joint.translation.scaled(h);
-        for row in 0..3 {
-            tt[row] = tt[row].plus_scaled(joint.translation, moved.at(row));
-            tr[row] = tr[row].plus_scaled(joint.rotation, moved.at(row));
-        }
-        match directions.iter_mut().find(|(axis, _)| *axis == joint.rotation) {
+    // What is known first is summed first.
+    let mut order: Vec<usize> = (0..joints.len()).collect();
+    order.sort_by_key(|&i| joints[i].translation.whole().known());
+    for i in order {
+        let (Twist { translation, rotation }, h) = (joints[i], elastic.unloaded_joint(i));
+        let moved = translation.times(Column::thrice(h));
+        // Of a constant axis the product is one, too.
+        let (one, other, axis) = match rotation.is_constant() {
+            true => (translation, moved, rotation.scaled(h)),
+            false => (moved, translation, rotation),
+        };
+        tt.add(one, other);
+        tr.add(one, axis);
+        match directions.iter_mut().find(|(axis, _)| *axis == rotation) {
             Some((_, sum)) => *sum = *sum + h,
-            None => directions.push((joint.rotation, h)),
+            None => directions.push((rotation, h)),
         }
     }
     for (axis, h) in directions {
-        for (row, sum) in rr.iter_mut().enumerate() {
-            *sum = sum.plus_scaled(axis.scaled(h), axis.at(row));
-        }
+        rr.add(axis, axis.times(Column::thrice(h)));
     }
     let entry = |i: usize, j: usize| match (i < 3, j < 3) {
-        // Of two entries that are the same, the one above the diagonal.
-        (true, true) => tt[i.min(j)].at(i.max(j)),
-        (true, false) => tr[i].at(j - 3),
-        (false, true) => tr[j].at(i - 3),
-        (false, false) => rr[i.min(j) - 3].at(i.max(j) - 3),
+        (true, true) => tt.at_symmetric(i, j),
+        (true, false) => tr.at(i, j - 3),
+        (false, true) => tr.at(j, i - 3),
+        (false, false) => rr.at_symmetric(i - 3, j - 3),
     };
     (0..36).map(|k| entry(k / 6, k % 6)).collect()
+}
+
+/// A sum of products `a b^T`, by its cyclic diagonals: xx, yy, zz; xy, yz, zx;
+/// yx, zy, xz. They are products of whole columns, two of them moved on by an
+/// entry; rows would take a copy of every entry into all lanes.
+struct Outer<'g> {
+    straight: Column<'g>,
+    above: Column<'g>,
+    below: Column<'g>,
+}
+
+impl<'g> Outer<'g> {
+    fn zero(g: &'g Graph) -> Self {
+        let zero = Column::zero(g);
+        Self { straight: zero, above: zero, below: zero }
+    }
+
+    /// Adds `a b^T`.
+    fn add(&mut self, a: Column<'g>, b: Column<'g>) {
+        self.straight = self.straight.plus_product(a, b);
+        self.above = self.above.plus_product(a, b.cycled());
+        self.below = self.below.plus_product(a.cycled(), b);
+    }
+
+    fn at(&self, row: usize, column: usize) -> Sym<'g> {
+        match (column + 3 - row) % 3 {
+            0 => self.straight.at(row),
+            1 => self.above.at(row),
+            _ => self.below.at(column),
+        }
+    }
+
+    /// Of a symmetric sum, without what is above: it is not computed then.
+    fn at_symmetric(&self, row: usize, column: usize) -> Sym<'g> {
+        if (column + 3 - row) % 3 == 1 { self.at(column, row) } else { self.at(row, column) }
+    }
 }
