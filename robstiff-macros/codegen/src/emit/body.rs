@@ -7,6 +7,7 @@ use quote::{format_ident, quote};
 
 use super::fuse::Fusion;
 use super::names::{Names, WRENCH, before};
+use super::operation::{Binding, arithmetic, column, sum};
 use super::turns::{Lane, Turn, Turns};
 use crate::angle::Angle;
 use crate::function::Function;
@@ -16,15 +17,6 @@ use crate::graph::{Id, Op};
 pub(super) struct Body {
     pub statements: TokenStream,
     pub outputs: Vec<TokenStream>,
-}
-
-/// How tightly an expression binds.
-#[derive(Clone, Copy, PartialEq, PartialOrd)]
-enum Binding {
-    Sum,
-    Product,
-    Sign,
-    Unit,
 }
 
 /// Whom the code is for.
@@ -233,6 +225,9 @@ impl Writer<'_> {
         if let Some(arithmetic) = arithmetic(op, |id, context| self.operand(id, context)) {
             return arithmetic;
         }
+        if let Some(column) = column(op, |id| self.operand(id, Binding::Sum)) {
+            return (column, Binding::Unit);
+        }
         match op {
             Op::Number(bits) => match f64::from_bits(bits) {
                 0.0 => (quote!(T::zero()), Binding::Unit),
@@ -276,34 +271,6 @@ impl Writer<'_> {
             Op::Recip(a) => {
                 let a = self.operand(a, Binding::Unit);
                 (quote!(#a.recip()), Binding::Unit)
-            }
-            Op::Column(entries) => {
-                let entries = entries.map(|entry| self.operand(entry, Binding::Sum));
-                (quote!([#(#entries),*]), Binding::Unit)
-            }
-            Op::Scaled(column, by) => {
-                let (column, by) = (self.operand(column, Binding::Sum), self.operand(by, Binding::Sum));
-                (quote!(T::scaled(#column, #by)), Binding::Unit)
-            }
-            Op::PlusScaled(column, other, by) => {
-                let [column, other, by] = [column, other, by].map(|id| self.operand(id, Binding::Sum));
-                (quote!(T::plus_scaled(#column, #other, #by)), Binding::Unit)
-            }
-            Op::Product(column, other) => {
-                let [column, other] = [column, other].map(|id| self.operand(id, Binding::Sum));
-                (quote!(T::product(#column, #other)), Binding::Unit)
-            }
-            Op::PlusProduct(column, other, by) => {
-                let [column, other, by] = [column, other, by].map(|id| self.operand(id, Binding::Sum));
-                (quote!(T::plus_product(#column, #other, #by)), Binding::Unit)
-            }
-            Op::Cycled(column) => {
-                let column = self.operand(column, Binding::Sum);
-                (quote!(T::cycled(#column)), Binding::Unit)
-            }
-            Op::Direction(column) => {
-                let column = self.operand(column, Binding::Sum);
-                (quote!(T::direction(#column)), Binding::Unit)
             }
             Op::Entry(column, entry) => {
                 let (column, entry) = (self.operand(column, Binding::Unit), Literal::usize_unsuffixed(entry));
@@ -360,55 +327,4 @@ impl Writer<'_> {
         });
         if binding < context { quote!((#expression)) } else { expression }
     }
-}
-
-/// Sums, differences, products and negatives of operands that `write` writes for
-/// where they stand; nothing for other operations.
-fn arithmetic(op: Op, write: impl Fn(Id, Binding) -> TokenStream) -> Option<(TokenStream, Binding)> {
-    Some(match op {
-        Op::Add(a, b) => {
-            let (a, b) = (write(a, Binding::Sum), write(b, Binding::Product));
-            (quote!(#a + #b), Binding::Sum)
-        }
-        Op::Sub(a, b) => {
-            let (a, b) = (write(a, Binding::Sum), write(b, Binding::Product));
-            (quote!(#a - #b), Binding::Sum)
-        }
-        Op::Mul(a, b) => {
-            let (a, b) = (write(a, Binding::Product), write(b, Binding::Sign));
-            (quote!(#a * #b), Binding::Product)
-        }
-        Op::Neg(a) => {
-            // A product in parentheses: `x * -a * b` multiplies in another order.
-            let a = write(a, Binding::Sign);
-            (quote!(-#a), Binding::Sign)
-        }
-        _ => return None,
-    })
-}
-
-/// An angle as code: `q[1] + q[2] + T::of(0.1)`.
-fn sum(angle: &Angle) -> TokenStream {
-    let mut sum = TokenStream::new();
-    for (k, &(joint, factor)) in angle.terms().iter().enumerate() {
-        let joint = Literal::usize_unsuffixed(joint);
-        if factor < 0 {
-            sum.extend(quote!(-));
-        } else if k > 0 {
-            sum.extend(quote!(+));
-        }
-        sum.extend(match factor.abs() {
-            1 => quote!(q[#joint]),
-            factor => {
-                let factor = Literal::f64_unsuffixed(f64::from(factor));
-                quote!(T::of(#factor) * q[#joint])
-            }
-        });
-    }
-    if angle.offset() != 0.0 {
-        let offset = Literal::f64_unsuffixed(angle.offset().abs());
-        let sign = if angle.offset() < 0.0 { quote!(-) } else { quote!(+) };
-        sum.extend(quote!(#sign T::of(#offset)));
-    }
-    sum
 }

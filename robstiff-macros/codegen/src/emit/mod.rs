@@ -5,6 +5,7 @@ mod facts;
 mod functions;
 mod fuse;
 mod names;
+mod operation;
 mod robot;
 #[cfg(feature = "text")]
 mod text;
