@@ -11,9 +11,10 @@
 
 use robstiff_robots::{Description, JointKind};
 
-use super::chain::{Step, Tilt, chain};
+use super::chain::{Step, chain};
 use super::column::{Column, Signed};
 use super::elastic::Elastic;
+use super::turning::Turning;
 use super::vector::{AXES, Vec3};
 use crate::angle::Angle;
 use crate::graph::{Graph, Sym};
@@ -91,6 +92,23 @@ struct Walker<'g> {
     pending: Angle,
 }
 
+impl<'g> Turning<'g> for Walker<'g> {
+    fn graph(&self) -> &'g Graph {
+        self.g
+    }
+
+    fn pending(&mut self) -> &mut Angle {
+        &mut self.pending
+    }
+
+    fn turn(&mut self, axis: usize, (s, c): (Sym<'g>, Sym<'g>)) {
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let (u, v) = (self.axes[i], self.axes[j]);
+        self.axes[i] = Signed::combined((u, c), (v, s));
+        self.axes[j] = Signed::combined((v, c), (u, -s));
+    }
+}
+
 impl<'g> Walker<'g> {
     fn at_base(g: &'g Graph) -> Self {
         Self {
@@ -107,34 +125,10 @@ impl<'g> Walker<'g> {
                 let by = by.turned(2, self.g.sin_cos(&self.pending));
                 self.origin = along(self.origin, self.axes, by);
             }
-            Step::Turn(angle) => self.pending = std::mem::take(&mut self.pending) + angle,
+            Step::Turn(angle) => self.turn_later(angle),
             Step::Tilt(tilt) => self.tilt(*tilt),
             _ => {}
         }
-    }
-
-    fn settle(&mut self) {
-        let pending = std::mem::take(&mut self.pending);
-        if !pending.is_zero() {
-            self.turn(2, self.g.sin_cos(&pending));
-        }
-    }
-
-    fn tilt(&mut self, tilt: Tilt<'g>) {
-        if tilt.is_half_turn_about_x() {
-            // Rz(a) Rx(180) = Rx(180) Rz(-a): the turn may stay pending.
-            self.pending = -std::mem::take(&mut self.pending);
-        } else {
-            self.settle();
-        }
-        self.turn(tilt.axis, tilt.sin_cos);
-    }
-
-    fn turn(&mut self, axis: usize, (s, c): (Sym<'g>, Sym<'g>)) {
-        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        let (u, v) = (self.axes[i], self.axes[j]);
-        self.axes[i] = Signed::combined((u, c), (v, s));
-        self.axes[j] = Signed::combined((v, c), (u, -s));
     }
 }
 
@@ -209,27 +203,40 @@ struct Waiting<'g> {
     is_mirrored: bool,
 }
 
+/// A vector to the TCP, in the axes of the current frame less a turn about z.
+struct Lever<'g> {
+    g: &'g Graph,
+    vector: Vec3<'g>,
+    pending: Angle,
+}
+
+impl<'g> Turning<'g> for Lever<'g> {
+    fn graph(&self) -> &'g Graph {
+        self.g
+    }
+
+    fn pending(&mut self) -> &mut Angle {
+        &mut self.pending
+    }
+
+    fn turn(&mut self, axis: usize, sin_cos: (Sym<'g>, Sym<'g>)) {
+        self.vector = self.vector.turned(axis, sin_cos);
+    }
+}
+
 /// From the base and from each joint to the TCP, in the axes behind the turns
 /// about z that follow.
 fn levers<'g>(g: &'g Graph, steps: &[Step<'g>]) -> (Vec3<'g>, Vec<Vec3<'g>>) {
-    let (mut lever, mut pending) = (Vec3::zero(g), Angle::default());
+    let mut lever = Lever { g, vector: Vec3::zero(g), pending: Angle::default() };
     let mut levers = Vec::new();
     for step in steps.iter().rev() {
         match step {
-            Step::Move(by) => lever = lever + by.turned(2, g.sin_cos(&-pending.clone())),
-            Step::Turn(angle) => pending = std::mem::take(&mut pending) + angle,
-            Step::Tilt(tilt) => {
-                let turn = std::mem::take(&mut pending);
-                if tilt.is_half_turn_about_x() {
-                    pending = -turn;
-                } else {
-                    lever = lever.turned(2, g.sin_cos(&turn));
-                }
-                lever = lever.turned(tilt.axis, tilt.sin_cos);
-            }
+            Step::Move(by) => lever.vector = lever.vector + by.turned(2, g.sin_cos(&-lever.pending.clone())),
+            Step::Turn(angle) => lever.turn_later(angle),
+            Step::Tilt(tilt) => lever.tilt(*tilt),
             Step::Joint(i) => {
-                levers.push(lever);
-                for (entry, axis) in lever.0.into_iter().zip(AXES) {
+                levers.push(lever.vector);
+                for (entry, axis) in lever.vector.0.into_iter().zip(AXES) {
                     entry.named(format!("r{}{axis}", i + 1));
                 }
             }
@@ -237,7 +244,7 @@ fn levers<'g>(g: &'g Graph, steps: &[Step<'g>]) -> (Vec3<'g>, Vec<Vec3<'g>>) {
         }
     }
     levers.reverse();
-    (lever, levers)
+    (lever.vector, levers)
 }
 
 /// The 36 entries of the compliance of joints alone, by rows.

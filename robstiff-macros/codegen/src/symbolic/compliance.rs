@@ -11,8 +11,9 @@
 
 use robstiff_robots::{Description, JointKind};
 
-use super::chain::{Step, Tilt, chain};
+use super::chain::{Step, chain};
 use super::elastic::Elastic;
+use super::turning::Turning;
 use super::vector::{AXES, Matrix3, Symmetric3, Vec3};
 use crate::angle::Angle;
 use crate::graph::{BlockTurn, Graph, Id, Sym};
@@ -61,6 +62,33 @@ struct Twist<'g> {
     rotation: Vec3<'g>,
 }
 
+impl<'g> Turning<'g> for Walker<'g> {
+    fn graph(&self) -> &'g Graph {
+        self.g
+    }
+
+    fn pending(&mut self) -> &mut Angle {
+        &mut self.pending
+    }
+
+    /// `M <- R M R^T`.
+    fn turn(&mut self, axis: usize, sin_cos: (Sym<'g>, Sym<'g>)) {
+        let before = self.blocks();
+        self.lever = self.lever.turned(axis, sin_cos);
+        self.tt = turned_symmetric(&self.tt, axis, sin_cos);
+        self.rr = turned_symmetric(&self.rr, axis, sin_cos);
+        self.tr = turned_general(&self.tr, axis, sin_cos);
+        for (_, twist) in &mut self.twists {
+            twist.translation = twist.translation.turned(axis, sin_cos);
+            twist.rotation = twist.rotation.turned(axis, sin_cos);
+        }
+        if axis == 2 {
+            let sin_cos = (sin_cos.0.id(), sin_cos.1.id());
+            self.g.block_turn(BlockTurn { sin_cos, before, after: self.blocks() });
+        }
+    }
+}
+
 impl<'g> Walker<'g> {
     fn at_tcp(g: &'g Graph) -> Self {
         Self {
@@ -78,7 +106,7 @@ impl<'g> Walker<'g> {
     fn back(&mut self, step: &Step<'g>, robot: &Description, elastic: &Elastic<'g>) {
         match step {
             Step::Move(by) => self.lever = self.lever + self.without_pending(*by),
-            Step::Turn(angle) => self.pending = std::mem::take(&mut self.pending) + angle,
+            Step::Turn(angle) => self.turn_later(angle),
             Step::Tilt(tilt) => self.tilt(*tilt),
             Step::Joint(i) => self.joint(*i, robot.joints[*i].kind, elastic),
             Step::Link(i, along) => {
@@ -191,41 +219,6 @@ impl<'g> Walker<'g> {
             for (j, sum) in row.iter_mut().enumerate() {
                 *sum = *sum + entry(i, j);
             }
-        }
-    }
-
-    fn tilt(&mut self, tilt: Tilt<'g>) {
-        if tilt.is_half_turn_about_x() {
-            // Rx(180) Rz(a) = Rz(-a) Rx(180): the turn may stay pending.
-            self.pending = -std::mem::take(&mut self.pending);
-        } else {
-            self.settle();
-        }
-        self.turn(tilt.axis, tilt.sin_cos);
-    }
-
-    /// Performs the pending turn.
-    fn settle(&mut self) {
-        let pending = std::mem::take(&mut self.pending);
-        if !pending.is_zero() {
-            self.turn(2, self.g.sin_cos(&pending));
-        }
-    }
-
-    /// Turns everything about one axis: `M <- R M R^T`.
-    fn turn(&mut self, axis: usize, sin_cos: (Sym<'g>, Sym<'g>)) {
-        let before = self.blocks();
-        self.lever = self.lever.turned(axis, sin_cos);
-        self.tt = turned_symmetric(&self.tt, axis, sin_cos);
-        self.rr = turned_symmetric(&self.rr, axis, sin_cos);
-        self.tr = turned_general(&self.tr, axis, sin_cos);
-        for (_, twist) in &mut self.twists {
-            twist.translation = twist.translation.turned(axis, sin_cos);
-            twist.rotation = twist.rotation.turned(axis, sin_cos);
-        }
-        if axis == 2 {
-            let sin_cos = (sin_cos.0.id(), sin_cos.1.id());
-            self.g.block_turn(BlockTurn { sin_cos, before, after: self.blocks() });
         }
     }
 

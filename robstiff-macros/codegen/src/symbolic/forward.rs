@@ -1,9 +1,7 @@
 //! Forward kinematics, base to tip.
-//!
-//! Turns about parallel axes stay pending until an axis changes, so that they
-//! are one angle.
 
-use super::chain::{Step, Tilt};
+use super::chain::Step;
+use super::turning::Turning;
 use super::vector::Vec3;
 use crate::angle::Angle;
 use crate::graph::{Graph, Sym};
@@ -64,32 +62,24 @@ struct Walker<'g> {
     origin: Vec3<'g>,
 }
 
-impl<'g> Walker<'g> {
-    fn turn(&mut self) {
-        if self.pending.is_zero() {
-            return;
-        }
-        let (s, c) = self.g.sin_cos(&self.pending);
-        let [x, y, _] = self.axes;
-        self.axes[0] = x.scaled(c) + y.scaled(s);
-        self.axes[1] = y.scaled(c) - x.scaled(s);
-        self.pending = Angle::default();
+impl<'g> Turning<'g> for Walker<'g> {
+    fn graph(&self) -> &'g Graph {
+        self.g
     }
 
-    fn tilt(&mut self, tilt: Tilt<'g>) {
-        if tilt.is_half_turn_about_x() {
-            // Rz(a) Rx(180) = Rx(180) Rz(-a): the turn may stay pending.
-            self.pending = -std::mem::take(&mut self.pending);
-        } else {
-            self.turn();
-        }
-        let (s, c) = tilt.sin_cos;
-        let (i, j) = ((tilt.axis + 1) % 3, (tilt.axis + 2) % 3);
+    fn pending(&mut self) -> &mut Angle {
+        &mut self.pending
+    }
+
+    fn turn(&mut self, axis: usize, (s, c): (Sym<'g>, Sym<'g>)) {
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let (u, v) = (self.axes[i], self.axes[j]);
         self.axes[i] = u.scaled(c) + v.scaled(s);
         self.axes[j] = v.scaled(c) - u.scaled(s);
     }
+}
 
+impl<'g> Walker<'g> {
     /// A vector of the current frame in the base frame.
     fn in_base(&self, v: Vec3<'g>) -> Vec3<'g> {
         let v = v.turned(2, self.g.sin_cos(&self.pending));
@@ -98,7 +88,7 @@ impl<'g> Walker<'g> {
 
     fn frame(&self) -> Frame<'g> {
         let mut settled = Walker { g: self.g, axes: self.axes, pending: self.pending.clone(), origin: self.origin };
-        settled.turn();
+        settled.settle();
         Frame { axes: settled.axes, origin: settled.origin }
     }
 }
@@ -127,7 +117,7 @@ pub fn forward<'g>(g: &'g Graph, steps: &[Step<'g>]) -> Forward<'g> {
                 walker.origin = walker.origin + by;
                 moves.push(by);
             }
-            Step::Turn(angle) => walker.pending = std::mem::take(&mut walker.pending) + angle,
+            Step::Turn(angle) => walker.turn_later(angle),
             Step::Tilt(tilt) => walker.tilt(*tilt),
             Step::Base => base = Some(here),
             Step::Joint(_) => joints.push(here),

@@ -1,6 +1,7 @@
 //! The mathematics, on symbols.
 //!
 //! - [`chain`](mod@chain): a description as elementary steps from base to TCP;
+//! - [`turning`]: what is turned on the way, parallel axes as one angle;
 //! - [`forward`](mod@forward): frames and levers, from the base to the TCP;
 //! - [`waist`]: the first joint's turn, left for the end where that is cheaper;
 //! - [`kinematics`]: transform, frames, Jacobian, torques and deflection;
@@ -16,6 +17,7 @@ pub mod compliance;
 pub mod elastic;
 pub mod forward;
 pub mod kinematics;
+pub mod turning;
 pub mod vector;
 pub mod waist;
 pub mod weight;
