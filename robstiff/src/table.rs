@@ -84,10 +84,13 @@ impl<'t> Table<'t> {
             return Err(table.problem(1, 0, "the file is empty", "the first line names the columns").into());
         };
         table.header_line = line_of(&header, text);
-        if let Some(field) = header.iter().position(|name| name.contains(';')) {
-            let help = "the separator is a comma, and the decimal sign a point: `pose,q1 [deg],Fx [N]`";
-            let message = "the columns are separated by semicolons";
-            return Err(table.problem(table.header_line, field, message, help).into());
+        for (separator, message) in
+            [(';', "the columns are separated by semicolons"), ('\t', "the columns are separated by tabs")]
+        {
+            if let Some(field) = header.iter().position(|name| name.contains(separator)) {
+                let help = "the separator is a comma, and the decimal sign a point: `pose,q1 [deg],Fx [N]`";
+                return Err(table.problem(table.header_line, field, message, help).into());
+            }
         }
         table.header = header.iter().map(Header::parse).collect();
         table.check_header();
@@ -249,7 +252,6 @@ impl<'t> Table<'t> {
     }
 
     /// Reports a problem with the header as a whole.
-    #[cfg(feature = "machining")]
     pub fn report_header(&self, message: &str, help: &str) {
         self.report(self.header_line, usize::MAX, message, help);
     }
