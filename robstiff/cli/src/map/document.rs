@@ -156,6 +156,11 @@ impl Mapped {
         let sentence = |placed: &Placed| {
             let size = mm(placed.size).join(" x ");
             let Some(best) = placed.best else {
+                let spans =
+                    [0, 1, 2].map(|k| self.axes[k].values[self.axes[k].values.len() - 1] - self.axes[k].values[0]);
+                if placed.size.iter().zip(spans).any(|(size, span)| *size > span + 1e-9) {
+                    return format!("A workpiece of {size} mm is larger than the map, {} mm.", mm(spans).join(" x "));
+                }
                 return format!("A workpiece of {size} mm has no place that is reached everywhere{}.", placed.how());
             };
             format!(
@@ -180,7 +185,15 @@ impl Mapped {
         if *unreachable > 0 {
             page += &format!("{} of them no pose reaches\n", unreachable);
         }
-        let (Some(best), Some(worst)) = (best, worst) else { return page + "\n" };
+        let (Some(best), Some(worst)) = (best, worst) else {
+            let over = self.axes.iter().any(|axis| axis.dimension == Dimension::Length);
+            page += if over && unreachable == cells {
+                "is it in the robot's base frame, and does `axis` of the tool point along `direction`?\n"
+            } else {
+                ""
+            };
+            return page + "\n";
+        };
         let mut table = Table::new(1, [String::new(), heading(&self.columns[0]), "where".to_owned()]);
         table.row(["best".to_owned(), self.figure(best.values[0]), self.place(best.cell)]);
         table.row(["mean".to_owned(), self.figure(*mean), String::new()]);

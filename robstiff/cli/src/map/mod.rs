@@ -20,7 +20,7 @@ use robstiff::Generic;
 use robstiff::map::read::{Over, Positions, Task};
 use robstiff::map::{Axis, CartesianSpace, Chunk, Evaluate, JointSpace, Measure, Space, Tool, best_placement, stream};
 use robstiff_robots::Description;
-use robstiff_robots::quantity::{self, Dimension};
+use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;
 use crate::output::{self, Files, Growing};
@@ -63,6 +63,7 @@ pub struct Arguments {
 /// Maps.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, _) = input::robot(&arguments.robot)?;
+    input::complain_if_rigid(&robot);
     let task = task(&arguments.map, &robot)?;
     let mut files = Files::default();
     files.protect(&arguments.robot);
@@ -255,7 +256,7 @@ fn size(text: &str) -> Result<[f64; 3], String> {
     for (length, part) in lengths.iter_mut().zip([x, y, z]) {
         let bare = part.ends_with(|c: char| c.is_ascii_digit() || c == '.');
         let whole = if bare { format!("{part} {unit}") } else { (*part).to_owned() };
-        *length = quantity::parse(&whole, Dimension::Length).map_err(|error| error.to_string())?;
+        *length = input::with_unit(&whole, Dimension::Length)?;
         if *length < 0.0 {
             return Err(format!("{whole} is negative; {help}"));
         }

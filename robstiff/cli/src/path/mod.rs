@@ -1,7 +1,7 @@
 //! `robstiff path`: the joint coordinates of a tool path, how far forces push the
 //! tool off it, and what to command instead.
 
-mod cutting;
+pub mod cutting;
 mod deviation;
 
 use std::fmt::Write as _;
@@ -71,6 +71,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let mut files = Files::default();
     let asked = arguments.cutting.read(arguments.tool_axis, &mut files)?;
+    if asked.is_some() {
+        input::complain_if_rigid(&robot);
+    }
     let solved = with_robot!(&robot, |robot| solve(&robot, &path, start.as_deref(), asked.as_ref()))?;
     files.protect(&arguments.robot);
     files.protect(&arguments.path);
@@ -124,7 +127,7 @@ fn solve<const N: usize>(
 
 /// An axis of the tool's frame by its name.
 pub fn tool_axis(text: &str) -> Result<Unit<Vector3<f64>>, String> {
-    let axis = match text.trim_start_matches('-') {
+    let axis = match text.strip_prefix('-').unwrap_or(text) {
         "x" => Vector3::x_axis(),
         "y" => Vector3::y_axis(),
         "z" => Vector3::z_axis(),
