@@ -125,13 +125,24 @@ data.joints.forEach((joint, k) => {
 });
 find("back").addEventListener("click", () => show(state.row));
 
-find("ellipsoid-scale").textContent = perUnit > 0 ? `1 µm/N is ${shortest(perUnit * 1e3)} mm, a square of the floor ${shortest(square * 1e3)} mm.` : "The robot is rigid.";
-const arrows = find("arrow-scale");
-if (arrows && perMicrometre > 0) arrows.textContent = `${shortest(perMicrometre * 1e6)} times as long as it is.`;
+function saySizes() {
+  const floor = state.near ? `the path ${shortest(extent * 1e3)} mm from corner to corner` : `a square of the floor ${shortest(square * 1e3)} mm`;
+  find("ellipsoid-scale").textContent = perUnit > 0 ? `1 µm/N is ${shortest(perUnit * 1e3)} mm, ${floor}.` : "The robot is rigid.";
+  const arrows = find("arrow-scale");
+  if (arrows && perMicrometre > 0) arrows.textContent = `${shortest(perMicrometre * 1e6)} times as long as it is.`;
+}
+saySizes();
+find("near")?.addEventListener("click", () => {
+  lookAt(!state.near);
+  find("near").setAttribute("aria-pressed", state.near);
+  find("near").textContent = state.near ? "Look at the arm again" : "Look at the path alone";
+  saySizes();
+  redraw();
+});
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { colours.read(); redraw(); });
 new ResizeObserver(redraw).observe(canvas);
 colours.read();
 // The worst pose first.
-const worst = data.poses.reduce((most, pose, k) => ((pose.value ?? 0) > (data.poses[most].value ?? 0) ? k : most), 0);
+const worst = data.poses.reduce((most, pose, k) => (Math.abs(pose.value ?? 0) > Math.abs(data.poses[most].value ?? 0) ? k : most), 0);
 show(worst);
 draw();
