@@ -1,6 +1,7 @@
 //! A map's summary as JSON, and for a terminal.
 
 use robstiff::map::{Axis, Column, Extreme, Measure, Placement, Summary, people};
+use robstiff::nalgebra::Isometry3;
 use robstiff_robots::quantity::Dimension;
 use serde_json::{Map, Value, json};
 
@@ -22,6 +23,8 @@ pub struct Mapped {
     pub summary: Summary,
     /// Where a workpiece is best put, where that was asked.
     pub placements: Vec<Placed>,
+    /// The frame of the positions in the base frame, where they have one of their own.
+    pub frame: Option<Isometry3<f64>>,
 }
 
 /// The best place for a workpiece.
@@ -99,6 +102,19 @@ impl Mapped {
         self.axes.iter().filter(|axis| !axis.varies()).map(one).collect::<Vec<_>>().join(", ")
     }
 
+    /// The frame that x, y and z count in, where it is not the base frame.
+    pub fn framed(&self) -> Option<String> {
+        let frame = self.frame?;
+        let list =
+            |values: [f64; 3], dimension| values.map(|value| significant(people(dimension, value), 6)).join(", ");
+        let (roll, pitch, yaw) = frame.rotation.euler_angles();
+        Some(format!(
+            "x, y and z count from ({}) mm, turned by roll, pitch, yaw ({}) deg; forces and displacements are in the base frame",
+            list(frame.translation.vector.into(), Dimension::Length),
+            list([roll, pitch, yaw], Dimension::Angle)
+        ))
+    }
+
     /// The document.
     pub fn json(&self) -> Value {
         let axis = |axis: &Axis| {
@@ -115,6 +131,13 @@ impl Mapped {
             "robot": self.robot,
             "measure": self.words(),
             "unit": self.unit(),
+            "frame": self.frame.map(|frame| {
+                let (roll, pitch, yaw) = frame.rotation.euler_angles();
+                json!({
+                    "xyz_m": json::numbers(frame.translation.vector.iter().copied()),
+                    "rpy_rad": json::numbers([roll, pitch, yaw]),
+                })
+            }),
             "axes": self.axes.iter().map(axis).collect::<Value>(),
             "cells": self.summary.cells,
             "unreachable": self.summary.unreachable,
@@ -181,6 +204,9 @@ impl Mapped {
         let mut page = format!("{}: {} at {}\n", self.robot, self.words(), count(*cells, "cell"));
         if !self.fixed().is_empty() {
             page += &format!("with {}\n", self.fixed());
+        }
+        if let Some(frame) = self.framed() {
+            page += &format!("{frame}\n");
         }
         if *unreachable > 0 {
             page += &format!("{} of them no pose reaches\n", unreachable);

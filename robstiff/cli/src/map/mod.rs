@@ -19,6 +19,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use robstiff::Generic;
 use robstiff::map::read::{Over, Positions, Task};
 use robstiff::map::{Axis, CartesianSpace, Chunk, Evaluate, JointSpace, Measure, Space, Tool, best_placement, stream};
+use robstiff::nalgebra::Isometry3;
 use robstiff_robots::Description;
 use robstiff_robots::quantity::Dimension;
 
@@ -113,6 +114,7 @@ fn map<const N: usize>(
             let generic = Generic::<N>::new(robot).expect("this arm has the same count");
             let space = CartesianSpace::new(&generic, axes.clone(), tool.clone()).in_frame(*frame);
             let mut mapped = write(&tape, &space, &task.measure, arguments, files)?;
+            mapped.mapped.frame = Some(*frame).filter(|frame| *frame != Isometry3::identity());
             if let Some(size) = arguments.place {
                 mapped.mapped.placements = place(&tape, &generic, positions, &task.measure, size, &mapped.values);
             }
@@ -236,7 +238,8 @@ fn write<const N: usize>(
         files.grown(parquet.into_inner().map_err(cannot)?)?;
     }
     let axes = space.axes().to_vec();
-    let mapped = Mapped { robot: String::new(), axes, measure: *measure, columns, summary, placements: Vec::new() };
+    let (robot, placements, frame) = (String::new(), Vec::new(), None);
+    let mapped = Mapped { robot, axes, measure: *measure, columns, summary, placements, frame };
     Ok(Written { mapped, slices, values })
 }
 
