@@ -40,6 +40,7 @@ pub fn with_unit(text: &str, dimension: Dimension) -> Result<f64, String> {
             Dimension::Length => "mm",
             Dimension::Time => "ms",
             Dimension::Speed => "mm/min",
+            Dimension::Angle => "deg",
             _ => dimension.unit(),
         };
         let text = text.trim();

@@ -35,6 +35,8 @@ fn quantities_without_a_unit_are_refused() {
     assert!(said.contains("`0.1` has no unit; write e.g. `0.1 mm`"), "{said}");
     let said = fail(2, &[&path[..], &["-0.1 mm"]].concat());
     assert!(said.contains("a length above zero is expected here"), "{said}");
+    let said = fail(2, &["path", "rv130hsc", &pocket, "--place", "0, 0, 0, 0, 0, 40"]);
+    assert!(said.contains("--place: `40` has no unit; write e.g. `40 deg`"), "{said}");
     let said = fail(2, &["online", "rv130hsc", &pocket, "--tool-axis", "x", "--cut", &cut, "--step", "4"]);
     assert!(said.contains("`4` has no unit; write e.g. `4 ms`"), "{said}");
     let said = fail(2, &["map", "kuka-kr270-r2700", &file("table.yaml"), "--place", "400 x 300 x 0"]);
@@ -120,6 +122,17 @@ fn a_path_that_is_not_solved_is_not_drawn() {
     succeed(&path);
     let said = succeed(&["view", "rv130hsc", "--path", &solved, "--column", "deviation [um]", "--out", &page]);
     assert!(said.contains("deviation: "), "{said}");
+}
+
+#[test]
+fn a_path_that_is_corrected_already_is_told() {
+    let folder = folder("machining-corrected");
+    let (corrected, cut, pocket) = (inside(&folder, "corrected.csv"), file("roughing.yaml"), file("pocket.csv"));
+    let path = ["path", "rv130hsc", &pocket, "--tool-axis", "x", "--cut", &cut, "--compensate", "--out", &corrected];
+    succeed(&path);
+    let ran = run(&["path", "rv130hsc", &corrected, "--tool-axis", "x", "--cut", &cut, "--compensate"]);
+    assert_eq!(ran.code, 0);
+    assert!(ran.err.contains("the path is corrected already"), "{}", ran.err);
 }
 
 #[test]

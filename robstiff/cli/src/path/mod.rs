@@ -11,7 +11,7 @@ use robstiff::inverse::Inverse;
 use robstiff::nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
 use robstiff::path::{Jump, ToolPath};
 use robstiff::{Robot, with_robot};
-use robstiff_robots::quantity::{self, Dimension};
+use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, JointKind};
 use serde_json::{Value, json};
 
@@ -142,8 +142,9 @@ fn place(given: &str) -> Result<Matrix4<f64>, Failure> {
     let [x, y, z, roll, pitch, yaw] = parts[..] else {
         return Err(Failure::Usage(format!("--place gives {}, six are needed", count(parts.len(), "number"))));
     };
-    let read =
-        |text, dimension| quantity::parse(text, dimension).map_err(|error| Failure::Usage(format!("--place: {error}")));
+    let read = |text, dimension| {
+        input::with_unit(text, dimension).map_err(|error| Failure::Usage(format!("--place: {error}")))
+    };
     let turn = Rotation3::from_euler_angles(
         read(roll, Dimension::Angle)?,
         read(pitch, Dimension::Angle)?,
