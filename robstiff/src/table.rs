@@ -180,8 +180,13 @@ impl<'t> Table<'t> {
         let index = self.position(name);
         if index.is_none() {
             let names: Vec<_> = self.header.iter().map(|header| format!("`{}`", header.name)).collect();
-            let help = format!("the header line has {}", names.join(", "));
-            self.report(self.header_line, 0, &format!("the column `{name}` is missing"), &help);
+            let other = self.header.iter().position(|header| header.name.eq_ignore_ascii_case(name));
+            let help = match other {
+                Some(field) => format!("write `{name}` in place of `{}`", self.header[field].name),
+                None => format!("the header line has {}", names.join(", ")),
+            };
+            let place = other.unwrap_or(0);
+            self.report(self.header_line, place, &format!("the column `{name}` is missing"), &help);
         }
         index
     }

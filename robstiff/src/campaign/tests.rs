@@ -176,6 +176,7 @@ fn every_problem_of_a_header_has_its_place() {
         found("columns", "pose,q1,Fx,Fy,Fz,dx,dy"),
         ["1:1 the column `q2` is missing", "1:1 the column `dz` is missing"]
     );
+    assert_eq!(found("case", "pose,q1,q2,FX,Fy,Fz,dx,dy,dz"), ["1:12 the column `Fx` is missing"]);
     assert_eq!(found("twice", "pose,q1,q2,Fx,Fy,Fz,dx,dy,dz,dx"), ["1:30 the column `dx` is there twice"]);
     assert_eq!(found("unit", "pose,q1 [mm],q2,Fx,Fy,Fz,dx,dy,dz"), ["1:6 `mm` is a length, an angle is expected here"]);
     assert_eq!(found("open", "pose,q1,q2,Fx,Fy,Fz,dx [um,dy,dz"), ["1:21 the bracket of the unit is not closed"]);
