@@ -180,7 +180,7 @@ function drawEllipsoids(picture, pose) {
     const longest = (of) => semiAxes(of)[0].length;
     const drawn = [pose];
     data.poses.filter((_, k) => k % stride === 0 && k !== state.row).forEach((other) => {
-      const clear = (one) => norm(add(one.tcp, other.tcp, -1)) > 0.7 * (longest(one) + longest(other));
+      const clear = (one) => norm(add(one.tcp, other.tcp, -1)) > 0.35 * (longest(one) + longest(other));
       if (data.kind === "path" && !drawn.every(clear)) return;
       drawn.push(other);
       picture.ellipsoid(other.tcp, semiAxes(other), colours.rgb("ellipsoid"), 0.16, 8);
