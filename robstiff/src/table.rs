@@ -84,10 +84,13 @@ impl<'t> Table<'t> {
             return Err(table.problem(1, 0, "the file is empty", "the first line names the columns").into());
         };
         table.header_line = line_of(&header, text);
-        if let Some(field) = header.iter().position(|name| name.contains(';')) {
-            let help = "the separator is a comma, and the decimal sign a point: `pose,q1 [deg],Fx [N]`";
-            let message = "the columns are separated by semicolons";
-            return Err(table.problem(table.header_line, field, message, help).into());
+        for (separator, message) in
+            [(';', "the columns are separated by semicolons"), ('\t', "the columns are separated by tabs")]
+        {
+            if let Some(field) = header.iter().position(|name| name.contains(separator)) {
+                let help = "the separator is a comma, and the decimal sign a point: `pose,q1 [deg],Fx [N]`";
+                return Err(table.problem(table.header_line, field, message, help).into());
+            }
         }
         table.header = header.iter().map(Header::parse).collect();
         table.check_header();
@@ -177,8 +180,13 @@ impl<'t> Table<'t> {
         let index = self.position(name);
         if index.is_none() {
             let names: Vec<_> = self.header.iter().map(|header| format!("`{}`", header.name)).collect();
-            let help = format!("the header line has {}", names.join(", "));
-            self.report(self.header_line, 0, &format!("the column `{name}` is missing"), &help);
+            let other = self.header.iter().position(|header| header.name.eq_ignore_ascii_case(name));
+            let help = match other {
+                Some(field) => format!("write `{name}` in place of `{}`", self.header[field].name),
+                None => format!("the header line has {}", names.join(", ")),
+            };
+            let place = other.unwrap_or(0);
+            self.report(self.header_line, place, &format!("the column `{name}` is missing"), &help);
         }
         index
     }
@@ -249,7 +257,6 @@ impl<'t> Table<'t> {
     }
 
     /// Reports a problem with the header as a whole.
-    #[cfg(feature = "machining")]
     pub fn report_header(&self, message: &str, help: &str) {
         self.report(self.header_line, usize::MAX, message, help);
     }

@@ -37,6 +37,11 @@ impl<'d> Node<'d> {
         matches!(self.content, Content::Map(_))
     }
 
+    /// Whether the value is a number, and as a quantity one without its unit.
+    pub fn is_number(&self) -> bool {
+        matches!(self.content, Content::Integer(_) | Content::Number(_))
+    }
+
     /// Whether the value is a list.
     pub fn is_sequence(&self) -> bool {
         matches!(self.content, Content::Sequence(_))

@@ -123,8 +123,11 @@ fn engagement(cut: &Cut) -> String {
         Some(_) => ", down milling (wall to the right)",
         None => "",
     };
+    let speed = cut
+        .speed
+        .map_or_else(String::new, |speed| format!(", {} rpm", significant(speed * 60.0 / std::f64::consts::TAU, 6)));
     format!(
-        "mill {} mm, {teeth}, helix {} deg; {} mm deep, {} mm a tooth, teeth cut from {entry} to {exit} deg{wall}\n",
+        "mill {} mm, {teeth}, helix {} deg{speed}; {} mm deep, {} mm a tooth, teeth cut from {entry} to {exit} deg{wall}\n",
         significant(cut.mill.diameter * 1e3, 4),
         significant(cut.mill.helix.to_degrees(), 3),
         significant(cut.depth * 1e3, 4),

@@ -29,6 +29,37 @@ pub fn robot(path: &Path) -> Result<(Description, String), Failure> {
     )))
 }
 
+/// A quantity that an option gives. It carries its unit, since `0.1` is a tenth
+/// of a millimetre to who mills and of a metre to SI; ratios have none, and a
+/// frequency can be in nothing but Hz.
+pub fn with_unit(text: &str, dimension: Dimension) -> Result<f64, String> {
+    let value = quantity::parse(text, dimension).map_err(|error| error.to_string())?;
+    let bare = text.trim().parse::<f64>().is_ok();
+    if bare && value != 0.0 && !matches!(dimension, Dimension::Number | Dimension::Frequency) {
+        let example = match dimension {
+            Dimension::Length => "mm",
+            Dimension::Time => "ms",
+            Dimension::Speed => "mm/min",
+            Dimension::Angle => "deg",
+            _ => dimension.unit(),
+        };
+        let text = text.trim();
+        return Err(format!("`{text}` has no unit; write e.g. `{text} {example}`"));
+    }
+    Ok(value)
+}
+
+/// Says so where a robot has nothing that gives way.
+pub fn complain_if_rigid(robot: &Description) {
+    let yields = robot.joints.iter().flat_map(|joint| &joint.compliance).any(|part| part.value > 0.0);
+    if !yields && robot.effects.is_empty() {
+        output::complain(format_args!(
+            "warning: {} is rigid, nothing moves its tool: none of its joints has a `compliance`",
+            robot.name
+        ));
+    }
+}
+
 /// Reads a campaign, and says what its reader noticed.
 pub fn campaign(path: &Path) -> Result<Campaign, Failure> {
     let campaign = Campaign::read(path)?;
@@ -106,6 +137,16 @@ mod tests {
     fn coordinates_are_in_rad_or_carry_their_unit() {
         let q = coordinates("0.5, 30 deg, -pi/2,0, 10 mrad", &five_axes()).unwrap();
         assert_eq!(q, [0.5, 30_f64.to_radians(), -core::f64::consts::FRAC_PI_2, 0.0, 0.01]);
+    }
+
+    #[test]
+    fn quantities_of_options_carry_their_unit() {
+        assert_eq!(with_unit("0.1 mm", Dimension::Length), Ok(1e-4));
+        assert_eq!(with_unit("0", Dimension::Length), Ok(0.0));
+        assert_eq!(with_unit("15", Dimension::Frequency), Ok(15.0));
+        assert_eq!(with_unit("0.7", Dimension::Number), Ok(0.7));
+        assert_eq!(with_unit(" 0.1", Dimension::Length), Err("`0.1` has no unit; write e.g. `0.1 mm`".to_owned()));
+        assert_eq!(with_unit("4", Dimension::Time), Err("`4` has no unit; write e.g. `4 ms`".to_owned()));
     }
 
     #[test]

@@ -23,7 +23,7 @@ fn a_pocket_is_solved_written_and_read_again() {
     assert_eq!(keys(&document), ["robot", "closed_form", "length_m", "points", "jumps"]);
     let first = &document["points"][0];
     assert!((first["position_m"][0].as_f64().unwrap() - 1.5).abs() < 1e-9);
-    assert!((first["feed_m_per_s"].as_f64().unwrap() - 0.02).abs() < 1e-15);
+    assert!((first["feed_m_per_s"].as_f64().unwrap() - 0.06).abs() < 1e-15);
 
     let again = inside(&folder, "again.csv");
     let ran = run(&["path", "rv130hsc", &out, "--out", &again]);

@@ -26,6 +26,8 @@ pictures.push(picture());
 point("pointerdown", 300, 200, 1); point("pointerdown", 400, 200, 2); point("pointermove", 500, 200, 2);
 point("pointerup", 300, 200, 1); point("pointerup", 500, 200, 2);
 pictures.push(picture());
+const near = document.getElementById("near");
+if (near) { near.click(); pictures.push(picture()); seen.near = document.getElementById("ellipsoid-scale").textContent; near.click(); }
 const row = document.getElementById("row");
 if (row) { row.value = state.row ? 0 : 1; row.dispatchEvent(new Event("input")); pictures.push(picture()); }
 const q2 = document.getElementById("q2");
@@ -160,9 +162,25 @@ fn a_path_is_coloured_by_its_deviation() {
     }
     if let Some(seen) = look(&folder, &page) {
         assert_alive(&seen);
+        assert!(seen["near"].as_str().unwrap().contains("from corner to corner"), "{seen}");
     }
     let said = succeed(&["view", "kuka-kr270-r2700", "--path", &path, "--column", "Fx", "--out", &page]);
     assert!(said.contains("Fx: -514.7 to 514.7 N"), "{said}");
+
+    // Errors have signs: the worst is the one farthest from zero.
+    let below = inside(&folder, "below.csv");
+    let text = fs::read_to_string(&path).unwrap();
+    let signed = text.lines().enumerate().map(|(k, line)| match k {
+        0 => format!("{line},error [um]\n"),
+        _ => format!("{line},-{k}\n"),
+    });
+    fs::write(&below, signed.collect::<String>()).unwrap();
+    succeed(&["view", "kuka-kr270-r2700", "--path", &below, "--column", "error", "--out", &page]);
+    let page = fs::read_to_string(&page).unwrap();
+    assert!(page.contains("wider where it is farther from zero"));
+    let worst = page.split("the worst dozen first").nth(1).unwrap();
+    let row = worst.split("</tr>").nth(1).unwrap();
+    assert!(row.contains(">109<") && row.contains(">-109<"), "{row}");
 }
 
 #[test]

@@ -50,6 +50,11 @@ impl JointTable {
 
 /// `None` with the problems reported to the table.
 fn rows(table: &Table<'_>, robot: &Description, column: Option<&str>) -> Option<JointTable> {
+    if table.position("q1").is_none() && table.position("x").is_some() {
+        let help = "`robstiff path ROBOT.yaml PATH.csv --out SOLVED.csv` solves a path of poses";
+        table.report_header("there are poses here, and no joint coordinates `q1` ..", help);
+        return None;
+    }
     let joints = (1..).zip(&robot.joints);
     let q = joints.map(|(k, joint)| table.require(&format!("q{k}"), dimension_of(joint.kind)));
     // Collected before it is judged, so that every column is looked for.

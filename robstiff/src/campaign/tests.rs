@@ -176,10 +176,12 @@ fn every_problem_of_a_header_has_its_place() {
         found("columns", "pose,q1,Fx,Fy,Fz,dx,dy"),
         ["1:1 the column `q2` is missing", "1:1 the column `dz` is missing"]
     );
+    assert_eq!(found("case", "pose,q1,q2,FX,Fy,Fz,dx,dy,dz"), ["1:12 the column `Fx` is missing"]);
     assert_eq!(found("twice", "pose,q1,q2,Fx,Fy,Fz,dx,dy,dz,dx"), ["1:30 the column `dx` is there twice"]);
     assert_eq!(found("unit", "pose,q1 [mm],q2,Fx,Fy,Fz,dx,dy,dz"), ["1:6 `mm` is a length, an angle is expected here"]);
     assert_eq!(found("open", "pose,q1,q2,Fx,Fy,Fz,dx [um,dy,dz"), ["1:21 the bracket of the unit is not closed"]);
     assert_eq!(found("semicolons", "pose;q1;q2;Fx;Fy;Fz;dx;dy;dz"), ["1:1 the columns are separated by semicolons"]);
+    assert_eq!(found("tabs", "pose\tq1 [deg]\tq2 [deg]\tFx [N]"), ["1:1 the columns are separated by tabs"]);
     assert_eq!(
         found("furlong", "pose,q1,q2,Fx,Fy,Fz,dx,dy,dz [furlong]"),
         ["1:27 unknown unit `furlong` for a length"]

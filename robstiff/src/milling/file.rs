@@ -107,11 +107,13 @@ impl CutFile {
     pub fn parse(file: &str, text: &str, folder: &Path) -> Result<Self, ReadError> {
         let document = Document::parse(file, text).map_err(ReadError::Invalid)?;
         let said = said(&document, folder);
+        let bare = bare(&document);
         let (name, said) = document.finish(said).map_err(ReadError::Invalid)?;
         let record = match said {
             Said::Model(cut, source) => {
                 let forces = Forces::Model(cut);
-                return Ok(Self { name, source, forces, measured_path: None, warnings: Vec::new() });
+                let warnings = bare.iter().map(|said| format!("{file}: {said}")).collect();
+                return Ok(Self { name, source, forces, measured_path: None, warnings });
             }
             Said::Measured(record) => record,
         };
@@ -122,6 +124,26 @@ impl CutFile {
         let forces = Forces::Measured { force, speed: record.speed };
         Ok(Self { name, source: String::new(), forces, measured_path: Some(path), warnings })
     }
+}
+
+/// What has no unit: in SI a depth of 2 is 2 m.
+fn bare(document: &Document) -> Vec<String> {
+    let root = document.root();
+    let Some(map) = root.is_map().then(|| root.any_map("")).flatten() else { return Vec::new() };
+    let tool = map.get("tool").filter(Node::is_map).and_then(|node| node.any_map(""));
+    let fields = [
+        (tool.as_ref(), "diameter", "m", "mm"),
+        (Some(&map), "width", "m", "mm"),
+        (Some(&map), "depth", "m", "mm"),
+        (Some(&map), "feed", "m a tooth", "mm/tooth"),
+        (Some(&map), "feed_speed", "m/s", "mm/min"),
+        (Some(&map), "speed", "rad/s", "rpm"),
+    ];
+    let bare = |&(map, field, _, _): &(Option<&Map<'_>>, &str, &str, &str)| {
+        map.and_then(|map| map.get(field)).is_some_and(|node| node.is_number())
+    };
+    let said = |(_, field, si, unit)| format!("`{field}` has no unit and is taken in {si}: is it in {unit}?");
+    fields.into_iter().filter(bare).map(said).collect()
 }
 
 fn said(document: &Document, folder: &Path) -> Option<(String, Said)> {

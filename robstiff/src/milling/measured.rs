@@ -74,6 +74,10 @@ impl MeasuredForce {
         };
         let samples: Vec<Option<Sample>> = table.records.iter().map(sample).collect();
         let samples: Option<Vec<Sample>> = samples.into_iter().collect();
+        let times = || samples.iter().flatten().map(|sample| sample.time);
+        if let Some(back) = times().zip(times().skip(1)).position(|(one, next)| next < one) {
+            table.warn(&std::format!("the times go back on line {}", table.records[back + 1].line));
+        }
         table.finish(samples.map(|samples| Self { frame, samples }))
     }
 

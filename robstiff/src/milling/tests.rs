@@ -306,6 +306,10 @@ fn records_are_averaged() {
     assert_eq!(turn.samples.iter().map(|(_, force)| force.x).collect::<Vec<_>>(), [1.0, 2.0, 3.0, 4.0]);
     assert_eq!((turn.range(0).least, turn.range(0).greatest, turn.peak()), (1.0, 4.0, 4.0));
 
+    let text = "t [s],Fx,Fy,Fz\n0,1,0,0\n2,1,0,0\n1,1,0,0\n";
+    let (_, warnings) = MeasuredForce::parse("f.csv", text, ForceFrame::Cut, false).unwrap();
+    assert_eq!(warnings, ["f.csv: the times go back on line 4"]);
+
     let error = MeasuredForce::parse("f.csv", "Fx,Fy\n1,x\n", ForceFrame::Cut, false).unwrap_err().to_string();
     assert!(error.contains("`Fz` is missing") && error.contains("f.csv:1:1"), "{error}");
 }

@@ -125,6 +125,65 @@ fn size_and_rate_are_limited_and_a_silent_sensor_is_let_go() {
 }
 
 #[test]
+fn a_delay_longer_than_the_cut_corrects_nothing() {
+    for sensing in [Sensing::Force, Sensing::Encoders] {
+        let late = Controller { sensing, delay: 0.5, ..controller(Servo::Ideal) };
+        let seen = simulate((&robot(), &robot()), &pose(), &late, 0.4, |_| wrench(), truly);
+        assert_eq!(seen.len(), 400 * POINTS[1]);
+        assert!(seen.iter().all(|seen| seen.corrected == seen.uncorrected && seen.uncorrected.norm() > 1e-5));
+    }
+    // With the end of the delay within the cut, from then on.
+    let late = Controller { delay: 0.3, ..controller(Servo::Ideal) };
+    let seen = simulate((&robot(), &robot()), &pose(), &late, 0.4, |_| wrench(), truly);
+    let at = |time: f64| seen.iter().find(|seen| seen.time > time).unwrap();
+    assert_eq!(at(0.299).corrected, at(0.299).uncorrected);
+    assert!(at(0.301).corrected.norm() < 1e-6 * at(0.301).uncorrected.norm());
+}
+
+#[test]
+fn a_correction_beyond_its_size_stops_there() {
+    let robot = robot();
+    let whole = back(&robot, &pose(), &wrench(), 1e-12);
+    // Half of what the joint that moves most wants.
+    let size = 0.5 * whole.amax();
+    assert!(whole.iter().any(|joint| joint.abs() < size));
+    let limits = Limits { size, ..FREE };
+    let held = Controller { limits, delay: 0.0, ..controller(Servo::Ideal) };
+    let seen = simulate((&robot, &robot), &pose(), &held, 0.05, |_| wrench(), truly);
+    let moves = robot.jacobian(&pose()).fixed_rows::<3>(0).into_owned();
+    let expected = moves * whole.map(|joint| joint.clamp(-size, size));
+    let last = seen.last().unwrap();
+    assert!((last.corrected - last.uncorrected - expected).norm() < 1e-15);
+    assert!(last.corrected.norm() > 0.05 * last.uncorrected.norm());
+}
+
+#[test]
+fn encoders_that_fall_silent_are_held_and_withdrawn_at_the_speed_allowed() {
+    let robot = robot();
+    let whole = gears(&robot, &pose(), &wrench());
+    let (silent_from, rate) = (0.2, 0.01);
+    let limits = Limits { size: 1.0, rate, hold: 0.05 };
+    let controller = Controller { sensing: Sensing::Encoders, limits, delay: 0.0, ..controller(Servo::Ideal) };
+    let reading = |time: f64, wrench: &Vector6<f64>| (time < silent_from).then_some(*wrench);
+    let seen = simulate((&robot, &robot), &pose(), &controller, 0.5, |_| wrench(), reading);
+    let moves = robot.jacobian(&pose()).fixed_rows::<3>(0).into_owned();
+    let at = |time: f64| seen.iter().find(|seen| seen.time > time).unwrap();
+    let moved = |time: f64| at(time).corrected - at(time).uncorrected;
+    // All joints have come to what they want, each at the same speed.
+    assert!(whole.amax() / rate < 0.15, "{whole}");
+    assert!((moved(0.15) + moves * whole).norm() < 1e-12);
+    assert_eq!(moved(0.24), moved(0.15));
+    // Some steps after the hold, each joint is that much nearer to nothing.
+    let steps = 5;
+    let back = rate * controller.step * f64::from(steps);
+    let left = whole.map(|joint| joint.signum() * (joint.abs() - back).max(0.0));
+    let time = silent_from + limits.hold + f64::from(steps) * controller.step;
+    let one = rate * controller.step * moves.norm() * 5_f64.sqrt();
+    assert!((moved(time) + moves * left).norm() < 1.5 * one, "{} {}", moved(time), -(moves * left));
+    assert_eq!(moved(0.48), Vector3::zeros());
+}
+
+#[test]
 fn noise_is_left_as_rms_and_not_as_amplitude() {
     let controller = controller(Servo::FirstOrder { bandwidth: 20.0 });
     let robot = robot();

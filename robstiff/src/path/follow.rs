@@ -14,7 +14,7 @@ use crate::{JointKind, Robot};
 const MOST_POSTURES: usize = 16;
 
 /// Unreachable points that are shown with their line.
-const MOST_SHOWN: usize = 100;
+const MOST_SHOWN: usize = 10;
 
 /// Coordinates beyond a limit by less than this are on it (rad or m), as in
 /// descriptions.

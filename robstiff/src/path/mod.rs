@@ -10,6 +10,7 @@ mod read;
 #[cfg(test)]
 mod tests;
 
+use std::format;
 use std::string::String;
 use std::vec::Vec;
 
@@ -111,18 +112,42 @@ pub struct Unsolved {
     pub points: Vec<(usize, Unreached)>,
     /// How many points the path has.
     pub of: usize,
-    /// The same for a person, the first hundred.
+    /// The same for a person, the first ten.
     pub problems: Diagnostics,
 }
 
 impl core::fmt::Display for Unsolved {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let count = self.points.len();
-        write!(f, "{}\n\n{count} of {} points cannot be reached", self.problems, self.of)
+        write!(f, "{}\n\n{count} of {} points cannot be reached: {}", self.problems, self.of, self.lines())?;
+        if count == self.of {
+            f.write_str("; is the path given in another frame, in another unit, or along another axis of the tool?")?;
+        }
+        Ok(())
     }
 }
 
 impl core::error::Error for Unsolved {}
+
+impl Unsolved {
+    /// The lines of all points that cannot be reached, neighbours of the path
+    /// together: `lines 2 to 5, 9`.
+    fn lines(&self) -> String {
+        let mut runs: Vec<[usize; 2]> = Vec::new();
+        for &(line, _) in &self.points {
+            match runs.last_mut() {
+                Some([_, last]) if *last + 1 == line => *last = line,
+                _ => runs.push([line, line]),
+            }
+        }
+        let word = if self.points.len() == 1 { "line" } else { "lines" };
+        let run = |[first, last]: &[usize; 2]| match last - first {
+            0 => format!("{first}"),
+            _ => format!("{first} to {last}"),
+        };
+        format!("{word} {}", runs.iter().map(run).collect::<Vec<_>>().join(", "))
+    }
+}
 
 impl ToolPath {
     /// The same path when the frame that its poses are given in stands at

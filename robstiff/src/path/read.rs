@@ -111,6 +111,9 @@ fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
                 table.position(name);
             }
         }
+        if table.position("remaining").is_some() {
+            table.warn("the path is corrected already: its points are what to command, not where the tool is to be");
+        }
         return columns.into_iter().collect::<Option<Vec<_>>>().map(Columns::Joints);
     }
     let all = |names: [&str; 3], dimension| three(names.map(|name| table.require(name, dimension)));

@@ -97,7 +97,7 @@ fn unreachable_points_are_named_and_none_is_skipped() {
     assert_eq!(unsolved.points.iter().map(|(line, _)| *line).collect::<std::vec::Vec<_>>(), [3, 5]);
     let said = unsolved.to_string();
     assert!(said.contains("--> path.csv:3:1") && said.contains("out of reach"), "{said}");
-    assert!(said.ends_with("2 of 4 points cannot be reached"), "{said}");
+    assert!(said.ends_with("2 of 4 points cannot be reached: lines 3, 5"), "{said}");
 }
 
 #[test]

@@ -51,6 +51,9 @@ pub fn mass_of_links<const N: usize, R: Robot<N>>(
     }
     let compliance = robot.joint_compliance();
     let elastic: std::vec::Vec<usize> = (0..N).filter(|&i| compliance[i] > 0.0).collect();
+    if elastic.is_empty() {
+        return Err(MassError::Singular);
+    }
     let pose = Pose::of(robot, q);
     let frames = robot.link_frames(q);
     let mut inertia = DMatrix::<f64>::zeros(elastic.len(), elastic.len());

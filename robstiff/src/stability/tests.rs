@@ -363,6 +363,8 @@ fn the_mass_of_links_is_that_of_their_movement() {
     }
     assert_eq!(mass_of_links(&robot, &[Link::default(); 3], &q), Err(MassError::Unknown));
     assert_eq!(mass_of_links(&robot, &[links[0], Link::default(), Link::default()], &q), Err(MassError::Singular));
+    let rigid = Description::parse("gantry.yaml", &text.replace(", compliance: 1e-7 m/N", "")).unwrap();
+    assert_eq!(mass_of_links(&Generic::<3>::new(&rigid).unwrap(), &links, &q), Err(MassError::Singular));
 
     // A pendulum's mass at a lever, seen at the end of the arm.
     let text = "name: Arm\ndescription: two links\nsource: a test\nconvention: standard\njoints:\n  \

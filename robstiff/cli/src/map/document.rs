@@ -1,6 +1,7 @@
 //! A map's summary as JSON, and for a terminal.
 
 use robstiff::map::{Axis, Column, Extreme, Measure, Placement, Summary, people};
+use robstiff::nalgebra::Isometry3;
 use robstiff_robots::quantity::Dimension;
 use serde_json::{Map, Value, json};
 
@@ -22,6 +23,8 @@ pub struct Mapped {
     pub summary: Summary,
     /// Where a workpiece is best put, where that was asked.
     pub placements: Vec<Placed>,
+    /// The frame of the positions in the base frame, where they have one of their own.
+    pub frame: Option<Isometry3<f64>>,
 }
 
 /// The best place for a workpiece.
@@ -99,6 +102,19 @@ impl Mapped {
         self.axes.iter().filter(|axis| !axis.varies()).map(one).collect::<Vec<_>>().join(", ")
     }
 
+    /// The frame that x, y and z count in, where it is not the base frame.
+    pub fn framed(&self) -> Option<String> {
+        let frame = self.frame?;
+        let list =
+            |values: [f64; 3], dimension| values.map(|value| significant(people(dimension, value), 6)).join(", ");
+        let (roll, pitch, yaw) = frame.rotation.euler_angles();
+        Some(format!(
+            "x, y and z count from ({}) mm, turned by roll, pitch, yaw ({}) deg; forces and displacements are in the base frame",
+            list(frame.translation.vector.into(), Dimension::Length),
+            list([roll, pitch, yaw], Dimension::Angle)
+        ))
+    }
+
     /// The document.
     pub fn json(&self) -> Value {
         let axis = |axis: &Axis| {
@@ -115,6 +131,13 @@ impl Mapped {
             "robot": self.robot,
             "measure": self.words(),
             "unit": self.unit(),
+            "frame": self.frame.map(|frame| {
+                let (roll, pitch, yaw) = frame.rotation.euler_angles();
+                json!({
+                    "xyz_m": json::numbers(frame.translation.vector.iter().copied()),
+                    "rpy_rad": json::numbers([roll, pitch, yaw]),
+                })
+            }),
             "axes": self.axes.iter().map(axis).collect::<Value>(),
             "cells": self.summary.cells,
             "unreachable": self.summary.unreachable,
@@ -156,6 +179,11 @@ impl Mapped {
         let sentence = |placed: &Placed| {
             let size = mm(placed.size).join(" x ");
             let Some(best) = placed.best else {
+                let spans =
+                    [0, 1, 2].map(|k| self.axes[k].values[self.axes[k].values.len() - 1] - self.axes[k].values[0]);
+                if placed.size.iter().zip(spans).any(|(size, span)| *size > span + 1e-9) {
+                    return format!("A workpiece of {size} mm is larger than the map, {} mm.", mm(spans).join(" x "));
+                }
                 return format!("A workpiece of {size} mm has no place that is reached everywhere{}.", placed.how());
             };
             format!(
@@ -177,10 +205,21 @@ impl Mapped {
         if !self.fixed().is_empty() {
             page += &format!("with {}\n", self.fixed());
         }
+        if let Some(frame) = self.framed() {
+            page += &format!("{frame}\n");
+        }
         if *unreachable > 0 {
             page += &format!("{} of them no pose reaches\n", unreachable);
         }
-        let (Some(best), Some(worst)) = (best, worst) else { return page + "\n" };
+        let (Some(best), Some(worst)) = (best, worst) else {
+            let over = self.axes.iter().any(|axis| axis.dimension == Dimension::Length);
+            page += if over && unreachable == cells {
+                "is it in the robot's base frame, and does `axis` of the tool point along `direction`?\n"
+            } else {
+                ""
+            };
+            return page + "\n";
+        };
         let mut table = Table::new(1, [String::new(), heading(&self.columns[0]), "where".to_owned()]);
         table.row(["best".to_owned(), self.figure(best.values[0]), self.place(best.cell)]);
         table.row(["mean".to_owned(), self.figure(*mean), String::new()]);

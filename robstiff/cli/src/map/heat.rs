@@ -8,6 +8,7 @@ use super::contour::contours;
 use super::document::Mapped;
 use super::raster;
 use super::slices::{Slice, Slices};
+use super::table::heading;
 use crate::report::svg::{Svg, tick_label, ticks};
 use crate::text::significant;
 
@@ -73,8 +74,10 @@ pub fn heat(mapped: &Mapped, slices: &Slices) -> Heat {
     let [right, up] = slices.drawn.map(|axis| &mapped.axes[axis]);
     let columns = slices.slices.len().min(3);
     let rows = slices.slices.len().div_ceil(columns);
-    let width = if columns == 1 { 620.0 } else { 800.0 / columns as f64 - 58.0 };
-    let height = width * aspect(right, up);
+    let most = if columns == 1 { 620.0 } else { 800.0 / columns as f64 - 58.0 };
+    let aspect = aspect(right, up);
+    let width = most * (1.25 / aspect).min(1.0);
+    let height = width * aspect;
     let (left, top, between, below) = (64.0, 34.0, 58.0, 64.0);
     let bar = left + columns as f64 * (width + between);
     let bottom = top + rows as f64 * (height + below);
@@ -112,7 +115,7 @@ const HATCH: &str = "<defs><pattern id=\"hatch\" width=\"7\" height=\"7\" patter
 /// Height over width: true to scale where both axes are lengths.
 fn aspect(right: &Axis, up: &Axis) -> f64 {
     let span = |axis: &Axis| axis.values[axis.values.len() - 1] - axis.values[0];
-    if right.dimension == up.dimension && up.unit() == "mm" { (span(up) / span(right)).clamp(0.4, 1.25) } else { 0.7 }
+    if right.dimension == up.dimension && up.unit() == "mm" { (span(up) / span(right)).clamp(0.2, 5.0) } else { 0.7 }
 }
 
 /// Which slice it is: `z = 800 mm`.
@@ -294,7 +297,8 @@ fn axes(svg: &mut Svg, frame: &Frame, right: &Axis, up: &Axis) {
 fn legend(svg: &mut Svg, [x, y]: [f64; 2], height: f64, mapped: &Mapped, scale: &Scale) {
     let height = height.min(360.0);
     let shares: Vec<f64> = (0..256).map(|k| f64::from(k) / 255.0).collect();
-    svg.text("legend", [x, y - 12.0], "start", &format!("[{}]", mapped.unit().replace('u', "µ")));
+    let what = heading(&mapped.columns[0]).replace("[u", "[µ").replace("/u", "/µ");
+    svg.text("legend", [x + 92.0, y - 12.0], "end", &what);
     svg.image([x, y], [16.0, height], &raster::picture(&shares, [1, 256]));
     svg.raw(&format!("<rect class=\"frame\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"16\" height=\"{height:.1}\"/>"));
     for &mark in &scale.marks {

@@ -19,8 +19,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use robstiff::Generic;
 use robstiff::map::read::{Over, Positions, Task};
 use robstiff::map::{Axis, CartesianSpace, Chunk, Evaluate, JointSpace, Measure, Space, Tool, best_placement, stream};
+use robstiff::nalgebra::Isometry3;
 use robstiff_robots::Description;
-use robstiff_robots::quantity::{self, Dimension};
+use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;
 use crate::output::{self, Files, Growing};
@@ -63,6 +64,7 @@ pub struct Arguments {
 /// Maps.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, _) = input::robot(&arguments.robot)?;
+    input::complain_if_rigid(&robot);
     let task = task(&arguments.map, &robot)?;
     let mut files = Files::default();
     files.protect(&arguments.robot);
@@ -112,6 +114,7 @@ fn map<const N: usize>(
             let generic = Generic::<N>::new(robot).expect("this arm has the same count");
             let space = CartesianSpace::new(&generic, axes.clone(), tool.clone()).in_frame(*frame);
             let mut mapped = write(&tape, &space, &task.measure, arguments, files)?;
+            mapped.mapped.frame = Some(*frame).filter(|frame| *frame != Isometry3::identity());
             if let Some(size) = arguments.place {
                 mapped.mapped.placements = place(&tape, &generic, positions, &task.measure, size, &mapped.values);
             }
@@ -235,7 +238,8 @@ fn write<const N: usize>(
         files.grown(parquet.into_inner().map_err(cannot)?)?;
     }
     let axes = space.axes().to_vec();
-    let mapped = Mapped { robot: String::new(), axes, measure: *measure, columns, summary, placements: Vec::new() };
+    let (robot, placements, frame) = (String::new(), Vec::new(), None);
+    let mapped = Mapped { robot, axes, measure: *measure, columns, summary, placements, frame };
     Ok(Written { mapped, slices, values })
 }
 
@@ -255,7 +259,7 @@ fn size(text: &str) -> Result<[f64; 3], String> {
     for (length, part) in lengths.iter_mut().zip([x, y, z]) {
         let bare = part.ends_with(|c: char| c.is_ascii_digit() || c == '.');
         let whole = if bare { format!("{part} {unit}") } else { (*part).to_owned() };
-        *length = quantity::parse(&whole, Dimension::Length).map_err(|error| error.to_string())?;
+        *length = input::with_unit(&whole, Dimension::Length)?;
         if *length < 0.0 {
             return Err(format!("{whole} is negative; {help}"));
         }

@@ -21,8 +21,8 @@ function read(event) {
     tip.textContent = [what, ...where].join("\n");
     tip.hidden = false;
     const frame = figure.getBoundingClientRect();
-    const x = event.clientX - frame.left, y = event.clientY - frame.top;
-    tip.style.left = `${x > frame.width / 2 ? x - tip.offsetWidth - 14 : x + 14}px`;
+    const x = event.clientX - frame.left + figure.scrollLeft, y = event.clientY - frame.top;
+    tip.style.left = `${x > figure.scrollLeft + frame.width / 2 ? x - tip.offsetWidth - 14 : x + 14}px`;
     tip.style.top = `${y > frame.height / 2 ? y - tip.offsetHeight - 14 : y + 14}px`;
     return;
   }

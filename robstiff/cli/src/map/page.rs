@@ -27,6 +27,9 @@ pub fn html(mapped: &Mapped, slices: &Slices) -> String {
         write!(said, ", with {}", mapped.fixed()).expect("a string takes any text");
     }
     body += &text("p", &format!("{said}."));
+    if let Some(frame) = mapped.framed() {
+        body += &text("p", &format!("Positions {frame}."));
+    }
     body += "</header>\n<section class=\"finding\">\n";
     for sentence in [headline(mapped)].into_iter().chain(mapped.placed()) {
         body += &text("p", &micro(&sentence));
@@ -34,7 +37,9 @@ pub fn html(mapped: &Mapped, slices: &Slices) -> String {
     body += "</section>\n";
     writeln!(body, "<figure class=\"map\">\n{}<output class=\"tip\" hidden></output></figure>", svg.html())
         .expect("a string takes any text");
-    body += &text("figcaption", &caption(mapped, slices));
+    let caption = escape(&caption(mapped, slices));
+    writeln!(body, "<figcaption>{caption}<span class=\"point\"> Point at the map to read a value.</span></figcaption>")
+        .expect("a string takes any text");
     body += &extremes(mapped);
     let data = data(mapped, slices, &frames);
     format!(
@@ -47,11 +52,12 @@ pub fn html(mapped: &Mapped, slices: &Slices) -> String {
     )
 }
 
-const TIP: &str = "figure.map { position: relative; }\nfigure.map svg { min-width: 0; }\n\
+const TIP: &str = "figure.map { position: relative; }\nfigure.map svg { min-width: 30rem; max-height: 88vh; }\n\
                    .tip { position: absolute; pointer-events: none; padding: .3rem .6rem; font-size: .85rem; \
                    line-height: 1.35; white-space: pre; background: var(--paper); color: var(--ink); \
                    border: 1px solid var(--soft); border-radius: 4px; }\n.tip[hidden] { display: none; }\n\
-                   .finding p { font-size: 1.05rem; }\n";
+                   .finding p { font-size: 1.05rem; }\n\
+                   @media print { figure.map svg { min-width: 0; max-height: 58vh; } .point { display: none; } table { break-inside: avoid; } }\n";
 
 fn headline(mapped: &Mapped) -> String {
     let summary = &mapped.summary;
@@ -67,8 +73,7 @@ fn headline(mapped: &Mapped) -> String {
         unit = mapped.unit()
     );
     if summary.unreachable > 0 {
-        let share = 100.0 * summary.unreachable as f64 / summary.cells as f64;
-        write!(said, " {share:.0} % of the {} are out of reach.", count(summary.cells, "cell"))
+        write!(said, " {} of the {} are out of reach.", summary.unreachable, count(summary.cells, "cell"))
             .expect("a string takes any text");
     }
     said
@@ -87,7 +92,7 @@ fn caption(mapped: &Mapped, slices: &Slices) -> String {
     if mapped.placements.iter().any(|placed| placed.best.is_some()) {
         said += ", a dashed frame the best place for the workpiece";
     }
-    said + ". Point at the map to read a value."
+    said + "."
 }
 
 fn extremes(mapped: &Mapped) -> String {

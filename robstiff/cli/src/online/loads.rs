@@ -13,7 +13,9 @@ use robstiff_robots::Description;
 use super::{Arguments, Variant, pose};
 use crate::failure::Failure;
 use crate::output::{self, Files};
+use crate::path::cutting::complain_of_feed;
 use crate::scene::Force;
+use crate::text::significant;
 use crate::{forces, input};
 
 /// Frequencies between which is looked for where a correction no longer gains (Hz).
@@ -116,9 +118,12 @@ impl Asked {
             };
             let name = format!("{} under {by}", path.display());
             let path = ToolPath::read(path, robot, load.tool_axis)?;
+            if let Source::Cut(file) = &source {
+                complain_of_feed(file, &by, &path);
+            }
             path.warnings.iter().for_each(|warning| output::complain(format_args!("warning: {warning}")));
             // The sign of the tool's axis says how the file writes it.
-            let axis = Unit::new_unchecked(load.tool_axis.abs());
+            let axis = load.spindle_axis.unwrap_or(Unit::new_unchecked(load.tool_axis.abs()));
             return Ok(Self::Path { path: Box::new(path), source, axis, feed: load.feed, name });
         }
         let q = pose(load.at.as_deref(), robot)?;
@@ -196,6 +201,20 @@ impl Asked {
                 (timeline, stops, name)
             }
         };
+        let duration = timeline.duration();
+        if let Some(variant) = variants.iter().find(|variant| variant.controller.step > duration) {
+            return Err(Failure::new(format!(
+                "{name} takes {} s, less than a control step of {} s",
+                significant(duration, 4),
+                significant(variant.controller.step, 4)
+            )));
+        }
+        if silent.is_some_and(|silent| silent.start >= duration) {
+            output::complain(format_args!(
+                "warning: {name} ends after {} s, before --lost begins",
+                significant(duration, 4)
+            ));
+        }
         let reading = |time: f64, wrench: &Vector6<f64>| {
             (!silent.is_some_and(|silent| silent.contains(&time))).then_some(*wrench)
         };
@@ -312,7 +331,7 @@ impl Course {
 fn frame(robot: &Description, q: &[f64], arguments: &Arguments) -> Result<(Matrix3<f64>, CutFrame), Failure> {
     let pose = with_robot!(robot, |arm| arm.transform(&SVector::from_column_slice(q)));
     let turn: Matrix3<f64> = pose.fixed_view::<3, 3>(0, 0).into_owned();
-    let axis = turn * arguments.load.tool_axis.as_ref();
+    let axis = turn * arguments.load.spindle_axis.unwrap_or(arguments.load.tool_axis).as_ref();
     match CutFrame::new(&axis, &arguments.load.toward) {
         Some(frame) => Ok((turn, frame)),
         None => Err(Failure::Usage("--toward goes along the tool's axis; a cut feeds across it".to_owned())),

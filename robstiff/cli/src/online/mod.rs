@@ -9,7 +9,7 @@ use robstiff::nalgebra::{Unit, Vector3};
 use robstiff::online::{Controller, Limits, Sensing, Servo};
 use robstiff::{Generic, with_robot};
 use robstiff_robots::Description;
-use robstiff_robots::quantity::{self, Dimension};
+use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
@@ -70,42 +70,45 @@ struct LoadArguments {
     #[arg(long, value_name = "x,y,z", default_value = "1,0,0", allow_hyphen_values = true, value_parser = direction)]
     toward: Vector3<f64>,
     /// Frequencies at which the force at a pose comes and goes
-    #[arg(long, value_name = "FREQUENCIES", default_value = "0.2, 0.5, 1, 2, 5, 10 Hz", value_parser = frequencies)]
+    #[arg(long, value_name = "FREQUENCIES", default_value = "0.2, 0.5, 1, 2, 5, 10 Hz", allow_hyphen_values = true, value_parser = frequencies)]
     frequencies: Frequencies,
     /// The speed along a path that does not say it, e.g. "600 mm/min"
-    #[arg(long, value_name = "SPEED", value_parser = positive(Dimension::Speed))]
+    #[arg(long, value_name = "SPEED", allow_hyphen_values = true, value_parser = positive(Dimension::Speed))]
     feed: Option<f64>,
-    /// The axis of the tool from the spindle to the tip, in the TCP's frame: x, y, z, -x, -y or -z
+    /// The axis in the TCP's frame that `ux uy uz` point along, and that of the spindle: x, y, z, -x, -y or -z
     #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = tool_axis)]
     tool_axis: Unit<Vector3<f64>>,
+    /// From the spindle to the tip, in the TCP's frame; where left out, `--tool-axis`, along a path without its sign
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = tool_axis)]
+    spindle_axis: Option<Unit<Vector3<f64>>>,
 }
 
 #[derive(clap::Args)]
 #[command(next_help_heading = "The control")]
 struct ControlArguments {
     /// Control steps to compare, e.g. "12 ms, 4 ms, 1 ms"
-    #[arg(long, value_name = "TIMES", default_value = "4 ms", value_parser = steps)]
+    #[arg(long, value_name = "TIMES", default_value = "4 ms", allow_hyphen_values = true, value_parser = steps)]
     step: Steps,
     /// From a reading to the position loops; one control step where left out
-    #[arg(long, value_name = "TIME", value_parser = not_negative)]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = not_negative)]
     delay: Option<f64>,
     /// The natural frequency of the position loops, of second order
-    #[arg(long, value_name = "FREQUENCY", default_value = "15 Hz", value_parser = positive(Dimension::Frequency))]
+    #[arg(long, value_name = "FREQUENCY", default_value = "15 Hz", allow_hyphen_values = true, value_parser = positive(Dimension::Frequency))]
     bandwidth: f64,
     /// Their damping ratio
-    #[arg(long, value_name = "RATIO", default_value = "0.7", value_parser = positive(Dimension::Number))]
+    #[arg(long, value_name = "RATIO", default_value = "0.7", allow_hyphen_values = true, value_parser = positive(Dimension::Number))]
     loop_damping: f64,
     /// How far a joint may be corrected (a sliding one by as many m as this has rad)
-    #[arg(long, value_name = "ANGLE", default_value = "5 mrad", value_parser = positive(Dimension::Angle))]
+    #[arg(long, value_name = "ANGLE", default_value = "5 mrad", allow_hyphen_values = true, value_parser = positive(Dimension::Angle))]
     most: f64,
     /// How fast a correction may change (rad/s, or m/s of a sliding joint)
-    #[arg(long, value_name = "SPEED", default_value = "1 rad/s", value_parser = positive(Dimension::RotationalSpeed))]
+    #[arg(long, value_name = "SPEED", default_value = "1 rad/s", allow_hyphen_values = true, value_parser = positive(Dimension::RotationalSpeed))]
     fastest: f64,
     /// For how long the last correction stays when the sensor falls silent, before it is withdrawn
-    #[arg(long, value_name = "TIME", default_value = "20 ms", value_parser = not_negative)]
+    #[arg(long, value_name = "TIME", default_value = "20 ms", allow_hyphen_values = true, value_parser = not_negative)]
     hold: f64,
     /// When the sensor falls silent, and for how long, e.g. "2 s, 0.5 s"; not with a force by its frequency
-    #[arg(long, value_name = "FROM,FOR", value_parser = loss)]
+    #[arg(long, value_name = "FROM,FOR", allow_hyphen_values = true, value_parser = loss)]
     lost: Option<Loss>,
 }
 
@@ -141,7 +144,7 @@ fn list(text: &str, dimension: Dimension) -> Result<Vec<f64>, String> {
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {
-    let time = quantity::parse(text, Dimension::Time).map_err(|error| error.to_string())?;
+    let time = crate::input::with_unit(text, Dimension::Time)?;
     if time >= 0.0 { Ok(time) } else { Err("a time of 0 or more is expected here".to_owned()) }
 }
 
@@ -192,6 +195,7 @@ impl ControlArguments {
 /// Simulates.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, _) = input::robot(&arguments.robot)?;
+    input::complain_if_rigid(&robot);
     let (model, name) = match &arguments.model {
         Some(path) => (input::robot(path)?.0, path.display().to_string()),
         None => (stiffer(&robot), "model 10 % too stiff".to_owned()),

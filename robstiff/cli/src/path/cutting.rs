@@ -13,6 +13,7 @@ use robstiff_robots::quantity::Dimension;
 use crate::failure::Failure;
 use crate::output::{self, Files};
 use crate::stability::positive;
+use crate::text::significant;
 use crate::{forces, input};
 
 /// Angles of a revolution that are looked at.
@@ -25,13 +26,13 @@ pub const WRONG: f64 = 0.1;
 #[command(next_help_heading = "Deviation under forces")]
 pub struct ForceArguments {
     /// The force on the tool along the path, a row for each point or by arc length
-    #[arg(long, value_name = "FORCES.csv", conflicts_with = "cut")]
+    #[arg(long, value_name = "FORCES.csv", conflicts_with = "cut", group = "load")]
     forces: Option<PathBuf>,
     /// What the columns of `--forces` are along
-    #[arg(long, value_name = "FRAME", default_value = "base", value_enum)]
+    #[arg(long, value_name = "FRAME", default_value = "base", value_enum, requires = "forces", conflicts_with = "cut")]
     force_frame: Frame,
     /// The cut that pushes the tool (robstiff/cli/docs/forces.md)
-    #[arg(long, value_name = "CUT.yaml")]
+    #[arg(long, value_name = "CUT.yaml", group = "load")]
     cut: Option<PathBuf>,
     /// Another cut to compare it with
     #[arg(long, value_name = "CUT.yaml", requires = "cut")]
@@ -40,13 +41,13 @@ pub struct ForceArguments {
     #[arg(long, requires = "cut")]
     peak: bool,
     /// The machined surface: a wall beside the tool, or the floor at its tip
-    #[arg(long, value_name = "SURFACE", default_value = "side", value_enum)]
+    #[arg(long, value_name = "SURFACE", default_value = "side", value_enum, requires = "load")]
     surface: Machined,
     /// From the spindle to the tip, in the TCP's frame; where left out, the axis of `--tool-axis` without its sign
-    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = super::tool_axis)]
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = super::tool_axis, requires = "load")]
     spindle_axis: Option<Unit<Vector3<f64>>>,
     /// Say where the error of the surface is within this, e.g. "0.1 mm"
-    #[arg(long, value_name = "LENGTH", value_parser = positive(Dimension::Length))]
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive(Dimension::Length))]
     tolerance: Option<f64>,
     /// Correct the path for the force: `--out` has what to command
     #[arg(long)]
@@ -194,8 +195,17 @@ impl Asked {
     ) -> Result<Cutting, Failure> {
         let load = match &self.source {
             Source::Table(table, frame) => table.load(solved, *frame, self.axis, self.surface).map_err(Failure::new)?,
-            Source::Cut(file) => self.load(file, solved)?,
+            Source::Cut(file) => {
+                complain_of_feed(file, &self.name, path);
+                self.load(file, solved)?
+            }
         };
+        if load.undirected.len() == solved.points.len() {
+            return Err(Failure::new(format!(
+                "{} has no direction anywhere: no point of the path lies across the tool from the one before",
+                self.name
+            )));
+        }
         let deviation = Deviation::of(robot, solved, &load).map_err(Failure::new)?;
         let tolerance = self.tolerance.map(|tolerance| (tolerance, deviation.stretches(tolerance)));
         let broken = |i: usize| match self.tolerance {
@@ -270,6 +280,23 @@ impl Asked {
         };
         Ok(Corrected { points: compensated.points.into_iter().map(point).collect(), rounds, sensitivity, elements })
     }
+}
+
+/// Says so where the path moves at another feed than the cut, whose force it is.
+pub fn complain_of_feed(file: &CutFile, name: &str, path: &ToolPath) {
+    let Forces::Model(cut) = &file.forces else { return };
+    let Some(of_cut) = cut.feed_speed() else { return };
+    let differs = |feed: f64| (feed / of_cut - 1.0).abs() > 0.01;
+    let Some((line, feed)) =
+        path.points.iter().find_map(|point| point.feed.filter(|feed| differs(*feed)).map(|feed| (point.line, feed)))
+    else {
+        return;
+    };
+    let [of_path, of_cut] = [feed, of_cut].map(|feed| significant(feed * 6e4, 4));
+    output::complain(format_args!(
+        "warning: {}:{line}: the path's feed is {of_path} mm/min, the one that {name} computes its force for {of_cut} mm/min",
+        path.file
+    ));
 }
 
 fn compared(name: &str, file: &CutFile, deviation: &Deviation) -> Compared {

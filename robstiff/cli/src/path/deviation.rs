@@ -32,7 +32,8 @@ pub fn page(cutting: &Cutting) -> String {
         let lines: Vec<String> = cutting.undirected.iter().take(MOST_SHOWN).map(ToString::to_string).collect();
         let more = if cutting.undirected.len() > MOST_SHOWN { ", .." } else { "" };
         page += &format!(
-            "no force on line {}{more}: the tool plunges or stays in place, and the cut has no direction\n",
+            "no force on {} {}{more}: the tool plunges or stays in place, and the cut has no direction\n",
+            if cutting.undirected.len() == 1 { "line" } else { "lines" },
             lines.join(", ")
         );
     }

@@ -1,7 +1,7 @@
 //! `robstiff path`: the joint coordinates of a tool path, how far forces push the
 //! tool off it, and what to command instead.
 
-mod cutting;
+pub mod cutting;
 mod deviation;
 
 use std::fmt::Write as _;
@@ -11,7 +11,7 @@ use robstiff::inverse::Inverse;
 use robstiff::nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
 use robstiff::path::{Jump, ToolPath};
 use robstiff::{Robot, with_robot};
-use robstiff_robots::quantity::{self, Dimension};
+use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, JointKind};
 use serde_json::{Value, json};
 
@@ -71,6 +71,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let mut files = Files::default();
     let asked = arguments.cutting.read(arguments.tool_axis, &mut files)?;
+    if asked.is_some() {
+        input::complain_if_rigid(&robot);
+    }
     let solved = with_robot!(&robot, |robot| solve(&robot, &path, start.as_deref(), asked.as_ref()))?;
     files.protect(&arguments.robot);
     files.protect(&arguments.path);
@@ -124,7 +127,7 @@ fn solve<const N: usize>(
 
 /// An axis of the tool's frame by its name.
 pub fn tool_axis(text: &str) -> Result<Unit<Vector3<f64>>, String> {
-    let axis = match text.trim_start_matches('-') {
+    let axis = match text.strip_prefix('-').unwrap_or(text) {
         "x" => Vector3::x_axis(),
         "y" => Vector3::y_axis(),
         "z" => Vector3::z_axis(),
@@ -139,8 +142,9 @@ fn place(given: &str) -> Result<Matrix4<f64>, Failure> {
     let [x, y, z, roll, pitch, yaw] = parts[..] else {
         return Err(Failure::Usage(format!("--place gives {}, six are needed", count(parts.len(), "number"))));
     };
-    let read =
-        |text, dimension| quantity::parse(text, dimension).map_err(|error| Failure::Usage(format!("--place: {error}")));
+    let read = |text, dimension| {
+        input::with_unit(text, dimension).map_err(|error| Failure::Usage(format!("--place: {error}")))
+    };
     let turn = Rotation3::from_euler_angles(
         read(roll, Dimension::Angle)?,
         read(pitch, Dimension::Angle)?,

@@ -55,6 +55,13 @@ pub struct Pose {
     pub name: Option<String>,
 }
 
+impl Pose {
+    /// How bad the pose is: errors have signs.
+    pub fn size(&self) -> f64 {
+        self.value.unwrap_or_default().abs()
+    }
+}
+
 /// What colours the poses.
 pub struct Values {
     /// Its name.

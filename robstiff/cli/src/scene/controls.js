@@ -1,17 +1,19 @@
 // Mouse, fingers, keys, sliders and what they read.
 
 const people = (k, q) => (data.joints[k].slides ? q * 1e3 : (q * 180) / Math.PI);
+// A zero has no sign.
+const fixed = (x, digits) => x.toFixed(digits).replace(/^-(?=[0.]+$)/, "");
 const unitOf = (k) => (data.joints[k].slides ? "mm" : "deg");
 
 function say() {
   const pose = shown();
-  const list = (values, digits) => values.map((x) => x.toFixed(digits)).join(", ");
+  const list = (values, digits) => values.map((x) => fixed(x, digits)).join(", ");
   const said = [];
   if (data.poses.length > 1) {
     const name = pose.given ? data.poses[state.row].name ?? String(state.row * data.stride + 1) : "moved by hand";
     said.push([data.kind === "path" ? "Row" : "Pose", name]);
   }
-  said.push(["Joints", pose.q.map((q, k) => `${people(k, q).toFixed(2)} ${unitOf(k)}`).join(", ")]);
+  said.push(["Joints", pose.q.map((q, k) => `${fixed(people(k, q), 2)} ${unitOf(k)}`).join(", ")]);
   said.push(["Tool at", `(${list(pose.tcp.map((x) => x * 1e3), 1)}) mm`]);
   const part = pose.given || !data.effects.length ? "" : " (of the joints alone)";
   said.push([`Compliance${part}`, `${principal(pose.compliance).map(({ value }) => shortest(value)).join(", ")} µm/N along its axes`]);
@@ -31,7 +33,7 @@ function say() {
   pose.q.forEach((q, k) => {
     const slider = find(`q${k + 1}`);
     if (document.activeElement !== slider || pose.given) slider.value = people(k, q);
-    slider.nextElementSibling.textContent = people(k, q).toFixed(1);
+    slider.nextElementSibling.textContent = fixed(people(k, q), 1);
   });
   find("moved").textContent = pose.given ? "" : data.effects.length
     ? "Moved by hand: the ellipsoid is that of the joints alone, without the effects of the description."
@@ -125,13 +127,24 @@ data.joints.forEach((joint, k) => {
 });
 find("back").addEventListener("click", () => show(state.row));
 
-find("ellipsoid-scale").textContent = perUnit > 0 ? `1 µm/N is ${shortest(perUnit * 1e3)} mm, a square of the floor ${shortest(square * 1e3)} mm.` : "The robot is rigid.";
-const arrows = find("arrow-scale");
-if (arrows && perMicrometre > 0) arrows.textContent = `${shortest(perMicrometre * 1e6)} times as long as it is.`;
+function saySizes() {
+  const floor = state.near ? `the path ${shortest(extent * 1e3)} mm from corner to corner` : `a square of the floor ${shortest(square * 1e3)} mm`;
+  find("ellipsoid-scale").textContent = perUnit > 0 ? `1 µm/N is ${shortest(perUnit * 1e3)} mm, ${floor}.` : "The robot is rigid.";
+  const arrows = find("arrow-scale");
+  if (arrows && perMicrometre > 0) arrows.textContent = `${shortest(perMicrometre * 1e6)} times as long as it is.`;
+}
+saySizes();
+find("near")?.addEventListener("click", () => {
+  lookAt(!state.near);
+  find("near").setAttribute("aria-pressed", state.near);
+  find("near").textContent = state.near ? "Look at the arm again" : "Look at the path alone";
+  saySizes();
+  redraw();
+});
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { colours.read(); redraw(); });
 new ResizeObserver(redraw).observe(canvas);
 colours.read();
 // The worst pose first.
-const worst = data.poses.reduce((most, pose, k) => ((pose.value ?? 0) > (data.poses[most].value ?? 0) ? k : most), 0);
+const worst = data.poses.reduce((most, pose, k) => (Math.abs(pose.value ?? 0) > Math.abs(data.poses[most].value ?? 0) ? k : most), 0);
 show(worst);
 draw();

@@ -63,6 +63,7 @@ pub fn force(text: &str) -> Result<Force, String> {
 /// Draws.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, _) = input::robot(&arguments.robot)?;
+    input::complain_if_rigid(&robot);
     let mut files = Files::default();
     files.protect(&arguments.robot);
     let scene = if let Some(path) = &arguments.campaign {
@@ -71,8 +72,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Scene::of_campaign(&robot, &campaign)?
     } else if let Some(path) = &arguments.path {
         files.protect(path);
-        let table = JointTable::read(path, &robot, arguments.column.as_deref())?;
-        Scene::new(&robot, Kind::Path, &rows(table, arguments.force)).coloured_by(arguments.column.as_deref())
+        // As in the header, the name may carry its unit.
+        let column = arguments.column.as_deref().map(|name| name.split('[').next().unwrap_or(name).trim());
+        let table = JointTable::read(path, &robot, column)?;
+        Scene::new(&robot, Kind::Path, &rows(table, arguments.force)).coloured_by(column)
     } else {
         let q = pose(arguments, &robot)?;
         let row = Row { q, force: arguments.force.map(|Force(force)| force), value: None };
@@ -121,7 +124,8 @@ fn summary(robot: &Description, scene: &Scene) -> String {
     if let Some(values) = &scene.values {
         let unit = if values.unit.is_empty() { String::new() } else { format!(" {}", values.unit) };
         let [least, most] = [values.least, values.most].map(|value| significant(value, 4));
-        said += &format!("{}: {least} to {most}{unit}\n", values.name);
+        let range = if least == most { least } else { format!("{least} to {most}") };
+        said += &format!("{}: {range}{unit}\n", values.name);
     }
     said
 }

@@ -70,9 +70,10 @@ fn legend(scene: &Scene) -> String {
         let heading = if unit.is_empty() { values.name.clone() } else { format!("{} [{unit}]", values.name) };
         said += &format!(
             "<div class=\"scale\">{}<div class=\"bar\" aria-hidden=\"true\">{steps}</div>\
-             <div class=\"marks\">{marks}</div>\n<p>{} where it is more.</p></div>\n",
+             <div class=\"marks\">{marks}</div>\n<p>{} where it is {}.</p></div>\n",
             text("h2", &heading),
-            if scene.kind == Kind::Path { "The line is wider" } else { "The dots are larger" }
+            if scene.kind == Kind::Path { "The line is wider" } else { "The dots are larger" },
+            if values.least < 0.0 { "farther from zero" } else { "more" }
         );
     }
     said += &format!(
@@ -101,6 +102,10 @@ fn controls(robot: &Description, scene: &Scene) -> String {
             if scene.kind == Kind::Path { "Along the path" } else { "Pose" },
             scene.poses.len() - 1
         );
+        if scene.kind == Kind::Path {
+            said +=
+                "<p><button id=\"near\" type=\"button\" aria-pressed=\"false\">Look at the path alone</button></p>\n";
+        }
     }
     said += "<dl id=\"readout\" aria-live=\"polite\"></dl>\n<details><summary>Move the joints</summary>\n";
     for (k, joint) in robot.joints.iter().enumerate() {
@@ -127,8 +132,8 @@ fn table(scene: &Scene) -> String {
     }));
     let mut table = Table::new(head);
     let mut worst: Vec<usize> = (0..scene.poses.len()).collect();
-    let value = |k: usize| scene.poses[k].value.unwrap_or_default();
-    worst.sort_by(|&a, &b| value(b).total_cmp(&value(a)));
+    let size = |k: usize| scene.poses[k].size();
+    worst.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
     for k in worst.into_iter().take(MOST_ROWS) {
         let pose = &scene.poses[k];
         let tip = pose.points.last().copied().unwrap_or_default();

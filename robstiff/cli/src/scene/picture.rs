@@ -22,11 +22,11 @@ const SHADES: f64 = 9.0;
 /// The drawing.
 pub fn svg(robot: &Description, scene: &Scene) -> String {
     let mut svg = Svg::new(WIDTH, HEIGHT, &format!("{} seen from the front left", robot.name));
-    let view = View::new(scene);
+    let per_unit = ellipsoid_scale(scene);
+    let view = View::new(scene, per_unit);
     floor(&mut svg, &view);
     let Some(shown) = shown(scene) else { return svg.html() };
     arm(&mut svg, &view, shown);
-    let per_unit = ellipsoid_scale(scene);
     let stride = scene.poses.len().div_ceil(MOST_ELLIPSOIDS);
     for pose in scene.poses.iter().step_by(stride).filter(|_| scene.poses.len() > 1) {
         ellipsoid(&mut svg, "ellipsoid faint", &view, pose, per_unit);
@@ -45,8 +45,7 @@ pub fn svg(robot: &Description, scene: &Scene) -> String {
 
 /// The pose that the arm stands in: the worst.
 fn shown(scene: &Scene) -> Option<&Pose> {
-    let value = |pose: &Pose| pose.value.unwrap_or_default();
-    scene.poses.iter().max_by(|a, b| value(a).total_cmp(&value(b)))
+    scene.poses.iter().max_by(|a, b| a.size().total_cmp(&b.size()))
 }
 
 /// Metres a um/N: the longest semi-axis is at most a sixth of the arm.
@@ -78,7 +77,8 @@ struct View {
 }
 
 impl View {
-    fn new(scene: &Scene) -> Self {
+    /// So that all poses and their ellipsoids, of `per_unit` m a um/N, are in it.
+    fn new(scene: &Scene, per_unit: f64) -> Self {
         let reach = reach(scene);
         let points = || scene.poses.iter().flat_map(|pose| &pose.points);
         let step = ticks(0.0, reach, 8).get(1).copied().unwrap_or(0.5);
@@ -90,11 +90,16 @@ impl View {
         let lines = [ends(0), ends(1)];
         let corners = lines[0].into_iter().flat_map(|x| lines[1].map(|y| [x, y, 0.0]));
         let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        for point in corners.chain(points().copied()) {
-            for (axis, value) in flat(point).into_iter().enumerate() {
-                low[axis] = low[axis].min(value);
-                high[axis] = high[axis].max(value);
+        let mut include = |point: [f64; 2], half: [f64; 2]| {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(point[axis] - half[axis]);
+                high[axis] = high[axis].max(point[axis] + half[axis]);
             }
+        };
+        corners.chain(points().copied()).for_each(|point| include(flat(point), [0.0; 2]));
+        for pose in &scene.poses {
+            let [[xx, _], [_, yy]] = outline(pose, per_unit);
+            include(flat(pose.points.last().copied().unwrap_or_default()), [xx, yy].map(f64::sqrt));
         }
         let per_m = ((WIDTH - 2.0 * MARGIN) / (high[0] - low[0])).min((HEIGHT - 2.0 * MARGIN) / (high[1] - low[1]));
         let centre = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
@@ -162,15 +167,21 @@ fn path(svg: &mut Svg, view: &View, scene: &Scene) {
 
 /// The outline of the ellipsoid of displacements under forces of one size: the
 /// image of the unit sphere under the compliance, projected, is that of the unit
-/// circle under the root of `B B^T`, `B` the projection of the compliance.
-fn ellipsoid(svg: &mut Svg, class: &str, view: &View, pose: &Pose, per_unit: f64) {
-    let [xx, yy, zz, xy, xz, yz] = pose.compliance.map(|entry| entry * per_unit * view.per_m);
+/// circle under the root of `B B^T`, `B` the projection of the compliance. This is
+/// `B B^T`; the roots of its diagonal are half the outline's width and height.
+fn outline(pose: &Pose, scale: f64) -> [[f64; 2]; 2] {
+    let [xx, yy, zz, xy, xz, yz] = pose.compliance.map(|entry| entry * scale);
     let columns = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(flat);
     let product = |i: usize, j: usize| columns.iter().map(|column| column[i] * column[j]).sum::<f64>();
+    [[product(0, 0), product(0, 1)], [product(1, 0), product(1, 1)]]
+}
+
+fn ellipsoid(svg: &mut Svg, class: &str, view: &View, pose: &Pose, per_unit: f64) {
+    let [[xx, xy], [_, yy]] = outline(pose, per_unit * view.per_m);
     // The factor of Cholesky is as good a root as any.
-    let first = product(0, 0).sqrt().max(f64::MIN_POSITIVE);
-    let below = product(0, 1) / first;
-    let second = (product(1, 1) - below * below).max(0.0).sqrt();
+    let first = xx.sqrt().max(f64::MIN_POSITIVE);
+    let below = xy / first;
+    let second = (yy - below * below).max(0.0).sqrt();
     let [x, y] = view.at(pose.points.last().copied().unwrap_or_default());
     let outline = (0..=48).map(|k| {
         let (sin, cos) = (f64::from(k) / 48.0 * core::f64::consts::TAU).sin_cos();

@@ -6,7 +6,7 @@ const find = (id) => document.getElementById(id);
 document.documentElement.classList.add("scripted");
 
 // What is shown: a given pose, or joints that were moved by hand.
-const state = { row: 0, moved: null, playing: false };
+const state = { row: 0, moved: null, playing: false, near: false };
 const shortest = (x) => String(Number(x.toPrecision(4)));
 const round = (x) => { const p = 10 ** Math.floor(Math.log10(x)); return [5, 2, 1].find((m) => m * p <= x * 1.0001) * p; };
 
@@ -24,17 +24,37 @@ const corners = (arm) => [...arm.joints.flatMap((joint) => [joint.from, joint.to
 const skeleton = corners(first);
 const reach = Math.max(1e-3, skeleton.slice(1).reduce((sum, p, k) => sum + norm(add(p, skeleton[k], -1)), 0));
 const softest = Math.max(...data.poses.map((pose) => principal(pose.compliance)[0].value));
-const perUnit = softest > 0 ? round(reach / 6.5 / softest) : 0;
 const farthest = Math.max(0, ...data.poses.flatMap((p) => [p.displacement, p.measured].filter(Boolean).map(norm)));
-const perMicrometre = farthest > 0 ? round((reach / 7 / farthest) * 1e6) / 1e6 : 0;
 const everything = [[0, 0, 0], ...skeleton, ...data.poses.map((pose) => pose.tcp)];
 const ends = [0, 1, 2].map((k) => [Math.min(...everything.map((p) => p[k])), Math.max(...everything.map((p) => p[k]))]);
 const square = round(reach / 5);
 const floor = ends.slice(0, 2).map(([low, high]) => [Math.floor(low / square - 0.3), Math.ceil(high / square + 0.3)]);
+// The path alone: a pocket is small beside the arm that mills it.
+const box = [0, 1, 2].map((k) => [Math.min(...data.poses.map((p) => p.tcp[k])), Math.max(...data.poses.map((p) => p.tcp[k]))]);
+const extent = Math.max(1e-3, norm(box.map(([low, high]) => high - low)));
+// What the picture is as large as, and how large ellipsoids and arrows are drawn.
+let large, perUnit, perMicrometre;
+function measure() {
+  large = state.near ? extent : reach;
+  perUnit = softest > 0 ? round(large / 6.5 / softest) : 0;
+  perMicrometre = farthest > 0 ? round((large / 7 / farthest) * 1e6) / 1e6 : 0;
+}
+measure();
 const eye = new Eye(ends.map(([low, high]) => (low + high) / 2), 3 * norm(ends.map(([low, high]) => high - low)));
+
+// From the arm to the path alone, or back.
+function lookAt(near) {
+  state.near = near;
+  measure();
+  const seen = near ? box : ends;
+  eye.home.centre = seen.map(([low, high]) => (low + high) / 2);
+  eye.home.distance = 3 * norm(seen.map(([low, high]) => high - low)) || 3 * large;
+  eye.reset();
+}
 
 // What is to be seen in the beginning.
 function toFit() {
+  if (state.near) return [corner(), ...data.poses.flatMap(({ tcp }) => [-0.1, 0.1].map((side) => [tcp[0], tcp[1], tcp[2] + side * large]))];
   const fitted = floor[0].flatMap((x) => floor[1].map((y) => [x * square, y * square, 0]));
   const worst = standing(data, data.poses[state.row].q);
   for (const p of [...corners(worst), ...data.poses.map((pose) => pose.tcp)]) {
@@ -76,6 +96,18 @@ function drawFloor(picture, arm) {
   });
 }
 
+// The base frame's directions, beside the path.
+const corner = () => box.map(([low]) => low - 0.12 * large);
+function drawDirections(picture) {
+  const from = corner();
+  ["x", "y", "z"].forEach((name, k) => {
+    const end = [...from];
+    end[k] += 0.12 * large;
+    picture.arrow(from, end, colours.css("soft"), 1.5);
+    picture.word(name, add(from, add(end, from, -1), 1.25));
+  });
+}
+
 // How thick the arm is at a joint, and where on its axis the joint is drawn:
 // where an offset follows, some way along it.
 const thick = (k) => reach * (0.045 - (0.027 * k) / data.joints.length);
@@ -114,14 +146,17 @@ function drawArm(picture, arm) {
 
 function drawPath(picture) {
   if (data.kind === "path") {
-    const width = (n) => 2.5 + 0.35 * n;
+    // Errors have signs: what is far from zero is bad either way.
+    const sizes = data.value ? [data.value.least, data.value.most].map(Math.abs) : [0, 0];
+    const [small, great] = [data.value && data.value.least * data.value.most < 0 ? 0 : Math.min(...sizes), Math.max(...sizes)];
+    const width = (...poses) => 2.5 + 3.2 * Math.max(...poses.map(({ value }) => (Math.abs(value ?? 0) - small) / (great - small || 1)));
     for (let k = 1; k < data.poses.length; k++) {
       const [one, other] = [data.poses[k - 1], data.poses[k]];
-      const n = data.value ? shade(Math.max(one.value, other.value)) : 0;
+      const n = data.value ? shade(Math.abs(one.value) > Math.abs(other.value) ? one.value : other.value) : 0;
       const points = [one.tcp, other.tcp];
       // Behind the neighbours' own colour.
-      picture.line(points, colours.css("edge"), width(n) + 2.5, -0.03 * reach);
-      picture.line(points, colours.css(data.value ? `shade${n}` : "ink"), width(n), 0.01 * reach);
+      picture.line(points, colours.css("edge"), width(one, other) + 2.5, -0.03 * large);
+      picture.line(points, colours.css(data.value ? `shade${n}` : "ink"), width(one, other), 0.01 * large);
     }
   }
   if (data.kind === "campaign") {
@@ -141,7 +176,13 @@ function semiAxes(pose) {
 function drawEllipsoids(picture, pose) {
   const stride = Math.ceil(data.poses.length / 12);
   if (!state.moved && data.poses.length > 1) {
+    // Those that are clear of one another; the others would only hide the path.
+    const longest = (of) => semiAxes(of)[0].length;
+    const drawn = [pose];
     data.poses.filter((_, k) => k % stride === 0 && k !== state.row).forEach((other) => {
+      const clear = (one) => norm(add(one.tcp, other.tcp, -1)) > 0.35 * (longest(one) + longest(other));
+      if (data.kind === "path" && !drawn.every(clear)) return;
+      drawn.push(other);
       picture.ellipsoid(other.tcp, semiAxes(other), colours.rgb("ellipsoid"), 0.16, 8);
     });
   }
@@ -154,7 +195,7 @@ function drawAxes(picture, pose) {
     picture.over([add(pose.tcp, axis, -length), add(pose.tcp, axis, length)], colours.css("ellipsoid-ink"), 1.6);
   });
   // Words of axes too short to tell apart would hide each other.
-  axes.filter(({ length }) => length > 0.02 * reach).forEach(({ axis, length, value }) => {
+  axes.filter(({ length }) => length > 0.02 * large).forEach(({ axis, length, value }) => {
     const end = add(pose.tcp, axis, dot(axis, eye.up) < 0 ? -length : length);
     picture.word(`${shortest(value)} µm/N`, end, [[0, -12], [44, 0], [-44, 0], [44, -20], [-44, -20]]);
   });
@@ -185,13 +226,18 @@ function draw() {
   eye.look(width, height, toFit());
   const picture = new Picture(context, eye, colours);
   const pose = shown(), arm = standing(data, pose.q);
-  drawFloor(picture, arm);
-  drawArm(picture, arm);
+  if (state.near) {
+    drawDirections(picture);
+  } else {
+    drawFloor(picture, arm);
+    drawArm(picture, arm);
+  }
   drawPath(picture);
   drawEllipsoids(picture, pose);
   picture.flush();
   drawAxes(picture, pose);
   drawDisplacement(picture, pose);
+  if (state.near) return;
   arm.joints.forEach((joint, k) => picture.word(String(k + 1), seat(joint, k), [[0, 0], [13, 0], [-13, 0], [0, -15]], 11));
 }
 

@@ -17,6 +17,7 @@ use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
+use crate::path::tool_axis;
 use crate::{forces, input, json};
 
 /// The depths of cut at which the arm chatters by mode coupling, by direction of feed
@@ -36,16 +37,16 @@ pub struct Arguments {
     #[arg(long, value_name = "q1,q2,..", allow_hyphen_values = true)]
     at: Option<String>,
     /// The frequency of the arm's first mode as measured in this pose, e.g. "15 Hz"; by the links' masses where left out
-    #[arg(long, value_name = "FREQUENCY", value_parser = positive(Dimension::Frequency))]
+    #[arg(long, value_name = "FREQUENCY", allow_hyphen_values = true, value_parser = positive(Dimension::Frequency))]
     frequency: Option<f64>,
     /// The damping ratio of the arm's modes; without it, the arm is taken to have no damping
-    #[arg(long, value_name = "RATIO", default_value_t = 0.0, value_parser = ratio)]
+    #[arg(long, value_name = "RATIO", default_value_t = 0.0, allow_hyphen_values = true, value_parser = ratio)]
     damping: f64,
-    /// The axis of the spindle in the tool's frame, from the spindle to the tip
-    #[arg(long, value_name = "x,y,z", default_value = "0,0,1", allow_hyphen_values = true, value_parser = axis)]
+    /// The axis of the spindle in the TCP's frame, from the spindle to the tip: x, y, z, -x, -y, -z, or a vector "0,0,1"
+    #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = axis)]
     tool_axis: Vector3<f64>,
     /// The greatest depth looked at, e.g. "10 mm"; where left out, ten times the cut's
-    #[arg(long, value_name = "DEPTH", value_parser = positive(Dimension::Length))]
+    #[arg(long, value_name = "DEPTH", allow_hyphen_values = true, value_parser = positive(Dimension::Length))]
     greatest: Option<f64>,
     /// How many directions of the feed are looked at
     #[arg(long, value_name = "COUNT", default_value_t = 72, value_parser = clap::value_parser!(u16).range(4..=3600))]
@@ -58,10 +59,10 @@ pub struct Arguments {
     json: Option<PathBuf>,
 }
 
-/// Reads a quantity above zero.
+/// Reads a quantity above zero, with its unit.
 pub fn positive(dimension: Dimension) -> impl Fn(&str) -> Result<f64, String> + Clone {
     move |text| {
-        let value = quantity::parse(text, dimension).map_err(|error| error.to_string())?;
+        let value = input::with_unit(text, dimension)?;
         if value > 0.0 { Ok(value) } else { Err(format!("{} above zero is expected here", dimension.name())) }
     }
 }
@@ -71,10 +72,15 @@ fn ratio(text: &str) -> Result<f64, String> {
     if (0.0..1.0).contains(&ratio) { Ok(ratio) } else { Err("a ratio from 0 to below 1 is expected here".to_owned()) }
 }
 
-/// Reads a direction, of any length.
+/// Reads a direction, of any length, or the name of an axis.
 pub fn axis(text: &str) -> Result<Vector3<f64>, String> {
+    if let Ok(axis) = tool_axis(text) {
+        return Ok(axis.into_inner());
+    }
     let parts: Vec<&str> = text.split(',').collect();
-    let [x, y, z] = parts[..] else { return Err("three numbers are expected here, e.g. `0,0,1`".to_owned()) };
+    let [x, y, z] = parts[..] else {
+        return Err("one of x, y, z, -x, -y, -z or three numbers are expected here, e.g. `0,0,1`".to_owned());
+    };
     let number = |part: &str| quantity::parse(part, Dimension::Number).map_err(|error| error.to_string());
     let axis = Vector3::new(number(x)?, number(y)?, number(z)?);
     axis.try_normalize(1e-9).ok_or_else(|| "an axis has a length, e.g. `0,0,1`".to_owned())
@@ -133,6 +139,12 @@ fn predict<const N: usize>(
 ) -> Result<Predicted, Failure> {
     let q = SVector::from_column_slice(q);
     let compliance = translational_compliance(&arm.compliance(&q));
+    if compliance.amax() == 0.0 {
+        return Err(Failure::new(format!(
+            "{} does not yield in this pose: its joints are rigid until they are given a `compliance`",
+            robot.name
+        )));
+    }
     let mass = match arguments.frequency {
         Some(frequency) => mass_of_first_mode(&compliance, frequency)
             .ok_or_else(|| Failure::new(format!("{} does not yield in this pose", robot.name)))?,

@@ -29,7 +29,7 @@ const STYLE: &str = "<style>\n\
 /// chatters.
 pub fn svg(predicted: &Predicted, cut: &Cut) -> String {
     let label = "Depths of cut with mode coupling over the direction of feed";
-    let mut svg = Svg::new(SIZE, SIZE + 40.0, label);
+    let mut svg = Svg::new(SIZE, SIZE + 56.0, label);
     let greatest = predicted.greatest * 1e3;
     let marks: Vec<f64> = ticks(0.0, greatest, 4).into_iter().filter(|mark| *mark <= greatest * (1.0 + 1e-9)).collect();
     let out = |depth: f64| depth * 1e3 / greatest * RADIUS;
@@ -63,8 +63,13 @@ pub fn svg(predicted: &Predicted, cut: &Cut) -> String {
         svg.arrow("best", CENTER, at(best.angle, RADIUS));
     }
     svg.text("title", [SIZE / 2.0, 18.0], "middle", "Limiting depth of cut [mm] over the direction of feed");
-    let legend = "red: mode coupling; dashed: the cut's depth; arrow: the best feed";
-    svg.text("small", [SIZE / 2.0, SIZE + 14.0], "middle", legend);
-    svg.text("small", [SIZE / 2.0, SIZE + 30.0], "middle", "not regenerative chatter of spindle, tool or workpiece");
+    let legends = [
+        "0°: along the base frame's x; seen from the spindle",
+        "red: mode coupling; dashed: the cut's depth; arrow: the best feed",
+        "not regenerative chatter of spindle, tool or workpiece",
+    ];
+    for (y, legend) in [14.0, 30.0, 46.0].into_iter().zip(legends) {
+        svg.text("small", [SIZE / 2.0, SIZE + y], "middle", legend);
+    }
     svg.file(STYLE)
 }

@@ -1,0 +1,173 @@
+//! What the commands of machining say to input that cannot be meant.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::{fail, folder, inside, json, names, run, succeed};
+
+fn file(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/files").join(name).to_str().unwrap().to_owned()
+}
+
+/// A file of the pages with some of its text replaced.
+fn changed(folder: &Path, name: &str, [from, to]: [&str; 2]) -> String {
+    let text = fs::read_to_string(file(name)).unwrap();
+    assert!(text.contains(from), "{name} has no {from}");
+    let path = inside(folder, name);
+    fs::write(&path, text.replace(from, to)).unwrap();
+    path
+}
+
+/// The arm of the pages' URDF file, all rigid.
+fn rigid(folder: &Path) -> String {
+    let arm = inside(folder, "arm.yaml");
+    assert_eq!(run(&["import", &file("arm.urdf"), "--tip", "cutter_tip", "--out", &arm]).code, 0);
+    arm
+}
+
+#[test]
+fn quantities_without_a_unit_are_refused() {
+    let (pocket, cut) = (file("pocket.csv"), file("roughing.yaml"));
+    let path = ["path", "rv130hsc", &pocket, "--tool-axis", "x", "--cut", &cut, "--tolerance"];
+    let said = fail(2, &[&path[..], &["0.1"]].concat());
+    assert!(said.contains("`0.1` has no unit; write e.g. `0.1 mm`"), "{said}");
+    let said = fail(2, &[&path[..], &["-0.1 mm"]].concat());
+    assert!(said.contains("a length above zero is expected here"), "{said}");
+    let said = fail(2, &["path", "rv130hsc", &pocket, "--place", "0, 0, 0, 0, 0, 40"]);
+    assert!(said.contains("--place: `40` has no unit; write e.g. `40 deg`"), "{said}");
+    let said = fail(2, &["online", "rv130hsc", &pocket, "--tool-axis", "x", "--cut", &cut, "--step", "4"]);
+    assert!(said.contains("`4` has no unit; write e.g. `4 ms`"), "{said}");
+    let said = fail(2, &["map", "kuka-kr270-r2700", &file("table.yaml"), "--place", "400 x 300 x 0"]);
+    assert!(said.contains("has no unit"), "{said}");
+}
+
+#[test]
+fn options_that_would_be_ignored_are_refused() {
+    let pocket = file("pocket.csv");
+    let path = ["path", "rv130hsc", &pocket, "--tool-axis", "x"];
+    for more in [["--force-frame", "tool"], ["--surface", "face"], ["--spindle-axis", "-z"]] {
+        let said = fail(2, &[&path[..], &more].concat());
+        assert!(said.contains("required arguments were not provided"), "{more:?}: {said}");
+    }
+    let cut = file("roughing.yaml");
+    fail(2, &[&path[..], &["--cut", &cut, "--force-frame", "tool"]].concat());
+    fail(2, &["path", "rv130hsc", &pocket, "--tool-axis", "--x"]);
+}
+
+#[test]
+fn a_cut_without_units_is_doubted() {
+    let folder = folder("machining-units");
+    let cut = changed(&folder, "roughing.yaml", ["depth: 2 mm", "depth: 2"]);
+    let ran = run(&["forces", &cut]);
+    assert_eq!(ran.code, 0);
+    assert!(ran.err.contains("`depth` has no unit and is taken in m: is it in mm?"), "{}", ran.err);
+    assert!(ran.out.contains("2000 mm deep") && ran.out.contains("9000 rpm"), "{}", ran.out);
+    assert_eq!(run(&["forces", &file("roughing.yaml")]).err, "");
+}
+
+#[test]
+fn a_path_at_another_feed_than_its_cut_is_told() {
+    let folder = folder("machining-feed");
+    let cut = file("roughing.yaml");
+    let slow = changed(&folder, "pocket.csv", [",3600", ",1200"]);
+    for command in ["path", "online"] {
+        let ran = run(&[command, "rv130hsc", &slow, "--tool-axis", "x", "--cut", &cut]);
+        assert_eq!(ran.code, 0, "{}", ran.err);
+        assert!(ran.err.contains("pocket.csv:2: the path's feed is 1200 mm/min"), "{}", ran.err);
+        assert!(ran.err.contains("3600 mm/min"), "{}", ran.err);
+        let ran = run(&[command, "rv130hsc", &file("pocket.csv"), "--tool-axis", "x", "--cut", &cut]);
+        assert_eq!(ran.err, "");
+    }
+}
+
+#[test]
+fn an_arm_that_does_not_yield_is_told() {
+    let folder = folder("machining-rigid");
+    let arm = rigid(&folder);
+    for more in [&["--frequency", "15 Hz"][..], &[]] {
+        let said = fail(1, &[&["stability", &arm, &file("roughing.yaml")], more].concat());
+        assert!(said.contains("MillingArm180 does not yield in this pose"), "{said}");
+    }
+    let page = inside(&folder, "page.html");
+    let ran = run(&["view", &arm, "--out", &page]);
+    assert!(ran.err.contains("MillingArm180 is rigid"), "{}", ran.err);
+    let ran = run(&["map", &arm, &file("table.yaml")]);
+    assert!(ran.err.contains("MillingArm180 is rigid"), "{}", ran.err);
+}
+
+#[test]
+fn a_cut_along_the_tool_has_no_direction() {
+    let folder = folder("machining-point");
+    let first: Vec<String> = fs::read_to_string(file("pocket.csv")).unwrap().lines().take(2).map(Into::into).collect();
+    let path = inside(&folder, "point.csv");
+    fs::write(&path, first.join("\n")).unwrap();
+    let out = inside(&folder, "out.csv");
+    let cut = file("roughing.yaml");
+    let said = fail(1, &["path", "rv130hsc", &path, "--tool-axis", "x", "--cut", &cut, "--out", &out]);
+    assert!(said.contains("has no direction anywhere"), "{said}");
+    assert_eq!(names(&folder), ["point.csv"]);
+}
+
+#[test]
+fn a_path_that_is_not_solved_is_not_drawn() {
+    let folder = folder("machining-unsolved");
+    let page = inside(&folder, "page.html");
+    let said = fail(1, &["view", "rv130hsc", "--path", &file("pocket.csv"), "--out", &page]);
+    assert!(said.contains("no joint coordinates `q1` ..") && said.contains("robstiff path"), "{said}");
+    let solved = inside(&folder, "solved.csv");
+    let cut = file("roughing.yaml");
+    let path = ["path", "rv130hsc", &file("pocket.csv"), "--tool-axis", "x", "--cut", &cut, "--out", &solved];
+    succeed(&path);
+    let said = succeed(&["view", "rv130hsc", "--path", &solved, "--column", "deviation [um]", "--out", &page]);
+    assert!(said.contains("deviation: "), "{said}");
+}
+
+#[test]
+fn a_path_that_is_corrected_already_is_told() {
+    let folder = folder("machining-corrected");
+    let (corrected, cut, pocket) = (inside(&folder, "corrected.csv"), file("roughing.yaml"), file("pocket.csv"));
+    let path = ["path", "rv130hsc", &pocket, "--tool-axis", "x", "--cut", &cut, "--compensate", "--out", &corrected];
+    succeed(&path);
+    let ran = run(&["path", "rv130hsc", &corrected, "--tool-axis", "x", "--cut", &cut, "--compensate"]);
+    assert_eq!(ran.code, 0);
+    assert!(ran.err.contains("the path is corrected already"), "{}", ran.err);
+}
+
+#[test]
+fn the_three_ways_to_a_deflection_agree() {
+    let folder = folder("machining-agree");
+    let (solved, seen) = (inside(&folder, "solved.csv"), inside(&folder, "seen.json"));
+    let cut = file("roughing.yaml");
+    succeed(&["path", "rv130hsc", &file("pocket.csv"), "--tool-axis", "x", "--cut", &cut, "--out", &solved]);
+    let text = fs::read_to_string(&solved).unwrap();
+    let (header, row) = (text.lines().next().unwrap(), text.lines().nth(20).unwrap());
+    let field = |name: &str| {
+        let at = header.split(',').position(|column| column == name).unwrap();
+        row.split(',').nth(at).unwrap().to_owned()
+    };
+    let q: Vec<String> = (1..=5).map(|k| format!("{} deg", field(&format!("q{k} [deg]")))).collect();
+    let force = ["Fx [N]", "Fy [N]", "Fz [N]"].map(&field);
+    let page = inside(&folder, "page.html");
+    let at = ["--at", &q.join(","), "--force", &format!("{} N", force.join(" N, "))];
+    succeed(&[&["view", "rv130hsc", "--out", &page, "--json", &seen], &at[..]].concat());
+    let viewed = json(&seen)["value"]["most"].as_f64().unwrap();
+    assert!((viewed / field("deviation [um]").parse::<f64>().unwrap() - 1.0).abs() < 1e-4, "{viewed}");
+
+    let cell = inside(&folder, "cell.yaml");
+    let mut joints: Vec<String> = q.iter().map(|q| format!("  - {q}\n")).collect();
+    joints[3] = "  - {from: 0 deg, to: 1 deg, count: 2}\n".to_owned();
+    fs::write(&cell, format!("force: [{} N]\njoints:\n{}", force.join(" N, "), joints.concat())).unwrap();
+    let mapped = inside(&folder, "cell.csv");
+    succeed(&["map", "rv130hsc", &cell, "--csv", &mapped]);
+    let text = fs::read_to_string(&mapped).unwrap();
+    let value: f64 = text.lines().nth(1).unwrap().split(',').nth(1).unwrap().parse().unwrap();
+    assert!((value / viewed - 1.0).abs() < 1e-5, "{text} {viewed}");
+}
+
+#[test]
+fn a_workpiece_larger_than_the_map_is_told() {
+    let said = succeed(&["map", "kuka-kr270-r2700", &file("table.yaml"), "--place", "4000 x 300 x 0 mm"]);
+    assert!(said.contains("A workpiece of 4000 x 300 x 0 mm is larger than the map, 1200 x 1200 x 0 mm."), "{said}");
+}

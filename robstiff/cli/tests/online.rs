@@ -1,0 +1,92 @@
+//! `online`: what a correction while cutting leaves.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::{fail, folder, inside, json, run, succeed};
+use serde_json::Value;
+
+fn file(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/files").join(name).to_str().unwrap().to_owned()
+}
+
+/// The documents of a run along the pocket, with more options.
+fn along(robot: &str, folder: &str, more: &[&str]) -> Value {
+    let folder = folder_of(folder);
+    let (told, pocket, cut) = (inside(&folder, "told.json"), file("pocket.csv"), file("roughing.yaml"));
+    let arguments = ["online", robot, &pocket, "--tool-axis", "x", "--cut", &cut, "--json", &told];
+    succeed(&[&arguments[..], more].concat());
+    json(&told)
+}
+
+fn folder_of(name: &str) -> std::path::PathBuf {
+    folder(&format!("online-{name}"))
+}
+
+/// What the force sensor with the true model, the one with a wrong model and
+/// encoders leave, as parts of the root mean square without any.
+fn left(document: &Value) -> [f64; 3] {
+    let rms = |course: &Value| course["rms_m"].as_f64().unwrap();
+    let without = rms(&document["without"]);
+    [0, 1, 2].map(|k| rms(&document["control"][k]) / without)
+}
+
+#[test]
+fn a_correction_helps_until_it_is_late() {
+    let in_time = left(&along("rv130hsc", "in-time", &[]));
+    assert!(in_time.iter().all(|left| *left < 0.15) && in_time[1] > in_time[0], "{in_time:?}");
+    let late = left(&along("rv130hsc", "late", &["--delay", "200 ms"]));
+    assert!(late.iter().zip(in_time).all(|(late, in_time)| *late > 2.0 * in_time), "{late:?}");
+    let never = left(&along("rv130hsc", "never", &["--delay", "60 s"]));
+    assert_eq!(never, [1.0; 3]);
+}
+
+#[test]
+fn limits_leave_what_is_beyond_them() {
+    let free = left(&along("rv130hsc", "free", &[]));
+    let small = left(&along("rv130hsc", "small", &["--most", "0.01 mrad"]));
+    assert!(small.iter().all(|left| (0.5..0.99).contains(left)), "{small:?}");
+    let slow = left(&along("rv130hsc", "slow", &["--fastest", "1e-5 rad/s"]));
+    assert!(slow.iter().zip(free).all(|(slow, free)| *slow > free + 0.05), "{slow:?}");
+}
+
+#[test]
+fn encoders_do_not_see_what_is_behind_them() {
+    let folder = folder_of("effects");
+    let robot = inside(&folder, "robot.yaml");
+    let text = robstiff_robots::catalogue::find("rv130hsc").unwrap();
+    let effect = "effects:\n  - {kind: transverse_compliance, at: joint 3, value: 6e-7}\n";
+    fs::write(&robot, format!("{}\n{effect}", text.trim_end())).unwrap();
+    let [force, _, encoders] = left(&along(&robot, "bearing", &[]));
+    assert!(encoders > force + 0.05, "{force} {encoders}");
+}
+
+#[test]
+fn a_lost_sensor_costs_what_it_does_not_see() {
+    let whole = along("rv130hsc", "whole", &[]);
+    let lost = along("rv130hsc", "lost", &["--lost", "5 s, 2 s"]);
+    assert_eq!(whole["without"]["rms_m"], lost["without"]["rms_m"]);
+    for (with, without) in left(&whole).into_iter().zip(left(&lost)) {
+        // Two of thirteen seconds are as if there were no control.
+        assert!((with * with + 2.0 / 13.3).sqrt() - without < 0.1 && without > with + 0.1, "{with} {without}");
+    }
+    let (pocket, cut) = (file("pocket.csv"), file("roughing.yaml"));
+    let arguments = ["online", "rv130hsc", &pocket, "--tool-axis", "x", "--cut", &cut, "--lost", "99 s, 1 s"];
+    let ran = run(&arguments);
+    assert_eq!(ran.code, 0);
+    assert!(ran.err.contains("ends after 13.28 s, before --lost begins"), "{}", ran.err);
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let (pocket, cut) = (file("pocket.csv"), file("roughing.yaml"));
+    let along = ["online", "rv130hsc", &pocket, "--tool-axis", "x", "--cut", &cut];
+    let said = fail(1, &[&along[..], &["--step", "100 s"]].concat());
+    assert!(said.contains("takes 13.28 s, less than a control step of 100 s"), "{said}");
+    let said = fail(2, &[&along[..], &["--delay", "-1 ms"]].concat());
+    assert!(said.contains("a time of 0 or more is expected here"), "{said}");
+    let said = fail(2, &["online", "rv130hsc", "--force", "100, 0, 0 N", "--lost", "1 s, 1 s"]);
+    assert!(said.contains("--lost needs a path or a record"), "{said}");
+}
