@@ -3,11 +3,12 @@
 use nalgebra::Vector3;
 use robstiff_robots::{Convention, Description, Effect, JointKind, Link};
 
-use super::equilibrium::{Attached, Equilibrium, Motion, PosedArm, Pull, Response, Spring};
+use super::equilibrium::{Equilibrium, PosedArm, Pull};
 use super::frame::Frame;
 use super::gear::{Gear, JointLaw};
 use super::hidden::{DhColumn, Hidden};
 use super::outside::Outside;
+use super::spring::{Chain, Motion, Response};
 
 /// Segments a bending link is divided into where nothing else is said.
 ///
@@ -149,7 +150,7 @@ impl Arm {
     pub fn at(&self, q: &[f64]) -> PosedArm {
         let joints = &self.description.joints;
         assert_eq!(q.len(), joints.len(), "one coordinate a joint");
-        let mut chain = Chain { springs: Vec::new(), rod: Frame::placed(&self.description.base), attached: Vec::new() };
+        let mut chain = Chain::at(Frame::placed(&self.description.base));
         self.foundation(&mut chain);
         for (index, (joint, &coordinate)) in joints.iter().zip(q).enumerate() {
             let coordinate = self.stands_at(index + 1, coordinate);
@@ -375,36 +376,5 @@ fn fits(description: &Description, effect: &Effect) -> bool {
             joint(number).is_some_and(|joint| added > -joint.compliance()) && knee > 0.0
         }
         _ => false,
-    }
-}
-
-/// A chain under construction, from the base outwards.
-struct Chain {
-    springs: Vec<Spring>,
-    /// The rigid piece since the last spring.
-    rod: Frame,
-    /// What pulls at it.
-    attached: Vec<Attached>,
-}
-
-impl Chain {
-    fn rigid(&mut self, piece: &Frame) {
-        self.rod = self.rod.then(piece);
-    }
-
-    fn push(&mut self, motion: Motion, response: Response) {
-        let rod = std::mem::replace(&mut self.rod, Frame::identity());
-        self.springs.push(Spring { rod, motion, response });
-    }
-
-    /// Lets something pull at a point `at` (m) in the frame that the chain has
-    /// come to.
-    fn attached(&mut self, at: Vector3<f64>, pull: Pull) {
-        let at = self.rod.origin + self.rod.turn * at;
-        self.attached.push(Attached { after: self.springs.len(), at, pull });
-    }
-
-    fn spring(&mut self, motion: Motion, compliance: Vector3<f64>) {
-        self.push(motion, Response::Linear(compliance));
     }
 }

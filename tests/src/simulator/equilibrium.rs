@@ -3,8 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::encoders::{MOST_JOINTS, Turns};
-use super::frame::{Frame, exp, log, work_on};
+use super::frame::{Frame, log, work_on};
 use super::gear::{JointLaw, Memory, Moment};
+use super::spring::{Motion, Response, Spring};
 
 /// The springs have settled when none still moves by this much (rad or m).
 const SETTLED: f64 = 1e-15;
@@ -17,61 +18,6 @@ const AT_LAST: Moment = Moment { held: f64::MAX, warmer: 0.0 };
 
 /// Far more rounds than any load takes that the arm can carry at all.
 const ROUNDS: usize = 500;
-
-/// How a spring lets go.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Motion {
-    /// By a finite turn, a rotation vector in the spring's frame.
-    Turn,
-    /// By a shift in the spring's frame.
-    Slide,
-}
-
-/// How far a spring lets go under its generalised force.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Response {
-    /// Compliance about or along x, y, z of the spring's frame (rad/Nm or m/N).
-    Linear(Vector3<f64>),
-    /// About or along z only, as the [`JointLaw`] says for this joint, from 0.
-    Joint(usize),
-    /// About x and y alike, with a compliance that falls with the moment `m`
-    /// there: `compliance m / sqrt(1 + (m / knee)^2)`.
-    Stiffening { compliance: f64, knee: f64 },
-    /// Along x only, half a gap (m) to the side of the force, with a knee (N).
-    Gap { gap: f64, knee: f64 },
-}
-
-impl Response {
-    /// How far it lets go, and the integral of that over the force (J); joints
-    /// have a law of their own.
-    fn alone(&self, work: &Vector3<f64>) -> (Vector3<f64>, f64) {
-        match *self {
-            Self::Linear(compliance) => {
-                let by = compliance.component_mul(work);
-                (by, 0.5 * work.dot(&by))
-            }
-            Self::Joint(_) => (Vector3::zeros(), 0.0),
-            Self::Stiffening { compliance, knee } => {
-                let across = Vector3::new(work.x, work.y, 0.0);
-                let bend = 1_f64.hypot(across.norm() / knee);
-                (across * (compliance / bend), compliance * knee * knee * (bend - 1.0))
-            }
-            Self::Gap { gap, knee } => {
-                let size = work.x.hypot(knee);
-                (Vector3::x() * (0.5 * gap * work.x / size), 0.5 * gap * (size - knee))
-            }
-        }
-    }
-}
-
-/// A spring, and the rigid piece that leads to it.
-#[derive(Clone, Debug)]
-pub(super) struct Spring {
-    /// The spring's frame in that of the spring before, as that one has moved.
-    pub rod: Frame,
-    pub motion: Motion,
-    pub response: Response,
-}
 
 /// What pulls at the arm besides the load.
 #[derive(Clone, Copy, Debug)]
@@ -321,16 +267,6 @@ impl PosedArm {
                 Response::Joint(joint) => Vector3::z() * joints[joint],
                 response => response.alone(work).0,
             };
-        }
-    }
-}
-
-impl Spring {
-    /// Its frame after it has let go.
-    fn let_go(&self, frame: &Frame, by: &Vector3<f64>) -> Frame {
-        match self.motion {
-            Motion::Turn => Frame { turn: frame.turn * exp(by), ..*frame },
-            Motion::Slide => Frame { origin: frame.origin + frame.turn * by, ..*frame },
         }
     }
 }

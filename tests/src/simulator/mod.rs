@@ -32,6 +32,7 @@ mod rig;
 #[cfg(test)]
 mod rig_tests;
 mod sight;
+mod spring;
 #[cfg(test)]
 mod tests;
 

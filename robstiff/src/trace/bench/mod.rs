@@ -4,6 +4,7 @@
 
 mod noise;
 mod polish;
+mod prepare;
 mod solve;
 
 use std::cell::{OnceCell, RefCell};
@@ -18,12 +19,11 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 pub use self::noise::Known;
 use self::solve::State;
 use super::Options;
-use super::catalogue::{Candidate, Catalogue, LIKELY, Number, Scene, Variant, catalogue};
-use super::isolated;
+use super::catalogue::{Candidate, LIKELY, Number, Scene};
 use super::model::{Fitted, Named, Setting, Stored};
 use super::point::Point;
 use super::selection::Tests;
-use super::slip::{Moment, likeliest_slip};
+use super::slip::Moment;
 use crate::campaign::Campaign;
 use crate::elements::Parameter;
 use crate::identify::normal::{Fit, Sign};
@@ -119,84 +119,6 @@ impl<'c> Bench<'c> {
         }
     }
 
-    /// Forms the catalogue, without what the data cannot show.
-    fn set_up(&mut self) -> Result<(), String> {
-        self.forget();
-        let Catalogue { candidates, numbers, invisible } = catalogue(&self.scene(), self.own.len());
-        let signs = self.prepared.signs().into_iter().chain(numbers.iter().map(Number::sign));
-        self.signs = signs.collect();
-        self.numbers = numbers.into();
-        self.candidates = candidates.into();
-        self.invisible = invisible;
-
-        let setting = self.at(&[])?;
-        let base = setting.fit(&[])?;
-        let noise = (base.fit.rss / setting.problem.freedom(&base.fit)).sqrt();
-        let gram = &setting.problem.total.gram;
-        let largest = setting.base.iter().map(|&j| gram[(j, j)].sqrt()).fold(0.0, f64::max);
-        let visible = |&column: &usize| {
-            let (number, size) = (&self.numbers[column - self.own.len()], gram[(column, column)].sqrt());
-            match number.range[1].is_finite() {
-                // Even the most of it moves all readings together by less than
-                // the noise of one.
-                true => size * number.range[1] > noise,
-                false => size > ZERO * largest,
-            }
-        };
-        let (mut kept, mut lost) = (Vec::new(), Vec::new());
-        for candidate in self.candidates.iter() {
-            let is_seen = |variant: &&Variant| variant.columns.iter().all(visible);
-            let variants: Vec<Variant> = candidate.variants.iter().filter(is_seen).cloned().collect();
-            match variants.is_empty() {
-                true => lost.push(candidate.name()),
-                false => kept.push(Candidate { variants, ..candidate.clone() }),
-            }
-        }
-        self.candidates = kept.into();
-        self.invisible.extend(lost);
-        self.settings.get_mut().clear();
-        self.tests.get_mut().clear();
-        Ok(())
-    }
-
-    /// Looks again, with a model, for rows that are wild and for the moment at
-    /// which a slip may have begun; whether anything changed.
-    ///
-    /// # Errors
-    /// Why the description's own model cannot be fitted without such rows.
-    pub fn look_again(&mut self, named: &[Named]) -> Result<bool, String> {
-        let mut changed = false;
-        for _ in 0..ROUNDS {
-            let setting = self.at(named)?;
-            let fitted = setting.fit(named)?;
-            let wild = isolated::events(&setting, &fitted, self.strict);
-            let mut left_out = vec![false; self.left_out.len()];
-            wild.iter().flat_map(|event| &event.rows).for_each(|&row| left_out[row] = true);
-            let moments = self.likely_slips(named);
-            let moves = moments.iter().any(|moment| !self.moments[..LIKELY].contains(moment));
-            if left_out == self.left_out && !moves {
-                break;
-            }
-            drop(setting);
-            changed = true;
-            self.left_out = left_out;
-            self.moments[..moments.len()].copy_from_slice(&moments);
-            // Which forms of which candidates are seen stays as it was.
-            let (kept, invisible) = (Rc::clone(&self.candidates), self.invisible.clone());
-            self.set_up()?;
-            self.invisible = invisible;
-            let moved = |candidate: &Candidate| {
-                let same = self.candidates.iter().find(|other| other.name() == candidate.name());
-                let is_slip = candidate.kind == &super::catalogue::BASE_SLIP;
-                same.filter(|_| is_slip).unwrap_or(candidate).clone()
-            };
-            self.candidates = kept.iter().map(moved).collect();
-            self.numbers = self.refined_numbers(0..self.candidates.len());
-            self.forget();
-        }
-        Ok(changed)
-    }
-
     /// Whether there are so many rows that memory has to be spared.
     fn is_large(&self) -> bool {
         self.left_out.len() > MANY_ROWS
@@ -215,32 +137,6 @@ impl<'c> Bench<'c> {
         self.settings.get_mut().clear();
         self.states.get_mut().clear();
         self.tests.get_mut().clear();
-    }
-
-    /// Where slips that all later rows keep may have begun: what a model says,
-    /// and what it says without one of its effects, which may be in place of a
-    /// slip or be one.
-    fn likely_slips(&self, named: &[Named]) -> Vec<Moment> {
-        let slips = |one: &Named| self.candidates[one.candidate].kind == &super::catalogue::BASE_SLIP;
-        let mut models: Vec<Vec<Named>> = Vec::new();
-        if !named.iter().any(slips) {
-            models.push(named.to_vec());
-        }
-        for k in 0..named.len() {
-            let mut rest = named.to_vec();
-            rest.remove(k);
-            if !rest.iter().any(slips) {
-                models.push(rest);
-            }
-        }
-        let mut moments: Vec<Moment> = Vec::new();
-        for named in models {
-            let Ok(setting) = self.at(&named) else { continue };
-            let Ok(fitted) = setting.fit(&named) else { continue };
-            moments.extend(likeliest_slip(&setting, &fitted).filter(|moment| !moments.contains(moment)));
-        }
-        moments.truncate(LIKELY);
-        moments
     }
 
     /// The candidates.
@@ -406,13 +302,6 @@ impl<'c> Bench<'c> {
 
 /// A direction with less than this share of all that may be besides is none.
 const OF_ALL: f64 = 0.02;
-
-/// A column this small against the largest of a joint is zero but for rounding.
-const ZERO: f64 = 1e-7;
-
-/// Leaving rows out changes what the others look like; it settles at once or
-/// was no matter of single rows.
-const ROUNDS: usize = 4;
 
 /// Of a campaign with more rows than this, only so many regressions with the
 /// whole catalogue are kept.
