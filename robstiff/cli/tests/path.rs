@@ -122,3 +122,17 @@ fn forces_that_do_not_fit_the_path_are_refused() {
     let said = fail(2, &["path", "kuka-kr270-r2700", &pocket(), "--compensate"]);
     assert!(said.contains("--compensate needs a force"), "{said}");
 }
+
+#[test]
+fn every_point_that_cannot_be_corrected_is_named() {
+    let folder = folder("path-uncorrectable");
+    let (forces, out) = (inside(&folder, "forces.csv"), inside(&folder, "out.csv"));
+    // The first two points are hardly pushed, all others by metres.
+    let rows = [["100,0,-200\n"; 2].concat(), "0,1e7,-1e7\n".repeat(38)].concat();
+    fs::write(&forces, format!("Fx [N],Fy [N],Fz [N]\n{rows}")).unwrap();
+    let path = ["path", "kuka-kr270-r2700", &pocket(), "--forces", &forces, "--compensate", "--out", &out];
+    let said = fail(1, &path);
+    assert_eq!(said.matches("--> ").count(), 10, "{said}");
+    assert!(said.trim_end().ends_with("38 of 40 points cannot be corrected: lines 4 to 41"), "{said}");
+    assert!(!Path::new(&out).exists());
+}

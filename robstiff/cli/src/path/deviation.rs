@@ -2,6 +2,7 @@
 
 use robstiff::compensation::Left;
 use robstiff::deviation::{DeviationPoint, Stretch, Summary};
+use robstiff::path::lines;
 use serde_json::{Value, json};
 
 use super::cutting::{Corrected, Cutting, WRONG};
@@ -29,12 +30,9 @@ pub fn page(cutting: &Cutting) -> String {
     page += &rows.to_string();
     page += "positive errors are into the part, negative ones leave material\n";
     if !cutting.undirected.is_empty() {
-        let lines: Vec<String> = cutting.undirected.iter().take(MOST_SHOWN).map(ToString::to_string).collect();
-        let more = if cutting.undirected.len() > MOST_SHOWN { ", .." } else { "" };
         page += &format!(
-            "no force on {} {}{more}: the tool plunges or stays in place, and the cut has no direction\n",
-            if cutting.undirected.len() == 1 { "line" } else { "lines" },
-            lines.join(", ")
+            "no force on {}: the tool plunges or stays in place, and the cut has no direction\n",
+            lines(cutting.undirected.iter().copied())
         );
     }
     if let Some((tolerance, stretches)) = &cutting.tolerance {
