@@ -15,7 +15,11 @@ const MOST_SHOWN: usize = 12;
 /// What a person is told.
 pub fn page(cutting: &Cutting) -> String {
     let points = &cutting.deviation.points;
-    let mut page = format!("\nDeviation under {} [um]\n", cutting.name);
+    let over = match (cutting.deviation.in_cut().count(), points.len()) {
+        (cut, all) if cut == all => format!("all {}", count(all, "point")),
+        (cut, all) => format!("the {cut} of {} with a force", count(all, "point")),
+    };
+    let mut page = format!("\nDeviation under {} [um], over {over}\n", cutting.name);
     let mut rows = Table::new(1, ["", "mean", "rms", "worst"]);
     let mut row = |name: &str, summary: Summary| {
         let cells = [summary.mean, summary.rms, summary.worst].map(micrometres);
@@ -23,7 +27,10 @@ pub fn page(cutting: &Cutting) -> String {
     };
     row("distance from the path", cutting.deviation.distances());
     for (axis, name) in ["along the feed", "normal to it", "along the tool axis"].into_iter().enumerate() {
-        row(name, Summary::of(points.iter().filter_map(|point| point.components.map(|found| found[axis]))));
+        row(
+            name,
+            Summary::of(cutting.deviation.in_cut().filter_map(|point| point.components.map(|found| found[axis]))),
+        );
     }
     let judged = if points.iter().any(|point| point.peak.is_some()) { ", peak of a revolution" } else { "" };
     row(&format!("error of the {}{judged}", surface(cutting)), cutting.deviation.errors());
@@ -161,6 +168,7 @@ pub fn document(cutting: &Cutting) -> Value {
     json!({
         "forces": cutting.name,
         "surface": cutting.surface,
+        "points_with_force": cutting.deviation.in_cut().count(),
         "distance": summary(cutting.deviation.distances()),
         "error": summary(cutting.deviation.errors()),
         "points": cutting.deviation.points.iter().map(point).collect::<Value>(),
