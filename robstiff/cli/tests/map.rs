@@ -155,3 +155,27 @@ fn a_map_of_more_rows_than_anybody_reads_is_refused() {
     let turns = turns.replace("90 deg, count: 2", "90 deg, count: 10000");
     refuse(&turns, ["map.yaml:3:", "1000 x 1000 x 10000 = 1.0e10 poses"]);
 }
+
+#[test]
+fn a_map_fits_a_narrow_window_with_its_scale() {
+    let folder = folder("map-narrow");
+    let (map, page) = (inside(&folder, "map.yaml"), inside(&folder, "map.html"));
+    let grid = BOX.replace("z: 600 mm", "z: {from: 600 mm, to: 900 mm, count: 2}");
+    fs::write(&map, grid).unwrap();
+    succeed(&["map", "kuka-kr270-r2700", &map, "--html", &page]);
+    let page = fs::read_to_string(&page).unwrap();
+    let narrow = page.split_once("<div class=\"narrow\">").unwrap().1.split_once("</div>").unwrap().0;
+    let sizes = narrow.split_once("viewBox=\"0 0 ").unwrap().1.split_once('"').unwrap().0;
+    let width: f64 = sizes.split(' ').next().unwrap().parse().unwrap();
+    // Beside the margins of the page in a window of 420 px, nothing is made smaller.
+    assert!(width <= 372.0, "{sizes}");
+    // The scale and both slices; everything is within.
+    assert_eq!(narrow.matches("<image").count(), 3);
+    for part in narrow.split("<image ").skip(1) {
+        let of = |name: &str| -> f64 {
+            let rest = part.split_once(&format!(" {name}=\"")).unwrap().1;
+            rest.split_once('"').unwrap().0.parse().unwrap()
+        };
+        assert!(of("x") >= 0.0 && of("x") + of("width") <= width, "{part}");
+    }
+}
