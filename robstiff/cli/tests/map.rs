@@ -146,7 +146,7 @@ fn a_map_of_more_rows_than_anybody_reads_is_refused() {
     let joint = "  - {from: -10 deg, to: 10 deg, count: 10000}\n";
     let text =
         format!("force: 500 N\njoints:\n  - 0\n{}  - 0\n  - 0\n", joint.replace("10 deg, c", "0 deg, c").repeat(3));
-    refuse(&text, ["map.yaml:3:", "10000 x 10000 x 10000 = 1.0e12 poses are more than the 4.3e9 of a map"]);
+    refuse(&text, ["map.yaml:3:", "10000 x 10000 x 10000 = 1.0e12 poses are more than the 4.3e9 that a map may have"]);
     // Far beyond what 64 bits count.
     let most = "  - {from: -1 deg, to: 0 deg, count: 1000000}\n".repeat(6);
     refuse(&format!("force: 500 N\njoints:\n{most}"), ["map.yaml:3:", "= 1.0e36 poses"]);

@@ -108,8 +108,8 @@ fn can_be_meant(node: &Node<'_>, axes: &[Axis], turns: usize) -> bool {
         let counts: Vec<String> = counts.iter().map(|count| format!("{count}")).collect();
         let smaller = (most / poses).powf(1.0 / counts.len() as f64);
         node.error(
-            format!("{} = {poses:.1e} poses are more than the {most:.1e} of a map", counts.join(" x ")),
-            format!("give smaller counts, e.g. each {:.0} times smaller", (1.0 / smaller).ceil().max(2.0)),
+            format!("{} = {poses:.1e} poses are more than the {most:.1e} that a map may have", counts.join(" x ")),
+            format!("divide each `count` by {:.0} or more", (1.0 / smaller).ceil().max(2.0)),
         );
     }
     poses <= most
