@@ -15,9 +15,10 @@ const MOST_SHOWN: usize = 12;
 /// What a person is told.
 pub fn page(cutting: &Cutting) -> String {
     let points = &cutting.deviation.points;
-    let over = match (cutting.deviation.in_cut().count(), points.len()) {
-        (cut, all) if cut == all => format!("all {}", count(all, "point")),
-        (cut, all) => format!("the {cut} of {} with a force", count(all, "point")),
+    let in_cut = cutting.deviation.in_cut().count();
+    let over = match points.len() {
+        all if in_cut == all => format!("all {}", count(all, "point")),
+        all => format!("the {in_cut} of {} with a force", count(all, "point")),
     };
     let mut page = format!("\nDeviation under {} [um], over {over}\n", cutting.name);
     let mut rows = Table::new(1, ["", "mean", "rms", "worst"]);
@@ -43,7 +44,7 @@ pub fn page(cutting: &Cutting) -> String {
         );
     }
     if let Some((tolerance, stretches)) = &cutting.tolerance {
-        page += &verdict(*tolerance, stretches);
+        page += &verdict(*tolerance, stretches, in_cut);
     }
     let broken =
         cutting.tolerance.as_ref().is_some_and(|(_, stretches)| stretches.iter().any(|stretch| !stretch.holds));
@@ -76,7 +77,7 @@ fn surface(cutting: &Cutting) -> &'static str {
     if cutting.surface == "side" { "wall" } else { "floor" }
 }
 
-fn verdict(tolerance: f64, stretches: &[Stretch]) -> String {
+fn verdict(tolerance: f64, stretches: &[Stretch], in_cut: usize) -> String {
     let limit = format!("tolerance {} um", decimals(tolerance * 1e6, 1));
     let broken: Vec<&Stretch> = stretches.iter().filter(|stretch| !stretch.holds).collect();
     if broken.is_empty() {
@@ -85,7 +86,8 @@ fn verdict(tolerance: f64, stretches: &[Stretch]) -> String {
     let points = |of: &Stretch| of.points[1] - of.points[0] + 1;
     let (bad, all): (usize, usize) =
         (broken.iter().map(|stretch| points(stretch)).sum(), stretches.iter().map(points).sum());
-    let mut text = format!("\n{limit}: broken at {bad} of {}\n", count(all, "point"));
+    let of = if in_cut == all { count(all, "point") } else { format!("the {} with a force", count(in_cut, "point")) };
+    let mut text = format!("\n{limit}: broken at {bad} of {of}\n");
     for stretch in broken.iter().take(MOST_SHOWN) {
         let [from, to] = stretch.s.map(|s| decimals(s * 1e3, 1));
         let [first, last] = stretch.lines;
