@@ -132,3 +132,50 @@ fn wrong_maps_are_explained_and_leave_nothing() {
     fail(1, &["map", "rv130hsc", &map, "--csv", &map]);
     assert_eq!(names(&folder), ["map.yaml"]);
 }
+
+#[test]
+fn a_map_of_more_rows_than_anybody_reads_is_refused() {
+    let folder = folder("map-huge");
+    let (map, out) = (inside(&folder, "map.yaml"), inside(&folder, "out.csv"));
+    let refuse = |text: &str, expected: [&str; 2]| {
+        fs::write(&map, text).unwrap();
+        let said = fail(1, &["map", "kuka-kr270-r2700", &map, "--csv", &out]);
+        assert!(expected.iter().all(|part| said.contains(part)), "{said}");
+        assert_eq!(names(&folder), ["map.yaml"]);
+    };
+    let joint = "  - {from: -10 deg, to: 10 deg, count: 10000}\n";
+    let text =
+        format!("force: 500 N\njoints:\n  - 0\n{}  - 0\n  - 0\n", joint.replace("10 deg, c", "0 deg, c").repeat(3));
+    refuse(&text, ["map.yaml:3:", "10000 x 10000 x 10000 = 1.0e12 poses are more than the 4.3e9 that a map may have"]);
+    // Far beyond what 64 bits count.
+    let most = "  - {from: -1 deg, to: 0 deg, count: 1000000}\n".repeat(6);
+    refuse(&format!("force: 500 N\njoints:\n{most}"), ["map.yaml:3:", "= 1.0e36 poses"]);
+    // The turns of the tool count as well.
+    let turns = BOX.replace("count: 4", "count: 1000").replace("count: 3", "count: 1000");
+    let turns = turns.replace("90 deg, count: 2", "90 deg, count: 10000");
+    refuse(&turns, ["map.yaml:3:", "1000 x 1000 x 10000 = 1.0e10 poses"]);
+}
+
+#[test]
+fn a_map_fits_a_narrow_window_with_its_scale() {
+    let folder = folder("map-narrow");
+    let (map, page) = (inside(&folder, "map.yaml"), inside(&folder, "map.html"));
+    let grid = BOX.replace("z: 600 mm", "z: {from: 600 mm, to: 900 mm, count: 2}");
+    fs::write(&map, grid).unwrap();
+    succeed(&["map", "kuka-kr270-r2700", &map, "--html", &page]);
+    let page = fs::read_to_string(&page).unwrap();
+    let narrow = page.split_once("<div class=\"narrow\">").unwrap().1.split_once("</div>").unwrap().0;
+    let sizes = narrow.split_once("viewBox=\"0 0 ").unwrap().1.split_once('"').unwrap().0;
+    let width: f64 = sizes.split(' ').next().unwrap().parse().unwrap();
+    // Beside the margins of the page in a window of 420 px, nothing is made smaller.
+    assert!(width <= 372.0, "{sizes}");
+    // The scale and both slices; everything is within.
+    assert_eq!(narrow.matches("<image").count(), 3);
+    for part in narrow.split("<image ").skip(1) {
+        let of = |name: &str| -> f64 {
+            let rest = part.split_once(&format!(" {name}=\"")).unwrap().1;
+            rest.split_once('"').unwrap().0.parse().unwrap()
+        };
+        assert!(of("x") >= 0.0 && of("x") + of("width") <= width, "{part}");
+    }
+}

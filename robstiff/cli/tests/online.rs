@@ -90,3 +90,46 @@ fn what_makes_no_sense_is_refused() {
     let said = fail(2, &["online", "rv130hsc", "--force", "100, 0, 0 N", "--lost", "1 s, 1 s"]);
     assert!(said.contains("--lost needs a path or a record"), "{said}");
 }
+
+/// Along the pocket, the tool in the air but for some rows: points 10 to 20, lines 11 to 21.
+fn in_the_air_but(folder: &Path, robot: &str) -> Value {
+    let (forces, told) = (inside(folder, "forces.csv"), inside(folder, "told.json"));
+    let row = |k: usize| if (10..=20).contains(&k) { "80,-60,-20\n" } else { "0,0,0\n" };
+    let rows: String = (1..=40).map(row).collect();
+    fs::write(&forces, format!("Fx [N],Fy [N],Fz [N]\n{rows}")).unwrap();
+    let along = ["online", robot, &file("pocket.csv"), "--tool-axis", "x", "--forces", &forces, "--json", &told];
+    let page = succeed(&along);
+    assert!(page.contains("while there is a force:") && page.contains("worst outside"), "{page}");
+    json(&told)
+}
+
+#[test]
+fn time_in_the_air_does_not_dilute_what_is_left() {
+    let folder = folder_of("air");
+    let told = in_the_air_but(&folder, "rv130hsc");
+    let number = |value: &Value| value.as_f64().unwrap();
+    // From point 9, at line 10, to point 21 there is a force, of 40.
+    let part = number(&told["with_force"]);
+    let times: Vec<f64> = told["points"].as_array().unwrap().iter().map(|point| number(&point["t_s"])).collect();
+    assert!((part - (times[20] - times[8]) / times[39]).abs() < 1e-3, "{part}");
+    let without = &told["without"];
+    assert!(number(&without["rms_m"]) > 0.8 * number(&without["worst_m"]), "{without}");
+    assert_eq!(number(&without["worst_without_force_m"]), 0.0);
+    // The worst is told by its line in the file, where the force is.
+    let line = without["worst_before_line"].as_u64().unwrap();
+    assert!((11..=22).contains(&line), "{line}");
+    let at = told["points"].as_array().unwrap().iter().position(|point| point["line"] == line).unwrap();
+    assert_eq!(without["since_m"][at], without["worst_m"]);
+    assert_eq!(number(&without["worst_before_t_s"]), times[at]);
+    // What a correction has not yet taken back when the tool leaves the cut.
+    assert!(number(&told["control"][0]["worst_without_force_m"]) > 0.0);
+}
+
+#[test]
+fn a_path_in_the_air_is_refused() {
+    let folder = folder_of("nothing");
+    let forces = inside(&folder, "forces.csv");
+    fs::write(&forces, format!("Fx [N],Fy [N],Fz [N]\n{}", "0,0,0\n".repeat(40))).unwrap();
+    let said = fail(1, &["online", "rv130hsc", &file("pocket.csv"), "--tool-axis", "x", "--forces", &forces]);
+    assert!(said.contains("there is no force anywhere"), "{said}");
+}

@@ -122,3 +122,34 @@ fn forces_that_do_not_fit_the_path_are_refused() {
     let said = fail(2, &["path", "kuka-kr270-r2700", &pocket(), "--compensate"]);
     assert!(said.contains("--compensate needs a force"), "{said}");
 }
+
+#[test]
+fn every_point_that_cannot_be_corrected_is_named() {
+    let folder = folder("path-uncorrectable");
+    let (forces, out) = (inside(&folder, "forces.csv"), inside(&folder, "out.csv"));
+    // The first two points are hardly pushed, all others by metres.
+    let rows = [["100,0,-200\n"; 2].concat(), "0,1e7,-1e7\n".repeat(38)].concat();
+    fs::write(&forces, format!("Fx [N],Fy [N],Fz [N]\n{rows}")).unwrap();
+    let path = ["path", "kuka-kr270-r2700", &pocket(), "--forces", &forces, "--compensate", "--out", &out];
+    let said = fail(1, &path);
+    assert_eq!(said.matches("--> ").count(), 10, "{said}");
+    assert!(said.trim_end().ends_with("38 of 40 points cannot be corrected: lines 4 to 41"), "{said}");
+    assert!(!Path::new(&out).exists());
+}
+
+#[test]
+fn points_without_a_force_are_in_no_mean() {
+    let folder = folder("path-air");
+    let (forces, told) = (inside(&folder, "forces.csv"), inside(&folder, "told.json"));
+    let [before, after] = [9, 20].map(|count| "0,0,0\n".repeat(count));
+    fs::write(&forces, format!("Fx [N],Fy [N],Fz [N]\n{before}{}{after}", "80,-60,-20\n".repeat(11))).unwrap();
+    let path = ["path", "rv130hsc", &pocket(), "--tool-axis", "x", "--forces", &forces, "--json", &told];
+    let page = succeed(&[&path[..], &["--tolerance", "50 um"]].concat());
+    let told = &json(&told)["deviation"];
+    assert!(page.contains("[um], over the 11 of 40 points with a force\n"), "{page}");
+    assert!(page.contains("broken at 3 of the 11 points with a force\n"), "{page}");
+    assert_eq!(told["points_with_force"], 11);
+    // Under one force the arm is off by nearly as much at each of the eleven.
+    let [mean, worst] = ["mean_m", "worst_m"].map(|key| told["distance"][key].as_f64().unwrap());
+    assert!(mean > 0.95 * worst, "{told}");
+}

@@ -15,7 +15,8 @@ mod sensitivity;
 #[cfg(test)]
 mod tests;
 
-use std::string::ToString;
+use std::format;
+use std::string::{String, ToString};
 use std::vec::Vec;
 
 use nalgebra::{Matrix4, Rotation3, SVector, Unit, Vector3, Vector6};
@@ -23,7 +24,8 @@ use robstiff_robots::Diagnostics;
 
 use crate::deviation::{Contact, Load, settle, turned};
 use crate::inverse::{Inverse, Orientation, Remaining, Target, Unreached};
-use crate::path::{PathPoint, SolvedPath, ToolPath};
+use crate::path::follow::MOST_SHOWN;
+use crate::path::{PathPoint, SolvedPath, ToolPath, lines};
 use crate::{Robot, State};
 
 pub use sensitivity::{Left, Sensitivity, left, sensitivity};
@@ -126,7 +128,7 @@ pub struct Uncompensated {
 }
 
 impl Uncompensated {
-    /// The problems at their lines of the path's file, the first hundred.
+    /// The problems at their lines of the path's file, the first ten.
     pub fn diagnostics(&self, path: &ToolPath) -> Option<Diagnostics> {
         let problem = |(line, why): &(usize, Uncorrectable)| {
             let help = match why {
@@ -138,16 +140,22 @@ impl Uncompensated {
             };
             path.diagnostic(*line, why.to_string(), help)
         };
-        Diagnostics::new(self.points.iter().take(100).map(problem).collect())
+        Diagnostics::new(self.points.iter().take(MOST_SHOWN).map(problem).collect())
+    }
+
+    /// How many points it is, and the lines of all of them.
+    pub fn summary(&self) -> String {
+        let lines = lines(self.points.iter().map(|(line, _)| *line));
+        format!("{} of {} points cannot be corrected: {lines}", self.points.len(), self.of)
     }
 }
 
 impl core::fmt::Display for Uncompensated {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        for (line, why) in self.points.iter().take(20) {
+        for (line, why) in self.points.iter().take(MOST_SHOWN) {
             writeln!(f, "line {line}: {why}")?;
         }
-        write!(f, "{} of {} points cannot be corrected", self.points.len(), self.of)
+        f.write_str(&self.summary())
     }
 }
 

@@ -114,7 +114,7 @@ fn corrected_poses_out_of_the_limits_are_named() {
         problems.contains("path.csv:3:1") && problems.contains("the corrected pose is outside the limits"),
         "{problems}"
     );
-    assert!(failed[0].to_string().contains("1 of 2 points cannot be corrected"));
+    assert!(failed[0].to_string().ends_with("1 of 2 points cannot be corrected: line 3"));
 }
 
 #[test]

@@ -123,6 +123,12 @@ impl DeviationPoint {
         self.displacement.fixed_rows::<3>(0).norm()
     }
 
+    /// Whether anything pushes the tool: not on the way to the cut, out of it and
+    /// between cuts.
+    pub fn in_cut(&self) -> bool {
+        self.wrench != Vector6::zeros()
+    }
+
     /// The error that a tolerance is compared with: the peak where it is known.
     pub fn judged(&self) -> Option<f64> {
         self.peak.or(self.error)

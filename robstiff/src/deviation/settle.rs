@@ -1,14 +1,12 @@
 //! Where arm and cut come to rest.
 
-use std::format;
-use std::string::String;
 use std::vec::Vec;
 
 use nalgebra::{Matrix3, Matrix4, Rotation3, SVector, Vector3, Vector6};
 
 use super::{Contact, Load, parts};
 use crate::inverse::Target;
-use crate::path::SolvedPath;
+use crate::path::{SolvedPath, lines};
 use crate::{Robot, State};
 
 /// Arm and cut have settled where a step is below this (m).
@@ -27,12 +25,10 @@ pub struct PulledIn {
 
 impl core::fmt::Display for PulledIn {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let shown: Vec<String> = self.lines.iter().take(20).map(|line| format!("{line}")).collect();
-        let more = if self.lines.len() > 20 { ".." } else { "" };
         write!(
             f,
-            "arm and cut do not settle: the force grows faster with the displacement than the arm resists, on line {}{more}",
-            shown.join(", ")
+            "arm and cut do not settle: the force grows faster with the displacement than the arm resists, on {}",
+            lines(self.lines.iter().copied())
         )
     }
 }

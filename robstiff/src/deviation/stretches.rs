@@ -75,13 +75,19 @@ impl Deviation {
         stretches
     }
 
-    /// The error of the surface over all points that have one.
-    pub fn errors(&self) -> Summary {
-        Summary::of(self.points.iter().filter_map(DeviationPoint::judged))
+    /// The points at which something pushes the tool. Approaches and retracts have no
+    /// part in the errors of a path: they would make their mean as small as they are long.
+    pub fn in_cut(&self) -> impl Iterator<Item = &DeviationPoint> {
+        self.points.iter().filter(|point| point.in_cut())
     }
 
-    /// The distance from the path over all points.
+    /// The error of the surface over the points in the cut that have one.
+    pub fn errors(&self) -> Summary {
+        Summary::of(self.in_cut().filter_map(DeviationPoint::judged))
+    }
+
+    /// The distance from the path over the points in the cut.
     pub fn distances(&self) -> Summary {
-        Summary::of(self.points.iter().map(DeviationPoint::distance))
+        Summary::of(self.in_cut().map(DeviationPoint::distance))
     }
 }

@@ -154,7 +154,7 @@ fn stretches_hold_and_break_a_tolerance() {
     let points = errors.iter().enumerate().map(|(i, &error)| DeviationPoint {
         line: i + 2,
         s: 0.01 * i as f64,
-        wrench: Vector6::zeros(),
+        wrench: Vector6::x(),
         displacement: Vector6::zeros(),
         components: None,
         error: Some(error),
@@ -167,6 +167,27 @@ fn stretches_hold_and_break_a_tolerance() {
     assert_eq!(stretches[1].s, [0.02, 0.03]);
     assert_eq!(deviation.errors().worst, 3e-4);
     assert!(deviation.stretches(1e-3).iter().all(|stretch| stretch.holds));
+}
+
+#[test]
+fn moves_without_force_do_not_dilute_the_errors() {
+    let point = |force: f64, distance: f64| DeviationPoint {
+        line: 2,
+        s: 0.0,
+        wrench: Vector6::x() * force,
+        displacement: Vector6::x() * distance,
+        components: None,
+        error: Some(-distance),
+        peak: None,
+    };
+    let cut = [point(100.0, 3e-4), point(50.0, 1e-4)];
+    let whole = Deviation { points: [&[point(0.0, 0.0); 6][..], &cut].concat() };
+    let summary = Summary { mean: 2e-4, rms: 5e-8_f64.sqrt(), worst: 3e-4 };
+    for (found, sign) in [(whole.distances(), 1.0), (whole.errors(), -1.0)] {
+        assert!((found.mean - sign * summary.mean).abs() < 1e-18 && (found.rms - summary.rms).abs() < 1e-18);
+        assert!((found.worst - sign * summary.worst).abs() < 1e-18, "{found:?}");
+    }
+    assert_eq!(whole.in_cut().count(), 2);
 }
 
 #[test]

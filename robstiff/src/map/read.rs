@@ -18,6 +18,10 @@ const FIELDS: [&str; 6] = ["joints", "positions", "tool", "force", "moment", "me
 /// Values of an axis: more than any map has, and less than what fills a memory.
 const MOST: i64 = 1_000_000;
 
+/// Poses of a map: as many rows as readers hold that number them with 32 bits; as CSV
+/// they would fill hundreds of gigabytes.
+pub const MOST_POSES: u32 = u32::MAX;
+
 /// What a map file asks for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Task {
@@ -68,12 +72,14 @@ fn task(document: &Document, robot: &Description) -> Option<Task> {
             if let Some(tool) = map.get("tool") {
                 tool.error("joint coordinates say how the tool stands", "leave `tool` out, or give `positions`");
             }
-            joints(&node, robot).map(Over::Joints)
+            joints(&node, robot).filter(|axes| can_be_meant(&node, axes, 1)).map(Over::Joints)
         }
         (None, Some(node)) => {
             let (grid, tool) = (grid(&node), map.require("tool", "tool: {direction: [0, 0, -1]}"));
             let tool = tool.and_then(|node| self::tool(&node));
-            grid.zip(tool).map(|((frame, axes), tool)| Over::Positions(Box::new(Positions { frame, axes, tool })))
+            grid.zip(tool)
+                .filter(|((_, axes), tool)| can_be_meant(&node, axes, tool.turns.len().max(1)))
+                .map(|((frame, axes), tool)| Over::Positions(Box::new(Positions { frame, axes, tool })))
         }
         (Some(_), Some(node)) => {
             node.error("a map is over joints or over positions, not both", "keep one of the two");
@@ -88,6 +94,25 @@ fn task(document: &Document, robot: &Description) -> Option<Task> {
         }
     };
     Some(Task { over: over?, measure: measure? })
+}
+
+/// Whether the cells of these axes, with so many turns each, are no more than anybody
+/// can use.
+fn can_be_meant(node: &Node<'_>, axes: &[Axis], turns: usize) -> bool {
+    let counts = axes.iter().map(|axis| axis.values.len()).chain([turns]).filter(|&count| count > 1);
+    let counts: Vec<usize> = counts.collect();
+    // The product may be beyond any integer.
+    let poses: f64 = counts.iter().map(|&count| count as f64).product();
+    let most = f64::from(MOST_POSES);
+    if poses > most {
+        let counts: Vec<String> = counts.iter().map(|count| format!("{count}")).collect();
+        let smaller = (most / poses).powf(1.0 / counts.len() as f64);
+        node.error(
+            format!("{} = {poses:.1e} poses are more than the {most:.1e} that a map may have", counts.join(" x ")),
+            format!("divide each `count` by {:.0} or more", (1.0 / smaller).ceil().max(2.0)),
+        );
+    }
+    poses <= most
 }
 
 #[derive(Clone, Copy)]

@@ -53,17 +53,20 @@ pub fn stream<const N: usize, E: Send, X: Send>(
 
 #[cfg(feature = "rayon")]
 fn in_order<R: Send, X: Send>(
-    chunks: impl Iterator<Item = Range<usize>>,
+    mut chunks: impl Iterator<Item = Range<usize>>,
     step: impl Fn(Range<usize>) -> R + Sync,
     hand_over: &mut (impl FnMut(Vec<R>) -> Result<(), X> + Send),
 ) -> Result<(), X> {
     use rayon::prelude::*;
 
-    let chunks: Vec<Range<usize>> = chunks.collect();
     let mut done = Vec::new();
     // One group is handed over while the next is computed.
-    for group in chunks.chunks(4 * rayon::current_num_threads()) {
-        let compute = || group.par_iter().cloned().map(&step).collect();
+    loop {
+        let group: Vec<Range<usize>> = chunks.by_ref().take(4 * rayon::current_num_threads()).collect();
+        if group.is_empty() {
+            break;
+        }
+        let compute = || group.into_par_iter().map(&step).collect();
         let (next, handed) = rayon::join(compute, || hand_over(core::mem::take(&mut done)));
         handed?;
         done = next;

@@ -106,6 +106,8 @@ pub struct Controller {
 pub struct Instant {
     /// The time (s).
     pub time: f64,
+    /// Whether something pushes the tool then: not on the way to the cut.
+    pub in_cut: bool,
     /// The displacement of the TCP without correction, in the base frame (m).
     pub uncorrected: Vector3<f64>,
     /// The displacement with it (m).
@@ -210,9 +212,11 @@ fn simulate_moving<const N: usize>(
             if moves.is_none_or(|(at, _)| at != q) {
                 moves = Some((q, truth.jacobian(&q).fixed_rows::<3>(0).into_owned()));
             }
-            let uncorrected = truth.deflection_with(&q, &load(now), &mut state).fixed_rows::<3>(0).into_owned();
+            let wrench = load(now);
+            let uncorrected = truth.deflection_with(&q, &wrench, &mut state).fixed_rows::<3>(0).into_owned();
             let back = moves.map_or_else(Vector3::zeros, |(_, moves)| moves * moved);
-            seen.push(Instant { time: now, uncorrected, corrected: uncorrected + back });
+            let in_cut = wrench != Vector6::zeros();
+            seen.push(Instant { time: now, in_cut, uncorrected, corrected: uncorrected + back });
         }
     }
     seen

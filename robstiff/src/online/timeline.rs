@@ -1,12 +1,11 @@
 //! Where the arm is and what acts on it, over time.
 
 use core::fmt;
-use std::string::{String, ToString};
 use std::vec::Vec;
 
 use nalgebra::{SVector, Vector6};
 
-use crate::path::SolvedPath;
+use crate::path::{SolvedPath, lines};
 
 /// Postures and wrenches at times, evenly between them.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,9 +29,7 @@ pub struct NoFeed {
 
 impl fmt::Display for NoFeed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let shown: Vec<String> = self.lines.iter().take(10).map(ToString::to_string).collect();
-        write!(f, "the path has no feed to {} {}", if shown.len() == 1 { "line" } else { "lines" }, shown.join(", "))?;
-        if self.lines.len() > shown.len() { write!(f, " and {} more", self.lines.len() - shown.len()) } else { Ok(()) }
+        write!(f, "the path has no feed to {}", lines(self.lines.iter().copied()))
     }
 }
 

@@ -13,8 +13,8 @@ use crate::{JointKind, Robot};
 /// Postures at the first point that are tried, where no start says which.
 const MOST_POSTURES: usize = 16;
 
-/// Unreachable points that are shown with their line.
-const MOST_SHOWN: usize = 10;
+/// Points that are shown with their line and why they cannot be reached or corrected.
+pub(crate) const MOST_SHOWN: usize = 10;
 
 /// Coordinates beyond a limit by less than this are on it (rad or m), as in
 /// descriptions.

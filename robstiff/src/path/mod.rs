@@ -5,7 +5,7 @@
 //! a [`SolvedPath`]: joint coordinates, poses, feed directions and arc lengths
 //! for every point, or the names of all points that cannot be reached.
 
-mod follow;
+pub(crate) mod follow;
 mod read;
 #[cfg(test)]
 mod tests;
@@ -119,7 +119,8 @@ pub struct Unsolved {
 impl core::fmt::Display for Unsolved {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let count = self.points.len();
-        write!(f, "{}\n\n{count} of {} points cannot be reached: {}", self.problems, self.of, self.lines())?;
+        let lines = lines(self.points.iter().map(|(line, _)| *line));
+        write!(f, "{}\n\n{count} of {} points cannot be reached: {lines}", self.problems, self.of)?;
         if count == self.of {
             f.write_str("; is the path given in another frame, in another unit, or along another axis of the tool?")?;
         }
@@ -129,24 +130,21 @@ impl core::fmt::Display for Unsolved {
 
 impl core::error::Error for Unsolved {}
 
-impl Unsolved {
-    /// The lines of all points that cannot be reached, neighbours of the path
-    /// together: `lines 2 to 5, 9`.
-    fn lines(&self) -> String {
-        let mut runs: Vec<[usize; 2]> = Vec::new();
-        for &(line, _) in &self.points {
-            match runs.last_mut() {
-                Some([_, last]) if *last + 1 == line => *last = line,
-                _ => runs.push([line, line]),
-            }
+/// Lines of a file, one after another together: `lines 2 to 5, 9`, `line 2`.
+pub fn lines(of: impl IntoIterator<Item = usize>) -> String {
+    let mut runs: Vec<[usize; 2]> = Vec::new();
+    for line in of {
+        match runs.last_mut() {
+            Some([_, last]) if *last + 1 == line => *last = line,
+            _ => runs.push([line, line]),
         }
-        let word = if self.points.len() == 1 { "line" } else { "lines" };
-        let run = |[first, last]: &[usize; 2]| match last - first {
-            0 => format!("{first}"),
-            _ => format!("{first} to {last}"),
-        };
-        format!("{word} {}", runs.iter().map(run).collect::<Vec<_>>().join(", "))
     }
+    let word = if matches!(runs[..], [[first, last]] if first == last) { "line" } else { "lines" };
+    let run = |[first, last]: &[usize; 2]| match last - first {
+        0 => format!("{first}"),
+        _ => format!("{first} to {last}"),
+    };
+    format!("{word} {}", runs.iter().map(run).collect::<Vec<_>>().join(", "))
 }
 
 impl ToolPath {

@@ -67,22 +67,36 @@ impl Scale {
     }
 }
 
+/// Where the picture is looked at.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Room {
+    /// On a screen or paper: up to three slices side by side, the scale beside them.
+    Wide,
+    /// On a phone or in half a window: slices below each other, the scale above.
+    Narrow,
+}
+
 /// Draws the slices of a map.
-pub fn heat(mapped: &Mapped, slices: &Slices) -> Heat {
+pub fn heat(mapped: &Mapped, slices: &Slices, room: Room) -> Heat {
     let unit = mapped.columns[0].scale;
     let scale = Scale::new(slices, unit);
     let [right, up] = slices.drawn.map(|axis| &mapped.axes[axis]);
-    let columns = slices.slices.len().min(3);
+    let wide = room == Room::Wide;
+    let columns = if wide { slices.slices.len().min(3) } else { 1 };
     let rows = slices.slices.len().div_ceil(columns);
-    let most = if columns == 1 { 620.0 } else { 800.0 / columns as f64 - 58.0 };
+    let most = match columns {
+        _ if !wide => 296.0,
+        1 => 620.0,
+        _ => 800.0 / columns as f64 - 58.0,
+    };
     let aspect = aspect(right, up);
     let width = most * (1.25 / aspect).min(1.0);
     let height = width * aspect;
-    let (left, top, between, below) = (64.0, 34.0, 58.0, 64.0);
+    let (left, top, between, below) = if wide { (64.0, 34.0, 58.0, 64.0) } else { (58.0, 82.0, 14.0, 64.0) };
     let bar = left + columns as f64 * (width + between);
     let bottom = top + rows as f64 * (height + below);
-    let mut svg = Svg::new(bar + 96.0, bottom + 6.0, &mapped.words());
-    svg.raw(HATCH);
+    let mut svg = Svg::new(if wide { bar + 96.0 } else { left + most + between }, bottom + 6.0, &mapped.words());
+    svg.raw(&hatch(room));
     let mut frames = Vec::new();
     for (number, slice) in slices.slices.iter().enumerate() {
         let (column, row) = (number % columns, number / columns);
@@ -99,18 +113,28 @@ pub fn heat(mapped: &Mapped, slices: &Slices) -> Heat {
         axes(&mut svg, &frame, right, up);
         frames.push(frame);
     }
-    legend(&mut svg, [bar, top], bottom - below - top, mapped, &scale);
+    if wide {
+        legend(&mut svg, [bar, top], bottom - below - top, mapped, &scale);
+    } else {
+        legend_above(&mut svg, [left, 22.0], most, mapped, &scale);
+    }
     let holes = slices.slices.iter().any(|slice| slice.values.iter().any(|value| value.is_nan()));
     if holes {
-        let y = bottom - 14.0;
-        svg.raw(&format!("<rect class=\"hole\" x=\"{bar:.1}\" y=\"{:.1}\" width=\"14\" height=\"14\"/>", y - 11.0));
-        svg.text("small", [bar + 20.0, y], "start", "out of reach");
+        let (x, y) = if wide { (bar, bottom - 14.0) } else { (left, bottom - 10.0) };
+        svg.raw(&format!("<rect class=\"hole\" x=\"{x:.1}\" y=\"{:.1}\" width=\"14\" height=\"14\"/>", y - 11.0));
+        svg.text("small", [x + 20.0, y], "start", "out of reach");
     }
     Heat { svg, frames }
 }
 
-const HATCH: &str = "<defs><pattern id=\"hatch\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\" \
-                     patternTransform=\"rotate(45)\"><line class=\"hatch\" x1=\"0\" y1=\"0\" x2=\"0\" y2=\"7\"/></pattern></defs>";
+/// The pattern of what is out of reach; a page has both pictures, each with its own.
+fn hatch(room: Room) -> String {
+    let id = if room == Room::Wide { "hatch" } else { "hatch-narrow" };
+    format!(
+        "<defs><pattern id=\"{id}\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\" \
+         patternTransform=\"rotate(45)\"><line class=\"hatch\" x1=\"0\" y1=\"0\" x2=\"0\" y2=\"7\"/></pattern></defs>"
+    )
+}
 
 /// Height over width: true to scale where both axes are lengths.
 fn aspect(right: &Axis, up: &Axis) -> f64 {
@@ -280,7 +304,7 @@ fn axes(svg: &mut Svg, frame: &Frame, right: &Axis, up: &Axis) {
         svg.line("tick", [at, y + height], [at, y + height + 5.0]);
         svg.text("small", [at, y + height + 18.0], "middle", &label);
     }
-    for (share, label) in tick(up, (height / 60.0).max(2.0) as usize) {
+    for (share, label) in tick(up, (height / 50.0).max(2.0) as usize) {
         let at = y + (1.0 - share) * height;
         svg.line("tick", [x - 5.0, at], [x, at]);
         svg.text("small", [x - 8.0, at + 4.0], "end", &label);
@@ -294,10 +318,32 @@ fn axes(svg: &mut Svg, frame: &Frame, right: &Axis, up: &Axis) {
     ));
 }
 
+/// What the colours stand for, and what their low and high end mean.
+fn meaning(mapped: &Mapped) -> (String, [&'static str; 2]) {
+    let what = heading(&mapped.columns[0]).replace("[u", "[µ").replace("/u", "/µ");
+    (what, if mapped.measure.worse_is_larger() { ["holds", "gives way"] } else { ["gives way", "holds"] })
+}
+
+/// The scale, lying.
+fn legend_above(svg: &mut Svg, [x, y]: [f64; 2], width: f64, mapped: &Mapped, scale: &Scale) {
+    let shares: Vec<f64> = (0..256).map(|k| f64::from(k) / 255.0).collect();
+    let (what, [low, high]) = meaning(mapped);
+    svg.text("legend", [x, y - 8.0], "start", &what);
+    svg.image([x, y], [width, 16.0], &raster::picture(&shares, [256, 1]));
+    svg.raw(&format!("<rect class=\"frame\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"16\"/>"));
+    svg.text("level", [x + 5.0, y + 12.0], "start", low);
+    svg.text("level", [x + width - 5.0, y + 12.0], "end", high);
+    for &mark in &scale.marks {
+        let at = x + scale.share(mark) * width;
+        svg.line("tick", [at, y + 16.0], [at, y + 21.0]);
+        svg.text("small", [at, y + 33.0], "middle", &tick_label(mark, &scale.marks));
+    }
+}
+
 fn legend(svg: &mut Svg, [x, y]: [f64; 2], height: f64, mapped: &Mapped, scale: &Scale) {
     let height = height.min(360.0);
     let shares: Vec<f64> = (0..256).map(|k| f64::from(k) / 255.0).collect();
-    let what = heading(&mapped.columns[0]).replace("[u", "[µ").replace("/u", "/µ");
+    let (what, [low, high]) = meaning(mapped);
     svg.text("legend", [x + 92.0, y - 12.0], "end", &what);
     svg.image([x, y], [16.0, height], &raster::picture(&shares, [1, 256]));
     svg.raw(&format!("<rect class=\"frame\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"16\" height=\"{height:.1}\"/>"));
@@ -306,8 +352,7 @@ fn legend(svg: &mut Svg, [x, y]: [f64; 2], height: f64, mapped: &Mapped, scale: 
         svg.line("tick", [x + 16.0, at], [x + 21.0, at]);
         svg.text("small", [x + 25.0, at + 4.0], "start", &tick_label(mark, &scale.marks));
     }
-    let words = if mapped.measure.worse_is_larger() { ["gives way", "holds"] } else { ["holds", "gives way"] };
-    for (word, at) in words.into_iter().zip([y + 12.0, y + height - 4.0]) {
+    for (word, at) in [high, low].into_iter().zip([y + 12.0, y + height - 4.0]) {
         svg.raw(&format!(
             "<text class=\"small\" text-anchor=\"{}\" transform=\"translate({:.1} {at:.1}) rotate(90)\">{word}</text>",
             if at < y + height / 2.0 { "start" } else { "end" },

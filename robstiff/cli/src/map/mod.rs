@@ -12,10 +12,10 @@ mod tape;
 
 use std::convert::Infallible;
 use std::fs;
-use std::io::{self, Write as _};
+use std::io::{self, IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanCount, ProgressBar, ProgressStyle};
 use robstiff::Generic;
 use robstiff::map::read::{Over, Positions, Task};
 use robstiff::map::{Axis, CartesianSpace, Chunk, Evaluate, JointSpace, Measure, Space, Tool, best_placement, stream};
@@ -31,6 +31,9 @@ use document::{Mapped, Placed};
 use slices::{Dot, Slices};
 use table::Table;
 use tape::Tape;
+
+/// Cells that are told wherever the messages go: as CSV they are a gigabyte.
+const MANY: usize = 10_000_000;
 
 /// Stiffness, weakest direction or deviation all over joint space, a plane or a box
 #[derive(clap::Args)]
@@ -209,6 +212,7 @@ fn write<const N: usize>(
     if let Some(csv) = &mut csv {
         put(csv, table.header().as_bytes())?;
     }
+    announce(space.axes());
     let progress = progress(space.cells(), space.chunk());
     let encode = |chunk: &Chunk| Pieces {
         cells: chunk.cells.len(),
@@ -265,6 +269,17 @@ fn size(text: &str) -> Result<[f64; 3], String> {
         }
     }
     Ok(lengths)
+}
+
+/// Says how many cells are to be computed: on a terminal, and where they are many.
+fn announce(axes: &[Axis]) {
+    let cells: usize = axes.iter().map(|axis| axis.values.len()).product();
+    if cells >= MANY || io::stderr().is_terminal() {
+        let counts = axes.iter().filter(|axis| axis.varies()).map(|axis| axis.values.len().to_string());
+        let counts: Vec<String> = counts.collect();
+        let whole = if counts.len() > 1 { format!("{} = ", counts.join(" x ")) } else { String::new() };
+        output::complain(format_args!("note: the map has {whole}{} cells", HumanCount(cells as u64)));
+    }
 }
 
 /// Shows on a terminal how far it is, where that takes a while.

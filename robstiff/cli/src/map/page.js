@@ -1,7 +1,7 @@
 "use strict";
 const map = JSON.parse(document.getElementById("map").textContent);
 const figure = document.querySelector("figure.map");
-const svg = figure.querySelector("svg");
+const pictures = figure.querySelectorAll("svg");
 const tip = figure.querySelector(".tip");
 
 function coordinate(axis, index) {
@@ -10,8 +10,11 @@ function coordinate(axis, index) {
 }
 
 function read(event) {
+  const svg = event.currentTarget;
+  const room = svg.closest(".narrow") ? 1 : 0;
   const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
-  for (const { title, corner, size, values } of map.slices) {
+  for (const { title, frames, values } of map.slices) {
+    const [corner, size] = frames[room];
     const i = Math.floor((point.x - corner[0]) / size[0] * map.right.count);
     const j = Math.floor((1 - (point.y - corner[1]) / size[1]) * map.up.count);
     if (i < 0 || j < 0 || i >= map.right.count || j >= map.up.count) continue;
@@ -29,6 +32,8 @@ function read(event) {
   tip.hidden = true;
 }
 
-svg.addEventListener("pointermove", read);
-svg.addEventListener("pointerdown", read);
-svg.addEventListener("pointerleave", () => { tip.hidden = true; });
+for (const svg of pictures) {
+  svg.addEventListener("pointermove", read);
+  svg.addEventListener("pointerdown", read);
+  svg.addEventListener("pointerleave", () => { tip.hidden = true; });
+}

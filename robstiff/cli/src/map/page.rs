@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::document::Mapped;
-use super::heat::{self, Heat, beside, heat};
+use super::heat::{self, Room, beside, heat};
 use super::slices::Slices;
 use super::table::{heading, single};
 use crate::report;
@@ -14,12 +14,12 @@ const SCRIPT: &str = include_str!("page.js");
 
 /// The picture as a file of its own.
 pub fn svg(mapped: &Mapped, slices: &Slices) -> String {
-    heat(mapped, slices).svg.document(&format!("svg {{ background: #fff; }}\n{}", heat::STYLE))
+    heat(mapped, slices, Room::Wide).svg.document(&format!("svg {{ background: #fff; }}\n{}", heat::STYLE))
 }
 
 /// The page: the picture, what it comes to, and a value wherever one points.
 pub fn html(mapped: &Mapped, slices: &Slices) -> String {
-    let Heat { svg, frames } = heat(mapped, slices);
+    let [wide, narrow] = [Room::Wide, Room::Narrow].map(|room| heat(mapped, slices, room));
     let title = escape(&format!("{}: {}", mapped.robot, mapped.words()));
     let mut body = format!("<header>\n{}{}", text("p", "Map of a robot's elastostatics"), text("h1", &mapped.robot));
     let mut said = capital(&mapped.words());
@@ -35,13 +35,15 @@ pub fn html(mapped: &Mapped, slices: &Slices) -> String {
         body += &text("p", &micro(&sentence));
     }
     body += "</section>\n";
-    writeln!(body, "<figure class=\"map\">\n{}<output class=\"tip\" hidden></output></figure>", svg.html())
+    let pictures = [("wide", &wide.svg), ("narrow", &narrow.svg)];
+    let pictures = pictures.map(|(room, svg)| format!("<div class=\"{room}\">{}</div>\n", svg.html())).concat();
+    writeln!(body, "<figure class=\"map\">\n{pictures}<output class=\"tip\" hidden></output></figure>")
         .expect("a string takes any text");
     let caption = escape(&caption(mapped, slices));
     writeln!(body, "<figcaption>{caption}<span class=\"point\"> Point at the map to read a value.</span></figcaption>")
         .expect("a string takes any text");
     body += &extremes(mapped);
-    let data = data(mapped, slices, &frames);
+    let data = data(mapped, slices, [&wide.frames, &narrow.frames]);
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
@@ -52,12 +54,14 @@ pub fn html(mapped: &Mapped, slices: &Slices) -> String {
     )
 }
 
-const TIP: &str = "figure.map { position: relative; }\nfigure.map svg { min-width: 30rem; max-height: 88vh; }\n\
+const TIP: &str = "figure.map { position: relative; }\nfigure.map svg { min-width: 0; }\n.wide svg { max-height: 88vh; }\n\
+                   .narrow { display: none; }\n\
+                   @media screen and (max-width: 40rem) { .wide { display: none; } .narrow { display: block; } }\n\
                    .tip { position: absolute; pointer-events: none; padding: .3rem .6rem; font-size: .85rem; \
                    line-height: 1.35; white-space: pre; background: var(--paper); color: var(--ink); \
                    border: 1px solid var(--soft); border-radius: 4px; }\n.tip[hidden] { display: none; }\n\
                    .finding p { font-size: 1.05rem; }\n\
-                   @media print { figure.map svg { min-width: 0; max-height: 58vh; } .point { display: none; } table { break-inside: avoid; } }\n";
+                   @media print { .wide svg { max-height: 58vh; } .point { display: none; } table { break-inside: avoid; } }\n";
 
 fn headline(mapped: &Mapped) -> String {
     let summary = &mapped.summary;
@@ -110,9 +114,9 @@ fn extremes(mapped: &Mapped) -> String {
     table.html()
 }
 
-/// What the script reads: frames in shares of the figure, axes, and values by rows
-/// from below.
-fn data(mapped: &Mapped, slices: &Slices, frames: &[heat::Frame]) -> String {
+/// What the script reads: each slice's frames in the wide and the narrow picture, axes,
+/// and values by rows from below.
+fn data(mapped: &Mapped, slices: &Slices, [wide, narrow]: [&[heat::Frame]; 2]) -> String {
     let column = &mapped.columns[0];
     let axis = |k: usize| {
         let axis = &mapped.axes[slices.drawn[k]];
@@ -122,7 +126,7 @@ fn data(mapped: &Mapped, slices: &Slices, frames: &[heat::Frame]) -> String {
             "count": slices.pixels[k],
         })
     };
-    let slice = |(slice, frame): (&super::slices::Slice, &heat::Frame)| {
+    let slice = |(k, slice): (usize, &super::slices::Slice)| {
         let values = slice.values.iter().map(|&value| {
             let value = f64::from(single(value, column));
             if value.is_finite() {
@@ -133,10 +137,10 @@ fn data(mapped: &Mapped, slices: &Slices, frames: &[heat::Frame]) -> String {
                 serde_json::Value::Null
             }
         });
+        let frames = [&wide[k], &narrow[k]].map(|frame| [frame.corner, frame.size]);
         serde_json::json!({
             "title": beside(mapped, slices, slice),
-            "corner": frame.corner,
-            "size": frame.size,
+            "frames": frames,
             "values": values.collect::<Vec<_>>(),
         })
     };
@@ -145,7 +149,7 @@ fn data(mapped: &Mapped, slices: &Slices, frames: &[heat::Frame]) -> String {
         "unit": column.unit.replace('u', "µ"),
         "right": axis(0),
         "up": axis(1),
-        "slices": slices.slices.iter().zip(frames).map(slice).collect::<Vec<_>>(),
+        "slices": slices.slices.iter().enumerate().map(slice).collect::<Vec<_>>(),
     });
     // Nothing in it ends the element it stands in.
     document.to_string().replace('<', "\\u003c")

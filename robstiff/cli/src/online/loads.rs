@@ -64,6 +64,8 @@ pub enum What {
     /// Along a path or over a record.
     Along {
         stops: Vec<Stop>,
+        /// Which part of the time something pushes the tool.
+        in_cut: f64,
         without: Course,
         /// For each variant.
         with: Vec<Course>,
@@ -80,12 +82,16 @@ pub struct Stop {
 
 /// Distances of the tool from where it should be (m).
 pub struct Course {
+    /// While something pushes the tool.
     pub rms: f64,
     pub worst: f64,
+    /// The worst while nothing does: what a correction has not yet taken back, or an
+    /// arm with hysteresis keeps.
+    pub aside: f64,
     /// The stop that the worst comes before or at.
     pub at: usize,
-    /// The worst since the stop before; not a number where there is nothing
-    /// between the two.
+    /// The worst since the stop before, in the cut or not; not a number where there
+    /// is nothing between the two.
     pub since: Vec<f64>,
 }
 
@@ -219,6 +225,7 @@ impl Asked {
             (!silent.is_some_and(|silent| silent.contains(&time))).then_some(*wrench)
         };
         let mut without = None;
+        let mut in_cut = 0.0;
         let mut with = Vec::new();
         for variant in variants {
             let seen = if variant.knows {
@@ -226,11 +233,15 @@ impl Asked {
             } else {
                 simulate_along((robot, model), &timeline, &variant.controller, reading)
             };
+            in_cut = seen.iter().filter(|instant| instant.in_cut).count() as f64 / seen.len() as f64;
+            if in_cut == 0.0 {
+                return Err(Failure::new(format!("{name}: there is no force anywhere")));
+            }
             without.get_or_insert_with(|| Course::of(&seen, &stops, |instant| instant.uncorrected));
             with.push(Course::of(&seen, &stops, |instant| instant.corrected));
         }
         let without = without.expect("there is at least one variant");
-        Ok(Seen { name: name.clone(), left: What::Along { stops, without, with } })
+        Ok(Seen { name: name.clone(), left: What::Along { stops, in_cut, without, with } })
     }
 }
 
@@ -304,8 +315,8 @@ fn reaches(part: f64, first: f64, left: impl Fn(f64) -> f64) -> Option<f64> {
 impl Course {
     fn of(seen: &[Instant], stops: &[Stop], of: impl Fn(&Instant) -> Vector3<f64>) -> Self {
         let mut since = vec![f64::NAN; stops.len()];
-        let mut squares = 0.0;
-        let mut count = 0_usize;
+        let (mut squares, mut count) = (0.0, 0_usize);
+        let (mut worst, mut worst_at, mut aside) = (f64::NAN, 0, f64::NAN);
         for instant in seen {
             let at = stops.partition_point(|stop| stop.time < instant.time);
             if at == stops.len() {
@@ -313,17 +324,17 @@ impl Course {
             }
             let distance = of(instant).norm();
             since[at] = distance.max(since[at]);
+            if !instant.in_cut {
+                aside = distance.max(aside);
+                continue;
+            }
             squares += distance * distance;
             count += 1;
+            if worst.is_nan() || distance > worst {
+                (worst, worst_at) = (distance, at);
+            }
         }
-        let of_stop = |at: &usize| if since[*at].is_nan() { -1.0 } else { since[*at] };
-        let at = (0..stops.len()).max_by(|one, other| of_stop(one).total_cmp(&of_stop(other))).unwrap_or(0);
-        Self {
-            rms: (squares / count.max(1) as f64).sqrt(),
-            worst: since.get(at).copied().unwrap_or(f64::NAN),
-            at,
-            since,
-        }
+        Self { rms: (squares / count.max(1) as f64).sqrt(), worst, aside, at: worst_at, since }
     }
 }
 

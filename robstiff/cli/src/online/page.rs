@@ -67,30 +67,43 @@ pub fn page(robot: &Description, seen: &Seen, variants: &[Variant], control: &Co
             page += &format!("How fast a force it keeps up with\n{table}");
             page
         }
-        What::Along { stops, without, with } => along(variants, stops, without, with),
+        What::Along { stops, in_cut, without, with } => along(variants, (stops, *in_cut), without, with),
     }
 }
 
-fn along(variants: &[Variant], stops: &[Stop], without: &Course, with: &[Course]) -> String {
+fn along(variants: &[Variant], (stops, in_cut): (&[Stop], f64), without: &Course, with: &[Course]) -> String {
     let place = |at: usize| match stops[at].place {
         Some((line, _)) => format!("line {line}"),
         None => format!("{} s", significant(stops[at].time, 4)),
     };
-    let mut table = Table::new(1, ["", "rms", "left [%]", "worst", "left [%]", "worst before"]);
+    // Moves outside of the cut would make the figures as small as they are long.
+    let part = in_cut < 1.0;
+    let header = ["", "rms", "left [%]", "worst", "left [%]", "worst before"];
+    let mut table = Table::new(1, header.into_iter().chain(part.then_some("worst outside")));
     let mut row = |name: &str, course: &Course| {
         let share = |part: f64, whole: f64| decimals(100.0 * part / whole, 1);
-        table.row([
+        let cells = [
             name.to_owned(),
             micrometres(course.rms),
             share(course.rms, without.rms),
             micrometres(course.worst),
             share(course.worst, without.worst),
             place(course.at),
-        ]);
+        ];
+        table.row(
+            cells
+                .into_iter()
+                .chain(part.then(|| if course.aside.is_nan() { "-".to_owned() } else { micrometres(course.aside) })),
+        );
     };
     row("without correction", without);
     variants.iter().zip(with).for_each(|(variant, course)| row(&variant.name, course));
-    let mut page = format!("\nDistance from where the tool should be [um]\n{table}");
+    let duration = stops.last().map_or(0.0, |stop| stop.time);
+    let over = match part {
+        true => format!(", while there is a force: {} s of it", significant(in_cut * duration, 3)),
+        false => String::new(),
+    };
+    let mut page = format!("\nDistance from where the tool should be [um]{over}\n{table}");
     let first = variants.len().min(3);
     let mut header = vec![if stops[0].place.is_some() { "line".to_owned() } else { "time [s]".to_owned() }];
     if stops[0].place.is_some() {
@@ -133,7 +146,7 @@ pub fn table(seen: &Seen, variants: &[Variant]) -> String {
             }
             csv
         }
-        What::Along { stops, without, with } => {
+        What::Along { stops, without, with, .. } => {
             let mut csv = format!("t [s],line,s [mm],without [um]{}\n", names("um"));
             for (at, stop) in stops.iter().enumerate() {
                 let (line, s) =
@@ -180,12 +193,14 @@ pub fn document(robot: &Description, seen: &Seen, variants: &[Variant]) -> Value
             };
             entries.insert("control".to_owned(), variants.iter().zip(left).zip(useful).map(of).collect());
         }
-        What::Along { stops, without, with } => {
+        What::Along { stops, in_cut, without, with } => {
             let course = |course: &Course| {
                 json!({
                     "rms_m": number(course.rms),
                     "worst_m": number(course.worst),
-                    "worst_before": course.at,
+                    "worst_before_line": stops[course.at].place.map(|(line, _)| line),
+                    "worst_before_t_s": number(stops[course.at].time),
+                    "worst_without_force_m": number(course.aside),
                     "since_m": numbers(course.since.iter().copied()),
                 })
             };
@@ -196,6 +211,7 @@ pub fn document(robot: &Description, seen: &Seen, variants: &[Variant]) -> Value
                     "s_m": stop.place.map(|(_, s)| number(s)),
                 })
             };
+            entries.insert("with_force".to_owned(), number(*in_cut));
             entries.insert("points".to_owned(), stops.iter().map(stop).collect());
             entries.insert("without".to_owned(), course(without));
             let of = |(variant, of): (&Variant, &Course)| named(variant, course(of));

@@ -261,10 +261,10 @@ impl Asked {
         load: &Load,
     ) -> Result<Corrected, Failure> {
         let compensated = compensate(robot, solved, load, Keep::of(N, self.axis)).map_err(|missed| {
-            let count = format!("{} of {} points cannot be corrected", missed.points.len(), missed.of);
+            let summary = missed.summary();
             match missed.diagnostics(path) {
-                Some(problems) => Failure::Explained(format!("{problems}\n\n{count}")),
-                None => Failure::new(count),
+                Some(problems) => Failure::Explained(format!("{problems}\n\n{summary}")),
+                None => Failure::new(summary),
             }
         })?;
         let sensitivity = sensitivity(robot, solved, load, &compensated, WRONG).map_err(Failure::new)?;

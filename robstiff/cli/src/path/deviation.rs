@@ -2,6 +2,7 @@
 
 use robstiff::compensation::Left;
 use robstiff::deviation::{DeviationPoint, Stretch, Summary};
+use robstiff::path::lines;
 use serde_json::{Value, json};
 
 use super::cutting::{Corrected, Cutting, WRONG};
@@ -14,7 +15,12 @@ const MOST_SHOWN: usize = 12;
 /// What a person is told.
 pub fn page(cutting: &Cutting) -> String {
     let points = &cutting.deviation.points;
-    let mut page = format!("\nDeviation under {} [um]\n", cutting.name);
+    let in_cut = cutting.deviation.in_cut().count();
+    let over = match points.len() {
+        all if in_cut == all => format!("all {}", count(all, "point")),
+        all => format!("the {in_cut} of {} with a force", count(all, "point")),
+    };
+    let mut page = format!("\nDeviation under {} [um], over {over}\n", cutting.name);
     let mut rows = Table::new(1, ["", "mean", "rms", "worst"]);
     let mut row = |name: &str, summary: Summary| {
         let cells = [summary.mean, summary.rms, summary.worst].map(micrometres);
@@ -22,23 +28,23 @@ pub fn page(cutting: &Cutting) -> String {
     };
     row("distance from the path", cutting.deviation.distances());
     for (axis, name) in ["along the feed", "normal to it", "along the tool axis"].into_iter().enumerate() {
-        row(name, Summary::of(points.iter().filter_map(|point| point.components.map(|found| found[axis]))));
+        row(
+            name,
+            Summary::of(cutting.deviation.in_cut().filter_map(|point| point.components.map(|found| found[axis]))),
+        );
     }
     let judged = if points.iter().any(|point| point.peak.is_some()) { ", peak of a revolution" } else { "" };
     row(&format!("error of the {}{judged}", surface(cutting)), cutting.deviation.errors());
     page += &rows.to_string();
     page += "positive errors are into the part, negative ones leave material\n";
     if !cutting.undirected.is_empty() {
-        let lines: Vec<String> = cutting.undirected.iter().take(MOST_SHOWN).map(ToString::to_string).collect();
-        let more = if cutting.undirected.len() > MOST_SHOWN { ", .." } else { "" };
         page += &format!(
-            "no force on {} {}{more}: the tool plunges or stays in place, and the cut has no direction\n",
-            if cutting.undirected.len() == 1 { "line" } else { "lines" },
-            lines.join(", ")
+            "no force on {}: the tool plunges or stays in place, and the cut has no direction\n",
+            lines(cutting.undirected.iter().copied())
         );
     }
     if let Some((tolerance, stretches)) = &cutting.tolerance {
-        page += &verdict(*tolerance, stretches);
+        page += &verdict(*tolerance, stretches, in_cut);
     }
     let broken =
         cutting.tolerance.as_ref().is_some_and(|(_, stretches)| stretches.iter().any(|stretch| !stretch.holds));
@@ -71,7 +77,7 @@ fn surface(cutting: &Cutting) -> &'static str {
     if cutting.surface == "side" { "wall" } else { "floor" }
 }
 
-fn verdict(tolerance: f64, stretches: &[Stretch]) -> String {
+fn verdict(tolerance: f64, stretches: &[Stretch], in_cut: usize) -> String {
     let limit = format!("tolerance {} um", decimals(tolerance * 1e6, 1));
     let broken: Vec<&Stretch> = stretches.iter().filter(|stretch| !stretch.holds).collect();
     if broken.is_empty() {
@@ -80,7 +86,8 @@ fn verdict(tolerance: f64, stretches: &[Stretch]) -> String {
     let points = |of: &Stretch| of.points[1] - of.points[0] + 1;
     let (bad, all): (usize, usize) =
         (broken.iter().map(|stretch| points(stretch)).sum(), stretches.iter().map(points).sum());
-    let mut text = format!("\n{limit}: broken at {bad} of {}\n", count(all, "point"));
+    let of = if in_cut == all { count(all, "point") } else { format!("the {} with a force", count(in_cut, "point")) };
+    let mut text = format!("\n{limit}: broken at {bad} of {of}\n");
     for stretch in broken.iter().take(MOST_SHOWN) {
         let [from, to] = stretch.s.map(|s| decimals(s * 1e3, 1));
         let [first, last] = stretch.lines;
@@ -163,6 +170,7 @@ pub fn document(cutting: &Cutting) -> Value {
     json!({
         "forces": cutting.name,
         "surface": cutting.surface,
+        "points_with_force": cutting.deviation.in_cut().count(),
         "distance": summary(cutting.deviation.distances()),
         "error": summary(cutting.deviation.errors()),
         "points": cutting.deviation.points.iter().map(point).collect::<Value>(),
