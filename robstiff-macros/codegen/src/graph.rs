@@ -149,7 +149,7 @@ pub struct Node {
     pub constant: Option<f64>,
     /// When the result is known, if everything begins as soon as it can
     /// (cycles after the sines and cosines; see [`Op::latency`]).
-    pub known: usize,
+    pub ready: usize,
 }
 
 /// A turn about z of all four blocks of a compliance, which are nodes like
@@ -312,9 +312,9 @@ impl Graph {
     pub(crate) fn intern(&self, op: Op, constant: Option<f64>) -> Sym<'_> {
         let id = *self.known.borrow_mut().entry(op).or_insert_with(|| {
             let mut nodes = self.nodes.borrow_mut();
-            let begin = op.operands().map(|id| nodes[id].known).max().unwrap_or(0);
-            let known = if constant.is_some() { 0 } else { begin + op.latency() };
-            nodes.push(Node { op, constant, known });
+            let begin = op.operands().map(|id| nodes[id].ready).max().unwrap_or(0);
+            let ready = if constant.is_some() { 0 } else { begin + op.latency() };
+            nodes.push(Node { op, constant, ready });
             nodes.len() - 1
         });
         Sym { graph: self, id }
@@ -335,8 +335,8 @@ impl<'g> Sym<'g> {
     }
 
     /// When it is known (cycles), see [`Node`].
-    pub fn known(self) -> usize {
-        self.graph.nodes.borrow()[self.id].known
+    pub fn ready(self) -> usize {
+        self.graph.nodes.borrow()[self.id].ready
     }
 
     /// The value, if it is a constant.

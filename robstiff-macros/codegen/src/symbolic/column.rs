@@ -225,8 +225,8 @@ impl<'g> Signed<'g> {
         // Entries that are there take no product as the second of the two, and
         // what is known later goes in later.
         let is_there = |column: Self, factor| column.column.scaled(factor).entries().is_some();
-        let known = |column: Self, factor: Sym<'g>| column.column.whole().known().max(factor.known());
-        let ((a, s), (b, t)) = match !is_there(b, t) && (is_there(a, s) || known(a, s) > known(b, t)) {
+        let ready = |column: Self, factor: Sym<'g>| column.column.whole().ready().max(factor.ready());
+        let ((a, s), (b, t)) = match !is_there(b, t) && (is_there(a, s) || ready(a, s) > ready(b, t)) {
             true => ((b, t), (a, s)),
             false => ((a, s), (b, t)),
         };

@@ -254,7 +254,7 @@ fn of_joints<'g>(g: &'g Graph, joints: &[Twist<'g>], elastic: &Elastic<'g>) -> V
     let mut directions: Vec<(Column<'g>, Sym<'g>)> = Vec::new();
     // What is known first is summed first.
     let mut order: Vec<usize> = (0..joints.len()).collect();
-    order.sort_by_key(|&i| joints[i].translation.whole().known());
+    order.sort_by_key(|&i| joints[i].translation.whole().ready());
     for i in order {
         let (Twist { translation, rotation }, h) = (joints[i], elastic.unloaded_joint(i));
         let moved = translation.times(Column::thrice(h));
