@@ -212,7 +212,7 @@ fn write<const N: usize>(
     if let Some(csv) = &mut csv {
         put(csv, table.header().as_bytes())?;
     }
-    announce(space.axes());
+    announce(space.axes(), space.cells());
     let progress = progress(space.cells(), space.chunk());
     let encode = |chunk: &Chunk| Pieces {
         cells: chunk.cells.len(),
@@ -272,8 +272,7 @@ fn size(text: &str) -> Result<[f64; 3], String> {
 }
 
 /// Says how many cells are to be computed: on a terminal, and where they are many.
-fn announce(axes: &[Axis]) {
-    let cells: usize = axes.iter().map(|axis| axis.values.len()).product();
+fn announce(axes: &[Axis], cells: usize) {
     if cells >= MANY || io::stderr().is_terminal() {
         let counts = axes.iter().filter(|axis| axis.varies()).map(|axis| axis.values.len().to_string());
         let counts: Vec<String> = counts.collect();
