@@ -109,11 +109,11 @@ fn description(root: &Node) -> Option<Description> {
     let convention = map
         .require("convention", "convention: standard")
         .and_then(|node| node.choice(&[("standard", Convention::Standard), ("modified", Convention::Modified)]));
-    let base = optional(&map, "base", placement);
+    let base = optional(&map, "base", Placement::read);
     let joints = map.require("joints", "joints: [{theta: 0 deg, d: 865 mm, alpha: -90 deg}, ..]");
     let count = joints.as_ref().filter(|node| node.is_sequence()).and_then(|node| Some(node.sequence()?.len()));
     let joints = joints.and_then(|node| self::joints(&node));
-    let tool = optional(&map, "tool", placement);
+    let tool = optional(&map, "tool", Placement::read);
     let links = optional(&map, "links", |node| links(node, count));
     let effects = optional(&map, "effects", |node| effects::effects(node, joints.as_deref(), links.as_deref(), count));
     Some(Description {
@@ -179,11 +179,15 @@ fn is_type_name(name: &str) -> bool {
         && !TAKEN.contains(&name)
 }
 
-fn placement(node: &Node) -> Option<Placement> {
-    let map = node.map(&["xyz", "rpy"])?;
-    let xyz = optional(&map, "xyz", |node| node.quantities(Dimension::Length));
-    let rpy = optional(&map, "rpy", |node| node.quantities(Dimension::Angle));
-    Some(Placement { xyz: xyz?, rpy: rpy?.map(snapped) })
+impl Placement {
+    /// Reads `{xyz: [..], rpy: [..]}`, each of them zero where it is left out; `None`
+    /// with the mistakes reported to the document.
+    pub fn read(node: &Node) -> Option<Self> {
+        let map = node.map(&["xyz", "rpy"])?;
+        let xyz = optional(&map, "xyz", |node| node.quantities(Dimension::Length));
+        let rpy = optional(&map, "rpy", |node| node.quantities(Dimension::Angle));
+        Some(Self { xyz: xyz?, rpy: rpy?.map(snapped) })
+    }
 }
 
 fn joints(node: &Node) -> Option<Vec<Joint>> {

@@ -8,7 +8,7 @@ use std::vec::Vec;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3, Vector6};
 use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
-use robstiff_robots::{Description, Diagnostics, Joint, JointKind};
+use robstiff_robots::{Description, Diagnostics, Joint, JointKind, Placement};
 
 use super::{Axis, Measure, Tool};
 
@@ -200,14 +200,9 @@ fn grid(node: &Node<'_>) -> Option<(Isometry3<f64>, [Axis; 3])> {
     Some((frame?, [x?, y?, z?]))
 }
 
-/// A frame in the base frame: `rpy` are turns about its fixed x, y and z axes, in
-/// this order.
+/// A frame in the base frame.
 fn frame(node: &Node<'_>) -> Option<Isometry3<f64>> {
-    let map = node.map(&["xyz", "rpy"])?;
-    let three =
-        |name: &str, dimension: Dimension| map.get(name).map_or(Some([0.0; 3]), |node| node.quantities::<3>(dimension));
-    let (xyz, rpy) = (three("xyz", Dimension::Length), three("rpy", Dimension::Angle));
-    let ([x, y, z], [roll, pitch, yaw]) = (xyz?, rpy?);
+    let Placement { xyz: [x, y, z], rpy: [roll, pitch, yaw] } = Placement::read(node)?;
     Some(Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_euler_angles(roll, pitch, yaw)))
 }
 
