@@ -14,7 +14,7 @@ use super::source::{Filled, Source};
 pub const BLOCK: usize = 64;
 
 /// The poses of a vector, at least: blocks are filled up to a multiple.
-pub const VECTOR: usize = 16;
+const VECTOR: usize = 16;
 
 /// The joint coordinates of a block of poses, number by number.
 ///
@@ -37,12 +37,13 @@ struct Numbers<T, const M: usize>([[T; BLOCK]; M]);
 ///
 /// 1. sines and cosines, joint by joint ([`Source::fill`]);
 /// 2. the algebra of the robot;
-/// 3. handing the numbers over ([`Sink::take`]).
+/// 3. handing the numbers over ([`Sink::take`]); where they stay as they are,
+///    they go there at once ([`Sink::room`]).
 ///
 /// All is inlined, because it takes the instructions that may be used from the
-/// function around it.
+/// function around it; `LANES` numbers fit into one, 1 where that is not known.
 #[inline(always)]
-pub fn run<T, Q, S, K, const N: usize, const M: usize, const FUSED: bool>(
+pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const FUSED: bool>(
     quantity: &mut Q,
     source: &mut S,
     sink: &mut K,
@@ -64,42 +65,40 @@ pub fn run<T, Q, S, K, const N: usize, const M: usize, const FUSED: bool>(
         let filled = source.fill::<FUSED>(first, needs, &mut joints);
         let (Filled::Each(count) | Filled::Row(count) | Filled::Beyond(count)) = filled;
         quantity.prepare(first..first + count);
-        match filled {
-            Filled::Beyond(_) => one_by_one(quantity, count, |pose| source.pose(first + pose), &mut numbers.0),
-            Filled::Row(_) if S::ROWS => evaluate_row::<T, Q, N, M, FUSED>(quantity, &joints, &mut numbers.0),
-            _ => {}
-        }
-        for vector in 0..count.div_ceil(VECTOR).min(BLOCK / VECTOR) {
-            if matches!(filled, Filled::Each(_)) {
-                evaluate::<T, Q, N, M, FUSED>(quantity, vector, &joints, &mut numbers.0);
+        let room = if LANES > 1 && filled == Filled::Each(BLOCK) { sink.room(first) } else { None };
+        if let Some(room) = room {
+            evaluate_there::<T, Q, N, M, LANES, FUSED>(quantity, &joints, room);
+        } else {
+            match filled {
+                Filled::Each(_) => evaluate::<T, Q, N, M, FUSED>(quantity, count, &joints, &mut numbers.0),
+                Filled::Row(_) if S::ROWS => evaluate_row::<T, Q, N, M, FUSED>(quantity, &joints, &mut numbers.0),
+                Filled::Row(_) => {}
+                Filled::Beyond(_) => one_by_one(quantity, count, |pose| source.pose(first + pose), &mut numbers.0),
             }
-            if K::BY_VECTOR {
-                let (start, end) = (vector * VECTOR, count.min((vector + 1) * VECTOR));
-                sink.take(first + start..first + end, start, &numbers.0, instructions);
-            }
-        }
-        if !K::BY_VECTOR {
-            sink.take(first..first + count, 0, &numbers.0, instructions);
+            sink.take(first..first + count, &numbers.0, instructions);
         }
         first += count;
     }
 }
 
-/// The quantity at a vector of poses.
+/// The quantity at the first poses of a block.
 #[inline(always)]
 fn evaluate<T, Q, const N: usize, const M: usize, const FUSED: bool>(
     quantity: &Q,
-    vector: usize,
+    count: usize,
     joints: &Joints<T, N>,
     numbers: &mut [[T; BLOCK]; M],
 ) where
     T: Float,
     Q: Quantity<T, N, M>,
 {
-    // Of a length that leaves no doubt: no index needs a check, and no rest of a
-    // vector a loop of its own.
-    for lane in 0..VECTOR {
-        evaluate_one::<T, Q, N, M, FUSED, false>(quantity, vector * VECTOR + lane, joints, numbers);
+    for vector in 0..count.div_ceil(VECTOR).min(BLOCK / VECTOR) {
+        // Of a length that leaves no doubt: no index needs a check, and no rest of a
+        // vector a loop of its own.
+        for lane in 0..VECTOR {
+            let pose = vector * VECTOR + lane;
+            evaluate_one::<T, Q, N, M, BLOCK, FUSED, false>(quantity, pose, joints, numbers, pose);
+        }
     }
 }
 
@@ -115,16 +114,42 @@ fn evaluate_row<T, Q, const N: usize, const M: usize, const FUSED: bool>(
     Q: Quantity<T, N, M>,
 {
     for pose in 0..BLOCK {
-        evaluate_one::<T, Q, N, M, FUSED, true>(quantity, pose, joints, numbers);
+        evaluate_one::<T, Q, N, M, BLOCK, FUSED, true>(quantity, pose, joints, numbers, pose);
     }
 }
 
+/// The quantity at a block of poses, written where it stays.
 #[inline(always)]
-fn evaluate_one<T, Q, const N: usize, const M: usize, const FUSED: bool, const ROW: bool>(
+fn evaluate_there<T, Q, const N: usize, const M: usize, const LANES: usize, const FUSED: bool>(
+    quantity: &Q,
+    joints: &Joints<T, N>,
+    mut room: [&mut [T; BLOCK]; M],
+) where
+    T: Float,
+    Q: Quantity<T, N, M>,
+{
+    for vector in 0..BLOCK / LANES {
+        // Of one vector each, so that they are in registers: the compiler does not
+        // know that what lies behind the references is apart.
+        let mut numbers = [[T::ZERO; LANES]; M];
+        for lane in 0..LANES {
+            let pose = vector * LANES + lane;
+            evaluate_one::<T, Q, N, M, LANES, FUSED, false>(quantity, pose, joints, &mut numbers, lane);
+        }
+        for (room, own) in room.iter_mut().zip(numbers) {
+            room.as_chunks_mut().0[vector] = own;
+        }
+    }
+}
+
+/// The quantity at a pose of a block, to a place among the numbers.
+#[inline(always)]
+fn evaluate_one<T, Q, const N: usize, const M: usize, const PLACES: usize, const FUSED: bool, const ROW: bool>(
     quantity: &Q,
     pose: usize,
     joints: &Joints<T, N>,
-    numbers: &mut [[T; BLOCK]; M],
+    numbers: &mut [[T; PLACES]; M],
+    place: usize,
 ) where
     T: Float,
     Q: Quantity<T, N, M>,
@@ -135,7 +160,7 @@ fn evaluate_one<T, Q, const N: usize, const M: usize, const FUSED: bool, const R
     });
     let computed = quantity.numbers(pose, &q, Known::number);
     for k in 0..M {
-        numbers[k][pose] = computed[k].value;
+        numbers[k][place] = computed[k].value;
     }
 }
 

@@ -165,7 +165,7 @@ pub fn run_at<T, Q, const N: usize, const M: usize>(
     assert!(Level::available().any(|available| available == level), "the machine has no {level:?}");
     let (quantity, source, sink) = (&mut quantity, &mut source, &mut sink);
     match level {
-        Level::Portable => block::run::<T, Q, _, _, N, M, { trig::FUSED }>(quantity, source, sink, Portable),
+        Level::Portable => block::run::<T, Q, _, _, N, M, 1, { trig::FUSED }>(quantity, source, sink, Portable),
         // SAFETY: AVX2 and FMA are available, the assertion says.
         #[cfg(all(feature = "std", target_arch = "x86_64"))]
         Level::Avx2 => unsafe { avx2(quantity, source, sink) },
@@ -185,7 +185,11 @@ fn avx2<T, Q, const N: usize, const M: usize>(
     T: Float,
     Q: Quantity<T, N, M>,
 {
-    block::run::<T, Q, _, _, N, M, true>(quantity, source, sink, Avx);
+    if const { size_of::<T>() == size_of::<f64>() } {
+        block::run::<T, Q, _, _, N, M, 4, true>(quantity, source, sink, Avx);
+    } else {
+        block::run::<T, Q, _, _, N, M, 8, true>(quantity, source, sink, Avx);
+    }
 }
 
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
@@ -198,5 +202,9 @@ fn avx512<T, Q, const N: usize, const M: usize>(
     T: Float,
     Q: Quantity<T, N, M>,
 {
-    block::run::<T, Q, _, _, N, M, true>(quantity, source, sink, Avx);
+    if const { size_of::<T>() == size_of::<f64>() } {
+        block::run::<T, Q, _, _, N, M, 8, true>(quantity, source, sink, Avx);
+    } else {
+        block::run::<T, Q, _, _, N, M, 16, true>(quantity, source, sink, Avx);
+    }
 }

@@ -4,22 +4,23 @@ use core::array;
 use core::ops::Range;
 
 use super::Float;
-use super::block::{BLOCK, VECTOR};
+use super::block::BLOCK;
 use super::dispatch::Instructions;
 use super::quantities::Results;
 
-/// Takes the numbers of the poses in a range, `numbers[k][first + i]` of the `i`-th.
+/// Takes the numbers of the poses in a range, `numbers[k][i]` of the `i`-th.
 pub trait Sink<T, const M: usize> {
     /// Whether there is room for so many poses, and no more.
     fn fits(&self, poses: usize) -> bool;
 
-    /// Whether it takes what there is as soon as a vector of poses is done:
-    /// while the numbers of some poses are written, those of the next are
-    /// computed. Gain: `benches/README.md`.
-    const BY_VECTOR: bool = M > 1;
+    /// Where the numbers of a block of poses go, pose `first` and those behind it,
+    /// if they go there as they are. Gain: `benches/README.md`.
+    fn room(&mut self, _first: usize) -> Option<[&mut [T; BLOCK]; M]> {
+        None
+    }
 
-    /// Takes the numbers of some poses, of which the first has place `first`.
-    fn take(&mut self, poses: Range<usize>, first: usize, numbers: &[[T; BLOCK]; M], instructions: impl Instructions);
+    /// Takes the numbers of the poses of a block.
+    fn take(&mut self, poses: Range<usize>, numbers: &[[T; BLOCK]; M], instructions: impl Instructions);
 }
 
 /// A result a pose, put together from its numbers.
@@ -36,13 +37,13 @@ impl<T: Float, R: Results<T, M>, const M: usize> Sink<T, M> for EachPose<'_, R> 
     // Tile by tile: left to itself, the compiler takes one number after the
     // other, or with AVX-512 gathers and scatters, which are slower still.
     #[inline(always)]
-    fn take(&mut self, poses: Range<usize>, first: usize, numbers: &[[T; BLOCK]; M], instructions: impl Instructions) {
+    fn take(&mut self, poses: Range<usize>, numbers: &[[T; BLOCK]; M], instructions: impl Instructions) {
         let results = &mut self.0[poses];
         let mut done = 0;
         if let Some(last) = R::ENTRIES.len().checked_sub(TILE) {
             let (tiles, _) = results.as_chunks_mut::<TILE>();
             done = TILE * tiles.len();
-            for (tile, results) in (first / TILE..BLOCK / TILE).zip(tiles) {
+            for (tile, results) in (0..BLOCK / TILE).zip(tiles) {
                 for k in 0..R::ENTRIES.len().div_ceil(TILE) {
                     // The last tile overlaps the one before.
                     let entry = last.min(TILE * k);
@@ -52,7 +53,7 @@ impl<T: Float, R: Results<T, M>, const M: usize> Sink<T, M> for EachPose<'_, R> 
                 }
             }
         }
-        for (pose, result) in (first + done..BLOCK).zip(results.iter_mut().skip(done)) {
+        for (pose, result) in (done..BLOCK).zip(results.iter_mut().skip(done)) {
             for (entry, number) in result.entries().iter_mut().zip(R::ENTRIES) {
                 *entry = numbers[*number][pose];
             }
@@ -69,15 +70,14 @@ impl<T: Float, const M: usize> Sink<T, M> for ByNumber<'_, T, M> {
     }
 
     #[inline(always)]
-    fn take(&mut self, poses: Range<usize>, first: usize, numbers: &[[T; BLOCK]; M], _: impl Instructions) {
+    fn room(&mut self, first: usize) -> Option<[&mut [T; BLOCK]; M]> {
+        Some(self.0.each_mut().map(|slice| slice[first..].first_chunk_mut().expect("a block")))
+    }
+
+    #[inline(always)]
+    fn take(&mut self, poses: Range<usize>, numbers: &[[T; BLOCK]; M], _: impl Instructions) {
         for (slice, numbers) in self.0.iter_mut().zip(numbers) {
-            let (slice, numbers) = (&mut slice[poses.clone()], &numbers[first..]);
-            // A whole vector without a call.
-            if let (Ok(slice), Some(numbers)) = (<&mut [T; VECTOR]>::try_from(&mut *slice), numbers.first_chunk()) {
-                *slice = *numbers;
-            } else {
-                slice.copy_from_slice(&numbers[..slice.len()]);
-            }
+            slice[poses.clone()].copy_from_slice(&numbers[..poses.len()]);
         }
     }
 }
@@ -90,10 +90,8 @@ impl<T: Float, F: FnMut(Range<usize>, &[[T; BLOCK]; M]), const M: usize> Sink<T,
         true
     }
 
-    const BY_VECTOR: bool = false;
-
     #[inline(always)]
-    fn take(&mut self, poses: Range<usize>, _: usize, numbers: &[[T; BLOCK]; M], _: impl Instructions) {
+    fn take(&mut self, poses: Range<usize>, numbers: &[[T; BLOCK]; M], _: impl Instructions) {
         (self.0)(poses, numbers);
     }
 }

@@ -200,15 +200,27 @@ fn poses_out_of_the_domain_spoil_no_others() {
 }
 
 #[test]
-fn by_entry_is_the_same() {
-    let poses = poses::<5>(150);
-    let mut triangles = vec![[0.0; 21]; 150];
-    compliance_triangle(&Rv130hsc, &poses, &mut triangles);
-    let mut entries = vec![0.0; 21 * 150];
-    let mut slices = entries.chunks_exact_mut(150);
-    compliance_by_entry(&Rv130hsc, &poses, core::array::from_fn(|_| slices.next().unwrap()));
-    for (k, entries) in entries.chunks_exact(150).enumerate() {
-        assert!(entries.iter().zip(&triangles).all(|(entry, triangle)| *entry == triangle[k]));
+fn by_entry_is_the_same_on_every_level() {
+    fn check<T: Float + core::fmt::Debug>(level: Level, count: usize, of: impl Fn(f64) -> T) {
+        let poses: Vec<SVector<T, 5>> = poses::<5>(count).iter().map(|q| q.map(&of)).collect();
+        let quantity = || Triangle { robot: &Rv130hsc };
+        let mut triangles = vec![[of(f64::NAN); 21]; count];
+        run_at(level, quantity(), &poses[..], EachPose(&mut triangles));
+        let mut entries = vec![of(f64::NAN); 21 * count];
+        let mut slices = entries.chunks_exact_mut(count);
+        run_at(level, quantity(), &poses[..], ByNumber::<_, 21>(core::array::from_fn(|_| slices.next().unwrap())));
+        for (k, entries) in entries.chunks_exact(count).enumerate() {
+            for (pose, (entry, triangle)) in entries.iter().zip(&triangles).enumerate() {
+                assert_eq!(*entry, triangle[k], "{level:?}, pose {pose} of {count}, entry {k}");
+            }
+        }
+    }
+    for level in Level::available() {
+        // A block that is not full, full ones, and full ones with a rest.
+        for count in [7, 64, 128, 150] {
+            check(level, count, |x| x);
+            check(level, count, |x| x as f32);
+        }
     }
 }
 
