@@ -150,21 +150,7 @@ impl Writer<'_> {
         let angles = self.function.graph().angles();
         let is_needed = |&index: &usize| is_live(Op::Sin(index)) || is_live(Op::Cos(index));
         let mut order: Vec<usize> = (0..angles.len()).filter(is_needed).collect();
-        let last_joint = |angle: &Angle| angle.terms().last().map(|&(joint, _)| joint);
-        if angles.first().map(last_joint) < angles.iter().map(last_joint).max() {
-            // A sum is known last, and first in a vector it is there at once; the others
-            // as they lie in memory; the first joint's own, which stands apart, last.
-            order.sort_by_key(|&index| {
-                let (is_sum, last) = (angles[index].terms().len() > 1, last_joint(&angles[index]));
-                (!is_sum, !is_sum && last == Some(0), last)
-            });
-        } else if let [_, second, .., base] = &mut order[..]
-            && live.iter().any(|(_, node)| node.op.is_column())
-        {
-            // From the tip on, because everything waits for that. Of five angles one is alone
-            // in its vector: not the base's, which all columns wait for. Gain: `benches/README.md`.
-            swap(second, base);
-        }
+        arrange(&mut order, &angles, live.iter().any(|(_, node)| node.op.is_column()));
         let (mut patterns, mut sums) = (Vec::new(), Vec::new());
         for index in order {
             let label = self.names.angle(index);
@@ -331,5 +317,23 @@ impl Writer<'_> {
             op => unreachable!("{op:?} of constants: nothing takes the root of a parameter"),
         });
         if binding < context { quote!((#expression)) } else { expression }
+    }
+}
+
+/// The order in which angles go into vectors, by when they are there and when
+/// they are waited for. Gain: `benches/README.md`.
+fn arrange(order: &mut [usize], angles: &[Angle], is_in_columns: bool) {
+    let last_joint = |angle: &Angle| angle.terms().last().map(|&(joint, _)| joint);
+    if angles.first().map(last_joint) < angles.iter().map(last_joint).max() {
+        // A sum is known last, and first in a vector it is there at once; the others as
+        // they lie in memory; the first joint's own, which stands apart, last.
+        order.sort_by_key(|&index| {
+            let (is_sum, last) = (angles[index].terms().len() > 1, last_joint(&angles[index]));
+            (!is_sum, !is_sum && last == Some(0), last)
+        });
+    } else if is_in_columns && let [_, second, .., base] = order {
+        // From the tip on, because everything waits for that. Of five angles one is alone in
+        // its vector: not the base's, which all columns wait for.
+        swap(second, base);
     }
 }
