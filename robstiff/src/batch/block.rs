@@ -37,13 +37,15 @@ struct Numbers<T, const M: usize>([[T; BLOCK]; M]);
 ///
 /// 1. sines and cosines, joint by joint ([`Source::fill`]);
 /// 2. the algebra of the robot;
-/// 3. handing the numbers over ([`Sink::take`]); where they stay as they are,
-///    they go there at once ([`Sink::room`]).
+/// 3. handing the numbers over ([`Sink::take`]); of whole blocks vector by vector
+///    from the registers, as they are ([`Sink::room`]) or rearranged
+///    ([`Sink::take_vector`]).
 ///
 /// All is inlined, because it takes the instructions that may be used from the
-/// function around it; `LANES` numbers fit into one, 1 where that is not known.
+/// function around it. `LANES` numbers fit into one, 1 where that is not known, and
+/// `REARRANGED` are rearranged at once.
 #[inline(always)]
-pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const FUSED: bool>(
+pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const REARRANGED: usize, const FUSED: bool>(
     quantity: &mut Q,
     source: &mut S,
     sink: &mut K,
@@ -65,9 +67,15 @@ pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const
         let filled = source.fill::<FUSED>(first, needs, &mut joints);
         let (Filled::Each(count) | Filled::Row(count) | Filled::Beyond(count)) = filled;
         quantity.prepare(first..first + count);
-        let room = if LANES > 1 && filled == Filled::Each(BLOCK) { sink.room(first) } else { None };
+        let is_whole = LANES > 1 && filled == Filled::Each(BLOCK);
+        let room = if is_whole { sink.room(first) } else { None };
         if let Some(room) = room {
             evaluate_there::<T, Q, N, M, LANES, FUSED>(quantity, &joints, room);
+        } else if is_whole && K::REARRANGES {
+            for start in (0..BLOCK).step_by(REARRANGED) {
+                let numbers = evaluate_vector::<T, Q, N, M, REARRANGED, FUSED>(quantity, start, &joints);
+                sink.take_vector(first + start, &numbers, instructions);
+            }
         } else {
             match filled {
                 Filled::Each(_) => evaluate::<T, Q, N, M, FUSED>(quantity, count, &joints, &mut numbers.0),
@@ -129,17 +137,32 @@ fn evaluate_there<T, Q, const N: usize, const M: usize, const LANES: usize, cons
     Q: Quantity<T, N, M>,
 {
     for vector in 0..BLOCK / LANES {
-        // Of one vector each, so that they are in registers: the compiler does not
-        // know that what lies behind the references is apart.
-        let mut numbers = [[T::ZERO; LANES]; M];
-        for lane in 0..LANES {
-            let pose = vector * LANES + lane;
-            evaluate_one::<T, Q, N, M, LANES, FUSED, false>(quantity, pose, joints, &mut numbers, lane);
-        }
+        let numbers = evaluate_vector::<T, Q, N, M, LANES, FUSED>(quantity, vector * LANES, joints);
         for (room, own) in room.iter_mut().zip(numbers) {
             room.as_chunks_mut().0[vector] = own;
         }
     }
+}
+
+/// The quantity at a vector of poses of a block, pose `first` and those behind it.
+///
+/// Of one vector each, and on their own, so that the numbers are in registers: the
+/// compiler does not know that what lies behind references is apart.
+#[inline(always)]
+fn evaluate_vector<T, Q, const N: usize, const M: usize, const LANES: usize, const FUSED: bool>(
+    quantity: &Q,
+    first: usize,
+    joints: &Joints<T, N>,
+) -> [[T; LANES]; M]
+where
+    T: Float,
+    Q: Quantity<T, N, M>,
+{
+    let mut numbers = [[T::ZERO; LANES]; M];
+    for lane in 0..LANES {
+        evaluate_one::<T, Q, N, M, LANES, FUSED, false>(quantity, first + lane, joints, &mut numbers, lane);
+    }
+    numbers
 }
 
 /// The quantity at a pose of a block, to a place among the numbers.

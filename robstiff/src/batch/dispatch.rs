@@ -165,7 +165,7 @@ pub fn run_at<T, Q, const N: usize, const M: usize>(
     assert!(Level::available().any(|available| available == level), "the machine has no {level:?}");
     let (quantity, source, sink) = (&mut quantity, &mut source, &mut sink);
     match level {
-        Level::Portable => block::run::<T, Q, _, _, N, M, 1, { trig::FUSED }>(quantity, source, sink, Portable),
+        Level::Portable => block::run::<T, Q, _, _, N, M, 1, 1, { trig::FUSED }>(quantity, source, sink, Portable),
         // SAFETY: AVX2 and FMA are available, the assertion says.
         #[cfg(all(feature = "std", target_arch = "x86_64"))]
         Level::Avx2 => unsafe { avx2(quantity, source, sink) },
@@ -186,9 +186,9 @@ fn avx2<T, Q, const N: usize, const M: usize>(
     Q: Quantity<T, N, M>,
 {
     if const { size_of::<T>() == size_of::<f64>() } {
-        block::run::<T, Q, _, _, N, M, 4, true>(quantity, source, sink, Avx);
+        block::run::<T, Q, _, _, N, M, 4, 4, true>(quantity, source, sink, Avx);
     } else {
-        block::run::<T, Q, _, _, N, M, 8, true>(quantity, source, sink, Avx);
+        block::run::<T, Q, _, _, N, M, 8, 8, true>(quantity, source, sink, Avx);
     }
 }
 
@@ -203,8 +203,8 @@ fn avx512<T, Q, const N: usize, const M: usize>(
     Q: Quantity<T, N, M>,
 {
     if const { size_of::<T>() == size_of::<f64>() } {
-        block::run::<T, Q, _, _, N, M, 8, true>(quantity, source, sink, Avx);
+        block::run::<T, Q, _, _, N, M, 8, 4, true>(quantity, source, sink, Avx);
     } else {
-        block::run::<T, Q, _, _, N, M, 16, true>(quantity, source, sink, Avx);
+        block::run::<T, Q, _, _, N, M, 16, 8, true>(quantity, source, sink, Avx);
     }
 }

@@ -19,6 +19,19 @@ pub trait Sink<T, const M: usize> {
         None
     }
 
+    /// Whether it puts the numbers of a pose together.
+    const REARRANGES: bool = false;
+
+    /// Takes the numbers of a vector of poses, pose `first` and those behind it, if
+    /// it rearranges them. Gain: `benches/README.md`.
+    fn take_vector<const LANES: usize>(
+        &mut self,
+        _first: usize,
+        _numbers: &[[T; LANES]; M],
+        _instructions: impl Instructions,
+    ) {
+    }
+
     /// Takes the numbers of the poses of a block.
     fn take(&mut self, poses: Range<usize>, numbers: &[[T; BLOCK]; M], instructions: impl Instructions);
 }
@@ -34,29 +47,51 @@ impl<T: Float, R: Results<T, M>, const M: usize> Sink<T, M> for EachPose<'_, R> 
         self.0.len() == poses
     }
 
-    // Tile by tile: left to itself, the compiler takes one number after the
-    // other, or with AVX-512 gathers and scatters, which are slower still.
+    const REARRANGES: bool = R::ENTRIES.len() >= TILE;
+
+    #[inline(always)]
+    fn take_vector<const LANES: usize>(
+        &mut self,
+        first: usize,
+        numbers: &[[T; LANES]; M],
+        instructions: impl Instructions,
+    ) {
+        let results: &mut [R; LANES] = self.0[first..].first_chunk_mut().expect("a vector");
+        rearrange(numbers, results, instructions);
+    }
+
     #[inline(always)]
     fn take(&mut self, poses: Range<usize>, numbers: &[[T; BLOCK]; M], instructions: impl Instructions) {
-        let results = &mut self.0[poses];
-        let mut done = 0;
-        if let Some(last) = R::ENTRIES.len().checked_sub(TILE) {
-            let (tiles, _) = results.as_chunks_mut::<TILE>();
-            done = TILE * tiles.len();
-            for (tile, results) in (0..BLOCK / TILE).zip(tiles) {
-                for k in 0..R::ENTRIES.len().div_ceil(TILE) {
-                    // The last tile overlaps the one before.
-                    let entry = last.min(TILE * k);
-                    let rows = array::from_fn(|i| &numbers[R::ENTRIES[entry + i]].as_chunks().0[tile]);
-                    let columns = results.each_mut().map(|r| r.entries()[entry..].first_chunk_mut().expect("a tile"));
-                    instructions.transpose(rows, columns);
-                }
+        rearrange(numbers, &mut self.0[poses], instructions);
+    }
+}
+
+/// Puts results together, tile by tile: left to itself, the compiler takes one
+/// number after the other, or with AVX-512 gathers and scatters, which are slower
+/// still.
+#[inline(always)]
+fn rearrange<T: Float, R: Results<T, M>, const M: usize, const POSES: usize>(
+    numbers: &[[T; POSES]; M],
+    results: &mut [R],
+    instructions: impl Instructions,
+) {
+    let mut done = 0;
+    if let Some(last) = R::ENTRIES.len().checked_sub(TILE) {
+        let (tiles, _) = results.as_chunks_mut::<TILE>();
+        done = TILE * tiles.len();
+        for (tile, results) in (0..POSES / TILE).zip(tiles) {
+            for k in 0..R::ENTRIES.len().div_ceil(TILE) {
+                // The last tile overlaps the one before.
+                let entry = last.min(TILE * k);
+                let rows = array::from_fn(|i| &numbers[R::ENTRIES[entry + i]].as_chunks().0[tile]);
+                let columns = results.each_mut().map(|r| r.entries()[entry..].first_chunk_mut().expect("a tile"));
+                instructions.transpose(rows, columns);
             }
         }
-        for (pose, result) in (done..BLOCK).zip(results.iter_mut().skip(done)) {
-            for (entry, number) in result.entries().iter_mut().zip(R::ENTRIES) {
-                *entry = numbers[*number][pose];
-            }
+    }
+    for (pose, result) in (done..POSES).zip(results.iter_mut().skip(done)) {
+        for (entry, number) in result.entries().iter_mut().zip(R::ENTRIES) {
+            *entry = numbers[*number][pose];
         }
     }
 }
