@@ -200,6 +200,19 @@ fn poses_out_of_the_domain_spoil_no_others() {
 }
 
 #[test]
+fn by_entry_is_the_same() {
+    let poses = poses::<5>(150);
+    let mut triangles = vec![[0.0; 21]; 150];
+    compliance_triangle(&Rv130hsc, &poses, &mut triangles);
+    let mut entries = vec![0.0; 21 * 150];
+    let mut slices = entries.chunks_exact_mut(150);
+    compliance_by_entry(&Rv130hsc, &poses, core::array::from_fn(|_| slices.next().unwrap()));
+    for (k, entries) in entries.chunks_exact(150).enumerate() {
+        assert!(entries.iter().zip(&triangles).all(|(entry, triangle)| *entry == triangle[k]));
+    }
+}
+
+#[test]
 fn by_entry_is_the_same_on_every_level() {
     fn check<T: Float + core::fmt::Debug>(level: Level, count: usize, of: impl Fn(f64) -> T) {
         let poses: Vec<SVector<T, 5>> = poses::<5>(count).iter().map(|q| q.map(&of)).collect();
