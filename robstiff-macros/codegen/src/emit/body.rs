@@ -38,7 +38,7 @@ pub(super) fn body(function: &Function, reader: Reader) -> Body {
     };
     let names = Names::of(function, &turns);
     let fusion = match reader {
-        Reader::Compiler => Fusion::of(function, &names, &turns),
+        Reader::Compiler => Fusion::of(function, &turns),
         Reader::Person => Fusion::none(function),
     };
     let writer = Writer { function, names, fusion, turns };

@@ -5,10 +5,13 @@
 //! fifth of the instructions of a compliance; without the instruction,
 //! `Real::mul_add` is the product and the sum that it was. Source for people
 //! keeps the operators.
+//!
+//! Only a product that nothing else uses: what is left of another would be
+//! multiplied twice, and batches, whose additions have room beside the
+//! multiplications, would wait for these. Gain: `benches/README.md`.
 
 use std::collections::BTreeSet;
 
-use super::names::Names;
 use super::turns::Turns;
 use crate::function::Function;
 use crate::graph::{Id, Op};
@@ -28,22 +31,13 @@ impl Fusion {
     }
 
     /// Lets every sum take up one product: of two, the one that makes the sum
-    /// known earlier; if both do, the one with fewer other users, because it is
-    /// more likely to have no line left.
-    pub fn of(function: &Function, names: &Names, turns: &Turns) -> Self {
+    /// known earlier.
+    pub fn of(function: &Function, turns: &Turns) -> Self {
         let graph = function.graph();
         let (nodes, uses) = (graph.nodes(), function.uses());
-        let is_written_briefly = |id: Id| {
-            names.get(id).is_some()
-                || !matches!(
-                    nodes[id].op,
-                    Op::Add(..) | Op::Sub(..) | Op::Mul(..) | Op::Neg(_) | Op::Max(..) | Op::Min(..)
-                )
-        };
         let is_product = |id: Id| match nodes[id].op {
             _ if nodes[id].constant.is_some() || turns.with(id).is_some() => false,
-            // Factors that have no line would be written out several times.
-            Op::Mul(a, b) => uses[id] == 1 || (is_written_briefly(a) && is_written_briefly(b)),
+            Op::Mul(..) => uses[id] == 1,
             _ => false,
         };
         let mut ready: Vec<usize> = Vec::with_capacity(nodes.len());
@@ -55,18 +49,16 @@ impl Fusion {
             let taken = match node.op {
                 Op::Add(a, b) | Op::Sub(a, b) if node.constant.is_none() && a != b => {
                     let candidates = [(b, a), (a, b)].into_iter().filter(|&(taken, _)| is_product(taken));
-                    candidates
-                        .map(|(taken, other)| (fused(taken, other), uses[taken], taken))
-                        .min_by_key(|c| (c.0, c.1))
+                    candidates.map(|(taken, other)| (fused(taken, other), taken)).min_by_key(|(done, _)| *done)
                 }
                 _ => None,
             };
             let done = match (taken, node.op) {
                 _ if node.constant.is_some() => 0,
-                (Some((done, ..)), _) => done,
+                (Some((done, _)), _) => done,
                 (None, op) => last(&mut op.operands()) + op.latency(),
             };
-            product.push(taken.map(|(.., taken)| taken));
+            product.push(taken.map(|(_, taken)| taken));
             ready.push(done);
         }
         let mut fusion = Self { product, uses: vec![0; nodes.len()] };
