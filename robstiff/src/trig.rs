@@ -105,14 +105,20 @@ fn pairs_within_domain<F: Float, V: Pairs<F>, const FUSED: bool>(x: V) -> V {
     mul_add(z * V::sides(r, z), tail, V::sides(r, most)).turn_pairs(shifted)
 }
 
-/// Whether all angles are within the domain; false for a NaN.
+/// Sines and cosines of many angles, in loops that the compiler makes vectors of,
+/// or `None` if some angle is out of the domain or a NaN.
 #[inline(always)]
-pub(crate) fn all_within_domain<F: Float, const K: usize>(angles: &[F; K]) -> bool {
-    let mut within = true;
-    for angle in angles {
-        within &= angle.is_in_domain();
+pub(crate) fn sin_cos_each<F: Float, const FUSED: bool, const K: usize>(
+    angles: &[F; K],
+    sines: &mut [F; K],
+    cosines: &mut [F; K],
+) -> Option<()> {
+    let mut strange = F::ZERO;
+    for i in 0..K {
+        strange = strange.or(F::strange(quarters::<F, F, FUSED>(angles[i])));
+        (sines[i], cosines[i]) = within_domain::<F, F, FUSED>(angles[i]);
     }
-    within
+    strange.is_usual().then_some(())
 }
 
 /// Sine and cosine of one angle.
@@ -181,7 +187,7 @@ pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K]) -> [(F, F); 
 
 #[inline(always)]
 fn strangeness<F: Float, V: Vector<F>>(angles: V) -> V {
-    angles.strange(quarters::<F, V, FUSED>(angles))
+    V::strange(quarters::<F, V, FUSED>(angles))
 }
 
 #[cold]

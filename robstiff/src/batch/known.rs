@@ -33,7 +33,7 @@ impl<T: Float, const FUSED: bool> Known<T, FUSED> {
         if self.is_known {
             return self;
         }
-        let is_known = !cfg!(feature = "platform-trig") && trig::all_within_domain(&[self.value]);
+        let is_known = !cfg!(feature = "platform-trig") && self.value.is_in_domain();
         Self { sin_cos: trig::within_domain::<T, T, FUSED>(self.value), is_known, ..self }
     }
 

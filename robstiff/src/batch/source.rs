@@ -69,12 +69,8 @@ impl<T: Float, const N: usize> Source<T, N> for &[SVector<T, N>] {
         }
         for joint in 0..N {
             if needs.sin_cos(joint) {
-                if !trig::all_within_domain(&values[joint]) {
+                if trig::sin_cos_each::<T, FUSED, BLOCK>(&values[joint], &mut sines[joint], &mut cosines[joint]).is_none() {
                     return Filled::Beyond(count);
-                }
-                for pose in 0..BLOCK {
-                    (sines[joint][pose], cosines[joint][pose]) =
-                        trig::within_domain::<T, T, FUSED>(values[joint][pose]);
                 }
             }
         }

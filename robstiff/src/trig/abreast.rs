@@ -20,6 +20,16 @@ pub(crate) trait Abreast<F>: Copy + Add<Output = Self> + Sub<Output = Self> + Mu
     /// `shifted` say. The last bit exchanges the two, one of them with a
     /// changed sign; the one before changes the signs of both.
     fn turn_quarters(shifted: Self, sin: Self, cos: Self) -> (Self, Self);
+
+    /// Of an angle as [`quarters`](super::quarters) shifts it: bits that are 0
+    /// where it is within the domain, and some not where it is not or is a NaN.
+    fn strange(shifted: Self) -> Self;
+
+    /// The bits of both.
+    fn or(self, other: Self) -> Self;
+
+    /// Whether all bits that [`strange`](Self::strange) left are 0.
+    fn is_usual(self) -> bool;
 }
 
 /// `a * b + c`, rounded once if `FUSED`.
@@ -39,15 +49,6 @@ pub(crate) trait Vector<F>: Abreast<F> {
     /// Writes `(sin, cos)` of the angles from `first` on.
     fn scatter<const K: usize>(sin: Self, cos: Self, out: &mut [(F, F); K], first: usize);
 
-    /// Bits that are 0 where an angle is within the domain, and some not where it
-    /// is not or is a NaN. `shifted`: as in [`quarters`](super::quarters).
-    fn strange(self, shifted: Self) -> Self;
-
-    /// The bits of both.
-    fn or(self, other: Self) -> Self;
-
-    /// Whether all bits that [`strange`](Self::strange) left are 0.
-    fn is_usual(self) -> bool;
 }
 
 /// Numbers in pairs of neighbouring lanes, for the sine and the cosine of one
@@ -70,7 +71,7 @@ pub(crate) trait Pairs<F>: Vector<F> {
 }
 
 macro_rules! single {
-    ($float:ident, $bits:ident, $signed:ident, $fma:path) => {
+    ($float:ident, $bits:ident, $signed:ident, $module:ident, $fma:path) => {
         impl Abreast<$float> for $float {
             #[inline(always)]
             fn number(place: usize) -> Self {
@@ -95,6 +96,21 @@ macro_rules! single {
                 let exchange = (sin ^ cos) & ((last as $signed) >> ($bits::BITS - 1)) as $bits;
                 (Self::from_bits(sin ^ exchange ^ sign), Self::from_bits(cos ^ exchange ^ sign))
             }
+
+            #[inline(always)]
+            fn strange(shifted: Self) -> Self {
+                Self::from_bits(shifted.to_bits() ^ $module::QUARTERS.0)
+            }
+
+            #[inline(always)]
+            fn or(self, other: Self) -> Self {
+                Self::from_bits(self.to_bits() | other.to_bits())
+            }
+
+            #[inline(always)]
+            fn is_usual(self) -> bool {
+                self.to_bits() & $module::QUARTERS.1 == 0
+            }
         }
     };
 }
@@ -113,20 +129,6 @@ impl<F: Float> Vector<F> for F {
         out[first] = (sin, cos);
     }
 
-    #[inline(always)]
-    fn strange(self, _: Self) -> Self {
-        if self.is_in_domain() { F::ZERO } else { F::ONE }
-    }
-
-    #[inline(always)]
-    fn or(self, other: Self) -> Self {
-        self + other
-    }
-
-    #[inline(always)]
-    fn is_usual(self) -> bool {
-        self == F::ZERO
-    }
 }
 
 /// A single number is a full vector: nothing is left.
@@ -155,8 +157,8 @@ impl<F: Float> Pairs<F> for F {
     }
 }
 
-single!(f32, u32, i32, libm::fmaf);
-single!(f64, u64, i64, libm::fma);
+single!(f32, u32, i32, single, libm::fmaf);
+single!(f64, u64, i64, double, libm::fma);
 
 /// Lanes to exchange. A blend looks at the first bit only; without one, all bits.
 macro_rules! exchange {
@@ -192,6 +194,22 @@ macro_rules! vectors {
                 let (sin, cos) = (exchange.select(cos, sin), exchange.select(sin, cos));
                 (Self::from_bits(sin.to_bits() ^ sign), Self::from_bits(cos.to_bits() ^ sign))
             }
+
+            #[inline(always)]
+            fn strange(shifted: Self) -> Self {
+                Self::from_bits(shifted.to_bits() ^ wide::$bits::splat($module::QUARTERS.0))
+            }
+
+            #[inline(always)]
+            fn or(self, other: Self) -> Self {
+                Self::from_bits(self.to_bits() | other.to_bits())
+            }
+
+            #[inline(always)]
+            fn is_usual(self) -> bool {
+                let strange = self.to_bits() & wide::$bits::splat($module::QUARTERS.1);
+                strange.simd_eq(wide::$bits::splat(0)).all()
+            }
         }
 
         impl Vector<$float> for wide::$vector {
@@ -214,22 +232,6 @@ macro_rules! vectors {
                         out[first + lane] = (sin[lane], cos[lane]);
                     }
                 }
-            }
-
-            #[inline(always)]
-            fn strange(self, shifted: Self) -> Self {
-                Self::from_bits(shifted.to_bits() ^ wide::$bits::splat($module::QUARTERS.0))
-            }
-
-            #[inline(always)]
-            fn or(self, other: Self) -> Self {
-                Self::from_bits(self.to_bits() | other.to_bits())
-            }
-
-            #[inline(always)]
-            fn is_usual(self) -> bool {
-                let strange = self.to_bits() & wide::$bits::splat($module::QUARTERS.1);
-                strange.simd_eq(wide::$bits::splat(0)).all()
             }
         }
 
