@@ -7,7 +7,7 @@ use super::dispatch::Instructions;
 use super::known::Known;
 use super::needs::{Needs, Traced};
 use super::quantities::Quantity;
-use super::sink::Sink;
+use super::sink::{Sink, Vectors};
 use super::source::{Filled, Source};
 
 /// Poses in a block: what a block needs stays in the first-level cache.
@@ -37,15 +37,14 @@ struct Numbers<T, const M: usize>([[T; BLOCK]; M]);
 ///
 /// 1. sines and cosines, joint by joint ([`Source::fill`]);
 /// 2. the algebra of the robot;
-/// 3. handing the numbers over ([`Sink::take`]); of whole blocks vector by vector
-///    from the registers, as they are ([`Sink::room`]) or rearranged
-///    ([`Sink::take_vector`]).
+/// 3. handing the numbers over, vector by vector from the registers
+///    ([`Sink::take_vector`]) or by way of the block ([`Sink::take`]).
 ///
 /// All is inlined, because it takes the instructions that may be used from the
 /// function around it. `LANES` numbers fit into one, 1 where that is not known, and
-/// `REARRANGED` are rearranged at once.
+/// `PART` are the poses whose results are rearranged at once.
 #[inline(always)]
-pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const REARRANGED: usize, const FUSED: bool>(
+pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const PART: usize, const FUSED: bool>(
     quantity: &mut Q,
     source: &mut S,
     sink: &mut K,
@@ -67,16 +66,16 @@ pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const
         let filled = source.fill::<FUSED>(first, needs, &mut joints);
         let (Filled::Each(count) | Filled::Row(count) | Filled::Beyond(count)) = filled;
         quantity.prepare(first..first + count);
-        let is_whole = LANES > 1 && filled == Filled::Each(BLOCK);
-        let room = if is_whole { sink.room(first) } else { None };
-        if let Some(room) = room {
-            evaluate_there::<T, Q, N, M, LANES, FUSED>(quantity, &joints, room);
-        } else if is_whole && K::REARRANGES {
-            for start in (0..BLOCK).step_by(REARRANGED) {
-                let numbers = evaluate_vector::<T, Q, N, M, REARRANGED, FUSED>(quantity, start, &joints);
-                sink.take_vector(first + start, &numbers, instructions);
+        let is_done = match (filled, K::VECTORS) {
+            (Filled::Each(_), Vectors::Whole) => {
+                evaluate_vectors::<T, Q, K, N, M, LANES, FUSED>(quantity, first, count, &joints, sink, instructions)
             }
-        } else {
+            (Filled::Each(_), Vectors::Parts) => {
+                evaluate_vectors::<T, Q, K, N, M, PART, FUSED>(quantity, first, count, &joints, sink, instructions)
+            }
+            _ => false,
+        };
+        if !is_done {
             match filled {
                 Filled::Each(_) => evaluate::<T, Q, N, M, FUSED>(quantity, count, &joints, &mut numbers.0),
                 Filled::Row(_) if S::ROWS => evaluate_row::<T, Q, N, M, FUSED>(quantity, &joints, &mut numbers.0),
@@ -126,22 +125,34 @@ fn evaluate_row<T, Q, const N: usize, const M: usize, const FUSED: bool>(
     }
 }
 
-/// The quantity at a block of poses, written where it stays.
+/// The quantity at the first poses of a block, from the registers to the sink; or
+/// nothing, and `false`, where they are no whole vectors.
 #[inline(always)]
-fn evaluate_there<T, Q, const N: usize, const M: usize, const LANES: usize, const FUSED: bool>(
+fn evaluate_vectors<T, Q, K, const N: usize, const M: usize, const LANES: usize, const FUSED: bool>(
     quantity: &Q,
+    first: usize,
+    count: usize,
     joints: &Joints<T, N>,
-    mut room: [&mut [T; BLOCK]; M],
-) where
+    sink: &mut K,
+    instructions: impl Instructions,
+) -> bool
+where
     T: Float,
     Q: Quantity<T, N, M>,
+    K: Sink<T, M>,
 {
-    for vector in 0..BLOCK / LANES {
-        let numbers = evaluate_vector::<T, Q, N, M, LANES, FUSED>(quantity, vector * LANES, joints);
-        for (room, own) in room.iter_mut().zip(numbers) {
-            room.as_chunks_mut().0[vector] = own;
-        }
+    if LANES == 1 || !count.is_multiple_of(LANES) {
+        return false;
     }
+    // In these words no index needs a check.
+    for start in (0..BLOCK).step_by(LANES) {
+        if start >= count {
+            break;
+        }
+        let numbers = evaluate_vector::<T, Q, N, M, LANES, FUSED>(quantity, start, joints);
+        sink.take_vector(first + start, &numbers, instructions);
+    }
+    true
 }
 
 /// The quantity at a vector of poses of a block, pose `first` and those behind it.

@@ -8,22 +8,26 @@ use super::block::BLOCK;
 use super::dispatch::Instructions;
 use super::quantities::Results;
 
+/// How a sink takes numbers that are still in registers. Gain: `benches/README.md`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Vectors {
+    /// Not at all, but block by block.
+    No,
+    /// Those of a whole vector.
+    Whole,
+    /// Those of so many poses as are rearranged at once.
+    Parts,
+}
+
 /// Takes the numbers of the poses in a range, `numbers[k][i]` of the `i`-th.
 pub trait Sink<T, const M: usize> {
     /// Whether there is room for so many poses, and no more.
     fn fits(&self, poses: usize) -> bool;
 
-    /// Where the numbers of a block of poses go, pose `first` and those behind it,
-    /// if they go there as they are. Gain: `benches/README.md`.
-    fn room(&mut self, _first: usize) -> Option<[&mut [T; BLOCK]; M]> {
-        None
-    }
+    /// Whether it takes the numbers of vectors, and how.
+    const VECTORS: Vectors = Vectors::No;
 
-    /// Whether it puts the numbers of a pose together.
-    const REARRANGES: bool = false;
-
-    /// Takes the numbers of a vector of poses, pose `first` and those behind it, if
-    /// it rearranges them. Gain: `benches/README.md`.
+    /// Takes the numbers of a vector of poses, pose `first` and those behind it.
     fn take_vector<const LANES: usize>(
         &mut self,
         _first: usize,
@@ -47,7 +51,7 @@ impl<T: Float, R: Results<T, M>, const M: usize> Sink<T, M> for EachPose<'_, R> 
         self.0.len() == poses
     }
 
-    const REARRANGES: bool = R::ENTRIES.len() >= TILE;
+    const VECTORS: Vectors = if R::ENTRIES.len() <= 2 * TILE { Vectors::Whole } else { Vectors::Parts };
 
     #[inline(always)]
     fn take_vector<const LANES: usize>(
@@ -104,9 +108,13 @@ impl<T: Float, const M: usize> Sink<T, M> for ByNumber<'_, T, M> {
         self.0.iter().all(|slice| slice.len() == poses)
     }
 
+    const VECTORS: Vectors = Vectors::Whole;
+
     #[inline(always)]
-    fn room(&mut self, first: usize) -> Option<[&mut [T; BLOCK]; M]> {
-        Some(self.0.each_mut().map(|slice| slice[first..].first_chunk_mut().expect("a block")))
+    fn take_vector<const LANES: usize>(&mut self, first: usize, numbers: &[[T; LANES]; M], _: impl Instructions) {
+        for (slice, numbers) in self.0.iter_mut().zip(numbers) {
+            slice[first..first + LANES].copy_from_slice(numbers);
+        }
     }
 
     #[inline(always)]

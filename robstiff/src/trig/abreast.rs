@@ -48,7 +48,6 @@ pub(crate) trait Vector<F>: Abreast<F> {
 
     /// Writes `(sin, cos)` of the angles from `first` on.
     fn scatter<const K: usize>(sin: Self, cos: Self, out: &mut [(F, F); K], first: usize);
-
 }
 
 /// Numbers in pairs of neighbouring lanes, for the sine and the cosine of one
@@ -128,7 +127,6 @@ impl<F: Float> Vector<F> for F {
     fn scatter<const K: usize>(sin: Self, cos: Self, out: &mut [(F, F); K], first: usize) {
         out[first] = (sin, cos);
     }
-
 }
 
 /// A single number is a full vector: nothing is left.
