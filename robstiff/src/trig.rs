@@ -11,8 +11,9 @@
 //!    the first ones so short that `k` times them is exact, so that only the
 //!    last subtraction rounds;
 //! 3. `sin r = r + r z S(z)` and `cos r = 1 + z (z C(z) - 1/2)` with `z = r^2`
-//!    and the best polynomials of their length, in steps that wait for each
-//!    other as little as possible: a single pose waits more than it computes;
+//!    and the best polynomials of their length: for a single pose, which waits
+//!    more than it computes, in steps that wait for each other as little as
+//!    possible, for many poses with as few multiplications as possible;
 //! 4. the last two bits of `k` exchange the two and set their signs.
 //!
 //! Both parts of the answer are within [`Float::BOUND`] of the truth for
@@ -57,10 +58,22 @@ fn reduced<F: Float, V: Abreast<F>, const FUSED: bool>(x: V, shifted: V) -> V {
 }
 
 /// A polynomial, the lowest coefficient first: pairs of terms, which do not
-/// wait for each other, and then one step in `z^2` for each pair.
+/// wait for each other, and then one step in `z^2` for each pair; of many angles
+/// (`MANY`) term by term (Horner).
 #[inline(always)]
-fn polynomial<F: Float, V: Abreast<F>, const FUSED: bool>(coefficient: impl Fn(usize) -> V, z: V, z2: V) -> V {
+fn polynomial<F: Float, V: Abreast<F>, const FUSED: bool, const MANY: bool>(
+    coefficient: impl Fn(usize) -> V,
+    z: V,
+    z2: V,
+) -> V {
     let mul_add = abreast::mul_add::<F, V, FUSED>;
+    if MANY {
+        let mut value = coefficient(F::TERMS - 1);
+        for i in 1..F::TERMS {
+            value = mul_add(value, z, coefficient(F::TERMS - 1 - i));
+        }
+        return value;
+    }
     let pair = |i: usize| {
         let low = coefficient(i);
         if i + 1 < F::TERMS { mul_add(z, coefficient(i + 1), low) } else { low }
@@ -77,18 +90,23 @@ fn polynomial<F: Float, V: Abreast<F>, const FUSED: bool>(coefficient: impl Fn(u
 /// Sines and cosines of angles within the domain.
 ///
 /// `FUSED`: multiplies and adds in one instruction, which the target must have.
+/// `MANY`: many angles follow each other, which do not wait for each other.
 #[inline(always)]
-pub(crate) fn within_domain<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> (V, V) {
+pub(crate) fn within_domain<F: Float, V: Abreast<F>, const FUSED: bool, const MANY: bool>(x: V) -> (V, V) {
     let mul_add = abreast::mul_add::<F, V, FUSED>;
     let shifted = quarters::<F, V, FUSED>(x);
     let r = reduced::<F, V, FUSED>(x, shifted);
     let z = r * r;
     let z2 = z * z;
-    let sin_tail = polynomial::<F, V, FUSED>(|i| V::number(places::sin::<F>() + i), z, z2);
+    let sin_tail = polynomial::<F, V, FUSED, MANY>(|i| V::number(places::sin::<F>() + i), z, z2);
     let sin = mul_add(r * z, sin_tail, r);
-    let cos_tail = polynomial::<F, V, FUSED>(|i| V::number(places::cos::<F>() + i), z, z2);
-    let most = mul_add(z, V::number(places::MINUS_HALF), V::number(places::ONE));
-    let cos = mul_add(z2, cos_tail, most);
+    let cos_tail = polynomial::<F, V, FUSED, MANY>(|i| V::number(places::cos::<F>() + i), z, z2);
+    let (one, minus_half) = (V::number(places::ONE), V::number(places::MINUS_HALF));
+    let cos = if MANY {
+        mul_add(z, mul_add(z, cos_tail, minus_half), one)
+    } else {
+        mul_add(z2, cos_tail, mul_add(z, minus_half, one))
+    };
     V::turn_quarters(shifted, sin, cos)
 }
 
@@ -100,7 +118,7 @@ fn pairs_within_domain<F: Float, V: Pairs<F>, const FUSED: bool>(x: V) -> V {
     let r = reduced::<F, V, FUSED>(x, shifted);
     let z = r * r;
     let z2 = z * z;
-    let tail = polynomial::<F, V, FUSED>(|i| V::numbers(places::sin::<F>() + i, places::cos::<F>() + i), z, z2);
+    let tail = polynomial::<F, V, FUSED, false>(|i| V::numbers(places::sin::<F>() + i, places::cos::<F>() + i), z, z2);
     let most = mul_add(z, V::number(places::MINUS_HALF), V::number(places::ONE));
     mul_add(z * V::sides(r, z), tail, V::sides(r, most)).turn_pairs(shifted)
 }
@@ -116,7 +134,7 @@ pub(crate) fn sin_cos_each<F: Float, const FUSED: bool, const K: usize>(
     let mut strange = F::ZERO;
     for i in 0..K {
         strange = strange.or(F::strange(quarters::<F, F, FUSED>(angles[i])));
-        (sines[i], cosines[i]) = within_domain::<F, F, FUSED>(angles[i]);
+        (sines[i], cosines[i]) = within_domain::<F, F, FUSED, true>(angles[i]);
     }
     strange.is_usual().then_some(())
 }
@@ -127,7 +145,7 @@ pub(crate) fn sin_cos<F: Float>(angle: F) -> (F, F) {
     if cfg!(feature = "platform-trig") || !angle.is_in_domain() {
         return angle.platform_sin_cos();
     }
-    within_domain::<F, F, FUSED>(angle)
+    within_domain::<F, F, FUSED, false>(angle)
 }
 
 /// Sines and cosines of several angles, `(sin, cos)` each.
@@ -159,7 +177,7 @@ pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K]) -> [(F, F); 
     let mut pairs = F::Vector::number(0);
     if within {
         for first in (0..alone).step_by(lanes) {
-            vectors[first / lanes] = within_domain::<F, F::Vector, FUSED>(F::Vector::gather(&angles, first));
+            vectors[first / lanes] = within_domain::<F, F::Vector, FUSED, false>(F::Vector::gather(&angles, first));
         }
         if in_pairs > 0 {
             pairs = pairs_within_domain::<F, F::Vector, FUSED>(F::Vector::gather_pairs(&angles, alone));

@@ -34,7 +34,7 @@ impl<T: Float, const FUSED: bool> Known<T, FUSED> {
             return self;
         }
         let is_known = !cfg!(feature = "platform-trig") && self.value.is_in_domain();
-        Self { sin_cos: trig::within_domain::<T, T, FUSED>(self.value), is_known, ..self }
+        Self { sin_cos: trig::within_domain::<T, T, FUSED, false>(self.value), is_known, ..self }
     }
 
     #[inline(always)]
