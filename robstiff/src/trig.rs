@@ -123,20 +123,20 @@ fn pairs_within_domain<F: Float, V: Pairs<F>, const FUSED: bool>(x: V) -> V {
     mul_add(z * V::sides(r, z), tail, V::sides(r, most)).turn_pairs(shifted)
 }
 
-/// Sines and cosines of many angles, in loops that the compiler makes vectors of,
-/// or `None` if some angle is out of the domain or a NaN.
+/// Sines and cosines of many angles, in a loop that the compiler makes vectors of.
+/// False if some angle is out of the domain or a NaN: then they mean nothing.
 #[inline(always)]
 pub(crate) fn sin_cos_each<F: Float, const FUSED: bool, const K: usize>(
     angles: &[F; K],
     sines: &mut [F; K],
     cosines: &mut [F; K],
-) -> Option<()> {
+) -> bool {
     let mut strange = F::ZERO;
     for i in 0..K {
         strange = strange.or(F::strange(quarters::<F, F, FUSED>(angles[i])));
         (sines[i], cosines[i]) = within_domain::<F, F, FUSED, true>(angles[i]);
     }
-    strange.is_usual().then_some(())
+    strange.is_usual()
 }
 
 /// Sine and cosine of one angle.

@@ -51,6 +51,7 @@ impl<T: Float, R: Results<T, M>, const M: usize> Sink<T, M> for EachPose<'_, R> 
         self.0.len() == poses
     }
 
+    /// Many numbers of a whole vector do not stay in the registers while they are rearranged.
     const VECTORS: Vectors = if R::ENTRIES.len() <= 2 * TILE { Vectors::Whole } else { Vectors::Parts };
 
     #[inline(always)]

@@ -68,12 +68,9 @@ impl<T: Float, const N: usize> Source<T, N> for &[SVector<T, N>] {
             }
         }
         for joint in 0..N {
-            if needs.sin_cos(joint) {
-                if trig::sin_cos_each::<T, FUSED, BLOCK>(&values[joint], &mut sines[joint], &mut cosines[joint])
-                    .is_none()
-                {
-                    return Filled::Beyond(count);
-                }
+            let (angles, sines, cosines) = (&values[joint], &mut sines[joint], &mut cosines[joint]);
+            if needs.sin_cos(joint) && !trig::sin_cos_each::<T, FUSED, BLOCK>(angles, sines, cosines) {
+                return Filled::Beyond(count);
             }
         }
         Filled::Each(count)
