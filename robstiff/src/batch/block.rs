@@ -57,7 +57,7 @@ pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const
 {
     let mut joints =
         Joints { values: [[T::ZERO; BLOCK]; N], sines: [[T::ZERO; BLOCK]; N], cosines: [[T::ZERO; BLOCK]; N] };
-    let mut numbers = Numbers([[T::ZERO; BLOCK]; M]);
+    let mut kept = Numbers([[T::ZERO; BLOCK]; M]);
     // Constants, where the compiler sees through the robot.
     let needs = Needs::of(&quantity.numbers(0, &SVector::from_fn(|joint, _| Traced::joint(joint)), |_| Traced::NUMBER));
     let poses = source.poses();
@@ -76,6 +76,9 @@ pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const
             _ => false,
         };
         if !is_done {
+            // A sink that takes vectors needs this once at most, for the last poses.
+            let numbers =
+                if K::VECTORS == Vectors::No || S::ROWS { &mut kept } else { &mut Numbers([[T::ZERO; BLOCK]; M]) };
             match filled {
                 Filled::Each(_) => evaluate::<T, Q, N, M, FUSED>(quantity, count, &joints, &mut numbers.0),
                 Filled::Row(_) if S::ROWS => evaluate_row::<T, Q, N, M, FUSED>(quantity, &joints, &mut numbers.0),

@@ -52,19 +52,19 @@ impl<T: Float, const N: usize> Source<T, N> for &[SVector<T, N>] {
         if cfg!(feature = "platform-trig") {
             return Filled::Beyond(count);
         }
-        let padded: [SVector<T, N>; BLOCK];
-        let block = if let Some(block) = poses.first_chunk() {
-            block
-        } else {
-            let mut rest = [SVector::zeros(); BLOCK];
-            rest[..count].copy_from_slice(poses);
-            padded = rest;
-            &padded
-        };
         let Joints { values, sines, cosines } = joints;
-        for pose in 0..BLOCK {
+        if let Some(block) = poses.first_chunk::<BLOCK>() {
+            for pose in 0..BLOCK {
+                for joint in 0..N {
+                    values[joint][pose] = block[pose][joint];
+                }
+            }
+        } else {
             for joint in 0..N {
-                values[joint][pose] = block[pose][joint];
+                values[joint][count..].fill(T::ZERO);
+                for (value, pose) in values[joint].iter_mut().zip(poses) {
+                    *value = pose[joint];
+                }
             }
         }
         for joint in 0..N {
