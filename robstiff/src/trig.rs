@@ -101,11 +101,11 @@ pub(crate) fn within_domain<F: Float, V: Abreast<F>, const FUSED: bool, const MA
     let sin_tail = polynomial::<F, V, FUSED, MANY>(|i| V::number(places::sin::<F>() + i), z, z2);
     let sin = mul_add(r * z, sin_tail, r);
     let cos_tail = polynomial::<F, V, FUSED, MANY>(|i| V::number(places::cos::<F>() + i), z, z2);
-    let (one, minus_half) = (V::number(places::ONE), V::number(places::MINUS_HALF));
     let cos = if MANY {
-        mul_add(z, mul_add(z, cos_tail, minus_half), one)
+        mul_add(z, mul_add(z, cos_tail, V::number(places::MINUS_HALF)), V::number(places::ONE))
     } else {
-        mul_add(z2, cos_tail, mul_add(z, minus_half, one))
+        let most = mul_add(z, V::number(places::MINUS_HALF), V::number(places::ONE));
+        mul_add(z2, cos_tail, most)
     };
     V::turn_quarters(shifted, sin, cos)
 }
