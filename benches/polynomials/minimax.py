@@ -1,6 +1,6 @@
 """The coefficients of robstiff/src/trig: best polynomials for sine and cosine.
 
-On |r| <= pi/4, with z = r^2,
+On |r| <= pi/4, and on |r| <= pi/32 beside tables (tables.rs), with z = r^2,
 
     sin r = r + r z S(z),        cos r = 1 - z/2 + z^2 C(z).
 
@@ -21,7 +21,11 @@ from functools import lru_cache
 
 getcontext().prec = 60
 PI = D("3.14159265358979323846264338327950288419716939937510582097494459")
-END = (PI / 4 * D("1.0005")) ** 2  # the rounded quadrant can be a little off
+
+
+def end(part):
+    """The largest z; the rounded multiple of pi can be a little off."""
+    return (PI / part * D("1.0005")) ** 2
 
 
 @lru_cache(maxsize=None)
@@ -59,20 +63,20 @@ def solve(rows, right):
     return x
 
 
-def remez(first, known, n):
+def remez(first, known, n, last):
     """n more coefficients after the known ones; weight z for S, z^2 for C."""
     power = first - 2 if first == 3 else 2
     def error(z, cs):
         return z**power * (tail(z, first) - horner(cs, z))
     m = len(known)
-    points = [END * (1 - D(math.cos(math.pi * (i + 0.5) / (n + 1)))) / 2 for i in range(n + 1)]
+    points = [last * (1 - D(math.cos(math.pi * (i + 0.5) / (n + 1)))) / 2 for i in range(n + 1)]
     for _ in range(8):
         rows, right = [], []
         for i, z in enumerate(points):
             rows.append([z ** (k + m) for k in range(n)] + [(-1) ** i / z**power])
             right.append(tail(z, first) - horner(known, z))
         cs = known + solve(rows, right)[:n]
-        grid = [END * D(i) / 1500 for i in range(1, 1501)]
+        grid = [last * D(i) / 1500 for i in range(1, 1501)]
         values = [error(z, cs) for z in grid]
         extremes, run = [], [0]
         for i in range(1, 1500):
@@ -88,27 +92,32 @@ def remez(first, known, n):
     return cs, max(abs(v) for v in values)
 
 
+def sine(x):
+    """By Taylor's series."""
+    return x + x**3 * tail(x * x, 3)
+
+
 def rounded(x, single):
     x = float(x)
     return D(struct.unpack("f", struct.pack("f", x))[0] if single else x)
 
 
-def fit(first, n, single):
+def fit(first, n, single, last):
     known = []
     while len(known) < n:
-        cs, _ = remez(first, known, n - len(known))
+        cs, _ = remez(first, known, n - len(known), last)
         known = known + [rounded(cs[len(known)], single)]
     power = first - 2 if first == 3 else 2
     worst = max(
         abs(z**power * (tail(z, first) - horner(known, z)))
-        for z in (END * D(i) / 1500 for i in range(1, 1501))
+        for z in (last * D(i) / 1500 for i in range(1, 1501))
     )
     return known, worst
 
 
-def parts(bits):
+def parts(bits, whole=PI / 2):
     """pi/2 as a sum of numbers with so many bits each."""
-    rest, out = PI / 2, []
+    rest, out = whole, []
     for b in bits:
         e = math.frexp(float(rest))[1]
         unit = D(2) ** (e - b)
@@ -119,9 +128,14 @@ def parts(bits):
 
 
 if __name__ == "__main__":
-    for name, single, counts in (("f64", False, (6, 6)), ("f32", True, (4, 3)), ("f32", True, (3, 3))):
+    for name, single, part, counts in (
+        ("f64", False, 4, (6, 6)),
+        ("f64, tables", False, 32, (3, 3)),
+        ("f32", True, 4, (4, 3)),
+        ("f32", True, 4, (3, 3)),
+    ):
         for first, n in zip((3, 4), counts):
-            cs, worst = fit(first, n, single)
+            cs, worst = fit(first, n, single, end(part))
             print(name, "sin" if first == 3 else "cos", n, f"largest error {float(worst):.2e} = 2^{math.log2(worst):.1f}")
             for c in cs:
                 print("   ", repr(float(c)))
@@ -129,3 +143,5 @@ if __name__ == "__main__":
         ps, rest = parts(bits)
         print("pi/2", name, [repr(float(p)) for p in ps], f"rest {float(rest):.1e}")
     print("2/pi", repr(float(2 / PI)))
+    print("pi/16", [repr(float(p)) for p in parts((53, 53), PI / 16)[0]], "16/pi", repr(float(16 / PI)))
+    print("sines of multiples of pi/16", [repr(float(sine(PI * k / 16))) for k in range(16)])

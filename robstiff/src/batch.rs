@@ -60,7 +60,7 @@ use sink::{Blocks, ByNumber, EachPose};
 
 /// The floating point numbers that batches are made of: `f32` and `f64`.
 #[expect(private_bounds, reason = "nobody else shall implement it")]
-pub trait Float: Real + trig::Float + dispatch::Transpose + PartialOrd + Send + Sync {}
+pub trait Float: Real + trig::Float + dispatch::ByHand + PartialOrd + Send + Sync {}
 
 impl Float for f32 {}
 impl Float for f64 {}

@@ -26,6 +26,8 @@
 
 mod abreast;
 mod float;
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+pub(crate) mod tables;
 #[cfg(all(test, feature = "std"))]
 mod tests;
 

@@ -63,7 +63,7 @@ pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const
     let poses = source.poses();
     let mut first = 0;
     while first < poses {
-        let filled = source.fill::<FUSED>(first, needs, &mut joints);
+        let filled = source.fill::<FUSED>(first, needs, &mut joints, instructions);
         let (Filled::Each(count) | Filled::Row(count) | Filled::Beyond(count)) = filled;
         quantity.prepare(first..first + count);
         let is_done = match (filled, K::VECTORS) {

@@ -1,17 +1,18 @@
 //! The instructions that the machine has.
 //!
-//! This is the only unsafe code of the crate: a function made for certain
-//! instructions may be called only where the machine has them, which is what
-//! is looked up right before. Gain: twice the poses in the same time with
-//! AVX2, and a third more with AVX-512, for programs that are not built for
-//! one machine; and a quarter of the time of a triangle by transposing, which
-//! the compiler does number by number. Without it, [`Level::Portable`] is what
-//! remains.
+//! This, with the tables that it calls (`trig/tables.rs`), is the only unsafe code of
+//! the crate: a function made for certain instructions may be called only where the
+//! machine has them, which is what is looked up right before. Gain: twice the poses
+//! in the same time with AVX2, and a third more with AVX-512, for programs that are
+//! not built for one machine; and a quarter of the time of a triangle by
+//! transposing, which the compiler does number by number. Without it,
+//! [`Level::Portable`] is what remains.
 #![cfg_attr(
     all(feature = "std", target_arch = "x86_64"),
     expect(unsafe_code, reason = "only the machine knows which instructions it has")
 )]
 
+use super::block::BLOCK;
 use super::quantities::Quantity;
 use super::sink::Sink;
 use super::source::Source;
@@ -51,6 +52,19 @@ impl Level {
 pub trait Instructions: Copy {
     /// Writes the transpose of four rows to four columns.
     fn transpose<T: Float>(self, rows: [&[T; 4]; 4], columns: [&mut [T; 4]; 4]);
+
+    /// Sines and cosines of a block of angles. False if some angle is out of the domain
+    /// or a NaN: then they mean nothing. `FUSED`: with an instruction that multiplies
+    /// and adds.
+    #[inline(always)]
+    fn sin_cos_each<T: Float, const FUSED: bool>(
+        self,
+        angles: &[T; BLOCK],
+        sines: &mut [T; BLOCK],
+        cosines: &mut [T; BLOCK],
+    ) -> bool {
+        trig::sin_cos_each::<T, FUSED, BLOCK>(angles, sines, cosines)
+    }
 }
 
 /// No more than the compiler sees.
@@ -66,13 +80,13 @@ impl Instructions for Portable {
     }
 }
 
-/// Exists only where the machine has AVX.
+/// Exists only where the machine has AVX2.
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 #[derive(Clone, Copy)]
-struct Avx;
+struct Avx2;
 
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
-impl Instructions for Avx {
+impl Instructions for Avx2 {
     #[inline(always)]
     fn transpose<T: Float>(self, rows: [&[T; 4]; 4], columns: [&mut [T; 4]; 4]) {
         // SAFETY: the machine has AVX.
@@ -80,24 +94,58 @@ impl Instructions for Avx {
     }
 }
 
-/// Numbers of which four by four can be transposed.
-pub trait Transpose: Sized {
+/// Exists only where the machine has AVX-512.
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+#[derive(Clone, Copy)]
+struct Avx512;
+
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+impl Instructions for Avx512 {
+    #[inline(always)]
+    fn transpose<T: Float>(self, rows: [&[T; 4]; 4], columns: [&mut [T; 4]; 4]) {
+        Avx2.transpose(rows, columns);
+    }
+
+    #[inline(always)]
+    fn sin_cos_each<T: Float, const FUSED: bool>(
+        self,
+        angles: &[T; BLOCK],
+        sines: &mut [T; BLOCK],
+        cosines: &mut [T; BLOCK],
+    ) -> bool {
+        // SAFETY: the machine has AVX-512.
+        unsafe { T::sin_cos_each(angles, sines, cosines) }
+    }
+}
+
+/// Numbers for which that is written by hand, with the vectors of x86-64.
+pub trait ByHand: Sized {
     /// Writes the transpose of four rows to four columns.
     ///
     /// # Safety
     /// The machine must have AVX.
     #[cfg(all(feature = "std", target_arch = "x86_64"))]
     unsafe fn transpose(rows: [&[Self; 4]; 4], columns: [&mut [Self; 4]; 4]);
+
+    /// As [`Instructions::sin_cos_each`].
+    ///
+    /// # Safety
+    /// The machine must have AVX-512.
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    unsafe fn sin_cos_each(angles: &[Self; BLOCK], sines: &mut [Self; BLOCK], cosines: &mut [Self; BLOCK]) -> bool;
 }
 
 #[cfg(not(all(feature = "std", target_arch = "x86_64")))]
-impl<T> Transpose for T {}
+impl<T> ByHand for T {}
 
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
-mod transpose {
+mod by_hand {
     use core::arch::x86_64::*;
 
-    impl super::Transpose for f64 {
+    use crate::batch::block::BLOCK;
+    use crate::trig::{self, tables};
+
+    impl super::ByHand for f64 {
         #[inline]
         #[target_feature(enable = "avx")]
         unsafe fn transpose(rows: [&[Self; 4]; 4], columns: [&mut [Self; 4]; 4]) {
@@ -116,9 +164,15 @@ mod transpose {
                 unsafe { _mm256_storeu_pd(column.as_mut_ptr(), four) };
             }
         }
+
+        #[inline(always)]
+        unsafe fn sin_cos_each(angles: &[Self; BLOCK], sines: &mut [Self; BLOCK], cosines: &mut [Self; BLOCK]) -> bool {
+            // SAFETY: the machine has AVX-512.
+            unsafe { tables::sin_cos_each(angles, sines, cosines) }
+        }
     }
 
-    impl super::Transpose for f32 {
+    impl super::ByHand for f32 {
         #[inline]
         #[target_feature(enable = "avx")]
         unsafe fn transpose(rows: [&[Self; 4]; 4], columns: [&mut [Self; 4]; 4]) {
@@ -129,6 +183,12 @@ mod transpose {
                 // SAFETY: each is four numbers.
                 unsafe { _mm_storeu_ps(column.as_mut_ptr(), four) };
             }
+        }
+
+        /// Without tables: its polynomials are short as they are.
+        #[inline(always)]
+        unsafe fn sin_cos_each(angles: &[Self; BLOCK], sines: &mut [Self; BLOCK], cosines: &mut [Self; BLOCK]) -> bool {
+            trig::sin_cos_each::<Self, true, BLOCK>(angles, sines, cosines)
         }
     }
 }
@@ -186,9 +246,9 @@ fn avx2<T, Q, const N: usize, const M: usize>(
     Q: Quantity<T, N, M>,
 {
     if const { size_of::<T>() == size_of::<f64>() } {
-        block::run::<T, Q, _, _, N, M, 4, 4, true>(quantity, source, sink, Avx);
+        block::run::<T, Q, _, _, N, M, 4, 4, true>(quantity, source, sink, Avx2);
     } else {
-        block::run::<T, Q, _, _, N, M, 8, 8, true>(quantity, source, sink, Avx);
+        block::run::<T, Q, _, _, N, M, 8, 8, true>(quantity, source, sink, Avx2);
     }
 }
 
@@ -203,8 +263,8 @@ fn avx512<T, Q, const N: usize, const M: usize>(
     Q: Quantity<T, N, M>,
 {
     if const { size_of::<T>() == size_of::<f64>() } {
-        block::run::<T, Q, _, _, N, M, 8, 4, true>(quantity, source, sink, Avx);
+        block::run::<T, Q, _, _, N, M, 8, 4, true>(quantity, source, sink, Avx512);
     } else {
-        block::run::<T, Q, _, _, N, M, 16, 8, true>(quantity, source, sink, Avx);
+        block::run::<T, Q, _, _, N, M, 16, 8, true>(quantity, source, sink, Avx512);
     }
 }

@@ -6,6 +6,7 @@ use nalgebra::SVector;
 
 use super::Float;
 use super::block::{BLOCK, Joints};
+use super::dispatch::Instructions;
 use super::needs::Needs;
 use super::source::{Filled, Source};
 use crate::trig;
@@ -224,7 +225,13 @@ impl<T: Float, const N: usize> Source<T, N> for Steps<'_, T, N> {
     }
 
     #[inline(always)]
-    fn fill<const FUSED: bool>(&mut self, first: usize, needs: Needs, joints: &mut Joints<T, N>) -> Filled {
+    fn fill<const FUSED: bool>(
+        &mut self,
+        first: usize,
+        needs: Needs,
+        joints: &mut Joints<T, N>,
+        _: impl Instructions,
+    ) -> Filled {
         let count = BLOCK.min(self.grid.len() - first);
         if self.fastest == 0 && N > 0 && self.grid.axes[0].values.len() >= ROW {
             let count = self.run(count);

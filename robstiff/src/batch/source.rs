@@ -4,8 +4,8 @@ use nalgebra::SVector;
 
 use super::Float;
 use super::block::{BLOCK, Joints};
+use super::dispatch::Instructions;
 use super::needs::Needs;
-use crate::trig;
 
 /// Poses, block after block.
 pub trait Source<T, const N: usize> {
@@ -20,7 +20,13 @@ pub trait Source<T, const N: usize> {
 
     /// Fills in what is needed of the next block, which begins at pose `first`.
     /// `FUSED`: with an instruction that multiplies and adds.
-    fn fill<const FUSED: bool>(&mut self, first: usize, needs: Needs, joints: &mut Joints<T, N>) -> Filled;
+    fn fill<const FUSED: bool>(
+        &mut self,
+        first: usize,
+        needs: Needs,
+        joints: &mut Joints<T, N>,
+        instructions: impl Instructions,
+    ) -> Filled;
 }
 
 /// What the block holds, and of how many poses.
@@ -46,7 +52,13 @@ impl<T: Float, const N: usize> Source<T, N> for &[SVector<T, N>] {
     }
 
     #[inline(always)]
-    fn fill<const FUSED: bool>(&mut self, first: usize, needs: Needs, joints: &mut Joints<T, N>) -> Filled {
+    fn fill<const FUSED: bool>(
+        &mut self,
+        first: usize,
+        needs: Needs,
+        joints: &mut Joints<T, N>,
+        instructions: impl Instructions,
+    ) -> Filled {
         let poses = &self[first..];
         let count = poses.len().min(BLOCK);
         if cfg!(feature = "platform-trig") {
@@ -69,7 +81,7 @@ impl<T: Float, const N: usize> Source<T, N> for &[SVector<T, N>] {
         }
         for joint in 0..N {
             let (angles, sines, cosines) = (&values[joint], &mut sines[joint], &mut cosines[joint]);
-            if needs.sin_cos(joint) && !trig::sin_cos_each::<T, FUSED, BLOCK>(angles, sines, cosines) {
+            if needs.sin_cos(joint) && !instructions.sin_cos_each::<T, FUSED>(angles, sines, cosines) {
                 return Filled::Beyond(count);
             }
         }

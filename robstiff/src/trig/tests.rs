@@ -96,12 +96,15 @@ fn angles(domain: f64) -> impl Iterator<Item = f64> {
     dense.chain(anywhere).chain(near).chain(edge).filter(move |x| x.abs() <= domain)
 }
 
-/// The largest error, absolute and in units in the last place of results
-/// beyond a quarter.
 fn worst<const FUSED: bool, const MANY: bool>() -> [f64; 2] {
+    worst_of(angles(f64::DOMAIN).map(|x| (x, within_domain::<f64, f64, FUSED, MANY>(x))))
+}
+
+/// The largest error of angles' sines and cosines, absolute and in units in the last
+/// place of results beyond a quarter.
+fn worst_of(all: impl Iterator<Item = (f64, (f64, f64))>) -> [f64; 2] {
     let (mut absolute, mut places) = (0.0_f64, 0.0_f64);
-    for x in angles(f64::DOMAIN) {
-        let (s, c) = within_domain::<f64, f64, FUSED, MANY>(x);
+    for (x, (s, c)) in all {
         for (ours, Pair(high, low)) in [s, c].into_iter().zip(reference(x)) {
             let error = ((ours - high) - low).abs();
             absolute = absolute.max(error);
@@ -125,6 +128,36 @@ fn double_precision_is_as_near_as_stated() {
         assert!(absolute <= f64::BOUND, "{name}: off by {absolute:e}");
         assert!(places <= 1.6, "{name}: {places} units in the last place");
     }
+}
+
+/// Where the machine has AVX-512; elsewhere there is nothing to test.
+#[test]
+#[cfg(target_arch = "x86_64")]
+fn tables_are_as_near_as_stated() {
+    let angles: std::vec::Vec<f64> = angles(f64::DOMAIN).collect();
+    let mut all = std::vec::Vec::new();
+    for eight in angles.as_chunks::<8>().0 {
+        let Some((sines, cosines, is_usual)) = tables::sin_cos_if_available(eight) else { return };
+        assert!(is_usual, "{eight:?}");
+        let (of_negative_sines, of_negative_cosines, _) =
+            tables::sin_cos_if_available(&eight.map(|x| -x)).expect("it is available");
+        assert_eq!((of_negative_sines.map(|s| -s), of_negative_cosines), (sines, cosines), "{eight:?}");
+        all.extend((0..8).map(|lane| (eight[lane], (sines[lane], cosines[lane]))));
+    }
+    let [absolute, places] = worst_of(all.into_iter());
+    std::println!("tables: {absolute:e}, {places:.3} ulp");
+    assert!(absolute <= f64::BOUND, "off by {absolute:e}");
+    // Numbers from the table may be larger than the result, and so is what they are rounded by.
+    assert!(places <= 2.0, "{places} units in the last place");
+    for strange in [1.648e6, -3e8, 1e22, f64::MAX, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for lane in 0..8 {
+            let mut eight = [0.3; 8];
+            eight[lane] = strange;
+            assert!(!tables::sin_cos_if_available(&eight).expect("it is available").2, "{strange}, lane {lane}");
+        }
+    }
+    let (sines, cosines, _) = tables::sin_cos_if_available(&[0.0; 8]).expect("it is available");
+    assert_eq!((sines, cosines), ([0.0; 8], [1.0; 8]));
 }
 
 #[test]
