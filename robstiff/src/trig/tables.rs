@@ -11,8 +11,8 @@
 //!    most pi/32 away from 0, where half the coefficients do;
 //! 4. `sin x = S + S (cos r - 1) + C sin r`, `cos x = C + C (cos r - 1) - S sin r`.
 //!
-//! Domain, error and symmetries are those of the module above: 24 operations a vector
-//! of angles instead of 33. Gain: `benches/README.md`. Without this,
+//! Domain, error and symmetries are those of the module above: 25 operations a vector
+//! of angles instead of 32. Gain: `benches/README.md`. Without this,
 //! [`sin_cos_each`](super::sin_cos_each) is what remains.
 #![expect(unsafe_code, reason = "numbers come from memory and go there by pointers")]
 
