@@ -17,29 +17,25 @@ use crate::{Real, trig};
 #[derive(Clone, Copy, Debug)]
 pub struct Known<T, const FUSED: bool> {
     pub value: T,
+    /// Sine and cosine of the number less `apart`.
     sin_cos: (T, T),
     is_known: bool,
+    /// Those numbers of the sum whose sines nobody knows yet. They are computed
+    /// when somebody asks, not in every sum: the compiler, which inlines all sums
+    /// before it sees which of them are of angles, would take ten times as long.
+    apart: T,
+    is_apart: bool,
 }
 
 impl<T: Float, const FUSED: bool> Known<T, FUSED> {
     #[inline(always)]
     pub fn number(value: T) -> Self {
-        Self { value, sin_cos: (T::ZERO, T::ZERO), is_known: false }
-    }
-
-    /// As an angle. Of a constant, this costs nothing: the compiler does it.
-    #[inline(always)]
-    fn turned(self) -> Self {
-        if self.is_known {
-            return self;
-        }
-        let is_known = !cfg!(feature = "platform-trig") && self.value.is_in_domain();
-        Self { sin_cos: trig::within_domain::<T, T, FUSED, false>(self.value), is_known, ..self }
+        Self { value, sin_cos: (T::ZERO, T::ONE), is_known: false, apart: value, is_apart: true }
     }
 
     #[inline(always)]
     pub fn angle(value: T, sin: T, cos: T) -> Self {
-        Self { value, sin_cos: (sin, cos), is_known: true }
+        Self { value, sin_cos: (sin, cos), is_known: true, apart: T::ZERO, is_apart: false }
     }
 }
 
@@ -54,20 +50,30 @@ fn mul_add<T: Float, const FUSED: bool>(a: T, b: T, c: T) -> T {
     trig::mul_add::<T, FUSED>(a, b, c)
 }
 
+/// Sine and cosine of a sum.
+#[inline(always)]
+fn addition_theorem<T: Float, const FUSED: bool>((s, c): (T, T), (t, d): (T, T)) -> (T, T) {
+    (mul_add::<T, FUSED>(s, d, c * t), mul_add::<T, FUSED>(c, d, -(s * t)))
+}
+
 impl<T: Float, const FUSED: bool> Add for Known<T, FUSED> {
     type Output = Self;
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
         let value = self.value + other.value;
-        if !self.is_known && !other.is_known {
-            return Self::number(value);
-        }
-        let (one, other) = (self.turned(), other.turned());
-        let ((s, c), (t, d)) = (one.sin_cos, other.sin_cos);
-        let sin = mul_add::<T, FUSED>(s, d, c * t);
-        let cos = mul_add::<T, FUSED>(c, d, -(s * t));
-        Self { value, sin_cos: (sin, cos), is_known: one.is_known && other.is_known }
+        let sin_cos = match (self.is_known, other.is_known) {
+            (false, false) => return Self::number(value),
+            (true, false) => self.sin_cos,
+            (false, true) => other.sin_cos,
+            (true, true) => addition_theorem::<T, FUSED>(self.sin_cos, other.sin_cos),
+        };
+        let apart = match (self.is_apart, other.is_apart) {
+            (true, false) => self.apart,
+            (false, true) => other.apart,
+            _ => self.apart + other.apart,
+        };
+        Self { value, sin_cos, is_known: true, apart, is_apart: self.is_apart || other.is_apart }
     }
 }
 
@@ -77,7 +83,7 @@ impl<T: Float, const FUSED: bool> Neg for Known<T, FUSED> {
     #[inline(always)]
     fn neg(self) -> Self {
         let (sin, cos) = self.sin_cos;
-        Self { value: -self.value, sin_cos: (-sin, cos), is_known: self.is_known }
+        Self { value: -self.value, sin_cos: (-sin, cos), apart: -self.apart, ..self }
     }
 }
 
@@ -139,7 +145,15 @@ impl<T: Float, const FUSED: bool> Real for Known<T, FUSED> {
 
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let (sin, cos) = if self.is_known { self.sin_cos } else { trig::sin_cos(self.value) };
+        let (sin, cos) = match (self.is_known, self.is_apart) {
+            (true, false) => self.sin_cos,
+            (true, true) if !cfg!(feature = "platform-trig") && self.apart.is_in_domain() => {
+                // Of a constant, this costs nothing: the compiler does it.
+                let apart = trig::within_domain::<T, T, FUSED, false>(self.apart);
+                addition_theorem::<T, FUSED>(self.sin_cos, apart)
+            }
+            _ => trig::sin_cos(self.value),
+        };
         (Self::number(sin), Self::number(cos))
     }
 
