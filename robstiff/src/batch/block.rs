@@ -66,11 +66,12 @@ pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const
         let filled = source.fill::<FUSED>(first, needs, &mut joints, instructions);
         let (Filled::Each(count) | Filled::Row(count) | Filled::Beyond(count)) = filled;
         quantity.prepare(first..first + count);
-        let is_done = match (filled, K::VECTORS) {
-            (Filled::Each(_), Vectors::Whole) => {
+        // `const`, so that the other ways are not compiled at all.
+        let is_done = match filled {
+            Filled::Each(_) if const { matches!(K::VECTORS, Vectors::Whole) } => {
                 evaluate_vectors::<T, Q, K, N, M, LANES, FUSED>(quantity, first, count, &joints, sink, instructions)
             }
-            (Filled::Each(_), Vectors::Parts) => {
+            Filled::Each(_) if const { matches!(K::VECTORS, Vectors::Parts) } => {
                 evaluate_vectors::<T, Q, K, N, M, PART, FUSED>(quantity, first, count, &joints, sink, instructions)
             }
             _ => false,
@@ -81,7 +82,9 @@ pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const
                 if K::VECTORS == Vectors::No || S::ROWS { &mut kept } else { &mut Numbers([[T::ZERO; BLOCK]; M]) };
             match filled {
                 Filled::Each(_) => evaluate::<T, Q, N, M, FUSED>(quantity, count, &joints, &mut numbers.0),
-                Filled::Row(_) if S::ROWS => evaluate_row::<T, Q, N, M, FUSED>(quantity, &joints, &mut numbers.0),
+                Filled::Row(_) if const { S::ROWS } => {
+                    evaluate_row::<T, Q, N, M, FUSED>(quantity, &joints, &mut numbers.0)
+                }
                 Filled::Row(_) => {}
                 Filled::Beyond(_) => one_by_one(quantity, count, |pose| source.pose(first + pose), &mut numbers.0),
             }
@@ -144,7 +147,7 @@ where
     Q: Quantity<T, N, M>,
     K: Sink<T, M>,
 {
-    if LANES == 1 || !count.is_multiple_of(LANES) {
+    if const { LANES == 1 } || !count.is_multiple_of(LANES) {
         return false;
     }
     // In these words no index needs a check.

@@ -22,7 +22,7 @@ pub struct Known<T, const FUSED: bool> {
     is_known: bool,
     /// Those numbers of the sum whose sines nobody knows yet. They are computed
     /// when somebody asks, not in every sum: the compiler, which inlines all sums
-    /// before it sees which of them are of angles, would take ten times as long.
+    /// before it sees which of them are of angles, would take four times as long.
     apart: T,
     is_apart: bool,
 }
