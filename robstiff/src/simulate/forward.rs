@@ -4,10 +4,10 @@ use nalgebra::{Matrix3, SVector, Vector3};
 use robstiff_robots::Description;
 use std::vec::Vec;
 
-use crate::Robot;
 use crate::campaign::{Displacements, Frame};
 use crate::identify::samples::Samples;
 use crate::identify::second_order::beyond_linear;
+use crate::{Robot, State};
 
 /// Sets what an exact instrument reads in every row.
 pub fn read(truth: &Description, data: &mut Displacements, rotations: bool) {
@@ -18,8 +18,14 @@ fn deflect<const N: usize>(robot: &impl Robot<N>, data: &mut Displacements, rota
     let samples = Samples::new(robot, data);
     let compliance: Vec<f64> = robot.joint_compliance().iter().copied().collect();
     let beyond = beyond_linear(&samples, &compliance);
+    // The rows of a visit are one load sequence, on a robot that was never loaded.
+    let (mut state, mut visit) = (State::new(), None);
     for (i, (row, sample)) in data.rows.iter_mut().zip(&samples.rows).enumerate() {
-        let twist = robot.deflection(&SVector::<f64, N>::from_column_slice(&sample.q), &sample.wrench);
+        if visit != Some(row.visit) {
+            (state, visit) = (State::new(), Some(row.visit));
+        }
+        let q = SVector::<f64, N>::from_column_slice(&sample.q);
+        let twist = robot.deflection_with(&q, &sample.wrench, &mut state);
         let turn: Vector3<f64> = twist.fixed_rows::<3>(3).into_owned();
         let moved = twist.fixed_rows::<3>(0) + turn.cross(&sample.marker) + beyond.fixed_rows::<3>(i * samples.axes);
         let frame: Matrix3<f64> = match data.measured_frame {

@@ -6,8 +6,9 @@
 //! description lacks), draws poses and loads, and reads them with noise. The
 //! result is a campaign as files, for trying a plan before renting a tracker.
 //!
-//! The displacement is the robot's own [`deflection`](crate::Robot::deflection)
-//! and, as loads are carried by the arm where they have moved it, the second
+//! The displacement is the robot's own
+//! [`deflection_with`](crate::Robot::deflection_with), what hysteresis remembers
+//! beginning anew with each visit, and, as loads are carried by the arm where they have moved it, the second
 //! order of the joints' part of it ([`second_order`](crate::identify::second_order)).
 //! Neglected are the second order of the effects' part and of rotations, and
 //! gravity, which loaded and unloaded readings have in common to first order.

@@ -5,7 +5,7 @@ use nalgebra::{SVector, Vector6};
 use robstiff_robots::{Description, catalogue};
 
 use super::{Scenario, simulate};
-use crate::{Generic, Robot};
+use crate::{Generic, Robot, State};
 
 const SCENARIO: &str = "\
 name: a try
@@ -79,6 +79,30 @@ fn small_loads_deflect_as_the_robot_says() {
         let read = nalgebra::Vector3::from(row.displacement);
         assert!((read - moved).norm() < 1e-5 * moved.norm(), "{read} {moved}");
     }
+}
+
+/// Where a load returns to what it was, only what hysteresis remembers differs, and
+/// the next visit begins without it.
+#[test]
+fn hysteresis_remembers_the_loads_of_a_visit() {
+    let hidden = "{kind: hysteresis, at: joint 2, radius1: 100 Nm, weight1: 3e-7 rad/Nm}";
+    let text = SCENARIO
+        .replace("[0.5, 1, -0.25]", "[0.5, 1, 0.5]")
+        .replace("8 um", "0 um")
+        .replace("{kind: transverse_compliance, at: joint 3, value: 6e-7 rad/Nm}", hidden);
+    let found = simulate(&robot(), &read(&text)).expect("it can be measured");
+    let robot = Generic::<6>::new(&found.truth).expect("six joints");
+    let mut largest: f64 = 0.0;
+    for visit in found.data.rows.chunks(3) {
+        let q = SVector::<f64, 6>::from_column_slice(&visit[0].q);
+        let mut state = State::new();
+        let moved = [0, 1, 2].map(|row| robot.deflection_with(&q, &Vector6::from(visit[row].wrench), &mut state));
+        let left = (moved[2] - moved[0]).fixed_rows::<3>(0).into_owned();
+        let read = nalgebra::Vector3::from(visit[2].displacement) - nalgebra::Vector3::from(visit[0].displacement);
+        assert!((read - left).norm() < 1e-12, "{read} {left}");
+        largest = largest.max(left.norm());
+    }
+    assert!(largest > 20e-6, "{largest}");
 }
 
 #[test]
