@@ -41,6 +41,7 @@ fn scenario(hidden: &[Effect], poses: Poses, directions: Vec<[f64; 3]>, seed: u6
         measured: (Frame::Base, [0.0; 3]),
         noise: [NOISE; 3],
         rotation_noise: None,
+        encoder_noise: None,
         states_noise: true,
         shares_unloaded: true,
         hidden: hidden.to_vec(),

@@ -45,6 +45,28 @@ fn what_is_simulated_is_traced() {
 }
 
 #[test]
+fn encoders_are_simulated_and_read() {
+    let folder = folder("simulate-encoders");
+    let text = SCENARIO
+        .replace("[0.5, 1]", "[0.3, 0.6, 1]")
+        .replace("{displacement: 8 um}", "{displacement: 8 um, encoders: 5 urad}");
+    let (scenario, out) = (scenario(&folder, &text), inside(&folder, "out"));
+    succeed(&["simulate", "kuka-kr270-r2700", &scenario, "--out", &out]);
+    let loads = fs::read_to_string(folder.join("out/loads.csv")).unwrap();
+    assert!(loads.lines().next().unwrap().contains(",q6 [deg],j1 [deg],"), "{loads:.200}");
+    let traced = inside(&folder, "traced");
+    succeed(&["trace", &format!("{out}/campaign.yaml"), "--out", &traced, "--draws", "499"]);
+    let traced = json(&format!("{traced}/trace.json"));
+    assert_eq!(traced["effects"][0]["at"], "joint 3", "{}", traced["effects"]);
+    let encoders = traced["encoders"]["output"].as_array().unwrap();
+    assert_eq!(encoders.len(), 6);
+    for encoder in encoders {
+        let noise = encoder["noise_urad"].as_f64().unwrap();
+        assert!((noise / 5.0 - 1.0).abs() < 0.25, "{encoder}");
+    }
+}
+
+#[test]
 fn one_seed_gives_one_campaign_and_none_is_overwritten_unasked() {
     let folder = folder("simulate-twice");
     let (scenario, out) = (scenario(&folder, SCENARIO), inside(&folder, "out"));

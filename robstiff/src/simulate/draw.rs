@@ -21,6 +21,7 @@ enum Stream {
     Loads,
     Noise,
     Scatter,
+    Encoders,
 }
 
 fn stream(scenario: &Scenario, stream: Stream) -> ChaCha8Rng {
@@ -150,6 +151,17 @@ pub fn noise(scenario: &Scenario, data: &mut Displacements) {
         let read = row.displacement.iter_mut().chain(row.rotation.iter_mut().flatten());
         for ((value, loaded), unloaded) in read.zip(loaded).zip(unloaded) {
             *value += loaded - unloaded;
+        }
+    }
+}
+
+/// Adds the noise of the encoders.
+pub fn encoder_noise(scenario: &Scenario, data: &mut Displacements) {
+    let mut random = stream(scenario, Stream::Encoders);
+    let sigmas = scenario.encoder_noise.iter().flatten();
+    for row in &mut data.rows {
+        for (angle, sigma) in row.encoders.iter_mut().flatten().zip(sigmas.clone()) {
+            *angle += sigma * normal(&mut random);
         }
     }
 }

@@ -57,11 +57,13 @@ impl Simulated {
     }
 
     fn loads(&self) -> String {
-        let kinds = self.truth.joints.iter().map(|joint| joint.kind);
         let mut text = String::from("pose,visit,time [s]");
-        for (number, kind) in (1..).zip(kinds) {
-            let unit = if kind == JointKind::Revolute { "deg" } else { "mm" };
-            write!(text, ",q{number} [{unit}]").expect("a string takes any text");
+        let columns = if self.scenario.encoder_noise.is_some() { &["q", "j"][..] } else { &["q"] };
+        for column in columns {
+            for (number, joint) in (1..).zip(&self.truth.joints) {
+                let unit = if joint.kind == JointKind::Revolute { "deg" } else { "mm" };
+                write!(text, ",{column}{number} [{unit}]").expect("a string takes any text");
+            }
         }
         text += ",Fx [N],Fy [N],Fz [N]";
         if self.scenario.moment.is_some() {
@@ -80,7 +82,9 @@ impl Simulated {
 
     /// One row of the table, with all the digits it has.
     fn line(&self, text: &mut String, row: &Observation) {
-        let coordinates = row.q.iter().zip(&self.truth.joints).map(|(q, joint)| match joint.kind {
+        let joints = self.truth.joints.iter().cycle();
+        let coordinates = row.q.iter().chain(row.encoders.iter().flatten()).zip(joints);
+        let coordinates = coordinates.map(|(q, joint)| match joint.kind {
             JointKind::Revolute => q.to_degrees(),
             JointKind::Prismatic => q * 1e3,
         });

@@ -10,6 +10,8 @@
 //! [`deflection_with`](crate::Robot::deflection_with), what hysteresis remembers
 //! beginning anew with each visit, and, as loads are carried by the arm where they have moved it, the second
 //! order of the joints' part of it ([`second_order`](crate::identify::second_order)).
+//! Encoders on the output side of the gears read by how much the joints turn, in
+//! the same order, and nothing of bearings, links, the base and the tool.
 //! Neglected are the second order of the effects' part and of rotations, and
 //! gravity, which loaded and unloaded readings have in common to first order.
 //! It shares its formulas with tracing, so it says what a plan of measurements
@@ -64,6 +66,9 @@ pub struct Scenario {
     /// One sigma of one reading of the rotation about each axis (rad); none
     /// where rotations are not measured.
     pub rotation_noise: Option<f64>,
+    /// One sigma of one reading of each joint's encoder on the output side of
+    /// its gear (rad or m); none where there are no such encoders.
+    pub encoder_noise: Option<Vec<f64>>,
     /// Whether the campaign file states the noise.
     pub states_noise: bool,
     /// Whether the rows of a visit share one unloaded reading.
@@ -129,8 +134,9 @@ pub struct Simulated {
 pub fn simulate(declared: &Description, scenario: &Scenario) -> Result<Simulated, Error> {
     let truth = truth(declared, scenario)?;
     let mut data = draw::loads(&truth, scenario)?;
-    forward::read(&truth, &mut data, scenario.rotation_noise.is_some());
+    forward::read(&truth, scenario, &mut data);
     draw::noise(scenario, &mut data);
+    draw::encoder_noise(scenario, &mut data);
     Ok(Simulated { scenario: scenario.clone(), declared: declared.clone(), truth, data })
 }
 

@@ -61,12 +61,12 @@ fn scenario(document: &Document, robot: &Description) -> Option<Scenario> {
         .get("moment")
         .map_or(Some(None), |node| pull(&node, Dimension::Torque, "bounds: [50 Nm, 200 Nm]").map(Some));
     let (wrench, measured) = (place(&map, "wrench"), place(&map, "measured"));
-    let noise = map.require("noise", "noise: {displacement: 8 um}").and_then(|node| noise(&node));
+    let noise = map.require("noise", "noise: {displacement: 8 um}").and_then(|node| noise(&node, &robot.joints));
     let shares = map.get("unloaded").map_or(Some(true), |node| node.choice(&[("shared", true), ("separate", false)]));
     let hidden = map.get("hidden").map_or(Some(Vec::new()), |node| hidden(&node, robot));
     let scatter = map.get("scatter").map_or(Some(0.0), |node| scatter(&node));
     let holdout = holdout(&map);
-    let (noise, rotation_noise, states_noise) = noise?;
+    let Noise { displacement, rotation, encoders, stated } = noise?;
     Some(Scenario {
         name: name?,
         seed: seed?,
@@ -77,9 +77,10 @@ fn scenario(document: &Document, robot: &Description) -> Option<Scenario> {
         moment: moment?,
         wrench: wrench?,
         measured: measured?,
-        noise,
-        rotation_noise,
-        states_noise,
+        noise: displacement,
+        rotation_noise: rotation,
+        encoder_noise: encoders,
+        states_noise: stated,
         shares_unloaded: shares?,
         hidden: hidden?,
         scatter: scatter?,
@@ -239,10 +240,16 @@ fn pull(node: &Node<'_>, dimension: Dimension, example: &str) -> Option<Pull> {
     Some(Pull { bounds: bounds?, directions: directions? })
 }
 
-/// Of displacements, of rotations where they are measured, and whether the
-/// campaign states them.
-fn noise(node: &Node<'_>) -> Option<([f64; 3], Option<f64>, bool)> {
-    let map = node.map(&["displacement", "rotation", "stated"])?;
+struct Noise {
+    displacement: [f64; 3],
+    rotation: Option<f64>,
+    encoders: Option<Vec<f64>>,
+    /// Whether the campaign states it.
+    stated: bool,
+}
+
+fn noise(node: &Node<'_>, joints: &[Joint]) -> Option<Noise> {
+    let map = node.map(&["displacement", "rotation", "encoders", "stated"])?;
     let displacement = map.require("displacement", "displacement: 8 um").and_then(|node| {
         if !node.is_sequence() {
             return node.nonnegative(Dimension::Length).map(|sigma| [sigma; 3]);
@@ -255,8 +262,26 @@ fn noise(node: &Node<'_>) -> Option<([f64; 3], Option<f64>, bool)> {
         Some(sigmas)
     });
     let rotation = map.get("rotation").map_or(Some(None), |node| node.nonnegative(Dimension::Angle).map(Some));
+    let encoders = map.get("encoders").map_or(Some(None), |node| encoder_noise(&node, joints).map(Some));
     let stated = map.get("stated").map_or(Some(true), |node| node.choice(&[("yes", true), ("no", false)]));
-    Some((displacement?, rotation?, stated?))
+    Some(Noise { displacement: displacement?, rotation: rotation?, encoders: encoders?, stated: stated? })
+}
+
+/// One sigma for all joints, where all are of one kind, or one for each.
+fn encoder_noise(node: &Node<'_>, joints: &[Joint]) -> Option<Vec<f64>> {
+    if node.is_sequence() {
+        let items = for_each_joint(node, joints)?;
+        let sigmas: Vec<Option<f64>> =
+            items.iter().zip(joints).map(|(item, joint)| item.nonnegative(dimension(joint))).collect();
+        return sigmas.into_iter().collect();
+    }
+    let kind = dimension(joints.first()?);
+    if joints.iter().any(|joint| dimension(joint) != kind) {
+        node.error("some joints turn, some slide", "give one sigma for each joint, e.g. `[20 urad, 5 um, ..]`");
+        return None;
+    }
+    let sigma = node.nonnegative(kind)?;
+    Some(joints.iter().map(|_| sigma).collect())
 }
 
 /// What the description is not told; `effects` as in a description.

@@ -105,6 +105,55 @@ fn hysteresis_remembers_the_loads_of_a_visit() {
     assert!(largest > 20e-6, "{largest}");
 }
 
+/// What joints turn by moves the tool as the same robot without its bearing does,
+/// at loads so small that the second order is nothing.
+#[test]
+fn encoders_read_what_joints_turn_by() {
+    let hidden = "{kind: transverse_compliance, at: joint 3, value: 6e-7 rad/Nm}";
+    let of_joints = "    - {kind: joint_coupling, at: \"joints 4,5\", value: 1e-6 rad/Nm}
+    - {kind: stiffness_nonlinearity, at: joint 2, added: 1e-7 rad/Nm, knee: 1 Nm}
+    - {kind: hysteresis, at: joint 3, radius1: 0.2 Nm, weight1: 1e-7 rad/Nm}
+";
+    let text = SCENARIO
+        .replace("[500 N, 1.3 kN]", "[0.5 N, 1 N]")
+        .replace("8 um", "0 um, encoders: 0 urad")
+        .replace(hidden, &(String::from(hidden) + "\n" + of_joints.trim_end()));
+    let found = simulate(&robot(), &read(&text)).expect("it can be measured");
+    let mut without_bearing = found.truth.clone();
+    without_bearing.effects.remove(0);
+    let robot = Generic::<6>::new(&without_bearing).expect("six joints");
+    for visit in found.data.rows.chunks(3) {
+        let mut state = State::new();
+        for row in visit {
+            let q = SVector::<f64, 6>::from_column_slice(&row.q);
+            let moved = robot.deflection_with(&q, &Vector6::from(row.wrench), &mut state);
+            let read = SVector::<f64, 6>::from_column_slice(row.encoders.as_ref().expect("they are read"));
+            let by_joints = robot.jacobian(&q) * (read - q);
+            assert!((by_joints - moved).norm() < 1e-5 * moved.norm(), "{by_joints} {moved}");
+        }
+    }
+}
+
+#[test]
+fn encoders_have_a_noise_of_their_own() {
+    let rows = |noise: &str| {
+        let text = SCENARIO.replace("8 um", &std::format!("8 um, encoders: {noise}"));
+        simulate(&robot(), &read(&text)).expect("it can be measured").data.rows
+    };
+    let (mut squares, mut count) = ([0.0; 6], 0.0);
+    for (exact, noisy) in rows("0 urad").iter().zip(&rows("[10 urad, 20 urad, 30 urad, 0, 5 urad, 1 mrad]")) {
+        assert_eq!(exact.displacement, noisy.displacement);
+        let [exact, noisy] = [exact, noisy].map(|row| row.encoders.as_ref().expect("they are read"));
+        squares.iter_mut().zip(exact.iter().zip(noisy)).for_each(|(sum, (one, other))| *sum += (other - one).powi(2));
+        count += 1.0;
+    }
+    for (squares, sigma) in squares.iter().zip([10e-6, 20e-6, 30e-6, 0.0, 5e-6, 1e-3]) {
+        // 180 readings: 5.3 % of scatter, four times that is allowed.
+        let found = (squares / count).sqrt();
+        assert!((found - sigma).abs() <= 0.21 * sigma, "{found} {sigma}");
+    }
+}
+
 #[test]
 fn rows_of_a_visit_share_their_unloaded_reading_or_not() {
     // Half the difference of two rows of one load has the variance of a reading
@@ -132,6 +181,8 @@ fn mistakes_are_shown_where_they_are() {
         ("[500 N, 1.3 kN]", "[500 N, 13 N]", "6:17", "the lower one first"),
         ("joint 3", "joint 9", "10:41", "there is no joint 9"),
         ("noise:", "nioses:", "7:1", "unknown field"),
+        ("8 um", "8 um, encoders: 8 um", "7:39", "is a length, an angle is expected"),
+        ("8 um", "8 um, encoders: [8 urad]", "7:39", "6 items are expected"),
         ("scatter: 0.3", "scatter: 30", "11:10", "below 1"),
         ("{count: 30, floor: 100 mm, column: 600 mm}", "{list: [[0, 0, 0]]}", "3:16", "6 items are expected"),
         (
