@@ -109,10 +109,14 @@ impl Effect {
             *constant = Tangent::constant(parameter);
         }
         let constants = &constants[..parameters.len()];
+        let still = Tangent::constant(zero);
+        let mut plays = self.plays(constants, torque, [still; PLAYS]);
+        // One without a radius stands on its edge, where not every scalar has a slope.
+        plays[self.plays_in_use()..].fill(still);
         let joint = Joint {
             compliance: Tangent::constant(compliance),
             torque,
-            plays: self.plays(constants, torque, [Tangent::constant(zero); PLAYS]),
+            plays,
             harmonic: &|order| {
                 let (s, c) = harmonic(order);
                 (Tangent::constant(s), Tangent::constant(c))

@@ -181,4 +181,19 @@ impl<T: Float, const FUSED: bool> Real for Known<T, FUSED> {
     fn recip(self) -> Self {
         Self::number(Real::recip(self.value))
     }
+
+    #[inline(always)]
+    fn signum(self) -> Self {
+        Self::number(Real::signum(self.value))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::number(Real::max(self.value, other.value))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self::number(Real::min(self.value, other.value))
+    }
 }

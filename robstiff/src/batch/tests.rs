@@ -86,6 +86,10 @@ fn robots_read_at_run_time_come_in_batches_too() {
     let mut description = odd();
     description.effects = linear_effects();
     description.effects.push(Effect::StiffnessNonlinearity { joint: 5, added: 2e-6, knee: 300.0 });
+    let [radius1, weight1] = [50.0, 5e-8];
+    let [radius2, weight2, radius3, weight3] = [0.0; 4];
+    let hysteresis = Effect::Hysteresis { joint: 5, radius1, weight1, radius2, weight2, radius3, weight3 };
+    description.effects.push(hysteresis);
     check_all(&Generic::<6>::new(&description).unwrap(), &poses(70)[..]);
 }
 
