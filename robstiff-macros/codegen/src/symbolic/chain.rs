@@ -47,7 +47,8 @@ pub struct Tilt<'g> {
 impl Tilt<'_> {
     /// Whether this is half a turn about x, which merely mirrors turns about z.
     pub fn is_half_turn_about_x(&self) -> bool {
-        self.axis == 0 && self.sin_cos.1.constant() == Some(-1.0)
+        // The cosine alone is -1 by rounding, too.
+        self.axis == 0 && self.sin_cos.0.is_zero() && self.sin_cos.1.constant() == Some(-1.0)
     }
 }
 
