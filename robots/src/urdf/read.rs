@@ -118,6 +118,17 @@ impl Reader<'_> {
             }
             joints.push(joint);
         }
+        if root.has_tag_name("robot") && elements("link").next().is_none() {
+            self.report(
+                &root.range(),
+                "the file has no links",
+                "a chain leads from link to link: `<link name=\"..\"/>`",
+            );
+        }
+        if let Some(joint) = joints.iter().find(|joint| is_in_a_ring(&joints, joint)) {
+            let message = format!("the link `{}` hangs on itself, in a ring of joints", links[joint.child].name);
+            self.report(&joint.place, &message, "a URDF file is a tree: leave out the joint that closes the ring");
+        }
         Tree {
             name: root.attribute("name").unwrap_or_default().to_owned(),
             links,
@@ -281,21 +292,36 @@ impl Reader<'_> {
     }
 }
 
+/// Whether a joint's child is above it, too.
+fn is_in_a_ring(joints: &[Connection], joint: &Connection) -> bool {
+    let mut link = joint.parent;
+    // More steps than joints lead into another ring.
+    for _ in joints {
+        if link == joint.child {
+            return true;
+        }
+        let Some(above) = joints.iter().find(|above| above.child == link) else { return false };
+        link = above.parent;
+    }
+    false
+}
+
 fn element<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
     node.children().find(|child| child.has_tag_name(name))
 }
 
 /// The multiple of 90 degrees that a number of at least two decimals is, when
-/// that is rounded to as many.
+/// that is rounded or, as is common too, truncated to as many.
 fn unrounded(value: f64, text: &str) -> Option<f64> {
     let (_, decimals) = text.split_once('.')?;
     if decimals.len() < 2 || !decimals.bytes().all(|byte| byte.is_ascii_digit()) {
         return None;
     }
     let exact = (value / FRAC_PI_2).round() * FRAC_PI_2;
-    let unit = 10_f64.powi(-(decimals.len() as i32));
-    // Truncated in place of rounded is common too.
-    ((value - exact).abs() < unit.max(crate::angle::SNAP)).then_some(exact)
+    let units = |value: f64| value * 10_f64.powi(decimals.len() as i32);
+    let written = units(value).round();
+    let is_exact = (value - exact).abs() <= crate::angle::SNAP;
+    (is_exact || written == units(exact).round() || written == units(exact).trunc()).then_some(exact)
 }
 
 /// `Rz(yaw) Ry(pitch) Rx(roll)`, exact at the multiples of 90 degrees.

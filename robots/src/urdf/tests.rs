@@ -156,8 +156,29 @@ fn angles_that_were_rounded_are_exact_again() {
         let exact = Rotation3::new(Vector3::z() * quarters * core::f64::consts::FRAC_PI_2);
         assert!((turn.matrix() - exact.matrix()).abs().max() < 1e-15, "{text}");
     }
-    let kept = Tree::parse("arm.urdf", &ARM.replacen("rpy=\"0 1.5708 0\"", "rpy=\"0 0 1.55\"", 1)).unwrap();
-    assert!((kept.joints[6].origin.rotation.angle() - 1.55).abs() < 1e-12);
+    // A unit of the last decimal beside what it would be rounded to.
+    for (text, angle) in [("1.55", 1.55), ("1.58", 1.58), ("3.13", 3.13), ("1.5709", 1.5709)] {
+        let arm = ARM.replacen("rpy=\"0 1.5708 0\"", &format!("rpy=\"0 0 {text}\""), 1);
+        let kept = Tree::parse("arm.urdf", &arm).unwrap();
+        assert!((kept.joints[6].origin.rotation.angle() - angle).abs() < 1e-12, "{text}");
+    }
+}
+
+#[test]
+fn rings_and_files_without_links_are_refused() {
+    let joint = |parent: &str, child: &str| {
+        let ends = format!("<parent link=\"{parent}\"/><child link=\"{child}\"/>");
+        format!("<joint name=\"{parent}_{child}\" type=\"fixed\">{ends}</joint>\n")
+    };
+    let links = ["world", "a", "b", "c"].map(|name| format!("<link name=\"{name}\"/>\n")).concat();
+    let file = |joints: &[String]| format!("<robot name=\"ring\">\n{links}{}</robot>", joints.concat());
+    let ring = file(&[joint("b", "c"), joint("a", "b"), joint("b", "a")]);
+    let said = Tree::parse("ring.urdf", &ring).unwrap_err().to_string();
+    assert!(said.contains("the link `b` hangs on itself") && said.contains("ring.urdf:7:1"), "{said}");
+    let said = Tree::parse("itself.urdf", &file(&[joint("a", "a")])).unwrap_err().to_string();
+    assert!(said.contains("the link `a` hangs on itself"), "{said}");
+    let said = Tree::parse("none.urdf", "<robot name=\"x\"></robot>").unwrap_err().to_string();
+    assert!(said.contains("the file has no links") && said.contains("none.urdf:1:1"), "{said}");
 }
 
 /// Turns by quarters, and any others.
