@@ -60,6 +60,21 @@ impl Description {
         }
         joints
     }
+
+    /// Whether a link (from 1) is nothing but the stroke of a joint that slides:
+    /// it may have no length, and then no direction along which to be a beam.
+    pub fn is_stroke(&self, link: usize) -> bool {
+        is_stroke(self.convention, &self.joints, link)
+    }
+}
+
+/// Likewise, of a description that is being read.
+pub(crate) fn is_stroke(convention: Convention, joints: &[Joint], link: usize) -> bool {
+    let row = match convention {
+        Convention::Standard => link,
+        Convention::Modified => link + 1,
+    };
+    joints.get(row - 1).is_some_and(|joint| joint.kind == JointKind::Prismatic && joint.a == 0.0)
 }
 
 /// Coordinates beyond a limit by less than this are on it (rad or m): a limit in

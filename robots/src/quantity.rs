@@ -126,13 +126,20 @@ pub fn scale(unit: &str, dimension: Dimension) -> Result<f64, QuantityError> {
     Ok(found.times / found.per)
 }
 
-/// The number, if it is finite; a negative zero becomes zero.
+/// The largest quantity, in SI: sums and products of a few stay finite.
+const MOST: f64 = 1e30;
+
+/// The number, if it is finite and no larger than [`MOST`]; a negative zero
+/// becomes zero.
 pub(crate) fn finite(value: f64) -> Result<f64, QuantityError> {
     if !value.is_finite() {
         return error(
             format!("`{value}` is not finite"),
             "write a finite number; leave a field out where nothing is known",
         );
+    }
+    if value.abs() > MOST {
+        return error(format!("`{value:e}` in SI units is too large"), format!("at most {MOST:e}; check the unit"));
     }
     Ok(value + 0.0)
 }
@@ -141,8 +148,8 @@ pub(crate) fn finite(value: f64) -> Result<f64, QuantityError> {
 /// (`pi/2`, `-3*pi/4`, `2pi`), into SI units.
 ///
 /// # Errors
-/// What is no number, not finite, or has a unit that does not fit; a stiffness
-/// of zero where a compliance is expected.
+/// What is no number, not finite, above 1e30 in SI units, or has a unit that does
+/// not fit; a stiffness of zero where a compliance is expected.
 pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
     let text = text.trim();
     let not_a_number = || {

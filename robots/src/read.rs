@@ -76,7 +76,9 @@ impl Description {
     /// write it, against the joints of this robot; what is wrong is reported
     /// there.
     pub fn read_effects(&self, node: &Node<'_>) -> Option<Vec<Effect>> {
-        effects::effects(node, Some(&self.joints), Some(&self.links), Some(self.joints.len()))
+        let (joints, links) = (Some(&self.joints[..]), Some(&self.links[..]));
+        let arm = effects::Arm { convention: Some(self.convention), joints, links, count: Some(self.joints.len()) };
+        effects::effects(node, &arm)
     }
 
     /// A free name for a robot's type that is like `text`, e.g. a file's name.
@@ -115,7 +117,8 @@ fn description(root: &Node) -> Option<Description> {
     let joints = joints.and_then(|node| self::joints(&node));
     let tool = optional(&map, "tool", Placement::read);
     let links = optional(&map, "links", |node| links(node, count));
-    let effects = optional(&map, "effects", |node| effects::effects(node, joints.as_deref(), links.as_deref(), count));
+    let arm = effects::Arm { convention, joints: joints.as_deref(), links: links.as_deref(), count };
+    let effects = optional(&map, "effects", |node| effects::effects(node, &arm));
     Some(Description {
         name: name?,
         description: summary?,
@@ -192,14 +195,14 @@ impl Placement {
 
 fn joints(node: &Node) -> Option<Vec<Joint>> {
     let items = node.sequence()?;
-    if items.is_empty() || items.len() > MOST_JOINTS {
+    let is_robot = (1..=MOST_JOINTS).contains(&items.len());
+    if !is_robot {
         node.error(
             format!("a robot has 1 to {MOST_JOINTS} joints, not {}", items.len()),
             "give one DH row a joint, from the base to the flange",
         );
-        return None;
     }
-    every(&items, joint)
+    every(&items, joint).filter(|_| is_robot)
 }
 
 fn joint(node: &Node) -> Option<Joint> {
@@ -258,19 +261,20 @@ fn compliance(node: &Node, kind: JointKind) -> Option<Vec<Part>> {
 
 fn links(node: &Node, joints: Option<usize>) -> Option<Vec<Link>> {
     let items = node.sequence()?;
-    if let Some(joints) = joints.filter(|joints| *joints != items.len()) {
+    let wrong = joints.filter(|joints| *joints != items.len());
+    if let Some(joints) = wrong {
         node.error(
             format!("a robot of {joints} joints has {joints} links, not {}", items.len()),
             "give the body that moves with each joint, `{}` where nothing is known, or leave `links` out",
         );
-        return None;
     }
-    every(&items, |node| {
+    let links = every(&items, |node| {
         let map = node.map(&["mass", "center_of_mass"])?;
         let mass = optional(&map, "mass", |node| node.nonnegative(Dimension::Mass));
         let center_of_mass = optional(&map, "center_of_mass", |node| node.quantities(Dimension::Length));
         Some(Link { mass: mass?, center_of_mass: center_of_mass? })
-    })
+    });
+    links.filter(|_| wrong.is_none())
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 
 use robstiff_robots::angle::snapped;
 use robstiff_robots::catalogue::catalogue;
-use robstiff_robots::{Convention, Description, DhEntry, Effect, Joint, JointKind, Link, Part, Placement};
+use robstiff_robots::{Convention, Description, DhEntry, Effect, Joint, JointKind, Link, Part, Place, Placement};
 
 /// Marsaglia's xorshift64.
 struct Random(u64);
@@ -179,7 +179,7 @@ impl Random {
         let link = |random: &mut Self| Link { mass: random.value().abs(), center_of_mass: random.vector(Self::value) };
         let links = if self.below(2) == 0 { Vec::new() } else { joints.iter().map(|_| link(self)).collect() };
         let effects = self.effects(&joints);
-        Description {
+        let mut robot = Description {
             name: ["Rv130hsc", "N", "No", "YES", "Null", "E5"][self.below(6)].to_owned(),
             description: self.text(),
             source: self.text(),
@@ -189,7 +189,10 @@ impl Random {
             tool: self.placement(),
             links,
             effects,
-        }
+        };
+        let strokes: Vec<usize> = (1..robot.joints.len()).filter(|&link| robot.is_stroke(link)).collect();
+        robot.effects.retain(|effect| !matches!(effect.place(), Place::Link(link) if strokes.contains(&link)));
+        robot
     }
 }
 

@@ -161,7 +161,6 @@ impl<'d> Node<'d> {
         if items.len() != N {
             let found = items.len();
             self.error(format!("{N} values are expected here, not {found}"), dimension.help());
-            return None;
         }
         let values: Vec<Option<f64>> = items.iter().map(|item| item.quantity(dimension)).collect();
         let values: Vec<f64> = values.into_iter().collect::<Option<_>>()?;

@@ -1,10 +1,10 @@
 //! The effects of a description, and what physics asks of them.
 
-use crate::description::{Joint, Link};
+use crate::description::{Joint, Link, is_stroke};
 use crate::document::{Map, Node};
 use crate::effect::gravity_sag::GRAVITY;
 use crate::effect::physics::{About, At, MOST_SAG, Parameter, Range};
-use crate::effect::{CATALOGUE, DhEntry, Effect, JointKind, Place};
+use crate::effect::{CATALOGUE, Convention, DhEntry, Effect, JointKind, Place};
 use crate::suggest::{closest, list};
 
 /// What happens once, at some moment; a description holds what lasts.
@@ -22,16 +22,19 @@ const OF_THE_RIG: &[&str] = &[
     "outliers",
 ];
 
-/// Reads the effects. Without the joints (because they have problems of their
-/// own) only their count is checked against.
-pub(super) fn effects(
-    node: &Node,
-    joints: Option<&[Joint]>,
-    links: Option<&[Link]>,
-    count: Option<usize>,
-) -> Option<Vec<Effect>> {
+/// What is known of the robot: not what has problems of its own.
+pub(super) struct Arm<'a> {
+    pub convention: Option<Convention>,
+    pub joints: Option<&'a [Joint]>,
+    pub links: Option<&'a [Link]>,
+    /// How many joints there are, whatever their problems.
+    pub count: Option<usize>,
+}
+
+/// Reads the effects, and checks them against what is known of the robot.
+pub(super) fn effects(node: &Node, arm: &Arm<'_>) -> Option<Vec<Effect>> {
     let items = node.sequence()?;
-    let read: Vec<Option<Effect>> = items.iter().map(|item| effect(item, joints, count)).collect();
+    let read: Vec<Option<Effect>> = items.iter().map(|item| effect(item, arm)).collect();
     for (index, effect) in read.iter().enumerate() {
         let Some(effect) = effect else { continue };
         let same = |other: &&Option<Effect>| other.is_some_and(|other| other.to_string() == effect.to_string());
@@ -42,21 +45,22 @@ pub(super) fn effects(
             );
         }
     }
-    if let Some(joints) = joints {
+    if let Some(joints) = arm.joints {
         check_couplings(&items, &read, joints);
-        if let Some(links) = links {
+        if let Some(links) = arm.links {
             check_sag(&items, &read, joints, links);
         }
     }
     read.into_iter().collect()
 }
 
-fn effect(node: &Node, joints: Option<&[Joint]>, count: Option<usize>) -> Option<Effect> {
+fn effect(node: &Node, arm: &Arm<'_>) -> Option<Effect> {
+    let joints = arm.joints;
     let map = node.any_map("write e.g. `{kind: transverse_compliance, at: joint 3, value: 6.35e-7 rad/Nm}`")?;
     let about = kind(&map.require("kind", "kind: transverse_compliance")?)?;
     let names = || about.parameters.iter().map(|parameter| parameter.name);
     node.map(&["kind", "at"].into_iter().chain(names()).collect::<Vec<_>>())?;
-    let place = map.require("at", &format!("at: {}", about.at.example())).and_then(|at| place(&at, about, count));
+    let place = map.require("at", &format!("at: {}", about.at.example())).and_then(|at| place(&at, about, arm.count));
     let may_be_left_out = about.parameters.iter().all(|parameter| parameter.default.is_some());
     if may_be_left_out && names().all(|name| map.get(name).is_none()) {
         let help = "a parameter left out is 0";
@@ -70,6 +74,15 @@ fn effect(node: &Node, joints: Option<&[Joint]>, count: Option<usize>) -> Option
     let place = place?;
     if matches!(about.at, At::TurningJoint | At::TurningJoints) {
         revolute(&map, joints, place)?;
+    }
+    if let (Place::Link(link), Some(convention), Some(joints)) = (place, arm.convention, joints)
+        && is_stroke(convention, joints, link)
+    {
+        map.get("at")?.error(
+            format!("link {link} is nothing but a stroke: where that is 0, the link is no beam"),
+            "describe what yields there as `transverse_compliance` of a joint beside it",
+        );
+        return None;
     }
     let effect = Effect::of_kind(about.kind, place, &numbers?).expect("a place and numbers of this kind");
     let compliance = match place {

@@ -24,7 +24,7 @@ pub static KIND: Kind = Kind {
 };
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
-    for link in 1..scene.joints() {
+    for link in (1..scene.joints()).filter(|&link| !scene.description.is_stroke(link)) {
         let two = [("bending", Parameter::LinkBending(link)), ("torsion", Parameter::LinkTorsion(link))];
         two_compliances(scene, offers, Part::Link(link), two);
     }
