@@ -100,6 +100,8 @@ impl fmt::Display for Diagnostic {
         let before = column.saturating_sub(1);
         let indent = shown_columns(source_line.chars().take(before));
         let carets = shown_columns(source_line.chars().skip(before).take(*width)).max(1);
+        // They quote the file, too.
+        let [message, help] = [message, help].map(|text| shown(text.chars()));
         write!(f, "error: {message}\n{:gutter$}--> {file}:{line}:{column}", "")?;
         if !path.is_empty() {
             write!(f, "  ({path})")?;

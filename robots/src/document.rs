@@ -95,8 +95,18 @@ pub(crate) fn without_byte_order_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }
 
+/// The line (from 1) at which a second document begins.
+fn second_document(text: &str) -> Option<usize> {
+    let begins = |line: &str| line.trim_end() == "---" || line.starts_with("--- ");
+    let is_before = |line: &str| begins(line) || line.trim().is_empty() || line.starts_with(['#', '%']);
+    let mut lines = text.lines().enumerate().skip_while(|(_, line)| is_before(line));
+    lines.find(|(_, line)| begins(line)).map(|(index, _)| index + 1)
+}
+
 fn syntax_problem(file: &str, text: &str, error: &serde_yaml::Error) -> Diagnostic {
-    let (line, column) = error.location().map_or((1, 1), |at| (at.line(), at.column()));
+    let place = error.location().map(|at| (at.line(), at.column()));
+    // The parser does not tell where a second document begins.
+    let (line, column) = place.or_else(|| Some((second_document(text)?, 1))).unwrap_or((1, 1));
     // The place is shown on its own; a second place in the message is of use.
     let message = error.to_string().replacen(&format!(" at line {line} column {column}"), "", 1);
     Diagnostic::new(

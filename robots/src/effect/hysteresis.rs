@@ -88,9 +88,13 @@ impl Physics<6> for Hysteresis {
                 continue;
             }
             if *radius <= before {
+                let (than, is_left_out) = match before {
+                    0.0 => ("0", false),
+                    _ => ("the radius before it", *radius == 0.0),
+                };
                 return Some(Complaint {
-                    parameter: if *radius == 0.0 { of.name } else { name.name },
-                    message: format!("`{}` is not above the radius before it", name.name),
+                    parameter: if is_left_out { of.name } else { name.name },
+                    message: format!("`{}` is not above {than}", name.name),
                     help: "give the radii from the smallest to the largest, above 0 Nm".to_owned(),
                 });
             }

@@ -215,7 +215,8 @@ fn paragraph(text: &str) -> Vec<String> {
 /// The lines of a description's text as docs, in which brackets are no links
 /// and no tags.
 fn lines(text: &str) -> Vec<String> {
-    let escaped = text.trim().replace('[', "\\[").replace('<', "\\<");
+    // A comment with a lone carriage return is no Rust.
+    let escaped = text.trim().replace('\r', "\n").replace('[', "\\[").replace('<', "\\<");
     escaped.lines().map(|line| format!(" {}", line.trim()).trim_end().to_owned()).collect()
 }
 

@@ -75,7 +75,9 @@ fn polished(source: &str) -> String {
             continue;
         }
         out += &format!("{line}\n");
-        let columns = if text.ends_with("Matrix4::new(") {
+        let columns = if text.starts_with("//") {
+            continue;
+        } else if text.ends_with("Matrix4::new(") {
             4
         } else if text.ends_with("Matrix6::new(") {
             6
