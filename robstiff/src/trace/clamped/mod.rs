@@ -16,6 +16,8 @@ mod axes;
 mod bench;
 mod report;
 mod search;
+#[cfg(test)]
+mod tests;
 
 use std::string::String;
 

@@ -162,14 +162,35 @@ fn worst(bench: &Bench, fit: &Fit, strict: bool) -> Option<(usize, f64)> {
         residuals[row].powi(2) / (1.0 - x.dot(&(&inverse * &x))).max(f64::EPSILON)
     };
     let all: Vec<f64> = (0..residuals.len()).map(left).collect();
-    let mut sorted = all.clone();
-    sorted.sort_by(f64::total_cmp);
-    let variance = sorted[sorted.len() / 2] / MEDIAN;
-    let (row, most) = all.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
+    let variances = variances(bench, fit, &all)?;
+    let ratio = |row: usize| all[row] / variances[bench.axes.rows[row].axis - 1];
+    let row = (0..all.len()).max_by(|&a, &b| ratio(a).total_cmp(&ratio(b)))?;
     let table = ChiSquared::new(1.0).ok()?;
-    let p = all.len() as f64 * table.sf(most / variance);
-    let stands_out = if strict { p <= STRICT } else { *most > STANDS_OUT * variance };
-    (variance > 0.0 && stands_out).then_some((row, p.min(1.0)))
+    let p = all.len() as f64 * table.sf(ratio(row));
+    let stands_out = if strict { p <= STRICT } else { ratio(row) > STANDS_OUT };
+    stands_out.then_some((row, p.min(1.0)))
+}
+
+/// What a row of each axis is held against: the median over all rows, and no less
+/// than what is left of most of the axis's own, by the slope that leaves least of
+/// them. A curve of its gear is in most of them; wild rows, a minority, are not.
+/// `None` where nothing is left.
+fn variances(bench: &Bench, fit: &Fit, all: &[f64]) -> Option<Vec<f64>> {
+    let median = |mut squares: Vec<f64>| {
+        squares.sort_by(f64::total_cmp);
+        squares[squares.len() / 2] / MEDIAN
+    };
+    let whole = median(all.to_vec());
+    let residuals = bench.residuals(fit);
+    let mut variances = vec![whole; bench.axes.compliance.len()];
+    for axis in bench.axes.loaded() {
+        let rows: Vec<(f64, f64)> =
+            bench.axes.rows_of(axis).into_iter().map(|row| (bench.axes.rows[row].torque, residuals[row])).collect();
+        let beside = |slope: f64| median(rows.iter().map(|(torque, left)| (left - slope * torque).powi(2)).collect());
+        let slopes = rows.iter().filter(|(torque, _)| *torque != 0.0).map(|(torque, left)| left / torque);
+        variances[axis - 1] = slopes.map(beside).min_by(f64::total_cmp).map_or(whole, |own| own.max(whole));
+    }
+    (whole > 0.0).then_some(variances)
 }
 
 fn table(bench: &Bench, model: &Fitted, tested: impl Fn(usize) -> Option<(f64, f64)>) -> Step {
