@@ -6,9 +6,11 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::baseline::{Visibility, declared, with_values};
+use super::uncertainty::{WITHIN, student};
+use super::whitening::mean_share;
 use super::{Error, Estimate, Identification, element_name, unit_of};
 use crate::campaign::{Campaign, ClampedRow};
 
@@ -23,28 +25,29 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
     let mut values: Vec<f64> = own.iter().map(|number| number.value).collect();
     let mut estimates = Vec::new();
     for (i, number) in own.iter().enumerate() {
-        let of_axis: Vec<&ClampedRow> =
-            rows.iter().filter(|row| number.effect.is_none() && row.axis == i + 1).collect();
+        let here = |row: &&ClampedRow| number.effect.is_none() && row.axis == i + 1;
+        let of_axis: Vec<&ClampedRow> = rows.iter().filter(here).collect();
         let slope = slope(&of_axis);
+        let work: f64 = rows.iter().filter(here).map(|row| row.torque * row.deflection).sum();
+        if work < 0.0 {
+            let line = of_axis[0].line;
+            return Err(Error(format!(
+                "axis {} deflects against its torque (rows from line {line}): check the signs",
+                i + 1
+            )));
+        }
+        let clipped = slope.is_some_and(|(value, _)| value < 0.0);
         if let Some((value, _)) = slope {
-            if value < 0.0 {
-                let line = of_axis[0].line;
-                return Err(Error(format!(
-                    "axis {} deflects against its torque (rows from line {line}): check the signs",
-                    i + 1
-                )));
-            }
-            values[i] = value;
+            values[i] = value.max(0.0);
         }
         estimates.push(Estimate {
             name: element_name(&campaign.robot, number),
             declared: number.value,
             value: values[i],
-            std: slope.and_then(|(_, std)| std),
+            std: slope.filter(|_| !clipped).and_then(|(_, std)| std),
             unit: unit_of(&campaign.robot, number.column),
             visibility: if slope.is_some() { Visibility::Seen } else { Visibility::Unseen },
-            // A slope against the load is an error above.
-            at_bound: false,
+            at_bound: clipped && number.value > 0.0,
         });
     }
     if estimates.iter().all(|estimate| estimate.visibility != Visibility::Seen) {
@@ -63,22 +66,38 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
     })
 }
 
-/// The slope through the origin and its standard deviation from the scatter of
-/// the rows (none from a single row); `None` where nothing was loaded.
+/// The slope through the origin of rows that share one unloaded reading, and its
+/// standard deviation from their scatter (none from a single row); `None` where
+/// nothing was loaded. The standard deviation is told as
+/// [`uncertainty`](super::uncertainty) tells it.
 fn slope(rows: &[&ClampedRow]) -> Option<(f64, Option<f64>)> {
-    let squares: f64 = rows.iter().map(|row| row.torque * row.torque).sum();
+    let share = mean_share(rows.len(), 1.0) / rows.len().max(1) as f64;
+    let whitened = |of: fn(&ClampedRow) -> f64| {
+        let values = DVector::from_iterator(rows.len(), rows.iter().map(|row| of(row)));
+        let sum = values.sum();
+        values.add_scalar(-share * sum)
+    };
+    let (torques, deflections) = (whitened(|row| row.torque), whitened(|row| row.deflection));
+    let squares = torques.norm_squared();
     if squares == 0.0 {
         return None;
     }
-    let slope = rows.iter().map(|row| row.torque * row.deflection).sum::<f64>() / squares;
-    let left: f64 = rows.iter().map(|row| (row.deflection - slope * row.torque).powi(2)).sum();
-    let std = (rows.len() > 1).then(|| (left / (rows.len() - 1) as f64 / squares).sqrt());
+    let slope = torques.dot(&deflections) / squares;
+    let freedom = rows.len() as f64 - 1.0;
+    let std = (freedom > 0.0).then(|| {
+        let left = (deflections - slope * torques).norm_squared();
+        (left / freedom / squares).sqrt() * student(freedom) / WITHIN
+    });
     Some((slope, std))
 }
 
 #[cfg(test)]
 mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+
     use super::*;
+    use crate::campaign::made::normal;
 
     fn row(torque: f64, deflection: f64) -> ClampedRow {
         ClampedRow { line: 2, axis: 1, torque, deflection }
@@ -96,11 +115,31 @@ mod tests {
 
     #[test]
     fn scatter_makes_the_standard_deviation() {
-        // Residuals -1, 2, -1 about slope 2 at torques 1, 2, 3 would not be
-        // orthogonal to the torques; 1, -2, 1 at torques 1, 2, 3 are.
+        // 1, -2, 1 about slope 2 at torques 1, 2, 3: orthogonal to the torques, and
+        // without a mean, so of it the unloaded reading has nothing. Of the torques'
+        // 14 it takes 6^2 / (1 + 3). The quantile is that of two degrees of freedom.
         let rows = [row(1.0, 3.0), row(2.0, 2.0), row(3.0, 7.0)];
         let (value, std) = slope(&rows.each_ref()).expect("loaded");
         assert!((value - 2.0).abs() < 1e-12);
-        assert!((std.expect("three rows") - (6.0_f64 / 2.0 / 14.0).sqrt()).abs() < 1e-12);
+        let expected = (6.0_f64 / 2.0 / (14.0 - 9.0)).sqrt() * 4.302_652_73 / 1.959_963_98;
+        assert!((std.expect("three rows") / expected - 1.0).abs() < 1e-8);
+    }
+
+    /// Whatever the number of rows, 1.96 standard deviations are the 95 % interval.
+    #[test]
+    fn intervals_hold_what_they_say() {
+        let mut random = ChaCha8Rng::seed_from_u64(31);
+        let runs = 2000;
+        for torques in [&[400.0, 800.0][..], &[200.0, 400.0, 600.0], &[-800.0, -400.0, 200.0, 400.0, 600.0, 800.0]] {
+            let within = (0..runs).filter(|_| {
+                let unloaded = normal(&mut random);
+                let mut read = |torque: &f64| row(*torque, 0.03 * torque + normal(&mut random) - unloaded);
+                let rows: Vec<ClampedRow> = torques.iter().map(&mut read).collect();
+                let (value, std) = slope(&rows.iter().collect::<Vec<_>>()).expect("loaded");
+                (value - 0.03).abs() <= WITHIN * std.expect("two rows or more")
+            });
+            let share = within.count() as f64 / f64::from(runs);
+            assert!((share - 0.95).abs() < 0.02, "{share} at {torques:?}");
+        }
     }
 }

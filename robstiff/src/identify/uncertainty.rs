@@ -70,7 +70,7 @@ fn of_free(problem: &Problem, fit: &Fit, free: &[usize], known: &[f64]) -> Optio
     let known = DVector::from_fn(free.len(), |i, _| known[free[i]] * variance);
     let gram = problem.total.gram_of(&columns) + DMatrix::from_diagonal(&known);
     let inverse = Scaled::of(&gram)?.inverse();
-    let plain = || &inverse * (variance * (student(freedom) / WITHIN).powi(2));
+    let plain = || &inverse * (variance * (student(freedom.max(FEWEST)) / WITHIN).powi(2));
     if problem.blocks.len() < POSES_PER_COEFFICIENT * columns.len() {
         return Some(plain());
     }
@@ -96,14 +96,14 @@ fn of_free(problem: &Problem, fit: &Fit, free: &[usize], known: &[f64]) -> Optio
         .collect();
     let factor = DVector::from_fn(columns.len(), |k, _| {
         let along = inverse.column(k).into_owned();
-        student(satterthwaite(&along, &squares, &crossed, &inverse)) / WITHIN
+        student(satterthwaite(&along, &squares, &crossed, &inverse).max(FEWEST)) / WITHIN
     });
     Some(DMatrix::from_fn(columns.len(), columns.len(), |i, j| sandwich[(i, j)] * factor[i] * factor[j]))
 }
 
 /// The quantile of Student's distribution that has 95 % within.
-fn student(freedom: f64) -> f64 {
-    StudentsT::new(0.0, 1.0, freedom.max(FEWEST)).map_or(WITHIN, |table| table.inverse_cdf(0.975))
+pub fn student(freedom: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, freedom).map_or(WITHIN, |table| table.inverse_cdf(0.975))
 }
 
 /// The degrees of freedom of the variance of the coefficients along a vector
