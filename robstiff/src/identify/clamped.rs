@@ -7,26 +7,31 @@ use std::string::String;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
+use robstiff_robots::Description;
+use robstiff_robots::effect::physics::PLAYS;
 
 use super::baseline::{Visibility, declared, with_values};
 use super::uncertainty::{WITHIN, student};
 use super::whitening::mean_share;
 use super::{Error, Estimate, Identification, element_name, unit_of};
+use crate::Effect;
 use crate::campaign::{Campaign, ClampedRow};
+use crate::elements::{plays, turn};
 
-/// Identifies the compliances of the axes that were loaded. Where a joint is
-/// compound, the measurement sees the sum of its parts, which keep their
-/// proportion.
+/// Identifies the compliances of the axes that were loaded, beside the laws of
+/// joints that the description declares. Where a joint is compound, the measurement
+/// sees the sum of its parts, which keep their proportion.
 ///
 /// # Errors
 /// An axis whose deflection goes against its torque; rows that load no axis.
 pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identification, Error> {
     let own = declared(&campaign.robot);
+    let less = without_laws(&campaign.robot, rows);
     let mut values: Vec<f64> = own.iter().map(|number| number.value).collect();
     let mut estimates = Vec::new();
     for (i, number) in own.iter().enumerate() {
         let here = |row: &&ClampedRow| number.effect.is_none() && row.axis == i + 1;
-        let of_axis: Vec<&ClampedRow> = rows.iter().filter(here).collect();
+        let of_axis: Vec<&ClampedRow> = less.iter().filter(here).collect();
         let slope = slope(&of_axis);
         let work: f64 = rows.iter().filter(here).map(|row| row.torque * row.deflection).sum();
         if work < 0.0 {
@@ -66,6 +71,27 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
     })
 }
 
+/// The rows less what laws of joints do that the description declares, each axis
+/// beginning at rest; but for a compliance that varies with the axis's angle,
+/// which such rows do not tell. Torques (Nm) stay, deflections (rad) are what is
+/// left.
+pub fn without_laws(robot: &Description, rows: &[ClampedRow]) -> Vec<ClampedRow> {
+    let mut states = std::vec![[0.0; PLAYS]; robot.joints.len()];
+    let less = |row: &ClampedRow| {
+        let (joint, mut less) = (row.axis - 1, *row);
+        for effect in robot.effects.iter().filter(|effect| effect.row() == Some(row.axis)) {
+            if matches!(effect, Effect::PoseDependentCompliance { .. }) {
+                continue;
+            }
+            states[joint] = plays(effect, row.torque, states[joint]);
+            let own = robot.joints[joint].compliance();
+            less.deflection -= turn(effect, own, 0.0, row.torque, states[joint]).unwrap_or(0.0);
+        }
+        less
+    };
+    rows.iter().map(less).collect()
+}
+
 /// The slope through the origin of rows that share one unloaded reading, and its
 /// standard deviation from their scatter (none from a single row); `None` where
 /// nothing was loaded. The standard deviation is told as
@@ -97,7 +123,9 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::campaign::made::normal;
+    use crate::campaign::Data;
+    use crate::campaign::made::{campaign, normal};
+    use crate::samples::five_axis;
 
     fn row(torque: f64, deflection: f64) -> ClampedRow {
         ClampedRow { line: 2, axis: 1, torque, deflection }
@@ -141,5 +169,28 @@ mod tests {
             let share = within.count() as f64 / f64::from(runs);
             assert!((share - 0.95).abs() < 0.02, "{share} at {torques:?}");
         }
+    }
+
+    #[test]
+    fn declared_laws_are_not_counted_twice() {
+        let mut robot = five_axis();
+        let (gap, knee) = (4e-4, 20.0);
+        robot.effects.push(Effect::LostMotion { joint: 1, gap, knee });
+        let rows = (1..=20).map(|k| 50.0 * f64::from(k));
+        let rows = rows.map(|torque: f64| row(torque, 2.63e-7 * torque + 0.5 * gap * torque / torque.hypot(knee)));
+        let rows: Vec<ClampedRow> = rows.collect();
+        let found = identify(&campaign(robot, Data::Clamped(rows.clone())), &rows).expect("axis 1 is loaded");
+        assert!((found.estimates[0].value / 2.63e-7 - 1.0).abs() < 1e-9, "{:?}", found.estimates[0]);
+    }
+
+    /// What the data do not follow is at its bound, and no wrong sign.
+    #[test]
+    fn an_axis_that_gives_way_less_than_declared_is_at_its_bound() {
+        let mut robot = five_axis();
+        robot.effects.push(Effect::LostMotion { joint: 1, gap: 4e-4, knee: 200.0 });
+        let rows = [row(100.0, 1e-6), row(200.0, 2e-6), row(300.0, 3e-6)];
+        let found = identify(&campaign(robot, Data::Clamped(rows.to_vec())), &rows).expect("axis 1 is loaded");
+        let Estimate { value, std, at_bound, .. } = found.estimates[0];
+        assert_eq!((value, std, at_bound), (0.0, None, true));
     }
 }

@@ -2,6 +2,7 @@
 //! angles instead of poses and lengths.
 
 use robstiff::campaign::{Campaign, ClampedRow};
+use robstiff::identify::clamped::without_laws;
 use robstiff::trace::Trace;
 use serde_json::Value;
 
@@ -39,8 +40,9 @@ pub fn in_angles(document: Value) -> Value {
 
 /// The errors of every axis, as the report has those of poses \[urad\].
 pub fn errors(trace: &Trace, campaign: &Campaign, rows: &[ClampedRow]) -> Vec<PoseError> {
+    let less = without_laws(&campaign.robot, rows);
     let declared = |name: &str| {
-        let of_axis = rows.iter().filter(|row| format!("axis {}", row.axis) == name);
+        let of_axis = less.iter().filter(|row| format!("axis {}", row.axis) == name);
         let squares: Vec<f64> = of_axis
             .map(|row| (row.deflection - campaign.robot.joints[row.axis - 1].compliance() * row.torque).powi(2))
             .collect();

@@ -7,19 +7,18 @@ use std::vec::Vec;
 use nalgebra::DVector;
 
 use crate::campaign::ClampedRow;
-use crate::elements::{plays, turn};
 use crate::identify::Identification;
 use crate::identify::baseline::Visibility;
+use crate::identify::clamped::without_laws;
 use crate::trace::found::{EffectParameter, Place};
 use crate::{Effect, JointKind};
 use robstiff_robots::Description;
 use robstiff_robots::effect::Place as Part;
-use robstiff_robots::effect::physics::PLAYS;
 
 /// The rows of a campaign, axis by axis.
 #[derive(Clone, Debug)]
 pub struct Axes {
-    /// The rows that are used, in the file's order.
+    /// The rows that are used, in the file's order, less what declared laws do.
     pub rows: Vec<ClampedRow>,
     /// The compliance of each axis (rad/Nm or m/N), from 0.
     pub compliance: Vec<f64>,
@@ -95,26 +94,6 @@ impl Axes {
     pub fn turn_unit(&self, axis: usize) -> &'static str {
         if self.turns_about(axis) { "rad" } else { "m" }
     }
-}
-
-/// The rows less what laws of joints do that the description declares, each axis
-/// beginning at rest; but for a compliance that varies with the axis's angle,
-/// which such rows do not tell.
-fn without_laws(robot: &Description, rows: &[ClampedRow]) -> Vec<ClampedRow> {
-    let mut states = std::vec![[0.0; PLAYS]; robot.joints.len()];
-    let less = |row: &ClampedRow| {
-        let (joint, mut less) = (row.axis - 1, *row);
-        for effect in robot.effects.iter().filter(|effect| effect.row() == Some(row.axis)) {
-            if matches!(effect, Effect::PoseDependentCompliance { .. }) {
-                continue;
-            }
-            states[joint] = plays(effect, row.torque, states[joint]);
-            let own = robot.joints[joint].compliance();
-            less.deflection -= turn(effect, own, 0.0, row.torque, states[joint]).unwrap_or(0.0);
-        }
-        less
-    };
-    rows.iter().map(less).collect()
 }
 
 /// A column that is zero but in some of `count` rows.
