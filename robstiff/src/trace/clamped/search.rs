@@ -61,14 +61,17 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
     }
     let mut wild: (Vec<usize>, f64) = (Vec::new(), 0.0);
     let (mut model, mut p_values, mut steps, mut unnamed) = (base, Vec::new(), Vec::new(), false);
-    let mut strict = false;
+    let (mut strict, mut lost) = (false, false);
     loop {
         // Wild rows must not vote for an effect; those that were wild while one was
-        // missing are looked at again once it is named.
-        if !wild.0.is_empty() {
-            wild = (Vec::new(), 0.0);
-            bench = Bench::new(bench.axes.with_rows(every.clone()), Some(&bench.offers));
-            model = bench.fit(&model.named).ok_or_else(none)?;
+        // missing are looked at again once it is named. They stay out where physics
+        // does not allow the model with them.
+        if !wild.0.is_empty() && !lost {
+            let whole = Bench::new(bench.axes.with_rows(every.clone()), Some(&bench.offers));
+            if let Some(fitted) = whole.fit(&model.named) {
+                wild = (Vec::new(), 0.0);
+                (bench, model) = (whole, fitted);
+            }
         }
         while let Some((row, p)) = worst(&bench, &model.fit, strict) {
             if (wild.0.len() + 1) as f64 > FEW * all as f64 {
@@ -78,7 +81,10 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
             let mut axes = bench.axes.clone();
             wild.0.push(axes.rows.remove(row).line);
             bench = Bench::new(axes, Some(&bench.offers));
-            model = bench.fit(&model.named).or_else(|| bench.fit(&[])).ok_or_else(none)?;
+            let stands = bench.fit(&model.named);
+            // A name that stood on the row would come back with it, time and again.
+            lost |= stands.is_none();
+            model = stands.or_else(|| bench.fit(&[])).ok_or_else(none)?;
         }
         if model.named.len() >= MOST_EFFECTS {
             break;
