@@ -1,6 +1,6 @@
 //! Walking a document, with checks that report rather than stop.
 
-use super::{Content, Document, Step};
+use super::{Content, Document, Step, locate};
 use crate::quantity::{self, Dimension};
 use crate::suggest::{closest, list};
 
@@ -21,6 +21,11 @@ impl<'d> Node<'d> {
     /// The path of the value, e.g. `joints[1].theta`; items count from 0.
     pub fn path(&self) -> &str {
         &self.path
+    }
+
+    /// The line of the value, from 1.
+    pub fn line(&self) -> usize {
+        locate(&self.document.text, &self.steps).0
     }
 
     /// Reports a problem with this value.

@@ -307,3 +307,27 @@ fn clamped_axes_are_identified_and_traced() {
     assert!(message.contains("every torque is zero"), "{message}");
     assert!(!folder.join("unloaded").exists());
 }
+
+/// The sentence about the rows that were left out agrees with the table.
+#[test]
+fn errors_of_clamped_axes_are_told_alike_everywhere() {
+    let folder = folder("clamped-wild");
+    fs::copy(measured().join("../../rv130hsc.yaml"), folder.join("robot.yaml")).unwrap();
+    let campaign = inside(&folder, "campaign.yaml");
+    fs::write(&campaign, "robot: robot.yaml\nobservations: axes.csv\nkind: clamped\n").unwrap();
+    let mut rows = String::from("axis,torque [Nm],deflection [urad]\n");
+    for k in 0..24 {
+        // Of no pattern, from -6 to 6.
+        let (noise, wild) = (f64::from(k * k * 5 % 13 - 6), if k == 17 { 400.0 } else { 0.0 });
+        let torque = f64::from(100 * (k % 12 + 1));
+        rows += &format!("{},{torque},{}\n", k / 12 + 1, 0.3 * torque + noise + wild);
+    }
+    fs::write(folder.join("axes.csv"), rows).unwrap();
+    let out = inside(&folder, "out");
+    let page = succeed(&["trace", &campaign, "--out", &out]);
+    let traced = json(&inside(Path::new(&out), "trace.json"));
+    assert_eq!(traced["effects"][0]["kind"], "outliers", "{page}");
+    let rms = |stage: &Value| format!("{:.1}", stage["rms_urad"].as_f64().unwrap());
+    let (before, after) = (rms(&traced["before"]["identified"]), rms(&traced["after"]));
+    assert!(page.contains(&format!("to {after} urad without it, and from {before} to ")), "{page}");
+}

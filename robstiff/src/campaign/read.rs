@@ -4,6 +4,7 @@ use std::borrow::ToOwned;
 use std::format;
 use std::path::Path;
 use std::string::{String, ToString};
+use std::vec::Vec;
 
 use robstiff_robots::document::{Document, Map};
 use robstiff_robots::quantity::Dimension;
@@ -14,6 +15,9 @@ use crate::table::{Table, text_of};
 
 /// The fields of a campaign file.
 const FIELDS: [&str; 8] = ["name", "robot", "observations", "kind", "wrench", "measured", "noise", "holdout"];
+
+/// Of those, the ones that are about poses and the tool.
+const OF_DISPLACEMENTS: [&str; 4] = ["wrench", "measured", "noise", "holdout"];
 
 /// What the observations are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +37,8 @@ struct Plan {
     measured: (Frame, [f64; 3]),
     noise: Noise,
     holdout: Option<Holdout>,
+    /// The fields that are not used, with their lines.
+    unused: Vec<(&'static str, usize)>,
 }
 
 impl Campaign {
@@ -61,7 +67,11 @@ impl Campaign {
             Kind::Clamped => clamped::read(&table, &robot).map(Data::Clamped),
             Kind::Position => unreachable!("refused with the file's other problems"),
         };
-        let (data, warnings) = table.finish(data).map_err(ReadError::Invalid)?;
+        let (data, of_table) = table.finish(data).map_err(ReadError::Invalid)?;
+        let unused = plan.unused.iter().map(|(field, line)| {
+            format!("{}: `{field}` on line {line} is not used with `kind: clamped`", path.display())
+        });
+        let warnings = unused.chain(of_table).collect();
         Ok(Self {
             name: plan.name,
             path: path.to_owned(),
@@ -100,6 +110,8 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
     let measured = place(&map, "measured");
     let noise = noise(&map);
     let holdout = holdout(&map);
+    let unused = OF_DISPLACEMENTS.into_iter().filter(|_| kind == Some(Kind::Clamped));
+    let unused = unused.filter_map(|field| Some((field, map.get(field)?.line()))).collect();
     Some(Plan {
         name: name?,
         robot: robot?,
@@ -109,6 +121,7 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
         measured: measured?,
         noise: noise?,
         holdout: holdout?,
+        unused,
     })
 }
 

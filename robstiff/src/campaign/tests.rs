@@ -222,3 +222,14 @@ fn a_missing_file_is_named() {
     let error = Campaign::read(Path::new("nowhere/campaign.yaml")).unwrap_err();
     assert!(error.to_string().contains("nowhere/campaign.yaml"));
 }
+
+/// Clamped axes have no poses to hold out, and no tool.
+#[test]
+fn what_clamped_axes_do_not_use_is_warned_of() {
+    let plan = CAMPAIGN.replace("displacement", "clamped") + "noise: {rotation: 1e-6}\nholdout: {fraction: 0.25}\n";
+    let folder = Folder::new("clamped-unused", &plan, "axis,torque,deflection\n1,100,1e-4\n");
+    let (campaign, file) = (folder.read().unwrap(), folder.0.join("campaign.yaml"));
+    let said =
+        |field: &str, line| format!("{}: `{field}` on line {line} is not used with `kind: clamped`", file.display());
+    assert_eq!(campaign.warnings, [said("noise", 5), said("holdout", 6)]);
+}

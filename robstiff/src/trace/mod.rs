@@ -79,7 +79,8 @@ impl Default for Options {
 pub type Progress<'a> = dyn Fn(&str) + 'a;
 
 /// The result of tracing a campaign. Lengths are in m; an rms is over rows of
-/// the displacement residual's length over `sqrt(3)`.
+/// the displacement residual's length over `sqrt(3)`, of clamped axes over their
+/// angles.
 #[derive(Clone, Debug)]
 pub struct Trace {
     /// The robot's name.
@@ -131,6 +132,9 @@ pub struct Trace {
     pub structure: Vec<StructureTest>,
     /// The residual of each row.
     pub residuals: Vec<RowResidual>,
+    /// How many components of a residual are read: three of a displacement, of a
+    /// clamped axis the first (an angle).
+    pub components: usize,
     /// The rms of each pose.
     pub pose_errors: Vec<PoseError>,
 }

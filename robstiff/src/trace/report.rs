@@ -117,6 +117,7 @@ pub fn report(
         steps: outcome.selection.steps.clone(),
         structure: left.map_or_else(Vec::new, |left| left.tests.clone()),
         residuals,
+        components: 3,
         pose_errors,
     })
 }

@@ -106,7 +106,8 @@ fn on_the_same_rows(trace: &Trace) -> Option<String> {
     }
     let rms = |of: fn(&RowResidual) -> [f64; 3], all: bool| {
         let rows = trace.residuals.iter().filter(|row| all || !lines.contains(&row.line));
-        let squares: Vec<f64> = rows.flat_map(of).map(|component| component * component).collect();
+        let components = rows.flat_map(|row| of(row).into_iter().take(trace.components));
+        let squares: Vec<f64> = components.map(|component| component * component).collect();
         micrometres((squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt())
     };
     let (before, after) = (|row: &RowResidual| row.before, |row: &RowResidual| row.after);

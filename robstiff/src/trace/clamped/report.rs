@@ -9,7 +9,7 @@ use robstiff_robots::effect::Place as Part;
 
 use super::bench::{Bench, problem};
 use super::search::Found as Searched;
-use crate::campaign::{Campaign, Data};
+use crate::campaign::{Campaign, ClampedRow};
 use crate::identify::baseline::{declared, with_values};
 use crate::identify::normal::{Fit, Sign};
 use crate::identify::uncertainty::{covariance, covariance_with};
@@ -35,10 +35,23 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
     };
     let structure = found.left.structure || found.selection.unnamed;
     let tells = verdict != Verdict::Insufficient;
-    let Data::Clamped(rows) = &campaign.data else { unreachable!("only clamped axes come here") };
-    let base = bench.fit(&[]).unwrap_or_else(|| model.clone());
-    let after = Misfit { rms: rms(&bench.residuals(&model.fit)), holdout_rms: bench.left_out_rms(&model.fit) };
-    let before = Misfit { rms: rms(&bench.residuals(&base.fit)), holdout_rms: bench.left_out_rms(&base.fit) };
+    // Before anything was left out, wild rows and all.
+    let whole = Bench::new(bench.axes.with_rows(found.every.clone()), Some(&bench.offers));
+    let base = whole.fit(&[]).unwrap_or_else(|| model.clone());
+    let misfit =
+        |bench: &Bench, fit: &Fit| Misfit { rms: rms(&bench.residuals(fit)), holdout_rms: bench.left_out_rms(fit) };
+    let before = misfit(&whole, &base.fit);
+    let as_declared = whole
+        .axes
+        .rows
+        .iter()
+        .map(|row| row.deflection - campaign.robot.joints[row.axis - 1].compliance() * row.torque);
+    let left_declared = DVector::from_iterator(whole.axes.rows.len(), as_declared);
+    let declared = Misfit { rms: rms(&left_declared), holdout_rms: rms(&left_declared) };
+    let left_before = whole.residuals(&base.fit);
+    // Data that can tell nothing change nothing.
+    let (after, left_after) =
+        if tells { (misfit(bench, &model.fit), whole.residuals(&model.fit)) } else { (declared, left_declared) };
 
     let spread = spread(bench, model);
     let values = values(campaign, bench, model);
@@ -58,21 +71,19 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
     let estimates = identified.estimates.iter().enumerate().map(|(i, estimate)| {
         let at = fitted_axes.iter().position(|&axis| axis == i + 1);
         let std = at.filter(|&k| model.fit.coefficients[k] > 0.0).map(|k| spread[(k, k)].sqrt());
-        Estimate { value: values[i], std: std.or(estimate.std), ..estimate.clone() }
+        let clipped = at.is_some() && values[i] == 0.0;
+        let std = std.or(estimate.std.filter(|_| !clipped));
+        let at_bound = clipped && estimate.declared > 0.0;
+        Estimate { value: values[i], std, at_bound, ..estimate.clone() }
     });
-    let as_declared = |row: &crate::campaign::ClampedRow| {
-        row.deflection - campaign.robot.joints[row.axis - 1].compliance() * row.torque
-    };
-    let declared_rms = rms(&DVector::from_iterator(rows.len(), rows.iter().map(as_declared)));
-    let (left_before, left_after) = (bench.residuals(&base.fit), bench.residuals(&model.fit));
-    let residual = |(i, row): (usize, &crate::campaign::ClampedRow)| RowResidual {
+    let residual = |(i, row): (usize, &ClampedRow)| RowResidual {
         line: row.line,
         pose: row.axis - 1,
         before: [left_before[i], 0.0, 0.0],
         after: [left_after[i], 0.0, 0.0],
     };
     let error = |&axis: &usize| {
-        let of = |left: &DVector<f64>| rms(&left.select_rows(&bench.axes.rows_of(axis)));
+        let of = |left: &DVector<f64>| rms(&left.select_rows(&whole.axes.rows_of(axis)));
         PoseError { pose: format!("axis {axis}"), held_out: false, before: of(&left_before), after: of(&left_after) }
     };
     let rivals = bench.replaced(&model.named).into_iter().filter(|(_, other)| other.bic < model.bic + WITHIN_REACH);
@@ -86,12 +97,12 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
     Trace {
         encoders: None,
         robot: campaign.robot.name.clone(),
-        rows: rows.len(),
+        rows: whole.axes.rows.len(),
         poses: fitted_axes.len(),
         held_out: Vec::new(),
         noise: (model.fit.rss / bench.problem.freedom(&model.fit)).sqrt(),
         noise_source: NoiseSource::Residuals,
-        declared: Misfit { rms: declared_rms, holdout_rms: declared_rms },
+        declared,
         identified: before,
         after,
         verdict,
@@ -107,7 +118,8 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         estimates: estimates.collect(),
         steps: found.selection.steps.clone(),
         structure: found.left.tests.clone(),
-        residuals: bench.axes.rows.iter().enumerate().map(residual).collect(),
+        residuals: whole.axes.rows.iter().enumerate().map(residual).collect(),
+        components: 1,
         pose_errors: fitted_axes.iter().map(error).collect(),
     }
 }

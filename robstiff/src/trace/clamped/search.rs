@@ -10,6 +10,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::axes::Axes;
 use super::bench::{Bench, problem};
+use crate::campaign::ClampedRow;
 use crate::identify::normal::{Fit, Sign};
 use crate::trace::bootstrap::ScoreTest;
 use crate::trace::catalogue::{Candidate, KINDS, Variant};
@@ -40,6 +41,8 @@ pub struct Found {
     pub left: LackOfFit,
     /// The lines of rows that are wild, with the probability of the likeliest.
     pub wild: (Vec<usize>, f64),
+    /// All rows, the wild ones among them.
+    pub every: Vec<ClampedRow>,
     /// Why the data cannot tell, if so.
     pub too_little: Option<String>,
 }
@@ -57,7 +60,7 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
     if let Some(why) = too_little(&bench) {
         let selection = Selection { model: base, p_values: Vec::new(), steps: Vec::new(), unnamed: false };
         let left = LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() };
-        return Ok(Found { bench, selection, left, wild: (Vec::new(), 1.0), too_little: Some(why) });
+        return Ok(Found { bench, selection, left, wild: (Vec::new(), 1.0), every, too_little: Some(why) });
     }
     let mut wild: (Vec<usize>, f64) = (Vec::new(), 0.0);
     let (mut model, mut p_values, mut steps, mut unnamed) = (base, Vec::new(), Vec::new(), false);
@@ -145,7 +148,7 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
     progress("looking for structure in what is left");
     let left = structure(&bench, &model, options);
     let selection = Selection { model, p_values, steps, unnamed };
-    Ok(Found { bench, selection, left, wild, too_little: None })
+    Ok(Found { bench, selection, left, wild, every, too_little: None })
 }
 
 /// Why rows cannot tell what is missing, if so: every row is a witness.

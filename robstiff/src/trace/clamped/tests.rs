@@ -65,6 +65,27 @@ fn wild_readings_of_one_axis_are_told() {
     let trace = traced(&campaign);
     assert_eq!((trace.verdict, names(&trace)), (Verdict::Explained, ["outliers@rig".into()].into()));
     assert_eq!(trace.effects[0].lines, [20, 23]);
+    // What is told of before is over all rows, so is what is left of each.
+    assert_eq!((trace.residuals.len(), trace.components), (40, 1));
+    assert!((trace.residuals[18].after[0] - 3e-4).abs() < 5.0 * NOISE, "{:?}", trace.residuals[18]);
+    assert!(trace.identified.rms > 4e-5 && trace.after.rms < 2.0 * NOISE, "{:?}", [trace.identified, trace.after]);
+}
+
+/// The description is as declared then, and so is what is said of it.
+#[test]
+fn where_the_data_cannot_tell_the_error_stays_as_declared() {
+    let mut campaign = measured(&five_axis(), &ramp(2), 3, |_, _| 0.0);
+    let compliance = &mut campaign.robot.joints[0].compliance[0].value;
+    *compliance *= 2.0;
+    let off = 0.5 * *compliance;
+    let trace = traced(&campaign);
+    assert_eq!((trace.verdict, &trace.description), (Verdict::Insufficient, &campaign.robot));
+    assert_eq!(trace.after, trace.declared);
+    assert!((trace.residuals[1].after[0] / (-1000.0 * off) - 1.0).abs() < 0.1, "{:?}", trace.residuals[1]);
+    assert_eq!(
+        trace.pose_errors[0].after,
+        (trace.residuals[0].after[0].powi(2) / 2.0 + trace.residuals[1].after[0].powi(2) / 2.0).sqrt()
+    );
 }
 
 /// With its two wild rows the gap of axis 1 would be negative: the model stands
