@@ -76,6 +76,8 @@ pub mod online;
 pub mod path;
 #[cfg(feature = "identify")]
 pub mod plan;
+#[cfg(feature = "identify")]
+mod probability;
 pub mod real;
 pub mod robot;
 #[cfg(all(test, feature = "generic"))]

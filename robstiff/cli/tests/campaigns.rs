@@ -330,4 +330,5 @@ fn errors_of_clamped_axes_are_told_alike_everywhere() {
     let rms = |stage: &Value| format!("{:.1}", stage["rms_urad"].as_f64().unwrap());
     let (before, after) = (rms(&traced["before"]["identified"]), rms(&traced["after"]));
     assert!(page.contains(&format!("to {after} urad without it, and from {before} to ")), "{page}");
+    assert!(traced["effects"][0]["p_value"].as_f64().unwrap() > 0.0);
 }

@@ -18,6 +18,7 @@ use nalgebra::Vector3;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::model::{Fitted, Setting};
+use crate::probability::told;
 
 /// Something wrong in one visit.
 #[derive(Clone, Debug)]
@@ -166,7 +167,7 @@ pub fn events(setting: &Setting<'_>, model: &Fitted, strict: bool) -> Vec<Event>
         for (i, row) in visit.rows.iter().enumerate() {
             visit.used[i] &= !event.rows.contains(row);
         }
-        let p_value = (hypotheses as f64 * table.sf(event.statistic)).min(1.0);
+        let p_value = told(hypotheses as f64 * table.sf(event.statistic));
         found.push(Event { p_value, ..event });
         if found.iter().map(|event| event.rows.len()).sum::<usize>() > most {
             return Vec::new();

@@ -36,6 +36,7 @@ use crate::identify::covariance::Covariance;
 use crate::identify::noise::PureError;
 use crate::identify::normal::Fit;
 use crate::identify::problem::Problem;
+use crate::probability::told;
 
 /// What the noise of one displacement reading is held to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,7 +137,7 @@ fn growth(setting: &Setting<'_>, model: &Fitted) -> Option<StructureTest> {
         forces.push(setting.point.samples.rows[*row].wrench.fixed_rows::<3>(0).norm());
     }
     let statistic = correlation(&ranks(&lengths), &ranks(&forces));
-    let p_value = Gaussian::standard().sf(statistic * ((lengths.len() - 1) as f64).sqrt());
+    let p_value = told(Gaussian::standard().sf(statistic * ((lengths.len() - 1) as f64).sqrt()));
     Some(StructureTest { name: "residuals grow with the force".to_owned(), statistic, p_value })
         .filter(|_| statistic.is_finite())
 }

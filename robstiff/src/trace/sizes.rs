@@ -7,6 +7,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 use super::lack_of_fit::{StructureTest, Yardstick, freedom};
 use super::model::{Fitted, Setting};
 use crate::identify::covariance::Covariance;
+use crate::probability::told;
 
 /// Sums of squares with their degrees of freedom, of the readings of the tool and
 /// of those of encoders.
@@ -49,7 +50,7 @@ pub(super) fn of_encoders(shares: &Shares, covariance: &Covariance) -> Option<St
         return None;
     }
     let statistic = (rss - sum).max(0.0) / rest / (sum / pure);
-    let p_value = FisherSnedecor::new(rest, pure).ok()?.sf(statistic);
+    let p_value = told(FisherSnedecor::new(rest, pure).ok()?.sf(statistic));
     Some(StructureTest { name: "encoders against their own noise".to_owned(), statistic, p_value })
 }
 
@@ -58,7 +59,7 @@ pub(super) fn size(shares: &Shares, yardstick: Yardstick) -> Option<StructureTes
     match yardstick {
         Yardstick::Declared(variance) => {
             let statistic = rss / variance;
-            let p_value = ChiSquared::new(freedom).ok()?.sf(statistic);
+            let p_value = told(ChiSquared::new(freedom).ok()?.sf(statistic));
             Some(StructureTest { name: "residuals against the declared noise".to_owned(), statistic, p_value })
         }
         Yardstick::Repeated(pure) => {
@@ -68,7 +69,7 @@ pub(super) fn size(shares: &Shares, yardstick: Yardstick) -> Option<StructureTes
                 return None;
             }
             let statistic = (rss - pure.sum).max(0.0) / rest / variance;
-            let p_value = FisherSnedecor::new(rest, pure.freedom as f64).ok()?.sf(statistic);
+            let p_value = told(FisherSnedecor::new(rest, pure.freedom as f64).ok()?.sf(statistic));
             Some(StructureTest { name: "residuals against repeated readings".to_owned(), statistic, p_value })
         }
         Yardstick::Unknown => None,

@@ -35,6 +35,7 @@ use std::vec::Vec;
 
 use self::evidence::Evidence;
 use crate::campaign::{Campaign, Data};
+use crate::probability::told;
 
 /// The probability that anything is found where nothing is wrong.
 pub const LEVEL: f64 = 0.01;
@@ -137,7 +138,8 @@ pub fn triage(campaign: &Campaign) -> Triage {
             (checks, evidence.covariance.reading(), noise::sentences(&evidence))
         }
     };
-    let adjusted = holm(checks.iter().map(|(_, _, verdict)| verdict.as_ref().ok().and_then(|raw| raw.p_value)));
+    let adjusted =
+        holm(checks.iter().map(|(_, _, verdict)| verdict.as_ref().ok().and_then(|raw| raw.p_value.map(told))));
     let checks = checks.drain(..).zip(adjusted).map(|((name, question, verdict), adjusted)| {
         let answer = match verdict {
             Err(needs) => Answer::NotAsked(needs),
@@ -154,7 +156,7 @@ fn judged(raw: Raw, adjusted: Option<f64>) -> Finding {
     Finding {
         statistic: raw.statistic,
         unit: raw.unit,
-        p_value: raw.p_value,
+        p_value: raw.p_value.map(told),
         adjusted,
         matters_from: raw.matters_from,
         violated,

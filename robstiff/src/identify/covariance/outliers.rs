@@ -17,6 +17,7 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use super::contrasts::Chunk;
 use super::reml::{count, sums};
 use crate::campaign::Displacements;
+use crate::probability::told;
 
 /// A reading that does not belong to the others.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,7 +72,7 @@ pub fn find(chunks: &[Chunk], axes: usize, shared: f64, variances: &[f64], level
         let explained = suspect.size;
         let ratio = explained / between / ((total - explained).max(f64::MIN_POSITIVE) / within);
         suspect.size = ratio.sqrt();
-        suspect.p_value = (reference.sf(ratio) * tested).min(1.0);
+        suspect.p_value = told(reference.sf(ratio) * tested);
         suspect
     };
     let worst = |suspects: Vec<Outlier>| suspects.into_iter().map(judged).max_by(|a, b| a.size.total_cmp(&b.size));

@@ -12,6 +12,7 @@ use super::axes::Axes;
 use super::bench::{Bench, problem};
 use crate::campaign::ClampedRow;
 use crate::identify::normal::{Fit, Sign};
+use crate::probability::told;
 use crate::trace::bootstrap::ScoreTest;
 use crate::trace::catalogue::{Candidate, KINDS, Variant};
 use crate::trace::found::Place;
@@ -177,7 +178,7 @@ fn worst(bench: &Bench, fit: &Fit, strict: bool) -> Option<(usize, f64)> {
     let table = ChiSquared::new(1.0).ok()?;
     let p = all.len() as f64 * table.sf(ratio(row));
     let stands_out = if strict { p <= STRICT } else { ratio(row) > STANDS_OUT };
-    stands_out.then_some((row, p.min(1.0)))
+    stands_out.then_some((row, told(p)))
 }
 
 /// What a row of each axis is held against: the median over all rows, and no less
