@@ -6,6 +6,9 @@ use std::fs;
 use std::path::Path;
 
 use common::{fail, folder, inside, json, keys, measured, names, run, succeed};
+use robstiff::nalgebra::{SVector, Vector3};
+use robstiff::{Generic, Robot};
+use robstiff_robots::Description;
 use serde_json::Value;
 
 /// What tracing the FANUC leaves open.
@@ -86,6 +89,34 @@ fn one_seed_gives_one_plan_and_options_count() {
     assert!(turned.contains("moments of 80 Nm, as asked for") && turned.contains("Mx [Nm]"), "{turned}");
     for wrong in [["--poses", "0"], ["--force", "-3 N"], ["--force", "3 m"], ["--criterion", "e"], ["--seed", "x"]] {
         assert_eq!(run(&["plan", &campaign(), wrong[0], wrong[1]]).code, 2, "{wrong:?}");
+    }
+}
+
+/// What is filled in is read in the campaign's frame, so it has to be written in it.
+#[test]
+fn the_table_has_its_loads_in_the_frame_of_the_campaign() {
+    let folder = folder("plan-tool");
+    let scenario = "seed: 1\nposes: {count: 12}\nramp: [0.5, 1]\nforce: {bounds: [500 N, 900 N]}\n\
+        moment: {bounds: [50 Nm, 90 Nm]}\nwrench: {frame: tool}\nnoise: {displacement: 8 um}\n";
+    fs::write(folder.join("try.yaml"), scenario).unwrap();
+    let (measured, out) = (inside(&folder, "measured"), inside(&folder, "out"));
+    succeed(&["simulate", "kuka-kr270-r2700", &inside(&folder, "try.yaml"), "--out", &measured]);
+    succeed(&["plan", &format!("{measured}/campaign.yaml"), "--poses", "2", "--out", &out]);
+    let text = robstiff_robots::catalogue::find("kuka-kr270-r2700").unwrap();
+    let robot = Generic::<6>::new(&Description::parse("robot.yaml", text).unwrap()).unwrap();
+    let proposals = json(&inside(Path::new(&out), "plan.json"))["proposals"].clone();
+    let table = fs::read_to_string(folder.join("out/plan.csv")).unwrap();
+    assert_eq!(table.lines().count(), 1 + 2 * 2);
+    // The second row of a visit has the greatest load.
+    for (row, proposal) in table.lines().skip(2).step_by(2).zip(proposals.as_array().unwrap()) {
+        let row: Vec<f64> = row.split(',').skip(2).map(|field| field.parse().unwrap()).collect();
+        let pose = robot.transform(&SVector::<f64, 6>::from_fn(|joint, _| row[joint].to_radians()));
+        let tool = pose.fixed_view::<3, 3>(0, 0);
+        for (name, first) in [("force_N", 6), ("moment_Nm", 9)] {
+            let base = Vector3::from_fn(|k, _| proposal[name][k].as_f64().unwrap());
+            let turned = tool * Vector3::from_column_slice(&row[first..first + 3]);
+            assert!((turned - base).norm() < 0.01, "{name}: {turned} {base}");
+        }
     }
 }
 

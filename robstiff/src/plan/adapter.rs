@@ -9,14 +9,14 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector, Matrix4, Vector3, Vector6};
 use robstiff_robots::effect::Place as Part;
 
-use super::regressors::{Regressors, Sensor, Visit};
+use super::regressors::{Regressors, Sensor, Visit, tool_turn};
 use super::rivals::{Group, Rivals};
 use super::source::{Kept, Source, start};
 use crate::campaign::{Campaign, Displacements, Frame, Observation};
 use crate::elements::{Geometry, Parameter};
 use crate::identify::Error;
 use crate::identify::prepare::Prepared;
-use crate::identify::samples::{Column, Sample, Samples, turn_of};
+use crate::identify::samples::{Column, Sample, Samples};
 use crate::identify::setup::Setup;
 use crate::identify::whitening::whiten;
 use crate::trace::bench::Bench;
@@ -142,7 +142,7 @@ impl<'c> Adapter<'c> {
             if index > 0 && visits[index - 1].q != visit.q {
                 pose += 1;
             }
-            let tool = crate::with_robot!(&self.campaign.robot, |robot| tool_turn(&robot, &visit.q));
+            let tool = tool_turn(&self.campaign.robot, &visit.q);
             let out = tool * Vector3::new(0.0, 0.0, further_out);
             for load in &visit.loads {
                 let force = Vector3::from_column_slice(&load[..3]);
@@ -238,10 +238,6 @@ impl<'c> Adapter<'c> {
         }
         grams(stacked, count, self.shared, visits)
     }
-}
-
-fn tool_turn<const N: usize>(robot: &impl crate::Robot<N>, q: &[f64]) -> nalgebra::Matrix3<f64> {
-    turn_of(&robot.transform(&nalgebra::SVector::<f64, N>::from_column_slice(q)))
 }
 
 /// The visits with the rows that load each joint most, poses and visits counted

@@ -2,7 +2,12 @@
 
 use std::vec::Vec;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Matrix3, SVector, Vector3};
+use robstiff_robots::Description;
+
+use crate::Robot;
+use crate::campaign::Frame;
+use crate::identify::samples::turn_of;
 
 /// A load sequence at one pose, with one unloaded reading.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +25,30 @@ impl Visit {
         let size = |load: &[f64; 6]| load.iter().map(|value| value * value).sum::<f64>();
         self.loads.iter().copied().max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or_default()
     }
+
+    /// The loads in order as a campaign of this robot writes them down whose loads
+    /// are in `frame`: forces (N) and moments (Nm).
+    pub fn loads_in(&self, frame: Frame, robot: &Description) -> Vec<[f64; 6]> {
+        if frame == Frame::Base {
+            return self.loads.clone();
+        }
+        let turn = tool_turn(robot, &self.q).transpose();
+        let turned = |load: &[f64; 6]| {
+            let force = turn * Vector3::from_column_slice(&load[..3]);
+            let moment = turn * Vector3::from_column_slice(&load[3..]);
+            [force.x, force.y, force.z, moment.x, moment.y, moment.z]
+        };
+        self.loads.iter().map(turned).collect()
+    }
+}
+
+/// How the tool is turned in the base frame.
+pub(super) fn tool_turn(robot: &Description, q: &[f64]) -> Matrix3<f64> {
+    crate::with_robot!(robot, |robot| turn(&robot, q))
+}
+
+fn turn<const N: usize>(robot: &impl Robot<N>, q: &[f64]) -> Matrix3<f64> {
+    turn_of(&robot.transform(&SVector::<f64, N>::from_column_slice(q)))
 }
 
 /// What could be measured besides.

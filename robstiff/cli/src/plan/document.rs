@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use robstiff::JointKind;
-use robstiff::campaign::Campaign;
+use robstiff::campaign::{Campaign, Data, Frame};
 use robstiff::plan::{Number, Outlook, Pair, Plan, Planned};
 use robstiff::trace::Trace;
 use robstiff_robots::Joint;
@@ -78,10 +78,15 @@ fn known(known: &Number) -> Value {
     })
 }
 
-/// A row for each load, with the columns that a campaign has for it; only the
-/// readings are missing.
+/// A row for each load, with the columns that the campaign has for it, in its own
+/// frame; only the readings are missing.
 pub fn table(plan: &Plan, campaign: &Campaign) -> String {
     let joints = &campaign.robot.joints;
+    let frame = match &campaign.data {
+        Data::Displacement(data) => data.wrench_frame,
+        // No other campaign is planned for.
+        Data::Clamped(_) => Frame::Base,
+    };
     let moments = plan.proposals.iter().any(|planned| planned.greatest[3..].iter().any(|value| *value != 0.0));
     let mut csv = String::from("pose,visit");
     for (number, joint) in (1..).zip(joints) {
@@ -90,7 +95,7 @@ pub fn table(plan: &Plan, campaign: &Campaign) -> String {
     csv += ",Fx [N],Fy [N],Fz [N]";
     csv += if moments { ",Mx [Nm],My [Nm],Mz [Nm]\n" } else { "\n" };
     for (index, planned) in (1..).zip(&plan.proposals) {
-        for load in &planned.visit.loads {
+        for load in planned.visit.loads_in(frame, &campaign.robot) {
             write!(csv, "next {index},next {index}").expect("a string takes any text");
             let q = planned.visit.q.iter().zip(joints).map(|(&q, joint)| rounded(people(q, joint), 1e6));
             let load = load[..if moments { 6 } else { 3 }].iter().map(|&value| rounded(value, 1e3));
