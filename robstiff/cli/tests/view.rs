@@ -183,6 +183,66 @@ fn a_path_is_coloured_by_its_deviation() {
     assert!(row.contains(">109<") && row.contains(">-109<"), "{row}");
 }
 
+/// The file's own deviation and what the page computes, of each of its rows.
+fn both_deviations(folder: &Path, robot: &str, forces: &str) -> Vec<[f64; 2]> {
+    let [table, solved, page, told] = ["forces.csv", "solved.csv", "page.html", "told.json"].map(|n| inside(folder, n));
+    fs::write(&table, forces).unwrap();
+    let path = inside(folder, "path.csv");
+    let points: String = (0..6).map(|k| format!("{},0,600,0,0,-1\n", 1500 + 40 * k)).collect();
+    fs::write(&path, format!("x [mm],y [mm],z [mm],ux,uy,uz\n{points}")).unwrap();
+    succeed(&["path", robot, &path, "--forces", &table, "--out", &solved]);
+    succeed(&["view", robot, "--path", &solved, "--out", &page, "--json", &told]);
+    let solved = fs::read_to_string(solved).unwrap();
+    let deviation = solved.lines().next().unwrap().split(',').position(|name| name == "deviation [um]").unwrap();
+    let written = solved.lines().skip(1).map(|row| row.split(',').nth(deviation).unwrap().parse().unwrap());
+    let told = json(&told);
+    written.zip(told["poses"].as_array().unwrap()).map(|(one, pose)| [one, number(&pose["value"])]).collect()
+}
+
+#[test]
+fn a_path_deviates_as_its_file_says() {
+    let folder = folder("view-agrees");
+    let check = |both: &[[f64; 2]]| {
+        assert_eq!(both.len(), 6);
+        for [written, shown] in both {
+            assert!((written - shown).abs() < 1e-3 && *written > 10.0, "{both:?}");
+        }
+    };
+    // A moment of some size, and gears that keep what a load has left behind.
+    check(&both_deviations(
+        &folder,
+        "kuka-kr270-r2700",
+        &format!("Fx,Fy,Fz,Mx,My,Mz\n{}", "100,200,-300,150,-100,50\n".repeat(6)),
+    ));
+    let robot = inside(&folder, "robot.yaml");
+    let text = robstiff_robots::catalogue::find("kuka-kr270-r2700").unwrap();
+    let effect = "\neffects:\n  - {kind: hysteresis, at: joint 1, radius1: 100 Nm, weight1: 1e-6 rad/Nm}\n";
+    fs::write(&robot, format!("{}{effect}", text.trim_end())).unwrap();
+    let loads = ["100,800,-300\n".repeat(4), "0,0,0\n".repeat(2)].concat();
+    check(&both_deviations(&folder, &robot, &format!("Fx,Fy,Fz\n{loads}")));
+}
+
+#[test]
+fn the_worst_of_a_long_path_is_drawn_and_told() {
+    let folder = folder("view-long");
+    let [path, page, told] = ["path.csv", "page.html", "told.json"].map(|name| inside(&folder, name));
+    let value = |k: usize| match k {
+        1001 => 1828.4,
+        2001 => -3.0,
+        _ => 201.7,
+    };
+    let rows: String = (0..4000).map(|k| format!("0,0,0,0,{},{}\n", 30.0 + 0.01 * k as f64, value(k))).collect();
+    fs::write(&path, format!("q1 [deg],q2 [deg],q3 [deg],q4 [deg],q5 [deg],deviation [um]\n{rows}")).unwrap();
+    let column = ["--column", "deviation", "--out", &page, "--json", &told];
+    let said = succeed(&[&["view", "rv130hsc", "--path", &path], &column[..]].concat());
+    assert!(said.contains("every 2th drawn") && said.contains("deviation: -3 to 1828 um"), "{said}");
+    let told = json(&told);
+    let poses = told["poses"].as_array().unwrap();
+    assert_eq!(poses.len(), 2002);
+    let worst = poses.iter().find(|pose| number(&pose["value"]) == 1828.4).unwrap();
+    assert_eq!(worst["row"], 1002);
+}
+
 #[test]
 fn a_campaign_shows_what_was_measured() {
     let folder = folder("view-campaign");

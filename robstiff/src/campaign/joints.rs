@@ -17,8 +17,9 @@ use crate::table::{Table, text_of};
 pub struct JointTable {
     /// Joint coordinates (rad or m), one a joint.
     pub q: Vec<Vec<f64>>,
-    /// The force on the tool in the base frame (N), where there is one.
-    pub forces: Option<Vec<[f64; 3]>>,
+    /// The force and the moment on the tool in the base frame (N, Nm), where there
+    /// are any.
+    pub wrenches: Option<Vec<[f64; 6]>>,
     /// The column that was asked for.
     pub column: Option<Column>,
 }
@@ -35,8 +36,8 @@ pub struct Column {
 }
 
 impl JointTable {
-    /// Reads columns `q1` .. `qn`, where they are there `Fx Fy Fz`, and the one
-    /// of any other name that is asked for. Columns beyond these are left alone.
+    /// Reads columns `q1` .. `qn`, where they are there `Fx Fy Fz` and `Mx My Mz`,
+    /// and the one of any other name that is asked for. Columns beyond these are left alone.
     ///
     /// # Errors
     /// A file that cannot be read, and every problem in it at its place.
@@ -60,17 +61,24 @@ fn rows(table: &Table<'_>, robot: &Description, column: Option<&str>) -> Option<
     // Collected before it is judged, so that every column is looked for.
     let q: Vec<_> = q.collect();
     let forces = ["Fx", "Fy", "Fz"].map(|name| table.numbers(name, Dimension::Force));
+    let moments = ["Mx", "My", "Mz"].map(|name| table.numbers(name, Dimension::Torque));
+    let wrench: Vec<_> = forces.into_iter().chain(moments).collect();
     let column = column.map(|name| table.raw(name));
     let q: Vec<_> = q.into_iter().collect::<Option<_>>()?;
     // One component without the others is a force along an axis.
-    let forced = forces.iter().any(Option::is_some);
+    let forced = wrench.iter().any(Option::is_some);
     let rows: Vec<_> = table
         .records
         .iter()
         .map(|record| {
             let q: Vec<_> = q.iter().map(|&column| table.number(record, column)).collect();
-            let force = forces.map(|column| column.map_or(Some(0.0), |column| table.number(record, column)));
-            Some((q.into_iter().collect::<Option<Vec<_>>>()?, [force[0]?, force[1]?, force[2]?]))
+            let wrench = wrench.iter().map(|column| column.map_or(Some(0.0), |column| table.number(record, column)));
+            let wrench: Vec<_> = wrench.collect();
+            let mut components = [0.0; 6];
+            for (component, value) in components.iter_mut().zip(wrench) {
+                *component = value?;
+            }
+            Some((q.into_iter().collect::<Option<Vec<_>>>()?, components))
         })
         .collect();
     let column = match column {
@@ -82,6 +90,6 @@ fn rows(table: &Table<'_>, robot: &Description, column: Option<&str>) -> Option<
             Some(Column { name: name.to_owned(), unit: unit.to_owned(), values })
         }
     };
-    let (q, forces): (Vec<_>, Vec<_>) = rows.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
-    Some(JointTable { q, forces: forced.then_some(forces), column })
+    let (q, wrenches): (Vec<_>, Vec<_>) = rows.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
+    Some(JointTable { q, wrenches: forced.then_some(wrenches), column })
 }

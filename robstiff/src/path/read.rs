@@ -24,8 +24,24 @@ const FAR: f64 = 20.0;
 const TWO_TURNS: f64 = 4.0 * core::f64::consts::PI;
 
 /// Columns that a path may have beside it, as `robstiff path` writes them.
-const BESIDE: [&str; 13] =
-    ["Fx", "Fy", "Fz", "deviation", "along", "normal", "axial", "error", "peak", "dx", "dy", "dz", "remaining"];
+const BESIDE: [&str; 16] = [
+    "Fx",
+    "Fy",
+    "Fz",
+    "Mx",
+    "My",
+    "Mz",
+    "deviation",
+    "along",
+    "normal",
+    "axial",
+    "error",
+    "peak",
+    "dx",
+    "dy",
+    "dz",
+    "remaining",
+];
 
 /// What the file gives, by columns.
 enum Columns {

@@ -131,10 +131,31 @@ fn correction(corrected: &Corrected, before: f64) -> String {
     text
 }
 
+/// What some point has, so that there are columns for it.
+#[derive(Clone, Copy)]
+pub struct Columns {
+    moments: bool,
+    peaks: bool,
+}
+
+impl Columns {
+    pub fn of(cutting: &Cutting) -> Self {
+        let points = &cutting.deviation.points;
+        Self {
+            moments: points.iter().any(|point| point.wrench.iter().skip(3).any(|moment| *moment != 0.0)),
+            peaks: points.iter().any(|point| point.peak.is_some()),
+        }
+    }
+}
+
 /// The columns of `--out`, after those of the path.
-pub fn columns(cutting: &Cutting) -> String {
-    let mut columns = "Fx [N],Fy [N],Fz [N],deviation [um],along [um],normal [um],axial [um],error [um]".to_owned();
-    if cutting.deviation.points.iter().any(|point| point.peak.is_some()) {
+pub fn columns(cutting: &Cutting, has: Columns) -> String {
+    let mut columns = "Fx [N],Fy [N],Fz [N],".to_owned();
+    if has.moments {
+        columns += "Mx [Nm],My [Nm],Mz [Nm],";
+    }
+    columns += "deviation [um],along [um],normal [um],axial [um],error [um]";
+    if has.peaks {
         columns += ",peak [um]";
     }
     if cutting.corrected.is_some() {
@@ -144,13 +165,14 @@ pub fn columns(cutting: &Cutting) -> String {
 }
 
 /// Their cells at a point; zero where there is no direction or surface.
-pub fn cells(cutting: &Cutting, index: usize) -> String {
+pub fn cells(cutting: &Cutting, has: Columns, index: usize) -> String {
     let point = &cutting.deviation.points[index];
-    let mut cells: Vec<String> = point.wrench.iter().take(3).map(|force| decimals(*force, 4)).collect();
+    let wrench = point.wrench.iter().take(if has.moments { 6 } else { 3 });
+    let mut cells: Vec<String> = wrench.map(|component| decimals(*component, 4)).collect();
     let components = point.components.unwrap_or_default();
     let lengths = [point.distance(), components[0], components[1], components[2], point.error.unwrap_or(0.0)];
     cells.extend(lengths.map(|length| decimals(length * 1e6, 4)));
-    if cutting.deviation.points.iter().any(|point| point.peak.is_some()) {
+    if has.peaks {
         cells.push(decimals(point.peak.unwrap_or(0.0) * 1e6, 4));
     }
     if let Some(corrected) = &cutting.corrected {

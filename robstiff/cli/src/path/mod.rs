@@ -221,8 +221,9 @@ fn table(robot: &Description, solved: &Solved) -> String {
     csv += "x [mm],y [mm],z [mm],qw,qx,qy,qz,s [mm]";
     let has_feed = solved.points.iter().any(|point| point.feed.is_some());
     csv += if has_feed { ",feed [mm/min]" } else { "" };
-    if let Some(cutting) = &solved.cutting {
-        csv += &format!(",{}", deviation::columns(cutting));
+    let cutting = solved.cutting.as_ref().map(|cutting| (cutting, deviation::Columns::of(cutting)));
+    if let Some((cutting, has)) = cutting {
+        csv += &format!(",{}", deviation::columns(cutting, has));
     }
     csv.push('\n');
     let corrected = solved.cutting.as_ref().and_then(|cutting| cutting.corrected.as_ref());
@@ -242,8 +243,8 @@ fn table(robot: &Description, solved: &Solved) -> String {
         if let Some(feed) = point.feed {
             csv += &format!(",{}", decimals(feed * 6e4, 6));
         }
-        if let Some(cutting) = &solved.cutting {
-            csv += &format!(",{}", deviation::cells(cutting, i));
+        if let Some((cutting, has)) = cutting {
+            csv += &format!(",{}", deviation::cells(cutting, has, i));
         }
         csv.push('\n');
     }

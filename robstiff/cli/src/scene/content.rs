@@ -4,7 +4,7 @@ use robstiff::analysis::principal_directions;
 use robstiff::campaign::{Campaign, Data};
 use robstiff::identify::predict;
 use robstiff::nalgebra::{Matrix4, SVector, Vector3, Vector6};
-use robstiff::{Convention, Generic, JointKind, Robot, with_robot};
+use robstiff::{Convention, Generic, JointKind, Robot, State, with_robot};
 use robstiff_robots::{Description, Joint};
 use serde_json::{Value, json};
 
@@ -29,14 +29,16 @@ pub enum Kind {
 pub struct Row {
     /// Joint coordinates (rad or m).
     pub q: Vec<f64>,
-    /// The force on the tool in the base frame (N).
-    pub force: Option<[f64; 3]>,
+    /// The force and the moment on the tool in the base frame (N, Nm).
+    pub wrench: Option<[f64; 6]>,
     /// What colours it, in its unit, in place of the displacement.
     pub value: Option<(f64, String)>,
 }
 
 /// A pose that is drawn.
 pub struct Pose {
+    /// Its place among those asked for, from 0.
+    pub row: usize,
     /// Joint coordinates (rad or m).
     pub q: Vec<f64>,
     /// Points of the arm in the base frame (m), from its foot to the TCP.
@@ -82,25 +84,35 @@ pub struct Scene {
     pub poses: Vec<Pose>,
     /// How many there were before the path was thinned out.
     pub rows: usize,
-    /// Each of how many is drawn.
+    /// Each of how many is drawn; what is extreme is drawn besides.
     pub stride: usize,
     /// What colours them.
     pub values: Option<Values>,
-    /// The force, where it is one for all poses (N).
+    /// The force, where it is one for all poses, without a moment (N).
     pub force: Option<[f64; 3]>,
 }
 
 impl Scene {
     /// The poses asked for.
     pub fn new(robot: &Description, kind: Kind, rows: &[Row]) -> Self {
+        let displacements = with_robot!(robot, |arm| displacements(&arm, kind, rows));
+        // Of all rows: the worst of a path counts whether or not it is drawn.
+        let sizes = rows.iter().zip(&displacements);
+        let sizes = sizes.map(|(row, moved)| row.value.as_ref().map(|(value, _)| *value).or(moved.map(length)));
+        let sizes: Vec<Option<f64>> = sizes.collect();
         let stride = rows.len().div_ceil(MOST_POSES).max(1);
-        let poses: Vec<Pose> =
-            with_robot!(robot, |arm| rows.iter().step_by(stride).map(|row| pose(robot, &arm, row)).collect());
+        let drawn = drawn(&sizes, stride);
+        let mut poses: Vec<Pose> =
+            with_robot!(robot, |arm| drawn.iter().map(|&row| pose(robot, &arm, row, &rows[row].q)).collect());
+        for pose in &mut poses {
+            (pose.displacement, pose.value) = (displacements[pose.row], sizes[pose.row]);
+        }
         let unit = rows.iter().find_map(|row| row.value.as_ref().map(|(_, unit)| unit.clone()));
-        let name = if rows.iter().any(|row| row.force.is_some()) { "deviation under the force" } else { "" };
-        let values = values(name, unit.unwrap_or_else(|| "um".to_owned()), &poses);
-        let force =
-            rows.first().and_then(|row| row.force).filter(|&force| rows.iter().all(|row| row.force == Some(force)));
+        let name = if rows.iter().any(|row| row.wrench.is_some()) { "deviation under the force" } else { "" };
+        let values = values(name, unit.unwrap_or_else(|| "um".to_owned()), &sizes);
+        let first = rows.first().and_then(|row| row.wrench);
+        let force = first.filter(|&first| rows.iter().all(|row| row.wrench == Some(first)));
+        let force = force.filter(|wrench| wrench[3..] == [0.0; 3]).map(|[x, y, z, ..]| [x, y, z]);
         Self { kind, poses, rows: rows.len(), stride, values, force }
     }
 
@@ -126,16 +138,18 @@ impl Scene {
             rows.max_by(|(_, a), (_, b)| length(a.measured).total_cmp(&length(b.measured)))
         };
         let rows: Vec<_> = (0..data.poses.len()).filter_map(largest).collect();
-        let asked: Vec<Row> = rows.iter().map(|(row, _)| Row { q: row.q.clone(), force: None, value: None }).collect();
-        let mut scene = Self::new(robot, Kind::Campaign, &asked);
-        for (pose, (row, predicted)) in scene.poses.iter_mut().zip(rows.iter().step_by(scene.stride)) {
+        let asked = rows.iter().map(|(row, predicted)| {
             let residual: [f64; 3] = std::array::from_fn(|k| predicted.measured[k] - predicted.predicted[k]);
+            Row { q: row.q.clone(), wrench: None, value: Some((length(residual) * 1e6, "um".to_owned())) }
+        });
+        let asked: Vec<Row> = asked.collect();
+        let mut scene = Self::new(robot, Kind::Campaign, &asked).coloured_by(Some("measured less predicted"));
+        for pose in &mut scene.poses {
+            let (row, predicted) = rows[pose.row];
             pose.displacement = Some(predicted.predicted.map(|d| d * 1e6));
             pose.measured = Some(predicted.measured.map(|d| d * 1e6));
-            pose.value = Some(length(residual) * 1e6);
             pose.name = Some(data.poses[row.pose].clone());
         }
-        scene.values = values("measured less predicted", "um".to_owned(), &scene.poses);
         Ok(scene)
     }
 
@@ -159,6 +173,7 @@ impl Scene {
                 "name": values.name, "unit": values.unit, "least": number(values.least), "most": number(values.most),
             })),
             "poses": self.poses.iter().map(|pose| json!({
+                "row": pose.row + 1,
                 "q": numbers(pose.q.iter().copied()),
                 "tcp": pose.points.last().map(|&point| numbers(point)),
                 "compliance": numbers(pose.compliance),
@@ -192,16 +207,41 @@ fn placement(frame: &Matrix4<f64>) -> Value {
     numbers(frame.fixed_rows::<3>(0).transpose().iter().copied())
 }
 
-fn pose<const N: usize>(description: &Description, robot: &Generic<N>, row: &Row) -> Pose {
-    let q = SVector::<f64, N>::from_column_slice(&row.q);
+/// The displacements under the wrenches (um). Joints with hysteresis follow those of
+/// a path in its order.
+fn displacements<const N: usize>(robot: &Generic<N>, kind: Kind, rows: &[Row]) -> Vec<Option<[f64; 3]>> {
+    let mut state = State::new();
+    let displacement = |row: &Row| {
+        if kind != Kind::Path {
+            state = State::new();
+        }
+        let q = SVector::<f64, N>::from_column_slice(&row.q);
+        let moved = robot.deflection_with(&q, &Vector6::from(row.wrench?), &mut state);
+        Some([moved[0] * 1e6, moved[1] * 1e6, moved[2] * 1e6])
+    };
+    rows.iter().map(displacement).collect()
+}
+
+/// The rows that are drawn, with the least and the greatest value among them.
+fn drawn(values: &[Option<f64>], stride: usize) -> Vec<usize> {
+    let valued = || values.iter().enumerate().filter_map(|(row, value)| Some((row, (*value)?)));
+    let least = valued().min_by(|(_, one), (_, other)| one.total_cmp(other));
+    let most = valued().max_by(|(_, one), (_, other)| one.total_cmp(other));
+    let extreme = [least, most].into_iter().flatten().map(|(row, _)| row);
+    let mut drawn: Vec<usize> = (0..values.len()).step_by(stride).chain(extreme).collect();
+    drawn.sort_unstable();
+    drawn.dedup();
+    drawn
+}
+
+/// A pose with nothing that acts on it.
+fn pose<const N: usize>(description: &Description, robot: &Generic<N>, row: usize, q: &[f64]) -> Pose {
+    let q = SVector::<f64, N>::from_column_slice(q);
     let compliance = robot.compliance(&q);
-    let displacement = row.force.map(|[x, y, z]| {
-        let displacement = robot.deflection(&q, &Vector6::new(x, y, z, 0.0, 0.0, 0.0));
-        [displacement[0] * 1e6, displacement[1] * 1e6, displacement[2] * 1e6]
-    });
     let entry = |(i, j)| compliance[(i, j)] * 1e6;
     Pose {
-        q: row.q.clone(),
+        row,
+        q: q.iter().copied().collect(),
         points: points(description, robot, &q),
         compliance: [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(entry),
         // Rounding may leave a rigid direction a little below zero.
@@ -212,9 +252,9 @@ fn pose<const N: usize>(description: &Description, robot: &Generic<N>, row: &Row
             };
             [along(0), along(1), along(2)]
         }),
-        displacement,
+        displacement: None,
         measured: None,
-        value: row.value.as_ref().map(|(value, _)| *value).or(displacement.map(length)),
+        value: None,
         name: None,
     }
 }
@@ -239,8 +279,8 @@ fn points<const N: usize>(description: &Description, robot: &Generic<N>, q: &SVe
     points.into_iter().map(|point| [point.x, point.y, point.z]).collect()
 }
 
-fn values(name: &str, unit: String, poses: &[Pose]) -> Option<Values> {
-    let values = || poses.iter().filter_map(|pose| pose.value);
+fn values(name: &str, unit: String, values: &[Option<f64>]) -> Option<Values> {
+    let values = || values.iter().copied().flatten();
     let (least, most) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
     (least <= most).then(|| Values { name: name.to_owned(), unit, least, most })
 }

@@ -10,7 +10,7 @@ function say() {
   const list = (values, digits) => values.map((x) => fixed(x, digits)).join(", ");
   const said = [];
   if (data.poses.length > 1) {
-    const name = pose.given ? data.poses[state.row].name ?? String(state.row * data.stride + 1) : "moved by hand";
+    const name = pose.given ? data.poses[state.row].name ?? String(data.poses[state.row].row) : "moved by hand";
     said.push([data.kind === "path" ? "Row" : "Pose", name]);
   }
   said.push(["Joints", pose.q.map((q, k) => `${fixed(people(k, q), 2)} ${unitOf(k)}`).join(", ")]);
@@ -51,7 +51,7 @@ function show(row) {
   const slider = find("row");
   if (slider) {
     slider.value = state.row;
-    slider.setAttribute("aria-valuetext", data.poses[state.row].name ?? `row ${state.row * data.stride + 1}`);
+    slider.setAttribute("aria-valuetext", data.poses[state.row].name ?? `row ${data.poses[state.row].row}`);
   }
   update();
 }

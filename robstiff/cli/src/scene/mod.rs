@@ -28,7 +28,7 @@ pub struct Arguments {
     /// The pose: joint coordinates in rad (or m), or with their unit as in "0.5, 30 deg, -pi/2"; zero where left out
     #[arg(long, value_name = "q1,q2,..", allow_hyphen_values = true, conflicts_with_all = ["path", "campaign"])]
     at: Option<String>,
-    /// A table of joint coordinates `q1 [deg]` .. and, where there are, forces `Fx [N]` .., row by row
+    /// A table of joint coordinates `q1 [deg]` .. and, where there are, forces `Fx [N]` .. and moments `Mx [Nm]` .., row by row
     #[arg(long, value_name = "SOLVED.csv", conflicts_with = "campaign")]
     path: Option<PathBuf>,
     /// The poses of a campaign, with the displacements that it measured and those that the robot predicts
@@ -51,6 +51,14 @@ pub struct Arguments {
 /// A force in the base frame \[N\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Force(pub [f64; 3]);
+
+impl Force {
+    /// The force with no moment.
+    fn wrench(self) -> [f64; 6] {
+        let [x, y, z] = self.0;
+        [x, y, z, 0.0, 0.0, 0.0]
+    }
+}
 
 /// Reads its three components.
 pub fn force(text: &str) -> Result<Force, String> {
@@ -78,7 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Scene::new(&robot, Kind::Path, &rows(table, arguments.force)).coloured_by(column)
     } else {
         let q = pose(arguments, &robot)?;
-        let row = Row { q, force: arguments.force.map(|Force(force)| force), value: None };
+        let row = Row { q, wrench: arguments.force.map(Force::wrench), value: None };
         Scene::new(&robot, Kind::Pose, &[row])
     };
     let document = scene.document(&robot);
@@ -102,10 +110,10 @@ fn pose(arguments: &Arguments, robot: &Description) -> Result<Vec<f64>, Failure>
 }
 
 fn rows(table: JointTable, force: Option<Force>) -> Vec<Row> {
-    let JointTable { q, forces, column } = table;
+    let JointTable { q, wrenches, column } = table;
     let rows = q.into_iter().enumerate().map(|(k, q)| Row {
         q,
-        force: force.map(|Force(force)| force).or_else(|| Some(forces.as_ref()?[k])),
+        wrench: force.map(Force::wrench).or_else(|| Some(wrenches.as_ref()?[k])),
         value: column.as_ref().map(|column| (column.values[k], column.unit.clone())),
     });
     rows.collect()
@@ -114,7 +122,7 @@ fn rows(table: JointTable, force: Option<Force>) -> Vec<Row> {
 fn summary(robot: &Description, scene: &Scene) -> String {
     let mut said = format!("{}: {}", robot.name, count(scene.rows, "pose"));
     if scene.poses.len() < scene.rows {
-        said += &format!(", every {}th drawn", scene.stride);
+        said += &format!(", every {}th drawn, and the extremes", scene.stride);
     }
     said.push('\n');
     let softest = scene.poses.iter().filter_map(|pose| pose.principal).map(|principal| principal[0]);

@@ -137,7 +137,7 @@ fn table(scene: &Scene) -> String {
     for k in worst.into_iter().take(MOST_ROWS) {
         let pose = &scene.poses[k];
         let tip = pose.points.last().copied().unwrap_or_default();
-        let mut cells = vec![words(pose.name.clone().unwrap_or_else(|| (k * scene.stride + 1).to_string()))];
+        let mut cells = vec![words(pose.name.clone().unwrap_or_else(|| (pose.row + 1).to_string()))];
         cells.extend(tip.map(|component| number(decimals(component * 1e3, 1))));
         let principal = pose.principal.map(|principal| principal.map(|value| significant(value, 4)));
         cells.extend(principal.unwrap_or_else(|| std::array::from_fn(|_| "-".to_owned())).map(number));
