@@ -102,10 +102,17 @@ fn cannot_write(path: &Path, error: &io::Error) -> Failure {
 
 /// Whether two paths are one file, by whatever name.
 fn same_file(one: &Path, other: &Path) -> bool {
-    match (fs::canonicalize(one), fs::canonicalize(other)) {
-        (Ok(one), Ok(other)) => one == other,
-        _ => one == other,
-    }
+    place(one) == place(other)
+}
+
+/// A path without detours. Of a file that is not there yet the folder may be, or the
+/// one that it will be made in.
+fn place(path: &Path) -> PathBuf {
+    fs::canonicalize(path).unwrap_or_else(|_| match (path.parent(), path.file_name()) {
+        (Some(folder), Some(name)) if folder.as_os_str().is_empty() => place(Path::new(".")).join(name),
+        (Some(folder), Some(name)) => place(folder).join(name),
+        _ => path.to_owned(),
+    })
 }
 
 /// Folders that were made for files, which go again where they stay empty.

@@ -239,6 +239,17 @@ fn what_was_read_is_not_overwritten() {
     assert_eq!(names(&folder), ["campaign.yaml", "loads.csv", "robot.yaml"]);
 }
 
+/// Even one that is not there yet.
+#[test]
+fn a_file_under_two_names_is_one_file() {
+    let folder = folder("spellings");
+    let campaign = copy(&folder);
+    let (one, other) = (inside(&folder, "new/rows"), inside(&folder, "../spellings/new/rows"));
+    let message = fail(2, &["predict", "fanuc-r2000ic", &campaign, "--csv", &one, "--json", &other]);
+    assert!(message.contains("would be written twice"), "{message}");
+    assert_eq!(names(&folder), ["campaign.yaml", "loads.csv", "robot.yaml"]);
+}
+
 #[test]
 fn a_folder_that_cannot_be_made_is_a_failure() {
     let folder = folder("no-folder");
