@@ -92,6 +92,18 @@ fn one_seed_gives_one_plan_and_options_count() {
     }
 }
 
+#[test]
+fn the_floor_is_that_of_the_base() {
+    let folder = folder("plan-floor");
+    let copied = common::copy(&folder);
+    let page = || succeed(&["plan", &copied, "--poses", "2", "--floor", "900 mm"]);
+    let (robot, on_the_ground) = (folder.join("robot.yaml"), page());
+    let text = fs::read_to_string(&robot).unwrap();
+    assert!(!text.contains("\nbase:"), "{text}");
+    fs::write(&robot, text.replacen("\njoints:", "\nbase: {xyz: [0, 0, 2 m]}\njoints:", 1)).unwrap();
+    assert_eq!(page(), on_the_ground);
+}
+
 /// What is filled in is read in the campaign's frame, so it has to be written in it.
 #[test]
 fn the_table_has_its_loads_in_the_frame_of_the_campaign() {

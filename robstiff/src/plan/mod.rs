@@ -61,8 +61,8 @@ pub struct Options {
     pub force: Option<f64>,
     /// The greatest moment (Nm); the campaign's where there is none.
     pub moment: Option<f64>,
-    /// The least height of the tool centre point in the base frame (m); the
-    /// campaign's lowest where there is none.
+    /// The least height of the tool centre point above the origin of frame 0,
+    /// along z of the base frame (m); the campaign's lowest where there is none.
     pub floor: Option<f64>,
 }
 

@@ -56,7 +56,7 @@ impl Space {
         let mut assumptions = Vec::new();
         let ranges = ranges(campaign, data, &mut assumptions);
         let seen: Vec<Vector3<f64>> = data.rows.iter().map(|row| tool_centre_point(&campaign.robot, &row.q)).collect();
-        let lowest = seen.iter().map(|point| point.z).fold(f64::INFINITY, f64::min);
+        let lowest = seen.iter().map(|point| height(&campaign.robot, point)).fold(f64::INFINITY, f64::min);
         let floor = options.floor.unwrap_or(lowest);
         let nearest = seen.iter().map(|point| from_vertical(&campaign.robot, point)).fold(f64::INFINITY, f64::min);
         assumptions.push(format!(
@@ -100,7 +100,7 @@ impl Space {
     pub fn reaches(&self, q: &[f64]) -> bool {
         let point = tool_centre_point(&self.robot, q);
         // A campaign's own poses are in its region, rounding or not.
-        point.z >= self.floor - 1e-9 && from_vertical(&self.robot, &point) >= self.column - 1e-9
+        height(&self.robot, &point) >= self.floor - 1e-9 && from_vertical(&self.robot, &point) >= self.column - 1e-9
     }
 
     /// Poses that fill the region evenly.
@@ -221,6 +221,10 @@ fn tool_centre_point(robot: &Description, q: &[f64]) -> Vector3<f64> {
 
 fn position<const N: usize>(robot: &impl Robot<N>, q: &[f64]) -> Vector3<f64> {
     robot.transform(&SVector::<f64, N>::from_column_slice(q)).fixed_view::<3, 1>(0, 3).into_owned()
+}
+
+fn height(robot: &Description, point: &Vector3<f64>) -> f64 {
+    point.z - robot.base.xyz[2]
 }
 
 fn from_vertical(robot: &Description, point: &Vector3<f64>) -> f64 {

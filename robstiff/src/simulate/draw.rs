@@ -94,9 +94,10 @@ fn poses(robot: &Description, scenario: &Scenario) -> Result<Vec<Vec<f64>>, Erro
         Poses::Drawn { count, within, floor, column } => (*count, within, *floor, *column),
     };
     let mut random = stream(scenario, Stream::Poses);
-    let [foot_x, foot_y, _] = robot.base.xyz;
+    let [foot_x, foot_y, foot_z] = robot.base.xyz;
     let is_inside = |[x, y, z]: [f64; 3]| {
-        floor.is_none_or(|floor| z >= floor) && column.is_none_or(|column| (x - foot_x).hypot(y - foot_y) >= column)
+        floor.is_none_or(|floor| z - foot_z >= floor)
+            && column.is_none_or(|column| (x - foot_x).hypot(y - foot_y) >= column)
     };
     let mut pose = || {
         for _ in 0..TRIES {

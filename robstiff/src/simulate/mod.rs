@@ -92,7 +92,8 @@ pub enum Poses {
         /// The range of each joint's coordinate (rad or m), all values equally
         /// likely.
         within: Vec<[f64; 2]>,
-        /// The least height of the tool centre point in the base frame (m).
+        /// The least height of the tool centre point above the origin of frame 0,
+        /// along z of the base frame (m).
         floor: Option<f64>,
         /// Its least distance from the vertical through the origin of frame 0
         /// (m).

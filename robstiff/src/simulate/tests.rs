@@ -62,6 +62,19 @@ fn poses_and_loads_are_within_their_bounds() {
     }
 }
 
+/// An arm on a pedestal is drawn as the same arm on the ground.
+#[test]
+fn the_floor_is_that_of_the_base() {
+    let poses = |robot: &Description| {
+        let scenario = Scenario::parse("try.yaml", SCENARIO, robot).expect("it is a scenario");
+        let rows = simulate(robot, &scenario).expect("it can be measured").data.rows;
+        rows.into_iter().map(|row| row.q).collect::<Vec<_>>()
+    };
+    let mut raised = robot();
+    raised.base.xyz[2] += 3.0;
+    assert_eq!(poses(&raised), poses(&robot()));
+}
+
 /// Against the trait's own deflection, at a load so small that its second order
 /// is nothing; read beside the tool centre point, in the tool's frame.
 #[test]
