@@ -131,7 +131,14 @@ fn greatest(pull: &Pull, visit: usize, random: &mut ChaCha8Rng) -> Vector3<f64> 
         [] => drawn,
         listed => Vector3::from(listed[visit % listed.len()]),
     };
-    direction.normalize() * random.random_range(pull.bounds[0]..=pull.bounds[1])
+    unit(direction) * random.random_range(pull.bounds[0]..=pull.bounds[1])
+}
+
+/// The direction of a vector of any length: as long as a scenario may have them,
+/// squares of components are no numbers or nothing.
+fn unit(vector: Vector3<f64>) -> Vector3<f64> {
+    let size = vector.amax();
+    if (1e-100..1e100).contains(&size) { vector.normalize() } else { (vector / size).normalize() }
 }
 
 /// Adds the noise of the loaded reading, and takes that of the unloaded one

@@ -43,8 +43,7 @@ impl Simulated {
             place(scenario.measured)
         );
         // One number for the three axes: their root mean square.
-        let squares: f64 = scenario.noise.iter().map(|sigma| sigma * sigma).sum();
-        let noise = (squares / 3.0).sqrt();
+        let noise = scenario.noise.iter().fold(0.0, |sum: f64, sigma| sum.hypot(*sigma)) / 3_f64.sqrt();
         if scenario.states_noise && noise > 0.0 {
             let rotation = scenario.rotation_noise.filter(|sigma| *sigma > 0.0);
             let rotation = rotation.map(|sigma| format!(", rotation: {} urad", micro(sigma)));
@@ -98,9 +97,10 @@ impl Simulated {
     }
 }
 
-/// In millionths, without the rounding of the multiplication.
+/// In millionths, without the rounding of the multiplication: to 15 digits, so that
+/// what is above zero stays above it.
 fn micro(value: f64) -> f64 {
-    (value * 1e15).round() / 1e9
+    format!("{:.14e}", value * 1e6).parse().expect("a number that was written")
 }
 
 fn place((frame, at): (Frame, [f64; 3])) -> String {

@@ -33,7 +33,7 @@ use robstiff_robots::Description;
 pub use files::Files;
 
 use crate::Effect;
-use crate::campaign::{Displacements, Frame, Holdout};
+use crate::campaign::{Displacements, Frame, Holdout, Observation};
 use crate::identify::Error;
 
 /// What is to be measured, how well, and what the description is not told.
@@ -131,14 +131,25 @@ pub struct Simulated {
 ///
 /// # Errors
 /// No pose in the working region; hidden effects that no robot with these
-/// joints can have, once the joints are scattered.
+/// joints can have, once the joints are scattered; loads, compliances or noise so
+/// large that readings are no numbers.
 pub fn simulate(declared: &Description, scenario: &Scenario) -> Result<Simulated, Error> {
     let truth = truth(declared, scenario)?;
     let mut data = draw::loads(&truth, scenario)?;
     forward::read(&truth, scenario, &mut data);
     draw::noise(scenario, &mut data);
     draw::encoder_noise(scenario, &mut data);
+    if !data.rows.iter().all(is_finite) {
+        let error = "there are readings beyond all numbers: loads, compliances, levers or noise are too large";
+        return Err(Error(String::from(error)));
+    }
     Ok(Simulated { scenario: scenario.clone(), declared: declared.clone(), truth, data })
+}
+
+/// Whether all of a row are numbers, in the units of the files, too.
+fn is_finite(row: &Observation) -> bool {
+    let read = row.displacement.iter().chain(row.rotation.iter().flatten()).chain(row.encoders.iter().flatten());
+    row.wrench.iter().chain(&row.q).chain(read).all(|value| (value * 1e6).is_finite())
 }
 
 /// The robot as it is: joints scattered, hidden effects added.

@@ -25,6 +25,13 @@ const FIELDS: [&str; 14] = [
 /// fills a machine's memory.
 const MOST: i64 = 100_000;
 
+/// The same for the rows, which is what the memory is filled by.
+const MOST_ROWS: usize = 1_000_000;
+
+/// Larger than anything that is measured (N, Nm, m, rad), and small enough for
+/// what is computed of it to be numbers.
+const LARGEST: f64 = 1e9;
+
 impl Scenario {
     /// Reads a scenario for a robot.
     ///
@@ -66,7 +73,9 @@ fn scenario(document: &Document, robot: &Description) -> Option<Scenario> {
     let hidden = map.get("hidden").map_or(Some(Vec::new()), |node| hidden(&node, robot));
     let scatter = map.get("scatter").map_or(Some(0.0), |node| scatter(&node));
     let holdout = holdout(&map);
+    let few = few_rows(&map, poses.as_ref(), visits, ramp.as_deref());
     let Noise { displacement, rotation, encoders, stated } = noise?;
+    few?;
     Some(Scenario {
         name: name?,
         seed: seed?,
@@ -103,6 +112,42 @@ fn count(node: &Node<'_>) -> Option<usize> {
         return None;
     }
     usize::try_from(count).ok()
+}
+
+/// That there are not more rows than a machine can hold, once all that they are
+/// counted by is known.
+fn few_rows(map: &Map<'_>, poses: Option<&Poses>, visits: Option<usize>, ramp: Option<&[f64]>) -> Option<()> {
+    let poses = match poses? {
+        Poses::Drawn { count, .. } => *count,
+        Poses::Listed(poses) => poses.len(),
+    };
+    let (visits, loads) = (visits?, ramp?.len());
+    let rows = poses.saturating_mul(visits).saturating_mul(loads);
+    if rows <= MOST_ROWS {
+        return Some(());
+    }
+    let node = ["visits", "ramp", "poses"].iter().find_map(|field| map.get(field))?;
+    node.error(
+        format!(
+            "{poses} poses with {visits} visits of {loads} loads are {rows} rows, more than the {MOST_ROWS} that a \
+             campaign may have"
+        ),
+        "take fewer poses, visits or loads",
+    );
+    None
+}
+
+/// A value that can be computed with.
+fn computable(node: &Node<'_>, value: f64) -> Option<f64> {
+    if value.abs() > LARGEST {
+        node.error("this is beyond anything that is measured", format!("at most {LARGEST:e} N, Nm, m or rad"));
+        return None;
+    }
+    Some(value)
+}
+
+fn sigma(node: &Node<'_>, dimension: Dimension) -> Option<f64> {
+    computable(node, node.nonnegative(dimension)?)
 }
 
 fn poses(node: &Node<'_>, joints: &[Joint]) -> Option<Poses> {
@@ -147,7 +192,7 @@ fn for_each_joint<'d>(node: &Node<'d>, joints: &[Joint]) -> Option<Vec<Node<'d>>
 }
 
 fn coordinate(node: &Node<'_>, joint: &Joint) -> Option<f64> {
-    let q = node.quantity(dimension(joint))?;
+    let q = computable(node, node.quantity(dimension(joint))?)?;
     if let Some(what) = joint.outside_limits().filter(|_| !joint.reaches(q)) {
         node.error(
             format!("{} {} is {what}", joint.for_people(q), joint.people_unit()),
@@ -222,6 +267,7 @@ fn pull(node: &Node<'_>, dimension: Dimension, example: &str) -> Option<Pull> {
             node.error("the bounds are of a size: zero or more, the lower one first", format!("e.g. `{example}`"));
             return None;
         }
+        computable(&node, high)?;
         Some([low, high])
     });
     let directions = map.get("directions").map_or(Some(Vec::new()), |node| {
@@ -252,16 +298,17 @@ fn noise(node: &Node<'_>, joints: &[Joint]) -> Option<Noise> {
     let map = node.map(&["displacement", "rotation", "encoders", "stated"])?;
     let displacement = map.require("displacement", "displacement: 8 um").and_then(|node| {
         if !node.is_sequence() {
-            return node.nonnegative(Dimension::Length).map(|sigma| [sigma; 3]);
+            return sigma(&node, Dimension::Length).map(|sigma| [sigma; 3]);
         }
         let sigmas = node.quantities::<3>(Dimension::Length)?;
         if sigmas.iter().any(|sigma| *sigma < 0.0) {
             node.error("a length cannot be negative", "one sigma for each of x, y and z");
             return None;
         }
+        sigmas.iter().try_for_each(|sigma| computable(&node, *sigma).map(|_| ()))?;
         Some(sigmas)
     });
-    let rotation = map.get("rotation").map_or(Some(None), |node| node.nonnegative(Dimension::Angle).map(Some));
+    let rotation = map.get("rotation").map_or(Some(None), |node| sigma(&node, Dimension::Angle).map(Some));
     let encoders = map.get("encoders").map_or(Some(None), |node| encoder_noise(&node, joints).map(Some));
     let stated = map.get("stated").map_or(Some(true), |node| node.choice(&[("yes", true), ("no", false)]));
     Some(Noise { displacement: displacement?, rotation: rotation?, encoders: encoders?, stated: stated? })
@@ -272,7 +319,7 @@ fn encoder_noise(node: &Node<'_>, joints: &[Joint]) -> Option<Vec<f64>> {
     if node.is_sequence() {
         let items = for_each_joint(node, joints)?;
         let sigmas: Vec<Option<f64>> =
-            items.iter().zip(joints).map(|(item, joint)| item.nonnegative(dimension(joint))).collect();
+            items.iter().zip(joints).map(|(item, joint)| sigma(item, dimension(joint))).collect();
         return sigmas.into_iter().collect();
     }
     let kind = dimension(joints.first()?);
@@ -280,7 +327,7 @@ fn encoder_noise(node: &Node<'_>, joints: &[Joint]) -> Option<Vec<f64>> {
         node.error("some joints turn, some slide", "give one sigma for each joint, e.g. `[20 urad, 5 um, ..]`");
         return None;
     }
-    let sigma = node.nonnegative(kind)?;
+    let sigma = sigma(node, kind)?;
     Some(joints.iter().map(|_| sigma).collect())
 }
 

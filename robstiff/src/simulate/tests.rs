@@ -197,6 +197,11 @@ fn mistakes_are_shown_where_they_are() {
         ("8 um", "8 um, encoders: 8 um", "7:39", "is a length, an angle is expected"),
         ("8 um", "8 um, encoders: [8 urad]", "7:39", "6 items are expected"),
         ("scatter: 0.3", "scatter: 30", "11:10", "below 1"),
+        ("visits: 2", "visits: 20000", "4:9", "1800000 rows, more than the 1000000"),
+        ("[500 N, 1.3 kN]", "[0 N, 1e308 N]", "6:17", "beyond anything that is measured"),
+        ("8 um", "1e308 um", "7:23", "beyond anything that is measured"),
+        ("8 um", "[1 um, 1e308 um, 1 um]", "7:23", "beyond anything that is measured"),
+        ("8 um", "8 um, encoders: 1e100 rad", "7:39", "beyond anything that is measured"),
         ("{count: 30, floor: 100 mm, column: 600 mm}", "{list: [[0, 0, 0]]}", "3:16", "6 items are expected"),
         (
             "{count: 30,",
@@ -212,6 +217,10 @@ fn mistakes_are_shown_where_they_are() {
     limitless.joints[1].limits = None;
     let text = Scenario::parse("try.yaml", SCENARIO, &limitless).expect_err("no limits").to_string();
     assert!(text.contains("gives joint 2 no limits") && text.contains("within:"), "{text}");
+    let within = "count: 30, within: [[0, 1], [-1e308, 1e308], [0, 1], [0, 1], [0, 1], [0, 1]]";
+    let text = SCENARIO.replace("count: 30", within);
+    let text = Scenario::parse("try.yaml", &text, &limitless).expect_err("too wide").to_string();
+    assert!(text.contains("try.yaml:3:38") && text.contains("beyond anything that is measured"), "{text}");
     let mut declares = robot();
     declares.effects = read(SCENARIO).hidden;
     let text = Scenario::parse("try.yaml", SCENARIO, &declares).expect_err("declared").to_string();
@@ -219,7 +228,36 @@ fn mistakes_are_shown_where_they_are() {
 }
 
 #[test]
+fn directions_have_any_length() {
+    let forces = |directions: &str| {
+        let text = SCENARIO.replace("1.3 kN]}", &std::format!("1.3 kN], directions: {directions}}}"));
+        simulate(&robot(), &read(&text)).expect("it can be measured").data.rows
+    };
+    let plain = forces("[[1, 0, 0], [1, -1, 0]]");
+    for (row, plain) in forces("[[1e-200, 0, 0], [1e200, -1e200, 0]]").iter().zip(&plain) {
+        assert!((Vector6::from(row.wrench) - Vector6::from(plain.wrench)).norm() < 1e-9, "{row:?} {plain:?}");
+    }
+}
+
+/// Noise below any rounding is written as what it is: zero is no noise to a campaign.
+#[test]
+fn the_noise_that_is_stated_is_above_zero() {
+    let stated = |noise: &str| {
+        let found = simulate(&robot(), &read(&SCENARIO.replace("8 um", noise))).expect("it can be measured");
+        let campaign = found.files().campaign;
+        campaign.lines().find(|line| line.starts_with("noise:")).map(ToString::to_string).expect("it is stated")
+    };
+    assert_eq!(stated("8 um"), "noise: {displacement: 8 um}");
+    assert_eq!(stated("1e-10 um"), "noise: {displacement: 0.0000000001 um}");
+    assert!(stated("[3 um, 4 um, 0 um]").starts_with("noise: {displacement: 2.8867513459481"), "sqrt(25 / 3)");
+    assert_eq!(stated("7 um, rotation: 1e-12 urad"), "noise: {displacement: 7 um, rotation: 0.000000000001 urad}");
+}
+
+#[test]
 fn what_cannot_be_measured_is_said() {
+    let lever = SCENARIO.to_string() + "wrench: {frame: tool, at: [0, 0, 1e307 m]}\n";
+    let error = simulate(&robot(), &read(&lever)).expect_err("nothing can be read");
+    assert!(error.to_string().contains("beyond all numbers"), "{error}");
     let text = SCENARIO.replace("floor: 100 mm", "floor: 90 m");
     let error = simulate(&robot(), &read(&text)).expect_err("nobody reaches there");
     assert!(error.to_string().contains("working region"), "{error}");
