@@ -42,7 +42,9 @@ impl Tool {
 /// A grid of positions of the TCP, with joint coordinates from inverse kinematics.
 ///
 /// Of the turns that the tool may take, and of the postures of the arm, each cell
-/// has the one where the measure is best. Behind the measure's columns come the
+/// has the one where the measure is best. Where any turn will do and the arm has six
+/// axes or more, its postures have no end, and each cell has the one that is nearest
+/// to its neighbour's along x. Behind the measure's columns come the
 /// turn, where there is a choice, and the joint coordinates.
 pub struct CartesianSpace<'r, R, const N: usize> {
     axes: [Axis; 3],
@@ -104,9 +106,10 @@ impl<'r, R: Robot<N> + Sync, const N: usize> CartesianSpace<'r, R, N> {
         for (turn, &orientation) in self.orientations.iter().enumerate() {
             let target = Target { position, orientation };
             let solutions = match orientation {
-                Orientation::Full(_) => self.inverse.all(&target, seed).unwrap_or_default(),
-                // A free turn has no end of solutions: the one nearest to the neighbour.
-                Orientation::Axis { .. } => self.inverse.nearest(&target, seed).into_iter().collect(),
+                // More axes than a free turn leaves conditions have no end of solutions: the
+                // one nearest to the neighbour.
+                Orientation::Axis { .. } if N > 5 => self.inverse.nearest(&target, seed).into_iter().collect(),
+                _ => self.inverse.all(&target, seed).unwrap_or_default(),
             };
             found.extend(solutions.into_iter().map(|q| (turn, q)));
         }

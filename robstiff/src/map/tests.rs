@@ -156,6 +156,21 @@ fn the_best_turn_is_no_worse_than_any() {
     }
 }
 
+/// Another posture than the one nearest to the middle of the joints' ranges: elbow
+/// down, 1.120 N/um where elbow up has 0.773.
+#[test]
+fn five_axes_take_their_best_posture() {
+    let arm = Generic::<5>::new(&description("rv130hsc.yaml")).unwrap();
+    let axes = [Axis::lengths("x", 1.0, 1.1, 2), Axis::lengths("y", 0.0, 0.0, 1), Axis::lengths("z", 0.6, 0.6, 1)];
+    let tool = Tool { axis: Vector3::x_axis(), direction: -Vector3::z_axis(), turns: Vec::new() };
+    let columns = CartesianSpace::new(&arm, axes, tool).compute(&arm, &Measure::Compliance, 0..2);
+    let down = SVector::<f64, 5>::new(0.0, 3.017_302_543_079, -3.938_736_027_099, 0.0, -2.220_159_169_569);
+    let pose = arm.transform(&down);
+    assert!((pose.fixed_view::<3, 1>(0, 3) - Vector3::new(1.0, 0.0, 0.6)).norm() < 1e-9, "{pose}");
+    let stiffness = principal_directions(&arm.compliance(&down)).unwrap().compliances[0].recip();
+    assert!(columns[0][0] > stiffness * (1.0 - 1e-9), "{} {stiffness}", columns[0][0]);
+}
+
 /// A frame that is aside and turned: the tool stands where and as it says there.
 #[test]
 fn a_plane_may_lie_anywhere() {
