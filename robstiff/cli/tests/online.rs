@@ -133,3 +133,22 @@ fn a_path_in_the_air_is_refused() {
     let said = fail(1, &["online", "rv130hsc", &file("pocket.csv"), "--tool-axis", "x", "--forces", &forces]);
     assert!(said.contains("there is no force anywhere"), "{said}");
 }
+
+/// Both follow the loads: encoders see what stays in the gears, and a model that is
+/// the robot knows it.
+#[test]
+fn what_hysteresis_keeps_is_taken_back() {
+    let folder = folder_of("hysteresis");
+    let robot = inside(&folder, "robot.yaml");
+    let text = robstiff_robots::catalogue::find("rv130hsc").unwrap();
+    let effect = |joint| format!("  - {{kind: hysteresis, at: joint {joint}, radius1: 5 Nm, weight1: 1e-6 rad/Nm}}\n");
+    fs::write(&robot, format!("{}\neffects:\n{}", text.trim_end(), [1, 2, 3].map(effect).concat())).unwrap();
+    let told = in_the_air_but(&folder, &robot);
+    // At the last point, long after the load, where the loops have come to rest.
+    let last = |course: &Value| course["since_m"].as_array().unwrap().last().unwrap().as_f64().unwrap();
+    let kept = last(&told["without"]);
+    assert!(kept > 1e-6, "{kept}");
+    for k in [0, 2] {
+        assert!(last(&told["control"][k]) < 0.01 * kept, "{} {kept}", told["control"][k]["name"]);
+    }
+}

@@ -127,7 +127,8 @@ pub struct Left {
 /// Simulates for a `duration` (s) at joint coordinates `q`. `truth` is the robot,
 /// `model` what the controller takes it for; `load` is the wrench at the TCP in
 /// the base frame (N, Nm) at a time (s), `reading` what the sensor makes of it,
-/// or nothing where it is silent. With encoders only whether there is a reading
+/// or nothing where it is silent; with hysteresis the model follows what was read,
+/// from a robot that was never loaded on. With encoders only whether there is a reading
 /// counts, and the wrench it gives is that which turns the gears.
 ///
 /// # Panics
@@ -178,7 +179,8 @@ fn simulate_moving<const N: usize>(
     let mut servo = [Vector2::zeros(); N];
     let (mut target, mut underway) = (SVector::<f64, N>::zeros(), VecDeque::new());
     let (mut seen, mut now) = (Vec::new(), 0.0);
-    let mut state = State::new();
+    // What the robot remembers of its loads, and what the controller thinks it does.
+    let (mut state, mut known) = (State::new(), State::new());
     let mut moves: Option<(SVector<f64, N>, SMatrix<f64, 3, N>)> = None;
     let between = transition(controller.servo, step / points as f64);
     for k in 0..(duration / step).ceil() as usize {
@@ -187,8 +189,8 @@ fn simulate_moving<const N: usize>(
         silent = if read.is_some() { 0.0 } else { silent + step };
         let q = posture(start);
         let asked = match (read, controller.sensing) {
-            (Some(wrench), Sensing::Force) => Some(back(model, &q, &wrench, controller.damping)),
-            (Some(wrench), Sensing::Encoders) => Some(-gears(truth, &q, &wrench)),
+            (Some(wrench), Sensing::Force) => Some(back(model, &q, &wrench, controller.damping, &mut known)),
+            (Some(wrench), Sensing::Encoders) => Some(-gears(truth, &q, &wrench, &state)),
             (None, _) => (silent > controller.limits.hold).then(SVector::zeros),
         };
         underway.push_back((start + delay, wanted.step(asked)));
@@ -287,22 +289,29 @@ impl<const N: usize> Correction<N> {
 }
 
 /// The correction that takes the TCP back, by damped least squares on the rows
-/// of the Jacobian that move it: `J^T (J J^T + damping)^-1 (-d)`.
+/// of the Jacobian that move it: `J^T (J J^T + damping)^-1 (-d)`. The wrench joins
+/// the loads in `known`.
 fn back<const N: usize>(
     model: &impl Robot<N>,
     q: &SVector<f64, N>,
     wrench: &Vector6<f64>,
     damping: f64,
+    known: &mut State<N>,
 ) -> SVector<f64, N> {
     let moves: SMatrix<f64, 3, N> = model.jacobian(q).fixed_rows::<3>(0).into_owned();
-    let displacement = model.deflection(q, wrench).fixed_rows::<3>(0).into_owned();
+    let displacement = model.deflection_with(q, wrench, known).fixed_rows::<3>(0).into_owned();
     let square = moves * moves.transpose() + Matrix3::identity() * damping;
     square.cholesky().map_or_else(SVector::zeros, |factor| moves.transpose() * factor.solve(&-displacement))
 }
 
-/// By how much the gears turn under a wrench (rad or m): what encoders on both
-/// of their sides see between them.
-fn gears<const N: usize>(robot: &impl Robot<N>, q: &SVector<f64, N>, wrench: &Vector6<f64>) -> SVector<f64, N> {
+/// By how much the gears turn under a wrench (rad or m) after the loads in
+/// `before`: what encoders on both of their sides see between them.
+fn gears<const N: usize>(
+    robot: &impl Robot<N>,
+    q: &SVector<f64, N>,
+    wrench: &Vector6<f64>,
+    before: &State<N>,
+) -> SVector<f64, N> {
     let (own, torques) = (robot.joint_compliance(), robot.joint_torques(q, wrench));
     let mut turns = own.component_mul(&torques);
     for effect in robot.effects() {
@@ -311,7 +320,7 @@ fn gears<const N: usize>(robot: &impl Robot<N>, q: &SVector<f64, N>, wrench: &Ve
             turns[b - 1] += value * torques[a - 1];
         }
         let Some(i) = effect.row().map(|joint| joint - 1) else { continue };
-        let after = plays(effect, torques[i], Default::default());
+        let after = plays(effect, torques[i], before.plays[i]);
         turns[i] += turn(effect, own[i], q[i], torques[i], after).unwrap_or_default();
     }
     turns

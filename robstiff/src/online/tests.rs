@@ -97,6 +97,44 @@ fn encoders_need_no_model_of_gears_and_do_not_see_links() {
 }
 
 #[test]
+fn what_a_gear_keeps_after_the_load_is_taken_back() {
+    let mut rubbing = samples::five_axis();
+    let play = |joint| Effect::Hysteresis {
+        joint,
+        radius1: 40.0,
+        weight1: 1e-6,
+        radius2: 90.0,
+        weight2: 5e-7,
+        radius3: 0.0,
+        weight3: 0.0,
+    };
+    rubbing.effects = vec![play(1), play(2), play(3)];
+    let rubbing = Generic::new(&rubbing).unwrap();
+    // Up, to nothing, the other way, and to nothing again.
+    let samples = [0.0, 1.0, 0.0, 0.0, -0.6, 0.0, 0.0].into_iter().zip(0..).map(|(part, at)| (f64::from(at), part));
+    let timeline = Timeline::at_pose(&pose(), samples.map(|(time, part)| (time, wrench() * part))).unwrap();
+    let free = robot();
+    for sensing in [Sensing::Force, Sensing::Encoders] {
+        let ideal = Controller { sensing, step: 1e-3, delay: 0.0, ..controller(Servo::Ideal) };
+        let seen = simulate_along((&rubbing, &rubbing), &timeline, &ideal, truly);
+        let worst = |of: fn(&Instant) -> Vector3<f64>, seen: &[Instant]| {
+            seen.iter().map(|seen| of(seen).norm()).fold(0.0, f64::max)
+        };
+        let aside: Vec<Instant> = seen.iter().filter(|seen| !seen.in_cut).copied().collect();
+        let (whole, kept) = (worst(|seen| seen.uncorrected, &seen), worst(|seen| seen.uncorrected, &aside));
+        assert!(kept > 0.05 * whole, "{kept} {whole}");
+        let left = worst(|seen| seen.corrected, &seen);
+        assert!(left < 3e-3 * whole, "{sensing:?} {left} {kept} {whole}");
+        // A model that does not know of it leaves it.
+        if sensing == Sensing::Force {
+            let seen = simulate_along((&rubbing, &free), &timeline, &ideal, truly);
+            let aside: Vec<Instant> = seen.iter().filter(|seen| !seen.in_cut).copied().collect();
+            assert!((worst(|seen| seen.corrected, &aside) / kept - 1.0).abs() < 0.1);
+        }
+    }
+}
+
+#[test]
 fn size_and_rate_are_limited_and_a_silent_sensor_is_let_go() {
     let limits = Limits { size: 1e-4, rate: 0.01, hold: 0.05 };
     let controller = Controller { limits, delay: 0.0, ..controller(Servo::Ideal) };
@@ -143,7 +181,7 @@ fn a_delay_longer_than_the_cut_corrects_nothing() {
 #[test]
 fn a_correction_beyond_its_size_stops_there() {
     let robot = robot();
-    let whole = back(&robot, &pose(), &wrench(), 1e-12);
+    let whole = back(&robot, &pose(), &wrench(), 1e-12, &mut State::new());
     // Half of what the joint that moves most wants.
     let size = 0.5 * whole.amax();
     assert!(whole.iter().any(|joint| joint.abs() < size));
@@ -160,7 +198,7 @@ fn a_correction_beyond_its_size_stops_there() {
 #[test]
 fn encoders_that_fall_silent_are_held_and_withdrawn_at_the_speed_allowed() {
     let robot = robot();
-    let whole = gears(&robot, &pose(), &wrench());
+    let whole = gears(&robot, &pose(), &wrench(), &State::new());
     let (silent_from, rate) = (0.2, 0.01);
     let limits = Limits { size: 1.0, rate, hold: 0.05 };
     let controller = Controller { sensing: Sensing::Encoders, limits, delay: 0.0, ..controller(Servo::Ideal) };
