@@ -9,7 +9,7 @@ use serde_json::json;
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
-use crate::text::{count, decimals, micrometres};
+use crate::text::{count, decimals, field, micrometres};
 use crate::{input, json};
 
 /// The error of a robot on the measurements of a campaign
@@ -86,17 +86,4 @@ fn table(campaign: &Campaign, prediction: &Prediction) -> String {
         csv.push('\n');
     }
     csv
-}
-
-/// A text as a field of a CSV file.
-fn field(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn fields_with_commas_are_quoted() {
-        assert_eq!(["p 1", "a,b", "say \"x\""].map(super::field), ["p 1", "\"a,b\"", "\"say \"\"x\"\"\""]);
-    }
 }

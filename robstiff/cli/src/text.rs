@@ -107,6 +107,11 @@ pub fn and(items: &[String]) -> String {
     }
 }
 
+/// A text as a field of a CSV file.
+pub fn field(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}
+
 /// A table with aligned columns, indented by two.
 pub struct Table {
     rows: Vec<Vec<String>>,
@@ -147,6 +152,11 @@ impl fmt::Display for Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn fields_with_commas_are_quoted() {
+        assert_eq!(["p 1", "a,b", "say \"x\""].map(field), ["p 1", "\"a,b\"", "\"say \"\"x\"\"\""]);
+    }
 
     #[test]
     fn numbers_are_short() {

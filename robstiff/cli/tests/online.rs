@@ -152,3 +152,16 @@ fn what_hysteresis_keeps_is_taken_back() {
         assert!(last(&told["control"][k]) < 0.01 * kept, "{} {kept}", told["control"][k]["name"]);
     }
 }
+
+#[test]
+fn the_name_of_a_model_is_one_field_of_the_table() {
+    let folder = folder_of("names");
+    let (model, csv) = (inside(&folder, "a,b.yaml"), inside(&folder, "left.csv"));
+    fs::write(&model, robstiff_robots::catalogue::find("rv130hsc").unwrap()).unwrap();
+    let sine = ["online", "rv130hsc", "--force", "100, 0, 0 N", "--model", &model, "--csv", &csv];
+    succeed(&[&sine[..], &["--frequencies", "1 Hz"]].concat());
+    let table = fs::read_to_string(&csv).unwrap();
+    let header = table.lines().next().unwrap();
+    assert!(header.starts_with("frequency [Hz],4 ms; force sensor [%],\"4 ms; force sensor; "), "{header}");
+    assert!(header.ends_with("a,b.yaml [%]\",4 ms; encoders behind the gears [%]"), "{header}");
+}

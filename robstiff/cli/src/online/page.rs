@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::loads::{Course, Seen, Stop, What};
 use super::{ControlArguments, Loss, Variant};
 use crate::json::{number, numbers};
-use crate::text::{Table, decimals, micrometres, significant};
+use crate::text::{Table, decimals, field, micrometres, significant};
 
 /// How many rows of places a person reads.
 const ROWS: usize = 12;
@@ -134,7 +134,9 @@ fn along(variants: &[Variant], (stops, in_cut): (&[Stop], f64), without: &Course
 /// The same as a table: a row for each frequency, or each point of the path.
 pub fn table(seen: &Seen, variants: &[Variant]) -> String {
     let names = |unit: &str| -> String {
-        variants.iter().map(|variant| format!(",{} [{unit}]", variant.name.replace(", ", "; "))).collect()
+        // A semicolon needs no quotes; a file's name may still need them.
+        let column = |variant: &Variant| field(&format!("{} [{unit}]", variant.name.replace(", ", "; ")));
+        variants.iter().map(|variant| format!(",{}", column(variant))).collect()
     };
     match &seen.left {
         What::Sine { frequencies, left, .. } => {
