@@ -171,3 +171,11 @@ fn a_workpiece_larger_than_the_map_is_told() {
     let said = succeed(&["map", "kuka-kr270-r2700", &file("table.yaml"), "--place", "4000 x 300 x 0 mm"]);
     assert!(said.contains("A workpiece of 4000 x 300 x 0 mm is larger than the map, 1200 x 1200 x 0 mm."), "{said}");
 }
+
+#[test]
+fn a_cut_as_deep_as_nothing_is_refused() {
+    let folder = folder("machining-deep");
+    let cut = changed(&folder, "roughing.yaml", ["depth: 2 mm", "depth: 1e308 mm"]);
+    let said = fail(1, &["forces", &cut]);
+    assert!(said.contains("1000 times as deep as the tool is wide"), "{said}");
+}

@@ -134,6 +134,25 @@ fn a_path_in_the_air_is_refused() {
     assert!(said.contains("there is no force anywhere"), "{said}");
 }
 
+#[test]
+fn what_nobody_would_wait_for_is_refused() {
+    let sine = ["online", "rv130hsc", "--force", "100, 0, 0 N"];
+    for (option, value, change) in [
+        ("--frequencies", "1e-9 Hz", "give higher --frequencies"),
+        ("--delay", "1000 s", "give a shorter --delay"),
+        ("--bandwidth", "1e-6 Hz", "give a higher --bandwidth"),
+        ("--loop-damping", "1e9", "a --loop-damping nearer to 1"),
+        ("--loop-damping", "1e-7", "a --loop-damping nearer to 1"),
+        ("--step", "1e-9 s", "give a longer --step"),
+    ] {
+        let said = fail(2, &[&sine[..], &[option, value]].concat());
+        assert!(said.contains("points in time") && said.contains(change), "{option} {value}: {said}");
+    }
+    let (pocket, cut) = (file("pocket.csv"), file("roughing.yaml"));
+    let said = fail(1, &["online", "rv130hsc", &pocket, "--tool-axis", "x", "--cut", &cut, "--step", "1e-9 s"]);
+    assert!(said.contains("takes 13.28 s") && said.contains("give a longer --step"), "{said}");
+}
+
 /// Both follow the loads: encoders see what stays in the gears, and a model that is
 /// the robot knows it.
 #[test]

@@ -181,13 +181,27 @@ fn record(map: &Map<'_>, node: &Node<'_>, folder: &Path, speed: Option<Option<f6
     Some(Record { file: file?, frame: frame?, on_workpiece: on_workpiece?, speed: speed? })
 }
 
+/// How deep a cut may be, in diameters of its tool.
+const MOST_DIAMETERS: f64 = 1000.0;
+
 fn cut(map: &Map<'_>, speed: Option<Option<f64>>) -> Option<Said> {
     // Everything is read before anything is given up, to report all problems.
     let mill = map.require("tool", "tool: {diameter: 16 mm, teeth: 3, helix: 30 deg}").and_then(|node| mill(&node));
     let coefficients = coefficients_or_material(map);
     let diameter = mill.as_ref().map(|mill| mill.diameter);
     let engagement = engagement(map, diameter);
-    let depth = map.require("depth", "depth: 2 mm").and_then(|node| node.positive(Dimension::Length));
+    let depth = map.require("depth", "depth: 2 mm").and_then(|node| {
+        let depth = node.positive(Dimension::Length)?;
+        // The flutes would go round without end.
+        if diameter.is_some_and(|diameter| depth > MOST_DIAMETERS * diameter) {
+            node.error(
+                format!("the cut is more than {MOST_DIAMETERS} times as deep as the tool is wide"),
+                "e.g. `2 mm`",
+            );
+            return None;
+        }
+        Some(depth)
+    });
     let feed = feed(map, mill.as_ref(), speed);
     let (coefficients, source) = coefficients?;
     let cut =

@@ -14,6 +14,7 @@
 //! which a correction is held. The force is taken to follow from the cut alone,
 //! not from where the correction puts the tool.
 
+mod effort;
 #[cfg(test)]
 mod tests;
 mod timeline;
@@ -26,20 +27,8 @@ use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3, Vector6};
 
 use crate::elements::{plays, turn};
 use crate::{Effect, Robot, State};
+pub use effort::Effort;
 pub use timeline::{NoFeed, Timeline};
-
-/// Points within a control step at which the deviation is looked at, at least (so
-/// that what a step does within is seen) and at most.
-const POINTS: [usize; 2] = [2, 8];
-
-/// Between two of them along a path, if the control step is longer (s).
-const APART: f64 = 0.5e-3;
-
-/// Of a sine, so many in a period at least, as far as the above lets them be.
-const IN_A_PERIOD: f64 = 200.0;
-
-/// How long a sine is looked at (s), but for two to ten periods.
-const LOOKED_AT: f64 = 4.0;
 
 /// What the controller corrects by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -141,7 +130,7 @@ pub fn simulate<const N: usize>(
     load: impl Fn(f64) -> Vector6<f64>,
     reading: impl FnMut(f64, &Vector6<f64>) -> Option<Vector6<f64>>,
 ) -> Vec<Instant> {
-    simulate_moving((truth, model), |_| *q, (controller, POINTS[1]), duration, load, reading)
+    simulate_moving((truth, model), |_| *q, controller, Effort::at_pose(controller, duration), load, reading)
 }
 
 /// The same while the arm moves as the [`Timeline`] says, from its begin to its
@@ -156,24 +145,18 @@ pub fn simulate_along<const N: usize>(
     reading: impl FnMut(f64, &Vector6<f64>) -> Option<Vector6<f64>>,
 ) -> Vec<Instant> {
     let (posture, load) = (|time: f64| timeline.posture(time), |time: f64| timeline.wrench(time));
-    let points = points(controller.step / APART);
-    simulate_moving(robots, posture, (controller, points), timeline.duration(), load, reading)
-}
-
-/// Points within a control step, for want of so many.
-fn points(wanted: f64) -> usize {
-    (wanted.ceil() as usize).clamp(POINTS[0], POINTS[1])
+    simulate_moving(robots, posture, controller, Effort::along(controller, timeline.duration()), load, reading)
 }
 
 fn simulate_moving<const N: usize>(
     (truth, model): (&impl Robot<N>, &impl Robot<N>),
     posture: impl Fn(f64) -> SVector<f64, N>,
-    (controller, points): (&Controller, usize),
-    duration: f64,
+    controller: &Controller,
+    Effort { duration, step, points }: Effort,
     load: impl Fn(f64) -> Vector6<f64>,
     mut reading: impl FnMut(f64, &Vector6<f64>) -> Option<Vector6<f64>>,
 ) -> Vec<Instant> {
-    let &Controller { step, delay, .. } = controller;
+    let delay = controller.delay;
     assert!(step > 0.0 && delay >= 0.0, "a control step takes time, and no correction is early");
     let (mut wanted, mut silent) = (Correction::new(controller), 0.0);
     let mut servo = [Vector2::zeros(); N];
@@ -237,21 +220,11 @@ pub fn left_of_sine<const N: usize>(
     reading: impl FnMut(f64, &Vector6<f64>) -> Option<Vector6<f64>>,
 ) -> Left {
     assert!(frequency > 0.0, "a sine has a frequency above zero");
-    let slowest = match controller.servo {
-        Servo::Ideal => 0.0,
-        Servo::FirstOrder { bandwidth } => 1.0 / (TAU * bandwidth),
-        Servo::SecondOrder { frequency, damping } => {
-            // The slower of two real poles, or what both decay with.
-            let slow = damping - (damping * damping - 1.0).max(0.0).sqrt();
-            1.0 / (TAU * frequency * slow)
-        }
-    };
-    let settled = (20.0 * slowest + controller.delay + controller.step).max(1.0 / frequency);
-    let duration = settled + (LOOKED_AT * frequency).round().clamp(2.0, 10.0) / frequency;
     let load = |time: f64| wrench * (TAU * frequency * time).sin();
-    let points = points(IN_A_PERIOD * frequency * controller.step);
-    let seen = simulate_moving(robots, |_| *q, (controller, points), duration, load, reading);
-    let seen: Vec<_> = seen.iter().filter(|instant| instant.time > settled && instant.time <= duration).collect();
+    let effort = Effort::of_sine(controller, frequency);
+    let looked_at = effort.duration - effort::looked_at(frequency)..=effort.duration;
+    let seen = simulate_moving(robots, |_| *q, controller, effort, load, reading);
+    let seen: Vec<_> = seen.iter().filter(|instant| looked_at.contains(&instant.time)).collect();
     let amplitude = |of: fn(&Instant) -> Vector3<f64>| {
         let part = |wave: fn(f64) -> f64| -> Vector3<f64> {
             seen.iter().map(|instant| of(instant) * wave(TAU * frequency * instant.time)).sum()

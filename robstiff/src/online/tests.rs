@@ -71,6 +71,24 @@ fn what_is_left_is_what_the_transfer_function_says() {
     }
 }
 
+/// With damping far above 1 the slower pole is that of a first order, at
+/// `frequency / (2 damping)`.
+#[test]
+fn the_effort_is_known_before() {
+    let sine = |servo| Effort::of_sine(&controller(servo), 5.0);
+    let heavy = sine(Servo::SecondOrder { frequency: 15.0, damping: 1e9 });
+    let first = sine(Servo::FirstOrder { bandwidth: 7.5e-9 });
+    assert!((heavy.duration / first.duration - 1.0).abs() < 1e-9, "{heavy:?} {first:?}");
+    assert!(sine(Servo::SecondOrder { frequency: 15.0, damping: 1e200 }).duration > 1e100);
+    let ideal = sine(Servo::Ideal);
+    assert!((ideal.duration - 0.2 - 2.0).abs() < 1e-12, "{ideal:?}");
+    let (_, timeline) = square();
+    let slow = Controller { step: 0.01, ..controller(Servo::Ideal) };
+    let effort = Effort::along(&slow, timeline.duration());
+    let seen = simulate_along((&robot(), &robot()), &timeline, &slow, truly);
+    assert_eq!(seen.len() as f64, effort.instants());
+}
+
 #[test]
 fn without_delay_the_error_of_the_model_is_left() {
     let ideal = Controller { step: 1e-5, delay: 0.0, ..controller(Servo::Ideal) };
@@ -167,7 +185,7 @@ fn a_delay_longer_than_the_cut_corrects_nothing() {
     for sensing in [Sensing::Force, Sensing::Encoders] {
         let late = Controller { sensing, delay: 0.5, ..controller(Servo::Ideal) };
         let seen = simulate((&robot(), &robot()), &pose(), &late, 0.4, |_| wrench(), truly);
-        assert_eq!(seen.len(), 400 * POINTS[1]);
+        assert_eq!(seen.len(), 400 * Effort::at_pose(&late, 0.4).points);
         assert!(seen.iter().all(|seen| seen.corrected == seen.uncorrected && seen.uncorrected.norm() > 1e-5));
     }
     // With the end of the delay within the cut, from then on.

@@ -10,7 +10,7 @@ use robstiff::path::ToolPath;
 use robstiff::{Robot, with_robot};
 use robstiff_robots::Description;
 
-use super::{Arguments, Variant, pose};
+use super::{Arguments, Variant, bound, pose};
 use crate::failure::Failure;
 use crate::output::{self, Files};
 use crate::path::cutting::complain_of_feed;
@@ -215,6 +215,7 @@ impl Asked {
                 significant(variant.controller.step, 4)
             )));
         }
+        bound::along(name, duration, variants)?;
         if silent.is_some_and(|silent| silent.start >= duration) {
             output::complain(format_args!(
                 "warning: {name} ends after {} s, before --lost begins",
@@ -252,6 +253,7 @@ fn by_frequency<const N: usize>(
     frequencies: &[f64],
     variants: &[Variant],
 ) -> Result<What, Failure> {
+    bound::sines(variants, frequencies)?;
     let deviation = robot.deflection(q, wrench).fixed_rows::<3>(0).norm();
     if !(deviation > 0.0 && deviation.is_finite()) {
         return Err(Failure::new("the force does not move the tool in this pose"));

@@ -1,5 +1,6 @@
 //! `robstiff online`: what a correction while cutting leaves of the deviation.
 
+mod bound;
 mod loads;
 mod page;
 
