@@ -21,7 +21,9 @@ mod laws;
 #[cfg(all(test, feature = "generic"))]
 mod tests;
 
-pub use laws::{commanded_rates, deviation, own_weight_torque, plays, share_of_weight, turn, unloaded_turn};
+pub use laws::{
+    commanded_rates, deviation, own_weight_torque, plays, share_of_weight, turn, turn_about, unloaded_turn,
+};
 pub use robstiff_robots::effect::physics::Spring as Parameter;
 
 /// Where the parts of a robot are in one pose; every frame a homogeneous
@@ -257,12 +259,40 @@ where
 /// # Panics
 /// If the effect is at a joint or link that the robot does not have.
 pub fn effect_compliance<T: Real>(geometry: &Geometry<'_, T>, effect: &Effect, own: &[f64], q: &[T]) -> Matrix6<T> {
+    with_law(geometry, effect, |joint| unloaded_turn(effect, T::of(own[joint - 1]), q[joint - 1]))
+}
+
+/// The 6 x 6 compliance at the TCP in the base frame (m/N, m/Nm, rad/N, rad/Nm by
+/// block) for small changes about a wrench `[f; m]` there (N, Nm), at joint
+/// coordinates `q` [rad or m]: [`Robot::compliance`] with every law of a joint at
+/// the joint's torque instead of without load. Backlash is then on one flank, and
+/// hysteresis, within whose radii small changes turn back, adds nothing.
+pub fn compliance_under<const N: usize, T, R>(robot: &R, q: &SVector<T, N>, wrench: &Vector6<T>) -> Matrix6<T>
+where
+    T: Real,
+    R: Robot<N>,
+{
+    let (pose, own, torques) = (Pose::of(robot, q), robot.joint_compliance(), robot.joint_torques(q, wrench));
+    let geometry = pose.geometry();
+    let joint = |i: usize| geometry.unit_compliance(Parameter::Joint(i + 1)) * T::of(own[i]);
+    let joints = (0..N).fold(Matrix6::zeros(), |sum, i| sum + joint(i));
+    robot.effects().iter().fold(joints, |sum, effect| {
+        sum + with_law(&geometry, effect, |joint| {
+            turn_about(effect, T::of(own[joint - 1]), q[joint - 1], torques[joint - 1])
+        })
+    })
+}
+
+/// The springs of an effect and, where it is the law of a joint (from 1), this
+/// slope of it [rad/Nm].
+fn with_law<T: Real>(
+    geometry: &Geometry<'_, T>,
+    effect: &Effect,
+    slope: impl FnOnce(usize) -> Option<T>,
+) -> Matrix6<T> {
     let springs = parameters(effect)
         .fold(Matrix6::zeros(), |sum, (parameter, value)| sum + geometry.unit_compliance(parameter) * T::of(value));
-    let law = effect.row().and_then(|joint| {
-        let turn = unloaded_turn(effect, T::of(own[joint - 1]), q[joint - 1])?;
-        Some(geometry.unit_compliance(Parameter::Joint(joint)) * turn)
-    });
+    let law = effect.row().and_then(|joint| Some(geometry.unit_compliance(Parameter::Joint(joint)) * slope(joint)?));
     law.map_or(springs, |law| springs + law)
 }
 

@@ -172,6 +172,54 @@ fn a_workpiece_larger_than_the_map_is_told() {
     assert!(said.contains("A workpiece of 4000 x 300 x 0 mm is larger than the map, 1200 x 1200 x 0 mm."), "{said}");
 }
 
+fn stability(folder: &Path, backlash: Option<(&str, &str)>) -> serde_json::Value {
+    stability_of(folder, &file("roughing.yaml"), backlash)
+}
+
+/// The page's arm in a cut, with backlash in its first joints (arcmin, Nm).
+fn stability_of(folder: &Path, cut: &str, backlash: Option<(&str, &str)>) -> serde_json::Value {
+    let (robot, told) = (inside(folder, "robot.yaml"), inside(folder, "stability.json"));
+    let mut text = robstiff_robots::catalogue::find("kuka-kr270-r2700").unwrap().trim_end().to_owned();
+    if let Some((gap, knee)) = backlash {
+        text += "\neffects:\n";
+        for joint in 1..=3 {
+            text += &format!("  - {{kind: lost_motion, at: joint {joint}, gap: {gap} arcmin, knee: {knee} Nm}}\n");
+        }
+    }
+    fs::write(&robot, text).unwrap();
+    let at = "0,-90 deg,90 deg,0,60 deg,0";
+    let page = succeed(&["stability", &robot, cut, "--at", at, "--frequency", "15 Hz", "--json", &told]);
+    assert_eq!(page.contains("under the mean force of the cut at"), backlash.is_some(), "{page}");
+    json(&told)
+}
+
+/// The slope at no torque, which no cut has, made the arm eight and thirty times as soft.
+#[test]
+fn backlash_that_the_cut_takes_up_does_not_make_an_arm_soft() {
+    let folder = folder("machining-backlash");
+    let softest = |told: &serde_json::Value| {
+        let feeds = told["feeds"].as_array().unwrap();
+        let softest = feeds.iter().map(|feed| feed["softest_N_per_m"].as_f64().unwrap());
+        let (least, most) = softest.fold((f64::MAX, 0.0), |(least, most), k| (k.min(least), k.max(most)));
+        [least, most]
+    };
+    // Without backlash it is the same for every feed.
+    let without = stability(&folder, None);
+    let [least, most] = softest(&without);
+    assert!(least == most && (most - 1.233e6).abs() < 1e3, "{least} {most}");
+    for (backlash, unloaded) in [(("0.5", "50"), 0.1622e6), (("1", "20"), 0.03579e6)] {
+        let with = stability(&folder, Some(backlash));
+        let [least, most] = softest(&with);
+        assert!(least > 1.3 * unloaded && (2.5 * unloaded..1.233e6).contains(&most), "{backlash:?} {least} {most}");
+        // The hammer finds the arm without load.
+        assert!((with["frequencies_Hz"][0].as_f64().unwrap() - 15.0).abs() < 1e-9);
+    }
+    // A cut that presses harder leaves less of it.
+    let cut = changed(&folder, "roughing.yaml", ["depth: 2 mm", "depth: 60 mm"]);
+    let with = stability_of(&folder, &cut, Some(("1", "20")));
+    assert!(softest(&with)[1] > 0.95 * most, "{:?}", softest(&with));
+}
+
 #[test]
 fn a_cut_as_deep_as_nothing_is_refused() {
     let folder = folder("machining-deep");

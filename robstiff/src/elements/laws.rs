@@ -26,6 +26,26 @@ pub fn unloaded_turn<T: Real>(effect: &Effect, own: T, q: T) -> Option<T> {
     effect.unloaded(&numbers[..count], Number(own), &harmonic(q)).map(|turn| turn.0)
 }
 
+/// The slope of [`turn`] against the torque [rad/Nm] at a torque \[Nm\]: how a
+/// joint yields to small changes about it. Its play operators stay where they are,
+/// for a small change turns back within their radii.
+pub fn turn_about<T: Real>(effect: &Effect, own: T, q: T, torque: T) -> Option<T> {
+    let (numbers, count) = numbers(effect);
+    let constants = numbers.map(Tangent::constant);
+    let zero = Tangent::constant(Number(T::zero()));
+    let joint = Joint {
+        compliance: Tangent::constant(Number(own)),
+        torque: Tangent { value: Number(torque), slope: Number(T::one()) },
+        // The laws are linear in them, with no part in the slope.
+        plays: [zero; PLAYS],
+        harmonic: &|order| {
+            let (s, c) = harmonic(q)(order);
+            (Tangent::constant(s), Tangent::constant(c))
+        },
+    };
+    effect.turn(&constants[..count], &joint).map(|turn| turn.slope.0)
+}
+
 /// The play operators \[Nm\] of a joint after a torque \[Nm\] that follows the
 /// state `before`.
 pub fn plays<T: Real>(effect: &Effect, torque: T, before: [T; PLAYS]) -> [T; PLAYS] {

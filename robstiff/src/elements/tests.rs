@@ -1,4 +1,4 @@
-use std::format;
+use std::{format, vec};
 
 use super::*;
 use crate::Generic;
@@ -157,4 +157,40 @@ fn rigid_robot_has_no_shares() {
     let rigid = Matrix6::<f64>::zeros();
     assert_eq!(share_along(&rigid, &rigid, &Vector3::x()), None);
     assert_eq!(share_of_translation(&rigid, &rigid), None);
+}
+
+#[test]
+fn compliance_under_a_load_is_the_slope_of_the_deflection() {
+    let mut description = five_axis();
+    description.effects = vec![
+        Effect::LostMotion { joint: 1, gap: 1e-4, knee: 40.0 },
+        Effect::StiffnessNonlinearity { joint: 2, added: 3e-7, knee: 200.0 },
+        Effect::TransverseCompliance { joint: 3, value: 2e-7 },
+        Effect::PoseDependentCompliance { joint: 3, cos1: 0.2, sin1: 0.1, cos2: 0.0, sin2: 0.05 },
+    ];
+    let robot = Generic::<5>::new(&description).unwrap();
+    let q = SVector::from([0.3, -0.4, 0.5, 0.2, 1.2]);
+    let unloaded = robot.compliance(&q);
+    assert!((compliance_under(&robot, &q, &Vector6::zeros()) - unloaded).amax() < 1e-14 * unloaded.amax());
+    let load = Vector6::new(150.0, -80.0, 40.0, 3.0, -5.0, 2.0);
+    let under = compliance_under(&robot, &q, &load);
+    assert!((under - unloaded).amax() > 0.1 * unloaded.amax());
+    for k in 0..6 {
+        let step = Vector6::ith(k, 1e-2);
+        let slope = (robot.deflection(&q, &(load + step)) - robot.deflection(&q, &(load - step))) / 2e-2;
+        assert!((under.column(k) - slope).amax() < 1e-5 * under.amax(), "{k}");
+    }
+    // Small changes turn back within the radii of hysteresis.
+    let hysteresis = |joint| Effect::Hysteresis {
+        joint,
+        radius1: 20.0,
+        weight1: 4e-7,
+        radius2: 0.0,
+        weight2: 0.0,
+        radius3: 0.0,
+        weight3: 0.0,
+    };
+    description.effects.extend([hysteresis(1), hysteresis(2)]);
+    let rubbing = Generic::<5>::new(&description).unwrap();
+    assert!((compliance_under(&rubbing, &q, &load) - under).amax() < 1e-14 * under.amax());
 }

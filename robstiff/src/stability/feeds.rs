@@ -53,6 +53,8 @@ pub struct FeedLimit {
     pub angle: f64,
     /// The feed, a unit vector.
     pub feed: Vector3<f64>,
+    /// The arm that bears the cut.
+    pub modes: Modes,
     /// The depths.
     pub limits: Limits,
 }
@@ -71,18 +73,23 @@ pub fn feeds_in_plane(axis: &Vector3<f64>, count: usize) -> Option<Vec<(f64, Vec
 }
 
 /// The depths that are not stable for each of so many feeds across a tool axis
-/// (from the spindle to the tip), the cut turning with the feed. `None` for an
-/// axis of zero length.
+/// (from the spindle to the tip), the cut turning with the feed. `modes` are those
+/// of the arm under the mean force of such a cut, 3 \[N\] in the frame of the axis:
+/// an arm with backlash or hardening has others under each. They are those at the
+/// depth of the cut, also where other depths are looked at. `None` for an axis of
+/// zero length, and where there are no modes.
 pub fn over_feeds(
-    modes: &Modes,
+    modes: impl Fn(&Vector3<f64>) -> Option<Modes>,
     cut: &Cut,
     axis: &Vector3<f64>,
     count: usize,
     greatest: f64,
 ) -> Option<Vec<FeedLimit>> {
+    let force = cut.mean_force();
     let limit = |(angle, feed): (f64, Vector3<f64>)| {
         let frame = CutFrame::new(axis, &feed)?;
-        Some(FeedLimit { angle, feed, limits: modes.limits(&process(cut, &frame), greatest) })
+        let modes = modes(&frame.force(&force))?;
+        Some(FeedLimit { angle, feed, limits: modes.limits(&process(cut, &frame), greatest), modes })
     };
     feeds_in_plane(axis, count)?.into_iter().map(limit).collect()
 }

@@ -14,15 +14,17 @@
 //! # What this covers and what not
 //! - The arm's elasticity at one pose, by the 3 x 3 translational block of its
 //!   compliance: the TCP is free to turn. Directions in which it does not yield
-//!   at all are rigid and take no part.
+//!   at all are rigid and take no part. Backlash and hardening have the slope that
+//!   they have under the mean force of the cut, see [`over_feeds`] and
+//!   [`compliance_under`](crate::elements::compliance_under): movements that cross
+//!   the backlash are not small, and not looked at.
 //! - No regenerative chatter: the surface left by the tooth before is taken to be
 //!   even. That is the matter of the modes of spindle, tool and workpiece and of
 //!   stability lobes, and needs their measured frequency responses. For the
 //!   structural modes of arms at high spindle speeds see Cordes, Hintze, Altintas,
 //!   Chatter stability in robotic milling, Robotics and Computer-Integrated
 //!   Manufacturing 55 (2019) 11-18.
-//! - Forces averaged over a revolution; no process damping, no controller, no
-//!   backlash.
+//! - Forces averaged over a revolution; no process damping, no controller.
 //!
 //! Forces are on the tool, lengths in m, masses in kg, all in the base frame.
 

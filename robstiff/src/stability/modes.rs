@@ -8,6 +8,8 @@ use crate::analysis::resolution;
 /// there are directions in which the arm yields.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modes {
+    /// The translational compliance [m/N].
+    compliance: Matrix3<f64>,
     /// Natural frequencies [rad/s], the lowest first.
     frequencies: DVector<f64>,
     /// What a unit of each mode moves the tool by, 3 x modes, so that
@@ -39,15 +41,16 @@ impl Modes {
         if !(finite && damping.is_finite() && damping >= 0.0) {
             return None;
         }
-        let SymmetricEigen { eigenvectors, eigenvalues } =
-            SymmetricEigen::new(0.5 * (compliance + compliance.transpose()));
+        let compliance = 0.5 * (compliance + compliance.transpose());
+        let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(compliance);
         let rigid = eigenvalues.amax() * resolution::<f64>();
         let soft: std::vec::Vec<usize> = (0..3).filter(|&i| eigenvalues[i] > rigid).collect();
         let count = soft.len();
         mass.cholesky()?;
         if count == 0 {
             // Where nothing moves there is nothing to solve.
-            return Some(Self { frequencies: DVector::zeros(0), shapes: DMatrix::zeros(3, 0), damping });
+            let (frequencies, shapes) = (DVector::zeros(0), DMatrix::zeros(3, 0));
+            return Some(Self { compliance, frequencies, shapes, damping });
         }
         let directions = DMatrix::from_fn(3, count, |row, i| eigenvectors[(row, soft[i])]);
         let stiffness = DMatrix::from_fn(count, count, |i, j| if i == j { 1.0 / eigenvalues[soft[i]] } else { 0.0 });
@@ -64,7 +67,12 @@ impl Modes {
         let frequencies = DVector::from_fn(count, |i, _| eigenvalues[order[i]].max(0.0).sqrt());
         let shapes = to_tool * vectors;
         let finite = frequencies.iter().chain(shapes.iter()).all(|entry| entry.is_finite());
-        finite.then_some(Self { frequencies, shapes, damping })
+        finite.then_some(Self { compliance, frequencies, shapes, damping })
+    }
+
+    /// The translational compliance of the arm [m/N], 3 x 3.
+    pub fn compliance(&self) -> &Matrix3<f64> {
+        &self.compliance
     }
 
     /// The natural frequencies [rad/s], the lowest first.

@@ -7,8 +7,9 @@ mod picture;
 use std::path::PathBuf;
 
 use robstiff::analysis::translational_compliance;
+use robstiff::elements::compliance_under;
 use robstiff::milling::{Cut, Forces};
-use robstiff::nalgebra::{Matrix3, SVector, Vector3};
+use robstiff::nalgebra::{Matrix3, SVector, Vector3, Vector6};
 use robstiff::stability::{FeedLimit, Modes, mass_of_first_mode, mass_of_links, over_feeds};
 use robstiff::{Robot, with_robot};
 use robstiff_robots::Description;
@@ -86,13 +87,17 @@ pub fn axis(text: &str) -> Result<Vector3<f64>, String> {
     axis.try_normalize(1e-9).ok_or_else(|| "an axis has a length, e.g. `0,0,1`".to_owned())
 }
 
+/// A compliance that changes by less is the same.
+const ROUNDING: f64 = 1e-9;
+
 /// What is predicted of an arm in a cut.
 pub struct Predicted {
-    /// The translational compliance at the TCP in the base frame [m/N].
-    compliance: Matrix3<f64>,
     /// The mass at the TCP in the base frame \[kg\].
     mass: Matrix3<f64>,
+    /// Of the arm without load, where a hammer finds them.
     modes: Modes,
+    /// Whether the arm under the cut is another: backlash or hardening.
+    stiffens: bool,
     /// From the spindle to the tip, in the base frame.
     axis: Vector3<f64>,
     /// The greatest depth looked at \[m\].
@@ -156,9 +161,22 @@ fn predict<const N: usize>(
         .ok_or_else(|| Failure::new("the compliance in this pose is not finite"))?;
     let axis = arm.transform(&q).fixed_view::<3, 3>(0, 0) * arguments.tool_axis;
     let greatest = arguments.greatest.unwrap_or(10.0 * cut.depth);
-    let feeds = over_feeds(&modes, cut, &axis, arguments.feeds.into(), greatest)
-        .ok_or_else(|| Failure::new("the tool has no axis"))?;
-    Ok(Predicted { compliance, mass, modes, axis, greatest, feeds })
+    // The mass stays what it is when the cut takes up the backlash.
+    let under = |force: &Vector3<f64>| {
+        let wrench = Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0);
+        let compliance = translational_compliance(&compliance_under(arm, &q, &wrench));
+        Modes::new(&compliance, &mass, arguments.damping)
+    };
+    let feeds = over_feeds(under, cut, &axis, arguments.feeds.into(), greatest)
+        .ok_or_else(|| Failure::new("the compliance under the cut is not finite"))?;
+    let change = |feed: &FeedLimit| (feed.modes.compliance() - compliance).amax() / compliance.amax();
+    let stiffens = feeds.iter().any(|feed| change(feed) > ROUNDING);
+    Ok(Predicted { mass, modes, stiffens, axis, greatest, feeds })
+}
+
+/// The stiffness of the softest direction [N/m]; `None` where all are rigid.
+fn softest(modes: &Modes) -> Option<f64> {
+    Some(modes.compliance().symmetric_eigenvalues().max()).filter(|most| *most > 0.0).map(f64::recip)
 }
 
 /// Everything in SI units; what does not exist is null.
@@ -167,6 +185,7 @@ fn document(predicted: &Predicted, robot: &Description, cut: &Cut, q: &[f64]) ->
         json!({
             "angle_rad": json::number(feed.angle),
             "feed": json::numbers(feed.feed.iter().copied()),
+            "softest_N_per_m": softest(&feed.modes),
             "limiting_depth_m": feed.limits.limiting(),
             "unstable_m": feed.limits.unstable,
             "stable": feed.limits.is_stable(cut.depth),
@@ -176,7 +195,8 @@ fn document(predicted: &Predicted, robot: &Description, cut: &Cut, q: &[f64]) ->
         "robot": robot.name,
         "q": json::numbers(q.iter().copied()),
         "covers": page::COVERS,
-        "translational_compliance": json::matrix(&predicted.compliance),
+        "mean_force_N": cut.mean_force().norm(),
+        "translational_compliance": json::matrix(predicted.modes.compliance()),
         "mass": json::matrix(&predicted.mass),
         "frequencies_Hz": json::numbers(predicted.modes.frequencies().iter().map(|w| w / std::f64::consts::TAU)),
         "damping": predicted.modes.damping(),

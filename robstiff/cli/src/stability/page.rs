@@ -7,7 +7,7 @@ use robstiff::nalgebra::{SymmetricEigen, Vector3};
 use robstiff::stability::{FeedLimit, best};
 use robstiff_robots::Description;
 
-use super::Predicted;
+use super::{Predicted, softest};
 use crate::text::{Table, decimals, significant};
 
 /// What a prediction says, and what it does not.
@@ -18,7 +18,8 @@ pub const COVERS: &str = "mode coupling of the arm's own modes in this pose, wit
 const ROWS: usize = 12;
 
 pub fn page(predicted: &Predicted, robot: &Description, cut: &Cut, measured: bool) -> String {
-    let mut page = format!("{}: {COVERS}\n\nThe arm at its tool\n", robot.name);
+    let state = if predicted.stiffens { ", without load" } else { "" };
+    let mut page = format!("{}: {COVERS}\n\nThe arm at its tool{state}\n", robot.name);
     page += &directions(predicted);
     let frequencies: Vec<String> =
         predicted.modes.frequencies().iter().map(|frequency| decimals(frequency / TAU, 1)).collect();
@@ -37,12 +38,19 @@ pub fn page(predicted: &Predicted, robot: &Description, cut: &Cut, measured: boo
         false => ", no damping\n".to_owned(),
     };
     page += &format!("\nDepth at which it begins, by feed (up to {} mm looked at)\n", millimetres(predicted.greatest));
-    page += &feeds(&predicted.feeds);
+    page += &feeds(predicted);
+    if predicted.stiffens {
+        let force = decimals(cut.mean_force().norm(), 1);
+        page += &format!(
+            "softest: of the arm under the mean force of the cut at {} mm, {force} N, with that feed\n",
+            millimetres(cut.depth)
+        );
+    }
     page + &verdict(predicted, cut)
 }
 
 fn directions(predicted: &Predicted) -> String {
-    let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(predicted.compliance);
+    let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(*predicted.modes.compliance());
     let mut order = [0, 1, 2];
     order.sort_by(|&i, &j| eigenvalues[j].total_cmp(&eigenvalues[i]));
     let mut table = Table::new(1, ["principal direction", "x", "y", "z", "stiffness [N/um]"]);
@@ -61,12 +69,14 @@ fn directions(predicted: &Predicted) -> String {
     table.to_string()
 }
 
-fn feeds(feeds: &[FeedLimit]) -> String {
-    let mut table = Table::new(0, ["angle [deg]", "feed x", "y", "z", "depth [mm]"]);
+fn feeds(Predicted { feeds, stiffens, .. }: &Predicted) -> String {
+    let header = ["angle [deg]", "feed x", "y", "z", "depth [mm]"];
+    let mut table = Table::new(0, header.into_iter().chain(stiffens.then_some("softest [N/um]")));
     for feed in feeds.iter().step_by(feeds.len().div_ceil(ROWS)) {
         let mut row = vec![decimals(feed.angle.to_degrees(), 0)];
         row.extend(feed.feed.iter().map(|&part| decimals(part, 3)));
         row.push(depth(feed));
+        row.extend(stiffens.then(|| softest(&feed.modes).map_or("rigid".to_owned(), |k| significant(k * 1e-6, 4))));
         table.row(row);
     }
     table.to_string()
