@@ -70,9 +70,9 @@ impl<'c> Prepared<'c> {
         let training = training(samples.poses, campaign.holdout);
         let own = declared(description);
         let noise = campaign.noise;
-        let declared: Vec<f64> = description.joints.iter().map(robstiff_robots::Joint::compliance).collect();
-        let straight = straightened(&samples, &declared);
+        let straight = straightened(&samples, description);
         let covariance = Covariance::estimate(&straight, data.measured_frame, noise, |pose| training[pose]);
+        let repeated = repetitions(&straight, &covariance, |pose| training[pose]);
         // Readings that no one knows the noise of have no weight.
         let samples = if covariance.encoders.is_none() { samples.without_encoders() } else { samples };
         let weighed = covariance.reading().is_some() || (noise.displacement.is_some() && noise.rotation.is_some());
@@ -83,7 +83,7 @@ impl<'c> Prepared<'c> {
             values: own.iter().map(|number| number.value).collect(),
             visibility: std::vec![Visibility::Seen; own.len()],
             own,
-            repeated: repetitions(&samples, &covariance, |pose| training[pose]),
+            repeated,
             declared_noise: noise.displacement,
             covariance,
             samples: Rc::new(samples),

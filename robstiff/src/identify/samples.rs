@@ -173,6 +173,22 @@ impl Samples {
         self.stacked_with(|_, row| stack(&row.displacement, &row.rotation), |at, k| self.rows[at].turned[k])
     }
 
+    /// The same with this much, stacked like [`readings`](Self::readings), taken from
+    /// what was read.
+    #[must_use]
+    pub fn less(mut self, stacked: &DVector<f64>) -> Self {
+        for i in 0..self.rows.len() {
+            let of_encoders = self.encoders_of(i);
+            let row = &mut self.rows[i];
+            row.displacement -= stacked.fixed_rows::<3>(i * self.axes);
+            if self.axes > 3 {
+                row.rotation -= stacked.fixed_rows::<3>(i * self.axes + 3);
+            }
+            row.turned.iter_mut().zip(of_encoders).for_each(|(turned, at)| *turned -= stacked[at]);
+        }
+        self
+    }
+
     /// How many numbers are read.
     pub fn length(&self) -> usize {
         self.rows.len() * (self.axes + self.encoders.len())

@@ -9,7 +9,9 @@
 use std::vec::Vec;
 
 use nalgebra::{DVector, Rotation3, Unit, Vector3, Vector6};
+use robstiff_robots::Description;
 
+use super::laws::turned_by_laws;
 use super::samples::{Sample, Samples};
 use crate::JointKind;
 
@@ -61,17 +63,13 @@ pub fn beyond_linear(samples: &Samples, compliance: &[f64]) -> DVector<f64> {
     samples.stacked_with(|_, row| by_tool(row), |at, k| beyond[at][samples.encoders[k] - 1])
 }
 
-/// The samples with the second order taken from their readings, so that these
-/// are linear in the load as far as the joints' compliances (rad/Nm or m/N, of
-/// about the right size) account for them.
-pub fn straightened(samples: &Samples, compliance: &[f64]) -> Samples {
-    let beyond = beyond_linear(samples, compliance);
-    let mut straightened = samples.clone();
-    for (i, row) in straightened.rows.iter_mut().enumerate() {
-        row.displacement -= beyond.fixed_rows::<3>(i * samples.axes);
-        row.turned.iter_mut().zip(samples.encoders_of(i)).for_each(|(turned, at)| *turned -= beyond[at]);
-    }
-    straightened
+/// The samples with the second order, and what declared laws of joints do, taken
+/// from their readings, so that these are linear in the load as far as the
+/// description, whose compliances are of about the right size, accounts for them.
+pub fn straightened(samples: &Samples, description: &Description) -> Samples {
+    let compliance: Vec<f64> = description.joints.iter().map(robstiff_robots::Joint::compliance).collect();
+    let beyond = beyond_linear(samples, &compliance) + turned_by_laws(description, samples);
+    samples.clone().less(&beyond)
 }
 
 /// The joints' deflections under the load when they have already moved.

@@ -33,6 +33,8 @@ pub mod slip;
 #[cfg(test)]
 mod tests;
 pub mod verdict;
+#[cfg(test)]
+mod written_tests;
 
 use std::format;
 use std::string::String;

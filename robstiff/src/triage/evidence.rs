@@ -22,8 +22,9 @@ const SAME_LINE: f64 = 0.0175;
 const NO_LEVER: f64 = 1e-3;
 
 /// A campaign of displacements, before any model of the robot is fitted: of the
-/// robot only where its links are, and from its declared compliances the second
-/// order of large deflections, which is taken from the readings.
+/// robot only where its links are, and what is not linear of what it declares, the
+/// second order of large deflections and laws of joints such as hysteresis, which
+/// is taken from the readings.
 pub struct Evidence<'c> {
     /// The campaign.
     pub campaign: &'c Campaign,
@@ -71,8 +72,7 @@ pub struct Contrast {
 impl<'c> Evidence<'c> {
     /// The evidence of a campaign of displacements.
     pub fn new(campaign: &'c Campaign, data: &'c Displacements) -> Self {
-        let declared: Vec<f64> = campaign.robot.joints.iter().map(robstiff_robots::Joint::compliance).collect();
-        let samples = straightened(&Samples::of_description(&campaign.robot, data), &declared);
+        let samples = straightened(&Samples::of_description(&campaign.robot, data), &campaign.robot);
         let covariance = Covariance::estimate(&samples, data.measured_frame, campaign.noise, |_| true);
         let (lines, unloaded) = lines(&samples);
         let wrenches = wrenches(&samples);

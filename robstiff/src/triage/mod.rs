@@ -12,7 +12,8 @@
 //! Scandinavian Journal of Statistics 6, 1979): of campaigns in which nothing is
 //! wrong one in a hundred is said to have something. What a large deflection of a
 //! linear arm makes of proportion is not held against it: a violation is also as
-//! large as the check says ([`Finding::matters_from`]).
+//! large as the check says ([`Finding::matters_from`]). Nor is what laws of joints do
+//! that the description declares, such as hysteresis.
 
 pub mod clamped;
 mod encoders;

@@ -21,8 +21,7 @@ fn estimate(plan: &Plan) -> Covariance {
 
 fn of(campaign: &Campaign) -> Covariance {
     let data = displacements(campaign);
-    let declared: Vec<f64> = campaign.robot.joints.iter().map(robstiff_robots::Joint::compliance).collect();
-    let samples = straightened(&Samples::of_description(&campaign.robot, data), &declared);
+    let samples = straightened(&Samples::of_description(&campaign.robot, data), &campaign.robot);
     Covariance::estimate(&samples, data.measured_frame, campaign.noise, |_| true)
 }
 
