@@ -26,8 +26,7 @@ const FEWEST: usize = 8;
 /// A column of which less is left beside those before it says nothing new.
 const NEW: f64 = 1e-6;
 
-/// Draws of signs are no more than these: a p-value of 1 in 1000 is small enough
-/// for any level asked for.
+/// Draws of signs are no more than these where they resolve the level asked for.
 const DRAWS: usize = 999;
 
 /// What the poses say.
@@ -61,14 +60,17 @@ pub fn agreement(setting: &Setting<'_>, model: &Fitted, options: &super::Options
         return None;
     }
     let kinds: Vec<usize> = (0..problem.axes).step_by(3).collect();
-    let asked: Vec<Agreement> = kinds.iter().filter_map(|&first| ask(&poses, first, options)).collect();
+    // Both kinds share the level.
+    let resolved = kinds.len() * super::lack_of_fit::draws(&super::Options { draws: 0, ..*options });
+    let draws = DRAWS.min(options.draws).max(resolved);
+    let asked: Vec<Agreement> = kinds.iter().filter_map(|&first| ask(&poses, first, draws, options.seed)).collect();
     let noise = asked.first()?.noise;
     let least = asked.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value))?;
     Some(Agreement { p_value: (asked.len() as f64 * least.p_value).min(1.0), noise, ..*least })
 }
 
 /// The same of three axes.
-fn ask(poses: &[Pose], first: usize, options: &super::Options) -> Option<Agreement> {
+fn ask(poses: &[Pose], first: usize, draws: usize, seed: u64) -> Option<Agreement> {
     let axes = first..first + 3;
     let mut freedom = [0.0; 2];
     for pose in poses {
@@ -99,8 +101,7 @@ fn ask(poses: &[Pose], first: usize, options: &super::Options) -> Option<Agreeme
     // Signs give back what the fit has taken.
     let counts = [0, 1]
         .map(|k| freedom[k] + poses.iter().flat_map(|pose| &pose.pulled[first..first + 3]).map(|p| p[k]).sum::<f64>());
-    let mut random = ChaCha8Rng::seed_from_u64(options.seed);
-    let draws = DRAWS.min(options.draws);
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
     let beyond = (0..draws).filter(|_| {
         let drawn = taken(&mut || if random.next_u32() & 1 == 0 { 1.0 } else { -1.0 });
         drawn / counts[0] / ((whole - drawn) / counts[1]) >= statistic

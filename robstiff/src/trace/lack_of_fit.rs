@@ -49,6 +49,15 @@ pub enum Yardstick {
     Unknown,
 }
 
+/// The most tests for structure that share a level, those of held-out poses among them.
+const TESTS: f64 = 6.0;
+
+/// Draws that resolve the level of one of the tests for structure, which share one:
+/// as many as were asked for, or more.
+pub(super) fn draws(options: &super::Options) -> usize {
+    options.draws.max((TESTS / options.alpha).ceil() as usize)
+}
+
 /// What the tests say.
 #[derive(Clone, Debug)]
 pub struct LackOfFit {
@@ -232,7 +241,7 @@ impl Resemblance {
         let own = [0, 1, 2].map(|axis| residuals.select_rows(&axis_rows(axis)));
         let drawn = drawn_residuals(&problem, &fit, &rows)?;
         let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
-        let signs = rademacher(&mut rng, options.draws, problem.blocks.len());
+        let signs = rademacher(&mut rng, draws(options), problem.blocks.len());
         let draws = Draws::new(drawn, signs);
 
         let features = features(&setting.point.samples, data, &rows);

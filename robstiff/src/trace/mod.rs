@@ -65,7 +65,8 @@ use crate::identify::{Error, Estimate, NoiseSource, is_at_bound};
 pub struct Options {
     /// Seed of the bootstrap; one seed gives one result.
     pub seed: u64,
-    /// Bootstrap draws. A p-value is no smaller than one over their number.
+    /// Bootstrap draws. A p-value is no smaller than one over their number. Tests for
+    /// structure share a level, and take as many as it needs where these are too few.
     pub draws: usize,
     /// Family-wise level at which effects are named, and structure is found.
     pub alpha: f64,

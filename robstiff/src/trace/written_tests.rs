@@ -4,6 +4,9 @@
 use std::format;
 use std::string::{String, ToString};
 
+use nalgebra::{Matrix3, Vector3};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 use robstiff_robots::catalogue;
 
 use super::*;
@@ -60,5 +63,33 @@ fn declared_laws_of_joints_leave_nothing_to_explain() {
         assert!((found.noise / 8e-6 - 1.0).abs() < 0.1, "{effect}: {}", found.noise);
         let violated: Vec<&str> = triage(&campaign).violated().map(|(check, _)| check.name).collect();
         assert!(violated.is_empty(), "{effect}: {violated:?}");
+    }
+}
+
+/// As few draws as resolve the level of the names are enough to see structure.
+#[test]
+fn structure_is_seen_with_few_draws() {
+    let plan = "\
+poses: {count: 24, floor: 100 mm, column: 600 mm}
+visits: 4
+ramp: [1, -1]
+force: {bounds: [1000 N, 1000 N]}
+noise: {displacement: 8 um, stated: no}
+";
+    let mut campaign = measured(&robot(""), 1, plan);
+    // Each pose yields besides as nothing in the catalogue does.
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let softer: Vec<Matrix3<f64>> =
+        (0..24).map(|_| Matrix3::from_fn(|_, _| 14e-9 * made::normal(&mut random))).collect();
+    if let Data::Displacement(data) = &mut campaign.data {
+        for row in &mut data.rows {
+            let more = softer[row.pose] * Vector3::from_column_slice(&row.wrench[..3]);
+            (0..3).for_each(|k| row.displacement[k] += more[k]);
+        }
+    }
+    for (draws, alpha) in [(99, 0.01), (1999, 0.001)] {
+        let options = Options { draws, alpha, ..Options::default() };
+        let found = trace(&campaign, &options, &|_| {}).expect("joints are seen");
+        assert!(matches!(found.verdict, Verdict::Unexplained | Verdict::Partial), "{draws}: {:?}", found.structure);
     }
 }
