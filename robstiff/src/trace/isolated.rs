@@ -120,14 +120,17 @@ impl Visit {
     }
 }
 
-/// What is wrong in single visits, the worst first; nothing where that would
-/// be more than a few. With `strict`, the rest is taken to be noise.
+/// What is wrong in single visits of poses fitted to, the worst first; nothing
+/// where that would be more than a few. With `strict`, the rest is taken to be noise.
 pub fn events(setting: &Setting<'_>, model: &Fitted, strict: bool) -> Vec<Event> {
     let samples = &setting.point.samples;
     let residuals = setting.residuals(&model.fit) - &setting.correction;
     let mut visits: Vec<Visit> = Vec::new();
     let mut at = vec![usize::MAX; samples.rows.iter().map(|row| row.visit + 1).max().unwrap_or(0)];
-    for (i, row) in samples.rows.iter().enumerate() {
+    // What is held out judges the model: none of it is wild because the model misses it.
+    let held_out: Vec<usize> = setting.problem.held_out.iter().map(|block| block.pose).collect();
+    let fitted_to = samples.rows.iter().enumerate().filter(|(_, row)| !held_out.contains(&row.pose));
+    for (i, row) in fitted_to {
         if at[row.visit] == usize::MAX {
             at[row.visit] = visits.len();
             visits.push(Visit {
@@ -151,8 +154,9 @@ pub fn events(setting: &Setting<'_>, model: &Fitted, strict: bool) -> Vec<Event>
         let size = largest.norm_squared().max(f64::MIN_POSITIVE);
         visit.loads = visit.rows.iter().map(|row| wrench(row).dot(&largest) / size).collect();
     }
-    let most = (FEW * samples.rows.len() as f64).floor() as usize;
-    let hypotheses = 2 * samples.rows.len();
+    let rows: usize = visits.iter().map(|visit| visit.rows.len()).sum();
+    let most = (FEW * rows as f64).floor() as usize;
+    let hypotheses = 2 * rows;
     let table = ChiSquared::new(3.0).expect("three degrees of freedom");
     let threshold = table.inverse_cdf(1.0 - STRICT / hypotheses as f64);
     let mut found: Vec<Event> = Vec::new();

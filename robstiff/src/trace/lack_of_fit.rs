@@ -1,6 +1,6 @@
 //! Is there structure left in the residuals?
 //!
-//! Four tests, each of what noise alone cannot do, together at the level
+//! These tests, each of what noise alone cannot do, together at the level
 //! asked for (Bonferroni):
 //!
 //! 1. *Size*: where the noise is declared, or readings were repeated, the
@@ -16,6 +16,9 @@
 //!    rank correlation); the noise of a reading does not know the load.
 //! 4. *Agreement*: readings of a pose agree more than noise does
 //!    ([`agreement`](mod@super::agreement)).
+//!
+//! Where poses are held out, these are asked last of all, when nothing is chosen any
+//! more ([`held_out`](mod@super::held_out)).
 
 use std::borrow::ToOwned;
 use std::string::String;
@@ -109,7 +112,9 @@ pub fn test(
         let (statistic, p_value) = resemblance.largest();
         tests.push(StructureTest { name: "residuals resemble each other".to_owned(), statistic, p_value });
     }
-    let level = options.alpha / tests.len().max(1) as f64;
+    // Poses held out are asked at the end.
+    let held_out = usize::from(!setting.problem.held_out.is_empty());
+    let level = options.alpha / (tests.len() + held_out).max(1) as f64;
     let structure = tests.iter().any(|test| test.p_value <= level);
     let fraction =
         if structure { fraction(setting, model, yardstick, resemblance.as_ref(), options.alpha) } else { 0.0 };

@@ -22,6 +22,7 @@ pub mod clamped;
 pub mod correction;
 pub mod features;
 mod found;
+pub mod held_out;
 pub mod isolated;
 pub mod lack_of_fit;
 pub mod model;
@@ -238,6 +239,7 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
             outcome.selection.steps = steps;
         }
     }
+    outcome.judge_by_held_out(&bench, options).map_err(Error)?;
     progress("asking what could be mistaken for what");
     report(campaign, &prepared, &bench, &outcome, options).map_err(Error)
 }
@@ -306,6 +308,22 @@ impl Outcome {
     fn nothing(model: Fitted, verdict: Verdict, why: String) -> Self {
         let selection = Selection { model, p_values: Vec::new(), steps: Vec::new(), unnamed: false };
         Self { selection, left: None, events: Vec::new(), verdict, why }
+    }
+
+    /// Asks the poses held out, which had no part in the search, whether the model
+    /// predicts them.
+    fn judge_by_held_out(&mut self, bench: &Bench<'_>, options: &Options) -> Result<(), String> {
+        let Some(left) = &mut self.left else { return Ok(()) };
+        let setting = bench.at(&self.selection.model.named)?;
+        let Some(test) = held_out::predicted(&setting, &self.selection.model, options) else { return Ok(()) };
+        let level = options.alpha / (left.tests.len() + 1) as f64;
+        let missed = (test.p_value <= level).then(|| verdict::missed(self.verdict, &test)).flatten();
+        left.tests.push(test);
+        if let Some(judged) = missed {
+            (self.verdict, self.why) = judged;
+            left.structure = true;
+        }
+        Ok(())
     }
 
     /// Whether structure is left.

@@ -9,7 +9,7 @@ use std::vec::Vec;
 use super::bench::Bench;
 use super::catalogue::{CREEP, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY};
 use super::features::LOAD_ORDER;
-use super::lack_of_fit::LackOfFit;
+use super::lack_of_fit::{LackOfFit, StructureTest};
 use super::model::{Fitted, Named};
 use super::selection::Selection;
 
@@ -135,6 +135,25 @@ pub fn judge(
             String::from("hysteresis with a curve or creep besides is also how a joint looks that lags"),
         ),
         (_, true) => (Verdict::Partial, format!("structure is left beyond the named effects: {because}")),
+    }
+}
+
+/// The verdict, and why, where it would be that nothing is left, but a test finds that
+/// poses held out are not predicted.
+pub fn missed(verdict: Verdict, test: &StructureTest) -> Option<(Verdict, String)> {
+    let p = Shown(test.p_value);
+    match verdict {
+        Verdict::Adequate => Some((
+            Verdict::Unexplained,
+            format!("the poses held out are not predicted as well as the others are fitted (p {p})"),
+        )),
+        Verdict::Explained => Some((
+            Verdict::Partial,
+            format!(
+                "with the named effects the poses held out are not predicted as well as the others are fitted (p {p})"
+            ),
+        )),
+        _ => None,
     }
 }
 

@@ -66,6 +66,32 @@ fn declared_laws_of_joints_leave_nothing_to_explain() {
     }
 }
 
+/// What is off at poses held out is no wild reading, and the verdict tells of it.
+#[test]
+fn poses_held_out_are_judged_by_not_sorted_out() {
+    let plan = "\
+poses: {count: 44, floor: 100 mm, column: 600 mm}
+visits: 1
+ramp: [0.3, 0.6, 1]
+force: {bounds: [500 N, 1300 N]}
+noise: {displacement: 8 um}
+holdout: {fraction: 0.25, seed: 1}
+";
+    let mut campaign = measured(&robot(""), 4, plan);
+    let found = traced(&campaign);
+    assert_eq!((found.verdict, found.held_out.len()), (Verdict::Adequate, 11));
+    if let Data::Displacement(data) = &mut campaign.data {
+        let poses: Vec<usize> = (0..44).filter(|&pose| found.held_out.contains(&data.poses[pose])).take(2).collect();
+        for row in data.rows.iter_mut().filter(|row| poses.contains(&row.pose)) {
+            row.displacement = row.displacement.map(|reading| 1.6 * reading);
+        }
+    }
+    let off = traced(&campaign);
+    assert_eq!((off.verdict, names(&off)), (Verdict::Unexplained, Vec::new()), "{}", off.why);
+    assert_eq!(off.estimates, found.estimates);
+    assert!(off.after.holdout_rms > 4.0 * off.after.rms && off.why.contains("held out"), "{}", off.why);
+}
+
 /// As few draws as resolve the level of the names are enough to see structure.
 #[test]
 fn structure_is_seen_with_few_draws() {
