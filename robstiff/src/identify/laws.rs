@@ -1,5 +1,5 @@
 //! What the laws of joints do that a description declares and no column fits:
-//! backlash, play, a compliance that varies with the angle.
+//! backlash, play. A compliance that varies with the angle is in its joint's column.
 
 use std::collections::BTreeMap;
 use std::vec::Vec;
@@ -9,14 +9,14 @@ use robstiff_robots::Description;
 use robstiff_robots::effect::physics::PLAYS;
 
 use super::baseline::columns_of;
-use super::samples::{Sample, Samples};
+use super::samples::{Sample, Samples, is_share};
 use crate::elements::{plays, turn};
 
 /// The displacement of the marker (m), and rotation (rad), through them;
 /// stacked like [`Samples::readings`]. The rows of a visit are one load
 /// sequence, which begins on a robot that was never loaded.
 pub fn turned_by_laws(description: &Description, samples: &Samples) -> DVector<f64> {
-    let laws = description.effects.iter().filter(|effect| columns_of(effect).is_empty());
+    let laws = description.effects.iter().filter(|effect| columns_of(effect).is_empty() && !is_share(effect));
     let laws: Vec<_> = laws.filter_map(|effect| Some((effect, effect.row()? - 1))).collect();
     if laws.is_empty() {
         return DVector::zeros(samples.length());

@@ -6,12 +6,13 @@ use std::vec::Vec;
 
 use nalgebra::{DVector, Matrix3, Matrix4, Matrix6, SVector, Vector3, Vector6};
 use robstiff_robots::Description;
+use robstiff_robots::effect::physics::PLAYS;
 
 use super::encoders::Encoders;
 use super::setup::Setup;
 use crate::campaign::{Displacements, Frame};
-use crate::elements::{Geometry, Parameter, Pose};
-use crate::{JointKind, Robot};
+use crate::elements::{Geometry, Parameter, Pose, turn};
+use crate::{Effect, JointKind, Robot};
 
 /// A column of the regression: what a unit of one number adds to every
 /// displacement.
@@ -40,6 +41,9 @@ pub struct Samples {
     pub encoders: Arc<[usize]>,
     /// The number of poses.
     pub poses: usize,
+    /// The declared changes of joints' compliances with their own coordinates, which
+    /// are shares of these and so grow with them.
+    pub varying: Arc<[Effect]>,
     /// The rows, in the campaign's order.
     pub rows: Vec<Sample>,
 }
@@ -157,6 +161,7 @@ impl Samples {
             axes: if with_rotations { 6 } else { 3 },
             encoders: known.map_or_else(|| encoders.joints.into(), |known| Arc::clone(&known.encoders)),
             poses: data.poses.len(),
+            varying: robot.effects().iter().filter(|effect| is_share(effect)).copied().collect(),
             rows,
         }
     }
@@ -211,7 +216,10 @@ impl Samples {
     /// What a unit of a column's number adds to the readings, stacked alike.
     pub fn column(&self, column: Column) -> DVector<f64> {
         match column {
-            Column::Linear(Parameter::Joint(joint)) => self.of_joint(joint, |torque| torque),
+            Column::Linear(number @ Parameter::Joint(joint)) => {
+                let torques = self.torques(joint);
+                self.turned(joint, |at| self.share(number, &self.rows[at]) * torques[at])
+            }
             Column::Knee { joint, knee } => self.of_joint(joint, |torque| torque / (torque / knee).hypot(1.0)),
             Column::Linear(parameter) => self.under(&[(parameter, 1.0)]),
         }
@@ -242,16 +250,31 @@ impl Samples {
             if i == 0 || !Arc::ptr_eq(&row.joint_frames, &self.rows[i - 1].joint_frames) {
                 let geometry = self.geometry(row);
                 let numbers = numbers.iter().filter(|(_, value)| *value != 0.0);
-                compliance = numbers.map(|&(number, value)| geometry.unit_compliance(number) * value).sum();
+                let of = |&(number, value): &(Parameter, f64)| {
+                    geometry.unit_compliance(number) * (value * self.share(number, row))
+                };
+                compliance = numbers.map(of).sum();
             }
             let six = row.read(&(compliance * row.wrench));
             stacked.rows_mut(i * self.axes, self.axes).copy_from(&six.rows(0, self.axes));
             for (at, &joint) in self.encoders_of(i).zip(self.encoders.iter()) {
                 let torque = |joint: usize| row.twists[joint - 1].dot(&row.wrench);
-                stacked[at] = numbers.iter().map(|&(number, value)| value * turn_of_joint(number, joint, torque)).sum();
+                let of = |&(number, value): &(Parameter, f64)| {
+                    value * self.share(number, row) * turn_of_joint(number, joint, torque)
+                };
+                stacked[at] = numbers.iter().map(of).sum();
             }
         }
         stacked
+    }
+
+    /// What a unit of a number in which the compliance is linear is at a row: of a
+    /// joint whose compliance varies with its coordinate it is a share.
+    pub fn share(&self, number: Parameter, row: &Sample) -> f64 {
+        let Parameter::Joint(joint) = number else { return 1.0 };
+        let of_joint = self.varying.iter().filter(|effect| effect.row() == Some(joint));
+        let change = |effect: &Effect| turn(effect, 1.0, row.q[joint - 1], 1.0, [0.0; PLAYS]).unwrap_or(0.0);
+        1.0 + of_joint.map(change).sum::<f64>()
     }
 
     /// The torque of each row about a joint (from 1), `J_i^T F` (Nm or N).
@@ -300,6 +323,11 @@ impl Samples {
         }
         stacked
     }
+}
+
+/// Whether an effect is a share of a joint's compliance.
+pub fn is_share(effect: &Effect) -> bool {
+    matches!(effect, Effect::PoseDependentCompliance { .. })
 }
 
 /// What a joint (from 1) turns by for a unit of a number in which the compliance

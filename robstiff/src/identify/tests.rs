@@ -112,8 +112,15 @@ fn declared_laws_of_joints_are_held() {
         assert!(off < 5e-3, "{} off by {off}", estimate.name);
     }
     assert_eq!(found.description.effects, truth.effects);
-    // With a compliance that varies, too, the truth predicts its own readings.
-    truth.effects.push(Effect::PoseDependentCompliance { joint: 2, cos1: 0.2, sin1: -0.1, cos2: 0.0, sin2: 0.1 });
+    // A compliance that varies is a share of the joint's own, and grows with it.
+    truth.effects.push(Effect::PoseDependentCompliance { joint: 2, cos1: 0.5, sin1: 0.3, cos2: 0.0, sin2: 0.1 });
+    let known = campaign(&truth, stiffer(&truth), Frame::Tool, [0.2, -0.1, 0.3], true);
+    let found = identify(&known).expect("all joints are seen");
+    let off = found.estimates[1].value / truth.joints[1].compliance() - 1.0;
+    assert!(off.abs() < 5e-3, "{off}");
+    let predicted = predict(&found.description, &known).expect("a campaign of this robot").rms;
+    assert!((predicted / found.rms.expect("of displacements") - 1.0).abs() < 1e-9, "{predicted}");
+    // With it, too, the truth predicts its own readings.
     let known = campaign(&truth, truth.clone(), Frame::Tool, [0.2, -0.1, 0.3], true);
     let prediction = predict(&truth, &known).expect("a campaign of this robot");
     assert!(prediction.max < 1e-15, "{:e}", prediction.max);

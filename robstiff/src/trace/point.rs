@@ -285,7 +285,10 @@ fn first_rows(data: &Displacements) -> Vec<usize> {
 /// a row.
 fn turned(samples: &Samples, row: &Sample, linear: &[(Parameter, f64)]) -> Turned {
     let of = |joint: usize, k: usize| -> f64 {
-        linear.iter().map(|&(number, value)| value * turn_of_joint(number, joint, |j| row.twists[j - 1][k])).sum()
+        let of = |&(number, value): &(Parameter, f64)| {
+            value * samples.share(number, row) * turn_of_joint(number, joint, |j| row.twists[j - 1][k])
+        };
+        linear.iter().map(of).sum()
     };
     Turned::from_fn(samples.encoders.len(), |encoder, k| of(samples.encoders[encoder], k))
 }
@@ -293,5 +296,6 @@ fn turned(samples: &Samples, row: &Sample, linear: &[(Parameter, f64)]) -> Turne
 /// The Cartesian compliance of numbers in which it is linear, at a row.
 fn compliance(samples: &Samples, row: &Sample, linear: &[(Parameter, f64)]) -> Matrix6<f64> {
     let geometry = samples.geometry(row);
-    linear.iter().filter(|(_, value)| *value != 0.0).map(|&(p, value)| geometry.unit_compliance(p) * value).sum()
+    let of = |&(p, value): &(Parameter, f64)| geometry.unit_compliance(p) * (value * samples.share(p, row));
+    linear.iter().filter(|(_, value)| *value != 0.0).map(of).sum()
 }
