@@ -8,6 +8,7 @@ use super::baseline::with_values;
 use super::normal::Fit;
 use super::prepare::{Prepared, fit};
 use super::problem::rms;
+use super::readable::{UNREADABLE, readable};
 use super::uncertainty::{correlation, covariance};
 use super::{Error, Identification, estimates};
 use crate::campaign::Campaign;
@@ -15,7 +16,7 @@ use crate::campaign::Campaign;
 /// Identifies the numbers of a description.
 ///
 /// # Errors
-/// A campaign that sees none of them.
+/// A campaign that sees none of them, or asks for numbers that no description takes.
 pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     let mut prepared = Prepared::new(campaign)?;
     let mut problem = prepared.problem();
@@ -29,11 +30,18 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
         fitted = fit(&prepared, &problem)?;
     }
     let signs: Vec<_> = fitted.columns.iter().map(|&i| prepared.own[i].sign).collect();
+    let described = |fit: &Fit| {
+        let description = with_values(&campaign.robot, &prepared.with(fit));
+        let own = |effect: usize| {
+            let is_own = |k: &usize| prepared.own[fit.columns[*k]].effect == Some(effect);
+            (0..fit.columns.len()).filter(is_own).collect()
+        };
+        let places = (0..description.effects.len()).map(own).collect();
+        (description, places)
+    };
+    let fitted = readable(&problem.total, &fitted, &signs, described).ok_or_else(|| Error(UNREADABLE.into()))?;
     let covariance = covariance(&problem, &fitted, &signs);
-    let mut values = prepared.values.clone();
-    for (&column, &value) in fitted.columns.iter().zip(fitted.coefficients.iter()) {
-        values[column] = value;
-    }
+    let values = prepared.with(&fitted);
     let estimates = estimates(&campaign.robot, &prepared, &values, &fitted.columns, &covariance);
     let residuals = residuals(&prepared, &fitted);
     let freedom = problem.total.rows.saturating_sub(fitted.columns.len()).max(1) as f64;

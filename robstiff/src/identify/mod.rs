@@ -19,6 +19,7 @@ pub mod normal;
 pub mod predict;
 pub mod prepare;
 pub mod problem;
+pub mod readable;
 pub mod samples;
 pub mod second_order;
 pub mod setup;

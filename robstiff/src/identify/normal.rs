@@ -41,6 +41,15 @@ pub struct Fit {
     pub rss: f64,
 }
 
+/// A coefficient that is a constant and so much of others, by their place.
+#[derive(Clone, Debug, Default)]
+pub struct Tie {
+    /// The constant.
+    pub constant: f64,
+    /// The others with their factors.
+    pub to: Vec<(usize, f64)>,
+}
+
 impl Normal {
     /// The normal equations of `x`, `y`.
     pub fn new(x: &DMatrix<f64>, y: &DVector<f64>) -> Self {
@@ -141,6 +150,34 @@ impl Normal {
         }
         let rss = self.rss(columns, &solution);
         Some(Fit { columns: columns.to_vec(), coefficients: solution, rss })
+    }
+
+    /// The same with coefficients that are tied to others, one for each of `columns`.
+    pub fn solve_tied(&self, columns: &[usize], signs: &[Sign], ties: &[Option<Tie>]) -> Option<Fit> {
+        let free: Vec<usize> = (0..columns.len()).filter(|&k| ties[k].is_none()).collect();
+        let place = |k: usize| free.iter().position(|&other| other == k);
+        let mut spread = DMatrix::zeros(columns.len(), free.len());
+        let mut constant = DVector::zeros(columns.len());
+        free.iter().enumerate().for_each(|(i, &k)| spread[(k, i)] = 1.0);
+        for (k, tie) in ties.iter().enumerate() {
+            let Some(tie) = tie else { continue };
+            constant[k] = tie.constant;
+            for &(to, factor) in &tie.to {
+                spread[(k, place(to)?)] += factor;
+            }
+        }
+        let gram = self.gram_of(columns);
+        let rest = Self {
+            moment: spread.tr_mul(&(self.moment_of(columns) - &gram * &constant)),
+            gram: spread.tr_mul(&(gram * &spread)),
+            energy: self.energy,
+            rows: self.rows,
+        };
+        let signs: Vec<Sign> = free.iter().map(|&k| signs[k]).collect();
+        let fit = rest.solve_signed(&(0..free.len()).collect::<Vec<_>>(), &signs)?;
+        let coefficients = spread * fit.coefficients + constant;
+        let rss = self.rss(columns, &coefficients);
+        Some(Fit { columns: columns.to_vec(), coefficients, rss })
     }
 
     /// The inverse of the Gram matrix of some columns, the covariance of their

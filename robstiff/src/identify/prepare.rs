@@ -101,6 +101,15 @@ impl<'c> Prepared<'c> {
         (0..self.own.len()).filter(|&i| self.visibility[i] == Visibility::Seen).collect()
     }
 
+    /// The description's numbers with those of a fit.
+    pub fn with(&self, fit: &super::normal::Fit) -> Vec<f64> {
+        let mut values = self.values.clone();
+        for (&column, &value) in fit.columns.iter().zip(fit.coefficients.iter()) {
+            values[column] = value;
+        }
+        values
+    }
+
     /// The signs of the description's numbers, in order.
     pub fn signs(&self) -> Vec<Sign> {
         self.own.iter().map(|number| number.sign).collect()

@@ -10,6 +10,7 @@ use robstiff_robots::effect::{CATALOGUE, Place as Part};
 
 use super::catalogue::Kind;
 use crate::Effect;
+use crate::identify::readable::is_readable;
 
 /// An effect that was found, with its numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,9 +69,6 @@ impl fmt::Display for Place {
     }
 }
 
-/// The largest share of what would leave two joints unstable that is written.
-const NEXT_TO: f64 = 0.999;
-
 impl Found {
     /// An effect of a kind.
     pub(super) fn new(kind: &'static Kind, place: Place, parameters: Vec<EffectParameter>) -> Self {
@@ -122,18 +120,12 @@ impl Found {
 
     /// Writes the effect into a description; whether that takes it.
     pub(super) fn write_into(&self, description: &mut Description) -> bool {
-        let Some(mut effect) = self.effect().filter(|_| !self.is_of_rig()) else { return false };
-        if let Effect::JointCoupling { joints, value } = &mut effect {
-            // Noise can take it beyond what leaves the joints stable.
-            let [first, second] = joints.map(|joint| description.joints[joint - 1].compliance());
-            let most = NEXT_TO * (first * second).sqrt();
-            *value = value.clamp(-most, most);
-        }
+        let Some(effect) = self.effect().filter(|_| !self.is_of_rig()) else { return false };
         let mut with = description.clone();
         with.effects.push(effect);
         // What a fit allows may still be beyond what a description takes, such
         // as a periodic error too large for the code that is generated.
-        let taken = Description::parse("", &with.to_yaml()).is_ok();
+        let taken = is_readable(&with);
         if taken {
             *description = with;
         }

@@ -34,6 +34,7 @@ pub mod slip;
 #[cfg(test)]
 mod tests;
 pub mod verdict;
+mod written;
 #[cfg(test)]
 mod written_tests;
 

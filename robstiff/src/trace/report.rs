@@ -1,11 +1,9 @@
 //! Putting the result together from a model that stands.
 
-use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
-use robstiff_robots::Description;
 use robstiff_robots::effect::Place as Part;
 
 use super::alias::{rivals, same_as};
@@ -14,9 +12,9 @@ use super::catalogue::{BASE_SLIP, OUTLIERS};
 use super::found::{EffectParameter, Found, Place};
 use super::isolated::Event;
 use super::model::{Fitted, Setting};
+use super::written::{described, values, within_description, without_untold};
 use super::{Misfit, NamedEffect, Options, Outcome, PoseError, RowResidual, Trace, Verdict};
 use crate::campaign::Campaign;
-use crate::identify::baseline::with_values;
 use crate::identify::displacement::{declared_residuals, declared_rms};
 use crate::identify::encoders::EncodersRead;
 use crate::identify::normal::{Fit, Sign};
@@ -49,6 +47,8 @@ pub fn report(
         Ok((model, setting)) => (model, setting, &polished),
         Err(_) => (found.clone(), bench.at(&found.named)?, bench),
     };
+    let model = within_description(campaign, prepared, &setting, &model);
+    let written = without_untold(campaign, prepared, bench_of_numbers, &setting, &model);
     let (model, problem) = (&model, &setting.problem);
     let fitted_rows = || all.problem.blocks.iter().flat_map(|block| block.rows.iter().copied());
     let unseen = if all.problem.held_out.is_empty() { &all.problem.blocks } else { &all.problem.held_out };
@@ -74,13 +74,21 @@ pub fn report(
     };
     let estimates_before = numbers(campaign, prepared, &all, &base, &spread_of(&untouched, &all, &base));
     let spread = spread_of(bench_of_numbers, &setting, model);
-    let estimates = numbers(campaign, prepared, &setting, model, &spread);
+    // What is told of the joints, and the errors, are those of what is written.
+    let (of_written, written) = written.as_ref().map_or((&setting, model), |(setting, model)| (setting, model));
+    let estimates = if written.named == model.named {
+        numbers(campaign, prepared, &setting, model, &spread)
+    } else {
+        numbers(campaign, prepared, of_written, written, &spread_of(bench_of_numbers, of_written, written))
+    };
     let mut effects = effects(bench, &setting, model, outcome, &spread, options);
-    let holdout_rms = misfit(&setting, model).holdout_rms;
+    let holdout_rms = misfit(of_written, written).holdout_rms;
     let slipped = effects.iter_mut().find(|named| named.effect.kind() == BASE_SLIP.name);
     let isolated = isolated(prepared, outcome, holdout_rms, slipped);
     effects.extend(isolated);
-    let values: Vec<f64> = estimates.iter().map(|estimate| estimate.value).collect();
+    // What a named effect may as well be has shown, if it is there.
+    let may_be = |name: &String| effects.iter().any(|named| named.same_as.contains(name));
+    let invisible = bench.invisible.iter().filter(|name| !may_be(name)).cloned().collect();
     let held_out = problem.held_out.iter().map(|block| prepared.data.poses[block.pose].clone()).collect();
     let declared =
         Misfit { rms: declared_rms(prepared, fitted_rows()), holdout_rms: declared_rms(prepared, unseen_rows()) };
@@ -88,7 +96,8 @@ pub fn report(
     let (description, after, left_after) = if outcome.verdict == Verdict::Insufficient {
         (campaign.robot.clone(), declared, declared_residuals(prepared))
     } else {
-        (described(campaign, &values, &effects), misfit(&setting, model), setting.residuals(&model.fit))
+        let values = values(prepared, of_written, written);
+        (described(campaign, &values, &effects)?, misfit(of_written, written), of_written.residuals(&written.fit))
     };
     let (residuals, pose_errors) = residuals(prepared, &all, &all.residuals(&base.fit), &left_after);
     let left = outcome.left.as_ref();
@@ -108,7 +117,7 @@ pub fn report(
         unexplained: left.map_or(0.0, |left| left.fraction),
         depends_on: left.map_or_else(Vec::new, |left| left.depends_on.clone()),
         rivals: if outcome.verdict == Verdict::Insufficient { Vec::new() } else { rivals(bench, found) },
-        invisible: bench.invisible.clone(),
+        invisible,
         next: Vec::new(),
         description,
         effects,
@@ -199,13 +208,7 @@ fn numbers(
     model: &Fitted,
     spread: &DMatrix<f64>,
 ) -> Vec<Estimate> {
-    let mut values = prepared.values.clone();
-    for (&column, &value) in model.fit.columns.iter().zip(model.fit.coefficients.iter()) {
-        if column < setting.own.len() {
-            values[column] = value;
-        }
-    }
-    estimates(&campaign.robot, prepared, &values, &model.fit.columns, spread)
+    estimates(&campaign.robot, prepared, &values(prepared, setting, model), &model.fit.columns, spread)
 }
 
 /// The named effects, the one whose removal costs most first.
@@ -274,7 +277,7 @@ fn effects(
 
 /// Numbers with those out of a grid that go with each, the smallest of these
 /// first: fitting may have brought them out of order.
-fn in_order(numbers: Vec<EffectParameter>, shapes: Vec<EffectParameter>) -> Vec<EffectParameter> {
+pub(super) fn in_order(numbers: Vec<EffectParameter>, shapes: Vec<EffectParameter>) -> Vec<EffectParameter> {
     let mut order: Vec<usize> = (0..shapes.len()).collect();
     if numbers.len() == shapes.len() {
         order.sort_by(|&a, &b| shapes[a].value.total_cmp(&shapes[b].value));
@@ -357,19 +360,6 @@ fn isolated(
         found.push(one(effect, lines, &outliers, same));
     }
     found
-}
-
-/// The description with identified numbers and named effects, which says so.
-fn described(campaign: &Campaign, values: &[f64], effects: &[NamedEffect]) -> Description {
-    let mut description = with_values(&campaign.robot, values);
-    let written = effects.iter().filter(|named| named.effect.write_into(&mut description));
-    let names: Vec<String> = written.map(|named| named.effect.to_string()).collect();
-    let added = if names.is_empty() { String::new() } else { format!(", with {}", names.join(", ")) };
-    let campaign = if campaign.name.is_empty() { "a campaign" } else { &campaign.name };
-    let separator = if description.source.is_empty() { "" } else { "\n" };
-    description.source =
-        format!("{}{separator}Compliances identified from {campaign}{added}.", description.source.trim_end());
-    description
 }
 
 fn residuals(

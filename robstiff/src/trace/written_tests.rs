@@ -92,6 +92,41 @@ holdout: {fraction: 0.25, seed: 1}
     assert!(off.after.holdout_rms > 4.0 * off.after.rms && off.why.contains("held out"), "{}", off.why);
 }
 
+/// Noise that takes a declared coupling or softening beyond what a description says
+/// leaves one that can be read back, and it does what is told of it.
+#[test]
+fn what_is_identified_can_be_read_back() {
+    let plan = "\
+poses: {count: 14, floor: 100 mm, column: 600 mm}
+visits: 1
+ramp: [0.5, 1]
+force: {bounds: [500 N, 1300 N]}
+noise: {displacement: 8 um}
+";
+    for effect in [
+        "{kind: joint_coupling, at: \"joints 4,5\", value: 1.5e-6 rad/Nm}",
+        "{kind: stiffness_nonlinearity, at: joint 5, added: -1.3e-6 rad/Nm, knee: 150 Nm}",
+    ] {
+        let mut held = 0;
+        for seed in 1..=6 {
+            let campaign = measured(&robot(effect), seed, plan);
+            let found = crate::identify::identify(&campaign).expect("joints are seen");
+            let read = Description::parse("robot.yaml", &found.description.to_yaml());
+            let read = read.unwrap_or_else(|problems| panic!("{effect}, {seed}: {problems}"));
+            let predicted = crate::identify::predict(&read, &campaign).expect("the same robot").rms;
+            let told = found.rms.expect("of displacements");
+            assert!((predicted / told - 1.0).abs() < 1e-6, "{effect}, {seed}: {predicted} and {told}");
+            let [first, second] = [4, 5].map(|joint: usize| read.joints[joint - 1].compliance());
+            held += match read.effects[0] {
+                crate::Effect::JointCoupling { value, .. } => i32::from(value.abs() > 0.99 * (first * second).sqrt()),
+                crate::Effect::StiffnessNonlinearity { added, .. } => i32::from(-added > 0.99 * second),
+                _ => unreachable!("one of the two"),
+            };
+        }
+        assert!(held > 0, "{effect}: the noise takes none beyond");
+    }
+}
+
 /// As few draws as resolve the level of the names are enough to see structure.
 #[test]
 fn structure_is_seen_with_few_draws() {

@@ -1,0 +1,128 @@
+//! What is written down of a model: a description that can be read back and does what
+//! the model does.
+
+use std::format;
+use std::rc::Rc;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use robstiff_robots::Description;
+
+use super::NamedEffect;
+use super::bench::Bench;
+use super::found::{EffectParameter, Found};
+use super::model::{Fitted, Named, Setting};
+use super::report::in_order;
+use crate::campaign::Campaign;
+use crate::identify::baseline::with_values;
+use crate::identify::normal::Sign;
+use crate::identify::prepare::Prepared;
+use crate::identify::readable::{UNREADABLE, is_readable, readable};
+
+/// Numbers that noise takes beyond what a description says cost no more than this many
+/// times the residual variance when they are held there: three standard deviations.
+const BY_NOISE: f64 = 9.0;
+
+/// A model whose numbers a description takes, the others fitted again; as it is where
+/// that would be another model.
+pub fn within_description(
+    campaign: &Campaign,
+    prepared: &Prepared<'_>,
+    setting: &Setting<'_>,
+    model: &Fitted,
+) -> Fitted {
+    let signs: Vec<Sign> = model.fit.columns.iter().map(|&column| setting.signs[column]).collect();
+    let described = |fit: &crate::identify::normal::Fit| {
+        let model = Fitted { fit: fit.clone(), ..model.clone() };
+        let mut description = with_values(&campaign.robot, &values(prepared, setting, &model));
+        let place = |column: &usize| fit.columns.iter().position(|of| of == column);
+        let own = |effect: usize| -> Vec<usize> {
+            let columns = (0..prepared.own.len()).filter(|&column| prepared.own[column].effect == Some(effect));
+            columns.filter_map(|column| place(&column)).collect()
+        };
+        let mut places: Vec<Vec<usize>> = (0..description.effects.len()).map(own).collect();
+        for &one in &model.named {
+            let found = plain(setting, &model, one);
+            if let Some(effect) = found.effect().filter(|_| !found.is_of_rig()) {
+                description.effects.push(effect);
+                places.push(setting.variant(one).columns.iter().filter_map(place).collect());
+            }
+        }
+        (description, places)
+    };
+    let variance = model.fit.rss / setting.problem.freedom(&model.fit);
+    let held = readable(&setting.problem.total, &model.fit, &signs, described);
+    match held.filter(|held| held.rss - model.fit.rss <= BY_NOISE * variance) {
+        Some(fit) => Fitted { fit, ..model.clone() },
+        None => model.clone(),
+    }
+}
+
+/// The model without effects that a description has a word for but takes at no such
+/// numbers, with its setting; `None` where there are none of these.
+pub fn without_untold<'c>(
+    campaign: &Campaign,
+    prepared: &Prepared<'_>,
+    bench: &Bench<'c>,
+    setting: &Setting<'_>,
+    model: &Fitted,
+) -> Option<(Rc<Setting<'c>>, Fitted)> {
+    let mut description = with_values(&campaign.robot, &values(prepared, setting, model));
+    let mut told = |&one: &Named| {
+        let found = plain(setting, model, one);
+        found.is_of_rig() || found.effect().is_none() || found.write_into(&mut description)
+    };
+    let rest: Vec<Named> = model.named.iter().copied().filter(&mut told).collect();
+    if rest.len() == model.named.len() {
+        return None;
+    }
+    let setting = bench.at(&rest).ok()?;
+    let fitted = setting.fit(&rest).ok().or_else(|| setting.fit_loosely(&rest))?;
+    let fitted = within_description(campaign, prepared, &setting, &fitted);
+    Some((setting, fitted))
+}
+
+/// The description's own numbers in a model.
+pub fn values(prepared: &Prepared<'_>, setting: &Setting<'_>, model: &Fitted) -> Vec<f64> {
+    let mut values = prepared.values.clone();
+    for (&column, &value) in model.fit.columns.iter().zip(model.fit.coefficients.iter()) {
+        if column < setting.own.len() {
+            values[column] = value;
+        }
+    }
+    values
+}
+
+/// An effect of a model with its numbers alone.
+fn plain(setting: &Setting<'_>, model: &Fitted, one: Named) -> Found {
+    let variant = setting.variant(one);
+    let number = |(k, column): (usize, &usize)| {
+        let number = &setting.numbers[column - setting.own.len()];
+        let at = model.fit.columns.iter().position(|of| of == column).expect("its own model has it");
+        let whole = number.share_of.map_or(1.0, |joint| setting.joint_value(&model.fit, joint));
+        let name = variant.names.get(k).copied().unwrap_or(number.name);
+        EffectParameter { name, value: model.fit.coefficients[at] / whole, std: None, unit: number.unit }
+    };
+    let numbers = variant.columns.iter().enumerate().map(number).collect();
+    let candidate = &setting.candidates[one.candidate];
+    Found::new(candidate.kind, candidate.place, in_order(numbers, variant.shape.clone()))
+}
+
+/// The description with identified numbers and named effects, which says so.
+///
+/// # Errors
+/// Why there is none.
+pub fn described(campaign: &Campaign, values: &[f64], effects: &[NamedEffect]) -> Result<Description, String> {
+    let mut description = with_values(&campaign.robot, values);
+    if !is_readable(&description) {
+        return Err(String::from(UNREADABLE));
+    }
+    let written = effects.iter().filter(|named| named.effect.write_into(&mut description));
+    let names: Vec<String> = written.map(|named| named.effect.to_string()).collect();
+    let added = if names.is_empty() { String::new() } else { format!(", with {}", names.join(", ")) };
+    let campaign = if campaign.name.is_empty() { "a campaign" } else { &campaign.name };
+    let separator = if description.source.is_empty() { "" } else { "\n" };
+    description.source =
+        format!("{}{separator}Compliances identified from {campaign}{added}.", description.source.trim_end());
+    Ok(description)
+}
