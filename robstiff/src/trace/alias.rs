@@ -5,10 +5,11 @@ use std::vec::Vec;
 
 use super::Options;
 use super::bench::Bench;
-use super::catalogue::{EITHER, LOST_MOTION, STIFFNESS_NONLINEARITY};
+use super::catalogue::{EITHER, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY};
 use super::found::Place;
 use super::model::{Fitted, Named, Setting};
 use super::selection::{CURVATURE, WITHIN_REACH, best_with};
+use crate::Effect;
 use robstiff_robots::effect::Place as Part;
 
 /// Columns that differ by less than this fraction of their energy, once the
@@ -57,7 +58,24 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    found.into_iter().map(|(_, name)| name).collect()
+    found.into_iter().map(|(_, name)| name).chain(dead_zone(bench, &own, model, one)).collect()
+}
+
+/// The hysteresis that a softening may as well be where each visit has one row: a
+/// play operator that comes from rest, `tau - r` beyond `r`, is a dead zone, and a
+/// joint with one is softer at large torques. Hysteresis is no candidate then.
+fn dead_zone(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted, one: Named) -> Option<String> {
+    let (own, scene) = (&setting.candidates[one.candidate], bench.scene());
+    if own.kind.name != STIFFNESS_NONLINEARITY.name || scene.has_sequences() {
+        return None;
+    }
+    let softens = |column: &usize| {
+        let at = model.fit.columns.iter().position(|of| of == column);
+        at.is_some_and(|at| model.fit.coefficients[at] < 0.0)
+    };
+    let known = |effect: &Effect| effect.kind() == HYSTERESIS.name && own.place == Place::Part(effect.place());
+    (setting.variant(one).columns.iter().any(softens) && !scene.description.effects.iter().any(known))
+        .then(|| std::format!("{}@{}", HYSTERESIS.name, own.place))
 }
 
 /// Whether a candidate is the other name of what lost motion and hardening both

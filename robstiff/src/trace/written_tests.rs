@@ -92,6 +92,33 @@ holdout: {fraction: 0.25, seed: 1}
     assert!(off.after.holdout_rms > 4.0 * off.after.rms && off.why.contains("held out"), "{}", off.why);
 }
 
+/// With one row a visit, hysteresis is softer at large torques and no more: it must
+/// not be told as that. What is written does what was told.
+#[test]
+fn hysteresis_of_single_rows_may_be_what_softens() {
+    let plan = "\
+scatter: 0.2
+poses: {count: 30, floor: 100 mm, column: 600 mm}
+force: {bounds: [500 N, 1300 N]}
+noise: {displacement: 8 um, stated: no}
+hidden:
+  effects:
+    - {kind: hysteresis, at: joint 2, weight1: 8e-8 rad/Nm, radius1: 150 Nm}
+";
+    for seed in [3, 5, 7] {
+        let campaign = measured(&robot(""), seed, plan);
+        let found = traced(&campaign);
+        let softer = found.effects.iter().find(|named| named.effect.to_string() == "stiffness_nonlinearity@joint 2");
+        if let Some(softer) = softer {
+            assert!(softer.same_as.contains(&"hysteresis@joint 2".to_string()), "{seed}: {:?}", softer.same_as);
+            assert!(!found.invisible.contains(&"hysteresis@joint 2".to_string()), "{seed}");
+        }
+        assert!(softer.is_some() || found.verdict != Verdict::Explained, "{seed}: {:?}", names(&found));
+        let predicted = crate::identify::predict(&found.description, &campaign).expect("the same robot").rms;
+        assert!((predicted / found.after.rms - 1.0).abs() < 1e-3, "{seed}: {predicted} and {}", found.after.rms);
+    }
+}
+
 /// Noise that takes a declared coupling or softening beyond what a description says
 /// leaves one that can be read back, and it does what is told of it.
 #[test]

@@ -31,9 +31,7 @@ const OF_RADII: [&str; 3] = ["radius1", "radius2", "radius3"];
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     // Without loads that follow one another there is no order to depend on.
-    let mut rows = vec![0_usize; scene.data.visits.len()];
-    scene.data.rows.iter().for_each(|row| rows[row.visit] += 1);
-    if rows.iter().all(|&rows| rows < 2) {
+    if !scene.has_sequences() {
         return (1..=scene.joints()).for_each(|joint| offers.invisible(Part::Joint(joint)));
     }
     for joint in 1..=scene.joints() {

@@ -157,6 +157,12 @@ impl Scene<'_> {
         (largest > 1e-9 * possible).then_some(largest)
     }
 
+    /// Whether loads follow one another in any visit.
+    pub fn has_sequences(&self) -> bool {
+        let mut loaded = std::vec![false; self.data.visits.len()];
+        self.data.rows.iter().any(|row| core::mem::replace(&mut loaded[row.visit], true))
+    }
+
     /// The unit of a compliance of a joint (from 1).
     pub fn compliance_unit(&self, joint: usize) -> &'static str {
         if self.turns(joint) { "rad/Nm" } else { "m/N" }
