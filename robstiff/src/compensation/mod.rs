@@ -206,8 +206,7 @@ fn correct<const N: usize, R: Robot<N>>(
     for round in 0..=MOST_ROUNDS {
         let pose = robot.transform(&q);
         let yields = |wrench: &Vector6<f64>| robot.deflection_with(&q, wrench, &mut state.clone());
-        let compliance = || robot.compliance(&q).fixed_view::<3, 3>(0, 0).into_owned();
-        let stand = settle(&pose, &point.pose, contact, yields, compliance).ok_or(Uncorrectable::PulledIn)?;
+        let stand = settle(&pose, &point.pose, contact, yields).ok_or(Uncorrectable::PulledIn)?;
         let actual = turned(&pose, &stand.deflection);
         remaining = wanted.remaining(&actual);
         if remaining.distance < TOLERANCE && remaining.angle < TOLERANCE {

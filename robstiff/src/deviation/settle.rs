@@ -13,7 +13,16 @@ use crate::{Robot, State};
 const SETTLED: f64 = 1e-12;
 
 /// Steps until they must have.
-const MOST_STEPS: usize = 50;
+const MOST_STEPS: usize = 100;
+
+/// Halvings of a step that leads no closer.
+const MOST_HALVINGS: usize = 10;
+
+/// Doublings of a brake that does not hold.
+const MOST_DOUBLINGS: i32 = 40;
+
+/// Forces change by this share of themselves (and of 1 N) for the slope of the arm.
+const CHANGE: f64 = 1e-6;
 
 /// Points at which arm and cut do not settle: the force grows faster with the
 /// displacement than the arm resists, or jumps with it.
@@ -47,14 +56,13 @@ pub(crate) struct Stand {
 }
 
 /// Where the tool comes to rest when the arm without load stands at `pose` and
-/// the path is at `wanted`. `yields` is the deflection under a wrench, `compliance`
-/// its slope about.
+/// the path is at `wanted`. `yields` is the deflection under a wrench. `None` where
+/// it does not come to rest.
 pub(crate) fn settle(
     pose: &Matrix4<f64>,
     wanted: &Matrix4<f64>,
     contact: &Contact,
     yields: impl Fn(&Vector6<f64>) -> Vector6<f64>,
-    compliance: impl FnOnce() -> Matrix3<f64>,
 ) -> Option<Stand> {
     let aside = translation(pose) - translation(wanted);
     let under = |off: &Vector3<f64>| {
@@ -70,22 +78,55 @@ pub(crate) fn settle(
     if contact.response == Matrix3::zeros() {
         return Some(finish(contact.wrench));
     }
-    // Newton's step with the slope about the unloaded state: exact where the arm
-    // is linear.
-    let slope = Matrix3::identity() - compliance() * contact.response;
-    if slope.determinant() <= 0.0 {
-        return None;
-    }
-    let inverse = slope.try_inverse()?;
+    let unbalanced = |off: &Vector3<f64>| aside + yields(&under(off)).fixed_rows::<3>(0) - off;
     let mut off = aside;
     for _ in 0..MOST_STEPS {
-        let step = inverse * (aside + yields(&under(&off)).fixed_rows::<3>(0) - off);
-        off += step;
-        if step.norm() < SETTLED {
-            return Some(finish(under(&off)));
+        let rest = unbalanced(&off);
+        // The slope under the present load: with backlash an arm is many times
+        // softer about none.
+        let slope = Matrix3::identity() - compliance(&yields, &under(&off)) * contact.response;
+        // Where the force outgrows the arm, Newton's step leads back against the force.
+        // The tool goes on with it, and rests where the arm is stiffer: a step of
+        // implicit Euler, as long as the slope allows.
+        let braked = |brake: f64| slope + Matrix3::identity() * brake;
+        let brakes = (0..MOST_DOUBLINGS).map(|k| 0.5 * 2.0_f64.powi(k));
+        let brake = core::iter::once(0.0).chain(brakes).find(|brake| stable(&braked(*brake)))?;
+        let mut step = braked(2.0 * brake).try_inverse()? * rest;
+        if brake == 0.0 {
+            if step.norm() < SETTLED {
+                return Some(finish(under(&(off + step))));
+            }
+            // Kinks and bends of the arm make whole steps miss.
+            let closer = |step: &Vector3<f64>| unbalanced(&(off + step)).norm() < rest.norm();
+            for _ in 0..MOST_HALVINGS {
+                if closer(&step) {
+                    break;
+                }
+                step *= 0.5;
+            }
         }
+        off += step;
     }
     None
+}
+
+/// Whether a tool that is pushed aside comes back: all eigenvalues of what it meets,
+/// the share that the force does not take over, have positive real parts (Hurwitz).
+fn stable(slope: &Matrix3<f64>) -> bool {
+    let (trace, determinant) = (slope.trace(), slope.determinant());
+    let minors = (trace * trace - (slope * slope).trace()) / 2.0;
+    trace > 0.0 && determinant > 0.0 && trace * minors > determinant
+}
+
+/// How the deflection grows with the force about a wrench (m/N), by central
+/// differences.
+fn compliance(yields: &impl Fn(&Vector6<f64>) -> Vector6<f64>, wrench: &Vector6<f64>) -> Matrix3<f64> {
+    let change = CHANGE * (1.0 + wrench.fixed_rows::<3>(0).norm());
+    let column = |axis: usize| {
+        let by = Vector6::ith(axis, change);
+        ((yields(&(wrench + by)) - yields(&(wrench - by))) / (2.0 * change)).fixed_rows::<3>(0).into_owned()
+    };
+    Matrix3::from_columns(&[0, 1, 2].map(column))
 }
 
 /// The arm at every point of a path under load, commanded to other postures or
@@ -108,14 +149,7 @@ pub(crate) fn displaced<const N: usize>(
                 parts(robot, &q, wrench, state).zip(factors).map(|((_, part), factor)| part * *factor).sum()
             }
         };
-        let compliance = || robot.compliance(&q).fixed_view::<3, 3>(0, 0).into_owned();
-        let settled = settle(
-            &robot.transform(&q),
-            &point.pose,
-            contact,
-            |wrench| yields(wrench, &mut before.clone()),
-            compliance,
-        );
+        let settled = settle(&robot.transform(&q), &point.pose, contact, |wrench| yields(wrench, &mut before.clone()));
         match settled {
             Some(stand) => {
                 yields(&stand.wrench, &mut before);
