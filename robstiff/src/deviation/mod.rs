@@ -113,7 +113,8 @@ pub struct DeviationPoint {
     /// The same across the machined surface, into the part (m): the error of the
     /// surface, where there is one.
     pub error: Option<f64>,
-    /// The error that is largest, either way, among the forces of a revolution (m).
+    /// The error that is largest, either way, among the forces of a revolution (m);
+    /// none where there is no force.
     pub peak: Option<f64>,
 }
 
@@ -165,7 +166,7 @@ impl Deviation {
                 displacement: stand.off,
                 components: contact.frame.map(|frame| frame.components(&shift)),
                 error: contact.into.map(|into| into.dot(&shift)),
-                peak: contact.into.and_then(|into| peak(robot, &point.q, contact, &load.revolution, &into)),
+                peak: peak(robot, &point.q, contact, &load.revolution),
             }
         });
         Ok(Self { points: points.collect() })
@@ -179,8 +180,9 @@ fn peak<const N: usize>(
     q: &nalgebra::SVector<f64, N>,
     contact: &Contact,
     revolution: &[Vector3<f64>],
-    into: &Vector3<f64>,
 ) -> Option<f64> {
+    // The forces of a revolution have no direction where their mean has none.
+    let into = contact.into.filter(|_| contact.wrench != Vector6::zeros())?;
     let error = |force: &Vector3<f64>| {
         let force = contact.turn * force;
         let wrench = Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0);

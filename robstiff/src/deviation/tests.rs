@@ -291,11 +291,21 @@ fn where_the_tool_plunges_the_cut_has_no_direction() {
     let text = "x,y,z,ux,uy,uz\n1.5,0,0.7,0,0,-1\n1.5,0,0.65,0,0,-1\n1.5,0,0.6,0,0,-1\n1.6,0,0.6,0,0,-1\n";
     let path = ToolPath::parse("plunge.csv", text, &description, Vector3::z_axis()).unwrap();
     let path = path.solve(&robot, None).unwrap();
-    let forces = Forces::Model(cut("3 mm", "6000 rpm", "0.1 mm/tooth"));
+    let cut = cut("3 mm", "6000 rpm", "0.1 mm/tooth");
+    let revolution: Vec<_> = cut.revolution(72).samples.into_iter().map(|(_, force)| force).collect();
+    let forces = Forces::Model(cut);
     let load = load_of_cut(&forces, &path, Vector3::z_axis(), Surface::Side);
     assert_eq!(load.undirected, [2, 3]);
     let found = Deviation::of(&robot, &path, &load).unwrap();
     assert_eq!((found.points[0].distance(), found.points[0].error), (0.0, None));
     let q: SVector<f64, 6> = path.points[3].q;
     assert!((found.points[3].displacement - robot.deflection(&q, &found.points[3].wrench)).norm() < 1e-11);
+
+    // The floor is there without a feed; the forces of a revolution are not.
+    let load = load_of_cut(&forces, &path, Vector3::z_axis(), Surface::Face).with_revolution(revolution);
+    let found = Deviation::of(&robot, &path, &load).unwrap();
+    assert_eq!((found.points[0].error, found.points[0].peak), (Some(0.0), None));
+    assert_eq!((found.points[1].error, found.points[1].peak), (Some(0.0), None));
+    assert!(found.points[2].peak.unwrap() != 0.0 && found.points[3].peak.unwrap() != 0.0);
+    assert!(found.stretches(1e-9)[0].holds);
 }
