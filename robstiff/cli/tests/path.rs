@@ -153,3 +153,25 @@ fn points_without_a_force_are_in_no_mean() {
     let [mean, worst] = ["mean_m", "worst_m"].map(|key| told["distance"][key].as_f64().unwrap());
     assert!(mean > 0.95 * worst, "{told}");
 }
+
+#[test]
+fn an_arm_that_lags_out_of_the_cut_breaks_no_tolerance() {
+    let folder = folder("path-lag");
+    let [forces, told, robot] = ["forces.csv", "told.json", "robot.yaml"].map(|name| inside(&folder, name));
+    let of_catalogue = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots/kuka-kr270-r2700.yaml");
+    let lag =
+        |joint: u8| format!("  - {{kind: hysteresis, at: joint {joint}, radius1: 100 Nm, weight1: 1e-6 rad/Nm}}\n");
+    let effects = [1, 2, 3].map(lag).concat();
+    fs::write(&robot, format!("{}\neffects:\n{effects}", fs::read_to_string(of_catalogue).unwrap())).unwrap();
+    let rows = ["100,800,-300\n".repeat(4), "0,0,0\n".repeat(36)].concat();
+    fs::write(&forces, format!("Fx,Fy,Fz\n{rows}")).unwrap();
+    let path = ["path", &robot, &pocket(), "--forces", &forces, "--tolerance", "0.05 mm", "--json", &told];
+    let page = run(&path).out;
+    assert!(page.contains("broken at 4 of the 4 points with a force\n"), "{page}");
+    let told = &json(&told)["deviation"];
+    let stretches = told["tolerance"]["stretches"].as_array().unwrap();
+    let lines: Vec<_> = stretches.iter().map(|each| (each["lines"].to_string(), each["holds"].clone())).collect();
+    assert_eq!(lines, [("[2,5]".to_owned(), false.into()), ("[6,41]".to_owned(), true.into())]);
+    // The lag itself stays to be seen.
+    assert!(told["points"][6]["error_m"].as_f64().unwrap().abs() > 5e-5, "{told}");
+}

@@ -130,9 +130,11 @@ impl DeviationPoint {
         self.wrench != Vector6::zeros()
     }
 
-    /// The error that a tolerance is compared with: the peak where it is known.
+    /// The error that a tolerance is compared with (m): the peak where it is known.
+    /// None out of the cut: an arm with hysteresis is off there too, but no surface is
+    /// made.
     pub fn judged(&self) -> Option<f64> {
-        self.peak.or(self.error)
+        self.peak.or(self.error).filter(|_| self.in_cut())
     }
 }
 

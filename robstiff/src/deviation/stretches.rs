@@ -15,7 +15,7 @@ pub struct Stretch {
     pub s: [f64; 2],
     /// Whether the tolerance holds.
     pub holds: bool,
-    /// The largest error, either way, with its sign (m).
+    /// The largest error in the cut, either way, with its sign (m).
     pub worst: f64,
 }
 
@@ -51,8 +51,8 @@ fn larger(one: f64, other: f64) -> f64 {
 
 impl Deviation {
     /// Where the error of the surface is within a tolerance either way (m), and
-    /// where it is not, in the order of the path. Where there is no surface, there
-    /// is nothing to break.
+    /// where it is not, in the order of the path. Where there is no surface, or no
+    /// force that makes one, there is nothing to break.
     pub fn stretches(&self, tolerance: f64) -> Vec<Stretch> {
         let mut stretches: Vec<Stretch> = Vec::new();
         for (i, point) in self.points.iter().enumerate() {
@@ -83,7 +83,7 @@ impl Deviation {
 
     /// The error of the surface over the points in the cut that have one.
     pub fn errors(&self) -> Summary {
-        Summary::of(self.in_cut().filter_map(DeviationPoint::judged))
+        Summary::of(self.points.iter().filter_map(DeviationPoint::judged))
     }
 
     /// The distance from the path over the points in the cut.

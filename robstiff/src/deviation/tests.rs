@@ -229,6 +229,32 @@ fn moves_without_force_do_not_dilute_the_errors() {
 }
 
 #[test]
+fn what_hysteresis_keeps_out_of_the_cut_breaks_no_tolerance() {
+    let (_, _, path) = solved::<6>("kuka-kr270-r2700", Vector3::z_axis());
+    let mut description = described("kuka-kr270-r2700");
+    let ([radius1, weight1], none) = ([100.0, 1e-6], 0.0);
+    let lagging = |joint| Effect::Hysteresis {
+        joint,
+        radius1,
+        weight1,
+        radius2: none,
+        weight2: none,
+        radius3: none,
+        weight3: none,
+    };
+    description.effects = (1..=3).map(lagging).collect();
+    let robot = Generic::<6>::new(&description).unwrap();
+    let mut text = String::from("Fx,Fy,Fz\n");
+    (0..path.points.len()).for_each(|i| text += if i < 4 { "100,800,-300\n" } else { "0,0,0\n" });
+    let load = table(&text).unwrap().load(&path, ForceFrame::Base, Vector3::z_axis(), Surface::Side).unwrap();
+    let found = Deviation::of(&robot, &path, &load).unwrap();
+    assert!(found.points[3..6].iter().all(|point| point.error.unwrap().abs() > 5e-5), "{found:?}");
+    let told: Vec<_> = found.stretches(5e-5).iter().map(|stretch| (stretch.points, stretch.holds)).collect();
+    assert_eq!(told, [([0, 3], false), ([4, 49], true)]);
+    assert_eq!(found.stretches(5e-5)[1].worst, 0.0);
+}
+
+#[test]
 fn high_speed_cutting_removes_as_much_with_less_force_and_error() {
     let (robot, _, path) = solved::<5>("rv130hsc", Vector3::x_axis());
     let conventional = cut("3 mm", "6000 rpm", "0.1 mm/tooth");

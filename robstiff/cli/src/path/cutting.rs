@@ -97,7 +97,7 @@ pub struct Cutting {
     pub undirected: Vec<usize>,
     /// The tolerance, and where it holds (m).
     pub tolerance: Option<(f64, Vec<Stretch>)>,
-    /// Shares of the error: over the points that break the tolerance, else all.
+    /// Shares of the error: over the points that break the tolerance, else all with a force.
     pub blame: Vec<(String, f64)>,
     /// The two cuts side by side.
     pub compared: Option<[Compared; 2]>,
@@ -208,12 +208,12 @@ impl Asked {
         }
         let deviation = Deviation::of(robot, solved, &load).map_err(Failure::new)?;
         let tolerance = self.tolerance.map(|tolerance| (tolerance, deviation.stretches(tolerance)));
-        let broken = |i: usize| match self.tolerance {
-            Some(tolerance) => deviation.points[i].judged().is_some_and(|error| error.abs() > tolerance),
-            None => true,
-        };
-        let any = (0..deviation.points.len()).any(broken);
-        let shares = blame(robot, solved, &load, &deviation, |i| !any || broken(i));
+        let beyond = |i: usize, limit: f64| deviation.points[i].judged().is_some_and(|error| error.abs() > limit);
+        let broken = self.tolerance.filter(|limit| (0..deviation.points.len()).any(|i| beyond(i, *limit)));
+        let shares = blame(robot, solved, &load, &deviation, |i| match broken {
+            Some(limit) => beyond(i, limit),
+            None => deviation.points[i].in_cut(),
+        });
         let blame = shares.into_iter().map(|(element, share)| (element.to_string(), share)).collect();
         let compared = match (&self.source, &self.against) {
             (Source::Cut(file), Some((other, name))) => {
