@@ -111,6 +111,28 @@ fn a_cut_along_the_tool_has_no_direction() {
 }
 
 #[test]
+fn recorded_forces_along_fixed_axes_need_no_direction() {
+    let folder = folder("machining-drill");
+    let [path, cut, told] = ["down.csv", "drill.yaml", "told.json"].map(|name| inside(&folder, name));
+    fs::write(&path, "x,y,z,ux,uy,uz\n1.7,0,0.70,0,0,-1\n1.7,0,0.68,0,0,-1\n").unwrap();
+    fs::write(folder.join("thrust.csv"), "Fx,Fy,Fz\n0,0,300\n").unwrap();
+    let arm = "kuka-kr270-r2700";
+    // The joints are all at 0: the tool points along x.
+    let online = ["online", arm, "--at", "0,0,0,0,0,0", "--toward", "1,0,0", "--cut", &cut];
+    for frame in ["base", "tool"] {
+        fs::write(&cut, format!("measured: {{file: thrust.csv, frame: {frame}, on: tool}}\n")).unwrap();
+        succeed(&["path", arm, &path, "--cut", &cut, "--surface", "face", "--json", &told]);
+        let told = &json(&told)["deviation"];
+        assert_eq!((&told["points_with_force"], told["lines_without_direction"].to_string()), (&2.into(), "[]".into()));
+        succeed(&online);
+    }
+    fs::write(&cut, "measured: {file: thrust.csv, frame: cut, on: tool}\n").unwrap();
+    let said = fail(1, &["path", arm, &path, "--cut", &cut]);
+    assert!(said.contains("has no direction anywhere"), "{said}");
+    assert!(fail(2, &online).contains("--toward goes along the tool's axis"));
+}
+
+#[test]
 fn a_path_that_is_not_solved_is_not_drawn() {
     let folder = folder("machining-unsolved");
     let page = inside(&folder, "page.html");

@@ -12,8 +12,8 @@ use crate::path::{PathPoint, SolvedPath};
 const CHANGE: f64 = 1e-4;
 
 /// What a cut pushes the tool with at every point of a path: the mean force, turned
-/// by feed and tool axis. `axis` is that of the tool in the TCP's frame, from the
-/// spindle to the tip.
+/// by feed and tool axis, or as recorded along the axes of the base's or the TCP's
+/// frame. `axis` is that of the tool in the TCP's frame, from the spindle to the tip.
 ///
 /// The force of the model follows a displacement across the wall (which changes
 /// the width) and along the axis (which changes the depth); a measured one stays.
@@ -31,21 +31,18 @@ pub fn load_of_cut<const N: usize>(
         Forces::Model(cut) => response(cut),
         Forces::Measured { .. } => Matrix3::zeros(),
     };
+    let mean = forces.mean();
     let mut undirected = Vec::new();
     let contacts = path.points.iter().map(|point| {
-        let (mut contact, rotation) = (contact(point, axis, surface, wall), rotation(point));
-        let Some(frame) = contact.frame else {
+        let mut contact = contact(point, axis, surface, wall);
+        let Some(turn) = forces.to_base(contact.frame.as_ref(), &rotation(point)) else {
             undirected.push(point.line);
             return contact;
         };
-        let force = forces.mean_in_base(&frame, &rotation);
+        let force = turn * mean;
         contact.wrench = Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0);
-        let matrix = frame.matrix();
-        contact.response = matrix * response * matrix.transpose();
-        contact.turn = match forces {
-            Forces::Model(_) => matrix,
-            Forces::Measured { force, .. } => force.to_base(&frame, &rotation),
-        };
+        contact.response = turn * response * turn.transpose();
+        contact.turn = turn;
         contact
     });
     let contacts = contacts.collect();

@@ -86,7 +86,8 @@ pub struct Load {
     /// counts.
     pub revolution: Vec<Vector3<f64>>,
     /// The lines at which there is no force because the tool plunges or stays in
-    /// place, so that the cut has no direction.
+    /// place, so that the cut has no direction. Forces along the axes of the base's
+    /// or the TCP's frame need none.
     pub undirected: Vec<usize>,
 }
 

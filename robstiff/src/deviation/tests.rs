@@ -8,7 +8,7 @@ use robstiff_robots::{Description, catalogue};
 use super::*;
 use crate::compensation::{Keep, compensate};
 use crate::elements::Element;
-use crate::milling::{Cut, CutFile, Direction, Engagement, ForceFrame, Forces};
+use crate::milling::{Cut, CutFile, Direction, Engagement, ForceFrame, Forces, MeasuredForce};
 use crate::path::ToolPath;
 use crate::{Effect, Generic, Robot, State, samples, with_robot};
 
@@ -334,4 +334,27 @@ fn where_the_tool_plunges_the_cut_has_no_direction() {
     assert_eq!((found.points[1].error, found.points[1].peak), (Some(0.0), None));
     assert!(found.points[2].peak.unwrap() != 0.0 && found.points[3].peak.unwrap() != 0.0);
     assert!(found.stretches(1e-9)[0].holds);
+}
+
+#[test]
+fn recorded_forces_along_fixed_axes_need_no_feed() {
+    let description = described("kuka-kr270-r2700");
+    let robot = Generic::<6>::new(&description).unwrap();
+    let text = "x,y,z,ux,uy,uz\n1.5,0,0.7,0,0,-1\n1.5,0,0.65,0,0,-1\n1.5,0,0.6,0,0,-1\n";
+    let path = ToolPath::parse("drill.csv", text, &description, Vector3::z_axis()).unwrap();
+    let path = path.solve(&robot, None).unwrap();
+    let load = |frame| {
+        let (force, _) = MeasuredForce::parse("f.csv", "Fx,Fy,Fz\n10,20,300\n", frame, false).unwrap();
+        load_of_cut(&Forces::Measured { force, speed: None }, &path, Vector3::z_axis(), Surface::Face)
+    };
+    let base = load(ForceFrame::Base);
+    assert!(base.undirected.is_empty());
+    assert!(base.contacts.iter().all(|contact| contact.wrench == Vector6::new(10.0, 20.0, 300.0, 0.0, 0.0, 0.0)));
+    let tool = load(ForceFrame::Tool);
+    assert!(tool.undirected.is_empty() && (tool.contacts[1].wrench[2] + 300.0).abs() < 1e-6, "the tool points down");
+    assert_eq!(load(ForceFrame::Cut).undirected, [2, 3, 4]);
+    // The floor meets each of them, and none where there is no force.
+    let revolution = std::vec![Vector3::z() * 400.0];
+    let found = Deviation::of(&robot, &path, &base.with_revolution(revolution)).unwrap();
+    assert!(found.points.iter().all(|point| point.judged().is_some_and(|peak| peak < point.error.unwrap())));
 }

@@ -63,13 +63,22 @@ pub enum Forces {
 }
 
 impl Forces {
-    /// The mean force on the tool in the robot's base frame \[N\], with the cut's
-    /// frame there and the rotation of the TCP's frame (which only a record in
-    /// that frame needs).
-    pub fn mean_in_base(&self, cut: &CutFrame, tool: &Matrix3<f64>) -> Vector3<f64> {
+    /// The mean force on the tool \[N\]: of the model along feed, normal and axis of
+    /// the cut, of a record along its own axes.
+    pub fn mean(&self) -> Vector3<f64> {
         match self {
-            Self::Model(model) => cut.force(&model.mean_force()),
-            Self::Measured { force, .. } => force.to_base(cut, tool) * force.mean(),
+            Self::Model(cut) => cut.mean_force(),
+            Self::Measured { force, .. } => force.mean(),
+        }
+    }
+
+    /// What turns such a force into the robot's base frame, with the rotation of the
+    /// TCP's frame. The model needs the cut's frame there, a record only where its
+    /// forces are along that; `None` where it is missing.
+    pub fn to_base(&self, cut: Option<&CutFrame>, tool: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+        match self {
+            Self::Model(_) => cut.map(CutFrame::matrix),
+            Self::Measured { force, .. } => force.to_base(cut, tool),
         }
     }
 }

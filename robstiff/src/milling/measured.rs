@@ -107,13 +107,14 @@ impl MeasuredForce {
         Some(Revolution { samples: parts.map(sample).collect() })
     }
 
-    /// What turns a force of these axes into the robot's base frame: from the
-    /// frame of the cut there, and the rotation of the TCP's frame.
-    pub fn to_base(&self, cut: &CutFrame, tool: &Matrix3<f64>) -> Matrix3<f64> {
+    /// What turns a force of these axes into the robot's base frame, with the rotation
+    /// of the TCP's frame; `None` where only the frame of a cut could tell and the
+    /// tool has none, since it plunges or stays in place.
+    pub fn to_base(&self, cut: Option<&CutFrame>, tool: &Matrix3<f64>) -> Option<Matrix3<f64>> {
         match self.frame {
-            ForceFrame::Cut => cut.matrix(),
-            ForceFrame::Base => Matrix3::identity(),
-            ForceFrame::Tool => *tool,
+            ForceFrame::Cut => cut.map(CutFrame::matrix),
+            ForceFrame::Base => Some(Matrix3::identity()),
+            ForceFrame::Tool => Some(*tool),
         }
     }
 }

@@ -296,8 +296,9 @@ fn records_are_averaged() {
     assert!((workpiece.mean() + tool.mean()).norm() < 1e-12);
     let frame = CutFrame::new(&-Vector3::z(), &Vector3::x()).unwrap();
     let turned = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
-    assert_eq!(workpiece.to_base(&frame, &turned), turned);
-    assert_eq!(tool.to_base(&frame, &turned), frame.matrix());
+    assert_eq!(workpiece.to_base(Some(&frame), &turned), Some(turned));
+    assert_eq!(tool.to_base(Some(&frame), &turned), Some(frame.matrix()));
+    assert_eq!((workpiece.to_base(None, &turned), tool.to_base(None, &turned)), (Some(turned), None));
 
     // By time, two turns in 0.2 s; without a speed nobody can tell.
     let timed = "t [ms],Fx,Fy,Fz\n0,1,0,0\n25,2,0,0\n50,3,0,0\n75,4,0,0\n100,1,0,0\n125,2,0,0\n150,3,0,0\n175,4,0,0\n";

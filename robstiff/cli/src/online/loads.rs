@@ -137,19 +137,18 @@ impl Asked {
         let sine = |wrench, name| Self::Sine { q: q.clone(), wrench, frequencies: frequencies.clone(), name };
         match (cut, load.force) {
             (Some((file, name)), _) => {
-                let (turn, frame) = frame(robot, &q, arguments)?;
+                let turn = turn(&file.forces, robot, &q, arguments)?;
+                let wrench = |force: Vector3<f64>| {
+                    let force = turn * force;
+                    Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0)
+                };
                 if let Forces::Measured { force, .. } = &file.forces {
-                    let turn = force.to_base(&frame, &turn);
-                    let sample = |sample: &robstiff::milling::Sample| {
-                        let force = turn * sample.force;
-                        Some((sample.time?, Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0)))
-                    };
+                    let sample = |sample: &robstiff::milling::Sample| Some((sample.time?, wrench(sample.force)));
                     if let Some(samples) = force.samples.iter().map(sample).collect() {
                         return Ok(Self::Record { q, samples, name });
                     }
                 }
-                let force = file.forces.mean_in_base(&frame, &turn);
-                Ok(sine(Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0), format!("the mean force of {name}")))
+                Ok(sine(wrench(file.forces.mean()), format!("the mean force of {name}")))
             }
             (None, Some(Force([x, y, z]))) => Ok(sine(Vector6::new(x, y, z, 0.0, 0.0, 0.0), "the force".to_owned())),
             (None, None) => Err(Failure::Usage(
@@ -340,13 +339,12 @@ impl Course {
     }
 }
 
-/// The turn of the tool at a pose, and the frame of a cut there.
-fn frame(robot: &Description, q: &[f64], arguments: &Arguments) -> Result<(Matrix3<f64>, CutFrame), Failure> {
+/// What turns the forces of a cut at a pose into the base frame.
+fn turn(forces: &Forces, robot: &Description, q: &[f64], arguments: &Arguments) -> Result<Matrix3<f64>, Failure> {
     let pose = with_robot!(robot, |arm| arm.transform(&SVector::from_column_slice(q)));
-    let turn: Matrix3<f64> = pose.fixed_view::<3, 3>(0, 0).into_owned();
-    let axis = turn * arguments.load.spindle_axis.unwrap_or(arguments.load.tool_axis).as_ref();
-    match CutFrame::new(&axis, &arguments.load.toward) {
-        Some(frame) => Ok((turn, frame)),
-        None => Err(Failure::Usage("--toward goes along the tool's axis; a cut feeds across it".to_owned())),
-    }
+    let tool: Matrix3<f64> = pose.fixed_view::<3, 3>(0, 0).into_owned();
+    let axis = tool * arguments.load.spindle_axis.unwrap_or(arguments.load.tool_axis).as_ref();
+    forces
+        .to_base(CutFrame::new(&axis, &arguments.load.toward).as_ref(), &tool)
+        .ok_or_else(|| Failure::Usage("--toward goes along the tool's axis; a cut feeds across it".to_owned()))
 }
