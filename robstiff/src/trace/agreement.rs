@@ -15,6 +15,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::lack_of_fit::resolving;
 use super::model::{Fitted, Setting};
 use crate::identify::normal::{Fit, Scaled};
 use crate::identify::problem::{Block, Problem};
@@ -61,8 +62,7 @@ pub fn agreement(setting: &Setting<'_>, model: &Fitted, options: &super::Options
     }
     let kinds: Vec<usize> = (0..problem.axes).step_by(3).collect();
     // Both kinds share the level.
-    let resolved = kinds.len() * super::lack_of_fit::draws(&super::Options { draws: 0, ..*options });
-    let draws = DRAWS.min(options.draws).max(resolved);
+    let draws = DRAWS.min(options.draws).max(kinds.len() * resolving(options));
     let asked: Vec<Agreement> = kinds.iter().filter_map(|&first| ask(&poses, first, draws, options.seed)).collect();
     let noise = asked.first()?.noise;
     let least = asked.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value))?;

@@ -55,10 +55,15 @@ pub enum Yardstick {
 /// The most tests for structure that share a level, those of held-out poses among them.
 const TESTS: f64 = 6.0;
 
-/// Draws that resolve the level of one of the tests for structure, which share one:
-/// as many as were asked for, or more.
+/// The fewest draws that resolve the level of one of the tests for structure, which
+/// share one.
+pub(super) fn resolving(options: &super::Options) -> usize {
+    (TESTS / options.alpha).ceil() as usize
+}
+
+/// As many draws as were asked for, or [as the level needs](resolving).
 pub(super) fn draws(options: &super::Options) -> usize {
-    options.draws.max((TESTS / options.alpha).ceil() as usize)
+    options.draws.max(resolving(options))
 }
 
 /// What the tests say.
