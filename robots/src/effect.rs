@@ -99,30 +99,33 @@ impl Effect {
         }
     }
 
-    /// The slope of [`turn`](Self::turn) against the torque, on an unloaded
-    /// joint that was never loaded [rad/Nm]: derived from the law, not stated.
-    pub fn unloaded<S: Scalar>(&self, parameters: &[S], compliance: S, harmonic: &dyn Fn(f64) -> (S, S)) -> Option<S> {
+    /// The slope of [`turn`](Self::turn) against the torque [rad/Nm] at a torque
+    /// \[Nm\]: derived from the law, not stated. The joint's play operators stay where
+    /// they are: a small change turns back within their radii, and on a joint that was
+    /// never loaded it does not move them yet.
+    pub fn slope<S: Scalar>(
+        &self,
+        parameters: &[S],
+        compliance: S,
+        torque: S,
+        harmonic: &dyn Fn(f64) -> (S, S),
+    ) -> Option<S> {
         let zero = compliance.times(0.0);
-        let torque = Tangent { value: zero, slope: zero.plus(1.0) };
         let mut constants = [Tangent::constant(zero); MOST_PARAMETERS];
         for (constant, &parameter) in constants.iter_mut().zip(parameters) {
             *constant = Tangent::constant(parameter);
         }
-        let constants = &constants[..parameters.len()];
-        let still = Tangent::constant(zero);
-        let mut plays = self.plays(constants, torque, [still; PLAYS]);
-        // One without a radius stands on its edge, where not every scalar has a slope.
-        plays[self.plays_in_use()..].fill(still);
         let joint = Joint {
             compliance: Tangent::constant(compliance),
-            torque,
-            plays,
+            torque: Tangent { value: torque, slope: zero.plus(1.0) },
+            // The laws are linear in them, so that where they stand has no part in the slope.
+            plays: [Tangent::constant(zero); PLAYS],
             harmonic: &|order| {
                 let (s, c) = harmonic(order);
                 (Tangent::constant(s), Tangent::constant(c))
             },
         };
-        self.turn(constants, &joint).map(|turn| turn.slope)
+        self.turn(&constants[..parameters.len()], &joint).map(|turn| turn.slope)
     }
 
     /// The effect as a noun, for a sentence: "the backlash of joint 3".

@@ -22,7 +22,7 @@ mod laws;
 mod tests;
 
 pub use laws::{
-    commanded_rates, deviation, own_weight_torque, plays, share_of_weight, turn, turn_about, unloaded_turn,
+    commanded_rates, deviation, joint_turns, own_weight_torque, plays, share_of_weight, turn, turn_about, unloaded_turn,
 };
 pub use robstiff_robots::effect::physics::Spring as Parameter;
 

@@ -2,11 +2,11 @@
 
 use core::ops::{Add, Mul, Neg, Sub};
 
-use nalgebra::{Matrix4, SVector};
+use nalgebra::{Matrix4, SVector, Vector6};
 use robstiff_robots::effect::physics::{Joint, PLAYS};
 use robstiff_robots::effect::{MOST_PARAMETERS, Scalar, Tangent, gravity_sag};
 
-use crate::{Effect, JointKind, Real, Robot};
+use crate::{Effect, JointKind, Real, Robot, State};
 
 /// By how much a joint turns more \[rad\] under a torque \[Nm\] than by its own
 /// compliance `own` [rad/Nm], where the effect has a part in the joint's law: at
@@ -22,8 +22,7 @@ pub fn turn<T: Real>(effect: &Effect, own: T, q: T, torque: T, plays: [T; PLAYS]
 /// The slope of [`turn`] against the torque [rad/Nm] on a joint that was never
 /// loaded.
 pub fn unloaded_turn<T: Real>(effect: &Effect, own: T, q: T) -> Option<T> {
-    let (numbers, count) = numbers(effect);
-    effect.unloaded(&numbers[..count], Number(own), &harmonic(q)).map(|turn| turn.0)
+    turn_about(effect, own, q, T::zero())
 }
 
 /// The slope of [`turn`] against the torque [rad/Nm] at a torque \[Nm\]: how a
@@ -31,19 +30,7 @@ pub fn unloaded_turn<T: Real>(effect: &Effect, own: T, q: T) -> Option<T> {
 /// for a small change turns back within their radii.
 pub fn turn_about<T: Real>(effect: &Effect, own: T, q: T, torque: T) -> Option<T> {
     let (numbers, count) = numbers(effect);
-    let constants = numbers.map(Tangent::constant);
-    let zero = Tangent::constant(Number(T::zero()));
-    let joint = Joint {
-        compliance: Tangent::constant(Number(own)),
-        torque: Tangent { value: Number(torque), slope: Number(T::one()) },
-        // The laws are linear in them, with no part in the slope.
-        plays: [zero; PLAYS],
-        harmonic: &|order| {
-            let (s, c) = harmonic(q)(order);
-            (Tangent::constant(s), Tangent::constant(c))
-        },
-    };
-    effect.turn(&constants[..count], &joint).map(|turn| turn.slope.0)
+    effect.slope(&numbers[..count], Number(own), Number(torque), &harmonic(q)).map(|turn| turn.0)
 }
 
 /// The play operators \[Nm\] of a joint after a torque \[Nm\] that follows the
@@ -53,6 +40,30 @@ pub fn plays<T: Real>(effect: &Effect, torque: T, before: [T; PLAYS]) -> [T; PLA
     let after = effect.plays(&numbers[..count], Number(torque), before.map(Number));
     let in_use = effect.plays_in_use();
     core::array::from_fn(|k| if k < in_use { after[k].0 } else { before[k] })
+}
+
+/// By how much the joints turn [rad or m] under a wrench `[f; m]` at the TCP in the
+/// base frame (N, Nm) that follows the loads in `before`: what encoders on both
+/// sides of the gears see between them, and nothing of bearings, links, the base and
+/// the tool.
+pub fn joint_turns<const N: usize, R: Robot<N>>(
+    robot: &R,
+    q: &SVector<f64, N>,
+    wrench: &Vector6<f64>,
+    before: &State<N>,
+) -> SVector<f64, N> {
+    let (own, torques) = (robot.joint_compliance(), robot.joint_torques(q, wrench));
+    let mut turns = own.component_mul(&torques);
+    for effect in robot.effects() {
+        if let &Effect::JointCoupling { joints: [a, b], value } = effect {
+            turns[a - 1] += value * torques[b - 1];
+            turns[b - 1] += value * torques[a - 1];
+        }
+        let Some(i) = effect.row().map(|joint| joint - 1) else { continue };
+        let after = plays(effect, torques[i], before.plays[i]);
+        turns[i] += turn(effect, own[i], q[i], torques[i], after).unwrap_or_default();
+    }
+    turns
 }
 
 /// By how much a joint stands aside \[rad\] of its coordinate `q` \[rad\], if the

@@ -25,8 +25,8 @@ use std::vec::Vec;
 use core::f64::consts::TAU;
 use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3, Vector6};
 
-use crate::elements::{plays, turn};
-use crate::{Effect, Robot, State};
+use crate::elements::joint_turns;
+use crate::{Robot, State};
 pub use effort::Effort;
 pub use timeline::{NoFeed, Timeline};
 
@@ -173,7 +173,7 @@ fn simulate_moving<const N: usize>(
         let q = posture(start);
         let asked = match (read, controller.sensing) {
             (Some(wrench), Sensing::Force) => Some(back(model, &q, &wrench, controller.damping, &mut known)),
-            (Some(wrench), Sensing::Encoders) => Some(-gears(truth, &q, &wrench, &state)),
+            (Some(wrench), Sensing::Encoders) => Some(-joint_turns(truth, &q, &wrench, &state)),
             (None, _) => (silent > controller.limits.hold).then(SVector::zeros),
         };
         underway.push_back((start + delay, wanted.step(asked)));
@@ -275,28 +275,6 @@ fn back<const N: usize>(
     let displacement = model.deflection_with(q, wrench, known).fixed_rows::<3>(0).into_owned();
     let square = moves * moves.transpose() + Matrix3::identity() * damping;
     square.cholesky().map_or_else(SVector::zeros, |factor| moves.transpose() * factor.solve(&-displacement))
-}
-
-/// By how much the gears turn under a wrench (rad or m) after the loads in
-/// `before`: what encoders on both of their sides see between them.
-fn gears<const N: usize>(
-    robot: &impl Robot<N>,
-    q: &SVector<f64, N>,
-    wrench: &Vector6<f64>,
-    before: &State<N>,
-) -> SVector<f64, N> {
-    let (own, torques) = (robot.joint_compliance(), robot.joint_torques(q, wrench));
-    let mut turns = own.component_mul(&torques);
-    for effect in robot.effects() {
-        if let &Effect::JointCoupling { joints: [a, b], value } = effect {
-            turns[a - 1] += value * torques[b - 1];
-            turns[b - 1] += value * torques[a - 1];
-        }
-        let Some(i) = effect.row().map(|joint| joint - 1) else { continue };
-        let after = plays(effect, torques[i], before.plays[i]);
-        turns[i] += turn(effect, own[i], q[i], torques[i], after).unwrap_or_default();
-    }
-    turns
 }
 
 /// How position and speed, less the target, go on over a time (s).

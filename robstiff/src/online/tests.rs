@@ -216,7 +216,7 @@ fn a_correction_beyond_its_size_stops_there() {
 #[test]
 fn encoders_that_fall_silent_are_held_and_withdrawn_at_the_speed_allowed() {
     let robot = robot();
-    let whole = gears(&robot, &pose(), &wrench(), &State::new());
+    let whole = joint_turns(&robot, &pose(), &wrench(), &State::new());
     let (silent_from, rate) = (0.2, 0.01);
     let limits = Limits { size: 1.0, rate, hold: 0.05 };
     let controller = Controller { sensing: Sensing::Encoders, limits, delay: 0.0, ..controller(Servo::Ideal) };

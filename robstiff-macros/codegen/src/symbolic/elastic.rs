@@ -40,7 +40,7 @@ pub struct Law<'g> {
 impl<'g> Law<'g> {
     fn of(g: &'g Graph, effect: Effect, parameters: &[Sym<'g>], own: &[Sym<'g>]) -> Option<Self> {
         let joint = effect.row()? - 1;
-        let unloaded = effect.unloaded(parameters, own[joint], &harmonic(g, joint))?;
+        let unloaded = effect.slope(parameters, own[joint], g.number(0.0), &harmonic(g, joint))?;
         Some(Self { joint, effect, parameters: parameters.to_vec(), unloaded })
     }
 
