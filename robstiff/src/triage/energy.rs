@@ -26,7 +26,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
         let moved = line.rows.iter().zip(&slope.weights).map(|(&row, w)| evidence.reading(row) * *w);
         let work = load.dot(&moved.sum::<Vector6<f64>>());
         // Where only the noise is declared, that; it is what weighs the readings.
-        let noise = evidence.variance(&line.rows, &slope.weights, &load).sqrt();
+        let noise = evidence.variance(line.weighed(&slope.weights, load)).sqrt();
         negative += usize::from(work < 0.0);
         least = least.min(work / noise);
         sum += work;

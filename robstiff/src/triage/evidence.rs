@@ -3,7 +3,7 @@
 
 use std::vec::Vec;
 
-use nalgebra::{Matrix3, Vector3, Vector6};
+use nalgebra::{Vector3, Vector6};
 
 use crate::campaign::{Campaign, Displacements, Frame};
 use crate::identify::covariance::Covariance;
@@ -96,16 +96,22 @@ impl<'c> Evidence<'c> {
         Vector6::new(d.x, d.y, d.z, r.x, r.y, r.z)
     }
 
-    /// The variance of weighted readings of some rows of one pose along a vector
-    /// of the base frame.
-    pub fn variance(&self, rows: &[usize], weights: &[f64], along: &Vector6<f64>) -> f64 {
-        let turn = match self.data.measured_frame {
-            Frame::Base => Matrix3::identity(),
-            Frame::Tool => self.samples.rows[rows[0]].tcp.fixed_view::<3, 3>(0, 0).transpose(),
+    /// The variance of a sum of readings of one pose, each along a vector of the base
+    /// frame: what visits have in common is in all of them.
+    pub fn variance(&self, weighed: impl Iterator<Item = (usize, Vector6<f64>)>) -> f64 {
+        let measured = |(row, along): (usize, Vector6<f64>)| match self.data.measured_frame {
+            Frame::Base => (row, along),
+            Frame::Tool => {
+                let turn = self.samples.rows[row].tcp.fixed_view::<3, 3>(0, 0).transpose();
+                let (d, r) = (turn * along.fixed_rows::<3>(0), turn * along.fixed_rows::<3>(3));
+                (row, Vector6::new(d.x, d.y, d.z, r.x, r.y, r.z))
+            }
         };
-        let pairs: Vec<(usize, f64)> = rows.iter().copied().zip(weights.iter().copied()).collect();
-        let kinds = [turn * along.fixed_rows::<3>(0), turn * along.fixed_rows::<3>(3)];
-        let of_axis = |axis: usize| kinds[axis / 3][axis % 3].powi(2) * self.covariance.variance(axis, &pairs);
+        let measured: Vec<(usize, Vector6<f64>)> = weighed.map(measured).collect();
+        let of_axis = |axis: usize| {
+            let weights: Vec<(usize, f64)> = measured.iter().map(|(row, along)| (*row, along[axis])).collect();
+            self.covariance.variance(axis, &weights)
+        };
         (0..self.covariance.axes()).map(of_axis).sum()
     }
 
@@ -128,6 +134,11 @@ impl Line {
         let information: f64 = loads.iter().map(|load| load * load).sum();
         let weights = self.whitened(&loads, shared).into_iter().map(|weight| weight / information).collect();
         Contrast { weights, information }
+    }
+
+    /// The line's rows, each with its weight along a vector.
+    pub fn weighed(&self, weights: &[f64], along: Vector6<f64>) -> impl Iterator<Item = (usize, Vector6<f64>)> {
+        self.rows.iter().zip(weights).map(move |(&row, weight)| (row, along * *weight))
     }
 
     /// The weights by which readings give the part that goes with `shape`, a

@@ -29,6 +29,8 @@ struct Response {
     load: Vector6<f64>,
     /// Per newton (m/N, rad/N).
     moved: Vector6<f64>,
+    /// What that is of each row's reading (1/N).
+    weights: Vec<f64>,
 }
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
@@ -37,12 +39,12 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
     };
     let shared = evidence.covariance.shared;
     let response = |line: &Line| {
-        let slope = line.slope(shared);
-        let moved = line.rows.iter().zip(&slope.weights).map(|(&row, w)| evidence.reading(row) * *w).sum();
+        let weights = line.slope(shared).weights;
+        let moved = line.rows.iter().zip(&weights).map(|(&row, w)| evidence.reading(row) * *w).sum();
         // The load at the line's largest, per newton along it.
         let first = (0..line.rows.len()).max_by(|&a, &b| line.loads[a].abs().total_cmp(&line.loads[b].abs()));
         let first = first.unwrap_or_default();
-        Response { load: wrenches[line.rows[first]] / line.loads[first], moved }
+        Response { load: wrenches[line.rows[first]] / line.loads[first], moved, weights }
     };
     let (mut witnesses, mut squares, mut pairs) = (Vec::new(), 0.0, 0_usize);
     let (mut differences, mut sizes) = (0.0, 0.0);
@@ -55,8 +57,9 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
                 continue;
             }
             let difference = one.load.dot(&other.moved) - other.load.dot(&one.moved);
-            let noise = evidence.variance(&pair[1].rows, &pair[1].slope(shared).weights, &one.load)
-                + evidence.variance(&pair[0].rows, &pair[0].slope(shared).weights, &other.load);
+            let there = pair[1].weighed(&other.weights, one.load);
+            let back = pair[0].weighed(&one.weights, -other.load);
+            let noise = evidence.variance(there.chain(back));
             squares += difference * difference / noise;
             pairs += 1;
             differences += difference * difference - noise;

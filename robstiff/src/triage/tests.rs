@@ -11,8 +11,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
-use crate::campaign::ClampedRow;
 use crate::campaign::made::{Plan, campaign, normal};
+use crate::campaign::{ClampedRow, Data};
 use crate::elements::Parameter;
 use crate::identify::samples::{Column, Samples};
 use crate::samples::five_axis;
@@ -112,6 +112,28 @@ fn a_turned_force_sensor_is_not_reciprocal() {
             row.wrench[..3].copy_from_slice(force.as_slice());
         }),
     );
+}
+
+/// What two loads of one visit have in common is no violation: of 100 campaigns
+/// more than 12 are at or below 5 % with a probability of 0.1 %.
+#[test]
+fn loads_of_one_visit_share_its_unloaded_reading() {
+    let below = |seed: &u64| {
+        let mut random = ChaCha8Rng::seed_from_u64(*seed);
+        let mut noise = || Vector3::from_fn(|_, _| 1e-5 * normal(&mut random));
+        let plan = Plan { poses: 16, visits: 3, ramp: vec![0.5, 1.0], noise: [0.0; 3], ..Plan::new(4000 + seed) };
+        let mut unloaded = Vector3::zeros();
+        let mut campaign = plan.run_with(|i, row| {
+            unloaded = if i % 6 == 0 { noise() } else { unloaded };
+            push(row, noise() - unloaded);
+        });
+        let Data::Displacement(data) = &mut campaign.data else { unreachable!("made of displacements") };
+        data.visits = data.poses.clone();
+        data.rows.iter_mut().for_each(|row| row.visit = row.pose);
+        finding(&triage(&campaign), "reciprocity").p_value.is_some_and(|p| p <= 0.05)
+    };
+    let count = (0..100).filter(below).count();
+    assert!(count <= 12, "{count} of 100");
 }
 
 #[test]
@@ -303,9 +325,7 @@ fn clamped_axes_are_asked_too() {
             })
             .collect()
     };
-    let mut of = |disturb: &dyn Fn(usize, f64) -> f64| {
-        triage(&campaign(five_axis(), crate::campaign::Data::Clamped(rows(disturb))))
-    };
+    let mut of = |disturb: &dyn Fn(usize, f64) -> f64| triage(&campaign(five_axis(), Data::Clamped(rows(disturb))));
     assert_eq!(names(&of(&|_, _| 0.0)), Vec::<&str>::new());
     assert_eq!(names(&of(&|_, torque| -1e-9 * torque * torque.abs() / 4.0)), ["proportionality"]);
     assert_eq!(names(&of(&|_, torque| 1e-7 * torque.abs())), ["reversal"]);
