@@ -11,6 +11,7 @@
 
 use std::vec::Vec;
 
+use nalgebra::linalg::QR;
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::super::samples::Samples;
@@ -38,8 +39,11 @@ const SAME_DIRECTION: f64 = 1e-3;
 const SAME_LOAD: f64 = 5e-5;
 
 /// A pose with more rows than this is cut between visits, each part with its own
-/// free response, since the effort is cubic.
+/// free response, since the effort is quadratic.
 const MOST_ROWS: usize = 60;
+
+/// Of the unloaded reading of a row, what is left by rounding.
+const NOTHING: f64 = 1e-9;
 
 /// The contrasts of some rows of one pose.
 #[derive(Clone, Debug)]
@@ -95,20 +99,31 @@ fn cut(samples: &Samples, rows: &[usize]) -> Vec<Vec<usize>> {
 }
 
 fn chunk(samples: &Samples, readings: &DMatrix<f64>, level: Level, rows: Vec<usize>) -> Option<Chunk> {
-    let basis = complement(&design(samples, level, &rows), rows.len())?;
     let visits: Vec<usize> = rows.iter().map(|&row| samples.rows[row].visit).collect();
-    let together = DMatrix::from_fn(rows.len(), rows.len(), |i, j| f64::from(u8::from(visits[i] == visits[j])));
-    let shared = SymmetricEigen::new(basis.tr_mul(&(together * &basis)));
-    let basis = basis * shared.eigenvectors;
+    let mut distinct = visits.clone();
+    distinct.sort_unstable();
+    distinct.dedup();
+    let free = free(samples, level, &rows);
+    // What is left of the unloaded readings, made orthonormal: those contrasts hold
+    // them, all others do not.
+    let unloaded = DMatrix::from_fn(rows.len(), distinct.len(), |i, j| f64::from(u8::from(visits[i] == distinct[j])));
+    let unloaded = &unloaded - &free * free.tr_mul(&unloaded);
+    let shared = SymmetricEigen::new(unloaded.tr_mul(&unloaded));
+    let left: Vec<usize> = (0..distinct.len()).filter(|&k| shared.eigenvalues[k] > NOTHING).collect();
+    let mut shares: Vec<f64> = left.iter().map(|&k| shared.eigenvalues[k]).collect();
+    let mut holding = unloaded * shared.eigenvectors.select_columns(&left);
+    holding.column_iter_mut().zip(&shares).for_each(|(mut column, share)| column /= share.sqrt());
+    let rest = complement(&beside(&free, &holding));
+    shares.resize(left.len() + rest.ncols(), 0.0);
+    let basis = beside(&holding, &rest);
     let values = basis.tr_mul(&readings.select_rows(&rows));
-    let shares = shared.eigenvalues.iter().map(|share| share.max(0.0)).collect();
-    Some(Chunk { rows, visits, basis, shares, values })
+    (!shares.is_empty()).then_some(Chunk { rows, visits, basis, shares, values })
 }
 
-/// The columns of what is free at a pose.
-fn design(samples: &Samples, level: Level, rows: &[usize]) -> DMatrix<f64> {
+/// An orthonormal basis of what is free at a pose.
+fn free(samples: &Samples, level: Level, rows: &[usize]) -> DMatrix<f64> {
     let largest = rows.iter().map(|&row| samples.rows[row].wrench.norm()).fold(f64::MIN_POSITIVE, f64::max);
-    match level {
+    let design = match level {
         Level::Linear => DMatrix::from_fn(rows.len(), 6, |i, k| samples.rows[rows[i]].wrench[k] / largest),
         Level::Curved => DMatrix::from_fn(rows.len(), 12, |i, k| {
             let wrench = &samples.rows[rows[i]].wrench;
@@ -118,20 +133,30 @@ fn design(samples: &Samples, level: Level, rows: &[usize]) -> DMatrix<f64> {
         Level::Repeated => {
             let loads = same_loads(samples, rows);
             let count = loads.iter().max().map_or(0, |last| last + 1);
-            DMatrix::from_fn(rows.len(), count, |i, j| f64::from(u8::from(loads[i] == j)))
+            let mut same = DMatrix::from_fn(rows.len(), count, |i, j| f64::from(u8::from(loads[i] == j)));
+            same.column_iter_mut().for_each(|mut column| _ = column.normalize_mut());
+            return same;
         }
-    }
+    };
+    let directions = SymmetricEigen::new(design.tr_mul(&design));
+    let from = SAME_DIRECTION * SAME_DIRECTION * directions.eigenvalues.max();
+    let kept: Vec<usize> = (0..design.ncols()).filter(|&k| directions.eigenvalues[k] > from).collect();
+    QR::new(design * directions.eigenvectors.select_columns(&kept)).q()
 }
 
-/// An orthonormal basis of what is orthogonal to some columns; `None` where
-/// nothing is.
-fn complement(design: &DMatrix<f64>, rows: usize) -> Option<DMatrix<f64>> {
-    // The eigenvectors of `D D^T` are all there is, those of zero as well.
-    let eigen = SymmetricEigen::new(design * design.transpose());
-    let largest = eigen.eigenvalues.max();
-    let kept: Vec<usize> =
-        (0..rows).filter(|&k| eigen.eigenvalues[k] <= SAME_DIRECTION * SAME_DIRECTION * largest).collect();
-    (!kept.is_empty()).then(|| eigen.eigenvectors.select_columns(&kept))
+/// An orthonormal basis of what is orthogonal to some orthonormal columns.
+fn complement(columns: &DMatrix<f64>) -> DMatrix<f64> {
+    let (rows, count) = columns.shape();
+    let mut turned = DMatrix::identity(rows, rows);
+    QR::new(columns.clone()).q_tr_mul(&mut turned);
+    turned.rows(count.min(rows), rows.saturating_sub(count)).transpose()
+}
+
+fn beside(left: &DMatrix<f64>, right: &DMatrix<f64>) -> DMatrix<f64> {
+    DMatrix::from_fn(left.nrows(), left.ncols() + right.ncols(), |i, j| match j.checked_sub(left.ncols()) {
+        Some(j) => right[(i, j)],
+        None => left[(i, j)],
+    })
 }
 
 /// Numbers the distinct loads of some rows.

@@ -239,3 +239,25 @@ fn intervals_of_95_percent_hold_the_truth() {
         assert!((0.93..=0.97).contains(&rate), "{name}: {told}");
     }
 }
+
+/// Contrasts are orthonormal, free of every load, and each holds as much of the
+/// unloaded readings as it says.
+#[test]
+fn contrasts_are_free_of_loads() {
+    let ramp = std::vec![0.35, 0.7, 1.0, 0.7, 0.35, 0.0];
+    let campaign = Plan { poses: 300, visits: 4, ramp, there_and_back: true, ..Plan::new(6) }.run();
+    let samples = Samples::of_description(&campaign.robot, displacements(&campaign));
+    let readings = DMatrix::from_fn(samples.rows.len(), 3, |i, k| samples.rows[i].displacement[k]);
+    for (level, count) in [(Level::Linear, 22), (Level::Curved, 20), (Level::Repeated, 11)] {
+        for chunk in contrasts(&samples, &readings, level, |_| true, |_| false) {
+            assert_eq!(chunk.shares.len(), count, "{level:?}");
+            let same = |i: usize, j: usize| f64::from(u8::from(chunk.visits[i] == chunk.visits[j]));
+            let together = DMatrix::from_fn(24, 24, same);
+            let shares = DMatrix::from_diagonal(&nalgebra::DVector::from_column_slice(&chunk.shares));
+            assert!((chunk.basis.tr_mul(&chunk.basis) - DMatrix::identity(count, count)).amax() < 1e-12);
+            assert!((chunk.basis.tr_mul(&together) * &chunk.basis - shares).amax() < 1e-12);
+            let loads = DMatrix::from_fn(24, 6, |i, k| samples.rows[chunk.rows[i]].wrench[k] / 1e3);
+            assert!(chunk.basis.tr_mul(&loads).amax() < 1e-12, "{level:?}");
+        }
+    }
+}
