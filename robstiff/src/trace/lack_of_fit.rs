@@ -105,7 +105,7 @@ pub fn test(
 ) -> LackOfFit {
     let mut tests = Vec::new();
     let shares = Shares::of(setting, model);
-    tests.extend(shares.as_ref().and_then(|shares| size(shares, yardstick)));
+    tests.extend(shares.as_ref().and_then(|shares| size(setting, model, shares, covariance, yardstick)));
     tests.extend(shares.as_ref().and_then(|shares| of_encoders(shares, covariance)));
     tests.extend(growth(setting, model));
     let agreement = agreement(setting, model, options);

@@ -54,14 +54,40 @@ pub(super) fn of_encoders(shares: &Shares, covariance: &Covariance) -> Option<St
     Some(StructureTest { name: "encoders against their own noise".to_owned(), statistic, p_value })
 }
 
-pub(super) fn size(shares: &Shares, yardstick: Yardstick) -> Option<StructureTest> {
+/// Readings of the tool against a variance that is declared. The axes count as much
+/// as they were read, not as they weigh: a weight that few contrasts tell makes
+/// residuals too large on the mean. Where their variances differ, their sum is that
+/// of fewer degrees of freedom (Satterthwaite).
+fn of_declared(
+    setting: &Setting<'_>,
+    model: &Fitted,
+    shares: &Shares,
+    covariance: &Covariance,
+    variance: f64,
+) -> Option<StructureTest> {
+    let (problem, fit) = setting.alone(&model.fit);
+    let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
+    let (weights, axes) = (covariance.shares_of_axes(), problem.axes);
+    let of_row = |row: &usize| (0..axes).map(|axis| weights[axis] * residuals[row * axes + axis].powi(2)).sum::<f64>();
+    let sum: f64 = problem.blocks.iter().flat_map(|block| &block.rows).map(of_row).sum();
+    let of_axis = shares.tool.1 / axes as f64;
+    let mean = of_axis * weights.iter().sum::<f64>();
+    let spread = of_axis * weights.iter().map(|weight| weight * weight).sum::<f64>();
+    let statistic = sum / variance * (mean / spread);
+    let p_value = told(ChiSquared::new(mean * mean / spread).ok()?.sf(statistic));
+    Some(StructureTest { name: "residuals against the declared noise".to_owned(), statistic, p_value })
+}
+
+pub(super) fn size(
+    setting: &Setting<'_>,
+    model: &Fitted,
+    shares: &Shares,
+    covariance: &Covariance,
+    yardstick: Yardstick,
+) -> Option<StructureTest> {
     let (rss, freedom) = shares.tool;
     match yardstick {
-        Yardstick::Declared(variance) => {
-            let statistic = rss / variance;
-            let p_value = told(ChiSquared::new(freedom).ok()?.sf(statistic));
-            Some(StructureTest { name: "residuals against the declared noise".to_owned(), statistic, p_value })
-        }
+        Yardstick::Declared(variance) => of_declared(setting, model, shares, covariance, variance),
         Yardstick::Repeated(pure) => {
             let variance = pure.variance()?;
             let rest = freedom - pure.freedom as f64;

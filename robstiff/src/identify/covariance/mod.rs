@@ -287,6 +287,16 @@ impl Covariance {
         refined
     }
 
+    /// The variance of each axis over the mean of its kind, displacements or
+    /// rotations.
+    pub fn shares_of_axes(&self) -> Vec<f64> {
+        let of_kind = |own: &[f64]| {
+            let mean = own.iter().map(|own| own * own).sum::<f64>() / own.len() as f64;
+            own.iter().map(|own| own * own / mean).collect::<Vec<f64>>()
+        };
+        self.own.chunks(3).flat_map(of_kind).collect()
+    }
+
     /// The root mean square of the readings' sigma over some axes.
     fn reference(&self, axes: core::ops::Range<usize>) -> f64 {
         let count = axes.len() as f64;
