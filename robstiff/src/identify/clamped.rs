@@ -33,8 +33,10 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
         let here = |row: &&ClampedRow| number.effect.is_none() && row.axis == i + 1;
         let of_axis: Vec<&ClampedRow> = less.iter().filter(here).collect();
         let slope = slope(&of_axis);
-        let work: f64 = rows.iter().filter(here).map(|row| row.torque * row.deflection).sum();
-        if work < 0.0 {
+        let count =
+            |goes: fn(f64) -> bool| rows.iter().filter(here).filter(|row| goes(row.torque * row.deflection)).count();
+        // A sign is wrong in all rows, a wild reading in one.
+        if count(|work| work < 0.0) > count(|work| work > 0.0) {
             let line = of_axis[0].line;
             return Err(Error(format!(
                 "axis {} deflects against its torque (rows from line {line}): check the signs",
@@ -181,6 +183,17 @@ mod tests {
         let rows: Vec<ClampedRow> = rows.collect();
         let found = identify(&campaign(robot, Data::Clamped(rows.clone())), &rows).expect("axis 1 is loaded");
         assert!((found.estimates[0].value / 2.63e-7 - 1.0).abs() < 1e-9, "{:?}", found.estimates[0]);
+    }
+
+    /// One reading the wrong way is a wild one, most of them a wrong sign.
+    #[test]
+    fn a_wild_reading_is_no_wrong_sign() {
+        let mut rows = [row(100.0, 3e-5), row(200.0, 6e-5), row(300.0, -9e-4)];
+        let of = |rows: &[ClampedRow]| identify(&campaign(five_axis(), Data::Clamped(rows.to_vec())), rows);
+        assert!(of(&rows).is_ok());
+        rows[1].deflection = -6e-5;
+        let Error(told) = of(&rows).expect_err("two of three");
+        assert!(told.contains("axis 1 deflects against its torque (rows from line 2)"), "{told}");
     }
 
     /// What the data do not follow is at its bound, and no wrong sign.
