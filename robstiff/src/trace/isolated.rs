@@ -9,7 +9,9 @@
 //! out before, for that is how a missing compliance looks, and the scale is the
 //! median over all rows, by axis: structure common to many visits raises it. So
 //! rows stand out from structure and noise together, and what was cut while an
-//! effect was missing is looked at again once it is named.
+//! effect was missing is looked at again once it is named. A median of few rows is
+//! itself uncertain; what is held against it has the tails of Student's
+//! distribution ([`OF_MEDIAN`]).
 
 use std::vec;
 use std::vec::Vec;
@@ -18,7 +20,7 @@ use nalgebra::Vector3;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::model::{Fitted, Setting};
-use crate::probability::told;
+use crate::probability::{as_normal, told};
 
 /// Something wrong in one visit.
 #[derive(Clone, Debug)]
@@ -27,7 +29,7 @@ pub struct Event {
     pub rows: Vec<usize>,
     /// By how much they are off (m).
     pub shift: Vector3<f64>,
-    /// What it explains over the variance of a reading.
+    /// What it explains over the variance of a reading, as if that were known.
     pub statistic: f64,
     /// The probability of so much under noise alone, over all that was looked
     /// at.
@@ -52,6 +54,11 @@ pub const FEW: f64 = 0.1;
 
 /// The median of chi-square with one degree of freedom.
 pub const MEDIAN: f64 = 0.4549;
+
+/// The degrees of freedom of a variance from that median, over those of the
+/// readings: its own variance is `1 / (4 n f^2)` with the density `f` of chi-square
+/// there, that of the sum of squares `2 / n`.
+pub const OF_MEDIAN: f64 = 0.368;
 
 /// With less than this share left, a straight line in the load says the same.
 const OF_ITS_OWN: f64 = 0.1;
@@ -159,13 +166,14 @@ pub fn events(setting: &Setting<'_>, model: &Fitted, strict: bool) -> Vec<Event>
     let hypotheses = 2 * rows;
     let table = ChiSquared::new(3.0).expect("three degrees of freedom");
     let threshold = table.inverse_cdf(1.0 - STRICT / hypotheses as f64);
+    let tells = setting.problem.freedom(&model.fit) / setting.problem.total.rows as f64;
     let mut found: Vec<Event> = Vec::new();
     loop {
-        let variance = scale(&visits, strict);
-        if variance.iter().any(|variance| *variance <= 0.0) {
+        let scale = scale(&visits, strict, tells);
+        if scale.variance.iter().any(|variance| *variance <= 0.0) {
             return found;
         }
-        let worst = (0..visits.len()).filter_map(|k| worst(&visits[k], &variance, strict, threshold).map(|e| (k, e)));
+        let worst = (0..visits.len()).filter_map(|k| worst(&visits[k], &scale, strict, threshold).map(|e| (k, e)));
         let Some((k, event)) = worst.max_by(|a, b| a.1.statistic.total_cmp(&b.1.statistic)) else { break };
         let visit = &mut visits[k];
         for (i, row) in visit.rows.iter().enumerate() {
@@ -180,8 +188,16 @@ pub fn events(setting: &Setting<'_>, model: &Fitted, strict: bool) -> Vec<Event>
     found
 }
 
-/// The variance of a reading by axis, from the median over single rows.
-fn scale(visits: &[Visit], strict: bool) -> Vector3<f64> {
+/// The variance of a reading, by axis.
+struct Scale {
+    variance: Vector3<f64>,
+    /// How well that is known.
+    freedom: f64,
+}
+
+/// The variance of a reading by axis, from the median over single rows, of whose
+/// freedom a model has left the share `tells`.
+fn scale(visits: &[Visit], strict: bool, tells: f64) -> Scale {
     let mut by_axis: [Vec<f64>; 3] = Default::default();
     for visit in visits {
         for i in (0..visit.rows.len()).filter(|&i| visit.used[i]) {
@@ -190,27 +206,36 @@ fn scale(visits: &[Visit], strict: bool) -> Vector3<f64> {
             }
         }
     }
-    Vector3::from_fn(|axis, _| {
+    let freedom = OF_MEDIAN * tells * by_axis[0].len() as f64;
+    let variance = Vector3::from_fn(|axis, _| {
         let values = &mut by_axis[axis];
         values.sort_by(f64::total_cmp);
         values.get(values.len() / 2).copied().unwrap_or(0.0) / MEDIAN
-    })
+    });
+    Scale { variance, freedom }
 }
 
 /// The worst of a visit, if it stands out.
-fn worst(visit: &Visit, variance: &Vector3<f64>, strict: bool, threshold: f64) -> Option<Event> {
+fn worst(visit: &Visit, scale: &Scale, strict: bool, threshold: f64) -> Option<Event> {
     let count = visit.rows.len();
     let used: Vec<usize> = (0..count).filter(|&i| visit.used[i]).collect();
     let event = |pattern: Vec<f64>, is_slip: bool| {
         let explained = visit.explained(&pattern, strict)?;
-        let statistic = explained.by_axis.component_div(variance).sum();
+        let over = explained.by_axis.component_div(&scale.variance);
+        let statistic = over.map(|square| as_normal(square, scale.freedom)).sum();
         let enough = match (strict, explained.projected) {
-            (true, _) => threshold,
+            (true, _) => 0.0,
             (false, true) => STANDS_OUT,
             (false, false) => STANDS_OUT_AS_IT_IS,
         };
         let rows = (0..count).filter(|&i| visit.used[i] && pattern[i] != 0.0).map(|i| visit.rows[i]).collect();
-        (statistic > enough).then_some(Event { rows, shift: explained.shift, statistic, p_value: 1.0, is_slip })
+        (over.sum() > enough && statistic > threshold).then_some(Event {
+            rows,
+            shift: explained.shift,
+            statistic,
+            p_value: 1.0,
+            is_slip,
+        })
     };
     let single = used.iter().filter_map(|&i| event(visit.single(i), false));
     let single = single.max_by(|a, b| a.statistic.total_cmp(&b.statistic));
