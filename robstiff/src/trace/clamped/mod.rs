@@ -16,6 +16,7 @@ mod axes;
 mod bench;
 mod report;
 mod search;
+mod spread;
 #[cfg(test)]
 mod tests;
 

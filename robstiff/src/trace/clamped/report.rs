@@ -7,23 +7,18 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 use robstiff_robots::effect::Place as Part;
 
-use super::bench::{Bench, problem};
+use super::bench::Bench;
 use super::search::Found as Searched;
+use super::spread::spread;
 use crate::campaign::{Campaign, ClampedRow};
 use crate::identify::baseline::{declared, with_values};
-use crate::identify::normal::{Fit, Sign};
-use crate::identify::uncertainty::{covariance, covariance_with};
+use crate::identify::normal::Fit;
 use crate::identify::{Estimate, Identification, NoiseSource};
 use crate::trace::catalogue::{KINDS, OUTLIERS};
 use crate::trace::found::{EffectParameter, Found, Place};
 use crate::trace::model::Fitted;
 use crate::trace::selection::WITHIN_REACH;
 use crate::trace::{Misfit, NamedEffect, Options, PoseError, Rival, RowResidual, Trace, Verdict, verdict};
-
-/// Step of differences in the logarithm of a number out of a grid; and how far
-/// one may be off of which nothing is known, in logarithms.
-const LOG_STEP: f64 = 0.02;
-const ANYTHING: f64 = 2.3;
 
 /// A tracing in full.
 pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched, _: &Options) -> Trace {
@@ -135,37 +130,6 @@ fn values(campaign: &Campaign, bench: &Bench, model: &Fitted) -> Vec<f64> {
         values[axis - 1] = value;
     }
     values
-}
-
-/// The covariance of a model's coefficients, and behind them of the logarithms of
-/// its numbers out of grids.
-fn spread(bench: &Bench, model: &Fitted) -> DMatrix<f64> {
-    let columns = bench.columns(&model.named);
-    let mut signs: Vec<Sign> = columns.iter().map(|&column| bench.signs[column]).collect();
-    let mut known = std::vec![0.0; columns.len()];
-    let mut raw: Vec<DVector<f64>> = columns.iter().map(|&column| bench.raw.column(column).into_owned()).collect();
-    let mut at = bench.base;
-    for &one in &model.named {
-        let form = bench.form(one);
-        let own = model.fit.coefficients.rows(at, form.numbers.len()).into_owned();
-        at += form.numbers.len();
-        for k in 0..form.shape.len() {
-            let moved = |step: f64| -> DVector<f64> {
-                let mut shape = form.values();
-                shape[k] *= step.exp();
-                (form.columns)(&shape).iter().zip(own.iter()).map(|(column, value)| column * *value).sum()
-            };
-            raw.push((moved(LOG_STEP) - moved(-LOG_STEP)) / (2.0 * LOG_STEP));
-            known.push(form.likely.map_or(ANYTHING, |[_, spread]| spread).powi(-2));
-        }
-    }
-    if raw.len() == columns.len() {
-        return covariance(&bench.problem, &model.fit, &signs);
-    }
-    signs.resize(raw.len(), Sign::Free);
-    let coefficients = model.fit.coefficients.clone().resize_vertically(raw.len(), 0.0);
-    let fit = Fit { columns: (0..raw.len()).collect(), coefficients, rss: model.fit.rss };
-    covariance_with(&problem(&bench.axes, DMatrix::from_columns(&raw)), &fit, &signs, &known)
 }
 
 fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: f64) -> Vec<NamedEffect> {
