@@ -45,6 +45,12 @@ impl Axes {
         Self { rows, ..self.clone() }
     }
 
+    /// The same axes without some rows, by index.
+    pub fn without(&self, rows: &[usize]) -> Self {
+        let kept = self.rows.iter().enumerate().filter(|(row, _)| !rows.contains(row));
+        self.with_rows(kept.map(|(_, row)| *row).collect())
+    }
+
     /// Whether the description has an effect of a kind at a place.
     pub fn declares(&self, kind: &str, place: Place) -> bool {
         self.declared.iter().any(|effect| effect.kind() == kind && place == effect.place().into())

@@ -107,10 +107,16 @@ impl Bench {
         let numbers = named.iter().flat_map(|&one| &self.form(one).numbers);
         let values = fit.coefficients.iter().skip(self.base);
         let physical = numbers.zip(values).all(|(number, &value)| number.range[0] < value && value < number.range[1]);
-        let parameters = self.base + named.iter().map(|&one| self.variant(one).parameters).sum::<usize>();
-        let rows = self.axes.rows.len() as f64;
-        let bic = rows * (fit.rss / rows).max(f64::MIN_POSITIVE).ln() + parameters as f64 * rows.ln();
+        let bic = self.bic(fit.rss, named, 0);
         physical.then(|| Fitted { named: named.to_vec(), fit, bic, physical })
+    }
+
+    /// Schwarz's criterion of a model that leaves `rss` with `more` numbers besides
+    /// its own.
+    pub fn bic(&self, rss: f64, named: &[Named], more: usize) -> f64 {
+        let parameters = self.base + named.iter().map(|&one| self.variant(one).parameters).sum::<usize>() + more;
+        let rows = self.axes.rows.len() as f64;
+        rows * (rss / rows).max(f64::MIN_POSITIVE).ln() + parameters as f64 * rows.ln()
     }
 
     fn variant(&self, one: Named) -> &Variant {

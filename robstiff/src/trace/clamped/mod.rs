@@ -19,6 +19,7 @@ mod search;
 mod spread;
 #[cfg(test)]
 mod tests;
+mod wild;
 
 use std::string::String;
 

@@ -10,6 +10,7 @@ use robstiff_robots::effect::Place as Part;
 use super::bench::Bench;
 use super::search::Found as Searched;
 use super::spread::spread;
+use super::wild::one_off;
 use crate::campaign::{Campaign, ClampedRow};
 use crate::identify::baseline::{declared, with_values};
 use crate::identify::normal::Fit;
@@ -162,7 +163,7 @@ fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: 
             lines: Vec::new(),
             p_value: found.selection.p_values[k],
             holdout_rms,
-            same_as: near.filter_map(|(_, model)| other(model)).collect(),
+            same_as: near.filter_map(|(_, model)| other(model)).chain(wild_row(bench, model, k)).collect(),
             partial,
         });
     }
@@ -176,6 +177,14 @@ fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: 
         named.push(NamedEffect { effect, parameters, lines, p_value, holdout_rms, same_as: Vec::new(), partial });
     }
     named
+}
+
+/// The name of wild rows, where one of them explains what an effect does.
+fn wild_row(bench: &Bench, model: &Fitted, effect: usize) -> Option<String> {
+    let mut rest = model.named.clone();
+    rest.remove(effect);
+    let off = one_off(bench, &bench.fit(&rest)?)?;
+    (off.bic < model.bic + WITHIN_REACH).then(|| format!("{}@{}", OUTLIERS.name, Place::Rig))
 }
 
 /// What clamped axes do not show: what is at another place than the loaded axis,

@@ -6,17 +6,16 @@ use std::vec;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::axes::Axes;
 use super::bench::{Bench, problem};
+use super::wild::{one_off, wild_rows};
 use crate::campaign::ClampedRow;
-use crate::identify::normal::{Fit, Sign};
-use crate::probability::told;
+use crate::identify::normal::Sign;
 use crate::trace::bootstrap::ScoreTest;
 use crate::trace::catalogue::{Candidate, KINDS, Variant};
 use crate::trace::found::Place;
-use crate::trace::isolated::{FEW, MEDIAN, STANDS_OUT, STRICT};
+use crate::trace::isolated::FEW;
 use crate::trace::lack_of_fit::{LackOfFit, StructureTest};
 use crate::trace::model::{Fitted, Named};
 use crate::trace::selection::{Selection, Step, Tested};
@@ -65,29 +64,26 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
     }
     let mut wild: (Vec<usize>, f64) = (Vec::new(), 0.0);
     let (mut model, mut p_values, mut steps, mut unnamed) = (base, Vec::new(), Vec::new(), false);
-    let (mut strict, mut lost) = (false, false);
+    let (mut strict, mut kept) = (false, false);
     loop {
         // Wild rows must not vote for an effect; those that were wild while one was
         // missing are looked at again once it is named. They stay out where physics
-        // does not allow the model with them.
-        if !wild.0.is_empty() && !lost {
-            let whole = Bench::new(bench.axes.with_rows(every.clone()), Some(&bench.offers));
-            if let Some(fitted) = whole.fit(&model.named) {
-                wild = (Vec::new(), 0.0);
-                (bench, model) = (whole, fitted);
-            }
+        // does not allow the model with them, or what they do has another name.
+        if !wild.0.is_empty()
+            && !kept
+            && let Some(whole) = refitted(bench.axes.with_rows(every.clone()), &bench, &model)
+        {
+            wild = (Vec::new(), 0.0);
+            (bench, model) = whole;
         }
-        while let Some((row, p)) = worst(&bench, &model.fit, strict) {
-            if (wild.0.len() + 1) as f64 > FEW * all as f64 {
-                break;
-            }
-            wild = (wild.0, p.max(wild.1));
-            let mut axes = bench.axes.clone();
-            wild.0.push(axes.rows.remove(row).line);
-            bench = Bench::new(axes, Some(&bench.offers));
+        let most = (FEW * all as f64).floor() as usize;
+        while let Some((rows, p)) = wild_rows(&bench, &model.fit, strict, most - wild.0.len()) {
+            wild.1 = p.max(wild.1);
+            wild.0.extend(rows.iter().map(|&row| bench.axes.rows[row].line));
+            bench = Bench::new(bench.axes.without(&rows), Some(&bench.offers));
             let stands = bench.fit(&model.named);
             // A name that stood on the row would come back with it, time and again.
-            lost |= stands.is_none();
+            kept |= stands.is_none();
             model = stands.or_else(|| bench.fit(&[])).ok_or_else(none)?;
         }
         if model.named.len() >= MOST_EFFECTS {
@@ -109,7 +105,7 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
             }
             // With structure accounted for, rows need stand out from noise alone.
             strict = true;
-            if worst(&bench, &model.fit, strict).is_none() {
+            if wild_rows(&bench, &model.fit, strict, most - wild.0.len()).is_none() {
                 break;
             }
             continue;
@@ -121,6 +117,19 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
             pairs.sort_by(|a, b| a.bic.total_cmp(&b.bic));
             bench.accepted(&pairs, &model, options)
         });
+        // What a single row says just as well needs no effect.
+        let off = one_off(&bench, &model).filter(|off| off.p <= options.alpha && wild.0.len() < most);
+        if let Some(off) = off.filter(|off| off.bic < accepted.as_ref().map_or(model.bic, |(better, _)| better.bic)) {
+            let axes = bench.axes.without(&[off.row]);
+            if let Some((without, fitted)) = refitted(axes, &bench, &model) {
+                wild.0.push(bench.axes.rows[off.row].line);
+                wild.1 = off.p.max(wild.1);
+                step.outcome = format!("line {} alone says as much", bench.axes.rows[off.row].line);
+                steps.push(step);
+                (bench, model, kept) = (without, fitted, true);
+                continue;
+            }
+        }
         let Some((mut better, mut p)) = accepted else {
             unnamed = true;
             step.outcome = "something is missing, but no effect passes every test".to_string();
@@ -152,6 +161,13 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
     Ok(Found { bench, selection, left, wild, every, too_little: None })
 }
 
+/// The same model on other rows.
+fn refitted(axes: Axes, bench: &Bench, model: &Fitted) -> Option<(Bench, Fitted)> {
+    let other = Bench::new(axes, Some(&bench.offers));
+    let fitted = other.fit(&model.named)?;
+    Some((other, fitted))
+}
+
 /// Why rows cannot tell what is missing, if so: every row is a witness.
 fn too_little(bench: &Bench) -> Option<String> {
     let (rows, numbers) = (bench.axes.rows.len(), bench.base);
@@ -161,46 +177,6 @@ fn too_little(bench: &Bench) -> Option<String> {
             FEWEST_POSES.max(3 * numbers)
         )
     })
-}
-
-/// The row that stands out most, if one does, with the probability of that.
-fn worst(bench: &Bench, fit: &Fit, strict: bool) -> Option<(usize, f64)> {
-    let residuals = bench.problem.white_residuals(&fit.columns, &fit.coefficients);
-    let inverse = bench.problem.total.inverse(&fit.columns)?;
-    let left = |row: usize| {
-        let x = DVector::from_fn(fit.columns.len(), |k, _| bench.problem.white[(row, fit.columns[k])]);
-        residuals[row].powi(2) / (1.0 - x.dot(&(&inverse * &x))).max(f64::EPSILON)
-    };
-    let all: Vec<f64> = (0..residuals.len()).map(left).collect();
-    let variances = variances(bench, fit, &all)?;
-    let ratio = |row: usize| all[row] / variances[bench.axes.rows[row].axis - 1];
-    let row = (0..all.len()).max_by(|&a, &b| ratio(a).total_cmp(&ratio(b)))?;
-    let table = ChiSquared::new(1.0).ok()?;
-    let p = all.len() as f64 * table.sf(ratio(row));
-    let stands_out = if strict { p <= STRICT } else { ratio(row) > STANDS_OUT };
-    stands_out.then_some((row, told(p)))
-}
-
-/// What a row of each axis is held against: the median over all rows, and no less
-/// than what is left of most of the axis's own, by the slope that leaves least of
-/// them. A curve of its gear is in most of them; wild rows, a minority, are not.
-/// `None` where nothing is left.
-fn variances(bench: &Bench, fit: &Fit, all: &[f64]) -> Option<Vec<f64>> {
-    let median = |mut squares: Vec<f64>| {
-        squares.sort_by(f64::total_cmp);
-        squares[squares.len() / 2] / MEDIAN
-    };
-    let whole = median(all.to_vec());
-    let residuals = bench.residuals(fit);
-    let mut variances = vec![whole; bench.axes.compliance.len()];
-    for axis in bench.axes.loaded() {
-        let rows: Vec<(f64, f64)> =
-            bench.axes.rows_of(axis).into_iter().map(|row| (bench.axes.rows[row].torque, residuals[row])).collect();
-        let beside = |slope: f64| median(rows.iter().map(|(torque, left)| (left - slope * torque).powi(2)).collect());
-        let slopes = rows.iter().filter(|(torque, _)| *torque != 0.0).map(|(torque, left)| left / torque);
-        variances[axis - 1] = slopes.map(beside).min_by(f64::total_cmp).map_or(whole, |own| own.max(whole));
-    }
-    (whole > 0.0).then_some(variances)
 }
 
 fn table(bench: &Bench, model: &Fitted, tested: impl Fn(usize) -> Option<(f64, f64)>) -> Step {

@@ -129,3 +129,31 @@ fn intervals_hold_where_axes_have_few_rows() {
         assert!(within >= 273, "{within} of 300 with {count} rows");
     }
 }
+
+/// What a row alone says is no curve of its gear: beyond twenty standard deviations it
+/// is told, and where another name is told, the row is beside it.
+#[test]
+fn one_wild_reading_is_no_effect() {
+    for seed in 0..20 {
+        let mut campaign = measured(&five_axis(), &ramp(4), 300 + seed, |_, _| 0.0);
+        let Data::Clamped(rows) = &mut campaign.data else { unreachable!("made of clamped axes") };
+        rows[7 * seed as usize % 20].deflection += 40.0 * NOISE;
+        let trace = traced(&campaign);
+        for named in &trace.effects {
+            let told = named.effect.to_string();
+            assert!(told == "outliers@rig" || named.same_as.contains(&"outliers@rig".into()), "seed {seed}: {told}");
+        }
+    }
+}
+
+/// Of 100 campaigns without a wild row more than 2 name one with a probability of
+/// 0.02 %, were one in 1000 to do so.
+#[test]
+fn noise_is_no_wild_reading() {
+    let wild = |seed: &u64| {
+        let trace = traced(&measured(&five_axis(), &ramp(3 + *seed as usize % 4), 500 + seed, |_, _| 0.0));
+        names(&trace).contains(&"outliers@rig".into())
+    };
+    let count = (0..100).filter(wild).count();
+    assert!(count <= 2, "{count} of 100");
+}

@@ -1,0 +1,166 @@
+//! Rows of clamped axes that are wild.
+//!
+//! A row is held against what the fit leaves of the others, by its externally
+//! studentised residual. Several wild rows hide each other in that, so the row that
+//! stands out most is taken away time and again, as many times as there may be wild
+//! ones, and all are wild up to the last that was significant (Rosner,
+//! Technometrics 25, 1983, 165-172). Which stands out most a median tells, which
+//! wild rows do not move.
+
+use std::vec;
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::axes::Axes;
+use super::bench::{Bench, problem};
+use crate::identify::normal::Fit;
+use crate::identify::problem::Problem;
+use crate::identify::whitening::mean_share;
+use crate::probability::told;
+use crate::trace::isolated::{MEDIAN, STANDS_OUT, STRICT};
+use crate::trace::model::Fitted;
+
+/// The row that stands out most.
+struct Worst {
+    row: usize,
+    /// Its square over a variance that wild rows do not move.
+    over: f64,
+    /// The probability of that much against the other rows, over all.
+    p: f64,
+}
+
+/// The rows that are wild, `most` or fewer, by index, with the probability of the
+/// likeliest. Unless `strict`, structure may be left, and they must stand out from
+/// that as well.
+pub fn wild_rows(bench: &Bench, fit: &Fit, strict: bool, most: usize) -> Option<(Vec<usize>, f64)> {
+    let (mut axes, mut raw) = (bench.axes.clone(), bench.raw.select_columns(&fit.columns));
+    let mut at: Vec<usize> = (0..axes.rows.len()).collect();
+    let mut taken: Vec<usize> = Vec::new();
+    let mut found = None;
+    for _ in 0..most {
+        let Some(worst) = worst(&axes, &raw) else { break };
+        taken.push(at.remove(worst.row));
+        axes = axes.without(&[worst.row]);
+        raw = raw.remove_row(worst.row);
+        if worst.p <= STRICT && (strict || worst.over > STANDS_OUT) {
+            found = Some((taken.clone(), worst.p));
+        }
+    }
+    found
+}
+
+/// What one row explains if it is wild, in place of an effect.
+pub struct OneOff {
+    /// The row that explains most, by index.
+    pub row: usize,
+    /// The probability of that much, over all rows.
+    pub p: f64,
+    /// Schwarz's criterion of the model with it: which row, and how far it is off.
+    pub bic: f64,
+}
+
+/// The row of which it explains most that it is wild.
+pub fn one_off(bench: &Bench, model: &Fitted) -> Option<OneOff> {
+    let all = gains(&bench.axes, &bench.problem, &model.fit)?;
+    let row = (0..all.len()).max_by(|&a, &b| all[a].total_cmp(&all[b]))?;
+    let others = model.fit.rss - all[row];
+    let p = tail(all[row], others, all.len(), model.fit.columns.len())?;
+    (others > 0.0).then(|| OneOff { row, p, bic: bench.bic(others, &model.named, 2) })
+}
+
+/// By how much the sum of squares falls without each row: by a number of its own,
+/// which whitening spreads over the rows that share its unloaded reading.
+fn gains(axes: &Axes, problem: &Problem, fit: &Fit) -> Option<Vec<f64>> {
+    let inverse = problem.total.inverse(&fit.columns)?;
+    let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
+    let columns = problem.white.select_columns(&fit.columns);
+    let mut gains = vec![0.0; residuals.len()];
+    for axis in axes.loaded() {
+        let rows = axes.rows_of(axis);
+        let spread = mean_share(rows.len(), 1.0) / rows.len().max(1) as f64;
+        let common = columns.select_rows(&rows).row_sum_tr() * spread;
+        let left = residuals.select_rows(&rows).sum() * spread;
+        let length = 1.0 - 2.0 * spread + rows.len() as f64 * spread * spread;
+        for row in rows {
+            let x = columns.row(row).transpose() - &common;
+            let own = (length - x.dot(&(&inverse * &x))).max(f64::EPSILON);
+            gains[row] = (residuals[row] - left).powi(2) / own;
+        }
+    }
+    Some(gains)
+}
+
+/// The probability that the largest of so many gains is at least this much, against
+/// what the others leave. `None` where they leave nothing.
+fn tail(gain: f64, others: f64, rows: usize, columns: usize) -> Option<f64> {
+    let freedom = rows as f64 - columns as f64 - 1.0;
+    let table = StudentsT::new(0.0, 1.0, freedom).ok().filter(|_| others > 0.0)?;
+    Some(told(rows as f64 * 2.0 * table.sf((gain * freedom / others).sqrt())))
+}
+
+fn worst(axes: &Axes, raw: &DMatrix<f64>) -> Option<Worst> {
+    let problem = problem(axes, raw.clone());
+    let columns: Vec<usize> = (0..raw.ncols()).collect();
+    let fit = problem.total.solve(&columns)?;
+    let all = gains(axes, &problem, &fit)?;
+    let whole = median(all.clone());
+    let own = of_most(axes, &(problem.readings.as_ref() - raw * &fit.coefficients));
+    let own = |row: usize| own[axes.rows[row].axis - 1];
+    let over = |row: usize| all[row] / own(row).max(whole);
+    let row = (0..all.len()).max_by(|&a, &b| over(a).total_cmp(&over(b)))?;
+    let freedom = all.len() as f64 - columns.len() as f64 - 1.0;
+    let others = (fit.rss - all[row]).max(freedom * own(row));
+    let p = tail(all[row], others, all.len(), columns.len()).filter(|_| whole > 0.0)?;
+    Some(Worst { row, over: over(row), p })
+}
+
+/// By axis, the variance of what is left of most of its rows, by the slope that
+/// leaves least of them. A curve of its gear is in most of them; wild rows, a
+/// minority, are not.
+fn of_most(axes: &Axes, residuals: &DVector<f64>) -> Vec<f64> {
+    let mut variances = vec![0.0; axes.compliance.len()];
+    for axis in axes.loaded() {
+        let rows: Vec<(f64, f64)> =
+            axes.rows_of(axis).into_iter().map(|row| (axes.rows[row].torque, residuals[row])).collect();
+        let beside = |slope: f64| median(rows.iter().map(|(torque, left)| (left - slope * torque).powi(2)).collect());
+        let slopes = rows.iter().filter(|(torque, _)| *torque != 0.0).map(|(torque, left)| left / torque);
+        variances[axis - 1] = slopes.map(beside).min_by(f64::total_cmp).unwrap_or(0.0);
+    }
+    variances
+}
+
+/// The variance that squares have by their median.
+fn median(mut squares: Vec<f64>) -> f64 {
+    squares.sort_by(f64::total_cmp);
+    squares.get(squares.len() / 2).map_or(0.0, |middle| middle / MEDIAN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::ClampedRow;
+    use crate::campaign::made::campaign;
+    use crate::identify::identify;
+    use crate::samples::five_axis;
+
+    /// What a row explains is what the fit leaves less of without it.
+    #[test]
+    fn a_gain_is_what_the_others_leave_less() {
+        let readings = [3.1e-5, 5.7e-5, 9.6e-5, 1.17e-4, 2.8e-5, 6.3e-5, 8.8e-5];
+        let rows = readings.into_iter().enumerate().map(|(i, deflection)| {
+            let (axis, torque) = if i < 4 { (1, 100.0 * (i + 1) as f64) } else { (3, 100.0 * (i - 3) as f64) };
+            ClampedRow { line: i + 2, axis, torque, deflection }
+        });
+        let rows: Vec<ClampedRow> = rows.collect();
+        let campaign = campaign(five_axis(), crate::campaign::Data::Clamped(rows.clone()));
+        let axes = Axes::new(&campaign.robot, &rows, &identify(&campaign).expect("two axes"));
+        let bench = Bench::new(axes.clone(), None);
+        let fit = bench.fit(&[]).expect("two axes").fit;
+        for (row, gain) in gains(&axes, &bench.problem, &fit).expect("two axes").into_iter().enumerate() {
+            let without = Bench::new(axes.without(&[row]), None).fit(&[]).expect("two axes").fit;
+            assert!(((fit.rss - without.rss) / gain - 1.0).abs() < 1e-9, "row {row}");
+        }
+    }
+}
