@@ -124,6 +124,10 @@ fn recorded_forces_along_fixed_axes_need_no_direction() {
         succeed(&["path", arm, &path, "--cut", &cut, "--surface", "face", "--json", &told]);
         let told = &json(&told)["deviation"];
         assert_eq!((&told["points_with_force"], told["lines_without_direction"].to_string()), (&2.into(), "[]".into()));
+        // Where there is no wall, it has no error.
+        let said = succeed(&["path", arm, &path, "--cut", &cut, "--surface", "side"]);
+        let of_wall = said.lines().find(|line| line.trim_start().starts_with("error of the wall")).unwrap();
+        assert_eq!(of_wall.split_whitespace().filter(|word| *word == "-").count(), 3, "{of_wall}");
         succeed(&online);
     }
     fs::write(&cut, "measured: {file: thrust.csv, frame: cut, on: tool}\n").unwrap();

@@ -22,19 +22,23 @@ pub fn page(cutting: &Cutting) -> String {
     };
     let mut page = format!("\nDeviation under {} [um], over {over}\n", cutting.name);
     let mut rows = Table::new(1, ["", "mean", "rms", "worst"]);
-    let mut row = |name: &str, summary: Summary| {
-        let cells = [summary.mean, summary.rms, summary.worst].map(micrometres);
+    let mut row = |name: &str, values: Vec<f64>| {
+        // A tool that plunges has no wall, and its feed no normal.
+        let none = values.is_empty();
+        let Summary { mean, rms, worst } = Summary::of(values);
+        let cells = [mean, rms, worst].map(|value| if none { "-".to_owned() } else { micrometres(value) });
         rows.row([name.to_owned()].into_iter().chain(cells));
     };
-    row("distance from the path", cutting.deviation.distances());
+    row("distance from the path", cutting.deviation.in_cut().map(DeviationPoint::distance).collect());
     for (axis, name) in ["along the feed", "normal to it", "along the tool axis"].into_iter().enumerate() {
-        row(
-            name,
-            Summary::of(cutting.deviation.in_cut().filter_map(|point| point.components.map(|found| found[axis]))),
-        );
+        let along = |point: &DeviationPoint| point.components.map(|found| found[axis]);
+        row(name, cutting.deviation.in_cut().filter_map(along).collect());
     }
     let judged = if points.iter().any(|point| point.peak.is_some()) { ", peak of a revolution" } else { "" };
-    row(&format!("error of the {}{judged}", surface(cutting)), cutting.deviation.errors());
+    row(
+        &format!("error of the {}{judged}", surface(cutting)),
+        points.iter().filter_map(DeviationPoint::judged).collect(),
+    );
     page += &rows.to_string();
     page += "positive errors are into the part, negative ones leave material\n";
     if !cutting.undirected.is_empty() {
