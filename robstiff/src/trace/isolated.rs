@@ -11,7 +11,7 @@
 //! rows stand out from structure and noise together, and what was cut while an
 //! effect was missing is looked at again once it is named. A median of few rows is
 //! itself uncertain; what is held against it has the tails of Student's
-//! distribution ([`OF_MEDIAN`]).
+//! distribution (`OF_MEDIAN`).
 
 use std::vec;
 use std::vec::Vec;
@@ -58,7 +58,7 @@ pub const MEDIAN: f64 = 0.4549;
 /// The degrees of freedom of a variance from that median, over those of the
 /// readings: its own variance is `1 / (4 n f^2)` with the density `f` of chi-square
 /// there, that of the sum of squares `2 / n`.
-pub const OF_MEDIAN: f64 = 0.368;
+const OF_MEDIAN: f64 = 0.368;
 
 /// With less than this share left, a straight line in the load says the same.
 const OF_ITS_OWN: f64 = 0.1;

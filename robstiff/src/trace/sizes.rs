@@ -70,11 +70,10 @@ fn of_declared(
     let (weights, axes) = (covariance.shares_of_axes(), problem.axes);
     let of_row = |row: &usize| (0..axes).map(|axis| weights[axis] * residuals[row * axes + axis].powi(2)).sum::<f64>();
     let sum: f64 = problem.blocks.iter().flat_map(|block| &block.rows).map(of_row).sum();
-    let of_axis = shares.tool.1 / axes as f64;
-    let mean = of_axis * weights.iter().sum::<f64>();
-    let spread = of_axis * weights.iter().map(|weight| weight * weight).sum::<f64>();
-    let statistic = sum / variance * (mean / spread);
-    let p_value = told(ChiSquared::new(mean * mean / spread).ok()?.sf(statistic));
+    // The mean of the weights is one.
+    let unequal = weights.iter().map(|weight| weight * weight).sum::<f64>() / axes as f64;
+    let statistic = sum / variance / unequal;
+    let p_value = told(ChiSquared::new(shares.tool.1 / unequal).ok()?.sf(statistic));
     Some(StructureTest { name: "residuals against the declared noise".to_owned(), statistic, p_value })
 }
 

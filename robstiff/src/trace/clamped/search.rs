@@ -117,7 +117,7 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
             pairs.sort_by(|a, b| a.bic.total_cmp(&b.bic));
             bench.accepted(&pairs, &model, options)
         });
-        // What a single row says just as well needs no effect.
+        // What a single row says better needs no effect.
         let off = one_off(&bench, &model).filter(|off| off.p <= options.alpha && wild.0.len() < most);
         if let Some(off) = off.filter(|off| off.bic < accepted.as_ref().map_or(model.bic, |(better, _)| better.bic)) {
             let axes = bench.axes.without(&[off.row]);
