@@ -113,7 +113,7 @@ fn a_cut_along_the_tool_has_no_direction() {
 #[test]
 fn recorded_forces_along_fixed_axes_need_no_direction() {
     let folder = folder("machining-drill");
-    let [path, cut, told] = ["down.csv", "drill.yaml", "told.json"].map(|name| inside(&folder, name));
+    let [path, cut, told, out] = ["down.csv", "drill.yaml", "told.json", "side.json"].map(|name| inside(&folder, name));
     fs::write(&path, "x,y,z,ux,uy,uz\n1.7,0,0.70,0,0,-1\n1.7,0,0.68,0,0,-1\n").unwrap();
     fs::write(folder.join("thrust.csv"), "Fx,Fy,Fz\n0,0,300\n").unwrap();
     let arm = "kuka-kr270-r2700";
@@ -125,7 +125,11 @@ fn recorded_forces_along_fixed_axes_need_no_direction() {
         let told = &json(&told)["deviation"];
         assert_eq!((&told["points_with_force"], told["lines_without_direction"].to_string()), (&2.into(), "[]".into()));
         // Where there is no wall, it has no error.
-        let said = succeed(&["path", arm, &path, "--cut", &cut, "--surface", "side"]);
+        let side = ["path", arm, &path, "--cut", &cut, "--surface", "side", "--against", &cut, "--json", &out];
+        let said = succeed(&side);
+        let told = &json(&out)["deviation"];
+        assert!(told["error"].is_null() && told["distance"]["worst_m"].as_f64().unwrap() > 0.0, "{told}");
+        assert!(told["compared"][0]["error_m"].is_null() && told["compared"][0]["distance_m"].is_number(), "{told}");
         let of_wall = said.lines().find(|line| line.trim_start().starts_with("error of the wall")).unwrap();
         assert_eq!(of_wall.split_whitespace().filter(|word| *word == "-").count(), 3, "{of_wall}");
         succeed(&online);

@@ -45,10 +45,13 @@ pub fn left<const N: usize>(
     let distances = |stands: Vec<Stand>| Summary::of(stands.iter().map(|stand| stand.off.fixed_rows::<3>(0).norm()));
     let uncorrected = displaced(robot, Some(factors), path.points.iter().map(|point| point.q), path, load)?;
     let corrected = displaced(robot, Some(factors), compensated.points.iter().map(|point| point.q), path, load)?;
-    let (without, with) = (distances(uncorrected), distances(corrected));
     // An arm that is not pushed anywhere has nothing to correct.
     let part = |with: f64, without: f64| if without > 0.0 { with / without } else { 0.0 };
-    Ok(Left { rms: part(with.rms, without.rms), worst: part(with.worst, without.worst) })
+    let both = distances(corrected).zip(distances(uncorrected));
+    Ok(both.map_or(Left { rms: 0.0, worst: 0.0 }, |(with, without)| Left {
+        rms: part(with.rms, without.rms),
+        worst: part(with.worst, without.worst),
+    }))
 }
 
 /// What is left when the true arm's compliance is `by` larger and smaller than the

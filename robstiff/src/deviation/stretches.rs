@@ -20,7 +20,7 @@ pub struct Stretch {
 }
 
 /// Errors along a path in three numbers (m).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
     /// The mean.
     pub mean: f64,
@@ -31,8 +31,8 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Of any numbers; zero of none.
-    pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
+    /// Of any numbers; `None` of none.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let (mut count, mut sum, mut squares, mut worst) = (0_usize, 0.0, 0.0, 0.0_f64);
         for value in values {
             count += 1;
@@ -40,8 +40,8 @@ impl Summary {
             squares += value * value;
             worst = larger(worst, value);
         }
-        let count = count.max(1) as f64;
-        Self { mean: sum / count, rms: (squares / count).sqrt(), worst }
+        let of = count as f64;
+        (count > 0).then(|| Self { mean: sum / of, rms: (squares / of).sqrt(), worst })
     }
 }
 
@@ -81,13 +81,14 @@ impl Deviation {
         self.points.iter().filter(|point| point.in_cut())
     }
 
-    /// The error of the surface over the points in the cut that have one.
-    pub fn errors(&self) -> Summary {
+    /// The error of the surface over the points in the cut that have one; `None` where
+    /// none has, as of a tool that plunges.
+    pub fn errors(&self) -> Option<Summary> {
         Summary::of(self.points.iter().filter_map(DeviationPoint::judged))
     }
 
-    /// The distance from the path over the points in the cut.
-    pub fn distances(&self) -> Summary {
+    /// The distance from the path over the points in the cut; `None` where nothing pushes.
+    pub fn distances(&self) -> Option<Summary> {
         Summary::of(self.in_cut().map(DeviationPoint::distance))
     }
 }

@@ -113,10 +113,10 @@ pub struct Compared {
     pub removal: Option<f64>,
     /// The size of the mean force, at the point where it is largest (N).
     pub force: f64,
-    /// The largest distance from the path (m).
-    pub distance: f64,
-    /// The largest error, with its sign (m).
-    pub error: f64,
+    /// The largest distance from the path (m), where anything pushes.
+    pub distance: Option<f64>,
+    /// The largest error, with its sign (m), where there is a surface.
+    pub error: Option<f64>,
 }
 
 /// A corrected path.
@@ -305,6 +305,6 @@ fn compared(name: &str, file: &CutFile, deviation: &Deviation) -> Compared {
         Forces::Model(cut) => removal_rate(cut),
         Forces::Measured { .. } => None,
     };
-    let (distance, error) = (deviation.distances().worst, deviation.errors().worst);
+    let [distance, error] = [deviation.distances(), deviation.errors()].map(|of| of.map(|of| of.worst));
     Compared { name: name.to_owned(), removal, force, distance, error }
 }

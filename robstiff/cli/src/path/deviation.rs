@@ -22,23 +22,18 @@ pub fn page(cutting: &Cutting) -> String {
     };
     let mut page = format!("\nDeviation under {} [um], over {over}\n", cutting.name);
     let mut rows = Table::new(1, ["", "mean", "rms", "worst"]);
-    let mut row = |name: &str, values: Vec<f64>| {
+    let mut row = |name: &str, of: Option<Summary>| {
         // A tool that plunges has no wall, and its feed no normal.
-        let none = values.is_empty();
-        let Summary { mean, rms, worst } = Summary::of(values);
-        let cells = [mean, rms, worst].map(|value| if none { "-".to_owned() } else { micrometres(value) });
+        let cells = of.map_or(["-"; 3].map(String::from), |of| [of.mean, of.rms, of.worst].map(micrometres));
         rows.row([name.to_owned()].into_iter().chain(cells));
     };
-    row("distance from the path", cutting.deviation.in_cut().map(DeviationPoint::distance).collect());
+    row("distance from the path", cutting.deviation.distances());
     for (axis, name) in ["along the feed", "normal to it", "along the tool axis"].into_iter().enumerate() {
         let along = |point: &DeviationPoint| point.components.map(|found| found[axis]);
-        row(name, cutting.deviation.in_cut().filter_map(along).collect());
+        row(name, Summary::of(cutting.deviation.in_cut().filter_map(along)));
     }
     let judged = if points.iter().any(|point| point.peak.is_some()) { ", peak of a revolution" } else { "" };
-    row(
-        &format!("error of the {}{judged}", surface(cutting)),
-        points.iter().filter_map(DeviationPoint::judged).collect(),
-    );
+    row(&format!("error of the {}{judged}", surface(cutting)), cutting.deviation.errors());
     page += &rows.to_string();
     page += "positive errors are into the part, negative ones leave material\n";
     if !cutting.undirected.is_empty() {
@@ -65,16 +60,20 @@ pub fn page(cutting: &Cutting) -> String {
                 one.name.clone(),
                 one.removal.map_or("-".to_owned(), |rate| decimals(rate * 6e7, 2)),
                 decimals(one.force, 1),
-                micrometres(one.distance),
-                micrometres(one.error),
+                or_none(one.distance),
+                or_none(one.error),
             ]);
         }
         page += &format!("\nTwo cuts, at their worst\n{rows}");
     }
     if let Some(corrected) = &cutting.corrected {
-        page += &correction(corrected, cutting.deviation.distances().worst);
+        page += &correction(corrected, cutting.deviation.distances().map_or(0.0, |distances| distances.worst));
     }
     page
+}
+
+fn or_none(length: Option<f64>) -> String {
+    length.map_or("-".to_owned(), micrometres)
 }
 
 fn surface(cutting: &Cutting) -> &'static str {
@@ -187,8 +186,11 @@ pub fn cells(cutting: &Cutting, has: Columns, index: usize) -> String {
     cells.join(",")
 }
 
-fn summary(of: Summary) -> Value {
-    json!({"mean_m": number(of.mean), "rms_m": number(of.rms), "worst_m": number(of.worst)})
+fn summary(of: Option<Summary>) -> Value {
+    of.map_or(
+        Value::Null,
+        |of| json!({"mean_m": number(of.mean), "rms_m": number(of.rms), "worst_m": number(of.worst)}),
+    )
 }
 
 /// Everything in SI units.
@@ -216,8 +218,8 @@ pub fn document(cutting: &Cutting) -> Value {
             "cut": one.name,
             "removal_m3_per_s": one.removal.map(number),
             "force_n": number(one.force),
-            "distance_m": number(one.distance),
-            "error_m": number(one.error),
+            "distance_m": one.distance.map(number),
+            "error_m": one.error.map(number),
         })).collect::<Value>()),
         "corrected": cutting.corrected.as_ref().map(corrected),
     })
