@@ -94,7 +94,8 @@ pub(super) fn size(
                 return None;
             }
             let statistic = (rss - pure.sum).max(0.0) / rest / variance;
-            let p_value = told(FisherSnedecor::new(rest, pure.freedom as f64).ok()?.sf(statistic));
+            let [rest, repeated] = [rest, pure.freedom as f64].map(|freedom| freedom / pure.unequal);
+            let p_value = told(FisherSnedecor::new(rest, repeated).ok()?.sf(statistic));
             Some(StructureTest { name: "residuals against repeated readings".to_owned(), statistic, p_value })
         }
         Yardstick::Unknown => None,

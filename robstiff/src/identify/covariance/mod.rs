@@ -208,9 +208,13 @@ impl Covariance {
     pub fn pure_error(&self, samples: &Samples, level: Level, of_pose: impl Fn(usize) -> bool) -> PureError {
         let chunks = contrasts(samples, &self.measured(samples), level, of_pose, |_| false);
         let reference = self.reference(0..3);
-        let sums = sums(&chunks, 3, self.shared);
-        let sum = sums.iter().zip(&self.own).map(|(sum, own)| sum * (reference / own).powi(2)).sum();
-        PureError { sum, freedom: 3 * count(&chunks) }
+        let of_chunk = |chunk: &Chunk| -> (f64, usize) {
+            let chunk = core::slice::from_ref(chunk);
+            let sums = sums(chunk, 3, self.shared);
+            let sum = sums.iter().zip(&self.own).map(|(sum, own)| sum * (reference / own).powi(2)).sum();
+            (sum, 3 * count(chunk))
+        };
+        PureError::of(chunks.iter().map(of_chunk))
     }
 
     /// The variance of a sum of readings of one axis with the given weights, a
