@@ -11,7 +11,10 @@
 //! rows stand out from structure and noise together, and what was cut while an
 //! effect was missing is looked at again once it is named. A median of few rows is
 //! itself uncertain; what is held against it has the tails of Student's
-//! distribution (`OF_MEDIAN`).
+//! distribution (`OF_MEDIAN`). Where the noise is another at each pose (`by_pose`),
+//! what stands out must stand out from that of its own pose as well.
+
+mod by_pose;
 
 use std::vec;
 use std::vec::Vec;
@@ -19,6 +22,7 @@ use std::vec::Vec;
 use nalgebra::Vector3;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
+use self::by_pose::ByPose;
 use super::model::{Fitted, Setting};
 use crate::probability::{as_normal, told};
 
@@ -67,7 +71,9 @@ const OF_ITS_OWN: f64 = 0.1;
 const TIE: f64 = 6.0;
 
 /// One visit's residuals.
+#[derive(Clone)]
 struct Visit {
+    pose: usize,
     /// `lambda`, the variance of its unloaded reading over that of a row's own.
     shared: f64,
     rows: Vec<usize>,
@@ -130,6 +136,20 @@ impl Visit {
 /// What is wrong in single visits of poses fitted to, the worst first; nothing
 /// where that would be more than a few. With `strict`, the rest is taken to be noise.
 pub fn events(setting: &Setting<'_>, model: &Fitted, strict: bool) -> Vec<Event> {
+    let visits = visits(setting, model);
+    let tells = setting.problem.freedom(&model.fit) / setting.problem.total.rows as f64;
+    let mut rest = visits.clone();
+    let found = search(&mut rest, strict, tells, None);
+    if !strict || found.is_empty() {
+        return found;
+    }
+    // That is also how noise looks that is larger at some poses.
+    let by_pose = ByPose::of(&rest, &scale(&rest, strict, tells), tells);
+    by_pose.map_or(found, |by_pose| search(&mut visits.clone(), strict, tells, Some(&by_pose)))
+}
+
+/// What the model leaves of the visits of poses fitted to.
+fn visits(setting: &Setting<'_>, model: &Fitted) -> Vec<Visit> {
     let samples = &setting.point.samples;
     let residuals = setting.residuals(&model.fit) - &setting.correction;
     let mut visits: Vec<Visit> = Vec::new();
@@ -141,6 +161,7 @@ pub fn events(setting: &Setting<'_>, model: &Fitted, strict: bool) -> Vec<Event>
         if at[row.visit] == usize::MAX {
             at[row.visit] = visits.len();
             visits.push(Visit {
+                pose: row.pose,
                 shared: setting.problem.shared,
                 rows: vec![],
                 used: vec![],
@@ -161,19 +182,27 @@ pub fn events(setting: &Setting<'_>, model: &Fitted, strict: bool) -> Vec<Event>
         let size = largest.norm_squared().max(f64::MIN_POSITIVE);
         visit.loads = visit.rows.iter().map(|row| wrench(row).dot(&largest) / size).collect();
     }
+    visits
+}
+
+/// Takes what is wrong out of visits, the worst first; nothing is found where that
+/// would be more than a few.
+fn search(visits: &mut [Visit], strict: bool, tells: f64, by_pose: Option<&ByPose>) -> Vec<Event> {
     let rows: usize = visits.iter().map(|visit| visit.rows.len()).sum();
     let most = (FEW * rows as f64).floor() as usize;
     let hypotheses = 2 * rows;
     let table = ChiSquared::new(3.0).expect("three degrees of freedom");
     let threshold = table.inverse_cdf(1.0 - STRICT / hypotheses as f64);
-    let tells = setting.problem.freedom(&model.fit) / setting.problem.total.rows as f64;
     let mut found: Vec<Event> = Vec::new();
     loop {
-        let scale = scale(&visits, strict, tells);
+        let scale = scale(visits, strict, tells);
         if scale.variance.iter().any(|variance| *variance <= 0.0) {
             return found;
         }
-        let worst = (0..visits.len()).filter_map(|k| worst(&visits[k], &scale, strict, threshold).map(|e| (k, e)));
+        let worst = (0..visits.len()).filter_map(|k| {
+            let own = |pattern: &[f64]| by_pose.map(|by_pose| by_pose.noise(visits, k, pattern, &scale));
+            worst(&visits[k], &scale, &own, strict, threshold).map(|event| (k, event))
+        });
         let Some((k, event)) = worst.max_by(|a, b| a.1.statistic.total_cmp(&b.1.statistic)) else { break };
         let visit = &mut visits[k];
         for (i, row) in visit.rows.iter().enumerate() {
@@ -215,14 +244,27 @@ fn scale(visits: &[Visit], strict: bool, tells: f64) -> Scale {
     Scale { variance, freedom }
 }
 
-/// The worst of a visit, if it stands out.
-fn worst(visit: &Visit, scale: &Scale, strict: bool, threshold: f64) -> Option<Event> {
+/// The worst of a visit, if it stands out from all rows and from the noise of its own
+/// pose, where that is known.
+fn worst(
+    visit: &Visit,
+    scale: &Scale,
+    own: &dyn Fn(&[f64]) -> Option<by_pose::Noise>,
+    strict: bool,
+    threshold: f64,
+) -> Option<Event> {
     let count = visit.rows.len();
     let used: Vec<usize> = (0..count).filter(|&i| visit.used[i]).collect();
     let event = |pattern: Vec<f64>, is_slip: bool| {
         let explained = visit.explained(&pattern, strict)?;
         let over = explained.by_axis.component_div(&scale.variance);
-        let statistic = over.map(|square| as_normal(square, scale.freedom)).sum();
+        let mut statistic = over.map(|square| as_normal(square, scale.freedom)).sum();
+        if statistic > threshold
+            && let Some(noise) = own(&pattern)
+        {
+            let freedom = noise.freedom.min(scale.freedom);
+            statistic = over.map(|square| as_normal(square / noise.times, freedom)).sum().min(statistic);
+        }
         let enough = match (strict, explained.projected) {
             (true, _) => 0.0,
             (false, true) => STANDS_OUT,
