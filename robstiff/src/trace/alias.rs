@@ -7,9 +7,11 @@ use super::Options;
 use super::bench::Bench;
 use super::catalogue::{EITHER, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY};
 use super::found::Place;
+use super::isolated::Event;
 use super::model::{Fitted, Named, Setting};
 use super::selection::{CURVATURE, WITHIN_REACH, best_with};
 use crate::Effect;
+use crate::identify::normal::Fit;
 use robstiff_robots::effect::Place as Part;
 
 /// Columns that differ by less than this fraction of their energy, once the
@@ -25,8 +27,9 @@ const EXACT: f64 = 1e-6;
 const WITNESSES: f64 = 2.33;
 
 /// The names of what the data cannot tell effect `k` of a model from: exact
-/// aliases, and rivals that would have been accepted in its place and fit
-/// about as well. The best fitting first.
+/// aliases, and rivals that predict poses left out better than no effect does and fit
+/// about as well as this one, or nearly so where they are significant too. The best
+/// fitting first.
 pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -> Vec<String> {
     let mut rest = model.named.clone();
     let one = rest.remove(k);
@@ -39,10 +42,12 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -
         let Some(rival) = best_with(&setting, &rest, candidate) else { continue };
         let variant = variant_of(&rival, candidate);
         let exact = tests.scores.distance(setting.variant(one), setting.variant(variant)) < EXACT;
-        let admitted = || tests.p_value(candidate) <= options.alpha && setting.left_out_rms(&rival.fit) < unseen;
+        let is_significant = tests.p_value(candidate) <= options.alpha;
+        let predicts = || setting.left_out_rms(&rival.fit) < unseen;
         let of_model = own.deviances(&model.fit);
         let is_near = |rival: &Fitted, at: &Setting<'_>| {
-            rival.bic - model.bic < WITHIN_REACH || witnesses(&of_model, &at.deviances(&rival.fit)) < WITNESSES
+            rival.bic - model.bic < WITHIN_REACH
+                || (is_significant && witnesses(&of_model, &at.deviances(&rival.fit)) < WITNESSES)
         };
         let near = || {
             // In its own form it may fit better than its tangent does.
@@ -50,15 +55,45 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -
                 let at = bench.at(&rival.named).ok()?;
                 at.fit(&rival.named).ok().map(|rival| is_near(&rival, &at))
             };
-            is_near(&rival, &setting)
-                || (bench.is_nonlinear(&rival.named) && rival.bic < model.bic + CURVATURE && refit().unwrap_or(false))
+            let may_fit = is_significant && bench.is_nonlinear(&rival.named) && rival.bic < model.bic + CURVATURE;
+            is_near(&rival, &setting) || (may_fit && refit().unwrap_or(false))
         };
-        if exact || one_formula(bench, &own, model, one, candidate) || (admitted() && near()) {
+        if exact || one_formula(bench, &own, model, one, candidate) || (near() && predicts()) {
             found.push((rival.bic, setting.candidates[candidate].name()));
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     found.into_iter().map(|(_, name)| name).chain(dead_zone(bench, &own, model, one)).collect()
+}
+
+/// The names of what may as well have made the rows that are left out as wild: effects
+/// that with these rows in the fit leave as little as a shift of each event does. They
+/// need not have passed the tests by which effects are named, for these ask for poses
+/// that agree, and a part that few poses load has few.
+pub fn same_as_wild(bench: &Bench<'_>, model: &Fitted, events: &[Event]) -> Vec<String> {
+    let out: Vec<usize> = events.iter().flat_map(|event| &event.rows).copied().collect();
+    let (whole, rest) = (bench.leaving_out(&[]), bench.leaving_out(&out));
+    let named = &model.named;
+    let (Ok(setting), Ok(others)) = (whole.at(named), rest.at(named)) else { return Vec::new() };
+    let Ok(Fitted { fit, .. }) = others.fit(named) else { return Vec::new() };
+    // An event of several rows has one shift, and noise in the rest of their readings.
+    let shifts = 3 * events.len();
+    let noise = setting.problem.total.rows - others.problem.total.rows - shifts;
+    let rss = fit.rss * (1.0 + noise as f64 / others.problem.freedom(&fit));
+    let as_wild = setting.bic(named, &Fit { rss, ..fit }, shifts);
+    let mut found: Vec<(f64, String)> = Vec::new();
+    for candidate in 0..setting.candidates.len() {
+        let Some(rival) = best_with(&setting, named, candidate) else { continue };
+        if rival.bic - as_wild > CURVATURE {
+            continue;
+        }
+        let Ok(rival) = whole.polished(&rival.named).fit(&rival.named) else { continue };
+        if rival.bic - as_wild < WITHIN_REACH {
+            found.push((rival.bic, setting.candidates[candidate].name()));
+        }
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.into_iter().map(|(_, name)| name).collect()
 }
 
 /// The hysteresis that a softening may as well be where each visit has one row: a

@@ -175,7 +175,7 @@ impl Setting<'_> {
     /// As for [`fit`](Self::fit).
     pub fn judge(&self, named: &[Named], fit: Fit) -> Result<Fitted, String> {
         self.check(&fit, named)?;
-        let bic = self.bic(named, &fit);
+        let bic = self.bic(named, &fit, 0);
         Ok(Fitted { named: named.to_vec(), fit, bic, physical: true })
     }
 
@@ -185,13 +185,15 @@ impl Setting<'_> {
         let columns = self.columns(named);
         let signs: Vec<Sign> = columns.iter().map(|&column| self.signs[column]).collect();
         let fit = self.problem.total.solve_signed(&columns, &signs)?;
-        let (bic, physical) = (self.bic(named, &fit), self.check(&fit, named).is_ok());
+        let (bic, physical) = (self.bic(named, &fit, 0), self.check(&fit, named).is_ok());
         Some(Fitted { named: named.to_vec(), fit, bic, physical })
     }
 
-    /// The Bayesian information criterion of a model with its fit.
-    fn bic(&self, named: &[Named], fit: &Fit) -> f64 {
-        let parameters = self.base_of(fit) + named.iter().map(|&one| self.variant(one).parameters).sum::<usize>();
+    /// The Bayesian information criterion of a model with its fit, and so many numbers
+    /// more.
+    pub fn bic(&self, named: &[Named], fit: &Fit, more: usize) -> f64 {
+        let of_effects = named.iter().map(|&one| self.variant(one).parameters).sum::<usize>();
+        let parameters = self.base_of(fit) + of_effects + more;
         let rows = self.problem.total.rows as f64;
         rows * (fit.rss / rows).ln() + parameters as f64 * rows.ln()
     }

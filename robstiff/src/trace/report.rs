@@ -6,7 +6,7 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 use robstiff_robots::effect::Place as Part;
 
-use super::alias::{rivals, same_as};
+use super::alias::{rivals, same_as, same_as_wild};
 use super::bench::Bench;
 use super::catalogue::{BASE_SLIP, OUTLIERS};
 use super::found::{EffectParameter, Found, Place};
@@ -84,7 +84,8 @@ pub fn report(
     let mut effects = effects(bench, &setting, model, outcome, &spread, options);
     let holdout_rms = misfit(of_written, written).holdout_rms;
     let slipped = effects.iter_mut().find(|named| named.effect.kind() == BASE_SLIP.name);
-    let isolated = isolated(prepared, outcome, holdout_rms, slipped);
+    let may_be = if outcome.events.is_empty() { Vec::new() } else { same_as_wild(bench, found, &outcome.events) };
+    let isolated = isolated(prepared, outcome, holdout_rms, slipped, &may_be);
     effects.extend(isolated);
     // What a named effect may as well be has shown, if it is there.
     let may_be = |name: &String| effects.iter().any(|named| named.same_as.contains(name));
@@ -304,23 +305,29 @@ fn share_of(setting: &Setting<'_>, model: &Fitted, spread: &DMatrix<f64>, at: us
     (share, variance.max(0.0).sqrt() / own)
 }
 
-/// The names of what is wrong in single visits. A robot slips once: several
-/// slips are several wild visits, and a slip in the visit that one was found at
-/// the end of, or within, is that one.
+/// The names of what is wrong in single visits, which some effects may as well be. A
+/// robot slips once: several slips are several wild visits, and a slip in the visit that
+/// one was found at the end of, or within, is that one.
 fn isolated(
     prepared: &Prepared<'_>,
     outcome: &Outcome,
     holdout_rms: f64,
     slipped: Option<&mut NamedEffect>,
+    may_be: &[String],
 ) -> Vec<NamedEffect> {
     let line = |row: &usize| prepared.data.rows[*row].line;
-    let one = |effect: Found, lines: Vec<usize>, events: &[&Event], same_as: Vec<String>| NamedEffect {
+    // First as what is said of single visits.
+    let besides = |first: Option<&str>| {
+        let others = may_be.iter().filter(|name| first != Some(name.as_str())).cloned();
+        first.map(String::from).into_iter().chain(others).collect()
+    };
+    let one = |effect: Found, lines: Vec<usize>, events: &[&Event], other: Option<&str>| NamedEffect {
         parameters: effect.parameters.clone(),
         effect,
         lines,
         p_value: events.iter().map(|event| event.p_value).fold(0.0, f64::max),
         holdout_rms,
-        same_as,
+        same_as: besides(other),
         partial: outcome.structure(),
     };
     let (slips, wild): (Vec<&Event>, Vec<&Event>) = outcome.events.iter().partition(|event| event.is_slip);
@@ -346,7 +353,7 @@ fn isolated(
         let first = slip.rows.iter().map(line).min().unwrap_or_default();
         parameters.push(EffectParameter { name: "line", value: first as f64, std: None, unit: "1" });
         let effect = Found::new(&BASE_SLIP, Part::Base.into(), parameters);
-        found.push(one(effect, slip.rows.iter().map(line).collect(), &[slip], std::vec!["outliers@rig".to_string()]));
+        found.push(one(effect, slip.rows.iter().map(line).collect(), &[slip], Some("outliers@rig")));
     } else {
         outliers.extend(slips);
     }
@@ -356,8 +363,8 @@ fn isolated(
         let rows = EffectParameter { name: "rows", value: lines.len() as f64, std: None, unit: "1" };
         let effect = Found::new(&OUTLIERS, Place::Rig, std::vec![rows]);
         // One visit alone may as well have been where the robot slipped.
-        let same = if outliers.len() == 1 && !already { std::vec!["base_slip@base".to_string()] } else { Vec::new() };
-        found.push(one(effect, lines, &outliers, same));
+        let slip = (outliers.len() == 1 && !already).then_some("base_slip@base");
+        found.push(one(effect, lines, &outliers, slip));
     }
     found
 }

@@ -258,6 +258,14 @@ impl<'c> Bench<'c> {
         &self.candidates[one.candidate].variants[one.variant]
     }
 
+    /// The same with some rows left out, for they are wild, and no others.
+    pub fn leaving_out(&self, rows: &[usize]) -> Self {
+        let mut bench = self.copy();
+        bench.left_out.fill(false);
+        rows.iter().for_each(|&row| bench.left_out[row] = true);
+        bench
+    }
+
     /// The same, with nothing known of models.
     fn copy(&self) -> Self {
         Self {
