@@ -1,5 +1,5 @@
 //! What the compiler says of `robot!` used wrongly and of broken descriptions:
-//! each program in `tests/compile_fail` against its `.stderr`.
+//! each program in `programs` against its `.stderr`.
 //!
 //! Every program uses the type after the mistake: one mistake gives one error.
 //! To accept new wording, run with `TRYBUILD=overwrite` and read the
@@ -8,5 +8,5 @@
 
 #[test]
 fn mistakes_are_explained() {
-    trybuild::TestCases::new().compile_fail("compile_fail/*.rs");
+    trybuild::TestCases::new().compile_fail("programs/*.rs");
 }

@@ -1,0 +1,1 @@
+//! A crate that uses `robot!`, as far as it gets.
