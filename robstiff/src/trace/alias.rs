@@ -78,7 +78,7 @@ pub fn same_as_wild(bench: &Bench<'_>, model: &Fitted, events: &[Event]) -> Vec<
     let Ok(Fitted { fit, .. }) = others.fit(named) else { return Vec::new() };
     // An event of several rows has one shift, and noise in the rest of their readings.
     let shifts = 3 * events.len();
-    let noise = setting.problem.total.rows - others.problem.total.rows - shifts;
+    let noise = (setting.problem.total.rows - others.problem.total.rows).saturating_sub(shifts);
     let rss = fit.rss * (1.0 + noise as f64 / others.problem.freedom(&fit));
     let as_wild = setting.bic(named, &Fit { rss, ..fit }, shifts);
     let mut found: Vec<(f64, String)> = Vec::new();

@@ -98,17 +98,17 @@ impl Differences {
         for (k, visit) in visits.iter().enumerate().filter(|(_, visit)| visit.pose == pose) {
             let pattern = wrong.filter(|(visit, _)| *visit == k).map(|(_, pattern)| pattern);
             // Visits of one row have each an unloaded reading of its own.
-            let (alone, mut own) = (visit.rows.len() == 1, 1.0);
-            match alone {
-                true => own += visit.shared,
-                false => last = [None; 2],
+            let alone = visit.rows.len() == 1;
+            let variance = if alone { 1.0 + visit.shared } else { 1.0 };
+            if !alone {
+                last = [None; 2];
             }
             for i in (0..visit.rows.len()).filter(|&i| visit.used[i]) {
                 let moved = pattern.is_some_and(|pattern| pattern[i] != 0.0);
                 let before = last[usize::from(moved)].replace(visit.residuals[i]);
                 if let Some(before) = before {
                     let squares = (visit.residuals[i] - before).map(|length| length * length);
-                    found.sum += squares.component_div(&scale.variance).sum() / (2.0 * own);
+                    found.sum += squares.component_div(&scale.variance).sum() / (2.0 * variance);
                     found.count += 3;
                 }
             }

@@ -136,7 +136,7 @@ impl Visit {
 /// What is wrong in single visits of poses fitted to, the worst first; nothing
 /// where that would be more than a few. With `strict`, the rest is taken to be noise.
 pub fn events(setting: &Setting<'_>, model: &Fitted, strict: bool) -> Vec<Event> {
-    let visits = visits(setting, model);
+    let mut visits = visits(setting, model);
     let tells = setting.problem.freedom(&model.fit) / setting.problem.total.rows as f64;
     let mut rest = visits.clone();
     let found = search(&mut rest, strict, tells, None);
@@ -145,7 +145,7 @@ pub fn events(setting: &Setting<'_>, model: &Fitted, strict: bool) -> Vec<Event>
     }
     // That is also how noise looks that is larger at some poses.
     let by_pose = ByPose::of(&rest, &scale(&rest, strict, tells), tells);
-    by_pose.map_or(found, |by_pose| search(&mut visits.clone(), strict, tells, Some(&by_pose)))
+    by_pose.map_or(found, |by_pose| search(&mut visits, strict, tells, Some(&by_pose)))
 }
 
 /// What the model leaves of the visits of poses fitted to.
