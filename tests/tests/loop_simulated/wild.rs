@@ -96,3 +96,24 @@ fn a_slip_in_noise_that_differs() {
         slip.effect.to_string() == "base_slip@base" && trace.verdict != Verdict::Adequate
     });
 }
+
+/// A force that is held to a tenth of what it should be: the largest residuals are
+/// where the arm gives way furthest, and no wild rows. That they grow is structure.
+#[test]
+fn noise_in_proportion_to_the_displacement() {
+    let trace = |arm: &Description, seed| {
+        let mut simulated = plan(arm, &[], seed).run();
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        for row in &mut simulated.rows {
+            let times = random.random_range(0.9..1.1);
+            row.displacement.iter_mut().for_each(|length| *length *= times);
+        }
+        trace_files(&simulated, arm, "")
+    };
+    let arms = [five_axis(), six_axis()];
+    let traces: Vec<(u64, Trace)> =
+        (720..730).flat_map(|seed| arms.each_ref().map(|arm| (seed, trace(arm, seed)))).collect();
+    assert_most("noise in proportion", 18, &traces, |_, trace| {
+        trace.effects.is_empty() && trace.verdict == Verdict::Unexplained
+    });
+}

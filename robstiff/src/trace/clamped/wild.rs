@@ -19,7 +19,7 @@ use crate::identify::normal::Fit;
 use crate::identify::problem::Problem;
 use crate::identify::whitening::mean_share;
 use crate::probability::told;
-use crate::trace::isolated::{MEDIAN, STANDS_OUT, STRICT};
+use crate::trace::isolated::{STANDS_OUT, STRICT, by_median};
 use crate::trace::model::Fitted;
 
 /// The row that stands out most.
@@ -105,7 +105,7 @@ fn worst(axes: &Axes, raw: &DMatrix<f64>) -> Option<Worst> {
     let columns: Vec<usize> = (0..raw.ncols()).collect();
     let fit = problem.total.solve(&columns)?;
     let all = gains(axes, &problem, &fit)?;
-    let whole = median(all.clone());
+    let whole = by_median(all.iter().copied());
     let own = of_most(axes, &(problem.readings.as_ref() - raw * &fit.coefficients));
     let own = |row: usize| own[axes.rows[row].axis - 1];
     let over = |row: usize| all[row] / own(row).max(whole);
@@ -124,17 +124,11 @@ fn of_most(axes: &Axes, residuals: &DVector<f64>) -> Vec<f64> {
     for axis in axes.loaded() {
         let rows: Vec<(f64, f64)> =
             axes.rows_of(axis).into_iter().map(|row| (axes.rows[row].torque, residuals[row])).collect();
-        let beside = |slope: f64| median(rows.iter().map(|(torque, left)| (left - slope * torque).powi(2)).collect());
+        let beside = |slope: f64| by_median(rows.iter().map(|(torque, left)| (left - slope * torque).powi(2)));
         let slopes = rows.iter().filter(|(torque, _)| *torque != 0.0).map(|(torque, left)| left / torque);
         variances[axis - 1] = slopes.map(beside).min_by(f64::total_cmp).unwrap_or(0.0);
     }
     variances
-}
-
-/// The variance that squares have by their median.
-fn median(mut squares: Vec<f64>) -> f64 {
-    squares.sort_by(f64::total_cmp);
-    squares.get(squares.len() / 2).map_or(0.0, |middle| middle / MEDIAN)
 }
 
 #[cfg(test)]

@@ -135,7 +135,7 @@ mod tests {
     use super::*;
     use crate::campaign::made::normal;
 
-    const ONE: Scale = Scale { variance: Vector3::new(1.0, 1.0, 1.0), freedom: 1e6 };
+    const ONE: Scale = Scale { variance: Vector3::new(1.0, 1.0, 1.0), freedom: 1e6, thirds: [1.0; 3] };
 
     /// Forty poses of two visits of five rows, each pose with a standard deviation.
     fn visits(deviation: impl Fn(usize) -> f64, seed: u64) -> Vec<Visit> {
@@ -145,7 +145,8 @@ mod tests {
             let mut reading = || Vector3::from_fn(|_, _| deviation(pose) * normal(&mut random));
             let unloaded = reading();
             let residuals = (0..5).map(|_| reading() - unloaded).collect();
-            Visit { pose, shared: 1.0, rows: (0..5).collect(), used: vec![true; 5], residuals, loads: vec![] }
+            let (rows, used) = ((0..5).collect(), vec![true; 5]);
+            Visit { pose, shared: 1.0, rows, used, residuals, loads: vec![], thirds: vec![0; 5] }
         };
         (0..80).map(visit).collect()
     }

@@ -7,8 +7,8 @@
 //! from one on off by the same, all rows off by the same (the unloaded reading),
 //! by generalised least squares. What is a straight line in the load is taken
 //! out before, for that is how a missing compliance looks, and the scale is the
-//! median over all rows, by axis: structure common to many visits raises it. So
-//! rows stand out from structure and noise together, and what was cut while an
+//! median over all rows, by axis: structure common to many visits raises it, the more
+//! where the arm gives way further. So rows stand out from structure and noise together, and what was cut while an
 //! effect was missing is looked at again once it is named. A median of few rows is
 //! itself uncertain; what is held against it has the tails of Student's
 //! distribution (`OF_MEDIAN`). Where the noise is another at each pose (`by_pose`),
@@ -57,7 +57,7 @@ pub const STRICT: f64 = 1e-3;
 pub const FEW: f64 = 0.1;
 
 /// The median of chi-square with one degree of freedom.
-pub const MEDIAN: f64 = 0.4549;
+const MEDIAN: f64 = 0.4549;
 
 /// The degrees of freedom of a variance from that median, over those of the
 /// readings: its own variance is `1 / (4 n f^2)` with the density `f` of chi-square
@@ -81,6 +81,8 @@ struct Visit {
     residuals: Vec<Vector3<f64>>,
     /// Along the load, the largest being 1.
     loads: Vec<f64>,
+    /// The third of all rows that each is in, by how far the arm gives way there.
+    thirds: Vec<usize>,
 }
 
 /// What one hypothesis explains: by axis, and along which shift.
@@ -167,6 +169,7 @@ fn visits(setting: &Setting<'_>, model: &Fitted) -> Vec<Visit> {
                 used: vec![],
                 residuals: vec![],
                 loads: vec![],
+                thirds: vec![],
             });
         }
         let visit = &mut visits[at[row.visit]];
@@ -174,7 +177,15 @@ fn visits(setting: &Setting<'_>, model: &Fitted) -> Vec<Visit> {
         visit.used.push(true);
         visit.residuals.push(residuals.fixed_rows::<3>(i * samples.axes).into_owned());
     }
+    let moved = |visit: &Visit| -> Vec<f64> {
+        let rows = visit.rows.iter().zip(&visit.residuals);
+        rows.map(|(&row, left)| (samples.rows[row].displacement - left).norm()).collect()
+    };
+    let mut all: Vec<f64> = visits.iter().flat_map(moved).collect();
+    all.sort_by(f64::total_cmp);
+    let third = |moved: f64| 3 * all.partition_point(|other| *other < moved) / all.len();
     for visit in &mut visits {
+        visit.thirds = moved(visit).into_iter().map(third).collect();
         let wrench = |&row: &usize| samples.rows[row].wrench;
         let norm = |row: &&usize| wrench(row).norm();
         let Some(largest) = visit.rows.iter().max_by(|a, b| norm(a).total_cmp(&norm(b))) else { continue };
@@ -222,26 +233,35 @@ struct Scale {
     variance: Vector3<f64>,
     /// How well that is known.
     freedom: f64,
+    /// How many times that the variance is in each third of the rows, at least 1.
+    thirds: [f64; 3],
 }
 
 /// The variance of a reading by axis, from the median over single rows, of whose
-/// freedom a model has left the share `tells`.
+/// freedom a model has left the share `tells`. Noise does not know how far an arm gives
+/// way, and structure does.
 fn scale(visits: &[Visit], strict: bool, tells: f64) -> Scale {
-    let mut by_axis: [Vec<f64>; 3] = Default::default();
+    let mut seen: Vec<(usize, Vector3<f64>)> = Vec::new();
     for visit in visits {
         for i in (0..visit.rows.len()).filter(|&i| visit.used[i]) {
-            if let Some(explained) = visit.explained(&visit.single(i), strict) {
-                (0..3).for_each(|axis| by_axis[axis].push(explained.by_axis[axis]));
-            }
+            seen.extend(visit.explained(&visit.single(i), strict).map(|found| (visit.thirds[i], found.by_axis)));
         }
     }
-    let freedom = OF_MEDIAN * tells * by_axis[0].len() as f64;
-    let variance = Vector3::from_fn(|axis, _| {
-        let values = &mut by_axis[axis];
-        values.sort_by(f64::total_cmp);
-        values.get(values.len() / 2).copied().unwrap_or(0.0) / MEDIAN
-    });
-    Scale { variance, freedom }
+    let variance = Vector3::from_fn(|axis, _| by_median(seen.iter().map(|(_, by_axis)| by_axis[axis])));
+    let of_third = |third: usize| {
+        let rows = seen.iter().filter(|(of, _)| *of == third);
+        let over = rows.flat_map(|(_, by_axis)| by_axis.component_div(&variance).data.0[0]);
+        by_median(over).max(1.0)
+    };
+    let thirds = if strict { [1.0; 3] } else { [0, 1, 2].map(of_third) };
+    Scale { variance, freedom: OF_MEDIAN * tells * seen.len() as f64, thirds }
+}
+
+/// The variance that squares have by their median.
+pub fn by_median(squares: impl Iterator<Item = f64>) -> f64 {
+    let mut squares: Vec<f64> = squares.collect();
+    squares.sort_by(f64::total_cmp);
+    squares.get(squares.len() / 2).copied().unwrap_or(0.0) / MEDIAN
 }
 
 /// The worst of a visit, if it stands out from all rows and from the noise of its own
@@ -253,11 +273,12 @@ fn worst(
     strict: bool,
     threshold: f64,
 ) -> Option<Event> {
-    let count = visit.rows.len();
-    let used: Vec<usize> = (0..count).filter(|&i| visit.used[i]).collect();
+    let used: Vec<usize> = (0..visit.rows.len()).filter(|&i| visit.used[i]).collect();
     let event = |pattern: Vec<f64>, is_slip: bool| {
         let explained = visit.explained(&pattern, strict)?;
-        let over = explained.by_axis.component_div(&scale.variance);
+        let rows = || used.iter().copied().filter(|&i| pattern[i] != 0.0);
+        let times = rows().map(|i| scale.thirds[visit.thirds[i]]).fold(1.0, f64::max);
+        let over = explained.by_axis.component_div(&scale.variance) / times;
         let mut statistic = over.map(|square| as_normal(square, scale.freedom)).sum();
         if statistic > threshold
             && let Some(noise) = own(&pattern)
@@ -270,7 +291,7 @@ fn worst(
             (false, true) => STANDS_OUT,
             (false, false) => STANDS_OUT_AS_IT_IS,
         };
-        let rows = (0..count).filter(|&i| visit.used[i] && pattern[i] != 0.0).map(|i| visit.rows[i]).collect();
+        let rows = rows().map(|i| visit.rows[i]).collect();
         (over.sum() > enough && statistic > threshold).then_some(Event {
             rows,
             shift: explained.shift,
