@@ -129,6 +129,8 @@ fn grids_give_what_single_poses_give() {
         check_grid(&Rv130hsc, lengths, |len| 0..len);
         check_grid(&Rv130hsc, lengths, |len| len / 3..len - len / 5);
     }
+    check_grid(&FanucR2000ic, [70, 2, 3, 1, 2, 1], |len| 0..len);
+    check_grid(&FanucR2000ic, [1, 7, 3, 2, 2, 3], |len| 1..len);
     let mut description = odd();
     description.effects = linear_effects();
     description.effects.push(Effect::StiffnessNonlinearity { joint: 5, added: 2e-6, knee: 300.0 });
