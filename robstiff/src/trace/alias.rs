@@ -37,6 +37,7 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -
     let Some(tests) = bench.tests(&rest, options) else { return Vec::new() };
     let Ok(without) = setting.fit(&rest) else { return Vec::new() };
     let unseen = setting.left_out_rms(&without.fit);
+    let of_model = own.deviances(&model.fit);
     let mut found: Vec<(f64, String)> = Vec::new();
     for candidate in (0..setting.candidates.len()).filter(|&candidate| candidate != one.candidate) {
         let Some(rival) = best_with(&setting, &rest, candidate) else { continue };
@@ -44,7 +45,6 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -
         let exact = tests.scores.distance(setting.variant(one), setting.variant(variant)) < EXACT;
         let is_significant = tests.p_value(candidate) <= options.alpha;
         let predicts = || setting.left_out_rms(&rival.fit) < unseen;
-        let of_model = own.deviances(&model.fit);
         let is_near = |rival: &Fitted, at: &Setting<'_>| {
             rival.bic - model.bic < WITHIN_REACH
                 || (is_significant && witnesses(&of_model, &at.deviances(&rival.fit)) < WITNESSES)
@@ -62,8 +62,7 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -
             found.push((rival.bic, setting.candidates[candidate].name()));
         }
     }
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    found.into_iter().map(|(_, name)| name).chain(dead_zone(bench, &own, model, one)).collect()
+    best_first(found).chain(dead_zone(bench, &own, model, one)).collect()
 }
 
 /// The names of what may as well have made the rows that are left out as wild: effects
@@ -92,8 +91,13 @@ pub fn same_as_wild(bench: &Bench<'_>, model: &Fitted, events: &[Event]) -> Vec<
             found.push((rival.bic, setting.candidates[candidate].name()));
         }
     }
+    best_first(found).collect()
+}
+
+/// Names in the order of their criterion.
+fn best_first(mut found: Vec<(f64, String)>) -> impl Iterator<Item = String> {
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    found.into_iter().map(|(_, name)| name).collect()
+    found.into_iter().map(|(_, name)| name)
 }
 
 /// The hysteresis that a softening may as well be where each visit has one row: a
