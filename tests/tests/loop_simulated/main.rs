@@ -5,8 +5,8 @@
 //! Everything goes through files, as with a user. The seeds were fixed before
 //! any outcome was seen: 100.. where nothing is hidden, 200.. for one effect,
 //! 300.. for faults outside the catalogue, 400.. for two effects, 500.. for
-//! other plans of campaigns, 600.. for aliases, 700.. for what looks like wild rows. Traces err at a stated level,
-//! hence counts: nine of ten, not all.
+//! other plans of campaigns, 600.. for aliases, 700.. for what looks like wild
+//! rows. Traces err at a stated level, hence counts: nine of ten, not all.
 
 mod aliases;
 mod bench;
