@@ -9,7 +9,7 @@ use std::vec::Vec;
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, ReadError};
 
-use super::displacements::dimension_of;
+use super::poses::dimension_of;
 use crate::table::{Table, text_of};
 
 /// Joint coordinates row by row, with what is written beside them.

@@ -9,6 +9,7 @@ mod displacements;
 mod joints;
 #[cfg(test)]
 pub(crate) mod made;
+mod poses;
 pub(crate) mod read;
 #[cfg(test)]
 mod tests;
