@@ -24,7 +24,7 @@ pub struct Arguments {
     /// Write the error as JSON to FILE
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Write predicted and measured displacement of every row to FILE
+    /// Write predicted and measured displacement or position of every row to FILE
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
 }
@@ -65,23 +65,33 @@ fn page(robot: &str, prediction: &Prediction) -> String {
     )
 }
 
-/// A row for each of the campaign's, in its order, in the base frame.
+/// A row for each of the campaign's, in its order: displacements in the base frame,
+/// positions in the frame that they were read in.
 fn table(campaign: &Campaign, prediction: &Prediction) -> String {
-    let Data::Displacement(data) = &campaign.data else {
-        unreachable!("only displacements are predicted");
+    let (poses, visits, letter, unit, factor) = match &campaign.data {
+        Data::Displacement(data) => (&data.poses, &data.visits, 'd', "um", 1e6),
+        Data::Position(data) => (&data.poses, &data.visits, 'p', "mm", 1e3),
+        Data::Clamped(_) => unreachable!("clamped axes are not predicted"),
+    };
+    let read: Vec<(usize, usize)> = match &campaign.data {
+        Data::Displacement(data) => data.rows.iter().map(|row| (row.pose, row.visit)).collect(),
+        Data::Position(data) => data.rows.iter().map(|row| (row.pose, row.visit)).collect(),
+        Data::Clamped(_) => Vec::new(),
     };
     let mut csv = String::from("pose,visit");
-    for kind in ["predicted", "measured", "residual"] {
+    for (kind, unit) in [("predicted", unit), ("measured", unit), ("residual", "um")] {
         for axis in ["x", "y", "z"] {
-            write!(csv, ",{kind}_d{axis} [um]").expect("a string takes any text");
+            write!(csv, ",{kind}_{letter}{axis} [{unit}]").expect("a string takes any text");
         }
     }
     csv.push('\n');
-    for (row, observation) in prediction.rows.iter().zip(&data.rows) {
-        csv += &format!("{},{}", field(&data.poses[observation.pose]), field(&data.visits[observation.visit]));
-        let residual: [f64; 3] = std::array::from_fn(|axis| row.measured[axis] - row.predicted[axis]);
-        for value in [row.predicted, row.measured, residual].concat() {
-            csv += &format!(",{}", decimals(value * 1e6, 4));
+    for (row, (pose, visit)) in prediction.rows.iter().zip(read) {
+        csv += &format!("{},{}", field(&poses[pose]), field(&visits[visit]));
+        for value in [row.predicted, row.measured].concat() {
+            csv += &format!(",{}", decimals(value * factor, 4));
+        }
+        for axis in 0..3 {
+            csv += &format!(",{}", decimals((row.measured[axis] - row.predicted[axis]) * 1e6, 4));
         }
         csv.push('\n');
     }

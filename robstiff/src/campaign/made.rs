@@ -167,6 +167,6 @@ pub fn normal(random: &mut ChaCha8Rng) -> f64 {
 pub fn displacements(campaign: &Campaign) -> &Displacements {
     match &campaign.data {
         Data::Displacement(data) => data,
-        Data::Clamped(_) => unreachable!("made of displacements"),
+        Data::Position(_) | Data::Clamped(_) => unreachable!("made of displacements"),
     }
 }

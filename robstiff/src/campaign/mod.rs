@@ -9,7 +9,10 @@ mod displacements;
 mod joints;
 #[cfg(test)]
 pub(crate) mod made;
+#[cfg(test)]
+pub(crate) mod made_positions;
 mod poses;
+mod positions;
 pub(crate) mod read;
 #[cfg(test)]
 mod tests;
@@ -50,6 +53,8 @@ pub struct Campaign {
 pub enum Data {
     /// Loaded minus unloaded displacement of a point of the tool.
     Displacement(Displacements),
+    /// Absolute positions of a point of the tool.
+    Position(Positions),
     /// One axis loaded, those before it clamped.
     Clamped(Vec<ClampedRow>),
 }
@@ -131,6 +136,43 @@ pub struct Observation {
     /// gear ratio (rad or m), one a joint, where read: what the controller lets
     /// through.
     pub motors: Option<Vec<f64>>,
+}
+
+/// Rows of kind `position`.
+#[derive(Clone, Debug)]
+pub struct Positions {
+    /// Where the payload hangs, in the tool frame (m); the TCP is the origin.
+    pub payload_at: [f64; 3],
+    /// The point that is read, in the tool frame (m).
+    pub measured_at: [f64; 3],
+    /// Pose ids in order of appearance; rows refer to them by index.
+    pub poses: Vec<String>,
+    /// Visit ids in order of appearance; rows refer to them by index. Without
+    /// the column, every row is a visit of its own.
+    pub visits: Vec<String>,
+    /// The rows, in the file's order.
+    pub rows: Vec<PositionRow>,
+}
+
+/// One row of kind `position`, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PositionRow {
+    /// Line of the CSV file, from 1.
+    pub line: usize,
+    /// Index into [`Positions::poses`].
+    pub pose: usize,
+    /// Index into [`Positions::visits`].
+    pub visit: usize,
+    /// Time (s).
+    pub time: Option<f64>,
+    /// Temperature (degrees Celsius).
+    pub temperature: Option<f64>,
+    /// Joint coordinates (rad or m), one a joint.
+    pub q: Vec<f64>,
+    /// The position in the frame of what reads it, wherever that stands (m).
+    pub position: [f64; 3],
+    /// The payload (kg), 0 where the file has no such column.
+    pub payload: f64,
 }
 
 /// One row of kind `clamped`.

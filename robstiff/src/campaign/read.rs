@@ -10,7 +10,7 @@ use robstiff_robots::document::{Document, Map};
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, ReadError};
 
-use super::{Campaign, Data, Frame, Holdout, Noise, clamped, displacements};
+use super::{Campaign, Data, Frame, Holdout, Noise, clamped, displacements, positions};
 use crate::table::{Table, text_of};
 
 /// The fields of a campaign file.
@@ -65,7 +65,7 @@ impl Campaign {
                 displacements::read(&table, &robot, plan.wrench, plan.measured).map(Data::Displacement)
             }
             Kind::Clamped => clamped::read(&table, &robot).map(Data::Clamped),
-            Kind::Position => unreachable!("refused with the file's other problems"),
+            Kind::Position => positions::read(&table, &robot, plan.wrench.1, plan.measured.1).map(Data::Position),
         };
         let (data, of_table) = table.finish(data).map_err(ReadError::Invalid)?;
         let unused = plan.unused.iter().map(|(field, line)| {
@@ -95,17 +95,7 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
     };
     let robot = file(&map, "robot", "robot: robot.yaml", folder);
     let observations = file(&map, "observations", "observations: loads.csv", folder);
-    let kind = map.require("kind", "kind: displacement").and_then(|node| {
-        let kind = node.choice(&kinds)?;
-        if kind == Kind::Position {
-            node.error(
-                "campaigns of kind `position` are not supported yet",
-                "give loaded minus unloaded displacements and write `kind: displacement`",
-            );
-            return None;
-        }
-        Some(kind)
-    });
+    let kind = map.require("kind", "kind: displacement").and_then(|node| node.choice(&kinds));
     let wrench = place(&map, "wrench");
     let measured = place(&map, "measured");
     let noise = noise(&map);

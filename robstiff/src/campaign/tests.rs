@@ -194,12 +194,34 @@ fn every_problem_of_a_campaign_file_has_its_place() {
     let found = |name: &str, from: &str, to: &str| problems(name, &CAMPAIGN.replace(from, to), &table);
     assert_eq!(found("fraction", "kind:", "holdout: {fraction: 1.5}\nkind:").len(), 1);
     assert_eq!(found("noise", "kind:", "noise: {displacement: -8 um}\nkind:").len(), 1);
-    assert_eq!(
-        found("position", "kind: displacement", "kind: position"),
-        ["4:7 campaigns of kind `position` are not supported yet"]
-    );
+    assert_eq!(found("kind", "kind: displacement", "kind: place").len(), 1);
     assert!(found("robot", "robot.yaml", "nobody.yaml")[0].starts_with("2:8 there is no file"));
     assert!(found("field", "kind:", "colour: red\nkind:")[0].contains("unknown field `colour`"));
+}
+
+#[test]
+fn positions_are_read_with_their_payload() {
+    let campaign = CAMPAIGN.replace("displacement", "position") + "measured: {at: [0, 20 mm, 0]}\n";
+    let header = "pose,visit,q1 [deg],q2,px [mm],py,pz,payload [kg]";
+    let folder = Folder::new("position", &campaign, &format!("{header}\na,v,90,0,1500,2,3,40\na,w,90,0,1500,2,3,0\n"));
+    let Data::Position(data) = folder.read().unwrap().data else { panic!("kind position") };
+    assert_eq!((data.measured_at, data.payload_at), ([0.0, 0.02, 0.0], [0.0; 3]));
+    assert_eq!((data.poses.len(), data.visits.len(), data.rows[0].payload), (1, 2, 40.0));
+    assert_eq!(data.rows[1].position, [1.5, 2.0, 3.0]);
+    let none = format!("{}\na,v,90,0,1500,2,3\n", header.replace(",payload [kg]", ""));
+    let Data::Position(data) = Folder::new("bare", &campaign, &none).read().unwrap().data else { panic!("positions") };
+    assert_eq!(data.rows[0].payload, 0.0);
+    let far = format!("{}\na,v,0,0,1500,2,3\nb,w,0,1,900,2,3\n", "pose,visit,q1,q2,px,py,pz");
+    let warnings = Folder::new("far", &campaign, &far).read().unwrap().warnings;
+    assert!(warnings.iter().any(|warning| warning.contains("px is of points 600 m apart: are the lengths in milli")));
+    assert_eq!(
+        problems("payload", &campaign, &format!("{header}\na,v,0,0,1,2,3,-4\na,v,9,0,x,2,3,4\n")),
+        ["2:15 a payload is not negative", "3:9 `x` is not a number"]
+    );
+    assert_eq!(
+        problems("columns", &campaign, "pose,q1,px,py\na,0,1,2\n"),
+        ["1:1 the column `q2` is missing", "1:1 the column `pz` is missing"]
+    );
 }
 
 #[test]

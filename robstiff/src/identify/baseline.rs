@@ -6,8 +6,7 @@ use std::vec::Vec;
 use nalgebra::DVector;
 use robstiff_robots::{Description, Part};
 
-use super::normal::{Sign, independent};
-use super::problem::Problem;
+use super::normal::{Normal, Sign, independent};
 use super::samples::Column;
 use crate::Effect;
 use crate::elements::{Parameter, parameters};
@@ -77,10 +76,10 @@ pub enum Visibility {
 /// zero but for rounding.
 const ZERO_COLUMN: f64 = 1e-7;
 
-/// Which of the first `count` columns of a problem, those of the description,
+/// Which of the first `count` columns of a regression, those of the description,
 /// the campaign can see at all, by the geometry of poses and loads.
-pub fn visibility(problem: &Problem, count: usize) -> Vec<Visibility> {
-    let gram = &problem.total.gram;
+pub fn visibility(total: &Normal, count: usize) -> Vec<Visibility> {
+    let gram = &total.gram;
     let columns: Vec<usize> = (0..count).collect();
     let largest = columns.iter().map(|&i| gram[(i, i)]).fold(0.0, f64::max);
     let (kept, _) = independent(gram, &columns, largest * ZERO_COLUMN * ZERO_COLUMN);
@@ -89,14 +88,13 @@ pub fn visibility(problem: &Problem, count: usize) -> Vec<Visibility> {
         .map(|&i| match (kept.contains(&i), gram[(i, i)] > largest * ZERO_COLUMN * ZERO_COLUMN) {
             (true, _) => Visibility::Seen,
             (false, false) => Visibility::Unseen,
-            (false, true) => Visibility::Confounded(parts_of(problem, i, &kept)),
+            (false, true) => Visibility::Confounded(parts_of(total, i, &kept)),
         })
         .collect()
 }
 
 /// The columns whose sum another column is.
-fn parts_of(problem: &Problem, column: usize, kept: &[usize]) -> Vec<usize> {
-    let normal = &problem.total;
+fn parts_of(normal: &Normal, column: usize, kept: &[usize]) -> Vec<usize> {
     let Some(inverse) = normal.inverse(kept) else { return Vec::new() };
     let along = DVector::from_fn(kept.len(), |k, _| normal.gram[(kept[k], column)]);
     let shares = inverse * along;
@@ -126,7 +124,9 @@ pub fn with_values(description: &Description, values: &[f64]) -> Description {
     changed
 }
 
-fn set_compliance(parts: &mut Vec<Part>, value: f64) {
+/// Sets the compliance of a joint; of a compound one the parts keep their
+/// proportion.
+pub fn set_compliance(parts: &mut Vec<Part>, value: f64) {
     let sum: f64 = parts.iter().map(|part| part.value).sum();
     if parts.is_empty() {
         parts.push(Part { name: std::string::String::new(), value });

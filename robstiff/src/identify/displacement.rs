@@ -42,7 +42,8 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     let fitted = readable(&problem.total, &fitted, &signs, described).ok_or_else(|| Error(UNREADABLE.into()))?;
     let covariance = covariance(&problem, &fitted, &signs);
     let values = prepared.with(&fitted);
-    let estimates = estimates(&campaign.robot, &prepared, &values, &fitted.columns, &covariance);
+    let estimates =
+        estimates(&campaign.robot, (&prepared.own, &prepared.visibility), &values, &fitted.columns, &covariance);
     let residuals = residuals(&prepared, &fitted);
     let freedom = problem.total.rows.saturating_sub(fitted.columns.len()).max(1) as f64;
     let (noise, noise_source) = prepared.noise(fitted.rss / freedom);

@@ -5,7 +5,8 @@
 //! parameters into columns, with what [`encoders`] read, [`covariance`] asks the readings how noisy they are
 //! and [`whitening`] accounts for it, [`problem`] holds the regression in blocks of poses, [`normal`]
 //! solves it, [`prepare`] finds what the data can see, and [`displacement`] or
-//! [`clamped`] puts the result together.
+//! [`clamped`] puts the result together. Absolute [`positions`] have a regression of
+//! their own.
 
 pub mod baseline;
 pub mod clamped;
@@ -16,6 +17,7 @@ pub mod holdout;
 pub mod laws;
 pub mod noise;
 pub mod normal;
+pub mod positions;
 pub mod predict;
 pub mod prepare;
 pub mod problem;
@@ -42,7 +44,6 @@ pub use predict::{Prediction, predict};
 use self::baseline::Declared;
 use self::covariance::Covariance;
 use self::normal::Sign;
-use self::prepare::Prepared;
 use self::samples::Column;
 use crate::JointKind;
 use crate::campaign::{Campaign, Data};
@@ -146,15 +147,16 @@ impl Estimate {
 pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     match &campaign.data {
         Data::Displacement(_) => displacement::identify(campaign),
+        Data::Position(data) => positions::identify(campaign, data),
         Data::Clamped(rows) => clamped::identify(campaign, rows),
     }
 }
 
-/// The estimates of a description's numbers; `columns` are the numbers that
-/// the covariance is of.
+/// The estimates of a description's own numbers, given what the data see of each;
+/// `columns` are the numbers that the covariance is of.
 pub(crate) fn estimates(
     description: &Description,
-    prepared: &Prepared<'_>,
+    (own, visibility): (&[Declared], &[Visibility]),
     values: &[f64],
     columns: &[usize],
     covariance: &DMatrix<f64>,
@@ -169,11 +171,11 @@ pub(crate) fn estimates(
             std: fitted.filter(|_| !at_bound).map(|k| covariance[(k, k)].sqrt()),
             unit: unit_of(description, number.column),
             // An effect may have brought it to light.
-            visibility: if fitted.is_some() { Visibility::Seen } else { prepared.visibility[i].clone() },
+            visibility: if fitted.is_some() { Visibility::Seen } else { visibility[i].clone() },
             at_bound,
         }
     };
-    prepared.own.iter().enumerate().map(one).collect()
+    own.iter().enumerate().map(one).collect()
 }
 
 /// Whether a fitted value is where the solution was clipped. What is declared

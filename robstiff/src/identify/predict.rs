@@ -5,19 +5,20 @@ use std::vec::Vec;
 
 use robstiff_robots::Description;
 
-use super::Error;
 use super::baseline::declared;
 use super::laws::turned_by_laws;
 use super::samples::Samples;
-use crate::campaign::{Campaign, Data};
+use super::{Error, positions};
+use crate::campaign::{Campaign, Data, Displacements};
 
 /// The error of a description on a campaign. An error is the length of a row's
-/// displacement residual over `sqrt(3)`, throughout, so that it compares with
+/// residual over `sqrt(3)`, throughout, so that it compares with
 /// the noise of one axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prediction {
-    /// The predicted displacement of each row, of the point and in the base
-    /// frame (m), and what the campaign read, in the same frame.
+    /// What is predicted for each row, of the point that is read (m), and what the
+    /// campaign read: displacements in the base frame, or positions in the frame that
+    /// they are read in.
     pub rows: Vec<PredictedRow>,
     /// The root mean square error (m).
     pub rms: f64,
@@ -33,9 +34,9 @@ pub struct Prediction {
 pub struct PredictedRow {
     /// The line of the CSV file, from 1.
     pub line: usize,
-    /// The displacement predicted, in the base frame (m).
+    /// The displacement or position predicted (m).
     pub predicted: [f64; 3],
-    /// The displacement read, in the base frame (m).
+    /// The one read, in the same frame (m).
     pub measured: [f64; 3],
 }
 
@@ -54,14 +55,21 @@ impl PredictedRow {
 /// A campaign of another kind, a description with another number of joints, or
 /// numbers so large that an error is not finite.
 pub fn predict(description: &Description, campaign: &Campaign) -> Result<Prediction, Error> {
-    let Data::Displacement(data) = &campaign.data else {
-        return Err(Error(String::from("predicting needs a campaign of kind `displacement`")));
-    };
     let (expected, found) = (campaign.robot.joints.len(), description.joints.len());
     if expected != found {
         let joints = if expected == 1 { "joint" } else { "joints" };
         return Err(Error(std::format!("the campaign is of a robot with {expected} {joints}, this one has {found}")));
     }
+    match &campaign.data {
+        Data::Displacement(data) => displacements(description, data),
+        Data::Position(data) => positions::predict(description, data),
+        Data::Clamped(_) => {
+            Err(Error(String::from("predicting needs a campaign of kind `displacement` or `position`")))
+        }
+    }
+}
+
+fn displacements(description: &Description, data: &Displacements) -> Result<Prediction, Error> {
     let samples = Samples::of_description(description, data);
     let mut predicted = turned_by_laws(description, &samples);
     for number in declared(description) {
@@ -74,18 +82,27 @@ pub fn predict(description: &Description, campaign: &Campaign) -> Result<Predict
         predicted: core::array::from_fn(|axis| predicted[i * samples.axes + axis]),
         measured: sample.displacement.into(),
     };
-    let rows: Vec<PredictedRow> = samples.rows.iter().enumerate().map(row).collect();
-    let mut errors: Vec<f64> = rows.iter().map(PredictedRow::error).collect();
-    errors.sort_by(f64::total_cmp);
-    let count = errors.len();
-    let rms = (errors.iter().map(|error| error * error).sum::<f64>() / count as f64).sqrt();
-    if !rms.is_finite() {
-        return Err(Error(String::from("the numbers are too large: the error is not finite")));
+    Prediction::of(samples.rows.iter().enumerate().map(row).collect())
+}
+
+impl Prediction {
+    /// The errors of rows that were predicted.
+    ///
+    /// # Errors
+    /// One that is not finite.
+    pub(crate) fn of(rows: Vec<PredictedRow>) -> Result<Self, Error> {
+        let mut errors: Vec<f64> = rows.iter().map(PredictedRow::error).collect();
+        errors.sort_by(f64::total_cmp);
+        let count = errors.len();
+        let rms = (errors.iter().map(|error| error * error).sum::<f64>() / count as f64).sqrt();
+        if !rms.is_finite() {
+            return Err(Error(String::from("the numbers are too large: the error is not finite")));
+        }
+        Ok(Self {
+            rms,
+            p95: errors[((0.95 * count as f64).ceil() as usize).clamp(1, count) - 1],
+            max: errors[count - 1],
+            rows,
+        })
     }
-    Ok(Prediction {
-        rms,
-        p95: errors[((0.95 * count as f64).ceil() as usize).clamp(1, count) - 1],
-        max: errors[count - 1],
-        rows,
-    })
 }

@@ -176,7 +176,7 @@ impl<'c> Prepared<'c> {
     /// the noise; and their values.
     fn look(&mut self) -> Result<(), Error> {
         let problem = self.problem();
-        self.visibility = visibility(&problem, self.own.len());
+        self.visibility = visibility(&problem.total, self.own.len());
         let fitted = fit(self, &self.problem())?;
         let total = &problem.total;
         let freedom = total.rows.saturating_sub(fitted.columns.len()).max(1) as f64;

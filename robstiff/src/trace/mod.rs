@@ -27,6 +27,7 @@ pub mod isolated;
 pub mod lack_of_fit;
 pub mod model;
 pub mod point;
+pub mod positions;
 mod report;
 pub mod selection;
 mod sizes;
@@ -96,7 +97,7 @@ pub struct Trace {
     pub poses: usize,
     /// The poses held out, by id.
     pub held_out: Vec<String>,
-    /// The noise of one displacement reading (m).
+    /// The noise of one reading (m).
     pub noise: f64,
     /// Where the noise is known from.
     pub noise_source: NoiseSource,
@@ -140,6 +141,9 @@ pub struct Trace {
     /// How many components of a residual are read: three of a displacement, of a
     /// clamped axis the first (an angle).
     pub components: usize,
+    /// Whether what is read is the difference of two readings, a loaded and an
+    /// unloaded one; absolute positions are one.
+    pub differences: bool,
     /// The rms of each pose.
     pub pose_errors: Vec<PoseError>,
 }
@@ -219,6 +223,9 @@ pub struct PoseError {
 pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) -> Result<Trace, Error> {
     if let Data::Clamped(rows) = &campaign.data {
         return clamped::trace(campaign, rows, options, progress);
+    }
+    if let Data::Position(data) = &campaign.data {
+        return positions::trace(campaign, data, options, progress);
     }
     progress("identifying the joints");
     let prepared = Prepared::new(campaign)?;

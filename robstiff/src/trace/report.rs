@@ -128,6 +128,7 @@ pub fn report(
         structure: left.map_or_else(Vec::new, |left| left.tests.clone()),
         residuals,
         components: 3,
+        differences: true,
         pose_errors,
     })
 }
@@ -209,7 +210,13 @@ fn numbers(
     model: &Fitted,
     spread: &DMatrix<f64>,
 ) -> Vec<Estimate> {
-    estimates(&campaign.robot, prepared, &values(prepared, setting, model), &model.fit.columns, spread)
+    estimates(
+        &campaign.robot,
+        (&prepared.own, &prepared.visibility),
+        &values(prepared, setting, model),
+        &model.fit.columns,
+        spread,
+    )
 }
 
 /// The named effects, the one whose removal costs most first.

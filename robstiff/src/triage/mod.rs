@@ -21,6 +21,7 @@ mod energy;
 pub mod evidence;
 mod loop_area;
 mod noise;
+mod positions;
 mod proportionality;
 pub mod randomisation;
 mod reciprocity;
@@ -133,6 +134,7 @@ const CHECKS: [Registered; 14] = [
 pub fn triage(campaign: &Campaign) -> Triage {
     let (mut checks, reading, outliers) = match &campaign.data {
         Data::Clamped(rows) => (clamped::checks(campaign, rows), None, Vec::new()),
+        Data::Position(data) => (positions::checks(data), None, Vec::new()),
         Data::Displacement(data) => {
             let evidence = Evidence::new(campaign, data);
             let checks: Vec<_> = CHECKS.iter().map(|&(name, question, ask)| (name, question, ask(&evidence))).collect();

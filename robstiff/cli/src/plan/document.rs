@@ -85,7 +85,7 @@ pub fn table(plan: &Plan, campaign: &Campaign) -> String {
     let frame = match &campaign.data {
         Data::Displacement(data) => data.wrench_frame,
         // No other campaign is planned for.
-        Data::Clamped(_) => Frame::Base,
+        Data::Position(_) | Data::Clamped(_) => Frame::Base,
     };
     let moments = plan.proposals.iter().any(|planned| planned.greatest[3..].iter().any(|value| *value != 0.0));
     let mut csv = String::from("pose,visit");

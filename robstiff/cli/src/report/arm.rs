@@ -54,7 +54,7 @@ pub fn figure(report: &Report) -> (String, String) {
     let drawn = worst.and_then(|worst| arms.get(worst)).map_or_else(String::new, |arm| {
         format!(" Drawn strong: pose {}, where the error was largest; the square is its foot.", arm.id)
     });
-    let rows = "The arrows are the residuals at the tool, in each pose that of its largest force; a dot is a \
+    let rows = "The arrows are the residuals at the tool, in each pose that of its largest load; a dot is a \
                 small one. Axes of the base frame";
     let caption = format!("{rows}: to the right {} or {}, up y or z.{drawn}", names[0], names[across]);
     let caption = caption.replace("x or x", "x");

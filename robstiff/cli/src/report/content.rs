@@ -23,8 +23,8 @@ pub struct Report {
     pub poses: usize,
     /// One sigma of one axis of one reading \[um\].
     pub reading_um: f64,
-    /// The same of a displacement, the difference of two readings, at most
-    /// \[um\].
+    /// The same of what is read \[um\]: more where that is a displacement, the
+    /// difference of two readings, at most this.
     pub noise_um: f64,
     /// Where that is known from.
     pub noise_source: String,

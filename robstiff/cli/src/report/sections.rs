@@ -43,15 +43,20 @@ pub fn errors(report: &Report) -> String {
             ],
         );
     }
+    let displaced = match report.noise_um > report.reading_um {
+        true => format!(
+            ", and up to {} µm a displacement, which is the difference of two; the marks are these two",
+            decimals(report.noise_um, 1)
+        ),
+        false => "; the mark is this".to_owned(),
+    };
     let caption = format!(
-        "Root mean square error of one axis, over {} at {}. Unseen: {}. Noise: {} µm a reading ({}), and up to {} µm a \
-         displacement, which is the difference of two; the marks are these two.",
+        "Root mean square error of one axis, over {} at {}. Unseen: {}. Noise: {} µm a reading ({}){displaced}.",
         count(report.rows, "row"),
         count(report.poses, "pose"),
         report.unseen,
         decimals(report.reading_um, 1),
         report.noise_source,
-        decimals(report.noise_um, 1)
     );
     element("h2", "Error before and after") + &table.html() + &text("p", &caption) + &by_pose(report)
 }

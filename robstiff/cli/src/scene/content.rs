@@ -129,10 +129,10 @@ impl Scene {
     /// # Errors
     /// A campaign that displacements cannot be predicted for.
     pub fn of_campaign(robot: &Description, campaign: &Campaign) -> Result<Self, Failure> {
-        let predicted = predict(robot, campaign)?.rows;
         let Data::Displacement(data) = &campaign.data else {
-            unreachable!("only displacements are predicted");
+            return Err(Failure::new("only campaigns of kind `displacement` have displacements to show"));
         };
+        let predicted = predict(robot, campaign)?.rows;
         let largest = |pose: usize| {
             let rows = data.rows.iter().zip(&predicted).filter(|(row, _)| row.pose == pose);
             rows.max_by(|(_, a), (_, b)| length(a.measured).total_cmp(&length(b.measured)))

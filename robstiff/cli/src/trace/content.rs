@@ -33,7 +33,7 @@ pub fn report(trace: &Trace, triage: &Triage, campaign: &Campaign, options: &Opt
         checks: triage.checks.iter().map(super::triage::check).collect(),
         outliers: triage.outliers.clone(),
         reading_um: trace.noise * 1e6,
-        noise_um: story::displacement_noise(trace) * 1e6,
+        noise_um: story::noise(trace) * 1e6,
         noise_source: source_of(trace.noise_source).to_owned(),
         unseen: story::unseen(trace),
         stages: stages(trace),
@@ -127,8 +127,9 @@ fn compliances(trace: &Trace) -> Vec<Compliance> {
 
 /// The errors of every pose, in the campaign's order.
 fn errors(trace: &Trace, campaign: &Campaign) -> Result<Vec<PoseError>, Failure> {
-    let data = match &campaign.data {
-        Data::Displacement(data) => data,
+    let poses = match &campaign.data {
+        Data::Displacement(data) => &data.poses,
+        Data::Position(data) => &data.poses,
         Data::Clamped(rows) => return Ok(clamped::errors(trace, campaign, rows)),
     };
     let declared = predict(&campaign.robot, campaign)?;
@@ -136,7 +137,7 @@ fn errors(trace: &Trace, campaign: &Campaign) -> Result<Vec<PoseError>, Failure>
     without_effects.effects.truncate(campaign.robot.effects.len());
     let (with, without) = (predict(&trace.description, campaign)?, predict(&without_effects, campaign)?);
 
-    let mut sums = vec![Sums::default(); data.poses.len()];
+    let mut sums = vec![Sums::default(); poses.len()];
     for (index, residual) in trace.residuals.iter().enumerate() {
         let sum = &mut sums[residual.pose];
         sum.rows += 1;
@@ -154,7 +155,7 @@ fn errors(trace: &Trace, campaign: &Campaign) -> Result<Vec<PoseError>, Failure>
         contribution: sum.rms_um(sum.contribution),
         held_out: trace.held_out.contains(id),
     };
-    Ok(data.poses.iter().zip(&sums).map(error).collect())
+    Ok(poses.iter().zip(&sums).map(error).collect())
 }
 
 /// Squares of one axis, summed over the rows of a pose \[m^2\].

@@ -81,8 +81,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         traced.next = next(&campaign, &traced, PROPOSALS).unwrap_or_default();
         traced
     });
-    let correction = match &traced {
-        Ok(traced) if arguments.correction => Some(Correction::of(&campaign, traced)),
+    let correction = match (&traced, &campaign.data) {
+        (Ok(traced), Data::Displacement(_)) if arguments.correction => Some(Correction::of(&campaign, traced)),
         _ => None,
     };
     spinner.finish_and_clear();
@@ -95,10 +95,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let said = correction::sentence(found.as_ref());
         page += &format!("\n{said}\n");
         report.summary.push(said);
+    } else if arguments.correction {
+        page += "\nNo correction: it is one of displacements, and this campaign has none.\n";
     }
     let report = report::html(&report);
     let (document, report, page) = match &campaign.data {
-        Data::Displacement(_) => (document, report, page),
+        Data::Displacement(_) | Data::Position(_) => (document, report, page),
         Data::Clamped(_) => (clamped::in_angles(document), clamped::about_axes(&report), clamped::about_axes(&page)),
     };
     let document = json::document(&document);

@@ -2,7 +2,7 @@
 //! residual against what it depends on most.
 
 use robstiff::JointKind;
-use robstiff::campaign::{Campaign, Data, Displacements};
+use robstiff::campaign::{Campaign, Data, Observation, PositionRow};
 use robstiff::elements::Pose;
 use robstiff::nalgebra::{DMatrix, DVector, Matrix4, SVector};
 use robstiff::trace::Trace;
@@ -11,14 +11,45 @@ use robstiff_robots::Description;
 
 use crate::report::content::{Arm, Dependence};
 
-/// The arm in every pose, with the residual of the row of its largest force.
+/// What a row was read at.
+struct Row<'c> {
+    pose: usize,
+    q: &'c [f64],
+    /// Loads by name and unit, the last the size of all.
+    loads: Vec<(&'static str, &'static str, f64)>,
+    time: Option<f64>,
+    temperature: Option<f64>,
+}
+
+/// The ids of the poses, and the rows; none of clamped axes, which are at no pose.
+fn rows(campaign: &Campaign) -> Option<(&[String], Vec<Row<'_>>)> {
+    match &campaign.data {
+        Data::Displacement(data) => Some((&data.poses, data.rows.iter().map(displaced).collect())),
+        Data::Position(data) => Some((&data.poses, data.rows.iter().map(placed).collect())),
+        Data::Clamped(_) => None,
+    }
+}
+
+fn displaced(row: &Observation) -> Row<'_> {
+    let [x, y, z, ..] = row.wrench;
+    let size = (x * x + y * y + z * z).sqrt();
+    let loads = vec![("Fx", "N", x), ("Fy", "N", y), ("Fz", "N", z), ("|F|", "N", size)];
+    Row { pose: row.pose, q: &row.q, loads, time: row.time, temperature: row.temperature }
+}
+
+fn placed(row: &PositionRow) -> Row<'_> {
+    let loads = vec![("payload", "kg", row.payload)];
+    Row { pose: row.pose, q: &row.q, loads, time: row.time, temperature: row.temperature }
+}
+
+/// The arm in every pose, with the residual of the row of its largest load.
 pub fn arms(trace: &Trace, campaign: &Campaign) -> Vec<Arm> {
-    let Data::Displacement(data) = &campaign.data else { return Vec::new() };
-    let force = |row: usize| data.rows[row].wrench[..3].iter().map(|f| f * f).sum::<f64>();
-    let mut largest: Vec<Option<usize>> = vec![None; data.poses.len()];
-    for row in 0..data.rows.len() {
-        let so_far = &mut largest[data.rows[row].pose];
-        if so_far.is_none_or(|other| force(row) >= force(other)) {
+    let Some((poses, rows)) = rows(campaign) else { return Vec::new() };
+    let load = |row: usize| rows[row].loads.last().map_or(0.0, |(.., size)| *size);
+    let mut largest: Vec<Option<usize>> = vec![None; poses.len()];
+    for row in 0..rows.len() {
+        let so_far = &mut largest[rows[row].pose];
+        if so_far.is_none_or(|other| load(row) >= load(other)) {
             *so_far = Some(row);
         }
     }
@@ -27,12 +58,12 @@ pub fn arms(trace: &Trace, campaign: &Campaign) -> Vec<Arm> {
         let residual = trace.residuals.get(row)?;
         Some(Arm {
             id: id.clone(),
-            points: points(&trace.description, &data.rows[row].q),
+            points: points(&trace.description, rows[row].q),
             before: residual.before.map(|metres| metres * 1e6),
             after: residual.after.map(|metres| metres * 1e6),
         })
     };
-    largest.iter().zip(&data.poses).filter_map(arm).collect()
+    largest.iter().zip(poses).filter_map(arm).collect()
 }
 
 /// From the ground to the TCP, joint by joint \[m\], in the base frame.
@@ -58,8 +89,8 @@ const SHOWN: usize = 3;
 /// the component of the residual where it accounts for most; those on which what
 /// is left depends come first.
 pub fn dependences(trace: &Trace, campaign: &Campaign) -> Vec<Dependence> {
-    let Data::Displacement(data) = &campaign.data else { return Vec::new() };
-    let mut found: Vec<Dependence> = quantities(data, &trace.description)
+    let Some((_, rows)) = rows(campaign) else { return Vec::new() };
+    let mut found: Vec<Dependence> = quantities(&rows, &trace.description)
         .into_iter()
         .filter_map(|(name, unit, values)| strongest(trace, name, unit, &values))
         .collect();
@@ -70,8 +101,7 @@ pub fn dependences(trace: &Trace, campaign: &Campaign) -> Vec<Dependence> {
 }
 
 /// Name, unit and value by row of what a residual may depend on.
-fn quantities(data: &Displacements, robot: &Description) -> Vec<(String, &'static str, Vec<f64>)> {
-    let rows = &data.rows;
+fn quantities(rows: &[Row<'_>], robot: &Description) -> Vec<(String, &'static str, Vec<f64>)> {
     let mut found: Vec<(String, &'static str, Vec<f64>)> = Vec::new();
     for (i, joint) in robot.joints.iter().enumerate() {
         let (unit, factor) = match joint.kind {
@@ -80,11 +110,9 @@ fn quantities(data: &Displacements, robot: &Description) -> Vec<(String, &'stati
         };
         found.push((format!("q{}", i + 1), unit, rows.iter().map(|row| row.q[i] * factor).collect()));
     }
-    for (k, name) in ["Fx", "Fy", "Fz"].into_iter().enumerate() {
-        found.push((name.to_owned(), "N", rows.iter().map(|row| row.wrench[k]).collect()));
+    for (k, &(name, unit, _)) in rows.first().iter().flat_map(|row| row.loads.iter().enumerate()) {
+        found.push((name.to_owned(), unit, rows.iter().map(|row| row.loads[k].2).collect()));
     }
-    let force = |row: &robstiff::campaign::Observation| row.wrench[..3].iter().map(|f| f * f).sum::<f64>().sqrt();
-    found.push(("|F|".to_owned(), "N", rows.iter().map(force).collect()));
     if let Some(times) = rows.iter().map(|row| row.time).collect::<Option<Vec<f64>>>() {
         found.push(("time".to_owned(), "min", times.iter().map(|seconds| seconds / 60.0).collect()));
     }

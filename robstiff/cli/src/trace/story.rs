@@ -191,10 +191,10 @@ fn sentence(clause: &str) -> String {
     format!("{start}{}.", letters.as_str().trim_end_matches('.'))
 }
 
-/// The noise of a displacement, the difference of a loaded and an unloaded
-/// reading \[m\]; less where the unloaded one is an average of many.
-pub fn displacement_noise(trace: &Trace) -> f64 {
-    trace.noise * std::f64::consts::SQRT_2
+/// The noise of what is read \[m\]: of one reading, or of the difference of a
+/// loaded and an unloaded one; less where the unloaded one is an average of many.
+pub fn noise(trace: &Trace) -> f64 {
+    if trace.differences { trace.noise * std::f64::consts::SQRT_2 } else { trace.noise }
 }
 
 /// How the errors on unseen poses came about.
@@ -221,12 +221,10 @@ pub fn pose(next: &Proposal, joints: &[Joint]) -> String {
 
 /// The story for a terminal.
 pub fn page(trace: &Trace) -> String {
-    let noise = format!(
-        "noise: {} um a reading ({}), up to {} um a displacement, the difference of two",
-        micrometres(trace.noise),
-        source_of(trace.noise_source),
-        micrometres(displacement_noise(trace))
-    );
+    let mut noise = format!("noise: {} um a reading ({})", micrometres(trace.noise), source_of(trace.noise_source));
+    if trace.differences {
+        noise += &format!(", up to {} um a displacement, the difference of two", micrometres(self::noise(trace)));
+    }
     let mut page =
         format!("{}: {} at {}\n{noise}\n\n", trace.robot, count(trace.rows, "row"), count(trace.poses, "pose"));
     let mut errors = Table::new(1, ["error [um]", "fitted poses", "unseen poses"]);

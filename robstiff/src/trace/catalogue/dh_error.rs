@@ -20,11 +20,12 @@ pub static KIND: Kind = Kind {
 };
 
 /// Beyond this a table is not off but another robot's (rad, m, m, rad).
-const MOST: [f64; 4] = [0.2, 0.15, 0.15, 0.2];
-const UNITS: [&str; 4] = ["rad", "m", "m", "rad"];
+pub const MOST: [f64; 4] = [0.2, 0.15, 0.15, 0.2];
+/// The units of a table's entries.
+pub const UNITS: [&str; 4] = ["rad", "m", "m", "rad"];
 
 /// The entries of a row, in the order of a setup's table.
-const ENTRIES: [fn(usize) -> DhEntry; 4] = [DhEntry::Theta, DhEntry::D, DhEntry::A, DhEntry::Alpha];
+pub const ENTRIES: [fn(usize) -> DhEntry; 4] = [DhEntry::Theta, DhEntry::D, DhEntry::A, DhEntry::Alpha];
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for row in 1..=scene.joints() {

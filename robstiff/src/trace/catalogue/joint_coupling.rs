@@ -5,6 +5,8 @@ use std::format;
 use std::rc::Rc;
 use std::vec;
 
+use nalgebra::Vector3;
+
 use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
 use crate::elements::Parameter;
 
@@ -19,8 +21,10 @@ pub static KIND: Kind = Kind {
 };
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    let frames = &scene.samples.rows[0].joint_frames;
+    let axis = |joint: usize| frames[joint - 1].fixed_view::<3, 1>(0, 2).into_owned();
     for j in 2..=scene.joints() {
-        for i in (1..j).filter(|&i| scene.turns(i) && scene.turns(j) && share_a_drive(scene, i, j)) {
+        for i in (1..j).filter(|&i| scene.turns(i) && scene.turns(j) && share_a_drive(i, j, &axis)) {
             let number =
                 Number::compliance(scene, "value", [f64::NEG_INFINITY, f64::INFINITY], Parameter::Coupling([i, j]));
             let check = move |numbers: &[(&str, f64)], joint: &dyn Fn(usize) -> f64| {
@@ -41,8 +45,7 @@ const WRIST: usize = 4;
 /// parallel axes (a parallelogram, a drive further down) and the joints of a
 /// wrist, whose shafts run in one another. Other pairs have no part through
 /// which one could turn the other, and would only be names for something else.
-fn share_a_drive(scene: &Scene<'_>, i: usize, j: usize) -> bool {
-    let axis = |joint: usize| scene.samples.rows[0].joint_frames[joint - 1].fixed_view::<3, 1>(0, 2).into_owned();
+pub fn share_a_drive(i: usize, j: usize, axis: &dyn Fn(usize) -> Vector3<f64>) -> bool {
     let parallel = axis(i).cross(&axis(j)).norm() < PARALLEL;
     (j == i + 1 && parallel) || i >= WRIST
 }

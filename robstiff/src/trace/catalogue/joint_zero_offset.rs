@@ -18,7 +18,7 @@ pub static KIND: Kind = Kind {
 };
 
 /// Beyond this a zero is not off but elsewhere (rad, m).
-const MOST: [f64; 2] = [0.2, 0.1];
+pub const MOST: [f64; 2] = [0.2, 0.1];
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for joint in 1..=scene.joints() {

@@ -22,7 +22,7 @@ pub static KIND: Kind = Kind {
 
 /// The knees tried, as fractions of the largest torque seen on the joint: lost
 /// motion is over below some 3 % of what a gear is made for.
-const KNEES: [f64; 3] = [1.0 / 64.0, 1.0 / 32.0, 1.0 / 16.0];
+pub const KNEES: [f64; 3] = [1.0 / 64.0, 1.0 / 32.0, 1.0 / 16.0];
 
 /// Knees that may be either's, as fractions of the largest torque. What is over
 /// by 3 % of the rated torque has a knee of half that; above it, a gear may be one
@@ -31,7 +31,7 @@ const KNEES: [f64; 3] = [1.0 / 64.0, 1.0 / 32.0, 1.0 / 16.0];
 pub const EITHER: [f64; 2] = [1.0 / 64.0, 1.0 / 6.0];
 
 /// A gap of a degree is a gear that is broken (rad); on a sliding joint (m).
-const WIDEST: f64 = 0.0175;
+pub const WIDEST: f64 = 0.0175;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for joint in 1..=scene.joints() {

@@ -31,6 +31,7 @@ mod lost_motion;
 mod offers;
 mod outliers;
 mod pose_dependent_compliance;
+mod reflector_offset;
 mod stiffness_nonlinearity;
 mod thermal_drift;
 mod tool_compliance;
@@ -49,11 +50,14 @@ use robstiff_robots::effect::Place as Part;
 
 pub use self::base_slip::{KIND as BASE_SLIP, LIKELY};
 pub use self::creep::KIND as CREEP;
+pub use self::dh_error::{ENTRIES as DH_ENTRIES, MOST as DH_MOST, UNITS as DH_UNITS};
 pub use self::hysteresis::KIND as HYSTERESIS;
-pub use self::lost_motion::{EITHER, KIND as LOST_MOTION};
+pub use self::joint_coupling::share_a_drive;
+pub use self::joint_zero_offset::MOST as ZERO_MOST;
+pub use self::lost_motion::{EITHER, KIND as LOST_MOTION, KNEES as LOST_KNEES, WIDEST as WIDEST_GAP};
 pub use self::offers::{Candidate, Catalogue, Form, Offers, Variant, catalogue};
 pub use self::outliers::KIND as OUTLIERS;
-pub use self::stiffness_nonlinearity::KIND as STIFFNESS_NONLINEARITY;
+pub use self::stiffness_nonlinearity::{KIND as STIFFNESS_NONLINEARITY, KNEES as HARDENING_KNEES};
 use super::clamped::{Axes, OnAxes};
 use super::found::{Found, Place};
 use super::point::Point;
@@ -98,7 +102,7 @@ impl core::fmt::Debug for Kind {
 
 /// Every kind, in the order of precedence among exact aliases. What is wrong
 /// with single rows (`outliers`) has no columns: it is found row by row.
-pub static KINDS: [&Kind; 22] = [
+pub static KINDS: [&Kind; 23] = [
     &thermal_drift::KIND,
     &creep::KIND,
     &load_cell_bias::KIND,
@@ -106,6 +110,7 @@ pub static KINDS: [&Kind; 22] = [
     &load_cell_misalignment::KIND,
     &lever_arm::KIND,
     &tracker_misalignment::KIND,
+    &reflector_offset::KIND,
     &outliers::KIND,
     &base_slip::KIND,
     &tool_compliance::KIND,

@@ -27,7 +27,7 @@ pub static KIND: Kind = Kind {
 /// knee above it bends too little to be told from a joint; a change that is
 /// over before the loads begin is a step at zero torque, which is
 /// `lost_motion` and has the knees below.
-const KNEES: [f64; 4] = [1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0, 1.0];
+pub const KNEES: [f64; 4] = [1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0, 1.0];
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for joint in 1..=scene.joints() {

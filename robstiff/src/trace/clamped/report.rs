@@ -116,6 +116,7 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         structure: found.left.tests.clone(),
         residuals: whole.axes.rows.iter().enumerate().map(residual).collect(),
         components: 1,
+        differences: true,
         pose_errors: fitted_axes.iter().map(error).collect(),
     }
 }

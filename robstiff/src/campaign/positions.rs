@@ -1,0 +1,112 @@
+//! The rows of a campaign of kind `position`.
+
+use std::format;
+use std::string::String;
+use std::vec::Vec;
+
+use robstiff_robots::Description;
+use robstiff_robots::quantity::Dimension;
+
+use super::poses::{AtPose, Columns as PoseColumns, Poses};
+use super::{PositionRow, Positions};
+use crate::table::{Numbers, Record, Table};
+
+/// The columns of the table.
+struct Columns {
+    at: PoseColumns,
+    time: Option<Numbers>,
+    temperature: Option<Numbers>,
+    position: [Numbers; 3],
+    payload: Option<Numbers>,
+}
+
+impl AtPose for PositionRow {
+    fn line(&self) -> usize {
+        self.line
+    }
+
+    fn pose(&self) -> usize {
+        self.pose
+    }
+
+    fn q(&self) -> &[f64] {
+        &self.q
+    }
+}
+
+/// Reads the rows; `None` with the problems reported to the table.
+pub fn read(table: &Table<'_>, robot: &Description, payload_at: [f64; 3], measured_at: [f64; 3]) -> Option<Positions> {
+    let columns = columns(table, robot)?;
+    let (mut poses, mut rows) = (Poses::default(), Vec::new());
+    let mut complete = true;
+    for record in &table.records {
+        let (pose, visit, named) = poses.named(table, &columns.at, record);
+        let Some(row) = row(table, &columns, record, pose, visit).filter(|_| named) else {
+            complete = false;
+            continue;
+        };
+        poses.enter(table, &columns.at, record, (&row, visit), &rows);
+        rows.push(row);
+    }
+    columns.at.check_ranges(table, &robot.joints, &rows);
+    check_lengths(table, &columns, &rows);
+    let [poses, visits] = poses.names();
+    complete.then_some(Positions { payload_at, measured_at, poses, visits, rows })
+}
+
+/// No arm reaches so far across (m); millimetres that are read as metres do.
+const WIDEST: f64 = 50.0;
+
+/// Warns of positions that no arm comes to.
+fn check_lengths(table: &Table<'_>, columns: &Columns, rows: &[PositionRow]) {
+    for (k, (name, &column)) in ["px", "py", "pz"].into_iter().zip(&columns.position).enumerate() {
+        let along = rows.iter().map(|row| row.position[k]);
+        let apart = along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min);
+        if apart > WIDEST {
+            let ask = match table.has_unit(column) {
+                true => String::new(),
+                false => format!(": are the lengths in millimetres? write `{name} [mm]`"),
+            };
+            table.warn(&format!("{name} is of points {apart:.0} m apart{ask}"));
+        }
+    }
+}
+
+fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
+    let at = PoseColumns::find(table, &robot.joints);
+    let time = table.numbers("time", Dimension::Time);
+    let temperature = table.numbers("temperature", Dimension::Temperature);
+    let position = ["px", "py", "pz"].map(|name| table.require(name, Dimension::Length));
+    let payload = table.numbers("payload", Dimension::Mass);
+    let [x, y, z] = position;
+    Some(Columns { at: at?, time, temperature, position: [x?, y?, z?], payload })
+}
+
+/// One row; every number is checked before any gives it up.
+fn row(table: &Table<'_>, columns: &Columns, record: &Record, pose: usize, visit: usize) -> Option<PositionRow> {
+    let optional = |column: Option<Numbers>| column.map(|column| table.number(record, column));
+    let (time, temperature) = (optional(columns.time), optional(columns.temperature));
+    let q = columns.at.coordinates(table, record);
+    let position = table.all(record, columns.position);
+    let payload = columns.payload.map_or(Some(0.0), |column| {
+        let payload = table.number(record, column)?;
+        if payload < 0.0 {
+            table.report_number(record, column, "a payload is not negative", "0 where nothing hangs on the tool");
+            return None;
+        }
+        Some(payload)
+    });
+    if time == Some(None) || temperature == Some(None) {
+        return None;
+    }
+    Some(PositionRow {
+        line: record.line,
+        pose,
+        visit,
+        time: time.flatten(),
+        temperature: temperature.flatten(),
+        q: q?,
+        position: position?,
+        payload: payload?,
+    })
+}

@@ -1,0 +1,294 @@
+//! Absolute positions: what a description says of them, and the compliances that
+//! payloads show.
+//!
+//! Positions are read in a frame of their own, wherever the tracker stands. Where the
+//! robot stands in it is fitted with everything ([`registration`]), so what is the
+//! same as another stand (the zero of a joint that the base turns with, a length
+//! along its axis) cannot show. A description's numbers enter its forward model
+//! ([`model`]), not a linear one; they are fitted in steps ([`regression`]).
+//!
+//! A compliance shows where a payload loads its joint, and with a description that
+//! sags (`gravity_sag`) where links do.
+
+pub mod model;
+pub mod registration;
+pub mod regression;
+#[cfg(test)]
+mod tests;
+mod within;
+
+use std::format;
+use std::rc::Rc;
+use std::string::String;
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector, Vector3};
+use robstiff_robots::Description;
+
+use self::model::{Enters, Model, State};
+use self::registration::Registration;
+use self::regression::{Regression, Rows, STANDS};
+use self::within::within_visits;
+use super::baseline::{
+    Declared, Visibility, columns_of, declared, set_compliance, set_parameter, visibility, with_values,
+};
+use super::holdout::training;
+use super::normal::{Normal, Scaled, Sign};
+use super::predict::{PredictedRow, Prediction};
+use super::problem::rms;
+use super::readable::{UNREADABLE, is_readable};
+use super::uncertainty::{correlation, covariance};
+use super::{Error, Estimate, Identification, NoiseSource, estimates};
+use crate::campaign::{Campaign, Positions};
+use crate::elements::Parameter;
+use crate::identify::samples::Column;
+
+/// Step of central differences of a compliance (rad/Nm or m/N).
+pub const COMPLIANCE_STEP: f64 = 1e-8;
+
+/// A campaign of positions, ready to be fitted.
+pub struct Prepared<'c> {
+    /// The positions.
+    pub data: &'c Positions,
+    /// The description's own numbers.
+    pub own: Vec<Declared>,
+    /// What the positions say of each.
+    pub visibility: Vec<Visibility>,
+    /// The description as declared, without the numbers that are fitted.
+    pub start: Model,
+    /// Which rows are fitted to.
+    pub rows: Rows,
+    /// Where the robot stands, by the description as declared.
+    pub registration: Registration,
+}
+
+impl<'c> Prepared<'c> {
+    /// Finds out what the positions show of the description's own numbers.
+    ///
+    /// # Errors
+    /// Positions that do not tell where the robot stands.
+    pub fn new(campaign: &Campaign, data: &'c Positions) -> Result<Self, Error> {
+        let training: Rc<[bool]> = training(data.poses.len(), campaign.holdout).into();
+        let rows = Rows { training: Rc::clone(&training), left_out: std::vec![false; data.rows.len()] };
+        let mut start = Model::new(&campaign.robot, data);
+        let registration = standing(&start, data, |row| training[data.rows[row].pose])?;
+        let own = declared(&campaign.robot);
+        let visibility = {
+            let numbers = own.iter().map(entering).collect();
+            let signs = own.iter().map(|number| number.sign).collect();
+            let regression = Regression { data, start: start.clone(), numbers, signs };
+            let state = State { registration, values: std::vec![0.0; own.len()] };
+            let chosen: Vec<usize> = (0..own.len()).collect();
+            let (problem, _) = regression.at(&state, &chosen, &rows);
+            beyond_standing(&problem.total)
+                .map_or_else(|| std::vec![Visibility::Unseen; own.len()], |total| visibility(&total, own.len()))
+        };
+        for (number, _) in own.iter().zip(&visibility).filter(|(_, visibility)| **visibility == Visibility::Seen) {
+            add(&mut start.description, number, -number.value);
+        }
+        Ok(Self { data, own, visibility, start, rows, registration })
+    }
+
+    /// The own numbers that the positions show, by index.
+    pub fn seen(&self) -> Vec<usize> {
+        (0..self.own.len()).filter(|&k| self.visibility[k] == Visibility::Seen).collect()
+    }
+
+    /// The regression on all own numbers, and numbers besides.
+    pub fn regression(&self, more: impl IntoIterator<Item = (Enters, Sign)>) -> Regression<'c> {
+        let own = self.own.iter().map(|number| (entering(number), number.sign));
+        let (numbers, signs) = own.chain(more).unzip();
+        Regression { data: self.data, start: self.start.clone(), numbers, signs }
+    }
+
+    /// The own numbers as declared, those that are not fitted counting as zero.
+    pub fn state(&self, numbers: usize) -> State {
+        let mut values = std::vec![0.0; numbers];
+        self.seen().into_iter().for_each(|k| values[k] = self.own[k].value);
+        State { registration: self.registration, values }
+    }
+
+    /// All own numbers, of which some were fitted.
+    pub fn values(&self, state: &State) -> Vec<f64> {
+        let value = |(k, number): (usize, &Declared)| match self.visibility[k] {
+            Visibility::Seen => state.values[k],
+            _ => number.value,
+        };
+        self.own.iter().enumerate().map(value).collect()
+    }
+
+    /// The residuals with the description as declared, stacked (m).
+    pub fn declared_residuals(&self, campaign: &Campaign) -> DVector<f64> {
+        let points = Model::new(&campaign.robot, self.data).points(self.data);
+        let left = points
+            .iter()
+            .zip(&self.data.rows)
+            .map(|(point, row)| Vector3::from(row.position) - self.registration.placed(point));
+        let left: Vec<f64> = left.flat_map(|left| [left.x, left.y, left.z]).collect();
+        DVector::from_vec(left)
+    }
+}
+
+/// Where the robot stands by a model, from some of the rows.
+fn standing(model: &Model, data: &Positions, of_row: impl Fn(usize) -> bool) -> Result<Registration, Error> {
+    let points = model.points(data);
+    let rows: Vec<usize> = (0..points.len()).filter(|&row| of_row(row)).collect();
+    let pairs = rows.iter().map(|&row| (points[row], Vector3::from(data.rows[row].position)));
+    Registration::fitted(pairs).ok_or_else(|| {
+        Error(String::from(
+            "the positions do not tell where the robot stands: they are fewer than three, or on a line by its description",
+        ))
+    })
+}
+
+/// How one of a description's own numbers enters a model.
+fn entering(number: &Declared) -> Enters {
+    let number = *number;
+    Enters::Model(Rc::new(move |model: &mut Model, by| add(&mut model.description, &number, by)), COMPLIANCE_STEP)
+}
+
+/// Adds to one of a description's numbers.
+fn add(description: &mut Description, number: &Declared, by: f64) {
+    match (number.effect, number.column) {
+        (None, Column::Linear(Parameter::Joint(joint))) => {
+            let joint = &mut description.joints[joint - 1];
+            let value = joint.compliance() + by;
+            set_compliance(&mut joint.compliance, value);
+        }
+        (Some(effect), column) => {
+            let effect = &mut description.effects[effect];
+            let own = columns_of(effect).into_iter().find(|(of, _)| *of == column);
+            let (_, value) = own.expect("a declared number is one of its effect's");
+            set_parameter(effect, column, value + by);
+        }
+        (None, _) => unreachable!("only joints' own compliances belong to no effect"),
+    }
+}
+
+/// The normal equations of the numbers, with where the robot stands projected out.
+fn beyond_standing(total: &Normal) -> Option<Normal> {
+    let stands: Vec<usize> = (0..STANDS).collect();
+    let numbers: Vec<usize> = (STANDS..total.moment.len()).collect();
+    let factor = Scaled::of(&total.gram_of(&stands))?;
+    let cross = DMatrix::from_fn(STANDS, numbers.len(), |i, j| total.gram[(stands[i], numbers[j])]);
+    let shares = factor.solve_columns(&cross);
+    Some(Normal {
+        gram: total.gram_of(&numbers) - cross.tr_mul(&shares),
+        moment: total.moment_of(&numbers) - shares.tr_mul(&total.moment_of(&stands)),
+        energy: total.energy,
+        rows: total.rows,
+    })
+}
+
+/// Identifies the compliances that payloads show: from what payloads of one visit
+/// differ by, or where that does not tell, from all positions with the kinematics as
+/// declared.
+///
+/// # Errors
+/// Positions that show none, or not where the robot stands; compliances that no
+/// description takes beside its own effects.
+pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification, Error> {
+    let prepared = Prepared::new(campaign, data)?;
+    let seen = prepared.seen();
+    if seen.is_empty() {
+        let why = match data.rows.iter().all(|row| row.payload == 0.0) {
+            true => "no row has a payload, so these positions show no compliance",
+            false => "these payloads load no joint in a way that could not be another stand of the robot",
+        };
+        return Err(Error(format!("{why}; `robstiff trace` asks what they show of the kinematics")));
+    }
+    let regression = prepared.regression([]);
+    let start = prepared.state(prepared.own.len());
+    let (problem, _) = regression.at(&start, &seen, &prepared.rows);
+    let (state, spread, variance) = match within_visits(&problem, data) {
+        Some(within) => {
+            let signs: Vec<Sign> = seen.iter().map(|&k| prepared.own[k].sign).collect();
+            let columns: Vec<usize> = (0..seen.len()).collect();
+            let fit = within.total.solve_signed(&columns, &signs).ok_or_else(confounded)?;
+            let mut state = start;
+            seen.iter().zip(fit.coefficients.iter()).for_each(|(&k, &value)| state.values[k] = value);
+            let model = state.model(&regression.start, &regression.numbers);
+            state.registration = standing(&model, data, |row| prepared.rows.training[data.rows[row].pose])?;
+            (state, covariance(&within, &fit, &signs), fit.rss / within.freedom(&fit))
+        }
+        None => {
+            let solved = regression.solve(&seen, &start, &prepared.rows).ok_or_else(confounded)?;
+            let variance = solved.fit.rss / solved.problem.freedom(&solved.fit);
+            (solved.state, of_numbers(&covariance(&solved.problem, &solved.fit, &solved.signs)), variance)
+        }
+    };
+    let values = prepared.values(&state);
+    let rows = data.rows.len();
+    let noise = match campaign.noise.displacement {
+        Some(noise) => (noise, NoiseSource::Declared),
+        None => (variance.sqrt(), NoiseSource::Residuals),
+    };
+    let estimates = estimated(campaign, &prepared, &values, &spread);
+    let description = with_values(&campaign.robot, &values);
+    if !is_readable(&description) {
+        return Err(Error(UNREADABLE.into()));
+    }
+    Ok(Identification {
+        description,
+        correlation: among_all(&correlation(&spread), &seen, estimates.len()),
+        estimates,
+        rows,
+        poses: data.poses.len(),
+        noise: Some(noise),
+        covariance: None,
+        rms_declared: Some(rms(&prepared.declared_residuals(campaign), 3, 0..rows)),
+        rms: Some(rms(&residuals(&regression, &state), 3, 0..rows)),
+    })
+}
+
+fn confounded() -> Error {
+    Error(String::from("these positions do not tell the compliances from each other"))
+}
+
+/// Of a covariance, the part without where the robot stands.
+pub fn of_numbers(covariance: &DMatrix<f64>) -> DMatrix<f64> {
+    let count = covariance.nrows() - STANDS;
+    covariance.view((STANDS, STANDS), (count, count)).into_owned()
+}
+
+/// A matrix of some numbers among all; the identity elsewhere.
+fn among_all(part: &DMatrix<f64>, chosen: &[usize], count: usize) -> DMatrix<f64> {
+    let mut whole = DMatrix::identity(count, count);
+    for (i, &a) in chosen.iter().enumerate() {
+        chosen.iter().enumerate().for_each(|(j, &b)| whole[(a, b)] = part[(i, j)]);
+    }
+    whole
+}
+
+/// What a state leaves of the readings, stacked (m).
+pub fn residuals(regression: &Regression<'_>, state: &State) -> DVector<f64> {
+    let points = state.model(&regression.start, &regression.numbers).points(regression.data);
+    let left = regression.data.rows.iter().enumerate().flat_map(|(row, read)| {
+        let point = points[row] + state.beside(&regression.numbers, row);
+        let left = Vector3::from(read.position) - state.registration.placed(&point);
+        [left.x, left.y, left.z]
+    });
+    DVector::from_vec(left.collect())
+}
+
+/// Predicts the positions of a campaign with a description; where the robot stands
+/// is fitted, in the frame that positions are read in.
+///
+/// # Errors
+/// Positions that do not tell where the robot stands, numbers so large that an error is
+/// not finite.
+pub fn predict(description: &Description, data: &Positions) -> Result<Prediction, Error> {
+    let model = Model::new(description, data);
+    let registration = standing(&model, data, |_| true)?;
+    let row = |(point, row): (Vector3<f64>, &crate::campaign::PositionRow)| PredictedRow {
+        line: row.line,
+        predicted: registration.placed(&point).into(),
+        measured: row.position,
+    };
+    Prediction::of(model.points(data).into_iter().zip(&data.rows).map(row).collect())
+}
+
+/// The estimates of a description's numbers after a fit.
+pub fn estimated(campaign: &Campaign, prepared: &Prepared<'_>, values: &[f64], spread: &DMatrix<f64>) -> Vec<Estimate> {
+    estimates(&campaign.robot, (&prepared.own, &prepared.visibility), values, &prepared.seen(), spread)
+}

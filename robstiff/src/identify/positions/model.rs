@@ -1,0 +1,115 @@
+//! Where a description says that the point is which is read.
+
+use std::rc::Rc;
+use std::vec::Vec;
+
+use nalgebra::{Matrix4, SVector, Vector3, Vector6};
+use robstiff_robots::Description;
+use robstiff_robots::effect::gravity_sag::GRAVITY;
+
+use super::registration::Registration;
+use crate::campaign::{PositionRow, Positions};
+use crate::{Robot, with_robot};
+
+/// A model of absolute positions.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// The robot.
+    pub description: Description,
+    /// The point that is read, in the tool frame (m).
+    pub marker: Vector3<f64>,
+}
+
+/// Changes a model by so much of a number.
+pub type Change = Rc<dyn Fn(&mut Model, f64)>;
+
+/// What a unit of a number does to a model.
+#[derive(Clone)]
+pub enum Enters {
+    /// It changes the model; the second is the step of central differences, in its
+    /// own unit.
+    Model(Change, f64),
+    /// It moves what is read, row by row (in the base frame), whatever the robot
+    /// does.
+    Reading(Rc<Vec<Vector3<f64>>>),
+}
+
+impl Model {
+    /// A description as it is, and the point as the campaign says.
+    pub fn new(description: &Description, data: &Positions) -> Self {
+        Self { description: description.clone(), marker: data.measured_at.into() }
+    }
+
+    /// The point at each row, in the base frame (m). The payload's weight, against z
+    /// of the base frame, moves it by `H_x F` and by what joints do besides; the
+    /// arm's own weight does so where the description says so (`gravity_sag`).
+    pub fn points(&self, data: &Positions) -> Vec<Vector3<f64>> {
+        with_robot!(&self.description, |robot| points(&robot, data, &self.marker))
+    }
+
+    /// What the payload loads each joint with, row by row (Nm or N).
+    pub fn torques(&self, data: &Positions) -> Vec<Vec<f64>> {
+        fn of<const N: usize>(robot: &impl Robot<N>, data: &Positions) -> Vec<Vec<f64>> {
+            let torques = |row: &PositionRow| {
+                let q = SVector::<f64, N>::from_column_slice(&row.q);
+                robot.joint_torques(&q, &weight(&robot.transform(&q), row, data)).iter().copied().collect()
+            };
+            data.rows.iter().map(torques).collect()
+        }
+        with_robot!(&self.description, |robot| of(&robot, data))
+    }
+}
+
+fn points<const N: usize>(robot: &impl Robot<N>, data: &Positions, marker: &Vector3<f64>) -> Vec<Vector3<f64>> {
+    let point = |row: &PositionRow| {
+        let q = SVector::<f64, N>::from_column_slice(&row.q);
+        let tcp = robot.transform(&q);
+        let lever = tcp.fixed_view::<3, 3>(0, 0) * marker;
+        let still = tcp.fixed_view::<3, 1>(0, 3) + lever;
+        if row.payload == 0.0 {
+            return still;
+        }
+        let moved = robot.deflection(&q, &weight(&tcp, row, data));
+        still + moved.fixed_rows::<3>(0) + moved.fixed_rows::<3>(3).cross(&lever)
+    };
+    data.rows.iter().map(point).collect()
+}
+
+/// The wrench of a payload at the TCP, in the base frame (N, Nm).
+fn weight(tcp: &Matrix4<f64>, row: &PositionRow, data: &Positions) -> Vector6<f64> {
+    let force = Vector3::new(0.0, 0.0, -GRAVITY * row.payload);
+    let moment = (tcp.fixed_view::<3, 3>(0, 0) * Vector3::from(data.payload_at)).cross(&force);
+    Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z)
+}
+
+/// Numbers of a model with their values, and where the robot stands in the frame
+/// that positions are read in.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// Where the robot stands.
+    pub registration: Registration,
+    /// The value of every number; zero for those that are not part of the model.
+    pub values: Vec<f64>,
+}
+
+impl State {
+    /// The model with its numbers.
+    pub fn model(&self, start: &Model, numbers: &[Enters]) -> Model {
+        let mut model = start.clone();
+        for (number, &value) in numbers.iter().zip(&self.values).filter(|(_, value)| **value != 0.0) {
+            if let Enters::Model(enters, _) = number {
+                enters(&mut model, value);
+            }
+        }
+        model
+    }
+
+    /// What moves the reading of a row besides, in the base frame (m).
+    pub fn beside(&self, numbers: &[Enters], row: usize) -> Vector3<f64> {
+        let of = |(number, &value): (&Enters, &f64)| match number {
+            Enters::Reading(field) => field[row] * value,
+            Enters::Model(..) => Vector3::zeros(),
+        };
+        numbers.iter().zip(&self.values).filter(|(_, value)| **value != 0.0).map(of).sum()
+    }
+}

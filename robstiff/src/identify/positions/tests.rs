@@ -1,0 +1,120 @@
+//! What absolute positions say of a description, with nothing missing from it.
+
+use std::vec;
+
+use robstiff_robots::{Description, catalogue};
+
+use super::super::{Error, identify as identified, predict as predicted};
+use super::*;
+use crate::Effect;
+use crate::campaign::made_positions::Plan;
+use crate::samples::{five_axis, odd};
+
+fn six_axis() -> Description {
+    let text = catalogue::find("kuka-kr270-r2700").expect("in the catalogue");
+    Description::parse("kuka-kr270-r2700.yaml", text).expect("a description")
+}
+
+/// Wherever the tracker stands, what is left is noise.
+#[test]
+fn the_declared_robot_predicts_what_it_measured() {
+    for (robot, seed) in [(five_axis(), 1), (odd(), 2), (six_axis(), 3)] {
+        let campaign = Plan { payloads: vec![0.0, 120.0], ..Plan::new(robot.clone(), seed) }.run();
+        let found = predicted(&robot, &campaign).expect("positions");
+        assert!((found.rms / 3e-5 - 1.0).abs() < 0.15, "{} um", found.rms * 1e6);
+        let exact = Plan { noise: 0.0, payloads: vec![80.0], ..Plan::new(robot.clone(), seed) }.run();
+        assert!(predicted(&robot, &exact).expect("positions").max < 1e-12);
+    }
+}
+
+/// What a description declares is no part of what is left.
+#[test]
+fn declared_effects_are_in_the_prediction() {
+    let mut robot = six_axis();
+    let hidden = vec![
+        Effect::JointZeroOffset { joint: 3, value: 0.02 },
+        Effect::TransmissionError { joint: 2, order: 1.0, sin: 1e-3, cos: -2e-3 },
+    ];
+    let campaign = Plan { noise: 0.0, hidden: hidden.clone(), ..Plan::new(robot.clone(), 4) }.run();
+    assert!(predicted(&robot, &campaign).expect("positions").rms > 1e-3);
+    robot.effects = hidden;
+    assert!(predicted(&robot, &campaign).expect("positions").max < 1e-12);
+}
+
+/// Payloads show the compliances of the joints that they load; the first, about which
+/// weights do not turn, keeps its value.
+#[test]
+fn payloads_show_compliances() {
+    let robot = six_axis();
+    let mut declared = robot.clone();
+    declared.joints.iter_mut().for_each(|joint| joint.compliance.iter_mut().for_each(|part| part.value *= 1.4));
+    let mut within = 0;
+    for seed in 0..20 {
+        let mut campaign = Plan { payloads: vec![0.0, 100.0, 250.0], ..Plan::new(robot.clone(), seed) }.run();
+        campaign.robot = declared.clone();
+        let found = identified(&campaign).expect("payloads");
+        assert!(found.rms < found.rms_declared);
+        assert_eq!(found.estimates[0].visibility, Visibility::Unseen);
+        for (estimate, joint) in found.estimates.iter().zip(&robot.joints).skip(1) {
+            let std = estimate.std.unwrap_or(f64::INFINITY);
+            within += usize::from((estimate.value - joint.compliance()).abs() <= 1.96 * std);
+        }
+    }
+    assert!((88..=100).contains(&within), "{within} of 100");
+}
+
+/// What payloads of one visit differ by does not know how the table is off.
+#[test]
+fn errors_of_the_table_do_not_matter_within_a_visit() {
+    let mut plan = Plan { payloads: vec![0.0, 200.0], ..Plan::new(six_axis(), 5) };
+    let of = |plan: &Plan| identified(&plan.run()).expect("payloads").estimates;
+    let right = of(&plan);
+    plan.hidden =
+        vec![Effect::JointZeroOffset { joint: 2, value: 2e-3 }, Effect::JointZeroOffset { joint: 3, value: 3e-3 }];
+    let off = of(&plan);
+    for (right, off) in right.iter().zip(&off).skip(1) {
+        let std = right.std.unwrap_or(f64::INFINITY);
+        assert!((right.value - off.value).abs() < 0.2 * std, "{right:?} {off:?}");
+    }
+    // One payload all the time says less, and only with the table as it is.
+    plan.payloads = vec![200.0];
+    assert!(of(&plan)[1].std > off[1].std);
+}
+
+#[test]
+fn what_shows_no_compliance_is_told() {
+    let robot = five_axis();
+    let of = |campaign| identified(&campaign).map(|_| ()).expect_err("nothing to identify").0;
+    let bare = of(Plan::new(robot.clone(), 1).run());
+    assert!(bare.contains("no row has a payload"), "{bare}");
+    let mut two = Plan::new(robot, 1);
+    two.poses = 2;
+    let Error(few) = predicted(&two.robot, &two.run()).expect_err("two positions");
+    assert!(few.contains("do not tell where the robot stands"), "{few}");
+}
+
+/// Columns are what the numbers do: from any start near enough, a fit comes to the
+/// truth.
+#[test]
+fn steps_come_to_the_truth() {
+    let truth = [0.03, -0.05, 0.02];
+    let mut plan = Plan { noise: 0.0, ..Plan::new(six_axis(), 7) };
+    plan.hidden = (2..5).zip(truth).map(|(joint, value)| Effect::JointZeroOffset { joint, value }).collect();
+    let campaign = plan.run();
+    let crate::campaign::Data::Position(data) = &campaign.data else { unreachable!("positions") };
+    let prepared = Prepared::new(&campaign, data).expect("positions");
+    let offset = |joint| {
+        let enters = move |model: &mut Model, value| {
+            model.description.effects.push(Effect::JointZeroOffset { joint, value });
+        };
+        (Enters::Model(Rc::new(enters), 1e-5), Sign::Free)
+    };
+    let regression = prepared.regression((2..5).map(offset));
+    let own = prepared.own.len();
+    let chosen: Vec<usize> = (own..own + 3).collect();
+    let solved = regression.solve(&chosen, &prepared.state(own + 3), &prepared.rows).expect("three offsets");
+    for (k, truth) in truth.into_iter().enumerate() {
+        assert!((solved.fit.coefficients[STANDS + k] - truth).abs() < 1e-10, "{}", solved.fit.coefficients);
+    }
+    assert!(residuals(&regression, &solved.state).amax() < 1e-9);
+}

@@ -1,0 +1,62 @@
+//! Payloads of one visit against each other.
+//!
+//! Where the robot stands and how its table is off, all rows of a visit have in
+//! common. Taken less their mean, they show what payloads do and nothing else, so
+//! compliances are identified from that where it tells them, whatever is wrong with
+//! the kinematics.
+
+use std::vec;
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::regression::STANDS;
+use crate::campaign::Positions;
+use crate::identify::normal::{Normal, independent};
+use crate::identify::problem::{Equations, Problem};
+
+/// The regression on the numbers alone, rows and columns less the mean of their
+/// visit; `None` where that does not tell all numbers from each other.
+pub fn within_visits(problem: &Problem, data: &Positions) -> Option<Problem> {
+    let count = problem.white.ncols() - STANDS;
+    let mut white = problem.white.columns(STANDS, count).into_owned();
+    let mut readings = (*problem.readings).clone();
+    let mut visits: Vec<Vec<usize>> = vec![Vec::new(); data.visits.len()];
+    let rows = problem.blocks.iter().flat_map(|block| &block.rows);
+    rows.for_each(|&row| visits[data.rows[row].visit].push(row));
+    visits.retain(|rows| !rows.is_empty());
+    for rows in &visits {
+        for axis in 0..3 {
+            let at: Vec<usize> = rows.iter().map(|row| 3 * row + axis).collect();
+            let mean = |values: &dyn Fn(usize) -> f64| at.iter().map(|&i| values(i)).sum::<f64>() / at.len() as f64;
+            for column in 0..count {
+                let middle = mean(&|i| white[(i, column)]);
+                at.iter().for_each(|&i| white[(i, column)] -= middle);
+            }
+            let middle = mean(&|i| readings[i]);
+            at.iter().for_each(|&i| readings[i] -= middle);
+        }
+    }
+    let stacked: Vec<usize> = problem.blocks.iter().flat_map(|block| block.stacked.iter().copied()).collect();
+    let mut total = Normal::new(&white.select_rows(&stacked), &readings.select_rows(&stacked));
+    // Each visit's mean took as much as a row.
+    total.rows = total.rows.checked_sub(3 * visits.len()).filter(|&rows| rows > count)?;
+    let all: Vec<usize> = (0..count).collect();
+    let largest = total.gram.diagonal().amax();
+    let (kept, _) = independent(&total.gram, &all, NEXT_TO_NOTHING * largest);
+    (kept.len() == count).then(|| of(problem, white, readings, total))
+}
+
+/// A column that is this small against the largest, squared, is zero but for rounding.
+const NEXT_TO_NOTHING: f64 = 1e-14;
+
+fn of(problem: &Problem, white: DMatrix<f64>, readings: DVector<f64>, total: Normal) -> Problem {
+    let readings = std::rc::Rc::new(readings);
+    let equations = Equations {
+        readings: std::rc::Rc::clone(&readings),
+        white_readings: readings,
+        total,
+        ..problem.equations.clone()
+    };
+    Problem { equations, white }
+}

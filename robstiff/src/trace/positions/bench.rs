@@ -1,0 +1,279 @@
+//! The regression of absolute positions with the catalogue behind it, and the models
+//! that are fitted with it.
+
+use std::vec;
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::offers::{Number, Offer};
+use super::rig::{SLIP, Slips, line};
+use crate::identify::normal::{Fit, Sign};
+use crate::identify::positions::Prepared;
+use crate::identify::positions::model::State;
+use crate::identify::positions::regression::{Regression, Rows, STANDS, Solved};
+use crate::identify::problem::{Problem, rms};
+use crate::trace::Options;
+use crate::trace::bootstrap::ScoreTest;
+use crate::trace::catalogue::{Candidate, Variant};
+use crate::trace::model::Named;
+
+/// Positions with everything that may explain them, at a model.
+pub struct Bench<'c> {
+    /// The positions and what they show of the description's own numbers.
+    pub prepared: Prepared<'c>,
+    /// The regression on all numbers, the description's own first.
+    pub regression: Regression<'c>,
+    /// What may be missing; columns of variants count from where the robot stands.
+    pub candidates: Vec<Candidate>,
+    /// The numbers of the candidates.
+    pub numbers: Vec<Number>,
+    /// The rows that are fitted to.
+    pub rows: Rows,
+    /// When the robot may have slipped.
+    slips: Slips,
+    /// All columns at the model: where the robot stands, then all numbers.
+    problem: Problem,
+    /// The sign of each column.
+    signs: Vec<Sign>,
+}
+
+/// A model that was fitted in its own form.
+pub struct Model {
+    /// The effects named, in the order of the catalogue.
+    pub named: Vec<Named>,
+    /// Its numbers and their fit.
+    pub solved: Solved,
+    /// Schwarz's criterion.
+    pub bic: f64,
+}
+
+/// A model by its linear fit, at another.
+pub struct Proposed {
+    /// The effects named, in the order of the catalogue.
+    pub named: Vec<Named>,
+    /// Schwarz's criterion, as far as the columns are those of the model.
+    pub bic: f64,
+    /// What it leaves, likewise (m^2).
+    pub rss: f64,
+}
+
+impl<'c> Bench<'c> {
+    /// The catalogue of a campaign, at the description as declared.
+    pub fn new(prepared: Prepared<'c>, offers: Vec<Offer>, slips: Slips) -> Self {
+        let (mut candidates, mut numbers) = (Vec::new(), Vec::new());
+        let own = prepared.own.len();
+        for offer in offers {
+            let first = STANDS + own + numbers.len();
+            let variant = |form: super::offers::Form| Variant {
+                columns: form.numbers.iter().map(|number| first + number).collect(),
+                parameters: form.numbers.len() + form.shape.len(),
+                shape: form.shape,
+                names: &[],
+                refine: None,
+                within: [0.0, f64::INFINITY],
+                likely: None,
+                unsure: None,
+            };
+            let variants = offer.forms.into_iter().map(variant).collect();
+            candidates.push(Candidate { kind: offer.kind, place: offer.place, variants, check: None });
+            numbers.extend(offer.numbers);
+        }
+        let regression = prepared.regression(numbers.iter().map(|number| (number.enters.clone(), number.sign())));
+        let all: Vec<usize> = (0..regression.numbers.len()).collect();
+        let rows = prepared.rows.clone();
+        let (problem, _) = regression.at(&prepared.state(all.len()), &all, &rows);
+        let signs = regression.signs_of(&all);
+        Self { prepared, regression, candidates, numbers, rows, slips, problem, signs }
+    }
+
+    /// Turns to a model, and to the rows that it is fitted to.
+    pub fn turn_to(&mut self, model: &Model) {
+        let all: Vec<usize> = (0..self.regression.numbers.len()).collect();
+        (self.problem, _) = self.regression.at(&model.solved.state, &all, &self.rows);
+    }
+
+    /// The numbers of a model, the description's own first.
+    pub fn chosen(&self, named: &[Named]) -> Vec<usize> {
+        let effects = named.iter().flat_map(|&one| &self.variant(one).columns).map(|column| column - STANDS);
+        self.prepared.seen().into_iter().chain(effects).collect()
+    }
+
+    /// The form of a named effect.
+    pub fn variant(&self, one: Named) -> &Variant {
+        &self.candidates[one.candidate].variants[one.variant]
+    }
+
+    /// Fits a model in its own form. `None` where the rows do not tell its numbers
+    /// from each other, or they are not physical.
+    pub fn solve(&self, named: &[Named], from: &State) -> Option<Model> {
+        let chosen = self.chosen(named);
+        let solved = self.regression.solve(&chosen, from, &self.rows)?;
+        if !self.is_physical(&chosen, &solved.fit.coefficients.rows(STANDS, chosen.len()).into_owned()) {
+            return None;
+        }
+        Some(Model { named: named.to_vec(), bic: self.bic(&solved.problem, named, &solved.fit, 0), solved })
+    }
+
+    /// The model with a slip that it names at the moment between those tried which
+    /// leaves least, by halving ever smaller steps.
+    pub fn at_its_moment(&mut self, model: Model) -> Model {
+        let is_slip = |one: &&Named| self.candidates[one.candidate].kind.name == SLIP;
+        let Some(&slip) = model.named.iter().find(is_slip) else { return model };
+        let data = self.prepared.data;
+        let tried_line = self.variant(slip).shape[0].value;
+        let Some(mut at) = self.slips.changes.iter().position(|&row| data.rows[row].line as f64 == tried_line) else {
+            return model;
+        };
+        let apart = self.slips.changes.len().div_ceil(self.slips.tried().len().max(1));
+        let (mut best, mut step) = (model, apart / 2);
+        while step > 0 {
+            for next in [at.checked_sub(step), Some(at + step)].into_iter().flatten() {
+                let Some(&moment) = self.slips.changes.get(next) else { continue };
+                self.move_slip(slip, moment);
+                if let Some(other) = self.solve(&best.named, &best.solved.state).filter(|other| other.bic < best.bic) {
+                    (best, at) = (other, next);
+                }
+            }
+            step = if step == 1 { 0 } else { step.div_ceil(2) };
+        }
+        self.move_slip(slip, self.slips.changes[at]);
+        best
+    }
+
+    /// Moves a slip to another moment, in all its forms.
+    fn move_slip(&mut self, slip: Named, moment: usize) {
+        let (own, first) = (self.prepared.own.len(), self.variant(slip).columns[0]);
+        for (number, enters) in (first - STANDS..).zip(self.slips.at_row(moment)) {
+            self.numbers[number - own].enters = enters.clone();
+            self.regression.numbers[number] = enters;
+        }
+        let forms = self.candidates[slip.candidate].variants.iter_mut();
+        for form in forms.filter(|form| form.columns[0] == first) {
+            form.shape = vec![line(self.prepared.data, moment)];
+        }
+    }
+
+    /// Whether the numbers of effects are within what is possible.
+    fn is_physical(&self, chosen: &[usize], values: &DVector<f64>) -> bool {
+        let own = self.prepared.own.len();
+        let within = |(&number, &value): (&usize, &f64)| {
+            let range = number.checked_sub(own).map(|number| self.numbers[number].range);
+            range.is_none_or(|[least, most]| least < value && value < most)
+        };
+        chosen.iter().zip(values.iter()).all(within)
+    }
+
+    /// Schwarz's criterion of a fit, with `more` numbers besides its own.
+    pub fn bic(&self, problem: &Problem, named: &[Named], fit: &Fit, more: usize) -> f64 {
+        let of_effects: usize = named.iter().map(|&one| self.variant(one).parameters).sum();
+        let parameters = STANDS + self.prepared.seen().len() + of_effects + more;
+        let readings = problem.total.rows as f64;
+        readings * (fit.rss / readings).max(f64::MIN_POSITIVE).ln() + parameters as f64 * readings.ln()
+    }
+
+    /// The columns of a model.
+    fn columns(&self, named: &[Named]) -> Vec<usize> {
+        (0..STANDS).chain(self.chosen(named).into_iter().map(|number| STANDS + number)).collect()
+    }
+
+    fn proposed(&self, mut named: Vec<Named>) -> Option<Proposed> {
+        // One order for one set, so that it is the same model however come to.
+        named.sort_unstable();
+        let columns = self.columns(&named);
+        let signs: Vec<Sign> = columns.iter().map(|&column| self.signs[column]).collect();
+        let fit = self.problem.total.solve_signed(&columns, &signs)?;
+        let numbers = fit.coefficients.rows(STANDS, columns.len() - STANDS).into_owned();
+        let physical = self.is_physical(&self.chosen(&named), &numbers);
+        physical.then(|| Proposed { bic: self.bic(&self.problem, &named, &fit, 0), rss: fit.rss, named })
+    }
+
+    /// What a model leaves by its linear fit (m^2).
+    pub fn rss(&self, named: &[Named]) -> Option<f64> {
+        Some(self.proposed(named.to_vec())?.rss)
+    }
+
+    /// Every model with one effect more, each candidate in its best form, the best
+    /// first.
+    pub fn extended(&self, named: &[Named]) -> Vec<Proposed> {
+        let free = |candidate: &usize| named.iter().all(|one| one.candidate != *candidate);
+        let best = |candidate: usize| {
+            let with = |variant| self.proposed([named, &[Named { candidate, variant }]].concat());
+            let forms = (0..self.candidates[candidate].variants.len()).filter_map(with);
+            forms.min_by(|a, b| a.bic.total_cmp(&b.bic))
+        };
+        let mut found: Vec<Proposed> = (0..self.candidates.len()).filter(free).filter_map(best).collect();
+        found.sort_by(|a, b| a.bic.total_cmp(&b.bic));
+        found
+    }
+
+    /// Every model with one effect replaced, with the index of that, the best first.
+    pub fn replaced(&self, named: &[Named]) -> Vec<(usize, Proposed)> {
+        let without = |k: usize| {
+            let mut rest = named.to_vec();
+            let one = rest.remove(k);
+            let others = self.extended(&rest).into_iter();
+            others.filter(move |other| !other.named.iter().any(|n| n.candidate == one.candidate)).map(move |m| (k, m))
+        };
+        let mut found: Vec<(usize, Proposed)> = (0..named.len()).flat_map(without).collect();
+        found.sort_by(|(_, a), (_, b)| a.bic.total_cmp(&b.bic));
+        found
+    }
+
+    /// All candidates against a model.
+    pub fn test(&self, named: &[Named]) -> Option<ScoreTest> {
+        let first = STANDS + self.prepared.own.len();
+        ScoreTest::among(&self.problem, &self.candidates, &self.signs, first, &self.columns(named))
+    }
+
+    /// The family-wise p-value of an effect, that of the model without it.
+    pub fn p_value(&self, named: &[Named], effect: usize, options: &Options) -> f64 {
+        let mut rest = named.to_vec();
+        let one = rest.remove(effect);
+        let p = self.test(&rest).and_then(|test| {
+            let (statistic, _) = test.statistics()[one.candidate]?;
+            Some(test.reference(options.draws, options.seed).p_value(statistic))
+        });
+        p.unwrap_or(1.0)
+    }
+
+    /// Whether a candidate leaves something to see beyond the description's own numbers
+    /// and where the robot stands.
+    pub fn shows(&self, candidate: usize) -> bool {
+        let base = self.columns(&[]);
+        let total = &self.problem.total;
+        let Some(inverse) = total.inverse(&base) else { return true };
+        let left = |&column: &usize| {
+            let along = DVector::from_fn(base.len(), |k, _| total.gram[(base[k], column)]);
+            let own = total.gram[(column, column)];
+            own > 0.0 && own - along.dot(&(&inverse * &along)) > SEEN * own
+        };
+        self.candidates[candidate].variants.iter().any(|form| form.columns.iter().any(left))
+    }
+
+    /// The root mean square error on each pose fitted to, by the fit without it (m).
+    pub fn left_out_rms(&self, solved: &Solved) -> f64 {
+        let problem = &solved.problem;
+        let mut left = (*problem.readings).clone();
+        let columns = &solved.fit.columns;
+        for block in problem.blocks.iter() {
+            let without = problem.solve_without(block, columns, Some(&solved.signs));
+            let coefficients = without.as_ref().unwrap_or(&solved.fit.coefficients);
+            let own = problem.block_residuals(block, columns, coefficients);
+            block.stacked.iter().zip(own.iter()).for_each(|(&i, &residual)| left[i] = residual);
+        }
+        rms(&left, 3, problem.blocks.iter().flat_map(|block| block.rows.iter().copied()))
+    }
+
+    /// The columns of a model as they are at it, with the readings, of some columns
+    /// besides.
+    pub fn with_columns(&self, model: &Model, more: &DMatrix<f64>) -> Problem {
+        self.regression.with_columns(&model.solved, more, &self.rows)
+    }
+}
+
+/// A column of which less than this is left says nothing of its own.
+const SEEN: f64 = 1e-6;
+
+/// Criteria closer than this are equal but for rounding.
+pub const TIE: f64 = 1e-3;

@@ -1,0 +1,52 @@
+//! Tracing of absolute positions: which effects they show that a description lacks.
+//!
+//! Positions show what differences of one pose hardly do: zeros, lengths and twists
+//! of the table, periodic errors, the arm's sag; payloads show what yields. They are
+//! read in a frame of their own, in which where the robot stands is fitted with
+//! everything, so what is the same as another stand shows in nothing.
+//!
+//! The way is that of displacements: a catalogue (`offers`) becomes columns
+//! (`bench`), which are tested against random signs of whole poses
+//! ([`bootstrap`](super::bootstrap)); a `search` names what is significant, predicts
+//! poses left out better, and is physical; rows that do not belong are left out
+//! (`wild`); what remains is tested for `structure`. Effects enter the forward
+//! model itself, and are fitted in it.
+
+mod bench;
+mod frames;
+mod offers;
+mod report;
+mod rig;
+mod search;
+mod structure;
+#[cfg(test)]
+mod tests;
+mod wild;
+
+use self::bench::Bench;
+use self::offers::offers;
+use self::rig::Slips;
+use super::{Options, Progress, Trace};
+use crate::campaign::{Campaign, Positions};
+use crate::identify::Error;
+use crate::identify::positions::Prepared;
+
+/// Traces a campaign of positions.
+///
+/// # Errors
+/// Positions that do not tell where the robot stands; compliances that no description
+/// takes beside its own effects.
+pub fn trace(
+    campaign: &Campaign,
+    data: &Positions,
+    options: &Options,
+    progress: &Progress<'_>,
+) -> Result<Trace, Error> {
+    progress("finding where the robot stands");
+    let prepared = Prepared::new(campaign, data)?;
+    let slips = Slips::new(&campaign.robot, data);
+    let offers = offers(campaign, data, &slips);
+    let bench = Bench::new(prepared, offers, slips);
+    let found = search::search(bench, campaign.noise.displacement, options, progress).map_err(Error)?;
+    report::report(campaign, &found).map_err(Error)
+}

@@ -1,0 +1,246 @@
+//! What may be missing from a model of absolute positions: the catalogue, as it
+//! shows there.
+//!
+//! An effect of the robot enters the description itself, so what is fitted is what is
+//! written. Compliances show under payloads only. Faults of the [`rig`] move what is
+//! read, or the point that is read; a turn or shift of the frame is none, for where
+//! the robot stands in it is fitted with everything.
+
+use std::rc::Rc;
+use std::vec;
+use std::vec::Vec;
+
+use robstiff_robots::Description;
+use robstiff_robots::effect::Place as Part;
+
+use super::frames::frames;
+use super::rig;
+use crate::campaign::{Campaign, Positions};
+use crate::identify::normal::Sign;
+use crate::identify::positions::COMPLIANCE_STEP;
+use crate::identify::positions::model::{Enters, Model};
+use crate::identify::setup::coordinate_entry;
+use crate::trace::catalogue::{
+    DH_ENTRIES, DH_MOST, DH_UNITS, HARDENING_KNEES, KINDS, Kind, LOST_KNEES, WIDEST_GAP, ZERO_MOST, share_a_drive,
+};
+use crate::trace::found::{EffectParameter, Place};
+use crate::{Effect, JointKind};
+
+/// Steps of central differences: of an angle (rad) and a length (m), whose curvature
+/// is the arm's; of a share.
+const ANGLE_STEP: f64 = 1e-5;
+pub const LENGTH_STEP: f64 = 1e-4;
+const SHARE_STEP: f64 = 1e-3;
+
+/// Those of entries of a table that are angles and lengths.
+const STEPS: [f64; 2] = [ANGLE_STEP, LENGTH_STEP];
+
+/// The orders of a periodic error that are tried, one of them, and the largest (rad).
+const ORDERS: [f64; 3] = [1.0, 2.0, 3.0];
+const LARGEST_WAVE: f64 = 0.1;
+
+/// More of the sag than all of it twice over is something else.
+const MOST_SAG: f64 = 2.0;
+
+/// A number of an effect.
+pub struct Number {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The values that are physically possible, exclusive.
+    pub range: [f64; 2],
+    /// What a unit of it does.
+    pub enters: Enters,
+}
+
+impl Number {
+    /// Which values a fit may give it.
+    pub fn sign(&self) -> Sign {
+        if self.range[0] >= 0.0 { Sign::Nonnegative } else { Sign::Free }
+    }
+}
+
+/// A form of an effect: some of its numbers, by index, and what it says besides.
+pub struct Form {
+    /// The numbers.
+    pub numbers: Vec<usize>,
+    /// Numbers out of a grid.
+    pub shape: Vec<EffectParameter>,
+}
+
+/// An effect that may be missing, with its forms.
+pub struct Offer {
+    /// The kind.
+    pub kind: &'static Kind,
+    /// Where it is.
+    pub place: Place,
+    /// Its numbers.
+    pub numbers: Vec<Number>,
+    /// Its forms.
+    pub forms: Vec<Form>,
+}
+
+/// Everything that may be missing, in the order of the catalogue.
+pub fn offers(campaign: &Campaign, data: &Positions, slips: &rig::Slips) -> Vec<Offer> {
+    let robot = &campaign.robot;
+    let joints = 1..=robot.joints.len();
+    let turns = |joint: &usize| robot.joints[joint - 1].kind == JointKind::Revolute;
+    let mut all = vec![];
+    all.extend(rig::drift(data));
+    all.push(rig::reflector());
+    all.extend(slips.offer(data));
+    if data.rows.iter().any(|row| row.payload > 0.0) {
+        all.push(springs("tool_compliance", Part::Tool, &[("rotation", "rad/Nm"), ("translation", "m/N")]));
+        all.push(springs("base_compliance", Part::Base, &[("tilt", "rad/Nm"), ("translation", "m/N")]));
+        all.extend(
+            joints.clone().map(|joint| springs("transverse_compliance", Part::Joint(joint), &[("h", "rad/Nm")])),
+        );
+        let links = (1..robot.joints.len()).filter(|&link| !robot.is_stroke(link));
+        all.extend(
+            links.map(|link| {
+                springs("link_compliance", Part::Link(link), &[("bending", "rad/Nm"), ("torsion", "rad/Nm")])
+            }),
+        );
+        all.extend(couplings(robot, data));
+        all.extend(gears(robot, data));
+    }
+    all.extend(joints.clone().map(|joint| zero(robot, joint)));
+    all.extend(joints.clone().flat_map(|row| table(robot, row)));
+    all.extend(joints.filter(turns).map(waves));
+    all.extend(robot.links.iter().any(|link| link.mass > 0.0).then(sag));
+    let declared = |offer: &Offer| {
+        robot.effects.iter().any(|effect| effect.kind() == offer.kind.name && offer.place == effect.place().into())
+    };
+    all.retain(|offer| !declared(offer));
+    all
+}
+
+/// A kind by its name.
+pub fn kind(name: &str) -> &'static Kind {
+    KINDS.into_iter().find(|kind| kind.name == name).expect("a name of the catalogue")
+}
+
+/// How a number of an effect enters the description, the others being zero but those
+/// given.
+fn of_effect(name: &'static str, part: Part, at: usize, others: Vec<f64>, step: f64) -> Enters {
+    let enters = move |model: &mut Model, by: f64| {
+        let mut numbers = others.clone();
+        numbers[at] = by;
+        let effect = Effect::of_kind(name, part, &numbers).expect("an effect of the catalogue with all its numbers");
+        model.description.effects.push(effect);
+    };
+    Enters::Model(Rc::new(enters), step)
+}
+
+/// An effect with one number in the description.
+fn one(name: &'static str, part: Part, number: (&'static str, &'static str), range: [f64; 2], step: f64) -> Offer {
+    let enters = of_effect(name, part, 0, vec![0.0], step);
+    let numbers = vec![Number { name: number.0, unit: number.1, range, enters }];
+    Offer { kind: kind(name), place: part.into(), numbers, forms: vec![Form { numbers: vec![0], shape: vec![] }] }
+}
+
+/// An elastic part with one or two compliances, of which one or both can be there.
+fn springs(name: &'static str, part: Part, numbers: &[(&'static str, &'static str)]) -> Offer {
+    let of = |(at, &(number, unit)): (usize, &(&'static str, &'static str))| {
+        let enters = of_effect(name, part, at, vec![0.0; numbers.len()], COMPLIANCE_STEP);
+        Number { name: number, unit, range: [0.0, f64::INFINITY], enters }
+    };
+    let forms: &[&[usize]] = if numbers.len() == 1 { &[&[0]] } else { &[&[0], &[1], &[0, 1]] };
+    Offer {
+        kind: kind(name),
+        place: part.into(),
+        numbers: numbers.iter().enumerate().map(of).collect(),
+        forms: forms.iter().map(|numbers| Form { numbers: numbers.to_vec(), shape: vec![] }).collect(),
+    }
+}
+
+fn couplings(robot: &Description, data: &Positions) -> Vec<Offer> {
+    let axes = frames(robot, &data.rows[..1]).remove(0).axes;
+    let axis = |joint: usize| axes[joint - 1].0;
+    let turn = |joint: usize| robot.joints[joint - 1].kind == JointKind::Revolute;
+    let pairs = (2..=robot.joints.len()).flat_map(|j| (1..j).map(move |i| [i, j]));
+    let pairs = pairs.filter(|&[i, j]| turn(i) && turn(j) && share_a_drive(i, j, &axis));
+    let any = [f64::NEG_INFINITY, f64::INFINITY];
+    pairs.map(|pair| one("joint_coupling", Part::Joints(pair), ("value", "rad/Nm"), any, COMPLIANCE_STEP)).collect()
+}
+
+/// Gears that give way other than in proportion to what a payload loads them with:
+/// the knee is one of several parts of the largest torque.
+fn gears(robot: &Description, data: &Positions) -> Vec<Offer> {
+    let torques = Model::new(robot, data).torques(data);
+    let largest = |joint: usize| torques.iter().map(|row| row[joint - 1].abs()).fold(0.0, f64::max);
+    let heaviest = torques.iter().flatten().map(|torque| torque.abs()).fold(0.0, f64::max);
+    let law = |name: &'static str, joint: usize, number: &'static str, range: [f64; 2], knees: &[f64]| {
+        let revolute = robot.joints[joint - 1].kind == JointKind::Revolute;
+        let (turn, torque) = if revolute { ("rad", "Nm") } else { ("m", "N") };
+        let (unit, step) = match number {
+            "gap" => (turn, ANGLE_STEP),
+            _ if revolute => ("rad/Nm", COMPLIANCE_STEP),
+            _ => ("m/N", COMPLIANCE_STEP),
+        };
+        let knees: Vec<f64> = knees.iter().map(|part| part * largest(joint)).collect();
+        let number = |&knee: &f64| {
+            let enters = of_effect(name, Part::Joint(joint), 0, vec![0.0, knee], step);
+            Number { name: number, unit, range, enters }
+        };
+        let form = |(k, &value): (usize, &f64)| Form {
+            numbers: vec![k],
+            shape: vec![EffectParameter { name: "knee", value, std: None, unit: torque }],
+        };
+        let place = Part::Joint(joint).into();
+        let (numbers, forms) = (knees.iter().map(number).collect(), knees.iter().enumerate().map(form).collect());
+        Offer { kind: kind(name), place, numbers, forms }
+    };
+    // What a payload does not load but by rounding has no law to show.
+    let loaded: Vec<usize> = (1..=robot.joints.len()).filter(|&joint| largest(joint) > 1e-9 * heaviest).collect();
+    let hardening = |&joint: &usize| {
+        let softest = -robot.joints[joint - 1].compliance();
+        law("stiffness_nonlinearity", joint, "added", [softest, f64::INFINITY], &HARDENING_KNEES)
+    };
+    let lost = |&joint: &usize| law("lost_motion", joint, "gap", [0.0, WIDEST_GAP], &LOST_KNEES);
+    loaded.iter().map(hardening).chain(loaded.iter().map(lost)).collect()
+}
+
+fn zero(robot: &Description, joint: usize) -> Offer {
+    let entry = coordinate_entry(robot.joints[joint - 1].kind);
+    let most = ZERO_MOST[entry];
+    one("joint_zero_offset", Part::Joint(joint), ("offset", ["rad", "m"][entry]), [-most, most], STEPS[entry])
+}
+
+/// The entries of a row of the DH table but the one that the joint's coordinate adds
+/// to.
+fn table(robot: &Description, row: usize) -> Vec<Offer> {
+    let coordinate = coordinate_entry(robot.joints[row - 1].kind);
+    let error = |entry: usize| {
+        let (most, unit) = (DH_MOST[entry], DH_UNITS[entry]);
+        let step = STEPS[usize::from(unit == "m")];
+        one("dh_error", Part::Entry(DH_ENTRIES[entry](row)), ("value", unit), [-most, most], step)
+    };
+    (0..4).filter(|&entry| entry != coordinate).map(error).collect()
+}
+
+/// A periodic error of a joint, of one of several orders.
+fn waves(joint: usize) -> Offer {
+    let name = "transmission_error";
+    let number = |(order, at, name_of): (f64, usize, &'static str)| Number {
+        name: name_of,
+        unit: "rad",
+        range: [-LARGEST_WAVE, LARGEST_WAVE],
+        enters: of_effect(name, Part::Joint(joint), at, vec![order, 0.0, 0.0], ANGLE_STEP),
+    };
+    let form = |(k, &value): (usize, &f64)| Form {
+        numbers: vec![2 * k, 2 * k + 1],
+        shape: vec![EffectParameter { name: "order", value, std: None, unit: "1" }],
+    };
+    Offer {
+        kind: kind(name),
+        place: Part::Joint(joint).into(),
+        numbers: ORDERS.iter().flat_map(|&order| [(order, 2, "cos"), (order, 1, "sin")]).map(number).collect(),
+        forms: ORDERS.iter().enumerate().map(form).collect(),
+    }
+}
+
+fn sag() -> Offer {
+    one("gravity_sag", Part::Robot, ("share", "1"), [0.0, MOST_SAG], SHARE_STEP)
+}

@@ -1,0 +1,262 @@
+//! Putting the result together.
+
+use std::format;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector, Vector3};
+use robstiff_robots::effect::Place as Part;
+
+use super::bench::{Bench, Model};
+use super::search::Searched;
+use crate::campaign::Campaign;
+use crate::identify::NoiseSource;
+use crate::identify::baseline::with_values;
+use crate::identify::positions::regression::STANDS;
+use crate::identify::positions::{estimated, of_numbers, residuals};
+use crate::identify::problem::rms;
+use crate::identify::readable::{UNREADABLE, is_readable};
+use crate::identify::uncertainty::covariance;
+use crate::trace::catalogue::{KINDS, OUTLIERS};
+use crate::trace::found::{EffectParameter, Found, Place};
+use crate::trace::model::Named;
+use crate::trace::selection::WITHIN_REACH;
+use crate::trace::{Misfit, NamedEffect, PoseError, Rival, RowResidual, Trace, Verdict, verdict};
+
+/// A tracing in full.
+///
+/// # Errors
+/// Compliances that no description takes beside its own effects.
+pub fn report(campaign: &Campaign, found: &Searched<'_>) -> Result<Trace, String> {
+    let (bench, model, base) = (&found.bench, &found.model, &found.base);
+    let (data, rows) = (bench.prepared.data, bench.prepared.data.rows.len());
+    let wild = &found.wild.rows;
+    let (verdict, why) = match &found.too_little {
+        Some(why) => (Verdict::Insufficient, why.clone()),
+        None => verdict::judge(&found.selection, &found.left, usize::from(!wild.is_empty()), found.taken_back, false),
+    };
+    let structure = found.left.structure || found.selection.unnamed;
+    let tells = verdict != Verdict::Insufficient;
+    let training = &bench.rows.training;
+    let fitted_to = |left: &DVector<f64>, keep: &dyn Fn(&usize) -> bool| {
+        rms(left, 3, (0..rows).filter(keep).filter(|&row| training[data.rows[row].pose]))
+    };
+    let held_out = |left: &DVector<f64>| rms(left, 3, (0..rows).filter(|&row| !training[data.rows[row].pose]));
+    let left_declared = bench.prepared.declared_residuals(campaign);
+    let left_before = residuals(&bench.regression, &base.solved.state);
+    let rms_declared = fitted_to(&left_declared, &|_| true);
+    let unseen_declared = if training.contains(&false) { held_out(&left_declared) } else { rms_declared };
+    let declared = Misfit { rms: rms_declared, holdout_rms: unseen_declared };
+    let identified = Misfit { rms: fitted_to(&left_before, &|_| true), holdout_rms: unseen_rms(bench, base) };
+    // Data that can tell nothing change nothing.
+    let (after, left_after) = match tells {
+        true => {
+            let left = residuals(&bench.regression, &model.solved.state);
+            let rms = fitted_to(&left, &|row| !wild.contains(row));
+            (Misfit { rms, holdout_rms: unseen_rms(bench, model) }, left)
+        }
+        false => (declared, left_declared),
+    };
+
+    let values = bench.prepared.values(&model.solved.state);
+    let spread = |model: &Model| of_numbers(&covariance(&model.solved.problem, &model.solved.fit, &model.solved.signs));
+    let (spread_before, spread) = (spread(base), spread(model));
+    let effects = if tells { effects(found, &spread, structure, after.holdout_rms) } else { Vec::new() };
+    let mut description = campaign.robot.clone();
+    if tells {
+        description = with_values(&campaign.robot, &values);
+        if !is_readable(&description) {
+            return Err(UNREADABLE.to_string());
+        }
+        let written = effects.iter().filter(|named| named.effect.write_into(&mut description));
+        let names: Vec<String> = written.map(|named| named.effect.to_string()).collect();
+        let with = if names.is_empty() { String::from("nothing added") } else { names.join(", ") };
+        let from = if campaign.name.is_empty() { "absolute positions" } else { &campaign.name };
+        let own = description.source.trim_end().to_string();
+        let separator = if own.is_empty() { "" } else { "\n" };
+        description.source = format!("{own}{separator}Traced from {from}: {with}.");
+    }
+    let turn = model.solved.state.registration.turn.inverse();
+    let in_base = |left: &DVector<f64>, row: usize| -> [f64; 3] {
+        let left: Vector3<f64> = left.fixed_rows::<3>(3 * row).into_owned();
+        (turn * left).into()
+    };
+    let residual = |(i, row): (usize, &crate::campaign::PositionRow)| RowResidual {
+        line: row.line,
+        pose: row.pose,
+        before: in_base(&left_before, i),
+        after: in_base(&left_after, i),
+    };
+    let pose_error = |(pose, id): (usize, &String)| {
+        let of = |left: &DVector<f64>| rms(left, 3, (0..rows).filter(|&row| data.rows[row].pose == pose));
+        PoseError { pose: id.clone(), held_out: !training[pose], before: of(&left_before), after: of(&left_after) }
+    };
+    let kept_back = data.poses.iter().zip(training.iter()).filter(|(_, training)| !**training);
+    let freedom = model.solved.problem.freedom(&model.solved.fit);
+    let (noise, noise_source) = match campaign.noise.displacement {
+        Some(noise) => (noise, NoiseSource::Declared),
+        None => ((model.solved.fit.rss / freedom).sqrt(), NoiseSource::Residuals),
+    };
+    let values_before = bench.prepared.values(&base.solved.state);
+    Ok(Trace {
+        encoders: None,
+        robot: campaign.robot.name.clone(),
+        rows,
+        poses: data.poses.len(),
+        held_out: kept_back.map(|(id, _)| id.clone()).collect(),
+        noise,
+        noise_source,
+        declared,
+        identified,
+        after,
+        verdict,
+        why,
+        unexplained: found.left.fraction,
+        depends_on: if structure { found.left.depends_on.clone() } else { Vec::new() },
+        rivals: if tells { rivals(bench, model) } else { Vec::new() },
+        invisible: invisible(campaign, bench),
+        next: Vec::new(),
+        estimates_before: estimated(campaign, &bench.prepared, &values_before, &spread_before),
+        estimates: match tells {
+            true => estimated(campaign, &bench.prepared, &values, &spread),
+            false => estimated(campaign, &bench.prepared, &values_before, &spread_before),
+        },
+        description,
+        effects,
+        steps: found.selection.steps.clone(),
+        structure: found.left.tests.clone(),
+        residuals: data.rows.iter().enumerate().map(residual).collect(),
+        components: 3,
+        differences: false,
+        pose_errors: data.poses.iter().enumerate().map(pose_error).collect(),
+    })
+}
+
+fn effects(found: &Searched<'_>, spread: &DMatrix<f64>, partial: bool, holdout_rms: f64) -> Vec<NamedEffect> {
+    let (bench, model) = (&found.bench, &found.model);
+    let chosen = bench.chosen(&model.named);
+    let replaced = bench.replaced(&model.named);
+    let mut named: Vec<(f64, Named, NamedEffect)> = Vec::new();
+    for (k, &one) in model.named.iter().enumerate() {
+        let (form, candidate) = (bench.variant(one), &bench.candidates[one.candidate]);
+        let number = |column: &usize| {
+            let number = column - STANDS;
+            let at = chosen.iter().position(|&of| of == number).expect("a model has its own numbers");
+            let about = &bench.numbers[number - bench.prepared.own.len()];
+            let value = model.solved.fit.coefficients[STANDS + at];
+            EffectParameter { name: about.name, value, std: Some(spread[(at, at)].sqrt()), unit: about.unit }
+        };
+        let parameters: Vec<EffectParameter> =
+            form.columns.iter().map(number).chain(form.shape.iter().cloned()).collect();
+        let mut rest = model.named.clone();
+        rest.remove(k);
+        let without = bench.solve(&rest, &model.solved.state).map_or(f64::INFINITY, |rest| rest.solved.fit.rss);
+        let mut same_as: Vec<String> = Vec::new();
+        for (_, other) in replaced.iter().filter(|(of, other)| *of == k && alike(bench, model, other.rss)) {
+            same_as.extend(new_in(&other.named, &model.named).map(|candidate| bench.candidates[candidate].name()));
+        }
+        named.push((
+            without,
+            one,
+            NamedEffect {
+                effect: Found::new(candidate.kind, candidate.place, parameters.clone()),
+                parameters,
+                lines: Vec::new(),
+                p_value: found.selection.p_values[k],
+                holdout_rms,
+                same_as,
+                partial,
+            },
+        ));
+    }
+    // What explains most comes first, each with the error of those before it and itself.
+    named.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut so_far = Vec::new();
+    for (_, one, named) in &mut named {
+        so_far.push(*one);
+        so_far.sort_unstable();
+        let smaller = bench.solve(&so_far, &model.solved.state);
+        named.holdout_rms = smaller.map_or(holdout_rms, |smaller| unseen_rms(bench, &smaller));
+    }
+    let mut named: Vec<NamedEffect> = named.into_iter().map(|(.., named)| named).collect();
+    if !found.wild.rows.is_empty() {
+        let mut lines: Vec<usize> = found.wild.rows.iter().map(|&row| bench.prepared.data.rows[row].line).collect();
+        lines.sort_unstable();
+        let rows = EffectParameter { name: "rows", value: lines.len() as f64, std: None, unit: "1" };
+        let effect = Found::new(&OUTLIERS, Place::Rig, std::vec![rows.clone()]);
+        named.push(NamedEffect {
+            effect,
+            parameters: std::vec![rows],
+            lines,
+            p_value: found.wild.p,
+            holdout_rms,
+            same_as: Vec::new(),
+            partial,
+        });
+    }
+    named
+}
+
+/// The error of a model on poses that its fit has not seen (m): those held out, or each
+/// by the fit without it.
+fn unseen_rms(bench: &Bench<'_>, model: &Model) -> f64 {
+    let (data, training) = (bench.prepared.data, &bench.rows.training);
+    if !training.contains(&false) {
+        return bench.left_out_rms(&model.solved);
+    }
+    let held_out = (0..data.rows.len()).filter(|&row| !training[data.rows[row].pose]);
+    rms(&residuals(&bench.regression, &model.solved.state), 3, held_out)
+}
+
+/// Whether a model that leaves so much fits about as well, numbers not counted: what
+/// has more of them says the same and more.
+fn alike(bench: &Bench<'_>, model: &Model, rss: f64) -> bool {
+    let readings = model.solved.problem.total.rows as f64;
+    readings * (rss / bench.rss(&model.named).unwrap_or(model.solved.fit.rss)).ln() < WITHIN_REACH
+}
+
+/// The candidates of a model that another has not.
+fn new_in<'a>(named: &'a [Named], other: &'a [Named]) -> impl Iterator<Item = usize> + 'a {
+    let is_new = |one: &&Named| other.iter().all(|old| old.candidate != one.candidate);
+    named.iter().filter(is_new).map(|one| one.candidate)
+}
+
+/// Other models of as many effects that are about as good.
+fn rivals(bench: &Bench<'_>, model: &Model) -> Vec<Rival> {
+    let within = bench.replaced(&model.named).into_iter().filter(|(_, other)| other.bic < model.bic + WITHIN_REACH);
+    let mut rivals: Vec<Rival> = Vec::new();
+    for (_, other) in within {
+        let names: Vec<String> = other.named.iter().map(|one| bench.candidates[one.candidate].name()).collect();
+        if rivals.iter().all(|rival| rival.names != names) {
+            rivals.push(Rival { names, bic_difference: other.bic - model.bic });
+        }
+    }
+    rivals.sort_by(|a, b| a.bic_difference.total_cmp(&b.bic_difference));
+    rivals
+}
+
+/// What these positions could not show if it were there: what is the same as another
+/// stand of the robot or as its own compliances, and what needs loads.
+fn invisible(campaign: &Campaign, bench: &Bench<'_>) -> Vec<String> {
+    let mut names: Vec<String> = (0..bench.candidates.len())
+        .filter(|&candidate| !bench.shows(candidate))
+        .map(|candidate| bench.candidates[candidate].name())
+        .collect();
+    let joints = campaign.robot.joints.len();
+    let offered = |name: &str| bench.candidates.iter().any(|candidate| candidate.kind.name == name);
+    for kind in KINDS.iter().filter(|kind| !kind.of_rig && !offered(kind.name)) {
+        let at_joints = |of: &dyn Fn(usize) -> Part, last: usize| (1..=last).map(of).collect::<Vec<Part>>();
+        let places = match kind.name {
+            "link_compliance" => at_joints(&Part::Link, joints.saturating_sub(1)),
+            "base_compliance" => std::vec![Part::Base],
+            "tool_compliance" => std::vec![Part::Tool],
+            "gravity_sag" => std::vec![Part::Robot],
+            "joint_coupling" => (2..=joints).map(|j| Part::Joints([j - 1, j])).collect(),
+            "dh_error" => Vec::new(),
+            _ => at_joints(&Part::Joint, joints),
+        };
+        names.extend(places.into_iter().map(|place| format!("{}@{place}", kind.name)));
+    }
+    names.retain(|name| campaign.robot.effects.iter().all(|effect| effect.to_string() != *name));
+    names
+}

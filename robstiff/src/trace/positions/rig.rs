@@ -1,0 +1,143 @@
+//! Faults of the rig, as absolute positions show them.
+
+use std::rc::Rc;
+use std::vec;
+use std::vec::Vec;
+
+use nalgebra::Vector3;
+use robstiff_robots::Description;
+use robstiff_robots::effect::Place as Part;
+
+use super::offers::{Form, LENGTH_STEP, Number, Offer, kind};
+use crate::campaign::{PositionRow, Positions};
+use crate::identify::positions::model::{Enters, Model};
+use crate::trace::found::{EffectParameter, Place};
+
+/// A reflector is not farther off (m), nor a slip or a drift longer (m) or a slip
+/// turned more (rad).
+const FARTHEST: f64 = 0.5;
+const LONGEST: f64 = 0.1;
+const MOST_TURNED: f64 = 0.05;
+
+/// Moments at which the robot may have slipped are tried at every change of visits, or
+/// where there are more, at so many evenly; of large campaigns, few, for every moment
+/// takes memory by the rows. One that is named is then looked for between the others.
+const FEWEST_MOMENTS: usize = 24;
+const MOST_MOMENTS: usize = 200;
+const ROWS_AND_MOMENTS: usize = 100_000;
+
+const POINT: [&str; 3] = ["x", "y", "z"];
+const SHIFT: [&str; 3] = ["dx", "dy", "dz"];
+const TURN: [&str; 3] = ["rx", "ry", "rz"];
+
+/// The point that is read is elsewhere on the tool, along one of its axes or anywhere.
+pub fn reflector() -> Offer {
+    let number = |k: usize| Number {
+        name: POINT[k],
+        unit: "m",
+        range: [-FARTHEST, FARTHEST],
+        enters: Enters::Model(Rc::new(move |model: &mut Model, by| model.marker[k] += by), LENGTH_STEP),
+    };
+    Offer {
+        kind: kind("reflector_offset"),
+        place: Place::Rig,
+        numbers: (0..3).map(number).collect(),
+        forms: [&[0][..], &[1], &[2], &[0, 1, 2]].map(|of| Form { numbers: of.to_vec(), shape: vec![] }).into(),
+    }
+}
+
+/// Three numbers that each move what is read along an axis of the base frame, by so
+/// much in each row.
+fn shifts(by_row: &[f64], unit: &'static str, most: f64) -> impl Iterator<Item = Number> {
+    (0..3).map(move |k| Number {
+        name: SHIFT[k],
+        unit,
+        range: [-most, most],
+        enters: Enters::Reading(Rc::new(by_row.iter().map(|by| Vector3::ith(k, *by)).collect())),
+    })
+}
+
+/// What is read moves with the time or the temperature, where they are known.
+pub fn drift(data: &Positions) -> Option<Offer> {
+    let known = |of: fn(&PositionRow) -> Option<f64>| -> Option<Vec<f64>> {
+        let values: Vec<f64> = data.rows.iter().map(of).collect::<Option<_>>()?;
+        let first = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let since: Vec<f64> = values.iter().map(|value| value - first).collect();
+        since.iter().any(|&since| since > 0.0).then_some(since)
+    };
+    let clocks = [(known(|row| row.time), "m/s"), (known(|row| row.temperature), "m/K")];
+    let (mut numbers, mut forms) = (Vec::new(), Vec::new());
+    for (since, unit) in clocks {
+        let Some(since) = since else { continue };
+        let longest = since.iter().copied().fold(0.0, f64::max);
+        forms.push(Form { numbers: (numbers.len()..numbers.len() + 3).collect(), shape: vec![] });
+        numbers.extend(shifts(&since, unit, LONGEST / longest));
+    }
+    (!forms.is_empty()).then(|| Offer { kind: kind("thermal_drift"), place: Place::Rig, numbers, forms })
+}
+
+/// A slip of the robot, or of what reads it, between two visits.
+pub struct Slips {
+    /// The first row of each visit but the first.
+    pub changes: Vec<usize>,
+    /// The point that is read, in the base frame (m), and the middle of all.
+    points: Vec<Vector3<f64>>,
+    middle: Vector3<f64>,
+}
+
+impl Slips {
+    /// The visits of a campaign.
+    pub fn new(robot: &Description, data: &Positions) -> Self {
+        let changed = |row: &usize| data.rows[*row].visit != data.rows[*row - 1].visit;
+        let points = Model::new(robot, data).points(data);
+        let middle = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
+        Self { changes: (1..data.rows.len()).filter(changed).collect(), points, middle }
+    }
+
+    /// The changes that are tried: all, or where there are many, some evenly.
+    pub fn tried(&self) -> Vec<usize> {
+        let most = (ROWS_AND_MOMENTS / self.points.len().max(1)).clamp(FEWEST_MOMENTS, MOST_MOMENTS);
+        self.changes.iter().copied().step_by(self.changes.len().div_ceil(most).max(1)).collect()
+    }
+
+    /// What a shift along each axis, and a turn about each, do to the rows from one on.
+    pub fn at_row(&self, moment: usize) -> [Enters; 6] {
+        let field = |moved: &dyn Fn(&Vector3<f64>) -> Vector3<f64>| {
+            let of = |(row, point)| if row < moment { Vector3::zeros() } else { moved(point) };
+            Enters::Reading(Rc::new(self.points.iter().enumerate().map(of).collect()))
+        };
+        core::array::from_fn(|k| {
+            let axis = Vector3::ith(k % 3, 1.0);
+            match k < 3 {
+                true => field(&|_| axis),
+                false => field(&|point| axis.cross(&(point - self.middle))),
+            }
+        })
+    }
+
+    /// The robot shifted at a change of visits, and may have turned as well.
+    pub fn offer(&self, data: &Positions) -> Option<Offer> {
+        let (mut numbers, mut forms) = (Vec::new(), Vec::new());
+        for moment in self.tried() {
+            let first = numbers.len();
+            let named = SHIFT.into_iter().chain(TURN).zip(self.at_row(moment));
+            numbers.extend(named.enumerate().map(|(k, (name, enters))| {
+                let (unit, most) = if k < 3 { ("m", LONGEST) } else { ("rad", MOST_TURNED) };
+                Number { name, unit, range: [-most, most], enters }
+            }));
+            for count in [3, 6] {
+                forms.push(Form { numbers: (first..first + count).collect(), shape: vec![line(data, moment)] });
+            }
+        }
+        let (kind, place) = (kind(SLIP), Part::Base.into());
+        (!forms.is_empty()).then_some(Offer { kind, place, numbers, forms })
+    }
+}
+
+/// The kind of a slip.
+pub const SLIP: &str = "base_slip";
+
+/// How a slip says when it was.
+pub fn line(data: &Positions, moment: usize) -> EffectParameter {
+    EffectParameter { name: "line", value: data.rows[moment].line as f64, std: None, unit: "1" }
+}

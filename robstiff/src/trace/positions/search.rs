@@ -1,0 +1,348 @@
+//! The search for effects in absolute positions.
+//!
+//! Forward, an effect at a time, each in its own form: the model is fitted, turned to,
+//! and every candidate tested against it. A kinematic table has some twenty numbers,
+//! all of which can be a little off, so the search goes on for as long as something
+//! is significant; and what a later effect makes superfluous is dropped again.
+
+use std::format;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use super::bench::{Bench, Model, Proposed, TIE};
+use super::structure::structure;
+use super::wild::{Wild, wild_rows};
+use crate::identify::positions::regression::STANDS;
+use crate::trace::bootstrap::{Reference, ScoreTest};
+use crate::trace::lack_of_fit::LackOfFit;
+use crate::trace::model::{Fitted, Named};
+use crate::trace::selection::{CURVATURE, Selection, Step, Tested, WITHIN_REACH};
+use crate::trace::verdict::FEWEST_POSES;
+use crate::trace::{Options, Progress};
+
+/// Numbers of a table that can be told from each other, and a few effects besides.
+const MOST_EFFECTS: usize = 24;
+
+/// How many of the best by the linear fit are fitted in their own form.
+const REFITTED: usize = 6;
+
+/// How many of the best are extended where none of them passes alone.
+const EXTENDED: usize = 8;
+
+/// A model that is better by this is worth another look: odds of e to one.
+const BETTER: f64 = 2.0;
+
+/// What was found.
+pub struct Searched<'c> {
+    /// The regression, at the model.
+    pub bench: Bench<'c>,
+    /// The description's own numbers alone, of all rows.
+    pub base: Model,
+    /// The model.
+    pub model: Model,
+    /// How it was come to.
+    pub selection: Selection,
+    /// What it leaves.
+    pub left: LackOfFit,
+    /// The rows that are wild.
+    pub wild: Wild,
+    /// How many names were taken back.
+    pub taken_back: usize,
+    /// Why the data cannot tell, if so.
+    pub too_little: Option<String>,
+}
+
+/// Searches for effects; `noise` is the one that is declared (m).
+///
+/// # Errors
+/// Why not even the description's own numbers can be fitted.
+pub fn search<'c>(
+    mut bench: Bench<'c>,
+    noise: Option<f64>,
+    options: &Options,
+    progress: &Progress<'_>,
+) -> Result<Searched<'c>, String> {
+    let start = bench.prepared.state(bench.regression.numbers.len());
+    let none = || String::from("these positions do not tell the description's own numbers from each other");
+    let base = bench.solve(&[], &start).ok_or_else(none)?;
+    let model = bench.solve(&[], &start).ok_or_else(none)?;
+    bench.turn_to(&model);
+    let too_little = too_little(&model);
+    let mut course = Course {
+        model,
+        wild: Wild::default(),
+        p_values: Vec::new(),
+        steps: Vec::new(),
+        unnamed: false,
+        left: LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() },
+        taken_back: 0,
+    };
+    if too_little.is_none() {
+        course = course.run(&mut bench, false, options, progress).judged(&mut bench, noise, options, progress);
+        if !course.left.structure && !course.unnamed {
+            // With structure accounted for, rows need stand out from noise alone.
+            let before = course.wild.rows.clone();
+            (course.model, course.wild) = without_wild(&mut bench, course.model, true);
+            if course.wild.rows != before {
+                course = course.run(&mut bench, true, options, progress).judged(&mut bench, noise, options, progress);
+            }
+        }
+    }
+    let Course { model, wild, p_values, steps, unnamed, left, taken_back } = course;
+    let fitted = Fitted { named: model.named.clone(), fit: model.solved.fit.clone(), bic: model.bic, physical: true };
+    let selection = Selection { model: fitted, p_values, steps, unnamed };
+    Ok(Searched { bench, base, model, selection, left, wild, taken_back, too_little })
+}
+
+/// A search on its way.
+struct Course {
+    model: Model,
+    wild: Wild,
+    p_values: Vec<f64>,
+    steps: Vec<Step>,
+    unnamed: bool,
+    left: LackOfFit,
+    taken_back: usize,
+}
+
+impl Course {
+    /// Adds effects for as long as something is missing.
+    fn run(mut self, bench: &mut Bench<'_>, strict: bool, options: &Options, progress: &Progress<'_>) -> Self {
+        let mut tried: Vec<Vec<Named>> = Vec::new();
+        while self.model.named.len() < MOST_EFFECTS && !tried.contains(&self.model.named) {
+            (self.model, self.wild) = without_wild(bench, self.model, strict);
+            progress(&format!("searching for effect {}", self.model.named.len() + 1));
+            let model = &self.model;
+            let Some(test) = bench.test(&model.named) else { break };
+            let reference = test.reference(options.draws, options.seed);
+            let singles = bench.extended(&model.named);
+            let mut step = table(bench, model, &test, &reference, &singles);
+            if step.candidates.iter().all(|tested| tested.p_value > options.alpha) {
+                step.outcome = "nothing is missing significantly".to_string();
+                self.steps.push(step);
+                break;
+            }
+            tried.push(model.named.clone());
+            let Some(mut better) = extended(bench, model, &singles, options) else {
+                self.unnamed = true;
+                step.outcome = "something is missing, but no effect passes every test".to_string();
+                self.steps.push(step);
+                break;
+            };
+            bench.turn_to(&better);
+            better = sideways(bench, better, &reference, options);
+            better = without_superfluous(bench, better, &reference, options);
+            better = bench.at_its_moment(better);
+            let names: Vec<String> = better.named.iter().map(|one| bench.candidates[one.candidate].name()).collect();
+            step.outcome = format!("named {}", names.join(", "));
+            for tested in step.candidates.iter_mut().filter(|tested| names.contains(&tested.name)) {
+                tested.reason.clear();
+            }
+            self.steps.push(step);
+            bench.turn_to(&better);
+            self.model = better;
+        }
+        self
+    }
+
+    /// Asks how sure the effects are and whether structure is left, and takes names back
+    /// that may be borrowed.
+    fn judged(mut self, bench: &mut Bench<'_>, noise: Option<f64>, options: &Options, progress: &Progress<'_>) -> Self {
+        (self.model, self.p_values) = significant(bench, self.model, options);
+        progress("looking for structure in what is left");
+        self.left = structure(bench, &self.model, noise, options);
+        while self.left.structure
+            && let Some(rest) = without_borrowed(bench, &self.model, &self.left)
+        {
+            self.taken_back += self.model.named.len() - rest.named.len();
+            bench.turn_to(&rest);
+            (self.model, self.p_values) = significant(bench, rest, options);
+            self.left = structure(bench, &self.model, noise, options);
+            // What a name had accounted for is there, found by a test or not.
+            self.left.structure = true;
+        }
+        self
+    }
+}
+
+/// The first of the best models with one effect more that passes; where none does,
+/// with two, of which each can keep the other from passing alone.
+fn extended(bench: &Bench<'_>, model: &Model, singles: &[Proposed], options: &Options) -> Option<Model> {
+    let passing = |proposals: &[Proposed]| {
+        refitted(bench, proposals, model).into_iter().find(|better| passes(bench, model, better, options))
+    };
+    passing(singles).or_else(|| {
+        let mut pairs: Vec<Proposed> =
+            singles.iter().take(EXTENDED).flat_map(|one| bench.extended(&one.named)).collect();
+        pairs.sort_by(|a, b| a.bic.total_cmp(&b.bic));
+        passing(&pairs)
+    })
+}
+
+/// Why positions cannot tell what is missing, if so.
+fn too_little(model: &Model) -> Option<String> {
+    let (poses, readings) = (model.solved.problem.blocks.len(), model.solved.problem.total.rows);
+    let numbers = model.solved.fit.columns.len();
+    if poses < FEWEST_POSES {
+        let given = if poses == 1 { String::from("1 pose is") } else { format!("{poses} poses are") };
+        return Some(format!("{given} too few to judge by, at least {FEWEST_POSES} are needed"));
+    }
+    (readings < 2 * numbers).then(|| format!("{readings} coordinates are too few for {numbers} numbers"))
+}
+
+/// The model without the rows that are wild at it, all rows judged anew. Where an
+/// effect says what they do, with fewer numbers, they stay.
+fn without_wild<'c>(bench: &mut Bench<'c>, model: Model, strict: bool) -> (Model, Wild) {
+    let left_out = bench.rows.left_out.clone();
+    bench.rows.left_out.fill(false);
+    let chosen = bench.chosen(&model.named);
+    let (whole, _) = bench.regression.at(&model.solved.state, &chosen, &bench.rows);
+    let mut wild = wild_rows(&whole, strict).unwrap_or_default();
+    if !wild.rows.is_empty() {
+        bench.turn_to(&model);
+        let readings = whole.total.rows as f64;
+        // Which row it is, and where it is instead.
+        let numbers = (STANDS + chosen.len() + 4 * wild.rows.len()) as f64;
+        let bic = readings * (wild.rss / readings).max(f64::MIN_POSITIVE).ln() + numbers * readings.ln();
+        if bench.extended(&model.named).first().is_some_and(|best| best.bic < bic) {
+            wild = Wild::default();
+        }
+    }
+    for &row in &wild.rows {
+        bench.rows.left_out[row] = true;
+    }
+    if bench.rows.left_out == left_out {
+        bench.turn_to(&model);
+        return (model, wild);
+    }
+    match bench.solve(&model.named, &model.solved.state) {
+        Some(model) => {
+            bench.turn_to(&model);
+            (model, wild)
+        }
+        None => {
+            // Physics does not allow the model with these rows.
+            wild.rows = (0..left_out.len()).filter(|&row| left_out[row]).collect();
+            bench.rows.left_out = left_out;
+            bench.turn_to(&model);
+            (model, wild)
+        }
+    }
+}
+
+/// The best of some proposals, given the best first, in their own form; among equals
+/// the one that comes first in the catalogue.
+fn refitted(bench: &Bench<'_>, proposals: &[Proposed], from: &Model) -> Vec<Model> {
+    let Some(best) = proposals.first().map(|one| one.bic) else { return Vec::new() };
+    let near = proposals.iter().take_while(|one| one.bic < best + CURVATURE).take(REFITTED);
+    let mut models: Vec<Model> = near.filter_map(|one| bench.solve(&one.named, &from.solved.state)).collect();
+    models.sort_by(|a, b| a.bic.total_cmp(&b.bic));
+    let Some(best) = models.first().map(|one| one.bic) else { return Vec::new() };
+    models.retain(|one| one.bic < best + WITHIN_REACH);
+    let equal = models.iter().take_while(|one| one.bic < best + TIE).count();
+    models[..equal].sort_by(|a, b| a.named.cmp(&b.named));
+    models
+}
+
+/// Whether a model's new effects are significant, and it predicts poses left out
+/// better than the smaller one.
+fn passes(bench: &Bench<'_>, smaller: &Model, better: &Model, options: &Options) -> bool {
+    let new = (0..better.named.len()).filter(|&k| !smaller.named.contains(&better.named[k]));
+    bench.left_out_rms(&better.solved) < bench.left_out_rms(&smaller.solved)
+        && new.map(|k| bench.p_value(&better.named, k, options)).all(|p| p <= options.alpha)
+}
+
+/// The model of as many effects that is better, one of them replaced, where there is
+/// one whose effects are all significant.
+fn sideways(bench: &Bench<'_>, model: Model, reference: &Reference, options: &Options) -> Model {
+    let proposals: Vec<Proposed> = bench
+        .replaced(&model.named)
+        .into_iter()
+        .map(|(_, other)| other)
+        .filter(|other| other.bic < model.bic)
+        .collect();
+    let others = refitted(bench, &proposals, &model);
+    let better = others.into_iter().find(|other| {
+        other.bic < model.bic - BETTER && weakest(bench, other, reference).is_none_or(|(_, p)| p <= options.alpha)
+    });
+    better.unwrap_or(model)
+}
+
+/// The effect of a model that gains least, with the p-value of that much by the
+/// distribution of the largest statistic at another step.
+fn weakest(bench: &Bench<'_>, model: &Model, reference: &Reference) -> Option<(usize, f64)> {
+    let variance = model.solved.fit.rss / model.solved.problem.freedom(&model.solved.fit);
+    let p = |k: usize| {
+        let mut rest = model.named.clone();
+        rest.remove(k);
+        let without = bench.solve(&rest, &model.solved.state).map_or(f64::INFINITY, |rest| rest.solved.fit.rss);
+        reference.p_value((without - model.solved.fit.rss) / variance)
+    };
+    (0..model.named.len()).map(|k| (k, p(k))).max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// The model without effects that later ones made superfluous.
+fn without_superfluous(bench: &mut Bench<'_>, mut model: Model, reference: &Reference, options: &Options) -> Model {
+    while let Some((k, _)) = weakest(bench, &model, reference).filter(|(_, p)| *p > options.alpha) {
+        let mut rest = model.named.clone();
+        rest.remove(k);
+        let Some(smaller) = bench.solve(&rest, &model.solved.state) else { break };
+        bench.turn_to(&smaller);
+        model = smaller;
+    }
+    model
+}
+
+/// The model with the p-value of each effect, without those that are not significant
+/// beside the others.
+fn significant<'c>(bench: &mut Bench<'c>, mut model: Model, options: &Options) -> (Model, Vec<f64>) {
+    loop {
+        let p_values: Vec<f64> = (0..model.named.len()).map(|k| bench.p_value(&model.named, k, options)).collect();
+        let worst = (0..p_values.len()).max_by(|&a, &b| p_values[a].total_cmp(&p_values[b]));
+        let Some(worst) = worst.filter(|&k| p_values[k] > options.alpha) else { return (model, p_values) };
+        let mut rest = model.named.clone();
+        rest.remove(worst);
+        let Some(smaller) = bench.solve(&rest, &model.solved.state) else { return (model, p_values) };
+        bench.turn_to(&smaller);
+        model = smaller;
+    }
+}
+
+/// The model without the effect that accounts for least, where that is less than what
+/// is left beyond noise: it may be borrowed from what has no name. `None` where all
+/// account for more.
+fn without_borrowed(bench: &Bench<'_>, model: &Model, left: &LackOfFit) -> Option<Model> {
+    let own = model.solved.fit.rss;
+    let smaller = (0..model.named.len()).filter_map(|k| {
+        let mut rest = model.named.clone();
+        rest.remove(k);
+        bench.solve(&rest, &model.solved.state)
+    });
+    let least = smaller.min_by(|a, b| a.solved.fit.rss.total_cmp(&b.solved.fit.rss))?;
+    (least.solved.fit.rss - own < left.fraction * own).then_some(least)
+}
+
+fn table(bench: &Bench<'_>, model: &Model, test: &ScoreTest, reference: &Reference, singles: &[Proposed]) -> Step {
+    let statistics = test.statistics();
+    let name = |one: &Named| bench.candidates[one.candidate].name();
+    let candidates = (0..bench.candidates.len()).map(|candidate| {
+        let with = singles.iter().find(|fit| fit.named.iter().any(|one| one.candidate == candidate));
+        let already = model.named.iter().any(|one| one.candidate == candidate);
+        let with = with.filter(|_| !already);
+        let statistic = statistics[candidate].map(|(statistic, _)| statistic).filter(|_| !already);
+        let reason = match (already, statistic.is_some() && with.is_some()) {
+            (true, _) => "already named",
+            (false, false) => "it explains nothing with numbers that are physically possible",
+            (false, true) => "another explains more, or it is not significant",
+        };
+        Tested {
+            name: bench.candidates[candidate].name(),
+            statistic,
+            p_value: statistic.filter(|_| with.is_some()).map_or(1.0, |statistic| reference.p_value(statistic)),
+            bic: with.map(|fit| fit.bic),
+            left_out_rms: None,
+            reason: reason.to_string(),
+        }
+    });
+    Step { named: model.named.iter().map(name).collect(), candidates: candidates.collect(), outcome: String::new() }
+}

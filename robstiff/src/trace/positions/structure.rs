@@ -1,0 +1,265 @@
+//! Whether something is left in positions that no model of them says.
+//!
+//! What is left is held against everything smooth that an arm could do: every joint
+//! stands aside, turned about any axis of its frame, as some harmonic of its own
+//! coordinate says, or about its own axis as one of two joints together; what is read
+//! is aside by the square of where it is; joints yield by the square of the payload;
+//! all moves with time, temperature or the order of rows, by powers of them. The
+//! largest statistic against its own distribution under random signs of whole poses,
+//! as in the search. Its size is held against the noise, where that is declared, or
+//! where the robot came to a pose again.
+
+use core::f64::consts::PI;
+use std::collections::BTreeSet;
+use std::format;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector, Vector3};
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
+
+use super::bench::{Bench, Model};
+use super::frames::frames;
+use crate::JointKind;
+use crate::campaign::PositionRow;
+use crate::identify::normal::Sign;
+use crate::probability::told;
+use crate::trace::Options;
+use crate::trace::bootstrap::ScoreTest;
+use crate::trace::catalogue::{Candidate, KINDS, Variant};
+use crate::trace::found::Place;
+use crate::trace::lack_of_fit::{LackOfFit, StructureTest};
+
+/// The harmonics of a joint's coordinate that are looked for.
+const HARMONICS: u8 = 6;
+
+/// Payloads are of about this size (1/kg).
+const HUNDRED_KILOGRAMS: f64 = 0.01;
+
+/// Something smooth: the columns of the table that it depends on, and columns of the
+/// regression in the frame that positions are read in.
+struct Smooth {
+    of: Vec<String>,
+    columns: Vec<DVector<f64>>,
+}
+
+/// With fewer degrees of freedom a variance says too little to judge a model by.
+const FEWEST_REPEATED: f64 = 10.0;
+
+/// What is left over what it should be: the share beyond noise, its probability under
+/// noise alone, and the ratio of the variances.
+struct Size {
+    name: &'static str,
+    beyond: f64,
+    p_value: f64,
+    ratio: f64,
+}
+
+/// Tests what a model leaves; `noise` is the one that is declared (m).
+pub fn structure(bench: &Bench<'_>, model: &Model, noise: Option<f64>, options: &Options) -> LackOfFit {
+    let mut tests = Vec::new();
+    let size = noise.and_then(|noise| against_declared(model, noise)).or_else(|| against_repeated(bench, model));
+    if let Some(Size { name, p_value, ratio, .. }) = size {
+        tests.push(StructureTest { name: name.to_string(), statistic: ratio, p_value });
+    }
+    let found = resemblance(bench, model, options);
+    if let Some(&(statistic, p_value, _)) = found.first() {
+        let name = "what is left follows joints, payloads or the order".to_string();
+        tests.push(StructureTest { name, statistic, p_value });
+    }
+    let level = options.alpha / tests.len().max(1) as f64;
+    let structure = tests.iter().any(|test| test.p_value <= level);
+    let freedom = model.solved.problem.freedom(&model.solved.fit);
+    let of_size = size.filter(|size| size.p_value <= level).map_or(0.0, |size| size.beyond);
+    let of_largest = found.first().filter(|(_, p, _)| *p <= level).map_or(0.0, |(statistic, ..)| statistic / freedom);
+    let mut depends_on: Vec<String> = Vec::new();
+    for (_, p, of) in found {
+        for column in of {
+            if structure && p <= options.alpha && !depends_on.contains(&column) {
+                depends_on.push(column);
+            }
+        }
+    }
+    LackOfFit { tests, structure, fraction: of_size.max(of_largest).clamp(0.0, 1.0), depends_on }
+}
+
+/// What is left against the noise that is declared, by chi-square.
+fn against_declared(model: &Model, noise: f64) -> Option<Size> {
+    let freedom = model.solved.problem.freedom(&model.solved.fit);
+    let statistic = model.solved.fit.rss / (noise * noise);
+    Some(Size {
+        name: "residuals are larger than the noise",
+        beyond: 1.0 - freedom / statistic,
+        p_value: told(ChiSquared::new(freedom).ok()?.sf(statistic)),
+        ratio: statistic / freedom,
+    })
+}
+
+/// What is left against what visits of one pose under one payload differ by, by
+/// Fisher's F. The rows of a visit have in common where the robot came to, so a visit
+/// counts once.
+fn against_repeated(bench: &Bench<'_>, model: &Model) -> Option<Size> {
+    let (problem, data) = (&model.solved.problem, bench.prepared.data);
+    let residuals = problem.white_residuals(&model.solved.fit.columns, &model.solved.fit.coefficients);
+    let (mut sum, mut count, mut visits) = (0.0, 0.0, 0.0);
+    for block in problem.blocks.iter() {
+        let mut rows = block.rows.clone();
+        rows.sort_by(|&a, &b| data.rows[a].payload.total_cmp(&data.rows[b].payload));
+        let mut most: f64 = 0.0;
+        for alike in rows.chunk_by(|&a, &b| data.rows[a].payload == data.rows[b].payload) {
+            let first = alike.iter().map(|&row| data.rows[row].visit).collect::<BTreeSet<usize>>().len();
+            if first < alike.len() {
+                // Readings of one visit say nothing of where the robot comes to.
+                return None;
+            }
+            let left = |row: &usize| residuals.fixed_rows::<3>(3 * row).into_owned();
+            let middle = alike.iter().map(left).sum::<Vector3<f64>>() / alike.len() as f64;
+            sum += alike.iter().map(|row| (left(row) - middle).norm_squared()).sum::<f64>();
+            count += 3.0 * (alike.len() - 1) as f64;
+            most = most.max(3.0 * (alike.len() - 1) as f64);
+        }
+        visits += most;
+    }
+    let freedom = problem.freedom(&model.solved.fit) - count;
+    if visits < FEWEST_REPEATED || freedom < 1.0 || sum <= 0.0 {
+        return None;
+    }
+    let (pure, left) = (sum / count, (model.solved.fit.rss - sum) / freedom);
+    let share = visits / count;
+    let table = FisherSnedecor::new((freedom * share).max(1.0), visits).ok()?;
+    Some(Size {
+        name: "residuals are larger than what visits differ by",
+        beyond: 1.0 - pure * problem.freedom(&model.solved.fit) / model.solved.fit.rss,
+        p_value: told(table.sf(left / pure)),
+        ratio: left / pure,
+    })
+}
+
+/// Everything smooth with its statistic and its family-wise p-value, the largest
+/// first.
+fn resemblance(bench: &Bench<'_>, model: &Model, options: &Options) -> Vec<(f64, f64, Vec<String>)> {
+    let all = everything(bench, model);
+    let first = model.solved.fit.columns.len();
+    let (mut columns, mut candidates) = (Vec::new(), Vec::new());
+    for smooth in &all {
+        let at = first + columns.len();
+        let variant = Variant {
+            columns: (at..at + smooth.columns.len()).collect(),
+            parameters: smooth.columns.len(),
+            shape: Vec::new(),
+            names: &[],
+            refine: None,
+            within: [0.0, f64::INFINITY],
+            likely: None,
+            unsure: None,
+        };
+        columns.extend(smooth.columns.iter().cloned());
+        let variants = std::vec![variant];
+        candidates.push(Candidate { kind: KINDS[0], place: Place::Rig, variants, check: None });
+    }
+    if columns.is_empty() {
+        return Vec::new();
+    }
+    let mut signs = model.solved.signs.clone();
+    signs.resize(first + columns.len(), Sign::Free);
+    let problem = bench.with_columns(model, &DMatrix::from_columns(&columns));
+    let null: Vec<usize> = (0..first).collect();
+    let Some(test) = ScoreTest::among(&problem, &candidates, &signs, first, &null) else { return Vec::new() };
+    let reference = test.reference(options.draws.max(super::super::lack_of_fit::resolving(options)), options.seed);
+    let named = test.statistics().into_iter().zip(all);
+    let mut found: Vec<(f64, f64, Vec<String>)> = named
+        .filter_map(|(statistic, smooth)| Some((statistic?.0, reference.p_value(statistic?.0), smooth.of)))
+        .collect();
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    found
+}
+
+fn everything(bench: &Bench<'_>, model: &Model) -> Vec<Smooth> {
+    let data = bench.prepared.data;
+    let state = &model.solved.state;
+    let described = state.model(&bench.regression.start, &bench.regression.numbers);
+    let points = described.points(data);
+    let joints = frames(&described.description, &data.rows);
+    let stacked = |of: &dyn Fn(usize) -> Vector3<f64>| {
+        let turned = (0..points.len()).flat_map(|row| {
+            let moved = state.registration.turn * of(row);
+            [moved.x, moved.y, moved.z]
+        });
+        DVector::from_vec(turned.collect())
+    };
+    let aside = |k: usize, axis: usize| {
+        let (points, joints) = (&points, &joints);
+        let kind = described.description.joints[k].kind;
+        move |row: usize| {
+            let ((z, through), x) = (joints[row].axes[k], joints[row].across[k]);
+            let axis = [z, x, z.cross(&x)][axis];
+            if kind == JointKind::Revolute { axis.cross(&(points[row] - through)) } else { axis }
+        }
+    };
+    let name = |k: usize| format!("q{}", k + 1);
+    let phases: Vec<Option<Vec<f64>>> = described
+        .description
+        .joints
+        .iter()
+        .enumerate()
+        .map(|(k, joint)| phases(&data.rows.iter().map(|row| row.q[k]).collect::<Vec<f64>>(), joint.kind))
+        .collect();
+    let waves = |k: usize, axis: usize, phase: &dyn Fn(usize) -> f64| {
+        let aside = aside(k, axis);
+        [f64::cos, f64::sin].map(|of: fn(f64) -> f64| stacked(&|row| aside(row) * of(phase(row)))).into()
+    };
+    let mut all = Vec::new();
+    for (k, own) in phases.iter().enumerate() {
+        let square = stacked(&|row| aside(k, 0)(row) * (data.rows[row].payload * HUNDRED_KILOGRAMS).powi(2));
+        all.push(Smooth { of: std::vec!["payload".to_string()], columns: std::vec![square] });
+        let Some(own) = own else { continue };
+        for axis in 0..3 {
+            for order in 1..=HARMONICS {
+                let columns = waves(k, axis, &|row| f64::from(order) * own[row]);
+                all.push(Smooth { of: std::vec![name(k)], columns });
+            }
+        }
+        for (j, other) in phases.iter().enumerate().filter(|(j, _)| *j != k) {
+            let Some(other) = other else { continue };
+            for sign in [-1.0, 1.0] {
+                let columns = waves(k, 0, &|row| own[row] + sign * other[row]);
+                all.push(Smooth { of: std::vec![name(k), name(j)], columns });
+            }
+        }
+    }
+    let every: Vec<String> = (0..phases.len()).filter(|&k| phases[k].is_some()).map(name).collect();
+    let middle = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
+    for (i, j) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
+        let square = |row: usize| (points[row] - middle)[i] * (points[row] - middle)[j];
+        let along = |k: usize| stacked(&|row| Vector3::ith(k, square(row)));
+        all.push(Smooth { of: every.clone(), columns: (0..3).map(along).collect() });
+    }
+    let known = |of: &dyn Fn(usize, &PositionRow) -> Option<f64>| -> Option<Vec<f64>> {
+        let values: Option<Vec<f64>> = data.rows.iter().enumerate().map(|(i, row)| of(i, row)).collect();
+        self::phases(&values?, JointKind::Prismatic)
+    };
+    let clocks = [
+        ("time", known(&|_, row| row.time)),
+        ("temperature", known(&|_, row| row.temperature)),
+        ("row order", known(&|i, _| Some(i as f64))),
+    ];
+    for (name, clock) in clocks {
+        let Some(clock) = clock else { continue };
+        for power in 1..=3 {
+            let along = |k: usize| stacked(&|row| Vector3::ith(k, clock[row].powi(power)));
+            all.push(Smooth { of: std::vec![name.to_string()], columns: (0..3).map(along).collect() });
+        }
+    }
+    all
+}
+
+/// Values as phases of a wave: angles as they are, others as parts of half a turn.
+/// `None` where they do not vary.
+fn phases(values: &[f64], kind: JointKind) -> Option<Vec<f64>> {
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let range = values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least;
+    (range > 0.0).then(|| match kind {
+        JointKind::Revolute => values.to_vec(),
+        JointKind::Prismatic => values.iter().map(|value| PI * (value - least) / range).collect(),
+    })
+}

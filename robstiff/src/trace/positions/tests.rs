@@ -1,0 +1,177 @@
+//! Absolute positions with something hidden, and with nothing. What the simulator
+//! makes, which shares no formula, is traced among the tests of the workspace.
+
+use std::string::{String, ToString};
+use std::vec;
+use std::vec::Vec;
+
+use nalgebra::Vector3;
+use robstiff_robots::effect::DhEntry;
+use robstiff_robots::{Description, catalogue};
+
+use crate::Effect;
+use crate::campaign::made_positions::Plan;
+use crate::campaign::{Campaign, Holdout};
+use crate::trace::{Options, Trace, Verdict, trace};
+
+fn six_axis() -> Description {
+    let text = catalogue::find("kuka-kr270-r2700").expect("in the catalogue");
+    Description::parse("kuka-kr270-r2700.yaml", text).expect("a description")
+}
+
+fn traced(campaign: &Campaign) -> Trace {
+    trace(campaign, &Options { draws: 599, ..Options::default() }, &|_| {}).expect("positions")
+}
+
+fn names(trace: &Trace) -> Vec<String> {
+    let mut names: Vec<String> = trace.effects.iter().map(|named| named.effect.to_string()).collect();
+    names.sort();
+    names
+}
+
+/// Several numbers of a table that are off at once, each with its value.
+#[test]
+fn errors_of_the_table_are_found_together() {
+    let hidden = [
+        Effect::JointZeroOffset { joint: 2, value: 3e-3 },
+        Effect::JointZeroOffset { joint: 3, value: -2e-3 },
+        Effect::JointZeroOffset { joint: 5, value: 4e-3 },
+        Effect::DhError { entry: DhEntry::A(2), value: 1e-3 },
+        Effect::DhError { entry: DhEntry::D(4), value: -8e-4 },
+        Effect::DhError { entry: DhEntry::Alpha(1), value: 5e-4 },
+    ];
+    for seed in 0..3 {
+        let trace = traced(&Plan { hidden: hidden.to_vec(), ..Plan::new(six_axis(), seed) }.run());
+        assert_eq!(trace.verdict, Verdict::Explained, "{}", trace.why);
+        assert_eq!(trace.effects.len(), hidden.len(), "{:?}", names(&trace));
+        for effect in hidden {
+            let found = trace.effects.iter().find(|named| named.effect.to_string() == effect.to_string());
+            let number = &found.unwrap_or_else(|| panic!("{effect}: {:?}", names(&trace))).parameters[0];
+            let off = number.value - effect.numbers()[0];
+            assert!(off.abs() < 4.0 * number.std.expect("a number that was fitted"), "{effect}: {number:?}");
+        }
+        assert_eq!(trace.description.effects.len(), hidden.len());
+        assert!(trace.effects.is_sorted_by(|one, next| one.holdout_rms > next.holdout_rms));
+        assert!(trace.invisible.contains(&"joint_zero_offset@joint 1".to_string()));
+        assert!(trace.invisible.contains(&"dh_error@d1".to_string()));
+    }
+}
+
+/// Parallel axes: a length along one is a length along the other.
+#[test]
+fn what_cannot_be_told_apart_is_listed() {
+    let hidden = vec![Effect::DhError { entry: DhEntry::D(3), value: 1e-3 }];
+    let trace = traced(&Plan { hidden, ..Plan::new(six_axis(), 2) }.run());
+    let [named] = &trace.effects[..] else { panic!("{:?}", names(&trace)) };
+    let other = if named.effect.to_string() == "dh_error@d2" { "dh_error@d3" } else { "dh_error@d2" };
+    assert!(named.same_as.contains(&other.to_string()), "{:?}", named.same_as);
+    assert!(trace.rivals.iter().any(|rival| rival.names == [other]));
+}
+
+/// A length of the last row and the reflector along it are one; the rig's is named.
+#[test]
+fn of_the_reflector_and_the_flange_the_reflector_is_named() {
+    for seed in 0..4 {
+        let hidden = vec![Effect::DhError { entry: DhEntry::D(6), value: 5e-4 }];
+        let trace = traced(&Plan { hidden, ..Plan::new(six_axis(), seed) }.run());
+        assert_eq!(names(&trace), ["reflector_offset@rig"]);
+        assert_eq!(trace.effects[0].same_as, ["dh_error@d6"]);
+        assert!(trace.description.effects.is_empty());
+    }
+}
+
+/// Readings far off do not keep an effect from being found, nor are they in its fit.
+#[test]
+fn wild_readings_do_not_hide_an_effect() {
+    let hidden = vec![Effect::JointZeroOffset { joint: 3, value: 5e-3 }];
+    let wild = |row: usize, read: &mut crate::campaign::PositionRow| {
+        if [5, 17, 40].contains(&row) {
+            read.position[1] += 0.5;
+        }
+    };
+    let trace = traced(&Plan { hidden, ..Plan::new(six_axis(), 1) }.run_with(wild));
+    assert_eq!(names(&trace), ["joint_zero_offset@joint 3", "outliers@rig"]);
+    assert_eq!(trace.effects[1].lines, [7, 19, 42]);
+    assert!((trace.effects[0].parameters[0].value - 5e-3).abs() < 5e-5);
+    assert!(trace.after.rms < 4e-5);
+}
+
+/// A slip of the last few rows is told as one, not as wild readings.
+#[test]
+fn a_slip_near_the_end_is_no_handful_of_wild_readings() {
+    let slipped = |row: usize, read: &mut crate::campaign::PositionRow| {
+        if row >= 56 {
+            read.position = (Vector3::from(read.position) + Vector3::new(1e-3, 0.0, -2e-4)).into();
+        }
+    };
+    let trace = traced(&Plan::new(six_axis(), 3).run_with(slipped));
+    assert_eq!(names(&trace), ["base_slip@base"]);
+    assert_eq!(trace.effects[0].effect.value("line"), 58.0);
+}
+
+/// Where there are more visits than moments are tried, the moment is found between.
+#[test]
+fn the_moment_of_a_slip_is_found_among_many_visits() {
+    let slipped = |row: usize, read: &mut crate::campaign::PositionRow| {
+        if row >= 503 {
+            read.position[0] += 1e-4;
+        }
+    };
+    let trace = traced(&Plan { poses: 40, visits: 25, ..Plan::new(six_axis(), 4) }.run_with(slipped));
+    assert_eq!(names(&trace), ["base_slip@base"]);
+    assert_eq!(trace.effects[0].effect.value("line"), 505.0);
+}
+
+#[test]
+fn a_drift_with_the_temperature_is_named() {
+    let drift = |_: usize, read: &mut crate::campaign::PositionRow| {
+        read.position[2] += 5e-5 * (read.temperature.unwrap_or_default() - 21.0);
+    };
+    let trace = traced(&Plan::new(six_axis(), 1).run_with(drift));
+    assert_eq!(names(&trace), ["thermal_drift@rig"]);
+}
+
+/// Poses held out have no part in the fit, and are predicted as well.
+#[test]
+fn poses_held_out_are_predicted() {
+    let hidden = vec![Effect::DhError { entry: DhEntry::A(3), value: 1e-3 }];
+    let mut campaign = Plan { hidden, ..Plan::new(six_axis(), 6) }.run();
+    campaign.holdout = Some(Holdout { fraction: 0.25, seed: 1 });
+    let trace = traced(&campaign);
+    assert_eq!((names(&trace), trace.held_out.len()), (vec!["dh_error@a3".to_string()], 15));
+    assert!(trace.identified.holdout_rms > 5.0 * trace.after.holdout_rms);
+    assert!((0.7..1.4).contains(&(trace.after.holdout_rms / 3e-5)), "{:?}", trace.after);
+}
+
+/// A declared noise is a yardstick; so are visits that come again.
+#[test]
+fn more_than_noise_is_not_adequate() {
+    let mut campaign = Plan { noise: 6e-5, ..Plan::new(six_axis(), 8) }.run();
+    assert_eq!(traced(&campaign).verdict, Verdict::Adequate);
+    campaign.noise.displacement = Some(3e-5);
+    let trace = traced(&campaign);
+    assert_eq!(trace.verdict, Verdict::Unexplained, "{}", trace.why);
+    assert!((0.6..0.85).contains(&trace.unexplained), "{}", trace.unexplained);
+
+    // At every pose another shift, the same at each visit, which no smooth law makes.
+    let plan = Plan { visits: 3, ..Plan::new(six_axis(), 9) };
+    let poses = plan.poses;
+    let shifted = |row: usize, read: &mut crate::campaign::PositionRow| {
+        let angle = 100.0 * ((row % poses) as f64 * 0.618).sin();
+        read.position[0] += 6e-5 * angle.sin();
+        read.position[1] += 6e-5 * angle.cos();
+    };
+    assert_eq!(traced(&plan.run()).verdict, Verdict::Adequate);
+    let trace = traced(&plan.run_with(shifted));
+    assert_eq!(trace.verdict, Verdict::Unexplained, "{} {:?}", trace.why, names(&trace));
+    assert!(trace.structure.iter().any(|test| test.name.contains("visits differ") && test.p_value < 1e-3));
+}
+
+#[test]
+fn too_few_poses_tell_nothing() {
+    let hidden = vec![Effect::JointZeroOffset { joint: 3, value: 5e-3 }];
+    let plan = Plan { hidden, poses: 8, ..Plan::new(six_axis(), 1) };
+    let trace = traced(&plan.run());
+    assert_eq!((trace.verdict, trace.effects.len()), (Verdict::Insufficient, 0));
+    assert!(trace.description.effects.is_empty() && trace.why.contains("8 poses"));
+}

@@ -1,0 +1,75 @@
+//! Positions that do not belong to the others.
+//!
+//! A row is held against what the fit leaves of the others: by how much the sum of
+//! squares falls without it, which is Fisher's F with three degrees of freedom over
+//! the rest's. Several wild rows hide each other in that, so the row that stands out
+//! most is taken away time and again, and all are wild up to the last that was
+//! significant (Rosner, Technometrics 25, 1983, 165-172).
+
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+
+use crate::identify::problem::Problem;
+use crate::probability::told;
+use crate::trace::isolated::{FEW, STANDS_OUT, STRICT};
+
+/// The median of chi-square with three degrees of freedom.
+const MEDIAN: f64 = 2.366;
+
+/// Rows that are wild.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wild {
+    /// The rows, by index, the one that stands out most first.
+    pub rows: Vec<usize>,
+    /// The probability of the last, over all rows.
+    pub p: f64,
+    /// What is left without them: the sum of squares (m^2).
+    pub rss: f64,
+}
+
+/// The rows of a regression that are wild. Unless `strict`, structure may be left,
+/// and they must stand out from that as well.
+pub fn wild_rows(problem: &Problem, strict: bool) -> Option<Wild> {
+    let columns: Vec<usize> = (0..problem.white.ncols()).collect();
+    let mut rows: Vec<usize> = problem.blocks.iter().flat_map(|block| block.rows.iter().copied()).collect();
+    let most = (FEW * rows.len() as f64).floor() as usize;
+    let mut total = problem.total.clone();
+    let (mut taken, mut found) = (Vec::new(), None);
+    for _ in 0..most {
+        let (Some(fit), Some(inverse)) = (total.solve(&columns), total.inverse(&columns)) else { break };
+        let gains: Vec<f64> = rows.iter().map(|&row| gain(problem, row, &fit.coefficients, &inverse)).collect();
+        let Some(worst) = (0..rows.len()).max_by(|&a, &b| gains[a].total_cmp(&gains[b])) else { break };
+        let mut sorted = gains.clone();
+        sorted.sort_by(f64::total_cmp);
+        let variance = sorted[sorted.len() / 2] / MEDIAN;
+        let freedom = total.rows as f64 - columns.len() as f64 - 3.0;
+        let others = (fit.rss - gains[worst]).max(freedom * variance);
+        let Some(table) = FisherSnedecor::new(3.0, freedom).ok().filter(|_| others > 0.0) else { break };
+        let p = told(rows.len() as f64 * table.sf(gains[worst] / 3.0 / (others / freedom)));
+        let over = gains[worst] / variance;
+        let row = rows.remove(worst);
+        let (x, y) = of_row(problem, row);
+        total = total.without(&crate::identify::normal::Normal::small(&x, &y));
+        taken.push(row);
+        if p <= STRICT && (strict || over > STANDS_OUT) {
+            let rss = total.solve(&columns).map_or(f64::INFINITY, |fit| fit.rss);
+            found = Some(Wild { rows: taken.clone(), p, rss });
+        }
+    }
+    found
+}
+
+fn of_row(problem: &Problem, row: usize) -> (DMatrix<f64>, DVector<f64>) {
+    (problem.white.rows(3 * row, 3).into_owned(), problem.white_readings.rows(3 * row, 3).into_owned())
+}
+
+/// By how much the sum of squares falls without a row: `e^T (I - X M X^T)^-1 e`.
+fn gain(problem: &Problem, row: usize, coefficients: &DVector<f64>, inverse: &DMatrix<f64>) -> f64 {
+    let (x, y) = of_row(problem, row);
+    let left: Vector3<f64> = (y - &x * coefficients).fixed_rows::<3>(0).into_owned();
+    let pull: Matrix3<f64> = (&x * inverse * x.transpose()).fixed_view::<3, 3>(0, 0).into_owned();
+    let own = Matrix3::identity() - pull;
+    own.cholesky().map_or(0.0, |factor| left.dot(&factor.solve(&left)))
+}
