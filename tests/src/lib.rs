@@ -8,5 +8,6 @@ pub mod interpreter;
 pub mod judge;
 pub mod judge_tracing;
 pub mod matrix;
+pub mod positions;
 pub mod reach;
 pub mod simulator;

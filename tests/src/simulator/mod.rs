@@ -28,6 +28,7 @@ mod hidden;
 mod hidden_tests;
 mod noise;
 mod outside;
+mod positions;
 mod rig;
 #[cfg(test)]
 mod rig_tests;
@@ -45,3 +46,4 @@ pub use equilibrium::{Equilibrium, PosedArm};
 pub use gear::{Memory, Moment};
 pub use hidden::{DhColumn, Follows, Hidden, Mount};
 pub use outside::Outside;
+pub use positions::Positions;

@@ -1,0 +1,194 @@
+//! Campaigns of absolute positions drawn at random, and what tracing makes of them.
+
+use std::fs;
+use std::path::PathBuf;
+
+use rand::seq::IndexedRandom;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use robstiff::campaign::{Campaign, Data};
+use robstiff::identify::positions::Prepared;
+use robstiff::trace::{Options, Trace, Verdict, trace};
+use robstiff_robots::{Description, Effect};
+
+use crate::judge_tracing::{Name, Told};
+use crate::simulator::{DhColumn, Hidden, Outside, Positions, five_axis, scattered, six_axis};
+
+/// Payloads that show what yields (kg).
+pub const PAYLOADS: [f64; 3] = [0.0, 100.0, 200.0];
+
+/// What is hidden leaves at least this many times the noise, or does not matter.
+const MATTERS: f64 = 2.0;
+
+/// What is hidden in a campaign.
+#[derive(Clone, Debug)]
+pub struct Drawn {
+    /// The campaign.
+    pub positions: Positions,
+    /// The robot as declared.
+    pub declared: Description,
+    /// Whether every one of what is hidden matters.
+    pub matters: bool,
+}
+
+/// What came of one.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Came {
+    /// Whether all that is hidden is named, up to what is listed as alike, and nothing
+    /// else, and that is the whole truth.
+    pub right: bool,
+    /// Whether names are told as the whole truth.
+    pub explained: bool,
+    /// Numbers of effects that were named as hidden, and those of them whose 95 %
+    /// interval holds the truth.
+    pub numbers: [usize; 2],
+}
+
+/// Reads a simulated campaign back from files; `reflector` is where the file says that
+/// it is.
+///
+/// # Panics
+/// Where files cannot be written or the campaign cannot be read.
+pub fn read(positions: &Positions, declared: &Description, reflector: [f64; 3]) -> Campaign {
+    let folder = Folder::new(positions.seed);
+    let write = |file: &str, text: &str| fs::write(folder.0.join(file), text).expect("a temporary file");
+    write("robot.yaml", &declared.to_yaml());
+    write("campaign.yaml", &Positions::campaign(reflector));
+    write("positions.csv", &positions.table());
+    Campaign::read(folder.0.join("campaign.yaml")).unwrap_or_else(|problem| panic!("{problem}"))
+}
+
+/// A folder of its own, removed at the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(seed: u64) -> Self {
+        let thread = std::thread::current().id();
+        let name = format!("robstiff-positions-{}-{seed}-{thread:?}", std::process::id());
+        let folder = std::env::temp_dir().join(name.replace(['(', ')'], ""));
+        fs::create_dir_all(&folder).expect("a temporary folder");
+        Self(folder)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// A campaign with so many effects of the catalogue hidden, or with something outside
+/// it.
+pub fn draw(effects: usize, outside: bool, seed: u64) -> Drawn {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let declared = if seed.is_multiple_of(2) { five_axis() } else { six_axis() };
+    let mut positions = Positions::new(scattered(&declared, 0.7..1.3, seed), seed);
+    if random.random::<bool>() {
+        positions.payloads = PAYLOADS.to_vec();
+    }
+    while positions.hidden.len() < effects {
+        let one = effect(&mut random, declared.joints.len(), positions.payloads.len() > 1);
+        // Two at one place are one.
+        if positions.hidden.iter().all(|other| other.name() != one.name()) {
+            positions.hidden.push(one);
+        }
+    }
+    if outside {
+        positions.hidden.push(beyond(&mut random, declared.joints.len()));
+    }
+    let matters = positions.hidden.iter().all(|one| matters(one, &positions));
+    Drawn { positions, declared, matters }
+}
+
+/// Whether an effect alone leaves more than noise when the robot's stand and its
+/// compliances are fitted.
+fn matters(hidden: &Hidden, positions: &Positions) -> bool {
+    let noise = positions.noise[0].hypot(positions.noise[1]);
+    let exact = Positions { hidden: vec![hidden.clone()], noise: [0.0; 2], ..positions.clone() };
+    let campaign = read(&exact, &exact.truth, exact.reflector);
+    let Data::Position(data) = &campaign.data else { unreachable!("written as positions") };
+    let Ok(prepared) = Prepared::new(&campaign, data) else { return false };
+    let (regression, start) = (prepared.regression([]), prepared.state(prepared.own.len()));
+    let solved = regression.solve(&prepared.seen(), &start, &prepared.rows);
+    solved.is_some_and(|solved| (solved.fit.rss / (3 * data.rows.len()) as f64).sqrt() >= MATTERS * noise)
+}
+
+/// An effect of the catalogue, of a size that a robot has.
+fn effect(random: &mut ChaCha8Rng, joints: usize, payloads: bool) -> Hidden {
+    let sign = if random.random() { 1.0 } else { -1.0 };
+    let size = |random: &mut ChaCha8Rng, least: f64, most: f64| sign * random.random_range(least..most);
+    let joint = random.random_range(2..=joints);
+    match random.random_range(0..if payloads { 7 } else { 6 }) {
+        0 => Hidden::JointZeroOffset { joint, offset: size(random, 3e-4, 5e-3) },
+        1 => Hidden::DhError { of: DhColumn::A, row: random.random_range(1..=joints), by: size(random, 1e-4, 2e-3) },
+        2 => Hidden::DhError { of: DhColumn::D, row: joint, by: size(random, 1e-4, 2e-3) },
+        3 => {
+            Hidden::DhError { of: DhColumn::Alpha, row: random.random_range(1..=joints), by: size(random, 2e-4, 2e-3) }
+        }
+        4 => {
+            let (order, sin) = (random.random_range(1..=3), size(random, 2e-4, 1e-3));
+            Hidden::TransmissionError { joint, order, sin, cos: size(random, 1e-4, 5e-4) }
+        }
+        5 => {
+            let when = random.random_range(0.2..0.8);
+            let mut three = |most: f64| std::array::from_fn(|_| random.random_range(-most..most));
+            Hidden::BaseSlip { shift: three(5e-4), turn: three(2e-4), when }
+        }
+        _ => Effect::TransverseCompliance { joint, value: random.random_range(2e-7..1.5e-6) }.into(),
+    }
+}
+
+/// What no effect of the catalogue is.
+fn beyond(random: &mut ChaCha8Rng, joints: usize) -> Hidden {
+    if random.random::<bool>() {
+        let anchor = [random.random_range(-0.5..0.5), random.random_range(1.0..2.0), 2.5];
+        return Hidden::Outside(Outside::Cable {
+            link: 3,
+            anchor,
+            stiffness: random.random_range(1e3..4e3),
+            length: 0.5,
+        });
+    }
+    let order = *[4, 5, 6].choose(random).expect("three");
+    let (sin, cos) = (random.random_range(2e-4..6e-4), random.random_range(-2e-4..2e-4));
+    Hidden::TransmissionError { joint: random.random_range(2..joints), order, sin, cos }
+}
+
+/// Traces a campaign, and holds what is told against what is hidden.
+///
+/// # Panics
+/// Where it cannot be traced.
+pub fn run(drawn: &Drawn) -> Came {
+    let campaign = read(&drawn.positions, &drawn.declared, drawn.positions.reflector);
+    let trace = trace(&campaign, &Options::default(), &|_| {}).unwrap_or_else(|problem| panic!("{problem}"));
+    let told = Told::of(&trace).names;
+    let hidden = &drawn.positions.hidden;
+    let is_one = |name: &Name, hidden: &Hidden| {
+        name.name == hidden.name() || name.same_as.iter().any(|other| *other == hidden.name())
+    };
+    let all = hidden.iter().all(|hidden| told.iter().any(|name| is_one(name, hidden)));
+    let only = told.iter().all(|name| hidden.iter().any(|hidden| is_one(name, hidden)));
+    let whole = if hidden.is_empty() { Verdict::Adequate } else { Verdict::Explained };
+    let right = all && only && told.len() == hidden.len() && trace.verdict == whole;
+    let numbers = if right { numbers(&trace, hidden) } else { [0; 2] };
+    Came { right, explained: trace.verdict == Verdict::Explained, numbers }
+}
+
+/// Of the robot's numbers that were named as they are hidden, how many there are, and
+/// how many have the truth within 1.96 standard deviations.
+fn numbers(trace: &Trace, hidden: &[Hidden]) -> [usize; 2] {
+    let mut count = [0; 2];
+    for hidden in hidden.iter().filter(|hidden| !matches!(hidden, Hidden::BaseSlip { .. })) {
+        let Some(named) = trace.effects.iter().find(|named| named.effect.to_string() == hidden.name()) else {
+            continue;
+        };
+        for (name, truth) in hidden.parameters() {
+            let spelt = |told: &str| told == name || (told == "offset" && name == "value");
+            let told = named.parameters.iter().find(|number| spelt(number.name));
+            let Some((value, std)) = told.and_then(|number| Some((number.value, number.std?))) else { continue };
+            count[0] += 1;
+            count[1] += usize::from((value - truth).abs() <= 1.96 * std);
+        }
+    }
+    count
+}

@@ -1,0 +1,154 @@
+//! The loop on absolute positions, read by a tracker that stands anywhere: what such
+//! readings show of the kinematics, and under payloads of the compliances, is named,
+//! written and predicted; what they cannot show is not named. Thresholds as in
+//! `matrix_sample`: of the rate that is claimed, a count below them has a probability
+//! of 1 in 1000.
+
+use robstiff::campaign::Campaign;
+use robstiff::identify::predict;
+use robstiff::trace::{Options, Trace, Verdict, trace};
+use robstiff_robots::{Description, Effect, Link};
+use robstiff_tests::judge_tracing::Told;
+use robstiff_tests::matrix::interval::fewest;
+use robstiff_tests::positions::{PAYLOADS, read};
+use robstiff_tests::simulator::{DhColumn, Hidden, Outside, Positions, five_axis, scattered, six_axis};
+
+/// Runs of what is to hold at a rate.
+const RUNS: u64 = 8;
+
+fn traced(campaign: &Campaign) -> Trace {
+    trace(campaign, &Options { draws: 999, ..Options::default() }, &|_| {})
+        .unwrap_or_else(|problem| panic!("{problem}"))
+}
+
+/// Both arms in turn, other compliances in every run.
+fn positions(run: u64, seed: u64) -> (Positions, Description) {
+    let declared = if run.is_multiple_of(2) { five_axis() } else { six_axis() };
+    (Positions::new(scattered(&declared, 0.7..1.3, seed + run), seed + run), declared)
+}
+
+/// Asserts that what `hide` hides is named, alone, in as many runs as 95 in 100
+/// would have; and gives the traces in which it is.
+fn assert_named(name: &str, seed: u64, hide: impl Fn(&mut Positions, &mut Description)) -> Vec<(Campaign, Trace)> {
+    let mut right = Vec::new();
+    for run in 0..RUNS {
+        let (mut positions, mut declared) = positions(run, seed);
+        let reflector = positions.reflector;
+        hide(&mut positions, &mut declared);
+        let campaign = read(&positions, &declared, reflector);
+        let trace = traced(&campaign);
+        let told = Told::of(&trace);
+        let stands = told.names.len() == 1
+            && (told.names[0].name == name || told.names[0].same_as.iter().any(|other| other == name));
+        println!("{name} {run}: {} {:?}", trace.verdict, told.names);
+        if stands && trace.verdict == Verdict::Explained {
+            right.push((campaign, trace));
+        }
+    }
+    let least = fewest(RUNS as usize, 0.95, 1e-3);
+    assert!(right.len() >= least, "{name}: {} of {RUNS}, not {least}", right.len());
+    right
+}
+
+#[test]
+fn nothing_is_named_where_nothing_is_hidden() {
+    let runs = 20;
+    let adequate = (0..runs).filter(|&run| {
+        let (mut positions, declared) = positions(run, 300);
+        if run % 4 < 2 {
+            positions.payloads = PAYLOADS.to_vec();
+        }
+        let trace = traced(&read(&positions, &declared, positions.reflector));
+        println!("{run}: {} {:?}", trace.verdict, Told::of(&trace).names);
+        trace.verdict == Verdict::Adequate && trace.effects.is_empty()
+    });
+    let (count, least) = (adequate.count(), fewest(runs as usize, 0.98, 1e-3));
+    assert!(count >= least, "{count} of {runs}, not {least}");
+}
+
+/// What is written predicts the same positions to their noise, wherever the tracker
+/// stands.
+#[test]
+fn errors_of_the_kinematics_are_named_and_written() {
+    let lengths = |row| Hidden::DhError { of: DhColumn::A, row, by: 4e-4 };
+    let cases = [
+        Hidden::JointZeroOffset { joint: 3, offset: 2e-3 },
+        lengths(2),
+        Hidden::DhError { of: DhColumn::Alpha, row: 1, by: 5e-4 },
+        Hidden::TransmissionError { joint: 2, order: 2, sin: 3e-4, cos: -1e-4 },
+    ];
+    for (seed, hidden) in (400..).step_by(20).zip(cases) {
+        for (campaign, trace) in
+            assert_named(&hidden.name(), seed, |positions, _| positions.hidden = vec![hidden.clone()])
+        {
+            let left = predict(&trace.description, &campaign).expect("positions");
+            assert!(left.rms < 40e-6, "{} um", left.rms * 1e6);
+            assert!(trace.declared.rms > 2.0 * left.rms);
+        }
+    }
+}
+
+/// Links with masses, on a controller that does not correct for them.
+#[test]
+fn the_arms_own_weight_is_named() {
+    let found = assert_named("gravity_sag@robot", 500, |positions, declared| {
+        let masses = [300.0, 200.0, 150.0, 60.0, 30.0, 10.0];
+        let links: Vec<Link> =
+            (0..declared.joints.len()).map(|k| Link { mass: masses[k], center_of_mass: [-0.1, 0.02, 0.05] }).collect();
+        declared.links.clone_from(&links);
+        positions.truth = declared.clone();
+        positions.truth.links.clear();
+        positions.hidden = vec![Hidden::GravitySag(links)];
+    });
+    for (_, trace) in found {
+        let share = trace.effects[0].parameters[0].value;
+        assert!((share - 1.0).abs() < 0.05, "{share}");
+    }
+}
+
+/// Under payloads what yields beside the gears is named as with pulls of a cable.
+#[test]
+fn payloads_show_what_yields() {
+    let tilt = Hidden::from(Effect::TransverseCompliance { joint: 2, value: 8e-7 });
+    assert_named(&tilt.name(), 600, |positions, _| {
+        positions.payloads = PAYLOADS.to_vec();
+        positions.hidden = vec![tilt.clone()];
+    });
+}
+
+#[test]
+fn faults_of_the_rig_are_named_and_not_written() {
+    let slip = Hidden::BaseSlip { shift: [2e-4, -1e-4, 0.0], turn: [0.0, 1e-4, 0.0], when: 0.6 };
+    let slips = assert_named("base_slip@base", 700, |positions, _| positions.hidden = vec![slip.clone()]);
+    let moved = assert_named("reflector_offset@rig", 720, |positions, _| {
+        positions.reflector = positions.reflector.map(|at| at + 1e-3);
+    });
+    let wild = assert_named("outliers@rig", 740, |positions, _| {
+        positions.wild = vec![(7, [0.0, 1e-3, 0.0]), (31, [-2e-3, 0.0, 5e-4])];
+    });
+    for (_, trace) in slips.iter().chain(&moved).chain(&wild) {
+        assert!(trace.description.effects.is_empty());
+    }
+    for (_, trace) in &wild {
+        // The header is line 1.
+        assert_eq!(trace.effects[0].lines, [9, 33]);
+    }
+}
+
+/// What no effect of the catalogue does is not told as one of them and the whole truth.
+#[test]
+fn what_is_outside_the_catalogue_is_not_explained() {
+    let cable = Outside::Cable { link: 3, anchor: [0.5, 1.5, 2.5], stiffness: 3e3, length: 0.5 };
+    let wave = Hidden::TransmissionError { joint: 2, order: 5, sin: 3e-4, cos: 1e-4 };
+    for (seed, hidden) in [(800, Hidden::Outside(cable)), (820, wave)] {
+        for run in 0..RUNS {
+            let (mut positions, declared) = positions(run, seed);
+            positions.truth = declared.clone();
+            positions.hidden = vec![hidden.clone()];
+            let trace = traced(&read(&positions, &declared, positions.reflector));
+            let told = Told::of(&trace).names;
+            let honest = matches!(trace.verdict, Verdict::Unexplained | Verdict::Partial);
+            assert!(honest, "{} {run}: {} {told:?}", hidden.name(), trace.verdict);
+        }
+    }
+}
