@@ -120,24 +120,23 @@ impl<'c> Bench<'c> {
     pub fn at_its_moment(&mut self, model: Model) -> Model {
         let is_slip = |one: &&Named| self.candidates[one.candidate].kind.name == SLIP;
         let Some(&slip) = model.named.iter().find(is_slip) else { return model };
-        let data = self.prepared.data;
-        let tried_line = self.variant(slip).shape[0].value;
-        let Some(mut at) = self.slips.changes.iter().position(|&row| data.rows[row].line as f64 == tried_line) else {
-            return model;
-        };
-        let apart = self.slips.changes.len().div_ceil(self.slips.tried().len().max(1));
-        let (mut best, mut step) = (model, apart / 2);
+        let (rows, tried) = (&self.prepared.data.rows, self.variant(slip).shape[0].value);
+        let count = rows.len();
+        let Some(mut at) = rows.iter().position(|row| row.line as f64 == tried) else { return model };
+        let (mut best, mut step) = (model, self.slips.apart() / 2);
         while step > 0 {
-            for next in [at.checked_sub(step), Some(at + step)].into_iter().flatten() {
-                let Some(&moment) = self.slips.changes.get(next) else { continue };
-                self.move_slip(slip, moment);
+            for next in [at.saturating_sub(step), at + step] {
+                if !(1..count).contains(&next) {
+                    continue;
+                }
+                self.move_slip(slip, next);
                 if let Some(other) = self.solve(&best.named, &best.solved.state).filter(|other| other.bic < best.bic) {
                     (best, at) = (other, next);
                 }
             }
             step = if step == 1 { 0 } else { step.div_ceil(2) };
         }
-        self.move_slip(slip, self.slips.changes[at]);
+        self.move_slip(slip, at);
         best
     }
 

@@ -155,6 +155,7 @@ fn effects(found: &Searched<'_>, spread: &DMatrix<f64>, partial: bool, holdout_r
         for (_, other) in replaced.iter().filter(|(of, other)| *of == k && alike(bench, model, other.rss)) {
             same_as.extend(new_in(&other.named, &model.named).map(|candidate| bench.candidates[candidate].name()));
         }
+        same_as.extend(parts(bench, &rest, one).into_iter().filter(|name| !same_as.contains(name)).collect::<Vec<_>>());
         named.push((
             without,
             one,
@@ -207,6 +208,25 @@ fn unseen_rms(bench: &Bench<'_>, model: &Model) -> f64 {
     let held_out = (0..data.rows.len()).filter(|&row| !training[data.rows[row].pose]);
     rms(&residuals(&bench.regression, &model.solved.state), 3, held_out)
 }
+
+/// Full names of what an effect of several numbers says as well, beside the rest of the
+/// model: it may be one of these, or some together.
+fn parts(bench: &Bench<'_>, rest: &[Named], one: Named) -> Vec<String> {
+    let whole = bench.variant(one);
+    let Some(test) = bench.test(rest).filter(|_| whole.columns.len() > 1) else { return Vec::new() };
+    let other = |candidate: &usize| {
+        *candidate != one.candidate && rest.iter().all(|named| named.candidate != *candidate) && bench.shows(*candidate)
+    };
+    let within = |candidate: &usize| {
+        let forms = &bench.candidates[*candidate].variants;
+        forms.iter().any(|form| test.distance(form, whole) < SAME)
+    };
+    let found = (0..bench.candidates.len()).filter(other).filter(within);
+    found.map(|candidate| bench.candidates[candidate].name()).collect()
+}
+
+/// What is left of a column with less than this beside others says nothing else.
+const SAME: f64 = 1e-4;
 
 /// Whether a model that leaves so much fits about as well, numbers not counted: what
 /// has more of them says the same and more.

@@ -19,9 +19,9 @@ const FARTHEST: f64 = 0.5;
 const LONGEST: f64 = 0.1;
 const MOST_TURNED: f64 = 0.05;
 
-/// Moments at which the robot may have slipped are tried at every change of visits, or
-/// where there are more, at so many evenly; of large campaigns, few, for every moment
-/// takes memory by the rows. One that is named is then looked for between the others.
+/// Moments at which the robot may have slipped are tried before every row, or where
+/// there are more, so many evenly; of large campaigns, few, for every moment takes memory
+/// by the rows. One that is named is then looked for between the others.
 const FEWEST_MOMENTS: usize = 24;
 const MOST_MOMENTS: usize = 200;
 const ROWS_AND_MOMENTS: usize = 100_000;
@@ -76,28 +76,25 @@ pub fn drift(data: &Positions) -> Option<Offer> {
     (!forms.is_empty()).then(|| Offer { kind: kind("thermal_drift"), place: Place::Rig, numbers, forms })
 }
 
-/// A slip of the robot, or of what reads it, between two visits.
+/// A slip of the robot, or of what reads it, before some row.
 pub struct Slips {
-    /// The first row of each visit but the first.
-    pub changes: Vec<usize>,
     /// The point that is read, in the base frame (m), and the middle of all.
     points: Vec<Vector3<f64>>,
     middle: Vector3<f64>,
 }
 
 impl Slips {
-    /// The visits of a campaign.
+    /// The rows of a campaign.
     pub fn new(robot: &Description, data: &Positions) -> Self {
-        let changed = |row: &usize| data.rows[*row].visit != data.rows[*row - 1].visit;
         let points = Model::new(robot, data).points(data);
         let middle = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
-        Self { changes: (1..data.rows.len()).filter(changed).collect(), points, middle }
+        Self { points, middle }
     }
 
-    /// The changes that are tried: all, or where there are many, some evenly.
-    pub fn tried(&self) -> Vec<usize> {
-        let most = (ROWS_AND_MOMENTS / self.points.len().max(1)).clamp(FEWEST_MOMENTS, MOST_MOMENTS);
-        self.changes.iter().copied().step_by(self.changes.len().div_ceil(most).max(1)).collect()
+    /// How many rows the moments that are tried are apart.
+    pub fn apart(&self) -> usize {
+        let rows = self.points.len().max(1);
+        rows.div_ceil((ROWS_AND_MOMENTS / rows).clamp(FEWEST_MOMENTS, MOST_MOMENTS))
     }
 
     /// What a shift along each axis, and a turn about each, do to the rows from one on.
@@ -115,10 +112,10 @@ impl Slips {
         })
     }
 
-    /// The robot shifted at a change of visits, and may have turned as well.
+    /// The robot shifted at a moment, and may have turned as well.
     pub fn offer(&self, data: &Positions) -> Option<Offer> {
         let (mut numbers, mut forms) = (Vec::new(), Vec::new());
-        for moment in self.tried() {
+        for moment in (1..self.points.len()).step_by(self.apart()) {
             let first = numbers.len();
             let named = SHIFT.into_iter().chain(TURN).zip(self.at_row(moment));
             numbers.extend(named.enumerate().map(|(k, (name, enters))| {

@@ -80,6 +80,15 @@ fn of_the_reflector_and_the_flange_the_reflector_is_named() {
     }
 }
 
+/// What has several numbers may be one that it says as well, or several together.
+#[test]
+fn what_a_reflectors_offset_may_consist_of_is_listed() {
+    let trace = traced(&Plan { marker: [1e-3, -5e-4, 2e-3], ..Plan::new(six_axis(), 5) }.run());
+    assert_eq!(names(&trace), ["reflector_offset@rig"]);
+    assert!(trace.effects[0].same_as.contains(&"dh_error@d6".to_string()), "{:?}", trace.effects[0].same_as);
+    assert!(!trace.effects[0].same_as.contains(&"dh_error@a3".to_string()));
+}
+
 /// Readings far off do not keep an effect from being found, nor are they in its fit.
 #[test]
 fn wild_readings_do_not_hide_an_effect() {
@@ -107,6 +116,20 @@ fn a_slip_near_the_end_is_no_handful_of_wild_readings() {
     let trace = traced(&Plan::new(six_axis(), 3).run_with(slipped));
     assert_eq!(names(&trace), ["base_slip@base"]);
     assert_eq!(trace.effects[0].effect.value("line"), 58.0);
+}
+
+/// A slip between two payloads of one visit leaves no row of it wild.
+#[test]
+fn a_slip_within_a_visit_is_found_where_it_is() {
+    let slipped = |row: usize, read: &mut crate::campaign::PositionRow| {
+        if row >= 61 {
+            read.position[2] += 5e-4;
+        }
+    };
+    let trace =
+        traced(&Plan { poses: 40, payloads: vec![0.0, 100.0, 200.0], ..Plan::new(six_axis(), 2) }.run_with(slipped));
+    assert_eq!(names(&trace), ["base_slip@base"]);
+    assert_eq!(trace.effects[0].effect.value("line"), 63.0);
 }
 
 /// Where there are more visits than moments are tried, the moment is found between.
