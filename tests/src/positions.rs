@@ -32,8 +32,10 @@ pub struct Drawn {
 }
 
 /// What came of one.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Came {
+    /// What is hidden, and what is told of it, for people.
+    pub told: String,
     /// Whether all that is hidden is named, up to what is listed as alike, and nothing
     /// else, and that is the whole truth.
     pub right: bool,
@@ -169,9 +171,19 @@ pub fn run(drawn: &Drawn) -> Came {
     let all = hidden.iter().all(|hidden| told.iter().any(|name| is_one(name, hidden)));
     let only = told.iter().all(|name| hidden.iter().any(|hidden| is_one(name, hidden)));
     let whole = if hidden.is_empty() { Verdict::Adequate } else { Verdict::Explained };
-    let right = all && only && told.len() == hidden.len() && trace.verdict == whole;
-    let numbers = if right { numbers(&trace, hidden) } else { [0; 2] };
-    Came { right, explained: trace.verdict == Verdict::Explained, numbers }
+    let right = all && only && trace.verdict == whole;
+    // What stands for two has the numbers of neither.
+    let each = told.len() == hidden.len() && hidden.iter().all(|hidden| told.iter().any(|n| n.name == hidden.name()));
+    let numbers = if right && each { numbers(&trace, hidden) } else { [0; 2] };
+    let names = |names: Vec<String>| names.join(" + ");
+    let told = format!(
+        "seed {}: {}; told {}: {}",
+        drawn.positions.seed,
+        names(hidden.iter().map(Hidden::name).collect()),
+        trace.verdict,
+        names(told.into_iter().map(|name| name.name).collect())
+    );
+    Came { told, right, explained: trace.verdict == Verdict::Explained, numbers }
 }
 
 /// Of the robot's numbers that were named as they are hidden, how many there are, and

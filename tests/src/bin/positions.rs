@@ -20,6 +20,9 @@ struct Arguments {
     /// Threads
     #[arg(long, default_value_t = 2)]
     jobs: usize,
+    /// Tell of those that are not as they should be
+    #[arg(long)]
+    wrong: bool,
 }
 
 /// What is hidden in a group: so many effects, and whether something outside the
@@ -40,7 +43,11 @@ fn main() {
         let seeds = (0..arguments.count).map(|run| arguments.seed * 1_000_000 + group * 100_000 + run);
         let drawn: Vec<Drawn> = seeds.map(|seed| draw(effects, outside, seed)).filter(|drawn| drawn.matters).collect();
         let came = all(&drawn, arguments.jobs.max(1));
-        let right = came.iter().filter(|came| if outside { !came.explained } else { came.right }).count();
+        let is_right = |came: &&Came| if outside { !came.explained } else { came.right };
+        let right = came.iter().filter(is_right).count();
+        for came in came.iter().filter(|came| arguments.wrong && !is_right(came)) {
+            eprintln!("{}", came.told);
+        }
         let [low, high] = interval(right, came.len()).map(|bound| 100.0 * bound);
         println!("| {name} | {} | {right} [{low:.0}-{high:.0} %] |", came.len());
         for came in came {
