@@ -50,7 +50,7 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     let rows = prepared.samples.rows.len();
     Ok(Identification {
         description: with_values(&campaign.robot, &values),
-        correlation: spread(&correlation(&covariance), &fitted.columns, estimates.len()),
+        correlation: among_all(&correlation(&covariance), &fitted.columns, estimates.len()),
         estimates,
         rows,
         poses: prepared.samples.poses,
@@ -84,7 +84,7 @@ pub fn declared_residuals(prepared: &Prepared<'_>) -> DVector<f64> {
 }
 
 /// A matrix of some columns among all; the identity elsewhere.
-fn spread(part: &DMatrix<f64>, columns: &[usize], count: usize) -> DMatrix<f64> {
+pub fn among_all(part: &DMatrix<f64>, columns: &[usize], count: usize) -> DMatrix<f64> {
     let mut whole = DMatrix::identity(count, count);
     for (i, &a) in columns.iter().enumerate() {
         for (j, &b) in columns.iter().enumerate() {

@@ -32,6 +32,7 @@ use self::within::within_visits;
 use super::baseline::{
     Declared, Visibility, columns_of, declared, set_compliance, set_parameter, visibility, with_values,
 };
+use super::displacement::among_all;
 use super::holdout::training;
 use super::normal::{Normal, Scaled, Sign};
 use super::predict::{PredictedRow, Prediction};
@@ -249,15 +250,6 @@ fn confounded() -> Error {
 pub fn of_numbers(covariance: &DMatrix<f64>) -> DMatrix<f64> {
     let count = covariance.nrows() - STANDS;
     covariance.view((STANDS, STANDS), (count, count)).into_owned()
-}
-
-/// A matrix of some numbers among all; the identity elsewhere.
-fn among_all(part: &DMatrix<f64>, chosen: &[usize], count: usize) -> DMatrix<f64> {
-    let mut whole = DMatrix::identity(count, count);
-    for (i, &a) in chosen.iter().enumerate() {
-        chosen.iter().enumerate().for_each(|(j, &b)| whole[(a, b)] = part[(i, j)]);
-    }
-    whole
 }
 
 /// What a state leaves of the readings, stacked (m).

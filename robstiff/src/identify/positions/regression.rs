@@ -54,6 +54,7 @@ pub struct Regression<'c> {
 }
 
 /// A fit of some numbers.
+#[derive(Clone)]
 pub struct Solved {
     /// The numbers with their values, and where the robot stands.
     pub state: State,

@@ -88,6 +88,24 @@ pub struct Kind {
     pub on_axes: Option<fn(&Axes) -> Vec<OnAxes>>,
 }
 
+impl Kind {
+    /// Where it can be on an arm with so many joints, of any campaign; errors of the
+    /// table, whose places are its entries, at none.
+    pub fn places(&self, joints: usize) -> Vec<Place> {
+        let each = |of: fn(usize) -> Part, last: usize| (1..=last).map(|k| of(k).into()).collect();
+        match self.name {
+            "link_compliance" => each(Part::Link, joints.saturating_sub(1)),
+            "base_compliance" | "base_slip" => vec![Part::Base.into()],
+            "tool_compliance" => vec![Part::Tool.into()],
+            "joint_coupling" => (2..=joints).map(|j| Part::Joints([j - 1, j]).into()).collect(),
+            "gravity_sag" => vec![Part::Robot.into()],
+            "dh_error" => Vec::new(),
+            _ if self.of_rig => vec![Place::Rig],
+            _ => each(Part::Joint, joints),
+        }
+    }
+}
+
 impl PartialEq for Kind {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name

@@ -35,6 +35,22 @@ pub struct Variant {
     pub unsure: Option<Unsure>,
 }
 
+impl Variant {
+    /// One with these columns and numbers out of a grid, of which nothing more is known.
+    pub fn new(columns: Vec<usize>, shape: Vec<EffectParameter>) -> Self {
+        Self {
+            parameters: columns.len() + shape.len(),
+            columns,
+            shape,
+            names: &[],
+            refine: None,
+            within: [0.0, f64::INFINITY],
+            likely: None,
+            unsure: None,
+        }
+    }
+}
+
 /// An effect that may be missing.
 #[derive(Clone)]
 pub struct Candidate {

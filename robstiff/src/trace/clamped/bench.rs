@@ -70,14 +70,9 @@ impl Bench {
                     false => Sign::Free,
                 }));
                 Variant {
-                    columns: (first..columns.len()).collect(),
-                    parameters: form.numbers.len() + form.shape.len(),
-                    shape: form.shape.clone(),
-                    names: &[],
-                    refine: None,
                     within: form.within,
                     likely: form.likely,
-                    unsure: None,
+                    ..Variant::new((first..columns.len()).collect(), form.shape.clone())
                 }
             };
             let variants = one.forms.iter().map(variant).collect();

@@ -5,7 +5,6 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
-use robstiff_robots::effect::Place as Part;
 
 use super::bench::Bench;
 use super::search::Found as Searched;
@@ -196,19 +195,7 @@ fn invisible(campaign: &Campaign, bench: &Bench) -> Vec<String> {
     let declared = |name: &String| campaign.robot.effects.iter().any(|effect| effect.to_string() == *name);
     let mut names = Vec::new();
     for kind in KINDS.iter().filter(|kind| **kind != &OUTLIERS) {
-        let at_joints = |of: &dyn Fn(usize) -> Place, last: usize| (1..=last).map(of).collect::<Vec<Place>>();
-        let places = match kind.name {
-            "link_compliance" => at_joints(&|link| Part::Link(link).into(), joints.saturating_sub(1)),
-            "base_compliance" | "base_slip" => std::vec![Part::Base.into()],
-            "tool_compliance" => std::vec![Part::Tool.into()],
-            "joint_coupling" => (2..=joints).map(|j| Part::Joints([j - 1, j]).into()).collect(),
-            "gravity_sag" => std::vec![Part::Robot.into()],
-            // Its places are entries of the table, of which none moves.
-            "dh_error" => Vec::new(),
-            _ if kind.of_rig => std::vec![Place::Rig],
-            _ => at_joints(&|joint| Part::Joint(joint).into(), joints),
-        };
-        names.extend(places.into_iter().map(|place| format!("{}@{place}", kind.name)));
+        names.extend(kind.places(joints).into_iter().map(|place| format!("{}@{place}", kind.name)));
     }
     names.retain(|name| !offered.contains(name) && !declared(name));
     names

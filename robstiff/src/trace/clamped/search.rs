@@ -214,16 +214,7 @@ fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit {
     for axis in axes.loaded() {
         let (rows, torques, largest) = (axes.rows_of(axis), axes.torques(axis), axes.largest(axis));
         let mut add = |name: String, values: Vec<f64>| {
-            let variant = Variant {
-                columns: vec![raw.len()],
-                parameters: 1,
-                shape: Vec::new(),
-                names: &[],
-                refine: None,
-                within: [0.0, f64::INFINITY],
-                likely: None,
-                unsure: None,
-            };
+            let variant = Variant::new(vec![raw.len()], Vec::new());
             raw.push(super::axes_column(axes.rows.len(), &rows, values));
             signs.push(Sign::Free);
             candidates.push(Candidate { kind: KINDS[0], place: Place::Rig, variants: vec![variant], check: None });

@@ -39,6 +39,7 @@ pub struct Bench<'c> {
 }
 
 /// A model that was fitted in its own form.
+#[derive(Clone)]
 pub struct Model {
     /// The effects named, in the order of the catalogue.
     pub named: Vec<Named>,
@@ -65,15 +66,8 @@ impl<'c> Bench<'c> {
         let own = prepared.own.len();
         for offer in offers {
             let first = STANDS + own + numbers.len();
-            let variant = |form: super::offers::Form| Variant {
-                columns: form.numbers.iter().map(|number| first + number).collect(),
-                parameters: form.numbers.len() + form.shape.len(),
-                shape: form.shape,
-                names: &[],
-                refine: None,
-                within: [0.0, f64::INFINITY],
-                likely: None,
-                unsure: None,
+            let variant = |form: super::offers::Form| {
+                Variant::new(form.numbers.iter().map(|number| first + number).collect(), form.shape)
             };
             let variants = offer.forms.into_iter().map(variant).collect();
             candidates.push(Candidate { kind: offer.kind, place: offer.place, variants, check: None });
@@ -112,7 +106,7 @@ impl<'c> Bench<'c> {
         if !self.is_physical(&chosen, &solved.fit.coefficients.rows(STANDS, chosen.len()).into_owned()) {
             return None;
         }
-        Some(Model { named: named.to_vec(), bic: self.bic(&solved.problem, named, &solved.fit, 0), solved })
+        Some(Model { named: named.to_vec(), bic: self.bic(&solved.problem, named, &solved.fit), solved })
     }
 
     /// The model with a slip that it names at the moment between those tried which
@@ -163,10 +157,10 @@ impl<'c> Bench<'c> {
         chosen.iter().zip(values.iter()).all(within)
     }
 
-    /// Schwarz's criterion of a fit, with `more` numbers besides its own.
-    pub fn bic(&self, problem: &Problem, named: &[Named], fit: &Fit, more: usize) -> f64 {
+    /// Schwarz's criterion of a fit.
+    fn bic(&self, problem: &Problem, named: &[Named], fit: &Fit) -> f64 {
         let of_effects: usize = named.iter().map(|&one| self.variant(one).parameters).sum();
-        let parameters = STANDS + self.prepared.seen().len() + of_effects + more;
+        let parameters = STANDS + self.prepared.seen().len() + of_effects;
         let readings = problem.total.rows as f64;
         readings * (fit.rss / readings).max(f64::MIN_POSITIVE).ln() + parameters as f64 * readings.ln()
     }
@@ -184,7 +178,7 @@ impl<'c> Bench<'c> {
         let fit = self.problem.total.solve_signed(&columns, &signs)?;
         let numbers = fit.coefficients.rows(STANDS, columns.len() - STANDS).into_owned();
         let physical = self.is_physical(&self.chosen(&named), &numbers);
-        physical.then(|| Proposed { bic: self.bic(&self.problem, &named, &fit, 0), rss: fit.rss, named })
+        physical.then(|| Proposed { bic: self.bic(&self.problem, &named, &fit), rss: fit.rss, named })
     }
 
     /// What a model leaves by its linear fit (m^2).

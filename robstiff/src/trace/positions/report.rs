@@ -5,9 +5,8 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector, Vector3};
-use robstiff_robots::effect::Place as Part;
 
-use super::bench::{Bench, Model};
+use super::bench::{Bench, Model, Proposed};
 use super::search::Searched;
 use crate::campaign::Campaign;
 use crate::identify::NoiseSource;
@@ -61,7 +60,8 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>) -> Result<Trace, String
     let values = bench.prepared.values(&model.solved.state);
     let spread = |model: &Model| of_numbers(&covariance(&model.solved.problem, &model.solved.fit, &model.solved.signs));
     let (spread_before, spread) = (spread(base), spread(model));
-    let effects = if tells { effects(found, &spread, structure, after.holdout_rms) } else { Vec::new() };
+    let replaced = if tells { bench.replaced(&model.named) } else { Vec::new() };
+    let effects = if tells { effects(found, &replaced, &spread, (structure, after.holdout_rms)) } else { Vec::new() };
     let mut description = campaign.robot.clone();
     if tells {
         description = with_values(&campaign.robot, &values);
@@ -113,7 +113,7 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>) -> Result<Trace, String
         why,
         unexplained: found.left.fraction,
         depends_on: if structure { found.left.depends_on.clone() } else { Vec::new() },
-        rivals: if tells { rivals(bench, model) } else { Vec::new() },
+        rivals: rivals(bench, model, &replaced),
         invisible: invisible(campaign, bench),
         next: Vec::new(),
         estimates_before: estimated(campaign, &bench.prepared, &values_before, &spread_before),
@@ -132,10 +132,14 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>) -> Result<Trace, String
     })
 }
 
-fn effects(found: &Searched<'_>, spread: &DMatrix<f64>, partial: bool, holdout_rms: f64) -> Vec<NamedEffect> {
+fn effects(
+    found: &Searched<'_>,
+    replaced: &[(usize, Proposed)],
+    spread: &DMatrix<f64>,
+    (partial, holdout_rms): (bool, f64),
+) -> Vec<NamedEffect> {
     let (bench, model) = (&found.bench, &found.model);
     let chosen = bench.chosen(&model.named);
-    let replaced = bench.replaced(&model.named);
     let mut named: Vec<(f64, Named, NamedEffect)> = Vec::new();
     for (k, &one) in model.named.iter().enumerate() {
         let (form, candidate) = (bench.variant(one), &bench.candidates[one.candidate]);
@@ -213,7 +217,10 @@ fn unseen_rms(bench: &Bench<'_>, model: &Model) -> f64 {
 /// model: it may be one of these, or some together.
 fn parts(bench: &Bench<'_>, rest: &[Named], one: Named) -> Vec<String> {
     let whole = bench.variant(one);
-    let Some(test) = bench.test(rest).filter(|_| whole.columns.len() > 1) else { return Vec::new() };
+    if whole.columns.len() == 1 {
+        return Vec::new();
+    }
+    let Some(test) = bench.test(rest) else { return Vec::new() };
     let other = |candidate: &usize| {
         *candidate != one.candidate && rest.iter().all(|named| named.candidate != *candidate) && bench.shows(*candidate)
     };
@@ -242,8 +249,8 @@ fn new_in<'a>(named: &'a [Named], other: &'a [Named]) -> impl Iterator<Item = us
 }
 
 /// Other models of as many effects that are about as good.
-fn rivals(bench: &Bench<'_>, model: &Model) -> Vec<Rival> {
-    let within = bench.replaced(&model.named).into_iter().filter(|(_, other)| other.bic < model.bic + WITHIN_REACH);
+fn rivals(bench: &Bench<'_>, model: &Model, replaced: &[(usize, Proposed)]) -> Vec<Rival> {
+    let within = replaced.iter().filter(|(_, other)| other.bic < model.bic + WITHIN_REACH);
     let mut rivals: Vec<Rival> = Vec::new();
     for (_, other) in within {
         let names: Vec<String> = other.named.iter().map(|one| bench.candidates[one.candidate].name()).collect();
@@ -265,17 +272,7 @@ fn invisible(campaign: &Campaign, bench: &Bench<'_>) -> Vec<String> {
     let joints = campaign.robot.joints.len();
     let offered = |name: &str| bench.candidates.iter().any(|candidate| candidate.kind.name == name);
     for kind in KINDS.iter().filter(|kind| !kind.of_rig && !offered(kind.name)) {
-        let at_joints = |of: &dyn Fn(usize) -> Part, last: usize| (1..=last).map(of).collect::<Vec<Part>>();
-        let places = match kind.name {
-            "link_compliance" => at_joints(&Part::Link, joints.saturating_sub(1)),
-            "base_compliance" => std::vec![Part::Base],
-            "tool_compliance" => std::vec![Part::Tool],
-            "gravity_sag" => std::vec![Part::Robot],
-            "joint_coupling" => (2..=joints).map(|j| Part::Joints([j - 1, j])).collect(),
-            "dh_error" => Vec::new(),
-            _ => at_joints(&Part::Joint, joints),
-        };
-        names.extend(places.into_iter().map(|place| format!("{}@{place}", kind.name)));
+        names.extend(kind.places(joints).into_iter().map(|place| format!("{}@{place}", kind.name)));
     }
     names.retain(|name| campaign.robot.effects.iter().all(|effect| effect.to_string() != *name));
     names

@@ -63,9 +63,10 @@ pub fn search<'c>(
     progress: &Progress<'_>,
 ) -> Result<Searched<'c>, String> {
     let start = bench.prepared.state(bench.regression.numbers.len());
-    let none = || String::from("these positions do not tell the description's own numbers from each other");
-    let base = bench.solve(&[], &start).ok_or_else(none)?;
-    let model = bench.solve(&[], &start).ok_or_else(none)?;
+    let base = bench
+        .solve(&[], &start)
+        .ok_or_else(|| String::from("these positions do not tell the description's own numbers from each other"))?;
+    let model = base.clone();
     bench.turn_to(&model);
     let too_little = too_little(&model);
     let mut course = Course {

@@ -143,16 +143,7 @@ fn resemblance(bench: &Bench<'_>, model: &Model, options: &Options) -> Vec<(f64,
     let (mut columns, mut candidates) = (Vec::new(), Vec::new());
     for smooth in &all {
         let at = first + columns.len();
-        let variant = Variant {
-            columns: (at..at + smooth.columns.len()).collect(),
-            parameters: smooth.columns.len(),
-            shape: Vec::new(),
-            names: &[],
-            refine: None,
-            within: [0.0, f64::INFINITY],
-            likely: None,
-            unsure: None,
-        };
+        let variant = Variant::new((at..at + smooth.columns.len()).collect(), Vec::new());
         columns.extend(smooth.columns.iter().cloned());
         let variants = std::vec![variant];
         candidates.push(Candidate { kind: KINDS[0], place: Place::Rig, variants, check: None });
