@@ -4,6 +4,7 @@
 //! by.
 
 pub mod arms;
+pub mod folder;
 pub mod interpreter;
 pub mod judge;
 pub mod judge_tracing;

@@ -1,7 +1,6 @@
 //! Campaigns of absolute positions drawn at random, and what tracing makes of them.
 
 use std::fs;
-use std::path::PathBuf;
 
 use rand::seq::IndexedRandom;
 use rand::{RngExt, SeedableRng};
@@ -11,6 +10,7 @@ use robstiff::identify::positions::Prepared;
 use robstiff::trace::{Options, Trace, Verdict, trace};
 use robstiff_robots::{Description, Effect};
 
+use crate::folder::Folder;
 use crate::judge_tracing::{Name, Told};
 use crate::simulator::{DhColumn, Hidden, Outside, Positions, five_axis, scattered, six_axis};
 
@@ -52,31 +52,12 @@ pub struct Came {
 /// # Panics
 /// Where files cannot be written or the campaign cannot be read.
 pub fn read(positions: &Positions, declared: &Description, reflector: [f64; 3]) -> Campaign {
-    let folder = Folder::new(positions.seed);
+    let folder = Folder::new();
     let write = |file: &str, text: &str| fs::write(folder.0.join(file), text).expect("a temporary file");
     write("robot.yaml", &declared.to_yaml());
     write("campaign.yaml", &Positions::campaign(reflector));
     write("positions.csv", &positions.table());
     Campaign::read(folder.0.join("campaign.yaml")).unwrap_or_else(|problem| panic!("{problem}"))
-}
-
-/// A folder of its own, removed at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(seed: u64) -> Self {
-        let thread = std::thread::current().id();
-        let name = format!("robstiff-positions-{}-{seed}-{thread:?}", std::process::id());
-        let folder = std::env::temp_dir().join(name.replace(['(', ')'], ""));
-        fs::create_dir_all(&folder).expect("a temporary folder");
-        Self(folder)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
 }
 
 /// A campaign with so many effects of the catalogue hidden, or with something outside

@@ -7,7 +7,6 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::PathBuf;
 
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
@@ -15,6 +14,7 @@ use rand_chacha::ChaCha8Rng;
 use robstiff::campaign::Campaign;
 use robstiff::identify::{Identification, Visibility, identify};
 use robstiff_robots::{Description, Part};
+use robstiff_tests::folder::Folder;
 use robstiff_tests::simulator::{Arm, Scenario, five_axis};
 
 /// One sigma of a deflection reading (rad).
@@ -73,8 +73,8 @@ fn rows(arm: &Description, axes: &[usize], random: &mut ChaCha8Rng) -> String {
     table
 }
 
-fn identified(name: &str, declared: &Description, table: &str) -> Identification {
-    let folder = Folder::new(name);
+fn identified(declared: &Description, table: &str) -> Identification {
+    let folder = Folder::new();
     let write = |file: &str, text: &str| fs::write(folder.0.join(file), text).expect("a temporary file");
     write("robot.yaml", &declared.to_yaml());
     write("campaign.yaml", "name: axis by axis\nrobot: robot.yaml\nobservations: axes.csv\nkind: clamped\n");
@@ -83,28 +83,11 @@ fn identified(name: &str, declared: &Description, table: &str) -> Identification
     identify(&campaign).unwrap_or_else(|problem| panic!("{problem}"))
 }
 
-/// A folder of its own, removed at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let folder = std::env::temp_dir().join(format!("robstiff-clamped-{}-{name}", std::process::id()));
-        fs::create_dir_all(&folder).expect("a temporary folder");
-        Self(folder)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 #[test]
 fn each_axis_is_found_and_the_far_off_are_flagged() {
     let (declared, truth) = (declared(), truth());
     let mut random = ChaCha8Rng::seed_from_u64(700);
-    let found = identified("each", &declared, &rows(&truth, &[1, 2, 3, 4, 5], &mut random));
+    let found = identified(&declared, &rows(&truth, &[1, 2, 3, 4, 5], &mut random));
     assert_eq!((found.rows, found.poses, found.noise), (40, 0, None));
     for ((estimate, joint), factor) in found.estimates.iter().zip(&truth.joints).zip(FACTORS) {
         let std = estimate.std.expect("eight readings");
@@ -122,7 +105,7 @@ fn each_axis_is_found_and_the_far_off_are_flagged() {
 fn parts_share_what_is_found() {
     let declared = declared();
     let mut random = ChaCha8Rng::seed_from_u64(701);
-    let found = identified("parts", &declared, &rows(&truth(), &[3, 5], &mut random));
+    let found = identified(&declared, &rows(&truth(), &[3, 5], &mut random));
     let read = Description::parse("robot.yaml", &found.description.to_yaml()).expect("what was written");
     assert_eq!(read, found.description);
     for (index, (before, after)) in declared.joints.iter().zip(&read.joints).enumerate() {
@@ -144,8 +127,8 @@ fn parts_share_what_is_found() {
 fn axis_by_axis_agrees_with_all_at_once() {
     let (declared, truth) = (declared(), truth());
     let mut random = ChaCha8Rng::seed_from_u64(702);
-    let by_axis = identified("axes", &declared, &rows(&truth, &[1, 2, 3, 4, 5], &mut random));
-    let folder = Folder::new("tool");
+    let by_axis = identified(&declared, &rows(&truth, &[1, 2, 3, 4, 5], &mut random));
+    let folder = Folder::new();
     Scenario::new(truth, Vec::new(), 702).run().write(&folder.0, &declared.to_yaml()).expect("files");
     let campaign = Campaign::read(folder.0.join("campaign.yaml")).unwrap_or_else(|problem| panic!("{problem}"));
     let at_once = identify(&campaign).expect("all joints are seen");
@@ -158,7 +141,7 @@ fn axis_by_axis_agrees_with_all_at_once() {
 
 #[test]
 fn an_axis_against_its_torque_is_refused() {
-    let folder = Folder::new("against");
+    let folder = Folder::new();
     let write = |file: &str, text: &str| fs::write(folder.0.join(file), text).expect("a temporary file");
     write("robot.yaml", &declared().to_yaml());
     write("campaign.yaml", "robot: robot.yaml\nobservations: axes.csv\nkind: clamped\n");

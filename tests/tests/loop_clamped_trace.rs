@@ -4,11 +4,11 @@
 //! claimed, a count below them has a probability of 1 in 1000.
 
 use std::fs;
-use std::path::PathBuf;
 
 use robstiff::campaign::Campaign;
 use robstiff::trace::{Options, Trace, Verdict, trace};
 use robstiff_robots::{Description, Effect};
+use robstiff_tests::folder::Folder;
 use robstiff_tests::judge_tracing::Told;
 use robstiff_tests::matrix::interval::fewest;
 use robstiff_tests::simulator::{Axes, Hidden, five_axis, scattered, six_axis};
@@ -17,32 +17,13 @@ use robstiff_tests::simulator::{Axes, Hidden, five_axis, scattered, six_axis};
 const RUNS: u64 = 12;
 
 fn traced(axes: &Axes, declared: &Description) -> Trace {
-    let folder = Folder::new(axes.seed);
+    let folder = Folder::new();
     let write = |file: &str, text: &str| fs::write(folder.0.join(file), text).expect("a temporary file");
     write("robot.yaml", &declared.to_yaml());
     write("campaign.yaml", "name: axis by axis\nrobot: robot.yaml\nobservations: axes.csv\nkind: clamped\n");
     write("axes.csv", &axes.table());
     let campaign = Campaign::read(folder.0.join("campaign.yaml")).unwrap_or_else(|problem| panic!("{problem}"));
     trace(&campaign, &Options::default(), &|_| {}).unwrap_or_else(|problem| panic!("{problem}"))
-}
-
-/// A folder of its own, removed at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(seed: u64) -> Self {
-        let thread = std::thread::current().id();
-        let name = format!("robstiff-axes-{}-{seed}-{thread:?}", std::process::id());
-        let folder = std::env::temp_dir().join(name.replace(['(', ')'], ""));
-        fs::create_dir_all(&folder).expect("a temporary folder");
-        Self(folder)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
 }
 
 /// Both arms in turn, other compliances in every run.

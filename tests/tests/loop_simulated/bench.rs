@@ -2,13 +2,12 @@
 //! them back and trace.
 
 use std::fs;
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use robstiff::Effect;
 use robstiff::campaign::Campaign;
 use robstiff::trace::{NamedEffect, Options, Trace, trace};
 use robstiff_robots::Description;
+use robstiff_tests::folder::Folder;
 use robstiff_tests::simulator::{Scenario, Simulated, scattered};
 
 /// Noise of one reading on each axis, one sigma (m).
@@ -48,23 +47,6 @@ pub fn trace_text(simulated: &Simulated, declared: &Description, said: &str) -> 
     let campaign = Campaign::read(&path).unwrap_or_else(|problem| panic!("{problem}"));
     assert_eq!((&campaign.robot, campaign.warnings.len()), (declared, 0), "{:?}", campaign.warnings);
     trace(&campaign, &Options::default(), &|_| {}).unwrap_or_else(|problem| panic!("{problem}"))
-}
-
-/// A folder of its own, removed at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new() -> Self {
-        static COUNT: AtomicUsize = AtomicUsize::new(0);
-        let count = COUNT.fetch_add(1, Ordering::Relaxed);
-        Self(std::env::temp_dir().join(format!("robstiff-loop-{}-{count}", std::process::id())))
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
 }
 
 /// Whether a name stands for an effect: it is its own, or the data cannot tell
