@@ -17,12 +17,17 @@ use nalgebra::{Matrix3, Matrix4, Matrix6, Matrix6x3, SVector, Vector3, Vector6};
 
 use crate::{Convention, Effect, JointKind, Real, Robot};
 
+#[cfg(feature = "identify")]
+mod deformed;
 mod laws;
 #[cfg(all(test, feature = "generic"))]
 mod tests;
 
+#[cfg(feature = "identify")]
+pub use deformed::{Deformed, deformed};
 pub use laws::{
-    commanded_rates, deviation, joint_turns, own_weight_torque, plays, share_of_weight, turn, turn_about, unloaded_turn,
+    commanded_rates, deviation, joint_turns, own_weight_torque, plays, share_of_weight, turn, turn_about, turns_under,
+    unloaded_turn,
 };
 pub use robstiff_robots::effect::physics::Spring as Parameter;
 

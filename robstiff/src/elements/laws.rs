@@ -52,8 +52,18 @@ pub fn joint_turns<const N: usize, R: Robot<N>>(
     wrench: &Vector6<f64>,
     before: &State<N>,
 ) -> SVector<f64, N> {
-    let (own, torques) = (robot.joint_compliance(), robot.joint_torques(q, wrench));
-    let mut turns = own.component_mul(&torques);
+    turns_under(robot, q, &robot.joint_torques(q, wrench), before)
+}
+
+/// The same under torques of the joints (Nm or N).
+pub fn turns_under<const N: usize, R: Robot<N>>(
+    robot: &R,
+    q: &SVector<f64, N>,
+    torques: &SVector<f64, N>,
+    before: &State<N>,
+) -> SVector<f64, N> {
+    let own = robot.joint_compliance();
+    let mut turns = own.component_mul(torques);
     for effect in robot.effects() {
         if let &Effect::JointCoupling { joints: [a, b], value } = effect {
             turns[a - 1] += value * torques[b - 1];

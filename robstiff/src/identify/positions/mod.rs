@@ -34,9 +34,9 @@ use super::baseline::{
 };
 use super::displacement::among_all;
 use super::holdout::training;
-use super::normal::{Normal, Scaled, Sign};
+use super::normal::{Fit, Normal, Scaled, Sign};
 use super::predict::{PredictedRow, Prediction};
-use super::problem::rms;
+use super::problem::{Problem, rms};
 use super::readable::{UNREADABLE, is_readable};
 use super::uncertainty::{correlation, covariance};
 use super::{Error, Estimate, Identification, NoiseSource, estimates};
@@ -46,6 +46,9 @@ use crate::identify::samples::Column;
 
 /// Step of central differences of a compliance (rad/Nm or m/N).
 pub const COMPLIANCE_STEP: f64 = 1e-8;
+
+/// Positions are all but linear in compliances: a step is off by some 1e-3 of itself.
+const PASSES: usize = 3;
 
 /// A campaign of positions, ready to be fitted.
 pub struct Prepared<'c> {
@@ -200,17 +203,12 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
     }
     let regression = prepared.regression([]);
     let start = prepared.state(prepared.own.len());
-    let (problem, _) = regression.at(&start, &seen, &prepared.rows);
-    let (state, spread, variance) = match within_visits(&problem, data) {
-        Some(within) => {
-            let signs: Vec<Sign> = seen.iter().map(|&k| prepared.own[k].sign).collect();
-            let columns: Vec<usize> = (0..seen.len()).collect();
-            let fit = within.total.solve_signed(&columns, &signs).ok_or_else(confounded)?;
-            let mut state = start;
-            seen.iter().zip(fit.coefficients.iter()).for_each(|(&k, &value)| state.values[k] = value);
+    let (state, spread, variance) = match by_payloads(&regression, &start, &seen, &prepared.rows)? {
+        Some((mut state, within, fit)) => {
             let model = state.model(&regression.start, &regression.numbers);
             state.registration = standing(&model, data, |row| prepared.rows.training[data.rows[row].pose])?;
-            (state, covariance(&within, &fit, &signs), fit.rss / within.freedom(&fit))
+            let signs = &regression.signs_of(&seen)[STANDS..];
+            (state, covariance(&within, &fit, signs), fit.rss / within.freedom(&fit))
         }
         None => {
             let solved = regression.solve(&seen, &start, &prepared.rows).ok_or_else(confounded)?;
@@ -240,6 +238,29 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
         rms_declared: Some(rms(&prepared.declared_residuals(campaign), 3, 0..rows)),
         rms: Some(rms(&residuals(&regression, &state), 3, 0..rows)),
     })
+}
+
+/// The own numbers by what payloads of one visit differ by, with the regression and its
+/// fit; `None` where that does not tell them from each other.
+fn by_payloads(
+    regression: &Regression<'_>,
+    start: &State,
+    seen: &[usize],
+    rows: &Rows,
+) -> Result<Option<(State, Problem, Fit)>, Error> {
+    let (signs, columns) = (&regression.signs_of(seen)[STANDS..], Vec::from_iter(0..seen.len()));
+    let mut state = start.clone();
+    let mut pass = 1;
+    loop {
+        let (problem, _) = regression.at(&state, seen, rows);
+        let Some(within) = within_visits(&problem, regression.data) else { return Ok(None) };
+        let fit = within.total.solve_signed(&columns, signs).ok_or_else(confounded)?;
+        seen.iter().zip(fit.coefficients.iter()).for_each(|(&k, &value)| state.values[k] = value);
+        if pass == PASSES {
+            return Ok(Some((state, within, fit)));
+        }
+        pass += 1;
+    }
 }
 
 fn confounded() -> Error {

@@ -9,6 +9,7 @@ use robstiff_robots::effect::gravity_sag::GRAVITY;
 
 use super::registration::Registration;
 use crate::campaign::{PositionRow, Positions};
+use crate::elements::deformed;
 use crate::{Robot, with_robot};
 
 /// A model of absolute positions.
@@ -41,8 +42,8 @@ impl Model {
     }
 
     /// The point at each row, in the base frame (m). The payload's weight, against z
-    /// of the base frame, moves it by `H_x F` and by what joints do besides; the
-    /// arm's own weight does so where the description says so (`gravity_sag`).
+    /// of the base frame, takes it where the arm carries it ([`deformed`]); the arm's
+    /// own weight does so where the description says so (`gravity_sag`).
     pub fn points(&self, data: &Positions) -> Vec<Vector3<f64>> {
         with_robot!(&self.description, |robot| points(&robot, data, &self.marker))
     }
@@ -63,14 +64,11 @@ impl Model {
 fn points<const N: usize>(robot: &impl Robot<N>, data: &Positions, marker: &Vector3<f64>) -> Vec<Vector3<f64>> {
     let point = |row: &PositionRow| {
         let q = SVector::<f64, N>::from_column_slice(&row.q);
-        let tcp = robot.transform(&q);
-        let lever = tcp.fixed_view::<3, 3>(0, 0) * marker;
-        let still = tcp.fixed_view::<3, 1>(0, 3) + lever;
-        if row.payload == 0.0 {
-            return still;
-        }
-        let moved = robot.deflection(&q, &weight(&tcp, row, data));
-        still + moved.fixed_rows::<3>(0) + moved.fixed_rows::<3>(3).cross(&lever)
+        let tcp = match row.payload {
+            0.0 => robot.transform(&q),
+            _ => deformed(robot, &q, |tcp| weight(tcp, row, data), &mut crate::State::new()).tcp,
+        };
+        tcp.transform_point(&(*marker).into()).coords
     };
     data.rows.iter().map(point).collect()
 }
