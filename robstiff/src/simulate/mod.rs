@@ -6,13 +6,10 @@
 //! description lacks), draws poses and loads, and reads them with noise. The
 //! result is a campaign as files, for trying a plan before renting a tracker.
 //!
-//! The displacement is the robot's own
-//! [`deflection_with`](crate::Robot::deflection_with), what hysteresis remembers
-//! beginning anew with each visit, and, as loads are carried by the arm where they have moved it, the second
-//! order of the joints' part of it ([`second_order`](crate::identify::second_order)).
-//! Encoders on the output side of the gears read by how much the joints turn, in
-//! the same order, and nothing of bearings, links, the base and the tool.
-//! Neglected are the second order of the effects' part and of rotations, and
+//! The displacement is that of the arm in its deformed shape
+//! ([`deformed`](crate::elements::deformed)), what hysteresis remembers beginning anew
+//! with each visit. Encoders on the output side of the gears read by how much the
+//! joints turn, and nothing of bearings, links, the base and the tool. Neglected is
 //! gravity, which loaded and unloaded readings have in common to first order.
 //! It shares its formulas with tracing, so it says what a plan of measurements
 //! can tell apart, and nothing on whether the formulas are right.

@@ -112,7 +112,8 @@ fn hysteresis_remembers_the_loads_of_a_visit() {
         let moved = [0, 1, 2].map(|row| robot.deflection_with(&q, &Vector6::from(visit[row].wrench), &mut state));
         let left = (moved[2] - moved[0]).fixed_rows::<3>(0).into_owned();
         let read = nalgebra::Vector3::from(visit[2].displacement) - nalgebra::Vector3::from(visit[0].displacement);
-        assert!((read - left).norm() < 1e-12, "{read} {left}");
+        // The arm carries the load where it has moved it.
+        assert!((read - left).norm() < 1e-2 * left.norm() + 1e-9, "{read} {left}");
         largest = largest.max(left.norm());
     }
     assert!(largest > 20e-6, "{largest}");
