@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use robstiff::campaign::{Campaign, Data, Holdout};
-use robstiff::simulate::{Scenario, simulate};
+use robstiff::simulate::{Scenario, Simulated, simulate};
 use robstiff::trace::{Options, Verdict, trace};
 use robstiff_robots::Description;
 
@@ -39,18 +39,17 @@ fn the_campaign_of_the_readme_reads() {
     }
 }
 
-/// The scenario that is shown is one that tracing gets to the bottom of.
-#[test]
-fn the_scenario_of_the_readme_simulates_and_traces() {
+/// The campaign of a scenario of the measuring page, read back from its files.
+fn simulated(which: usize, folder: &str) -> (Simulated, Campaign) {
     let readme = include_str!("../../robots/measured/README.md");
     let robot = Description::parse("robot.yaml", include_str!("../../robots/kuka-kr270-r2700.yaml")).expect("a robot");
-    let scenario = Scenario::parse("README.md", nth_block(readme, "yaml", 2), &robot);
+    let scenario = Scenario::parse("README.md", nth_block(readme, "yaml", which), &robot);
     let simulated = simulate(&robot, &scenario.unwrap_or_else(|problems| panic!("{problems}"))).expect("measured");
-    let (files, folder) = (simulated.files(), Path::new(env!("CARGO_TARGET_TMPDIR")).join("scenario"));
+    let (files, folder) = (simulated.files(), Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder));
     fs::create_dir_all(&folder).expect("a folder");
     for (name, text) in [
         ("campaign.yaml", &files.campaign),
-        ("loads.csv", &files.loads),
+        (files.observations.0, &files.observations.1),
         ("robot.yaml", &files.robot),
         ("truth.yaml", &files.truth),
     ] {
@@ -58,14 +57,36 @@ fn the_scenario_of_the_readme_simulates_and_traces() {
     }
     let campaign = Campaign::read(folder.join("campaign.yaml")).unwrap_or_else(|problem| panic!("{problem}"));
     assert_eq!((&campaign.robot, campaign.warnings.len()), (&robot, 0), "{:?}", campaign.warnings);
+    assert_eq!(Description::read(folder.join("truth.yaml")).expect("a robot"), simulated.truth);
+    (simulated, campaign)
+}
+
+/// Whether tracing gets to the bottom of it.
+fn is_explained(simulated: &Simulated, campaign: &Campaign) -> bool {
+    let traced = trace(campaign, &Options::default(), &|_| {}).expect("traced");
+    let named = |hidden: &robstiff::Effect| {
+        let hidden = hidden.to_string();
+        traced.effects.iter().any(|effect| effect.effect.to_string() == hidden || effect.same_as.contains(&hidden))
+    };
+    println!("{} {:?}", traced.verdict, traced.effects);
+    traced.verdict == Verdict::Explained && simulated.scenario.hidden.iter().all(named)
+}
+
+/// The scenarios that are shown are some that tracing gets to the bottom of.
+#[test]
+fn the_scenario_of_the_readme_simulates_and_traces() {
+    let (simulated, campaign) = simulated(2, "scenario");
     assert_eq!(campaign.noise.displacement, Some(8e-6));
     assert_eq!(campaign.holdout, Some(Holdout { fraction: 0.25, seed: 1 }));
     let Data::Displacement(data) = &campaign.data else { panic!("a campaign of displacements") };
     assert_eq!((data.poses.len(), data.visits.len(), data.rows.len()), (40, 80, 480));
-    assert_eq!(Description::read(folder.join("truth.yaml")).expect("a robot"), simulated.truth);
-    let traced = trace(&campaign, &Options::default(), &|_| {}).expect("traced");
-    let hidden = simulated.scenario.hidden[0].to_string();
-    let named =
-        |effect: &robstiff::trace::NamedEffect| effect.effect.to_string() == hidden || effect.same_as.contains(&hidden);
-    assert!(traced.verdict == Verdict::Explained && traced.effects.iter().any(named), "{:?}", traced.effects);
+    assert!(is_explained(&simulated, &campaign));
+}
+
+#[test]
+fn the_scenario_of_positions_simulates_and_traces() {
+    let (simulated, campaign) = simulated(3, "positions");
+    let Data::Position(data) = &campaign.data else { panic!("a campaign of positions") };
+    assert_eq!((data.poses.len(), data.rows.len()), (60, 120));
+    assert!(is_explained(&simulated, &campaign));
 }

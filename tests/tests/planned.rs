@@ -10,7 +10,7 @@ use robstiff::Effect;
 use robstiff::campaign::{Campaign, Data, Frame, Noise};
 use robstiff::identify::identify;
 use robstiff::plan::{Group, Options, Outlook, Plan, plan_between};
-use robstiff::simulate::{Poses, Pull, Scenario, Simulated, simulate};
+use robstiff::simulate::{Measures, Poses, Pull, Scenario, Simulated, UnderForces, simulate};
 use robstiff::trace::{self, trace};
 use robstiff_robots::Description;
 use robstiff_tests::simulator::{five_axis, six_axis};
@@ -34,16 +34,19 @@ fn scenario(hidden: &[Effect], poses: Poses, directions: Vec<[f64; 3]>, seed: u6
         seed,
         poses,
         visits: 1,
-        ramp: vec![1.0],
-        force: Pull { bounds: [FORCE; 2], directions },
-        moment: None,
-        wrench: (Frame::Base, [0.0; 3]),
-        measured: (Frame::Base, [0.0; 3]),
+        measures: Measures::Displacements(UnderForces {
+            ramp: vec![1.0],
+            force: Pull { bounds: [FORCE; 2], directions },
+            moment: None,
+            frames: [Frame::Base; 2],
+            rotation_noise: None,
+            encoder_noise: None,
+            shares_unloaded: true,
+        }),
+        wrench_at: [0.0; 3],
+        measured_at: [0.0; 3],
         noise: [NOISE; 3],
-        rotation_noise: None,
-        encoder_noise: None,
         states_noise: true,
-        shares_unloaded: true,
         hidden: hidden.to_vec(),
         scatter: 0.3,
         holdout: None,
@@ -62,7 +65,7 @@ fn campaign(simulated: &Simulated) -> Campaign {
         robot_path: PathBuf::new(),
         observations_path: PathBuf::new(),
         robot: simulated.declared.clone(),
-        data: Data::Displacement(simulated.data.clone()),
+        data: simulated.data.clone(),
         noise: Noise { displacement: Some(NOISE), rotation: None },
         holdout: None,
         warnings: Vec::new(),
@@ -73,7 +76,8 @@ fn campaign(simulated: &Simulated) -> Campaign {
 type Pulls = Vec<(Vec<f64>, [f64; 3])>;
 
 fn pulls(simulated: &Simulated) -> Pulls {
-    let rows = simulated.data.rows.iter();
+    let Data::Displacement(data) = &simulated.data else { unreachable!("displacements") };
+    let rows = data.rows.iter();
     rows.map(|row| (row.q.clone(), [row.wrench[0], row.wrench[1], row.wrench[2]])).collect()
 }
 

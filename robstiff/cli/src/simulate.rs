@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use robstiff::campaign::Data;
 use robstiff::simulate::{Scenario, Simulated, simulate};
 use serde_json::json;
 
@@ -12,8 +13,8 @@ use crate::{input, json};
 
 /// Measures a scenario on a simulated robot, to try a plan before making it
 ///
-/// DIR gets `campaign.yaml`, `loads.csv` and `robot.yaml` (the robot as
-/// declared) for the other commands, and `truth.yaml`: the robot as it was
+/// DIR gets `campaign.yaml`, `loads.csv` (`positions.csv`) and `robot.yaml` (the
+/// robot as declared) for the other commands, and `truth.yaml`: the robot as it was
 /// simulated, with what was hidden from them.
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -45,7 +46,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     files.protect(&arguments.scenario);
     for (name, text) in [
         ("campaign.yaml", texts.campaign),
-        ("loads.csv", texts.loads),
+        texts.observations,
         ("robot.yaml", texts.robot),
         ("truth.yaml", texts.truth),
     ] {
@@ -66,7 +67,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn page(simulated: &Simulated) -> String {
-    let (rows, poses) = (simulated.data.rows.len(), simulated.data.poses.len());
+    let [rows, poses] = sizes(simulated);
     let hidden: Vec<String> = simulated.scenario.hidden.iter().map(|effect| format!("  {effect}\n")).collect();
     let hidden = if hidden.is_empty() { "  nothing\n".to_owned() } else { hidden.concat() };
     format!(
@@ -79,12 +80,22 @@ fn page(simulated: &Simulated) -> String {
 }
 
 fn document(simulated: &Simulated) -> serde_json::Value {
+    let [rows, poses] = sizes(simulated);
     json!({
         "robot": simulated.declared.name,
-        "rows": simulated.data.rows.len(),
-        "poses": simulated.data.poses.len(),
+        "rows": rows,
+        "poses": poses,
         "seed": simulated.scenario.seed,
         "hidden": simulated.scenario.hidden.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "compliances": simulated.truth.joints.iter().map(|joint| json::number(joint.compliance())).collect::<Vec<_>>(),
     })
+}
+
+/// How many rows and poses there are.
+fn sizes(simulated: &Simulated) -> [usize; 2] {
+    match &simulated.data {
+        Data::Displacement(data) => [data.rows.len(), data.poses.len()],
+        Data::Position(data) => [data.rows.len(), data.poses.len()],
+        Data::Clamped(_) => unreachable!("no scenario is of clamped axes"),
+    }
 }

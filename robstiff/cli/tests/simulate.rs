@@ -66,6 +66,25 @@ fn encoders_are_simulated_and_read() {
     }
 }
 
+/// What a tracker would read, from scenario to name.
+#[test]
+fn positions_are_simulated_and_traced() {
+    let folder = folder("simulate-positions");
+    let text = "kind: position\nseed: 2\nposes: {count: 60}\nnoise: {displacement: 30 um}\n\
+                hidden: {effects: [{kind: joint_zero_offset, at: joint 3, value: 0.1 deg}]}\n";
+    let (scenario, out) = (scenario(&folder, text), inside(&folder, "out"));
+    let page = succeed(&["simulate", "kuka-kr270-r2700", &scenario, "--out", &out]);
+    assert!(page.contains("60 rows at 60 poses") && page.contains("  joint_zero_offset@joint 3"), "{page}");
+    assert_eq!(names(Path::new(&out)), ["campaign.yaml", "positions.csv", "robot.yaml", "truth.yaml"]);
+    let campaign = format!("{out}/campaign.yaml");
+    let page = succeed(&["trace", &campaign, "--out", &inside(&folder, "traced"), "--draws", "499"]);
+    assert!(page.contains("joint_zero_offset@joint 3"), "{page}");
+    let predicted = inside(&folder, "predicted.json");
+    succeed(&["predict", &format!("{out}/truth.yaml"), &campaign, "--json", &predicted]);
+    let rms = json(&predicted)["rms_um"].as_f64().unwrap();
+    assert!((rms / 30.0 - 1.0).abs() < 0.2, "{rms}");
+}
+
 #[test]
 fn one_seed_gives_one_campaign_and_none_is_overwritten_unasked() {
     let folder = folder("simulate-twice");

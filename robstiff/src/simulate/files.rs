@@ -4,18 +4,19 @@ use std::fmt::Write as _;
 use std::format;
 use std::string::String;
 
-use super::Simulated;
+use super::{Measures, Simulated, UnderForces};
 use crate::JointKind;
-use crate::campaign::{Frame, Observation};
+use crate::campaign::{Data, Displacements, Frame, Positions};
 
 /// The texts of a simulated campaign's files.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Files {
     /// `campaign.yaml`, which names the next two.
     pub campaign: String,
-    /// `loads.csv`, in degrees or millimetres, newtons, micrometres and
-    /// microradians.
-    pub loads: String,
+    /// The observations, with their file's name: `loads.csv` in degrees or
+    /// millimetres, newtons, micrometres and microradians; `positions.csv` in degrees
+    /// or millimetres, kilograms and millimetres.
+    pub observations: (&'static str, String),
     /// `robot.yaml`: the robot as declared.
     pub robot: String,
     /// `truth.yaml`: the robot as it is, which no command but `predict` should
@@ -26,26 +27,32 @@ pub struct Files {
 impl Simulated {
     /// The texts of the files.
     pub fn files(&self) -> Files {
-        Files {
-            campaign: self.campaign(),
-            loads: self.loads(),
-            robot: self.declared.to_yaml(),
-            truth: self.truth.to_yaml(),
-        }
+        let observations = match (&self.data, &self.scenario.measures) {
+            (Data::Displacement(data), Measures::Displacements(under)) => ("loads.csv", self.loads(data, under)),
+            (Data::Position(data), _) => ("positions.csv", self.positions(data)),
+            _ => unreachable!("what is simulated is what the scenario measures"),
+        };
+        let campaign = self.campaign(observations.0);
+        Files { campaign, observations, robot: self.declared.to_yaml(), truth: self.truth.to_yaml() }
     }
 
-    fn campaign(&self) -> String {
+    fn campaign(&self, observations: &str) -> String {
         let scenario = &self.scenario;
+        let (kind, [wrench, measured], rotation, missed) = match &scenario.measures {
+            Measures::Displacements(under) => ("displacement", under.frames, under.rotation_noise, 0.0),
+            Measures::Positions(under) => ("position", [Frame::Base; 2], None, under.repeatability),
+        };
         let mut text = format!(
-            "name: {}\nrobot: robot.yaml\nobservations: loads.csv\nkind: displacement\nwrench: {}\nmeasured: {}\n",
+            "name: {}\nrobot: robot.yaml\nobservations: {observations}\nkind: {kind}\nwrench: {}\nmeasured: {}\n",
             quoted(&scenario.name),
-            place(scenario.wrench),
-            place(scenario.measured)
+            place(wrench, scenario.wrench_at),
+            place(measured, scenario.measured_at)
         );
         // One number for the three axes: their root mean square.
         let noise = scenario.noise.iter().fold(0.0, |sum: f64, sigma| sum.hypot(*sigma)) / 3_f64.sqrt();
+        let noise = noise.hypot(missed);
         if scenario.states_noise && noise > 0.0 {
-            let rotation = scenario.rotation_noise.filter(|sigma| *sigma > 0.0);
+            let rotation = rotation.filter(|sigma| *sigma > 0.0);
             let rotation = rotation.map(|sigma| format!(", rotation: {} urad", micro(sigma)));
             text += &format!("noise: {{displacement: {} um{}}}\n", micro(noise), rotation.unwrap_or_default());
         }
@@ -55,46 +62,65 @@ impl Simulated {
         text
     }
 
-    fn loads(&self) -> String {
+    fn loads(&self, data: &Displacements, under: &UnderForces) -> String {
+        let columns = if under.encoder_noise.is_some() { &["q", "j"][..] } else { &["q"] };
+        let mut text = self.header(columns) + ",Fx [N],Fy [N],Fz [N]";
+        if under.moment.is_some() {
+            text += ",Mx [Nm],My [Nm],Mz [Nm]";
+        }
+        text += ",dx [um],dy [um],dz [um]";
+        if under.rotation_noise.is_some() {
+            text += ",rx [urad],ry [urad],rz [urad]";
+        }
+        text.push('\n');
+        for row in &data.rows {
+            let coordinates = self.for_people(row.q.iter().chain(row.encoders.iter().flatten()));
+            let wrench = &row.wrench[..if under.moment.is_some() { 6 } else { 3 }];
+            let readings = row.displacement.iter().chain(row.rotation.iter().flatten()).map(|value| value * 1e6);
+            let values = row.time.into_iter().chain(coordinates).chain(wrench.iter().copied()).chain(readings);
+            line(&mut text, [&data.poses[row.pose], &data.visits[row.visit]], values);
+        }
+        text
+    }
+
+    fn positions(&self, data: &Positions) -> String {
+        let mut text = self.header(&["q"]) + ",payload [kg],px [mm],py [mm],pz [mm]\n";
+        for row in &data.rows {
+            let read = row.position.iter().map(|value| value * 1e3);
+            let values = row.time.into_iter().chain(self.for_people(row.q.iter())).chain([row.payload]).chain(read);
+            line(&mut text, [&data.poses[row.pose], &data.visits[row.visit]], values);
+        }
+        text
+    }
+
+    /// The first columns of a table, up to those of joints, which have these letters.
+    fn header(&self, columns: &[&str]) -> String {
         let mut text = String::from("pose,visit,time [s]");
-        let columns = if self.scenario.encoder_noise.is_some() { &["q", "j"][..] } else { &["q"] };
         for column in columns {
             for (number, joint) in (1..).zip(&self.truth.joints) {
                 let unit = if joint.kind == JointKind::Revolute { "deg" } else { "mm" };
                 write!(text, ",{column}{number} [{unit}]").expect("a string takes any text");
             }
         }
-        text += ",Fx [N],Fy [N],Fz [N]";
-        if self.scenario.moment.is_some() {
-            text += ",Mx [Nm],My [Nm],Mz [Nm]";
-        }
-        text += ",dx [um],dy [um],dz [um]";
-        if self.scenario.rotation_noise.is_some() {
-            text += ",rx [urad],ry [urad],rz [urad]";
-        }
-        text.push('\n');
-        for row in &self.data.rows {
-            self.line(&mut text, row);
-        }
         text
     }
 
-    /// One row of the table, with all the digits it has.
-    fn line(&self, text: &mut String, row: &Observation) {
-        let joints = self.truth.joints.iter().cycle();
-        let coordinates = row.q.iter().chain(row.encoders.iter().flatten()).zip(joints);
-        let coordinates = coordinates.map(|(q, joint)| match joint.kind {
+    /// Joint coordinates, those of all joints in turn, in degrees or millimetres.
+    fn for_people<'a>(&self, coordinates: impl Iterator<Item = &'a f64>) -> impl Iterator<Item = f64> {
+        coordinates.zip(self.truth.joints.iter().cycle()).map(|(q, joint)| match joint.kind {
             JointKind::Revolute => q.to_degrees(),
             JointKind::Prismatic => q * 1e3,
-        });
-        let wrench = &row.wrench[..if self.scenario.moment.is_some() { 6 } else { 3 }];
-        let readings = row.displacement.iter().chain(row.rotation.iter().flatten()).map(|value| value * 1e6);
-        *text += &format!("{},{}", self.data.poses[row.pose], self.data.visits[row.visit]);
-        for value in row.time.into_iter().chain(coordinates).chain(wrench.iter().copied()).chain(readings) {
-            write!(text, ",{value}").expect("a string takes any text");
-        }
-        text.push('\n');
+        })
     }
+}
+
+/// One row of a table, with all the digits it has.
+fn line(text: &mut String, [pose, visit]: [&str; 2], values: impl Iterator<Item = f64>) {
+    *text += &format!("{pose},{visit}");
+    for value in values {
+        write!(text, ",{value}").expect("a string takes any text");
+    }
+    text.push('\n');
 }
 
 /// In millionths, without the rounding of the multiplication: to 15 digits, so that
@@ -103,7 +129,7 @@ fn micro(value: f64) -> f64 {
     format!("{:.14e}", value * 1e6).parse().expect("a number that was written")
 }
 
-fn place((frame, at): (Frame, [f64; 3])) -> String {
+fn place(frame: Frame, at: [f64; 3]) -> String {
     let frame = if frame == Frame::Base { "base" } else { "tool" };
     match at {
         [0.0, 0.0, 0.0] => format!("{{frame: {frame}, at: tcp}}"),

@@ -6,17 +6,19 @@
 //! description lacks), draws poses and loads, and reads them with noise. The
 //! result is a campaign as files, for trying a plan before renting a tracker.
 //!
-//! The displacement is that of the arm in its deformed shape
+//! Displacements and positions are those of the arm in its deformed shape
 //! ([`deformed`](crate::elements::deformed)), what hysteresis remembers beginning anew
-//! with each visit. Encoders on the output side of the gears read by how much the
-//! joints turn, and nothing of bearings, links, the base and the tool. Neglected is
-//! gravity, which loaded and unloaded readings have in common to first order.
-//! It shares its formulas with tracing, so it says what a plan of measurements
-//! can tell apart, and nothing on whether the formulas are right.
+//! with each visit; payloads are not remembered. Encoders on the output side of the
+//! gears read by how much the joints turn, and nothing of bearings, links, the base and
+//! the tool. Neglected is gravity, which loaded and unloaded readings have in common to
+//! first order, but for what `gravity_sag` says. It shares its formulas with tracing, so
+//! it says what a plan of measurements can tell apart, and nothing on whether the
+//! formulas are right.
 
+mod displacements;
 mod draw;
 mod files;
-mod forward;
+mod positions;
 mod read;
 #[cfg(test)]
 mod tests;
@@ -30,7 +32,7 @@ use robstiff_robots::Description;
 pub use files::Files;
 
 use crate::Effect;
-use crate::campaign::{Displacements, Frame, Holdout, Observation};
+use crate::campaign::{Data, Frame, Holdout};
 use crate::identify::Error;
 
 /// What is to be measured, how well, and what the description is not told.
@@ -43,33 +45,19 @@ pub struct Scenario {
     pub seed: u64,
     /// The poses.
     pub poses: Poses,
-    /// Load sequences a pose, each with a direction of its own.
+    /// How often the robot comes to each pose.
     pub visits: usize,
-    /// The loads of a visit in order, as shares of its greatest.
-    pub ramp: Vec<f64>,
-    /// The greatest force of each visit (N).
-    pub force: Pull,
-    /// The greatest moment of each visit (Nm); none where only forces act.
-    pub moment: Option<Pull>,
-    /// The frame of forces and moments, and where they act, in the tool frame
-    /// (m).
-    pub wrench: (Frame, [f64; 3]),
-    /// The frame of displacements, and where they are read, in the tool frame
-    /// (m).
-    pub measured: (Frame, [f64; 3]),
+    /// What acts, and what is read of it.
+    pub measures: Measures,
+    /// Where wrenches act or payloads hang, in the tool frame (m).
+    pub wrench_at: [f64; 3],
+    /// The point that is read, in the tool frame (m).
+    pub measured_at: [f64; 3],
     /// One sigma of one position reading along x, y and z of the measuring
     /// frame (m).
     pub noise: [f64; 3],
-    /// One sigma of one reading of the rotation about each axis (rad); none
-    /// where rotations are not measured.
-    pub rotation_noise: Option<f64>,
-    /// One sigma of one reading of each joint's encoder on the output side of
-    /// its gear (rad or m); none where there are no such encoders.
-    pub encoder_noise: Option<Vec<f64>>,
     /// Whether the campaign file states the noise.
     pub states_noise: bool,
-    /// Whether the rows of a visit share one unloaded reading.
-    pub shares_unloaded: bool,
     /// Effects that the description is not told of.
     pub hidden: Vec<Effect>,
     /// The parts of the joints' compliances are off their declared values by up
@@ -77,6 +65,45 @@ pub struct Scenario {
     pub scatter: f64,
     /// Passed on to the campaign file.
     pub holdout: Option<Holdout>,
+}
+
+/// What acts on the robot, and what is read of it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Measures {
+    /// Forces; displacements are read.
+    Displacements(UnderForces),
+    /// Payloads; absolute positions are read, by a tracker that stands anywhere.
+    Positions(UnderPayloads),
+}
+
+/// Forces and moments, and how displacements under them are read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnderForces {
+    /// The loads of a visit in order, as shares of its greatest.
+    pub ramp: Vec<f64>,
+    /// The greatest force of each visit (N), which has a direction of its own.
+    pub force: Pull,
+    /// The greatest moment of each visit (Nm); none where only forces act.
+    pub moment: Option<Pull>,
+    /// The frame of forces and moments, and that of displacements.
+    pub frames: [Frame; 2],
+    /// One sigma of one reading of the rotation about each axis (rad); none
+    /// where rotations are not measured.
+    pub rotation_noise: Option<f64>,
+    /// One sigma of one reading of each joint's encoder on the output side of
+    /// its gear (rad or m); none where there are no such encoders.
+    pub encoder_noise: Option<Vec<f64>>,
+    /// Whether the rows of a visit share one unloaded reading.
+    pub shares_unloaded: bool,
+}
+
+/// Payloads, and how well the robot comes to its poses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnderPayloads {
+    /// The payloads of a visit in order (kg).
+    pub payloads: Vec<f64>,
+    /// One sigma of where the robot comes to at each visit, along each axis (m).
+    pub repeatability: f64,
 }
 
 /// The poses of a scenario.
@@ -121,7 +148,7 @@ pub struct Simulated {
     pub truth: Description,
     /// The rows, with noise, as a campaign's reader would give them; lines
     /// count from 2, after the header.
-    pub data: Displacements,
+    pub data: Data,
 }
 
 /// Measures a scenario on a robot.
@@ -132,21 +159,24 @@ pub struct Simulated {
 /// large that readings are no numbers.
 pub fn simulate(declared: &Description, scenario: &Scenario) -> Result<Simulated, Error> {
     let truth = truth(declared, scenario)?;
-    let mut data = draw::loads(&truth, scenario)?;
-    forward::read(&truth, scenario, &mut data);
-    draw::noise(scenario, &mut data);
-    draw::encoder_noise(scenario, &mut data);
-    if !data.rows.iter().all(is_finite) {
+    let poses = draw::poses(&truth, scenario)?;
+    let (data, is_finite) = match &scenario.measures {
+        Measures::Displacements(under) => {
+            let data = displacements::measured(&truth, scenario, under, &poses);
+            let finite = data.rows.iter().all(displacements::is_finite);
+            (Data::Displacement(data), finite)
+        }
+        Measures::Positions(under) => {
+            let data = positions::measured(&truth, scenario, under, &poses);
+            let finite = data.rows.iter().all(positions::is_finite);
+            (Data::Position(data), finite)
+        }
+    };
+    if !is_finite {
         let error = "there are readings beyond all numbers: loads, compliances, levers or noise are too large";
         return Err(Error(String::from(error)));
     }
     Ok(Simulated { scenario: scenario.clone(), declared: declared.clone(), truth, data })
-}
-
-/// Whether all of a row are numbers, in the units of the files, too.
-fn is_finite(row: &Observation) -> bool {
-    let read = row.displacement.iter().chain(row.rotation.iter().flatten()).chain(row.encoders.iter().flatten());
-    row.wrench.iter().chain(&row.q).chain(read).all(|value| (value * 1e6).is_finite())
 }
 
 /// The robot as it is: joints scattered, hidden effects added.

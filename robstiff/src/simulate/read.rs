@@ -1,5 +1,7 @@
 //! Reading a scenario.
 
+mod measured;
+
 use std::borrow::ToOwned;
 use std::format;
 use std::path::Path;
@@ -10,15 +12,16 @@ use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, Diagnostics, Joint, ReadError};
 
-use super::{Poses, Pull, Scenario};
-use crate::campaign::read::{holdout, place};
+use self::measured::{Measured, measured};
+use super::{Measures, Poses, Scenario};
+use crate::campaign::read::holdout;
 use crate::table::text_of;
 use crate::{Effect, JointKind};
 
 /// The fields of a scenario.
-const FIELDS: [&str; 14] = [
-    "name", "seed", "poses", "visits", "ramp", "force", "moment", "wrench", "measured", "noise", "unloaded", "hidden",
-    "scatter", "holdout",
+const FIELDS: [&str; 16] = [
+    "name", "kind", "seed", "poses", "visits", "ramp", "force", "moment", "payloads", "wrench", "measured", "noise",
+    "unloaded", "hidden", "scatter", "holdout",
 ];
 
 /// More of anything than a campaign on a real robot has, and less than what
@@ -60,37 +63,23 @@ fn scenario(document: &Document, robot: &Description) -> Option<Scenario> {
     let seed = map.require("seed", "seed: 1").and_then(|node| seed(&node));
     let poses = map.require("poses", "poses: {count: 40, floor: 100 mm}").and_then(|node| poses(&node, &robot.joints));
     let visits = map.get("visits").map_or(Some(1), |node| count(&node));
-    let ramp = map.get("ramp").map_or(Some(std::vec![1.0]), |node| ramp(&node));
-    let force = map
-        .require("force", "force: {bounds: [500 N, 1300 N]}")
-        .and_then(|node| pull(&node, Dimension::Force, "bounds: [500 N, 1300 N]"));
-    let moment = map
-        .get("moment")
-        .map_or(Some(None), |node| pull(&node, Dimension::Torque, "bounds: [50 Nm, 200 Nm]").map(Some));
-    let (wrench, measured) = (place(&map, "wrench"), place(&map, "measured"));
-    let noise = map.require("noise", "noise: {displacement: 8 um}").and_then(|node| noise(&node, &robot.joints));
-    let shares = map.get("unloaded").map_or(Some(true), |node| node.choice(&[("shared", true), ("separate", false)]));
+    let measured = measured(&map, &robot.joints);
     let hidden = map.get("hidden").map_or(Some(Vec::new()), |node| hidden(&node, robot));
     let scatter = map.get("scatter").map_or(Some(0.0), |node| scatter(&node));
     let holdout = holdout(&map);
-    let few = few_rows(&map, poses.as_ref(), visits, ramp.as_deref());
-    let Noise { displacement, rotation, encoders, stated } = noise?;
+    let few = few_rows(&map, poses.as_ref(), visits, measured.as_ref().map(|read| &read.measures));
+    let Measured { measures, wrench_at, measured_at, noise, states_noise } = measured?;
     few?;
     Some(Scenario {
         name: name?,
         seed: seed?,
         poses: poses?,
         visits: visits?,
-        ramp: ramp?,
-        force: force?,
-        moment: moment?,
-        wrench: wrench?,
-        measured: measured?,
-        noise: displacement,
-        rotation_noise: rotation,
-        encoder_noise: encoders,
-        states_noise: stated,
-        shares_unloaded: shares?,
+        measures,
+        wrench_at,
+        measured_at,
+        noise,
+        states_noise,
         hidden: hidden?,
         scatter: scatter?,
         holdout: holdout?,
@@ -116,23 +105,27 @@ fn count(node: &Node<'_>) -> Option<usize> {
 
 /// That there are not more rows than a machine can hold, once all that they are
 /// counted by is known.
-fn few_rows(map: &Map<'_>, poses: Option<&Poses>, visits: Option<usize>, ramp: Option<&[f64]>) -> Option<()> {
+fn few_rows(map: &Map<'_>, poses: Option<&Poses>, visits: Option<usize>, measures: Option<&Measures>) -> Option<()> {
     let poses = match poses? {
         Poses::Drawn { count, .. } => *count,
         Poses::Listed(poses) => poses.len(),
     };
-    let (visits, loads) = (visits?, ramp?.len());
+    let (loads, field, what) = match measures? {
+        Measures::Displacements(under) => (under.ramp.len(), "ramp", "loads"),
+        Measures::Positions(under) => (under.payloads.len(), "payloads", "payloads"),
+    };
+    let visits = visits?;
     let rows = poses.saturating_mul(visits).saturating_mul(loads);
     if rows <= MOST_ROWS {
         return Some(());
     }
-    let node = ["visits", "ramp", "poses"].iter().find_map(|field| map.get(field))?;
+    let node = ["visits", field, "poses"].iter().find_map(|field| map.get(field))?;
     node.error(
         format!(
-            "{poses} poses with {visits} visits of {loads} loads are {rows} rows, more than the {MOST_ROWS} that a \
+            "{poses} poses with {visits} visits of {loads} {what} are {rows} rows, more than the {MOST_ROWS} that a \
              campaign may have"
         ),
-        "take fewer poses, visits or loads",
+        format!("take fewer poses, visits or {what}"),
     );
     None
 }
@@ -239,96 +232,6 @@ fn limits(map: &Map<'_>, joints: &[Joint]) -> Option<Vec<[f64; 2]>> {
         return None;
     }
     joints.iter().map(|joint| joint.limits).collect()
-}
-
-fn ramp(node: &Node<'_>) -> Option<Vec<f64>> {
-    let items = node.sequence()?;
-    if items.is_empty() {
-        node.error("at least one load is expected here", "e.g. `[0.35, 0.7, 1, 0.7, 0.35]`");
-        return None;
-    }
-    let share = |item: &Node<'_>| {
-        let share = item.quantity(Dimension::Number)?;
-        if share.abs() > 1.0 {
-            item.error("a share of the visit's greatest load is between -1 and 1", "e.g. `0.35`");
-            return None;
-        }
-        Some(share)
-    };
-    let shares: Vec<Option<f64>> = items.iter().map(share).collect();
-    shares.into_iter().collect()
-}
-
-fn pull(node: &Node<'_>, dimension: Dimension, example: &str) -> Option<Pull> {
-    let map = node.map(&["bounds", "directions"])?;
-    let bounds = map.require("bounds", example).and_then(|node| {
-        let [low, high] = node.quantities::<2>(dimension)?;
-        if !(0.0..=high).contains(&low) {
-            node.error("the bounds are of a size: zero or more, the lower one first", format!("e.g. `{example}`"));
-            return None;
-        }
-        computable(&node, high)?;
-        Some([low, high])
-    });
-    let directions = map.get("directions").map_or(Some(Vec::new()), |node| {
-        let items = node.sequence()?;
-        let direction = |item: &Node<'_>| {
-            let direction = item.quantities::<3>(Dimension::Number)?;
-            if direction == [0.0; 3] {
-                item.error("this is no direction", "e.g. `[0, 0, -1]`, of any length but zero");
-                return None;
-            }
-            Some(direction)
-        };
-        let directions: Vec<Option<[f64; 3]>> = items.iter().map(direction).collect();
-        directions.into_iter().collect()
-    });
-    Some(Pull { bounds: bounds?, directions: directions? })
-}
-
-struct Noise {
-    displacement: [f64; 3],
-    rotation: Option<f64>,
-    encoders: Option<Vec<f64>>,
-    /// Whether the campaign states it.
-    stated: bool,
-}
-
-fn noise(node: &Node<'_>, joints: &[Joint]) -> Option<Noise> {
-    let map = node.map(&["displacement", "rotation", "encoders", "stated"])?;
-    let displacement = map.require("displacement", "displacement: 8 um").and_then(|node| {
-        if !node.is_sequence() {
-            return sigma(&node, Dimension::Length).map(|sigma| [sigma; 3]);
-        }
-        let sigmas = node.quantities::<3>(Dimension::Length)?;
-        if sigmas.iter().any(|sigma| *sigma < 0.0) {
-            node.error("a length cannot be negative", "one sigma for each of x, y and z");
-            return None;
-        }
-        sigmas.iter().try_for_each(|sigma| computable(&node, *sigma).map(|_| ()))?;
-        Some(sigmas)
-    });
-    let rotation = map.get("rotation").map_or(Some(None), |node| sigma(&node, Dimension::Angle).map(Some));
-    let encoders = map.get("encoders").map_or(Some(None), |node| encoder_noise(&node, joints).map(Some));
-    let stated = map.get("stated").map_or(Some(true), |node| node.choice(&[("yes", true), ("no", false)]));
-    Some(Noise { displacement: displacement?, rotation: rotation?, encoders: encoders?, stated: stated? })
-}
-
-/// One sigma for all joints, where all are of one kind, or one for each.
-fn encoder_noise(node: &Node<'_>, joints: &[Joint]) -> Option<Vec<f64>> {
-    if node.is_sequence() {
-        let items = for_each_joint(node, joints)?;
-        let sigmas: Vec<Option<f64>> =
-            items.iter().zip(joints).map(|(item, joint)| sigma(item, dimension(joint))).collect();
-        return sigmas.into_iter().collect();
-    }
-    let kind = dimension(joints.first()?);
-    if joints.iter().any(|joint| dimension(joint) != kind) {
-        node.error("some joints turn, some slide", "give one sigma for each joint, e.g. `[20 urad, 5 um, ..]`");
-        return None;
-    }
-    let sigma = sigma(node, kind)?;
-    Some(joints.iter().map(|_| sigma).collect())
 }
 
 /// What the description is not told; `effects` as in a description.

@@ -1,10 +1,13 @@
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use nalgebra::{SVector, Vector6};
+use nalgebra::{SVector, Vector3, Vector6};
 use robstiff_robots::{Description, catalogue};
 
-use super::{Scenario, simulate};
+use super::{Scenario, Simulated, simulate};
+use crate::campaign::{Data, Displacements};
+use crate::identify::positions;
+use crate::identify::predict::{PredictedRow, Prediction};
 use crate::{Generic, Robot, State};
 
 const SCENARIO: &str = "\
@@ -30,13 +33,19 @@ fn read(text: &str) -> Scenario {
     Scenario::parse("try.yaml", text, &robot()).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
+fn simulated(text: &str) -> (Simulated, Displacements) {
+    let found = simulate(&robot(), &read(text)).expect("it can be measured");
+    let Data::Displacement(data) = found.data.clone() else { unreachable!("displacements") };
+    (found, data)
+}
+
 fn problem(text: &str) -> String {
     Scenario::parse("try.yaml", text, &robot()).expect_err("it has a mistake").to_string()
 }
 
 #[test]
 fn the_seed_says_it_all_and_noise_keeps_the_rest() {
-    let rows = |text: &str| simulate(&robot(), &read(text)).expect("it can be measured").data.rows;
+    let rows = |text: &str| simulated(text).1.rows;
     assert_eq!(rows(SCENARIO), rows(SCENARIO));
     assert_ne!(rows(SCENARIO), rows(&SCENARIO.replace("seed: 4", "seed: 5")));
     let louder = rows(&SCENARIO.replace("8 um", "80 um"));
@@ -48,9 +57,9 @@ fn the_seed_says_it_all_and_noise_keeps_the_rest() {
 
 #[test]
 fn poses_and_loads_are_within_their_bounds() {
-    let found = simulate(&robot(), &read(SCENARIO)).expect("it can be measured");
-    assert_eq!(found.data.rows.len(), 180);
-    for (i, row) in found.data.rows.iter().enumerate() {
+    let (found, data) = simulated(SCENARIO);
+    assert_eq!(data.rows.len(), 180);
+    for (i, row) in data.rows.iter().enumerate() {
         assert_eq!((row.pose, row.visit, row.line), (i / 6, i / 3, i + 2));
         assert!(row.q.iter().zip(&found.declared.joints).all(|(&q, joint)| joint.reaches(q)));
         let force = Vector6::from(row.wrench).norm();
@@ -67,8 +76,10 @@ fn poses_and_loads_are_within_their_bounds() {
 fn the_floor_is_that_of_the_base() {
     let poses = |robot: &Description| {
         let scenario = Scenario::parse("try.yaml", SCENARIO, robot).expect("it is a scenario");
-        let rows = simulate(robot, &scenario).expect("it can be measured").data.rows;
-        rows.into_iter().map(|row| row.q).collect::<Vec<_>>()
+        let Data::Displacement(data) = simulate(robot, &scenario).expect("it can be measured").data else {
+            unreachable!("displacements")
+        };
+        data.rows.into_iter().map(|row| row.q).collect::<Vec<_>>()
     };
     let mut raised = robot();
     raised.base.xyz[2] += 3.0;
@@ -81,42 +92,42 @@ fn the_floor_is_that_of_the_base() {
 fn small_loads_deflect_as_the_robot_says() {
     let text = SCENARIO.replace("[500 N, 1.3 kN]", "[0.5 N, 1 N]").replace("8 um", "0 um")
         + "measured: {frame: tool, at: [0, 0, 0.1]}\n";
-    let found = simulate(&robot(), &read(&text)).expect("it can be measured");
+    let (found, data) = simulated(&text);
     let robot = Generic::<6>::new(&found.truth).expect("six joints");
-    for row in &found.data.rows {
+    for row in &data.rows {
         let q = SVector::<f64, 6>::from_column_slice(&row.q);
         let twist = robot.deflection(&q, &Vector6::from(row.wrench));
         let tool = robot.transform(&q).fixed_view::<3, 3>(0, 0).into_owned();
-        let lever = tool * nalgebra::Vector3::new(0.0, 0.0, 0.1);
+        let lever = tool * Vector3::new(0.0, 0.0, 0.1);
         let moved = tool.transpose() * (twist.fixed_rows::<3>(0) + twist.fixed_rows::<3>(3).cross(&lever));
-        let read = nalgebra::Vector3::from(row.displacement);
+        let read = Vector3::from(row.displacement);
         assert!((read - moved).norm() < 1e-5 * moved.norm(), "{read} {moved}");
     }
 }
 
 /// Where a load returns to what it was, only what hysteresis remembers differs, and
-/// the next visit begins without it.
+/// the next visit begins without it; at loads so small that the second order is nothing.
 #[test]
 fn hysteresis_remembers_the_loads_of_a_visit() {
-    let hidden = "{kind: hysteresis, at: joint 2, radius1: 100 Nm, weight1: 3e-7 rad/Nm}";
+    let hidden = "{kind: hysteresis, at: joint 2, radius1: 0.1 Nm, weight1: 3e-7 rad/Nm}";
     let text = SCENARIO
         .replace("[0.5, 1, -0.25]", "[0.5, 1, 0.5]")
+        .replace("[500 N, 1.3 kN]", "[0.5 N, 1.3 N]")
         .replace("8 um", "0 um")
         .replace("{kind: transverse_compliance, at: joint 3, value: 6e-7 rad/Nm}", hidden);
-    let found = simulate(&robot(), &read(&text)).expect("it can be measured");
+    let (found, data) = simulated(&text);
     let robot = Generic::<6>::new(&found.truth).expect("six joints");
     let mut largest: f64 = 0.0;
-    for visit in found.data.rows.chunks(3) {
+    for visit in data.rows.chunks(3) {
         let q = SVector::<f64, 6>::from_column_slice(&visit[0].q);
         let mut state = State::new();
         let moved = [0, 1, 2].map(|row| robot.deflection_with(&q, &Vector6::from(visit[row].wrench), &mut state));
         let left = (moved[2] - moved[0]).fixed_rows::<3>(0).into_owned();
-        let read = nalgebra::Vector3::from(visit[2].displacement) - nalgebra::Vector3::from(visit[0].displacement);
-        // The arm carries the load where it has moved it.
-        assert!((read - left).norm() < 1e-2 * left.norm() + 1e-9, "{read} {left}");
+        let read = Vector3::from(visit[2].displacement) - Vector3::from(visit[0].displacement);
+        assert!((read - left).norm() < 1e-5 * moved[1].norm(), "{read} {left}");
         largest = largest.max(left.norm());
     }
-    assert!(largest > 20e-6, "{largest}");
+    assert!(largest > 20e-9, "{largest}");
 }
 
 /// What joints turn by moves the tool as the same robot without its bearing does,
@@ -132,11 +143,11 @@ fn encoders_read_what_joints_turn_by() {
         .replace("[500 N, 1.3 kN]", "[0.5 N, 1 N]")
         .replace("8 um", "0 um, encoders: 0 urad")
         .replace(hidden, &(String::from(hidden) + "\n" + of_joints.trim_end()));
-    let found = simulate(&robot(), &read(&text)).expect("it can be measured");
+    let (found, data) = simulated(&text);
     let mut without_bearing = found.truth.clone();
     without_bearing.effects.remove(0);
     let robot = Generic::<6>::new(&without_bearing).expect("six joints");
-    for visit in found.data.rows.chunks(3) {
+    for visit in data.rows.chunks(3) {
         let mut state = State::new();
         for row in visit {
             let q = SVector::<f64, 6>::from_column_slice(&row.q);
@@ -152,7 +163,7 @@ fn encoders_read_what_joints_turn_by() {
 fn encoders_have_a_noise_of_their_own() {
     let rows = |noise: &str| {
         let text = SCENARIO.replace("8 um", &std::format!("8 um, encoders: {noise}"));
-        simulate(&robot(), &read(&text)).expect("it can be measured").data.rows
+        simulated(&text).1.rows
     };
     let (mut squares, mut count) = ([0.0; 6], 0.0);
     for (exact, noisy) in rows("0 urad").iter().zip(&rows("[10 urad, 20 urad, 30 urad, 0, 5 urad, 1 mrad]")) {
@@ -175,7 +186,7 @@ fn rows_of_a_visit_share_their_unloaded_reading_or_not() {
     let plan = |unloaded: &str| {
         let text = SCENARIO.replace("count: 30", "count: 1000").replace("[0.5, 1, -0.25]", "[1, 1]")
             + &std::format!("unloaded: {unloaded}\n");
-        let rows = simulate(&robot(), &read(&text)).expect("it can be measured").data.rows;
+        let rows = simulated(&text).1.rows;
         let halves: Vec<f64> =
             rows.chunks(2).map(|two| (two[0].displacement[1] - two[1].displacement[1]).powi(2) / 2.0).collect();
         halves.iter().sum::<f64>() / halves.len() as f64 / 8e-6_f64.powi(2)
@@ -232,7 +243,7 @@ fn mistakes_are_shown_where_they_are() {
 fn directions_have_any_length() {
     let forces = |directions: &str| {
         let text = SCENARIO.replace("1.3 kN]}", &std::format!("1.3 kN], directions: {directions}}}"));
-        simulate(&robot(), &read(&text)).expect("it can be measured").data.rows
+        simulated(&text).1.rows
     };
     let plain = forces("[[1, 0, 0], [1, -1, 0]]");
     for (row, plain) in forces("[[1e-200, 0, 0], [1e30, -1e30, 0]]").iter().zip(&plain) {
@@ -254,11 +265,91 @@ fn the_noise_that_is_stated_is_above_zero() {
     assert_eq!(stated("7 um, rotation: 1e-12 urad"), "noise: {displacement: 7 um, rotation: 0.000000000001 urad}");
 }
 
+const POSITIONS: &str = "\
+kind: position
+seed: 5
+poses: {count: 50}
+visits: 2
+payloads: [0 kg, 120 kg]
+wrench: {at: [0, 0, 200 mm]}
+measured: {at: [40 mm, -20 mm, 110 mm]}
+noise: {displacement: 20 um, repeatability: 30 um}
+hidden:
+  effects:
+    - {kind: joint_zero_offset, at: joint 3, value: 0.1 deg}
+scatter: 0.3
+";
+
+/// The robot goes through all poses, then through all again; what it misses one by is
+/// common to a visit, and the truth predicts the rest to the noise.
+#[test]
+fn positions_are_read_under_payloads() {
+    let found = simulate(&robot(), &read(POSITIONS)).expect("it can be measured");
+    let Data::Position(data) = &found.data else { unreachable!("positions") };
+    assert_eq!((data.rows.len(), data.poses.len(), data.visits.len()), (200, 50, 100));
+    for (i, row) in data.rows.iter().enumerate() {
+        assert_eq!((row.line, row.visit, row.pose), (i + 2, i / 2, i / 2 % 50));
+        assert_eq!(row.payload, [0.0, 120.0][i % 2]);
+    }
+    let left = |description: &Description| {
+        let Prediction { rows, rms, .. } = positions::predict(description, data).expect("positions");
+        let off = |row: &PredictedRow| Vector3::from(row.measured) - Vector3::from(row.predicted);
+        (rms, rows.iter().map(off).collect::<Vec<_>>())
+    };
+    let (rms, left_by_row) = left(&found.truth);
+    // 600 readings: 3 % of scatter, four times that is allowed.
+    let whole = 20e-6_f64.hypot(30e-6);
+    assert!((rms / whole - 1.0).abs() < 0.12, "{rms}");
+    let apart: f64 = left_by_row.chunks(2).map(|two| (two[1] - two[0]).norm_squared()).sum();
+    let of_one = (apart / (2.0 * 300.0)).sqrt();
+    assert!((of_one / 20e-6 - 1.0).abs() < 0.16, "{of_one}");
+    assert!(left(&found.declared).0 > 10.0 * rms);
+}
+
+/// What is written is what was simulated.
+#[test]
+fn positions_are_written_with_all_their_digits() {
+    let found = simulate(&robot(), &read(POSITIONS)).expect("it can be measured");
+    let Data::Position(data) = &found.data else { unreachable!("positions") };
+    let files = found.files();
+    assert_eq!(files.observations.0, "positions.csv");
+    assert!(files.campaign.contains("kind: position") && files.campaign.contains("observations: positions.csv"));
+    assert!(files.campaign.contains("noise: {displacement: 36.05551275463"), "{}", files.campaign);
+    let mut lines = files.observations.1.lines();
+    let header = lines.next().expect("a header");
+    assert!(header.ends_with(",q6 [deg],payload [kg],px [mm],py [mm],pz [mm]"), "{header}");
+    for (line, row) in lines.zip(&data.rows) {
+        let numbers: Vec<f64> = line.split(',').map(|number| number.parse().expect("a number")).collect();
+        assert_eq!(numbers.len(), 13);
+        assert!((numbers[10] / 1e3 - row.position[0]).abs() < 1e-15 && (numbers[9] - row.payload).abs() < 1e-12);
+        assert!((numbers[3].to_radians() - row.q[0]).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn each_kind_has_its_own_fields() {
+    for (from, to, place, part) in [
+        ("visits: 2", "ramp: [0.5, 1]", "4:7", "positions are read under payloads"),
+        ("visits: 2", "force: {bounds: [500 N, 1300 N]}", "4:8", "positions are read under payloads"),
+        ("120 kg", "-120 kg", "5:18", "negative"),
+        ("[0 kg, 120 kg]", "[]", "5:11", "at least one payload"),
+        ("120 kg", "120 N", "5:18", "is a force, a mass is expected"),
+        ("repeatability: 30 um", "rotation: 3 urad", "8:30", "unknown field"),
+        ("kind: position", "kind: positions", "1:7", "did you mean"),
+        ("visits: 2", "visits: 20000", "4:9", "20000 visits of 2 payloads are 2000000 rows"),
+    ] {
+        let text = problem(&POSITIONS.replace(from, to));
+        assert!(text.contains(&std::format!("try.yaml:{place}")) && text.contains(part), "{text}");
+    }
+    let text = problem(&(String::from(SCENARIO) + "payloads: [100 kg]\n"));
+    assert!(text.contains("displacements are read under forces"), "{text}");
+}
+
 #[test]
 fn what_cannot_be_measured_is_said() {
     // Longer than a file may say.
     let mut lever = read(SCENARIO);
-    lever.wrench.1 = [0.0, 0.0, 1e307];
+    lever.wrench_at = [0.0, 0.0, 1e307];
     let error = simulate(&robot(), &lever).expect_err("nothing can be read");
     assert!(error.to_string().contains("beyond all numbers"), "{error}");
     let text = SCENARIO.replace("floor: 100 mm", "floor: 90 m");

@@ -38,7 +38,7 @@ fn measured(robot: &Description, seed: u64, scenario: &str) -> Campaign {
     Campaign {
         noise: crate::campaign::Noise { displacement: noise, ..crate::campaign::Noise::default() },
         holdout: scenario.holdout,
-        ..made::campaign(robot.clone(), Data::Displacement(found.data))
+        ..made::campaign(robot.clone(), found.data)
     }
 }
 

@@ -1,0 +1,176 @@
+//! Reading what acts and what is read.
+
+use std::format;
+use std::vec::Vec;
+
+use robstiff_robots::Joint;
+use robstiff_robots::document::{Map, Node};
+use robstiff_robots::quantity::Dimension;
+
+use super::super::{Measures, Pull, UnderForces, UnderPayloads};
+use super::{computable, dimension, for_each_joint, sigma};
+use crate::campaign::read::place;
+
+/// What a scenario says of loads and instruments.
+pub struct Measured {
+    pub measures: Measures,
+    pub wrench_at: [f64; 3],
+    pub measured_at: [f64; 3],
+    pub noise: [f64; 3],
+    pub states_noise: bool,
+}
+
+/// The fields that only one kind of scenario has.
+const OF_FORCES: [&str; 4] = ["ramp", "force", "moment", "unloaded"];
+const OF_PAYLOADS: [&str; 1] = ["payloads"];
+
+pub fn measured(map: &Map<'_>, joints: &[Joint]) -> Option<Measured> {
+    let (wrench, measured) = (place(map, "wrench"), place(map, "measured"));
+    let tracked =
+        map.get("kind").map_or(Some(false), |node| node.choice(&[("displacement", false), ("position", true)]));
+    let noise = |fields: &[&str]| {
+        let noise = map.require("noise", "noise: {displacement: 8 um}")?.map(fields)?;
+        let stated = noise.get("stated").map_or(Some(true), |node| node.choice(&[("yes", true), ("no", false)]));
+        Some((displacement_noise(&noise), stated, noise))
+    };
+    let (measures, displacement, stated) = if tracked? {
+        let refused = refused(map, &OF_FORCES, "positions are read under payloads", "e.g. `payloads: [0 kg, 150 kg]`");
+        let payloads = map.get("payloads").map_or(Some(std::vec![0.0]), |node| payloads(&node));
+        let (displacement, stated, noise) = noise(&["displacement", "repeatability", "stated"])?;
+        let repeatability = noise.get("repeatability").map_or(Some(0.0), |node| sigma(&node, Dimension::Length));
+        refused?;
+        (
+            Measures::Positions(UnderPayloads { payloads: payloads?, repeatability: repeatability? }),
+            displacement,
+            stated,
+        )
+    } else {
+        let refused = refused(map, &OF_PAYLOADS, "displacements are read under forces", "or is it `kind: position`?");
+        let ramp = map.get("ramp").map_or(Some(std::vec![1.0]), |node| ramp(&node));
+        let force = map
+            .require("force", "force: {bounds: [500 N, 1300 N]}")
+            .and_then(|node| pull(&node, Dimension::Force, "bounds: [500 N, 1300 N]"));
+        let moment = map
+            .get("moment")
+            .map_or(Some(None), |node| pull(&node, Dimension::Torque, "bounds: [50 Nm, 200 Nm]").map(Some));
+        let shares = map.get("unloaded");
+        let shares = shares.map_or(Some(true), |node| node.choice(&[("shared", true), ("separate", false)]));
+        let (displacement, stated, noise) = noise(&["displacement", "rotation", "encoders", "stated"])?;
+        let rotation = noise.get("rotation").map_or(Some(None), |node| sigma(&node, Dimension::Angle).map(Some));
+        let encoders = noise.get("encoders").map_or(Some(None), |node| encoder_noise(&node, joints).map(Some));
+        refused?;
+        let under = UnderForces {
+            ramp: ramp?,
+            force: force?,
+            moment: moment?,
+            frames: [wrench?.0, measured?.0],
+            rotation_noise: rotation?,
+            encoder_noise: encoders?,
+            shares_unloaded: shares?,
+        };
+        (Measures::Displacements(under), displacement, stated)
+    };
+    Some(Measured {
+        measures,
+        wrench_at: wrench?.1,
+        measured_at: measured?.1,
+        noise: displacement?,
+        states_noise: stated?,
+    })
+}
+
+/// Reports fields that the kind of a scenario does not have.
+fn refused(map: &Map<'_>, fields: &[&str], why: &str, help: &str) -> Option<()> {
+    let mut refused = fields.iter().filter_map(|field| map.get(field)).peekable();
+    if refused.peek().is_none() {
+        return Some(());
+    }
+    refused.for_each(|node| node.error(why, help));
+    None
+}
+
+fn payloads(node: &Node<'_>) -> Option<Vec<f64>> {
+    let items = node.sequence()?;
+    if items.is_empty() {
+        node.error("at least one payload is expected here", "e.g. `[0 kg, 150 kg]`");
+        return None;
+    }
+    let payloads: Vec<Option<f64>> = items.iter().map(|item| sigma(item, Dimension::Mass)).collect();
+    payloads.into_iter().collect()
+}
+
+fn ramp(node: &Node<'_>) -> Option<Vec<f64>> {
+    let items = node.sequence()?;
+    if items.is_empty() {
+        node.error("at least one load is expected here", "e.g. `[0.35, 0.7, 1, 0.7, 0.35]`");
+        return None;
+    }
+    let share = |item: &Node<'_>| {
+        let share = item.quantity(Dimension::Number)?;
+        if share.abs() > 1.0 {
+            item.error("a share of the visit's greatest load is between -1 and 1", "e.g. `0.35`");
+            return None;
+        }
+        Some(share)
+    };
+    let shares: Vec<Option<f64>> = items.iter().map(share).collect();
+    shares.into_iter().collect()
+}
+
+fn pull(node: &Node<'_>, dimension: Dimension, example: &str) -> Option<Pull> {
+    let map = node.map(&["bounds", "directions"])?;
+    let bounds = map.require("bounds", example).and_then(|node| {
+        let [low, high] = node.quantities::<2>(dimension)?;
+        if !(0.0..=high).contains(&low) {
+            node.error("the bounds are of a size: zero or more, the lower one first", format!("e.g. `{example}`"));
+            return None;
+        }
+        computable(&node, high)?;
+        Some([low, high])
+    });
+    let directions = map.get("directions").map_or(Some(Vec::new()), |node| {
+        let items = node.sequence()?;
+        let direction = |item: &Node<'_>| {
+            let direction = item.quantities::<3>(Dimension::Number)?;
+            if direction == [0.0; 3] {
+                item.error("this is no direction", "e.g. `[0, 0, -1]`, of any length but zero");
+                return None;
+            }
+            Some(direction)
+        };
+        let directions: Vec<Option<[f64; 3]>> = items.iter().map(direction).collect();
+        directions.into_iter().collect()
+    });
+    Some(Pull { bounds: bounds?, directions: directions? })
+}
+
+fn displacement_noise(noise: &Map<'_>) -> Option<[f64; 3]> {
+    let node = noise.require("displacement", "displacement: 8 um")?;
+    if !node.is_sequence() {
+        return sigma(&node, Dimension::Length).map(|sigma| [sigma; 3]);
+    }
+    let sigmas = node.quantities::<3>(Dimension::Length)?;
+    if sigmas.iter().any(|sigma| *sigma < 0.0) {
+        node.error("a length cannot be negative", "one sigma for each of x, y and z");
+        return None;
+    }
+    sigmas.iter().try_for_each(|sigma| computable(&node, *sigma).map(|_| ()))?;
+    Some(sigmas)
+}
+
+/// One sigma for all joints, where all are of one kind, or one for each.
+fn encoder_noise(node: &Node<'_>, joints: &[Joint]) -> Option<Vec<f64>> {
+    if node.is_sequence() {
+        let items = for_each_joint(node, joints)?;
+        let sigmas: Vec<Option<f64>> =
+            items.iter().zip(joints).map(|(item, joint)| sigma(item, dimension(joint))).collect();
+        return sigmas.into_iter().collect();
+    }
+    let kind = dimension(joints.first()?);
+    if joints.iter().any(|joint| dimension(joint) != kind) {
+        node.error("some joints turn, some slide", "give one sigma for each joint, e.g. `[20 urad, 5 um, ..]`");
+        return None;
+    }
+    let sigma = sigma(node, kind)?;
+    Some(joints.iter().map(|_| sigma).collect())
+}
