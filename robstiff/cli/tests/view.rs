@@ -257,6 +257,29 @@ fn a_campaign_shows_what_was_measured() {
 }
 
 #[test]
+fn positions_show_how_far_they_are_off() {
+    let folder = folder("view-positions");
+    let (page, told) = (inside(&folder, "page.html"), inside(&folder, "told.json"));
+    let (scenario, out) = (inside(&folder, "try.yaml"), inside(&folder, "out"));
+    let text = "kind: position\nseed: 1\nposes: {count: 20}\nnoise: {displacement: 30 um}\nhidden:\n  effects:\n    \
+                - {kind: joint_zero_offset, at: joint 3, value: 0.1 deg}\n";
+    fs::write(&scenario, text).unwrap();
+    succeed(&["simulate", "kuka-kr270-r2700", &scenario, "--out", &out]);
+    let campaign = format!("{out}/campaign.yaml");
+    let said = succeed(&["view", "kuka-kr270-r2700", "--campaign", &campaign, "--out", &page, "--json", &told]);
+    assert!(said.contains("read less predicted: "), "{said}");
+    assert!(fs::read_to_string(&page).unwrap().contains("From where the tool is predicted to where it was read"));
+    let told = json(&told);
+    for pose in told["poses"].as_array().unwrap() {
+        let off = pose["off"].as_array().unwrap().iter().map(number).fold(0.0, f64::hypot);
+        assert!((off - number(&pose["value"])).abs() < 1e-3 * off && pose["displacement"].is_null(), "{pose}");
+    }
+    let Some(seen) = look(&folder, &page) else { return };
+    assert_alive(&seen);
+    assert!(seen["readout"].as_str().unwrap().contains("Off"), "{seen}");
+}
+
+#[test]
 fn an_ellipsoid_without_the_effects_says_so() {
     let folder = folder("view-effects");
     let (robot, page) = (inside(&folder, "robot.yaml"), inside(&folder, "page.html"));

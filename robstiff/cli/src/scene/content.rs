@@ -1,8 +1,8 @@
 //! What a scene shows: the poses with compliance and displacement, computed.
 
 use robstiff::analysis::principal_directions;
-use robstiff::campaign::{Campaign, Data};
-use robstiff::identify::predict;
+use robstiff::campaign::{Campaign, Data, PositionRow, Positions};
+use robstiff::identify::{positions, predict};
 use robstiff::nalgebra::{Matrix4, SVector, Vector3, Vector6};
 use robstiff::{Convention, Generic, JointKind, Robot, State, with_robot};
 use robstiff_robots::{Description, Joint};
@@ -51,6 +51,8 @@ pub struct Pose {
     pub displacement: Option<[f64; 3]>,
     /// The displacement that was measured (um).
     pub measured: Option<[f64; 3]>,
+    /// By how much the position that was read is off the one that is computed (um).
+    pub off: Option<[f64; 3]>,
     /// What colours the pose.
     pub value: Option<f64>,
     /// What the campaign calls it.
@@ -124,13 +126,16 @@ impl Scene {
         self
     }
 
-    /// The poses of a campaign, each with the row of its largest displacement.
+    /// The poses of a campaign, each with the row of its largest displacement, or of the
+    /// position that is farthest off.
     ///
     /// # Errors
-    /// A campaign that displacements cannot be predicted for.
+    /// A campaign that cannot be predicted, or is at no poses.
     pub fn of_campaign(robot: &Description, campaign: &Campaign) -> Result<Self, Failure> {
-        let Data::Displacement(data) = &campaign.data else {
-            return Err(Failure::new("only campaigns of kind `displacement` have displacements to show"));
+        let data = match &campaign.data {
+            Data::Displacement(data) => data,
+            Data::Position(data) => return Self::of_positions(robot, campaign, data),
+            Data::Clamped(_) => return Err(Failure::new("campaigns of kind `clamped` are at no poses to show")),
         };
         let predicted = predict(robot, campaign)?.rows;
         let largest = |pose: usize| {
@@ -148,6 +153,30 @@ impl Scene {
             let (row, predicted) = rows[pose.row];
             pose.displacement = Some(predicted.predicted.map(|d| d * 1e6));
             pose.measured = Some(predicted.measured.map(|d| d * 1e6));
+            pose.name = Some(data.poses[row.pose].clone());
+        }
+        Ok(scene)
+    }
+
+    fn of_positions(robot: &Description, campaign: &Campaign, data: &Positions) -> Result<Self, Failure> {
+        // Asked first, for it knows whether robot and campaign go together.
+        predict(robot, campaign)?;
+        let off = positions::off(robot, data)?;
+        let farthest = |pose: usize| {
+            let rows = data.rows.iter().zip(&off).filter(|(row, _)| row.pose == pose);
+            rows.max_by(|(_, a), (_, b)| length(**a).total_cmp(&length(**b)))
+        };
+        let rows: Vec<_> = (0..data.poses.len()).filter_map(farthest).collect();
+        let asked = |(row, off): &(&PositionRow, &[f64; 3])| Row {
+            q: row.q.clone(),
+            wrench: None,
+            value: Some((length(**off) * 1e6, "um".to_owned())),
+        };
+        let asked: Vec<Row> = rows.iter().map(asked).collect();
+        let mut scene = Self::new(robot, Kind::Campaign, &asked).coloured_by(Some("read less predicted"));
+        for pose in &mut scene.poses {
+            let (row, off) = rows[pose.row];
+            pose.off = Some(off.map(|d| d * 1e6));
             pose.name = Some(data.poses[row.pose].clone());
         }
         Ok(scene)
@@ -179,6 +208,7 @@ impl Scene {
                 "compliance": numbers(pose.compliance),
                 "displacement": pose.displacement.map(numbers),
                 "measured": pose.measured.map(numbers),
+                "off": pose.off.map(numbers),
                 "value": pose.value.map(number),
                 "name": pose.name,
             })).collect::<Value>(),
@@ -254,6 +284,7 @@ fn pose<const N: usize>(description: &Description, robot: &Generic<N>, row: usiz
         }),
         displacement: None,
         measured: None,
+        off: None,
         value: None,
         name: None,
     }

@@ -20,6 +20,7 @@ function say() {
   if (pose.displacement) {
     said.push(["Displacement", `(${list(pose.displacement, 1)}) µm, ${shortest(norm(pose.displacement))} µm in all`]);
   }
+  if (pose.off) said.push(["Off", `(${list(pose.off, 1)}) µm`]);
   if (pose.measured) said.push(["Measured", `(${list(pose.measured, 1)}) µm, ${shortest(norm(pose.measured))} µm in all`]);
   if (pose.given && pose.value != null && data.value && data.kind !== "pose") {
     said.push([data.value.name, `${shortest(pose.value)} ${data.value.unit === "um" ? "µm" : data.value.unit}`]);

@@ -31,7 +31,8 @@ pub struct Arguments {
     /// A table of joint coordinates `q1 [deg]` .. and, where there are, forces `Fx [N]` .. and moments `Mx [Nm]` .., row by row
     #[arg(long, value_name = "SOLVED.csv", conflicts_with = "campaign")]
     path: Option<PathBuf>,
-    /// The poses of a campaign, with the displacements that it measured and those that the robot predicts
+    /// The poses of a campaign, with the displacements that it measured and those that the robot predicts, or how far
+    /// positions are off
     #[arg(long, value_name = "CAMPAIGN.yaml", conflicts_with = "force")]
     campaign: Option<PathBuf>,
     /// The force on the tool in the base frame, e.g. "0, 0, -400 N"; the path's own where left out

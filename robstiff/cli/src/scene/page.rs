@@ -3,7 +3,7 @@
 use robstiff_robots::Description;
 use serde_json::Value;
 
-use super::content::{Kind, Scene};
+use super::content::{Kind, Pose, Scene};
 use super::picture;
 use crate::report::html::{Table, element, escape, number, text, words};
 use crate::text::{decimals, significant};
@@ -81,10 +81,15 @@ fn legend(scene: &Scene) -> String {
          and the stiffest direction. <span id=\"ellipsoid-scale\"></span></p></div>\n",
         text("h2", "Ellipsoid [µm/N]")
     );
-    if scene.poses.iter().any(|pose| pose.displacement.is_some()) {
-        let measured = if scene.kind == Kind::Campaign { " Dashed: measured. Full: predicted." } else { "" };
+    let any = |of: fn(&Pose) -> Option<[f64; 3]>| scene.poses.iter().any(|pose| of(pose).is_some());
+    if any(|pose| pose.displacement.or(pose.off)) {
+        let arrow = match (any(|pose| pose.off), any(|pose| pose.measured)) {
+            (true, _) => "From where the tool is predicted to where it was read, enlarged.",
+            (false, true) => "The displacement of the tool, enlarged. Dashed: measured. Full: predicted.",
+            (false, false) => "The displacement of the tool, enlarged.",
+        };
         said += &format!(
-            "<div{}>{}<p>The displacement of the tool, enlarged.{measured} <span id=\"arrow-scale\"></span></p></div>\n",
+            "<div{}>{}<p>{arrow} <span id=\"arrow-scale\"></span></p></div>\n",
             // The drawing of a path has none.
             if scene.kind == Kind::Path { " class=\"live\"" } else { "" },
             text("h2", "Arrow [µm]")

@@ -192,7 +192,7 @@ fn ellipsoid(svg: &mut Svg, class: &str, view: &View, pose: &Pose, per_unit: f64
 
 /// The displacements as arrows; metres a um, where there are any.
 fn displacements(svg: &mut Svg, view: &View, scene: &Scene) -> Option<f64> {
-    let all = || scene.poses.iter().flat_map(|pose| [pose.displacement, pose.measured]).flatten();
+    let all = || scene.poses.iter().flat_map(|pose| [pose.displacement, pose.measured, pose.off]).flatten();
     let largest = all().map(length).fold(0.0, f64::max);
     if largest == 0.0 || scene.kind == Kind::Path {
         return None;
@@ -200,9 +200,11 @@ fn displacements(svg: &mut Svg, view: &View, scene: &Scene) -> Option<f64> {
     let per_um = round(reach(scene) / 7.0 / largest * 1e6) / 1e6;
     for pose in &scene.poses {
         let tip = pose.points.last().copied().unwrap_or_default();
-        for (class, displacement) in [("arrow before", pose.measured), ("arrow after", pose.displacement)] {
-            let Some(displacement) = displacement else { continue };
-            let end = std::array::from_fn(|k| tip[k] + displacement[k] * per_um);
+        for (class, arrow) in
+            [("arrow before", pose.measured), ("arrow after", pose.displacement), ("arrow after", pose.off)]
+        {
+            let Some(arrow) = arrow else { continue };
+            let end = std::array::from_fn(|k| tip[k] + arrow[k] * per_um);
             svg.arrow(class, view.at(tip), view.at(end));
         }
     }

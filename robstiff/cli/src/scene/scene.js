@@ -24,7 +24,7 @@ const corners = (arm) => [...arm.joints.flatMap((joint) => [joint.from, joint.to
 const skeleton = corners(first);
 const reach = Math.max(1e-3, skeleton.slice(1).reduce((sum, p, k) => sum + norm(add(p, skeleton[k], -1)), 0));
 const softest = Math.max(...data.poses.map((pose) => principal(pose.compliance)[0].value));
-const farthest = Math.max(0, ...data.poses.flatMap((p) => [p.displacement, p.measured].filter(Boolean).map(norm)));
+const farthest = Math.max(0, ...data.poses.flatMap((p) => [p.displacement, p.measured, p.off].filter(Boolean).map(norm)));
 const everything = [[0, 0, 0], ...skeleton, ...data.poses.map((pose) => pose.tcp)];
 const ends = [0, 1, 2].map((k) => [Math.min(...everything.map((p) => p[k])), Math.max(...everything.map((p) => p[k]))]);
 const square = round(reach / 5);
@@ -204,13 +204,14 @@ function drawAxes(picture, pose) {
 function drawDisplacement(picture, pose) {
   const end = (d) => add(pose.tcp, d, perMicrometre);
   for (const other of data.kind === "campaign" && !state.moved ? data.poses : []) {
-    picture.over([other.tcp, add(other.tcp, other.measured, perMicrometre)], colours.css("arrow"), 1.1, [3, 3]);
-    picture.over([other.tcp, add(other.tcp, other.displacement, perMicrometre)], colours.css("arrow"), 1.3);
+    if (other.measured) picture.over([other.tcp, add(other.tcp, other.measured, perMicrometre)], colours.css("arrow"), 1.1, [3, 3]);
+    picture.over([other.tcp, add(other.tcp, other.displacement ?? other.off, perMicrometre)], colours.css("arrow"), 1.3);
   }
   if (pose.measured) picture.arrow(pose.tcp, end(pose.measured), colours.css("arrow"), 2, [5, 4]);
-  if (pose.displacement) {
-    picture.arrow(pose.tcp, end(pose.displacement), colours.css("arrow"), 3);
-    picture.word(`${shortest(norm(pose.displacement))} µm`, end(pose.displacement), [[0, 16], [0, -16], [44, 0], [-44, 0], [52, 24]], 13);
+  const moved = pose.displacement ?? pose.off;
+  if (moved) {
+    picture.arrow(pose.tcp, end(moved), colours.css("arrow"), 3);
+    picture.word(`${shortest(norm(moved))} µm`, end(moved), [[0, 16], [0, -16], [44, 0], [-44, 0], [52, 24]], 13);
   }
 }
 

@@ -301,6 +301,19 @@ pub fn predict(description: &Description, data: &Positions) -> Result<Prediction
     Prediction::of(model.points(data).into_iter().zip(&data.rows).map(row).collect())
 }
 
+/// What the positions of a campaign are off a description by, row by row, in the base
+/// frame (m); where the robot stands is fitted.
+///
+/// # Errors
+/// Positions that do not tell where the robot stands.
+pub fn off(description: &Description, data: &Positions) -> Result<Vec<[f64; 3]>, Error> {
+    let model = Model::new(description, data);
+    let registration = standing(&model, data, |_| true)?;
+    let points = model.points(data);
+    let off = points.iter().zip(&data.rows).map(|(point, row)| registration.in_base(&row.position.into()) - point);
+    Ok(off.map(Into::into).collect())
+}
+
 /// The estimates of a description's numbers after a fit.
 pub fn estimated(campaign: &Campaign, prepared: &Prepared<'_>, values: &[f64], spread: &DMatrix<f64>) -> Vec<Estimate> {
     estimates(&campaign.robot, (&prepared.own, &prepared.visibility), values, &prepared.seen(), spread)
