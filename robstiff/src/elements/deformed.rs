@@ -44,12 +44,51 @@ pub fn deformed<const N: usize>(
     state: &mut State<N>,
 ) -> Deformed<N> {
     let tcp = robot.transform(q);
-    let parts = parts(robot, q);
+    let wrench = |motion: &Isometry3<f64>| load(&moved(&tcp, motion));
+    let laws = |torques: &[f64]| turns_under(robot, q, &SVector::from_column_slice(torques), state).as_slice().to_vec();
+    let Rest { motion, torques, turns } = at_rest(&parts(robot, q), wrench, laws);
+    for effect in robot.effects() {
+        if let Some(joint) = effect.row().map(|row| row - 1) {
+            state.plays[joint] = plays(effect, torques[joint], state.plays[joint]);
+        }
+    }
+    Deformed { tcp: moved(&tcp, &motion), turns: SVector::from_vec(turns) }
+}
+
+/// What yields.
+#[expect(clippy::large_enum_variant, reason = "there are a dozen, for a moment")]
+pub(crate) enum Part {
+    /// A joint, from 0, with the twist of the TCP per unit of its turn.
+    Joint(usize, Vector6<f64>),
+    /// Anything else, with what it adds to the compliance at the TCP.
+    Spring(Matrix6<f64>),
+}
+
+/// Parts at rest under a load.
+pub(crate) struct Rest {
+    /// The motion of the tool, about the place of the unloaded TCP and along the axes of
+    /// the base frame.
+    pub motion: Isometry3<f64>,
+    /// The torques of the joints (Nm or N).
+    pub torques: Vec<f64>,
+    /// Their turns (rad or m).
+    pub turns: Vec<f64>,
+}
+
+/// Where parts from base to tip come to rest: `load` is the wrench at the moved TCP, in
+/// the base frame, for each motion of it, `turns` are those of the joints under their
+/// torques.
+pub(crate) fn at_rest(
+    parts: &[Part],
+    load: impl Fn(&Isometry3<f64>) -> Vector6<f64>,
+    turns_under: impl Fn(&[f64]) -> Vec<f64>,
+) -> Rest {
+    let joints = parts.iter().filter(|part| matches!(part, Part::Joint(..))).count();
     let mut screws = std::vec![Vector6::zeros(); parts.len()];
-    let (mut torques, mut turns) = (SVector::zeros(), SVector::zeros());
+    let (mut torques, mut turns) = (std::vec![0.0; joints], Vec::new());
     for _ in 0..PASSES {
         let (half_way, whole) = walk(&screws);
-        let wrench = load(&moved(&tcp, &whole));
+        let wrench = load(&whole);
         let force: Vector3<f64> = wrench.fixed_rows::<3>(0).into_owned();
         let moment = whole.translation.vector.cross(&force) + wrench.fixed_rows::<3>(3);
         let met: Vec<Vector6<f64>> = half_way.iter().map(|motion| taken_back(motion, &force, &moment)).collect();
@@ -58,7 +97,7 @@ pub fn deformed<const N: usize>(
                 torques[*joint] = twist.dot(met);
             }
         }
-        turns = turns_under(robot, q, &torques, state);
+        turns = turns_under(&torques);
         for ((part, met), screw) in parts.iter().zip(&met).zip(&mut screws) {
             *screw = match part {
                 Part::Joint(joint, twist) => twist * turns[*joint],
@@ -66,16 +105,11 @@ pub fn deformed<const N: usize>(
             };
         }
     }
-    for effect in robot.effects() {
-        if let Some(joint) = effect.row().map(|row| row - 1) {
-            state.plays[joint] = plays(effect, torques[joint], state.plays[joint]);
-        }
-    }
-    Deformed { tcp: moved(&tcp, &walk(&screws).1), turns }
+    Rest { motion: walk(&screws).1, torques, turns }
 }
 
 /// The motion of each part when it has gone half its way, which is where it meets its
-/// load on average, and of all behind the last; about the place of the unloaded TCP.
+/// load on average, and of all behind the last.
 fn walk(screws: &[Vector6<f64>]) -> (Vec<Isometry3<f64>>, Isometry3<f64>) {
     let mut before = Isometry3::identity();
     let half_way = |screw: &Vector6<f64>| {
@@ -85,15 +119,6 @@ fn walk(screws: &[Vector6<f64>]) -> (Vec<Isometry3<f64>>, Isometry3<f64>) {
         met
     };
     (screws.iter().map(half_way).collect(), before)
-}
-
-/// What yields.
-#[expect(clippy::large_enum_variant, reason = "there are a dozen, for a moment")]
-enum Part {
-    /// A joint, from 0, with the twist of the TCP per unit of its turn.
-    Joint(usize, Vector6<f64>),
-    /// Anything else, with what it adds to the compliance at the TCP.
-    Spring(Matrix6<f64>),
 }
 
 /// All parts from base to tip. Couplings and laws are those of joints.
