@@ -11,7 +11,7 @@ use super::draw::{PACE, Stream, names, normal, stream};
 use super::{Pull, Scenario, UnderForces};
 use crate::campaign::{Displacements, Frame, Observation};
 use crate::elements::deformed;
-use crate::identify::samples::Samples;
+use crate::identify::samples::{Samples, turn_of};
 use crate::{Robot, State};
 
 /// The displacements of a scenario at some poses, with noise.
@@ -98,22 +98,18 @@ fn deflect<const N: usize>(robot: &impl Robot<N>, under: &UnderForces, data: &mu
         let q = SVector::<f64, N>::from_column_slice(&sample.q);
         let under_load = deformed(robot, &q, |_| sample.wrench, &mut state);
         row.encoders = under.encoder_noise.is_some().then(|| (q + under_load.turns).as_slice().to_vec());
-        let turned = rotation(&under_load.tcp) * rotation(&sample.tcp).transpose();
+        let turned = turn_of(&under_load.tcp) * turn_of(&sample.tcp).transpose();
         let origin = |tcp: &Matrix4<f64>| tcp.fixed_view::<3, 1>(0, 3).into_owned();
         let moved = origin(&under_load.tcp) - origin(&sample.tcp) + (turned - Matrix3::identity()) * sample.marker;
         let turn: Vector3<f64> =
             UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turned)).scaled_axis();
         let frame: Matrix3<f64> = match data.measured_frame {
             Frame::Base => Matrix3::identity(),
-            Frame::Tool => rotation(&sample.tcp).transpose(),
+            Frame::Tool => turn_of(&sample.tcp).transpose(),
         };
         row.displacement = (frame * moved).into();
         row.rotation = under.rotation_noise.is_some().then(|| (frame * turn).into());
     }
-}
-
-fn rotation(frame: &Matrix4<f64>) -> Matrix3<f64> {
-    frame.fixed_view::<3, 3>(0, 0).into_owned()
 }
 
 /// Adds the noise of the loaded reading, and takes that of the unloaded one

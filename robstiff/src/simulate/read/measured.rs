@@ -9,6 +9,7 @@ use robstiff_robots::quantity::Dimension;
 
 use super::super::{Measures, Pull, UnderForces, UnderPayloads};
 use super::{computable, dimension, for_each_joint, sigma};
+use crate::campaign::Frame;
 use crate::campaign::read::place;
 
 /// What a scenario says of loads and instruments.
@@ -20,58 +21,26 @@ pub struct Measured {
     pub states_noise: bool,
 }
 
-/// The fields that only one kind of scenario has.
-const OF_FORCES: [&str; 4] = ["ramp", "force", "moment", "unloaded"];
-const OF_PAYLOADS: [&str; 1] = ["payloads"];
-
 pub fn measured(map: &Map<'_>, joints: &[Joint]) -> Option<Measured> {
-    let (wrench, measured) = (place(map, "wrench"), place(map, "measured"));
-    let tracked =
-        map.get("kind").map_or(Some(false), |node| node.choice(&[("displacement", false), ("position", true)]));
-    let noise = |fields: &[&str]| {
-        let noise = map.require("noise", "noise: {displacement: 8 um}")?.map(fields)?;
-        let stated = noise.get("stated").map_or(Some(true), |node| node.choice(&[("yes", true), ("no", false)]));
-        Some((displacement_noise(&noise), stated, noise))
+    let places = [place(map, "wrench"), place(map, "measured")];
+    let kinds = [("displacement", false), ("position", true)];
+    let tracked = map.get("kind").map_or(Some(false), |node| node.choice(&kinds))?;
+    let fields: &[&str] = match tracked {
+        true => &["displacement", "repeatability", "stated"],
+        false => &["displacement", "rotation", "encoders", "stated"],
     };
-    let (measures, displacement, stated) = if tracked? {
-        let refused = refused(map, &OF_FORCES, "positions are read under payloads", "e.g. `payloads: [0 kg, 150 kg]`");
-        let payloads = map.get("payloads").map_or(Some(std::vec![0.0]), |node| payloads(&node));
-        let (displacement, stated, noise) = noise(&["displacement", "repeatability", "stated"])?;
-        let repeatability = noise.get("repeatability").map_or(Some(0.0), |node| sigma(&node, Dimension::Length));
-        refused?;
-        (
-            Measures::Positions(UnderPayloads { payloads: payloads?, repeatability: repeatability? }),
-            displacement,
-            stated,
-        )
-    } else {
-        let refused = refused(map, &OF_PAYLOADS, "displacements are read under forces", "or is it `kind: position`?");
-        let ramp = map.get("ramp").map_or(Some(std::vec![1.0]), |node| ramp(&node));
-        let force = map
-            .require("force", "force: {bounds: [500 N, 1300 N]}")
-            .and_then(|node| pull(&node, Dimension::Force, "bounds: [500 N, 1300 N]"));
-        let moment = map
-            .get("moment")
-            .map_or(Some(None), |node| pull(&node, Dimension::Torque, "bounds: [50 Nm, 200 Nm]").map(Some));
-        let shares = map.get("unloaded");
-        let shares = shares.map_or(Some(true), |node| node.choice(&[("shared", true), ("separate", false)]));
-        let (displacement, stated, noise) = noise(&["displacement", "rotation", "encoders", "stated"])?;
-        let rotation = noise.get("rotation").map_or(Some(None), |node| sigma(&node, Dimension::Angle).map(Some));
-        let encoders = noise.get("encoders").map_or(Some(None), |node| encoder_noise(&node, joints).map(Some));
-        refused?;
-        let under = UnderForces {
-            ramp: ramp?,
-            force: force?,
-            moment: moment?,
-            frames: [wrench?.0, measured?.0],
-            rotation_noise: rotation?,
-            encoder_noise: encoders?,
-            shares_unloaded: shares?,
-        };
-        (Measures::Displacements(under), displacement, stated)
+    let noise = map.require("noise", "noise: {displacement: 8 um}").and_then(|node| node.map(fields));
+    let displacement = noise.as_ref().and_then(displacement_noise);
+    let measures = match tracked {
+        true => under_payloads(map, noise.as_ref()).map(Measures::Positions),
+        false => {
+            under_forces(map, noise.as_ref(), joints, places.map(|place| Some(place?.0))).map(Measures::Displacements)
+        }
     };
+    let stated = noise?.get("stated").map_or(Some(true), |node| node.choice(&[("yes", true), ("no", false)]));
+    let [wrench, measured] = places;
     Some(Measured {
-        measures,
+        measures: measures?,
         wrench_at: wrench?.1,
         measured_at: measured?.1,
         noise: displacement?,
@@ -79,14 +48,50 @@ pub fn measured(map: &Map<'_>, joints: &[Joint]) -> Option<Measured> {
     })
 }
 
-/// Reports fields that the kind of a scenario does not have.
-fn refused(map: &Map<'_>, fields: &[&str], why: &str, help: &str) -> Option<()> {
-    let mut refused = fields.iter().filter_map(|field| map.get(field)).peekable();
-    if refused.peek().is_none() {
-        return Some(());
-    }
-    refused.for_each(|node| node.error(why, help));
-    None
+fn under_payloads(map: &Map<'_>, noise: Option<&Map<'_>>) -> Option<UnderPayloads> {
+    let others = ["ramp", "force", "moment", "unloaded"];
+    let fits = none_of(map, &others, "positions are read under payloads", "e.g. `payloads: [0 kg, 150 kg]`");
+    let payloads = map.get("payloads").map_or(Some(std::vec![0.0]), |node| payloads(&node));
+    let repeatability = noise?.get("repeatability").map_or(Some(0.0), |node| sigma(&node, Dimension::Length));
+    fits.then_some(UnderPayloads { payloads: payloads?, repeatability: repeatability? })
+}
+
+fn under_forces(
+    map: &Map<'_>,
+    noise: Option<&Map<'_>>,
+    joints: &[Joint],
+    frames: [Option<Frame>; 2],
+) -> Option<UnderForces> {
+    let fits = none_of(map, &["payloads"], "displacements are read under forces", "or is it `kind: position`?");
+    let ramp = map.get("ramp").map_or(Some(std::vec![1.0]), |node| ramp(&node));
+    let force = map
+        .require("force", "force: {bounds: [500 N, 1300 N]}")
+        .and_then(|node| pull(&node, Dimension::Force, "bounds: [500 N, 1300 N]"));
+    let moment = map
+        .get("moment")
+        .map_or(Some(None), |node| pull(&node, Dimension::Torque, "bounds: [50 Nm, 200 Nm]").map(Some));
+    let unloaded = [("shared", true), ("separate", false)];
+    let shares_unloaded = map.get("unloaded").map_or(Some(true), |node| node.choice(&unloaded));
+    let noise = noise?;
+    let rotation = noise.get("rotation").map_or(Some(None), |node| sigma(&node, Dimension::Angle).map(Some));
+    let encoders = noise.get("encoders").map_or(Some(None), |node| encoder_noise(&node, joints).map(Some));
+    let [wrench, measured] = frames;
+    fits.then_some(UnderForces {
+        ramp: ramp?,
+        force: force?,
+        moment: moment?,
+        frames: [wrench?, measured?],
+        rotation_noise: rotation?,
+        encoder_noise: encoders?,
+        shares_unloaded: shares_unloaded?,
+    })
+}
+
+/// Whether a scenario has none of the fields of another kind; reports those that it has.
+fn none_of(map: &Map<'_>, fields: &[&str], why: &str, help: &str) -> bool {
+    let found: Vec<Node<'_>> = fields.iter().filter_map(|field| map.get(field)).collect();
+    found.iter().for_each(|node| node.error(why, help));
+    found.is_empty()
 }
 
 fn payloads(node: &Node<'_>) -> Option<Vec<f64>> {
