@@ -26,7 +26,7 @@ mod tests;
 #[cfg(feature = "identify")]
 pub use deformed::{Deformed, deformed};
 #[cfg(feature = "identify")]
-pub(crate) use deformed::{Part, Rest, at_rest};
+pub(crate) use deformed::{Part, Rest, at_rest, displacement_at};
 pub use laws::{
     commanded_rates, deviation, joint_turns, own_weight_torque, plays, share_of_weight, turn, turn_about, turns_under,
     unloaded_turn,

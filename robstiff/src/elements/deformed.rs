@@ -30,6 +30,16 @@ pub struct Deformed<const N: usize> {
     pub tcp: Matrix4<f64>,
     /// By how much each joint has turned (rad or m), as encoders behind the gears see.
     pub turns: SVector<f64, N>,
+    /// What has moved the tool, as of [`Rest`].
+    motion: Isometry3<f64>,
+}
+
+impl<const N: usize> Deformed<N> {
+    /// The displacement `[d; r]` (m, rad) in the base frame of a point that is fixed to
+    /// the tool, `lever` (m) away from the unloaded TCP along the base frame's axes.
+    pub fn displacement_at(&self, lever: &Vector3<f64>) -> Vector6<f64> {
+        displacement_at(&self.motion, lever)
+    }
 }
 
 /// Where a robot comes to rest at joint coordinates `q` [rad or m] under a load that
@@ -52,7 +62,7 @@ pub fn deformed<const N: usize>(
             state.plays[joint] = plays(effect, torques[joint], state.plays[joint]);
         }
     }
-    Deformed { tcp: moved(&tcp, &motion), turns: SVector::from_vec(turns) }
+    Deformed { tcp: moved(&tcp, &motion), turns: SVector::from_vec(turns), motion }
 }
 
 /// What yields.
@@ -76,8 +86,8 @@ pub(crate) struct Rest {
 }
 
 /// Where parts from base to tip come to rest: `load` is the wrench at the moved TCP, in
-/// the base frame, for each motion of it, `turns` are those of the joints under their
-/// torques.
+/// the base frame, for each motion of it, `turns_under` gives the turns of the joints
+/// under their torques.
 pub(crate) fn at_rest(
     parts: &[Part],
     load: impl Fn(&Isometry3<f64>) -> Vector6<f64>,
@@ -157,6 +167,14 @@ fn taken_back(motion: &Isometry3<f64>, force: &Vector3<f64>, moment: &Vector3<f6
     let moment = moment - motion.translation.vector.cross(force);
     let [force, moment] = [*force, moment].map(|vector| motion.rotation.inverse_transform_vector(&vector));
     Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z)
+}
+
+/// What a motion displaces a point by, and turns it, `lever` away from the place of the
+/// unloaded TCP.
+pub(crate) fn displacement_at(motion: &Isometry3<f64>, lever: &Vector3<f64>) -> Vector6<f64> {
+    let moved = motion.translation.vector + motion.rotation * lever - lever;
+    let turned = motion.rotation.scaled_axis();
+    Vector6::new(moved.x, moved.y, moved.z, turned.x, turned.y, turned.z)
 }
 
 /// The frame of the TCP, moved.

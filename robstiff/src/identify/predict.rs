@@ -3,6 +3,7 @@
 use std::string::String;
 use std::vec::Vec;
 
+use nalgebra::Vector3;
 use robstiff_robots::Description;
 
 use super::baseline::declared;
@@ -38,13 +39,14 @@ pub struct PredictedRow {
     pub predicted: [f64; 3],
     /// The one read, in the same frame (m).
     pub measured: [f64; 3],
+    /// What was read less what is predicted, in the base frame (m).
+    pub off: [f64; 3],
 }
 
 impl PredictedRow {
     /// The length of the residual over `sqrt(3)` (m).
     pub fn error(&self) -> f64 {
-        let squares = self.predicted.iter().zip(&self.measured).map(|(p, m)| (p - m) * (p - m));
-        (squares.sum::<f64>() / 3.0).sqrt()
+        (self.off.iter().map(|off| off * off).sum::<f64>() / 3.0).sqrt()
     }
 }
 
@@ -77,10 +79,14 @@ fn displacements(description: &Description, data: &Displacements) -> Result<Pred
             predicted.axpy(number.value, &samples.column(number.column), 1.0);
         }
     }
-    let row = |(i, sample): (usize, &super::samples::Sample)| PredictedRow {
-        line: data.rows[i].line,
-        predicted: core::array::from_fn(|axis| predicted[i * samples.axes + axis]),
-        measured: sample.displacement.into(),
+    let row = |(i, sample): (usize, &super::samples::Sample)| {
+        let predicted: Vector3<f64> = predicted.fixed_rows::<3>(i * samples.axes).into_owned();
+        PredictedRow {
+            line: data.rows[i].line,
+            predicted: predicted.into(),
+            measured: sample.displacement.into(),
+            off: (sample.displacement - predicted).into(),
+        }
     };
     Prediction::of(samples.rows.iter().enumerate().map(row).collect())
 }

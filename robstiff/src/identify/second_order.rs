@@ -12,8 +12,8 @@ use nalgebra::{DVector, Vector3, Vector6};
 use robstiff_robots::Description;
 
 use super::laws::turned_by_laws;
-use super::samples::{Sample, Samples};
-use crate::elements::{Part, Rest, at_rest};
+use super::samples::{Sample, Samples, stack};
+use crate::elements::{Part, Rest, at_rest, displacement_at};
 
 /// The displacement of the marker (m) and its rotation (rad) through the joints with
 /// the load in equilibrium at the moved arm, less the linear ones `J H_q J^T F`;
@@ -32,9 +32,7 @@ fn of_row(row: &Sample, compliance: &[f64]) -> (Vector6<f64>, Vec<f64>) {
     let first: Vec<f64> = row.twists.iter().zip(compliance).map(|(twist, h)| h * twist.dot(&row.wrench)).collect();
     let linear: Vector6<f64> = row.twists.iter().zip(&first).map(|(twist, turn)| twist * *turn).sum();
     let [shift, turn]: [Vector3<f64>; 2] = [0, 3].map(|from| linear.fixed_rows::<3>(from).into_owned());
-    let moved = motion.translation.vector + motion.rotation * row.marker - row.marker;
-    let beyond = [moved - (shift + turn.cross(&row.marker)), motion.rotation.scaled_axis() - turn];
-    let six = Vector6::from_iterator(beyond.iter().flatten().copied());
+    let six = displacement_at(&motion, &row.marker) - stack(&(shift + turn.cross(&row.marker)), &turn);
     (six, turns.iter().zip(first).map(|(turn, first)| turn - first).collect())
 }
 

@@ -2,7 +2,7 @@
 
 use std::vec::Vec;
 
-use nalgebra::{Matrix3, Matrix4, Rotation3, SVector, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, SVector, Vector3};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
@@ -98,17 +98,13 @@ fn deflect<const N: usize>(robot: &impl Robot<N>, under: &UnderForces, data: &mu
         let q = SVector::<f64, N>::from_column_slice(&sample.q);
         let under_load = deformed(robot, &q, |_| sample.wrench, &mut state);
         row.encoders = under.encoder_noise.is_some().then(|| (q + under_load.turns).as_slice().to_vec());
-        let turned = turn_of(&under_load.tcp) * turn_of(&sample.tcp).transpose();
-        let origin = |tcp: &Matrix4<f64>| tcp.fixed_view::<3, 1>(0, 3).into_owned();
-        let moved = origin(&under_load.tcp) - origin(&sample.tcp) + (turned - Matrix3::identity()) * sample.marker;
-        let turn: Vector3<f64> =
-            UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turned)).scaled_axis();
+        let six = under_load.displacement_at(&sample.marker);
         let frame: Matrix3<f64> = match data.measured_frame {
             Frame::Base => Matrix3::identity(),
             Frame::Tool => turn_of(&sample.tcp).transpose(),
         };
-        row.displacement = (frame * moved).into();
-        row.rotation = under.rotation_noise.is_some().then(|| (frame * turn).into());
+        row.displacement = (frame * six.fixed_rows::<3>(0)).into();
+        row.rotation = under.rotation_noise.is_some().then(|| (frame * six.fixed_rows::<3>(3)).into());
     }
 }
 

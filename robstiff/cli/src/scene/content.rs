@@ -1,8 +1,9 @@
 //! What a scene shows: the poses with compliance and displacement, computed.
 
 use robstiff::analysis::principal_directions;
-use robstiff::campaign::{Campaign, Data, PositionRow, Positions};
-use robstiff::identify::{positions, predict};
+use robstiff::campaign::{Campaign, Data};
+use robstiff::identify::predict;
+use robstiff::identify::predict::PredictedRow;
 use robstiff::nalgebra::{Matrix4, SVector, Vector3, Vector6};
 use robstiff::{Convention, Generic, JointKind, Robot, State, with_robot};
 use robstiff_robots::{Description, Joint};
@@ -132,52 +133,38 @@ impl Scene {
     /// # Errors
     /// A campaign that cannot be predicted, or is at no poses.
     pub fn of_campaign(robot: &Description, campaign: &Campaign) -> Result<Self, Failure> {
-        let data = match &campaign.data {
-            Data::Displacement(data) => data,
-            Data::Position(data) => return Self::of_positions(robot, campaign, data),
+        let (ids, read, name): (_, Vec<(usize, &[f64])>, _) = match &campaign.data {
+            Data::Displacement(data) => {
+                (&data.poses, data.rows.iter().map(|row| (row.pose, &row.q[..])).collect(), "measured less predicted")
+            }
+            Data::Position(data) => {
+                (&data.poses, data.rows.iter().map(|row| (row.pose, &row.q[..])).collect(), "read less predicted")
+            }
             Data::Clamped(_) => return Err(Failure::new("campaigns of kind `clamped` are at no poses to show")),
         };
+        let tracked = matches!(campaign.data, Data::Position(_));
         let predicted = predict(robot, campaign)?.rows;
+        let size = |row: &PredictedRow| length(if tracked { row.off } else { row.measured });
         let largest = |pose: usize| {
-            let rows = data.rows.iter().zip(&predicted).filter(|(row, _)| row.pose == pose);
-            rows.max_by(|(_, a), (_, b)| length(a.measured).total_cmp(&length(b.measured)))
+            let rows = read.iter().zip(&predicted).filter(|((of, _), _)| *of == pose);
+            rows.max_by(|(_, a), (_, b)| size(a).total_cmp(&size(b)))
         };
-        let rows: Vec<_> = (0..data.poses.len()).filter_map(largest).collect();
-        let asked = rows.iter().map(|(row, predicted)| {
-            let residual: [f64; 3] = std::array::from_fn(|k| predicted.measured[k] - predicted.predicted[k]);
-            Row { q: row.q.clone(), wrench: None, value: Some((length(residual) * 1e6, "um".to_owned())) }
+        let rows: Vec<_> = (0..ids.len()).filter_map(largest).collect();
+        let asked = rows.iter().map(|((_, q), row)| Row {
+            q: q.to_vec(),
+            wrench: None,
+            value: Some((length(row.off) * 1e6, "um".to_owned())),
         });
         let asked: Vec<Row> = asked.collect();
-        let mut scene = Self::new(robot, Kind::Campaign, &asked).coloured_by(Some("measured less predicted"));
+        let mut scene = Self::new(robot, Kind::Campaign, &asked).coloured_by(Some(name));
+        let micrometres = |vector: [f64; 3]| Some(vector.map(|d| d * 1e6));
         for pose in &mut scene.poses {
-            let (row, predicted) = rows[pose.row];
-            pose.displacement = Some(predicted.predicted.map(|d| d * 1e6));
-            pose.measured = Some(predicted.measured.map(|d| d * 1e6));
-            pose.name = Some(data.poses[row.pose].clone());
-        }
-        Ok(scene)
-    }
-
-    fn of_positions(robot: &Description, campaign: &Campaign, data: &Positions) -> Result<Self, Failure> {
-        // Asked first, for it knows whether robot and campaign go together.
-        predict(robot, campaign)?;
-        let off = positions::off(robot, data)?;
-        let farthest = |pose: usize| {
-            let rows = data.rows.iter().zip(&off).filter(|(row, _)| row.pose == pose);
-            rows.max_by(|(_, a), (_, b)| length(**a).total_cmp(&length(**b)))
-        };
-        let rows: Vec<_> = (0..data.poses.len()).filter_map(farthest).collect();
-        let asked = |(row, off): &(&PositionRow, &[f64; 3])| Row {
-            q: row.q.clone(),
-            wrench: None,
-            value: Some((length(**off) * 1e6, "um".to_owned())),
-        };
-        let asked: Vec<Row> = rows.iter().map(asked).collect();
-        let mut scene = Self::new(robot, Kind::Campaign, &asked).coloured_by(Some("read less predicted"));
-        for pose in &mut scene.poses {
-            let (row, off) = rows[pose.row];
-            pose.off = Some(off.map(|d| d * 1e6));
-            pose.name = Some(data.poses[row.pose].clone());
+            let ((of, _), row) = rows[pose.row];
+            match tracked {
+                true => pose.off = micrometres(row.off),
+                false => (pose.displacement, pose.measured) = (micrometres(row.predicted), micrometres(row.measured)),
+            }
+            pose.name = Some(ids[*of].clone());
         }
         Ok(scene)
     }

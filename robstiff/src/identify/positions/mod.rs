@@ -34,9 +34,9 @@ use super::baseline::{
 };
 use super::displacement::among_all;
 use super::holdout::training;
-use super::normal::{Fit, Normal, Scaled, Sign};
+use super::normal::{Normal, Scaled, Sign};
 use super::predict::{PredictedRow, Prediction};
-use super::problem::{Problem, rms};
+use super::problem::rms;
 use super::readable::{UNREADABLE, is_readable};
 use super::uncertainty::{correlation, covariance};
 use super::{Error, Estimate, Identification, NoiseSource, estimates};
@@ -204,12 +204,7 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
     let regression = prepared.regression([]);
     let start = prepared.state(prepared.own.len());
     let (state, spread, variance) = match by_payloads(&regression, &start, &seen, &prepared.rows)? {
-        Some((mut state, within, fit)) => {
-            let model = state.model(&regression.start, &regression.numbers);
-            state.registration = standing(&model, data, |row| prepared.rows.training[data.rows[row].pose])?;
-            let signs = &regression.signs_of(&seen)[STANDS..];
-            (state, covariance(&within, &fit, signs), fit.rss / within.freedom(&fit))
-        }
+        Some(found) => found,
         None => {
             let solved = regression.solve(&seen, &start, &prepared.rows).ok_or_else(confounded)?;
             let variance = solved.fit.rss / solved.problem.freedom(&solved.fit);
@@ -240,24 +235,27 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
     })
 }
 
-/// The own numbers by what payloads of one visit differ by, with the regression and its
-/// fit; `None` where that does not tell them from each other.
+/// The own numbers by what payloads of one visit differ by, with their covariance and
+/// the variance of a reading (m^2); `None` where that does not tell them from each other.
 fn by_payloads(
     regression: &Regression<'_>,
     start: &State,
     seen: &[usize],
     rows: &Rows,
-) -> Result<Option<(State, Problem, Fit)>, Error> {
+) -> Result<Option<(State, DMatrix<f64>, f64)>, Error> {
+    let data = regression.data;
     let (signs, columns) = (&regression.signs_of(seen)[STANDS..], Vec::from_iter(0..seen.len()));
     let mut state = start.clone();
     let mut pass = 1;
     loop {
         let (problem, _) = regression.at(&state, seen, rows);
-        let Some(within) = within_visits(&problem, regression.data) else { return Ok(None) };
+        let Some(within) = within_visits(&problem, data) else { return Ok(None) };
         let fit = within.total.solve_signed(&columns, signs).ok_or_else(confounded)?;
         seen.iter().zip(fit.coefficients.iter()).for_each(|(&k, &value)| state.values[k] = value);
         if pass == PASSES {
-            return Ok(Some((state, within, fit)));
+            let model = state.model(&regression.start, &regression.numbers);
+            state.registration = standing(&model, data, |row| rows.training[data.rows[row].pose])?;
+            return Ok(Some((state, covariance(&within, &fit, signs), fit.rss / within.freedom(&fit))));
         }
         pass += 1;
     }
@@ -297,21 +295,9 @@ pub fn predict(description: &Description, data: &Positions) -> Result<Prediction
         line: row.line,
         predicted: registration.placed(&point).into(),
         measured: row.position,
+        off: (registration.in_base(&row.position.into()) - point).into(),
     };
     Prediction::of(model.points(data).into_iter().zip(&data.rows).map(row).collect())
-}
-
-/// What the positions of a campaign are off a description by, row by row, in the base
-/// frame (m); where the robot stands is fitted.
-///
-/// # Errors
-/// Positions that do not tell where the robot stands.
-pub fn off(description: &Description, data: &Positions) -> Result<Vec<[f64; 3]>, Error> {
-    let model = Model::new(description, data);
-    let registration = standing(&model, data, |_| true)?;
-    let points = model.points(data);
-    let off = points.iter().zip(&data.rows).map(|(point, row)| registration.in_base(&row.position.into()) - point);
-    Ok(off.map(Into::into).collect())
 }
 
 /// The estimates of a description's numbers after a fit.

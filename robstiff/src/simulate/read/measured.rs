@@ -21,6 +21,7 @@ pub struct Measured {
     pub states_noise: bool,
 }
 
+/// Reads it, by the kind of the scenario.
 pub fn measured(map: &Map<'_>, joints: &[Joint]) -> Option<Measured> {
     let places = [place(map, "wrench"), place(map, "measured")];
     let kinds = [("displacement", false), ("position", true)];
