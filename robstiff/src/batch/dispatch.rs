@@ -252,6 +252,13 @@ fn avx2<T, Q, const N: usize, const M: usize>(
     }
 }
 
+/// The `f64` of a vector of AVX-512, half of it where the compiler makes them no longer:
+/// in programs that are built for a machine with AVX-512 and not one of AMD's, which has
+/// SSE4a. Two vectors at once do not stay in the registers there. Gain: by entry 13.5 ns
+/// to 8.6.
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+const WIDE: usize = if cfg!(all(target_feature = "avx512f", not(target_feature = "sse4a"))) { 4 } else { 8 };
+
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 #[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl,avx512bw")]
 fn avx512<T, Q, const N: usize, const M: usize>(
@@ -263,8 +270,8 @@ fn avx512<T, Q, const N: usize, const M: usize>(
     Q: Quantity<T, N, M>,
 {
     if const { size_of::<T>() == size_of::<f64>() } {
-        block::run::<T, Q, _, _, N, M, 8, 4, true>(quantity, source, sink, Avx512);
+        block::run::<T, Q, _, _, N, M, WIDE, 4, true>(quantity, source, sink, Avx512);
     } else {
-        block::run::<T, Q, _, _, N, M, 16, 8, true>(quantity, source, sink, Avx512);
+        block::run::<T, Q, _, _, N, M, { 2 * WIDE }, 8, true>(quantity, source, sink, Avx512);
     }
 }
