@@ -1,5 +1,6 @@
 //! Campaigns of absolute positions drawn at random, and what tracing makes of them.
 
+use std::f64::consts::PI;
 use std::fs;
 
 use rand::seq::IndexedRandom;
@@ -101,7 +102,7 @@ fn effect(random: &mut ChaCha8Rng, joints: usize, payloads: bool) -> Hidden {
     let sign = if random.random() { 1.0 } else { -1.0 };
     let size = |random: &mut ChaCha8Rng, least: f64, most: f64| sign * random.random_range(least..most);
     let joint = random.random_range(2..=joints);
-    match random.random_range(0..if payloads { 7 } else { 6 }) {
+    match random.random_range(0..if payloads { 8 } else { 6 }) {
         0 => Hidden::JointZeroOffset { joint, offset: size(random, 3e-4, 5e-3) },
         1 => Hidden::DhError { of: DhColumn::A, row: random.random_range(1..=joints), by: size(random, 1e-4, 2e-3) },
         2 => Hidden::DhError { of: DhColumn::D, row: joint, by: size(random, 1e-4, 2e-3) },
@@ -117,7 +118,13 @@ fn effect(random: &mut ChaCha8Rng, joints: usize, payloads: bool) -> Hidden {
             let mut three = |most: f64| std::array::from_fn(|_| random.random_range(-most..most));
             Hidden::BaseSlip { shift: three(5e-4), turn: three(2e-4), when }
         }
-        _ => Effect::TransverseCompliance { joint, value: random.random_range(2e-7..1.5e-6) }.into(),
+        6 => Effect::TransverseCompliance { joint, value: random.random_range(2e-7..1.5e-6) }.into(),
+        _ => {
+            let (once, change) = (random.random::<bool>(), size(random, 0.1, 0.3));
+            let (sin, cos) = random.random_range(0.0..PI).sin_cos();
+            let of = |wave: f64| if once { [wave, 0.0] } else { [0.0, wave] };
+            Hidden::PoseDependentCompliance { joint, cos: of(change * cos), sin: of(change * sin) }
+        }
     }
 }
 

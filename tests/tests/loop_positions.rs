@@ -110,10 +110,13 @@ fn the_arms_own_weight_is_named() {
 #[test]
 fn payloads_show_what_yields() {
     let tilt = Hidden::from(Effect::TransverseCompliance { joint: 2, value: 8e-7 });
-    assert_named(&tilt.name(), 600, |positions, _| {
-        positions.payloads = PAYLOADS.to_vec();
-        positions.hidden = vec![tilt.clone()];
-    });
+    let varying = Hidden::PoseDependentCompliance { joint: 2, cos: [0.2, 0.0], sin: [-0.15, 0.0] };
+    for (seed, hidden) in [(600, tilt), (640, varying)] {
+        assert_named(&hidden.name(), seed, |positions, _| {
+            positions.payloads = PAYLOADS.to_vec();
+            positions.hidden = vec![hidden.clone()];
+        });
+    }
 }
 
 #[test]

@@ -39,6 +39,10 @@ const STEPS: [f64; 2] = [ANGLE_STEP, LENGTH_STEP];
 const ORDERS: [f64; 3] = [1.0, 2.0, 3.0];
 const LARGEST_WAVE: f64 = 0.1;
 
+/// The largest relative change of a compliance by one of its four waves: with all of
+/// them so large, something of it is left at every angle.
+const LARGEST_CHANGE: f64 = 0.35;
+
 /// More of the sag than all of it twice over is something else.
 const MOST_SAG: f64 = 2.0;
 
@@ -165,8 +169,8 @@ fn couplings(robot: &Description, data: &Positions) -> Vec<Offer> {
     pairs.map(|pair| one("joint_coupling", Part::Joints(pair), ("value", "rad/Nm"), any, COMPLIANCE_STEP)).collect()
 }
 
-/// Gears that give way other than in proportion to what a payload loads them with:
-/// the knee is one of several parts of the largest torque.
+/// Gears that give way other than in proportion to what a payload loads them with, the
+/// knee one of several parts of the largest torque; or not alike at all angles.
 fn gears(robot: &Description, data: &Positions) -> Vec<Offer> {
     let torques = Model::new(robot, data).torques(data);
     let largest = |joint: usize| torques.iter().map(|row| row[joint - 1].abs()).fold(0.0, f64::max);
@@ -199,7 +203,27 @@ fn gears(robot: &Description, data: &Positions) -> Vec<Offer> {
         law("stiffness_nonlinearity", joint, "added", [softest, f64::INFINITY], &HARDENING_KNEES)
     };
     let lost = |&joint: &usize| law("lost_motion", joint, "gap", [0.0, WIDEST_GAP], &LOST_KNEES);
-    loaded.iter().map(hardening).chain(loaded.iter().map(lost)).collect()
+    let varies = |&&joint: &&usize| robot.joints[joint - 1].kind == JointKind::Revolute;
+    let varying = loaded.iter().filter(varies).map(|&joint| varying(joint));
+    loaded.iter().map(hardening).chain(loaded.iter().map(lost)).chain(varying).collect()
+}
+
+/// A compliance that varies with the joint's own angle, once or twice a turn or both.
+fn varying(joint: usize) -> Offer {
+    let name = "pose_dependent_compliance";
+    let number = |(at, number): (usize, &'static str)| Number {
+        name: number,
+        unit: "1",
+        range: [-LARGEST_CHANGE, LARGEST_CHANGE],
+        enters: of_effect(name, Part::Joint(joint), at, vec![0.0; 4], SHARE_STEP),
+    };
+    let forms = [vec![0, 1], vec![2, 3], vec![0, 1, 2, 3]];
+    Offer {
+        kind: kind(name),
+        place: Part::Joint(joint).into(),
+        numbers: ["cos1", "sin1", "cos2", "sin2"].into_iter().enumerate().map(number).collect(),
+        forms: forms.map(|numbers| Form { numbers, shape: vec![] }).into(),
+    }
 }
 
 fn zero(robot: &Description, joint: usize) -> Offer {
