@@ -132,6 +132,36 @@ fn the_table_has_its_loads_in_the_frame_of_the_campaign() {
     }
 }
 
+/// The poses of a tracker's campaign: its own columns, payloads and all, but the readings.
+#[test]
+fn positions_are_planned_with_their_payloads() {
+    let folder = folder("plan-positions");
+    let scenario = "seed: 2\nkind: position\nposes: {count: 16}\npayloads: [0 kg, 80 kg, 160 kg]\n\
+        noise: {displacement: 10 um}\nhidden:\n  effects:\n  - {kind: tool_compliance, at: tool, rotation: 4e-8 rad/Nm}\n";
+    fs::write(folder.join("try.yaml"), scenario).unwrap();
+    let (measured, out) = (inside(&folder, "measured"), inside(&folder, "out"));
+    succeed(&["simulate", "kuka-kr270-r2700", &inside(&folder, "try.yaml"), "--out", &measured]);
+    let campaign = format!("{measured}/campaign.yaml");
+    let page = succeed(&["plan", &campaign, "--poses", "2", "--out", &out]);
+    assert!(page.contains("q6 [deg]  payload [kg]") && page.contains("payloads of 0 kg, 80 kg, 160 kg"), "{page}");
+    let header = |file: &Path| fs::read_to_string(file).unwrap().lines().next().unwrap().to_owned();
+    let own = header(&folder.join("measured/positions.csv"));
+    let read: Vec<&str> =
+        own.split(',').filter(|name| !["px", "py", "pz", "time"].iter().any(|other| name.starts_with(other))).collect();
+    assert_eq!(header(&folder.join("out/plan.csv")), read.join(","));
+    let table = fs::read_to_string(folder.join("out/plan.csv")).unwrap();
+    let payloads: Vec<&str> = table.lines().skip(1).map(|row| row.rsplit(',').next().unwrap()).collect();
+    assert_eq!(payloads, ["0", "80", "160", "0", "80", "160"]);
+    let proposal = json(&inside(Path::new(&out), "plan.json"))["proposals"][0].clone();
+    let close = |value: &Value, expected: f64| (value.as_f64().unwrap() - expected).abs() < 1e-6;
+    assert!(close(&proposal["force_N"][2], -160.0 * 9.80665) && close(&proposal["payloads_kg"][2], 160.0));
+    let moment = fail(1, &["plan", &campaign, "--moment", "50 Nm"]);
+    assert!(moment.contains("payloads pull by their weight"), "{moment}");
+    // Half the weight, half of each payload.
+    let half = succeed(&["plan", &campaign, "--poses", "2", "--force", "784.532 N"]);
+    assert!(half.contains("payloads of 0 kg, 40 kg, 80 kg, the greatest of the weight asked for"), "{half}");
+}
+
 #[test]
 fn what_cannot_be_planned_is_explained() {
     let folder = folder("plan-wrong");
@@ -140,7 +170,12 @@ fn what_cannot_be_planned_is_explained() {
     let loads = inside(&folder, "loads.csv");
     let copied = common::copy(&folder);
     assert!(fail(1, &["plan", &copied, "--csv", &loads]).contains("would be overwritten"));
+    let clamped = inside(&folder, "clamped.yaml");
+    fs::write(folder.join("axes.csv"), "axis,torque [Nm],deflection [rad]\n1,0,0\n1,100,1e-5\n2,100,2e-5\n").unwrap();
+    fs::write(&clamped, "name: axis by axis\nrobot: robot.yaml\nobservations: axes.csv\nkind: clamped\n").unwrap();
+    let message = fail(1, &["plan", &clamped]);
+    assert!(message.contains("planning needs a campaign of kind `displacement` or `position`"), "{message}");
     fs::write(&loads, "pose\n1\n").unwrap();
     assert!(fail(1, &["plan", &copied]).contains("loads.csv:1"));
-    assert_eq!(names(&folder), ["campaign.yaml", "loads.csv", "robot.yaml"]);
+    assert_eq!(names(&folder), ["axes.csv", "campaign.yaml", "clamped.yaml", "loads.csv", "robot.yaml"]);
 }

@@ -6,9 +6,8 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::TOLD_APART;
-use super::adapter::{Adapter, ENCODER_NOISE, LEVELS, REACH, ROTATION_NOISE};
 use super::criterion::Judge;
-use super::regressors::{Regressors, Sensor, Visit};
+use super::regressors::{ENCODER_NOISE, LEVELS, PAYLOADS, REACH, ROTATION_NOISE, Regressors, Sensor, Visit};
 use super::rivals::Contest;
 
 /// Something that would tell two rivals apart.
@@ -30,7 +29,7 @@ const ABOUT_AS_WELL: f64 = 0.8;
 /// What would tell a pair apart, the best first. `without` is the separation
 /// with the visits alone.
 pub fn remedies(
-    adapter: &Adapter<'_>,
+    regressors: &impl Regressors,
     judge: &Judge,
     visits: &[Visit],
     contest: &Contest,
@@ -38,25 +37,15 @@ pub fn remedies(
     without: f64,
 ) -> Vec<Remedy> {
     let separation = |sensor: Sensor| {
-        let gives = adapter.information(visits, Some(sensor)).into_iter().fold(adapter.known(), |sum, one| sum + one);
-        judge.separations(&gives)[pair]
+        let gives = regressors.information(visits, Some(sensor)).into_iter();
+        judge.separations(&gives.fold(regressors.known(), |sum, one| sum + one))[pair]
     };
-    let mut tried: Vec<(f64, Sensor)> = Vec::new();
-    let rotations = (!adapter.reads_rotations()).then_some(Sensor::Rotations);
-    for sensor in rotations.into_iter().chain([Sensor::Encoders, Sensor::Lever, Sensor::Levels]) {
-        tried.push((separation(sensor), sensor));
-    }
+    let tried = regressors.sensors().into_iter().map(|sensor| (separation(sensor), sensor));
+    let (markers, mut tried): (Vec<_>, Vec<_>) = tried.partition(|(_, sensor)| matches!(sensor, Sensor::Markers(_)));
     // Of markers that do about as well, those next to the foot, which is easily
     // reached.
-    let markers: Vec<f64> = (0..=adapter.joints()).map(|body| separation(Sensor::Markers(body))).collect();
-    let most = markers.iter().copied().fold(0.0, f64::max);
-    tried.extend(
-        markers
-            .into_iter()
-            .enumerate()
-            .find(|(_, sigmas)| *sigmas >= ABOUT_AS_WELL * most)
-            .map(|(body, sigmas)| (sigmas, Sensor::Markers(body))),
-    );
+    let most = markers.iter().map(|(sigmas, _)| *sigmas).fold(0.0, f64::max);
+    tried.extend(markers.into_iter().find(|(sigmas, _)| *sigmas >= ABOUT_AS_WELL * most));
     tried.retain(|(sigmas, _)| *sigmas >= TOLD_APART && *sigmas >= WORTH_IT * without);
     tried.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut found: Vec<Remedy> =
@@ -85,6 +74,10 @@ fn words(sensor: Sensor) -> String {
             "five load levels, one of them {:.1} % of the greatest, and one with the torque reversed",
             LEVELS[0] * 100.0
         ),
+        Sensor::Reflector => format!("a second reflector on the tool, {millimetres:.0} mm aside along its x axis"),
+        Sensor::Payloads => {
+            format!("five payloads at every pose, one of them {:.0} % of the greatest", PAYLOADS[1] * 100.0)
+        }
     }
 }
 

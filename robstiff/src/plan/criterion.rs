@@ -4,7 +4,8 @@
 //! covariance of the readings), and `S` the Schur complement that is left of it
 //! for some numbers when the others are fitted:
 //!
-//! - *D*: `log det M` of the model; the volume of its confidence ellipsoid.
+//! - *D*: `log det S` of the model, beside what nobody asks for; the volume of its
+//!   confidence ellipsoid.
 //! - *Ds*: `log det S` of the effects' numbers (of the whole model where there
 //!   are none).
 //! - *T*, for a pair of rivals: what the wrong one leaves of the readings if the
@@ -48,6 +49,8 @@ const RIDGE: f64 = 1e-10;
 pub struct Judge {
     /// One over the size of each number's column, so that no unit rules.
     scale: DVector<f64>,
+    /// What every model has and nobody asks for.
+    nuisance: Vec<usize>,
     /// The model: the description's numbers and the effects named.
     model: Vec<usize>,
     /// Those of the effects, within the model.
@@ -65,6 +68,7 @@ impl Judge {
         let size = |k: usize| if known[(k, k)] > 0.0 { known[(k, k)].sqrt().recip() } else { 1.0 };
         Self {
             scale: DVector::from_fn(known.nrows(), |k, _| size(k)),
+            nuisance: rivals.nuisance.clone(),
             model: rivals.model.clone(),
             effects: rivals.effects.clone(),
             contests: rivals.pairs.clone(),
@@ -131,7 +135,7 @@ impl Judge {
     /// One standard deviation of each number of the model, from the noise
     /// alone.
     pub fn stds(&self, information: &DMatrix<f64>) -> Vec<f64> {
-        let inverse = self.of(information, &self.model).try_inverse();
+        let inverse = self.of(information, &[&self.model[..], &self.nuisance].concat()).try_inverse();
         let std = |k: usize| {
             let variance = inverse.as_ref().map_or(f64::INFINITY, |inverse| inverse[(k, k)] * self.variance);
             variance.sqrt() * self.scale[self.model[k]]
@@ -148,7 +152,10 @@ impl Judge {
     /// The value of what is known; more is better. A criterion that has nothing
     /// to say (no effects, no rivals) leaves it to D.
     pub fn value(&self, criterion: Criterion, information: &DMatrix<f64>) -> f64 {
-        let d = || self.log_det(information, &self.model) / self.model.len().max(1) as f64;
+        let beside = |numbers: &[usize], others: &[usize]| {
+            self.log_det(information, &[numbers, others].concat()) - self.log_det(information, others)
+        };
+        let d = || beside(&self.model, &self.nuisance) / self.model.len().max(1) as f64;
         let t = || {
             let chi_square = |&k: &usize| self.chi_square(information, k).max(f64::MIN_POSITIVE);
             let inverse: f64 = self.pairs.iter().map(|k| chi_square(k).recip()).sum();
@@ -156,9 +163,9 @@ impl Judge {
         };
         match criterion {
             Criterion::Ds if !self.effects.is_empty() => {
-                let nuisance: Vec<usize> = self.model.iter().copied().filter(|k| !self.effects.contains(k)).collect();
-                let left = self.log_det(information, &self.model) - self.log_det(information, &nuisance);
-                left / self.effects.len() as f64
+                let of_others = self.model.iter().copied().filter(|k| !self.effects.contains(k));
+                let others: Vec<usize> = of_others.chain(self.nuisance.iter().copied()).collect();
+                beside(&self.effects, &others) / self.effects.len() as f64
             }
             Criterion::T if !self.pairs.is_empty() => t(),
             Criterion::Compound if !self.pairs.is_empty() => TELLING_APART * t() + (1.0 - TELLING_APART) * d(),

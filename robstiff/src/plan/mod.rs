@@ -3,22 +3,23 @@
 //! The way of the data: [`rivals`] takes from a trace the effects that the
 //! campaign could not tell apart, each with its size; [`space`] draws poses and
 //! loads that can be measured; [`regressors`] says what each would show, through
-//! the [`adapter`] to the regression that tracing uses; [`criterion`] turns that
+//! adapters to the regressions that tracing uses, of [`displacements`] and of absolute
+//! [`positions`]; [`criterion`] turns that
 //! into what is known after a set of measurements; [`exchange`] looks for the
 //! best set; [`advice`] says what else would do where no pose does.
 //!
 //! Everything expected is to first order, with the noise that the trace found
 //! and each rival in turn taken for the truth at the size that fits best. The
-//! measurements are visits like the campaign's own, with its sequence of loads
-//! and one unloaded reading for each.
+//! measurements are visits like the campaign's own, with its sequence of loads, of
+//! displacements with one unloaded reading for each.
 
-pub mod adapter;
 pub mod advice;
 pub mod criterion;
+pub mod displacements;
 pub mod exchange;
+pub mod positions;
 pub mod regressors;
 pub mod rivals;
-pub mod source;
 pub mod space;
 #[cfg(test)]
 mod tests;
@@ -27,19 +28,19 @@ use std::string::String;
 use std::vec::Vec;
 
 use nalgebra::DMatrix;
+use robstiff_robots::effect::gravity_sag::GRAVITY;
 
 pub use advice::Remedy;
 pub use criterion::Criterion;
 pub use regressors::{Sensor, Visit};
 pub use rivals::Group;
 
-use self::adapter::Adapter;
 use self::criterion::Judge;
 use self::exchange::{Search, in_order, refine};
 use self::regressors::Regressors;
 use self::rivals::{Rivals, groups};
 use self::space::Space;
-use crate::campaign::Campaign;
+use crate::campaign::{Campaign, Data};
 use crate::identify::Error;
 use crate::identify::prepare::Prepared;
 use crate::trace::{Proposal, Trace};
@@ -98,7 +99,7 @@ pub struct Plan {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Planned {
     /// The pose, and the loads of the visit in order (N, Nm) in the base frame,
-    /// acting where the campaign's do.
+    /// acting where the campaign's do; of payloads, their weight.
     pub visit: Visit,
     /// The greatest load (N, Nm), in the base frame.
     pub greatest: [f64; 6],
@@ -177,21 +178,34 @@ pub fn plan(campaign: &Campaign, trace: &Trace, options: &Options) -> Result<Pla
 /// # Errors
 /// As [`plan`].
 pub fn plan_between(campaign: &Campaign, trace: &Trace, groups: &[Group], options: &Options) -> Result<Plan, Error> {
-    let prepared = Prepared::new(campaign)?;
-    let (adapter, rivals) = Adapter::new(campaign, &prepared, trace, groups)?;
     let space = Space::new(campaign, options)?;
+    match &campaign.data {
+        Data::Position(data) => {
+            let (adapter, rivals) = positions::Adapter::new(campaign, data, trace, groups)?;
+            Ok(best(&adapter, &rivals, &space, options))
+        }
+        Data::Displacement(_) | Data::Clamped(_) => {
+            let prepared = Prepared::new(campaign)?;
+            let (adapter, rivals) = displacements::Adapter::new(campaign, &prepared, trace, groups)?;
+            Ok(best(&adapter, &rivals, &space, options))
+        }
+    }
+}
+
+/// The best visits that are found.
+fn best(regressors: &impl Regressors, rivals: &Rivals, space: &Space, options: &Options) -> Plan {
     let visits = space.visits();
-    let judge = Judge::new(&adapter.known(), &rivals, adapter.variance());
-    let information: Vec<DMatrix<f64>> = adapter.information(&visits, None);
-    let everything = information.iter().sum::<DMatrix<f64>>() + adapter.known();
+    let judge = Judge::new(&regressors.known(), rivals, regressors.variance());
+    let information: Vec<DMatrix<f64>> = regressors.information(&visits, None);
+    let everything = information.iter().sum::<DMatrix<f64>>() + regressors.known();
     let open = judge.separable(&everything);
     let judge = judge.with_pairs(open.clone());
-    let search = Search { judge: &judge, known: &adapter.known(), information: &information, visits: &visits };
+    let search = Search { judge: &judge, known: &regressors.known(), information: &information, visits: &visits };
     let chosen = search.best(options.criterion, options.poses, options.starts, options.seed);
     let chosen: Vec<Visit> = chosen.into_iter().map(|k| visits[k].clone()).collect();
-    let chosen = refine(&judge, &adapter, &space, options.criterion, chosen);
-    let chosen = in_order(&judge, &adapter, options.criterion, chosen);
-    Ok(told(&adapter, &rivals, &judge, &space, &everything, &open, &chosen))
+    let chosen = refine(&judge, regressors, space, options.criterion, chosen);
+    let chosen = in_order(&judge, regressors, options.criterion, chosen);
+    told(regressors, rivals, &judge, space, &everything, &open, &chosen)
 }
 
 /// The first proposals, as a trace holds them: what separates rivals.
@@ -208,6 +222,7 @@ pub fn next(campaign: &Campaign, trace: &Trace, count: usize) -> Result<Vec<Prop
         Some(Proposal {
             q: planned.visit.q.clone(),
             force: [x, y, z],
+            payload: matches!(campaign.data, Data::Position(_)).then_some(-z / GRAVITY),
             separates: plan.pairs[planned.separates?].names.clone(),
         })
     };
@@ -216,7 +231,7 @@ pub fn next(campaign: &Campaign, trace: &Trace, count: usize) -> Result<Vec<Prop
 
 /// What is expected of the chosen visits, in their order.
 fn told(
-    adapter: &Adapter<'_>,
+    regressors: &impl Regressors,
     rivals: &Rivals,
     judge: &Judge,
     space: &Space,
@@ -224,12 +239,12 @@ fn told(
     open: &[usize],
     chosen: &[Visit],
 ) -> Plan {
-    let mut sum = adapter.known();
+    let mut sum = regressors.known();
     let before = judge.separations(&sum);
     let std_before = judge.stds(&sum);
     let mut last = before.clone();
     let mut proposals = Vec::new();
-    for (visit, information) in chosen.iter().zip(adapter.information(chosen, None)) {
+    for (visit, information) in chosen.iter().zip(regressors.information(chosen, None)) {
         sum += information;
         let separation = judge.separations(&sum);
         // What the harmonic mean of the criterion gains from the pair.
@@ -260,9 +275,9 @@ fn told(
         };
         let remedies = match outlook {
             Outlook::Separable => Vec::new(),
-            _ => advice::remedies(adapter, judge, chosen, &rivals.pairs[k], k, last[k]),
+            _ => advice::remedies(regressors, judge, chosen, &rivals.pairs[k], k, last[k]),
         };
-        let readings = adapter.readings(chosen) as f64;
+        let readings = regressors.readings(chosen) as f64;
         let further = rivals.pairs[k].further_numbers() as f64;
         let log_bayes = 0.5 * (last[k] * last[k] + further * readings.ln());
         Pair { names, now: before[k], after: last[k], log_bayes, angle, outlook, remedies }

@@ -4,12 +4,13 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, Matrix3, SVector, Vector3};
 use robstiff_robots::Description;
+use robstiff_robots::effect::gravity_sag::GRAVITY;
 
 use crate::Robot;
 use crate::campaign::Frame;
 use crate::identify::samples::turn_of;
 
-/// A load sequence at one pose, with one unloaded reading.
+/// A load sequence at one pose, of displacements with one unloaded reading.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visit {
     /// Joint coordinates (rad or m).
@@ -24,6 +25,11 @@ impl Visit {
     pub fn greatest(&self) -> [f64; 6] {
         let size = |load: &[f64; 6]| load.iter().map(|value| value * value).sum::<f64>();
         self.loads.iter().copied().max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or_default()
+    }
+
+    /// The payloads in order (kg) whose weights the loads are.
+    pub fn payloads(&self) -> Vec<f64> {
+        self.loads.iter().map(|load| -load[2] / GRAVITY).collect()
     }
 
     /// The loads in order as a campaign of this robot writes them down whose loads
@@ -51,6 +57,24 @@ fn turn<const N: usize>(robot: &impl Robot<N>, q: &[f64]) -> Matrix3<f64> {
     turn_of(&robot.transform(&SVector::<f64, N>::from_column_slice(q)))
 }
 
+/// One sigma of a rotation reading where the campaign states none (rad): that
+/// of a laser tracker's six-axis probe at some metres.
+pub const ROTATION_NOISE: f64 = 5e-5;
+
+/// One sigma of an encoder on the output side of a gear (rad): one second of
+/// arc.
+pub const ENCODER_NOISE: f64 = 5e-6;
+
+/// How far markers on a link stand from its end, how much further out the second lever
+/// acts, and how far aside the second reflector is (m).
+pub const REACH: f64 = 0.3;
+
+/// The levels of [`Sensor::Levels`], as shares of the greatest load.
+pub const LEVELS: [f64; 5] = [0.025, 0.25, 0.5, 1.0, -1.0];
+
+/// Those of [`Sensor::Payloads`].
+pub const PAYLOADS: [f64; 5] = [0.0, 0.1, 0.25, 0.5, 1.0];
+
 /// What could be measured besides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sensor {
@@ -65,15 +89,28 @@ pub enum Sensor {
     /// Load levels from below 3 % of the greatest up, and with the sign
     /// reversed.
     Levels,
+    /// A second reflector on the tool, [`REACH`] from the first along x of the tool frame.
+    Reflector,
+    /// Five payloads, none and 10 % of the greatest among them.
+    Payloads,
 }
 
 /// What measurements show of a fixed list of numbers.
 pub trait Regressors {
+    /// The variance of one reading (m^2).
+    fn variance(&self) -> f64;
+
+    /// How many numbers some visits read.
+    fn readings(&self, visits: &[Visit]) -> usize;
+
+    /// What could be measured besides.
+    fn sensors(&self) -> Vec<Sensor>;
+
     /// The information of the campaign as it is, as that of a visit.
     fn known(&self) -> DMatrix<f64>;
 
     /// The information that each visit gives on the numbers: the Gram matrix of
     /// its whitened columns (those of a unit of each number), to be divided by
-    /// the variance of one displacement reading (m^2).
+    /// the variance of one reading (m^2).
     fn information(&self, visits: &[Visit], besides: Option<Sensor>) -> Vec<DMatrix<f64>>;
 }

@@ -13,9 +13,15 @@ const MOST: usize = 4;
 /// What may be missing at all, family-wise, where nothing was named.
 const SUGGESTIVE: f64 = 0.05;
 
+/// Kinds that depend on when something is measured, not on pose and load: what
+/// to propose for them is not computed.
+const OF_TIME: [&str; 4] = ["thermal_drift", "creep", "base_slip", "outliers"];
+
 /// The rivals with their columns, among the numbers that planning looks at.
 #[derive(Clone, Debug)]
 pub struct Rivals {
+    /// What every model has and nobody asks for.
+    pub nuisance: Vec<usize>,
     /// The model: the description's numbers and the effects named.
     pub model: Vec<usize>,
     /// Those of the effects, within the model.
@@ -55,7 +61,7 @@ pub struct Contest {
     pub names: [String; 2],
     /// What they are.
     pub rivals: [Rival; 2],
-    /// The columns that both models have.
+    /// The columns that both models have, nuisance among them.
     pub core: Vec<usize>,
     rest: [Vec<usize>; 2],
 }
@@ -86,6 +92,22 @@ pub struct Group {
     pub named: Option<usize>,
     /// Those in the running, the named or best fitting first.
     pub names: Vec<String>,
+}
+
+/// The names of those in the running that poses and loads have to do with.
+pub fn computed(names: &[String]) -> impl Iterator<Item = &String> {
+    names.iter().filter(|name| !OF_TIME.iter().any(|kind| name.starts_with(kind)))
+}
+
+/// Every two of some rivals, beside the columns that all their models have.
+pub fn pairs(rivals: &[(String, Rival)], core: &[usize]) -> Vec<Contest> {
+    let with_later = |(k, (one, of_one)): (usize, &(String, Rival))| -> Vec<Contest> {
+        let pair = |(other, of_other): &(String, Rival)| {
+            Contest::new([one.clone(), other.clone()], [of_one.clone(), of_other.clone()], core.to_vec())
+        };
+        rivals[k + 1..].iter().map(pair).collect()
+    };
+    rivals.iter().enumerate().flat_map(with_later).collect()
 }
 
 /// The groups of a trace: each effect named with what it could not be told

@@ -15,10 +15,11 @@ use nalgebra::{SVector, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
+use robstiff_robots::effect::gravity_sag::GRAVITY;
 
 use super::Options;
 use super::regressors::Visit;
-use crate::campaign::{Campaign, Data, Displacements};
+use crate::campaign::{Campaign, Data, Displacements, Positions};
 use crate::identify::Error;
 use crate::{JointKind, Robot};
 
@@ -50,12 +51,16 @@ impl Space {
     /// # Errors
     /// A campaign of another kind; no pose in the region.
     pub fn new(campaign: &Campaign, options: &Options) -> Result<Self, Error> {
-        let Data::Displacement(data) = &campaign.data else {
-            return Err(Error(String::from("this needs a campaign of kind `displacement`")));
+        let visited: Vec<&[f64]> = match &campaign.data {
+            Data::Displacement(data) => data.rows.iter().map(|row| &row.q[..]).collect(),
+            Data::Position(data) => data.rows.iter().map(|row| &row.q[..]).collect(),
+            Data::Clamped(_) => {
+                return Err(Error(String::from("planning needs a campaign of kind `displacement` or `position`")));
+            }
         };
         let mut assumptions = Vec::new();
-        let ranges = ranges(campaign, data, &mut assumptions);
-        let seen: Vec<Vector3<f64>> = data.rows.iter().map(|row| tool_centre_point(&campaign.robot, &row.q)).collect();
+        let ranges = ranges(campaign, &visited, &mut assumptions);
+        let seen: Vec<Vector3<f64>> = visited.iter().map(|q| tool_centre_point(&campaign.robot, q)).collect();
         let lowest = seen.iter().map(|point| height(&campaign.robot, point)).fold(f64::INFINITY, f64::min);
         let floor = options.floor.unwrap_or(lowest);
         let nearest = seen.iter().map(|point| from_vertical(&campaign.robot, point)).fold(f64::INFINITY, f64::min);
@@ -65,7 +70,11 @@ impl Space {
             nearest * 1e3,
             if options.floor.is_none() { ", as in the campaign" } else { "" }
         ));
-        let loads = loads(data, options, &mut assumptions);
+        let loads = match &campaign.data {
+            Data::Displacement(data) => loads(data, options, &mut assumptions),
+            Data::Position(data) => std::vec![payloads(data, options, &mut assumptions)?],
+            Data::Clamped(_) => Vec::new(),
+        };
         let mut space = Self {
             robot: campaign.robot.clone(),
             ranges,
@@ -129,11 +138,11 @@ fn radical_inverse(mut index: u64, base: u32) -> f64 {
     value
 }
 
-fn ranges(campaign: &Campaign, data: &Displacements, assumptions: &mut Vec<String>) -> Vec<[f64; 2]> {
+fn ranges(campaign: &Campaign, visited: &[&[f64]], assumptions: &mut Vec<String>) -> Vec<[f64; 2]> {
     let mut without = Vec::new();
     let range = |(index, joint): (usize, &robstiff_robots::Joint)| {
         joint.limits.unwrap_or_else(|| {
-            let seen = data.rows.iter().map(|row| row.q[index]);
+            let seen = visited.iter().map(|q| q[index]);
             let range = seen.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q), high.max(q)]);
             let [low, high] = range.map(|q| match joint.kind {
                 JointKind::Revolute => q.to_degrees(),
@@ -197,17 +206,49 @@ fn loads(data: &Displacements, options: &Options, assumptions: &mut Vec<String>)
     loads.collect()
 }
 
-/// The loads of the campaign's usual visit as shares of its greatest.
-fn ramp(data: &Displacements) -> Vec<f64> {
-    let of = |visit: usize| data.rows.iter().filter(move |row| row.visit == visit);
-    let lengths: Vec<usize> = {
-        let mut lengths = std::vec![0_usize; data.visits.len()];
-        data.rows.iter().for_each(|row| lengths[row.visit] += 1);
-        lengths
-    };
+/// The weights of the payloads of a visit, in the order of the campaign's usual one; where
+/// it has no visits of several rows, of none and the greatest.
+fn payloads(data: &Positions, options: &Options, assumptions: &mut Vec<String>) -> Result<Vec<[f64; 6]>, Error> {
+    let refused = |what: &str| Err(Error(format!("{what}, but payloads pull by their weight, as the campaign's do")));
+    let greatest = data.rows.iter().map(|row| row.payload).fold(0.0, f64::max);
+    if options.moment.is_some() {
+        return refused("a greatest moment is given");
+    }
+    assumptions.push(String::from("the tracker sees the reflector at every pose, and stays where it is"));
+    if greatest == 0.0 {
+        if options.force.is_some() {
+            return refused("a greatest force is given, and these positions have no payload");
+        }
+        assumptions.push(String::from("there is no payload, as in the campaign"));
+        return Ok(std::vec![[0.0; 6]]);
+    }
+    let most = options.force.map_or(greatest, |force| force / GRAVITY);
+    let visit = usual(data.rows.iter().map(|row| row.visit));
+    let usual: Vec<f64> = data.rows.iter().filter(|row| row.visit == visit).map(|row| row.payload).collect();
+    let payloads = if usual.len() > 1 { usual } else { std::vec![0.0, greatest] };
+    let payloads: Vec<f64> = payloads.into_iter().map(|payload| payload * most / greatest).collect();
+    let told: Vec<String> = payloads.iter().map(|payload| format!("{payload:.0} kg")).collect();
+    let whose = if options.force.is_some() { "the greatest of the weight asked for" } else { "as the campaign's" };
+    assumptions.push(format!("a visit has payloads of {}, {whose}", told.join(", ")));
+    Ok(payloads.into_iter().map(|payload| [0.0, 0.0, -GRAVITY * payload, 0.0, 0.0, 0.0]).collect())
+}
+
+/// The first visit of the most common length, by the visits of all rows in order.
+fn usual(of_rows: impl Iterator<Item = usize>) -> usize {
+    let mut lengths: Vec<usize> = Vec::new();
+    for visit in of_rows {
+        lengths.resize(lengths.len().max(visit + 1), 0);
+        lengths[visit] += 1;
+    }
     let common = |length: &usize| lengths.iter().filter(|other| *other == length).count();
     let usual = lengths.iter().copied().max_by_key(|length| (common(length), *length)).unwrap_or(1);
-    let visit = lengths.iter().position(|length| *length == usual).unwrap_or(0);
+    lengths.iter().position(|length| *length == usual).unwrap_or(0)
+}
+
+/// The loads of the campaign's usual visit as shares of its greatest.
+fn ramp(data: &Displacements) -> Vec<f64> {
+    let visit = usual(data.rows.iter().map(|row| row.visit));
+    let of = |visit: usize| data.rows.iter().filter(move |row| row.visit == visit);
     let dot = |a: &[f64; 6], b: &[f64; 6]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let greatest = of(visit).map(|row| row.wrench).max_by(|a, b| dot(a, a).total_cmp(&dot(b, b)));
     let Some(greatest) = greatest.filter(|greatest| dot(greatest, greatest) > 0.0) else { return std::vec![1.0] };

@@ -24,6 +24,7 @@ fn setting(poses: usize) -> (Rivals, DMatrix<f64>, Vec<DMatrix<f64>>, Vec<Visit>
     };
     let rival = |column| Rival { columns: vec![column], values: vec![2.0], parameters: 1 };
     let rivals = Rivals {
+        nuisance: Vec::new(),
         model: vec![0, 1, 2, 3],
         effects: vec![3],
         numbers: Vec::new(),

@@ -183,8 +183,10 @@ pub struct NamedEffect {
 pub struct Proposal {
     /// Joint coordinates (rad or m).
     pub q: Vec<f64>,
-    /// The force (N).
+    /// The force (N); of a payload, its weight.
     pub force: [f64; 3],
+    /// The payload (kg), where positions are read.
+    pub payload: Option<f64>,
     /// Full names of what it separates.
     pub separates: [String; 2],
 }

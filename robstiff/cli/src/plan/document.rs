@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use robstiff::JointKind;
-use robstiff::campaign::{Campaign, Data, Frame};
-use robstiff::plan::{Number, Outlook, Pair, Plan, Planned};
+use robstiff::campaign::{Campaign, Data};
+use robstiff::plan::{Number, Outlook, Pair, Plan, Planned, Visit};
 use robstiff::trace::Trace;
 use robstiff_robots::Joint;
 use serde_json::{Value, json};
@@ -34,14 +34,42 @@ pub fn people(q: f64, joint: &Joint) -> f64 {
 
 fn proposal(planned: &Planned, plan: &Plan, campaign: &Campaign) -> Value {
     let q = planned.visit.q.iter().zip(&campaign.robot.joints).map(|(&q, joint)| people(q, joint));
-    json!({
+    let mut proposal = json!({
         "q_deg": numbers(q),
         "force_N": numbers(planned.greatest[..3].iter().copied()),
         "moment_Nm": numbers(planned.greatest[3..].iter().copied()),
         "separates": planned.separates.map(|pair| plan.pairs[pair].names.clone()),
         "separation": numbers(planned.separation.iter().copied()),
         "std": numbers(planned.std.iter().copied()),
-    })
+    });
+    if let Data::Position(_) = campaign.data {
+        proposal["payloads_kg"] = numbers(planned.visit.payloads());
+    }
+    proposal
+}
+
+const FORCES: [&str; 6] = ["Fx [N]", "Fy [N]", "Fz [N]", "Mx [Nm]", "My [Nm]", "Mz [Nm]"];
+
+/// The columns that loads have in the campaign's table: forces, and moments where there
+/// are some; or payloads.
+pub fn columns_of_loads(plan: &Plan, campaign: &Campaign) -> &'static [&'static str] {
+    let any = |of: fn(&[f64; 6]) -> bool| plan.proposals.iter().any(|planned| of(&planned.greatest));
+    match &campaign.data {
+        Data::Displacement(_) if any(|load| load[3..] != [0.0; 3]) => &FORCES,
+        Data::Displacement(_) => &FORCES[..3],
+        Data::Position(_) if any(|load| load[2] != 0.0) => &["payload [kg]"],
+        Data::Position(_) | Data::Clamped(_) => &[],
+    }
+}
+
+/// The loads of a visit in these columns and in the campaign's frame, or more of them.
+fn loads(visit: &Visit, campaign: &Campaign) -> Vec<Vec<f64>> {
+    match &campaign.data {
+        Data::Displacement(data) => {
+            visit.loads_in(data.wrench_frame, &campaign.robot).iter().map(|load| load.to_vec()).collect()
+        }
+        Data::Position(_) | Data::Clamped(_) => visit.payloads().into_iter().map(|payload| vec![payload]).collect(),
+    }
 }
 
 fn pair(pair: &Pair) -> Value {
@@ -82,23 +110,18 @@ fn known(known: &Number) -> Value {
 /// frame; only the readings are missing.
 pub fn table(plan: &Plan, campaign: &Campaign) -> String {
     let joints = &campaign.robot.joints;
-    let frame = match &campaign.data {
-        Data::Displacement(data) => data.wrench_frame,
-        // No other campaign is planned for.
-        Data::Position(_) | Data::Clamped(_) => Frame::Base,
-    };
-    let moments = plan.proposals.iter().any(|planned| planned.greatest[3..].iter().any(|value| *value != 0.0));
+    let columns = columns_of_loads(plan, campaign);
     let mut csv = String::from("pose,visit");
     for (number, joint) in (1..).zip(joints) {
         write!(csv, ",q{number} [{}]", joint.people_unit()).expect("a string takes any text");
     }
-    csv += ",Fx [N],Fy [N],Fz [N]";
-    csv += if moments { ",Mx [Nm],My [Nm],Mz [Nm]\n" } else { "\n" };
+    columns.iter().for_each(|name| write!(csv, ",{name}").expect("a string takes any text"));
+    csv.push('\n');
     for (index, planned) in (1..).zip(&plan.proposals) {
-        for load in planned.visit.loads_in(frame, &campaign.robot) {
+        for load in loads(&planned.visit, campaign) {
             write!(csv, "next {index},next {index}").expect("a string takes any text");
             let q = planned.visit.q.iter().zip(joints).map(|(&q, joint)| rounded(people(q, joint), 1e6));
-            let load = load[..if moments { 6 } else { 3 }].iter().map(|&value| rounded(value, 1e3));
+            let load = load.into_iter().take(columns.len()).map(|value| rounded(value, 1e3));
             for value in q.chain(load) {
                 write!(csv, ",{value}").expect("a string takes any text");
             }

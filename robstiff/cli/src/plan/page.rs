@@ -1,10 +1,10 @@
 //! A plan for a terminal.
 
-use robstiff::campaign::Campaign;
+use robstiff::campaign::{Campaign, Data};
 use robstiff::plan::{Outlook, Pair, Plan};
 use robstiff::trace::Trace;
 
-use super::document::people;
+use super::document::{columns_of_loads, people};
 use crate::text::{Table, count, decimals, significant};
 
 /// The page.
@@ -28,13 +28,10 @@ pub fn page(plan: &Plan, trace: &Trace, campaign: &Campaign) -> String {
 
 fn proposals(plan: &Plan, campaign: &Campaign) -> String {
     let joints = &campaign.robot.joints;
-    let moments = plan.proposals.iter().any(|planned| planned.greatest[3..].iter().any(|value| *value != 0.0));
+    let columns = columns_of_loads(plan, campaign);
     let mut header = vec!["next".to_owned()];
     header.extend((1..).zip(joints).map(|(number, joint)| format!("q{number} [{}]", joint.people_unit())));
-    header.extend(["Fx [N]", "Fy [N]", "Fz [N]"].map(str::to_owned));
-    if moments {
-        header.extend(["Mx [Nm]", "My [Nm]", "Mz [Nm]"].map(str::to_owned));
-    }
+    header.extend(columns.iter().map(|&name| name.to_owned()));
     if !plan.pairs.is_empty() {
         header.push("pair".to_owned());
     }
@@ -42,8 +39,11 @@ fn proposals(plan: &Plan, campaign: &Campaign) -> String {
     for (index, planned) in (1..).zip(&plan.proposals) {
         let mut row = vec![format!("{index}")];
         row.extend(planned.visit.q.iter().zip(joints).map(|(&q, joint)| decimals(people(q, joint), 1)));
-        let load = &planned.greatest[..if moments { 6 } else { 3 }];
-        row.extend(load.iter().map(|&value| decimals(value, 0)));
+        let greatest = match &campaign.data {
+            Data::Position(_) => planned.visit.payloads().into_iter().reduce(f64::max).into_iter().collect(),
+            Data::Displacement(_) | Data::Clamped(_) => planned.greatest.to_vec(),
+        };
+        row.extend(greatest.iter().take(columns.len()).map(|&value| decimals(value, 0)));
         row.extend(planned.separates.map(|pair| format!("{}", pair + 1)));
         table.row(row);
     }

@@ -234,8 +234,8 @@ pub struct Structure {
 pub struct Next {
     /// The pose, one number with its unit a joint.
     pub pose: String,
-    /// The force's components \[N\].
-    pub force: String,
+    /// What the arm is loaded with, in words.
+    pub load: String,
     /// What it separates, in words.
     pub separates: [String; 2],
 }

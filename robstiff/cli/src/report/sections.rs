@@ -225,10 +225,10 @@ pub fn next(report: &Report) -> String {
     if report.next.is_empty() {
         return String::new();
     }
-    let mut table = Table::new([words("To tell"), words("from"), words("pose"), words("force [N]")]);
+    let mut table = Table::new([words("To tell"), words("from"), words("pose"), words("load")]);
     for next in &report.next {
         let [one, other] = &next.separates;
-        table.row(false, [words(one), words(other), words(&next.pose), words(&next.force)]);
+        table.row(false, [words(one), words(other), words(&next.pose), words(&next.load)]);
     }
     element("h2", "What to measure next") + &table.html()
 }

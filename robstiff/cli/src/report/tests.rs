@@ -73,7 +73,7 @@ fn hostile() -> Report {
                 reason: bad(),
             }],
         }],
-        next: vec![Next { pose: bad(), force: bad(), separates: [bad(), bad()] }],
+        next: vec![Next { pose: bad(), load: bad(), separates: [bad(), bad()] }],
         warnings: vec![bad()],
         origins: vec![(bad(), bad())],
         ..Report::default()

@@ -12,7 +12,7 @@ use crate::identify::source_of;
 use crate::report::content::{
     Candidate, Compliance, Effect, Left, Next, Number, PoseError, Report, Residual, SearchStep, Stage, Structure,
 };
-use crate::text::{count, decimals};
+use crate::text::count;
 
 /// Brings together what the report shows.
 ///
@@ -59,7 +59,7 @@ pub fn report(trace: &Trace, triage: &Triage, campaign: &Campaign, options: &Opt
             .iter()
             .map(|next| Next {
                 pose: story::pose(next, &campaign.robot.joints),
-                force: next.force.map(|newton| decimals(newton, 0)).join(", "),
+                load: story::load(next),
                 separates: next.separates.each_ref().map(|name| spoken(name)),
             })
             .collect(),

@@ -83,9 +83,13 @@ fn proposal(next: &Proposal, campaign: &Campaign) -> Value {
         JointKind::Revolute => q.to_degrees(),
         JointKind::Prismatic => q * 1e3,
     });
-    json!({
+    let mut proposal = json!({
         "q_deg": numbers(coordinates),
         "force_N": numbers(next.force),
         "separates": next.separates,
-    })
+    });
+    if let Some(payload) = next.payload {
+        proposal["payload_kg"] = number(payload);
+    }
+    proposal
 }

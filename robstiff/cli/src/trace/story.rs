@@ -262,11 +262,18 @@ pub fn page(trace: &Trace) -> String {
         let [one, other] = group[0].separates.each_ref().map(|name| spoken(name));
         page += &format!("\nTo tell {one} from {other}, measure next:\n");
         for next in group {
-            let force = next.force.map(|newton| decimals(newton, 0)).join(", ");
-            page += &format!("  q = {}, force ({force}) N\n", pose(next, &trace.description.joints));
+            page += &format!("  q = {}, {}\n", pose(next, &trace.description.joints), load(next));
         }
     }
     page
+}
+
+/// What a proposal loads the arm with.
+pub fn load(next: &Proposal) -> String {
+    match next.payload {
+        None => format!("force ({}) N", next.force.map(|newton| decimals(newton, 0)).join(", ")),
+        Some(payload) => format!("payload {} kg", decimals(payload, 0)),
+    }
 }
 
 fn of(trace: &Trace, which: impl Fn(&NamedEffect) -> bool) -> Vec<&NamedEffect> {

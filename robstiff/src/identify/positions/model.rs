@@ -1,5 +1,6 @@
 //! Where a description says that the point is which is read.
 
+use std::boxed::Box;
 use std::rc::Rc;
 use std::vec::Vec;
 
@@ -30,10 +31,20 @@ pub enum Enters {
     /// It changes the model; the second is the step of central differences, in its
     /// own unit.
     Model(Change, f64),
-    /// It moves what is read, row by row (in the base frame), whatever the robot
-    /// does.
-    Reading(Rc<Vec<Vector3<f64>>>),
+    /// It moves what is read, whatever the robot does.
+    Reading(Rc<Moved>),
 }
+
+/// How far a unit of a number moves what is read, in the base frame.
+pub struct Moved {
+    /// Row by row.
+    pub rows: Vec<Vector3<f64>>,
+    /// What is read after all of them, by the point that is read (m).
+    pub later: LaterMoved,
+}
+
+/// How far what is read is moved, by the point that is read (m).
+pub type LaterMoved = Box<dyn Fn(&Vector3<f64>) -> Vector3<f64>>;
 
 impl Model {
     /// A description as it is, and the point as the campaign says.
@@ -105,7 +116,7 @@ impl State {
     /// What moves the reading of a row besides, in the base frame (m).
     pub fn beside(&self, numbers: &[Enters], row: usize) -> Vector3<f64> {
         let of = |(number, &value): (&Enters, &f64)| match number {
-            Enters::Reading(field) => field[row] * value,
+            Enters::Reading(moved) => moved.rows[row] * value,
             Enters::Model(..) => Vector3::zeros(),
         };
         numbers.iter().zip(&self.values).filter(|(_, value)| **value != 0.0).map(of).sum()

@@ -113,30 +113,44 @@ impl Regression<'_> {
     /// The regression at a state on where the robot stands and some numbers, with the
     /// point that the robot turns about.
     pub fn at(&self, state: &State, chosen: &[usize], rows: &Rows) -> (Problem, Vector3<f64>) {
-        let data = self.data;
-        let model = state.model(&self.start, &self.numbers);
-        let points = model.points(data);
-        let placed: Vec<Vector3<f64>> = (0..points.len())
-            .map(|row| state.registration.placed(&(points[row] + state.beside(&self.numbers, row))))
-            .collect();
+        let placed = self.placed(state);
         let middle = placed.iter().sum::<Vector3<f64>>() / placed.len().max(1) as f64;
-        let mut columns = DMatrix::zeros(3 * points.len(), STANDS + chosen.len());
-        let mut readings = DVector::zeros(3 * points.len());
+        let columns = self.columns(state, chosen, &middle);
+        let mut readings = DVector::zeros(3 * placed.len());
         for (row, placed) in placed.iter().enumerate() {
-            let left = Vector3::from(data.rows[row].position) - placed;
+            let left = Vector3::from(self.data.rows[row].position) - placed;
             readings.fixed_rows_mut::<3>(3 * row).copy_from(&left);
+        }
+        for (k, &number) in chosen.iter().enumerate() {
+            readings.axpy(state.values[number], &columns.column(STANDS + k), 1.0);
+        }
+        (self.problem(columns, readings, rows), middle)
+    }
+
+    /// Where what is read is at a state, in the frame that it is read in (m).
+    pub fn placed(&self, state: &State) -> Vec<Vector3<f64>> {
+        let points = state.model(&self.start, &self.numbers).points(self.data);
+        let moved = points.into_iter().enumerate().map(|(row, point)| point + state.beside(&self.numbers, row));
+        moved.map(|point| state.registration.placed(&point)).collect()
+    }
+
+    /// What a unit of each does to the readings at a state, stacked: of where the robot
+    /// stands, turned about a point, and of some numbers.
+    pub fn columns(&self, state: &State, chosen: &[usize], middle: &Vector3<f64>) -> DMatrix<f64> {
+        let placed = self.placed(state);
+        let mut columns = DMatrix::zeros(3 * placed.len(), STANDS + chosen.len());
+        for (row, placed) in placed.iter().enumerate() {
             for k in 0..3 {
                 columns[(3 * row + k, k)] = 1.0;
                 let turned = Vector3::ith(k, 1.0).cross(&(placed - middle));
                 columns.fixed_view_mut::<3, 1>(3 * row, 3 + k).copy_from(&turned);
             }
         }
+        let model = state.model(&self.start, &self.numbers);
         for (k, &number) in chosen.iter().enumerate() {
-            let column = self.column(&model, state, number);
-            readings.axpy(state.values[number], &column, 1.0);
-            columns.set_column(STANDS + k, &column);
+            columns.set_column(STANDS + k, &self.column(&model, state, number));
         }
-        (self.problem(columns, readings, rows), middle)
+        columns
     }
 
     /// The regression of a fit with columns besides, which come behind its own.
@@ -155,7 +169,7 @@ impl Regression<'_> {
             column.fixed_rows_mut::<3>(3 * row).copy_from(&(turn * moved));
         };
         match &self.numbers[number] {
-            Enters::Reading(field) => field.iter().enumerate().for_each(|(row, moved)| set(row, *moved)),
+            Enters::Reading(moved) => moved.rows.iter().enumerate().for_each(|(row, moved)| set(row, *moved)),
             Enters::Model(enters, step) => {
                 let moved = |by: f64| {
                     let mut model = model.clone();

@@ -1,14 +1,17 @@
 //! The regression of absolute positions with the catalogue behind it, and the models
 //! that are fitted with it.
 
+use std::string::ToString;
 use std::vec;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::offers::{Number, Offer};
-use super::rig::{SLIP, Slips, line};
-use crate::identify::normal::{Fit, Sign};
+use super::offers::{Form, Number, offers};
+use super::rig::{SLIP, SLIPPED_AT, Slips, line};
+use crate::campaign::{Campaign, Positions};
+use crate::identify::Error;
+use crate::identify::normal::{Fit, Scaled, Sign};
 use crate::identify::positions::Prepared;
 use crate::identify::positions::model::State;
 use crate::identify::positions::regression::{Regression, Rows, STANDS, Solved};
@@ -16,6 +19,7 @@ use crate::identify::problem::{Problem, rms};
 use crate::trace::Options;
 use crate::trace::bootstrap::ScoreTest;
 use crate::trace::catalogue::{Candidate, Variant};
+use crate::trace::found::Found;
 use crate::trace::model::Named;
 
 /// Positions with everything that may explain them, at a model.
@@ -61,14 +65,18 @@ pub struct Proposed {
 
 impl<'c> Bench<'c> {
     /// The catalogue of a campaign, at the description as declared.
-    pub fn new(prepared: Prepared<'c>, offers: Vec<Offer>, slips: Slips) -> Self {
+    ///
+    /// # Errors
+    /// Positions that do not tell where the robot stands.
+    pub fn new(campaign: &Campaign, data: &'c Positions) -> Result<Self, Error> {
+        let prepared = Prepared::new(campaign, data)?;
+        let slips = Slips::new(&campaign.robot, data);
         let (mut candidates, mut numbers) = (Vec::new(), Vec::new());
         let own = prepared.own.len();
-        for offer in offers {
+        for offer in offers(campaign, data, &slips) {
             let first = STANDS + own + numbers.len();
-            let variant = |form: super::offers::Form| {
-                Variant::new(form.numbers.iter().map(|number| first + number).collect(), form.shape)
-            };
+            let variant =
+                |form: Form| Variant::new(form.numbers.iter().map(|number| first + number).collect(), form.shape);
             let variants = offer.forms.into_iter().map(variant).collect();
             candidates.push(Candidate { kind: offer.kind, place: offer.place, variants, check: None });
             numbers.extend(offer.numbers);
@@ -78,7 +86,31 @@ impl<'c> Bench<'c> {
         let rows = prepared.rows.clone();
         let (problem, _) = regression.at(&prepared.state(all.len()), &all, &rows);
         let signs = regression.signs_of(&all);
-        Self { prepared, regression, candidates, numbers, rows, slips, problem, signs }
+        Ok(Self { prepared, regression, candidates, numbers, rows, slips, problem, signs })
+    }
+
+    /// The effect that was found, in its form; a slip is moved to its moment.
+    pub fn named(&mut self, found: &Found) -> Option<Named> {
+        let candidate = self.candidates.iter().position(|candidate| candidate.name() == found.to_string())?;
+        let of = |name: &str| found.parameters.iter().find(|number| number.name == name).map(|number| number.value);
+        let own = STANDS + self.prepared.own.len();
+        let has = |form: &Variant| {
+            let numbers = form.columns.iter().map(|column| self.numbers[column - own].name);
+            let names: Vec<&str> = numbers.chain(form.shape.iter().map(|number| number.name)).collect();
+            names.len() == found.parameters.len() && names.iter().all(|name| of(name).is_some())
+        };
+        let off = |form: &Variant| -> f64 {
+            form.shape.iter().map(|number| (number.value - of(number.name).unwrap_or(f64::INFINITY)).abs()).sum()
+        };
+        let forms = self.candidates[candidate].variants.iter().enumerate().filter(|(_, form)| has(form));
+        let (variant, _) = forms.min_by(|(_, a), (_, b)| off(a).total_cmp(&off(b)))?;
+        let named = Named { candidate, variant };
+        if found.kind() == SLIP {
+            let line = of(SLIPPED_AT)?;
+            let moment = self.prepared.data.rows.iter().position(|row| row.line as f64 == line)?;
+            self.move_slip(named, moment);
+        }
+        Some(named)
     }
 
     /// Turns to a model, and to the rows that it is fitted to.
@@ -190,14 +222,17 @@ impl<'c> Bench<'c> {
     /// first.
     pub fn extended(&self, named: &[Named]) -> Vec<Proposed> {
         let free = |candidate: &usize| named.iter().all(|one| one.candidate != *candidate);
-        let best = |candidate: usize| {
-            let with = |variant| self.proposed([named, &[Named { candidate, variant }]].concat());
-            let forms = (0..self.candidates[candidate].variants.len()).filter_map(with);
-            forms.min_by(|a, b| a.bic.total_cmp(&b.bic))
-        };
+        let best = |candidate| self.with(named, candidate);
         let mut found: Vec<Proposed> = (0..self.candidates.len()).filter(free).filter_map(best).collect();
         found.sort_by(|a, b| a.bic.total_cmp(&b.bic));
         found
+    }
+
+    /// The model with a candidate more, in its best form.
+    pub fn with(&self, named: &[Named], candidate: usize) -> Option<Proposed> {
+        let with = |variant| self.proposed([named, &[Named { candidate, variant }]].concat());
+        let forms = (0..self.candidates[candidate].variants.len()).filter_map(with);
+        forms.min_by(|a, b| a.bic.total_cmp(&b.bic))
     }
 
     /// Every model with one effect replaced, with the index of that, the best first.
@@ -242,6 +277,19 @@ impl<'c> Bench<'c> {
             own > 0.0 && own - along.dot(&(&inverse * &along)) > SEEN * own
         };
         self.candidates[candidate].variants.iter().any(|form| form.columns.iter().any(left))
+    }
+
+    /// Of some numbers those that the positions tell from the ones before them, and from
+    /// another stand of the robot.
+    pub fn independent(&self, numbers: &[usize]) -> Vec<usize> {
+        let mut kept: Vec<usize> = (0..STANDS).collect();
+        for number in numbers {
+            kept.push(STANDS + number);
+            if Scaled::apart(&self.problem.total.gram_of(&kept), SEEN).is_none() {
+                kept.pop();
+            }
+        }
+        kept.into_iter().skip(STANDS).map(|column| column - STANDS).collect()
     }
 
     /// The root mean square error on each pose fitted to, by the fit without it (m).

@@ -12,7 +12,7 @@
 //! (`wild`); what remains is tested for `structure`. Effects enter the forward
 //! model itself, and are fitted in it.
 
-mod bench;
+pub mod bench;
 mod frames;
 mod offers;
 mod report;
@@ -24,12 +24,9 @@ mod tests;
 mod wild;
 
 use self::bench::Bench;
-use self::offers::offers;
-use self::rig::Slips;
 use super::{Options, Progress, Trace};
 use crate::campaign::{Campaign, Positions};
 use crate::identify::Error;
-use crate::identify::positions::Prepared;
 
 /// Traces a campaign of positions.
 ///
@@ -43,10 +40,7 @@ pub fn trace(
     progress: &Progress<'_>,
 ) -> Result<Trace, Error> {
     progress("finding where the robot stands");
-    let prepared = Prepared::new(campaign, data)?;
-    let slips = Slips::new(&campaign.robot, data);
-    let offers = offers(campaign, data, &slips);
-    let bench = Bench::new(prepared, offers, slips);
+    let bench = Bench::new(campaign, data)?;
     let found = search::search(bench, campaign.noise.displacement, options, progress).map_err(Error)?;
     report::report(campaign, &found).map_err(Error)
 }

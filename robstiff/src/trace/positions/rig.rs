@@ -1,5 +1,6 @@
 //! Faults of the rig, as absolute positions show them.
 
+use std::boxed::Box;
 use std::rc::Rc;
 use std::vec;
 use std::vec::Vec;
@@ -10,7 +11,7 @@ use robstiff_robots::effect::Place as Part;
 
 use super::offers::{Form, LENGTH_STEP, Number, Offer, kind};
 use crate::campaign::{PositionRow, Positions};
-use crate::identify::positions::model::{Enters, Model};
+use crate::identify::positions::model::{Enters, LaterMoved, Model, Moved};
 use crate::trace::found::{EffectParameter, Place};
 
 /// A reflector is not farther off (m), nor a slip or a drift longer (m) or a slip
@@ -49,11 +50,15 @@ pub fn reflector() -> Offer {
 /// Three numbers that each move what is read along an axis of the base frame, by so
 /// much in each row.
 fn shifts(by_row: &[f64], unit: &'static str, most: f64) -> impl Iterator<Item = Number> {
+    let last = by_row.last().copied().unwrap_or_default();
     (0..3).map(move |k| Number {
         name: SHIFT[k],
         unit,
         range: [-most, most],
-        enters: Enters::Reading(Rc::new(by_row.iter().map(|by| Vector3::ith(k, *by)).collect())),
+        enters: Enters::Reading(Rc::new(Moved {
+            rows: by_row.iter().map(|by| Vector3::ith(k, *by)).collect(),
+            later: Box::new(move |_| Vector3::ith(k, last)),
+        })),
     })
 }
 
@@ -99,15 +104,17 @@ impl Slips {
 
     /// What a shift along each axis, and a turn about each, do to the rows from one on.
     pub fn at_row(&self, moment: usize) -> [Enters; 6] {
-        let field = |moved: &dyn Fn(&Vector3<f64>) -> Vector3<f64>| {
-            let of = |(row, point)| if row < moment { Vector3::zeros() } else { moved(point) };
-            Enters::Reading(Rc::new(self.points.iter().enumerate().map(of).collect()))
+        let from_then_on = |later: LaterMoved| {
+            let of = |(row, point)| if row < moment { Vector3::zeros() } else { later(point) };
+            let rows = self.points.iter().enumerate().map(of).collect();
+            Enters::Reading(Rc::new(Moved { rows, later }))
         };
+        let middle = self.middle;
         core::array::from_fn(|k| {
             let axis = Vector3::ith(k % 3, 1.0);
             match k < 3 {
-                true => field(&|_| axis),
-                false => field(&|point| axis.cross(&(point - self.middle))),
+                true => from_then_on(Box::new(move |_| axis)),
+                false => from_then_on(Box::new(move |point| axis.cross(&(point - middle)))),
             }
         })
     }
@@ -134,7 +141,10 @@ impl Slips {
 /// The kind of a slip.
 pub const SLIP: &str = "base_slip";
 
+/// The number by which a slip says when it was.
+pub const SLIPPED_AT: &str = "line";
+
 /// How a slip says when it was.
 pub fn line(data: &Positions, moment: usize) -> EffectParameter {
-    EffectParameter { name: "line", value: data.rows[moment].line as f64, std: None, unit: "1" }
+    EffectParameter { name: SLIPPED_AT, value: data.rows[moment].line as f64, std: None, unit: "1" }
 }

@@ -1,24 +1,20 @@
 //! Which numbers of the regression planning looks at, and which effects rival:
-//! what the [`adapter`](super::adapter) takes from a trace.
+//! what the adapter of displacements takes from a trace.
 
 use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use super::rivals::{Contest, Group, Number, Rival, Rivals};
 use crate::campaign::Campaign;
 use crate::identify::prepare::Prepared;
 use crate::identify::samples::Column;
 use crate::identify::{Error, element_name, unit_of};
+use crate::plan::rivals::{Group, Number, Rival, Rivals, computed, pairs};
 use crate::trace::bench::Bench;
 use crate::trace::catalogue::{Candidate, Catalogue};
 use crate::trace::model::{Fitted, Named};
 use crate::trace::selection::best_with;
 use crate::trace::{Place, Trace};
-
-/// Kinds that depend on when something is measured, not on pose and load: what
-/// to propose for them is not computed.
-const OF_TIME: [&str; 4] = ["thermal_drift", "creep", "base_slip", "outliers"];
 
 /// A number that planning looks at.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,29 +116,24 @@ impl Source<'_> {
             })
         };
         let mut places = |of: &[usize]| -> Vec<usize> { of.iter().map(|&column| place(column)).collect() };
-        let mut pairs = Vec::new();
+        let mut contests = Vec::new();
         for Group { named: own, names } in groups {
             let own = own.map(|k| trace.effects[k].effect.to_string());
             let beside = sorted(own.as_deref());
             let core: Vec<usize> = base.iter().copied().chain(columns_of(&beside)).collect();
-            let computed = names.iter().filter(|name| !OF_TIME.iter().any(|kind| name.starts_with(kind)));
-            let found = computed.filter_map(|name| {
+            let core = places(&core);
+            let found = computed(names).filter_map(|name| {
                 let (one, fitted) = self.best(name, &beside)?;
                 let (columns, values) = self.numbers_of(one, &fitted);
                 let parameters = self.bench.candidates()[one.candidate].variants[one.variant].parameters;
-                Some((name.clone(), Rival { columns, values, parameters }))
+                Some((name.clone(), Rival { columns: places(&columns), values, parameters }))
             });
-            let found: Vec<(String, Rival)> = found.collect();
-            for (k, (one, of_one)) in found.iter().enumerate() {
-                for (other, of_other) in &found[k + 1..] {
-                    let rivals =
-                        [of_one, of_other].map(|rival| Rival { columns: places(&rival.columns), ..rival.clone() });
-                    pairs.push(Contest::new([one.clone(), other.clone()], rivals, places(&core)));
-                }
-            }
+            contests.extend(pairs(&found.collect::<Vec<_>>(), &core));
         }
         let whole: Vec<usize> = base.iter().chain(&effects).copied().collect();
-        Ok((Rivals { model: places(&whole), effects: places(&effects), numbers, pairs }, model))
+        let rivals =
+            Rivals { nuisance: Vec::new(), model: places(&whole), effects: places(&effects), numbers, pairs: contests };
+        Ok((rivals, model))
     }
 
     /// What the numbers of a model are.

@@ -1,5 +1,5 @@
-//! From the regression that tracing uses to what planning asks for; the only
-//! place in planning that knows how numbers become readings.
+//! From the regression of displacements to what planning asks for; the only place in
+//! planning that knows how numbers become displacements.
 
 use std::rc::Rc;
 use std::string::String;
@@ -9,8 +9,6 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector, Matrix4, Vector3, Vector6};
 use robstiff_robots::effect::Place as Part;
 
-use super::regressors::{Regressors, Sensor, Visit, tool_turn};
-use super::rivals::{Group, Rivals};
 use super::source::{Kept, Source, start};
 use crate::campaign::{Campaign, Displacements, Frame, Observation};
 use crate::elements::{Geometry, Parameter};
@@ -19,25 +17,12 @@ use crate::identify::prepare::Prepared;
 use crate::identify::samples::{Column, Sample, Samples};
 use crate::identify::setup::Setup;
 use crate::identify::whitening::whiten;
+use crate::plan::regressors::{ENCODER_NOISE, LEVELS, REACH, ROTATION_NOISE, Regressors, Sensor, Visit, tool_turn};
+use crate::plan::rivals::{Group, Rivals};
 use crate::trace::bench::Bench;
 use crate::trace::catalogue::{Scene, catalogue};
 use crate::trace::point::Point;
 use crate::trace::{Place, Trace};
-
-/// One sigma of a rotation reading where the campaign states none (rad): that
-/// of a laser tracker's six-axis probe at some metres.
-pub const ROTATION_NOISE: f64 = 5e-5;
-
-/// One sigma of an encoder on the output side of a gear (rad): one second of
-/// arc.
-pub const ENCODER_NOISE: f64 = 5e-6;
-
-/// How far markers on a link stand from its end, and how much further out the
-/// second lever acts (m).
-pub const REACH: f64 = 0.3;
-
-/// The levels of [`Sensor::Levels`], as shares of the greatest load.
-pub const LEVELS: [f64; 5] = [0.025, 0.25, 0.5, 1.0, -1.0];
 
 /// A traced campaign, with the numbers that planning looks at.
 pub struct Adapter<'c> {
@@ -108,26 +93,6 @@ impl<'c> Adapter<'c> {
             rotation_noise: campaign.noise.rotation.unwrap_or(ROTATION_NOISE),
         };
         Ok((adapter, rivals))
-    }
-
-    /// The variance of one displacement reading (m^2).
-    pub fn variance(&self) -> f64 {
-        self.noise * self.noise
-    }
-
-    /// Whether rotations are read.
-    pub fn reads_rotations(&self) -> bool {
-        self.axes > 3
-    }
-
-    /// The number of joints.
-    pub fn joints(&self) -> usize {
-        self.campaign.robot.joints.len()
-    }
-
-    /// How many numbers some visits read.
-    pub fn readings(&self, visits: &[Visit]) -> usize {
-        self.axes * visits.iter().map(|visit| visit.loads.len()).sum::<usize>()
     }
 
     /// The rows of some visits, behind the anchors.
@@ -270,6 +235,20 @@ fn index_of(met: &mut Vec<usize>, number: usize) -> usize {
 }
 
 impl Regressors for Adapter<'_> {
+    fn variance(&self) -> f64 {
+        self.noise * self.noise
+    }
+
+    fn readings(&self, visits: &[Visit]) -> usize {
+        self.axes * visits.iter().map(|visit| visit.loads.len()).sum::<usize>()
+    }
+
+    fn sensors(&self) -> Vec<Sensor> {
+        let rotations = (self.axes == 3).then_some(Sensor::Rotations);
+        let elsewhere = (0..=self.campaign.robot.joints.len()).map(Sensor::Markers);
+        rotations.into_iter().chain([Sensor::Encoders, Sensor::Lever, Sensor::Levels]).chain(elsewhere).collect()
+    }
+
     fn known(&self) -> DMatrix<f64> {
         self.known.clone()
     }
@@ -294,9 +273,11 @@ impl Regressors for Adapter<'_> {
                 return self.at_the_tool(&visits, self.axes, self.rotation_weight, 0.0);
             }
             Some(Sensor::Lever) => self.at_the_tool(visits, self.axes, self.rotation_weight, REACH),
+            // Positions alone are read at a reflector.
+            Some(Sensor::Reflector | Sensor::Payloads) => return tool(),
             Some(Sensor::Markers(body)) => self.elsewhere(visits, 9, |geometry, parts| markers(geometry, parts, body)),
             Some(Sensor::Encoders) => {
-                let (weight, joints) = (self.noise / ENCODER_NOISE, self.joints());
+                let (weight, joints) = (self.noise / ENCODER_NOISE, self.campaign.robot.joints.len());
                 self.elsewhere(visits, joints, |geometry, parts| {
                     let mut turns = vec![0.0; joints];
                     for (place, twist) in parts {

@@ -1,0 +1,7 @@
+//! What displacements that are measured next show: the regression that tracing uses, as
+//! planning asks for it.
+
+mod adapter;
+mod source;
+
+pub use adapter::Adapter;
