@@ -70,10 +70,11 @@ pub fn rivals(
         let core = [&stands[..], &columns(&bench.chosen(&rest.named))].concat();
         let found = computed(names).filter_map(|name| {
             let candidate = bench.candidates.iter().position(|candidate| candidate.name() == *name)?;
-            let with = match form(name) {
+            let mut with = match form(name) {
                 Some(form) => [&rest.named[..], &[form]].concat(),
                 None => bench.with(&rest.named, candidate)?.named,
             };
+            with.sort_unstable();
             let with = bench.solve(&with, &rest.solved.state)?;
             let one = *with.named.iter().find(|one| one.candidate == candidate)?;
             let form = bench.variant(one);

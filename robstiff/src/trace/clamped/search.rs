@@ -17,8 +17,8 @@ use crate::trace::catalogue::{Candidate, KINDS, Variant};
 use crate::trace::found::Place;
 use crate::trace::isolated::FEW;
 use crate::trace::lack_of_fit::{LackOfFit, StructureTest};
-use crate::trace::model::{Fitted, Named};
-use crate::trace::selection::{Selection, Step, Tested};
+use crate::trace::model::Fitted;
+use crate::trace::selection::{Against, Selection, Step};
 use crate::trace::verdict::FEWEST_POSES;
 use crate::trace::{Options, Progress};
 
@@ -94,8 +94,14 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
         let reference = test.reference(options.draws, options.seed);
         let statistics = test.statistics();
         let smallest = statistics.iter().flatten().map(|(s, _)| reference.p_value(*s)).fold(1.0, f64::min);
-        let mut step = table(&bench, &model, |candidate| {
-            statistics[candidate].map(|(statistic, _)| (statistic, reference.p_value(statistic)))
+        let single = bench.extended(&model.named);
+        let mut step = Step::against(&bench.candidates, &model.named, |candidate| {
+            let with = single.iter().find(|fit| fit.named.iter().any(|one| one.candidate == candidate));
+            Against {
+                gains: statistics[candidate].map(|(statistic, _)| (statistic, reference.p_value(statistic))),
+                bic: with.map(|with| with.bic),
+                left_out_rms: with.map(|with| bench.left_out_rms(&with.fit)),
+            }
         });
         if smallest > options.alpha {
             step.outcome = "nothing is missing significantly".to_string();
@@ -110,7 +116,6 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
             }
             continue;
         }
-        let single = bench.extended(&model.named);
         let accepted = bench.accepted(&single, &model, options).or_else(|| {
             let mut pairs: Vec<Fitted> =
                 single.iter().take(EXTENDED).flat_map(|one| bench.extended(&one.named)).collect();
@@ -148,10 +153,7 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
         model = bench.fit(&fine.named).unwrap_or(fine);
         p_values = p;
         let names: Vec<String> = model.named.iter().map(|one| bench.candidates[one.candidate].name()).collect();
-        step.outcome = format!("named {}", names.join(", "));
-        for tested in step.candidates.iter_mut().filter(|tested| names.contains(&tested.name)) {
-            tested.reason.clear();
-        }
+        step.came_to(&names);
         steps.push(step);
     }
     p_values.resize(model.named.len(), 1.0);
@@ -177,30 +179,6 @@ fn too_little(bench: &Bench) -> Option<String> {
             FEWEST_POSES.max(3 * numbers)
         )
     })
-}
-
-fn table(bench: &Bench, model: &Fitted, tested: impl Fn(usize) -> Option<(f64, f64)>) -> Step {
-    let fits = bench.extended(&model.named);
-    let candidates = (0..bench.candidates.len()).map(|candidate| {
-        let with = fits.iter().find(|fit| fit.named.iter().any(|one| one.candidate == candidate));
-        let already = model.named.iter().any(|one| one.candidate == candidate);
-        let statistic = tested(candidate);
-        let reason = match (already, statistic.is_some() && with.is_some()) {
-            (true, _) => "already named",
-            (false, false) => "it explains nothing with numbers that are physically possible",
-            (false, true) => "another explains more, or it is not significant",
-        };
-        Tested {
-            name: bench.candidates[candidate].name(),
-            statistic: statistic.map(|(statistic, _)| statistic),
-            p_value: statistic.map_or(1.0, |(_, p)| p),
-            bic: with.filter(|_| !already).map(|fit| fit.bic),
-            left_out_rms: with.filter(|_| !already).map(|fit| bench.left_out_rms(&fit.fit)),
-            reason: reason.to_string(),
-        }
-    });
-    let name = |one: &Named| bench.candidates[one.candidate].name();
-    Step { named: model.named.iter().map(name).collect(), candidates: candidates.collect(), outcome: String::new() }
 }
 
 /// Whether what is left depends on the torque, by any smooth curve, or on the

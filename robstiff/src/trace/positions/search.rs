@@ -13,10 +13,10 @@ use super::bench::{Bench, Model, Proposed, TIE};
 use super::structure::structure;
 use super::wild::{Wild, wild_rows};
 use crate::identify::positions::regression::STANDS;
-use crate::trace::bootstrap::{Reference, ScoreTest};
+use crate::trace::bootstrap::Reference;
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::{Fitted, Named};
-use crate::trace::selection::{CURVATURE, Selection, Step, Tested, WITHIN_REACH};
+use crate::trace::selection::{Against, CURVATURE, Selection, Step, WITHIN_REACH};
 use crate::trace::verdict::FEWEST_POSES;
 use crate::trace::{Options, Progress};
 
@@ -117,7 +117,15 @@ impl Course {
             let Some(test) = bench.test(&model.named) else { break };
             let reference = test.reference(options.draws, options.seed);
             let singles = bench.extended(&model.named);
-            let mut step = table(bench, model, &test, &reference, &singles);
+            let statistics = test.statistics();
+            let mut step = Step::against(&bench.candidates, &model.named, |candidate| {
+                let with = singles.iter().find(|fit| fit.named.iter().any(|one| one.candidate == candidate));
+                Against {
+                    gains: statistics[candidate].map(|(statistic, _)| (statistic, reference.p_value(statistic))),
+                    bic: with.map(|with| with.bic),
+                    left_out_rms: None,
+                }
+            });
             if step.candidates.iter().all(|tested| tested.p_value > options.alpha) {
                 step.outcome = "nothing is missing significantly".to_string();
                 self.steps.push(step);
@@ -135,10 +143,7 @@ impl Course {
             better = without_superfluous(bench, better, &reference, options);
             better = bench.at_its_moment(better);
             let names: Vec<String> = better.named.iter().map(|one| bench.candidates[one.candidate].name()).collect();
-            step.outcome = format!("named {}", names.join(", "));
-            for tested in step.candidates.iter_mut().filter(|tested| names.contains(&tested.name)) {
-                tested.reason.clear();
-            }
+            step.came_to(&names);
             self.steps.push(step);
             bench.turn_to(&better);
             self.model = better;
@@ -321,29 +326,4 @@ fn without_borrowed(bench: &Bench<'_>, model: &Model, left: &LackOfFit) -> Optio
     });
     let least = smaller.min_by(|a, b| a.solved.fit.rss.total_cmp(&b.solved.fit.rss))?;
     (least.solved.fit.rss - own < left.fraction * own).then_some(least)
-}
-
-fn table(bench: &Bench<'_>, model: &Model, test: &ScoreTest, reference: &Reference, singles: &[Proposed]) -> Step {
-    let statistics = test.statistics();
-    let name = |one: &Named| bench.candidates[one.candidate].name();
-    let candidates = (0..bench.candidates.len()).map(|candidate| {
-        let with = singles.iter().find(|fit| fit.named.iter().any(|one| one.candidate == candidate));
-        let already = model.named.iter().any(|one| one.candidate == candidate);
-        let with = with.filter(|_| !already);
-        let statistic = statistics[candidate].map(|(statistic, _)| statistic).filter(|_| !already);
-        let reason = match (already, statistic.is_some() && with.is_some()) {
-            (true, _) => "already named",
-            (false, false) => "it explains nothing with numbers that are physically possible",
-            (false, true) => "another explains more, or it is not significant",
-        };
-        Tested {
-            name: bench.candidates[candidate].name(),
-            statistic,
-            p_value: statistic.filter(|_| with.is_some()).map_or(1.0, |statistic| reference.p_value(statistic)),
-            bic: with.map(|fit| fit.bic),
-            left_out_rms: None,
-            reason: reason.to_string(),
-        }
-    });
-    Step { named: model.named.iter().map(name).collect(), candidates: candidates.collect(), outcome: String::new() }
 }
