@@ -207,7 +207,7 @@ fn loads(data: &Displacements, options: &Options, assumptions: &mut Vec<String>)
 }
 
 /// The weights of the payloads of a visit, in the order of the campaign's usual one; where
-/// it has no visits of several rows, of none and the greatest.
+/// it has no visits of several rows, of the least and the greatest.
 fn payloads(data: &Positions, options: &Options, assumptions: &mut Vec<String>) -> Result<Vec<[f64; 6]>, Error> {
     let refused = |what: &str| Err(Error(format!("{what}, but payloads pull by their weight, as the campaign's do")));
     let greatest = data.rows.iter().map(|row| row.payload).fold(0.0, f64::max);
@@ -225,7 +225,12 @@ fn payloads(data: &Positions, options: &Options, assumptions: &mut Vec<String>) 
     let most = options.force.map_or(greatest, |force| force / GRAVITY);
     let visit = usual(data.rows.iter().map(|row| row.visit));
     let usual: Vec<f64> = data.rows.iter().filter(|row| row.visit == visit).map(|row| row.payload).collect();
-    let payloads = if usual.len() > 1 { usual } else { std::vec![0.0, greatest] };
+    let least = data.rows.iter().map(|row| row.payload).fold(greatest, f64::min);
+    let payloads = match usual.len() {
+        0 | 1 if least < greatest => std::vec![least, greatest],
+        0 | 1 => std::vec![greatest],
+        _ => usual,
+    };
     let payloads: Vec<f64> = payloads.into_iter().map(|payload| payload * most / greatest).collect();
     let told: Vec<String> = payloads.iter().map(|payload| format!("{payload:.0} kg")).collect();
     let whose = if options.force.is_some() { "the greatest of the weight asked for" } else { "as the campaign's" };

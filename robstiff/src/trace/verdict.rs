@@ -105,6 +105,9 @@ pub fn may_lag(bench: &Bench<'_>, model: &Fitted) -> bool {
     })
 }
 
+/// A test with such a probability found nothing: structure is known otherwise.
+const SAYS_NOTHING: f64 = 0.1;
+
 /// The verdict on a model that stands, with so many names besides for what is
 /// wrong in single visits, and why.
 pub fn judge(
@@ -117,7 +120,13 @@ pub fn judge(
     let named = selection.model.named.len() + isolated;
     let structure = left.structure || selection.unnamed;
     let strongest = left.tests.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value));
-    let because = strongest.map_or_else(String::new, |test| format!("{} (p {})", test.name, Shown(test.p_value)));
+    let because = match strongest.filter(|test| test.p_value < SAYS_NOTHING) {
+        Some(test) => format!("{} (p {})", test.name, Shown(test.p_value)),
+        None if selection.unnamed => {
+            String::from("something is missing significantly, but no effect of the catalogue passes every test")
+        }
+        None => String::from("what the names that were taken back had accounted for"),
+    };
     match (named, structure) {
         (0, false) => {
             (Verdict::Adequate, String::from("nothing is missing significantly, and what is left looks like noise"))

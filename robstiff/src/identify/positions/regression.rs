@@ -42,6 +42,7 @@ pub struct Rows {
 }
 
 /// Positions with what may explain them.
+#[derive(Clone)]
 pub struct Regression<'c> {
     /// The positions.
     pub data: &'c Positions,

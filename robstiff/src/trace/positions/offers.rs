@@ -21,7 +21,8 @@ use crate::identify::positions::COMPLIANCE_STEP;
 use crate::identify::positions::model::{Enters, Model};
 use crate::identify::setup::coordinate_entry;
 use crate::trace::catalogue::{
-    DH_ENTRIES, DH_MOST, DH_UNITS, HARDENING_KNEES, KINDS, Kind, LOST_KNEES, WIDEST_GAP, ZERO_MOST, share_a_drive,
+    DH_ENTRIES, DH_MOST, DH_UNITS, EITHER, HARDENING_KNEES, KINDS, Kind, LOST_KNEES, LOST_MOTION,
+    STIFFNESS_NONLINEARITY, WIDEST_GAP, ZERO_MOST, share_a_drive,
 };
 use crate::trace::found::{EffectParameter, Place};
 use crate::{Effect, JointKind};
@@ -39,9 +40,9 @@ const STEPS: [f64; 2] = [ANGLE_STEP, LENGTH_STEP];
 const ORDERS: [f64; 3] = [1.0, 2.0, 3.0];
 const LARGEST_WAVE: f64 = 0.1;
 
-/// The largest relative change of a compliance by one of its four waves: with all of
-/// them so large, something of it is left at every angle.
-const LARGEST_CHANGE: f64 = 0.35;
+/// Knees of gears that are looked for, as fractions of the largest torque.
+const NARROWEST_KNEE: f64 = 1.0 / 256.0;
+const WIDEST_KNEE: f64 = 4.0;
 
 /// More of the sag than all of it twice over is something else.
 const MOST_SAG: f64 = 2.0;
@@ -71,6 +72,26 @@ pub struct Form {
     pub numbers: Vec<usize>,
     /// Numbers out of a grid.
     pub shape: Vec<EffectParameter>,
+    /// Where the one of these is a knee, what lies between those of the grid.
+    pub knee: Option<Knee>,
+}
+
+/// The knees that a gear's law may have.
+#[derive(Clone)]
+pub struct Knee {
+    /// Those that are possible (Nm or N).
+    pub range: [f64; 2],
+    /// The largest torque (Nm or N).
+    pub largest: f64,
+    /// How the number of the law enters with another.
+    pub enters: Rc<dyn Fn(f64) -> Enters>,
+}
+
+impl Form {
+    /// Some numbers alone.
+    pub fn of(numbers: impl IntoIterator<Item = usize>) -> Self {
+        Self { numbers: numbers.into_iter().collect(), shape: vec![], knee: None }
+    }
 }
 
 /// An effect that may be missing, with its forms.
@@ -83,6 +104,13 @@ pub struct Offer {
     pub numbers: Vec<Number>,
     /// Its forms.
     pub forms: Vec<Form>,
+    /// Whether the numbers of a form are possible together.
+    pub possible: fn(&[f64]) -> bool,
+}
+
+/// Where it is enough that each number is possible.
+pub fn any(_: &[f64]) -> bool {
+    true
 }
 
 /// Everything that may be missing, in the order of the catalogue.
@@ -141,7 +169,7 @@ fn of_effect(name: &'static str, part: Part, at: usize, others: Vec<f64>, step: 
 fn one(name: &'static str, part: Part, number: (&'static str, &'static str), range: [f64; 2], step: f64) -> Offer {
     let enters = of_effect(name, part, 0, vec![0.0], step);
     let numbers = vec![Number { name: number.0, unit: number.1, range, enters }];
-    Offer { kind: kind(name), place: part.into(), numbers, forms: vec![Form { numbers: vec![0], shape: vec![] }] }
+    Offer { kind: kind(name), place: part.into(), numbers, forms: vec![Form::of([0])], possible: any }
 }
 
 /// An elastic part with one or two compliances, of which one or both can be there.
@@ -155,7 +183,8 @@ fn springs(name: &'static str, part: Part, numbers: &[(&'static str, &'static st
         kind: kind(name),
         place: part.into(),
         numbers: numbers.iter().enumerate().map(of).collect(),
-        forms: forms.iter().map(|numbers| Form { numbers: numbers.to_vec(), shape: vec![] }).collect(),
+        forms: forms.iter().map(|numbers| Form::of(numbers.iter().copied())).collect(),
+        possible: any,
     }
 }
 
@@ -175,7 +204,7 @@ fn gears(robot: &Description, data: &Positions) -> Vec<Offer> {
     let torques = Model::new(robot, data).torques(data);
     let largest = |joint: usize| torques.iter().map(|row| row[joint - 1].abs()).fold(0.0, f64::max);
     let heaviest = torques.iter().flatten().map(|torque| torque.abs()).fold(0.0, f64::max);
-    let law = |name: &'static str, joint: usize, number: &'static str, range: [f64; 2], knees: &[f64]| {
+    let law = |name: &'static str, joint: usize, number: &'static str, range: [f64; 2], knees: &[f64], widest: f64| {
         let revolute = robot.joints[joint - 1].kind == JointKind::Revolute;
         let (turn, torque) = if revolute { ("rad", "Nm") } else { ("m", "N") };
         let (unit, step) = match number {
@@ -183,26 +212,28 @@ fn gears(robot: &Description, data: &Positions) -> Vec<Offer> {
             _ if revolute => ("rad/Nm", COMPLIANCE_STEP),
             _ => ("m/N", COMPLIANCE_STEP),
         };
-        let knees: Vec<f64> = knees.iter().map(|part| part * largest(joint)).collect();
-        let number = |&knee: &f64| {
-            let enters = of_effect(name, Part::Joint(joint), 0, vec![0.0, knee], step);
-            Number { name: number, unit, range, enters }
-        };
+        let largest = largest(joint);
+        let knees: Vec<f64> = knees.iter().map(|part| part * largest).collect();
+        let enters = move |knee| of_effect(name, Part::Joint(joint), 0, vec![0.0, knee], step);
+        let number = |&knee: &f64| Number { name: number, unit, range, enters: enters(knee) };
+        let between = Knee { range: [NARROWEST_KNEE * largest, widest * largest], largest, enters: Rc::new(enters) };
         let form = |(k, &value): (usize, &f64)| Form {
             numbers: vec![k],
             shape: vec![EffectParameter { name: "knee", value, std: None, unit: torque }],
+            knee: Some(between.clone()),
         };
         let place = Part::Joint(joint).into();
         let (numbers, forms) = (knees.iter().map(number).collect(), knees.iter().enumerate().map(form).collect());
-        Offer { kind: kind(name), place, numbers, forms }
+        Offer { kind: kind(name), place, numbers, forms, possible: any }
     };
     // What a payload does not load but by rounding has no law to show.
     let loaded: Vec<usize> = (1..=robot.joints.len()).filter(|&joint| largest(joint) > 1e-9 * heaviest).collect();
     let hardening = |&joint: &usize| {
         let softest = -robot.joints[joint - 1].compliance();
-        law("stiffness_nonlinearity", joint, "added", [softest, f64::INFINITY], &HARDENING_KNEES)
+        let range = [softest, f64::INFINITY];
+        law(STIFFNESS_NONLINEARITY.name, joint, "added", range, &HARDENING_KNEES, WIDEST_KNEE)
     };
-    let lost = |&joint: &usize| law("lost_motion", joint, "gap", [0.0, WIDEST_GAP], &LOST_KNEES);
+    let lost = |&joint: &usize| law(LOST_MOTION.name, joint, "gap", [0.0, WIDEST_GAP], &LOST_KNEES, EITHER[1]);
     let varies = |&&joint: &&usize| robot.joints[joint - 1].kind == JointKind::Revolute;
     let varying = loaded.iter().filter(varies).map(|&joint| varying(joint));
     loaded.iter().map(hardening).chain(loaded.iter().map(lost)).chain(varying).collect()
@@ -214,15 +245,16 @@ fn varying(joint: usize) -> Offer {
     let number = |(at, number): (usize, &'static str)| Number {
         name: number,
         unit: "1",
-        range: [-LARGEST_CHANGE, LARGEST_CHANGE],
+        range: [-1.0, 1.0],
         enters: of_effect(name, Part::Joint(joint), at, vec![0.0; 4], SHARE_STEP),
     };
-    let forms = [vec![0, 1], vec![2, 3], vec![0, 1, 2, 3]];
     Offer {
         kind: kind(name),
         place: Part::Joint(joint).into(),
         numbers: ["cos1", "sin1", "cos2", "sin2"].into_iter().enumerate().map(number).collect(),
-        forms: forms.map(|numbers| Form { numbers, shape: vec![] }).into(),
+        forms: [0..2, 2..4, 0..4].map(Form::of).into(),
+        // Something of the compliance is left at every angle.
+        possible: |waves| waves.chunks(2).map(|wave| wave[0].hypot(wave[1])).sum::<f64>() < 1.0,
     }
 }
 
@@ -256,12 +288,14 @@ fn waves(joint: usize) -> Offer {
     let form = |(k, &value): (usize, &f64)| Form {
         numbers: vec![2 * k, 2 * k + 1],
         shape: vec![EffectParameter { name: "order", value, std: None, unit: "1" }],
+        knee: None,
     };
     Offer {
         kind: kind(name),
         place: Part::Joint(joint).into(),
         numbers: ORDERS.iter().flat_map(|&order| [(order, 2, "cos"), (order, 1, "sin")]).map(number).collect(),
         forms: ORDERS.iter().enumerate().map(form).collect(),
+        possible: any,
     }
 }
 

@@ -11,12 +11,13 @@ use super::search::Searched;
 use crate::campaign::Campaign;
 use crate::identify::NoiseSource;
 use crate::identify::baseline::with_values;
+use crate::identify::normal::Sign;
 use crate::identify::positions::regression::STANDS;
 use crate::identify::positions::{estimated, of_numbers, residuals};
 use crate::identify::problem::rms;
 use crate::identify::readable::{UNREADABLE, is_readable};
 use crate::identify::uncertainty::covariance;
-use crate::trace::catalogue::{KINDS, OUTLIERS};
+use crate::trace::catalogue::{KINDS, OUTLIERS, Variant};
 use crate::trace::found::{EffectParameter, Found, Place};
 use crate::trace::model::Named;
 use crate::trace::selection::WITHIN_REACH;
@@ -58,8 +59,7 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>) -> Result<Trace, String
     };
 
     let values = bench.prepared.values(&model.solved.state);
-    let spread = |model: &Model| of_numbers(&covariance(&model.solved.problem, &model.solved.fit, &model.solved.signs));
-    let (spread_before, spread) = (spread(base), spread(model));
+    let (spread_before, spread) = (spread_of(bench, base), spread_of(bench, model));
     let replaced = if tells { bench.replaced(&model.named) } else { Vec::new() };
     let effects = if tells { effects(found, &replaced, &spread, (structure, after.holdout_rms)) } else { Vec::new() };
     let mut description = campaign.robot.clone();
@@ -140,6 +140,12 @@ fn effects(
 ) -> Vec<NamedEffect> {
     let (bench, model) = (&found.bench, &found.model);
     let chosen = bench.chosen(&model.named);
+    // Knees come behind the numbers.
+    let knees: Vec<Named> = bench.knee_columns(model).into_iter().map(|(law, _)| law).collect();
+    let spread_of_knee = |one: Named| {
+        let at = chosen.len() + knees.iter().position(|law| *law == one)?;
+        spread.get((at, at)).map(|variance| variance.sqrt())
+    };
     let mut named: Vec<(f64, Named, NamedEffect)> = Vec::new();
     for (k, &one) in model.named.iter().enumerate() {
         let (form, candidate) = (bench.variant(one), &bench.candidates[one.candidate]);
@@ -150,8 +156,8 @@ fn effects(
             let value = model.solved.fit.coefficients[STANDS + at];
             EffectParameter { name: about.name, value, std: Some(spread[(at, at)].sqrt()), unit: about.unit }
         };
-        let parameters: Vec<EffectParameter> =
-            form.columns.iter().map(number).chain(form.shape.iter().cloned()).collect();
+        let of_shape = form.shape.iter().map(|number| EffectParameter { std: spread_of_knee(one), ..number.clone() });
+        let parameters: Vec<EffectParameter> = form.columns.iter().map(number).chain(of_shape).collect();
         let mut rest = model.named.clone();
         rest.remove(k);
         let without = bench.solve(&rest, &model.solved.state).map_or(f64::INFINITY, |rest| rest.solved.fit.rss);
@@ -159,6 +165,11 @@ fn effects(
         for (_, other) in replaced.iter().filter(|(of, other)| *of == k && alike(bench, model, other.rss)) {
             same_as.extend(new_in(&other.named, &model.named).map(|candidate| bench.candidates[candidate].name()));
         }
+        let value = parameters.first().map_or(0.0, |number| number.value);
+        let twin = bench.twin(one).filter(|_| bench.may_be_its_twin(one, value)).into_iter();
+        same_as.extend(
+            twin.map(|twin| bench.candidates[twin].name()).filter(|name| !same_as.contains(name)).collect::<Vec<_>>(),
+        );
         same_as.extend(parts(bench, &rest, one).into_iter().filter(|name| !same_as.contains(name)).collect::<Vec<_>>());
         named.push((
             without,
@@ -202,6 +213,27 @@ fn effects(
     named
 }
 
+/// The covariance of a model's numbers, and of the knees of its laws behind them, where
+/// the rows tell these.
+fn spread_of(bench: &Bench<'_>, model: &Model) -> DMatrix<f64> {
+    let solved = &model.solved;
+    let plain = || of_numbers(&covariance(&solved.problem, &solved.fit, &solved.signs));
+    let knees: Vec<DVector<f64>> = bench.knee_columns(model).into_iter().map(|(_, column)| column).collect();
+    if knees.is_empty() {
+        return plain();
+    }
+    let problem = bench.with_columns(model, &DMatrix::from_columns(&knees));
+    // At the knees that leave least their columns have nothing to add.
+    let mut fit = solved.fit.clone();
+    let (own, all) = (fit.columns.len(), fit.columns.len() + knees.len());
+    fit.columns.extend(own..all);
+    fit.coefficients = fit.coefficients.resize_vertically(all, 0.0);
+    let signs: Vec<Sign> = solved.signs.iter().copied().chain(knees.iter().map(|_| Sign::Free)).collect();
+    let spread = of_numbers(&covariance(&problem, &fit, &signs));
+    let told = (own..all).all(|k| spread[(k - STANDS, k - STANDS)] > 0.0);
+    if told { spread } else { plain() }
+}
+
 /// The error of a model on poses that its fit has not seen (m): those held out, or each
 /// by the fit without it.
 fn unseen_rms(bench: &Bench<'_>, model: &Model) -> f64 {
@@ -226,7 +258,9 @@ fn parts(bench: &Bench<'_>, rest: &[Named], one: Named) -> Vec<String> {
     };
     let within = |candidate: &usize| {
         let forms = &bench.candidates[*candidate].variants;
-        forms.iter().any(|form| test.distance(form, whole) < SAME)
+        // What shows nothing is within everything.
+        let seen = |form: &&Variant| form.columns.iter().all(|&column| bench.is_seen(column));
+        forms.iter().filter(seen).any(|form| test.distance(form, whole) < SAME)
     };
     let found = (0..bench.candidates.len()).filter(other).filter(within);
     found.map(|candidate| bench.candidates[candidate].name()).collect()

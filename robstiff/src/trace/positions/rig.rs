@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use robstiff_robots::Description;
 use robstiff_robots::effect::Place as Part;
 
-use super::offers::{Form, LENGTH_STEP, Number, Offer, kind};
+use super::offers::{Form, LENGTH_STEP, Number, Offer, any, kind};
 use crate::campaign::{PositionRow, Positions};
 use crate::identify::positions::model::{Enters, LaterMoved, Model, Moved};
 use crate::trace::found::{EffectParameter, Place};
@@ -43,7 +43,8 @@ pub fn reflector() -> Offer {
         kind: kind("reflector_offset"),
         place: Place::Rig,
         numbers: (0..3).map(number).collect(),
-        forms: [&[0][..], &[1], &[2], &[0, 1, 2]].map(|of| Form { numbers: of.to_vec(), shape: vec![] }).into(),
+        forms: [0..1, 1..2, 2..3, 0..3].map(Form::of).into(),
+        possible: any,
     }
 }
 
@@ -75,10 +76,10 @@ pub fn drift(data: &Positions) -> Option<Offer> {
     for (since, unit) in clocks {
         let Some(since) = since else { continue };
         let longest = since.iter().copied().fold(0.0, f64::max);
-        forms.push(Form { numbers: (numbers.len()..numbers.len() + 3).collect(), shape: vec![] });
+        forms.push(Form::of(numbers.len()..numbers.len() + 3));
         numbers.extend(shifts(&since, unit, LONGEST / longest));
     }
-    (!forms.is_empty()).then(|| Offer { kind: kind("thermal_drift"), place: Place::Rig, numbers, forms })
+    (!forms.is_empty()).then(|| Offer { kind: kind("thermal_drift"), place: Place::Rig, numbers, forms, possible: any })
 }
 
 /// A slip of the robot, or of what reads it, before some row.
@@ -130,11 +131,11 @@ impl Slips {
                 Number { name, unit, range: [-most, most], enters }
             }));
             for count in [3, 6] {
-                forms.push(Form { numbers: (first..first + count).collect(), shape: vec![line(data, moment)] });
+                forms.push(Form { shape: vec![line(data, moment)], ..Form::of(first..first + count) });
             }
         }
         let (kind, place) = (kind(SLIP), Part::Base.into());
-        (!forms.is_empty()).then_some(Offer { kind, place, numbers, forms })
+        (!forms.is_empty()).then_some(Offer { kind, place, numbers, forms, possible: any })
     }
 }
 
