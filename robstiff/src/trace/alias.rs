@@ -26,11 +26,16 @@ const EXACT: f64 = 1e-6;
 /// and the criterion is too sure; poses are independent witnesses.
 const WITNESSES: f64 = 2.33;
 
-/// The names of what the data cannot tell effect `k` of a model from: exact
+/// Where the model leaves noise alone, its rows are witnesses too: a rival behind it by
+/// more (odds of `exp(100 / 2)`) is none, whether few poses say so or many.
+const BEYOND_DOUBT: f64 = 100.0;
+
+/// The names of what the data cannot tell effect `k` of a model from, with `structure`
+/// left or none: exact
 /// aliases, and rivals that predict poses left out better than no effect does and fit
 /// about as well as this one, or nearly so where they are significant too. The best
 /// fitting first.
-pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -> Vec<String> {
+pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, structure: bool, options: &Options) -> Vec<String> {
     let mut rest = model.named.clone();
     let one = rest.remove(k);
     let (Ok(setting), Ok(own)) = (bench.at(&rest), bench.at(&model.named)) else { return Vec::new() };
@@ -46,8 +51,11 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -
         let is_significant = tests.p_value(candidate) <= options.alpha;
         let predicts = || setting.left_out_rms(&rival.fit) < unseen;
         let is_near = |rival: &Fitted, at: &Setting<'_>| {
-            rival.bic - model.bic < WITHIN_REACH
-                || (is_significant && witnesses(&of_model, &at.deviances(&rival.fit)) < WITNESSES)
+            let behind = rival.bic - model.bic;
+            behind < WITHIN_REACH
+                || (is_significant
+                    && (structure || behind < BEYOND_DOUBT)
+                    && witnesses(&of_model, &at.deviances(&rival.fit)) < WITNESSES)
         };
         let near = || {
             // In its own form it may fit better than its tangent does.

@@ -276,7 +276,7 @@ fn effects(
             lines: Vec::new(),
             p_value: outcome.selection.p_values[k],
             holdout_rms: holdout,
-            same_as: same_as(bench, model, k, options),
+            same_as: same_as(bench, model, k, outcome.structure(), options),
             partial: outcome.structure(),
         }
     });
