@@ -71,7 +71,14 @@ impl Campaign {
         let unused = plan.unused.iter().map(|(field, line)| {
             format!("{}: `{field}` on line {line} is not used with `kind: clamped`", path.display())
         });
-        let warnings = unused.chain(of_table).collect();
+        let far = [("wrench", plan.wrench.1), ("measured", plan.measured.1)].into_iter().filter_map(|(field, at)| {
+            let distance = at.iter().map(|value| value * value).sum::<f64>().sqrt();
+            (distance > FAR_FROM_TCP && plan.kind != Kind::Clamped).then(|| {
+                let file = path.display();
+                format!("{file}: `{field}` is at {distance:.0} m from the TCP: is it in metres, or in millimetres?")
+            })
+        });
+        let warnings = far.chain(unused).chain(of_table).collect();
         Ok(Self {
             name: plan.name,
             path: path.to_owned(),
@@ -85,6 +92,9 @@ impl Campaign {
         })
     }
 }
+
+/// Nothing on a tool is farther from the TCP (m).
+const FAR_FROM_TCP: f64 = 5.0;
 
 fn plan(document: &Document, folder: &Path) -> Option<Plan> {
     let map = document.root().map(&FIELDS)?;

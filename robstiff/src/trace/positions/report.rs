@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::bench::{Bench, Model, Proposed};
 use super::search::Searched;
-use crate::campaign::Campaign;
+use crate::campaign::{Campaign, PositionRow};
 use crate::identify::NoiseSource;
 use crate::identify::baseline::with_values;
 use crate::identify::normal::Sign;
@@ -31,8 +31,8 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>) -> Result<Trace, String
     let (bench, model, base) = (&found.bench, &found.model, &found.base);
     let (data, rows) = (bench.prepared.data, bench.prepared.data.rows.len());
     let wild = &found.wild.rows;
-    let (verdict, why) = match &found.too_little {
-        Some(why) => (Verdict::Insufficient, why.clone()),
+    let (verdict, why) = match found.too_little.clone().or_else(|| no_noise(bench, model)) {
+        Some(why) => (Verdict::Insufficient, why),
         None => verdict::judge(&found.selection, &found.left, usize::from(!wild.is_empty()), found.taken_back, false),
     };
     let structure = found.left.structure || found.selection.unnamed;
@@ -81,7 +81,7 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>) -> Result<Trace, String
         let left: Vector3<f64> = left.fixed_rows::<3>(3 * row).into_owned();
         (turn * left).into()
     };
-    let residual = |(i, row): (usize, &crate::campaign::PositionRow)| RowResidual {
+    let residual = |(i, row): (usize, &PositionRow)| RowResidual {
         line: row.line,
         pose: row.pose,
         before: in_base(&left_before, i),
@@ -131,6 +131,26 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>) -> Result<Trace, String
         pose_errors: data.poses.iter().enumerate().map(pose_error).collect(),
     })
 }
+
+/// Why what a model leaves is no noise, if so: nothing reads as badly as that.
+fn no_noise(bench: &Bench<'_>, model: &Model) -> Option<String> {
+    let rows = &bench.prepared.data.rows;
+    let all = |of: &dyn Fn(&PositionRow) -> f64| (rows.iter().map(of).sum::<f64>() / rows.len() as f64).sqrt();
+    let middle = rows.iter().map(|row| Vector3::from(row.position)).sum::<Vector3<f64>>() / rows.len() as f64;
+    let apart = all(&|row| (Vector3::from(row.position) - middle).norm_squared());
+    let left = (model.solved.fit.rss * 3.0 / model.solved.problem.total.rows as f64).sqrt();
+    (left > NOISIEST * apart).then(|| {
+        format!(
+            "the model leaves {:.0} mm of positions that are {:.0} mm from their middle, which is no noise: angles or \
+             lengths in another unit, axes of another hand, or a reflector that is not where the campaign says",
+            left * 1e3,
+            apart * 1e3
+        )
+    })
+}
+
+/// Of how far positions are from their middle, more than this is no noise.
+const NOISIEST: f64 = 0.01;
 
 fn effects(
     found: &Searched<'_>,
