@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use robstiff::campaign::{Campaign, Data, Displacements};
+use robstiff::campaign::{Campaign, Data, Displacements, Positions};
 use robstiff::identify::covariance::{Basis, Covariance};
 use robstiff::identify::{Estimate, Identification, NoiseSource, Visibility, identify};
 use robstiff_robots::Description;
@@ -49,6 +49,12 @@ fn page(campaign: &Campaign, found: &Identification) -> String {
     page += &compliances(&found.estimates);
     page += &unseen(&found.estimates);
     page += &compound(&found.description);
+    if let Data::Position(data) = &campaign.data
+        && !payloads_vary(data)
+    {
+        page += "\nno visit has two payloads, so zeros and lengths of the table are taken as declared: what \
+            they are off by is in these compliances\n";
+    }
     if let (Some(declared), Some(rms)) = (found.rms_declared, found.rms) {
         page += &format!("\nerror: {} um as declared, {} um identified", micrometres(declared), micrometres(rms));
         page += &match found.noise {
@@ -60,6 +66,12 @@ fn page(campaign: &Campaign, found: &Identification) -> String {
         page += &noise(covariance, data);
     }
     page
+}
+
+/// Whether some visit has one payload and another.
+fn payloads_vary(data: &Positions) -> bool {
+    let mut first = vec![None; data.visits.len()];
+    data.rows.iter().any(|row| *first[row.visit].get_or_insert(row.payload) != row.payload)
 }
 
 /// Sentences on how the readings hang together, and on those that do not belong.

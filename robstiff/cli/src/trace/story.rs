@@ -130,10 +130,19 @@ pub fn doubts(trace: &Trace) -> Vec<String> {
     if trace.rivals.len() > RIVALS {
         doubts.push(format!("{} more such models come close.", trace.rivals.len() - RIVALS));
     }
+    let held = trace.description.effects.iter().filter(|effect| effect.is_kinematic());
+    let held: Vec<String> = held.map(ToString::to_string).filter(|name| !is_named(trace, name)).collect();
+    if !held.is_empty() {
+        doubts.push(format!("The description has these, which were taken as they are: {}.", and(&by_kind(&held))));
+    }
     if !trace.invisible.is_empty() {
         doubts.push(format!("These data could not show, if it were there: {}.", and(&by_kind(&trace.invisible))));
     }
     doubts
+}
+
+fn is_named(trace: &Trace, name: &str) -> bool {
+    trace.effects.iter().any(|named| named.effect.to_string() == name)
 }
 
 /// How many rivals are told.
