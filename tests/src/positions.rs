@@ -102,7 +102,7 @@ fn effect(random: &mut ChaCha8Rng, joints: usize, payloads: bool) -> Hidden {
     let sign = if random.random() { 1.0 } else { -1.0 };
     let size = |random: &mut ChaCha8Rng, least: f64, most: f64| sign * random.random_range(least..most);
     let joint = random.random_range(2..=joints);
-    match random.random_range(0..if payloads { 8 } else { 6 }) {
+    match random.random_range(0..if payloads { 10 } else { 6 }) {
         0 => Hidden::JointZeroOffset { joint, offset: size(random, 3e-4, 5e-3) },
         1 => Hidden::DhError { of: DhColumn::A, row: random.random_range(1..=joints), by: size(random, 1e-4, 2e-3) },
         2 => Hidden::DhError { of: DhColumn::D, row: joint, by: size(random, 1e-4, 2e-3) },
@@ -119,6 +119,14 @@ fn effect(random: &mut ChaCha8Rng, joints: usize, payloads: bool) -> Hidden {
             Hidden::BaseSlip { shift: three(5e-4), turn: three(2e-4), when }
         }
         6 => Effect::TransverseCompliance { joint, value: random.random_range(2e-7..1.5e-6) }.into(),
+        7 => {
+            let added = random.random_range(2e-7..6e-7);
+            Effect::StiffnessNonlinearity { joint, added, knee: random.random_range(200.0..1500.0) }.into()
+        }
+        8 => {
+            let (gap, knee) = (random.random_range(1e-4..4e-4), random.random_range(20.0..150.0));
+            Hidden::LostMotion { joint, gap, knee }
+        }
         _ => {
             let (once, change) = (random.random::<bool>(), size(random, 0.1, 0.3));
             let (sin, cos) = random.random_range(0.0..PI).sin_cos();

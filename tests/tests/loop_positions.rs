@@ -110,13 +110,57 @@ fn the_arms_own_weight_is_named() {
 #[test]
 fn payloads_show_what_yields() {
     let tilt = Hidden::from(Effect::TransverseCompliance { joint: 2, value: 8e-7 });
-    let varying = Hidden::PoseDependentCompliance { joint: 2, cos: [0.2, 0.0], sin: [-0.15, 0.0] };
+    let varying = Hidden::PoseDependentCompliance { joint: 2, cos: [0.45, 0.0], sin: [-0.15, 0.0] };
     for (seed, hidden) in [(600, tilt), (640, varying)] {
         assert_named(&hidden.name(), seed, |positions, _| {
             positions.payloads = PAYLOADS.to_vec();
             positions.hidden = vec![hidden.clone()];
         });
     }
+}
+
+/// The law of a gear is named once, by a knee that is fitted: what a knee is off by is
+/// no other law.
+#[test]
+fn gears_are_named_with_their_knees() {
+    let (added, knee) = (6e-7, 700.0);
+    let hardening = Hidden::from(Effect::StiffnessNonlinearity { joint: 3, added, knee });
+    let found = assert_named(&hardening.name(), 660, |positions, _| {
+        positions.payloads = vec![0.0, 50.0, 150.0, 250.0];
+        positions.hidden = vec![hardening.clone()];
+    });
+    for (_, trace) in found {
+        let named = &trace.effects[0];
+        for (name, truth) in [("added", added), ("knee", knee)] {
+            let Some(number) = named.parameters.iter().find(|number| number.name == name) else { continue };
+            let std = number.std.expect("a fitted number");
+            assert!((number.value - truth).abs() < 4.0 * std && std < 0.2 * truth, "{number:?}");
+        }
+    }
+}
+
+/// A weight at the TCP turns no tool, so a tool that yields is no other name of what
+/// turns.
+#[test]
+fn what_shows_nothing_is_no_alias() {
+    let found = assert_named("base_slip@base", 760, |positions, _| {
+        positions.payloads = PAYLOADS.to_vec();
+        positions.hidden = vec![Hidden::BaseSlip { shift: [2e-4, -1e-4, 1e-4], turn: [0.0, 1e-4, 0.0], when: 0.6 }];
+    });
+    for (_, trace) in found {
+        let same_as = &trace.effects[0].same_as;
+        assert!(!same_as.iter().any(|name| name == "tool_compliance@tool"), "{same_as:?}");
+    }
+}
+
+/// A reflector that is nowhere near where the campaign says is no noise.
+#[test]
+fn what_no_tracker_reads_so_badly_is_not_adequate() {
+    let (positions, declared) = positions(0, 780);
+    let trace = traced(&read(&positions, &declared, [40.0, 0.0, 110.0]));
+    assert_eq!(trace.verdict, Verdict::Insufficient);
+    assert!(trace.why.contains("which is no noise"), "{}", trace.why);
+    assert_eq!(trace.description.joints, declared.joints);
 }
 
 #[test]
