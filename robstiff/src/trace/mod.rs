@@ -32,6 +32,7 @@ mod report;
 pub mod selection;
 mod sizes;
 pub mod slip;
+pub mod step;
 #[cfg(test)]
 mod tests;
 pub mod verdict;
@@ -49,7 +50,7 @@ pub use alias::Rival;
 pub use correction::Correction;
 pub use found::{EffectParameter, Found, Place};
 pub use lack_of_fit::StructureTest;
-pub use selection::{Step, Tested};
+pub use step::{Step, Tested};
 pub use verdict::Verdict;
 
 use self::bench::Bench;

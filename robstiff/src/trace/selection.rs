@@ -10,14 +10,13 @@
 //! out this way, so steps go forward, sideways and back. Poses held out take no
 //! part: they judge what was found.
 
-use std::format;
 use std::string::String;
 use std::vec::Vec;
 
 use super::bench::Bench;
 use super::bootstrap::{Alternatives, Reference, ScoreTest};
-use super::catalogue::Candidate;
 use super::model::{Fitted, Named, Setting};
+use super::step::{Step, Tested};
 use super::{Options, Progress};
 
 /// How many models of one size are kept: a single missing effect is found by
@@ -44,81 +43,6 @@ pub struct Selection {
     pub steps: Vec<Step>,
     /// Whether something is missing for which no effect passed every test.
     pub unnamed: bool,
-}
-
-/// One step: all candidates against the model so far.
-#[derive(Clone, Debug)]
-pub struct Step {
-    /// The effects named before.
-    pub named: Vec<String>,
-    /// Every candidate with its statistic.
-    pub candidates: Vec<Tested>,
-    /// What came of it.
-    pub outcome: String,
-}
-
-/// One candidate in one step.
-#[derive(Clone, Debug)]
-pub struct Tested {
-    /// The full name, `kind@at`.
-    pub name: String,
-    /// The gain in sums of squares over the residual variance, less the price
-    /// of further numbers; `None` where it gains nothing physical.
-    pub statistic: Option<f64>,
-    /// Its family-wise p-value.
-    pub p_value: f64,
-    /// The criterion of the model with it; lower is better.
-    pub bic: Option<f64>,
-    /// The error with it on poses left out of the fit (m), each in turn; those
-    /// held out have no part in it.
-    pub left_out_rms: Option<f64>,
-    /// Why it was not taken; empty for the one that was.
-    pub reason: String,
-}
-
-/// A candidate against a model without it, in a search that goes forward.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Against {
-    /// The statistic with its family-wise p-value; `None` where it gains nothing.
-    pub gains: Option<(f64, f64)>,
-    /// The criterion of the best model with it; `None` where none is physical.
-    pub bic: Option<f64>,
-    /// The error of that on poses left out of the fit (m), where it is asked for.
-    pub left_out_rms: Option<f64>,
-}
-
-impl Step {
-    /// Every candidate against a model, by what `of` says of those that it has not named.
-    pub fn against(candidates: &[Candidate], named: &[Named], of: impl Fn(usize) -> Against) -> Self {
-        let tested = |(k, candidate): (usize, &Candidate)| {
-            let already = named.iter().any(|one| one.candidate == k);
-            let Against { gains, bic, left_out_rms } = if already { Against::default() } else { of(k) };
-            let reason = match (already, gains.and(bic)) {
-                (true, _) => "already named",
-                (false, None) => "it explains nothing with numbers that are physically possible",
-                (false, Some(_)) => "another explains more, or it is not significant",
-            };
-            Tested {
-                name: candidate.name(),
-                statistic: gains.map(|(statistic, _)| statistic),
-                p_value: gains.filter(|_| bic.is_some()).map_or(1.0, |(_, p_value)| p_value),
-                bic,
-                left_out_rms,
-                reason: String::from(reason),
-            }
-        };
-        Self {
-            named: named.iter().map(|one| candidates[one.candidate].name()).collect(),
-            candidates: candidates.iter().enumerate().map(tested).collect(),
-            outcome: String::new(),
-        }
-    }
-
-    /// Says that these effects are named now.
-    pub fn came_to(&mut self, names: &[String]) {
-        self.outcome = format!("named {}", names.join(", "));
-        self.candidates.iter_mut().filter(|tested| names.contains(&tested.name)).for_each(|one| one.reason.clear());
-    }
 }
 
 /// A test of the whole catalogue against one model.

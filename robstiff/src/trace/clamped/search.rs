@@ -18,7 +18,8 @@ use crate::trace::found::Place;
 use crate::trace::isolated::FEW;
 use crate::trace::lack_of_fit::{LackOfFit, StructureTest};
 use crate::trace::model::Fitted;
-use crate::trace::selection::{Against, Selection, Step};
+use crate::trace::selection::Selection;
+use crate::trace::step::{Against, Step};
 use crate::trace::verdict::FEWEST_POSES;
 use crate::trace::{Options, Progress};
 

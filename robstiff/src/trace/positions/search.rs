@@ -16,7 +16,8 @@ use crate::identify::positions::regression::STANDS;
 use crate::trace::bootstrap::Reference;
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::{Fitted, Named};
-use crate::trace::selection::{Against, CURVATURE, Selection, Step, WITHIN_REACH};
+use crate::trace::selection::{CURVATURE, Selection, WITHIN_REACH};
+use crate::trace::step::{Against, Step};
 use crate::trace::verdict::FEWEST_POSES;
 use crate::trace::{Options, Progress};
 
