@@ -3,15 +3,15 @@
 //! The way of the data: [`rivals`] takes from a trace the effects that the
 //! campaign could not tell apart, each with its size; [`space`] draws poses and
 //! loads that can be measured; [`regressors`] says what each would show, through
-//! adapters to the regressions that tracing uses, of [`displacements`] and of absolute
-//! [`positions`]; [`criterion`] turns that
-//! into what is known after a set of measurements; [`exchange`] looks for the
-//! best set; [`advice`] says what else would do where no pose does.
+//! adapters to the regressions that tracing uses, of [`displacements`] and of
+//! absolute [`positions`]; [`criterion`] turns that into what is known after a set
+//! of measurements; [`exchange`] looks for the best set; [`advice`] says what else
+//! would do where no pose does.
 //!
 //! Everything expected is to first order, with the noise that the trace found
-//! and each rival in turn taken for the truth at the size that fits best. The
-//! measurements are visits like the campaign's own, with its sequence of loads, of
-//! displacements with one unloaded reading for each.
+//! and each rival in turn taken for the truth at the size that fits best, the knees
+//! of gears as they were found. The measurements are visits like the campaign's own,
+//! with its sequence of loads, of displacements with one unloaded reading for each.
 
 pub mod advice;
 pub mod criterion;
