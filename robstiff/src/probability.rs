@@ -1,9 +1,37 @@
-//! Probabilities as they are told, and tails of one distribution as another's.
+//! Probabilities as they are told, and tails of distributions.
+//!
+//! A tail is the probability of a statistic as large as this or larger. It is `None`
+//! where a degree of freedom is missing, or where the statistic is no number: readings
+//! beyond all measure come to that.
+
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, StudentsT};
+
+/// Nothing is rarer than what is so large; the square of it is still a number.
+const LARGEST: f64 = 1e100;
 
 /// Tails of distributions underflow to zero, and correction for several tests goes
 /// beyond one: the nearest that a probability can be.
 pub fn told(p: f64) -> f64 {
     p.clamp(f64::MIN_POSITIVE, 1.0)
+}
+
+/// The tail of Fisher's F with the degrees of freedom of its two variances.
+pub fn fisher_tail(ratio: f64, [above, below]: [f64; 2]) -> Option<f64> {
+    Some(FisherSnedecor::new(above, below).ok()?.sf(number(ratio)?))
+}
+
+/// The tail of a chi-square.
+pub fn chi_square_tail(square: f64, freedom: f64) -> Option<f64> {
+    Some(ChiSquared::new(freedom).ok()?.sf(number(square)?))
+}
+
+/// The tail of Student's t, of one side.
+pub fn student_tail(t: f64, freedom: f64) -> Option<f64> {
+    Some(StudentsT::new(0.0, 1.0, freedom).ok()?.sf(number(t)?))
+}
+
+fn number(statistic: f64) -> Option<f64> {
+    (!statistic.is_nan()).then(|| statistic.clamp(-LARGEST, LARGEST))
 }
 
 /// The square of a standard normal variate that is as rare as the square of one of
@@ -16,25 +44,47 @@ pub fn as_normal(square: f64, freedom: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
-
     use super::*;
 
     #[test]
     fn tails_of_student_are_those_of_a_normal_variate() {
-        let normal = ChiSquared::new(1.0).expect("a degree of freedom");
         for freedom in [5.0, 8.0, 30.0, 1e6] {
-            let student = StudentsT::new(0.0, 1.0, freedom).expect("degrees of freedom");
             for t in [1.0_f64, 3.0, 5.0] {
-                let ratio = normal.sf(as_normal(t * t, freedom)) / (2.0 * student.sf(t));
+                let normal = chi_square_tail(as_normal(t * t, freedom), 1.0).expect("a tail");
+                let ratio = normal / (2.0 * student_tail(t, freedom).expect("a tail"));
                 assert!((ratio - 1.0).abs() < 0.1, "{ratio} at {t} with {freedom}");
             }
         }
     }
 
+    /// The quantiles of tables.
+    #[test]
+    fn tails_are_those_of_the_tables() {
+        for (tail, p) in [
+            (fisher_tail(3.708_265, [3.0, 10.0]), 0.05),
+            (chi_square_tail(11.344_867, 3.0), 0.01),
+            (student_tail(1.812_461, 10.0), 0.05),
+        ] {
+            assert!((tail.expect("a tail") / p - 1.0).abs() < 1e-6);
+        }
+    }
+
     #[test]
     fn nothing_measured_is_impossible() {
-        let underflown = ChiSquared::new(1.0).expect("a degree of freedom").sf(1e6);
+        let underflown = chi_square_tail(1e6, 1.0).expect("a degree of freedom");
         assert_eq!([underflown, 0.3, 4.0].map(told), [f64::MIN_POSITIVE, 0.3, 1.0]);
+    }
+
+    #[test]
+    fn beyond_all_measure_is_rare_and_no_number_is_nothing() {
+        for beyond in [1e300, f64::INFINITY] {
+            let tails = [fisher_tail(beyond, [3.0, 10.0]), chi_square_tail(beyond, 3.0), student_tail(beyond, 10.0)];
+            assert!(tails.into_iter().all(|tail| tail.expect("a tail") < 1e-100));
+        }
+        assert_eq!(
+            [fisher_tail(f64::NAN, [3.0, 10.0]), chi_square_tail(f64::NAN, 3.0), student_tail(f64::NAN, 10.0)],
+            [None; 3]
+        );
+        assert_eq!([fisher_tail(2.0, [0.0, 10.0]), chi_square_tail(2.0, 0.0), student_tail(2.0, 0.0)], [None; 3]);
     }
 }

@@ -14,13 +14,13 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use super::Options;
 use super::lack_of_fit::{StructureTest, draws};
 use super::model::{Fitted, Setting};
 use crate::identify::normal::{Normal, Scaled, Sign};
 use crate::identify::problem::Block;
+use crate::probability::fisher_tail;
 
 /// Asks the poses held out; `None` where there are none.
 pub fn predicted(setting: &Setting<'_>, model: &Fitted, options: &Options) -> Option<StructureTest> {
@@ -43,7 +43,7 @@ pub fn predicted(setting: &Setting<'_>, model: &Fitted, options: &Options) -> Op
     let readings: usize = held_out.iter().map(|block| block.rows).sum();
     let freedom = problem.freedom(&model.fit);
     let statistic = together / readings as f64 / (model.fit.rss / freedom);
-    let by_normal = FisherSnedecor::new(readings as f64, freedom).ok()?.sf(statistic);
+    let by_normal = fisher_tail(statistic, [readings as f64, freedom])?;
 
     // Of each pose fitted to by the fit without it, `r^T (I - H)^-1 r`, a reading.
     let fitted = |block: &Block| {

@@ -2,12 +2,10 @@
 
 use std::borrow::ToOwned;
 
-use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
-
 use super::lack_of_fit::{StructureTest, Yardstick, freedom};
 use super::model::{Fitted, Setting};
 use crate::identify::covariance::Covariance;
-use crate::probability::told;
+use crate::probability::{chi_square_tail, fisher_tail, told};
 
 /// Sums of squares with their degrees of freedom, of the readings of the tool and
 /// of those of encoders.
@@ -50,7 +48,7 @@ pub(super) fn of_encoders(shares: &Shares, covariance: &Covariance) -> Option<St
         return None;
     }
     let statistic = (rss - sum).max(0.0) / rest / (sum / pure);
-    let p_value = told(FisherSnedecor::new(rest, pure).ok()?.sf(statistic));
+    let p_value = told(fisher_tail(statistic, [rest, pure])?);
     Some(StructureTest { name: "encoders against their own noise".to_owned(), statistic, p_value })
 }
 
@@ -73,7 +71,7 @@ fn of_declared(
     // The mean of the weights is one.
     let unequal = weights.iter().map(|weight| weight * weight).sum::<f64>() / axes as f64;
     let statistic = sum / variance / unequal;
-    let p_value = told(ChiSquared::new(shares.tool.1 / unequal).ok()?.sf(statistic));
+    let p_value = told(chi_square_tail(statistic, shares.tool.1 / unequal)?);
     Some(StructureTest { name: "residuals against the declared noise".to_owned(), statistic, p_value })
 }
 
@@ -94,8 +92,8 @@ pub(super) fn size(
                 return None;
             }
             let statistic = (rss - pure.sum).max(0.0) / rest / variance;
-            let [rest, repeated] = [rest, pure.freedom as f64].map(|freedom| freedom / pure.unequal);
-            let p_value = told(FisherSnedecor::new(rest, repeated).ok()?.sf(statistic));
+            let freedoms = [rest, pure.freedom as f64].map(|freedom| freedom / pure.unequal);
+            let p_value = told(fisher_tail(statistic, freedoms)?);
             Some(StructureTest { name: "residuals against repeated readings".to_owned(), statistic, p_value })
         }
         Yardstick::Unknown => None,

@@ -8,11 +8,11 @@ use std::string::String;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
-use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
 use super::words::percent;
 use super::{Raw, Verdict};
 use crate::campaign::{Campaign, ClampedRow};
+use crate::probability::{fisher_tail, student_tail};
 
 /// What measurement errors of the torque may make of it.
 const MATTERS: f64 = 0.01;
@@ -109,9 +109,7 @@ impl Axis {
 /// that on any (F, times the number of axes).
 fn strongest(found: Vec<Further>) -> Option<(Further, f64, usize)> {
     let axes = found.len();
-    let p_value = |further: &Further| {
-        FisherSnedecor::new(1.0, further.freedom as f64).map_or(1.0, |reference| reference.sf(further.ratio))
-    };
+    let p_value = |further: &Further| fisher_tail(further.ratio, [1.0, further.freedom as f64]).unwrap_or(1.0);
     let found = found.into_iter().map(|further| (p_value(&further), further));
     let (p, further) = found.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some((further, (p * axes as f64).min(1.0), axes))
@@ -190,7 +188,7 @@ fn energy(axes: &[Axis]) -> Verdict {
         let slope = torques.dot(&axis.deflections) / squares;
         let left = (&axis.deflections - &torques * slope).norm_squared() / freedom as f64;
         let t = slope / (left / squares).sqrt().max(f64::MIN_POSITIVE);
-        Some((StudentsT::new(0.0, 1.0, freedom as f64).ok()?.cdf(t), slope, axis.number))
+        Some((student_tail(-t, freedom as f64)?, slope, axis.number))
     };
     let found: Vec<(f64, f64, usize)> = axes.iter().filter_map(slope).collect();
     let Some(&(p, _, number)) = found.iter().min_by(|a, b| a.0.total_cmp(&b.0)) else {

@@ -6,11 +6,12 @@ use std::format;
 use std::string::String;
 
 use nalgebra::Vector6;
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::evidence::Evidence;
 use super::words::count;
 use super::{Raw, Verdict};
+use crate::probability::student_tail;
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
     let Some(wrenches) = &evidence.wrenches else {
@@ -36,7 +37,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
         return Err(String::from("rows with a load"));
     }
     let tail = match (reading, declared) {
-        (Some(_), _) => StudentsT::new(0.0, 1.0, evidence.covariance.freedom as f64).ok().map(|t| t.cdf(least)),
+        (Some(_), _) => student_tail(-least, evidence.covariance.freedom as f64),
         (None, Some(_)) => Some(Normal::standard().cdf(least)),
         (None, None) => None,
     };

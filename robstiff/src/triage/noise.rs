@@ -4,13 +4,12 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
-use statrs::distribution::{ChiSquared, ContinuousCDF};
-
 use super::evidence::Evidence;
 use super::words::{count, micrometres};
 use super::{Raw, Verdict};
 use crate::identify::covariance::WILD;
 use crate::identify::covariance::contrasts::Level;
+use crate::probability::chi_square_tail;
 
 const SEVERAL: &str = "several loads along one line within a visit, more than the directions of load at the pose";
 
@@ -18,7 +17,7 @@ const SEVERAL: &str = "several loads along one line within a visit, more than th
 /// one as noisy; at the edge, half a chi-square.
 pub(super) fn offset(evidence: &Evidence<'_>) -> Verdict {
     let Some(share) = evidence.covariance.share else { return Err(String::from(SEVERAL)) };
-    let p_value = ChiSquared::new(1.0).map_or(1.0, |reference| 0.5 * reference.sf(share.beyond_one));
+    let p_value = chi_square_tail(share.beyond_one, 1.0).map_or(1.0, |tail| 0.5 * tail);
     let p_value = if share.value > 1.0 { p_value } else { 1.0 };
     let [from, to] = share.interval;
     let shared = if share.value < 0.5 { "its own unloaded reading, or a mean of many" } else { "one unloaded reading" };
@@ -53,7 +52,7 @@ pub(super) fn replicates(evidence: &Evidence<'_>) -> Verdict {
     let freedom = pure.freedom as f64;
     let declared = evidence.campaign.noise.displacement;
     let ratio = declared.map(|declared| variance / (declared * declared));
-    let p_value = ratio.and_then(|ratio| Some(ChiSquared::new(freedom).ok()?.sf(freedom * ratio)));
+    let p_value = ratio.and_then(|ratio| chi_square_tail(freedom * ratio, freedom));
     let noise = micrometres(variance.sqrt());
     let declared = declared.map(|declared| format!(", {} are declared", micrometres(declared))).unwrap_or_default();
     Ok(Raw {

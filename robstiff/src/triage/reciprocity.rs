@@ -12,12 +12,12 @@ use std::string::String;
 use std::vec::Vec;
 
 use nalgebra::{Vector3, Vector6};
-use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use super::evidence::{Evidence, Line};
 use super::randomisation::{Witness, flip};
 use super::words::percent;
 use super::{Raw, Verdict};
+use crate::probability::fisher_tail;
 
 const MATTERS: f64 = 0.01;
 
@@ -77,7 +77,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
     let flipped = flip(&witnesses);
     let of_size = evidence.covariance.reading().and_then(|_| {
         let freedom = (evidence.covariance.axes() * evidence.covariance.freedom) as f64;
-        Some(FisherSnedecor::new(pairs as f64, freedom).ok()?.sf(squares / pairs as f64))
+        fisher_tail(squares / pairs as f64, [pairs as f64, freedom])
     });
     let p_values = [flipped.map(|flipped| flipped.p_value), of_size];
     let asked = p_values.iter().flatten().count();

@@ -16,6 +16,7 @@ use super::reml::{BEYOND, count, profile, share, sums};
 use super::{EQUAL_AXES, FEWEST, NESTED, bartlett};
 use crate::identify::samples::Samples;
 use crate::identify::whitening::ByVisit;
+use crate::probability::fisher_tail;
 
 /// An angle known better than this (rad, m) was made by a program.
 const NOISELESS: f64 = 1e-10;
@@ -119,11 +120,9 @@ fn known(chunks: &[Chunk], shared: f64) -> f64 {
 /// As of displacements: the probability of contrasts as much larger than those
 /// with more freed.
 fn hides_structure(few: &[Chunk], freer: &[Chunk], axes: usize, shared: f64) -> Option<f64> {
-    use statrs::distribution::{ContinuousCDF, FisherSnedecor};
     let (all, less) = (known(few, shared), known(freer, shared));
     let (between, within) = ((all - less) * axes as f64, less * axes as f64);
     let (all, less) = (sums(few, axes, shared), sums(freer, axes, shared));
     let ratio: f64 = all.iter().zip(&less).map(|(all, less)| (all - less).max(0.0) / less).sum::<f64>() / axes as f64;
-    let statistic = ratio * within / between;
-    Some(FisherSnedecor::new(between, within).ok()?.sf(statistic))
+    fisher_tail(ratio * within / between, [between, within])
 }

@@ -38,7 +38,6 @@ use std::sync::Arc;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector, Matrix3};
-use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 
 use self::contrasts::{Chunk, Level, contrasts};
 use self::reml::{count, profile, share, sums};
@@ -48,6 +47,7 @@ use super::problem::Problem;
 use super::samples::Samples;
 use super::whitening;
 use crate::campaign::{Frame, Noise};
+use crate::probability::{chi_square_tail, fisher_tail};
 
 pub use encoders::EncoderNoise;
 pub use outliers::Outlier;
@@ -71,7 +71,7 @@ const FEWEST: usize = 10;
 
 /// Readings nearer than this to each other have no noise (m): they were made by a
 /// program.
-const NOISELESS: f64 = 1e-9;
+pub const NOISELESS: f64 = 1e-9;
 
 /// Wild readings are looked for at most so many times over.
 const PASSES: usize = 8;
@@ -386,8 +386,7 @@ impl Estimated {
         let (all, few) = (sums(&self.chunks, self.axes, shared), sums(&freer.chunks, self.axes, shared));
         let ratio: f64 =
             all.iter().zip(&few).map(|(all, few)| (all - few).max(0.0) / few).sum::<f64>() / self.axes as f64;
-        let statistic = ratio * within / between;
-        Some(FisherSnedecor::new(between, within).ok()?.sf(statistic))
+        fisher_tail(ratio * within / between, [between, within])
     }
 
     fn wild(&self) -> Vec<Outlier> {
@@ -412,5 +411,5 @@ fn bartlett(variances: &[f64], freedom: f64) -> Option<f64> {
     }
     let statistic = freedom * variances.iter().map(|variance| (mean / variance).ln()).sum::<f64>();
     let correction = 1.0 + (count + 1.0) / (3.0 * count * freedom);
-    Some(ChiSquared::new(count - 1.0).ok()?.sf(statistic / correction))
+    chi_square_tail(statistic / correction, count - 1.0)
 }

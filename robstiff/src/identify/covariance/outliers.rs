@@ -12,12 +12,10 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
-use statrs::distribution::{ContinuousCDF, FisherSnedecor};
-
 use super::contrasts::Chunk;
 use super::reml::{count, sums};
 use crate::campaign::Displacements;
-use crate::probability::told;
+use crate::probability::{fisher_tail, told};
 
 /// A reading that does not belong to the others.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,13 +64,12 @@ pub fn find(chunks: &[Chunk], axes: usize, shared: f64, variances: &[f64], level
     let suspects: Vec<Vec<Outlier>> = chunks.iter().map(|chunk| suspects(chunk, axes, shared, variances)).collect();
     let tested = suspects.iter().map(Vec::len).sum::<usize>() as f64;
     let (between, within) = (axes as f64, freedom - axes as f64);
-    let Ok(reference) = FisherSnedecor::new(between, within) else { return Vec::new() };
     let judged = |mut suspect: Outlier| {
         // The mean square over the axes, over what is left without it.
         let explained = suspect.size;
         let ratio = explained / between / ((total - explained).max(f64::MIN_POSITIVE) / within);
         suspect.size = ratio.sqrt();
-        suspect.p_value = told(reference.sf(ratio) * tested);
+        suspect.p_value = told(fisher_tail(ratio, [between, within]).unwrap_or(1.0) * tested);
         suspect
     };
     let worst = |suspects: Vec<Outlier>| suspects.into_iter().map(judged).max_by(|a, b| a.size.total_cmp(&b.size));

@@ -11,14 +11,13 @@ use std::vec;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::axes::Axes;
 use super::bench::{Bench, problem};
 use crate::identify::normal::Fit;
 use crate::identify::problem::Problem;
 use crate::identify::whitening::mean_share;
-use crate::probability::told;
+use crate::probability::{student_tail, told};
 use crate::trace::isolated::{STANDS_OUT, STRICT, by_median};
 use crate::trace::model::Fitted;
 
@@ -96,8 +95,8 @@ fn gains(axes: &Axes, problem: &Problem, fit: &Fit) -> Option<Vec<f64>> {
 /// what the others leave. `None` where they leave nothing.
 fn tail(gain: f64, others: f64, rows: usize, columns: usize) -> Option<f64> {
     let freedom = rows as f64 - columns as f64 - 1.0;
-    let table = StudentsT::new(0.0, 1.0, freedom).ok().filter(|_| others > 0.0)?;
-    Some(told(rows as f64 * 2.0 * table.sf((gain * freedom / others).sqrt())))
+    let tail = student_tail((gain * freedom / others).sqrt(), freedom).filter(|_| others > 0.0)?;
+    Some(told(rows as f64 * 2.0 * tail))
 }
 
 fn worst(axes: &Axes, raw: &DMatrix<f64>) -> Option<Worst> {

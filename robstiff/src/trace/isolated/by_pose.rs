@@ -10,9 +10,8 @@
 
 use std::vec::Vec;
 
-use statrs::distribution::{ChiSquared, ContinuousCDF};
-
 use super::{Scale, Visit};
+use crate::probability::chi_square_tail;
 
 /// The level at which poses differ in their noise.
 const DIFFERS: f64 = 0.01;
@@ -58,8 +57,7 @@ impl ByPose {
         let alike = mean(0.0);
         let spread: f64 = logs.iter().map(|log| (log.value - alike).powi(2) / log.variance).sum();
         let freedom = logs.len() as f64 - 1.0;
-        let table = ChiSquared::new(freedom).ok()?;
-        if table.sf(spread) > DIFFERS {
+        if chi_square_tail(spread, freedom)? > DIFFERS {
             return None;
         }
         let weights: f64 = logs.iter().map(|log| 1.0 / log.variance).sum();

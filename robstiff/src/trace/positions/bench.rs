@@ -9,6 +9,7 @@ use super::offers::{Form, Knee, Number, offers};
 use super::rig::Slips;
 use crate::campaign::{Campaign, Positions};
 use crate::identify::Error;
+use crate::identify::covariance::NOISELESS;
 use crate::identify::normal::{Fit, Scaled, Sign};
 use crate::identify::positions::Prepared;
 use crate::identify::positions::model::State;
@@ -52,6 +53,14 @@ pub struct Model {
     pub solved: Solved,
     /// Schwarz's criterion.
     pub bic: f64,
+}
+
+impl Model {
+    /// Whether it leaves less than any noise: the readings were made by a program, and
+    /// what is left is rounding.
+    pub fn leaves_nothing(&self) -> bool {
+        self.solved.fit.rss < self.solved.problem.total.rows as f64 * NOISELESS * NOISELESS
+    }
 }
 
 /// A model by its linear fit, at another.

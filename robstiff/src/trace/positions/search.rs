@@ -113,8 +113,11 @@ impl Course {
         let mut tried: Vec<Vec<Named>> = Vec::new();
         while self.model.named.len() < MOST_EFFECTS && !tried.contains(&self.model.named) {
             (self.model, self.wild) = without_wild(bench, self.model, strict);
-            progress(&format!("searching for effect {}", self.model.named.len() + 1));
             let model = &self.model;
+            if model.leaves_nothing() {
+                break;
+            }
+            progress(&format!("searching for effect {}", model.named.len() + 1));
             let Some(test) = bench.test(&model.named) else { break };
             let reference = test.reference(options.draws, options.seed);
             let singles = bench.extended(&model.named);

@@ -16,14 +16,13 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector, Vector3};
-use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 
 use super::bench::{Bench, Model};
 use super::frames::frames;
 use crate::JointKind;
 use crate::campaign::PositionRow;
 use crate::identify::normal::Sign;
-use crate::probability::told;
+use crate::probability::{chi_square_tail, fisher_tail, told};
 use crate::trace::Options;
 use crate::trace::bootstrap::ScoreTest;
 use crate::trace::catalogue::{Candidate, KINDS, Variant};
@@ -58,6 +57,9 @@ struct Size {
 /// Tests what a model leaves; `noise` is the one that is declared (m).
 pub fn structure(bench: &Bench<'_>, model: &Model, noise: Option<f64>, options: &Options) -> LackOfFit {
     let mut tests = Vec::new();
+    if model.leaves_nothing() {
+        return LackOfFit { tests, structure: false, fraction: 0.0, depends_on: Vec::new() };
+    }
     let size = noise.and_then(|noise| against_declared(model, noise)).or_else(|| against_repeated(bench, model));
     if let Some(Size { name, p_value, ratio, .. }) = size {
         tests.push(StructureTest { name: name.to_string(), statistic: ratio, p_value });
@@ -90,7 +92,7 @@ fn against_declared(model: &Model, noise: f64) -> Option<Size> {
     Some(Size {
         name: "residuals are larger than the noise",
         beyond: 1.0 - freedom / statistic,
-        p_value: told(ChiSquared::new(freedom).ok()?.sf(statistic)),
+        p_value: told(chi_square_tail(statistic, freedom)?),
         ratio: statistic / freedom,
     })
 }
@@ -126,11 +128,10 @@ fn against_repeated(bench: &Bench<'_>, model: &Model) -> Option<Size> {
     }
     let (pure, left) = (sum / count, (model.solved.fit.rss - sum) / freedom);
     let share = visits / count;
-    let table = FisherSnedecor::new((freedom * share).max(1.0), visits).ok()?;
     Some(Size {
         name: "residuals are larger than what visits differ by",
         beyond: 1.0 - pure * problem.freedom(&model.solved.fit) / model.solved.fit.rss,
-        p_value: told(table.sf(left / pure)),
+        p_value: told(fisher_tail(left / pure, [(freedom * share).max(1.0), visits])?),
         ratio: left / pure,
     })
 }

@@ -9,10 +9,9 @@
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
-use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::identify::problem::Problem;
-use crate::probability::told;
+use crate::probability::{fisher_tail, told};
 use crate::trace::isolated::{FEW, STANDS_OUT, STRICT};
 
 /// The median of chi-square with three degrees of freedom.
@@ -46,8 +45,8 @@ pub fn wild_rows(problem: &Problem, strict: bool) -> Option<Wild> {
         let variance = sorted[sorted.len() / 2] / MEDIAN;
         let freedom = total.rows as f64 - columns.len() as f64 - 3.0;
         let others = (fit.rss - gains[worst]).max(freedom * variance);
-        let Some(table) = FisherSnedecor::new(3.0, freedom).ok().filter(|_| others > 0.0) else { break };
-        let p = told(rows.len() as f64 * table.sf(gains[worst] / 3.0 / (others / freedom)));
+        let tail = fisher_tail(gains[worst] / 3.0 / (others / freedom), [3.0, freedom]);
+        let Some(p) = tail.filter(|_| others > 0.0).map(|tail| told(rows.len() as f64 * tail)) else { break };
         let over = gains[worst] / variance;
         let row = rows.remove(worst);
         let (x, y) = of_row(problem, row);
