@@ -266,6 +266,11 @@ impl<'t> Table<'t> {
         self.report(record.line, column.index, message, help);
     }
 
+    /// The name of a column, without its unit.
+    pub fn name_of(&self, column: Numbers) -> &str {
+        &self.header[column.index].name
+    }
+
     /// Whether the header gives a column its unit.
     pub fn has_unit(&self, column: Numbers) -> bool {
         self.header[column.index].unit.is_some()

@@ -7,6 +7,7 @@ use robstiff_robots::Description;
 use robstiff_robots::quantity::Dimension;
 
 use super::ClampedRow;
+use super::beyond::{MOMENT, ROTATION};
 use crate::table::Table;
 
 /// Reads the rows; `None` with the problems reported to the table.
@@ -27,5 +28,8 @@ pub fn read(table: &Table<'_>, robot: &Description) -> Option<Vec<ClampedRow>> {
     });
     // Collected before it is judged, so that every row is checked.
     let rows: Vec<Option<ClampedRow>> = rows.collect();
-    rows.into_iter().collect()
+    let rows: Vec<ClampedRow> = rows.into_iter().collect::<Option<_>>()?;
+    MOMENT.warn(table, columns[1], rows.iter().map(|row| (row.line, row.torque)));
+    ROTATION.warn(table, columns[2], rows.iter().map(|row| (row.line, row.deflection)));
+    Some(rows)
 }

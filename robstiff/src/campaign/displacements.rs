@@ -7,6 +7,7 @@ use std::vec::Vec;
 use robstiff_robots::Description;
 use robstiff_robots::quantity::Dimension;
 
+use super::beyond::{DISPLACEMENT, FORCE, MOMENT, ROTATION, Usual, warn_of};
 use super::poses::{AtPose, Columns as PoseColumns, Poses, dimension_of};
 use super::{Displacements, Frame, Observation};
 use crate::JointKind;
@@ -59,6 +60,7 @@ pub fn read(
         rows.push(row);
     }
     columns.at.check_ranges(table, &robot.joints, &rows);
+    check_sizes(table, &columns, &rows);
     for (name, columns, angles) in [
         ('j', &columns.encoders, (|row| row.encoders.as_deref()) as fn(&Observation) -> Option<&[f64]>),
         ('m', &columns.motors, |row| row.motors.as_deref()),
@@ -69,6 +71,22 @@ pub fn read(
     }
     let [poses, visits] = poses.names();
     complete.then_some(Displacements { wrench_frame, wrench_at, measured_frame, measured_at, poses, visits, rows })
+}
+
+/// Warns of loads and displacements that no robot comes to.
+fn check_sizes(table: &Table<'_>, columns: &Columns, rows: &[Observation]) {
+    for k in 0..3 {
+        let force = rows.iter().map(|row| (row.line, row.wrench[k]));
+        FORCE.warn(table, columns.force[k], force);
+        if let Some(column) = columns.moment[k] {
+            MOMENT.warn(table, column, rows.iter().map(|row| (row.line, row.wrench[3 + k])));
+        }
+        DISPLACEMENT.warn(table, columns.displacement[k], rows.iter().map(|row| (row.line, row.displacement[k])));
+        if let Some(columns) = columns.rotation {
+            let rotation = rows.iter().filter_map(|row| Some((row.line, row.rotation?[k])));
+            ROTATION.warn(table, columns[k], rotation);
+        }
+    }
 }
 
 /// No joint gives way by more than this under a load (rad or m).
@@ -83,16 +101,13 @@ fn check_under_load(
     angles: fn(&Observation) -> Option<&[f64]>,
 ) {
     let far = |row: &&Observation| angles(row).is_some_and(|angles| (angles[index] - row.q[index]).abs() > FARTHEST);
-    let mut outside = rows.iter().filter(far);
-    let Some(first) = outside.next() else { return };
-    let (count, line, joint) = (1 + outside.count(), first.line, index + 1);
-    let rows = if count == 1 { "row" } else { "rows" };
-    let ask = match kind {
-        _ if table.has_unit(column) => String::from("they are angles of the joint, on its output side, like q"),
-        JointKind::Revolute => format!("are the angles in degrees? write `{letter}{joint} [deg]`"),
-        JointKind::Prismatic => format!("are the lengths in millimetres? write `{letter}{joint} [mm]`"),
+    let ask = match table.has_unit(column) {
+        true => String::from(": they are angles of the joint, on its output side, like q"),
+        false => Usual::of_joint(kind).asked(table, column),
     };
-    table.warn(&format!("{letter}{joint} is far from q{joint} in {count} {rows}, first on line {line}: {ask}"));
+    let joint = index + 1;
+    let what = format!("{letter}{joint} is far from q{joint}");
+    warn_of(table, &what, rows.iter().filter(far).map(|row| row.line), &ask);
 }
 
 fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {

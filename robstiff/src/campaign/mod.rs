@@ -4,6 +4,7 @@
 //! Reading checks everything and converts to SI; nothing is computed with the
 //! robot yet, so rows hold what the file says, in the frames the file says.
 
+mod beyond;
 mod clamped;
 mod displacements;
 mod joints;
@@ -59,6 +60,17 @@ pub enum Data {
     Clamped(Vec<ClampedRow>),
 }
 
+impl Data {
+    /// The ids of its poses; clamped axes have none.
+    pub fn poses(&self) -> &[String] {
+        match self {
+            Self::Displacement(data) => &data.poses,
+            Self::Position(data) => &data.poses,
+            Self::Clamped(_) => &[],
+        }
+    }
+}
+
 /// One sigma of one axis of one reading, where the file declares it. A
 /// displacement is the difference of a loaded and an unloaded reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -76,6 +88,14 @@ pub struct Holdout {
     pub fraction: f64,
     /// Seed of the choice.
     pub seed: u64,
+}
+
+impl Holdout {
+    /// How many of so many poses it keeps. Where there are two, at least one is on
+    /// either side.
+    pub fn count(&self, poses: usize) -> usize {
+        if poses < 2 { 0 } else { ((self.fraction * poses as f64).round() as usize).clamp(1, poses - 1) }
+    }
 }
 
 /// Which frame a vector of the file is given in.

@@ -9,6 +9,7 @@ use std::vec::Vec;
 use robstiff_robots::Joint;
 use robstiff_robots::quantity::Dimension;
 
+use super::beyond::{Usual, warn_of};
 use crate::JointKind;
 use crate::table::{Numbers, Record, Table};
 
@@ -156,22 +157,13 @@ fn check_pose<R: AtPose>(table: &Table<'_>, columns: &Columns, record: &Record, 
 
 /// Warns of coordinates that a joint (by its index) does not reach.
 fn check_range<R: AtPose>(table: &Table<'_>, joint: &Joint, index: usize, column: Numbers, rows: &[R]) {
-    let unit_is_given = table.has_unit(column);
+    let ask = Usual::of_joint(joint.kind).asked(table, column);
     let warn = |what: &str, is_outside: &dyn Fn(f64) -> bool| {
-        let mut outside = rows.iter().filter(|row| is_outside(row.q()[index]));
-        let Some(first) = outside.next() else { return false };
-        let (count, line, q) = (1 + outside.count(), first.line(), index + 1);
-        let rows = if count == 1 { "row" } else { "rows" };
-        let ask = match joint.kind {
-            _ if unit_is_given => String::new(),
-            JointKind::Revolute => format!(": are the angles in degrees? write `q{q} [deg]`"),
-            JointKind::Prismatic => format!(": are the lengths in millimetres? write `q{q} [mm]`"),
-        };
-        table.warn(&format!("q{q} is {what} in {count} {rows}, first on line {line}{ask}"));
-        true
+        let lines = rows.iter().filter(|row| is_outside(row.q()[index])).map(R::line);
+        warn_of(table, &format!("q{} is {what}", index + 1), lines, &ask)
     };
     let limited = joint.outside_limits().is_some_and(|what| warn(&what, &|q| !joint.reaches(q)));
-    if !limited && !unit_is_given && joint.kind == JointKind::Revolute {
+    if !limited && !table.has_unit(column) && joint.kind == JointKind::Revolute {
         warn("more than two turns", &|q| q.abs() > TWO_TURNS);
     }
 }

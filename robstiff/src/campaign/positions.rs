@@ -1,12 +1,12 @@
 //! The rows of a campaign of kind `position`.
 
 use std::format;
-use std::string::String;
 use std::vec::Vec;
 
 use robstiff_robots::Description;
 use robstiff_robots::quantity::Dimension;
 
+use super::beyond::{LENGTHS, PAYLOAD, warn_of};
 use super::poses::{AtPose, Columns as PoseColumns, Poses};
 use super::{PositionRow, Positions};
 use crate::table::{Numbers, Record, Table};
@@ -49,26 +49,26 @@ pub fn read(table: &Table<'_>, robot: &Description, payload_at: [f64; 3], measur
         rows.push(row);
     }
     columns.at.check_ranges(table, &robot.joints, &rows);
-    check_lengths(table, &columns, &rows);
+    check_sizes(table, &columns, &rows);
     let [poses, visits] = poses.names();
     complete.then_some(Positions { payload_at, measured_at, poses, visits, rows })
 }
 
-/// No arm reaches so far across (m); millimetres that are read as metres do.
-const WIDEST: f64 = 50.0;
+/// No arm reaches so far (m); millimetres that are read as metres do.
+const FARTHEST: f64 = 30.0;
 
-/// Warns of positions that no arm comes to.
-fn check_lengths(table: &Table<'_>, columns: &Columns, rows: &[PositionRow]) {
-    for (k, (name, &column)) in ["px", "py", "pz"].into_iter().zip(&columns.position).enumerate() {
-        let along = rows.iter().map(|row| row.position[k]);
-        let apart = along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min);
-        if apart > WIDEST {
-            let ask = match table.has_unit(column) {
-                true => String::new(),
-                false => format!(": are the lengths in millimetres? write `{name} [mm]`"),
-            };
-            table.warn(&format!("{name} is of points {apart:.0} m apart{ask}"));
-        }
+/// Warns of positions and payloads that no arm comes to.
+fn check_sizes(table: &Table<'_>, columns: &Columns, rows: &[PositionRow]) {
+    for (k, &column) in columns.position.iter().enumerate() {
+        let mut along: Vec<f64> = rows.iter().map(|row| row.position[k]).collect();
+        along.sort_by(f64::total_cmp);
+        let Some(middle) = along.get(along.len() / 2) else { continue };
+        let far = rows.iter().filter(|row| (row.position[k] - middle).abs() > FARTHEST);
+        let what = format!("{} is more than {FARTHEST} m off the middle of all", table.name_of(column));
+        warn_of(table, &what, far.map(|row| row.line), &LENGTHS.asked(table, column));
+    }
+    if let Some(column) = columns.payload {
+        PAYLOAD.warn(table, column, rows.iter().map(|row| (row.line, row.payload)));
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use robstiff_robots::document::{Document, Map};
+use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, ReadError};
 
@@ -16,8 +16,12 @@ use crate::table::{Table, text_of};
 /// The fields of a campaign file.
 const FIELDS: [&str; 8] = ["name", "robot", "observations", "kind", "wrench", "measured", "noise", "holdout"];
 
-/// Of those, the ones that are about poses and the tool.
-const OF_DISPLACEMENTS: [&str; 4] = ["wrench", "measured", "noise", "holdout"];
+/// Of those, the ones that are about poses and the tool: clamped axes have neither.
+const OF_POSES: [&str; 4] = ["wrench", "measured", "noise", "holdout"];
+
+/// What they say of frames and rotations: a weight pulls downwards, a tracker reads
+/// points in a frame of its own. That the frame is the base's goes without saying.
+const OF_DISPLACEMENTS: [(&str, &str); 3] = [("wrench", "frame"), ("measured", "frame"), ("noise", "rotation")];
 
 /// What the observations are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,7 +73,8 @@ impl Campaign {
         };
         let (data, of_table) = table.finish(data).map_err(ReadError::Invalid)?;
         let unused = plan.unused.iter().map(|(field, line)| {
-            format!("{}: `{field}` on line {line} is not used with `kind: clamped`", path.display())
+            let kind = if plan.kind == Kind::Clamped { "clamped" } else { "position" };
+            format!("{}: `{field}` on line {line} is not used with `kind: {kind}`", path.display())
         });
         let far = [("wrench", plan.wrench.1), ("measured", plan.measured.1)].into_iter().filter_map(|(field, at)| {
             let distance = at.iter().map(|value| value * value).sum::<f64>().sqrt();
@@ -78,7 +83,10 @@ impl Campaign {
                 format!("{file}: `{field}` is at {distance:.0} m from the TCP: is it in metres, or in millimetres?")
             })
         });
-        let warnings = far.chain(unused).chain(of_table).collect();
+        let poses = data.poses().len();
+        let kept = plan.holdout.map(|holdout| holdout.count(poses)).filter(|kept| 2 * kept > poses);
+        let kept = kept.map(|kept| format!("{}: `holdout` keeps {kept} of {poses} poses from the fit", path.display()));
+        let warnings = far.chain(unused).chain(kept).chain(of_table).collect();
         Ok(Self {
             name: plan.name,
             path: path.to_owned(),
@@ -110,8 +118,7 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
     let measured = place(&map, "measured");
     let noise = noise(&map);
     let holdout = holdout(&map);
-    let unused = OF_DISPLACEMENTS.into_iter().filter(|_| kind == Some(Kind::Clamped));
-    let unused = unused.filter_map(|field| Some((field, map.get(field)?.line()))).collect();
+    let unused = kind.map(|kind| unused(&map, kind)).unwrap_or_default();
     Some(Plan {
         name: name?,
         robot: robot?,
@@ -123,6 +130,21 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
         holdout: holdout?,
         unused,
     })
+}
+
+/// The fields that are not used with a kind, with their lines.
+fn unused(map: &Map<'_>, kind: Kind) -> Vec<(&'static str, usize)> {
+    match kind {
+        Kind::Displacement => Vec::new(),
+        Kind::Clamped => OF_POSES.into_iter().filter_map(|field| Some((field, map.get(field)?.line()))).collect(),
+        Kind::Position => {
+            let inner = |(field, inner): (&str, &'static str)| {
+                let said = map.get(field).filter(Node::is_map)?.any_map("")?.get(inner)?;
+                (inner != "frame" || said.text() != Some("base")).then(|| (inner, said.line()))
+            };
+            OF_DISPLACEMENTS.into_iter().filter_map(inner).collect()
+        }
+    }
 }
 
 /// A file that the campaign names, by its path from the campaign's folder.

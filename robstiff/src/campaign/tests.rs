@@ -59,7 +59,7 @@ fn problems(name: &str, campaign: &str, table: &str) -> Vec<String> {
 
 #[test]
 fn units_byte_order_marks_and_carriage_returns_are_read() {
-    let table = format!("\u{feff}{HEADER},note\r\na,v,90,0.5,1,2,3,4,5,6,hello\r\nb,w,0,0,1,2,3,4,5,6,\r\n");
+    let table = format!("\u{feff}{HEADER},note\r\na,v,90,0.5,1,2,3,4,5,0.006,hello\r\nb,w,0,0,1,2,3,4,5,0.006,\r\n");
     let folder = Folder::new("units", CAMPAIGN, &table);
     let campaign = folder.read().unwrap();
     let Data::Displacement(data) = &campaign.data else { panic!("kind displacement") };
@@ -68,7 +68,7 @@ fn units_byte_order_marks_and_carriage_returns_are_read() {
     assert!((row.q[0] - core::f64::consts::FRAC_PI_2).abs() < 1e-15 && row.q[1] == 0.5);
     assert_eq!(row.wrench, [1.0, 2000.0, 3.0, 0.0, 0.0, 0.0]);
     assert!((row.displacement[0] - 4e-6).abs() < 1e-20 && (row.displacement[1] - 5e-3).abs() < 1e-17);
-    assert_eq!(row.displacement[2], 6.0);
+    assert_eq!(row.displacement[2], 0.006);
     assert_eq!(campaign.warnings.len(), 1, "the column `note` is named: {:?}", campaign.warnings);
     assert!(campaign.warnings[0].contains("`note`"));
 }
@@ -102,7 +102,7 @@ fn coordinates_that_joints_do_not_reach_are_warned_of() {
         let file = format!("{}: ", folder.0.join("loads.csv").display());
         warnings.into_iter().map(|warning| warning.replace(&file, "")).collect::<Vec<_>>()
     };
-    let rows = "a,90,12,1,2,3,4,5,6\nb,-90,13,1,2,3,4,5,6\n";
+    let rows = "a,90,12,1,2,3,0,0,0\nb,-90,13,1,2,3,0,0,0\n";
     assert_eq!(
         read("radians", "pose,q1,q2,Fx,Fy,Fz,dx,dy,dz", rows),
         [
@@ -114,16 +114,42 @@ fn coordinates_that_joints_do_not_reach_are_warned_of() {
     let header = "pose,q1 [deg],q2 [rad],Fx,Fy,Fz,dx,dy,dz";
     assert_eq!(read("on-the-limit", header, rows), Vec::<String>::new());
     assert_eq!(
-        read("degrees", header, "a,0,0,1,2,3,4,5,6\nb,91,0,1,2,3,4,5,6\n"),
+        read("degrees", header, "a,0,0,1,2,3,0,0,0\nb,91,0,1,2,3,0,0,0\n"),
         ["q1 is outside its limits [-90, 90] deg in 1 row, first on line 3"]
     );
+}
+
+/// Loads and displacements that no robot comes to are read, and told with their lines.
+#[test]
+fn numbers_beyond_all_robots_are_warned_of() {
+    let header = "pose,q1,q2,Fx,Fy,Fz,Mx,dx,dy [um],dz,rx [rad],ry [rad],rz [rad]";
+    let rows = "a,0,0,1,2,3,0,0.4,400,1e-4,0,0,0\nb,1,0,1,2,3e9,4,0.2,800,1e-4,0,0,0.5\n";
+    let folder = Folder::new("beyond", CAMPAIGN, &format!("{header}\n{rows}"));
+    let warnings = folder.read().expect("nothing is wrong").warnings;
+    let file = format!("{}: ", folder.0.join("loads.csv").display());
+    let said: Vec<_> = warnings.iter().map(|warning| warning.replace(&file, "")).collect();
+    assert_eq!(
+        said,
+        [
+            "dx is more than 100 mm in 2 rows, first on line 2: are the lengths in millimetres? write `dx [mm]`",
+            "Fz is more than 100 kN in 1 row, first on line 3",
+            "rz is more than 0.1 rad in 1 row, first on line 3",
+        ]
+    );
+    let campaign = CAMPAIGN.replace("displacement", "clamped");
+    let table = "axis,torque,deflection\n1,100,0.1\n2,5e6,0.3\n";
+    let warnings = Folder::new("clamped-beyond", &campaign, table).read().expect("nothing is wrong").warnings;
+    assert!(warnings[0].ends_with("torque is more than 1 MNm in 1 row, first on line 3"));
+    assert!(warnings[1].ends_with(
+        "deflection is more than 0.1 rad in 1 row, first on line 3: are the angles in degrees? write `deflection [deg]`"
+    ));
 }
 
 /// Angles under load are read with their units, all of a kind or none.
 #[test]
 fn angles_under_load_are_read() {
     let header = "pose,q1,q2,Fx,Fy,Fz,dx,dy,dz,j1 [deg],j2,m1,m2";
-    let folder = Folder::new("encoders", CAMPAIGN, &format!("{header}\na,0.5,0,1,2,3,4,5,6,30,0.001,0.5,0.0001\n"));
+    let folder = Folder::new("encoders", CAMPAIGN, &format!("{header}\na,0.5,0,1,2,3,0,0,0,30,0.001,0.5,0.0001\n"));
     let campaign = folder.read().unwrap();
     let Data::Displacement(data) = &campaign.data else { panic!("kind displacement") };
     let row = &data.rows[0];
@@ -139,7 +165,7 @@ fn angles_under_load_are_read() {
         problems("no-angle", CAMPAIGN, &format!("{header}\na,0,0,1,2,3,4,5,6,0,x,0,\n")),
         ["2:21 `x` is not a number", "2:25 a number is missing"]
     );
-    let folder = Folder::new("degrees-under-load", CAMPAIGN, &format!("{header}\na,1,0,1,2,3,4,5,6,57.3,0,57,0\n"));
+    let folder = Folder::new("degrees-under-load", CAMPAIGN, &format!("{header}\na,1,0,1,2,3,0,0,0,57.3,0,57,0\n"));
     let warnings = folder.read().unwrap().warnings;
     assert_eq!(warnings.len(), 1);
     assert!(
@@ -213,7 +239,12 @@ fn positions_are_read_with_their_payload() {
     assert_eq!(data.rows[0].payload, 0.0);
     let far = format!("{}\na,v,0,0,1500,2,3\nb,w,0,1,900,2,3\n", "pose,visit,q1,q2,px,py,pz");
     let warnings = Folder::new("far", &campaign, &far).read().unwrap().warnings;
-    assert!(warnings.iter().any(|warning| warning.contains("px is of points 600 m apart: are the lengths in milli")));
+    let said = "px is more than 30 m off the middle of all in 1 row, first on line 3: are the lengths in millimetres? \
+                write `px [mm]`";
+    assert!(warnings.iter().any(|warning| warning.ends_with(said)), "{warnings:?}");
+    let heavy = format!("{header}\na,v,90,0,1500,2,3,40\na,w,90,0,1500,2,3,1e9\n");
+    let warnings = Folder::new("heavy", &campaign, &heavy).read().unwrap().warnings;
+    assert!(warnings.iter().any(|warning| warning.ends_with("payload is more than 10 t in 1 row, first on line 3")));
     assert_eq!(
         problems("payload", &campaign, &format!("{header}\na,v,0,0,1,2,3,-4\na,v,9,0,x,2,3,4\n")),
         ["2:15 a payload is not negative", "3:9 `x` is not a number"]
@@ -254,4 +285,25 @@ fn what_clamped_axes_do_not_use_is_warned_of() {
     let said =
         |field: &str, line| format!("{}: `{field}` on line {line} is not used with `kind: clamped`", file.display());
     assert_eq!(campaign.warnings, [said("noise", 5), said("holdout", 6)]);
+}
+
+/// Payloads pull downwards and a tracker reads points in its own frame, so neither has
+/// a frame to say; and a fit wants more poses than it leaves.
+#[test]
+fn what_positions_do_not_use_is_warned_of() {
+    let plan = CAMPAIGN.replace("displacement", "position")
+        + "wrench: {frame: base}\nmeasured: {frame: tool}\nnoise: {displacement: 1e-5, rotation: 1e-5}\n\
+           holdout: {fraction: 0.7}\n";
+    let table = "pose,q1,q2,px,py,pz\na,0,0,1,2,3\nb,1,0,1,2,3\nc,1,1,1,2,3\n";
+    let folder = Folder::new("position-unused", &plan, table);
+    let file = format!("{}: ", folder.0.join("campaign.yaml").display());
+    let said: Vec<_> = folder.read().unwrap().warnings.iter().map(|warning| warning.replace(&file, "")).collect();
+    assert_eq!(
+        said,
+        [
+            "`frame` on line 6 is not used with `kind: position`",
+            "`rotation` on line 7 is not used with `kind: position`",
+            "`holdout` keeps 2 of 3 poses from the fit",
+        ]
+    );
 }

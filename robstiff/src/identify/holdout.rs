@@ -10,17 +10,13 @@ use rand_chacha::ChaCha8Rng;
 use crate::campaign::Holdout;
 
 /// Whether each of `poses` poses is fitted to; whole poses are held out, since
-/// rows of one pose share what is wrong with it. At least one pose is on
-/// either side where there are two.
+/// rows of one pose share what is wrong with it.
 pub fn training(poses: usize, holdout: Option<Holdout>) -> Vec<bool> {
     let mut training = vec![true; poses];
-    if let Some(Holdout { fraction, seed }) = holdout
-        && poses > 1
-    {
-        let count = ((fraction * poses as f64).round() as usize).clamp(1, poses - 1);
+    if let Some(holdout) = holdout {
         let mut order: Vec<usize> = (0..poses).collect();
-        order.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));
-        for &pose in &order[..count] {
+        order.shuffle(&mut ChaCha8Rng::seed_from_u64(holdout.seed));
+        for &pose in &order[..holdout.count(poses)] {
             training[pose] = false;
         }
     }

@@ -1,0 +1,80 @@
+//! Numbers that no robot comes to. They are read as they are and warned of, with the
+//! first line: some are slips of a pen, most are of a unit that the header does not say.
+
+use std::format;
+use std::string::String;
+
+use crate::JointKind;
+use crate::table::{Numbers, Table};
+
+/// The unit that a column without one is taken to be written in.
+pub struct Usual {
+    what: &'static str,
+    named: &'static str,
+    unit: &'static str,
+}
+
+/// Lengths as drawings and trackers give them.
+pub const LENGTHS: Usual = Usual { what: "lengths", named: "millimetres", unit: "mm" };
+
+/// Angles as controllers give them.
+pub const ANGLES: Usual = Usual { what: "angles", named: "degrees", unit: "deg" };
+
+impl Usual {
+    /// That of a joint's coordinate.
+    pub const fn of_joint(kind: JointKind) -> Self {
+        if matches!(kind, JointKind::Revolute) { ANGLES } else { LENGTHS }
+    }
+
+    /// Asks for it, behind a colon, where the column says none.
+    pub fn asked(&self, table: &Table<'_>, column: Numbers) -> String {
+        if table.has_unit(column) {
+            return String::new();
+        }
+        let Self { what, named, unit } = self;
+        format!(": are the {what} in {named}? write `{} [{unit}]`", table.name_of(column))
+    }
+}
+
+/// What is larger than robots come to, of one kind of number.
+pub struct Beyond {
+    /// In SI.
+    pub most: f64,
+    /// The same with its unit.
+    pub told: &'static str,
+    /// What is asked for where the header says no unit.
+    pub usual: Option<Usual>,
+}
+
+/// A tool under load goes less far.
+pub const DISPLACEMENT: Beyond = Beyond { most: 0.1, told: "100 mm", usual: Some(LENGTHS) };
+
+/// A tool under load turns less far, a joint as well.
+pub const ROTATION: Beyond = Beyond { most: 0.1, told: "0.1 rad", usual: Some(ANGLES) };
+
+/// The largest arms carry some 2.3 t.
+pub const FORCE: Beyond = Beyond { most: 1e5, told: "100 kN", usual: None };
+
+/// No joint of them holds so much.
+pub const MOMENT: Beyond = Beyond { most: 1e6, told: "1 MNm", usual: None };
+
+/// As for forces.
+pub const PAYLOAD: Beyond = Beyond { most: 1e4, told: "10 t", usual: None };
+
+impl Beyond {
+    /// Warns of the numbers of a column, each with its line, that are larger.
+    pub fn warn(&self, table: &Table<'_>, column: Numbers, numbers: impl Iterator<Item = (usize, f64)>) {
+        let lines = numbers.filter(|(_, number)| number.abs() > self.most).map(|(line, _)| line);
+        let ask = self.usual.as_ref().map(|usual| usual.asked(table, column)).unwrap_or_default();
+        warn_of(table, &format!("{} is more than {}", table.name_of(column), self.told), lines, &ask);
+    }
+}
+
+/// Warns of rows, by their lines, if there are any; says whether there are.
+pub fn warn_of(table: &Table<'_>, what: &str, mut lines: impl Iterator<Item = usize>, ask: &str) -> bool {
+    let Some(first) = lines.next() else { return false };
+    let count = 1 + lines.count();
+    let rows = if count == 1 { "row" } else { "rows" };
+    table.warn(&format!("{what} in {count} {rows}, first on line {first}{ask}"));
+    true
+}
