@@ -13,7 +13,7 @@ use robstiff_robots::{Description, Effect};
 
 use crate::folder::Folder;
 use crate::judge_tracing::{Name, Told};
-use crate::simulator::{DhColumn, Hidden, Outside, Positions, five_axis, scattered, six_axis};
+use crate::simulator::{DhColumn, Follows, Hidden, Outside, Positions, five_axis, scattered, six_axis};
 
 /// Payloads that show what yields (kg).
 pub const PAYLOADS: [f64; 3] = [0.0, 100.0, 200.0];
@@ -102,7 +102,7 @@ fn effect(random: &mut ChaCha8Rng, joints: usize, payloads: bool) -> Hidden {
     let sign = if random.random() { 1.0 } else { -1.0 };
     let size = |random: &mut ChaCha8Rng, least: f64, most: f64| sign * random.random_range(least..most);
     let joint = random.random_range(2..=joints);
-    match random.random_range(0..if payloads { 10 } else { 6 }) {
+    match random.random_range(0..if payloads { 12 } else { 8 }) {
         0 => Hidden::JointZeroOffset { joint, offset: size(random, 3e-4, 5e-3) },
         1 => Hidden::DhError { of: DhColumn::A, row: random.random_range(1..=joints), by: size(random, 1e-4, 2e-3) },
         2 => Hidden::DhError { of: DhColumn::D, row: joint, by: size(random, 1e-4, 2e-3) },
@@ -118,12 +118,14 @@ fn effect(random: &mut ChaCha8Rng, joints: usize, payloads: bool) -> Hidden {
             let mut three = |most: f64| std::array::from_fn(|_| random.random_range(-most..most));
             Hidden::BaseSlip { shift: three(5e-4), turn: three(2e-4), when }
         }
-        6 => Effect::TransverseCompliance { joint, value: random.random_range(2e-7..1.5e-6) }.into(),
-        7 => {
+        6 => Hidden::TrackerScale(size(random, 1e-4, 5e-4)),
+        7 => Hidden::Expansion { rate: random.random_range(15e-6..60e-6), follows: Follows::Temperature },
+        8 => Effect::TransverseCompliance { joint, value: random.random_range(2e-7..1.5e-6) }.into(),
+        9 => {
             let added = random.random_range(2e-7..6e-7);
             Effect::StiffnessNonlinearity { joint, added, knee: random.random_range(200.0..1500.0) }.into()
         }
-        8 => {
+        10 => {
             let (gap, knee) = (random.random_range(1e-4..4e-4), random.random_range(20.0..150.0));
             Hidden::LostMotion { joint, gap, knee }
         }
@@ -182,11 +184,12 @@ pub fn run(drawn: &Drawn) -> Came {
     Came { told, right, explained: trace.verdict == Verdict::Explained, numbers }
 }
 
-/// Of the robot's numbers that were named as they are hidden, how many there are, and
+/// Of the numbers, but those of slips and drifts, that were named as they are hidden, how many there are, and
 /// how many have the truth within 1.96 standard deviations.
 fn numbers(trace: &Trace, hidden: &[Hidden]) -> [usize; 2] {
     let mut count = [0; 2];
-    for hidden in hidden.iter().filter(|hidden| !matches!(hidden, Hidden::BaseSlip { .. })) {
+    let of_rig = |hidden: &&Hidden| matches!(hidden, Hidden::BaseSlip { .. } | Hidden::Expansion { .. });
+    for hidden in hidden.iter().filter(|hidden| !of_rig(hidden)) {
         let Some(named) = trace.effects.iter().find(|named| named.effect.to_string() == hidden.name()) else {
             continue;
         };

@@ -11,7 +11,7 @@ use robstiff_robots::{Description, Effect, Link};
 use robstiff_tests::judge_tracing::Told;
 use robstiff_tests::matrix::interval::fewest;
 use robstiff_tests::positions::{PAYLOADS, read};
-use robstiff_tests::simulator::{DhColumn, Hidden, Outside, Positions, five_axis, scattered, six_axis};
+use robstiff_tests::simulator::{DhColumn, Follows, Hidden, Outside, Positions, five_axis, scattered, six_axis};
 
 /// Runs of what is to hold at a rate.
 const RUNS: u64 = 8;
@@ -170,11 +170,22 @@ fn faults_of_the_rig_are_named_and_not_written() {
     let moved = assert_named("reflector_offset@rig", 720, |positions, _| {
         positions.reflector = positions.reflector.map(|at| at + 1e-3);
     });
+    let scaled = assert_named("tracker_scale@rig", 900, |positions, _| {
+        positions.hidden = vec![Hidden::TrackerScale(2e-4)];
+    });
+    let warmer = Hidden::Expansion { rate: 4e-5, follows: Follows::Temperature };
+    let grows = assert_named("thermal_drift@rig", 920, |positions, _| positions.hidden = vec![warmer.clone()]);
     let wild = assert_named("outliers@rig", 740, |positions, _| {
         positions.wild = vec![(7, [0.0, 1e-3, 0.0]), (31, [-2e-3, 0.0, 5e-4])];
     });
-    for (_, trace) in slips.iter().chain(&moved).chain(&wild) {
+    for (_, trace) in slips.iter().chain(&moved).chain(&scaled).chain(&grows).chain(&wild) {
         assert!(trace.description.effects.is_empty());
+    }
+    for (_, trace) in &grows {
+        // The hall warms up all the time: the drift may as well be one with that.
+        let number = &trace.effects[0].parameters[0];
+        let off = if number.unit == "1/K" { number.value - 4e-5 } else { 0.0 };
+        assert!(number.name == "expansion" && off.abs() < 4.0 * number.std.expect("a fitted number"), "{number:?}");
     }
     for (_, trace) in &wild {
         // The header is line 1.

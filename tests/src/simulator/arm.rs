@@ -96,6 +96,11 @@ impl Arm {
         self
     }
 
+    /// How many links (rows of its table) it has.
+    pub(super) fn links(&self) -> usize {
+        self.description.joints.len()
+    }
+
     /// The same arm with one link (a row of its table, from 1) longer by a
     /// share of itself.
     #[must_use]

@@ -99,6 +99,15 @@ pub enum Hidden {
     /// The measuring frame is turned: what is read is the displacement, turned
     /// by this rotation vector (rad).
     TrackerMisalignment([f64; 3]),
+    /// What is read is longer by this share of itself (1).
+    TrackerScale(f64),
+    /// All links of the arm grow, by so much of themselves per unit of what it follows.
+    Expansion {
+        /// (1 per hour or kelvin)
+        rate: f64,
+        /// What it follows.
+        follows: Follows,
+    },
     /// What is read wanders off.
     ThermalDrift {
         /// By how much (m) per unit of what it follows, in the base frame.
@@ -189,7 +198,8 @@ impl Hidden {
             Self::LoadCellScale { .. } => "load_cell_scale",
             Self::LeverArm(_) => "lever_arm",
             Self::TrackerMisalignment(_) => "tracker_misalignment",
-            Self::ThermalDrift { .. } => "thermal_drift",
+            Self::TrackerScale(_) => "tracker_scale",
+            Self::Expansion { .. } | Self::ThermalDrift { .. } => "thermal_drift",
             Self::Creep { .. } => "creep",
             Self::Outliers { .. } => "outliers",
             Self::BaseSlip { .. } => "base_slip",
@@ -245,6 +255,8 @@ impl Hidden {
             Self::LoadCellBias { force, .. } => axes("F", force),
             Self::LoadCellScale { scale, .. } => axes("s", scale),
             Self::LeverArm(at) => axes("", at),
+            Self::TrackerScale(scale) => named(&[("scale", *scale)]),
+            Self::Expansion { rate, .. } => named(&[("expansion", *rate)]),
             Self::ThermalDrift { rate, .. } => axes("d", rate),
             Self::Creep { share, .. } => named(&[("share", *share)]),
             Self::BaseSlip { shift, turn, .. } => {
@@ -282,7 +294,7 @@ impl Hidden {
             | Self::LeverArm(three)
             | Self::TrackerMisalignment(three)
             | Self::ThermalDrift { rate: three, .. } => three.iter_mut().collect(),
-            Self::Creep { share, .. } => vec![share],
+            Self::TrackerScale(one) | Self::Expansion { rate: one, .. } | Self::Creep { share: one, .. } => vec![one],
             Self::Outliers { size, .. } => vec![size],
             Self::BaseSlip { shift, turn, .. } => shift.iter_mut().chain(turn).collect(),
             Self::Outside(outside) => outside.sizes(),

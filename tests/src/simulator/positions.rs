@@ -10,15 +10,19 @@ use robstiff_robots::{Description, Joint, JointKind};
 use super::arm::GRAVITY;
 use super::frame::Frame;
 use super::noise::{Stream, normal};
+use super::rig::Rig;
 use super::{Arm, Hidden};
+
+/// How long a row takes (s).
+const A_ROW: f64 = 60.0;
 
 /// A campaign of positions.
 #[derive(Clone, Debug)]
 pub struct Positions {
     /// The arm as it is.
     pub truth: Description,
-    /// What else there is of the arm; of the rig `BaseSlip`, and what the fields
-    /// below say.
+    /// What else there is of the arm; of the rig `BaseSlip`, `TrackerScale`, `Expansion`,
+    /// and what the fields below say.
     pub hidden: Vec<Hidden>,
     /// How many poses, and how often the arm comes to each.
     pub poses: [usize; 2],
@@ -67,21 +71,27 @@ impl Positions {
             .collect();
         let mut three = |sigma: f64| Vector3::from_fn(|_, _| sigma * normal(&mut noise));
         let tracker = Frame { origin: three(4.0), ..Frame::turned(three(1.0)) };
-        let of_arm = self.hidden.iter().filter(|hidden| !matches!(hidden, Hidden::BaseSlip { .. }));
-        let arm = of_arm.fold(Arm::new(&self.truth, &[]), Arm::hiding);
+        let arm = self.hidden.iter().fold(Arm::new(&self.truth, &[]), Arm::hiding);
+        let (rows, mut row) = (poses * visits * self.payloads.len(), 0);
+        let hall = Rig::new(&arm, &self.hidden, A_ROW * rows as f64, 0.0, false);
+        let warms = self.hidden.iter().any(|hidden| matches!(hidden, Hidden::Expansion { .. }));
         let mut table = String::from("pose,visit,time [min]");
+        if warms {
+            table += ",temperature";
+        }
         for (number, joint) in (1..).zip(&self.truth.joints) {
             let unit = if joint.kind == JointKind::Revolute { "deg" } else { "mm" };
             write!(table, ",q{number} [{unit}]").expect("a text");
         }
         table += ",payload [kg],px [mm],py [mm],pz [mm]\n";
-        let (rows, mut row) = (poses * visits * self.payloads.len(), 0);
         for visit in 0..poses * visits {
             let pose = visit % poses;
             let q = &coordinates[pose];
-            let posed = arm.at(q);
             let comes_to = three(self.noise[1]);
             for &payload in &self.payloads {
+                let time = A_ROW * row as f64;
+                let grown = hall.grown(time);
+                let posed = grown.as_ref().unwrap_or(&arm).at(q);
                 let settled = posed.settle(&[0.0, 0.0, -GRAVITY * payload, 0.0, 0.0, 0.0]);
                 let tool = Frame::turned(settled.rotation.into()).turn * posed.tool();
                 let tcp = Vector3::from(posed.tcp()) + Vector3::from(settled.displacement);
@@ -95,8 +105,11 @@ impl Positions {
                 }
                 let off: Vector3<f64> =
                     self.wild.iter().filter(|(of, _)| *of == row).map(|(_, off)| Vector3::from(*off)).sum();
-                let read = tracker.turn * at + tracker.origin + three(self.noise[0]) + off;
+                let read = tracker.turn * at * hall.scale() + tracker.origin + three(self.noise[0]) + off;
                 write!(table, "{pose},{visit},{row}").expect("a text");
+                if warms {
+                    write!(table, ",{}", hall.temperature(time)).expect("a text");
+                }
                 for (q, joint) in q.iter().zip(&self.truth.joints) {
                     let q = if joint.kind == JointKind::Revolute { q.to_degrees() } else { q * 1e3 };
                     write!(table, ",{q}").expect("a text");

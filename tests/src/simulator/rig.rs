@@ -96,14 +96,35 @@ impl<'a> Rig<'a> {
                 Hidden::Outside(Outside::MarkerSlip { shift, when }) if stand.time > when * self.end => {
                     point += stand.tool * Vector3::from(*shift);
                 }
-                Hidden::Outside(Outside::LinkGrowth { link, per_kelvin }) => {
-                    let grown = self.arm.stretched(*link, per_kelvin * self.warmer(stand.time));
-                    point += Vector3::from(grown.tcp(stand.q)) - Vector3::from(self.arm.tcp(stand.q));
-                }
                 _ => {}
             }
         }
-        (point - stand.at, turned)
+        if let Some(grown) = self.grown(stand.time) {
+            point += Vector3::from(grown.tcp(stand.q)) - Vector3::from(self.arm.tcp(stand.q));
+        }
+        ((point - stand.at) * self.scale(), turned)
+    }
+
+    /// How long the tracker reads what is one long.
+    pub fn scale(&self) -> f64 {
+        let of = |hidden: &Hidden| if let Hidden::TrackerScale(scale) = hidden { 1.0 + scale } else { 1.0 };
+        self.hidden.iter().map(of).product()
+    }
+
+    /// The arm at a time, where its links grow.
+    pub fn grown(&self, time: f64) -> Option<Arm> {
+        let links = |hidden: &Hidden| match hidden {
+            Hidden::Outside(Outside::LinkGrowth { link, per_kelvin }) => {
+                vec![(*link, per_kelvin * self.warmer(time))]
+            }
+            Hidden::Expansion { rate, follows } => {
+                (1..=self.arm.links()).map(|link| (link, rate * self.drift(*follows, time))).collect()
+            }
+            _ => vec![],
+        };
+        let growing: Vec<(usize, f64)> = self.hidden.iter().flat_map(links).collect();
+        let grown = growing.iter().fold(self.arm.clone(), |arm, &(link, share)| arm.stretched(link, share));
+        (!growing.is_empty()).then_some(grown)
     }
 
     fn drift(&self, follows: Follows, time: f64) -> f64 {

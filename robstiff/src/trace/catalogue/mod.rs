@@ -36,6 +36,7 @@ mod stiffness_nonlinearity;
 mod thermal_drift;
 mod tool_compliance;
 mod tracker_misalignment;
+mod tracker_scale;
 mod transmission_error;
 mod transverse_compliance;
 
@@ -120,7 +121,7 @@ impl core::fmt::Debug for Kind {
 
 /// Every kind, in the order of precedence among exact aliases. What is wrong
 /// with single rows (`outliers`) has no columns: it is found row by row.
-pub static KINDS: [&Kind; 23] = [
+pub static KINDS: [&Kind; 24] = [
     &thermal_drift::KIND,
     &creep::KIND,
     &load_cell_bias::KIND,
@@ -128,6 +129,7 @@ pub static KINDS: [&Kind; 23] = [
     &load_cell_misalignment::KIND,
     &lever_arm::KIND,
     &tracker_misalignment::KIND,
+    &tracker_scale::KIND,
     &reflector_offset::KIND,
     &outliers::KIND,
     &base_slip::KIND,

@@ -6,7 +6,7 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 use super::offers::{Form, Knee, Number, offers};
-use super::rig::Slips;
+use super::rig::Rig;
 use crate::campaign::{Campaign, Positions};
 use crate::identify::Error;
 use crate::identify::covariance::NOISELESS;
@@ -32,8 +32,8 @@ pub struct Bench<'c> {
     pub numbers: Vec<Number>,
     /// The rows that are fitted to.
     pub rows: Rows,
-    /// When the robot may have slipped.
-    pub(super) slips: Slips,
+    /// What moves the readings, whatever the robot does.
+    pub(super) rig: Rig,
     /// The knees that the laws of gears may have.
     pub(super) knees: Vec<(Named, Knee)>,
     /// Whether the numbers of a form are possible together, of each candidate.
@@ -80,11 +80,11 @@ impl<'c> Bench<'c> {
     /// Positions that do not tell where the robot stands.
     pub fn new(campaign: &Campaign, data: &'c Positions) -> Result<Self, Error> {
         let prepared = Prepared::new(campaign, data)?;
-        let slips = Slips::new(&campaign.robot, data);
+        let rig = Rig::new(&campaign.robot, data);
         let (mut candidates, mut numbers) = (Vec::new(), Vec::new());
         let (mut knees, mut possible) = (Vec::new(), Vec::new());
         let own = prepared.own.len();
-        for offer in offers(campaign, data, &slips) {
+        for offer in offers(campaign, data, &rig) {
             let candidate = candidates.len();
             let with_knee = |(variant, form): (usize, &Form)| Some((Named { candidate, variant }, form.knee.clone()?));
             knees.extend(offer.forms.iter().enumerate().filter_map(with_knee));
@@ -101,7 +101,7 @@ impl<'c> Bench<'c> {
         let rows = prepared.rows.clone();
         let (problem, _) = regression.at(&prepared.state(all.len()), &all, &rows);
         let signs = regression.signs_of(&all);
-        Ok(Self { prepared, regression, candidates, numbers, rows, slips, knees, possible, problem, signs })
+        Ok(Self { prepared, regression, candidates, numbers, rows, rig, knees, possible, problem, signs })
     }
 
     /// Turns to a model, and to the rows that it is fitted to.
@@ -203,6 +203,22 @@ impl<'c> Bench<'c> {
         let mut found: Vec<(usize, Proposed)> = (0..named.len()).flat_map(without).collect();
         found.sort_by(|(_, a), (_, b)| a.bic.total_cmp(&b.bic));
         found
+    }
+
+    /// A model without the effects that are not worth their numbers.
+    pub fn pruned(&self, mut model: Proposed) -> Proposed {
+        loop {
+            let without = |k: usize| {
+                let mut rest = model.named.clone();
+                rest.remove(k);
+                self.proposed(rest)
+            };
+            let best = (0..model.named.len()).filter_map(without).min_by(|a, b| a.bic.total_cmp(&b.bic));
+            match best.filter(|best| best.bic < model.bic) {
+                Some(best) => model = best,
+                None => return model,
+            }
+        }
     }
 
     /// All candidates against a model.

@@ -63,7 +63,7 @@ impl Bench<'_> {
         let (rows, tried) = (&self.prepared.data.rows, self.variant(slip).shape[0].value);
         let count = rows.len();
         let Some(mut at) = rows.iter().position(|row| row.line as f64 == tried) else { return model };
-        let (mut best, mut step) = (model, self.slips.apart() / 2);
+        let (mut best, mut step) = (model, self.rig.apart() / 2);
         while step > 0 {
             for next in [at.saturating_sub(step), at + step] {
                 if !(1..count).contains(&next) {
@@ -83,7 +83,7 @@ impl Bench<'_> {
     /// Moves a slip to another moment, in all its forms.
     fn move_slip(&mut self, slip: Named, moment: usize) {
         let (own, first) = (self.prepared.own.len(), self.variant(slip).columns[0]);
-        for (number, enters) in (first - STANDS..).zip(self.slips.at_row(moment)) {
+        for (number, enters) in (first - STANDS..).zip(self.rig.at_row(moment)) {
             self.numbers[number - own].enters = enters.clone();
             self.regression.numbers[number] = enters;
         }

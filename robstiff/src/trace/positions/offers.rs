@@ -2,7 +2,7 @@
 //! shows there.
 //!
 //! An effect of the robot enters the description itself, so what is fitted is what is
-//! written. Compliances show under payloads only. Faults of the [`rig`] move what is
+//! written. Compliances show under payloads only. Faults of the [`Rig`] move what is
 //! read, or the point that is read; a turn or shift of the frame is none, for where
 //! the robot stands in it is fitted with everything.
 
@@ -14,7 +14,7 @@ use robstiff_robots::Description;
 use robstiff_robots::effect::Place as Part;
 
 use super::frames::frames;
-use super::rig;
+use super::rig::{Rig, reflector};
 use crate::campaign::{Campaign, Positions};
 use crate::identify::normal::Sign;
 use crate::identify::positions::COMPLIANCE_STEP;
@@ -114,14 +114,15 @@ pub fn any(_: &[f64]) -> bool {
 }
 
 /// Everything that may be missing, in the order of the catalogue.
-pub fn offers(campaign: &Campaign, data: &Positions, slips: &rig::Slips) -> Vec<Offer> {
+pub fn offers(campaign: &Campaign, data: &Positions, rig: &Rig) -> Vec<Offer> {
     let robot = &campaign.robot;
     let joints = 1..=robot.joints.len();
     let turns = |joint: &usize| robot.joints[joint - 1].kind == JointKind::Revolute;
     let mut all = vec![];
-    all.extend(rig::drift(data));
-    all.push(rig::reflector());
-    all.extend(slips.offer(data));
+    all.extend(rig.drift(data));
+    all.push(rig.scale());
+    all.push(reflector());
+    all.extend(rig.slip(data));
     if data.rows.iter().any(|row| row.payload > 0.0) {
         all.push(springs("tool_compliance", Part::Tool, &[("rotation", "rad/Nm"), ("translation", "m/N")]));
         all.push(springs("base_compliance", Part::Base, &[("tilt", "rad/Nm"), ("translation", "m/N")]));

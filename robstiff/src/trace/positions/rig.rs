@@ -6,8 +6,8 @@ use std::vec;
 use std::vec::Vec;
 
 use nalgebra::Vector3;
-use robstiff_robots::Description;
 use robstiff_robots::effect::Place as Part;
+use robstiff_robots::{Description, Placement};
 
 use super::offers::{Form, LENGTH_STEP, Number, Offer, any, kind};
 use crate::campaign::{PositionRow, Positions};
@@ -19,6 +19,11 @@ use crate::trace::found::{EffectParameter, Place};
 const FARTHEST: f64 = 0.5;
 const LONGEST: f64 = 0.1;
 const MOST_TURNED: f64 = 0.05;
+
+/// More than this is another unit and no scale; and no arm grows by more in a campaign,
+/// forty kelvin of aluminium (1).
+const MOST_SCALE: f64 = 0.01;
+const MOST_GROWTH: f64 = 1e-3;
 
 /// Moments at which the robot may have slipped are tried before every row, or where
 /// there are more, so many evenly; of large campaigns, few, for every moment takes memory
@@ -63,41 +68,74 @@ fn shifts(by_row: &[f64], unit: &'static str, most: f64) -> impl Iterator<Item =
     })
 }
 
-/// What is read moves with the time or the temperature, where they are known.
-pub fn drift(data: &Positions) -> Option<Offer> {
-    let known = |of: fn(&PositionRow) -> Option<f64>| -> Option<Vec<f64>> {
-        let values: Vec<f64> = data.rows.iter().map(of).collect::<Option<_>>()?;
-        let first = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let since: Vec<f64> = values.iter().map(|value| value - first).collect();
-        since.iter().any(|&since| since > 0.0).then_some(since)
-    };
-    let clocks = [(known(|row| row.time), "m/s"), (known(|row| row.temperature), "m/K")];
-    let (mut numbers, mut forms) = (Vec::new(), Vec::new());
-    for (since, unit) in clocks {
-        let Some(since) = since else { continue };
-        let longest = since.iter().copied().fold(0.0, f64::max);
-        forms.push(Form::of(numbers.len()..numbers.len() + 3));
-        numbers.extend(shifts(&since, unit, LONGEST / longest));
-    }
-    (!forms.is_empty()).then(|| Offer { kind: kind("thermal_drift"), place: Place::Rig, numbers, forms, possible: any })
+/// A unit makes lengths longer, by such a share in each row. Of what is read later the
+/// whole length is taken for one of them.
+fn longer(lengths: &[Vector3<f64>], by_row: Vec<f64>) -> Enters {
+    let last = by_row.last().copied().unwrap_or_default();
+    let rows = lengths.iter().zip(by_row).map(|(length, by)| length * by).collect();
+    Enters::Reading(Rc::new(Moved { rows, later: Box::new(move |point| point * last) }))
 }
 
-/// A slip of the robot, or of what reads it, before some row.
-pub struct Slips {
+/// What moves the readings of a campaign, whatever the robot does.
+pub struct Rig {
     /// The point that is read, in the base frame (m), and the middle of all.
     points: Vec<Vector3<f64>>,
     middle: Vector3<f64>,
+    /// From frame 0 to the flange, the arm's own lengths, in the base frame (m).
+    spans: Vec<Vector3<f64>>,
 }
 
-impl Slips {
+impl Rig {
     /// The rows of a campaign.
     pub fn new(robot: &Description, data: &Positions) -> Self {
         let points = Model::new(robot, data).points(data);
         let middle = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
-        Self { points, middle }
+        let bare = Description { tool: Placement::default(), ..robot.clone() };
+        let foot = Vector3::from(robot.base.xyz);
+        let at_flange = Model { description: bare, marker: Vector3::zeros() };
+        let spans = at_flange.points(data).into_iter().map(|flange| flange - foot).collect();
+        Self { points, middle, spans }
     }
 
-    /// How many rows the moments that are tried are apart.
+    /// All lengths are read by the same share too long. From where does not matter, for
+    /// where the robot stands is fitted.
+    pub fn scale(&self) -> Offer {
+        let enters = longer(&self.points, vec![1.0; self.points.len()]);
+        Offer {
+            kind: kind("tracker_scale"),
+            place: Place::Rig,
+            numbers: vec![Number { name: "scale", unit: "1", range: [-MOST_SCALE, MOST_SCALE], enters }],
+            forms: vec![Form::of([0])],
+            possible: any,
+        }
+    }
+
+    /// What is read moves with the time or the temperature, where they are known: all of
+    /// it alike, or as an arm that grows and a tool that does not, or both.
+    pub fn drift(&self, data: &Positions) -> Option<Offer> {
+        let known = |of: fn(&PositionRow) -> Option<f64>| -> Option<Vec<f64>> {
+            let values: Vec<f64> = data.rows.iter().map(of).collect::<Option<_>>()?;
+            let first = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let since: Vec<f64> = values.iter().map(|value| value - first).collect();
+            since.iter().any(|&since| since > 0.0).then_some(since)
+        };
+        let clocks = [(known(|row| row.time), ["m/s", "1/s"]), (known(|row| row.temperature), ["m/K", "1/K"])];
+        let (mut numbers, mut forms) = (Vec::new(), Vec::new());
+        for (since, [of_shift, of_growth]) in clocks {
+            let Some(since) = since else { continue };
+            let longest = since.iter().copied().fold(0.0, f64::max);
+            let first = numbers.len();
+            forms.extend([first..first + 3, first + 3..first + 4, first..first + 4].map(Form::of));
+            numbers.extend(shifts(&since, of_shift, LONGEST / longest));
+            let most = MOST_GROWTH / longest;
+            let enters = longer(&self.spans, since);
+            numbers.push(Number { name: "expansion", unit: of_growth, range: [-most, most], enters });
+        }
+        let (kind, place) = (kind("thermal_drift"), Place::Rig);
+        (!forms.is_empty()).then_some(Offer { kind, place, numbers, forms, possible: any })
+    }
+
+    /// How many rows the moments that are tried for a slip are apart.
     pub fn apart(&self) -> usize {
         let rows = self.points.len().max(1);
         rows.div_ceil((ROWS_AND_MOMENTS / rows).clamp(FEWEST_MOMENTS, MOST_MOMENTS))
@@ -121,7 +159,7 @@ impl Slips {
     }
 
     /// The robot shifted at a moment, and may have turned as well.
-    pub fn offer(&self, data: &Positions) -> Option<Offer> {
+    pub fn slip(&self, data: &Positions) -> Option<Offer> {
         let (mut numbers, mut forms) = (Vec::new(), Vec::new());
         for moment in (1..self.points.len()).step_by(self.apart()) {
             let first = numbers.len();
