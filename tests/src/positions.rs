@@ -102,7 +102,7 @@ fn effect(random: &mut ChaCha8Rng, joints: usize, payloads: bool) -> Hidden {
     let sign = if random.random() { 1.0 } else { -1.0 };
     let size = |random: &mut ChaCha8Rng, least: f64, most: f64| sign * random.random_range(least..most);
     let joint = random.random_range(2..=joints);
-    match random.random_range(0..if payloads { 12 } else { 8 }) {
+    match random.random_range(0..if payloads { 13 } else { 9 }) {
         0 => Hidden::JointZeroOffset { joint, offset: size(random, 3e-4, 5e-3) },
         1 => Hidden::DhError { of: DhColumn::A, row: random.random_range(1..=joints), by: size(random, 1e-4, 2e-3) },
         2 => Hidden::DhError { of: DhColumn::D, row: joint, by: size(random, 1e-4, 2e-3) },
@@ -120,12 +120,16 @@ fn effect(random: &mut ChaCha8Rng, joints: usize, payloads: bool) -> Hidden {
         }
         6 => Hidden::TrackerScale(size(random, 1e-4, 5e-4)),
         7 => Hidden::Expansion { rate: random.random_range(15e-6..60e-6), follows: Follows::Temperature },
-        8 => Effect::TransverseCompliance { joint, value: random.random_range(2e-7..1.5e-6) }.into(),
-        9 => {
+        8 => {
+            let rate = std::array::from_fn(|_| random.random_range(-4e-4..4e-4));
+            Hidden::ThermalDrift { rate, follows: Follows::Settling(random.random_range(300.0..2000.0)) }
+        }
+        9 => Effect::TransverseCompliance { joint, value: random.random_range(2e-7..1.5e-6) }.into(),
+        10 => {
             let added = random.random_range(2e-7..6e-7);
             Effect::StiffnessNonlinearity { joint, added, knee: random.random_range(200.0..1500.0) }.into()
         }
-        10 => {
+        11 => {
             let (gap, knee) = (random.random_range(1e-4..4e-4), random.random_range(20.0..150.0));
             Hidden::LostMotion { joint, gap, knee }
         }
@@ -188,8 +192,10 @@ pub fn run(drawn: &Drawn) -> Came {
 /// how many have the truth within 1.96 standard deviations.
 fn numbers(trace: &Trace, hidden: &[Hidden]) -> [usize; 2] {
     let mut count = [0; 2];
-    let of_rig = |hidden: &&Hidden| matches!(hidden, Hidden::BaseSlip { .. } | Hidden::Expansion { .. });
-    for hidden in hidden.iter().filter(|hidden| !of_rig(hidden)) {
+    let moves = |hidden: &&Hidden| {
+        matches!(hidden, Hidden::BaseSlip { .. } | Hidden::Expansion { .. } | Hidden::ThermalDrift { .. })
+    };
+    for hidden in hidden.iter().filter(|hidden| !moves(hidden)) {
         let Some(named) = trace.effects.iter().find(|named| named.effect.to_string() == hidden.name()) else {
             continue;
         };

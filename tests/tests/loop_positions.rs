@@ -175,10 +175,14 @@ fn faults_of_the_rig_are_named_and_not_written() {
     });
     let warmer = Hidden::Expansion { rate: 4e-5, follows: Follows::Temperature };
     let grows = assert_named("thermal_drift@rig", 920, |positions, _| positions.hidden = vec![warmer.clone()]);
+    let (rate, follows) = ([3e-4, 0.0, -2e-4], Follows::Settling(700.0));
+    let settles = assert_named("thermal_drift@rig", 940, |positions, _| {
+        positions.hidden = vec![Hidden::ThermalDrift { rate, follows }];
+    });
     let wild = assert_named("outliers@rig", 740, |positions, _| {
         positions.wild = vec![(7, [0.0, 1e-3, 0.0]), (31, [-2e-3, 0.0, 5e-4])];
     });
-    for (_, trace) in slips.iter().chain(&moved).chain(&scaled).chain(&grows).chain(&wild) {
+    for (_, trace) in slips.iter().chain(&moved).chain(&scaled).chain(&grows).chain(&settles).chain(&wild) {
         assert!(trace.description.effects.is_empty());
     }
     for (_, trace) in &grows {
@@ -186,6 +190,11 @@ fn faults_of_the_rig_are_named_and_not_written() {
         let number = &trace.effects[0].parameters[0];
         let off = if number.unit == "1/K" { number.value - 4e-5 } else { 0.0 };
         assert!(number.name == "expansion" && off.abs() < 4.0 * number.std.expect("a fitted number"), "{number:?}");
+    }
+    for (_, trace) in &settles {
+        let constant = trace.effects[0].parameters.iter().find(|number| number.name == "constant");
+        let constant = constant.expect("what settles has a time constant");
+        assert!((constant.value - 700.0).abs() < 4.0 * constant.std.expect("a fitted number"), "{constant:?}");
     }
     for (_, trace) in &wild {
         // The header is line 1.

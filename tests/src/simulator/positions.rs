@@ -22,7 +22,7 @@ pub struct Positions {
     /// The arm as it is.
     pub truth: Description,
     /// What else there is of the arm; of the rig `BaseSlip`, `TrackerScale`, `Expansion`,
-    /// and what the fields below say.
+    /// `ThermalDrift`, and what the fields below say.
     pub hidden: Vec<Hidden>,
     /// How many poses, and how often the arm comes to each.
     pub poses: [usize; 2],
@@ -97,10 +97,14 @@ impl Positions {
                 let tcp = Vector3::from(posed.tcp()) + Vector3::from(settled.displacement);
                 let mut at = tcp + tool * Vector3::from(self.reflector) + comes_to;
                 for hidden in &self.hidden {
-                    if let Hidden::BaseSlip { shift, turn, when } = hidden
-                        && row as f64 >= when * rows as f64
-                    {
-                        at = Frame::turned((*turn).into()).turn * at + Vector3::from(*shift);
+                    match hidden {
+                        Hidden::BaseSlip { shift, turn, when } if row as f64 >= when * rows as f64 => {
+                            at = Frame::turned((*turn).into()).turn * at + Vector3::from(*shift);
+                        }
+                        Hidden::ThermalDrift { rate, follows } => {
+                            at += Vector3::from(*rate) * hall.drift(*follows, time);
+                        }
+                        _ => {}
                     }
                 }
                 let off: Vector3<f64> =

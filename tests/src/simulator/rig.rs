@@ -127,7 +127,8 @@ impl<'a> Rig<'a> {
         (!growing.is_empty()).then_some(grown)
     }
 
-    fn drift(&self, follows: Follows, time: f64) -> f64 {
+    /// How far what drifts is at a time, in units of its rate.
+    pub fn drift(&self, follows: Follows, time: f64) -> f64 {
         match follows {
             Follows::Time => time / 3600.0,
             Follows::Temperature => self.warmer(time),

@@ -5,7 +5,7 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::offers::{Form, Knee, Number, offers};
+use super::offers::{Between, Form, Number, offers};
 use super::rig::Rig;
 use crate::campaign::{Campaign, Positions};
 use crate::identify::Error;
@@ -34,8 +34,8 @@ pub struct Bench<'c> {
     pub rows: Rows,
     /// What moves the readings, whatever the robot does.
     pub(super) rig: Rig,
-    /// The knees that the laws of gears may have.
-    pub(super) knees: Vec<(Named, Knee)>,
+    /// What numbers out of grids may be between those of the grid, by the form.
+    pub(super) betweens: Vec<(Named, Between)>,
     /// Whether the numbers of a form are possible together, of each candidate.
     possible: Vec<fn(&[f64]) -> bool>,
     /// All columns at the model: where the robot stands, then all numbers.
@@ -82,12 +82,12 @@ impl<'c> Bench<'c> {
         let prepared = Prepared::new(campaign, data)?;
         let rig = Rig::new(&campaign.robot, data);
         let (mut candidates, mut numbers) = (Vec::new(), Vec::new());
-        let (mut knees, mut possible) = (Vec::new(), Vec::new());
+        let (mut betweens, mut possible) = (Vec::new(), Vec::new());
         let own = prepared.own.len();
         for offer in offers(campaign, data, &rig) {
             let candidate = candidates.len();
-            let with_knee = |(variant, form): (usize, &Form)| Some((Named { candidate, variant }, form.knee.clone()?));
-            knees.extend(offer.forms.iter().enumerate().filter_map(with_knee));
+            let between = |(variant, form): (usize, &Form)| Some((Named { candidate, variant }, form.between.clone()?));
+            betweens.extend(offer.forms.iter().enumerate().filter_map(between));
             possible.push(offer.possible);
             let first = STANDS + own + numbers.len();
             let variant =
@@ -101,7 +101,7 @@ impl<'c> Bench<'c> {
         let rows = prepared.rows.clone();
         let (problem, _) = regression.at(&prepared.state(all.len()), &all, &rows);
         let signs = regression.signs_of(&all);
-        Ok(Self { prepared, regression, candidates, numbers, rows, rig, knees, possible, problem, signs })
+        Ok(Self { prepared, regression, candidates, numbers, rows, rig, betweens, possible, problem, signs })
     }
 
     /// Turns to a model, and to the rows that it is fitted to.

@@ -1,5 +1,6 @@
-//! What the catalogue has in steps, between them: the moment of a slip and the knee of a
-//! gear's law, where they leave least.
+//! What the catalogue has in steps, between them: the moment of a slip, and a number out
+//! of a grid, the knee of a gear's law or the time constant of what settles, where they
+//! leave least.
 
 use core::f64::consts::SQRT_2;
 use std::string::ToString;
@@ -9,24 +10,21 @@ use std::vec::Vec;
 use nalgebra::DVector;
 
 use super::bench::{Bench, Model, TIE};
-use super::offers::Knee;
+use super::offers::Between;
 use super::rig::{SLIP, SLIPPED_AT, line};
 use crate::identify::positions::regression::STANDS;
 use crate::trace::catalogue::{EITHER, Variant};
 use crate::trace::found::Found;
 use crate::trace::model::Named;
 
-/// The number by which the law of a gear says where it bends.
-const KNEE: &str = "knee";
-
-/// The first and the last factor between knees that are tried; the first is that
+/// The first and the last factor between numbers that are tried; the first is that
 /// between those of the grid, or less.
 const COARSE: f64 = SQRT_2;
 const FINE: f64 = 1.002;
 
 impl Bench<'_> {
-    /// The effect that was found, in its form; a slip is moved to its moment, a law to its
-    /// knee.
+    /// The effect that was found, in its form; a slip is moved to its moment, a number out
+    /// of a grid to its value.
     pub fn named(&mut self, found: &Found) -> Option<Named> {
         let candidate = self.candidates.iter().position(|candidate| candidate.name() == found.to_string())?;
         let of = |name: &str| found.parameters.iter().find(|number| number.name == name).map(|number| number.value);
@@ -49,8 +47,9 @@ impl Bench<'_> {
             let moment = self.prepared.data.rows.iter().position(|row| row.line as f64 == line)?;
             self.move_slip(named, moment);
         }
-        if self.knee(named).is_some() {
-            self.move_knee(named, of(KNEE)?);
+        if self.between(named).is_some() {
+            let value = of(self.variant(named).shape[0].name)?;
+            self.reshape(named, value);
         }
         Some(named)
     }
@@ -93,40 +92,41 @@ impl Bench<'_> {
         }
     }
 
-    /// The knees that a law may have.
-    fn knee(&self, one: Named) -> Option<Knee> {
-        self.knees.iter().find(|(of, _)| *of == one).map(|(_, knee)| knee.clone())
+    /// What the number out of a grid may be.
+    fn between(&self, one: Named) -> Option<Between> {
+        self.betweens.iter().find(|(of, _)| *of == one).map(|(_, between)| between.clone())
     }
 
-    /// Moves the law of a gear to another knee.
-    fn move_knee(&mut self, law: Named, to: f64) {
-        let Some(knee) = self.knee(law) else { return };
-        let number = self.variant(law).columns[0] - STANDS;
-        let enters = (knee.enters)(to);
-        self.numbers[number - self.prepared.own.len()].enters = enters.clone();
-        self.regression.numbers[number] = enters;
-        self.candidates[law.candidate].variants[law.variant].shape[0].value = to;
+    /// Moves the number out of a grid to another value.
+    fn reshape(&mut self, one: Named, to: f64) {
+        let Some(between) = self.between(one) else { return };
+        let (own, columns) = (self.prepared.own.len(), self.variant(one).columns.clone());
+        for (column, enters) in columns.into_iter().zip((between.enters)(to)) {
+            self.numbers[column - STANDS - own].enters = enters.clone();
+            self.regression.numbers[column - STANDS] = enters;
+        }
+        self.candidates[one.candidate].variants[one.variant].shape[0].value = to;
     }
 
-    /// The model with the laws that it names at the knees which leave least, and under
-    /// the other name of a law where that leaves less.
-    pub fn at_its_knees(&mut self, mut model: Model) -> Model {
-        let laws: Vec<Named> = model.named.iter().copied().filter(|one| self.knee(*one).is_some()).collect();
-        for law in laws {
-            model = self.at_its_knee(model, law);
-            let Some(twin) = self.twin(law).filter(|twin| model.named.iter().all(|one| one.candidate != *twin)) else {
+    /// The model with the numbers out of grids that leave least, and a law under its other
+    /// name where that leaves less.
+    pub fn reshaped(&mut self, mut model: Model) -> Model {
+        let shaped: Vec<Named> = model.named.iter().copied().filter(|one| self.between(*one).is_some()).collect();
+        for one in shaped {
+            model = self.at_its_best(model, one);
+            let Some(twin) = self.twin(one).filter(|twin| model.named.iter().all(|one| one.candidate != *twin)) else {
                 continue;
             };
             let forms = 0..self.candidates[twin].variants.len();
             let with = |variant| {
-                let mut named: Vec<Named> = model.named.iter().copied().filter(|one| *one != law).collect();
+                let mut named: Vec<Named> = model.named.iter().copied().filter(|other| *other != one).collect();
                 named.push(Named { candidate: twin, variant });
                 named.sort_unstable();
                 self.solve(&named, &model.solved.state)
             };
             let Some(other) = forms.filter_map(with).min_by(|a, b| a.bic.total_cmp(&b.bic)) else { continue };
             let one = other.named.iter().find(|one| one.candidate == twin).copied();
-            let other = one.map(|one| self.at_its_knee(other, one));
+            let other = one.map(|one| self.at_its_best(other, one));
             model = other.filter(|other| other.bic < model.bic - TIE).unwrap_or(model);
         }
         model
@@ -135,21 +135,21 @@ impl Bench<'_> {
     /// The other law of the same gear.
     pub fn twin(&self, law: Named) -> Option<usize> {
         let own = &self.candidates[law.candidate];
-        let is_twin = |(other, _): &&(Named, Knee)| {
+        let is_twin = |(other, _): &&(Named, Between)| {
             other.candidate != law.candidate && self.candidates[other.candidate].place == own.place
         };
-        self.knees.iter().find(is_twin).map(|(other, _)| other.candidate)
+        self.betweens.iter().find(is_twin).map(|(other, _)| other.candidate)
     }
 
-    /// The model with a law at the knee that leaves least, by halving ever smaller
+    /// The model with a number out of a grid where it leaves least, by halving ever smaller
     /// steps.
-    fn at_its_knee(&mut self, model: Model, law: Named) -> Model {
-        let Some(Knee { range: [least, most], .. }) = self.knee(law) else { return model };
-        let (mut best, mut at, mut factor) = (model, self.variant(law).shape[0].value, COARSE);
+    fn at_its_best(&mut self, model: Model, one: Named) -> Model {
+        let Some(Between { range: [least, most], .. }) = self.between(one) else { return model };
+        let (mut best, mut at, mut factor) = (model, self.variant(one).shape[0].value, COARSE);
         while factor > FINE {
             let before = at;
             for next in [at / factor, at * factor].into_iter().filter(|next| (least..=most).contains(next)) {
-                self.move_knee(law, next);
+                self.reshape(one, next);
                 if let Some(other) = self.solve(&best.named, &best.solved.state).filter(|other| other.bic < best.bic) {
                     (best, at) = (other, next);
                 }
@@ -158,18 +158,20 @@ impl Bench<'_> {
                 factor = factor.sqrt();
             }
         }
-        self.move_knee(law, at);
+        self.reshape(one, at);
         best
     }
 
-    /// What more of a knee does to what is read, in its own unit, of each law that a
-    /// model names.
-    pub fn knee_columns(&self, model: &Model) -> Vec<(Named, DVector<f64>)> {
+    /// What more of a number out of a grid does to what is read, in its own unit, of each
+    /// effect of a model that has one.
+    pub fn shape_columns(&self, model: &Model) -> Vec<(Named, DVector<f64>)> {
         let column = |&one: &Named| {
-            let (knee, at) = (self.knee(one)?, self.variant(one).shape[0].value);
+            let (between, at) = (self.between(one)?, self.variant(one).shape[0].value);
             let placed = |factor: f64| {
                 let mut regression = self.regression.clone();
-                regression.numbers[self.variant(one).columns[0] - STANDS] = (knee.enters)(factor * at);
+                for (column, enters) in self.variant(one).columns.iter().zip((between.enters)(factor * at)) {
+                    regression.numbers[column - STANDS] = enters;
+                }
                 regression.placed(&model.solved.state)
             };
             let (more, less) = (placed(FINE), placed(FINE.recip()));
@@ -183,8 +185,8 @@ impl Bench<'_> {
     /// Whether a law that was found may as well have its other name: both have one
     /// formula, and its knee may be either's.
     pub fn may_be_its_twin(&self, law: Named, value: f64) -> bool {
-        self.knee(law).is_some_and(|knee| {
-            value > 0.0 && (EITHER[0]..=EITHER[1]).contains(&(self.variant(law).shape[0].value / knee.largest))
+        self.between(law).is_some_and(|knee| {
+            value > 0.0 && (EITHER[0]..=EITHER[1]).contains(&(self.variant(law).shape[0].value / knee.whole))
         })
     }
 }

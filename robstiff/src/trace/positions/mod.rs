@@ -8,13 +8,14 @@
 //! The way is that of displacements: a catalogue (`offers`) becomes columns
 //! (`bench`), which are tested against random signs of whole poses
 //! ([`bootstrap`](super::bootstrap)); a `search` names what is significant, predicts
-//! poses left out better, and is physical; moments of slips and knees of gears, which the
-//! catalogue has in steps, are then looked for `between` them; rows that do not belong are
+//! poses left out better, and is physical; moments of slips, knees of gears and time
+//! constants, which the catalogue has in steps, are then looked for `between` them; rows that do not belong are
 //! left out (`wild`); what remains is tested for `structure`. Effects enter the forward
 //! model itself, and are fitted in it.
 
 pub mod bench;
 mod between;
+mod drift;
 mod frames;
 mod offers;
 mod report;

@@ -72,25 +72,26 @@ pub struct Form {
     pub numbers: Vec<usize>,
     /// Numbers out of a grid.
     pub shape: Vec<EffectParameter>,
-    /// Where the one of these is a knee, what lies between those of the grid.
-    pub knee: Option<Knee>,
+    /// What the one of these may be between those of the grid, if anything.
+    pub between: Option<Between>,
 }
 
-/// The knees that a gear's law may have.
+/// What a number out of a grid may be between those of the grid: the knee of a gear's
+/// law, the time constant of what settles.
 #[derive(Clone)]
-pub struct Knee {
-    /// Those that are possible (Nm or N).
+pub struct Between {
+    /// The values that are possible.
     pub range: [f64; 2],
-    /// The largest torque (Nm or N).
-    pub largest: f64,
-    /// How the number of the law enters with another.
-    pub enters: Rc<dyn Fn(f64) -> Enters>,
+    /// What values are parts of: the largest torque, the time that the campaign took.
+    pub whole: f64,
+    /// How the numbers of the form enter with another value.
+    pub enters: Rc<dyn Fn(f64) -> Vec<Enters>>,
 }
 
 impl Form {
     /// Some numbers alone.
     pub fn of(numbers: impl IntoIterator<Item = usize>) -> Self {
-        Self { numbers: numbers.into_iter().collect(), shape: vec![], knee: None }
+        Self { numbers: numbers.into_iter().collect(), shape: vec![], between: None }
     }
 }
 
@@ -217,11 +218,12 @@ fn gears(robot: &Description, data: &Positions) -> Vec<Offer> {
         let knees: Vec<f64> = knees.iter().map(|part| part * largest).collect();
         let enters = move |knee| of_effect(name, Part::Joint(joint), 0, vec![0.0, knee], step);
         let number = |&knee: &f64| Number { name: number, unit, range, enters: enters(knee) };
-        let between = Knee { range: [NARROWEST_KNEE * largest, widest * largest], largest, enters: Rc::new(enters) };
+        let range_of_knee = [NARROWEST_KNEE * largest, widest * largest];
+        let between = Between { range: range_of_knee, whole: largest, enters: Rc::new(move |knee| vec![enters(knee)]) };
         let form = |(k, &value): (usize, &f64)| Form {
             numbers: vec![k],
             shape: vec![EffectParameter { name: "knee", value, std: None, unit: torque }],
-            knee: Some(between.clone()),
+            between: Some(between.clone()),
         };
         let place = Part::Joint(joint).into();
         let (numbers, forms) = (knees.iter().map(number).collect(), knees.iter().enumerate().map(form).collect());
@@ -289,7 +291,7 @@ fn waves(joint: usize) -> Offer {
     let form = |(k, &value): (usize, &f64)| Form {
         numbers: vec![2 * k, 2 * k + 1],
         shape: vec![EffectParameter { name: "order", value, std: None, unit: "1" }],
-        knee: None,
+        between: None,
     };
     Offer {
         kind: kind(name),

@@ -160,10 +160,10 @@ fn effects(
 ) -> Vec<NamedEffect> {
     let (bench, model) = (&found.bench, &found.model);
     let chosen = bench.chosen(&model.named);
-    // Knees come behind the numbers.
-    let knees: Vec<Named> = bench.knee_columns(model).into_iter().map(|(law, _)| law).collect();
-    let spread_of_knee = |one: Named| {
-        let at = chosen.len() + knees.iter().position(|law| *law == one)?;
+    // Numbers out of grids come behind the others.
+    let shaped: Vec<Named> = bench.shape_columns(model).into_iter().map(|(one, _)| one).collect();
+    let spread_of_shape = |one: Named| {
+        let at = chosen.len() + shaped.iter().position(|other| *other == one)?;
         spread.get((at, at)).map(|variance| variance.sqrt())
     };
     let mut named: Vec<(f64, Named, NamedEffect)> = Vec::new();
@@ -176,7 +176,7 @@ fn effects(
             let value = model.solved.fit.coefficients[STANDS + at];
             EffectParameter { name: about.name, value, std: Some(spread[(at, at)].sqrt()), unit: about.unit }
         };
-        let of_shape = form.shape.iter().map(|number| EffectParameter { std: spread_of_knee(one), ..number.clone() });
+        let of_shape = form.shape.iter().map(|number| EffectParameter { std: spread_of_shape(one), ..number.clone() });
         let parameters: Vec<EffectParameter> = form.columns.iter().map(number).chain(of_shape).collect();
         let mut rest = model.named.clone();
         rest.remove(k);
@@ -233,22 +233,22 @@ fn effects(
     named
 }
 
-/// The covariance of a model's numbers, and of the knees of its laws behind them, where
+/// The covariance of a model's numbers, and of those out of grids behind them, where
 /// the rows tell these.
 fn spread_of(bench: &Bench<'_>, model: &Model) -> DMatrix<f64> {
     let solved = &model.solved;
     let plain = || of_numbers(&covariance(&solved.problem, &solved.fit, &solved.signs));
-    let knees: Vec<DVector<f64>> = bench.knee_columns(model).into_iter().map(|(_, column)| column).collect();
-    if knees.is_empty() {
+    let shapes: Vec<DVector<f64>> = bench.shape_columns(model).into_iter().map(|(_, column)| column).collect();
+    if shapes.is_empty() {
         return plain();
     }
-    let problem = bench.with_columns(model, &DMatrix::from_columns(&knees));
-    // At the knees that leave least their columns have nothing to add.
+    let problem = bench.with_columns(model, &DMatrix::from_columns(&shapes));
+    // Where they leave least their columns have nothing to add.
     let mut fit = solved.fit.clone();
-    let (own, all) = (fit.columns.len(), fit.columns.len() + knees.len());
+    let (own, all) = (fit.columns.len(), fit.columns.len() + shapes.len());
     fit.columns.extend(own..all);
     fit.coefficients = fit.coefficients.resize_vertically(all, 0.0);
-    let signs: Vec<Sign> = solved.signs.iter().copied().chain(knees.iter().map(|_| Sign::Free)).collect();
+    let signs: Vec<Sign> = solved.signs.iter().copied().chain(shapes.iter().map(|_| Sign::Free)).collect();
     let spread = of_numbers(&covariance(&problem, &fit, &signs));
     let told = (own..all).all(|k| spread[(k - STANDS, k - STANDS)] > 0.0);
     if told { spread } else { plain() }

@@ -10,20 +10,18 @@ use robstiff_robots::effect::Place as Part;
 use robstiff_robots::{Description, Placement};
 
 use super::offers::{Form, LENGTH_STEP, Number, Offer, any, kind};
-use crate::campaign::{PositionRow, Positions};
+use crate::campaign::Positions;
 use crate::identify::positions::model::{Enters, LaterMoved, Model, Moved};
 use crate::trace::found::{EffectParameter, Place};
 
 /// A reflector is not farther off (m), nor a slip or a drift longer (m) or a slip
 /// turned more (rad).
 const FARTHEST: f64 = 0.5;
-const LONGEST: f64 = 0.1;
+pub const LONGEST: f64 = 0.1;
 const MOST_TURNED: f64 = 0.05;
 
-/// More than this is another unit and no scale; and no arm grows by more in a campaign,
-/// forty kelvin of aluminium (1).
+/// More than this is another unit and no scale (1).
 const MOST_SCALE: f64 = 0.01;
-const MOST_GROWTH: f64 = 1e-3;
 
 /// Moments at which the robot may have slipped are tried before every row, or where
 /// there are more, so many evenly; of large campaigns, few, for every moment takes memory
@@ -33,7 +31,7 @@ const MOST_MOMENTS: usize = 200;
 const ROWS_AND_MOMENTS: usize = 100_000;
 
 const POINT: [&str; 3] = ["x", "y", "z"];
-const SHIFT: [&str; 3] = ["dx", "dy", "dz"];
+pub const SHIFT: [&str; 3] = ["dx", "dy", "dz"];
 const TURN: [&str; 3] = ["rx", "ry", "rz"];
 
 /// The point that is read is elsewhere on the tool, along one of its axes or anywhere.
@@ -53,26 +51,11 @@ pub fn reflector() -> Offer {
     }
 }
 
-/// Three numbers that each move what is read along an axis of the base frame, by so
-/// much in each row.
-fn shifts(by_row: &[f64], unit: &'static str, most: f64) -> impl Iterator<Item = Number> {
-    let last = by_row.last().copied().unwrap_or_default();
-    (0..3).map(move |k| Number {
-        name: SHIFT[k],
-        unit,
-        range: [-most, most],
-        enters: Enters::Reading(Rc::new(Moved {
-            rows: by_row.iter().map(|by| Vector3::ith(k, *by)).collect(),
-            later: Box::new(move |_| Vector3::ith(k, last)),
-        })),
-    })
-}
-
 /// A unit makes lengths longer, by such a share in each row. Of what is read later the
 /// whole length is taken for one of them.
-fn longer(lengths: &[Vector3<f64>], by_row: Vec<f64>) -> Enters {
+pub fn longer(lengths: &[Vector3<f64>], by_row: &[f64]) -> Enters {
     let last = by_row.last().copied().unwrap_or_default();
-    let rows = lengths.iter().zip(by_row).map(|(length, by)| length * by).collect();
+    let rows = lengths.iter().zip(by_row).map(|(length, by)| length * *by).collect();
     Enters::Reading(Rc::new(Moved { rows, later: Box::new(move |point| point * last) }))
 }
 
@@ -82,7 +65,7 @@ pub struct Rig {
     points: Vec<Vector3<f64>>,
     middle: Vector3<f64>,
     /// From frame 0 to the flange, the arm's own lengths, in the base frame (m).
-    spans: Vec<Vector3<f64>>,
+    pub spans: Rc<[Vector3<f64>]>,
 }
 
 impl Rig {
@@ -100,7 +83,7 @@ impl Rig {
     /// All lengths are read by the same share too long. From where does not matter, for
     /// where the robot stands is fitted.
     pub fn scale(&self) -> Offer {
-        let enters = longer(&self.points, vec![1.0; self.points.len()]);
+        let enters = longer(&self.points, &vec![1.0; self.points.len()]);
         Offer {
             kind: kind("tracker_scale"),
             place: Place::Rig,
@@ -108,31 +91,6 @@ impl Rig {
             forms: vec![Form::of([0])],
             possible: any,
         }
-    }
-
-    /// What is read moves with the time or the temperature, where they are known: all of
-    /// it alike, or as an arm that grows and a tool that does not, or both.
-    pub fn drift(&self, data: &Positions) -> Option<Offer> {
-        let known = |of: fn(&PositionRow) -> Option<f64>| -> Option<Vec<f64>> {
-            let values: Vec<f64> = data.rows.iter().map(of).collect::<Option<_>>()?;
-            let first = values.iter().copied().fold(f64::INFINITY, f64::min);
-            let since: Vec<f64> = values.iter().map(|value| value - first).collect();
-            since.iter().any(|&since| since > 0.0).then_some(since)
-        };
-        let clocks = [(known(|row| row.time), ["m/s", "1/s"]), (known(|row| row.temperature), ["m/K", "1/K"])];
-        let (mut numbers, mut forms) = (Vec::new(), Vec::new());
-        for (since, [of_shift, of_growth]) in clocks {
-            let Some(since) = since else { continue };
-            let longest = since.iter().copied().fold(0.0, f64::max);
-            let first = numbers.len();
-            forms.extend([first..first + 3, first + 3..first + 4, first..first + 4].map(Form::of));
-            numbers.extend(shifts(&since, of_shift, LONGEST / longest));
-            let most = MOST_GROWTH / longest;
-            let enters = longer(&self.spans, since);
-            numbers.push(Number { name: "expansion", unit: of_growth, range: [-most, most], enters });
-        }
-        let (kind, place) = (kind("thermal_drift"), Place::Rig);
-        (!forms.is_empty()).then_some(Offer { kind, place, numbers, forms, possible: any })
     }
 
     /// How many rows the moments that are tried for a slip are apart.

@@ -1,0 +1,122 @@
+//! What is read moves while nothing is changed: with the time or the temperature, where
+//! these are known, or as something that settles; all of it alike, or as an arm that grows
+//! and a tool that does not.
+
+use std::boxed::Box;
+use std::rc::Rc;
+use std::vec;
+use std::vec::Vec;
+
+use nalgebra::Vector3;
+
+use super::offers::{Between, Form, Number, Offer, any, kind};
+use super::rig::{LONGEST, Rig, SHIFT, longer};
+use crate::campaign::{PositionRow, Positions};
+use crate::identify::positions::model::{Enters, Moved};
+use crate::trace::found::{EffectParameter, Place};
+
+/// No arm grows by more in a campaign, forty kelvin of aluminium (1).
+const MOST_GROWTH: f64 = 1e-3;
+
+/// Time constants of what settles that are tried, and the least and the most that are
+/// looked for between them, as parts of the time that the campaign took: what takes longer
+/// is a line.
+const CONSTANTS: [f64; 4] = [1.0 / 16.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0];
+const SHORTEST: f64 = 1.0 / 64.0;
+const SLOWEST: f64 = 1.0;
+
+/// What the numbers of a motion do along a course.
+type Along = Rc<dyn Fn(&[f64]) -> Vec<Enters>>;
+
+/// Something that drifts, along a course that has a number a row.
+#[derive(Clone)]
+struct Motion {
+    names: &'static [&'static str],
+    /// In all, a second, a kelvin.
+    units: [&'static str; 3],
+    /// It does not go farther.
+    most: f64,
+    along: Along,
+}
+
+impl Motion {
+    /// Everything alike.
+    fn shift() -> Self {
+        Self {
+            names: &SHIFT,
+            units: ["m", "m/s", "m/K"],
+            most: LONGEST,
+            along: Rc::new(|course| shifted(course).into()),
+        }
+    }
+
+    /// The arm, from frame 0 on.
+    fn growth(rig: &Rig) -> Self {
+        let spans = Rc::clone(&rig.spans);
+        let along = Rc::new(move |course: &[f64]| vec![longer(&spans, course)]);
+        Self { names: &["expansion"], units: ["1", "1/s", "1/K"], most: MOST_GROWTH, along }
+    }
+
+    /// Its numbers along a course, in one of the units.
+    fn numbers(&self, course: &[f64], unit: usize) -> Vec<Number> {
+        let (unit, most) = (self.units[unit], self.most / farthest(course));
+        let number = |(&name, enters)| Number { name, unit, range: [-most, most], enters };
+        self.names.iter().zip((self.along)(course)).map(number).collect()
+    }
+}
+
+impl Rig {
+    /// A drift of what is read.
+    pub fn drift(&self, data: &Positions) -> Option<Offer> {
+        let motions = [Motion::shift(), Motion::growth(self)];
+        let (mut numbers, mut forms) = (Vec::new(), Vec::new());
+        let (time, temperature) = (since_first(data, |row| row.time), since_first(data, |row| row.temperature));
+        for (unit, course) in [(1, &time), (2, &temperature)] {
+            let Some(course) = course else { continue };
+            let first = numbers.len();
+            numbers.extend(motions.iter().flat_map(|motion| motion.numbers(course, unit)));
+            forms.extend([first..first + 3, first + 3..first + 4, first..first + 4].map(Form::of));
+        }
+        for motion in motions {
+            let Some(time) = time.clone().map(Rc::<[f64]>::from) else { continue };
+            let (took, along) = (farthest(&time), Rc::clone(&motion.along));
+            let settled =
+                move |constant: f64| -> Vec<f64> { time.iter().map(|time| -(-time / constant).exp_m1()).collect() };
+            for constant in CONSTANTS.map(|part| part * took) {
+                let (first, own) = (numbers.len(), motion.numbers(&settled(constant), 0));
+                let (along, settled) = (Rc::clone(&along), settled.clone());
+                let enters = Rc::new(move |constant| along(&settled(constant)));
+                let between = Between { range: [SHORTEST * took, SLOWEST * took], whole: took, enters };
+                let shape = vec![EffectParameter { name: "constant", value: constant, std: None, unit: "s" }];
+                forms.push(Form { shape, between: Some(between), ..Form::of(first..first + own.len()) });
+                numbers.extend(own);
+            }
+        }
+        let (kind, place) = (kind("thermal_drift"), Place::Rig);
+        (!forms.is_empty()).then_some(Offer { kind, place, numbers, forms, possible: any })
+    }
+}
+
+/// How far something that all rows have went since it was least.
+fn since_first(data: &Positions, of: fn(&PositionRow) -> Option<f64>) -> Option<Vec<f64>> {
+    let values: Vec<f64> = data.rows.iter().map(of).collect::<Option<_>>()?;
+    let first = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let since: Vec<f64> = values.iter().map(|value| value - first).collect();
+    (farthest(&since) > 0.0).then_some(since)
+}
+
+/// How far a course goes.
+fn farthest(course: &[f64]) -> f64 {
+    course.iter().copied().fold(0.0, f64::max)
+}
+
+/// What is read moves along each axis of the base frame, by so much in each row.
+fn shifted(by_row: &[f64]) -> [Enters; 3] {
+    let last = by_row.last().copied().unwrap_or_default();
+    core::array::from_fn(|k| {
+        Enters::Reading(Rc::new(Moved {
+            rows: by_row.iter().map(|by| Vector3::ith(k, *by)).collect(),
+            later: Box::new(move |_| Vector3::ith(k, last)),
+        }))
+    })
+}
