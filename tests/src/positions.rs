@@ -102,7 +102,7 @@ fn effect(random: &mut ChaCha8Rng, joints: usize, payloads: bool) -> Hidden {
     let sign = if random.random() { 1.0 } else { -1.0 };
     let size = |random: &mut ChaCha8Rng, least: f64, most: f64| sign * random.random_range(least..most);
     let joint = random.random_range(2..=joints);
-    match random.random_range(0..if payloads { 13 } else { 9 }) {
+    match random.random_range(0..if payloads { 14 } else { 9 }) {
         0 => Hidden::JointZeroOffset { joint, offset: size(random, 3e-4, 5e-3) },
         1 => Hidden::DhError { of: DhColumn::A, row: random.random_range(1..=joints), by: size(random, 1e-4, 2e-3) },
         2 => Hidden::DhError { of: DhColumn::D, row: joint, by: size(random, 1e-4, 2e-3) },
@@ -133,6 +133,7 @@ fn effect(random: &mut ChaCha8Rng, joints: usize, payloads: bool) -> Hidden {
             let (gap, knee) = (random.random_range(1e-4..4e-4), random.random_range(20.0..150.0));
             Hidden::LostMotion { joint, gap, knee }
         }
+        12 => Hidden::LeverArm(std::array::from_fn(|_| random.random_range(-0.2..0.2))),
         _ => {
             let (once, change) = (random.random::<bool>(), size(random, 0.1, 0.3));
             let (sin, cos) = random.random_range(0.0..PI).sin_cos();
@@ -199,6 +200,11 @@ fn numbers(trace: &Trace, hidden: &[Hidden]) -> [usize; 2] {
         let Some(named) = trace.effects.iter().find(|named| named.effect.to_string() == hidden.name()) else {
             continue;
         };
+        // A simpler form has taken up the rest.
+        let of_truth = hidden.parameters().iter().filter(|(_, truth)| *truth != 0.0).count();
+        if named.parameters.iter().filter(|number| number.std.is_some()).count() < of_truth {
+            continue;
+        }
         for (name, truth) in hidden.parameters() {
             let spelt = |told: &str| told == name || (told == "offset" && name == "value");
             let told = named.parameters.iter().find(|number| spelt(number.name));

@@ -119,6 +119,24 @@ fn payloads_show_what_yields() {
     }
 }
 
+/// A weight that hangs elsewhere than the file says is the rig's, and stays there.
+#[test]
+fn where_a_payload_hangs_is_named_and_not_written() {
+    let off = [0.15, 0.0, 0.1];
+    let found = assert_named("lever_arm@rig", 980, |positions, _| {
+        positions.payloads = PAYLOADS.to_vec();
+        positions.hidden = vec![Hidden::LeverArm(off)];
+    });
+    for (_, trace) in found {
+        assert!(trace.description.effects.is_empty());
+        for (axis, truth) in ["x", "y", "z"].into_iter().zip(off) {
+            let number = trace.effects[0].parameters.iter().find(|number| number.name == axis);
+            let Some((value, std)) = number.and_then(|number| Some((number.value, number.std?))) else { continue };
+            assert!((value - truth).abs() < 4.0 * std, "{axis}: {value} +- {std}");
+        }
+    }
+}
+
 /// The law of a gear is named once, by a knee that is fitted: what a knee is off by is
 /// no other law.
 #[test]
@@ -175,6 +193,9 @@ fn faults_of_the_rig_are_named_and_not_written() {
     });
     let warmer = Hidden::Expansion { rate: 4e-5, follows: Follows::Temperature };
     let grows = assert_named("thermal_drift@rig", 920, |positions, _| positions.hidden = vec![warmer.clone()]);
+    let knocked = assert_named("reflector_slip@rig", 960, |positions, _| {
+        positions.hidden = vec![Hidden::Outside(Outside::MarkerSlip { shift: [2e-4, -2e-4, 1e-4], when: 0.4 })];
+    });
     let (rate, follows) = ([3e-4, 0.0, -2e-4], Follows::Settling(700.0));
     let settles = assert_named("thermal_drift@rig", 940, |positions, _| {
         positions.hidden = vec![Hidden::ThermalDrift { rate, follows }];
@@ -182,7 +203,9 @@ fn faults_of_the_rig_are_named_and_not_written() {
     let wild = assert_named("outliers@rig", 740, |positions, _| {
         positions.wild = vec![(7, [0.0, 1e-3, 0.0]), (31, [-2e-3, 0.0, 5e-4])];
     });
-    for (_, trace) in slips.iter().chain(&moved).chain(&scaled).chain(&grows).chain(&settles).chain(&wild) {
+    for (_, trace) in
+        slips.iter().chain(&moved).chain(&scaled).chain(&grows).chain(&settles).chain(&knocked).chain(&wild)
+    {
         assert!(trace.description.effects.is_empty());
     }
     for (_, trace) in &grows {
@@ -190,6 +213,10 @@ fn faults_of_the_rig_are_named_and_not_written() {
         let number = &trace.effects[0].parameters[0];
         let off = if number.unit == "1/K" { number.value - 4e-5 } else { 0.0 };
         assert!(number.name == "expansion" && off.abs() < 4.0 * number.std.expect("a fitted number"), "{number:?}");
+    }
+    for (_, trace) in &knocked {
+        // Of 60 rows behind a header.
+        assert_eq!(trace.effects[0].effect.value("line"), 26.0);
     }
     for (_, trace) in &settles {
         let constant = trace.effects[0].parameters.iter().find(|number| number.name == "constant");

@@ -89,7 +89,7 @@ fn of_kinds(contest: &Contest) -> Vec<&'static str> {
     if is(&["hysteresis"]) {
         found.push("loading and unloading in steps at every pose");
     }
-    if is(&["thermal_drift", "creep", "base_slip"]) {
+    if is(&["thermal_drift", "creep", "base_slip", "reflector_slip"]) {
         found.push("a look at the unloaded arm between loads, and poses in random order");
     }
     found

@@ -15,7 +15,7 @@ const SUGGESTIVE: f64 = 0.05;
 
 /// Kinds that depend on when something is measured, not on pose and load: what
 /// to propose for them is not computed.
-const OF_TIME: [&str; 4] = ["thermal_drift", "creep", "base_slip", "outliers"];
+const OF_TIME: [&str; 5] = ["thermal_drift", "creep", "base_slip", "reflector_slip", "outliers"];
 
 /// The rivals with their columns, among the numbers that planning looks at.
 #[derive(Clone, Debug)]

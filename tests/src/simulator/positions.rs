@@ -11,7 +11,7 @@ use super::arm::GRAVITY;
 use super::frame::Frame;
 use super::noise::{Stream, normal};
 use super::rig::Rig;
-use super::{Arm, Hidden};
+use super::{Arm, Hidden, Outside};
 
 /// How long a row takes (s).
 const A_ROW: f64 = 60.0;
@@ -22,7 +22,7 @@ pub struct Positions {
     /// The arm as it is.
     pub truth: Description,
     /// What else there is of the arm; of the rig `BaseSlip`, `TrackerScale`, `Expansion`,
-    /// `ThermalDrift`, and what the fields below say.
+    /// `ThermalDrift`, `MarkerSlip`, and what the fields below say.
     pub hidden: Vec<Hidden>,
     /// How many poses, and how often the arm comes to each.
     pub poses: [usize; 2],
@@ -96,10 +96,14 @@ impl Positions {
                 let tool = Frame::turned(settled.rotation.into()).turn * posed.tool();
                 let tcp = Vector3::from(posed.tcp()) + Vector3::from(settled.displacement);
                 let mut at = tcp + tool * Vector3::from(self.reflector) + comes_to;
+                let is_after = |when: f64| row as f64 >= when * rows as f64;
                 for hidden in &self.hidden {
                     match hidden {
-                        Hidden::BaseSlip { shift, turn, when } if row as f64 >= when * rows as f64 => {
+                        Hidden::BaseSlip { shift, turn, when } if is_after(*when) => {
                             at = Frame::turned((*turn).into()).turn * at + Vector3::from(*shift);
+                        }
+                        Hidden::Outside(Outside::MarkerSlip { shift, when }) if is_after(*when) => {
+                            at += tool * Vector3::from(*shift);
                         }
                         Hidden::ThermalDrift { rate, follows } => {
                             at += Vector3::from(*rate) * hall.drift(*follows, time);

@@ -4,7 +4,7 @@ use std::boxed::Box;
 use std::rc::Rc;
 use std::vec::Vec;
 
-use nalgebra::{Matrix4, SVector, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix4, SVector, Vector3, Vector6};
 use robstiff_robots::Description;
 use robstiff_robots::effect::gravity_sag::GRAVITY;
 
@@ -20,6 +20,8 @@ pub struct Model {
     pub description: Description,
     /// The point that is read, in the tool frame (m).
     pub marker: Vector3<f64>,
+    /// Where the payload hangs, in the tool frame (m).
+    pub hook: Vector3<f64>,
 }
 
 /// Changes a model by so much of a number.
@@ -39,56 +41,71 @@ pub enum Enters {
 pub struct Moved {
     /// Row by row.
     pub rows: Vec<Vector3<f64>>,
-    /// What is read after all of them, by the point that is read (m).
+    /// What is read after all of them.
     pub later: LaterMoved,
 }
 
-/// How far what is read is moved, by the point that is read (m).
-pub type LaterMoved = Box<dyn Fn(&Vector3<f64>) -> Vector3<f64>>;
+/// How far what is read is moved (m), by where the arm has it.
+pub type LaterMoved = Box<dyn Fn(&Seen) -> Vector3<f64>>;
+
+/// What is read, as the arm has it, in the base frame.
+pub struct Seen {
+    /// The point that is read (m).
+    pub point: Vector3<f64>,
+    /// The tool's axes.
+    pub tool: Matrix3<f64>,
+}
 
 impl Model {
-    /// A description as it is, and the point as the campaign says.
+    /// A description as it is, and the points as the campaign says.
     pub fn new(description: &Description, data: &Positions) -> Self {
-        Self { description: description.clone(), marker: data.measured_at.into() }
+        Self { description: description.clone(), marker: data.measured_at.into(), hook: data.payload_at.into() }
     }
 
     /// The point at each row, in the base frame (m). The payload's weight, against z
     /// of the base frame, takes it where the arm carries it ([`deformed`]); the arm's
     /// own weight does so where the description says so (`gravity_sag`).
     pub fn points(&self, data: &Positions) -> Vec<Vector3<f64>> {
-        with_robot!(&self.description, |robot| points(&robot, data, &self.marker))
+        self.seen(data).into_iter().map(|seen| seen.point).collect()
+    }
+
+    /// The same with the tool's axes.
+    pub fn seen(&self, data: &Positions) -> Vec<Seen> {
+        with_robot!(&self.description, |robot| self.seen_on(&robot, data))
+    }
+
+    fn seen_on<const N: usize>(&self, robot: &impl Robot<N>, data: &Positions) -> Vec<Seen> {
+        let seen = |row: &PositionRow| {
+            let q = SVector::<f64, N>::from_column_slice(&row.q);
+            let tcp = match row.payload {
+                0.0 => robot.transform(&q),
+                _ => deformed(robot, &q, |tcp| self.weight(tcp, row), &mut crate::State::new()).tcp,
+            };
+            let tool = tcp.fixed_view::<3, 3>(0, 0).into_owned();
+            Seen { point: tcp.transform_point(&self.marker.into()).coords, tool }
+        };
+        data.rows.iter().map(seen).collect()
     }
 
     /// What the payload loads each joint with, row by row (Nm or N).
     pub fn torques(&self, data: &Positions) -> Vec<Vec<f64>> {
-        fn of<const N: usize>(robot: &impl Robot<N>, data: &Positions) -> Vec<Vec<f64>> {
-            let torques = |row: &PositionRow| {
-                let q = SVector::<f64, N>::from_column_slice(&row.q);
-                robot.joint_torques(&q, &weight(&robot.transform(&q), row, data)).iter().copied().collect()
-            };
-            data.rows.iter().map(torques).collect()
-        }
-        with_robot!(&self.description, |robot| of(&robot, data))
+        with_robot!(&self.description, |robot| self.torques_on(&robot, data))
     }
-}
 
-fn points<const N: usize>(robot: &impl Robot<N>, data: &Positions, marker: &Vector3<f64>) -> Vec<Vector3<f64>> {
-    let point = |row: &PositionRow| {
-        let q = SVector::<f64, N>::from_column_slice(&row.q);
-        let tcp = match row.payload {
-            0.0 => robot.transform(&q),
-            _ => deformed(robot, &q, |tcp| weight(tcp, row, data), &mut crate::State::new()).tcp,
+    fn torques_on<const N: usize>(&self, robot: &impl Robot<N>, data: &Positions) -> Vec<Vec<f64>> {
+        let torques = |row: &PositionRow| {
+            let q = SVector::<f64, N>::from_column_slice(&row.q);
+            robot.joint_torques(&q, &self.weight(&robot.transform(&q), row)).iter().copied().collect()
         };
-        tcp.transform_point(&(*marker).into()).coords
-    };
-    data.rows.iter().map(point).collect()
-}
+        data.rows.iter().map(torques).collect()
+    }
 
-/// The wrench of a payload at the TCP, in the base frame (N, Nm).
-fn weight(tcp: &Matrix4<f64>, row: &PositionRow, data: &Positions) -> Vector6<f64> {
-    let force = Vector3::new(0.0, 0.0, -GRAVITY * row.payload);
-    let moment = (tcp.fixed_view::<3, 3>(0, 0) * Vector3::from(data.payload_at)).cross(&force);
-    Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z)
+    /// The wrench of a payload at the TCP, in the base frame (N, Nm).
+    fn weight(&self, tcp: &Matrix4<f64>, row: &PositionRow) -> Vector6<f64> {
+        let force = Vector3::new(0.0, 0.0, -GRAVITY * row.payload);
+        let moment = (tcp.fixed_view::<3, 3>(0, 0) * self.hook).cross(&force);
+        Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z)
+    }
 }
 
 /// Numbers of a model with their values, and where the robot stands in the frame

@@ -91,12 +91,12 @@ impl<'c> Adapter<'c> {
     /// visits' rows, and what a unit of each number does to it, stacked.
     fn columns(&self, visits: &[Visit], aside: Vector3<f64>) -> (Vec<Vector3<f64>>, DMatrix<f64>) {
         let data = self.rows(visits);
-        let points = Model::new(&self.campaign.robot, &data).points(&data);
+        let seen = Model::new(&self.campaign.robot, &data).seen(&data);
         let later = |number: &Enters| match number {
             Enters::Model(..) => number.clone(),
             // The campaign is over: a drift is where it was, a slip has happened.
             Enters::Reading(moved) => Enters::Reading(Rc::new(Moved {
-                rows: points.iter().map(|point| (moved.later)(point)).collect(),
+                rows: seen.iter().map(|seen| (moved.later)(seen)).collect(),
                 later: Box::new(|_| Vector3::zeros()),
             })),
         };

@@ -8,8 +8,8 @@ pub static KIND: Kind = Kind {
     name: "lever_arm",
     of_rig: true,
     words: |_| "a load that acts elsewhere on the tool than the file says".into(),
-    explanation: "The cable or the stinger holds the tool at another point than the file says. Measure that point in \
-        the tool frame, and enter it as where the wrench acts.",
+    explanation: "The cable, the stinger or the weight holds the tool at another point than the file says. Measure \
+        that point in the tool frame, and enter it as where the wrench acts.",
     offer,
     on_axes: None,
 };

@@ -32,6 +32,7 @@ mod offers;
 mod outliers;
 mod pose_dependent_compliance;
 mod reflector_offset;
+mod reflector_slip;
 mod stiffness_nonlinearity;
 mod thermal_drift;
 mod tool_compliance;
@@ -121,7 +122,7 @@ impl core::fmt::Debug for Kind {
 
 /// Every kind, in the order of precedence among exact aliases. What is wrong
 /// with single rows (`outliers`) has no columns: it is found row by row.
-pub static KINDS: [&Kind; 24] = [
+pub static KINDS: [&Kind; 25] = [
     &thermal_drift::KIND,
     &creep::KIND,
     &load_cell_bias::KIND,
@@ -131,6 +132,7 @@ pub static KINDS: [&Kind; 24] = [
     &tracker_misalignment::KIND,
     &tracker_scale::KIND,
     &reflector_offset::KIND,
+    &reflector_slip::KIND,
     &outliers::KIND,
     &base_slip::KIND,
     &tool_compliance::KIND,

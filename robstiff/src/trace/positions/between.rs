@@ -11,7 +11,7 @@ use nalgebra::DVector;
 
 use super::bench::{Bench, Model, TIE};
 use super::offers::Between;
-use super::rig::{SLIP, SLIPPED_AT, line};
+use super::slips::{SLIPPED_AT, is_slip, line};
 use crate::identify::positions::regression::STANDS;
 use crate::trace::catalogue::{EITHER, Variant};
 use crate::trace::found::Found;
@@ -42,7 +42,7 @@ impl Bench<'_> {
         let forms = self.candidates[candidate].variants.iter().enumerate().filter(|(_, form)| has(form));
         let (variant, _) = forms.min_by(|(_, a), (_, b)| off(a).total_cmp(&off(b)))?;
         let named = Named { candidate, variant };
-        if found.kind() == SLIP {
+        if is_slip(found.kind()) {
             let line = of(SLIPPED_AT)?;
             let moment = self.prepared.data.rows.iter().position(|row| row.line as f64 == line)?;
             self.move_slip(named, moment);
@@ -54,11 +54,16 @@ impl Bench<'_> {
         Some(named)
     }
 
-    /// The model with a slip that it names at the moment between those tried which
-    /// leaves least, by halving ever smaller steps.
-    pub fn at_its_moment(&mut self, model: Model) -> Model {
-        let is_slip = |one: &&Named| self.candidates[one.candidate].kind.name == SLIP;
-        let Some(&slip) = model.named.iter().find(is_slip) else { return model };
+    /// The model with slips that it names at the moments between those tried which leave
+    /// least.
+    pub fn at_its_moments(&mut self, model: Model) -> Model {
+        let is_slip = |one: &Named| is_slip(self.candidates[one.candidate].kind.name);
+        let slips: Vec<Named> = model.named.iter().copied().filter(is_slip).collect();
+        slips.into_iter().fold(model, |model, slip| self.at_its_moment(model, slip))
+    }
+
+    /// The same of one slip, by halving ever smaller steps.
+    fn at_its_moment(&mut self, model: Model, slip: Named) -> Model {
         let (rows, tried) = (&self.prepared.data.rows, self.variant(slip).shape[0].value);
         let count = rows.len();
         let Some(mut at) = rows.iter().position(|row| row.line as f64 == tried) else { return model };
@@ -82,7 +87,8 @@ impl Bench<'_> {
     /// Moves a slip to another moment, in all its forms.
     fn move_slip(&mut self, slip: Named, moment: usize) {
         let (own, first) = (self.prepared.own.len(), self.variant(slip).columns[0]);
-        for (number, enters) in (first - STANDS..).zip(self.rig.at_row(moment)) {
+        let slipped = self.rig.slipped(self.candidates[slip.candidate].kind.name, moment);
+        for (number, enters) in (first - STANDS..).zip(slipped) {
             self.numbers[number - own].enters = enters.clone();
             self.regression.numbers[number] = enters;
         }

@@ -21,6 +21,7 @@ mod offers;
 mod report;
 mod rig;
 mod search;
+mod slips;
 mod structure;
 #[cfg(test)]
 mod tests;

@@ -14,7 +14,7 @@ use robstiff_robots::Description;
 use robstiff_robots::effect::Place as Part;
 
 use super::frames::frames;
-use super::rig::{Rig, reflector};
+use super::rig::{Rig, lever_arm, reflector};
 use crate::campaign::{Campaign, Positions};
 use crate::identify::normal::Sign;
 use crate::identify::positions::COMPLIANCE_STEP;
@@ -120,11 +120,14 @@ pub fn offers(campaign: &Campaign, data: &Positions, rig: &Rig) -> Vec<Offer> {
     let joints = 1..=robot.joints.len();
     let turns = |joint: &usize| robot.joints[joint - 1].kind == JointKind::Revolute;
     let mut all = vec![];
+    let loaded = data.rows.iter().any(|row| row.payload > 0.0);
     all.extend(rig.drift(data));
+    all.extend(loaded.then(lever_arm));
     all.push(rig.scale());
     all.push(reflector());
-    all.extend(rig.slip(data));
-    if data.rows.iter().any(|row| row.payload > 0.0) {
+    all.extend(rig.slip_of_reflector(data));
+    all.extend(rig.slip_of_base(data));
+    if loaded {
         all.push(springs("tool_compliance", Part::Tool, &[("rotation", "rad/Nm"), ("translation", "m/N")]));
         all.push(springs("base_compliance", Part::Base, &[("tilt", "rad/Nm"), ("translation", "m/N")]));
         all.extend(

@@ -149,7 +149,7 @@ impl Course {
             bench.turn_to(&better);
             better = sideways(bench, better, &reference, options);
             better = without_superfluous(bench, better, &reference, options);
-            better = bench.at_its_moment(better);
+            better = bench.at_its_moments(better);
             better = bench.reshaped(better);
             let names: Vec<String> = better.named.iter().map(|one| bench.candidates[one.candidate].name()).collect();
             step.came_to(&names);
