@@ -29,7 +29,6 @@ const SLOWEST: f64 = 1.0;
 type Along = Rc<dyn Fn(&[f64]) -> Vec<Enters>>;
 
 /// Something that drifts, along a course that has a number a row.
-#[derive(Clone)]
 struct Motion {
     names: &'static [&'static str],
     /// In all, a second, a kelvin.
@@ -63,6 +62,24 @@ impl Motion {
         let number = |(&name, enters)| Number { name, unit, range: [-most, most], enters };
         self.names.iter().zip((self.along)(course)).map(number).collect()
     }
+
+    /// Adds that it settles, `1 - exp(-time / constant)`.
+    fn settles(&self, time: &Rc<[f64]>, numbers: &mut Vec<Number>, forms: &mut Vec<Form>) {
+        let took = farthest(time);
+        let time = Rc::clone(time);
+        let settled = Rc::new(move |constant: f64| -> Vec<f64> {
+            time.iter().map(|time| -(-time / constant).exp_m1()).collect()
+        });
+        for constant in CONSTANTS.map(|part| part * took) {
+            let (first, own) = (numbers.len(), self.numbers(&settled(constant), 0));
+            let (along, settled) = (Rc::clone(&self.along), Rc::clone(&settled));
+            let enters = Rc::new(move |constant| along(&settled(constant)));
+            let between = Between { range: [SHORTEST * took, SLOWEST * took], whole: took, enters };
+            let shape = vec![EffectParameter { name: "constant", value: constant, std: None, unit: "s" }];
+            forms.push(Form { shape, between: Some(between), ..Form::of(first..first + own.len()) });
+            numbers.extend(own);
+        }
+    }
 }
 
 impl Rig {
@@ -70,35 +87,23 @@ impl Rig {
     pub fn drift(&self, data: &Positions) -> Option<Offer> {
         let motions = [Motion::shift(), Motion::growth(self)];
         let (mut numbers, mut forms) = (Vec::new(), Vec::new());
-        let (time, temperature) = (since_first(data, |row| row.time), since_first(data, |row| row.temperature));
+        let (time, temperature) = (above_least(data, |row| row.time), above_least(data, |row| row.temperature));
         for (unit, course) in [(1, &time), (2, &temperature)] {
             let Some(course) = course else { continue };
             let first = numbers.len();
             numbers.extend(motions.iter().flat_map(|motion| motion.numbers(course, unit)));
             forms.extend([first..first + 3, first + 3..first + 4, first..first + 4].map(Form::of));
         }
-        for motion in motions {
-            let Some(time) = time.clone().map(Rc::<[f64]>::from) else { continue };
-            let (took, along) = (farthest(&time), Rc::clone(&motion.along));
-            let settled =
-                move |constant: f64| -> Vec<f64> { time.iter().map(|time| -(-time / constant).exp_m1()).collect() };
-            for constant in CONSTANTS.map(|part| part * took) {
-                let (first, own) = (numbers.len(), motion.numbers(&settled(constant), 0));
-                let (along, settled) = (Rc::clone(&along), settled.clone());
-                let enters = Rc::new(move |constant| along(&settled(constant)));
-                let between = Between { range: [SHORTEST * took, SLOWEST * took], whole: took, enters };
-                let shape = vec![EffectParameter { name: "constant", value: constant, std: None, unit: "s" }];
-                forms.push(Form { shape, between: Some(between), ..Form::of(first..first + own.len()) });
-                numbers.extend(own);
-            }
+        if let Some(time) = time.map(Rc::<[f64]>::from) {
+            motions.iter().for_each(|motion| motion.settles(&time, &mut numbers, &mut forms));
         }
         let (kind, place) = (kind("thermal_drift"), Place::Rig);
         (!forms.is_empty()).then_some(Offer { kind, place, numbers, forms, possible: any })
     }
 }
 
-/// How far something that all rows have went since it was least.
-fn since_first(data: &Positions, of: fn(&PositionRow) -> Option<f64>) -> Option<Vec<f64>> {
+/// By how much something that all rows know is more than the least of it, if it changes.
+fn above_least(data: &Positions, of: fn(&PositionRow) -> Option<f64>) -> Option<Vec<f64>> {
     let values: Vec<f64> = data.rows.iter().map(of).collect::<Option<_>>()?;
     let first = values.iter().copied().fold(f64::INFINITY, f64::min);
     let since: Vec<f64> = values.iter().map(|value| value - first).collect();

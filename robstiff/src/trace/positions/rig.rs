@@ -17,13 +17,16 @@ use crate::trace::found::Place;
 /// goes in proportion.
 const LEVER_STEP: f64 = 1e-2;
 
-/// Neither a reflector nor a payload is farther off, nor a slip or a drift longer (m).
+/// Neither a reflector nor a payload is farther off (m).
 const FARTHEST: f64 = 0.5;
+
+/// No slip or drift is longer (m).
 pub const LONGEST: f64 = 0.1;
 
 /// More than this is another unit and no scale (1).
 const MOST_SCALE: f64 = 0.01;
 
+/// The numbers of a point on the tool, and of a shift in the base frame.
 pub const POINT: [&str; 3] = ["x", "y", "z"];
 pub const SHIFT: [&str; 3] = ["dx", "dy", "dz"];
 
