@@ -1,0 +1,89 @@
+//! What the contrasts of a campaign say of its noise, where so much is free at each pose.
+
+use std::vec::Vec;
+
+use super::contrasts::{Chunk, Level};
+use super::outliers::{self, Outlier};
+use super::reml::{Share, count, profile, share, sums};
+use super::tails::{self, Tails};
+use super::{FEWEST, NOISELESS, WILD};
+use crate::probability::{chi_square_tail, fisher_tail};
+
+/// What contrasts say.
+pub struct Estimated {
+    /// How much is free.
+    pub level: Level,
+    /// The contrasts.
+    pub chunks: Vec<Chunk>,
+    axes: usize,
+    /// `lambda`.
+    pub shared: f64,
+    /// What is known of it.
+    pub share: Option<Share>,
+    /// The variance of each axis (m^2, rad^2).
+    pub variances: Vec<f64>,
+}
+
+impl Estimated {
+    /// `None` where there are too few contrasts.
+    pub fn at(level: Level, chunks: Vec<Chunk>, axes: usize) -> Option<Self> {
+        if count(&chunks) < FEWEST {
+            return None;
+        }
+        let share = share(&chunks, axes);
+        let single = chunks.iter().all(|chunk| chunk.shares.iter().all(|share| (share - 1.0).abs() < 1e-6));
+        let shared = match share {
+            // Neither no unloaded reading in common nor a whole one is ruled out.
+            Some(Share { interval: [from, to], .. }) if from == 0.0 && to >= 1.0 => 1.0,
+            Some(share) => share.value.min(1.0),
+            // Every row has its own: what is shared and what is not are one.
+            None if single => 0.0,
+            None => 1.0,
+        };
+        let variances = profile(&chunks, axes, shared).variances;
+        if variances[..3].iter().all(|variance| *variance < NOISELESS * NOISELESS) {
+            return None;
+        }
+        Some(Self { level, chunks, axes, shared, share, variances })
+    }
+
+    /// The probability of contrasts as much larger than those with more freed,
+    /// were they noise alike.
+    pub fn hides_structure(&self, freer: &Self) -> Option<f64> {
+        let (all, few) = (count(&self.chunks), count(&freer.chunks));
+        let between = (all.checked_sub(few).filter(|&more| more > 0)? * self.axes) as f64;
+        let within = (few * self.axes) as f64;
+        // An uncertain share is no evidence against the fewer.
+        let shared = self.share.map_or(self.shared, |share| share.interval[1].min(1.0));
+        let (all, few) = (sums(&self.chunks, self.axes, shared), sums(&freer.chunks, self.axes, shared));
+        let ratio: f64 =
+            all.iter().zip(&few).map(|(all, few)| (all - few).max(0.0) / few).sum::<f64>() / self.axes as f64;
+        fisher_tail(ratio * within / between, [between, within])
+    }
+
+    /// The readings that are wild.
+    pub fn wild(&self) -> Vec<Outlier> {
+        if self.variances.iter().any(|&variance| variance <= 0.0) {
+            return Vec::new();
+        }
+        outliers::find(&self.chunks, self.axes, self.shared, &self.variances, WILD)
+    }
+
+    /// The tails of what is left.
+    pub fn tails(&self) -> Option<Tails> {
+        tails::tails(&self.chunks, self.axes, self.shared, &self.variances)
+    }
+}
+
+/// Bartlett's test (Proceedings of the Royal Society A 160, 1937) of equal
+/// variances with as many degrees of freedom each.
+pub fn bartlett(variances: &[f64], freedom: f64) -> Option<f64> {
+    let count = variances.len() as f64;
+    let mean = variances.iter().sum::<f64>() / count;
+    if variances.iter().any(|&variance| variance <= 0.0) || freedom <= 0.0 {
+        return None;
+    }
+    let statistic = freedom * variances.iter().map(|variance| (mean / variance).ln()).sum::<f64>();
+    let correction = 1.0 + (count + 1.0) / (3.0 * count * freedom);
+    chi_square_tail(statistic / correction, count - 1.0)
+}
