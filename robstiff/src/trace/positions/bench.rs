@@ -205,6 +205,20 @@ impl<'c> Bench<'c> {
         found
     }
 
+    /// Every model with one effect in another of its forms.
+    pub fn reformed(&self, named: &[Named]) -> Vec<Proposed> {
+        let others = |k: usize| {
+            let Named { candidate, variant } = named[k];
+            let forms = (0..self.candidates[candidate].variants.len()).filter(move |other| *other != variant);
+            forms.filter_map(move |variant| {
+                let mut named = named.to_vec();
+                named[k] = Named { candidate, variant };
+                self.proposed(named)
+            })
+        };
+        (0..named.len()).flat_map(others).collect()
+    }
+
     /// A model without the effects that are not worth their numbers.
     pub fn pruned(&self, mut model: Proposed) -> Proposed {
         loop {

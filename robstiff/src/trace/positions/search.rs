@@ -30,8 +30,8 @@ const REFITTED: usize = 6;
 /// How many of the best are extended where none of them passes alone.
 const EXTENDED: usize = 8;
 
-/// How many of the best with one effect replaced are tried without what is superfluous
-/// then.
+/// How many of the best with one effect replaced, or in another form, are tried without
+/// what is superfluous then.
 const REPLACED: usize = 24;
 
 /// A model that is better by this is worth another look: odds of e to one.
@@ -267,13 +267,16 @@ fn passes(bench: &Bench<'_>, smaller: &Model, better: &Model, options: &Options)
         && new.map(|k| bench.p_value(&better.named, k, options)).all(|p| p <= options.alpha)
 }
 
-/// The model that is better with one effect replaced, and without what that makes
-/// superfluous, where there is one whose effects are all significant.
+/// The model that is better with one effect replaced, or in another form, and without
+/// what that makes superfluous, where there is one whose effects are all significant.
 fn sideways(bench: &Bench<'_>, model: Model, reference: &Reference, options: &Options) -> Model {
     // An effect the less is worth no more than what its number costs.
     let worth = (model.solved.problem.total.rows as f64).ln() * model.named.len() as f64;
-    let near = bench.replaced(&model.named).into_iter().take_while(|(_, other)| other.bic < model.bic + worth);
-    let mut proposals: Vec<Proposed> = near.take(REPLACED).map(|(_, other)| bench.pruned(other)).collect();
+    let mut proposals = bench.reformed(&model.named);
+    proposals.extend(bench.replaced(&model.named).into_iter().map(|(_, other)| other));
+    proposals.retain(|other| other.bic < model.bic + worth);
+    proposals.sort_by(|a, b| a.bic.total_cmp(&b.bic));
+    let mut proposals: Vec<Proposed> = proposals.into_iter().take(REPLACED).map(|other| bench.pruned(other)).collect();
     proposals.retain(|other| other.bic < model.bic);
     proposals.sort_by(|a, b| a.bic.total_cmp(&b.bic));
     proposals.dedup_by(|a, b| a.named == b.named);
