@@ -9,27 +9,49 @@
 //! Held-out poses judge and choose nothing: the test comes after the search.
 
 use std::borrow::ToOwned;
+use std::string::String;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::Options;
-use super::lack_of_fit::{StructureTest, draws};
+use super::lack_of_fit::{LackOfFit, StructureTest, draws};
 use super::model::{Fitted, Setting};
-use crate::identify::normal::{Normal, Scaled, Sign};
-use crate::identify::problem::Block;
+use super::{Options, Verdict, verdict};
+use crate::identify::normal::{Fit, Normal, Scaled, Sign};
+use crate::identify::problem::{Block, Problem};
 use crate::probability::fisher_tail;
 
-/// Asks the poses held out; `None` where there are none.
-pub fn predicted(setting: &Setting<'_>, model: &Fitted, options: &Options) -> Option<StructureTest> {
-    if setting.problem.held_out.is_empty() {
+/// Asks the poses held out of displacements; `None` where there are none.
+pub fn of_displacements(setting: &Setting<'_>, model: &Fitted, options: &Options) -> Option<StructureTest> {
+    let (problem, fit) = setting.alone(&model.fit);
+    let signs: Vec<Sign> = model.fit.columns.iter().map(|&column| setting.signs[column]).collect();
+    predicted(&problem, &fit, &signs, options)
+}
+
+/// What a test of poses held out makes of a verdict, if anything; it shares its level with
+/// those of what is left, among which it is told.
+pub fn judged(
+    test: StructureTest,
+    verdict: Verdict,
+    left: &mut LackOfFit,
+    options: &Options,
+) -> Option<(Verdict, String)> {
+    let level = options.alpha / (left.tests.len() + 1) as f64;
+    let missed = (test.p_value <= level).then(|| verdict::missed(verdict, &test)).flatten();
+    left.structure |= missed.is_some();
+    left.tests.push(test);
+    missed
+}
+
+/// Asks the poses held out of a problem that has the columns of a fit and no others;
+/// `None` where there are none.
+pub fn predicted(problem: &Problem, fit: &Fit, signs: &[Sign], options: &Options) -> Option<StructureTest> {
+    if problem.held_out.is_empty() {
         return None;
     }
-    let (problem, fit) = setting.alone(&model.fit);
     // What is held at zero has no error.
-    let signs: Vec<Sign> = model.fit.columns.iter().map(|&column| setting.signs[column]).collect();
     let is_free = |&k: &usize| !(signs[k] == Sign::Nonnegative && fit.coefficients[k] == 0.0);
     let free: Vec<usize> = (0..fit.columns.len()).filter(is_free).collect();
     let left = |block: &Block| {
@@ -41,8 +63,8 @@ pub fn predicted(setting: &Setting<'_>, model: &Fitted, options: &Options) -> Op
     let held_out: Vec<Normal> = problem.held_out.iter().map(left).collect();
     let together = beyond(&total, &Normal::sum(held_out.iter().cloned())?)?;
     let readings: usize = held_out.iter().map(|block| block.rows).sum();
-    let freedom = problem.freedom(&model.fit);
-    let statistic = together / readings as f64 / (model.fit.rss / freedom);
+    let freedom = problem.freedom(fit);
+    let statistic = together / readings as f64 / (fit.rss / freedom);
     let by_normal = fisher_tail(statistic, [readings as f64, freedom])?;
 
     // Of each pose fitted to by the fit without it, `r^T (I - H)^-1 r`, a reading.

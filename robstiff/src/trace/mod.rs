@@ -326,13 +326,9 @@ impl Outcome {
     fn judge_by_held_out(&mut self, bench: &Bench<'_>, options: &Options) -> Result<(), String> {
         let Some(left) = &mut self.left else { return Ok(()) };
         let setting = bench.at(&self.selection.model.named)?;
-        let Some(test) = held_out::predicted(&setting, &self.selection.model, options) else { return Ok(()) };
-        let level = options.alpha / (left.tests.len() + 1) as f64;
-        let missed = (test.p_value <= level).then(|| verdict::missed(self.verdict, &test)).flatten();
-        left.tests.push(test);
-        if let Some(judged) = missed {
+        let test = held_out::of_displacements(&setting, &self.selection.model, options);
+        if let Some(judged) = test.and_then(|test| held_out::judged(test, self.verdict, left, options)) {
             (self.verdict, self.why) = judged;
-            left.structure = true;
         }
         Ok(())
     }

@@ -29,9 +29,10 @@ pub fn headline(trace: &Trace) -> String {
     match trace.verdict {
         Verdict::Adequate => format!("Nothing is missing: identified joints predict unseen poses to {after} um"),
         Verdict::Explained | Verdict::Partial => format!(
-            "{}; with {} the error on unseen poses falls from {before} to {after} um{}{}",
+            "{}; with {} the error on unseen poses {} from {before} to {after} um{}{}",
             shown(),
             if trace.effects.len() == 1 { "it" } else { "them" },
+            if trace.after.holdout_rms < trace.identified.holdout_rms { "falls" } else { "goes" },
             match left_out(trace).len() {
                 0 => String::new(),
                 rows => format!(" (the latter without {})", count(rows, "wild row")),

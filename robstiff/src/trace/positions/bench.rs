@@ -5,7 +5,7 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::offers::{Between, Form, Number, offers};
+use super::offers::{Between, Form, Number, Possible, offers};
 use super::rig::Rig;
 use crate::campaign::{Campaign, Positions};
 use crate::identify::Error;
@@ -37,7 +37,7 @@ pub struct Bench<'c> {
     /// What numbers out of grids may be between those of the grid, by the form.
     pub(super) betweens: Vec<(Named, Between)>,
     /// Whether the numbers of a form are possible together, of each candidate.
-    possible: Vec<fn(&[f64]) -> bool>,
+    possible: Vec<Possible>,
     /// All columns at the model: where the robot stands, then all numbers.
     problem: Problem,
     /// The sign of each column.
@@ -135,7 +135,13 @@ impl<'c> Bench<'c> {
     /// Whether the numbers of effects are possible, by the coefficients of a fit.
     fn is_physical(&self, named: &[Named], coefficients: &DVector<f64>) -> bool {
         let own = STANDS + self.prepared.own.len();
-        let mut of_effects = coefficients.iter().skip(STANDS + self.prepared.seen().len()).copied();
+        let seen = self.prepared.seen();
+        // Joints come first among a description's own numbers.
+        let compliance = |joint: usize| match seen.iter().position(|&number| number == joint - 1) {
+            Some(at) => coefficients[STANDS + at],
+            None => self.prepared.own[joint - 1].value,
+        };
+        let mut of_effects = coefficients.iter().skip(STANDS + seen.len()).copied();
         named.iter().all(|&one| {
             let columns = &self.variant(one).columns;
             let values: Vec<f64> = of_effects.by_ref().take(columns.len()).collect();
@@ -143,7 +149,7 @@ impl<'c> Bench<'c> {
                 let [least, most] = self.numbers[column - own].range;
                 least < value && value < most
             };
-            columns.iter().zip(&values).all(within) && (self.possible[one.candidate])(&values)
+            columns.iter().zip(&values).all(within) && (self.possible[one.candidate])(&values, &compliance)
         })
     }
 

@@ -98,7 +98,7 @@ impl Rig {
             motions.iter().for_each(|motion| motion.settles(&time, &mut numbers, &mut forms));
         }
         let (kind, place) = (kind("thermal_drift"), Place::Rig);
-        (!forms.is_empty()).then_some(Offer { kind, place, numbers, forms, possible: any })
+        (!forms.is_empty()).then_some(Offer { kind, place, numbers, forms, possible: any() })
     }
 }
 

@@ -46,5 +46,5 @@ pub fn trace(
     progress("finding where the robot stands");
     let bench = Bench::new(campaign, data)?;
     let found = search::search(bench, campaign.noise.displacement, options, progress).map_err(Error)?;
-    report::report(campaign, &found).map_err(Error)
+    report::report(campaign, &found, options).map_err(Error)
 }

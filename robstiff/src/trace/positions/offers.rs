@@ -106,12 +106,16 @@ pub struct Offer {
     /// Its forms.
     pub forms: Vec<Form>,
     /// Whether the numbers of a form are possible together.
-    pub possible: fn(&[f64]) -> bool,
+    pub possible: Possible,
 }
 
+/// Whether numbers are possible together, on joints of some compliances (rad/Nm or m/N),
+/// by the joint.
+pub type Possible = Rc<dyn Fn(&[f64], &dyn Fn(usize) -> f64) -> bool>;
+
 /// Where it is enough that each number is possible.
-pub fn any(_: &[f64]) -> bool {
-    true
+pub fn any() -> Possible {
+    Rc::new(|_, _| true)
 }
 
 /// Everything that may be missing, in the order of the catalogue.
@@ -174,7 +178,7 @@ fn of_effect(name: &'static str, part: Part, at: usize, others: Vec<f64>, step: 
 fn one(name: &'static str, part: Part, number: (&'static str, &'static str), range: [f64; 2], step: f64) -> Offer {
     let enters = of_effect(name, part, 0, vec![0.0], step);
     let numbers = vec![Number { name: number.0, unit: number.1, range, enters }];
-    Offer { kind: kind(name), place: part.into(), numbers, forms: vec![Form::of([0])], possible: any }
+    Offer { kind: kind(name), place: part.into(), numbers, forms: vec![Form::of([0])], possible: any() }
 }
 
 /// An elastic part with one or two compliances, of which one or both can be there.
@@ -189,7 +193,7 @@ fn springs(name: &'static str, part: Part, numbers: &[(&'static str, &'static st
         place: part.into(),
         numbers: numbers.iter().enumerate().map(of).collect(),
         forms: forms.iter().map(|numbers| Form::of(numbers.iter().copied())).collect(),
-        possible: any,
+        possible: any(),
     }
 }
 
@@ -230,13 +234,17 @@ fn gears(robot: &Description, data: &Positions) -> Vec<Offer> {
         };
         let place = Part::Joint(joint).into();
         let (numbers, forms) = (knees.iter().map(number).collect(), knees.iter().enumerate().map(form).collect());
-        Offer { kind: kind(name), place, numbers, forms, possible: any }
+        // The unloaded joint keeps some compliance.
+        let possible: Possible = match name == STIFFNESS_NONLINEARITY.name {
+            true => Rc::new(move |added, of| added[0] > -of(joint)),
+            false => any(),
+        };
+        Offer { kind: kind(name), place, numbers, forms, possible }
     };
     // What a payload does not load but by rounding has no law to show.
     let loaded: Vec<usize> = (1..=robot.joints.len()).filter(|&joint| largest(joint) > 1e-9 * heaviest).collect();
     let hardening = |&joint: &usize| {
-        let softest = -robot.joints[joint - 1].compliance();
-        let range = [softest, f64::INFINITY];
+        let range = [f64::NEG_INFINITY, f64::INFINITY];
         law(STIFFNESS_NONLINEARITY.name, joint, "added", range, &HARDENING_KNEES, WIDEST_KNEE)
     };
     let lost = |&joint: &usize| law(LOST_MOTION.name, joint, "gap", [0.0, WIDEST_GAP], &LOST_KNEES, EITHER[1]);
@@ -260,7 +268,7 @@ fn varying(joint: usize) -> Offer {
         numbers: ["cos1", "sin1", "cos2", "sin2"].into_iter().enumerate().map(number).collect(),
         forms: [0..2, 2..4, 0..4].map(Form::of).into(),
         // Something of the compliance is left at every angle.
-        possible: |waves| waves.chunks(2).map(|wave| wave[0].hypot(wave[1])).sum::<f64>() < 1.0,
+        possible: Rc::new(|waves, _| waves.chunks(2).map(|wave| wave[0].hypot(wave[1])).sum::<f64>() < 1.0),
     }
 }
 
@@ -301,7 +309,7 @@ fn waves(joint: usize) -> Offer {
         place: Part::Joint(joint).into(),
         numbers: ORDERS.iter().flat_map(|&order| [(order, 2, "cos"), (order, 1, "sin")]).map(number).collect(),
         forms: ORDERS.iter().enumerate().map(form).collect(),
-        possible: any,
+        possible: any(),
     }
 }
 

@@ -12,31 +12,39 @@ use crate::campaign::{Campaign, PositionRow};
 use crate::identify::NoiseSource;
 use crate::identify::baseline::with_values;
 use crate::identify::normal::Sign;
-use crate::identify::positions::regression::STANDS;
+use crate::identify::positions::regression::{STANDS, Solved};
 use crate::identify::positions::{estimated, of_numbers, residuals};
 use crate::identify::problem::rms;
 use crate::identify::readable::{UNREADABLE, is_readable};
 use crate::identify::uncertainty::covariance;
 use crate::trace::catalogue::{KINDS, OUTLIERS, Variant};
 use crate::trace::found::{EffectParameter, Found, Place};
+use crate::trace::held_out;
+use crate::trace::lack_of_fit::StructureTest;
 use crate::trace::model::Named;
 use crate::trace::selection::WITHIN_REACH;
-use crate::trace::{Misfit, NamedEffect, PoseError, Rival, RowResidual, Trace, Verdict, verdict};
+use crate::trace::{Misfit, NamedEffect, Options, PoseError, Rival, RowResidual, Trace, Verdict, verdict};
 
 /// A tracing in full.
 ///
 /// # Errors
 /// Compliances that no description takes beside its own effects.
-pub fn report(campaign: &Campaign, found: &Searched<'_>) -> Result<Trace, String> {
+pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> Result<Trace, String> {
     let (bench, model, base) = (&found.bench, &found.model, &found.base);
     let (data, rows) = (bench.prepared.data, bench.prepared.data.rows.len());
     let wild = &found.wild.rows;
-    let (verdict, why) = match found.too_little.clone().or_else(|| no_noise(bench, model)) {
+    let mut left = found.left.clone();
+    let (mut verdict, mut why) = match found.too_little.clone().or_else(|| no_noise(bench, model)) {
         Some(why) => (Verdict::Insufficient, why),
-        None => verdict::judge(&found.selection, &found.left, usize::from(!wild.is_empty()), found.taken_back, false),
+        None => verdict::judge(&found.selection, &left, usize::from(!wild.is_empty()), found.taken_back, false),
     };
-    let structure = found.left.structure || found.selection.unnamed;
     let tells = verdict != Verdict::Insufficient;
+    if let Some(test) = unseen(model, options).filter(|_| tells)
+        && let Some(judged) = held_out::judged(test, verdict, &mut left, options)
+    {
+        (verdict, why) = judged;
+    }
+    let structure = left.structure || found.selection.unnamed;
     let training = &bench.rows.training;
     let fitted_to = |left: &DVector<f64>, keep: &dyn Fn(&usize) -> bool| {
         rms(left, 3, (0..rows).filter(keep).filter(|&row| training[data.rows[row].pose]))
@@ -111,8 +119,8 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>) -> Result<Trace, String
         after,
         verdict,
         why,
-        unexplained: found.left.fraction,
-        depends_on: if structure { found.left.depends_on.clone() } else { Vec::new() },
+        unexplained: left.fraction,
+        depends_on: if structure { left.depends_on } else { Vec::new() },
         rivals: rivals(bench, model, &replaced),
         invisible: invisible(campaign, bench),
         next: Vec::new(),
@@ -124,12 +132,19 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>) -> Result<Trace, String
         description,
         effects,
         steps: found.selection.steps.clone(),
-        structure: found.left.tests.clone(),
+        structure: left.tests,
         residuals: data.rows.iter().enumerate().map(residual).collect(),
         components: 3,
         differences: false,
         pose_errors: data.poses.iter().enumerate().map(pose_error).collect(),
     })
+}
+
+/// Asks the poses held out, which had no part in the search, whether a model predicts
+/// them.
+fn unseen(model: &Model, options: &Options) -> Option<StructureTest> {
+    let Solved { problem, fit, signs, .. } = &model.solved;
+    if model.leaves_nothing() { None } else { held_out::predicted(problem, fit, signs, options) }
 }
 
 /// Why what a model leaves is no noise, if so: nothing reads as badly as that.

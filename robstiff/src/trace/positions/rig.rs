@@ -53,7 +53,7 @@ fn elsewhere(name: &str, step: f64, moves: fn(&mut Model, usize, f64)) -> Offer 
         place: Place::Rig,
         numbers: (0..3).map(number).collect(),
         forms: [0..1, 1..2, 2..3, 0..3].map(Form::of).into(),
-        possible: any,
+        possible: any(),
     }
 }
 
@@ -93,7 +93,7 @@ impl Rig {
             place: Place::Rig,
             numbers: vec![Number { name: "scale", unit: "1", range: [-MOST_SCALE, MOST_SCALE], enters }],
             forms: vec![Form::of([0])],
-            possible: any,
+            possible: any(),
         }
     }
 }

@@ -95,6 +95,6 @@ impl Rig {
                 forms.push(Form { shape: vec![line(data, moment)], ..Form::of(first..first + count) });
             }
         }
-        (!forms.is_empty()).then_some(Offer { kind: kind(of), place, numbers, forms, possible: any })
+        (!forms.is_empty()).then_some(Offer { kind: kind(of), place, numbers, forms, possible: any() })
     }
 }

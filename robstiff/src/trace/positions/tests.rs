@@ -11,7 +11,7 @@ use robstiff_robots::{Description, catalogue};
 
 use crate::Effect;
 use crate::campaign::made_positions::Plan;
-use crate::campaign::{Campaign, Holdout};
+use crate::campaign::{Campaign, Data, Holdout};
 use crate::trace::{Options, Trace, Verdict, trace};
 
 fn six_axis() -> Description {
@@ -164,6 +164,33 @@ fn poses_held_out_are_predicted() {
     assert_eq!((names(&trace), trace.held_out.len()), (vec!["dh_error@a3".to_string()], 15));
     assert!(trace.identified.holdout_rms > 5.0 * trace.after.holdout_rms);
     assert!((0.7..1.4).contains(&(trace.after.holdout_rms / 3e-5)), "{:?}", trace.after);
+    // They have no part in the names, but in the verdict.
+    let Data::Position(data) = &mut campaign.data else { unreachable!("positions") };
+    let moved = trace.held_out.clone();
+    for row in data.rows.iter_mut().filter(|row| moved.contains(&data.poses[row.pose])) {
+        row.position[0] += 1.5e-4;
+    }
+    let missed = traced(&campaign);
+    assert_eq!((names(&missed), missed.verdict), (names(&trace), Verdict::Partial));
+    assert!(missed.why.contains("poses held out"), "{}", missed.why);
+}
+
+/// A gear may soften by nearly all the compliance that it has, not that it is declared to
+/// have.
+#[test]
+fn a_gear_softens_by_what_it_is_found_to_have() {
+    let added = -0.9 * six_axis().joints[1].compliance();
+    let hidden = vec![Effect::StiffnessNonlinearity { joint: 2, added, knee: 1500.0 }];
+    let payloads = vec![0.0, 60.0, 130.0, 200.0, 260.0];
+    let mut campaign = Plan { hidden, payloads, ..Plan::new(six_axis(), 3) }.run();
+    crate::identify::baseline::set_compliance(&mut campaign.robot.joints[1].compliance, 0.5 * -added);
+    let trace = traced(&campaign);
+    assert_eq!(
+        (names(&trace), trace.verdict),
+        (vec!["stiffness_nonlinearity@joint 2".to_string()], Verdict::Explained)
+    );
+    let number = &trace.effects[0].parameters[0];
+    assert!((number.value - added).abs() < 4.0 * number.std.expect("a fitted number"), "{number:?}");
 }
 
 /// A declared noise is a yardstick; so are visits that come again.
