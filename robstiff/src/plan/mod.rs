@@ -121,8 +121,8 @@ pub struct Pair {
     pub now: f64,
     /// The same with all proposals measured.
     pub after: f64,
-    /// The expected logarithm of the Bayes factor then, by the Schwarz
-    /// criterion; natural.
+    /// The logarithm of the Bayes factor that is to be expected then at least,
+    /// by the Schwarz criterion; natural.
     pub log_bayes: f64,
     /// The angle between what the two show (rad), with everything else fitted
     /// again, over every pose and load that could be proposed.
@@ -278,8 +278,9 @@ fn told(
             _ => advice::remedies(regressors, judge, chosen, &rivals.pairs[k], k, last[k]),
         };
         let readings = regressors.readings(chosen) as f64;
+        // Of the less clear of the two, the one with more numbers.
         let further = rivals.pairs[k].further_numbers() as f64;
-        let log_bayes = 0.5 * (last[k] * last[k] + further * readings.ln());
+        let log_bayes = 0.5 * (last[k] * last[k] - further * readings.ln());
         Pair { names, now: before[k], after: last[k], log_bayes, angle, outlook, remedies }
     });
     let pairs = pairs.collect();

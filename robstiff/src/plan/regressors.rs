@@ -100,7 +100,7 @@ pub trait Regressors {
     /// The variance of one reading (m^2).
     fn variance(&self) -> f64;
 
-    /// How many numbers some visits read.
+    /// How many numbers the campaign and some visits read.
     fn readings(&self, visits: &[Visit]) -> usize;
 
     /// What could be measured besides.

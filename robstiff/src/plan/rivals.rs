@@ -79,9 +79,9 @@ impl Contest {
         &self.rest[truth]
     }
 
-    /// How many numbers the second has more than the first.
-    pub fn further_numbers(&self) -> isize {
-        self.rivals[1].parameters as isize - self.rivals[0].parameters as isize
+    /// How many numbers one has more than the other.
+    pub fn further_numbers(&self) -> usize {
+        self.rivals[1].parameters.abs_diff(self.rivals[0].parameters)
     }
 }
 

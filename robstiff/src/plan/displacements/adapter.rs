@@ -41,6 +41,7 @@ pub struct Adapter<'c> {
     elastic: Vec<(Kept, f64)>,
     kept: Vec<Kept>,
     known: DMatrix<f64>,
+    read: usize,
     axes: usize,
     rotation_weight: f64,
     shared: f64,
@@ -59,7 +60,11 @@ impl<'c> Adapter<'c> {
         trace: &Trace,
         groups: &[Group],
     ) -> Result<(Self, Rivals), Error> {
-        let bench = Bench::new(campaign, prepared).map_err(Error)?;
+        // What the trace found wrong in single rows has no part in a fit.
+        let lines: Vec<usize> = trace.effects.iter().flat_map(|named| named.lines.iter().copied()).collect();
+        let wild: Vec<usize> =
+            (0..).zip(&prepared.data.rows).filter(|(_, row)| lines.contains(&row.line)).map(|(i, _)| i).collect();
+        let bench = Bench::new(campaign, prepared).map_err(Error)?.leaving_out(&wild);
         let everything = catalogue(&bench.scene(), prepared.own.len());
         let source = Source { bench: &bench, prepared, everything: &everything };
         let mut columns = prepared.seen();
@@ -73,7 +78,7 @@ impl<'c> Adapter<'c> {
         };
         let elastic = numbers.filter(|(column, _)| is_elastic(**column));
         let elastic = elastic.map(|(&column, &value)| (source.kept(column), value)).collect();
-        let white = setting.on(&columns).white;
+        let problem = setting.on(&columns);
         // How far the joints sag is a row's own.
         let setup = Setup { sag: None, ..setting.point.setup.clone() };
         let adapter = Self {
@@ -85,7 +90,8 @@ impl<'c> Adapter<'c> {
             linear: bench.linear_parameters(&fitted.fit),
             elastic,
             kept: columns.iter().map(|&column| source.kept(column)).collect(),
-            known: white.tr_mul(&white),
+            known: problem.total.gram.clone(),
+            read: problem.total.rows,
             axes: setting.problem.axes,
             rotation_weight: prepared.covariance.rotation_weight(),
             shared: prepared.covariance.shared,
@@ -240,7 +246,7 @@ impl Regressors for Adapter<'_> {
     }
 
     fn readings(&self, visits: &[Visit]) -> usize {
-        self.axes * visits.iter().map(|visit| visit.loads.len()).sum::<usize>()
+        self.read + self.axes * visits.iter().map(|visit| visit.loads.len()).sum::<usize>()
     }
 
     fn sensors(&self) -> Vec<Sensor> {

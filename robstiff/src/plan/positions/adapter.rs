@@ -33,6 +33,7 @@ pub struct Adapter<'c> {
     /// The point that the robot's stand turns about (m).
     middle: Vector3<f64>,
     known: DMatrix<f64>,
+    read: usize,
     noise: f64,
     rotation_noise: f64,
 }
@@ -62,6 +63,7 @@ impl<'c> Adapter<'c> {
             state: State { registration: state.registration, values },
             middle,
             known: problem.total.gram.clone(),
+            read: problem.total.rows,
             noise: trace.noise,
             rotation_noise: campaign.noise.rotation.unwrap_or(ROTATION_NOISE),
         };
@@ -141,7 +143,7 @@ impl Regressors for Adapter<'_> {
     }
 
     fn readings(&self, visits: &[Visit]) -> usize {
-        3 * visits.iter().map(|visit| visit.loads.len()).sum::<usize>()
+        self.read + 3 * visits.iter().map(|visit| visit.loads.len()).sum::<usize>()
     }
 
     fn sensors(&self) -> Vec<Sensor> {

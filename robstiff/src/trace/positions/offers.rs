@@ -272,10 +272,17 @@ fn varying(joint: usize) -> Offer {
     }
 }
 
+/// A zero that is off: of a joint that slides by a length, which no description takes as
+/// one.
 fn zero(robot: &Description, joint: usize) -> Offer {
     let entry = coordinate_entry(robot.joints[joint - 1].kind);
-    let most = ZERO_MOST[entry];
-    one("joint_zero_offset", Part::Joint(joint), ("offset", ["rad", "m"][entry]), [-most, most], STEPS[entry])
+    let (most, unit) = (ZERO_MOST[entry], ["rad", "m"][entry]);
+    let mut offer = one("joint_zero_offset", Part::Joint(joint), ("offset", unit), [-most, most], STEPS[entry]);
+    if robot.joints[joint - 1].kind == JointKind::Prismatic {
+        let slides = move |model: &mut Model, by: f64| model.description.joints[joint - 1].d += by;
+        offer.numbers[0].enters = Enters::Model(Rc::new(slides), LENGTH_STEP);
+    }
+    offer
 }
 
 /// The entries of a row of the DH table but the one that the joint's coordinate adds

@@ -60,7 +60,7 @@ pub fn structure(bench: &Bench<'_>, model: &Model, noise: Option<f64>, options: 
     if model.leaves_nothing() {
         return LackOfFit { tests, structure: false, fraction: 0.0, depends_on: Vec::new() };
     }
-    let size = noise.and_then(|noise| against_declared(model, noise)).or_else(|| against_repeated(bench, model));
+    let size = noise.and_then(|noise| against_declared(bench, model, noise)).or_else(|| against_repeated(bench, model));
     if let Some(Size { name, p_value, ratio, .. }) = size {
         tests.push(StructureTest { name: name.to_string(), statistic: ratio, p_value });
     }
@@ -85,10 +85,16 @@ pub fn structure(bench: &Bench<'_>, model: &Model, noise: Option<f64>, options: 
     LackOfFit { tests, structure, fraction: of_size.max(of_largest).clamp(0.0, 1.0), depends_on }
 }
 
-/// What is left against the noise that is declared, by chi-square.
-fn against_declared(model: &Model, noise: f64) -> Option<Size> {
-    let freedom = model.solved.problem.freedom(&model.solved.fit);
-    let statistic = model.solved.fit.rss / (noise * noise);
+/// What is left against the noise that is declared, by chi-square. In that noise is by
+/// what the robot misses a pose, which the rows of a visit have in common, so a visit
+/// counts once.
+fn against_declared(bench: &Bench<'_>, model: &Model, noise: f64) -> Option<Size> {
+    let problem = &model.solved.problem;
+    let rows: Vec<usize> = problem.blocks.iter().flat_map(|block| block.rows.iter().copied()).collect();
+    let visits: BTreeSet<usize> = rows.iter().map(|&row| bench.prepared.data.rows[row].visit).collect();
+    let share = visits.len() as f64 / rows.len() as f64;
+    let freedom = share * problem.freedom(&model.solved.fit);
+    let statistic = share * model.solved.fit.rss / (noise * noise);
     Some(Size {
         name: "residuals are larger than the noise",
         beyond: 1.0 - freedom / statistic,
