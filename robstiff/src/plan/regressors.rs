@@ -23,8 +23,11 @@ pub struct Visit {
 impl Visit {
     /// The load with the greatest force, or moment where there is no force.
     pub fn greatest(&self) -> [f64; 6] {
-        let size = |load: &[f64; 6]| load.iter().map(|value| value * value).sum::<f64>();
-        self.loads.iter().copied().max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or_default()
+        let size = |three: &[f64]| three.iter().map(|value| value * value).sum::<f64>();
+        let larger = |a: &[f64; 6], b: &[f64; 6]| {
+            size(&a[..3]).total_cmp(&size(&b[..3])).then(size(&a[3..]).total_cmp(&size(&b[3..])))
+        };
+        self.loads.iter().copied().max_by(larger).unwrap_or_default()
     }
 
     /// The payloads in order (kg) whose weights the loads are.

@@ -1,8 +1,8 @@
 //! Poses and loads that can be proposed.
 //!
 //! Poses fill the joints' limits evenly (a Halton sequence, shifted by the
-//! seed). A joint without limits, or with wider ones than anybody wants to visit,
-//! stays where the campaign has been: what was reached once can be reached again.
+//! seed). A joint without limits stays where the campaign has been: what was
+//! reached once can be reached again.
 //! The tool stays as high above the base's origin and as far from its vertical
 //! as it did in the campaign. Whether the arm hits itself or its surroundings is
 //! not known here.

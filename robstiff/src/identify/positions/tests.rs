@@ -81,6 +81,17 @@ fn errors_of_the_table_do_not_matter_within_a_visit() {
     assert!(of(&plan)[1].std > off[1].std);
 }
 
+/// Readings of one payload that come again in a visit have nothing but noise between them.
+#[test]
+fn one_payload_read_several_times_a_visit_shows_compliances() {
+    let campaign = Plan { payloads: vec![100.0; 3], ..Plan::new(six_axis(), 5) }.run();
+    let found = identified(&campaign).expect("payloads");
+    for (estimate, joint) in found.estimates.iter().zip(&six_axis().joints).skip(1).take(2) {
+        let std = estimate.std.expect("a number that shows");
+        assert!((estimate.value - joint.compliance()).abs() < 4.0 * std, "{estimate:?}");
+    }
+}
+
 #[test]
 fn what_shows_no_compliance_is_told() {
     let robot = five_axis();

@@ -42,7 +42,8 @@ pub fn within_visits(problem: &Problem, data: &Positions) -> Option<Problem> {
     // Each visit's mean took as much as a row.
     total.rows = total.rows.checked_sub(3 * visits.len()).filter(|&rows| rows > count)?;
     let all: Vec<usize> = (0..count).collect();
-    let largest = total.gram.diagonal().amax();
+    // Against what columns are with their means: a visit of one payload leaves rounding.
+    let largest = problem.total.gram.diagonal().rows(STANDS, count).amax();
     let (kept, _) = independent(&total.gram, &all, NEXT_TO_NOTHING * largest);
     (kept.len() == count).then(|| of(problem, white, readings, total))
 }

@@ -88,7 +88,7 @@ pub fn search<'c>(
         if !course.left.structure && !course.unnamed {
             // With structure accounted for, rows need stand out from noise alone.
             let before = course.wild.rows.clone();
-            (course.model, course.wild) = without_wild(&mut bench, course.model, true);
+            (course.model, course.wild) = without_wild(&mut bench, course.model, course.wild, true);
             if course.wild.rows != before {
                 course = course.run(&mut bench, true, options, progress).judged(&mut bench, noise, options, progress);
             }
@@ -116,7 +116,7 @@ impl Course {
     fn run(mut self, bench: &mut Bench<'_>, strict: bool, options: &Options, progress: &Progress<'_>) -> Self {
         let mut tried: Vec<Vec<Named>> = Vec::new();
         while self.model.named.len() < MOST_EFFECTS && !tried.contains(&self.model.named) {
-            (self.model, self.wild) = without_wild(bench, self.model, strict);
+            (self.model, self.wild) = without_wild(bench, self.model, self.wild, strict);
             let model = &self.model;
             if model.leaves_nothing() {
                 break;
@@ -205,9 +205,10 @@ fn too_little(model: &Model) -> Option<String> {
     (readings < 2 * numbers).then(|| format!("{readings} coordinates are too few for {numbers} numbers"))
 }
 
-/// The model without the rows that are wild at it, all rows judged anew. Where an
-/// effect says what they do, with fewer numbers, they stay.
-fn without_wild<'c>(bench: &mut Bench<'c>, model: Model, strict: bool) -> (Model, Wild) {
+/// The model without the rows that are wild at it, all rows judged anew, which those in
+/// `before` were left out of. Where an effect says what they do, with fewer numbers, they
+/// stay.
+fn without_wild(bench: &mut Bench<'_>, model: Model, before: Wild, strict: bool) -> (Model, Wild) {
     let left_out = bench.rows.left_out.clone();
     bench.rows.left_out.fill(false);
     let chosen = bench.chosen(&model.named);
@@ -237,10 +238,9 @@ fn without_wild<'c>(bench: &mut Bench<'c>, model: Model, strict: bool) -> (Model
         }
         None => {
             // Physics does not allow the model with these rows.
-            wild.rows = (0..left_out.len()).filter(|&row| left_out[row]).collect();
             bench.rows.left_out = left_out;
             bench.turn_to(&model);
-            (model, wild)
+            (model, before)
         }
     }
 }
