@@ -40,6 +40,9 @@ const TELLING_APART: f64 = 0.7;
 /// poses and loads are one, as in [`crate::trace::alias`].
 const EXACT: f64 = 1e-6;
 
+/// Rivals that are no further apart (chi-square) are not told apart at all.
+const NOTHING: f64 = 1e-12;
+
 /// What keeps a factorisation going where numbers are collinear, as a fraction
 /// of their energy; far below [`EXACT`].
 const RIDGE: f64 = 1e-10;
@@ -157,7 +160,7 @@ impl Judge {
         };
         let d = || beside(&self.model, &self.nuisance) / self.model.len().max(1) as f64;
         let t = || {
-            let chi_square = |&k: &usize| self.chi_square(information, k).max(f64::MIN_POSITIVE);
+            let chi_square = |&k: &usize| self.chi_square(information, k).max(NOTHING);
             let inverse: f64 = self.pairs.iter().map(|k| chi_square(k).recip()).sum();
             (self.pairs.len() as f64 / inverse).ln()
         };

@@ -7,6 +7,7 @@
 //! as it did in the campaign. Whether the arm hits itself or its surroundings is
 //! not known here.
 
+use std::collections::BTreeMap;
 use std::format;
 use std::string::String;
 use std::vec::Vec;
@@ -245,8 +246,11 @@ fn usual(of_rows: impl Iterator<Item = usize>) -> usize {
         lengths.resize(lengths.len().max(visit + 1), 0);
         lengths[visit] += 1;
     }
-    let common = |length: &usize| lengths.iter().filter(|other| *other == length).count();
-    let usual = lengths.iter().copied().max_by_key(|length| (common(length), *length)).unwrap_or(1);
+    let mut common: BTreeMap<usize, usize> = BTreeMap::new();
+    for length in &lengths {
+        *common.entry(*length).or_default() += 1;
+    }
+    let usual = common.into_iter().max_by_key(|&(length, count)| (count, length)).map_or(1, |(length, _)| length);
     lengths.iter().position(|length| *length == usual).unwrap_or(0)
 }
 

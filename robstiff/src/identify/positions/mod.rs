@@ -203,19 +203,25 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
     }
     let regression = prepared.regression([]);
     let start = prepared.state(prepared.own.len());
-    let (state, spread, variance) = match by_payloads(&regression, &start, &seen, &prepared.rows)? {
+    let (state, spread) = match by_payloads(&regression, &start, &seen, &prepared.rows)? {
         Some(found) => found,
         None => {
             let solved = regression.solve(&seen, &start, &prepared.rows).ok_or_else(confounded)?;
-            let variance = solved.fit.rss / solved.problem.freedom(&solved.fit);
-            (solved.state, of_numbers(&covariance(&solved.problem, &solved.fit, &solved.signs)), variance)
+            (solved.state, of_numbers(&covariance(&solved.problem, &solved.fit, &solved.signs)))
         }
     };
     let values = prepared.values(&state);
-    let rows = data.rows.len();
+    let (rows, left) = (data.rows.len(), residuals(&regression, &state));
     let noise = match campaign.noise.displacement {
         Some(noise) => (noise, NoiseSource::Declared),
-        None => (variance.sqrt(), NoiseSource::Residuals),
+        None => {
+            // By what the robot misses a pose is in it, whatever compliances are found by.
+            let training = &prepared.rows.training;
+            let fitted: Vec<usize> = (0..rows).filter(|&row| training[data.rows[row].pose]).collect();
+            let readings = 3.0 * fitted.len() as f64;
+            let freedom = (readings - (STANDS + seen.len()) as f64).max(1.0);
+            (rms(&left, 3, fitted) * (readings / freedom).sqrt(), NoiseSource::Residuals)
+        }
     };
     let estimates = estimated(campaign, &prepared, &values, &spread);
     let description = with_values(&campaign.robot, &values);
@@ -231,18 +237,18 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
         noise: Some(noise),
         covariance: None,
         rms_declared: Some(rms(&prepared.declared_residuals(campaign), 3, 0..rows)),
-        rms: Some(rms(&residuals(&regression, &state), 3, 0..rows)),
+        rms: Some(rms(&left, 3, 0..rows)),
     })
 }
 
-/// The own numbers by what payloads of one visit differ by, with their covariance and
-/// the variance of a reading (m^2); `None` where that does not tell them from each other.
+/// The own numbers by what payloads of one visit differ by, with their covariance; `None`
+/// where that does not tell them from each other.
 fn by_payloads(
     regression: &Regression<'_>,
     start: &State,
     seen: &[usize],
     rows: &Rows,
-) -> Result<Option<(State, DMatrix<f64>, f64)>, Error> {
+) -> Result<Option<(State, DMatrix<f64>)>, Error> {
     let data = regression.data;
     let (signs, columns) = (&regression.signs_of(seen)[STANDS..], Vec::from_iter(0..seen.len()));
     let mut state = start.clone();
@@ -255,7 +261,7 @@ fn by_payloads(
         if pass == PASSES {
             let model = state.model(&regression.start, &regression.numbers);
             state.registration = standing(&model, data, |row| rows.training[data.rows[row].pose])?;
-            return Ok(Some((state, covariance(&within, &fit, signs), fit.rss / within.freedom(&fit))));
+            return Ok(Some((state, covariance(&within, &fit, signs))));
         }
         pass += 1;
     }

@@ -131,9 +131,14 @@ impl Bench<'_> {
                 self.solve(&named, &model.solved.state)
             };
             let Some(other) = forms.filter_map(with).min_by(|a, b| a.bic.total_cmp(&b.bic)) else { continue };
-            let one = other.named.iter().find(|one| one.candidate == twin).copied();
-            let other = one.map(|one| self.at_its_best(other, one));
-            model = other.filter(|other| other.bic < model.bic - TIE).unwrap_or(model);
+            let Some(one) = other.named.iter().find(|one| one.candidate == twin).copied() else { continue };
+            let before = self.variant(one).shape[0].value;
+            let other = self.at_its_best(other, one);
+            if other.bic < model.bic - TIE {
+                model = other;
+            } else {
+                self.reshape(one, before);
+            }
         }
         model
     }

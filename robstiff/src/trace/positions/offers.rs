@@ -204,7 +204,12 @@ fn couplings(robot: &Description, data: &Positions) -> Vec<Offer> {
     let pairs = (2..=robot.joints.len()).flat_map(|j| (1..j).map(move |i| [i, j]));
     let pairs = pairs.filter(|&[i, j]| turn(i) && turn(j) && share_a_drive(i, j, &axis));
     let any = [f64::NEG_INFINITY, f64::INFINITY];
-    pairs.map(|pair| one("joint_coupling", Part::Joints(pair), ("value", "rad/Nm"), any, COMPLIANCE_STEP)).collect()
+    let coupling = |pair @ [i, j]: [usize; 2]| Offer {
+        // What leaves both joints stable.
+        possible: Rc::new(move |value, of| value[0] * value[0] < of(i) * of(j)),
+        ..one("joint_coupling", Part::Joints(pair), ("value", "rad/Nm"), any, COMPLIANCE_STEP)
+    };
+    pairs.map(coupling).collect()
 }
 
 /// Gears that give way other than in proportion to what a payload loads them with, the
