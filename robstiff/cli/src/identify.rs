@@ -183,7 +183,7 @@ fn document(found: &Identification) -> Value {
         "covariance": found.covariance.as_ref().map(covariance),
         "declared": {"rms_um": found.rms_declared.map(|rms| json::number(rms * 1e6))},
         "identified": {"rms_um": found.rms.map(|rms| json::number(rms * 1e6))},
-        "compliances": found.estimates.iter().map(|estimate| compliance(estimate, &found.estimates)).collect::<Value>(),
+        "compliances": numbers(&found.estimates),
         "correlation": json::matrix(&found.correlation),
     })
 }
@@ -198,7 +198,12 @@ fn covariance(covariance: &Covariance) -> Value {
     })
 }
 
-fn compliance(estimate: &Estimate, all: &[Estimate]) -> Value {
+/// The numbers of a description after a fit, for other programs.
+pub fn numbers(estimates: &[Estimate]) -> Value {
+    estimates.iter().map(|one| number(one, estimates)).collect()
+}
+
+fn number(estimate: &Estimate, all: &[Estimate]) -> Value {
     let (seen, others): (_, &[usize]) = match &estimate.visibility {
         Visibility::Seen => ("seen", &[]),
         Visibility::Unseen => ("unseen", &[]),

@@ -60,11 +60,6 @@ pub fn plus_minus(value: f64, std: f64) -> String {
     format!("{value:.decimals$} ± {std:.decimals$}")
 }
 
-/// A compliance in millionths of its unit with its standard deviation.
-pub fn millionths(value: f64, std: f64) -> String {
-    plus_minus(value * 1e6, std * 1e6)
-}
-
 /// A quantity in SI as one says it in a workshop, with its standard deviation
 /// where there is one: compliances in millionths, lengths in mm or um, angles
 /// in deg or urad.
@@ -172,9 +167,9 @@ mod tests {
         assert_eq!(uncertain(-1e-8, 4e-7), "(-0.1 ± 4.0)e-7");
         assert_eq!(plus_minus(-251.3, 20.4), "-251 ± 20");
         assert_eq!(uncertain(3e-7, f64::NAN), "3e-7");
-        assert_eq!(millionths(6.314e-7, 3.2e-8), "0.631 ± 0.032");
-        assert_eq!(millionths(4.9e-6, 4.1e-6), "4.9 ± 4.1");
-        assert_eq!(millionths(3e-7, f64::NAN), "0.3");
+        assert_eq!(plus_minus(0.6314, 0.032), "0.631 ± 0.032");
+        assert_eq!(plus_minus(4.9, 4.1), "4.9 ± 4.1");
+        assert_eq!(plus_minus(0.3, f64::NAN), "0.3");
     }
 
     #[test]

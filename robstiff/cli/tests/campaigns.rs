@@ -138,6 +138,7 @@ fn traces_the_missing_effect_and_writes_everything() {
             "verdict",
             "why",
             "unexplained",
+            "numbers",
             "rivals",
             "invisible",
             "triage",

@@ -108,20 +108,37 @@ fn parts_of(normal: &Normal, column: usize, kept: &[usize]) -> Vec<usize> {
 const PART_OF_A_SUM: f64 = 1e-6;
 
 /// A description with other values of its numbers, in the order of
-/// [`declared`]. The parts of a compound joint keep their proportion: the
-/// measurement sees their sum.
+/// [`declared`].
 pub fn with_values(description: &Description, values: &[f64]) -> Description {
     let mut changed = description.clone();
-    for (number, &value) in declared(description).iter().zip(values) {
-        match (number.effect, number.column) {
-            (None, Column::Linear(Parameter::Joint(joint))) => {
-                set_compliance(&mut changed.joints[joint - 1].compliance, value);
+    declared(description).iter().zip(values).for_each(|(number, &value)| number.set(&mut changed, value));
+    changed
+}
+
+impl Declared {
+    /// The value that a description has of it.
+    pub fn of(&self, description: &Description) -> f64 {
+        match (self.effect, self.column) {
+            (None, Column::Linear(Parameter::Joint(joint))) => description.joints[joint - 1].compliance(),
+            (Some(effect), column) => {
+                let own = columns_of(&description.effects[effect]).into_iter().find(|(of, _)| *of == column);
+                own.expect("a declared number is one of its effect's").1
             }
-            (Some(effect), column) => set_parameter(&mut changed.effects[effect], column, value),
             (None, _) => unreachable!("only joints' own compliances belong to no effect"),
         }
     }
-    changed
+
+    /// Gives a description another value of it. The parts of a compound joint keep their
+    /// proportion: the measurement sees their sum.
+    pub fn set(&self, description: &mut Description, value: f64) {
+        match (self.effect, self.column) {
+            (None, Column::Linear(Parameter::Joint(joint))) => {
+                set_compliance(&mut description.joints[joint - 1].compliance, value);
+            }
+            (Some(effect), column) => set_parameter(&mut description.effects[effect], column, value),
+            (None, _) => unreachable!("only joints' own compliances belong to no effect"),
+        }
+    }
 }
 
 /// Sets the compliance of a joint; of a compound one the parts keep their

@@ -127,6 +127,22 @@ pub struct Estimate {
 pub const NOTEWORTHY_DEVIATION: f64 = 0.25;
 
 impl Estimate {
+    /// A number with its unit, of a declared value and a sign, that has a value after a
+    /// fit; with its variance where it was fitted, `visibility` where not.
+    pub(crate) fn new(
+        (name, unit): (String, &'static str),
+        (declared, sign): (f64, Sign),
+        value: f64,
+        fitted: Option<f64>,
+        visibility: &Visibility,
+    ) -> Self {
+        let at_bound = fitted.is_some() && is_at_bound(sign, declared, value);
+        let std = fitted.filter(|_| !at_bound).map(f64::sqrt);
+        // An effect may have brought it to light.
+        let visibility = if fitted.is_some() { Visibility::Seen } else { visibility.clone() };
+        Self { name, declared, value, std, unit, visibility, at_bound }
+    }
+
     /// The relative deviation from the declared value; `None` where nothing
     /// was declared or seen, or the value is but a bound.
     pub fn deviation(&self) -> Option<f64> {
@@ -162,26 +178,17 @@ pub(crate) fn estimates(
     covariance: &DMatrix<f64>,
 ) -> Vec<Estimate> {
     let one = |(i, number): (usize, &Declared)| {
-        let fitted = columns.iter().position(|&column| column == i);
-        let at_bound = fitted.is_some() && is_at_bound(number, values[i]);
-        Estimate {
-            name: element_name(description, number),
-            declared: number.value,
-            value: values[i],
-            std: fitted.filter(|_| !at_bound).map(|k| covariance[(k, k)].sqrt()),
-            unit: unit_of(description, number.column),
-            // An effect may have brought it to light.
-            visibility: if fitted.is_some() { Visibility::Seen } else { visibility[i].clone() },
-            at_bound,
-        }
+        let fitted = columns.iter().position(|&column| column == i).map(|k| covariance[(k, k)]);
+        let name = (element_name(description, number), unit_of(description, number.column));
+        Estimate::new(name, (number.value, number.sign), values[i], fitted, &visibility[i])
     };
     own.iter().enumerate().map(one).collect()
 }
 
 /// Whether a fitted value is where the solution was clipped. What is declared
 /// zero and comes out zero is no surprise.
-pub(crate) fn is_at_bound(number: &Declared, value: f64) -> bool {
-    number.sign == Sign::Nonnegative && number.value > 0.0 && value == 0.0
+pub(crate) fn is_at_bound(sign: Sign, declared: f64, value: f64) -> bool {
+    sign == Sign::Nonnegative && declared > 0.0 && value == 0.0
 }
 
 /// `joint 3`, or an effect's full name with its number's where it has several.

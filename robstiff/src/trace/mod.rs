@@ -356,7 +356,7 @@ fn against_the_loads(prepared: &Prepared<'_>, setting: &Setting<'_>, base: &Fitt
     let mut joints = numbers.filter(|&(&column, _)| column < setting.point.samples.joints()).peekable();
     joints.peek()?;
     joints
-        .all(|(&column, &value)| is_at_bound(&prepared.own[column], value))
+        .all(|(&column, &value)| is_at_bound(prepared.own[column].sign, prepared.own[column].value, value))
         .then(|| String::from("the readings do not follow the loads"))
 }
 

@@ -4,7 +4,7 @@
 use super::content::{Candidate, Effect, Number, Report, SearchStep};
 use super::html::{Cell, Table, element, escape, number, text, words};
 use super::{arm, figure, micro, scatter};
-use crate::text::{and, count, decimals, millionths, probability, quantity, significant};
+use crate::text::{and, count, decimals, plus_minus, probability, quantity, significant};
 
 /// The error of each model.
 pub fn errors(report: &Report) -> String {
@@ -177,29 +177,36 @@ pub fn doubts(report: &Report) -> String {
 /// The description's own numbers in the three models.
 pub fn compliances(report: &Report) -> String {
     let with_effects = !report.effects.is_empty();
-    let mut head = vec![words("Compliance"), number("declared"), number("identified")];
+    let only_compliances = report.compliances.iter().all(|one| one.unit.contains('/'));
+    let (heading, first) = match only_compliances {
+        true => ("Compliances", "Compliance"),
+        false => ("Compliances and declared errors", "Number"),
+    };
+    let mut head = vec![words(first), number("declared"), number("identified")];
     if with_effects {
         head.push(number("with effects"));
     }
     head.extend([number("change"), words("")]);
     let mut table = Table::new(head);
     for one in &report.compliances {
+        let (factor, unit) = if one.unit == "1" { (1.0, String::new()) } else { (1e6, format!("µ{}", one.unit)) };
         let fitted = |found: Option<(f64, f64)>| {
-            number(found.map_or_else(|| "not seen".to_owned(), |(value, std)| millionths(value, std)))
+            let shown = |(value, std)| plus_minus(value * factor, std * factor);
+            number(found.map_or_else(|| "not seen".to_owned(), shown))
         };
         let last = if with_effects { one.after } else { one.identified };
         let change = last.filter(|_| one.declared != 0.0).map(|(value, _)| value / one.declared - 1.0);
-        let mut cells = vec![words(&one.name), number(significant(one.declared * 1e6, 4)), fitted(one.identified)];
+        let mut cells = vec![words(&one.name), number(significant(one.declared * factor, 4)), fitted(one.identified)];
         if with_effects {
             cells.push(fitted(one.after));
         }
         let change = change.map(|change| format!("{:+.0} %", change * 100.0)).unwrap_or_default();
-        cells.extend([number(change), words(format!("µ{}", one.unit))]);
+        cells.extend([number(change), words(unit)]);
         table.row(false, cells);
     }
     let note = "With one standard deviation. Change: of the last model against the declared value. \
                 Joints fitted without a missing effect take part of it on themselves.";
-    element("h2", "Compliances") + &table.html() + &text("p", note)
+    element("h2", heading) + &table.html() + &text("p", note)
 }
 
 /// What is left.

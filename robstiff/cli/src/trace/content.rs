@@ -77,7 +77,7 @@ fn stages(trace: &Trace) -> Vec<Stage> {
     };
     let mut stages = vec![
         stage("As declared", "the description as it came", &trace.declared),
-        stage("Identified", "the same model, its compliances fitted again", &trace.identified),
+        stage("Identified", "the same model, its numbers fitted again", &trace.identified),
     ];
     if !trace.effects.is_empty() {
         let number = count(trace.effects.len(), "effect");

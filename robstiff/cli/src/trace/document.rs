@@ -8,6 +8,7 @@ use robstiff::triage::Triage;
 use serde_json::{Value, json};
 
 use super::triage;
+use crate::identify;
 use crate::json::{number, numbers};
 
 /// The result for other programs.
@@ -23,6 +24,7 @@ pub fn document(trace: &Trace, triage: &Triage, campaign: &Campaign) -> Value {
         "verdict": trace.verdict.to_string(),
         "why": trace.why,
         "unexplained": {"fraction": number(trace.unexplained), "depends_on": trace.depends_on},
+        "numbers": identify::numbers(&trace.estimates),
         "rivals": trace.rivals.iter().map(rival).collect::<Value>(),
         "invisible": trace.invisible,
         "triage": triage::document(triage),

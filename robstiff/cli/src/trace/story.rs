@@ -1,6 +1,8 @@
 //! What a tracing came to, in sentences.
 
 use robstiff::JointKind;
+use robstiff::identify::Estimate;
+use robstiff::identify::baseline::Visibility;
 use robstiff::identify::encoders::EncodersRead;
 use robstiff::trace::{EffectParameter, NamedEffect, Proposal, Rival, RowResidual, Trace, Verdict};
 use robstiff_robots::Joint;
@@ -27,7 +29,13 @@ pub fn headline(trace: &Trace) -> String {
         ),
     };
     match trace.verdict {
-        Verdict::Adequate => format!("Nothing is missing: identified joints predict unseen poses to {after} um"),
+        Verdict::Adequate => {
+            let what = match errors_fitted_again(trace) {
+                None => "identified joints predict",
+                Some(_) => "the description's numbers, fitted again, predict",
+            };
+            format!("Nothing is missing: {what} unseen poses to {after} um")
+        }
         Verdict::Explained | Verdict::Partial => format!(
             "{}; with {} the error on unseen poses {} from {before} to {after} um{}{}",
             shown(),
@@ -56,6 +64,7 @@ pub fn summary(trace: &Trace) -> Vec<String> {
     if trace.verdict == Verdict::Insufficient {
         sentences.push("The description keeps its declared values.".to_owned());
     }
+    sentences.extend(errors_fitted_again(trace));
     let clipped = trace.estimates.iter().filter(|estimate| estimate.at_bound);
     sentences.extend(clipped.map(|estimate| sentence(&at_bound(&estimate.name))));
     if !trace.depends_on.is_empty() && matches!(trace.verdict, Verdict::Partial | Verdict::Unexplained) {
@@ -90,6 +99,42 @@ fn encoders(read: &EncodersRead, trace: &Trace) -> Vec<String> {
         sentences.push("What the motors let through of the load is taken from the readings.".to_owned());
     }
     sentences
+}
+
+/// Of the errors of the kinematics that a description declares, those that were fitted
+/// again and are not what it says.
+fn errors_fitted_again(trace: &Trace) -> Option<String> {
+    let fitted = |estimate: &&Estimate| estimate.visibility == Visibility::Seen && error_of(trace, estimate).is_some();
+    let seen: Vec<&Estimate> = trace.estimates.iter().filter(fitted).collect();
+    if seen.is_empty() || trace.verdict == Verdict::Insufficient {
+        return None;
+    }
+    let has_moved =
+        |estimate: &&&Estimate| (estimate.value - estimate.declared).abs() > MOVED * estimate.std.unwrap_or_default();
+    let said = |estimate: &&Estimate| {
+        let was = quantity(estimate.declared, None, estimate.unit);
+        let (name, is) = (error_of(trace, estimate)?, quantity(estimate.value, estimate.std, estimate.unit));
+        Some(format!("{name} was {was} and is {is}"))
+    };
+    let moved: Vec<String> = seen.iter().filter(has_moved).filter_map(said).collect();
+    let of_others = match (moved.len(), seen.len() - moved.len()) {
+        (0, _) => "none has changed",
+        (_, 0) => "",
+        _ => "; the others have not changed",
+    };
+    Some(format!("Errors that the description declares were fitted again: {}{of_others}.", moved.join("; ")))
+}
+
+/// An error that is off what is declared by more standard deviations has changed.
+const MOVED: f64 = 3.0;
+
+/// Which error of the description's kinematics an estimate is of, if of one.
+fn error_of(trace: &Trace, estimate: &Estimate) -> Option<String> {
+    let errors = trace.description.effects.iter().filter(|effect| effect.is_kinematic());
+    errors.map(ToString::to_string).find_map(|name| match estimate.name.strip_prefix(&name)? {
+        "" => Some(spoken(&name)),
+        number => number.strip_prefix(' ').map(|number| format!("{} ({number})", spoken(&name))),
+    })
 }
 
 /// The lines of the table that the final model is not fitted to, nor judged
@@ -132,7 +177,7 @@ pub fn doubts(trace: &Trace) -> Vec<String> {
         doubts.push(format!("{} more such models come close.", trace.rivals.len() - RIVALS));
     }
     let held = trace.description.effects.iter().filter(|effect| effect.is_kinematic());
-    let held: Vec<String> = held.map(ToString::to_string).filter(|name| !is_named(trace, name)).collect();
+    let held: Vec<String> = held.map(ToString::to_string).filter(|name| !is_fitted(trace, name)).collect();
     if !held.is_empty() {
         doubts.push(format!("The description has these, which were taken as they are: {}.", and(&by_kind(&held))));
     }
@@ -142,8 +187,14 @@ pub fn doubts(trace: &Trace) -> Vec<String> {
     doubts
 }
 
-fn is_named(trace: &Trace, name: &str) -> bool {
+/// Whether the numbers of an effect are from these data.
+fn is_fitted(trace: &Trace, name: &str) -> bool {
+    let of_it = |estimate: &&Estimate| {
+        let number = estimate.name.strip_prefix(name);
+        number.is_some_and(|number| number.is_empty() || number.starts_with(' '))
+    };
     trace.effects.iter().any(|named| named.effect.to_string() == name)
+        || trace.estimates.iter().filter(of_it).any(|estimate| estimate.visibility == Visibility::Seen)
 }
 
 /// How many rivals are told.

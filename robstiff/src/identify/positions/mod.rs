@@ -11,6 +11,7 @@
 //! sags (`gravity_sag`) where links do.
 
 pub mod model;
+pub mod own;
 pub mod registration;
 pub mod regression;
 #[cfg(test)]
@@ -26,12 +27,11 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use robstiff_robots::Description;
 
 use self::model::{Enters, Model, State};
+use self::own::{Own, compliances, kinematic, with_values};
 use self::registration::Registration;
 use self::regression::{Regression, Rows, STANDS};
 use self::within::within_visits;
-use super::baseline::{
-    Declared, Visibility, columns_of, declared, set_compliance, set_parameter, visibility, with_values,
-};
+use super::baseline::{Visibility, visibility};
 use super::displacement::among_all;
 use super::holdout::training;
 use super::normal::{Normal, Scaled, Sign};
@@ -39,13 +39,8 @@ use super::predict::{PredictedRow, Prediction};
 use super::problem::rms;
 use super::readable::{UNREADABLE, is_readable};
 use super::uncertainty::{correlation, covariance};
-use super::{Error, Estimate, Identification, NoiseSource, estimates};
+use super::{Error, Estimate, Identification, NoiseSource};
 use crate::campaign::{Campaign, Positions};
-use crate::elements::Parameter;
-use crate::identify::samples::Column;
-
-/// Step of central differences of a compliance (rad/Nm or m/N).
-pub const COMPLIANCE_STEP: f64 = 1e-8;
 
 /// Positions are all but linear in compliances: a step is off by some 1e-3 of itself.
 const PASSES: usize = 3;
@@ -54,8 +49,8 @@ const PASSES: usize = 3;
 pub struct Prepared<'c> {
     /// The positions.
     pub data: &'c Positions,
-    /// The description's own numbers.
-    pub own: Vec<Declared>,
+    /// The description's own numbers that may be fitted, compliances first.
+    pub own: Vec<Own>,
     /// What the positions say of each.
     pub visibility: Vec<Visibility>,
     /// The description as declared, without the numbers that are fitted.
@@ -67,28 +62,42 @@ pub struct Prepared<'c> {
 }
 
 impl<'c> Prepared<'c> {
-    /// Finds out what the positions show of the description's own numbers.
+    /// Finds out what the positions show of the description's compliances; the errors of
+    /// its kinematics are as declared.
     ///
     /// # Errors
     /// Positions that do not tell where the robot stands.
     pub fn new(campaign: &Campaign, data: &'c Positions) -> Result<Self, Error> {
+        Self::of(campaign, data, compliances(&campaign.robot), [])
+    }
+
+    /// The same of the errors of its kinematics, too. One that says what numbers of `rig`
+    /// say as well is not fitted: that is then the rig's.
+    ///
+    /// # Errors
+    /// Likewise.
+    pub fn with_kinematics(
+        campaign: &Campaign,
+        data: &'c Positions,
+        rig: impl IntoIterator<Item = Enters>,
+    ) -> Result<Self, Error> {
+        let own = [compliances(&campaign.robot), kinematic(&campaign.robot)].concat();
+        Self::of(campaign, data, own, rig)
+    }
+
+    fn of(
+        campaign: &Campaign,
+        data: &'c Positions,
+        own: Vec<Own>,
+        rig: impl IntoIterator<Item = Enters>,
+    ) -> Result<Self, Error> {
         let training: Rc<[bool]> = training(data.poses.len(), campaign.holdout).into();
         let rows = Rows { training: Rc::clone(&training), left_out: std::vec![false; data.rows.len()] };
         let mut start = Model::new(&campaign.robot, data);
         let registration = standing(&start, data, |row| training[data.rows[row].pose])?;
-        let own = declared(&campaign.robot);
-        let visibility = {
-            let numbers = own.iter().map(entering).collect();
-            let signs = own.iter().map(|number| number.sign).collect();
-            let regression = Regression { data, start: start.clone(), numbers, signs };
-            let state = State { registration, values: std::vec![0.0; own.len()] };
-            let chosen: Vec<usize> = (0..own.len()).collect();
-            let (problem, _) = regression.at(&state, &chosen, &rows);
-            beyond_standing(&problem.total)
-                .map_or_else(|| std::vec![Visibility::Unseen; own.len()], |total| visibility(&total, own.len()))
-        };
+        let visibility = visible(&own, rig, (&start, registration), data, &rows);
         for (number, _) in own.iter().zip(&visibility).filter(|(_, visibility)| **visibility == Visibility::Seen) {
-            add(&mut start.description, number, -number.value);
+            number.add_to(&mut start.description, -number.value);
         }
         Ok(Self { data, own, visibility, start, rows, registration })
     }
@@ -100,7 +109,7 @@ impl<'c> Prepared<'c> {
 
     /// The regression on all own numbers, and numbers besides.
     pub fn regression(&self, more: impl IntoIterator<Item = (Enters, Sign)>) -> Regression<'c> {
-        let own = self.own.iter().map(|number| (entering(number), number.sign));
+        let own = self.own.iter().map(|number| (number.enters(), number.sign));
         let (numbers, signs) = own.chain(more).unzip();
         Regression { data: self.data, start: self.start.clone(), numbers, signs }
     }
@@ -114,7 +123,7 @@ impl<'c> Prepared<'c> {
 
     /// All own numbers, of which some were fitted.
     pub fn values(&self, state: &State) -> Vec<f64> {
-        let value = |(k, number): (usize, &Declared)| match self.visibility[k] {
+        let value = |(k, number): (usize, &Own)| match self.visibility[k] {
             Visibility::Seen => state.values[k],
             _ => number.value,
         };
@@ -145,28 +154,33 @@ fn standing(model: &Model, data: &Positions, of_row: impl Fn(usize) -> bool) -> 
     })
 }
 
-/// How one of a description's own numbers enters a model.
-fn entering(number: &Declared) -> Enters {
-    let number = *number;
-    Enters::Model(Rc::new(move |model: &mut Model, by| add(&mut model.description, &number, by)), COMPLIANCE_STEP)
-}
-
-/// Adds to one of a description's numbers.
-fn add(description: &mut Description, number: &Declared, by: f64) {
-    match (number.effect, number.column) {
-        (None, Column::Linear(Parameter::Joint(joint))) => {
-            let joint = &mut description.joints[joint - 1];
-            let value = joint.compliance() + by;
-            set_compliance(&mut joint.compliance, value);
+/// What the positions say of own numbers at a model. Compliances come first, then the
+/// rig's numbers, then errors of the kinematics: what one says, those behind it do not.
+fn visible(
+    own: &[Own],
+    rig: impl IntoIterator<Item = Enters>,
+    (start, registration): (&Model, Registration),
+    data: &Positions,
+    rows: &Rows,
+) -> Vec<Visibility> {
+    let elastic = own.iter().take_while(|own| own.is_compliance()).count();
+    let mut numbers: Vec<Enters> = own.iter().map(Own::enters).collect();
+    numbers.splice(elastic..elastic, rig);
+    let of_rig = elastic..elastic + numbers.len() - own.len();
+    let all: Vec<usize> = (0..numbers.len()).collect();
+    let (signs, values) = (std::vec![Sign::Free; all.len()], std::vec![0.0; all.len()]);
+    let regression = Regression { data, start: start.clone(), numbers, signs };
+    let (problem, _) = regression.at(&State { registration, values }, &all, rows);
+    let Some(total) = beyond_standing(&problem.total) else { return std::vec![Visibility::Unseen; own.len()] };
+    let mut seen = visibility(&total, all.len());
+    seen.drain(of_rig.clone());
+    for one in &mut seen {
+        if let Visibility::Confounded(others) = one {
+            others.retain(|other| !of_rig.contains(other));
+            others.iter_mut().filter(|other| **other >= of_rig.end).for_each(|other| *other -= of_rig.len());
         }
-        (Some(effect), column) => {
-            let effect = &mut description.effects[effect];
-            let own = columns_of(effect).into_iter().find(|(of, _)| *of == column);
-            let (_, value) = own.expect("a declared number is one of its effect's");
-            set_parameter(effect, column, value + by);
-        }
-        (None, _) => unreachable!("only joints' own compliances belong to no effect"),
     }
+    seen
 }
 
 /// The normal equations of the numbers, with where the robot stands projected out.
@@ -223,8 +237,8 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
             (rms(&left, 3, fitted) * (readings / freedom).sqrt(), NoiseSource::Residuals)
         }
     };
-    let estimates = estimated(campaign, &prepared, &values, &spread);
-    let description = with_values(&campaign.robot, &values);
+    let estimates = estimated(&prepared, &values, &spread);
+    let description = with_values(&campaign.robot, &prepared.own, &values);
     if !is_readable(&description) {
         return Err(Error(UNREADABLE.into()));
     }
@@ -306,7 +320,13 @@ pub fn predict(description: &Description, data: &Positions) -> Result<Prediction
     Prediction::of(model.points(data).into_iter().zip(&data.rows).map(row).collect())
 }
 
-/// The estimates of a description's numbers after a fit.
-pub fn estimated(campaign: &Campaign, prepared: &Prepared<'_>, values: &[f64], spread: &DMatrix<f64>) -> Vec<Estimate> {
-    estimates(&campaign.robot, (&prepared.own, &prepared.visibility), values, &prepared.seen(), spread)
+/// The estimates of a description's numbers after a fit; `spread` is the covariance of
+/// those that are seen.
+pub fn estimated(prepared: &Prepared<'_>, values: &[f64], spread: &DMatrix<f64>) -> Vec<Estimate> {
+    let seen = prepared.seen();
+    let one = |(k, own): (usize, &Own)| {
+        let fitted = seen.iter().position(|&number| number == k).map(|at| spread[(at, at)]);
+        Estimate::new((own.name.clone(), own.unit), (own.value, own.sign), values[k], fitted, &prepared.visibility[k])
+    };
+    prepared.own.iter().enumerate().map(one).collect()
 }

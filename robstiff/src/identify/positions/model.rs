@@ -24,6 +24,15 @@ pub struct Model {
     pub hook: Vector3<f64>,
 }
 
+/// The step of central differences of an angle (rad).
+pub const ANGLE_STEP: f64 = 1e-5;
+/// That of a length (m), whose curvature, as that of an angle, is the arm's.
+pub const LENGTH_STEP: f64 = 1e-4;
+/// That of a compliance (rad/Nm or m/N).
+pub const COMPLIANCE_STEP: f64 = 1e-8;
+/// That of a share.
+pub const SHARE_STEP: f64 = 1e-3;
+
 /// Changes a model by so much of a number.
 pub type Change = Rc<dyn Fn(&mut Model, f64)>;
 

@@ -51,7 +51,7 @@ impl<'c> Adapter<'c> {
         groups: &[Group],
     ) -> Result<(Self, Rivals), Error> {
         let mut bench = Bench::new(campaign, data)?;
-        let (rivals, kept, state) = rivals(campaign, &mut bench, trace, groups)?;
+        let (rivals, kept, state) = rivals(&mut bench, trace, groups)?;
         let (problem, middle) = bench.regression.at(&state, &kept, &bench.rows);
         let of = |&number: &usize| (bench.regression.numbers[number].clone(), state.values[number]);
         let (numbers, values) = kept.iter().map(of).unzip();

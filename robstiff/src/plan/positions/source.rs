@@ -5,10 +5,9 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use crate::campaign::Campaign;
+use crate::identify::Error;
 use crate::identify::positions::model::State;
 use crate::identify::positions::regression::STANDS;
-use crate::identify::{Error, element_name, unit_of};
 use crate::plan::rivals::{Group, Number, Rival, Rivals, computed, pairs};
 use crate::trace::Trace;
 use crate::trace::catalogue::OUTLIERS;
@@ -24,12 +23,7 @@ const OF_THE_TABLE: [&str; 2] = ["joint_zero_offset", "dh_error"];
 ///
 /// # Errors
 /// A trace of other positions than these.
-pub fn rivals(
-    campaign: &Campaign,
-    bench: &mut Bench<'_>,
-    trace: &Trace,
-    groups: &[Group],
-) -> Result<(Rivals, Vec<usize>, State), Error> {
+pub fn rivals(bench: &mut Bench<'_>, trace: &Trace, groups: &[Group]) -> Result<(Rivals, Vec<usize>, State), Error> {
     leave_out_wild(bench, trace);
     let named = |effect: &crate::trace::NamedEffect| (effect.effect.to_string(), bench.named(&effect.effect));
     let named: Vec<(String, Option<Named>)> = trace.effects.iter().map(named).collect();
@@ -44,9 +38,10 @@ pub fn rivals(
     let model = solved(bench, &without(None), &start)?;
     let own: Vec<usize> = bench.prepared.seen();
     let mut whole = bench.chosen(&model.named);
-    if whole.is_empty() {
+    let is_kinematic = |&number: &usize| bench.prepared.own.get(number).is_some_and(|own| !own.is_compliance());
+    if whole.iter().all(is_kinematic) {
         bench.turn_to(&model);
-        whole = of_the_table(bench);
+        whole = with_the_table(bench, &whole);
     }
     let mut kept: Vec<usize> = Vec::new();
     let mut columns = |numbers: &[usize]| -> Vec<usize> {
@@ -84,7 +79,7 @@ pub fn rivals(
         });
         contests.extend(pairs(&found.collect::<Vec<_>>(), &core));
     }
-    let numbers = whole.iter().map(|&number| told(campaign, bench, number, &model.solved.state)).collect();
+    let numbers = whole.iter().map(|&number| told(bench, number, &model.solved.state)).collect();
     let rivals = Rivals { nuisance: stands, model: of_model, effects, numbers, pairs: contests };
     Ok((rivals, kept, model.solved.state))
 }
@@ -102,23 +97,21 @@ fn solved(bench: &Bench<'_>, named: &[Named], from: &State) -> Result<Model, Err
     bench.solve(named, from).ok_or_else(|| Error(String::from("these positions do not tell the numbers of the trace")))
 }
 
-/// The numbers of the table and of zeros that these positions tell from each other and
-/// from another stand of the robot.
-fn of_the_table(bench: &Bench<'_>) -> Vec<usize> {
+/// Some numbers with those of the table and of zeros that these positions tell from them
+/// and each other and from another stand of the robot.
+fn with_the_table(bench: &Bench<'_>, own: &[usize]) -> Vec<usize> {
     let candidates = bench.candidates.iter().filter(|candidate| OF_THE_TABLE.contains(&candidate.kind.name));
-    let numbers: Vec<usize> =
-        candidates.flat_map(|candidate| &candidate.variants[0].columns).map(|column| column - STANDS).collect();
-    bench.independent(&numbers)
+    let of_table = candidates.flat_map(|candidate| &candidate.variants[0].columns).map(|column| column - STANDS);
+    bench.independent(&own.iter().copied().chain(of_table).collect::<Vec<usize>>())
 }
 
 /// What a number of the regression is.
-fn told(campaign: &Campaign, bench: &Bench<'_>, number: usize, state: &State) -> Number {
+fn told(bench: &Bench<'_>, number: usize, state: &State) -> Number {
     let own = bench.prepared.own.len();
     let value = state.values[number];
     let Some(of_effect) = number.checked_sub(own) else {
-        let declared = &bench.prepared.own[number];
-        let name = element_name(&campaign.robot, declared);
-        return Number { name, unit: unit_of(&campaign.robot, declared.column), value };
+        let own = &bench.prepared.own[number];
+        return Number { name: own.name.clone(), unit: own.unit, value };
     };
     let column = STANDS + number;
     let has =

@@ -6,7 +6,7 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 use super::offers::{Between, Form, Number, Possible, offers};
-use super::rig::Rig;
+use super::rig::{Rig, reflector};
 use crate::campaign::{Campaign, Positions};
 use crate::identify::Error;
 use crate::identify::covariance::NOISELESS;
@@ -79,7 +79,8 @@ impl<'c> Bench<'c> {
     /// # Errors
     /// Positions that do not tell where the robot stands.
     pub fn new(campaign: &Campaign, data: &'c Positions) -> Result<Self, Error> {
-        let prepared = Prepared::new(campaign, data)?;
+        let of_reflector = reflector().numbers.into_iter().map(|number| number.enters);
+        let prepared = Prepared::with_kinematics(campaign, data, of_reflector)?;
         let rig = Rig::new(&campaign.robot, data);
         let (mut candidates, mut numbers) = (Vec::new(), Vec::new());
         let (mut betweens, mut possible) = (Vec::new(), Vec::new());

@@ -17,8 +17,7 @@ use super::frames::frames;
 use super::rig::{Rig, lever_arm, reflector};
 use crate::campaign::{Campaign, Positions};
 use crate::identify::normal::Sign;
-use crate::identify::positions::COMPLIANCE_STEP;
-use crate::identify::positions::model::{Enters, Model};
+use crate::identify::positions::model::{ANGLE_STEP, COMPLIANCE_STEP, Enters, LENGTH_STEP, Model, SHARE_STEP};
 use crate::identify::setup::coordinate_entry;
 use crate::trace::catalogue::{
     DH_ENTRIES, DH_MOST, DH_UNITS, EITHER, HARDENING_KNEES, KINDS, Kind, LOST_KNEES, LOST_MOTION,
@@ -27,13 +26,7 @@ use crate::trace::catalogue::{
 use crate::trace::found::{EffectParameter, Place};
 use crate::{Effect, JointKind};
 
-/// Steps of central differences: of an angle (rad) and a length (m), whose curvature
-/// is the arm's; of a share.
-const ANGLE_STEP: f64 = 1e-5;
-pub const LENGTH_STEP: f64 = 1e-4;
-const SHARE_STEP: f64 = 1e-3;
-
-/// Those of entries of a table that are angles and lengths.
+/// Steps of central differences of entries of a table that are angles and lengths.
 const STEPS: [f64; 2] = [ANGLE_STEP, LENGTH_STEP];
 
 /// The orders of a periodic error that are tried, one of them, and the largest (rad).

@@ -10,8 +10,8 @@ use super::bench::{Bench, Model, Proposed};
 use super::search::Searched;
 use crate::campaign::{Campaign, PositionRow};
 use crate::identify::NoiseSource;
-use crate::identify::baseline::with_values;
 use crate::identify::normal::Sign;
+use crate::identify::positions::own::with_values;
 use crate::identify::positions::regression::{STANDS, Solved};
 use crate::identify::positions::{estimated, of_numbers, residuals};
 use crate::identify::problem::rms;
@@ -72,7 +72,7 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
     let effects = if tells { effects(found, &replaced, &spread, (structure, after.holdout_rms)) } else { Vec::new() };
     let mut description = campaign.robot.clone();
     if tells {
-        description = with_values(&campaign.robot, &values);
+        description = with_values(&campaign.robot, &bench.prepared.own, &values);
         if !is_readable(&description) {
             return Err(UNREADABLE.to_string());
         }
@@ -124,10 +124,10 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
         rivals: rivals(bench, model, &replaced),
         invisible: invisible(campaign, bench),
         next: Vec::new(),
-        estimates_before: estimated(campaign, &bench.prepared, &values_before, &spread_before),
+        estimates_before: estimated(&bench.prepared, &values_before, &spread_before),
         estimates: match tells {
-            true => estimated(campaign, &bench.prepared, &values, &spread),
-            false => estimated(campaign, &bench.prepared, &values_before, &spread_before),
+            true => estimated(&bench.prepared, &values, &spread),
+            false => estimated(&bench.prepared, &values_before, &spread_before),
         },
         description,
         effects,

@@ -8,9 +8,9 @@ use std::vec::Vec;
 use nalgebra::Vector3;
 use robstiff_robots::{Description, Placement};
 
-use super::offers::{Form, LENGTH_STEP, Number, Offer, any, kind};
+use super::offers::{Form, Number, Offer, any, kind};
 use crate::campaign::Positions;
-use crate::identify::positions::model::{Enters, Model, Moved, Seen};
+use crate::identify::positions::model::{Enters, LENGTH_STEP, Model, Moved, Seen};
 use crate::trace::found::Place;
 
 /// The step of central differences of where a payload hangs (m), by which a deflection

@@ -12,6 +12,7 @@ use robstiff_robots::{Description, catalogue};
 use crate::Effect;
 use crate::campaign::made_positions::Plan;
 use crate::campaign::{Campaign, Data, Holdout};
+use crate::identify::baseline::Visibility;
 use crate::trace::{Options, Trace, Verdict, trace};
 
 fn six_axis() -> Description {
@@ -191,6 +192,52 @@ fn a_gear_softens_by_what_it_is_found_to_have() {
     );
     let number = &trace.effects[0].parameters[0];
     assert!((number.value - added).abs() < 4.0 * number.std.expect("a fitted number"), "{number:?}");
+}
+
+/// Errors that a description declares are fitted again, and written as they are now; so
+/// what changed is not looked for elsewhere.
+#[test]
+fn declared_errors_are_fitted_again() {
+    let declared = [
+        Effect::JointZeroOffset { joint: 3, value: 3e-4 },
+        Effect::DhError { entry: DhEntry::A(2), value: 5e-4 },
+        Effect::TransmissionError { joint: 5, order: 2.0, sin: 1e-4, cos: 0.0 },
+    ];
+    let now = [
+        Effect::JointZeroOffset { joint: 3, value: 9e-4 },
+        Effect::DhError { entry: DhEntry::A(2), value: -2e-4 },
+        Effect::TransmissionError { joint: 5, order: 2.0, sin: -1e-4, cos: 3e-4 },
+    ];
+    for more in [None, Some(Effect::DhError { entry: DhEntry::A(3), value: 1e-3 })] {
+        let hidden = now.into_iter().chain(more).collect();
+        let mut campaign = Plan { hidden, ..Plan::new(six_axis(), 4) }.run();
+        campaign.robot.effects.extend(declared);
+        let trace = traced(&campaign);
+        assert_eq!(names(&trace), more.iter().map(ToString::to_string).collect::<Vec<_>>(), "{}", trace.why);
+        assert_eq!(trace.verdict, if more.is_some() { Verdict::Explained } else { Verdict::Adequate });
+        let truth = [9e-4, -2e-4, -1e-4, 3e-4];
+        let fitted = trace.estimates.iter().filter(|estimate| estimate.unit != "rad/Nm");
+        assert_eq!(fitted.clone().count(), truth.len());
+        for (estimate, truth) in fitted.zip(truth) {
+            let std = estimate.std.unwrap_or_else(|| panic!("{estimate:?}"));
+            assert!((estimate.value - truth).abs() < 4.0 * std && std < 4e-5, "{estimate:?}");
+        }
+        let written: Vec<f64> = trace.description.effects[..3].iter().map(|effect| effect.numbers()[0]).collect();
+        assert!((written[0] - 9e-4).abs() < 1e-4 && (written[1] + 2e-4).abs() < 1e-4, "{written:?}");
+        assert_eq!(written[2], 2.0);
+    }
+}
+
+/// A length of the last row is not fitted again: another reflector would be taken for it.
+#[test]
+fn what_a_reflector_says_as_well_is_left_as_declared() {
+    let mut campaign = Plan { marker: [1e-3, -5e-4, 2e-3], ..Plan::new(six_axis(), 5) }.run();
+    campaign.robot.effects.push(Effect::DhError { entry: DhEntry::D(6), value: 0.0 });
+    let trace = traced(&campaign);
+    assert_eq!(names(&trace), ["reflector_offset@rig"]);
+    assert_eq!(trace.description.effects, campaign.robot.effects);
+    let estimate = trace.estimates.last().expect("a number of its own");
+    assert!(estimate.name == "dh_error@d6" && estimate.visibility != Visibility::Seen, "{estimate:?}");
 }
 
 /// A declared noise is a yardstick; so are visits that come again.
