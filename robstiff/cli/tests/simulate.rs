@@ -83,6 +83,23 @@ fn positions_are_simulated_and_traced() {
     succeed(&["predict", &format!("{out}/truth.yaml"), &campaign, "--json", &predicted]);
     let rms = json(&predicted)["rms_um"].as_f64().unwrap();
     assert!((rms / 30.0 - 1.0).abs() < 0.2, "{rms}");
+
+    // Traced again from another value of what is declared now, it is told what it is.
+    let robot = format!("{out}/robot.yaml");
+    let declared = "effects: [{kind: joint_zero_offset, at: joint 3, value: 0.3 mrad}]\n";
+    fs::write(&robot, fs::read_to_string(&robot).unwrap() + declared).unwrap();
+    let again = inside(&folder, "again");
+    let page = succeed(&["trace", &campaign, "--out", &again, "--draws", "499"]);
+    assert!(
+        page.contains("Verdict: adequate. Nothing is missing: the description's numbers, fitted again, "),
+        "{page}"
+    );
+    assert!(page.contains("were fitted again: zero offset of joint 3 was 300 urad and is 0."), "{page}");
+    assert!(!page.contains("taken as they are"), "{page}");
+    let told = json(&format!("{again}/trace.json"));
+    let number = told["numbers"].as_array().unwrap().last().unwrap();
+    assert_eq!((&number["name"], &number["unit"]), (&"joint_zero_offset@joint 3".into(), &"rad".into()));
+    assert!((number["value"].as_f64().unwrap().to_degrees() - 0.1).abs() < 0.005, "{number}");
 }
 
 #[test]
