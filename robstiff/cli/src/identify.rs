@@ -63,7 +63,13 @@ fn page(campaign: &Campaign, found: &Identification) -> String {
         };
     }
     if let (Some(covariance), Data::Displacement(data)) = (&found.covariance, &campaign.data) {
-        page += &noise(covariance, data);
+        page += &noise(covariance, data, &found.left_out);
+    }
+    if let (Data::Position(_), false) = (&campaign.data, found.left_out.is_empty()) {
+        let lines: Vec<String> = found.left_out.iter().map(usize::to_string).collect();
+        let (s, do_not) =
+            if lines.len() == 1 { ("", "does not belong, and is") } else { ("s", "do not belong, and are") };
+        page += &format!("line{s} {} {do_not} left out\n", and(&lines));
     }
     page
 }
@@ -75,7 +81,7 @@ fn payloads_vary(data: &Positions) -> bool {
 }
 
 /// Sentences on how the readings hang together, and on those that do not belong.
-fn noise(covariance: &Covariance, data: &Displacements) -> String {
+fn noise(covariance: &Covariance, data: &Displacements, left_out: &[usize]) -> String {
     let mut said = String::new();
     if covariance.unequal {
         let axes: Vec<String> = covariance.own[..3].iter().map(|own| micrometres(*own)).collect();
@@ -87,7 +93,9 @@ fn noise(covariance: &Covariance, data: &Displacements) -> String {
         said += &format!("an unloaded reading has {shared} times the variance of what a row has to itself\n");
     }
     for outlier in &covariance.outliers {
-        said += &format!("does not belong: {}\n", outlier.told(data));
+        let out =
+            if outlier.rows.iter().all(|row| left_out.contains(&data.rows[*row].line)) { ", left out" } else { "" };
+        said += &format!("does not belong{out}: {}\n", outlier.told(data));
     }
     said
 }
@@ -179,6 +187,7 @@ fn document(found: &Identification) -> Value {
         "robot": found.description.name,
         "rows": found.rows,
         "poses": found.poses,
+        "left_out": found.left_out,
         "noise_um": found.noise.map(|(noise, _)| json::number(noise * 1e6)),
         "covariance": found.covariance.as_ref().map(covariance),
         "declared": {"rms_um": found.rms_declared.map(|rms| json::number(rms * 1e6))},

@@ -61,6 +61,7 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
         return Err(Error(String::from("no row loads its axis: every torque is zero")));
     }
     Ok(Identification {
+        left_out: Vec::new(),
         description: with_values(&campaign.robot, &values),
         correlation: DMatrix::identity(estimates.len(), estimates.len()),
         estimates,

@@ -94,8 +94,10 @@ pub struct Identification {
     /// How the readings hang together, and which do not belong; none for clamped
     /// axes.
     pub covariance: Option<Covariance>,
-    /// The error of the description as declared (m): rms over rows of the
-    /// displacement residual's length over `sqrt(3)`.
+    /// The lines of rows that do not belong to the others and were left out.
+    pub left_out: Vec<usize>,
+    /// The error of the description as declared (m): rms over rows, without those left
+    /// out, of the displacement residual's length over `sqrt(3)`.
     pub rms_declared: Option<f64>,
     /// The same of the description as identified (m).
     pub rms: Option<f64>,

@@ -30,6 +30,8 @@ pub struct Prepared<'c> {
     pub samples: Rc<Samples>,
     /// Whether each pose is fitted to.
     pub training: Vec<bool>,
+    /// Whether each row is left out of the fit.
+    pub left_out: Vec<bool>,
     /// The description's own numbers.
     pub own: Vec<Declared>,
     /// What the data can see of them.
@@ -44,6 +46,8 @@ pub struct Prepared<'c> {
     pub covariance: Covariance,
     /// The second order of the joints' displacement (m).
     pub correction: DVector<f64>,
+    /// Whether displacements and rotations are weighed by what is known of their noise.
+    weighed: bool,
 }
 
 /// Rotation weights settle to three digits within this many passes.
@@ -80,20 +84,39 @@ impl<'c> Prepared<'c> {
             data,
             description,
             correction: DVector::zeros(samples.length()),
-            values: own.iter().map(|number| number.value).collect(),
-            visibility: std::vec![Visibility::Seen; own.len()],
+            values: Vec::new(),
+            visibility: Vec::new(),
             own,
             repeated,
             declared_noise: noise.displacement,
             covariance,
+            left_out: std::vec![false; samples.rows.len()],
             samples: Rc::new(samples),
             training,
+            weighed,
         };
-        if !weighed && prepared.samples.axes > 3 {
-            prepared.settle_weight()?;
-        }
-        prepared.look()?;
+        prepared.begin()?;
         Ok(prepared)
+    }
+
+    /// Leaves rows out, and looks again.
+    ///
+    /// # Errors
+    /// Rows of which the others see none of the numbers.
+    pub fn leave_out(&mut self, rows: &[usize]) -> Result<(), Error> {
+        rows.iter().for_each(|&row| self.left_out[row] = true);
+        self.correction.fill(0.0);
+        self.begin()
+    }
+
+    /// Weighs the readings, as declared, and looks.
+    fn begin(&mut self) -> Result<(), Error> {
+        self.values = self.own.iter().map(|number| number.value).collect();
+        self.visibility = std::vec![Visibility::Seen; self.own.len()];
+        if !self.weighed && self.samples.axes > 3 {
+            self.settle_weight()?;
+        }
+        self.look()
     }
 
     /// The columns that are fitted: those of the numbers that are seen.
@@ -119,8 +142,8 @@ impl<'c> Prepared<'c> {
     /// held at their declared value do is taken from the readings.
     pub fn problem(&self) -> Problem {
         let columns: Vec<Column> = self.own.iter().map(|number| number.column).collect();
-        let (readings, none) = (self.readings(&self.samples), std::vec![false; self.samples.rows.len()]);
-        let weights = Weights { covariance: &self.covariance, training: &self.training, left_out: &none };
+        let readings = self.readings(&self.samples);
+        let weights = Weights { covariance: &self.covariance, training: &self.training, left_out: &self.left_out };
         Problem::new(&self.samples, raw(&self.samples, &columns), readings, &self.correction, weights)
     }
 

@@ -143,6 +143,34 @@ fn a_joint_that_cannot_be_seen_keeps_what_is_declared() {
     assert_eq!(found.description.joints[4], campaign.robot.joints[4]);
 }
 
+/// A reading that is off by far more than noise has no part in the fit; many are a matter
+/// of something else.
+#[test]
+fn a_reading_that_does_not_belong_is_left_out() {
+    let wild = |every: usize| {
+        move |i: usize, row: &mut Observation| row.displacement[1] += if i % every == 3 { 0.02 } else { 0.0 }
+    };
+    let plan = crate::campaign::made::Plan::new(9);
+    let right = identify(&plan.run()).expect("all joints are seen");
+    let campaign = plan.run_with(wild(500));
+    let found = identify(&campaign).expect("all joints are seen");
+    let Data::Displacement(data) = &campaign.data else { unreachable!("displacements") };
+    assert_eq!((right.left_out.len(), found.left_out), (0, vec![data.rows[3].line]));
+    for (right, found) in right.estimates.iter().zip(&found.estimates) {
+        let std = right.std.unwrap_or_else(|| panic!("{right:?}"));
+        assert!(
+            (right.value - found.value).abs() < std && found.std.is_some_and(|found| found < 1.2 * std),
+            "{found:?}"
+        );
+    }
+    assert!(found.rms < right.rms.map(|rms| 1.1 * rms));
+    // By how much, of the noise of what a row has to itself.
+    let [outlier] = &found.covariance.as_ref().expect("displacements").outliers[..] else { panic!("one row") };
+    assert!((outlier.size * 3_f64.sqrt() / (0.02 / 1e-5) - 1.0).abs() < 0.4, "{}", outlier.size);
+    assert!(identify(&plan.run_with(wild(6))).expect("all joints are seen").left_out.is_empty());
+    assert_eq!(identify(&plan.run_with(wild(40))).expect("all joints are seen").left_out.len(), 10);
+}
+
 #[test]
 fn parts_of_a_compound_joint_keep_their_proportion() {
     let mut description = five_axis();

@@ -19,7 +19,8 @@
 //! - the axes have one variance unless they differ (Bartlett's test,
 //!   [`EQUAL_AXES`]);
 //! - wild readings ([`outliers`]), sought before anything more is freed, are
-//!   listed and set aside, here and nowhere else: they would pass for noise.
+//!   listed and set aside: they would pass for noise. Those that are so beyond doubt
+//!   ([`Covariance::wild`]) identification leaves out, too; tracing looks for its own.
 //!
 //! Where poses have too few rows for that (one load a pose), the axes are taken
 //! to be equal and `lambda` to be 1, and [`Covariance::refined`] weighs the axes
@@ -180,6 +181,17 @@ impl Covariance {
             visits: samples.visits(),
             turns: (frame == Frame::Tool).then(|| samples.rows.iter().map(tool).collect()),
         }
+    }
+
+    /// The rows of readings that certainly do not belong ([`STRICT`](outliers::STRICT)),
+    /// which numbers are better fitted without; none where that is no matter of
+    /// [single rows](outliers::FEW).
+    pub fn wild(&self) -> Vec<usize> {
+        let wild = self.outliers.iter().filter(|outlier| outlier.p_value <= outliers::STRICT);
+        let mut rows: Vec<usize> = wild.flat_map(|outlier| outlier.rows.iter().copied()).collect();
+        rows.sort_unstable();
+        rows.dedup();
+        if rows.len() as f64 > outliers::FEW * self.visits.len() as f64 { Vec::new() } else { rows }
     }
 
     /// Axes per row.

@@ -12,6 +12,7 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
+use super::NOISELESS;
 use super::contrasts::Chunk;
 use super::reml::{count, sums};
 use crate::campaign::Displacements;
@@ -50,34 +51,58 @@ impl Outlier {
     }
 }
 
+/// The level over all rows at which a row is left out where what is left otherwise is
+/// noise. It is less than that of the other tests, for noise with a few larger values is
+/// common.
+pub const STRICT: f64 = 1e-3;
+
+/// What must be explained over the robust variance, where structure may be left: beyond
+/// twelve standard deviations.
+pub const STANDS_OUT: f64 = 150.0;
+
+/// More than this share of the rows is no matter of single rows.
+pub const FEW: f64 = 0.1;
+
 /// A shift that the free response at the pose takes up but for this fraction
 /// cannot be judged.
 const LEFT: f64 = 0.05;
 
 /// What is wild at a level: at most one a chunk, the wildest.
 pub fn find(chunks: &[Chunk], axes: usize, shared: f64, variances: &[f64], level: f64) -> Vec<Outlier> {
-    let total: f64 = sums(chunks, axes, shared).iter().zip(variances).map(|(sum, variance)| sum / variance).sum();
-    let freedom = (axes * count(chunks)) as f64;
-    if freedom <= (2 * axes) as f64 {
+    let sums = sums(chunks, axes, shared);
+    let total: f64 = sums.iter().zip(variances).map(|(sum, variance)| sum / variance).sum();
+    let (contrasts, between) = (count(chunks) as f64, axes as f64);
+    let within = between * (contrasts - 1.0);
+    if contrasts <= 2.0 {
         return Vec::new();
     }
-    let suspects: Vec<Vec<Outlier>> = chunks.iter().map(|chunk| suspects(chunk, axes, shared, variances)).collect();
+    let suspects: Vec<Vec<Suspect>> = chunks.iter().map(|chunk| suspects(chunk, axes, shared)).collect();
     let tested = suspects.iter().map(Vec::len).sum::<usize>() as f64;
-    let (between, within) = (axes as f64, freedom - axes as f64);
-    let judged = |mut suspect: Outlier| {
+    let judged = |Suspect { mut reading, explained }: Suspect| {
+        let all: f64 = explained.iter().zip(variances).map(|(explained, variance)| explained / variance).sum();
         // The mean square over the axes, over what is left without it.
-        let explained = suspect.size;
-        let ratio = explained / between / ((total - explained).max(f64::MIN_POSITIVE) / within);
-        suspect.size = ratio.sqrt();
-        suspect.p_value = told(fisher_tail(ratio, [between, within]).unwrap_or(1.0) * tested);
-        suspect
+        let ratio = all / between / ((total - all).max(f64::MIN_POSITIVE) / within);
+        reading.p_value = told(fisher_tail(ratio, [between, within]).unwrap_or(1.0) * tested);
+        // By axis, for what is off along one raises the variance of that alone.
+        let of_axis = |(explained, sum): (&f64, &f64)| explained * (contrasts - 1.0) / (sum - explained).max(NOTHING);
+        reading.size = (explained.iter().zip(&sums).map(of_axis).sum::<f64>() / between).sqrt();
+        (ratio, reading)
     };
-    let worst = |suspects: Vec<Outlier>| suspects.into_iter().map(judged).max_by(|a, b| a.size.total_cmp(&b.size));
-    suspects.into_iter().filter_map(worst).filter(|suspect| suspect.p_value <= level).collect()
+    let worst = |suspects: Vec<Suspect>| suspects.into_iter().map(judged).max_by(|(a, _), (b, _)| a.total_cmp(b));
+    suspects.into_iter().filter_map(worst).map(|(_, reading)| reading).filter(|one| one.p_value <= level).collect()
 }
 
-/// Every row and every visit of a chunk; `size` is what its shift explains.
-fn suspects(chunk: &Chunk, axes: usize, shared: f64, variances: &[f64]) -> Vec<Outlier> {
+/// Squares of less are rounding (m^2).
+const NOTHING: f64 = NOISELESS * NOISELESS;
+
+/// A reading that is judged, with what its shift explains of each axis.
+struct Suspect {
+    reading: Outlier,
+    explained: Vec<f64>,
+}
+
+/// Every row and every visit of a chunk.
+fn suspects(chunk: &Chunk, axes: usize, shared: f64) -> Vec<Suspect> {
     let mut visits = chunk.visits.clone();
     visits.dedup();
     let rows = (0..chunk.rows.len()).map(|i| (std::vec![i], chunk.visits[i], false));
@@ -100,9 +125,9 @@ fn suspects(chunk: &Chunk, axes: usize, shared: f64, variances: &[f64]) -> Vec<O
                 weighted.sum::<f64>() / leverage
             })
             .collect();
-        let size = shift.iter().zip(variances).map(|(shift, variance)| shift * shift * leverage / variance).sum();
+        let explained = shift.iter().map(|shift| shift * shift * leverage).collect();
         let rows = rows.into_iter().map(|i| chunk.rows[i]).collect();
-        Some(Outlier { rows, visit, whole_visit, shift, size, p_value: 1.0 })
+        Some(Suspect { reading: Outlier { rows, visit, whole_visit, shift, size: 0.0, p_value: 1.0 }, explained })
     };
     rows.chain(visits).filter_map(one).collect()
 }

@@ -16,6 +16,7 @@ pub mod registration;
 pub mod regression;
 #[cfg(test)]
 mod tests;
+pub mod wild;
 mod within;
 
 use std::format;
@@ -30,6 +31,7 @@ use self::model::{Enters, Model, State};
 use self::own::{Own, compliances, kinematic, with_values};
 use self::registration::Registration;
 use self::regression::{Regression, Rows, STANDS};
+use self::wild::wild_rows;
 use self::within::within_visits;
 use super::baseline::{Visibility, visibility};
 use super::displacement::among_all;
@@ -100,6 +102,18 @@ impl<'c> Prepared<'c> {
             number.add_to(&mut start.description, -number.value);
         }
         Ok(Self { data, own, visibility, start, rows, registration })
+    }
+
+    /// Leaves rows out of the fit, and of where the robot stands by the description as
+    /// declared.
+    ///
+    /// # Errors
+    /// Rows of which the others do not tell where the robot stands.
+    fn leave_out(&mut self, rows: &[usize], campaign: &Campaign) -> Result<(), Error> {
+        rows.iter().for_each(|&row| self.rows.left_out[row] = true);
+        let declared = Model::new(&campaign.robot, self.data);
+        self.registration = standing(&declared, self.data, |row| self.rows.has(row, self.data))?;
+        Ok(())
     }
 
     /// The own numbers that the positions show, by index.
@@ -206,7 +220,7 @@ fn beyond_standing(total: &Normal) -> Option<Normal> {
 /// Positions that show none, or not where the robot stands; compliances that no
 /// description takes beside its own effects.
 pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification, Error> {
-    let prepared = Prepared::new(campaign, data)?;
+    let mut prepared = Prepared::new(campaign, data)?;
     let seen = prepared.seen();
     if seen.is_empty() {
         let why = match data.rows.iter().all(|row| row.payload == 0.0) {
@@ -216,6 +230,10 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
         return Err(Error(format!("{why}; `robstiff trace` asks what they show of the kinematics")));
     }
     let regression = prepared.regression([]);
+    let all = regression.solve(&seen, &prepared.state(prepared.own.len()), &prepared.rows);
+    // The table may be off: rows must stand out from that, too.
+    let wild = all.and_then(|all| wild_rows(&all.problem, false)).map_or_else(Vec::new, |wild| wild.rows);
+    prepared.leave_out(&wild, campaign)?;
     let start = prepared.state(prepared.own.len());
     let (state, spread) = match by_payloads(&regression, &start, &seen, &prepared.rows)? {
         Some(found) => found,
@@ -230,8 +248,7 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
         Some(noise) => (noise, NoiseSource::Declared),
         None => {
             // By what the robot misses a pose is in it, whatever compliances are found by.
-            let training = &prepared.rows.training;
-            let fitted: Vec<usize> = (0..rows).filter(|&row| training[data.rows[row].pose]).collect();
+            let fitted: Vec<usize> = (0..rows).filter(|&row| prepared.rows.has(row, data)).collect();
             let readings = 3.0 * fitted.len() as f64;
             let freedom = (readings - (STANDS + seen.len()) as f64).max(1.0);
             (rms(&left, 3, fitted) * (readings / freedom).sqrt(), NoiseSource::Residuals)
@@ -242,6 +259,9 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
     if !is_readable(&description) {
         return Err(Error(UNREADABLE.into()));
     }
+    let kept = (0..rows).filter(|&row| !prepared.rows.left_out[row]);
+    let mut left_out: Vec<usize> = wild.iter().map(|&row| data.rows[row].line).collect();
+    left_out.sort_unstable();
     Ok(Identification {
         description,
         correlation: among_all(&correlation(&spread), &seen, estimates.len()),
@@ -250,8 +270,9 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
         poses: data.poses.len(),
         noise: Some(noise),
         covariance: None,
-        rms_declared: Some(rms(&prepared.declared_residuals(campaign), 3, 0..rows)),
-        rms: Some(rms(&left, 3, 0..rows)),
+        left_out,
+        rms_declared: Some(rms(&prepared.declared_residuals(campaign), 3, kept.clone())),
+        rms: Some(rms(&left, 3, kept)),
     })
 }
 
@@ -274,7 +295,7 @@ fn by_payloads(
         seen.iter().zip(fit.coefficients.iter()).for_each(|(&k, &value)| state.values[k] = value);
         if pass == PASSES {
             let model = state.model(&regression.start, &regression.numbers);
-            state.registration = standing(&model, data, |row| rows.training[data.rows[row].pose])?;
+            state.registration = standing(&model, data, |row| rows.has(row, data))?;
             return Ok(Some((state, covariance(&within, &fit, signs))));
         }
         pass += 1;

@@ -41,6 +41,13 @@ pub struct Rows {
     pub left_out: Vec<bool>,
 }
 
+impl Rows {
+    /// Whether a row of the positions is fitted to.
+    pub fn has(&self, row: usize, data: &Positions) -> bool {
+        self.training[data.rows[row].pose] && !self.left_out[row]
+    }
+}
+
 /// Positions with what may explain them.
 #[derive(Clone)]
 pub struct Regression<'c> {

@@ -108,6 +108,23 @@ fn what_shows_no_compliance_is_told() {
     assert!(few.contains("do not tell where the robot stands"), "{few}");
 }
 
+/// A reading that is off by far more than anything else has no part in the fit.
+#[test]
+fn a_position_that_does_not_belong_is_left_out() {
+    let hidden = vec![Effect::JointZeroOffset { joint: 3, value: 1e-3 }];
+    let plan = Plan { payloads: vec![0.0, 200.0], hidden, ..Plan::new(six_axis(), 5) };
+    let right = identified(&plan.run()).expect("payloads");
+    let campaign = plan.run_with(|i, row| row.position[1] += if [31, 80].contains(&i) { 0.3 } else { 0.0 });
+    let found = identified(&campaign).expect("payloads");
+    assert_eq!((right.left_out.len(), found.left_out), (0, vec![33, 82]));
+    for (right, found) in right.estimates.iter().zip(&found.estimates).skip(1) {
+        let std = right.std.unwrap_or(f64::INFINITY);
+        assert!((right.value - found.value).abs() < std, "{right:?} {found:?}");
+    }
+    let off = found.rms_declared.expect("positions") / right.rms_declared.expect("positions");
+    assert!((off - 1.0).abs() < 0.1, "{off}");
+}
+
 /// Columns are what the numbers do: from any start near enough, a fit comes to the
 /// truth.
 #[test]

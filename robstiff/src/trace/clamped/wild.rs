@@ -14,11 +14,12 @@ use nalgebra::{DMatrix, DVector};
 
 use super::axes::Axes;
 use super::bench::{Bench, problem};
+use crate::identify::covariance::outliers::{STANDS_OUT, STRICT};
 use crate::identify::normal::Fit;
 use crate::identify::problem::Problem;
 use crate::identify::whitening::mean_share;
 use crate::probability::{student_tail, told};
-use crate::trace::isolated::{STANDS_OUT, STRICT, by_median};
+use crate::trace::isolated::by_median;
 use crate::trace::model::Fitted;
 
 /// The row that stands out most.

@@ -24,6 +24,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use self::by_pose::ByPose;
 use super::model::{Fitted, Setting};
+use crate::identify::covariance::outliers::{FEW, STANDS_OUT, STRICT};
 use crate::probability::{as_normal, told};
 
 /// Something wrong in one visit.
@@ -43,18 +44,9 @@ pub struct Event {
     pub is_slip: bool,
 }
 
-/// What must be explained over the robust variance, where structure may be
-/// left: beyond twelve standard deviations with the straight line taken out,
-/// beyond fourteen where there are too few rows to do so.
-pub const STANDS_OUT: f64 = 150.0;
+/// What must be explained where there are too few rows to take the straight line out:
+/// beyond fourteen standard deviations ([`STANDS_OUT`]: beyond twelve).
 const STANDS_OUT_AS_IT_IS: f64 = 200.0;
-
-/// The level over all rows where what is left otherwise is noise. It is less
-/// than that of the other tests, for noise with a few larger values is common.
-pub const STRICT: f64 = 1e-3;
-
-/// More than this share of the rows is no matter of single rows.
-pub const FEW: f64 = 0.1;
 
 /// The median of chi-square with one degree of freedom.
 const MEDIAN: f64 = 0.4549;

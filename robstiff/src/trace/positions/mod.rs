@@ -25,7 +25,6 @@ mod slips;
 mod structure;
 #[cfg(test)]
 mod tests;
-mod wild;
 
 use self::bench::Bench;
 use super::{Options, Progress, Trace};

@@ -11,8 +11,8 @@ use std::vec::Vec;
 
 use super::bench::{Bench, Model, Proposed, TIE};
 use super::structure::structure;
-use super::wild::{Wild, wild_rows};
 use crate::identify::positions::regression::STANDS;
+use crate::identify::positions::wild::{Wild, wild_rows};
 use crate::trace::bootstrap::Reference;
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::{Fitted, Named};

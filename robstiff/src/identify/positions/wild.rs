@@ -10,9 +10,10 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
+use crate::identify::covariance::outliers::{FEW, STANDS_OUT, STRICT};
+use crate::identify::normal::Normal;
 use crate::identify::problem::Problem;
 use crate::probability::{fisher_tail, told};
-use crate::trace::isolated::{FEW, STANDS_OUT, STRICT};
 
 /// The median of chi-square with three degrees of freedom.
 const MEDIAN: f64 = 2.366;
@@ -50,7 +51,7 @@ pub fn wild_rows(problem: &Problem, strict: bool) -> Option<Wild> {
         let over = gains[worst] / variance;
         let row = rows.remove(worst);
         let (x, y) = of_row(problem, row);
-        total = total.without(&crate::identify::normal::Normal::small(&x, &y));
+        total = total.without(&Normal::small(&x, &y));
         taken.push(row);
         if p <= STRICT && (strict || over > STANDS_OUT) {
             let rss = total.solve(&columns).map_or(f64::INFINITY, |fit| fit.rss);
