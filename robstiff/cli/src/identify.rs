@@ -121,7 +121,7 @@ fn compliances(estimates: &[Estimate]) -> String {
             _ => "not seen".to_owned(),
         };
         let change = estimate.deviation().map(|deviation| format!("{:+.0} %", deviation * 100.0)).unwrap_or_default();
-        let stiffness = if estimate.value > 0.0 {
+        let stiffness = if estimate.value > 0.0 && is_compliance(estimate.unit) {
             format!("{} {}", significant(estimate.value.recip(), 3), stiffness_unit(estimate.unit))
         } else {
             "-".to_owned()
@@ -136,6 +136,11 @@ fn compliances(estimates: &[Estimate]) -> String {
         ]);
     }
     table.to_string()
+}
+
+/// Whether a number is a compliance, and not a length or an angle.
+pub fn is_compliance(unit: &str) -> bool {
+    unit.contains('/')
 }
 
 fn stiffness_unit(unit: &str) -> &'static str {

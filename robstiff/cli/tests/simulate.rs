@@ -94,7 +94,10 @@ fn positions_are_simulated_and_traced() {
         page.contains("Verdict: adequate. Nothing is missing: the description's numbers, fitted again, "),
         "{page}"
     );
-    assert!(page.contains("were fitted again: zero offset of joint 3 was 300 urad and is 0."), "{page}");
+    assert!(
+        page.contains("besides compliances was fitted again: zero offset of joint 3 was 300 urad and is 0."),
+        "{page}"
+    );
     assert!(!page.contains("taken as they are"), "{page}");
     let told = json(&format!("{again}/trace.json"));
     let number = told["numbers"].as_array().unwrap().last().unwrap();

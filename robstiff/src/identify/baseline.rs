@@ -48,15 +48,16 @@ pub fn declared(description: &Description) -> Vec<Declared> {
 pub fn columns_of(effect: &Effect) -> Vec<(Column, f64)> {
     match *effect {
         Effect::StiffnessNonlinearity { joint, added, knee } => std::vec![(Column::Knee { joint, knee }, added)],
+        Effect::LostMotion { joint, gap, knee } => std::vec![(Column::Gap { joint, knee }, gap)],
         _ => parameters(effect).map(|(parameter, value)| (Column::Linear(parameter), value)).collect(),
     }
 }
 
-/// Compliances are not negative; a coupling and a change with torque can be.
+/// Compliances and play are not negative; a coupling and a change with torque can be.
 pub fn sign_of(column: Column) -> Sign {
     match column {
         Column::Linear(Parameter::Coupling(_)) | Column::Knee { .. } => Sign::Free,
-        Column::Linear(_) => Sign::Nonnegative,
+        Column::Linear(_) | Column::Gap { .. } => Sign::Nonnegative,
     }
 }
 
@@ -171,6 +172,7 @@ pub fn set_parameter(effect: &mut Effect, column: Column, number: f64) {
                 *knee = at;
             }
         }
+        (Effect::LostMotion { gap, .. }, _) => *gap = number,
         (effect, column) => unreachable!("{effect} has no column {column:?}"),
     }
 }

@@ -1,5 +1,5 @@
 //! What the laws of joints do that a description declares and no column fits:
-//! backlash, play. A compliance that varies with the angle is in its joint's column.
+//! hysteresis. A compliance that varies with the angle is in its joint's column.
 
 use std::collections::BTreeMap;
 use std::vec::Vec;

@@ -216,6 +216,7 @@ pub fn parameter_name(column: Column) -> &'static str {
         Column::Linear(Parameter::ToolRotation) => "rotation",
         Column::Linear(Parameter::BaseTranslation | Parameter::ToolTranslation) => "translation",
         Column::Knee { .. } => "added",
+        Column::Gap { .. } => "gap",
     }
 }
 
@@ -223,6 +224,7 @@ pub fn parameter_name(column: Column) -> &'static str {
 pub fn unit_of(description: &Description, column: Column) -> &'static str {
     match column {
         Column::Linear(Parameter::BaseTranslation | Parameter::ToolTranslation) => "m/N",
+        Column::Gap { .. } => "rad",
         Column::Linear(Parameter::Joint(joint)) | Column::Knee { joint, .. }
             if description.joints[joint - 1].kind == JointKind::Prismatic =>
         {

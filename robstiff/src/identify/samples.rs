@@ -28,6 +28,13 @@ pub enum Column {
         /// The torque at which the change is half done (Nm).
         knee: f64,
     },
+    /// The `gap` of a [`LostMotion`](crate::Effect) with a given knee.
+    Gap {
+        /// The joint, from 1.
+        joint: usize,
+        /// The torque at which most of the play is taken up (Nm).
+        knee: f64,
+    },
 }
 
 /// The rows of a campaign of kind `displacement`, on a robot.
@@ -221,6 +228,7 @@ impl Samples {
                 self.turned(joint, |at| self.share(number, &self.rows[at]) * torques[at])
             }
             Column::Knee { joint, knee } => self.of_joint(joint, |torque| torque / (torque / knee).hypot(1.0)),
+            Column::Gap { joint, knee } => self.of_joint(joint, |torque| 0.5 * torque / torque.hypot(knee)),
             Column::Linear(parameter) => self.under(&[(parameter, 1.0)]),
         }
     }

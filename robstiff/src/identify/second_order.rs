@@ -11,8 +11,9 @@ use std::vec::Vec;
 use nalgebra::{DVector, Vector3, Vector6};
 use robstiff_robots::Description;
 
+use super::baseline::{Declared, declared};
 use super::laws::turned_by_laws;
-use super::samples::{Sample, Samples, stack};
+use super::samples::{Column, Sample, Samples, stack};
 use crate::elements::{Part, Rest, at_rest, displacement_at};
 
 /// The displacement of the marker (m) and its rotation (rad) through the joints with
@@ -36,11 +37,15 @@ fn of_row(row: &Sample, compliance: &[f64]) -> (Vector6<f64>, Vec<f64>) {
     (six, turns.iter().zip(first).map(|(turn, first)| turn - first).collect())
 }
 
-/// The samples with the second order, and what declared laws of joints do, taken
-/// from their readings, so that these are linear in the load as far as the
+/// The samples with the second order, and what declared laws of joints do, fitted or not,
+/// taken from their readings, so that these are linear in the load as far as the
 /// description, whose compliances are of about the right size, accounts for them.
 pub fn straightened(samples: &Samples, description: &Description) -> Samples {
     let compliance: Vec<f64> = description.joints.iter().map(robstiff_robots::Joint::compliance).collect();
-    let beyond = beyond_linear(samples, &compliance) + turned_by_laws(description, samples);
+    let mut beyond = beyond_linear(samples, &compliance) + turned_by_laws(description, samples);
+    let is_law = |number: &Declared| matches!(number.column, Column::Knee { .. } | Column::Gap { .. });
+    for number in declared(description).into_iter().filter(is_law) {
+        beyond.axpy(number.value, &samples.column(number.column), 1.0);
+    }
     samples.clone().less(&beyond)
 }

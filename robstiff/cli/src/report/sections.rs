@@ -4,6 +4,7 @@
 use super::content::{Candidate, Effect, Number, Report, SearchStep};
 use super::html::{Cell, Table, element, escape, number, text, words};
 use super::{arm, figure, micro, scatter};
+use crate::identify::is_compliance;
 use crate::text::{and, count, decimals, plus_minus, probability, quantity, significant};
 
 /// The error of each model.
@@ -177,10 +178,10 @@ pub fn doubts(report: &Report) -> String {
 /// The description's own numbers in the three models.
 pub fn compliances(report: &Report) -> String {
     let with_effects = !report.effects.is_empty();
-    let only_compliances = report.compliances.iter().all(|one| one.unit.contains('/'));
+    let only_compliances = report.compliances.iter().all(|one| is_compliance(&one.unit));
     let (heading, first) = match only_compliances {
         true => ("Compliances", "Compliance"),
-        false => ("Compliances and declared errors", "Number"),
+        false => ("The description's own numbers", "Number"),
     };
     let mut head = vec![words(first), number("declared"), number("identified")];
     if with_effects {

@@ -8,7 +8,7 @@ use robstiff::trace::{EffectParameter, NamedEffect, Proposal, Rival, RowResidual
 use robstiff_robots::Joint;
 
 use super::words::{by_kind, spoken};
-use crate::identify::{at_bound, source_of};
+use crate::identify::{at_bound, is_compliance, source_of};
 use crate::text::{Table, and, count, decimals, micrometres, probability, quantity};
 
 /// The finding in one sentence.
@@ -30,7 +30,7 @@ pub fn headline(trace: &Trace) -> String {
     };
     match trace.verdict {
         Verdict::Adequate => {
-            let what = match errors_fitted_again(trace) {
+            let what = match fitted_again(trace) {
                 None => "identified joints predict",
                 Some(_) => "the description's numbers, fitted again, predict",
             };
@@ -64,7 +64,7 @@ pub fn summary(trace: &Trace) -> Vec<String> {
     if trace.verdict == Verdict::Insufficient {
         sentences.push("The description keeps its declared values.".to_owned());
     }
-    sentences.extend(errors_fitted_again(trace));
+    sentences.extend(fitted_again(trace));
     let clipped = trace.estimates.iter().filter(|estimate| estimate.at_bound);
     sentences.extend(clipped.map(|estimate| sentence(&at_bound(&estimate.name))));
     if !trace.depends_on.is_empty() && matches!(trace.verdict, Verdict::Partial | Verdict::Unexplained) {
@@ -101,10 +101,10 @@ fn encoders(read: &EncodersRead, trace: &Trace) -> Vec<String> {
     sentences
 }
 
-/// Of the errors of the kinematics that a description declares, those that were fitted
-/// again and are not what it says.
-fn errors_fitted_again(trace: &Trace) -> Option<String> {
-    let fitted = |estimate: &&Estimate| estimate.visibility == Visibility::Seen && error_of(trace, estimate).is_some();
+/// Of what a description declares besides compliances, errors of its kinematics and play,
+/// what was fitted again and is not what it says.
+fn fitted_again(trace: &Trace) -> Option<String> {
+    let fitted = |estimate: &&Estimate| estimate.visibility == Visibility::Seen && !is_compliance(estimate.unit);
     let seen: Vec<&Estimate> = trace.estimates.iter().filter(fitted).collect();
     if seen.is_empty() || trace.verdict == Verdict::Insufficient {
         return None;
@@ -113,28 +113,30 @@ fn errors_fitted_again(trace: &Trace) -> Option<String> {
         |estimate: &&&Estimate| (estimate.value - estimate.declared).abs() > MOVED * estimate.std.unwrap_or_default();
     let said = |estimate: &&Estimate| {
         let was = quantity(estimate.declared, None, estimate.unit);
-        let (name, is) = (error_of(trace, estimate)?, quantity(estimate.value, estimate.std, estimate.unit));
-        Some(format!("{name} was {was} and is {is}"))
+        let is = quantity(estimate.value, estimate.std, estimate.unit);
+        format!("{} was {was} and is {is}", name_of(trace, estimate))
     };
-    let moved: Vec<String> = seen.iter().filter(has_moved).filter_map(said).collect();
+    let moved: Vec<String> = seen.iter().filter(has_moved).map(said).collect();
     let of_others = match (moved.len(), seen.len() - moved.len()) {
-        (0, _) => "none has changed",
+        (0, _) => "it has not changed",
         (_, 0) => "",
-        _ => "; the others have not changed",
+        _ => "; the rest has not changed",
     };
-    Some(format!("Errors that the description declares were fitted again: {}{of_others}.", moved.join("; ")))
+    let what = "What the description declares besides compliances was fitted again";
+    Some(format!("{what}: {}{of_others}.", moved.join("; ")))
 }
 
-/// An error that is off what is declared by more standard deviations has changed.
+/// A number that is off what is declared by more standard deviations has changed.
 const MOVED: f64 = 3.0;
 
-/// Which error of the description's kinematics an estimate is of, if of one.
-fn error_of(trace: &Trace, estimate: &Estimate) -> Option<String> {
-    let errors = trace.description.effects.iter().filter(|effect| effect.is_kinematic());
-    errors.map(ToString::to_string).find_map(|name| match estimate.name.strip_prefix(&name)? {
+/// A number of an effect that the description declares, in words.
+fn name_of(trace: &Trace, estimate: &Estimate) -> String {
+    let effects = trace.description.effects.iter().map(ToString::to_string);
+    let mut of_effects = effects.filter_map(|name| match estimate.name.strip_prefix(&name)? {
         "" => Some(spoken(&name)),
         number => number.strip_prefix(' ').map(|number| format!("{} ({number})", spoken(&name))),
-    })
+    });
+    of_effects.next().unwrap_or_else(|| estimate.name.clone())
 }
 
 /// The lines of the table that the final model is not fitted to, nor judged

@@ -14,6 +14,7 @@ use super::model::{ANGLE_STEP, COMPLIANCE_STEP, Enters, LENGTH_STEP, Model, SHAR
 use crate::Effect;
 use crate::identify::baseline::{Declared, declared};
 use crate::identify::normal::Sign;
+use crate::identify::samples::Column;
 use crate::identify::{element_name, unit_of};
 
 /// A number of a description that positions can change.
@@ -35,20 +36,21 @@ pub struct Own {
 /// Where a number is in its description.
 #[derive(Clone, Copy, Debug)]
 enum Which {
-    /// A compliance.
+    /// A compliance, or play.
     Elastic(Declared),
     /// A number of an error of the kinematics, both by index.
     Kinematic { effect: usize, number: usize },
 }
 
-/// The compliances of a description: the joints' in order, then those of its effects.
+/// What gives way in a description: the joints' compliances in order, then those of its
+/// effects, and their play.
 pub fn compliances(description: &Description) -> Vec<Own> {
     let own = |number: Declared| Own {
         name: element_name(description, &number),
         unit: unit_of(description, number.column),
         value: number.value,
         sign: number.sign,
-        step: COMPLIANCE_STEP,
+        step: if matches!(number.column, Column::Gap { .. }) { ANGLE_STEP } else { COMPLIANCE_STEP },
         which: Which::Elastic(number),
     };
     declared(description).into_iter().map(own).collect()
@@ -79,7 +81,7 @@ fn of_kinematic(at: usize, effect: &Effect) -> Vec<Own> {
 }
 
 impl Own {
-    /// Whether it is a compliance, not an error of the kinematics.
+    /// Whether it shows under loads only, and is no error of the kinematics.
     pub fn is_compliance(&self) -> bool {
         matches!(self.which, Which::Elastic(_))
     }
