@@ -95,7 +95,7 @@ fn positions_are_simulated_and_traced() {
         "{page}"
     );
     assert!(
-        page.contains("besides compliances was fitted again: zero offset of joint 3 was 300 urad and is 0."),
+        page.contains("that the description declares were fitted again: zero offset of joint 3 was 300 urad and is 0."),
         "{page}"
     );
     assert!(!page.contains("taken as they are"), "{page}");

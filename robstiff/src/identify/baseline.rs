@@ -44,11 +44,17 @@ pub fn declared(description: &Description) -> Vec<Declared> {
     joints.chain(effects).collect()
 }
 
-/// The columns of an effect and its values.
+/// The columns of an effect and its values: of what gives way, all but a share of a
+/// joint's compliance, which is in the joint's own column.
 pub fn columns_of(effect: &Effect) -> Vec<(Column, f64)> {
     match *effect {
         Effect::StiffnessNonlinearity { joint, added, knee } => std::vec![(Column::Knee { joint, knee }, added)],
         Effect::LostMotion { joint, gap, knee } => std::vec![(Column::Gap { joint, knee }, gap)],
+        Effect::Hysteresis { joint, radius1, weight1, radius2, weight2, radius3, weight3 } => {
+            let operators = [(radius1, weight1), (radius2, weight2), (radius3, weight3)].into_iter().enumerate();
+            let in_use = operators.filter(|(_, (_, weight))| *weight != 0.0);
+            in_use.map(|(operator, (radius, weight))| (Column::Play { joint, operator, radius }, weight)).collect()
+        }
         _ => parameters(effect).map(|(parameter, value)| (Column::Linear(parameter), value)).collect(),
     }
 }
@@ -57,7 +63,7 @@ pub fn columns_of(effect: &Effect) -> Vec<(Column, f64)> {
 pub fn sign_of(column: Column) -> Sign {
     match column {
         Column::Linear(Parameter::Coupling(_)) | Column::Knee { .. } => Sign::Free,
-        Column::Linear(_) | Column::Gap { .. } => Sign::Nonnegative,
+        Column::Linear(_) | Column::Gap { .. } | Column::Play { .. } => Sign::Nonnegative,
     }
 }
 
@@ -123,7 +129,8 @@ impl Declared {
             (None, Column::Linear(Parameter::Joint(joint))) => description.joints[joint - 1].compliance(),
             (Some(effect), column) => {
                 let own = columns_of(&description.effects[effect]).into_iter().find(|(of, _)| *of == column);
-                own.expect("a declared number is one of its effect's").1
+                // A weight that has become zero has no column any more.
+                own.map_or(0.0, |(_, value)| value)
             }
             (None, _) => unreachable!("only joints' own compliances belong to no effect"),
         }
@@ -173,6 +180,9 @@ pub fn set_parameter(effect: &mut Effect, column: Column, number: f64) {
             }
         }
         (Effect::LostMotion { gap, .. }, _) => *gap = number,
+        (Effect::Hysteresis { weight1, weight2, weight3, .. }, Column::Play { operator, .. }) => {
+            *[weight1, weight2, weight3][operator] = number;
+        }
         (effect, column) => unreachable!("{effect} has no column {column:?}"),
     }
 }

@@ -14,7 +14,6 @@ pub mod covariance;
 pub mod displacement;
 pub mod encoders;
 pub mod holdout;
-pub mod laws;
 pub mod noise;
 pub mod normal;
 pub mod positions;
@@ -217,6 +216,7 @@ pub fn parameter_name(column: Column) -> &'static str {
         Column::Linear(Parameter::BaseTranslation | Parameter::ToolTranslation) => "translation",
         Column::Knee { .. } => "added",
         Column::Gap { .. } => "gap",
+        Column::Play { operator, .. } => ["weight1", "weight2", "weight3"][operator],
     }
 }
 
@@ -225,7 +225,7 @@ pub fn unit_of(description: &Description, column: Column) -> &'static str {
     match column {
         Column::Linear(Parameter::BaseTranslation | Parameter::ToolTranslation) => "m/N",
         Column::Gap { .. } => "rad",
-        Column::Linear(Parameter::Joint(joint)) | Column::Knee { joint, .. }
+        Column::Linear(Parameter::Joint(joint)) | Column::Knee { joint, .. } | Column::Play { joint, .. }
             if description.joints[joint - 1].kind == JointKind::Prismatic =>
         {
             "m/N"

@@ -3,11 +3,10 @@
 use std::string::String;
 use std::vec::Vec;
 
-use nalgebra::Vector3;
+use nalgebra::{DVector, Vector3};
 use robstiff_robots::Description;
 
 use super::baseline::declared;
-use super::laws::turned_by_laws;
 use super::samples::Samples;
 use super::{Error, positions};
 use crate::campaign::{Campaign, Data, Displacements};
@@ -73,7 +72,7 @@ pub fn predict(description: &Description, campaign: &Campaign) -> Result<Predict
 
 fn displacements(description: &Description, data: &Displacements) -> Result<Prediction, Error> {
     let samples = Samples::of_description(description, data);
-    let mut predicted = turned_by_laws(description, &samples);
+    let mut predicted = DVector::zeros(samples.length());
     for number in declared(description) {
         if number.value != 0.0 {
             predicted.axpy(number.value, &samples.column(number.column), 1.0);

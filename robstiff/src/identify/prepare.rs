@@ -7,11 +7,10 @@ use std::vec::Vec;
 use nalgebra::DVector;
 use robstiff_robots::Description;
 
-use super::baseline::{Declared, Visibility, declared, visibility};
+use super::baseline::{Declared, Visibility, declared, visibility, with_values};
 use super::covariance::contrasts::Level;
 use super::covariance::{Basis, Covariance};
 use super::holdout::training;
-use super::laws::turned_by_laws;
 use super::noise::{PureError, repetitions};
 use super::normal::Sign;
 use super::problem::{Problem, Weights, raw};
@@ -69,12 +68,23 @@ impl<'c> Prepared<'c> {
         let Data::Displacement(data) = &campaign.data else {
             return Err(Error(String::from("this needs a campaign of kind `displacement`")));
         };
+        let prepared = Self::by(&campaign.robot, campaign, data)?;
+        if !prepared.own.iter().any(|number| number.column.is_law()) {
+            return Ok(prepared);
+        }
+        // Laws that are no longer as declared would pass for noise.
+        Self::by(&with_values(&campaign.robot, &prepared.values), campaign, data)
+    }
+
+    /// The same with the noise of readings from which what a description says is taken
+    /// that is not linear in the load.
+    fn by(known: &Description, campaign: &'c Campaign, data: &'c Displacements) -> Result<Self, Error> {
         let description = &campaign.robot;
         let samples = Samples::of_description(description, data);
         let training = training(samples.poses, campaign.holdout);
         let own = declared(description);
         let noise = campaign.noise;
-        let straight = straightened(&samples, description);
+        let straight = straightened(&samples, known);
         let covariance = Covariance::estimate(&straight, data.measured_frame, noise, |pose| training[pose]);
         let repeated = repetitions(&straight, &covariance, |pose| training[pose]);
         // Readings that no one knows the noise of have no weight.
@@ -147,15 +157,15 @@ impl<'c> Prepared<'c> {
         Problem::new(&self.samples, raw(&self.samples, &columns), readings, &self.correction, weights)
     }
 
-    /// The readings less what laws of joints do that the description declares,
-    /// and numbers that are held at their declared value, stacked.
+    /// The readings less what numbers do that are held at their declared value,
+    /// stacked.
     pub fn readings(&self, samples: &Samples) -> DVector<f64> {
         self.readings_beside(samples, &self.seen())
     }
 
     /// The same where the numbers of these columns are fitted, and no others.
     pub fn readings_beside(&self, samples: &Samples, fitted: &[usize]) -> DVector<f64> {
-        let mut readings = samples.readings() - turned_by_laws(self.description, samples);
+        let mut readings = samples.readings();
         for (column, number) in self.own.iter().enumerate() {
             if !fitted.contains(&column) && number.value != 0.0 {
                 readings.axpy(-number.value, &samples.column(number.column), 1.0);

@@ -35,6 +35,22 @@ pub enum Column {
         /// The torque at which most of the play is taken up (Nm).
         knee: f64,
     },
+    /// A weight of a [`Hysteresis`](crate::Effect).
+    Play {
+        /// The joint, from 1.
+        joint: usize,
+        /// Which of its play operators.
+        operator: usize,
+        /// Its radius (Nm).
+        radius: f64,
+    },
+}
+
+impl Column {
+    /// Whether it is of a law of its joint, in which the joint's torque is not linear.
+    pub fn is_law(self) -> bool {
+        !matches!(self, Self::Linear(_))
+    }
 }
 
 /// The rows of a campaign of kind `displacement`, on a robot.
@@ -229,6 +245,10 @@ impl Samples {
             }
             Column::Knee { joint, knee } => self.of_joint(joint, |torque| torque / (torque / knee).hypot(1.0)),
             Column::Gap { joint, knee } => self.of_joint(joint, |torque| 0.5 * torque / torque.hypot(knee)),
+            Column::Play { joint, radius, .. } => {
+                let plays = self.plays(&self.torques(joint), radius);
+                self.turned(joint, |at| plays[at])
+            }
             Column::Linear(parameter) => self.under(&[(parameter, 1.0)]),
         }
     }
@@ -290,6 +310,19 @@ impl Samples {
         self.rows.iter().map(|row| row.twists[joint - 1].dot(&row.wrench)).collect()
     }
 
+    /// The play operator of a radius on a torque after each row, in the same unit. The
+    /// rows of a visit are one load sequence, which begins on a robot that was never
+    /// loaded.
+    pub fn plays(&self, torques: &[f64], radius: f64) -> Vec<f64> {
+        let mut state = std::vec![0.0; self.rows.iter().map(|row| row.visit + 1).max().unwrap_or(0)];
+        let after = |(row, &torque): (&Sample, &f64)| {
+            let before: &mut f64 = &mut state[row.visit];
+            *before = play(torque, radius, *before);
+            *before
+        };
+        self.rows.iter().zip(torques).map(after).collect()
+    }
+
     /// The visit of each row.
     pub fn visits(&self) -> Vec<usize> {
         self.rows.iter().map(|row| row.visit).collect()
@@ -336,6 +369,11 @@ impl Samples {
 /// Whether an effect is a share of a joint's compliance.
 pub fn is_share(effect: &Effect) -> bool {
     matches!(effect, Effect::PoseDependentCompliance { .. })
+}
+
+/// The play operator of a radius after a torque.
+pub fn play(torque: f64, radius: f64, before: f64) -> f64 {
+    (torque - radius).max((torque + radius).min(before))
 }
 
 /// What a joint (from 1) turns by for a unit of a number in which the compliance

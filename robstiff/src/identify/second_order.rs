@@ -11,9 +11,8 @@ use std::vec::Vec;
 use nalgebra::{DVector, Vector3, Vector6};
 use robstiff_robots::Description;
 
-use super::baseline::{Declared, declared};
-use super::laws::turned_by_laws;
-use super::samples::{Column, Sample, Samples, stack};
+use super::baseline::declared;
+use super::samples::{Sample, Samples, stack};
 use crate::elements::{Part, Rest, at_rest, displacement_at};
 
 /// The displacement of the marker (m) and its rotation (rad) through the joints with
@@ -42,9 +41,8 @@ fn of_row(row: &Sample, compliance: &[f64]) -> (Vector6<f64>, Vec<f64>) {
 /// description, whose compliances are of about the right size, accounts for them.
 pub fn straightened(samples: &Samples, description: &Description) -> Samples {
     let compliance: Vec<f64> = description.joints.iter().map(robstiff_robots::Joint::compliance).collect();
-    let mut beyond = beyond_linear(samples, &compliance) + turned_by_laws(description, samples);
-    let is_law = |number: &Declared| matches!(number.column, Column::Knee { .. } | Column::Gap { .. });
-    for number in declared(description).into_iter().filter(is_law) {
+    let mut beyond = beyond_linear(samples, &compliance);
+    for number in declared(description).into_iter().filter(|number| number.column.is_law()) {
         beyond.axpy(number.value, &samples.column(number.column), 1.0);
     }
     samples.clone().less(&beyond)

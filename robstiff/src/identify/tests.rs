@@ -91,7 +91,7 @@ fn known_compliances_come_back_from_any_frame_and_point() {
 }
 
 #[test]
-fn declared_laws_of_joints_are_held() {
+fn declared_laws_of_joints_are_fitted_again() {
     let mut truth = five_axis();
     truth.effects = vec![
         Effect::LostMotion { joint: 2, gap: 2e-4, knee: 40.0 },
@@ -109,11 +109,15 @@ fn declared_laws_of_joints_are_held() {
     let found = identify(&known).expect("all joints are seen");
     for (estimate, joint) in found.estimates.iter().zip(&truth.joints) {
         let off = (estimate.value / joint.compliance() - 1.0).abs();
-        assert!(off < 5e-3, "{} off by {off}", estimate.name);
+        // The second order of the laws is not in the model.
+        assert!(off < 1e-2, "{} off by {off}", estimate.name);
     }
-    let gap = found.description.effects[0].numbers()[0];
-    assert!((gap / 2e-4 - 1.0).abs() < 2e-2, "{gap}");
-    assert_eq!(found.description.effects[1..], truth.effects[1..]);
+    for (found, truth) in found.description.effects.iter().zip(&truth.effects) {
+        for (found, truth) in found.numbers().iter().zip(truth.numbers().iter()) {
+            // Thirty loads, each on a robot at rest, do not tell weights well from a compliance.
+            assert!((found - truth).abs() <= 0.1 * truth.abs(), "{found} {truth}");
+        }
+    }
     // A compliance that varies is a share of the joint's own, and grows with it.
     truth.effects.push(Effect::PoseDependentCompliance { joint: 2, cos1: 0.5, sin1: 0.3, cos2: 0.0, sin2: 0.1 });
     let known = campaign(&truth, stiffer(&truth), Frame::Tool, [0.2, -0.1, 0.3], true);
@@ -143,6 +147,28 @@ fn a_joint_that_cannot_be_seen_keeps_what_is_declared() {
     assert_eq!((unseen.value, unseen.std, &unseen.visibility), (unseen.declared, None, &Visibility::Unseen));
     assert!((found.estimates[1].value / truth.joints[1].compliance() - 1.0).abs() < 5e-3);
     assert_eq!(found.description.joints[4], campaign.robot.joints[4]);
+}
+
+/// What gives way has a column, or is a share of what has one.
+#[test]
+fn no_effect_is_left_out_of_the_regression() {
+    use robstiff_robots::effect::{CATALOGUE, DhEntry, Place};
+
+    let places = [
+        Place::Joint(2),
+        Place::Joints([1, 2]),
+        Place::Link(2),
+        Place::Base,
+        Place::Tool,
+        Place::Entry(DhEntry::A(2)),
+        Place::Robot,
+    ];
+    for about in CATALOGUE.iter().filter(|about| !about.kinematic) {
+        let place = places.into_iter().find(|&place| about.at.takes(place)).expect("some place");
+        let numbers = vec![0.5; about.parameters.len()];
+        let effect = Effect::of_kind(about.kind, place, &numbers).expect("an effect of the catalogue");
+        assert!(!baseline::columns_of(&effect).is_empty() || samples::is_share(&effect), "{effect}");
+    }
 }
 
 /// A reading that is off by far more than noise has no part in the fit; many are a matter

@@ -105,6 +105,39 @@ fn names(trace: &Trace) -> Vec<String> {
     trace.effects.iter().map(|named| named.effect.to_string()).collect()
 }
 
+/// What has become of a gear is told of its own numbers, not as another effect.
+#[test]
+fn declared_laws_of_joints_are_fitted_again() {
+    let worn = |gap| crate::Effect::LostMotion { joint: 2, gap, knee: 60.0 };
+    let lags = |weight1| crate::Effect::Hysteresis {
+        joint: 3,
+        radius1: 40.0,
+        weight1,
+        radius2: 0.0,
+        weight2: 0.0,
+        radius3: 0.0,
+        weight3: 0.0,
+    };
+    let cases = [
+        (worn(1e-4), worn(3e-4), 3e-4),
+        (worn(6e-4), worn(3e-4), 3e-4),
+        (lags(1e-7), lags(3e-7), 3e-7),
+        (lags(6e-7), lags(3e-7), 3e-7),
+    ];
+    for ((declared, now, truth), seed) in cases.into_iter().zip(3..) {
+        let mut robot = five_axis();
+        robot.effects.push(now);
+        let mut campaign = campaign(&robot, 40, &[], seed);
+        campaign.robot.effects[0] = declared;
+        let trace = traced(&campaign);
+        assert_eq!((names(&trace), trace.verdict), (vec![], Verdict::Adequate), "{declared}: {}", trace.why);
+        let number = trace.estimates.last().expect("a number of the effect");
+        let std = number.std.unwrap_or_else(|| panic!("{number:?}"));
+        assert!((number.value - truth).abs() < 4.0 * std && std < 0.2 * truth, "{number:?}");
+        assert!(trace.description.effects[0].numbers().contains(&number.value), "{:?}", trace.description.effects);
+    }
+}
+
 const TILT_3: (Column, f64) = (Column::Linear(Parameter::Transverse(3)), 6e-7);
 
 #[test]

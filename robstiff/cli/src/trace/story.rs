@@ -8,7 +8,7 @@ use robstiff::trace::{EffectParameter, NamedEffect, Proposal, Rival, RowResidual
 use robstiff_robots::Joint;
 
 use super::words::{by_kind, spoken};
-use crate::identify::{at_bound, is_compliance, source_of};
+use crate::identify::{at_bound, source_of};
 use crate::text::{Table, and, count, decimals, micrometres, probability, quantity};
 
 /// The finding in one sentence.
@@ -101,10 +101,10 @@ fn encoders(read: &EncodersRead, trace: &Trace) -> Vec<String> {
     sentences
 }
 
-/// Of what a description declares besides compliances, errors of its kinematics and play,
-/// what was fitted again and is not what it says.
+/// Of the effects that a description declares, what was fitted again and is not what it
+/// says.
 fn fitted_again(trace: &Trace) -> Option<String> {
-    let fitted = |estimate: &&Estimate| estimate.visibility == Visibility::Seen && !is_compliance(estimate.unit);
+    let fitted = |estimate: &&Estimate| estimate.visibility == Visibility::Seen && estimate.name.contains('@');
     let seen: Vec<&Estimate> = trace.estimates.iter().filter(fitted).collect();
     if seen.is_empty() || trace.verdict == Verdict::Insufficient {
         return None;
@@ -118,12 +118,11 @@ fn fitted_again(trace: &Trace) -> Option<String> {
     };
     let moved: Vec<String> = seen.iter().filter(has_moved).map(said).collect();
     let of_others = match (moved.len(), seen.len() - moved.len()) {
-        (0, _) => "it has not changed",
+        (0, _) => "none has changed",
         (_, 0) => "",
         _ => "; the rest has not changed",
     };
-    let what = "What the description declares besides compliances was fitted again";
-    Some(format!("{what}: {}{of_others}.", moved.join("; ")))
+    Some(format!("The effects that the description declares were fitted again: {}{of_others}.", moved.join("; ")))
 }
 
 /// A number that is off what is declared by more standard deviations has changed.

@@ -53,7 +53,9 @@ pub fn compliances(description: &Description) -> Vec<Own> {
         step: if matches!(number.column, Column::Gap { .. }) { ANGLE_STEP } else { COMPLIANCE_STEP },
         which: Which::Elastic(number),
     };
-    declared(description).into_iter().map(own).collect()
+    // Positions know no order of loads.
+    let fits = |number: &Declared| !matches!(number.column, Column::Play { .. });
+    declared(description).into_iter().filter(fits).map(own).collect()
 }
 
 /// The errors of the kinematics that a description declares, number by number. Of a

@@ -332,7 +332,7 @@ fn parts(geometry: &Geometry<'_, f64>, row: &Sample, kept: &Kept, read: &Vector6
     };
     let place = match kept {
         Kept::Own(Column::Linear(Parameter::Coupling([i, j]))) => return vec![gear(*i, *j), gear(*j, *i)],
-        Kept::Own(Column::Knee { joint, .. } | Column::Gap { joint, .. }) => *joint,
+        Kept::Own(Column::Knee { joint, .. } | Column::Gap { joint, .. } | Column::Play { joint, .. }) => *joint,
         Kept::Own(Column::Linear(parameter)) => match *parameter {
             Parameter::Joint(i) | Parameter::Transverse(i) | Parameter::LinkBending(i) | Parameter::LinkTorsion(i) => i,
             Parameter::BaseTilt | Parameter::BaseTranslation => 0,

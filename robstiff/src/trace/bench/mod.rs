@@ -292,7 +292,7 @@ impl<'c> Bench<'c> {
         let held = self.prepared.own.iter().enumerate().filter(|(column, _)| !fit.columns.contains(column));
         let held = held.filter_map(|(_, number)| match number.column {
             Column::Linear(parameter) => Some((parameter, number.value)),
-            Column::Knee { .. } | Column::Gap { .. } => None,
+            Column::Knee { .. } | Column::Gap { .. } | Column::Play { .. } => None,
         });
         let fitted = fit.columns.iter().zip(fit.coefficients.iter());
         let fitted = fitted.filter_map(|(&column, &value)| Some((self.parameter(column)?, value)));

@@ -214,7 +214,7 @@ impl<'c> Bench<'c> {
     pub(super) fn parameter(&self, column: usize) -> Option<Parameter> {
         match self.own.get(column) {
             Some(Column::Linear(parameter)) => Some(*parameter),
-            Some(Column::Knee { .. } | Column::Gap { .. }) => None,
+            Some(Column::Knee { .. } | Column::Gap { .. } | Column::Play { .. }) => None,
             None => self.numbers[column - self.own.len()].parameter,
         }
     }

@@ -8,7 +8,7 @@ use std::vec;
 use std::vec::Vec;
 
 use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
-use crate::identify::samples::Samples;
+use crate::identify::samples::play;
 use crate::trace::clamped::{Axes, AxisNumber, OnAxes, axes_column};
 
 /// The kind.
@@ -40,7 +40,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         let radii = RADII.map(|fraction| fraction * largest);
         let number = move |radius: f64| {
             Number::elastic("weight", unit, [0.0, f64::INFINITY], move |point| {
-                let plays = plays(&point.samples, &point.torques(joint), radius);
+                let plays = point.samples.plays(&point.torques(joint), radius);
                 point.of_joint(joint, |row| plays[row])
             })
         };
@@ -54,22 +54,6 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         let numbers: Vec<Number> = radii.map(number).into();
         offers.add(Part::Joint(joint), numbers, sets.map(form).collect());
     }
-}
-
-/// The play operator of a radius after each row.
-pub fn plays(samples: &Samples, torques: &[f64], radius: f64) -> Vec<f64> {
-    let mut state = vec![0.0; samples.rows.iter().map(|row| row.visit + 1).max().unwrap_or(0)];
-    let play = |(row, &torque): (&crate::identify::samples::Sample, &f64)| {
-        let before: &mut f64 = &mut state[row.visit];
-        *before = play(torque, radius, *before);
-        *before
-    };
-    samples.rows.iter().zip(torques).map(play).collect()
-}
-
-/// The play operator after a torque.
-fn play(torque: f64, radius: f64, before: f64) -> f64 {
-    (torque - radius).max((torque + radius).min(before))
 }
 
 /// An axis begins at rest; its rows follow each other.
