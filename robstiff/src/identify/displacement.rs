@@ -20,9 +20,7 @@ use crate::campaign::Campaign;
 pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     let mut prepared = Prepared::new(campaign)?;
     let wild = prepared.covariance.wild();
-    if !wild.is_empty() {
-        prepared.leave_out(&wild)?;
-    }
+    prepared.leave_out(&wild)?;
     let mut problem = prepared.problem();
     let mut fitted = fit(&prepared, &problem)?;
     // The description is the final model here: once more with axes weighed by what

@@ -68,16 +68,17 @@ impl<'c> Prepared<'c> {
         let Data::Displacement(data) = &campaign.data else {
             return Err(Error(String::from("this needs a campaign of kind `displacement`")));
         };
-        let prepared = Self::by(&campaign.robot, campaign, data)?;
+        let mut prepared = Self::by(&campaign.robot, campaign, data)?;
         if !prepared.own.iter().any(|number| number.column.is_law()) {
             return Ok(prepared);
         }
         // Laws that are no longer as declared would pass for noise.
+        prepared.leave_out(&prepared.covariance.wild())?;
         Self::by(&with_values(&campaign.robot, &prepared.values), campaign, data)
     }
 
-    /// The same with the noise of readings from which what a description says is taken
-    /// that is not linear in the load.
+    /// The same, with how noisy the readings are found out when what is not linear in
+    /// the load is taken from them by the description `known`.
     fn by(known: &Description, campaign: &'c Campaign, data: &'c Displacements) -> Result<Self, Error> {
         let description = &campaign.robot;
         let samples = Samples::of_description(description, data);
@@ -114,6 +115,9 @@ impl<'c> Prepared<'c> {
     /// # Errors
     /// Rows of which the others see none of the numbers.
     pub fn leave_out(&mut self, rows: &[usize]) -> Result<(), Error> {
+        if rows.is_empty() {
+            return Ok(());
+        }
         rows.iter().for_each(|&row| self.left_out[row] = true);
         self.correction.fill(0.0);
         self.begin()
