@@ -65,7 +65,8 @@ fn page(campaign: &Campaign, found: &Identification) -> String {
     if let (Some(covariance), Data::Displacement(data)) = (&found.covariance, &campaign.data) {
         page += &noise(covariance, data, &found.left_out);
     }
-    if let (Data::Position(_), false) = (&campaign.data, found.left_out.is_empty()) {
+    // Of displacements the noise says it, and how far they are off.
+    if !matches!(campaign.data, Data::Displacement(_)) && !found.left_out.is_empty() {
         let lines: Vec<String> = found.left_out.iter().map(usize::to_string).collect();
         let (s, do_not) =
             if lines.len() == 1 { ("", "does not belong, and is") } else { ("s", "do not belong, and are") };

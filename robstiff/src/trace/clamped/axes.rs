@@ -9,6 +9,7 @@ use nalgebra::DVector;
 use crate::campaign::ClampedRow;
 use crate::identify::Identification;
 use crate::identify::baseline::Visibility;
+use crate::identify::clamped::regression::rows_of;
 use crate::identify::clamped::without_laws;
 use crate::trace::found::{EffectParameter, Place};
 use crate::{Effect, JointKind};
@@ -63,7 +64,7 @@ impl Axes {
 
     /// The rows of an axis, by index.
     pub fn rows_of(&self, axis: usize) -> Vec<usize> {
-        (0..self.rows.len()).filter(|&row| self.rows[row].axis == axis).collect()
+        rows_of(&self.rows, axis)
     }
 
     /// The torques on an axis (Nm), in order.

@@ -1,15 +1,14 @@
 //! The regression of clamped axes: rows, columns and models.
 
-use std::rc::Rc;
 use std::vec;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
 use super::axes::{Axes, OnAxes, OnAxesForm};
-use crate::identify::normal::{Fit, Normal, Sign};
-use crate::identify::problem::{Block, Equations, Problem};
-use crate::identify::whitening::whiten;
+use crate::identify::clamped::regression::problem;
+use crate::identify::normal::{Fit, Sign};
+use crate::identify::problem::Problem;
 use crate::trace::Options;
 use crate::trace::bootstrap::ScoreTest;
 use crate::trace::catalogue::{Candidate, KINDS, Kind, Variant};
@@ -79,7 +78,7 @@ impl Bench {
             candidates.push(Candidate { kind, place: one.place, variants, check: None });
         }
         let raw = DMatrix::from_columns(&columns);
-        let problem = problem(&axes, raw.clone());
+        let problem = problem(&axes.rows, raw.clone());
         Self { base: loaded.len(), axes, offers, candidates, signs, raw, problem }
     }
 
@@ -206,7 +205,7 @@ impl Bench {
             let raw: Vec<DVector<f64>> = base.chain(columns).collect();
             let signs: Vec<Sign> = self.columns(named).iter().map(|&column| self.signs[column]).collect();
             let all: Vec<usize> = (0..raw.len()).collect();
-            let total = problem(&self.axes, DMatrix::from_columns(&raw)).equations.total;
+            let total = problem(&self.axes.rows, DMatrix::from_columns(&raw)).equations.total;
             total.solve_signed(&all, &signs).map_or(f64::INFINITY, |fit| fit.rss)
         };
         let variance = left(&offers) / self.axes.rows.len() as f64;
@@ -242,27 +241,4 @@ impl Bench {
         }
         Self::new(axes, Some(&self.offers))
     }
-}
-
-/// The regression of the rows on some columns.
-pub fn problem(axes: &Axes, raw: DMatrix<f64>) -> Problem {
-    let count = raw.ncols();
-    let readings = DVector::from_iterator(axes.rows.len(), axes.rows.iter().map(|row| row.deflection));
-    let mut white = raw.insert_column(count, 0.0);
-    white.set_column(count, &readings);
-    let visits: Vec<usize> = axes.rows.iter().map(|row| row.axis - 1).collect();
-    whiten(&mut white, &visits, 1, 1.0);
-    let white_readings = white.column(count).into_owned();
-    let white = white.remove_column(count);
-    let blocks = (0..axes.rows.len()).map(|row| Block { pose: row, rows: vec![row], stacked: vec![row] }).collect();
-    let equations = Equations {
-        axes: 1,
-        shared: 1.0,
-        blocks,
-        held_out: Rc::new([]),
-        total: Normal::new(&white, &white_readings),
-        readings: Rc::new(readings),
-        white_readings: Rc::new(white_readings),
-    };
-    Problem { equations, white }
 }

@@ -14,19 +14,20 @@
 
 mod axes;
 mod bench;
+mod one_off;
 mod report;
 mod search;
 mod spread;
 #[cfg(test)]
 mod tests;
-mod wild;
 
 use std::string::String;
 
 pub use self::axes::{Axes, AxisNumber, OnAxes, axes_column};
 use super::{Options, Progress, Trace};
 use crate::campaign::{Campaign, ClampedRow};
-use crate::identify::{Error, identify};
+use crate::identify::Error;
+use crate::identify::clamped::slopes;
 
 /// Traces a campaign of clamped axes. Lengths of the result are angles (rad), its
 /// poses the axes.
@@ -41,7 +42,7 @@ pub fn trace(
 ) -> Result<Trace, Error> {
     progress("identifying the axes");
     // It refuses what no search should be begun with.
-    let identified = identify(campaign)?;
+    let identified = slopes(campaign, rows, &[])?;
     let axes = Axes::new(&campaign.robot, rows, &identified);
     let found = search::search(axes, options, progress);
     found.map(|found| report::report(campaign, &identified, &found, options)).map_err(|why: String| Error(why))

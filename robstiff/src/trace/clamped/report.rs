@@ -7,9 +7,9 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 use super::bench::Bench;
+use super::one_off::one_off;
 use super::search::Found as Searched;
 use super::spread::spread;
-use super::wild::one_off;
 use crate::campaign::{Campaign, ClampedRow};
 use crate::identify::baseline::{declared, with_values};
 use crate::identify::normal::Fit;

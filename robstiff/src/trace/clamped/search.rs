@@ -8,9 +8,11 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 use super::axes::Axes;
-use super::bench::{Bench, problem};
-use super::wild::{one_off, wild_rows};
+use super::bench::Bench;
+use super::one_off::one_off;
 use crate::campaign::ClampedRow;
+use crate::identify::clamped::regression::problem;
+use crate::identify::clamped::wild;
 use crate::identify::covariance::outliers::FEW;
 use crate::identify::normal::Sign;
 use crate::trace::bootstrap::ScoreTest;
@@ -78,7 +80,7 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
             (bench, model) = whole;
         }
         let most = (FEW * all as f64).floor() as usize;
-        while let Some((rows, p)) = wild_rows(&bench, &model.fit, strict, most - wild.0.len()) {
+        while let Some((rows, p)) = wild_rows(&bench, &model, strict, most - wild.0.len()) {
             wild.1 = p.max(wild.1);
             wild.0.extend(rows.iter().map(|&row| bench.axes.rows[row].line));
             bench = Bench::new(bench.axes.without(&rows), Some(&bench.offers));
@@ -112,7 +114,7 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
             }
             // With structure accounted for, rows need stand out from noise alone.
             strict = true;
-            if wild_rows(&bench, &model.fit, strict, most - wild.0.len()).is_none() {
+            if wild_rows(&bench, &model, strict, most - wild.0.len()).is_none() {
                 break;
             }
             continue;
@@ -164,6 +166,11 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
     Ok(Found { bench, selection, left, wild, every, too_little: None })
 }
 
+/// The rows that are wild beside a model, with the probability of the likeliest.
+fn wild_rows(bench: &Bench, model: &Fitted, strict: bool, most: usize) -> Option<(Vec<usize>, f64)> {
+    wild::wild_rows(&bench.axes.rows, &bench.raw.select_columns(&model.fit.columns), strict, most)
+}
+
 /// The same model on other rows.
 fn refitted(axes: Axes, bench: &Bench, model: &Fitted) -> Option<(Bench, Fitted)> {
     let other = Bench::new(axes, Some(&bench.offers));
@@ -206,7 +213,7 @@ fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit {
         add(format!("row order of axis {axis}"), (0..rows.len()).map(|k| k as f64).collect());
     }
     let none = LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() };
-    let problem = problem(axes, DMatrix::from_columns(&raw));
+    let problem = problem(&axes.rows, DMatrix::from_columns(&raw));
     let null: Vec<usize> = (0..first).collect();
     let Some(test) = ScoreTest::among(&problem, &candidates, &signs, first, &null) else { return none };
     let reference = test.reference(options.draws, options.seed);

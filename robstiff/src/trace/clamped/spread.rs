@@ -10,7 +10,8 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::bench::{Bench, problem};
+use super::bench::Bench;
+use crate::identify::clamped::regression::problem;
 use crate::identify::normal::{Scaled, Sign};
 use crate::identify::uncertainty::{WITHIN, student};
 use crate::trace::model::Fitted;
@@ -35,7 +36,7 @@ struct Linear {
 /// its numbers out of grids. What is held at zero has none.
 pub fn spread(bench: &Bench, model: &Fitted) -> DMatrix<f64> {
     let linear = linear(bench, model);
-    let whole = problem(&bench.axes, DMatrix::from_columns(&linear.columns));
+    let whole = problem(&bench.axes.rows, DMatrix::from_columns(&linear.columns));
     let own: Vec<usize> = (0..model.fit.columns.len()).collect();
     let left = whole.white_residuals(&own, &model.fit.coefficients);
     let mut spread = DMatrix::zeros(linear.columns.len(), linear.columns.len());

@@ -24,7 +24,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use self::by_pose::ByPose;
 use super::model::{Fitted, Setting};
-use crate::identify::covariance::outliers::{FEW, STANDS_OUT, STRICT};
+use crate::identify::covariance::outliers::{FEW, STANDS_OUT, STRICT, by_median};
 use crate::probability::{as_normal, told};
 
 /// Something wrong in one visit.
@@ -47,9 +47,6 @@ pub struct Event {
 /// What must be explained where there are too few rows to take the straight line out:
 /// beyond fourteen standard deviations ([`STANDS_OUT`]: beyond twelve).
 const STANDS_OUT_AS_IT_IS: f64 = 200.0;
-
-/// The median of chi-square with one degree of freedom.
-const MEDIAN: f64 = 0.4549;
 
 /// The degrees of freedom of a variance from that median, over those of the
 /// readings: its own variance is `1 / (4 n f^2)` with the density `f` of chi-square
@@ -247,13 +244,6 @@ fn scale(visits: &[Visit], strict: bool, tells: f64) -> Scale {
     };
     let thirds = if strict { [1.0; 3] } else { [0, 1, 2].map(of_third) };
     Scale { variance, freedom: OF_MEDIAN * tells * seen.len() as f64, thirds }
-}
-
-/// The variance that squares have by their median.
-pub fn by_median(squares: impl Iterator<Item = f64>) -> f64 {
-    let mut squares: Vec<f64> = squares.collect();
-    squares.sort_by(f64::total_cmp);
-    squares.get(squares.len() / 2).copied().unwrap_or(0.0) / MEDIAN
 }
 
 /// The worst of a visit, if it stands out from all rows and from the noise of its own

@@ -12,15 +12,13 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::axes::Axes;
-use super::bench::{Bench, problem};
-use crate::identify::covariance::outliers::{STANDS_OUT, STRICT};
+use super::regression::{loaded, problem, rows_of};
+use crate::campaign::ClampedRow;
+use crate::identify::covariance::outliers::{STANDS_OUT, STRICT, by_median};
 use crate::identify::normal::Fit;
 use crate::identify::problem::Problem;
 use crate::identify::whitening::mean_share;
 use crate::probability::{student_tail, told};
-use crate::trace::isolated::by_median;
-use crate::trace::model::Fitted;
 
 /// The row that stands out most.
 struct Worst {
@@ -31,18 +29,18 @@ struct Worst {
     p: f64,
 }
 
-/// The rows that are wild, `most` or fewer, by index, with the probability of the
-/// likeliest. Unless `strict`, structure may be left, and they must stand out from
-/// that as well.
-pub fn wild_rows(bench: &Bench, fit: &Fit, strict: bool, most: usize) -> Option<(Vec<usize>, f64)> {
-    let (mut axes, mut raw) = (bench.axes.clone(), bench.raw.select_columns(&fit.columns));
-    let mut at: Vec<usize> = (0..axes.rows.len()).collect();
+/// The rows that are wild, `most` or fewer, by index, the one that stands out most
+/// first, with the probability of the last; `raw` are the columns of the model. Unless
+/// `strict`, structure may be left, and they must stand out from that as well.
+pub fn wild_rows(rows: &[ClampedRow], raw: &DMatrix<f64>, strict: bool, most: usize) -> Option<(Vec<usize>, f64)> {
+    let (mut rows, mut raw) = (rows.to_vec(), raw.clone());
+    let mut at: Vec<usize> = (0..rows.len()).collect();
     let mut taken: Vec<usize> = Vec::new();
     let mut found = None;
     for _ in 0..most {
-        let Some(worst) = worst(&axes, &raw) else { break };
+        let Some(worst) = worst(&rows, &raw) else { break };
         taken.push(at.remove(worst.row));
-        axes = axes.without(&[worst.row]);
+        rows.remove(worst.row);
         raw = raw.remove_row(worst.row);
         if worst.p <= STRICT && (strict || worst.over > STANDS_OUT) {
             found = Some((taken.clone(), worst.p));
@@ -51,34 +49,15 @@ pub fn wild_rows(bench: &Bench, fit: &Fit, strict: bool, most: usize) -> Option<
     found
 }
 
-/// What one row explains if it is wild, in place of an effect.
-pub struct OneOff {
-    /// The row that explains most, by index.
-    pub row: usize,
-    /// The probability of that much, over all rows.
-    pub p: f64,
-    /// Schwarz's criterion of the model with it: which row, and how far it is off.
-    pub bic: f64,
-}
-
-/// The row of which it explains most that it is wild.
-pub fn one_off(bench: &Bench, model: &Fitted) -> Option<OneOff> {
-    let all = gains(&bench.axes, &bench.problem, &model.fit)?;
-    let row = (0..all.len()).max_by(|&a, &b| all[a].total_cmp(&all[b]))?;
-    let others = model.fit.rss - all[row];
-    let p = tail(all[row], others, all.len(), model.fit.columns.len())?;
-    (others > 0.0).then(|| OneOff { row, p, bic: bench.bic(others, &model.named, 2) })
-}
-
 /// By how much the sum of squares falls without each row: by a number of its own,
 /// which whitening spreads over the rows that share its unloaded reading.
-fn gains(axes: &Axes, problem: &Problem, fit: &Fit) -> Option<Vec<f64>> {
+pub fn gains(rows: &[ClampedRow], problem: &Problem, fit: &Fit) -> Option<Vec<f64>> {
     let inverse = problem.total.inverse(&fit.columns)?;
     let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
     let columns = problem.white.select_columns(&fit.columns);
     let mut gains = vec![0.0; residuals.len()];
-    for axis in axes.loaded() {
-        let rows = axes.rows_of(axis);
+    for axis in loaded(rows) {
+        let rows = rows_of(rows, axis);
         let spread = mean_share(rows.len(), 1.0) / rows.len().max(1) as f64;
         let common = columns.select_rows(&rows).row_sum_tr() * spread;
         let left = residuals.select_rows(&rows).sum() * spread;
@@ -94,20 +73,20 @@ fn gains(axes: &Axes, problem: &Problem, fit: &Fit) -> Option<Vec<f64>> {
 
 /// The probability that the largest of so many gains is at least this much, against
 /// what the others leave. `None` where they leave nothing.
-fn tail(gain: f64, others: f64, rows: usize, columns: usize) -> Option<f64> {
+pub fn tail(gain: f64, others: f64, rows: usize, columns: usize) -> Option<f64> {
     let freedom = rows as f64 - columns as f64 - 1.0;
     let tail = student_tail((gain * freedom / others).sqrt(), freedom).filter(|_| others > 0.0)?;
     Some(told(rows as f64 * 2.0 * tail))
 }
 
-fn worst(axes: &Axes, raw: &DMatrix<f64>) -> Option<Worst> {
-    let problem = problem(axes, raw.clone());
+fn worst(rows: &[ClampedRow], raw: &DMatrix<f64>) -> Option<Worst> {
+    let problem = problem(rows, raw.clone());
     let columns: Vec<usize> = (0..raw.ncols()).collect();
     let fit = problem.total.solve(&columns)?;
-    let all = gains(axes, &problem, &fit)?;
+    let all = gains(rows, &problem, &fit)?;
     let whole = by_median(all.iter().copied());
-    let own = of_most(axes, &(problem.readings.as_ref() - raw * &fit.coefficients));
-    let own = |row: usize| own[axes.rows[row].axis - 1];
+    let own = of_most(rows, &(problem.readings.as_ref() - raw * &fit.coefficients));
+    let own = |row: usize| own[rows[row].axis - 1];
     let over = |row: usize| all[row] / own(row).max(whole);
     let row = (0..all.len()).max_by(|&a, &b| over(a).total_cmp(&over(b)))?;
     let freedom = all.len() as f64 - columns.len() as f64 - 1.0;
@@ -119,13 +98,13 @@ fn worst(axes: &Axes, raw: &DMatrix<f64>) -> Option<Worst> {
 /// By axis, the variance of what is left of most of its rows, by the slope that
 /// leaves least of them. A curve of its gear is in most of them; wild rows, a
 /// minority, are not.
-fn of_most(axes: &Axes, residuals: &DVector<f64>) -> Vec<f64> {
-    let mut variances = vec![0.0; axes.compliance.len()];
-    for axis in axes.loaded() {
-        let rows: Vec<(f64, f64)> =
-            axes.rows_of(axis).into_iter().map(|row| (axes.rows[row].torque, residuals[row])).collect();
-        let beside = |slope: f64| by_median(rows.iter().map(|(torque, left)| (left - slope * torque).powi(2)));
-        let slopes = rows.iter().filter(|(torque, _)| *torque != 0.0).map(|(torque, left)| left / torque);
+fn of_most(rows: &[ClampedRow], residuals: &DVector<f64>) -> Vec<f64> {
+    let mut variances = vec![0.0; rows.iter().map(|row| row.axis).max().unwrap_or(0)];
+    for axis in loaded(rows) {
+        let left: Vec<(f64, f64)> =
+            rows_of(rows, axis).into_iter().map(|row| (rows[row].torque, residuals[row])).collect();
+        let beside = |slope: f64| by_median(left.iter().map(|(torque, left)| (left - slope * torque).powi(2)));
+        let slopes = left.iter().filter(|(torque, _)| *torque != 0.0).map(|(torque, left)| left / torque);
         variances[axis - 1] = slopes.map(beside).min_by(f64::total_cmp).unwrap_or(0.0);
     }
     variances
@@ -134,10 +113,7 @@ fn of_most(axes: &Axes, residuals: &DVector<f64>) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::ClampedRow;
-    use crate::campaign::made::campaign;
-    use crate::identify::identify;
-    use crate::samples::five_axis;
+    use crate::identify::clamped::regression::torques;
 
     /// What a row explains is what the fit leaves less of without it.
     #[test]
@@ -148,12 +124,16 @@ mod tests {
             ClampedRow { line: i + 2, axis, torque, deflection }
         });
         let rows: Vec<ClampedRow> = rows.collect();
-        let campaign = campaign(five_axis(), crate::campaign::Data::Clamped(rows.clone()));
-        let axes = Axes::new(&campaign.robot, &rows, &identify(&campaign).expect("two axes"));
-        let bench = Bench::new(axes.clone(), None);
-        let fit = bench.fit(&[]).expect("two axes").fit;
-        for (row, gain) in gains(&axes, &bench.problem, &fit).expect("two axes").into_iter().enumerate() {
-            let without = Bench::new(axes.without(&[row]), None).fit(&[]).expect("two axes").fit;
+        let fitted = |rows: &[ClampedRow]| {
+            let problem = problem(rows, torques(rows));
+            let fit = problem.total.solve(&[0, 1]).expect("two axes");
+            (problem, fit)
+        };
+        let (problem, fit) = fitted(&rows);
+        for (row, gain) in gains(&rows, &problem, &fit).expect("two axes").into_iter().enumerate() {
+            let mut others = rows.clone();
+            others.remove(row);
+            let without = fitted(&others).1;
             assert!(((fit.rss - without.rss) / gain - 1.0).abs() < 1e-9, "row {row}");
         }
     }

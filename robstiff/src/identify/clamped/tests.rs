@@ -1,0 +1,129 @@
+//! Slopes of clamped axes.
+
+use std::vec::Vec;
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use super::*;
+use crate::campaign::Data;
+use crate::campaign::made::{campaign, normal};
+use crate::samples::five_axis;
+
+fn row(torque: f64, deflection: f64) -> ClampedRow {
+    ClampedRow { line: 2, axis: 1, torque, deflection }
+}
+
+#[test]
+fn the_slope_goes_through_the_origin() {
+    let rows = [row(100.0, 3e-5), row(-200.0, -6e-5), row(300.0, 9e-5)];
+    let (value, std) = slope(&rows.each_ref()).expect("loaded");
+    assert!((value - 3e-7).abs() < 1e-18 && std.expect("three rows") < 1e-18);
+    assert_eq!(slope(&[&row(100.0, 1e-5)]).expect("loaded").1, None);
+    assert_eq!(slope(&[&row(0.0, 1e-5)]), None);
+    assert_eq!(slope(&[]), None);
+}
+
+#[test]
+fn scatter_makes_the_standard_deviation() {
+    // 1, -2, 1 about slope 2 at torques 1, 2, 3: orthogonal to the torques, and
+    // without a mean, so of it the unloaded reading has nothing. Of the torques'
+    // 14 it takes 6^2 / (1 + 3). The quantile is that of two degrees of freedom.
+    let rows = [row(1.0, 3.0), row(2.0, 2.0), row(3.0, 7.0)];
+    let (value, std) = slope(&rows.each_ref()).expect("loaded");
+    assert!((value - 2.0).abs() < 1e-12);
+    let expected = (6.0_f64 / 2.0 / (14.0 - 9.0)).sqrt() * 4.302_652_73 / 1.959_963_98;
+    assert!((std.expect("three rows") / expected - 1.0).abs() < 1e-8);
+}
+
+/// Whatever the number of rows, 1.96 standard deviations are the 95 % interval.
+#[test]
+fn intervals_hold_what_they_say() {
+    let mut random = ChaCha8Rng::seed_from_u64(31);
+    let runs = 2000;
+    for torques in [&[400.0, 800.0][..], &[200.0, 400.0, 600.0], &[-800.0, -400.0, 200.0, 400.0, 600.0, 800.0]] {
+        let within = (0..runs).filter(|_| {
+            let unloaded = normal(&mut random);
+            let mut read = |torque: &f64| row(*torque, 0.03 * torque + normal(&mut random) - unloaded);
+            let rows: Vec<ClampedRow> = torques.iter().map(&mut read).collect();
+            let (value, std) = slope(&rows.iter().collect::<Vec<_>>()).expect("loaded");
+            (value - 0.03).abs() <= WITHIN * std.expect("two rows or more")
+        });
+        let share = within.count() as f64 / f64::from(runs);
+        assert!((share - 0.95).abs() < 0.02, "{share} at {torques:?}");
+    }
+}
+
+#[test]
+fn declared_laws_are_not_counted_twice() {
+    let mut robot = five_axis();
+    let (gap, knee) = (4e-4, 20.0);
+    robot.effects.push(Effect::LostMotion { joint: 1, gap, knee });
+    let rows = (1..=20).map(|k| 50.0 * f64::from(k));
+    let rows = rows.map(|torque: f64| row(torque, 2.63e-7 * torque + 0.5 * gap * torque / torque.hypot(knee)));
+    let rows: Vec<ClampedRow> = rows.collect();
+    let found = identify(&campaign(robot, Data::Clamped(rows.clone())), &rows).expect("axis 1 is loaded");
+    assert!((found.estimates[0].value / 2.63e-7 - 1.0).abs() < 1e-9, "{:?}", found.estimates[0]);
+}
+
+/// One reading the wrong way is a wild one, most of them a wrong sign.
+#[test]
+fn a_wild_reading_is_no_wrong_sign() {
+    let mut rows = [row(100.0, 3e-5), row(200.0, 6e-5), row(300.0, -9e-4)];
+    let of = |rows: &[ClampedRow]| identify(&campaign(five_axis(), Data::Clamped(rows.to_vec())), rows);
+    assert!(of(&rows).is_ok());
+    rows[1].deflection = -6e-5;
+    let Error(told) = of(&rows).expect_err("two of three");
+    assert!(told.contains("axis 1 deflects against its torque (rows from line 2)"), "{told}");
+}
+
+/// What the data do not follow is at its bound, and no wrong sign.
+#[test]
+fn an_axis_that_gives_way_less_than_declared_is_at_its_bound() {
+    let mut robot = five_axis();
+    robot.effects.push(Effect::LostMotion { joint: 1, gap: 4e-4, knee: 200.0 });
+    let rows = [row(100.0, 1e-6), row(200.0, 2e-6), row(300.0, 3e-6)];
+    let found = identify(&campaign(robot, Data::Clamped(rows.to_vec())), &rows).expect("axis 1 is loaded");
+    let Estimate { value, std, at_bound, .. } = found.estimates[0];
+    assert_eq!((value, std, at_bound), (0.0, None, true));
+}
+
+/// Three axes with so many rows each, and noise of 1 urad.
+fn measured(count: usize, more: impl Fn(usize, f64) -> f64) -> Vec<ClampedRow> {
+    let mut random = ChaCha8Rng::seed_from_u64(77);
+    let row = |k: usize| {
+        let (axis, torque) = (k / count + 1, 1000.0 * (k % count + 1) as f64 / count as f64);
+        let deflection = 3e-7 * torque + more(axis, torque) + 1e-6 * normal(&mut random);
+        ClampedRow { line: k + 2, axis, torque, deflection }
+    };
+    (0..3 * count).map(row).collect()
+}
+
+fn identified(rows: Vec<ClampedRow>) -> Identification {
+    identify(&campaign(five_axis(), Data::Clamped(rows.clone())), &rows).expect("three axes are loaded")
+}
+
+#[test]
+fn a_wild_reading_is_left_out_and_named() {
+    let mut rows = measured(8, |_, _| 0.0);
+    rows[9].deflection *= 100.0;
+    let found = identified(rows);
+    assert_eq!((found.left_out.as_slice(), found.rows), ([11].as_slice(), 24));
+    assert!((found.estimates[1].value / 3e-7 - 1.0).abs() < 0.02, "{:?}", found.estimates[1]);
+}
+
+#[test]
+fn curves_and_noise_are_left_in() {
+    assert!(identified(measured(8, |_, _| 0.0)).left_out.is_empty());
+    let lost = |axis, torque: f64| if axis == 2 { 2e-4 * torque / torque.hypot(50.0) } else { 0.0 };
+    assert!(identified(measured(8, lost)).left_out.is_empty());
+}
+
+/// Twelve rows of two axes, two of a third that disagree.
+#[test]
+fn of_two_rows_neither_is_left_out() {
+    let mut rows = measured(12, |_, _| 0.0);
+    rows.truncate(26);
+    rows[25].deflection = 9e-3;
+    assert!(identified(rows).left_out.is_empty());
+}
