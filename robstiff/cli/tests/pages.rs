@@ -156,6 +156,18 @@ fn what_the_pages_say_to_type_works() {
     }
 }
 
+/// All of it, and nothing else.
+#[test]
+fn the_readme_shows_what_its_main_command_prints() {
+    let readme = fs::read_to_string(docs().join("../../../README.md")).unwrap();
+    let blocks = blocks(&readme);
+    let shown = blocks.iter().position(|block| block.info == "text printed").unwrap();
+    let cargo = "cargo run -p robstiff-cli --";
+    let main = blocks[..shown].iter().find(|block| block.text.starts_with(cargo)).unwrap();
+    let command = Block { info: String::new(), line: main.line, text: main.text.replace(cargo, "robstiff") };
+    assert_eq!(bash(&command, "README", &workplace("readme")), blocks[shown].text);
+}
+
 #[test]
 fn files_that_pages_show_are_the_files() {
     for (name, page) in pages() {
