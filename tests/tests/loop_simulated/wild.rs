@@ -108,3 +108,25 @@ fn noise_in_proportion_to_the_displacement() {
         trace.effects.is_empty() && trace.verdict == Verdict::Unexplained
     });
 }
+
+/// The largest of a thousand such readings are ten standard deviations off and belong
+/// to the others.
+#[test]
+fn noise_with_heavy_tails() {
+    let traces = traces(730, |scenario| Scenario { tails: Some(3), ..scenario }.run());
+    assert_most("heavy tails", 18, &traces, |_, trace| trace.effects.is_empty());
+}
+
+/// A reading that is off by far more is found in it.
+#[test]
+fn a_wild_reading_among_heavy_tails() {
+    let traces = traces(730, |scenario| {
+        let mut simulated = Scenario { tails: Some(3), ..scenario }.run();
+        simulated.rows[77].displacement[1] += 3e-3;
+        simulated
+    });
+    assert_most("a wild reading among heavy tails", 18, &traces, |_, trace| {
+        let [wild] = &trace.effects[..] else { return false };
+        wild.lines == [79]
+    });
+}

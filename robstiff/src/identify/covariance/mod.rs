@@ -29,6 +29,7 @@
 pub mod contrasts;
 pub mod encoders;
 mod estimated;
+pub mod heavy;
 pub mod outliers;
 pub mod reml;
 mod tails;

@@ -29,7 +29,7 @@ const DRAWS: usize = 199;
 const MOST_ROWS: usize = 2000;
 
 /// Of the degrees of freedom of Student's distribution.
-const GRID: [f64; 14] = [2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 12.0, 15.0, 20.0, 30.0, 60.0];
+pub const GRID: [f64; 14] = [2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 12.0, 15.0, 20.0, 30.0, 60.0];
 
 /// The tails of contrasts with given variances.
 pub fn tails(chunks: &[Chunk], axes: usize, shared: f64, variances: &[f64]) -> Option<Tails> {

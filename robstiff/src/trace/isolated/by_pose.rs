@@ -68,14 +68,25 @@ impl ByPose {
 
     /// The noise of a visit's pose, if what a pattern says is wrong with the visit.
     pub fn noise(&self, visits: &[Visit], visit: usize, pattern: &[f64], scale: &Scale) -> Noise {
-        let own = Differences::of(visits, visits[visit].pose, Some((visit, pattern)), scale).log(self.tells);
+        let (value, variance) = self.log(visits, visit, Some(pattern), scale);
+        Noise { times: value.exp().max(1.0), freedom: 2.0 / variance }
+    }
+
+    /// The variance at a visit's pose over the common one.
+    pub fn times(&self, visits: &[Visit], visit: usize, scale: &Scale) -> f64 {
+        self.log(visits, visit, None, scale).0.exp()
+    }
+
+    /// Its logarithm, and the variance of that.
+    fn log(&self, visits: &[Visit], visit: usize, pattern: Option<&[f64]>, scale: &Scale) -> (f64, f64) {
+        let wrong = pattern.map(|pattern| (visit, pattern));
+        let own = Differences::of(visits, visits[visit].pose, wrong, scale).log(self.tells);
         // A pose that says nothing is one of them.
-        let (value, variance) = own.map_or((self.mean, self.between), |log| {
+        own.map_or((self.mean, self.between), |log| {
             let together = log.variance + self.between;
             let value = (self.between * log.value + log.variance * self.mean) / together;
             (value, self.between * log.variance / together)
-        });
-        Noise { times: value.exp().max(1.0), freedom: 2.0 / variance }
+        })
     }
 }
 

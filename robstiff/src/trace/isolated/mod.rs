@@ -12,7 +12,8 @@
 //! effect was missing is looked at again once it is named. A median of few rows is
 //! itself uncertain; what is held against it has the tails of Student's
 //! distribution (`OF_MEDIAN`). Where the noise is another at each pose (`by_pose`),
-//! what stands out must stand out from that of its own pose as well.
+//! what stands out must stand out from that of its own pose as well, and where its tails
+//! are heavy, from tails like them.
 
 mod by_pose;
 
@@ -24,6 +25,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use self::by_pose::ByPose;
 use super::model::{Fitted, Setting};
+use crate::identify::covariance::heavy::{freedom_of_tails, scale_of_tails};
 use crate::identify::covariance::outliers::{FEW, STANDS_OUT, STRICT, by_median};
 use crate::probability::{as_normal, told};
 
@@ -130,13 +132,39 @@ pub fn events(setting: &Setting<'_>, model: &Fitted, strict: bool) -> Vec<Event>
     let mut visits = visits(setting, model);
     let tells = setting.problem.freedom(&model.fit) / setting.problem.total.rows as f64;
     let mut rest = visits.clone();
-    let found = search(&mut rest, strict, tells, None);
+    let found = search(&mut rest, strict, tells, &Known::default());
     if !strict || found.is_empty() {
         return found;
     }
-    // That is also how noise looks that is larger at some poses.
-    let by_pose = ByPose::of(&rest, &scale(&rest, strict, tells), tells);
-    by_pose.map_or(found, |by_pose| search(&mut visits, strict, tells, Some(&by_pose)))
+    // That is also how noise looks that is larger at some poses, or has heavy tails.
+    let scale = scale(&rest, strict, tells, None);
+    let by_pose = ByPose::of(&rest, &scale, tells);
+    let tails = tails(&rest, &scale, tells, by_pose.as_ref());
+    if by_pose.is_none() && tails.is_none() {
+        return found;
+    }
+    search(&mut visits, strict, tells, &Known { by_pose, tails })
+}
+
+/// What noise is known to be like besides its variance.
+#[derive(Default)]
+struct Known {
+    /// It is another at each pose.
+    by_pose: Option<ByPose>,
+    /// The degrees of freedom of Student's distribution that its tails have.
+    tails: Option<f64>,
+}
+
+/// The degrees of freedom that the tails of single rows have, if they are heavy.
+fn tails(visits: &[Visit], scale: &Scale, tells: f64, by_pose: Option<&ByPose>) -> Option<f64> {
+    let mut squares = Vec::new();
+    for (k, visit) in visits.iter().enumerate() {
+        let variance = scale.variance * by_pose.map_or(1.0, |by_pose| by_pose.times(visits, k, scale));
+        let used = (0..visit.rows.len()).filter(|&row| visit.used[row]);
+        let found = used.filter_map(|row| visit.explained(&visit.single(row), true));
+        squares.extend(found.flat_map(|found| found.by_axis.component_div(&variance).data.0[0]));
+    }
+    freedom_of_tails(&squares, tells)
 }
 
 /// What the model leaves of the visits of poses fitted to.
@@ -187,7 +215,7 @@ fn visits(setting: &Setting<'_>, model: &Fitted) -> Vec<Visit> {
 
 /// Takes what is wrong out of visits, the worst first; nothing is found where that
 /// would be more than a few.
-fn search(visits: &mut [Visit], strict: bool, tells: f64, by_pose: Option<&ByPose>) -> Vec<Event> {
+fn search(visits: &mut [Visit], strict: bool, tells: f64, known: &Known) -> Vec<Event> {
     let rows: usize = visits.iter().map(|visit| visit.rows.len()).sum();
     let most = (FEW * rows as f64).floor() as usize;
     let hypotheses = 2 * rows;
@@ -195,12 +223,12 @@ fn search(visits: &mut [Visit], strict: bool, tells: f64, by_pose: Option<&ByPos
     let threshold = table.inverse_cdf(1.0 - STRICT / hypotheses as f64);
     let mut found: Vec<Event> = Vec::new();
     loop {
-        let scale = scale(visits, strict, tells);
+        let scale = scale(visits, strict, tells, known.tails);
         if scale.variance.iter().any(|variance| *variance <= 0.0) {
             return found;
         }
         let worst = (0..visits.len()).filter_map(|k| {
-            let own = |pattern: &[f64]| by_pose.map(|by_pose| by_pose.noise(visits, k, pattern, &scale));
+            let own = |pattern: &[f64]| Some(known.by_pose.as_ref()?.noise(visits, k, pattern, &scale));
             worst(&visits[k], &scale, &own, strict, threshold).map(|event| (k, event))
         });
         let Some((k, event)) = worst.max_by(|a, b| a.1.statistic.total_cmp(&b.1.statistic)) else { break };
@@ -220,7 +248,8 @@ fn search(visits: &mut [Visit], strict: bool, tells: f64, by_pose: Option<&ByPos
 /// The variance of a reading, by axis.
 struct Scale {
     variance: Vector3<f64>,
-    /// How well that is known.
+    /// The degrees of freedom of what is held against it: of how well it is known, or of
+    /// the tails. A mean of several readings has tails as heavy.
     freedom: f64,
     /// How many times that the variance is in each third of the rows, at least 1.
     thirds: [f64; 3],
@@ -228,22 +257,24 @@ struct Scale {
 
 /// The variance of a reading by axis, from the median over single rows, of whose
 /// freedom a model has left the share `tells`. Noise does not know how far an arm gives
-/// way, and structure does.
-fn scale(visits: &[Visit], strict: bool, tells: f64) -> Scale {
+/// way, and structure does. With heavy `tails` it is the square of their scale.
+fn scale(visits: &[Visit], strict: bool, tells: f64, tails: Option<f64>) -> Scale {
     let mut seen: Vec<(usize, Vector3<f64>)> = Vec::new();
     for visit in visits {
         for i in (0..visit.rows.len()).filter(|&i| visit.used[i]) {
             seen.extend(visit.explained(&visit.single(i), strict).map(|found| (visit.thirds[i], found.by_axis)));
         }
     }
-    let variance = Vector3::from_fn(|axis, _| by_median(seen.iter().map(|(_, by_axis)| by_axis[axis])));
+    let of_tails = tails.map_or(1.0, scale_of_tails);
+    let variance = Vector3::from_fn(|axis, _| of_tails * by_median(seen.iter().map(|(_, by_axis)| by_axis[axis])));
     let of_third = |third: usize| {
         let rows = seen.iter().filter(|(of, _)| *of == third);
         let over = rows.flat_map(|(_, by_axis)| by_axis.component_div(&variance).data.0[0]);
         by_median(over).max(1.0)
     };
     let thirds = if strict { [1.0; 3] } else { [0, 1, 2].map(of_third) };
-    Scale { variance, freedom: OF_MEDIAN * tells * seen.len() as f64, thirds }
+    let freedom = (OF_MEDIAN * tells * seen.len() as f64).min(tails.unwrap_or(f64::INFINITY));
+    Scale { variance, freedom, thirds }
 }
 
 /// The worst of a visit, if it stands out from all rows and from the noise of its own
