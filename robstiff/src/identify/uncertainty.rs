@@ -101,8 +101,15 @@ fn of_free(problem: &Problem, fit: &Fit, free: &[usize], known: &[f64]) -> Optio
     Some(DMatrix::from_fn(columns.len(), columns.len(), |i, j| sandwich[(i, j)] * factor[i] * factor[j]))
 }
 
+/// With more degrees of freedom Student's distribution is the normal one, to 1e-6 of its
+/// quantile. For 1e8 and more statrs 0.19 looks for the quantile without end.
+const MANY: f64 = 1e6;
+
 /// The quantile of Student's distribution that has 95 % within.
 pub fn student(freedom: f64) -> f64 {
+    if freedom > MANY {
+        return WITHIN;
+    }
     StudentsT::new(0.0, 1.0, freedom).map_or(WITHIN, |table| table.inverse_cdf(0.975))
 }
 
@@ -179,4 +186,20 @@ pub fn correlation(covariance: &DMatrix<f64>) -> DMatrix<f64> {
         let scale = std[i] * std[j];
         if scale > 0.0 { covariance[(i, j)] / scale } else { f64::from(u8::from(i == j)) }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// However many degrees of freedom there are, it comes to an end.
+    #[test]
+    fn many_degrees_of_freedom_are_those_of_a_normal_variate() {
+        for (freedom, quantile) in [(2.0, 4.302_653), (100.0, 1.983_972)] {
+            assert!((student(freedom) - quantile).abs() < 1e-6);
+        }
+        for freedom in [1e6, 1e7, 1e300, f64::INFINITY] {
+            assert!((student(freedom) - WITHIN).abs() < 1e-5);
+        }
+    }
 }
