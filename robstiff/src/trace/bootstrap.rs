@@ -36,6 +36,11 @@ use crate::identify::problem::Problem;
 /// this, large groups would set the bar for small ones.
 const PER_EXTRA_PARAMETER: f64 = 3.3;
 
+/// What the statistic of a variant gives up for its further numbers.
+pub fn price(variant: &Variant) -> f64 {
+    PER_EXTRA_PARAMETER * (variant.parameters - 1) as f64
+}
+
 /// A column of which less than this fraction is left when the null model is
 /// projected out says nothing new.
 const EXPLAINED: f64 = 1e-6;
@@ -79,7 +84,7 @@ impl Group {
         let gram = DMatrix::from_fn(columns.len(), columns.len(), |i, j| test.gram[(columns[i], columns[j])]);
         let inverse = Scaled::apart(&gram, EXPLAINED)?.inverse();
         let positive = variant.columns.iter().map(|&column| test.signs[column] == Sign::Nonnegative).collect();
-        let price = PER_EXTRA_PARAMETER * (variant.parameters - 1) as f64;
+        let price = price(variant);
         Some(Self { columns, inverse, positive, price })
     }
 

@@ -7,6 +7,7 @@ use robstiff_robots::{Description, catalogue};
 use super::super::{Error, identify as identified, predict as predicted};
 use super::*;
 use crate::Effect;
+use crate::campaign::Data;
 use crate::campaign::made_positions::Plan;
 use crate::samples::{five_axis, odd};
 
@@ -61,6 +62,24 @@ fn payloads_show_compliances() {
         }
     }
     assert!((88..=100).contains(&within), "{within} of 100");
+}
+
+/// Poses with one payload are no witnesses of how sure two others are.
+#[test]
+fn two_poses_under_payloads_know_what_they_do_not() {
+    let (mut within, mut count) = (0, 0);
+    for seed in 0..40 {
+        let mut campaign = Plan { payloads: vec![0.0, 100.0, 200.0], ..Plan::new(six_axis(), 60 + seed) }.run();
+        let Data::Position(data) = &mut campaign.data else { unreachable!("made of positions") };
+        data.rows.retain(|row| row.pose < 2 || row.payload == 0.0);
+        let found = identified(&campaign).expect("payloads");
+        for (estimate, joint) in found.estimates.iter().zip(&campaign.robot.joints).skip(1) {
+            let Some(std) = estimate.std else { continue };
+            count += 1;
+            within += usize::from((estimate.value - joint.compliance()).abs() <= 1.96 * std);
+        }
+    }
+    assert!(count > 60 && 10 * within >= 9 * count, "{within} of {count}");
 }
 
 /// What payloads of one visit differ by does not know how the table is off.

@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 use super::regression::STANDS;
 use crate::campaign::Positions;
 use crate::identify::normal::{Normal, independent};
-use crate::identify::problem::{Equations, Problem};
+use crate::identify::problem::{Block, Equations, Problem};
 
 /// The regression on the numbers alone, rows and columns less the mean of their
 /// visit; `None` where that does not tell all numbers from each other.
@@ -24,7 +24,16 @@ pub fn within_visits(problem: &Problem, data: &Positions) -> Option<Problem> {
     let mut visits: Vec<Vec<usize>> = vec![Vec::new(); data.visits.len()];
     let rows = problem.blocks.iter().flat_map(|block| &block.rows);
     rows.for_each(|&row| visits[data.rows[row].visit].push(row));
-    visits.retain(|rows| !rows.is_empty());
+    visits.retain(|rows| rows.len() > 1);
+    // A row alone in its visit says nothing, and a pose of such rows is no witness.
+    let mut tells = vec![false; data.rows.len()];
+    visits.iter().flatten().for_each(|&row| tells[row] = true);
+    let telling = |block: &Block| -> Option<Block> {
+        let rows: Vec<usize> = block.rows.iter().copied().filter(|&row| tells[row]).collect();
+        let stacked = rows.iter().flat_map(|row| 3 * row..3 * row + 3).collect();
+        (!rows.is_empty()).then_some(Block { pose: block.pose, rows, stacked })
+    };
+    let blocks: Vec<Block> = problem.blocks.iter().filter_map(telling).collect();
     for rows in &visits {
         for axis in 0..3 {
             let at: Vec<usize> = rows.iter().map(|row| 3 * row + axis).collect();
@@ -37,7 +46,7 @@ pub fn within_visits(problem: &Problem, data: &Positions) -> Option<Problem> {
             at.iter().for_each(|&i| readings[i] -= middle);
         }
     }
-    let stacked: Vec<usize> = problem.blocks.iter().flat_map(|block| block.stacked.iter().copied()).collect();
+    let stacked: Vec<usize> = blocks.iter().flat_map(|block| block.stacked.iter().copied()).collect();
     let mut total = Normal::new(&white.select_rows(&stacked), &readings.select_rows(&stacked));
     // Each visit's mean took as much as a row.
     total.rows = total.rows.checked_sub(3 * visits.len()).filter(|&rows| rows > count)?;
@@ -45,15 +54,21 @@ pub fn within_visits(problem: &Problem, data: &Positions) -> Option<Problem> {
     // Against what columns are with their means: a visit of one payload leaves rounding.
     let largest = problem.total.gram.diagonal().rows(STANDS, count).amax();
     let (kept, _) = independent(&total.gram, &all, NEXT_TO_NOTHING * largest);
-    (kept.len() == count).then(|| of(problem, white, readings, total))
+    (kept.len() == count).then(|| of(problem, white, readings, (total, blocks)))
 }
 
 /// A column that is this small against the largest, squared, is zero but for rounding.
 const NEXT_TO_NOTHING: f64 = 1e-14;
 
-fn of(problem: &Problem, white: DMatrix<f64>, readings: DVector<f64>, total: Normal) -> Problem {
+fn of(
+    problem: &Problem,
+    white: DMatrix<f64>,
+    readings: DVector<f64>,
+    (total, blocks): (Normal, Vec<Block>),
+) -> Problem {
     let readings = std::rc::Rc::new(readings);
     let equations = Equations {
+        blocks: blocks.into(),
         readings: std::rc::Rc::clone(&readings),
         white_readings: readings,
         total,

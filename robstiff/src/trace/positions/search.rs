@@ -13,7 +13,7 @@ use super::bench::{Bench, Model, Proposed, TIE};
 use super::structure::structure;
 use crate::identify::positions::regression::STANDS;
 use crate::identify::positions::wild::{Wild, wild_rows};
-use crate::trace::bootstrap::Reference;
+use crate::trace::bootstrap::{Reference, price};
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::{Fitted, Named};
 use crate::trace::selection::{CURVATURE, Selection, WITHIN_REACH};
@@ -88,8 +88,10 @@ pub fn search<'c>(
         if !course.left.structure && !course.unnamed {
             // With structure accounted for, rows need stand out from noise alone.
             let before = course.wild.rows.clone();
-            (course.model, course.wild) = without_wild(&mut bench, course.model, course.wild, true);
-            if course.wild.rows != before {
+            let stay;
+            (course.model, course.wild, stay) =
+                without_wild(&mut bench, course.model, course.wild, true, Kept::WhereAnEffectSaysIt);
+            if course.wild.rows != before || stay {
                 course = course.run(&mut bench, true, options, progress).judged(&mut bench, noise, options, progress);
             }
         }
@@ -115,8 +117,10 @@ impl Course {
     /// Adds effects for as long as something is missing.
     fn run(mut self, bench: &mut Bench<'_>, strict: bool, options: &Options, progress: &Progress<'_>) -> Self {
         let mut tried: Vec<Vec<Named>> = Vec::new();
+        let mut kept = Kept::WhereAnEffectSaysIt;
         while self.model.named.len() < MOST_EFFECTS && !tried.contains(&self.model.named) {
-            (self.model, self.wild) = without_wild(bench, self.model, self.wild, strict);
+            let stay;
+            (self.model, self.wild, stay) = without_wild(bench, self.model, self.wild, strict, kept);
             let model = &self.model;
             if model.leaves_nothing() {
                 break;
@@ -134,13 +138,21 @@ impl Course {
                     left_out_rms: None,
                 }
             });
-            if step.candidates.iter().all(|tested| tested.p_value > options.alpha) {
+            let missing = step.candidates.iter().any(|tested| tested.p_value <= options.alpha);
+            let better = if missing { extended(bench, model, &singles, options) } else { None };
+            if better.is_none() && stay {
+                step.outcome = "no effect passes in whose favour wild rows had stayed".to_string();
+                self.steps.push(step);
+                kept = Kept::Never;
+                continue;
+            }
+            if !missing {
                 step.outcome = "nothing is missing significantly".to_string();
                 self.steps.push(step);
                 break;
             }
             tried.push(model.named.clone());
-            let Some(mut better) = extended(bench, model, &singles, options) else {
+            let Some(mut better) = better else {
                 self.unnamed = true;
                 step.outcome = "something is missing, but no effect passes every test".to_string();
                 self.steps.push(step);
@@ -205,10 +217,19 @@ fn too_little(model: &Model) -> Option<String> {
     (readings < 2 * numbers).then(|| format!("{readings} coordinates are too few for {numbers} numbers"))
 }
 
+/// When rows that are wild at a model stay all the same.
+#[derive(Clone, Copy, PartialEq)]
+enum Kept {
+    /// Where an effect says what they do with fewer numbers.
+    WhereAnEffectSaysIt,
+    /// Never: no such effect passed the tests.
+    Never,
+}
+
 /// The model without the rows that are wild at it, all rows judged anew, which those in
-/// `before` were left out of. Where an effect says what they do, with fewer numbers, they
-/// stay.
-fn without_wild(bench: &mut Bench<'_>, model: Model, before: Wild, strict: bool) -> (Model, Wild) {
+/// `before` were left out of; and whether they stay for an effect's sake.
+fn without_wild(bench: &mut Bench<'_>, model: Model, before: Wild, strict: bool, kept: Kept) -> (Model, Wild, bool) {
+    let mut stay = false;
     let left_out = bench.rows.left_out.clone();
     bench.rows.left_out.fill(false);
     let chosen = bench.chosen(&model.named);
@@ -220,7 +241,10 @@ fn without_wild(bench: &mut Bench<'_>, model: Model, before: Wild, strict: bool)
         // Which row it is, and where it is instead.
         let numbers = (STANDS + chosen.len() + 4 * wild.rows.len()) as f64;
         let bic = readings * (wild.rss / readings).max(f64::MIN_POSITIVE).ln() + numbers * readings.ln();
-        if bench.extended(&model.named).first().is_some_and(|best| best.bic < bic) {
+        // A slip that only the first or the last row has is that row: with as many numbers.
+        let fewer = bic - readings.ln();
+        stay = kept != Kept::Never && bench.extended(&model.named).first().is_some_and(|best| best.bic < fewer);
+        if stay {
             wild = Wild::default();
         }
     }
@@ -229,18 +253,18 @@ fn without_wild(bench: &mut Bench<'_>, model: Model, before: Wild, strict: bool)
     }
     if bench.rows.left_out == left_out {
         bench.turn_to(&model);
-        return (model, wild);
+        return (model, wild, stay);
     }
     match bench.solve(&model.named, &model.solved.state) {
         Some(model) => {
             bench.turn_to(&model);
-            (model, wild)
+            (model, wild, stay)
         }
         None => {
             // Physics does not allow the model with these rows.
             bench.rows.left_out = left_out;
             bench.turn_to(&model);
-            (model, before)
+            (model, before, false)
         }
     }
 }
@@ -295,7 +319,8 @@ fn weakest(bench: &Bench<'_>, model: &Model, reference: &Reference) -> Option<(u
         let mut rest = model.named.clone();
         rest.remove(k);
         let without = bench.solve(&rest, &model.solved.state).map_or(f64::INFINITY, |rest| rest.solved.fit.rss);
-        reference.p_value((without - model.solved.fit.rss) / variance)
+        let price = price(bench.variant(model.named[k]));
+        reference.p_value((without - model.solved.fit.rss) / variance - price)
     };
     (0..model.named.len()).map(|k| (k, p(k))).max_by(|a, b| a.1.total_cmp(&b.1))
 }

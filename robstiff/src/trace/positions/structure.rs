@@ -69,7 +69,9 @@ pub fn structure(bench: &Bench<'_>, model: &Model, noise: Option<f64>, options: 
         let name = "what is left follows joints, payloads or the order".to_string();
         tests.push(StructureTest { name, statistic, p_value });
     }
-    let level = options.alpha / tests.len().max(1) as f64;
+    // Poses held out are asked at the same level.
+    let held_out = usize::from(!model.solved.problem.held_out.is_empty());
+    let level = options.alpha / (tests.len() + held_out).max(1) as f64;
     let structure = tests.iter().any(|test| test.p_value <= level);
     let freedom = model.solved.problem.freedom(&model.solved.fit);
     let of_size = size.filter(|size| size.p_value <= level).map_or(0.0, |size| size.beyond);

@@ -106,6 +106,26 @@ fn wild_readings_do_not_hide_an_effect() {
     assert!(trace.after.rms < 4e-5);
 }
 
+/// The first row and the last are what a slip of all the others, or of one row, says as
+/// well.
+#[test]
+fn a_wild_reading_at_either_end_is_no_slip() {
+    for (seed, end) in (0..6).flat_map(|seed| [(seed, 0), (seed, 59)]) {
+        let off = |row: usize, read: &mut crate::campaign::PositionRow| {
+            if row == end {
+                read.position[1] += 0.02;
+            }
+        };
+        let trace = traced(&Plan::new(six_axis(), 20 + seed).run_with(off));
+        assert_eq!(
+            (trace.verdict, names(&trace)),
+            (Verdict::Explained, vec!["outliers@rig".to_string()]),
+            "{seed} {end}"
+        );
+        assert_eq!(trace.effects[0].lines, [end + 2]);
+    }
+}
+
 /// A slip of the last few rows is told as one, not as wild readings.
 #[test]
 fn a_slip_near_the_end_is_no_handful_of_wild_readings() {
