@@ -8,7 +8,7 @@ use crate::effect::{CATALOGUE, Convention, DhEntry, Effect, JointKind, Place};
 use crate::suggest::{closest, list};
 
 /// What happens once, at some moment; a description holds what lasts.
-const EVENTS: &[&str] = &["base_slip"];
+const EVENTS: &[&str] = &["base_slip", "reflector_slip"];
 
 /// Faults of the measurement (`@rig`), which are no part of a robot.
 const OF_THE_RIG: &[&str] = &[
@@ -17,6 +17,8 @@ const OF_THE_RIG: &[&str] = &[
     "load_cell_scale",
     "lever_arm",
     "tracker_misalignment",
+    "tracker_scale",
+    "reflector_offset",
     "thermal_drift",
     "creep",
     "outliers",

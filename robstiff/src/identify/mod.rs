@@ -138,7 +138,8 @@ impl Estimate {
         visibility: &Visibility,
     ) -> Self {
         let at_bound = fitted.is_some() && is_at_bound(sign, declared, value);
-        let std = fitted.filter(|_| !at_bound).map(f64::sqrt);
+        // What is held at zero has no variance.
+        let std = fitted.filter(|variance| !at_bound && *variance > 0.0).map(f64::sqrt);
         // An effect may have brought it to light.
         let visibility = if fitted.is_some() { Visibility::Seen } else { visibility.clone() };
         Self { name, declared, value, std, unit, visibility, at_bound }

@@ -37,7 +37,9 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
     let most = (FEW * rows.len() as f64).floor() as usize;
     // What is left may be a curve of a gear.
     let wild = wild::wild_rows(&less, &torques(&less), false, most);
-    slopes(campaign, rows, &wild.map_or_else(Vec::new, |(rows, _)| rows))
+    let mut left_out = wild.map_or_else(Vec::new, |(rows, _)| rows);
+    left_out.sort_unstable();
+    slopes(campaign, rows, &left_out)
 }
 
 /// The same of all rows but those `left_out`, by index.
