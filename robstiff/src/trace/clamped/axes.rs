@@ -21,6 +21,10 @@ use robstiff_robots::effect::Place as Part;
 pub struct Axes {
     /// The rows that are used, in the file's order, less what declared laws do.
     pub rows: Vec<ClampedRow>,
+    /// All rows: a load was put on, whatever was read.
+    every: Rc<[ClampedRow]>,
+    /// Those that are used, by index.
+    kept: Rc<[usize]>,
     /// The compliance of each axis (rad/Nm or m/N), from 0.
     pub compliance: Vec<f64>,
     kinds: Vec<JointKind>,
@@ -32,8 +36,11 @@ impl Axes {
     /// The rows of a campaign on a robot whose axes were identified.
     pub fn new(robot: &Description, rows: &[ClampedRow], identified: &Identification) -> Self {
         let joints = &identified.estimates[..robot.joints.len()];
+        let rows = without_laws(robot, rows);
         Self {
-            rows: without_laws(robot, rows),
+            every: rows.as_slice().into(),
+            kept: (0..rows.len()).collect(),
+            rows,
             compliance: joints.iter().map(|estimate| estimate.value).collect(),
             kinds: robot.joints.iter().map(|joint| joint.kind).collect(),
             declared: robot.effects.clone(),
@@ -41,15 +48,28 @@ impl Axes {
         }
     }
 
-    /// The same axes with other rows.
-    pub fn with_rows(&self, rows: Vec<ClampedRow>) -> Self {
-        Self { rows, ..self.clone() }
+    /// The same axes with all rows.
+    pub fn whole(&self) -> Self {
+        Self { rows: self.every.to_vec(), kept: (0..self.every.len()).collect(), ..self.clone() }
     }
 
     /// The same axes without some rows, by index.
     pub fn without(&self, rows: &[usize]) -> Self {
-        let kept = self.rows.iter().enumerate().filter(|(row, _)| !rows.contains(row));
-        self.with_rows(kept.map(|(_, row)| *row).collect())
+        let kept: Rc<[usize]> =
+            self.kept.iter().enumerate().filter(|(row, _)| !rows.contains(row)).map(|(_, &row)| row).collect();
+        Self { rows: kept.iter().map(|&row| self.every[row]).collect(), kept, ..self.clone() }
+    }
+
+    /// What effects do to the rows that are used, given what they do to all.
+    pub fn of_used(&self, offers: Vec<OnAxes>) -> Vec<OnAxes> {
+        let used = |form: OnAxesForm| {
+            let (all, kept) = (form.columns, Rc::clone(&self.kept));
+            let columns: Columns =
+                Rc::new(move |shape| all(shape).iter().map(|column| column.select_rows(kept.iter())).collect());
+            OnAxesForm { columns, ..form }
+        };
+        let used = |one: OnAxes| OnAxes { forms: one.forms.into_iter().map(used).collect(), ..one };
+        offers.into_iter().map(used).collect()
     }
 
     /// Whether the description has an effect of a kind at a place.

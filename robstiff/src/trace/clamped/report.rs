@@ -31,7 +31,7 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
     let structure = found.left.structure || found.selection.unnamed;
     let tells = verdict != Verdict::Insufficient;
     // Before anything was left out, wild rows and all.
-    let whole = Bench::new(bench.axes.with_rows(found.every.clone()), Some(&bench.offers));
+    let whole = Bench::new(bench.axes.whole(), Some(&bench.offers));
     let base = whole.fit(&[]).unwrap_or_else(|| model.clone());
     let misfit =
         |bench: &Bench, fit: &Fit| Misfit { rms: rms(&bench.residuals(fit)), holdout_rms: bench.left_out_rms(fit) };

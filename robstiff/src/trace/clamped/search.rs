@@ -10,7 +10,6 @@ use nalgebra::{DMatrix, DVector};
 use super::axes::Axes;
 use super::bench::Bench;
 use super::one_off::one_off;
-use crate::campaign::ClampedRow;
 use crate::identify::clamped::regression::problem;
 use crate::identify::clamped::wild;
 use crate::identify::covariance::outliers::FEW;
@@ -44,8 +43,6 @@ pub struct Found {
     pub left: LackOfFit,
     /// The lines of rows that are wild, with the probability of the likeliest.
     pub wild: (Vec<usize>, f64),
-    /// All rows, the wild ones among them.
-    pub every: Vec<ClampedRow>,
     /// Why the data cannot tell, if so.
     pub too_little: Option<String>,
 }
@@ -55,15 +52,14 @@ pub struct Found {
 /// # Errors
 /// Why not even the axes' compliances can be fitted.
 pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<Found, String> {
-    let every = axes.rows.clone();
-    let all = every.len();
+    let all = axes.rows.len();
     let mut bench = Bench::new(axes, None);
     let none = || String::from("these rows show no axis's compliance");
     let base = bench.fit(&[]).ok_or_else(none)?;
     if let Some(why) = too_little(&bench) {
         let selection = Selection { model: base, p_values: Vec::new(), steps: Vec::new(), unnamed: false };
         let left = LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() };
-        return Ok(Found { bench, selection, left, wild: (Vec::new(), 1.0), every, too_little: Some(why) });
+        return Ok(Found { bench, selection, left, wild: (Vec::new(), 1.0), too_little: Some(why) });
     }
     let mut wild: (Vec<usize>, f64) = (Vec::new(), 0.0);
     let (mut model, mut p_values, mut steps, mut unnamed) = (base, Vec::new(), Vec::new(), false);
@@ -74,7 +70,7 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
         // does not allow the model with them, or what they do has another name.
         if !wild.0.is_empty()
             && !kept
-            && let Some(whole) = refitted(bench.axes.with_rows(every.clone()), &bench, &model)
+            && let Some(whole) = refitted(bench.axes.whole(), &bench, &model)
         {
             wild = (Vec::new(), 0.0);
             (bench, model) = whole;
@@ -163,7 +159,7 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
     progress("looking for structure in what is left");
     let left = structure(&bench, &model, options);
     let selection = Selection { model, p_values, steps, unnamed };
-    Ok(Found { bench, selection, left, wild, every, too_little: None })
+    Ok(Found { bench, selection, left, wild, too_little: None })
 }
 
 /// The rows that are wild beside a model, with the probability of the likeliest.

@@ -10,6 +10,7 @@ use robstiff_robots::Description;
 
 use crate::campaign::made::{campaign, normal};
 use crate::campaign::{Campaign, ClampedRow, Data};
+use crate::identify::samples::play;
 use crate::identify::uncertainty::WITHIN;
 use crate::samples::five_axis;
 use crate::trace::{Options, Trace, Verdict, trace};
@@ -72,6 +73,32 @@ fn wild_readings_of_one_axis_are_told() {
     assert_eq!((trace.residuals.len(), trace.components), (40, 1));
     assert!((trace.residuals[18].after[0] - 3e-4).abs() < 5.0 * NOISE, "{:?}", trace.residuals[18]);
     assert!(trace.identified.rms > 4e-5 && trace.after.rms < 2.0 * NOISE, "{:?}", [trace.identified, trace.after]);
+}
+
+/// A load was put on whatever was read: what a gear remembers of it is in all readings
+/// after it.
+#[test]
+fn a_wild_reading_keeps_its_load() {
+    let ramp: Vec<f64> =
+        [200.0, 400.0, 600.0, 1000.0, 600.0, 400.0, 200.0, -200.0, -600.0, -1000.0, -600.0, -200.0].into();
+    for seed in 0..4 {
+        let state = core::cell::Cell::new(0.0);
+        let lags = |axis, torque: f64| {
+            if axis != 2 {
+                return 0.0;
+            }
+            state.set(play(torque, 250.0, state.get()));
+            1e-7 * state.get()
+        };
+        let mut campaign = measured(&five_axis(), &ramp, 40 + seed, lags);
+        let Data::Clamped(rows) = &mut campaign.data else { unreachable!("made of clamped axes") };
+        rows[15].deflection += 1e-3;
+        let trace = traced(&campaign);
+        assert_eq!(names(&trace), ["hysteresis@joint 2", "outliers@rig"], "seed {seed}");
+        assert_eq!(trace.effects[1].lines, [17]);
+        assert!((trace.estimates[1].value / five_axis().joints[1].compliance() - 1.0).abs() < 0.05);
+        assert!(trace.after.rms < 2.0 * NOISE, "{}", trace.after.rms);
+    }
 }
 
 /// The description is as declared then, and so is what is said of it.
