@@ -79,8 +79,7 @@ pub enum Visibility {
     Confounded(Vec<usize>),
 }
 
-/// A column whose readings are this small against the largest of its kind is
-/// zero but for rounding.
+/// A column whose readings are this small against the largest is zero but for rounding.
 const ZERO_COLUMN: f64 = 1e-7;
 
 /// Which of the first `count` columns of a regression, those of the description,

@@ -186,7 +186,11 @@ fn visible(
     let regression = Regression { data, start: start.clone(), numbers, signs };
     let (problem, _) = regression.at(&State { registration, values }, &all, rows);
     let Some(total) = beyond_standing(&problem.total) else { return std::vec![Visibility::Unseen; own.len()] };
-    let mut seen = visibility(&total, all.len());
+    let unit = |k: usize| match k.checked_sub(of_rig.end) {
+        Some(k) => Some(own[elastic + k].unit),
+        None => own[..elastic].get(k).map(|own| own.unit),
+    };
+    let mut seen = visibility(&unitless(total, &problem.total, unit), all.len());
     seen.drain(of_rig.clone());
     for one in &mut seen {
         if let Visibility::Confounded(others) = one {
@@ -195,6 +199,24 @@ fn visible(
         }
     }
     seen
+}
+
+/// The normal equations of numbers with columns over the largest of their unit, as they
+/// are with where the robot stands: a share of a weight and a compliance have no size in
+/// common. What has no unit given is a measure of its own.
+fn unitless<'u>(mut beyond: Normal, whole: &Normal, unit: impl Fn(usize) -> Option<&'u str>) -> Normal {
+    let count = beyond.moment.len();
+    let square = |k: usize| whole.gram[(STANDS + k, STANDS + k)];
+    let alike = |k: usize, other: usize| other == k || (unit(k).is_some() && unit(k) == unit(other));
+    for k in 0..count {
+        let largest = (0..count).filter(|&other| alike(k, other)).map(square).fold(0.0, f64::max).sqrt();
+        if largest > 0.0 {
+            beyond.gram.row_mut(k).unscale_mut(largest);
+            beyond.gram.column_mut(k).unscale_mut(largest);
+            beyond.moment[k] /= largest;
+        }
+    }
+    beyond
 }
 
 /// The normal equations of the numbers, with where the robot stands projected out.

@@ -7,7 +7,7 @@ use std::vec::Vec;
 
 use nalgebra::Vector3;
 use robstiff_robots::effect::DhEntry;
-use robstiff_robots::{Description, catalogue};
+use robstiff_robots::{Description, Link, catalogue};
 
 use crate::Effect;
 use crate::campaign::made_positions::Plan;
@@ -104,6 +104,26 @@ fn wild_readings_do_not_hide_an_effect() {
     assert_eq!(trace.effects[1].lines, [7, 19, 42]);
     assert!((trace.effects[0].parameters[0].value - 5e-3).abs() < 5e-5);
     assert!(trace.after.rms < 4e-5);
+}
+
+/// A share of the arm's weight is small as a number beside compliances, not as what it
+/// does: half of it was taken away since, 0.1 mm, and the share is fitted again.
+#[test]
+fn a_declared_sag_beside_payloads_is_fitted_again() {
+    let mut robot = six_axis();
+    let masses = [100.0, 60.0, 40.0, 20.0, 10.0, 5.0];
+    robot.links = masses.map(|mass| Link { mass, center_of_mass: [-0.1, 0.02, 0.05] }).to_vec();
+    let with = |share| {
+        let mut robot = robot.clone();
+        robot.effects.push(Effect::GravitySag { share });
+        robot
+    };
+    let mut campaign = Plan { payloads: vec![0.0, 250.0], ..Plan::new(with(0.5), 8) }.run();
+    campaign.robot = with(1.0);
+    let trace = traced(&campaign);
+    let share = trace.estimates.last().expect("a share");
+    assert_eq!((trace.verdict, &share.visibility), (Verdict::Adequate, &Visibility::Seen), "{:?}", names(&trace));
+    assert!((share.value - 0.5).abs() < 4.0 * share.std.expect("it is fitted"), "{share:?}");
 }
 
 /// The first row and the last are what a slip of all the others, or of one row, says as
