@@ -44,7 +44,8 @@ use super::uncertainty::{correlation, covariance};
 use super::{Error, Estimate, Identification, NoiseSource};
 use crate::campaign::{Campaign, Positions};
 
-/// Positions are all but linear in compliances: a step is off by some 1e-3 of itself.
+/// Positions are all but linear in compliances: a step is off by some 1e-3 of itself. As
+/// often are wild rows looked for.
 const PASSES: usize = 3;
 
 /// A campaign of positions, ready to be fitted.
@@ -104,12 +105,13 @@ impl<'c> Prepared<'c> {
         Ok(Self { data, own, visibility, start, rows, registration })
     }
 
-    /// Leaves rows out of the fit, and of where the robot stands by the description as
-    /// declared.
+    /// Leaves some rows out of the fit, and no others, and of where the robot stands by the
+    /// description as declared.
     ///
     /// # Errors
     /// Rows of which the others do not tell where the robot stands.
     fn leave_out(&mut self, rows: &[usize], campaign: &Campaign) -> Result<(), Error> {
+        self.rows.left_out.fill(false);
         rows.iter().for_each(|&row| self.rows.left_out[row] = true);
         let declared = Model::new(&campaign.robot, self.data);
         self.registration = standing(&declared, self.data, |row| self.rows.has(row, self.data))?;
@@ -252,10 +254,20 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
         return Err(Error(format!("{why}; `robstiff trace` asks what they show of the kinematics")));
     }
     let regression = prepared.regression([]);
-    let all = regression.solve(&seen, &prepared.state(prepared.own.len()), &prepared.rows);
-    // The table may be off: rows must stand out from that, too.
-    let wild = all.and_then(|all| wild_rows(&all.problem, false)).map_or_else(Vec::new, |wild| wild.rows);
-    prepared.leave_out(&wild, campaign)?;
+    // A row that is off by metres hides others: they are looked for again without it.
+    let (every, mut wild) = (prepared.rows.clone(), Vec::new());
+    for _ in 0..PASSES {
+        let Some(fitted) = regression.solve(&seen, &prepared.state(prepared.own.len()), &prepared.rows) else { break };
+        let (whole, _) = regression.at(&fitted.state, &seen, &every);
+        // The table may be off: rows must stand out from that, too.
+        let mut found = wild_rows(&whole, false).map_or_else(Vec::new, |wild| wild.rows);
+        found.sort_unstable();
+        if found == wild {
+            break;
+        }
+        wild = found;
+        prepared.leave_out(&wild, campaign)?;
+    }
     let start = prepared.state(prepared.own.len());
     let (state, spread) = match by_payloads(&regression, &start, &seen, &prepared.rows)? {
         Some(found) => found,
@@ -282,8 +294,7 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
         return Err(Error(UNREADABLE.into()));
     }
     let kept = (0..rows).filter(|&row| !prepared.rows.left_out[row]);
-    let mut left_out: Vec<usize> = wild.iter().map(|&row| data.rows[row].line).collect();
-    left_out.sort_unstable();
+    let left_out: Vec<usize> = wild.iter().map(|&row| data.rows[row].line).collect();
     Ok(Identification {
         description,
         correlation: among_all(&correlation(&spread), &seen, estimates.len()),

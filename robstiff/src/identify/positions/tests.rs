@@ -144,6 +144,21 @@ fn a_position_that_does_not_belong_is_left_out() {
     assert!((off - 1.0).abs() < 0.1, "{off}");
 }
 
+/// A decimal point that was lost hides no other reading that is off.
+#[test]
+fn a_position_off_by_metres_hides_no_other() {
+    let plan = Plan { payloads: vec![0.0, 200.0], ..Plan::new(six_axis(), 5) };
+    for far in [2.0, 15.0] {
+        let off = |i| match i {
+            31 => far,
+            80 => 0.05,
+            _ => 0.0,
+        };
+        let found = identified(&plan.run_with(|i, row| row.position[1] += off(i))).expect("payloads");
+        assert_eq!(found.left_out, [33, 82], "{far} m");
+    }
+}
+
 /// Columns are what the numbers do: from any start near enough, a fit comes to the
 /// truth.
 #[test]
