@@ -1,11 +1,11 @@
 //! The instructions that the machine has.
 //!
-//! This, with the tables that it calls (`trig/tables.rs`), is the only unsafe code of
-//! the crate: a function made for certain instructions may be called only where the
-//! machine has them, which is what is looked up right before. Gain: twice the poses
-//! in the same time with AVX2, and a third more with AVX-512, for programs that are
-//! not built for one machine; and a quarter of the time of a triangle by
-//! transposing, which the compiler does number by number. Without it,
+//! This, with the sines that it calls (`trig/tables.rs`, `trig/interleaved.rs`), is
+//! the only unsafe code of the crate: a function made for certain instructions may be
+//! called only where the machine has them, which is what is looked up right before.
+//! Gain: twice the poses in the same time with AVX2, and a third more with AVX-512, for
+//! programs that are not built for one machine; and a quarter of the time of a triangle
+//! by transposing, which the compiler does number by number. Without it,
 //! [`Level::Portable`] is what remains.
 #![cfg_attr(
     all(feature = "std", target_arch = "x86_64"),
@@ -92,6 +92,17 @@ impl Instructions for Avx2 {
         // SAFETY: the machine has AVX.
         unsafe { T::transpose(rows, columns) }
     }
+
+    #[inline(always)]
+    fn sin_cos_each<T: Float, const FUSED: bool>(
+        self,
+        angles: &[T; BLOCK],
+        sines: &mut [T; BLOCK],
+        cosines: &mut [T; BLOCK],
+    ) -> bool {
+        // SAFETY: the machine has AVX2 and FMA.
+        unsafe { T::sin_cos_each_with_avx2(angles, sines, cosines) }
+    }
 }
 
 /// Exists only where the machine has AVX-512.
@@ -114,7 +125,7 @@ impl Instructions for Avx512 {
         cosines: &mut [T; BLOCK],
     ) -> bool {
         // SAFETY: the machine has AVX-512.
-        unsafe { T::sin_cos_each(angles, sines, cosines) }
+        unsafe { T::sin_cos_each_with_avx512(angles, sines, cosines) }
     }
 }
 
@@ -130,9 +141,24 @@ pub trait ByHand: Sized {
     /// As [`Instructions::sin_cos_each`].
     ///
     /// # Safety
+    /// The machine must have AVX2 and FMA.
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    unsafe fn sin_cos_each_with_avx2(
+        angles: &[Self; BLOCK],
+        sines: &mut [Self; BLOCK],
+        cosines: &mut [Self; BLOCK],
+    ) -> bool;
+
+    /// As [`Instructions::sin_cos_each`].
+    ///
+    /// # Safety
     /// The machine must have AVX-512.
     #[cfg(all(feature = "std", target_arch = "x86_64"))]
-    unsafe fn sin_cos_each(angles: &[Self; BLOCK], sines: &mut [Self; BLOCK], cosines: &mut [Self; BLOCK]) -> bool;
+    unsafe fn sin_cos_each_with_avx512(
+        angles: &[Self; BLOCK],
+        sines: &mut [Self; BLOCK],
+        cosines: &mut [Self; BLOCK],
+    ) -> bool;
 }
 
 #[cfg(not(all(feature = "std", target_arch = "x86_64")))]
@@ -143,7 +169,7 @@ mod by_hand {
     use core::arch::x86_64::*;
 
     use crate::batch::block::BLOCK;
-    use crate::trig::{self, tables};
+    use crate::trig::{self, interleaved, tables};
 
     impl super::ByHand for f64 {
         #[inline]
@@ -166,7 +192,21 @@ mod by_hand {
         }
 
         #[inline(always)]
-        unsafe fn sin_cos_each(angles: &[Self; BLOCK], sines: &mut [Self; BLOCK], cosines: &mut [Self; BLOCK]) -> bool {
+        unsafe fn sin_cos_each_with_avx2(
+            angles: &[Self; BLOCK],
+            sines: &mut [Self; BLOCK],
+            cosines: &mut [Self; BLOCK],
+        ) -> bool {
+            // SAFETY: the machine has AVX2 and FMA.
+            unsafe { interleaved::sin_cos_each_f64(angles, sines, cosines) }
+        }
+
+        #[inline(always)]
+        unsafe fn sin_cos_each_with_avx512(
+            angles: &[Self; BLOCK],
+            sines: &mut [Self; BLOCK],
+            cosines: &mut [Self; BLOCK],
+        ) -> bool {
             // SAFETY: the machine has AVX-512.
             unsafe { tables::sin_cos_each(angles, sines, cosines) }
         }
@@ -185,9 +225,23 @@ mod by_hand {
             }
         }
 
+        #[inline(always)]
+        unsafe fn sin_cos_each_with_avx2(
+            angles: &[Self; BLOCK],
+            sines: &mut [Self; BLOCK],
+            cosines: &mut [Self; BLOCK],
+        ) -> bool {
+            // SAFETY: the machine has AVX2 and FMA.
+            unsafe { interleaved::sin_cos_each_f32(angles, sines, cosines) }
+        }
+
         /// Without tables: its polynomials are short as they are.
         #[inline(always)]
-        unsafe fn sin_cos_each(angles: &[Self; BLOCK], sines: &mut [Self; BLOCK], cosines: &mut [Self; BLOCK]) -> bool {
+        unsafe fn sin_cos_each_with_avx512(
+            angles: &[Self; BLOCK],
+            sines: &mut [Self; BLOCK],
+            cosines: &mut [Self; BLOCK],
+        ) -> bool {
             trig::sin_cos_each::<Self, true, BLOCK>(angles, sines, cosines)
         }
     }

@@ -160,6 +160,37 @@ fn tables_are_as_near_as_stated() {
     assert_eq!((sines, cosines), ([0.0; 8], [1.0; 8]));
 }
 
+/// Where the machine has AVX2; elsewhere there is nothing to test.
+#[test]
+#[cfg(target_arch = "x86_64")]
+fn interleaved_is_one_by_one() {
+    macro_rules! check {
+        ($float:ident, $sin_cos_each:path, $domain:expr) => {
+            let all: std::vec::Vec<$float> =
+                angles($domain).map(|x| x as $float).filter(|x| x.is_in_domain()).collect();
+            for angles in all.as_chunks::<64>().0 {
+                let Some((sines, cosines, is_usual)) = $sin_cos_each(angles) else { return };
+                assert!(is_usual, "{angles:?}");
+                for (lane, &x) in angles.iter().enumerate() {
+                    let own = (sines[lane], cosines[lane]);
+                    assert_eq!(own, within_domain::<$float, $float, true, true>(x), "{x:e}, lane {lane}");
+                }
+            }
+            for strange in
+                [1.1 * $domain as $float, -3e8, $float::MAX, $float::NAN, $float::INFINITY, -$float::INFINITY]
+            {
+                for lane in 0..64 {
+                    let mut angles = [0.3; 64];
+                    angles[lane] = strange;
+                    assert!(!$sin_cos_each(&angles).expect("it is available").2, "{strange}, lane {lane}");
+                }
+            }
+        };
+    }
+    check!(f64, interleaved::f64_if_available, f64::DOMAIN);
+    check!(f32, interleaved::f32_if_available, f64::from(f32::DOMAIN));
+}
+
 #[test]
 fn single_precision_is_as_near_as_stated() {
     let mut worst = [0.0_f64; 4];
