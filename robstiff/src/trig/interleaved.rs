@@ -9,8 +9,9 @@
 //! | register | first | then |
 //! |---|---|---|
 //! | `r` | angle | angle less `k pi/2` |
-//! | `s`, `c` | `k` | the two polynomials, sine and cosine |
-//! | `z` | | `r^2`, quadrant |
+//! | `s` | `k` | its polynomial, the sine |
+//! | `c` | | its polynomial, the cosine |
+//! | `z` | | `r^2`, then bits of `k` |
 //!
 //! The shifted `k`, whose last bits are the quadrant, wait in the place of the cosines.
 //! Gain: `benches/README.md`. Without this, [`sin_cos_each`](super::sin_cos_each) is
