@@ -195,8 +195,7 @@ mod tests {
     use super::*;
 
     /// However many degrees of freedom there are, it comes to an end, and to the
-    /// right one (quantiles to 1e-9 by the expansion to the third order and, for few,
-    /// from tables).
+    /// right one: the quantiles to 1e-9, by the incomplete beta function of mpmath.
     #[test]
     fn quantiles_are_those_of_few_and_of_many_degrees_of_freedom() {
         let known = [(2.0, 4.302_652_730), (100.0, 1.983_971_519), (1e3, 1.962_339_081), (1e4, 1.960_201_240)];

@@ -20,7 +20,7 @@
 
 use core::arch::asm;
 
-use super::float::{double, places, single};
+use super::float::{Float, double, places, single};
 
 /// An instruction for each of the four vectors: its name, how its numbers are called
 /// there, and its operands, the result first.
@@ -57,7 +57,7 @@ macro_rules! operand {
 macro_rules! sin_cos_each {
     (
         $name:ident, $if_available:ident, $float:ident, $bits:ident, $module:ident,
-        $lanes:literal lanes, $of_four:literal in four vectors,
+        $lanes:literal lanes,
         numbers: $n:literal, whole numbers: $i:literal, sign: $sign:literal,
         parts but the last: [$($part:literal)*], $last:literal,
         last term: $highest:literal, [$($term:literal)*],
@@ -70,7 +70,11 @@ macro_rules! sin_cos_each {
             sines: &mut [$float; K],
             cosines: &mut [$float; K],
         ) -> bool {
-            const { assert!(K > 0 && K.is_multiple_of($of_four), "four whole vectors each time") }
+            const GROUP: usize = 4 * $lanes;
+            const {
+                assert!(K > 0 && K.is_multiple_of(GROUP), "four whole vectors each time");
+                assert!($last + 1 == <$float as Float>::PARTS && $highest + 1 == <$float as Float>::TERMS);
+            }
             let (usual, mut strange) = ([$module::QUARTERS.0; $lanes], [[0; $lanes]; 4]);
             // SAFETY: the machine has AVX2 and FMA; all that is written are the sines, the cosines and what is
             // strange, and what is read are these, the angles and constants.
@@ -123,7 +127,7 @@ macro_rules! sin_cos_each {
                     "add {cosines}, 128",
                     "dec {groups}",
                     "jnz 2b",
-                    groups = inout(reg) K / $of_four => _,
+                    groups = inout(reg) K / GROUP => _,
                     angles = inout(reg) angles.as_ptr() => _,
                     sines = inout(reg) sines.as_mut_ptr() => _,
                     cosines = inout(reg) cosines.as_mut_ptr() => _,
@@ -162,14 +166,14 @@ macro_rules! sin_cos_each {
 }
 
 sin_cos_each! {
-    sin_cos_each_f64, f64_if_available, f64, u64, double, 4 lanes, 16 in four vectors,
+    sin_cos_each_f64, f64_if_available, f64, u64, double, 4 lanes,
     numbers: "d", whole numbers: "q", sign: 63,
     parts but the last: [0], 1,
     last term: 5, [4 3 2 1 0],
 }
 
 sin_cos_each! {
-    sin_cos_each_f32, f32_if_available, f32, u32, single, 8 lanes, 32 in four vectors,
+    sin_cos_each_f32, f32_if_available, f32, u32, single, 8 lanes,
     numbers: "s", whole numbers: "d", sign: 31,
     parts but the last: [0 1], 2,
     last term: 2, [1 0],
