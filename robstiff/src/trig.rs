@@ -3,8 +3,8 @@
 //! The platform's `sin` takes one angle, and takes most of the time of a
 //! compliance. Here every angle goes the same way, without a branch or a
 //! table, so that the angles of a pose, or of several poses, go into the lanes
-//! of one vector ([`Abreast`]; batches with AVX2 have these steps in an order of
-//! their own, `interleaved.rs`, and with AVX-512 tables, `tables.rs`):
+//! of one vector ([`Abreast`]; batches of `f64` have tables besides, with AVX2 one in
+//! memory, `circle.rs`, and with AVX-512 some in registers, `tables.rs`):
 //!
 //! 1. `k`, the multiple of pi/2 nearest to the angle, by adding and
 //!    subtracting a number so large that only whole ones fit ([`places::SHIFT`]);
@@ -26,9 +26,9 @@
 //! Gain: `benches/README.md`. The feature `platform-trig` takes all this out.
 
 mod abreast;
-mod float;
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
-pub(crate) mod interleaved;
+pub(crate) mod circle;
+mod float;
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 pub(crate) mod tables;
 #[cfg(all(test, feature = "std"))]

@@ -1,6 +1,6 @@
 //! The instructions that the machine has.
 //!
-//! This, with the sines that it calls (`trig/tables.rs`, `trig/interleaved.rs`), is
+//! This, with the sines that it calls (`trig/tables.rs`, `trig/circle.rs`), is
 //! the only unsafe code of the crate: a function made for certain instructions may be
 //! called only where the machine has them, which is what is looked up right before.
 //! Gain: twice the poses in the same time with AVX2, and a third more with AVX-512, for
@@ -130,7 +130,8 @@ impl Instructions for Avx512 {
 }
 
 /// Numbers for which that is written by hand, with the vectors of x86-64.
-pub trait ByHand: Sized {
+#[expect(private_bounds, reason = "nobody else shall implement it")]
+pub trait ByHand: trig::Float {
     /// Writes the transpose of four rows to four columns.
     ///
     /// # Safety
@@ -138,38 +139,45 @@ pub trait ByHand: Sized {
     #[cfg(all(feature = "std", target_arch = "x86_64"))]
     unsafe fn transpose(rows: [&[Self; 4]; 4], columns: [&mut [Self; 4]; 4]);
 
-    /// As [`Instructions::sin_cos_each`].
+    /// As [`Instructions::sin_cos_each`]: by polynomials, which for `f32` are short as they
+    /// are, or from a table.
     ///
     /// # Safety
     /// The machine must have AVX2 and FMA.
     #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    #[inline(always)]
     unsafe fn sin_cos_each_with_avx2(
         angles: &[Self; BLOCK],
         sines: &mut [Self; BLOCK],
         cosines: &mut [Self; BLOCK],
-    ) -> bool;
+    ) -> bool {
+        trig::sin_cos_each::<Self, true, BLOCK>(angles, sines, cosines)
+    }
 
-    /// As [`Instructions::sin_cos_each`].
+    /// The same with AVX-512.
     ///
     /// # Safety
     /// The machine must have AVX-512.
     #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    #[inline(always)]
     unsafe fn sin_cos_each_with_avx512(
         angles: &[Self; BLOCK],
         sines: &mut [Self; BLOCK],
         cosines: &mut [Self; BLOCK],
-    ) -> bool;
+    ) -> bool {
+        trig::sin_cos_each::<Self, true, BLOCK>(angles, sines, cosines)
+    }
 }
 
 #[cfg(not(all(feature = "std", target_arch = "x86_64")))]
-impl<T> ByHand for T {}
+impl<F: trig::Float> ByHand for F {}
 
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 mod by_hand {
     use core::arch::x86_64::*;
 
     use crate::batch::block::BLOCK;
-    use crate::trig::{self, interleaved, tables};
+    use crate::trig::{circle, tables};
 
     impl super::ByHand for f64 {
         #[inline]
@@ -198,7 +206,7 @@ mod by_hand {
             cosines: &mut [Self; BLOCK],
         ) -> bool {
             // SAFETY: the machine has AVX2 and FMA.
-            unsafe { interleaved::sin_cos_each_f64(angles, sines, cosines) }
+            unsafe { circle::sin_cos_each(angles, sines, cosines) }
         }
 
         #[inline(always)]
@@ -223,26 +231,6 @@ mod by_hand {
                 // SAFETY: each is four numbers.
                 unsafe { _mm_storeu_ps(column.as_mut_ptr(), four) };
             }
-        }
-
-        #[inline(always)]
-        unsafe fn sin_cos_each_with_avx2(
-            angles: &[Self; BLOCK],
-            sines: &mut [Self; BLOCK],
-            cosines: &mut [Self; BLOCK],
-        ) -> bool {
-            // SAFETY: the machine has AVX2 and FMA.
-            unsafe { interleaved::sin_cos_each_f32(angles, sines, cosines) }
-        }
-
-        /// Without tables: its polynomials are short as they are.
-        #[inline(always)]
-        unsafe fn sin_cos_each_with_avx512(
-            angles: &[Self; BLOCK],
-            sines: &mut [Self; BLOCK],
-            cosines: &mut [Self; BLOCK],
-        ) -> bool {
-            trig::sin_cos_each::<Self, true, BLOCK>(angles, sines, cosines)
         }
     }
 }

@@ -130,65 +130,41 @@ fn double_precision_is_as_near_as_stated() {
     }
 }
 
-/// Where the machine has AVX-512; elsewhere there is nothing to test.
-#[test]
+/// Holds sines from a table to what is stated, of eight angles at once; nothing where the machine has not
+/// the instructions.
 #[cfg(target_arch = "x86_64")]
-fn tables_are_as_near_as_stated() {
+fn check_table(name: &str, sin_cos: impl Fn(&[f64; 8]) -> Option<([f64; 8], [f64; 8], bool)>) {
+    let available = |eight: &[f64; 8]| sin_cos(eight).expect("it is available");
     let angles: std::vec::Vec<f64> = angles(f64::DOMAIN).collect();
     let mut all = std::vec::Vec::new();
     for eight in angles.as_chunks::<8>().0 {
-        let Some((sines, cosines, is_usual)) = tables::sin_cos_if_available(eight) else { return };
-        assert!(is_usual, "{eight:?}");
-        let (of_negative_sines, of_negative_cosines, _) =
-            tables::sin_cos_if_available(&eight.map(|x| -x)).expect("it is available");
-        assert_eq!((of_negative_sines.map(|s| -s), of_negative_cosines), (sines, cosines), "{eight:?}");
+        let Some((sines, cosines, is_usual)) = sin_cos(eight) else { return };
+        assert!(is_usual, "{name}: {eight:?}");
+        let (of_negative_sines, of_negative_cosines, _) = available(&eight.map(|x| -x));
+        assert_eq!((of_negative_sines.map(|s| -s), of_negative_cosines), (sines, cosines), "{name}: {eight:?}");
         all.extend((0..8).map(|lane| (eight[lane], (sines[lane], cosines[lane]))));
     }
     let [absolute, places] = worst_of(all.into_iter());
-    std::println!("tables: {absolute:e}, {places:.3} ulp");
-    assert!(absolute <= f64::BOUND, "off by {absolute:e}");
+    std::println!("{name}: {absolute:e}, {places:.3} ulp");
+    assert!(absolute <= f64::BOUND, "{name}: off by {absolute:e}");
     // Numbers from the table may be larger than the result, and so is what they are rounded by.
-    assert!(places <= 2.0, "{places} units in the last place");
+    assert!(places <= 2.0, "{name}: {places} units in the last place");
     for strange in [1.648e6, -3e8, 1e22, f64::MAX, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for lane in 0..8 {
             let mut eight = [0.3; 8];
             eight[lane] = strange;
-            assert!(!tables::sin_cos_if_available(&eight).expect("it is available").2, "{strange}, lane {lane}");
+            assert!(!available(&eight).2, "{name}: {strange}, lane {lane}");
         }
     }
-    let (sines, cosines, _) = tables::sin_cos_if_available(&[0.0; 8]).expect("it is available");
-    assert_eq!((sines, cosines), ([0.0; 8], [1.0; 8]));
+    let (sines, cosines, _) = available(&[0.0; 8]);
+    assert_eq!((sines, cosines), ([0.0; 8], [1.0; 8]), "{name}");
 }
 
-/// Where the machine has AVX2; elsewhere there is nothing to test.
 #[test]
 #[cfg(target_arch = "x86_64")]
-fn interleaved_is_one_by_one() {
-    macro_rules! check {
-        ($float:ident, $sin_cos_each:path, $domain:expr) => {
-            let all: std::vec::Vec<$float> =
-                angles($domain).map(|x| x as $float).filter(|x| x.is_in_domain()).collect();
-            for angles in all.as_chunks::<64>().0 {
-                let Some((sines, cosines, is_usual)) = $sin_cos_each(angles) else { return };
-                assert!(is_usual, "{angles:?}");
-                for (lane, &x) in angles.iter().enumerate() {
-                    let own = (sines[lane], cosines[lane]);
-                    assert_eq!(own, within_domain::<$float, $float, true, true>(x), "{x:e}, lane {lane}");
-                }
-            }
-            for strange in
-                [1.1 * $domain as $float, -3e8, $float::MAX, $float::NAN, $float::INFINITY, -$float::INFINITY]
-            {
-                for lane in 0..64 {
-                    let mut angles = [0.3; 64];
-                    angles[lane] = strange;
-                    assert!(!$sin_cos_each(&angles).expect("it is available").2, "{strange}, lane {lane}");
-                }
-            }
-        };
-    }
-    check!(f64, interleaved::f64_if_available, f64::DOMAIN);
-    check!(f32, interleaved::f32_if_available, f64::from(f32::DOMAIN));
+fn tables_are_as_near_as_stated() {
+    check_table("of the circle", circle::sin_cos_if_available);
+    check_table("in registers", tables::sin_cos_if_available);
 }
 
 #[test]
