@@ -57,6 +57,16 @@ pub trait Robot<const N: usize> {
     /// rad/Nm.
     fn compliance<T: Real>(&self, q: &SVector<T, N>) -> Matrix6<T>;
 
+    /// Hands over the entries of the [`upper_triangle`] of [`compliance`](Self::compliance),
+    /// each once with its place there, in any order: generated code as soon as it knows
+    /// one, so that who stores it needs no register for it any more.
+    #[inline(always)]
+    fn compliance_entries<T: Real>(&self, q: &SVector<T, N>, mut put: impl FnMut(usize, T)) {
+        for (place, entry) in upper_triangle(&self.compliance(q)).into_iter().enumerate() {
+            put(place, entry);
+        }
+    }
+
     /// The displacement of the TCP under a wrench at the TCP; beyond
     /// `H_x` times the wrench it knows the nonlinear effects. Joints with
     /// hysteresis are those of a robot that was never loaded before.

@@ -50,7 +50,24 @@ fn agrees<const N: usize, R: Robot<N>>(robot: R, file: &str) {
         let Statics { transform, jacobian, compliance } = robot.statics(&q);
         let together = All { transform, jacobian, compliance, ..found };
         together.assert_close(&expected, &sizes, &wrench, DOUBLE);
+        let one_by_one = All { compliance: by_entries(&robot, &q), ..together };
+        one_by_one.assert_close(&expected, &sizes, &wrench, DOUBLE);
     }
+}
+
+/// The compliance from the entries that are handed over one by one.
+fn by_entries<const N: usize>(robot: &impl Robot<N>, q: &SVector<f64, N>) -> Matrix6<f64> {
+    let mut entries = [None; 21];
+    robot.compliance_entries(q, |place, entry| assert_eq!(entries[place].replace(entry), None, "entry {place} twice"));
+    let mut entries = entries.map(|entry| entry.expect("every entry is handed over")).into_iter();
+    let mut compliance = Matrix6::zeros();
+    for i in 0..6 {
+        for j in i..6 {
+            compliance[(i, j)] = entries.next().expect("21 entries");
+            compliance[(j, i)] = compliance[(i, j)];
+        }
+    }
+    compliance
 }
 
 /// Generated `f32` code against the generic robot in `f64`, at the same inputs.

@@ -59,7 +59,9 @@ pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const
         Joints { values: [[T::ZERO; BLOCK]; N], sines: [[T::ZERO; BLOCK]; N], cosines: [[T::ZERO; BLOCK]; N] };
     let mut kept = Numbers([[T::ZERO; BLOCK]; M]);
     // Constants, where the compiler sees through the robot.
-    let needs = Needs::of(&quantity.numbers(0, &SVector::from_fn(|joint, _| Traced::joint(joint)), |_| Traced::NUMBER));
+    let mut needs = Needs::default();
+    let traced = SVector::from_fn(|joint, _| Traced::joint(joint));
+    quantity.put_numbers(0, &traced, |_| Traced::NUMBER, |_, number| needs.add(number));
     let poses = source.poses();
     let mut first = 0;
     while first < poses {
@@ -198,10 +200,7 @@ fn evaluate_one<T, Q, const N: usize, const M: usize, const PLACES: usize, const
         let pose = if ROW && joint > 0 { 0 } else { pose };
         Known::<T, FUSED>::angle(joints.values[joint][pose], joints.sines[joint][pose], joints.cosines[joint][pose])
     });
-    let computed = quantity.numbers(pose, &q, Known::number);
-    for k in 0..M {
-        numbers[k][place] = computed[k].value;
-    }
+    quantity.put_numbers(pose, &q, Known::number, |k, number| numbers[k][place] = number.value);
 }
 
 #[cold]
@@ -212,9 +211,7 @@ fn one_by_one<T: Float, Q: Quantity<T, N, M>, const N: usize, const M: usize>(
     q: impl Fn(usize) -> SVector<T, N>,
     numbers: &mut [[T; BLOCK]; M],
 ) {
-    for pose in 0..count.min(BLOCK) {
-        for (number, own) in numbers.iter_mut().zip(quantity.numbers(pose, &q(pose), |x| x)) {
-            number[pose] = own;
-        }
-    }
+    (0..count.min(BLOCK)).for_each(|pose| {
+        quantity.put_numbers(pose, &q(pose), |x| x, |k, number| numbers[k][pose] = number);
+    });
 }

@@ -8,18 +8,14 @@ use crate::Real;
 
 /// A set of joint coordinates: bit `j` for the value of joint `j`, bit 32 more
 /// for its sine and cosine.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Needs(u64);
 
 impl Needs {
-    /// What the numbers were computed from.
+    /// And what a number was computed from.
     #[inline(always)]
-    pub fn of(numbers: &[Traced]) -> Self {
-        let mut all = 0;
-        for number in numbers {
-            all |= number.value;
-        }
-        Self(all)
+    pub fn add(&mut self, number: Traced) {
+        self.0 |= number.value;
     }
 
     #[inline(always)]

@@ -7,7 +7,7 @@ use nalgebra::{Matrix6, SVector, Vector3, Vector6};
 use super::Float;
 use super::block::BLOCK;
 use crate::robot::TRIANGLE;
-use crate::{Real, Robot, upper_triangle};
+use crate::{Real, Robot};
 
 /// Something that is computed of a pose: `M` numbers, in any scalar that holds
 /// a `T`.
@@ -16,8 +16,8 @@ pub trait Quantity<T: Float, const N: usize, const M: usize> {
     #[inline(always)]
     fn prepare(&mut self, _poses: Range<usize>) {}
 
-    /// The numbers of a pose of the block.
-    fn numbers<S: Real>(&self, pose: usize, q: &SVector<S, N>, scalar: impl Fn(T) -> S) -> [S; M];
+    /// Hands over the numbers of a pose of the block, each once and as soon as it is known.
+    fn put_numbers<S: Real>(&self, pose: usize, q: &SVector<S, N>, scalar: impl Fn(T) -> S, put: impl FnMut(usize, S));
 }
 
 /// What the caller gets: `M` numbers in a row.
@@ -94,8 +94,8 @@ pub struct Triangle<'r, R> {
 
 impl<T: Float, R: Robot<N>, const N: usize> Quantity<T, N, 21> for Triangle<'_, R> {
     #[inline(always)]
-    fn numbers<S: Real>(&self, _: usize, q: &SVector<S, N>, _: impl Fn(T) -> S) -> [S; 21] {
-        upper_triangle(&self.robot.compliance(q))
+    fn put_numbers<S: Real>(&self, _: usize, q: &SVector<S, N>, _: impl Fn(T) -> S, put: impl FnMut(usize, S)) {
+        self.robot.compliance_entries(q, put);
     }
 }
 
@@ -105,9 +105,9 @@ pub struct Trace<'r, R> {
 
 impl<T: Float, R: Robot<N>, const N: usize> Quantity<T, N, 1> for Trace<'_, R> {
     #[inline(always)]
-    fn numbers<S: Real>(&self, _: usize, q: &SVector<S, N>, _: impl Fn(T) -> S) -> [S; 1] {
+    fn put_numbers<S: Real>(&self, _: usize, q: &SVector<S, N>, _: impl Fn(T) -> S, mut put: impl FnMut(usize, S)) {
         let compliance = self.robot.compliance(q);
-        [compliance[(0, 0)] + compliance[(1, 1)] + compliance[(2, 2)]]
+        put(0, compliance[(0, 0)] + compliance[(1, 1)] + compliance[(2, 2)]);
     }
 }
 
@@ -118,14 +118,20 @@ pub struct Directional<'r, R, T> {
 
 impl<T: Float, R: Robot<N>, const N: usize> Quantity<T, N, 1> for Directional<'_, R, T> {
     #[inline(always)]
-    fn numbers<S: Real>(&self, _: usize, q: &SVector<S, N>, scalar: impl Fn(T) -> S) -> [S; 1] {
+    fn put_numbers<S: Real>(
+        &self,
+        _: usize,
+        q: &SVector<S, N>,
+        scalar: impl Fn(T) -> S,
+        mut put: impl FnMut(usize, S),
+    ) {
         let c = self.robot.compliance(q);
         let [x, y, z] = self.direction.data.0[0];
         let (x, y, z) = (scalar(x), scalar(y), scalar(z));
         let (xy, xz, yz) = (c[(0, 1)] * y, c[(0, 2)] * z, c[(1, 2)] * z);
         let along_x = c[(0, 0)].mul_add(x, xy + xy + xz + xz);
         let along_y = c[(1, 1)].mul_add(y, yz + yz);
-        [x.mul_add(along_x, y.mul_add(along_y, z * z * c[(2, 2)]))]
+        put(0, x.mul_add(along_x, y.mul_add(along_y, z * z * c[(2, 2)])));
     }
 }
 
@@ -136,8 +142,8 @@ pub struct Deflection<'r, R, T> {
 
 impl<T: Float, R: Robot<N>, const N: usize> Quantity<T, N, 6> for Deflection<'_, R, T> {
     #[inline(always)]
-    fn numbers<S: Real>(&self, _: usize, q: &SVector<S, N>, scalar: impl Fn(T) -> S) -> [S; 6] {
-        deflection(self.robot, q, |i| scalar(self.wrench[i]))
+    fn put_numbers<S: Real>(&self, _: usize, q: &SVector<S, N>, scalar: impl Fn(T) -> S, put: impl FnMut(usize, S)) {
+        put_deflection(self.robot, q, |i| scalar(self.wrench[i]), put);
     }
 }
 
@@ -165,17 +171,21 @@ impl<T: Float, R: Robot<N>, const N: usize> Quantity<T, N, 6> for Deflections<'_
     }
 
     #[inline(always)]
-    fn numbers<S: Real>(&self, pose: usize, q: &SVector<S, N>, scalar: impl Fn(T) -> S) -> [S; 6] {
-        deflection(self.robot, q, |i| scalar(self.block[i][pose]))
+    fn put_numbers<S: Real>(&self, pose: usize, q: &SVector<S, N>, scalar: impl Fn(T) -> S, put: impl FnMut(usize, S)) {
+        put_deflection(self.robot, q, |i| scalar(self.block[i][pose]), put);
     }
 }
 
 #[inline(always)]
-fn deflection<S: Real, const N: usize>(
+fn put_deflection<S: Real, const N: usize>(
     robot: &impl Robot<N>,
     q: &SVector<S, N>,
     wrench: impl Fn(usize) -> S,
-) -> [S; 6] {
+    mut put: impl FnMut(usize, S),
+) {
     let wrench = Vector6::new(wrench(0), wrench(1), wrench(2), wrench(3), wrench(4), wrench(5));
-    robot.deflection(q, &wrench).data.0[0]
+    let deflection = robot.deflection(q, &wrench);
+    for i in 0..6 {
+        put(i, deflection[i]);
+    }
 }

@@ -1,6 +1,6 @@
 //! The statements of a generated function.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::mem::swap;
 
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -42,9 +42,28 @@ pub(super) fn body(function: &Function, reader: Reader) -> Body {
         Reader::Person => Fusion::none(function),
     };
     let writer = Writer { function, names, fusion, turns };
-    let statements = writer.statements(reader == Reader::Person);
+    let statements = writer.statements(reader == Reader::Person, |_| None);
     let outputs = function.outputs().iter().map(|&id| writer.operand(id, Binding::Sum)).collect();
     Body { statements, outputs }
+}
+
+/// Writes a function out that hands each output over, with its number, as soon as it is
+/// known: `put(3, tt_xy);`. Who stores them needs no registers for them meanwhile, of which
+/// batches have too few. Gain: `benches/README.md`.
+pub(super) fn handing_over(function: &Function) -> TokenStream {
+    // Turns as one operation would know their results at once, and late.
+    let turns = Turns::none();
+    let names = Names::of(function, &turns);
+    let fusion = Fusion::of(function, &turns);
+    let writer = Writer { function, names, fusion, turns };
+    let mut due: BTreeMap<Option<Id>, TokenStream> = BTreeMap::new();
+    for (k, &id) in function.outputs().iter().enumerate() {
+        let (k, output) = (Literal::usize_unsuffixed(k), writer.operand(id, Binding::Sum));
+        due.entry(writer.last_line(id)).or_default().extend(quote!(put(#k, #output);));
+    }
+    let statements = writer.statements(false, |id| due.get(&Some(id)).cloned());
+    let known_before = due.get(&None);
+    quote!(#statements #known_before)
 }
 
 struct Writer<'f> {
@@ -55,7 +74,8 @@ struct Writer<'f> {
 }
 
 impl Writer<'_> {
-    fn statements(&self, with_remarks: bool) -> TokenStream {
+    /// All lines, and after each what belongs there.
+    fn statements(&self, with_remarks: bool, behind: impl Fn(Id) -> Option<TokenStream>) -> TokenStream {
         let graph = self.function.graph();
         let nodes = graph.nodes();
         let mut out = TokenStream::new();
@@ -91,8 +111,21 @@ impl Writer<'_> {
                 out.extend(quote!(__remark!(#text);));
             }
             out.extend(quote!(let #name = #value;));
+            out.extend(behind(id));
         }
         out
+    }
+
+    /// The last line that a node needs, if any but those of constants.
+    fn last_line(&self, id: Id) -> Option<Id> {
+        let node = self.function.graph().nodes()[id];
+        if node.constant.is_some() {
+            None
+        } else if self.names.get(id).is_some() && self.fusion.is_used(id) {
+            Some(id)
+        } else {
+            node.op.operands().filter_map(|operand| self.last_line(operand)).max()
+        }
     }
 
     fn live(&self) -> Vec<(Id, crate::graph::Node)> {

@@ -52,6 +52,14 @@ pub(super) fn functions(robot: &Description) -> Vec<Generated> {
     stateless(robot).into_iter().chain(stateful).collect()
 }
 
+/// The upper triangle of the compliance, by rows.
+pub(super) fn compliance_entries(robot: &Description) -> Function {
+    Function::of(|g| {
+        let entries = symbolic::compliance(g, robot);
+        (0..6).flat_map(|i| entries[6 * i + i..6 * (i + 1)].to_vec()).collect()
+    })
+}
+
 fn stateful(robot: &Description) -> Generated {
     let slots = symbolic::plays(robot);
     Generated {

@@ -5,9 +5,9 @@ use quote::{format_ident, quote};
 use robstiff_robots::{Description, Place};
 use syn::Ident;
 
-use super::body::{Body, Reader, body};
+use super::body::{Body, Reader, body, handing_over};
 use super::facts::{facts, number};
-use super::functions::{Generated, functions};
+use super::functions::{Generated, compliance_entries, functions};
 use crate::function::{Cost, Function};
 use crate::graph::{Op, Parameter};
 use crate::symbolic;
@@ -249,13 +249,29 @@ pub(super) fn implementation(robot: &Description, functions: &[Generated], reade
         // need, and compute several poses abreast.
         quote!(#(#[doc = #docs])* #silence #[inline(always)] #signature { #calculation })
     });
+    // People read the compliance once.
+    let by_entries = (reader == Reader::Compiler).then(|| by_entries(robot, &count));
     let silence = lints();
     quote! {
         #silence
         impl Robot<#n> for #name {
             #(#stated)*
             #(#calculated)*
+            #by_entries
         }
+    }
+}
+
+/// The method that hands over the compliance's entries one by one.
+fn by_entries(robot: &Description, n: &TokenStream) -> TokenStream {
+    let function = compliance_entries(robot);
+    let statements = handing_over(&function);
+    let silence = ignores_an_input(&function).then(|| quote!(#[allow(unused_variables)]));
+    quote! {
+        /// Upper triangle of `compliance`, each entry as soon as it is known.
+        #silence
+        #[inline(always)]
+        fn compliance_entries<T: Real>(&self, q: &SVector<T, #n>, mut put: impl FnMut(usize, T)) { #statements }
     }
 }
 
