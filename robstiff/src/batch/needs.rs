@@ -12,7 +12,7 @@ use crate::Real;
 pub struct Needs(u64);
 
 impl Needs {
-    /// And what a number was computed from.
+    /// Those, and what a number was computed from.
     #[inline(always)]
     pub fn add(&mut self, number: Traced) {
         self.0 |= number.value;

@@ -266,9 +266,11 @@ pub(super) fn implementation(robot: &Description, functions: &[Generated], reade
 fn by_entries(robot: &Description, n: &TokenStream) -> TokenStream {
     let function = compliance_entries(robot);
     let statements = handing_over(&function);
+    let mut docs = paragraph("Upper triangle of `compliance`, each entry as soon as it is known.");
+    docs.push(format!(" {}.", function.cost()));
     let silence = ignores_an_input(&function).then(|| quote!(#[allow(unused_variables)]));
     quote! {
-        /// Upper triangle of `compliance`, each entry as soon as it is known.
+        #(#[doc = #docs])*
         #silence
         #[inline(always)]
         fn compliance_entries<T: Real>(&self, q: &SVector<T, #n>, mut put: impl FnMut(usize, T)) { #statements }
