@@ -7,7 +7,7 @@
 //! 1. `k` is the multiple of pi/128 nearest to the angle, by a number so large that
 //!    only whole ones fit, and `r = x - k pi/128` (pi/128 in two parts);
 //! 2. the last eight bits of `k` find `S/2` and `C/2`, halves of its sine and cosine;
-//! 3. `sin r = r + r z S(z)` with `z = r^2`, and `t = 2 tan(r/2)`: up to `r^6` it is
+//! 3. `sin r = r + r z P(z)` with `z = r^2`, and `t = 2 tan(r/2)`: up to `r^6` it is
 //!    `sin r + r z / 4`, which is enough for what it is multiplied by;
 //! 4. `sin x = S + sin r (C - t S/2)` and `cos x = C - sin r (S + t C/2)`, because
 //!    `1 - cos r = sin r tan(r/2)`.
