@@ -32,16 +32,13 @@ pub(super) enum Reader {
 
 /// Writes a function out.
 pub(super) fn body(function: &Function, reader: Reader) -> Body {
-    let turns = match reader {
-        Reader::Compiler => Turns::of(function),
-        Reader::Person => Turns::none(),
+    let writer = match reader {
+        Reader::Compiler => Writer::fusing(function, Turns::of(function)),
+        Reader::Person => {
+            let turns = Turns::none();
+            Writer { function, names: Names::of(function, &turns), fusion: Fusion::none(function), turns }
+        }
     };
-    let names = Names::of(function, &turns);
-    let fusion = match reader {
-        Reader::Compiler => Fusion::of(function, &turns),
-        Reader::Person => Fusion::none(function),
-    };
-    let writer = Writer { function, names, fusion, turns };
     let statements = writer.statements(reader == Reader::Person, |_| None);
     let outputs = function.outputs().iter().map(|&id| writer.operand(id, Binding::Sum)).collect();
     Body { statements, outputs }
@@ -52,10 +49,7 @@ pub(super) fn body(function: &Function, reader: Reader) -> Body {
 /// batches have too few. Gain: `benches/README.md`.
 pub(super) fn handing_over(function: &Function) -> TokenStream {
     // Turns as one operation would know their results at once, and late.
-    let turns = Turns::none();
-    let names = Names::of(function, &turns);
-    let fusion = Fusion::of(function, &turns);
-    let writer = Writer { function, names, fusion, turns };
+    let writer = Writer::fusing(function, Turns::none());
     let mut due: BTreeMap<Option<Id>, TokenStream> = BTreeMap::new();
     for (k, &id) in function.outputs().iter().enumerate() {
         let (k, output) = (Literal::usize_unsuffixed(k), writer.operand(id, Binding::Sum));
@@ -73,7 +67,12 @@ struct Writer<'f> {
     turns: Turns,
 }
 
-impl Writer<'_> {
+impl<'f> Writer<'f> {
+    /// For the compiler: with products and sums fused.
+    fn fusing(function: &'f Function, turns: Turns) -> Self {
+        Self { function, names: Names::of(function, &turns), fusion: Fusion::of(function, &turns), turns }
+    }
+
     /// All lines, and after each what belongs there.
     fn statements(&self, with_remarks: bool, behind: impl Fn(Id) -> Option<TokenStream>) -> TokenStream {
         let graph = self.function.graph();
