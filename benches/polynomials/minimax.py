@@ -1,6 +1,6 @@
 """The coefficients of robstiff/src/trig: best polynomials for sine and cosine.
 
-On |r| <= pi/4, and beside tables on |r| <= pi/32 (tables.rs) and pi/256 (circle.rs), with z = r^2,
+On |r| <= pi/4, and beside tables on |r| <= pi/32 (tables.rs) and pi/256 (circle/double.rs), with z = r^2,
 
     sin r = r + r z S(z),        cos r = 1 - z/2 + z^2 C(z).
 
@@ -145,6 +145,7 @@ if __name__ == "__main__":
         print("pi/2", name, [repr(float(p)) for p in ps], f"rest {float(rest):.1e}")
     print("2/pi", repr(float(2 / PI)))
     print("pi/128", [repr(float(p)) for p in parts((53, 53), PI / 128)[0]], "128/pi", repr(float(128 / PI)))
+    print("pi/512, f32", [repr(float(p)) for p in parts((24, 24), PI / 512)[0]], "512/pi", repr(float(rounded(512 / PI, True))))
     print("sines of multiples of pi/128", [repr(float(sine(PI * k / 128))) for k in range(65)])
     print("pi/16", [repr(float(p)) for p in parts((53, 53), PI / 16)[0]], "16/pi", repr(float(16 / PI)))
     print("sines of multiples of pi/16", [repr(float(sine(PI * k / 16))) for k in range(16)])

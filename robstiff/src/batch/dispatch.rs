@@ -65,6 +65,24 @@ pub trait Instructions: Copy {
     ) -> bool {
         trig::sin_cos_each::<T, FUSED, BLOCK>(angles, sines, cosines)
     }
+
+    /// The same of the angles of all joints that have some.
+    #[inline(always)]
+    fn sin_cos_all<T: Float, const N: usize, const FUSED: bool>(
+        self,
+        angles: [Option<&[T; BLOCK]>; N],
+        sines: &mut [[T; BLOCK]; N],
+        cosines: &mut [[T; BLOCK]; N],
+    ) -> bool {
+        for joint in 0..N {
+            if let Some(angles) = angles[joint]
+                && !self.sin_cos_each::<T, FUSED>(angles, &mut sines[joint], &mut cosines[joint])
+            {
+                return false;
+            }
+        }
+        true
+    }
 }
 
 /// No more than the compiler sees.
@@ -94,14 +112,27 @@ impl Instructions for Avx2 {
     }
 
     #[inline(always)]
-    fn sin_cos_each<T: Float, const FUSED: bool>(
+    fn sin_cos_all<T: Float, const N: usize, const FUSED: bool>(
         self,
-        angles: &[T; BLOCK],
-        sines: &mut [T; BLOCK],
-        cosines: &mut [T; BLOCK],
+        angles: [Option<&[T; BLOCK]>; N],
+        sines: &mut [[T; BLOCK]; N],
+        cosines: &mut [[T; BLOCK]; N],
     ) -> bool {
-        // SAFETY: the machine has AVX2 and FMA.
-        unsafe { T::sin_cos_each_with_avx2(angles, sines, cosines) }
+        for joint in 0..N {
+            if let Some(angles) = angles[joint]
+                // SAFETY: the machine has AVX2 and FMA.
+                && !unsafe { T::shift_each_with_avx2(angles, &mut cosines[joint]) }
+            {
+                return false;
+            }
+        }
+        for joint in 0..N {
+            if let Some(angles) = angles[joint] {
+                // SAFETY: the machine has AVX2 and FMA.
+                unsafe { T::sin_cos_each_with_avx2(angles, &mut sines[joint], &mut cosines[joint]) };
+            }
+        }
+        true
     }
 }
 
@@ -139,22 +170,23 @@ pub trait ByHand: trig::Float {
     #[cfg(all(feature = "std", target_arch = "x86_64"))]
     unsafe fn transpose(rows: [&[Self; 4]; 4], columns: [&mut [Self; 4]; 4]);
 
-    /// As [`Instructions::sin_cos_each`]: by polynomials, which for `f32` are short as they
-    /// are, or from a table.
+    /// The first of two passes to sines and cosines (`trig/circle.rs`): what angles are
+    /// looked up by. False if some angle is out of the domain or a NaN.
     ///
     /// # Safety
     /// The machine must have AVX2 and FMA.
     #[cfg(all(feature = "std", target_arch = "x86_64"))]
-    #[inline(always)]
-    unsafe fn sin_cos_each_with_avx2(
-        angles: &[Self; BLOCK],
-        sines: &mut [Self; BLOCK],
-        cosines: &mut [Self; BLOCK],
-    ) -> bool {
-        trig::sin_cos_each::<Self, true, BLOCK>(angles, sines, cosines)
-    }
+    unsafe fn shift_each_with_avx2(angles: &[Self; BLOCK], shifted: &mut [Self; BLOCK]) -> bool;
 
-    /// The same with AVX-512.
+    /// The second one, which finds in the cosines' place what the first one left.
+    ///
+    /// # Safety
+    /// The machine must have AVX2 and FMA.
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    unsafe fn sin_cos_each_with_avx2(angles: &[Self; BLOCK], sines: &mut [Self; BLOCK], cosines: &mut [Self; BLOCK]);
+
+    /// As [`Instructions::sin_cos_each`] with AVX-512: by polynomials, which for `f32` are
+    /// short, or from a table.
     ///
     /// # Safety
     /// The machine must have AVX-512.
@@ -200,13 +232,19 @@ mod by_hand {
         }
 
         #[inline(always)]
+        unsafe fn shift_each_with_avx2(angles: &[Self; BLOCK], shifted: &mut [Self; BLOCK]) -> bool {
+            // SAFETY: the machine has AVX2 and FMA.
+            unsafe { circle::double::shift_each(angles, shifted) }
+        }
+
+        #[inline(always)]
         unsafe fn sin_cos_each_with_avx2(
             angles: &[Self; BLOCK],
             sines: &mut [Self; BLOCK],
             cosines: &mut [Self; BLOCK],
-        ) -> bool {
+        ) {
             // SAFETY: the machine has AVX2 and FMA.
-            unsafe { circle::sin_cos_each(angles, sines, cosines) }
+            unsafe { circle::double::sin_cos_each(angles, sines, cosines) }
         }
 
         #[inline(always)]
@@ -231,6 +269,22 @@ mod by_hand {
                 // SAFETY: each is four numbers.
                 unsafe { _mm_storeu_ps(column.as_mut_ptr(), four) };
             }
+        }
+
+        #[inline(always)]
+        unsafe fn shift_each_with_avx2(angles: &[Self; BLOCK], shifted: &mut [Self; BLOCK]) -> bool {
+            // SAFETY: the machine has AVX2 and FMA.
+            unsafe { circle::single::shift_each(angles, shifted) }
+        }
+
+        #[inline(always)]
+        unsafe fn sin_cos_each_with_avx2(
+            angles: &[Self; BLOCK],
+            sines: &mut [Self; BLOCK],
+            cosines: &mut [Self; BLOCK],
+        ) {
+            // SAFETY: the machine has AVX2 and FMA.
+            unsafe { circle::single::sin_cos_each(angles, sines, cosines) }
         }
     }
 }

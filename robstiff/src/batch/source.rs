@@ -1,5 +1,7 @@
 //! Where the joint coordinates of a block come from.
 
+use core::array;
+
 use nalgebra::SVector;
 
 use super::Float;
@@ -41,6 +43,13 @@ pub enum Filled {
     Beyond(usize),
 }
 
+impl Filled {
+    #[inline(always)]
+    fn each_if(is_within: bool, count: usize) -> Self {
+        if is_within { Self::Each(count) } else { Self::Beyond(count) }
+    }
+}
+
 /// Poses whose sines and cosines are computed.
 impl<T: Float, const N: usize> Source<T, N> for &[SVector<T, N>] {
     fn poses(&self) -> usize {
@@ -79,12 +88,7 @@ impl<T: Float, const N: usize> Source<T, N> for &[SVector<T, N>] {
                 }
             }
         }
-        for joint in 0..N {
-            let (angles, sines, cosines) = (&values[joint], &mut sines[joint], &mut cosines[joint]);
-            if needs.sin_cos(joint) && !instructions.sin_cos_each::<T, FUSED>(angles, sines, cosines) {
-                return Filled::Beyond(count);
-            }
-        }
-        Filled::Each(count)
+        let angles = array::from_fn(|joint| needs.sin_cos(joint).then_some(&values[joint]));
+        Filled::each_if(instructions.sin_cos_all::<T, N, FUSED>(angles, sines, cosines), count)
     }
 }
