@@ -1,7 +1,8 @@
 //! Many poses at once: slices of poses in, slices of results out.
 //!
-//! Poses are given one by one, or as a [`Grid`] in joint space, which costs less:
-//! its sines and cosines are in tables.
+//! Poses are given one by one; or [joint by joint](ByJoint), which costs less: nothing
+//! has to be put side by side; or as a [`Grid`] in joint space, which costs least: its
+//! sines and cosines are in tables.
 //!
 //! ```
 //! use robstiff::nalgebra::{SVector, Vector3};
@@ -51,7 +52,7 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 
 pub use block::BLOCK;
 pub use grid::Grid;
-pub use poses::Poses;
+pub use poses::{ByJoint, Poses};
 
 use crate::{Real, Robot, trig};
 use poses::View;

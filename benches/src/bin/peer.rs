@@ -3,7 +3,7 @@
 
 use std::hint::black_box;
 
-use robstiff::batch::Float;
+use robstiff::batch::{ByJoint, Float};
 use robstiff::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
 use robstiff::{Generic, Robot, Statics, batch, upper_triangle};
 use robstiff_benches::{Rv130hsc, WRENCH};
@@ -19,6 +19,8 @@ use harness::COUNT;
 robstiff::robot!("six-axis.yaml");
 
 const OURS: &str = "robstiff";
+/// Poses a slice a joint, and the compliance a slice an entry.
+const BY_JOINT: &str = "robstiff, by joint";
 
 /// T and J by columns, the triangle of H_x, one after the other.
 fn all<const N: usize, const ALL: usize>(
@@ -63,9 +65,17 @@ fn plain<const N: usize, const J: usize, const ALL: usize>(label: &str, arm: &na
     });
 }
 
+/// Numbers of all poses, side by side. They begin at a line of the cache, as in C the
+/// peers' arrays do.
+#[repr(align(64))]
+#[derive(Clone, Copy)]
+struct Column<T>([T; COUNT]);
+
 /// All poses in one call; `precision` is what the quantities' names end in.
 fn batches<T: Float + Into<f64>, const N: usize>(label: &str, precision: &str, robot: &impl Robot<N>) {
     let poses: Vec<SVector<T, N>> = harness::poses().into_iter().map(|q| SVector::from(q.map(T::of))).collect();
+    let columns: [Column<T>; N] = std::array::from_fn(|joint| Column(std::array::from_fn(|k| poses[k][joint])));
+    let by_joint = ByJoint::new(columns.each_ref().map(|column| &column.0[..]));
     let wrench = WRENCH.map(T::of);
     let quantity = |name| format!("{name}, batch{precision}");
 
@@ -76,16 +86,12 @@ fn batches<T: Float + Into<f64>, const N: usize>(label: &str, precision: &str, r
         |out| batch::compliance_triangle(robot, &poses, out),
         |out, k| out[k].map(T::into).to_vec(),
     );
-    let mut entries = vec![[T::zero(); COUNT]; 21];
+    let mut entries = Box::new([Column([T::zero(); COUNT]); 21]);
     harness::all(
-        [label, &quantity("H"), "robstiff, by entry"],
+        [label, &quantity("H"), BY_JOINT],
         &mut entries,
-        |out| {
-            let mut slices = out.iter_mut();
-            let slices = std::array::from_fn(|_| slices.next().expect("21 entries").as_mut_slice());
-            batch::compliance_by_entry(robot, &poses, slices);
-        },
-        |out, k| out.iter().map(|entry| entry[k].into()).collect(),
+        |out| batch::compliance_by_entry(robot, by_joint, out.each_mut().map(|entry| &mut entry.0[..])),
+        |out, k| out.iter().map(|entry| entry.0[k].into()).collect(),
     );
     // Handed over in blocks, and kept only where they are to be checked.
     let checking = harness::is_check();
@@ -93,16 +99,16 @@ fn batches<T: Float + Into<f64>, const N: usize>(label: &str, precision: &str, r
         [label, &quantity("H"), "robstiff, by block"],
         &mut entries,
         |out| {
-            batch::compliance_blocks(robot, &poses, |range, block| {
+            batch::compliance_blocks(robot, by_joint, |range, block| {
                 if checking {
                     for (entry, numbers) in out.iter_mut().zip(block) {
-                        entry[range.clone()].copy_from_slice(&numbers[..range.len()]);
+                        entry.0[range.clone()].copy_from_slice(&numbers[..range.len()]);
                     }
                 }
                 black_box(block);
             });
         },
-        |out, k| out.iter().map(|entry| entry[k].into()).collect(),
+        |out, k| out.iter().map(|entry| entry.0[k].into()).collect(),
     );
     let mut traces = vec![T::zero(); COUNT];
     harness::all(
@@ -111,11 +117,23 @@ fn batches<T: Float + Into<f64>, const N: usize>(label: &str, precision: &str, r
         |out| batch::translational_trace(robot, &poses, out),
         |out, k| vec![out[k].into()],
     );
+    harness::all(
+        [label, &quantity("trace"), BY_JOINT],
+        &mut traces,
+        |out| batch::translational_trace(robot, by_joint, out),
+        |out, k| vec![out[k].into()],
+    );
     let mut deflections = vec![Vector6::zeros(); COUNT];
     harness::all(
         [label, &quantity("deflection"), OURS],
         &mut deflections,
         |out| batch::deflection(robot, &poses, &wrench, out),
+        |out, k| out[k].map(T::into).as_slice().to_vec(),
+    );
+    harness::all(
+        [label, &quantity("deflection"), BY_JOINT],
+        &mut deflections,
+        |out| batch::deflection(robot, by_joint, &wrench, out),
         |out, k| out[k].map(T::into).as_slice().to_vec(),
     );
 }

@@ -81,6 +81,45 @@ fn every_level_gives_what_single_poses_give() {
     }
 }
 
+/// The coordinates of each joint.
+fn columns<T: Float, const N: usize>(poses: &[SVector<T, N>]) -> [Vec<T>; N] {
+    core::array::from_fn(|joint| poses.iter().map(|q| q[joint]).collect())
+}
+
+#[test]
+fn by_joint_gives_what_single_poses_give() {
+    let mut sliding = odd();
+    sliding.effects = linear_effects();
+    let sliding = Generic::<6>::new(&sliding).unwrap();
+    for count in [0, 1, 63, 64, 65, 200] {
+        let columns = columns(&poses::<5>(count));
+        check_all(&Rv130hsc, ByJoint::new(columns.each_ref().map(|joint| &joint[..])));
+        let columns = self::columns(&poses::<6>(count));
+        let joints = columns.each_ref().map(|joint| &joint[..]);
+        check_all(&sliding, ByJoint::new(joints));
+        check_all(&sliding, ByJoint::new(joints).cut(count / 3..count));
+    }
+}
+
+#[test]
+fn by_joint_in_single_precision_is_the_same() {
+    let poses: Vec<SVector<f32, 5>> = poses::<5>(150).iter().map(|q| q.map(|x| x as f32)).collect();
+    let columns = columns(&poses);
+    let joints = ByJoint::new(columns.each_ref().map(|joint| &joint[..]));
+    for level in Level::available() {
+        let (mut by_pose, mut by_joint) = (vec![[f32::NAN; 21]; 150], vec![[f32::NAN; 21]; 150]);
+        run_at(level, Triangle { robot: &Rv130hsc }, &poses[..], EachPose(&mut by_pose));
+        run_at(level, Triangle { robot: &Rv130hsc }, joints, EachPose(&mut by_joint));
+        assert_eq!(by_pose, by_joint, "{level:?}");
+    }
+}
+
+#[test]
+#[should_panic(expected = "as many coordinates")]
+fn joints_of_fewer_poses_are_refused() {
+    let _ = ByJoint::new([&[0.1, 0.2][..], &[0.3]]);
+}
+
 #[test]
 fn robots_read_at_run_time_come_in_batches_too() {
     let mut description = odd();
@@ -195,11 +234,15 @@ fn poses_out_of_the_domain_spoil_no_others() {
     let mut poses = poses::<5>(200);
     poses[70][2] = 1e9;
     poses[150][0] = f64::NAN;
-    let mut traces = vec![0.0; 200];
-    translational_trace(&Rv130hsc, &poses, &mut traces);
-    for (k, (q, trace)) in poses.iter().zip(&traces).enumerate() {
-        let single = Rv130hsc.compliance(q).fixed_view::<3, 3>(0, 0).trace();
-        assert!(if k == 150 { trace.is_nan() } else { (trace - single).abs() < 1e-13 * single }, "pose {k}");
+    let columns = columns(&poses);
+    let (mut by_pose, mut by_joint) = (vec![0.0; 200], vec![0.0; 200]);
+    translational_trace(&Rv130hsc, &poses, &mut by_pose);
+    translational_trace(&Rv130hsc, ByJoint::new(columns.each_ref().map(|joint| &joint[..])), &mut by_joint);
+    for traces in [by_pose, by_joint] {
+        for (k, (q, trace)) in poses.iter().zip(&traces).enumerate() {
+            let single = Rv130hsc.compliance(q).fixed_view::<3, 3>(0, 0).trace();
+            assert!(if k == 150 { trace.is_nan() } else { (trace - single).abs() < 1e-13 * single }, "pose {k}");
+        }
     }
 }
 
