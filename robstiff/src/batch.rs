@@ -35,6 +35,7 @@
 mod block;
 mod dispatch;
 mod grid;
+mod instructions;
 mod known;
 mod needs;
 #[cfg(feature = "rayon")]
@@ -61,7 +62,7 @@ use sink::{Blocks, ByNumber, EachPose};
 
 /// The floating point numbers that batches are made of: `f32` and `f64`.
 #[expect(private_bounds, reason = "nobody else shall implement it")]
-pub trait Float: Real + trig::Float + dispatch::ByHand + PartialOrd + Send + Sync {}
+pub trait Float: Real + trig::Float + instructions::ByHand + PartialOrd + Send + Sync {}
 
 impl Float for f32 {}
 impl Float for f64 {}

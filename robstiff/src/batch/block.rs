@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 
 use super::Float;
-use super::dispatch::Instructions;
+use super::instructions::Instructions;
 use super::known::Known;
 use super::needs::{Needs, Traced};
 use super::quantities::Quantity;

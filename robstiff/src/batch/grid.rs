@@ -6,7 +6,7 @@ use nalgebra::SVector;
 
 use super::Float;
 use super::block::{BLOCK, Joints};
-use super::dispatch::Instructions;
+use super::instructions::Instructions;
 use super::needs::Needs;
 use super::source::{Filled, Source};
 use crate::trig;

@@ -5,7 +5,7 @@ use core::ops::Range;
 
 use super::Float;
 use super::block::BLOCK;
-use super::dispatch::Instructions;
+use super::instructions::Instructions;
 use super::quantities::Results;
 
 /// How a sink takes numbers that are still in registers. Gain: `benches/README.md`.
