@@ -70,7 +70,9 @@ pub fn read(
         }
     }
     let [poses, visits] = poses.names();
-    complete.then_some(Displacements { wrench_frame, wrench_at, measured_frame, measured_at, poses, visits, rows })
+    let mut data = Displacements { wrench_frame, wrench_at, measured_frame, measured_at, poses, visits, rows };
+    data.count_from_the_beginning();
+    complete.then_some(data)
 }
 
 /// Warns of loads and displacements that no robot comes to.

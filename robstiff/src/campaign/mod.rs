@@ -6,6 +6,7 @@
 
 mod beyond;
 mod clamped;
+mod clock;
 mod displacements;
 mod joints;
 #[cfg(test)]
@@ -22,6 +23,7 @@ use std::path::PathBuf;
 use std::string::String;
 use std::vec::Vec;
 
+pub(crate) use clock::apart;
 pub use joints::{Column, JointTable};
 use robstiff_robots::Description;
 pub use robstiff_robots::ReadError;
@@ -137,7 +139,7 @@ pub struct Observation {
     pub pose: usize,
     /// Index into [`Displacements::visits`].
     pub visit: usize,
-    /// Time (s).
+    /// Time (s). Where a file tells Unix time or that of the day, since the campaign began.
     pub time: Option<f64>,
     /// Temperature (degrees Celsius).
     pub temperature: Option<f64>,

@@ -175,6 +175,30 @@ fn angles_under_load_are_read() {
 }
 
 /// Empty lines are skipped, and counted.
+/// Drifts begin with the campaign, not with the epoch: two visits, after a round of two
+/// unloaded readings or none.
+#[test]
+fn times_of_clocks_that_were_not_started_for_the_campaign_count_from_its_beginning() {
+    let times = |times: [f64; 4]| {
+        let row = |(k, time): (usize, &f64)| {
+            let (pose, visit) = if k < 2 { ("a", "v") } else { ("b", "w") };
+            format!("{pose},{visit},{},0,1,2,3,4,5,0.006,{time}\n", k / 2)
+        };
+        let rows: String = times.iter().enumerate().map(row).collect();
+        let folder = Folder::new(&format!("clock-{}", times[0]), CAMPAIGN, &format!("{HEADER},time [s]\n{rows}"));
+        let Data::Displacement(data) = folder.read().unwrap().data else { panic!("kind displacement") };
+        let times: Vec<f64> = data.rows.iter().map(|row| row.time.unwrap()).collect();
+        times
+    };
+    for begun_with_the_campaign in [[10.0, 20.0, 40.0, 50.0], [30.0, 40.0, 60.0, 70.0]] {
+        assert_eq!(times(begun_with_the_campaign), begun_with_the_campaign);
+    }
+    let counted = [30.0, 40.0, 60.0, 70.0];
+    for started in [8.0 * 3600.0, 1_764_000_000.0] {
+        assert_eq!(times(counted.map(|time| time + started)), counted, "a clock started {started} s before");
+    }
+}
+
 #[test]
 fn empty_lines_count() {
     let row = "a,v,0,0,1,2,3,4,5,6";

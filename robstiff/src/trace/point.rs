@@ -215,7 +215,7 @@ impl<'c> Point<'c> {
     /// of itself in the time `t` since it was made. The load of a row is put on
     /// when the row before it was read.
     pub fn crept(&self, elastic: &DVector<f64>, onset: f64) -> DVector<f64> {
-        let (clock, pace) = clock(self.data);
+        let (clock, pace) = self.data.clock();
         let axes = self.samples.axes;
         let places = |row: usize| (row * axes..(row + 1) * axes).chain(self.samples.encoders_of(row));
         let mut grown = DVector::zeros(elastic.len());
@@ -258,18 +258,6 @@ impl<'c> Point<'c> {
             setup
         })
     }
-}
-
-/// The time of each row (s), or their number where the file tells no time; and
-/// the median step from one row of a visit to the next.
-pub fn clock(data: &Displacements) -> (Vec<f64>, f64) {
-    let timed: Option<Vec<f64>> = data.rows.iter().map(|row| row.time).collect();
-    let clock = timed.unwrap_or_else(|| (0..data.rows.len()).map(|row| row as f64).collect());
-    let pairs = (1..clock.len()).filter(|&row| data.rows[row].visit == data.rows[row - 1].visit);
-    let mut steps: Vec<f64> = pairs.map(|row| clock[row] - clock[row - 1]).collect();
-    steps.sort_by(f64::total_cmp);
-    let pace = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
-    (clock, pace)
 }
 
 /// The first row of each pose.

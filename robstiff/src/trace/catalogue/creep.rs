@@ -6,7 +6,6 @@ use std::vec::Vec;
 
 use super::{Form, Kind, Number, Offers, Place, Scene};
 use crate::trace::clamped::{Axes, AxisNumber, OnAxes};
-use crate::trace::point::clock;
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -30,7 +29,7 @@ const LIKELY: f64 = 1.2;
 const MOST: f64 = 0.4;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
-    let (_, pace) = clock(scene.data);
+    let (_, pace) = scene.data.clock();
     if pace <= 0.0 {
         // One load a visit grows alike everywhere, as all compliances would.
         return offers.invisible(Place::Rig);

@@ -14,9 +14,8 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::{Form, Kind, Number, Offers, Place, SHIFT, Scene};
-use crate::campaign::Displacements;
+use crate::campaign::{Displacements, apart};
 use crate::trace::clamped::{Axes, AxisNumber, OnAxes, axes_column};
-use crate::trace::point::clock;
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -48,7 +47,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let squared = add(three(SQUARED, "m", &power(2)));
     let cubed = add(three(CUBED, "m", &power(3)));
     let mut forms: Vec<Form> = Vec::new();
-    let (clock_of, _) = clock(scene.data);
+    let (clock_of, _) = scene.data.clock();
     for course in courses(scene.data) {
         let since = |before: &Rc<Vec<f64>>| {
             let (at, before, law, unit) = (Rc::clone(&course.at), Rc::clone(before), course.law, course.unit);
@@ -132,7 +131,7 @@ struct Course {
 }
 
 fn courses(data: &Displacements) -> Vec<Course> {
-    let (clock, pace) = clock(data);
+    let (clock, pace) = data.clock();
     let timed = data.rows.iter().all(|row| row.time.is_some());
     let first = |values: &[f64], step: &dyn Fn(usize) -> f64| -> Rc<Vec<f64>> {
         let mut first = std::vec![None; data.visits.len()];
@@ -196,8 +195,7 @@ fn round(data: &Displacements, clock: &[f64], pace: f64) -> Option<Vec<f64>> {
             count
         });
     }
-    // Where every row is a visit, no two rows of one tell how far apart.
-    let pace = if pace > 0.0 { pace } else { (clock.last()? - clock[0]) / (clock.len().max(2) - 1) as f64 };
+    let pace = apart(clock, pace);
     let begin = clock[0] - pace * (count + 1) as f64;
     // Rounding aside, not before the clock was started.
     let started = begin > -1e-6 * clock.last()?.abs();
