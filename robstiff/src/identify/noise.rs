@@ -41,12 +41,17 @@ impl PureError {
 const FEWEST_REPETITIONS: usize = 10;
 
 /// What rows of one pose under one load differ by, on the poses for which
-/// `of_pose` holds. Each pose gets a free displacement per load, fitted by
+/// `of_pose` holds, without the rows for which `without` holds. Each pose gets a free displacement per load, fitted by
 /// generalised least squares: any model of the robot in which the load alone
 /// decides is inside that, so what it leaves is noise (or something that is not a
 /// function of the load, such as hysteresis and drift).
-pub fn repetitions(samples: &Samples, covariance: &Covariance, of_pose: impl Fn(usize) -> bool) -> PureError {
-    covariance.pure_error(samples, Level::Repeated, of_pose)
+pub fn repetitions(
+    samples: &Samples,
+    covariance: &Covariance,
+    of_pose: impl Fn(usize) -> bool,
+    without: impl Fn(usize) -> bool,
+) -> PureError {
+    covariance.pure_error(samples, Level::Repeated, of_pose, without)
 }
 
 #[cfg(test)]

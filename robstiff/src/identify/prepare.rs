@@ -11,7 +11,6 @@ use super::baseline::{Declared, Visibility, declared, visibility, with_values};
 use super::covariance::contrasts::Level;
 use super::covariance::{Basis, Covariance};
 use super::holdout::training;
-use super::noise::{PureError, repetitions};
 use super::normal::Sign;
 use super::problem::{Problem, Weights, raw};
 use super::samples::{Column, Samples};
@@ -37,8 +36,8 @@ pub struct Prepared<'c> {
     pub visibility: Vec<Visibility>,
     /// What they are: identified where seen, declared elsewhere.
     pub values: Vec<f64>,
-    /// What repeated displacement readings differ by.
-    pub repeated: PureError,
+    /// The rows less what is not linear in the load: the second order and declared laws.
+    pub straight: Rc<Samples>,
     /// The declared noise of one displacement reading (m).
     pub declared_noise: Option<f64>,
     /// How noisy the readings are, and how they hang together.
@@ -87,7 +86,6 @@ impl<'c> Prepared<'c> {
         let noise = campaign.noise;
         let straight = straightened(&samples, known);
         let covariance = Covariance::estimate(&straight, data.measured_frame, noise, |pose| training[pose]);
-        let repeated = repetitions(&straight, &covariance, |pose| training[pose]);
         // Readings that no one knows the noise of have no weight.
         let samples = if covariance.encoders.is_none() { samples.without_encoders() } else { samples };
         let weighed = covariance.reading().is_some() || (noise.displacement.is_some() && noise.rotation.is_some());
@@ -98,7 +96,7 @@ impl<'c> Prepared<'c> {
             values: Vec::new(),
             visibility: Vec::new(),
             own,
-            repeated,
+            straight: Rc::new(straight),
             declared_noise: noise.displacement,
             covariance,
             left_out: std::vec![false; samples.rows.len()],
@@ -197,9 +195,12 @@ impl<'c> Prepared<'c> {
             let problem = self.problem();
             let fit = fit(self, &problem)?;
             let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
+            // Of the rows that are fitted to; encoders, behind all rows, are neither.
+            let rows = problem.axes * self.samples.rows.len();
+            let fitted = || problem.blocks.iter().flat_map(|block| &block.stacked).filter(|&&i| i < rows);
             let sum = |rotations: bool| -> f64 {
-                let of_kind = |i: &usize| (i % problem.axes >= 3) == rotations;
-                (0..problem.axes * self.samples.rows.len()).filter(of_kind).map(|i| residuals[i] * residuals[i]).sum()
+                let of_kind = |i: &&usize| (**i % problem.axes >= 3) == rotations;
+                fitted().filter(of_kind).map(|&i| residuals[i] * residuals[i]).sum()
             };
             let (displacement, rotation) = (sum(false), sum(true));
             if displacement > 0.0 && rotation > 0.0 {

@@ -265,7 +265,35 @@ fn repetitions_give_the_noise() {
     data.visits = (0..60).map(|i| format!("{i}")).collect();
     let samples = Samples::of_description(&five_axis(), data);
     let covariance = Covariance::estimate(&samples, Frame::Base, Noise::default(), |_| true);
-    let found = repetitions(&samples, &covariance, |_| true);
-    assert_eq!(found.freedom, 90);
+    let without = |left_out: &[usize]| {
+        let left_out = left_out.to_vec();
+        repetitions(&samples, &covariance, |_| true, move |row| left_out.contains(&row))
+    };
+    let found = without(&[]);
+    assert_eq!((found.freedom, without(&[3, 34, 40]).freedom), (90, 81));
     assert!((found.variance().expect("enough repetitions").sqrt() - 1e-5).abs() < 1e-12);
+}
+
+/// Neither in the numbers nor in how displacements and rotations are weighed against each other.
+#[test]
+fn poses_held_out_have_no_part_in_the_fit() {
+    let truth = five_axis();
+    let mut campaign = campaign(&truth, stiffer(&truth), Frame::Base, [0.0; 3], true);
+    campaign.holdout = Some(crate::campaign::Holdout { fraction: 0.25, seed: 1 });
+    let fitted_to = super::holdout::training(30, campaign.holdout);
+    let estimates = |off: f64| -> Vec<f64> {
+        let mut campaign = campaign.clone();
+        if let Data::Displacement(data) = &mut campaign.data {
+            for row in &mut data.rows {
+                let noise = |k: usize| (12.9898 * (row.pose * 6 + k) as f64).sin();
+                row.displacement = core::array::from_fn(|k| row.displacement[k] + 5e-6 * noise(k));
+                let share = if fitted_to[row.pose] { 1.0 } else { off };
+                let rotation = row.rotation.expect("rotations are read");
+                row.rotation = Some(core::array::from_fn(|k| share * (rotation[k] + 3e-5 * noise(3 + k))));
+            }
+        }
+        identify(&campaign).expect("all joints are seen").estimates.iter().map(|estimate| estimate.value).collect()
+    };
+    assert!(fitted_to.iter().any(|fitted| !fitted));
+    assert_eq!(estimates(1.0), estimates(20.0));
 }

@@ -340,7 +340,7 @@ impl Outcome {
 }
 
 fn yardstick(prepared: &Prepared<'_>, bench: &Bench<'_>) -> Yardstick {
-    let repeated = bench.noise.repeated;
+    let repeated = bench.repeated();
     match (prepared.declared_noise, repeated.variance()) {
         (Some(noise), _) => Yardstick::Declared(noise * noise),
         (None, Some(_)) => Yardstick::Repeated(repeated),

@@ -45,7 +45,7 @@ pub(super) fn offset(evidence: &Evidence<'_>) -> Verdict {
 
 /// The variance of repeated loads against the declared noise (chi-square).
 pub(super) fn replicates(evidence: &Evidence<'_>) -> Verdict {
-    let pure = evidence.covariance.pure_error(&evidence.samples, Level::Repeated, |_| true);
+    let pure = evidence.covariance.pure_error(&evidence.samples, Level::Repeated, |_| true, |_| false);
     let Some(variance) = pure.variance() else {
         return Err(String::from("the same load at the same pose again, a dozen times in all"));
     };

@@ -219,10 +219,17 @@ impl Covariance {
     }
 
     /// What displacements leave where so much is free at each pose for which
-    /// `of_pose` holds, whitened like [`whitener`](Self::whitener) does. A model of the
-    /// robot that is free of no more leaves at least as much.
-    pub fn pure_error(&self, samples: &Samples, level: Level, of_pose: impl Fn(usize) -> bool) -> PureError {
-        let chunks = contrasts(samples, &self.measured(samples), level, of_pose, |_| false);
+    /// `of_pose` holds, without the rows for which `without` holds, whitened like
+    /// [`whitener`](Self::whitener) does. A model of the robot that is free of no more
+    /// leaves at least as much of the same rows.
+    pub fn pure_error(
+        &self,
+        samples: &Samples,
+        level: Level,
+        of_pose: impl Fn(usize) -> bool,
+        without: impl Fn(usize) -> bool,
+    ) -> PureError {
+        let chunks = contrasts(samples, &self.measured(samples), level, of_pose, without);
         let reference = self.reference(0..3);
         let of_chunk = |chunk: &Chunk| -> (f64, usize) {
             let chunk = core::slice::from_ref(chunk);

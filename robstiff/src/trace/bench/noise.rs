@@ -22,8 +22,8 @@ use crate::trace::model::Named;
 pub struct Known {
     /// The covariance of the readings.
     pub covariance: Covariance,
-    /// What repeated readings say.
-    pub repeated: PureError,
+    /// The rows that say so: without what is known to be no noise.
+    straight: Rc<Samples>,
 }
 
 /// The noise has changed where the standard deviation of an axis, or of a
@@ -33,7 +33,7 @@ const CHANGED: f64 = 0.02;
 impl Known {
     /// What is known before anything is named.
     pub fn of(prepared: &Prepared<'_>) -> Self {
-        Self { covariance: prepared.covariance.clone(), repeated: prepared.repeated }
+        Self { covariance: prepared.covariance.clone(), straight: Rc::clone(&prepared.straight) }
     }
 
     fn differs(&self, other: &Self) -> bool {
@@ -66,6 +66,12 @@ impl Bench<'_> {
         Ok(true)
     }
 
+    /// What repeated readings differ by, of the rows that are fitted to.
+    pub fn repeated(&self) -> PureError {
+        let Known { covariance, straight } = &*self.noise;
+        repetitions(straight, covariance, |pose| self.prepared.training[pose], |row| self.left_out[row])
+    }
+
     fn noise_without(&self, named: &[Named]) -> Result<Known, String> {
         let prepared = self.prepared;
         let setting = self.at(named)?;
@@ -89,7 +95,6 @@ impl Bench<'_> {
         let frame = prepared.data.measured_frame;
         let mut covariance = Covariance::estimate(&samples, frame, self.campaign.noise, training);
         covariance.encoders = covariance.encoders.or_else(|| self.noise.covariance.encoders.clone());
-        let repeated = repetitions(&samples, &covariance, training);
-        Ok(Known { covariance, repeated })
+        Ok(Known { covariance, straight: Rc::new(samples) })
     }
 }

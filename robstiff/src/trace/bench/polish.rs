@@ -185,7 +185,9 @@ impl<'c> Bench<'c> {
     fn unlikely(&self, named: &[Named], one: Named) -> impl Fn(f64) -> f64 + use<> {
         let variance = self.state(named).map_or(0.0, |state| {
             let samples = &self.prepared.samples;
-            let readings = self.left_out.iter().filter(|out| !**out).count() * samples.length() / samples.rows.len();
+            let rows = self.left_out.iter().zip(&samples.rows);
+            let fitted = rows.filter(|(out, row)| !**out && self.prepared.training[row.pose]).count();
+            let readings = fitted * samples.length() / samples.rows.len();
             state.fit.rss / readings as f64
         });
         let likely = self.variant(one).likely;
