@@ -18,6 +18,7 @@ use robstiff_robots::effect::physics::PLAYS;
 use self::regression::torques;
 use super::baseline::{Visibility, declared, with_values};
 use super::covariance::outliers::FEW;
+use super::readable::{UNREADABLE, is_readable};
 use super::uncertainty::{WITHIN, student};
 use super::whitening::mean_share;
 use super::{Error, Estimate, Identification, element_name, unit_of};
@@ -31,7 +32,8 @@ use crate::elements::{plays, turn};
 /// their proportion.
 ///
 /// # Errors
-/// An axis whose deflection goes against its torque; rows that load no axis.
+/// An axis whose deflection goes against its torque; rows that load no axis; declared
+/// effects that do not go with the compliances found.
 pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identification, Error> {
     let less = without_laws(&campaign.robot, rows);
     let most = (FEW * rows.len() as f64).floor() as usize;
@@ -39,13 +41,14 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
     let wild = wild::wild_rows(&less, &torques(&less), false, most);
     let mut left_out = wild.map_or_else(Vec::new, |(rows, _)| rows);
     left_out.sort_unstable();
-    slopes(campaign, rows, &left_out)
+    let found = slopes(campaign, rows, &left_out)?;
+    if is_readable(&found.description) { Ok(found) } else { Err(Error(UNREADABLE.into())) }
 }
 
 /// The same of all rows but those `left_out`, by index.
 ///
 /// # Errors
-/// As [`identify`].
+/// An axis whose deflection goes against its torque; rows that load no axis.
 pub fn slopes(campaign: &Campaign, rows: &[ClampedRow], left_out: &[usize]) -> Result<Identification, Error> {
     let own = declared(&campaign.robot);
     let less = without_laws(&campaign.robot, rows);

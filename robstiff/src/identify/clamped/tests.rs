@@ -119,6 +119,20 @@ fn curves_and_noise_are_left_in() {
     assert!(identified(measured(8, lost)).left_out.is_empty());
 }
 
+/// What is declared must go with what is found: no file is written that cannot be read back.
+#[test]
+fn a_coupling_beyond_the_compliances_found_is_refused() {
+    let mut robot = five_axis();
+    robot.effects = [Effect::JointCoupling { joints: [2, 3], value: 2e-7 }].into();
+    assert!(is_readable(&robot));
+    let rows = measured(8, |axis, torque| if axis == 2 { -2e-7 * torque } else { 0.0 });
+    let campaign = campaign(robot, Data::Clamped(rows.clone()));
+    let Error(why) = identify(&campaign, &rows).expect_err("the root of 1e-7 times 3e-7 is less than 2e-7");
+    assert_eq!(why, UNREADABLE);
+    let Error(why) = crate::trace::trace(&campaign, &Default::default(), &|_| {}).expect_err("it, too");
+    assert_eq!(why, UNREADABLE);
+}
+
 /// Twelve rows of two axes, two of a third that disagree.
 #[test]
 fn of_two_rows_neither_is_left_out() {

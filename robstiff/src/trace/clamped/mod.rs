@@ -21,7 +21,6 @@ mod spread;
 #[cfg(test)]
 mod tests;
 
-use std::string::String;
 
 pub use self::axes::{Axes, AxisNumber, OnAxes, axes_column};
 use super::{Options, Progress, Trace};
@@ -33,7 +32,8 @@ use crate::identify::clamped::slopes;
 /// poses the axes.
 ///
 /// # Errors
-/// A campaign that loads no axis, or an axis that deflects against its torque.
+/// A campaign that loads no axis, or an axis that deflects against its torque; declared
+/// effects that do not go with the compliances found.
 pub fn trace(
     campaign: &Campaign,
     rows: &[ClampedRow],
@@ -45,5 +45,5 @@ pub fn trace(
     let identified = slopes(campaign, rows, &[])?;
     let axes = Axes::new(&campaign.robot, rows, &identified);
     let found = search::search(axes, options, progress);
-    found.map(|found| report::report(campaign, &identified, &found, options)).map_err(|why: String| Error(why))
+    found.and_then(|found| report::report(campaign, &identified, &found)).map_err(Error)
 }

@@ -13,15 +13,19 @@ use super::spread::spread;
 use crate::campaign::{Campaign, ClampedRow};
 use crate::identify::baseline::{declared, with_values};
 use crate::identify::normal::Fit;
+use crate::identify::readable::{UNREADABLE, is_readable};
 use crate::identify::{Estimate, Identification, NoiseSource};
 use crate::trace::catalogue::{KINDS, OUTLIERS};
 use crate::trace::found::{EffectParameter, Found, Place};
 use crate::trace::model::Fitted;
 use crate::trace::selection::WITHIN_REACH;
-use crate::trace::{Misfit, NamedEffect, Options, PoseError, Rival, RowResidual, Trace, Verdict, verdict};
+use crate::trace::{Misfit, NamedEffect, PoseError, Rival, RowResidual, Trace, Verdict, verdict};
 
 /// A tracing in full.
-pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched, _: &Options) -> Trace {
+///
+/// # Errors
+/// Declared effects that do not go with the compliances found.
+pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched) -> Result<Trace, String> {
     let (bench, model) = (&found.bench, &found.selection.model);
     let wild = &found.wild.0;
     let (verdict, why) = match &found.too_little {
@@ -54,6 +58,9 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
     let mut description = campaign.robot.clone();
     if tells {
         description = with_values(&campaign.robot, &values);
+        if !is_readable(&description) {
+            return Err(UNREADABLE.to_string());
+        }
         let written = effects.iter().filter(|named| named.effect.write_into(&mut description));
         let names: Vec<String> = written.map(|named| named.effect.to_string()).collect();
         let with = if names.is_empty() { String::new() } else { format!(", with {}", names.join(", ")) };
@@ -89,7 +96,7 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         })
         .collect();
     rivals.sort_by(|a, b| a.bic_difference.total_cmp(&b.bic_difference));
-    Trace {
+    Ok(Trace {
         encoders: None,
         robot: campaign.robot.name.clone(),
         rows: whole.axes.rows.len(),
@@ -117,7 +124,7 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         components: 1,
         differences: true,
         pose_errors: fitted_axes.iter().map(error).collect(),
-    }
+    })
 }
 
 fn rms(residuals: &DVector<f64>) -> f64 {

@@ -222,9 +222,13 @@ fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit {
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     let Some(&(statistic, p_value, _)) = found.first() else { return none };
     let structure = p_value <= options.alpha;
-    let mut depends_on: Vec<String> =
-        found.iter().filter(|(_, p, _)| *p <= options.alpha).map(|(.., name)| name.clone()).collect();
-    depends_on.dedup();
+    // Several laws of an axis have one name.
+    let mut depends_on: Vec<String> = Vec::new();
+    for (_, p, name) in &found {
+        if *p <= options.alpha && !depends_on.contains(name) {
+            depends_on.push(name.clone());
+        }
+    }
     let freedom = problem.freedom(&model.fit);
     LackOfFit {
         tests: vec![StructureTest { name: "what is left depends on torque or order".to_string(), statistic, p_value }],
