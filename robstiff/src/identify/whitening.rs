@@ -19,6 +19,12 @@ pub fn mean_share(rows: usize, shared: f64) -> f64 {
     1.0 - (1.0 / (1.0 + shared * rows as f64)).sqrt()
 }
 
+/// The noise of a reading over that which a row has to itself: the row is the difference of
+/// a loaded and an unloaded reading, of which `shared` is `lambda`.
+pub fn reading_of(shared: f64) -> f64 {
+    (0.5 * (1.0 + shared)).sqrt()
+}
+
 /// Whitens stacked rows in place. Row `i` of the campaign holds the rows
 /// `i * axes .. (i + 1) * axes` of every column, and belongs to
 /// `visits[i]`; each axis is a reading of its own. `shared` is `lambda`.

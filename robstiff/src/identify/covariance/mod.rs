@@ -48,7 +48,7 @@ use self::reml::{count, sums};
 use super::noise::PureError;
 use super::normal::Fit;
 use super::problem::Problem;
-use super::samples::Samples;
+use super::samples::{Sample, Samples};
 use super::whitening;
 use crate::campaign::{Frame, Noise};
 
@@ -167,7 +167,6 @@ impl Covariance {
     pub fn assumed(samples: &Samples, frame: Frame, declared: Noise) -> Self {
         let displacement = declared.displacement.unwrap_or(1.0);
         let rotation = declared.rotation.filter(|_| declared.displacement.is_some()).unwrap_or(displacement);
-        let tool = |row: &super::samples::Sample| row.tcp.fixed_view::<3, 3>(0, 0).transpose();
         Self {
             own: (0..samples.axes).map(|axis| if axis < 3 { displacement } else { rotation }).collect(),
             shared: 1.0,
@@ -180,7 +179,7 @@ impl Covariance {
             tails: None,
             encoders: None,
             visits: samples.visits(),
-            turns: (frame == Frame::Tool).then(|| samples.rows.iter().map(tool).collect()),
+            turns: (frame == Frame::Tool).then(|| samples.rows.iter().map(to_tool).collect()),
         }
     }
 
@@ -263,16 +262,41 @@ impl Covariance {
     /// shares its unloaded reading with nothing that is used.
     pub fn whitener(&self, left_out: &[bool]) -> Whitener {
         let visits = alone(&self.visits, left_out);
-        let reference = self.reference(0..3);
-        let over = |own: &[f64]| own.iter().map(|own| reference / own).collect();
-        let of_encoders = |noise: &EncoderNoise| (noise.by_group(left_out), over(&noise.own));
+        let of_encoders = |noise: &EncoderNoise| (noise.by_group(left_out), self.scale(&noise.own));
         Whitener {
             turns: self.turns.clone(),
             by_visit: whitening::ByVisit::new(&visits, self.shared),
-            scale: over(&self.own),
+            scale: self.scale(&self.own),
             rows: visits.len(),
             encoders: self.encoders.as_ref().map(of_encoders),
         }
+    }
+
+    /// The same of other rows, in visits of their own, of what is read at the tool.
+    pub fn whitener_of(&self, rows: &[Sample], visits: &[usize]) -> Whitener {
+        Whitener {
+            turns: self.turns.as_ref().map(|_| rows.iter().map(to_tool).collect()),
+            by_visit: whitening::ByVisit::new(visits, self.shared),
+            scale: self.scale(&self.own),
+            rows: rows.len(),
+            encoders: None,
+        }
+    }
+
+    /// With rotations, of which the noise of a displacement reading is so many times that of
+    /// one (m/rad).
+    #[must_use]
+    pub fn with_rotations(mut self, weight: f64) -> Self {
+        let own = self.reference(0..3) / whitening::reading_of(self.shared) / weight;
+        self.own.truncate(3);
+        self.own.extend([own; 3]);
+        self
+    }
+
+    /// What brings readings that have so much noise to themselves to the unit of displacements.
+    fn scale(&self, own: &[f64]) -> Vec<f64> {
+        let reference = self.reference(0..3);
+        own.iter().map(|own| reference / own).collect()
     }
 
     /// The noise of a displacement over that of a rotation (m/rad) times
@@ -328,7 +352,7 @@ impl Covariance {
     fn reference(&self, axes: core::ops::Range<usize>) -> f64 {
         let count = axes.len() as f64;
         let mean = self.own[axes].iter().map(|own| own * own).sum::<f64>() / count;
-        (0.5 * mean * (1.0 + self.shared)).sqrt()
+        mean.sqrt() * whitening::reading_of(self.shared)
     }
 
     /// Variances of single axes, or of all alike where they do not differ.
@@ -363,4 +387,9 @@ impl Covariance {
         turn(&mut stacked, self.turns.as_deref(), self.axes());
         DMatrix::from_row_slice(samples.rows.len(), samples.axes, stacked.as_slice())
     }
+}
+
+/// From the base frame to that of the tool.
+fn to_tool(row: &Sample) -> Matrix3<f64> {
+    row.tcp.fixed_view::<3, 3>(0, 0).transpose()
 }

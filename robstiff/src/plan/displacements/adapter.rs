@@ -13,10 +13,11 @@ use super::source::{Kept, Source, start};
 use crate::campaign::{Campaign, Displacements, Frame, Observation};
 use crate::elements::{Geometry, Parameter};
 use crate::identify::Error;
+use crate::identify::covariance::Covariance;
 use crate::identify::prepare::Prepared;
 use crate::identify::samples::{Column, Sample, Samples};
 use crate::identify::setup::Setup;
-use crate::identify::whitening::whiten;
+use crate::identify::whitening::{reading_of, whiten};
 use crate::plan::regressors::{ENCODER_NOISE, LEVELS, REACH, ROTATION_NOISE, Regressors, Sensor, Visit, tool_turn};
 use crate::plan::rivals::{Group, Rivals};
 use crate::trace::bench::Bench;
@@ -43,8 +44,8 @@ pub struct Adapter<'c> {
     known: DMatrix<f64>,
     read: usize,
     axes: usize,
-    rotation_weight: f64,
-    shared: f64,
+    /// How noisy what is read at the tool is, and how it hangs together.
+    covariance: Covariance,
     noise: f64,
     rotation_noise: f64,
 }
@@ -93,8 +94,7 @@ impl<'c> Adapter<'c> {
             known: problem.total.gram.clone(),
             read: problem.total.rows,
             axes: setting.problem.axes,
-            rotation_weight: prepared.covariance.rotation_weight(),
-            shared: prepared.covariance.shared,
+            covariance: prepared.covariance.clone(),
             noise: trace.noise,
             rotation_noise: campaign.noise.rotation.unwrap_or(ROTATION_NOISE),
         };
@@ -180,14 +180,13 @@ impl<'c> Adapter<'c> {
     }
 
     /// What is read at the tool.
-    fn at_the_tool(&self, visits: &[Visit], axes: usize, weight: f64, further_out: f64) -> Vec<DMatrix<f64>> {
-        let (_, columns) = self.columns(visits, further_out);
-        let rows = columns.nrows() / 6;
-        let stacked = DMatrix::from_fn(rows * axes, columns.ncols(), |i, k| {
-            let value = columns[(i / axes * 6 + i % axes, k)];
-            if i % axes < 3 { value } else { value * weight }
-        });
-        grams(stacked, axes, self.shared, visits)
+    fn at_the_tool(&self, visits: &[Visit], covariance: &Covariance, further_out: f64) -> Vec<DMatrix<f64>> {
+        let (samples, columns) = self.columns(visits, further_out);
+        let (rows, axes) = (samples.rows.len(), covariance.axes());
+        let of_axis = |i: usize, k: usize| columns[(i / axes * 6 + i % axes, k)];
+        let mut stacked = DMatrix::from_fn(rows * axes, columns.ncols(), of_axis);
+        covariance.whitener_of(&samples.rows, &of_rows(visits)).whiten(&mut stacked);
+        grams(&stacked, axes, visits)
     }
 
     /// What is read elsewhere on the robot, `count` numbers a row.
@@ -207,7 +206,10 @@ impl<'c> Adapter<'c> {
                 stacked.view_mut((i * count, k), (count, 1)).copy_from_slice(&values);
             }
         }
-        grams(stacked, count, self.shared, visits)
+        // In the unit of displacements: a row is the difference of two readings of that noise.
+        whiten(&mut stacked, &of_rows(visits), count, self.covariance.shared);
+        stacked *= reading_of(self.covariance.shared);
+        grams(&stacked, count, visits)
     }
 }
 
@@ -263,11 +265,12 @@ impl Regressors for Adapter<'_> {
         if visits.is_empty() {
             return Vec::new();
         }
-        let tool = || self.at_the_tool(visits, self.axes, self.rotation_weight, 0.0);
+        let tool = || self.at_the_tool(visits, &self.covariance, 0.0);
         let further = match besides {
             None => return tool(),
             Some(Sensor::Rotations) => {
-                return self.at_the_tool(visits, 6, self.noise / self.rotation_noise, 0.0);
+                let covariance = self.covariance.clone().with_rotations(self.noise / self.rotation_noise);
+                return self.at_the_tool(visits, &covariance, 0.0);
             }
             Some(Sensor::Levels) => {
                 let levels = |visit: &Visit| {
@@ -276,9 +279,9 @@ impl Regressors for Adapter<'_> {
                     Visit { q: visit.q.clone(), loads: loads.collect() }
                 };
                 let visits: Vec<Visit> = visits.iter().map(levels).collect();
-                return self.at_the_tool(&visits, self.axes, self.rotation_weight, 0.0);
+                return self.at_the_tool(&visits, &self.covariance, 0.0);
             }
-            Some(Sensor::Lever) => self.at_the_tool(visits, self.axes, self.rotation_weight, REACH),
+            Some(Sensor::Lever) => self.at_the_tool(visits, &self.covariance, REACH),
             // Positions alone are read at a reflector.
             Some(Sensor::Reflector | Sensor::Payloads) => return tool(),
             Some(Sensor::Markers(body)) => self.elsewhere(visits, 9, |geometry, parts| markers(geometry, parts, body)),
@@ -303,11 +306,13 @@ impl Regressors for Adapter<'_> {
     }
 }
 
-/// The information of each visit from its rows' columns, stacked; the readings
-/// of a visit share their unloaded one.
-fn grams(mut stacked: DMatrix<f64>, axes: usize, shared: f64, visits: &[Visit]) -> Vec<DMatrix<f64>> {
-    let of_row = visits.iter().enumerate().flat_map(|(index, visit)| core::iter::repeat_n(index, visit.loads.len()));
-    whiten(&mut stacked, &of_row.collect::<Vec<_>>(), axes, shared);
+/// The visit of each row.
+fn of_rows(visits: &[Visit]) -> Vec<usize> {
+    visits.iter().enumerate().flat_map(|(index, visit)| core::iter::repeat_n(index, visit.loads.len())).collect()
+}
+
+/// The information of each visit from its rows' whitened columns, stacked.
+fn grams(stacked: &DMatrix<f64>, axes: usize, visits: &[Visit]) -> Vec<DMatrix<f64>> {
     let mut first = 0;
     let mut gram = |visit: &Visit| {
         let count = visit.loads.len() * axes;

@@ -3,5 +3,7 @@
 
 mod adapter;
 mod source;
+#[cfg(test)]
+mod tests;
 
 pub use adapter::Adapter;

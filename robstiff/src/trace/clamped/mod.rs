@@ -21,7 +21,6 @@ mod spread;
 #[cfg(test)]
 mod tests;
 
-
 pub use self::axes::{Axes, AxisNumber, OnAxes, axes_column};
 use super::{Options, Progress, Trace};
 use crate::campaign::{Campaign, ClampedRow};
