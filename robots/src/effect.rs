@@ -3,8 +3,8 @@
 //!
 //! An effect is one file: its parameters with their units and physical ranges,
 //! its formula, and what a person is told of it, in the vocabulary of
-//! [`physics`]. The list [`Effect`] is made from, below, is the registry; a file
-//! and a line there are all that a new effect needs. Reading, writing, checking,
+//! [`physics`]. The list [`Effect`] is made from, below, is the registry; a file,
+//! its module and a line there are all that a new effect needs. Reading, writing, checking,
 //! generated code, the generic robot and the command take the rest from it.
 
 pub mod base_compliance;

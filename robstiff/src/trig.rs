@@ -3,8 +3,8 @@
 //! The platform's `sin` takes one angle, and takes most of the time of a
 //! compliance. Here every angle goes the same way, without a branch or a
 //! table, so that the angles of a pose, or of several poses, go into the lanes
-//! of one vector ([`Abreast`]; batches have tables besides, with AVX2 one in memory,
-//! `circle.rs`, and of `f64` with AVX-512 some in registers, `tables.rs`):
+//! of one vector ([`Abreast`]). Batches have tables where these are faster: with AVX2 in
+//! memory (`circle.rs`), of `f64` with AVX-512 in registers (`tables.rs`). The way without:
 //!
 //! 1. `k`, the multiple of pi/2 nearest to the angle, by adding and
 //!    subtracting a number so large that only whole ones fit ([`places::SHIFT`]);

@@ -1,4 +1,4 @@
-//! The same on all cores, in pieces that keep a core busy for some
+//! Results a pose on all cores, in pieces that keep a core busy for some
 //! microseconds. Each function panics as its namesake does.
 //!
 //! ```

@@ -17,7 +17,7 @@ pub struct Placement {
     pub worst: f64,
 }
 
-/// The place for a workpiece of a size (m along x, y and z of the base) where the
+/// The place for a workpiece of a size (m along x, y and z of the map's frame) where the
 /// worst value within it is best, of all places whose corner is a cell of the map
 /// and that are reached everywhere; the first of those that are equal. `values` is
 /// the first column of the measure at all cells.

@@ -221,8 +221,8 @@ pub struct PoseError {
 /// Traces a campaign.
 ///
 /// # Errors
-/// A campaign of another kind, or one that shows none of the robot's
-/// compliances.
+/// A campaign that shows none of the robot's compliances, or whose description could not be
+/// read back with what was found.
 pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) -> Result<Trace, Error> {
     if let Data::Clamped(rows) = &campaign.data {
         return clamped::trace(campaign, rows, options, progress);

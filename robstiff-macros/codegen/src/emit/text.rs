@@ -9,9 +9,10 @@ use super::functions::{Generated, functions};
 use super::robot::{Origin, definition, implementation, imports_of};
 
 /// The source of a module with one robot: a header that names the
-/// description, its table and what the functions cost, then the same items that
-/// the macro generates, with remarks on the way of the calculation and with
-/// plain operators where the macro fuses products and sums.
+/// description, its table and what the functions cost, then the robot with remarks
+/// on the way of the calculation: what the macro generates, but number by number
+/// and with plain operators, without the ways that only compilers read (whole
+/// columns, fused products, entries one by one).
 pub fn source(robot: &Description, origin: &Origin) -> String {
     let functions = functions(robot);
     let (imports, definition) = (imports_of(robot, &origin.runtime), definition(robot, origin, &functions));
