@@ -193,6 +193,27 @@ mod by_hand {
     use crate::batch::block::BLOCK;
     use crate::trig::{circle, tables};
 
+    /// Both passes of a module of `trig/circle`.
+    macro_rules! by_the_circle {
+        ($module:ident) => {
+            #[inline(always)]
+            unsafe fn shift_each_with_avx2(angles: &[Self; BLOCK], shifted: &mut [Self; BLOCK]) -> bool {
+                // SAFETY: the machine has AVX2 and FMA.
+                unsafe { circle::$module::shift_each(angles, shifted) }
+            }
+
+            #[inline(always)]
+            unsafe fn sin_cos_each_with_avx2(
+                angles: &[Self; BLOCK],
+                sines: &mut [Self; BLOCK],
+                cosines: &mut [Self; BLOCK],
+            ) {
+                // SAFETY: the machine has AVX2 and FMA.
+                unsafe { circle::$module::sin_cos_each(angles, sines, cosines) }
+            }
+        };
+    }
+
     impl super::ByHand for f64 {
         #[inline]
         #[target_feature(enable = "avx")]
@@ -213,21 +234,7 @@ mod by_hand {
             }
         }
 
-        #[inline(always)]
-        unsafe fn shift_each_with_avx2(angles: &[Self; BLOCK], shifted: &mut [Self; BLOCK]) -> bool {
-            // SAFETY: the machine has AVX2 and FMA.
-            unsafe { circle::double::shift_each(angles, shifted) }
-        }
-
-        #[inline(always)]
-        unsafe fn sin_cos_each_with_avx2(
-            angles: &[Self; BLOCK],
-            sines: &mut [Self; BLOCK],
-            cosines: &mut [Self; BLOCK],
-        ) {
-            // SAFETY: the machine has AVX2 and FMA.
-            unsafe { circle::double::sin_cos_each(angles, sines, cosines) }
-        }
+        by_the_circle!(double);
 
         #[inline(always)]
         unsafe fn sin_cos_each_with_avx512(
@@ -253,20 +260,6 @@ mod by_hand {
             }
         }
 
-        #[inline(always)]
-        unsafe fn shift_each_with_avx2(angles: &[Self; BLOCK], shifted: &mut [Self; BLOCK]) -> bool {
-            // SAFETY: the machine has AVX2 and FMA.
-            unsafe { circle::single::shift_each(angles, shifted) }
-        }
-
-        #[inline(always)]
-        unsafe fn sin_cos_each_with_avx2(
-            angles: &[Self; BLOCK],
-            sines: &mut [Self; BLOCK],
-            cosines: &mut [Self; BLOCK],
-        ) {
-            // SAFETY: the machine has AVX2 and FMA.
-            unsafe { circle::single::sin_cos_each(angles, sines, cosines) }
-        }
+        by_the_circle!(single);
     }
 }

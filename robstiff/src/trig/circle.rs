@@ -19,3 +19,13 @@
 
 pub(crate) mod double;
 pub(crate) mod single;
+
+/// Sine and cosine so many quarter turns further, less than four.
+const fn turned(sin: f64, cos: f64, quarters: usize) -> [f64; 2] {
+    match quarters {
+        0 => [sin, cos],
+        1 => [cos, -sin],
+        2 => [-sin, -cos],
+        _ => [-cos, sin],
+    }
+}

@@ -6,6 +6,8 @@
 use core::arch::x86_64::*;
 use core::f64::consts::FRAC_1_SQRT_2;
 
+use super::turned;
+
 // All numbers from benches/polynomials/minimax.py.
 
 const STEPS_PER_RADIAN: f64 = 40.743_665_431_525_21;
@@ -52,13 +54,7 @@ static CIRCLE: Circle = {
     let mut places = [[0.0; 2]; PLACES];
     let mut k = 0;
     while k < PLACES {
-        let (sin, cos) = (SINES[k % QUARTER] / 2.0, SINES[QUARTER - k % QUARTER] / 2.0);
-        places[k] = match k / QUARTER {
-            0 => [sin, cos],
-            1 => [cos, -sin],
-            2 => [-sin, -cos],
-            _ => [-cos, sin],
-        };
+        places[k] = turned(SINES[k % QUARTER] / 2.0, SINES[QUARTER - k % QUARTER] / 2.0, k / QUARTER);
         k += 1;
     }
     Circle(places)

@@ -7,6 +7,8 @@
 use core::arch::x86_64::*;
 use core::f64::consts::TAU;
 
+use super::turned;
+
 // All numbers from benches/polynomials/minimax.py.
 
 const STEPS_PER_RADIAN: f32 = 162.974_66;
@@ -30,20 +32,15 @@ static CIRCLE: Circle = {
     let mut places = [[0.0; 2]; PLACES];
     let mut k = 0;
     while k < PLACES {
-        let (sin, cos) = (half_sine(k % QUARTER), half_sine(QUARTER - k % QUARTER));
-        places[k] = match k / QUARTER {
-            0 => [sin, cos],
-            1 => [cos, -sin],
-            2 => [-sin, -cos],
-            _ => [-cos, sin],
-        };
+        let [sin, cos] = turned(half_sine(k % QUARTER), half_sine(QUARTER - k % QUARTER), k / QUARTER);
+        places[k] = [sin as f32, cos as f32];
         k += 1;
     }
     Circle(places)
 };
 
 /// Of a place in the first quarter, by Taylor's series in twice the precision.
-const fn half_sine(place: usize) -> f32 {
+const fn half_sine(place: usize) -> f64 {
     let x = TAU / PLACES as f64 * place as f64;
     let (mut term, mut sum, mut n) = (x, x, 1.0);
     while n < 21.0 {
@@ -51,7 +48,7 @@ const fn half_sine(place: usize) -> f32 {
         sum += term;
         n += 2.0;
     }
-    (sum / 2.0) as f32
+    sum / 2.0
 }
 
 /// The multiples of pi/512 nearest to the angles, each with [`SHIFT`]; false if some angle is out of the domain
