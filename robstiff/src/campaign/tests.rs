@@ -174,7 +174,6 @@ fn angles_under_load_are_read() {
     );
 }
 
-/// Empty lines are skipped, and counted.
 /// Drifts begin with the campaign, not with the epoch: two visits, after a round of two
 /// unloaded readings or none.
 #[test]
@@ -199,6 +198,7 @@ fn times_of_clocks_that_were_not_started_for_the_campaign_count_from_its_beginni
     }
 }
 
+/// Empty lines are skipped, and counted.
 #[test]
 fn empty_lines_count() {
     let row = "a,v,0,0,1,2,3,4,5,6";

@@ -40,11 +40,11 @@ impl PureError {
 /// (`sqrt(2 / 10)` is 45 %), and says too little to judge a model by.
 const FEWEST_REPETITIONS: usize = 10;
 
-/// What rows of one pose under one load differ by, on the poses for which
-/// `of_pose` holds, without the rows for which `without` holds. Each pose gets a free displacement per load, fitted by
-/// generalised least squares: any model of the robot in which the load alone
-/// decides is inside that, so what it leaves is noise (or something that is not a
-/// function of the load, such as hysteresis and drift).
+/// What rows of one pose under one load differ by, on the poses for which `of_pose`
+/// holds, without the rows for which `without` holds. Each pose gets a free displacement
+/// per load, fitted by generalised least squares: any model of the robot in which the
+/// load alone decides is inside that, so what it leaves is noise (or something that is
+/// not a function of the load, such as hysteresis and drift).
 pub fn repetitions(
     samples: &Samples,
     covariance: &Covariance,

@@ -206,12 +206,6 @@ impl Covariance {
         (self.basis != Basis::Assumed).then(|| self.reference(0..3))
     }
 
-    /// What brings rotations to the unit of displacements: the noise of a
-    /// displacement over that of a rotation (m/rad), 1 where none is read.
-    pub fn rotation_weight(&self) -> f64 {
-        if self.axes() > 3 { self.reference(0..3) / self.reference(3..6) } else { 1.0 }
-    }
-
     /// The same of a rotation reading (rad), where there are any.
     pub fn rotation_reading(&self) -> Option<f64> {
         (self.basis != Basis::Assumed && self.axes() > 3).then(|| self.reference(3..6))

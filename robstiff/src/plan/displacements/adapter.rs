@@ -43,7 +43,6 @@ pub struct Adapter<'c> {
     kept: Vec<Kept>,
     known: DMatrix<f64>,
     read: usize,
-    axes: usize,
     /// How noisy what is read at the tool is, and how it hangs together.
     covariance: Covariance,
     noise: f64,
@@ -93,7 +92,6 @@ impl<'c> Adapter<'c> {
             kept: columns.iter().map(|&column| source.kept(column)).collect(),
             known: problem.total.gram.clone(),
             read: problem.total.rows,
-            axes: setting.problem.axes,
             covariance: prepared.covariance.clone(),
             noise: trace.noise,
             rotation_noise: campaign.noise.rotation.unwrap_or(ROTATION_NOISE),
@@ -248,11 +246,11 @@ impl Regressors for Adapter<'_> {
     }
 
     fn readings(&self, visits: &[Visit]) -> usize {
-        self.read + self.axes * visits.iter().map(|visit| visit.loads.len()).sum::<usize>()
+        self.read + self.covariance.axes() * visits.iter().map(|visit| visit.loads.len()).sum::<usize>()
     }
 
     fn sensors(&self) -> Vec<Sensor> {
-        let rotations = (self.axes == 3).then_some(Sensor::Rotations);
+        let rotations = (self.covariance.axes() == 3).then_some(Sensor::Rotations);
         let elsewhere = (0..=self.campaign.robot.joints.len()).map(Sensor::Markers);
         rotations.into_iter().chain([Sensor::Encoders, Sensor::Lever, Sensor::Levels]).chain(elsewhere).collect()
     }
