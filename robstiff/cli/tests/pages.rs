@@ -162,7 +162,7 @@ fn the_readme_shows_what_its_main_command_prints() {
     let readme = fs::read_to_string(docs().join("../../../README.md")).unwrap();
     let blocks = blocks(&readme);
     let shown = blocks.iter().position(|block| block.info == "text printed").unwrap();
-    let cargo = "cargo run -p robstiff-cli --";
+    let cargo = "cargo run --bin robstiff --";
     let main = blocks[..shown].iter().find(|block| block.text.starts_with(cargo)).unwrap();
     let command = Block { info: String::new(), line: main.line, text: main.text.replace(cargo, "robstiff") };
     assert_eq!(bash(&command, "README", &workplace("readme")), blocks[shown].text);
