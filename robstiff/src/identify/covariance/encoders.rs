@@ -13,10 +13,9 @@ use nalgebra::DMatrix;
 
 use super::contrasts::{Chunk, Level, contrasts};
 use super::reml::{BEYOND, count, profile, share, sums};
-use super::{EQUAL_AXES, FEWEST, NESTED, bartlett};
+use super::{EQUAL_AXES, FEWEST, NESTED, bartlett, beyond_noise};
 use crate::identify::samples::Samples;
 use crate::identify::whitening::ByVisit;
-use crate::probability::fisher_tail;
 
 /// An angle known better than this (rad, m) was made by a program.
 const NOISELESS: f64 = 1e-10;
@@ -71,9 +70,10 @@ impl EncoderNoise {
             None => (&by_pose, at(&by_pose, Level::Linear)?, NOTHING),
         };
         let mut chunks = linear;
+        let of = |chunks: &[Chunk]| (sums(chunks, axes, shared), known(chunks, shared));
         for level in [Level::Curved, Level::Repeated] {
             if let Some(freer) = at(grouped, level)
-                && hides_structure(&chunks, &freer, axes, shared).is_some_and(|p| p <= NESTED)
+                && beyond_noise(of(&chunks), of(&freer)).is_some_and(|p| p <= NESTED)
             {
                 chunks = freer;
             }
@@ -115,14 +115,4 @@ impl EncoderNoise {
 fn known(chunks: &[Chunk], shared: f64) -> f64 {
     let all = chunks.iter().flat_map(|chunk| &chunk.shares);
     all.filter(|share| shared < NOTHING || **share < 1e-6).count() as f64
-}
-
-/// As of displacements: the probability of contrasts as much larger than those
-/// with more freed.
-fn hides_structure(few: &[Chunk], freer: &[Chunk], axes: usize, shared: f64) -> Option<f64> {
-    let (all, less) = (known(few, shared), known(freer, shared));
-    let (between, within) = ((all - less) * axes as f64, less * axes as f64);
-    let (all, less) = (sums(few, axes, shared), sums(freer, axes, shared));
-    let ratio: f64 = all.iter().zip(&less).map(|(all, less)| (all - less).max(0.0) / less).sum::<f64>() / axes as f64;
-    fisher_tail(ratio * within / between, [between, within])
 }

@@ -7,7 +7,7 @@ use super::outliers::{self, Outlier};
 use super::reml::{Share, count, profile, share, sums};
 use super::tails::{self, Tails};
 use super::{FEWEST, NOISELESS, WILD};
-use crate::probability::{chi_square_tail, fisher_tail};
+use crate::probability::{chi_square_tail, fisher_tail, told};
 
 /// What contrasts say.
 pub struct Estimated {
@@ -50,15 +50,10 @@ impl Estimated {
     /// The probability of contrasts as much larger than those with more freed,
     /// were they noise alike.
     pub fn hides_structure(&self, freer: &Self) -> Option<f64> {
-        let (all, few) = (count(&self.chunks), count(&freer.chunks));
-        let between = (all.checked_sub(few).filter(|&more| more > 0)? * self.axes) as f64;
-        let within = (few * self.axes) as f64;
         // An uncertain share is no evidence against the fewer.
         let shared = self.share.map_or(self.shared, |share| share.interval[1].min(1.0));
-        let (all, few) = (sums(&self.chunks, self.axes, shared), sums(&freer.chunks, self.axes, shared));
-        let ratio: f64 =
-            all.iter().zip(&few).map(|(all, few)| (all - few).max(0.0) / few).sum::<f64>() / self.axes as f64;
-        fisher_tail(ratio * within / between, [between, within])
+        let of = |chunks: &[Chunk]| (sums(chunks, self.axes, shared), count(chunks) as f64);
+        beyond_noise(of(&self.chunks), of(&freer.chunks))
     }
 
     /// The readings that are wild.
@@ -73,6 +68,20 @@ impl Estimated {
     pub fn tails(&self) -> Option<Tails> {
         tails::tails(&self.chunks, self.axes, self.shared, &self.variances)
     }
+}
+
+/// The probability, were all of it noise, that the sums of squares of each axis are so
+/// much larger than those with more freed, each of so many contrasts an axis: an F test
+/// of each axis, for each has a variance of its own, and all together by Fisher's method
+/// (Statistical Methods for Research Workers, 4th ed., 1932, section 21.1).
+pub fn beyond_noise((all, contrasts): (Vec<f64>, f64), (freer, fewer): (Vec<f64>, f64)) -> Option<f64> {
+    let freedom = [contrasts - fewer, fewer];
+    let of_axis = |(all, freer): (&f64, &f64)| {
+        let ratio = (all - freer).max(0.0) / freedom[0] / (freer / freedom[1]);
+        Some(-2.0 * told(fisher_tail(ratio, freedom)?).ln())
+    };
+    let statistic: f64 = all.iter().zip(&freer).map(of_axis).sum::<Option<f64>>()?;
+    chi_square_tail(statistic, 2.0 * all.len() as f64)
 }
 
 /// Bartlett's test (Proceedings of the Royal Society A 160, 1937) of equal

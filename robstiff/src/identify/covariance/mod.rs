@@ -11,7 +11,7 @@
 //! the load ([`mod@contrasts`]). What that leaves knows nothing of compliances,
 //! frames and lever arms. A gear that is not linear would remain; so a part with
 //! the square of the load, and then a displacement for each distinct load, is
-//! freed where the contrasts ask for it (F test, [`NESTED`]). Then
+//! freed where the contrasts ask for it (F tests, [`NESTED`]). Then
 //!
 //! - `lambda` is held to `0..1`, since an unloaded reading is a reading: more in
 //!   common is structure, and is left for others to find ([`Share::beyond_one`]);
@@ -43,7 +43,7 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector, Matrix3};
 
 use self::contrasts::{Chunk, Level, contrasts};
-use self::estimated::{Estimated, bartlett};
+use self::estimated::{Estimated, bartlett, beyond_noise};
 use self::reml::{count, sums};
 use super::noise::PureError;
 use super::normal::Fit;
