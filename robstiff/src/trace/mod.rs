@@ -58,7 +58,7 @@ use self::isolated::Event;
 use self::lack_of_fit::{LackOfFit, Yardstick};
 use self::model::{Fitted, Setting};
 use self::report::report;
-use self::selection::{Selection, p_values, select};
+use self::selection::{Selection, select, settled};
 use crate::campaign::{Campaign, Data};
 use crate::identify::encoders::EncodersRead;
 use crate::identify::prepare::Prepared;
@@ -291,14 +291,14 @@ fn search(
         }
         // What is missing now may drive the rest beyond what physics allows.
         let loosely = |why: String| bench.at(&named)?.fit_loosely(&named).ok_or(why);
-        selection.model = bench.fit(&named).or_else(loosely)?;
-        selection.p_values = p_values(bench, &named, options);
+        let rest = bench.fit(&named).or_else(loosely)?;
+        let rest = bench.tried(&named, Bench::learn_noise).unwrap_or(rest);
+        (selection.model, selection.p_values) = settled(bench, rest, options);
         left = test(bench, &selection.model)?;
         // What a name had accounted for is there, found by a test or not.
         left.structure = true;
     }
-    let setting = bench.at(&selection.model.named)?;
-    let events = isolated::events(&setting, &selection.model, bench.strict);
+    let events = bench.events.to_vec();
     let may_lag = !left.structure && verdict::may_lag(bench, &selection.model);
     left.structure |= may_lag;
     let (verdict, why) = verdict::judge(&selection, &left, events.len(), taken_back, may_lag);

@@ -195,7 +195,7 @@ impl Setting<'_> {
         let of_effects = named.iter().map(|&one| self.variant(one).parameters).sum::<usize>();
         let parameters = self.base_of(fit) + of_effects + more;
         let rows = self.problem.total.rows as f64;
-        rows * (fit.rss / rows).ln() + parameters as f64 * rows.ln()
+        rows * (fit.rss / rows).max(f64::MIN_POSITIVE).ln() + parameters as f64 * rows.ln()
     }
 
     /// How far each coefficient of a fit may be off by noise, at most.

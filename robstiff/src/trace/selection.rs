@@ -93,7 +93,6 @@ pub fn select(
     options: &Options,
     progress: &Progress<'_>,
 ) -> Result<Selection, String> {
-    let mut p_values = p_values(bench, &model.named, options);
     let mut beam = std::vec![model.clone()];
     let mut steps = Vec::new();
     let mut unnamed = false;
@@ -104,8 +103,8 @@ pub fn select(
             model = better;
         }
         let mut setting = bench.at(&model.named)?;
-        if let Some((better, p)) = sideways(bench, &setting, &model, options) {
-            (model, p_values) = (better, p);
+        if let Some(better) = sideways(bench, &setting, &model, options) {
+            model = better;
             setting = bench.at(&model.named)?;
         }
         let Some(tests) = bench.tests(&model.named, options) else { break };
@@ -122,7 +121,7 @@ pub fn select(
             beam = improve(&setting, extend(&setting, &beam));
             accepted = propose(bench, &setting, &beam, &model, &tests, options);
         }
-        let Some((proposed, p)) = accepted else {
+        let Some(proposed) = accepted else {
             unnamed = true;
             step.outcome = String::from("something is missing, but no effect passes every test");
             steps.push(step);
@@ -131,7 +130,7 @@ pub fn select(
         let names: Vec<String> = proposed.named.iter().map(|one| setting.candidates[one.candidate].name()).collect();
         step.came_to(&names);
         steps.push(step);
-        (model, p_values) = (proposed, p);
+        model = proposed;
         // What a grid's value leaves of an effect must not look like another.
         let (polished, named) = bench.polished(&model.named).simplified(&model.named);
         if let Ok(better) = polished.fit(&named) {
@@ -149,10 +148,34 @@ pub fn select(
             (*bench, model) = (polished, better);
         }
     }
+    let (model, p_values) = settled(bench, model, options);
     Ok(Selection { model, p_values, steps, unnamed })
 }
 
-/// The first of the best models of a beam that passes, with its p-values.
+/// A model as its own rows and noise have it, with the p-value of each effect: the rows
+/// that are wild are judged at it, and an effect that they or an earlier noise had made
+/// significant is no longer in it. An effect stays that the rest cannot be fitted without.
+pub fn settled(bench: &mut Bench<'_>, mut model: Fitted, options: &Options) -> (Fitted, Vec<f64>) {
+    loop {
+        if let Some(better) = bench.tried(&model.named, Bench::look_again) {
+            model = better;
+        }
+        let p_values = p_values(bench, &model.named, options);
+        let Some(worst) = insignificant(&p_values, options) else { return (model, p_values) };
+        let mut rest = model.named.clone();
+        rest.remove(worst);
+        let Ok(smaller) = bench.fit(&rest) else { return (model, p_values) };
+        model = bench.tried(&rest, Bench::learn_noise).unwrap_or(smaller);
+    }
+}
+
+/// The effect that is the least significant, where it is not significant.
+pub fn insignificant(p_values: &[f64], options: &Options) -> Option<usize> {
+    let worst = (0..p_values.len()).max_by(|&a, &b| p_values[a].total_cmp(&p_values[b]));
+    worst.filter(|&k| p_values[k] > options.alpha)
+}
+
+/// The first of the best models of a beam that passes.
 fn propose(
     bench: &Bench<'_>,
     setting: &Setting<'_>,
@@ -160,26 +183,26 @@ fn propose(
     model: &Fitted,
     tests: &Tests,
     options: &Options,
-) -> Option<(Fitted, Vec<f64>)> {
+) -> Option<Fitted> {
     let proposals = nonlinear(bench, setting, beam);
     proposals
         .iter()
         .take_while(|proposed| proposed.bic < proposals[0].bic + WITHIN_REACH)
         .take(PROPOSALS)
-        .find_map(|proposed| Some((proposed.clone(), accept(bench, model, proposed, tests, options)?)))
+        .find(|proposed| passes(bench, model, proposed, tests, options))
+        .cloned()
 }
 
 /// The model of as many effects that is better, one of them replaced or in
 /// another form, where there is one that passes.
-fn sideways(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted, options: &Options) -> Option<(Fitted, Vec<f64>)> {
+fn sideways(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted, options: &Options) -> Option<Fitted> {
     if model.named.is_empty() {
         return None;
     }
     let beam = improve(setting, std::vec![model.clone()]);
     let proposals = nonlinear(bench, setting, &beam);
     let best = proposals.into_iter().find(|proposed| proposed.bic < model.bic - BETTER)?;
-    let p_values = p_values(bench, &best.named, options);
-    p_values.iter().all(|&p| p <= options.alpha).then_some((best, p_values))
+    p_values(bench, &best.named, options).iter().all(|&p| p <= options.alpha).then_some(best)
 }
 
 /// A criterion that is lower by this is worth another look: odds of e to one.
@@ -204,33 +227,24 @@ pub const CURVATURE: f64 = 60.0;
 /// How many of the best proposals are put to the tests in one step.
 const PROPOSALS: usize = 3;
 
-/// The p-values of a proposal's effects if it passes.
-fn accept(
-    bench: &Bench<'_>,
-    smaller: &Fitted,
-    proposed: &Fitted,
-    against_smaller: &Tests,
-    options: &Options,
-) -> Option<Vec<f64>> {
+/// Whether poses left out are predicted better by a proposal than by the smaller model,
+/// and each of its effects is significant.
+fn passes(bench: &Bench<'_>, smaller: &Fitted, proposed: &Fitted, against_smaller: &Tests, options: &Options) -> bool {
     let left_out = |model: &Fitted| Some(bench.at(&model.named).ok()?.left_out_rms(&model.fit));
-    if left_out(proposed)? >= left_out(smaller)? {
-        return None;
-    }
-    let p_values = (0..proposed.named.len()).map(|k| {
+    let predicts_better = matches!((left_out(proposed), left_out(smaller)), (Some(new), Some(old)) if new < old);
+    let p_value = |k: usize| {
         let mut rest = proposed.named.clone();
         let one = rest.remove(k);
-        let p = if rest == smaller.named {
-            against_smaller.p_value(one.candidate)
-        } else {
-            bench.tests(&rest, options)?.p_value(one.candidate)
-        };
-        (p <= options.alpha).then_some(p)
-    });
-    p_values.collect()
+        if rest == smaller.named {
+            return against_smaller.p_value(one.candidate);
+        }
+        bench.tests(&rest, options).map_or(1.0, |tests| tests.p_value(one.candidate))
+    };
+    predicts_better && (0..proposed.named.len()).all(|k| p_value(k) <= options.alpha)
 }
 
 /// The family-wise p-value of each effect, that of the model without it.
-pub fn p_values(bench: &Bench<'_>, named: &[Named], options: &Options) -> Vec<f64> {
+fn p_values(bench: &Bench<'_>, named: &[Named], options: &Options) -> Vec<f64> {
     let one = |k: usize| {
         let mut rest = named.to_vec();
         let one = rest.remove(k);

@@ -20,6 +20,7 @@ pub use self::noise::Known;
 use self::solve::State;
 use super::Options;
 use super::catalogue::{Candidate, LIKELY, Number, Scene};
+use super::isolated::Event;
 use super::model::{Fitted, Named, Setting, Stored};
 use super::point::Point;
 use super::selection::Tests;
@@ -41,7 +42,9 @@ pub struct Bench<'c> {
     signs: Rc<[Sign]>,
     /// Full names of what these data cannot show at all.
     pub invisible: Vec<String>,
-    /// Rows that are left out, for they are wild.
+    /// What is wrong in single visits, when last looked at.
+    pub events: Rc<[Event]>,
+    /// Rows that are left out for it.
     pub left_out: Vec<bool>,
     /// How noisy the readings are, as far as is known.
     pub noise: Rc<Known>,
@@ -96,6 +99,7 @@ impl<'c> Bench<'c> {
             numbers: Rc::new([]),
             signs: prepared.signs().into(),
             invisible: Vec::new(),
+            events: Rc::new([]),
             left_out: vec![false; prepared.samples.rows.len()],
             noise: Rc::new(Known::of(prepared)),
             strict: false,

@@ -276,6 +276,7 @@ impl<'c> Bench<'c> {
             numbers: Rc::clone(&self.numbers),
             signs: Rc::clone(&self.signs),
             invisible: self.invisible.clone(),
+            events: Rc::clone(&self.events),
             left_out: self.left_out.clone(),
             noise: Rc::clone(&self.noise),
             strict: self.strict,

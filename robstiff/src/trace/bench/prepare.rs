@@ -73,6 +73,7 @@ impl Bench<'_> {
             let wild = isolated::events(&setting, &fitted, self.strict);
             let mut left_out = vec![false; self.left_out.len()];
             wild.iter().flat_map(|event| &event.rows).for_each(|&row| left_out[row] = true);
+            self.events = wild.into();
             let moments = self.likely_slips(named);
             let moves = moments.iter().any(|moment| !self.moments[..LIKELY].contains(moment));
             if left_out == self.left_out && !moves {

@@ -176,26 +176,30 @@ impl Bench {
         (0..named.len()).flat_map(without).collect()
     }
 
-    /// The family-wise p-value of each effect, that of the model without it;
-    /// `None` where one of them is above the level.
-    pub fn p_values(&self, named: &[Named], options: &Options) -> Option<Vec<f64>> {
+    /// The family-wise p-value of each effect, that of the model without it.
+    pub fn p_values(&self, named: &[Named], options: &Options) -> Vec<f64> {
         let one = |k: usize| {
             let mut rest = named.to_vec();
             let one = rest.remove(k);
             let test = self.test(&rest)?;
             let (statistic, _) = test.statistics()[one.candidate]?;
-            Some(test.reference(options.draws, options.seed).p_value(statistic)).filter(|&p| p <= options.alpha)
+            Some(test.reference(options.draws, options.seed).p_value(statistic))
         };
-        (0..named.len()).map(one).collect()
+        (0..named.len()).map(|k| one(k).unwrap_or(1.0)).collect()
+    }
+
+    /// Whether every effect of a model is significant beside the others.
+    pub fn is_significant(&self, named: &[Named], options: &Options) -> bool {
+        self.p_values(named, options).iter().all(|&p| p <= options.alpha)
     }
 
     /// The first of some models that passes every test.
-    pub fn accepted(&self, proposals: &[Fitted], smaller: &Fitted, options: &Options) -> Option<(Fitted, Vec<f64>)> {
+    pub fn accepted(&self, proposals: &[Fitted], smaller: &Fitted, options: &Options) -> Option<Fitted> {
         let best = proposals.first()?.bic;
         let near = proposals.iter().take_while(|one| one.bic < best + WITHIN_REACH).take(PROPOSALS);
         let before = self.left_out_rms(&smaller.fit);
         let mut near = near.filter(|one| self.left_out_rms(&one.fit) < before);
-        near.find_map(|one| Some((one.clone(), self.p_values(&one.named, options)?)))
+        near.find(|one| self.is_significant(&one.named, options)).cloned()
     }
 
     /// The same with numbers out of grids where they fit best.

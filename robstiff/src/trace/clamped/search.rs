@@ -19,7 +19,7 @@ use crate::trace::catalogue::{Candidate, KINDS, Variant};
 use crate::trace::found::Place;
 use crate::trace::lack_of_fit::{LackOfFit, StructureTest};
 use crate::trace::model::Fitted;
-use crate::trace::selection::Selection;
+use crate::trace::selection::{Selection, insignificant};
 use crate::trace::step::{Against, Step};
 use crate::trace::verdict::FEWEST_POSES;
 use crate::trace::{Options, Progress};
@@ -62,7 +62,7 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
         return Ok(Found { bench, selection, left, wild: (Vec::new(), 1.0), too_little: Some(why) });
     }
     let mut wild: (Vec<usize>, f64) = (Vec::new(), 0.0);
-    let (mut model, mut p_values, mut steps, mut unnamed) = (base, Vec::new(), Vec::new(), false);
+    let (mut model, mut steps, mut unnamed) = (base, Vec::new(), false);
     let (mut strict, mut kept) = (false, false);
     loop {
         // Wild rows must not vote for an effect; those that were wild while one was
@@ -123,7 +123,7 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
         });
         // What a single row says better needs no effect.
         let off = one_off(&bench, &model).filter(|off| off.p <= options.alpha && wild.0.len() < most);
-        if let Some(off) = off.filter(|off| off.bic < accepted.as_ref().map_or(model.bic, |(better, _)| better.bic)) {
+        if let Some(off) = off.filter(|off| off.bic < accepted.as_ref().map_or(model.bic, |better| better.bic)) {
             let axes = bench.axes.without(&[off.row]);
             if let Some((without, fitted)) = refitted(axes, &bench, &model) {
                 wild.0.push(bench.axes.rows[off.row].line);
@@ -134,7 +134,7 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
                 continue;
             }
         }
-        let Some((mut better, mut p)) = accepted else {
+        let Some(mut better) = accepted else {
             unnamed = true;
             step.outcome = "something is missing, but no effect passes every test".to_string();
             steps.push(step);
@@ -142,24 +142,36 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
         };
         let replaced = bench.replaced(&better.named).into_iter().map(|(_, model)| model);
         if let Some(other) = replaced.min_by(|a, b| a.bic.total_cmp(&b.bic)).filter(|o| o.bic < better.bic - BETTER)
-            && let Some(of_other) = bench.p_values(&other.named, options)
+            && bench.is_significant(&other.named, options)
         {
-            (better, p) = (other, of_other);
+            better = other;
         }
         bench = bench.polished(&better.named);
         let fine = bench.fit(&better.named).unwrap_or(better);
         bench = bench.with_compliances(&fine.fit);
         model = bench.fit(&fine.named).unwrap_or(fine);
-        p_values = p;
         let names: Vec<String> = model.named.iter().map(|one| bench.candidates[one.candidate].name()).collect();
         step.came_to(&names);
         steps.push(step);
     }
-    p_values.resize(model.named.len(), 1.0);
+    let (model, p_values) = significant(&bench, model, options);
     progress("looking for structure in what is left");
     let left = structure(&bench, &model, options);
     let selection = Selection { model, p_values, steps, unnamed };
     Ok(Found { bench, selection, left, wild, too_little: None })
+}
+
+/// The model with the p-value of each effect, without those that rows which are left out
+/// by now, or effects named since, had made significant.
+fn significant(bench: &Bench, mut model: Fitted, options: &Options) -> (Fitted, Vec<f64>) {
+    loop {
+        let p_values = bench.p_values(&model.named, options);
+        let Some(worst) = insignificant(&p_values, options) else { return (model, p_values) };
+        let mut rest = model.named.clone();
+        rest.remove(worst);
+        let Some(smaller) = bench.fit(&rest) else { return (model, p_values) };
+        model = smaller;
+    }
 }
 
 /// The rows that are wild beside a model, with the probability of the likeliest.

@@ -16,7 +16,7 @@ use crate::identify::positions::wild::{Wild, wild_rows};
 use crate::trace::bootstrap::{Reference, price};
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::{Fitted, Named};
-use crate::trace::selection::{CURVATURE, Selection, WITHIN_REACH};
+use crate::trace::selection::{CURVATURE, Selection, WITHIN_REACH, insignificant};
 use crate::trace::step::{Against, Step};
 use crate::trace::verdict::FEWEST_POSES;
 use crate::trace::{Options, Progress};
@@ -342,8 +342,7 @@ fn without_superfluous(bench: &mut Bench<'_>, mut model: Model, reference: &Refe
 fn significant<'c>(bench: &mut Bench<'c>, mut model: Model, options: &Options) -> (Model, Vec<f64>) {
     loop {
         let p_values: Vec<f64> = (0..model.named.len()).map(|k| bench.p_value(&model.named, k, options)).collect();
-        let worst = (0..p_values.len()).max_by(|&a, &b| p_values[a].total_cmp(&p_values[b]));
-        let Some(worst) = worst.filter(|&k| p_values[k] > options.alpha) else { return (model, p_values) };
+        let Some(worst) = insignificant(&p_values, options) else { return (model, p_values) };
         let mut rest = model.named.clone();
         rest.remove(worst);
         let Some(smaller) = bench.solve(&rest, &model.solved.state) else { return (model, p_values) };
