@@ -12,7 +12,7 @@ use super::NamedEffect;
 use super::bench::Bench;
 use super::found::{EffectParameter, Found};
 use super::model::{Fitted, Named, Setting};
-use super::report::in_order;
+use super::report::named::in_order;
 use crate::campaign::Campaign;
 use crate::identify::baseline::with_values;
 use crate::identify::normal::Sign;

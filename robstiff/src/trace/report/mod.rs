@@ -1,0 +1,178 @@
+//! Putting the result together from a model that stands.
+
+pub mod named;
+mod spread;
+
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use nalgebra::{DMatrix, DVector};
+
+use self::named::{effects, isolated};
+use self::spread::spread_of;
+use super::alias::{rivals, same_as_wild};
+use super::bench::Bench;
+use super::catalogue::BASE_SLIP;
+use super::model::{Fitted, Setting};
+use super::written::{described, values, within_description, without_untold};
+use super::{Misfit, Options, Outcome, PoseError, RowResidual, Trace, Verdict};
+use crate::campaign::Campaign;
+use crate::identify::displacement::{declared_residuals, declared_rms};
+use crate::identify::encoders::EncodersRead;
+use crate::identify::prepare::Prepared;
+use crate::identify::problem::{Block, rms};
+use crate::identify::{Estimate, NoiseSource, estimates};
+
+/// A tracing in full: errors before and after, the effects with their
+/// uncertainty, and the description that says it all.
+///
+/// # Errors
+/// Why a model that was fitted before cannot be again.
+pub fn report(
+    campaign: &Campaign,
+    prepared: &Prepared<'_>,
+    bench: &Bench<'_>,
+    outcome: &Outcome,
+    options: &Options,
+) -> Result<Trace, String> {
+    // Before anything was corrected, wild rows and all.
+    let untouched = Bench::bare(campaign, prepared);
+    let all = untouched.at(&[])?;
+    let base = all.fit(&[])?;
+    let found = &outcome.selection.model;
+    // Numbers are told where they fit best, not where a grid has them.
+    let polished = bench.polished(&found.named);
+    let fine = polished.at(&found.named).and_then(|setting| Ok((setting.fit(&found.named)?, setting)));
+    let (model, setting, bench_of_numbers) = match fine {
+        Ok((model, setting)) => (model, setting, &polished),
+        Err(_) => (found.clone(), bench.at(&found.named)?, bench),
+    };
+    let model = within_description(campaign, prepared, &setting, &model);
+    let written = without_untold(campaign, prepared, bench_of_numbers, &setting, &model);
+    let (model, problem) = (&model, &setting.problem);
+    let fitted_rows = || all.problem.blocks.iter().flat_map(|block| block.rows.iter().copied());
+    let unseen = if all.problem.held_out.is_empty() { &all.problem.blocks } else { &all.problem.held_out };
+    let unseen_rows = || unseen.iter().flat_map(|block| block.rows.iter().copied());
+    let misfit = |setting: &Setting<'_>, fitted: &Fitted| Misfit {
+        rms: rms(
+            &setting.residuals(&fitted.fit),
+            setting.problem.axes,
+            setting.problem.blocks.iter().flat_map(|block| block.rows.iter().copied()),
+        ),
+        holdout_rms: setting.holdout_rms(&fitted.fit),
+    };
+    let residual_variance = model.fit.rss / problem.freedom(&model.fit);
+    // Repeated readings differ by more than noise where they depend on time or
+    // order; a model that accounts for it knows better.
+    let (noise, noise_source) = match prepared.noise(residual_variance) {
+        (repeated, NoiseSource::Repetitions) if repeated * repeated > residual_variance => {
+            (residual_variance.sqrt(), NoiseSource::Residuals)
+        }
+        // Learnt again without what the effects do.
+        (before, NoiseSource::Poses) => (bench.noise.covariance.reading().unwrap_or(before), NoiseSource::Poses),
+        known => known,
+    };
+    let estimates_before = numbers(campaign, prepared, &all, &base, &spread_of(&untouched, &all, &base));
+    let spread = spread_of(bench_of_numbers, &setting, model);
+    // What is told of the joints, and the errors, are those of what is written.
+    let (of_written, written) = written.as_ref().map_or((&setting, model), |(setting, model)| (setting, model));
+    let estimates = if written.named == model.named {
+        numbers(campaign, prepared, &setting, model, &spread)
+    } else {
+        numbers(campaign, prepared, of_written, written, &spread_of(bench_of_numbers, of_written, written))
+    };
+    let mut effects = effects(bench, &setting, model, outcome, &spread, options);
+    let holdout_rms = misfit(of_written, written).holdout_rms;
+    let slipped = effects.iter_mut().find(|named| named.effect.kind() == BASE_SLIP.name);
+    let may_be = if outcome.events.is_empty() { Vec::new() } else { same_as_wild(bench, found, &outcome.events) };
+    let isolated = isolated(prepared, outcome, holdout_rms, slipped, &may_be);
+    effects.extend(isolated);
+    // What a named effect may as well be has shown, if it is there.
+    let may_be = |name: &String| effects.iter().any(|named| named.same_as.contains(name));
+    let invisible = bench.invisible.iter().filter(|name| !may_be(name)).cloned().collect();
+    let held_out = problem.held_out.iter().map(|block| prepared.data.poses[block.pose].clone()).collect();
+    let declared =
+        Misfit { rms: declared_rms(prepared, fitted_rows()), holdout_rms: declared_rms(prepared, unseen_rows()) };
+    // Data that can tell nothing change nothing.
+    let (description, after, left_after) = if outcome.verdict == Verdict::Insufficient {
+        (campaign.robot.clone(), declared, declared_residuals(prepared))
+    } else {
+        let values = values(prepared, of_written, written);
+        (described(campaign, &values, &effects)?, misfit(of_written, written), of_written.residuals(&written.fit))
+    };
+    let (residuals, pose_errors) = residuals(prepared, &all, &all.residuals(&base.fit), &left_after);
+    let left = outcome.left.as_ref();
+    Ok(Trace {
+        encoders: EncodersRead::of(prepared.data, &prepared.samples, &bench.noise.covariance),
+        robot: campaign.robot.name.clone(),
+        rows: prepared.samples.rows.len(),
+        poses: prepared.samples.poses,
+        held_out,
+        noise,
+        noise_source,
+        declared,
+        identified: misfit(&all, &base),
+        after,
+        verdict: outcome.verdict,
+        why: outcome.why.clone(),
+        unexplained: left.map_or(0.0, |left| left.fraction),
+        depends_on: left.map_or_else(Vec::new, |left| left.depends_on.clone()),
+        rivals: if outcome.verdict == Verdict::Insufficient { Vec::new() } else { rivals(bench, found) },
+        invisible,
+        next: Vec::new(),
+        description,
+        effects,
+        estimates_before,
+        estimates,
+        steps: outcome.selection.steps.clone(),
+        structure: left.map_or_else(Vec::new, |left| left.tests.clone()),
+        residuals,
+        components: 3,
+        differences: true,
+        pose_errors,
+    })
+}
+
+/// The estimates of the description's own numbers in a model.
+fn numbers(
+    campaign: &Campaign,
+    prepared: &Prepared<'_>,
+    setting: &Setting<'_>,
+    model: &Fitted,
+    spread: &DMatrix<f64>,
+) -> Vec<Estimate> {
+    estimates(
+        &campaign.robot,
+        (&prepared.own, &prepared.visibility),
+        &values(prepared, setting, model),
+        &model.fit.columns,
+        spread,
+    )
+}
+
+fn residuals(
+    prepared: &Prepared<'_>,
+    setting: &Setting<'_>,
+    before: &DVector<f64>,
+    after: &DVector<f64>,
+) -> (Vec<RowResidual>, Vec<PoseError>) {
+    let problem = &setting.problem;
+    let three =
+        |residuals: &DVector<f64>, row: usize| core::array::from_fn(|axis| residuals[row * problem.axes + axis]);
+    let rows = prepared.data.rows.iter().enumerate();
+    let rows = rows.map(|(i, row)| RowResidual {
+        line: row.line,
+        pose: row.pose,
+        before: three(before, i),
+        after: three(after, i),
+    });
+    let pose = |block: &Block, held_out| PoseError {
+        pose: prepared.data.poses[block.pose].to_string(),
+        held_out,
+        before: rms(before, problem.axes, block.rows.iter().copied()),
+        after: rms(after, problem.axes, block.rows.iter().copied()),
+    };
+    let trained = problem.blocks.iter().map(|block| pose(block, false));
+    let poses = trained.chain(problem.held_out.iter().map(|block| pose(block, true)));
+    (rows.collect(), poses.collect())
+}

@@ -1,0 +1,168 @@
+//! The effects of a model, and what is wrong in single visits, as they are told.
+
+use std::string::String;
+use std::vec;
+use std::vec::Vec;
+
+use nalgebra::DMatrix;
+use robstiff_robots::effect::Place as Part;
+
+use super::spread::share_of;
+use crate::identify::prepare::Prepared;
+use crate::trace::alias::same_as;
+use crate::trace::bench::Bench;
+use crate::trace::catalogue::{BASE_SLIP, OUTLIERS};
+use crate::trace::found::{EffectParameter, Found, Place};
+use crate::trace::isolated::Event;
+use crate::trace::model::{Fitted, Named, Setting};
+use crate::trace::{NamedEffect, Options, Outcome};
+
+/// The named effects, the one whose removal costs most first: each with the error on
+/// unseen poses that it and those before it leave.
+pub fn effects(
+    bench: &Bench<'_>,
+    setting: &Setting<'_>,
+    fine: &Fitted,
+    outcome: &Outcome,
+    spread: &DMatrix<f64>,
+    options: &Options,
+) -> Vec<NamedEffect> {
+    let model = &outcome.selection.model;
+    let mut so_far = Vec::new();
+    let named = by_cost(bench, model).into_iter().map(|k| {
+        so_far.push(model.named[k]);
+        so_far.sort_unstable();
+        let unseen = |setting: &Setting<'_>| Some(setting.holdout_rms(&setting.fit(&so_far).ok()?.fit));
+        let holdout_rms = bench.at(&so_far).ok().and_then(|setting| unseen(&setting)).unwrap_or(f64::NAN);
+        let parameters = parameters(setting, fine, spread, k);
+        let candidate = &setting.candidates[model.named[k].candidate];
+        NamedEffect {
+            effect: Found::new(candidate.kind, candidate.place, parameters.clone()),
+            parameters,
+            lines: Vec::new(),
+            p_value: outcome.selection.p_values[k],
+            holdout_rms,
+            same_as: same_as(bench, model, k, outcome.structure(), options),
+            partial: outcome.structure(),
+        }
+    });
+    named.collect()
+}
+
+/// The places of a model's effects, that without which the criterion is worst first.
+fn by_cost(bench: &Bench<'_>, model: &Fitted) -> Vec<usize> {
+    let without = |k: usize| {
+        let mut rest = model.named.clone();
+        rest.remove(k);
+        bench.fit(&rest).map_or(f64::INFINITY, |without| without.bic)
+    };
+    let mut costs: Vec<(f64, usize)> = (0..model.named.len()).map(|k| (without(k), k)).collect();
+    costs.sort_by(|a, b| b.0.total_cmp(&a.0));
+    costs.into_iter().map(|(_, k)| k).collect()
+}
+
+/// The numbers of one of a model's effects, with their standard deviations.
+fn parameters(setting: &Setting<'_>, model: &Fitted, spread: &DMatrix<f64>, k: usize) -> Vec<EffectParameter> {
+    let variant = setting.variant(model.named[k]);
+    let fitted = variant.columns.iter().enumerate().map(|(n, column)| {
+        let number = &setting.numbers[column - setting.own.len()];
+        let at = model.fit.columns.iter().position(|c| c == column).expect("its own model has it");
+        let (value, std) = match number.share_of {
+            Some(joint) => share_of(setting, model, spread, at, joint),
+            None => (model.fit.coefficients[at], spread[(at, at)].sqrt()),
+        };
+        let name = variant.names.get(n).copied().unwrap_or(number.name);
+        EffectParameter { name, value, std: Some(std), unit: number.unit }
+    });
+    // Those out of grids follow in the covariance, those of the effects before first.
+    let of_grid = |one: &Named| Some(setting.variant(*one)).filter(|variant| variant.refine.is_some());
+    let before = model.named[..k].iter().filter_map(of_grid).map(|variant| variant.shape.len()).sum::<usize>();
+    let first = model.fit.columns.len() + before;
+    let out_of_grid = variant.shape.iter().enumerate().map(|(n, number)| {
+        let known = variant.refine.is_some() && first + n < spread.nrows();
+        let std = known.then(|| number.value * spread[(first + n, first + n)].sqrt());
+        EffectParameter { std, ..number.clone() }
+    });
+    in_order(fitted.collect(), out_of_grid.collect())
+}
+
+/// Numbers with those out of a grid that go with each, the smallest of these
+/// first: fitting may have brought them out of order.
+pub fn in_order(numbers: Vec<EffectParameter>, shapes: Vec<EffectParameter>) -> Vec<EffectParameter> {
+    let mut order: Vec<usize> = (0..shapes.len()).collect();
+    if numbers.len() == shapes.len() {
+        order.sort_by(|&a, &b| shapes[a].value.total_cmp(&shapes[b].value));
+    }
+    let sorted = |all: &[EffectParameter]| -> Vec<EffectParameter> {
+        let one = |(place, &from): (usize, &usize)| EffectParameter { name: all[place].name, ..all[from].clone() };
+        order.iter().enumerate().map(one).collect()
+    };
+    match numbers.len() == shapes.len() {
+        true => sorted(&numbers).into_iter().chain(sorted(&shapes)).collect(),
+        false => numbers.into_iter().chain(shapes).collect(),
+    }
+}
+
+/// The names of what is wrong in single visits, which some effects may as well be. A
+/// robot slips once: several slips are several wild visits, and a slip in the visit that
+/// one was found at the end of, or within, is that one.
+pub fn isolated(
+    prepared: &Prepared<'_>,
+    outcome: &Outcome,
+    holdout_rms: f64,
+    slipped: Option<&mut NamedEffect>,
+    may_be: &[String],
+) -> Vec<NamedEffect> {
+    let line = |row: &usize| prepared.data.rows[*row].line;
+    // First as what is said of single visits.
+    let besides = |first: Option<&str>| {
+        let others = may_be.iter().filter(|name| first != Some(name.as_str())).cloned();
+        first.map(String::from).into_iter().chain(others).collect()
+    };
+    let one = |effect: Found, lines: Vec<usize>, events: &[&Event], other: Option<&str>| NamedEffect {
+        parameters: effect.parameters.clone(),
+        effect,
+        lines,
+        p_value: events.iter().map(|event| event.p_value).fold(0.0, f64::max),
+        holdout_rms,
+        same_as: besides(other),
+        partial: outcome.structure(),
+    };
+    let (slips, wild): (Vec<&Event>, Vec<&Event>) = outcome.events.iter().partition(|event| event.is_slip);
+    let mut found = Vec::new();
+    let mut outliers = wild;
+    let already = slipped.is_some();
+    if let Some(known) = slipped {
+        let moment = known.effect.value("line") as usize;
+        let lines = |slip: &Event| slip.rows.iter().map(line).collect::<Vec<usize>>();
+        for slip in slips {
+            let lines = lines(slip);
+            let (first, last) = (lines.iter().min(), lines.iter().max());
+            match first.zip(last) {
+                Some((&first, &last)) if (first..=last + 1).contains(&moment) => known.lines.extend(lines),
+                _ => outliers.push(slip),
+            }
+        }
+    } else if let [slip] = slips[..] {
+        let number =
+            |(name, value): (&'static str, &f64)| EffectParameter { name, value: *value, std: None, unit: "m" };
+        let mut parameters: Vec<EffectParameter> =
+            ["dx", "dy", "dz"].into_iter().zip(slip.shift.iter()).map(number).collect();
+        let first = slip.rows.iter().map(line).min().unwrap_or_default();
+        parameters.push(EffectParameter { name: "line", value: first as f64, std: None, unit: "1" });
+        let effect = Found::new(&BASE_SLIP, Part::Base.into(), parameters);
+        found.push(one(effect, slip.rows.iter().map(line).collect(), &[slip], Some("outliers@rig")));
+    } else {
+        outliers.extend(slips);
+    }
+    if !outliers.is_empty() {
+        let mut lines: Vec<usize> = outliers.iter().flat_map(|event| event.rows.iter().map(line)).collect();
+        lines.sort_unstable();
+        let rows = EffectParameter { name: "rows", value: lines.len() as f64, std: None, unit: "1" };
+        let effect = Found::new(&OUTLIERS, Place::Rig, vec![rows]);
+        // One visit alone may as well have been where the robot slipped.
+        let slip = (outliers.len() == 1 && !already).then_some("base_slip@base");
+        found.push(one(effect, lines, &outliers, slip));
+    }
+    found
+}
