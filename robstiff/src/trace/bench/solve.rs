@@ -85,80 +85,87 @@ impl<'c> Bench<'c> {
     /// The same with or without numbers of the description that are seen at the
     /// solution only.
     fn solve_with(&self, named: &[Named], more: bool) -> Result<State, String> {
-        let prepared = self.prepared;
         let nonlinear = self.nonlinear(named);
-        let collinear = || String::from("not to be told from the rest of the model");
         let mut theta = vec![0.0; nonlinear.len()];
-        let mut fit: Option<Fit> = None;
+        let mut known: Option<Fit> = None;
         for _ in 0..PASSES {
             let setup = self.setup(&nonlinear, &theta);
             let point = self.point(setup.clone());
-            let base = if more { self.base_at(&point) } else { prepared.seen() };
+            let base = if more { self.base_at(&point) } else { self.prepared.seen() };
             let effects = named.iter().flat_map(|one| &self.candidates[one.candidate].variants[one.variant].columns);
             let columns: Vec<usize> = base.iter().chain(effects).copied().collect();
-            let signs: Vec<Sign> = columns.iter().map(|&column| self.signs[column]).collect();
+            let place = |of: usize| columns.iter().position(|column| *column == of).expect("one of the model's");
             // As declared, and with the numbers fitted that the data can see there.
             let mut readings = match nonlinear.is_empty() {
                 true => Rc::clone(self.readings.get_or_init(|| Rc::new(self.readings(&point, &base)))),
                 false => Rc::new(self.readings(&point, &base)),
             };
+            let is_linear = |column: &usize| nonlinear.iter().all(|(of, _)| of != column);
+            let linear: Vec<usize> = columns.iter().copied().filter(is_linear).collect();
             let mut raw = DMatrix::zeros(readings.len(), columns.len());
-            for (k, &column) in columns.iter().enumerate() {
-                if !nonlinear.iter().any(|(of, _)| *of == column) {
-                    raw.set_column(k, &self.linear(&point, column));
-                }
+            for &column in &linear {
+                raw.set_column(place(column), &self.linear(&point, column));
             }
-            // The tangents need coefficients, first those without them.
-            let known = match &fit {
-                Some(fit) => fit.clone(),
-                None if nonlinear.is_empty() => Fit { columns: Vec::new(), coefficients: DVector::zeros(0), rss: 0.0 },
-                None => {
-                    let linear: Vec<usize> =
-                        columns.iter().copied().filter(|c| !nonlinear.iter().any(|(of, _)| of == c)).collect();
-                    let at = |c: &usize| columns.iter().position(|column| column == c).expect("one of them");
-                    let own: Vec<usize> = linear.iter().map(at).collect();
-                    let problem = self.regression(&point, raw.select_columns(&own), readings.clone());
-                    let all: Vec<usize> = (0..linear.len()).collect();
-                    let signs: Vec<Sign> = linear.iter().map(|&column| self.signs[column]).collect();
-                    let first = problem.total.solve_signed(&all, &signs).ok_or_else(collinear)?;
-                    Fit { columns: linear, ..first }
-                }
-            };
             let mut tangents = Vec::new();
-            for (k, &(column, number)) in nonlinear.iter().enumerate() {
-                let step = STEP * number.range[1];
-                let [there, back] = [step, -step].map(|step| {
-                    let mut moved = theta.clone();
-                    moved[k] += step;
-                    self.prediction(&self.point(self.setup(&nonlinear, &moved)), &known, &nonlinear)
-                });
-                let tangent = (there - back) / (2.0 * step);
-                Rc::make_mut(&mut readings).axpy(theta[k], &tangent, 1.0);
-                let at = columns.iter().position(|c| *c == column).expect("one of the model's");
-                raw.set_column(at, &tangent);
-                tangents.push((column, tangent));
+            if !nonlinear.is_empty() {
+                // They need coefficients, first those without them.
+                let fit = known.map_or_else(
+                    || {
+                        let places: Vec<usize> = linear.iter().map(|&column| place(column)).collect();
+                        let problem = self.regression(&point, raw.select_columns(&places), readings.clone());
+                        self.solved(&problem, &linear)
+                    },
+                    Ok,
+                )?;
+                tangents = self.tangents(&nonlinear, &theta, &fit);
+            }
+            for ((column, tangent), &value) in tangents.iter().zip(&theta) {
+                // A coefficient is the whole number, not a step from here.
+                Rc::make_mut(&mut readings).axpy(value, tangent, 1.0);
+                raw.set_column(place(*column), tangent);
             }
             let problem = self.regression(&point, raw, readings.clone());
-            let all: Vec<usize> = (0..columns.len()).collect();
-            let solved = problem.total.solve_signed(&all, &signs).ok_or_else(collinear)?;
-            let solved = Fit { columns: columns.clone(), ..solved };
+            let fit = self.solved(&problem, &columns)?;
             let mut moves = DVector::zeros(problem.white_readings.len());
-            let mut next = theta.clone();
-            for (k, &(column, number)) in nonlinear.iter().enumerate() {
-                let at = columns.iter().position(|c| *c == column).expect("one of the model's");
-                let most = number.range[1];
+            let step = |((column, number), theta): (&(usize, &Number), &mut f64)| {
+                let (at, most) = (place(*column), number.range[1]);
                 // Not beyond what is possible on the way.
-                next[k] = solved.coefficients[at].clamp(-most, most);
-                moves.axpy(next[k] - theta[k], &problem.white.column(at), 1.0);
-            }
-            let noise = solved.rss / problem.freedom(&solved);
+                let next = fit.coefficients[at].clamp(-most, most);
+                moves.axpy(next - *theta, &problem.white.column(at), 1.0);
+                *theta = next;
+            };
+            nonlinear.iter().zip(&mut theta).for_each(step);
+            let noise = fit.rss / problem.freedom(&fit);
             if moves.norm_squared() <= SETTLED * SETTLED * noise {
-                return Ok(State { setup, fit: solved, tangents, readings, base });
+                return Ok(State { setup, fit, tangents, readings, base });
             }
-            theta = next;
-            fit = Some(solved);
+            known = Some(fit);
         }
         Err(String::from("its numbers do not settle"))
+    }
+
+    /// The fit of a regression whose columns are these, in their order.
+    fn solved(&self, problem: &Problem, columns: &[usize]) -> Result<Fit, String> {
+        let signs: Vec<Sign> = columns.iter().map(|&column| self.signs[column]).collect();
+        let all: Vec<usize> = (0..columns.len()).collect();
+        let fit = problem.total.solve_signed(&all, &signs);
+        let fit = fit.ok_or_else(|| String::from("not to be told from the rest of the model"))?;
+        Ok(Fit { columns: columns.to_vec(), ..fit })
+    }
+
+    /// What a unit of each nonlinear number does where they have these values, with the
+    /// coefficients of a fit; by its column.
+    fn tangents(&self, nonlinear: &[(usize, &Number)], theta: &[f64], fit: &Fit) -> Vec<(usize, DVector<f64>)> {
+        let tangent = |(k, &(column, number)): (usize, &(usize, &Number))| {
+            let step = STEP * number.range[1];
+            let [there, back] = [step, -step].map(|step| {
+                let mut moved = theta.to_vec();
+                moved[k] += step;
+                self.prediction(&self.point(self.setup(nonlinear, &moved)), fit, nonlinear)
+            });
+            (column, (there - back) / (2.0 * step))
+        };
+        nonlinear.iter().enumerate().map(tangent).collect()
     }
 
     pub(super) fn setup(&self, nonlinear: &[(usize, &Number)], theta: &[f64]) -> Setup {

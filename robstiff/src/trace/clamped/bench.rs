@@ -203,7 +203,7 @@ impl Bench {
     }
 
     /// The same with numbers out of grids where they fit best.
-    pub fn polished(self, named: &[Named]) -> Self {
+    pub fn polished(&self, named: &[Named]) -> Self {
         let mut offers = self.offers.clone();
         let left = |offers: &[(&'static Kind, OnAxes)]| {
             let forms = named.iter().map(|one| &offers[one.candidate].1.forms[one.variant]);
@@ -235,13 +235,13 @@ impl Bench {
                 }
             }
         }
-        Self::new(self.axes, Some(&offers))
+        Self::new(self.axes.clone(), Some(&offers))
     }
 
     /// The same with the compliances of a fit in what effects do, which some
     /// depend on.
-    pub fn with_compliances(self, fit: &Fit) -> Self {
-        let mut axes = self.axes;
+    pub fn with_compliances(&self, fit: &Fit) -> Self {
+        let mut axes = self.axes.clone();
         let loaded: Vec<usize> = axes.loaded().collect();
         for (axis, &value) in loaded.into_iter().zip(fit.coefficients.iter()) {
             axes.compliance[axis - 1] = value;

@@ -52,49 +52,134 @@ pub struct Found {
 /// # Errors
 /// Why not even the axes' compliances can be fitted.
 pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<Found, String> {
-    let all = axes.rows.len();
-    let mut bench = Bench::new(axes, None);
-    let none = || String::from("these rows show no axis's compliance");
-    let base = bench.fit(&[]).ok_or_else(none)?;
+    let bench = Bench::new(axes, None);
+    let base = bench.fit(&[]).ok_or_else(no_axis)?;
     if let Some(why) = too_little(&bench) {
         let selection = Selection { model: base, p_values: Vec::new(), steps: Vec::new(), unnamed: false };
         let left = LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() };
         return Ok(Found { bench, selection, left, wild: (Vec::new(), 1.0), too_little: Some(why) });
     }
-    let mut wild: (Vec<usize>, f64) = (Vec::new(), 0.0);
-    let (mut model, mut steps, mut unnamed) = (base, Vec::new(), false);
-    let (mut strict, mut kept) = (false, false);
-    loop {
-        // Wild rows must not vote for an effect; those that were wild while one was
-        // missing are looked at again once it is named. They stay out where physics
-        // does not allow the model with them, or what they do has another name.
-        if !wild.0.is_empty()
-            && !kept
-            && let Some(whole) = refitted(bench.axes.whole(), &bench, &model)
+    let mut course = Course {
+        most: (FEW * bench.axes.rows.len() as f64).floor() as usize,
+        bench,
+        model: base,
+        wild: (Vec::new(), 0.0),
+        strict: false,
+        kept: false,
+        steps: Vec::new(),
+        unnamed: false,
+    };
+    course.run(options, progress)?;
+    let Course { bench, model, wild, steps, unnamed, .. } = course;
+    let (model, p_values) = significant(&bench, model, options);
+    progress("looking for structure in what is left");
+    let left = structure(&bench, &model, options);
+    let selection = Selection { model, p_values, steps, unnamed };
+    Ok(Found { bench, selection, left, wild, too_little: None })
+}
+
+fn no_axis() -> String {
+    String::from("these rows show no axis's compliance")
+}
+
+/// A search on its way.
+struct Course {
+    bench: Bench,
+    model: Fitted,
+    /// The lines of rows that are left out, with the probability of the likeliest.
+    wild: (Vec<usize>, f64),
+    /// How many rows may be left out.
+    most: usize,
+    /// Whether rows need stand out from noise alone: structure is accounted for.
+    strict: bool,
+    /// Whether rows that are left out stay so.
+    kept: bool,
+    steps: Vec<Step>,
+    unnamed: bool,
+}
+
+impl Course {
+    /// Adds effects for as long as something is missing.
+    fn run(&mut self, options: &Options, progress: &Progress<'_>) -> Result<(), String> {
+        loop {
+            self.look_again()?;
+            if self.model.named.len() >= MOST_EFFECTS {
+                return Ok(());
+            }
+            progress(&format!("searching for effect {}", self.model.named.len() + 1));
+            let Some((mut step, single, missing)) = self.tested(options) else { return Ok(()) };
+            if !missing {
+                step.outcome = "nothing is missing significantly".to_string();
+                self.steps.push(step);
+                if self.strict {
+                    return Ok(());
+                }
+                self.strict = true;
+                if self.wild_rows().is_none() {
+                    return Ok(());
+                }
+                continue;
+            }
+            let accepted = self.accepted(&single, options);
+            // What a single row says better needs no effect.
+            let bic = accepted.as_ref().map_or(self.model.bic, |better| better.bic);
+            if let Some(line) = self.without_one(bic, options) {
+                step.outcome = format!("line {line} alone says as much");
+                self.steps.push(step);
+                continue;
+            }
+            let Some(better) = accepted else {
+                self.unnamed = true;
+                step.outcome = "something is missing, but no effect passes every test".to_string();
+                self.steps.push(step);
+                return Ok(());
+            };
+            self.turn_to(better, options);
+            let candidates = &self.bench.candidates;
+            let names: Vec<String> = self.model.named.iter().map(|one| candidates[one.candidate].name()).collect();
+            step.came_to(&names);
+            self.steps.push(step);
+        }
+    }
+
+    /// Judges all rows anew. Wild rows must not vote for an effect; those that were wild
+    /// while one was missing are looked at again once it is named. They stay out where
+    /// physics does not allow the model with them, or what they do has another name.
+    fn look_again(&mut self) -> Result<(), String> {
+        if !self.wild.0.is_empty()
+            && !self.kept
+            && let Some(whole) = refitted(self.bench.axes.whole(), &self.bench, &self.model)
         {
-            wild = (Vec::new(), 0.0);
-            (bench, model) = whole;
+            self.wild = (Vec::new(), 0.0);
+            (self.bench, self.model) = whole;
         }
-        let most = (FEW * all as f64).floor() as usize;
-        while let Some((rows, p)) = wild_rows(&bench, &model, strict, most - wild.0.len()) {
-            wild.1 = p.max(wild.1);
-            wild.0.extend(rows.iter().map(|&row| bench.axes.rows[row].line));
-            bench = Bench::new(bench.axes.without(&rows), Some(&bench.offers));
-            let stands = bench.fit(&model.named);
+        while let Some((rows, p)) = self.wild_rows() {
+            self.wild.1 = p.max(self.wild.1);
+            self.wild.0.extend(rows.iter().map(|&row| self.bench.axes.rows[row].line));
+            self.bench = Bench::new(self.bench.axes.without(&rows), Some(&self.bench.offers));
+            let stands = self.bench.fit(&self.model.named);
             // A name that stood on the row would come back with it, time and again.
-            kept |= stands.is_none();
-            model = stands.or_else(|| bench.fit(&[])).ok_or_else(none)?;
+            self.kept |= stands.is_none();
+            self.model = stands.or_else(|| self.bench.fit(&[])).ok_or_else(no_axis)?;
         }
-        if model.named.len() >= MOST_EFFECTS {
-            break;
-        }
-        progress(&format!("searching for effect {}", model.named.len() + 1));
-        let Some(test) = bench.test(&model.named) else { break };
+        Ok(())
+    }
+
+    /// The rows that are wild beside the model, with the probability of the likeliest.
+    fn wild_rows(&self) -> Option<(Vec<usize>, f64)> {
+        let columns = self.bench.raw.select_columns(&self.model.fit.columns);
+        wild::wild_rows(&self.bench.axes.rows, &columns, self.strict, self.most - self.wild.0.len())
+    }
+
+    /// The tests of all candidates against the model, the models with one of them more, the
+    /// best first, and whether something is missing, if only what physics does not allow.
+    fn tested(&self, options: &Options) -> Option<(Step, Vec<Fitted>, bool)> {
+        let (bench, model) = (&self.bench, &self.model);
+        let test = bench.test(&model.named)?;
         let reference = test.reference(options.draws, options.seed);
         let statistics = test.statistics();
-        let smallest = statistics.iter().flatten().map(|(s, _)| reference.p_value(*s)).fold(1.0, f64::min);
         let single = bench.extended(&model.named);
-        let mut step = Step::against(&bench.candidates, &model.named, |candidate| {
+        let step = Step::against(&bench.candidates, &model.named, |candidate| {
             let with = single.iter().find(|fit| fit.named.iter().any(|one| one.candidate == candidate));
             Against {
                 gains: statistics[candidate].map(|(statistic, _)| (statistic, reference.p_value(statistic))),
@@ -102,63 +187,50 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
                 left_out_rms: with.map(|with| bench.left_out_rms(&with.fit)),
             }
         });
-        if smallest > options.alpha {
-            step.outcome = "nothing is missing significantly".to_string();
-            steps.push(step);
-            if strict {
-                break;
-            }
-            // With structure accounted for, rows need stand out from noise alone.
-            strict = true;
-            if wild_rows(&bench, &model, strict, most - wild.0.len()).is_none() {
-                break;
-            }
-            continue;
-        }
-        let accepted = bench.accepted(&single, &model, options).or_else(|| {
-            let mut pairs: Vec<Fitted> =
-                single.iter().take(EXTENDED).flat_map(|one| bench.extended(&one.named)).collect();
+        let missing = statistics.iter().flatten().any(|(gains, _)| reference.p_value(*gains) <= options.alpha);
+        Some((step, single, missing))
+    }
+
+    /// The first of the best models with one effect more that passes; where none does, with
+    /// two.
+    fn accepted(&self, single: &[Fitted], options: &Options) -> Option<Fitted> {
+        self.bench.accepted(single, &self.model, options).or_else(|| {
+            let extended = single.iter().take(EXTENDED).flat_map(|one| self.bench.extended(&one.named));
+            let mut pairs: Vec<Fitted> = extended.collect();
             pairs.sort_by(|a, b| a.bic.total_cmp(&b.bic));
-            bench.accepted(&pairs, &model, options)
-        });
-        // What a single row says better needs no effect.
-        let off = one_off(&bench, &model).filter(|off| off.p <= options.alpha && wild.0.len() < most);
-        if let Some(off) = off.filter(|off| off.bic < accepted.as_ref().map_or(model.bic, |better| better.bic)) {
-            let axes = bench.axes.without(&[off.row]);
-            if let Some((without, fitted)) = refitted(axes, &bench, &model) {
-                wild.0.push(bench.axes.rows[off.row].line);
-                wild.1 = off.p.max(wild.1);
-                step.outcome = format!("line {} alone says as much", bench.axes.rows[off.row].line);
-                steps.push(step);
-                (bench, model, kept) = (without, fitted, true);
-                continue;
-            }
+            self.bench.accepted(&pairs, &self.model, options)
+        })
+    }
+
+    /// Leaves the row out that alone says what is missing better than a model of this
+    /// criterion, if there is one; its line.
+    fn without_one(&mut self, bic: f64, options: &Options) -> Option<usize> {
+        let off = one_off(&self.bench, &self.model)?;
+        if off.p > options.alpha || off.bic >= bic || self.wild.0.len() >= self.most {
+            return None;
         }
-        let Some(mut better) = accepted else {
-            unnamed = true;
-            step.outcome = "something is missing, but no effect passes every test".to_string();
-            steps.push(step);
-            break;
-        };
-        let replaced = bench.replaced(&better.named).into_iter().map(|(_, model)| model);
-        if let Some(other) = replaced.min_by(|a, b| a.bic.total_cmp(&b.bic)).filter(|o| o.bic < better.bic - BETTER)
-            && bench.is_significant(&other.named, options)
-        {
+        let line = self.bench.axes.rows[off.row].line;
+        let without = refitted(self.bench.axes.without(&[off.row]), &self.bench, &self.model)?;
+        (self.bench, self.model) = without;
+        self.wild.0.push(line);
+        self.wild.1 = off.p.max(self.wild.1);
+        self.kept = true;
+        Some(line)
+    }
+
+    /// Goes on from a model, or from one that is better with one effect replaced, with
+    /// numbers out of grids where they fit best.
+    fn turn_to(&mut self, mut better: Fitted, options: &Options) {
+        let replaced = self.bench.replaced(&better.named).into_iter().map(|(_, model)| model);
+        let best = replaced.min_by(|a, b| a.bic.total_cmp(&b.bic)).filter(|best| best.bic < better.bic - BETTER);
+        if let Some(other) = best.filter(|other| self.bench.is_significant(&other.named, options)) {
             better = other;
         }
-        bench = bench.polished(&better.named);
-        let fine = bench.fit(&better.named).unwrap_or(better);
-        bench = bench.with_compliances(&fine.fit);
-        model = bench.fit(&fine.named).unwrap_or(fine);
-        let names: Vec<String> = model.named.iter().map(|one| bench.candidates[one.candidate].name()).collect();
-        step.came_to(&names);
-        steps.push(step);
+        let polished = self.bench.polished(&better.named);
+        let fine = polished.fit(&better.named).unwrap_or(better);
+        self.bench = polished.with_compliances(&fine.fit);
+        self.model = self.bench.fit(&fine.named).unwrap_or(fine);
     }
-    let (model, p_values) = significant(&bench, model, options);
-    progress("looking for structure in what is left");
-    let left = structure(&bench, &model, options);
-    let selection = Selection { model, p_values, steps, unnamed };
-    Ok(Found { bench, selection, left, wild, too_little: None })
 }
 
 /// The model with the p-value of each effect, without those that rows which are left out
@@ -172,11 +244,6 @@ fn significant(bench: &Bench, mut model: Fitted, options: &Options) -> (Fitted, 
         let Some(smaller) = bench.fit(&rest) else { return (model, p_values) };
         model = smaller;
     }
-}
-
-/// The rows that are wild beside a model, with the probability of the likeliest.
-fn wild_rows(bench: &Bench, model: &Fitted, strict: bool, most: usize) -> Option<(Vec<usize>, f64)> {
-    wild::wild_rows(&bench.axes.rows, &bench.raw.select_columns(&model.fit.columns), strict, most)
 }
 
 /// The same model on other rows.

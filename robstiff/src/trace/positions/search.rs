@@ -88,9 +88,7 @@ pub fn search<'c>(
         if !course.left.structure && !course.unnamed {
             // With structure accounted for, rows need stand out from noise alone.
             let before = course.wild.rows.clone();
-            let stay;
-            (course.model, course.wild, stay) =
-                without_wild(&mut bench, course.model, course.wild, true, Kept::WhereAnEffectSaysIt);
+            let stay = course.leave_wild_out(&mut bench, true, Kept::WhereAnEffectSaysIt);
             if course.wild.rows != before || stay {
                 course = course.run(&mut bench, true, options, progress).judged(&mut bench, noise, options, progress);
             }
@@ -119,8 +117,7 @@ impl Course {
         let mut tried: Vec<Vec<Named>> = Vec::new();
         let mut kept = Kept::WhereAnEffectSaysIt;
         while self.model.named.len() < MOST_EFFECTS && !tried.contains(&self.model.named) {
-            let stay;
-            (self.model, self.wild, stay) = without_wild(bench, self.model, self.wild, strict, kept);
+            let stay = self.leave_wild_out(bench, strict, kept);
             let model = &self.model;
             if model.leaves_nothing() {
                 break;
@@ -170,6 +167,26 @@ impl Course {
             self.model = better;
         }
         self
+    }
+
+    /// Leaves the rows out that are wild at the model, and no others; whether such rows
+    /// stay for an effect's sake. All is as it was where physics does not allow the model
+    /// without them.
+    fn leave_wild_out(&mut self, bench: &mut Bench<'_>, strict: bool, kept: Kept) -> bool {
+        let left_out = bench.rows.left_out.clone();
+        bench.rows.left_out.fill(false);
+        let (wild, mut stay) = wild_at(bench, &self.model, strict, kept);
+        wild.rows.iter().for_each(|&row| bench.rows.left_out[row] = true);
+        if bench.rows.left_out == left_out {
+            self.wild = wild;
+        } else if let Some(model) = bench.solve(&self.model.named, &self.model.solved.state) {
+            (self.model, self.wild) = (model, wild);
+        } else {
+            bench.rows.left_out = left_out;
+            stay = false;
+        }
+        bench.turn_to(&self.model);
+        stay
     }
 
     /// Asks how sure the effects are and whether structure is left, and takes names back
@@ -226,46 +243,25 @@ enum Kept {
     Never,
 }
 
-/// The model without the rows that are wild at it, all rows judged anew, which those in
-/// `before` were left out of; and whether they stay for an effect's sake.
-fn without_wild(bench: &mut Bench<'_>, model: Model, before: Wild, strict: bool, kept: Kept) -> (Model, Wild, bool) {
-    let mut stay = false;
-    let left_out = bench.rows.left_out.clone();
-    bench.rows.left_out.fill(false);
+/// What is wild at a model where no row is left out, and whether it stays for an
+/// effect's sake; it is none then.
+fn wild_at(bench: &mut Bench<'_>, model: &Model, strict: bool, kept: Kept) -> (Wild, bool) {
     let chosen = bench.chosen(&model.named);
     let (whole, _) = bench.regression.at(&model.solved.state, &chosen, &bench.rows);
-    let mut wild = wild_rows(&whole, strict).unwrap_or_default();
-    if !wild.rows.is_empty() {
-        bench.turn_to(&model);
-        let readings = whole.total.rows as f64;
-        // Which row it is, and where it is instead.
-        let numbers = (STANDS + chosen.len() + 4 * wild.rows.len()) as f64;
-        let bic = readings * (wild.rss / readings).max(f64::MIN_POSITIVE).ln() + numbers * readings.ln();
-        // A slip that only the first or the last row has is that row: with as many numbers.
-        let fewer = bic - readings.ln();
-        stay = kept != Kept::Never && bench.extended(&model.named).first().is_some_and(|best| best.bic < fewer);
-        if stay {
-            wild = Wild::default();
-        }
+    let wild = wild_rows(&whole, strict).unwrap_or_default();
+    if wild.rows.is_empty() || kept == Kept::Never {
+        return (wild, false);
     }
-    for &row in &wild.rows {
-        bench.rows.left_out[row] = true;
-    }
-    if bench.rows.left_out == left_out {
-        bench.turn_to(&model);
-        return (model, wild, stay);
-    }
-    match bench.solve(&model.named, &model.solved.state) {
-        Some(model) => {
-            bench.turn_to(&model);
-            (model, wild, stay)
-        }
-        None => {
-            // Physics does not allow the model with these rows.
-            bench.rows.left_out = left_out;
-            bench.turn_to(&model);
-            (model, before, false)
-        }
+    bench.turn_to(model);
+    let readings = whole.total.rows as f64;
+    // Which row it is, and where it is instead.
+    let numbers = (STANDS + chosen.len() + 4 * wild.rows.len()) as f64;
+    let bic = readings * (wild.rss / readings).max(f64::MIN_POSITIVE).ln() + numbers * readings.ln();
+    // A slip that only the first or the last row has is that row: with as many numbers.
+    let fewer = bic - readings.ln();
+    match bench.extended(&model.named).first() {
+        Some(best) if best.bic < fewer => (Wild::default(), true),
+        _ => (wild, false),
     }
 }
 
