@@ -7,7 +7,8 @@
 //! by the model without it, family-wise over the whole catalogue, and when
 //! poses left out of the fit, each in turn, are predicted better than by the
 //! smaller model. An effect that was named early and is no longer needed falls
-//! out this way, so steps go forward, sideways and back. Poses held out take no
+//! out this way, so steps go forward, sideways and back; what stands is tested
+//! again with the rows and the noise that it stands on. Poses held out take no
 //! part: they judge what was found.
 
 use std::string::String;

@@ -155,6 +155,27 @@ fn a_missing_effect_is_named_and_goes_into_the_description() {
     assert!(found.description.source.contains("transverse_compliance@joint 3"));
 }
 
+/// As where rows are cut that had spoken for it, or the noise is learnt again.
+#[test]
+fn what_is_not_significant_does_not_stay_named() {
+    let campaign = campaign(&five_axis(), 24, &[TILT_3], 3);
+    let prepared = Prepared::new(&campaign).expect("a campaign of displacements");
+    let mut bench = Bench::new(&campaign, &prepared).expect("it shows the joints");
+    let setting = bench.at(&[]).expect("no effects");
+    let count = bench.candidates().len();
+    let truth = (0..count).find(|&candidate| bench.candidates()[candidate].name() == "transverse_compliance@joint 3");
+    let truth = truth.expect("it is in the catalogue");
+    let alone = selection::best_with(&setting, &[], truth).expect("physically possible").named;
+    let besides = (0..count).filter_map(|candidate| selection::best_with(&setting, &alone, candidate));
+    let besides: Vec<Fitted> = besides.take(10).collect();
+    assert_eq!(besides.len(), 10);
+    for model in besides {
+        let (settled, p_values) = settled(&mut bench, model, &Options::default());
+        assert_eq!(settled.named.iter().map(|one| one.candidate).collect::<Vec<_>>(), [truth]);
+        assert!(p_values.len() == 1 && p_values[0] < 0.001, "{p_values:?}");
+    }
+}
+
 #[test]
 fn one_seed_gives_one_result() {
     let campaign = campaign(&five_axis(), 16, &[TILT_3], 5);
