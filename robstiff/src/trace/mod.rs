@@ -293,7 +293,9 @@ fn search(
         let loosely = |why: String| bench.at(&named)?.fit_loosely(&named).ok_or(why);
         let rest = bench.fit(&named).or_else(loosely)?;
         let rest = bench.tried(&named, Bench::learn_noise).unwrap_or(rest);
-        (selection.model, selection.p_values) = settled(bench, rest, options);
+        let settled = settled(bench, rest, options);
+        (selection.model, selection.p_values) = (settled.model, settled.p_values);
+        taken_back += settled.dropped.len();
         left = test(bench, &selection.model)?;
         // What a name had accounted for is there, found by a test or not.
         left.structure = true;

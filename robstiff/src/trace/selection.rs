@@ -149,31 +149,55 @@ pub fn select(
             (*bench, model) = (polished, better);
         }
     }
-    let (model, p_values) = settled(bench, model, options);
+    let Settled { model, p_values, dropped } = settled(bench, model, options);
+    if !dropped.is_empty()
+        && let Some(tests) = bench.tests(&model.named, options)
+    {
+        // What they had said better than others may still be missing.
+        unnamed |= tests.smallest_p() <= options.alpha;
+        let mut step = table(&*bench.at(&model.named)?, &model, &tests, options);
+        let names: Vec<String> = dropped.iter().map(|one| bench.candidates()[one.candidate].name()).collect();
+        step.outcome = std::format!("no longer significant: {}", names.join(", "));
+        steps.push(step);
+    }
     Ok(Selection { model, p_values, steps, unnamed })
 }
 
-/// A model as its own rows and noise have it, with the p-value of each effect: the rows
-/// that are wild are judged at it, and an effect that they or an earlier noise had made
-/// significant is no longer in it. An effect stays that the rest cannot be fitted without.
-pub fn settled(bench: &mut Bench<'_>, mut model: Fitted, options: &Options) -> (Fitted, Vec<f64>) {
+/// A model as the rows and the noise have it that it stands on.
+pub struct Settled {
+    /// The model.
+    pub model: Fitted,
+    /// The family-wise p-value of each of its effects.
+    pub p_values: Vec<f64>,
+    /// What was dropped.
+    pub dropped: Vec<Named>,
+}
+
+/// A model with the rows that are wild judged at it, and without effects that such rows,
+/// or an earlier noise, had made significant; but for those that the rest cannot be fitted
+/// without.
+pub fn settled(bench: &mut Bench<'_>, mut model: Fitted, options: &Options) -> Settled {
+    let mut dropped = Vec::new();
     loop {
         if let Some(better) = bench.tried(&model.named, Bench::look_again) {
             model = better;
         }
         let p_values = p_values(bench, &model.named, options);
-        let Some(worst) = insignificant(&p_values, options) else { return (model, p_values) };
-        let mut rest = model.named.clone();
-        rest.remove(worst);
-        let Ok(smaller) = bench.fit(&rest) else { return (model, p_values) };
-        model = bench.tried(&rest, Bench::learn_noise).unwrap_or(smaller);
+        let smaller = insignificant(&p_values, options).into_iter().find_map(|k| {
+            let mut rest = model.named.clone();
+            Some((rest.remove(k), bench.fit(&rest).ok()?))
+        });
+        let Some((one, smaller)) = smaller else { return Settled { model, p_values, dropped } };
+        dropped.push(one);
+        model = bench.tried(&smaller.named, Bench::learn_noise).unwrap_or(smaller);
     }
 }
 
-/// The effect that is the least significant, where it is not significant.
-pub fn insignificant(p_values: &[f64], options: &Options) -> Option<usize> {
-    let worst = (0..p_values.len()).max_by(|&a, &b| p_values[a].total_cmp(&p_values[b]));
-    worst.filter(|&k| p_values[k] > options.alpha)
+/// The effects that are not significant, the least so first.
+pub fn insignificant(p_values: &[f64], options: &Options) -> Vec<usize> {
+    let mut found: Vec<usize> = (0..p_values.len()).filter(|&k| p_values[k] > options.alpha).collect();
+    found.sort_by(|&a, &b| p_values[b].total_cmp(&p_values[a]));
+    found
 }
 
 /// The first of the best models of a beam that passes.

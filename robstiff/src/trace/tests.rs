@@ -170,9 +170,10 @@ fn what_is_not_significant_does_not_stay_named() {
     let besides: Vec<Fitted> = besides.take(10).collect();
     assert_eq!(besides.len(), 10);
     for model in besides {
-        let (settled, p_values) = settled(&mut bench, model, &Options::default());
-        assert_eq!(settled.named.iter().map(|one| one.candidate).collect::<Vec<_>>(), [truth]);
-        assert!(p_values.len() == 1 && p_values[0] < 0.001, "{p_values:?}");
+        let settled = settled(&mut bench, model, &Options::default());
+        assert_eq!(settled.model.named.iter().map(|one| one.candidate).collect::<Vec<_>>(), [truth]);
+        assert!(settled.p_values.len() == 1 && settled.p_values[0] < 0.001, "{:?}", settled.p_values);
+        assert_eq!(settled.dropped.len(), 1);
     }
 }
 

@@ -73,15 +73,17 @@ impl Estimated {
 /// The probability, were all of it noise, that the sums of squares of each axis are so
 /// much larger than those with more freed, each of so many contrasts an axis: an F test
 /// of each axis, for each has a variance of its own, and all together by Fisher's method
-/// (Statistical Methods for Research Workers, 4th ed., 1932, section 21.1).
+/// (Statistical Methods for Research Workers, 4th ed., 1932, section 21.1). An axis that
+/// was not read, all of whose readings are zero, says nothing.
 pub fn beyond_noise((all, contrasts): (Vec<f64>, f64), (freer, fewer): (Vec<f64>, f64)) -> Option<f64> {
     let freedom = [contrasts - fewer, fewer];
     let of_axis = |(all, freer): (&f64, &f64)| {
         let ratio = (all - freer).max(0.0) / freedom[0] / (freer / freedom[1]);
         Some(-2.0 * told(fisher_tail(ratio, freedom)?).ln())
     };
-    let statistic: f64 = all.iter().zip(&freer).map(of_axis).sum::<Option<f64>>()?;
-    chi_square_tail(statistic, 2.0 * all.len() as f64)
+    let read = all.iter().zip(&freer).filter(|(all, _)| **all > 0.0);
+    let statistics: Vec<f64> = read.map(of_axis).collect::<Option<_>>()?;
+    chi_square_tail(statistics.iter().sum(), 2.0 * statistics.len() as f64)
 }
 
 /// Bartlett's test (Proceedings of the Royal Society A 160, 1937) of equal

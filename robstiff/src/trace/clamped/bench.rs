@@ -176,21 +176,26 @@ impl Bench {
         (0..named.len()).flat_map(without).collect()
     }
 
-    /// The family-wise p-value of each effect, that of the model without it.
-    pub fn p_values(&self, named: &[Named], options: &Options) -> Vec<f64> {
-        let one = |k: usize| {
-            let mut rest = named.to_vec();
-            let one = rest.remove(k);
+    /// The family-wise p-value of an effect of a model, that of the model without it.
+    fn p_value(&self, named: &[Named], k: usize, options: &Options) -> f64 {
+        let mut rest = named.to_vec();
+        let one = rest.remove(k);
+        let p_value = || {
             let test = self.test(&rest)?;
             let (statistic, _) = test.statistics()[one.candidate]?;
             Some(test.reference(options.draws, options.seed).p_value(statistic))
         };
-        (0..named.len()).map(|k| one(k).unwrap_or(1.0)).collect()
+        p_value().unwrap_or(1.0)
+    }
+
+    /// That of each effect.
+    pub fn p_values(&self, named: &[Named], options: &Options) -> Vec<f64> {
+        (0..named.len()).map(|k| self.p_value(named, k, options)).collect()
     }
 
     /// Whether every effect of a model is significant beside the others.
     pub fn is_significant(&self, named: &[Named], options: &Options) -> bool {
-        self.p_values(named, options).iter().all(|&p| p <= options.alpha)
+        (0..named.len()).all(|k| self.p_value(named, k, options) <= options.alpha)
     }
 
     /// The first of some models that passes every test.

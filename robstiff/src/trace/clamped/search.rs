@@ -70,8 +70,11 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
         unnamed: false,
     };
     course.run(options, progress)?;
-    let Course { bench, model, wild, steps, unnamed, .. } = course;
-    let (model, p_values) = significant(&bench, model, options);
+    let Course { bench, model: found, wild, steps, mut unnamed, .. } = course;
+    let names = found.named.len();
+    let (model, p_values) = significant(&bench, found, options);
+    // What a name had said better than others may still be missing.
+    unnamed |= model.named.len() < names && is_missing(&bench, &model, options);
     progress("looking for structure in what is left");
     let left = structure(&bench, &model, options);
     let selection = Selection { model, p_values, steps, unnamed };
@@ -206,7 +209,8 @@ impl Course {
     /// criterion, if there is one; its line.
     fn without_one(&mut self, bic: f64, options: &Options) -> Option<usize> {
         let off = one_off(&self.bench, &self.model)?;
-        if off.p > options.alpha || off.bic >= bic || self.wild.0.len() >= self.most {
+        // Not so of what is no number.
+        if !(off.p <= options.alpha && off.bic < bic && self.wild.0.len() < self.most) {
             return None;
         }
         let line = self.bench.axes.rows[off.row].line;
@@ -238,12 +242,22 @@ impl Course {
 fn significant(bench: &Bench, mut model: Fitted, options: &Options) -> (Fitted, Vec<f64>) {
     loop {
         let p_values = bench.p_values(&model.named, options);
-        let Some(worst) = insignificant(&p_values, options) else { return (model, p_values) };
-        let mut rest = model.named.clone();
-        rest.remove(worst);
-        let Some(smaller) = bench.fit(&rest) else { return (model, p_values) };
+        let smaller = insignificant(&p_values, options).into_iter().find_map(|k| {
+            let mut rest = model.named.clone();
+            rest.remove(k);
+            bench.fit(&rest)
+        });
+        let Some(smaller) = smaller else { return (model, p_values) };
         model = smaller;
     }
+}
+
+/// Whether any candidate is significant beside a model.
+fn is_missing(bench: &Bench, model: &Fitted, options: &Options) -> bool {
+    bench.test(&model.named).is_some_and(|test| {
+        let reference = test.reference(options.draws, options.seed);
+        test.statistics().iter().flatten().any(|(gains, _)| reference.p_value(*gains) <= options.alpha)
+    })
 }
 
 /// The same model on other rows.

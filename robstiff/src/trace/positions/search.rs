@@ -338,10 +338,12 @@ fn without_superfluous(bench: &mut Bench<'_>, mut model: Model, reference: &Refe
 fn significant<'c>(bench: &mut Bench<'c>, mut model: Model, options: &Options) -> (Model, Vec<f64>) {
     loop {
         let p_values: Vec<f64> = (0..model.named.len()).map(|k| bench.p_value(&model.named, k, options)).collect();
-        let Some(worst) = insignificant(&p_values, options) else { return (model, p_values) };
-        let mut rest = model.named.clone();
-        rest.remove(worst);
-        let Some(smaller) = bench.solve(&rest, &model.solved.state) else { return (model, p_values) };
+        let smaller = insignificant(&p_values, options).into_iter().find_map(|k| {
+            let mut rest = model.named.clone();
+            rest.remove(k);
+            bench.solve(&rest, &model.solved.state)
+        });
+        let Some(smaller) = smaller else { return (model, p_values) };
         bench.turn_to(&smaller);
         model = smaller;
     }

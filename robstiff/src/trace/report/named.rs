@@ -61,7 +61,8 @@ fn by_cost(bench: &Bench<'_>, model: &Fitted) -> Vec<usize> {
     costs.into_iter().map(|(_, k)| k).collect()
 }
 
-/// The numbers of one of a model's effects, with their standard deviations.
+/// The numbers of one of a model's effects, with their standard deviations; where they fit
+/// best it has the same effects in the same order.
 fn parameters(setting: &Setting<'_>, model: &Fitted, spread: &DMatrix<f64>, k: usize) -> Vec<EffectParameter> {
     let variant = setting.variant(model.named[k]);
     let fitted = variant.columns.iter().enumerate().map(|(n, column)| {
