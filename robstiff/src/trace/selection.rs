@@ -183,21 +183,27 @@ pub fn settled(bench: &mut Bench<'_>, mut model: Fitted, options: &Options) -> S
             model = better;
         }
         let p_values = p_values(bench, &model.named, options);
-        let smaller = insignificant(&p_values, options).into_iter().find_map(|k| {
-            let mut rest = model.named.clone();
-            Some((rest.remove(k), bench.fit(&rest).ok()?))
-        });
+        let smaller = without_insignificant(&model.named, &p_values, options, |rest| bench.fit(rest).ok());
         let Some((one, smaller)) = smaller else { return Settled { model, p_values, dropped } };
         dropped.push(one);
         model = bench.tried(&smaller.named, Bench::learn_noise).unwrap_or(smaller);
     }
 }
 
-/// The effects that are not significant, the least so first.
-pub fn insignificant(p_values: &[f64], options: &Options) -> Vec<usize> {
-    let mut found: Vec<usize> = (0..p_values.len()).filter(|&k| p_values[k] > options.alpha).collect();
+/// The effect of a model that is the least significant of those which are not and without
+/// which the rest can be fitted; with that fit.
+pub fn without_insignificant<M>(
+    named: &[Named],
+    p_values: &[f64],
+    options: &Options,
+    fit: impl Fn(&[Named]) -> Option<M>,
+) -> Option<(Named, M)> {
+    let mut found: Vec<usize> = (0..named.len()).filter(|&k| p_values[k] > options.alpha).collect();
     found.sort_by(|&a, &b| p_values[b].total_cmp(&p_values[a]));
-    found
+    found.into_iter().find_map(|k| {
+        let mut rest = named.to_vec();
+        Some((rest.remove(k), fit(&rest)?))
+    })
 }
 
 /// The first of the best models of a beam that passes.

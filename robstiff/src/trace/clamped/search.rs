@@ -14,12 +14,12 @@ use crate::identify::clamped::regression::problem;
 use crate::identify::clamped::wild;
 use crate::identify::covariance::outliers::FEW;
 use crate::identify::normal::Sign;
-use crate::trace::bootstrap::ScoreTest;
+use crate::trace::bootstrap::{Reference, ScoreTest};
 use crate::trace::catalogue::{Candidate, KINDS, Variant};
 use crate::trace::found::Place;
 use crate::trace::lack_of_fit::{LackOfFit, StructureTest};
 use crate::trace::model::Fitted;
-use crate::trace::selection::{Selection, insignificant};
+use crate::trace::selection::{Selection, without_insignificant};
 use crate::trace::step::{Against, Step};
 use crate::trace::verdict::FEWEST_POSES;
 use crate::trace::{Options, Progress};
@@ -190,8 +190,7 @@ impl Course {
                 left_out_rms: with.map(|with| bench.left_out_rms(&with.fit)),
             }
         });
-        let missing = statistics.iter().flatten().any(|(gains, _)| reference.p_value(*gains) <= options.alpha);
-        Some((step, single, missing))
+        Some((step, single, any_significant(&statistics, &reference, options)))
     }
 
     /// The first of the best models with one effect more that passes; where none does, with
@@ -242,22 +241,21 @@ impl Course {
 fn significant(bench: &Bench, mut model: Fitted, options: &Options) -> (Fitted, Vec<f64>) {
     loop {
         let p_values = bench.p_values(&model.named, options);
-        let smaller = insignificant(&p_values, options).into_iter().find_map(|k| {
-            let mut rest = model.named.clone();
-            rest.remove(k);
-            bench.fit(&rest)
-        });
-        let Some(smaller) = smaller else { return (model, p_values) };
+        let smaller = without_insignificant(&model.named, &p_values, options, |rest| bench.fit(rest));
+        let Some((_, smaller)) = smaller else { return (model, p_values) };
         model = smaller;
     }
 }
 
 /// Whether any candidate is significant beside a model.
 fn is_missing(bench: &Bench, model: &Fitted, options: &Options) -> bool {
-    bench.test(&model.named).is_some_and(|test| {
-        let reference = test.reference(options.draws, options.seed);
-        test.statistics().iter().flatten().any(|(gains, _)| reference.p_value(*gains) <= options.alpha)
-    })
+    bench
+        .test(&model.named)
+        .is_some_and(|test| any_significant(&test.statistics(), &test.reference(options.draws, options.seed), options))
+}
+
+fn any_significant(statistics: &[Option<(f64, usize)>], reference: &Reference, options: &Options) -> bool {
+    statistics.iter().flatten().any(|(gains, _)| reference.p_value(*gains) <= options.alpha)
 }
 
 /// The same model on other rows.

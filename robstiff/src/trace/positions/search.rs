@@ -16,7 +16,7 @@ use crate::identify::positions::wild::{Wild, wild_rows};
 use crate::trace::bootstrap::{Reference, price};
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::{Fitted, Named};
-use crate::trace::selection::{CURVATURE, Selection, WITHIN_REACH, insignificant};
+use crate::trace::selection::{CURVATURE, Selection, WITHIN_REACH, without_insignificant};
 use crate::trace::step::{Against, Step};
 use crate::trace::verdict::FEWEST_POSES;
 use crate::trace::{Options, Progress};
@@ -338,12 +338,9 @@ fn without_superfluous(bench: &mut Bench<'_>, mut model: Model, reference: &Refe
 fn significant<'c>(bench: &mut Bench<'c>, mut model: Model, options: &Options) -> (Model, Vec<f64>) {
     loop {
         let p_values: Vec<f64> = (0..model.named.len()).map(|k| bench.p_value(&model.named, k, options)).collect();
-        let smaller = insignificant(&p_values, options).into_iter().find_map(|k| {
-            let mut rest = model.named.clone();
-            rest.remove(k);
-            bench.solve(&rest, &model.solved.state)
-        });
-        let Some(smaller) = smaller else { return (model, p_values) };
+        let solve = |rest: &[Named]| bench.solve(rest, &model.solved.state);
+        let smaller = without_insignificant(&model.named, &p_values, options, solve);
+        let Some((_, smaller)) = smaller else { return (model, p_values) };
         bench.turn_to(&smaller);
         model = smaller;
     }
