@@ -340,6 +340,37 @@ fn all_cores_give_what_one_gives() {
 
 #[cfg(feature = "rayon")]
 #[test]
+fn all_cores_give_entries_what_one_gives() {
+    let poses = poses::<5>(5000);
+    let mut one = vec![vec![0.0; 5000]; 21];
+    let mut all = one.clone();
+    fn slices(entries: &mut [Vec<f64>]) -> [&mut [f64]; 21] {
+        let mut entries = entries.iter_mut();
+        core::array::from_fn(|_| &mut entries.next().expect("21 of them")[..])
+    }
+    compliance_by_entry(&Rv130hsc, &poses, slices(&mut one));
+    parallel::compliance_by_entry(&Rv130hsc, &poses, slices(&mut all));
+    assert_eq!(one, all);
+    let seen = std::sync::Mutex::new(vec![f64::NAN; 5000]);
+    parallel::compliance_blocks(&Rv130hsc, &poses, |range, entries| {
+        let last = &entries[20][..range.len()];
+        seen.lock().unwrap()[range].copy_from_slice(last);
+    });
+    assert_eq!(seen.into_inner().unwrap(), one[20]);
+}
+
+#[cfg(feature = "rayon")]
+#[test]
+#[should_panic(expected = "as many results as poses")]
+fn too_few_entries_are_refused_on_all_cores() {
+    let mut entries = [[0.0; 3]; 21];
+    let mut slices = entries.each_mut().map(|entry| &mut entry[..]);
+    slices[20] = &mut [];
+    parallel::compliance_by_entry(&Rv130hsc, &poses::<5>(3), slices);
+}
+
+#[cfg(feature = "rayon")]
+#[test]
 fn all_cores_give_a_grid_what_one_gives() {
     let coordinates = coordinates([70, 9, 4, 1, 2]);
     let coordinates = coordinates.each_ref().map(|axis| &axis[..]);
