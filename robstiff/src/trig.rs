@@ -15,7 +15,7 @@
 //!    and the best polynomials of their length: for a single pose, which waits
 //!    more than it computes, in steps that wait for each other as little as
 //!    possible, for many poses with as few multiplications as possible;
-//! 4. the last two bits of `k` exchange the two and set their signs.
+//! 4. the last two bits of `k` set the signs of the two and exchange them.
 //!
 //! Both parts of the answer are within [`Float::BOUND`] of the truth for
 //! angles up to [`Float::DOMAIN`]; `sin 0 = 0`, `cos 0 = 1`, and the symmetries
@@ -103,16 +103,20 @@ pub(crate) fn within_domain<F: Float, V: Abreast<F>, const FUSED: bool, const MA
     let r = reduced::<F, V, FUSED>(x, shifted);
     let z = r * r;
     let z2 = z * z;
+    let (sign_of_sin, sign_of_cos) = V::signs(shifted);
+    let signed = r.change_signs(sign_of_sin);
     let sin_tail = polynomial::<F, V, FUSED, MANY>(|i| V::number(places::sin::<F>() + i), z, z2);
-    let sin = mul_add(r * z, sin_tail, r);
+    let sin = mul_add(signed * z, sin_tail, signed);
     let cos_tail = polynomial::<F, V, FUSED, MANY>(|i| V::number(places::cos::<F>() + i), z, z2);
     let cos = if MANY {
-        mul_add(z, mul_add(z, cos_tail, V::number(places::MINUS_HALF)), V::number(places::ONE))
+        let cos = mul_add(z, mul_add(z, cos_tail, V::number(places::MINUS_HALF)), V::number(places::ONE));
+        cos.change_signs(sign_of_cos)
     } else {
+        // Both terms and not the sum, which all that follows waits for. Gain: `benches/README.md`.
         let most = mul_add(z, V::number(places::MINUS_HALF), V::number(places::ONE));
-        mul_add(z2, cos_tail, most)
+        mul_add(z2.change_signs(sign_of_cos), cos_tail, most.change_signs(sign_of_cos))
     };
-    V::turn_quarters(shifted, sin, cos)
+    V::exchange(shifted, sin, cos)
 }
 
 /// The same of angles that are there in pairs, sine and cosine side by side.
@@ -125,7 +129,9 @@ fn pairs_within_domain<F: Float, V: Pairs<F>, const FUSED: bool>(x: V) -> V {
     let z2 = z * z;
     let tail = polynomial::<F, V, FUSED, false>(|i| V::numbers(places::sin::<F>() + i, places::cos::<F>() + i), z, z2);
     let most = mul_add(z, V::number(places::MINUS_HALF), V::number(places::ONE));
-    mul_add(z * V::sides(r, z), tail, V::sides(r, most)).turn_pairs(shifted)
+    let signs = V::signs_of_pairs(shifted);
+    let factor = V::sides(r, z).change_signs(signs);
+    mul_add(z * factor, tail, V::sides(r, most).change_signs(signs)).exchange_pairs(shifted)
 }
 
 /// Sines and cosines of many angles, in a loop that the compiler makes vectors of.

@@ -16,10 +16,17 @@ pub(crate) trait Abreast<F>: Copy + Add<Output = Self> + Sub<Output = Self> + Mu
     /// `self * a + b`, rounded once.
     fn fused(self, a: Self, b: Self) -> Self;
 
-    /// Sine and cosine of as many quarter turns more as the last bits of
-    /// `shifted` say. The last bit exchanges the two, one of them with a
-    /// changed sign; the one before changes the signs of both.
-    fn turn_quarters(shifted: Self, sin: Self, cos: Self) -> (Self, Self);
+    /// The signs that a sine and a cosine get from as many quarter turns more as the
+    /// last bits of `shifted` say, before they are exchanged: the bit before the last
+    /// changes both, the last one that of the sine once more.
+    fn signs(shifted: Self) -> (Self, Self);
+
+    /// With the other sign where `signs` has one.
+    fn change_signs(self, signs: Self) -> Self;
+
+    /// The two exchanged where the last bit of `shifted` says that the quarter turns
+    /// are odd.
+    fn exchange(shifted: Self, sin: Self, cos: Self) -> (Self, Self);
 
     /// Of an angle as [`quarters`](super::quarters) shifts it: bits that are 0
     /// where it is within the domain, and some not where it is not or is a NaN.
@@ -65,8 +72,11 @@ pub(crate) trait Pairs<F>: Vector<F> {
     /// The sines' lanes of one, the cosines' of another.
     fn sides(sin: Self, cos: Self) -> Self;
 
-    /// As [`turn_quarters`](Abreast::turn_quarters).
-    fn turn_pairs(self, shifted: Self) -> Self;
+    /// As [`signs`](Abreast::signs), each in its lanes.
+    fn signs_of_pairs(shifted: Self) -> Self;
+
+    /// As [`exchange`](Abreast::exchange).
+    fn exchange_pairs(self, shifted: Self) -> Self;
 }
 
 macro_rules! single {
@@ -86,14 +96,25 @@ macro_rules! single {
             }
 
             #[inline(always)]
-            fn turn_quarters(shifted: Self, sin: Self, cos: Self) -> (Self, Self) {
+            fn signs(shifted: Self) -> (Self, Self) {
                 const TOP: $bits = 1 << ($bits::BITS - 1);
+                let shifted = shifted.to_bits();
+                let both = (shifted << ($bits::BITS - 2)) & TOP;
+                (Self::from_bits(both ^ (shifted << ($bits::BITS - 1))), Self::from_bits(both))
+            }
+
+            #[inline(always)]
+            fn change_signs(self, signs: Self) -> Self {
+                Self::from_bits(self.to_bits() ^ signs.to_bits())
+            }
+
+            #[inline(always)]
+            fn exchange(shifted: Self, sin: Self, cos: Self) -> (Self, Self) {
                 let last = shifted.to_bits() << ($bits::BITS - 1);
-                let sign = (shifted.to_bits() << ($bits::BITS - 2)) & TOP;
-                let (sin, cos) = (sin.to_bits() ^ last, cos.to_bits());
+                let (sin, cos) = (sin.to_bits(), cos.to_bits());
                 // A mask and not a choice: without SSE4.1 there is no other way.
                 let exchange = (sin ^ cos) & ((last as $signed) >> ($bits::BITS - 1)) as $bits;
-                (Self::from_bits(sin ^ exchange ^ sign), Self::from_bits(cos ^ exchange ^ sign))
+                (Self::from_bits(sin ^ exchange), Self::from_bits(cos ^ exchange))
             }
 
             #[inline(always)]
@@ -150,7 +171,12 @@ impl<F: Float> Pairs<F> for F {
     }
 
     #[inline(always)]
-    fn turn_pairs(self, _: Self) -> Self {
+    fn signs_of_pairs(shifted: Self) -> Self {
+        shifted
+    }
+
+    #[inline(always)]
+    fn exchange_pairs(self, _: Self) -> Self {
         self
     }
 }
@@ -160,14 +186,16 @@ single!(f64, u64, i64, double, libm::fma);
 
 /// Lanes to exchange. A blend looks at the first bit only; without one, all bits.
 macro_rules! exchange {
-    ($vector:ident, $bits:ident, $shifted:ident, $last:ident) => {
+    ($vector:ident, $bits:ident, $unsigned:ident, $shifted:ident) => {{
+        let shifted = $shifted.to_bits();
         if cfg!(target_feature = "sse4.1") {
-            wide::$vector::from_bits($last)
+            wide::$vector::from_bits(shifted << ($unsigned::BITS - 1))
         } else {
-            wide::$vector::from_bits(wide::$bits::splat(0) - ($shifted & wide::$bits::splat(1)))
+            wide::$vector::from_bits(wide::$bits::splat(0) - (shifted & wide::$bits::splat(1)))
         }
-    };
+    }};
 }
+
 macro_rules! vectors {
     ($($vector:ident $bits:ident $float:ident $unsigned:ident $module:ident $lanes:literal)*) => {$(
         impl Abreast<$float> for wide::$vector {
@@ -182,15 +210,21 @@ macro_rules! vectors {
             }
 
             #[inline(always)]
-            fn turn_quarters(shifted: Self, sin: Self, cos: Self) -> (Self, Self) {
-                let top = wide::$bits::splat(1 << ($unsigned::BITS - 1));
+            fn signs(shifted: Self) -> (Self, Self) {
                 let shifted = shifted.to_bits();
-                let last = shifted << ($unsigned::BITS - 1);
-                let sin = Self::from_bits(sin.to_bits() ^ last);
-                let sign = (shifted << ($unsigned::BITS - 2)) & top;
-                let exchange = exchange!($vector, $bits, shifted, last);
-                let (sin, cos) = (exchange.select(cos, sin), exchange.select(sin, cos));
-                (Self::from_bits(sin.to_bits() ^ sign), Self::from_bits(cos.to_bits() ^ sign))
+                let both = (shifted << ($unsigned::BITS - 2)) & wide::$bits::splat(1 << ($unsigned::BITS - 1));
+                (Self::from_bits(both ^ (shifted << ($unsigned::BITS - 1))), Self::from_bits(both))
+            }
+
+            #[inline(always)]
+            fn change_signs(self, signs: Self) -> Self {
+                Self::from_bits(self.to_bits() ^ signs.to_bits())
+            }
+
+            #[inline(always)]
+            fn exchange(shifted: Self, sin: Self, cos: Self) -> (Self, Self) {
+                let exchange = exchange!($vector, $bits, $unsigned, shifted);
+                (exchange.select(cos, sin), exchange.select(sin, cos))
             }
 
             #[inline(always)]
@@ -270,22 +304,24 @@ macro_rules! vectors {
             }
 
             #[inline(always)]
-            fn turn_pairs(self, shifted: Self) -> Self {
-                let shifted = shifted.to_bits();
-                let last = shifted << ($unsigned::BITS - 1);
-                let (own, mut lanes) = (self.to_array(), self.to_array());
-                for lane in 0..$lanes {
-                    lanes[lane] = own[lane ^ 1];
-                }
-                let turned = exchange!($vector, $bits, shifted, last).select(Self::new(lanes), self);
-                // A cosine is the sine of a quarter turn more.
+            fn signs_of_pairs(shifted: Self) -> Self {
+                // Both bits change the sign of a sine, the second that of a cosine: the
+                // second of one more is both.
                 let mut more = [0; $lanes];
                 for lane in 0..$lanes / 2 {
-                    more[2 * lane + 1] = 1;
+                    more[2 * lane] = 1;
                 }
-                let top = wide::$bits::splat(1 << ($unsigned::BITS - 1));
-                let sign = ((shifted + wide::$bits::new(more)) << ($unsigned::BITS - 2)) & top;
-                Self::from_bits(turned.to_bits() ^ sign)
+                let turns = shifted.to_bits() + wide::$bits::new(more);
+                Self::from_bits((turns << ($unsigned::BITS - 2)) & wide::$bits::splat(1 << ($unsigned::BITS - 1)))
+            }
+
+            #[inline(always)]
+            fn exchange_pairs(self, shifted: Self) -> Self {
+                let (own, mut others) = (self.to_array(), self.to_array());
+                for lane in 0..$lanes {
+                    others[lane] = own[lane ^ 1];
+                }
+                exchange!($vector, $bits, $unsigned, shifted).select(Self::new(others), self)
             }
         }
     )*};
