@@ -1,4 +1,5 @@
-//! Batches on all cores, in pieces that keep a core busy for some microseconds. Each function panics as its namesake does.
+//! Batches on all cores, in pieces that keep a core busy for some microseconds. Each
+//! function panics as its namesake does.
 //!
 //! ```
 //! # #[cfg(feature = "rayon")] {
