@@ -8,7 +8,7 @@ use super::bench::Bench;
 use super::catalogue::{EITHER, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY};
 use super::found::Place;
 use super::isolated::Event;
-use super::model::{Fitted, Named, Setting};
+use super::model::{Fitted, Named, Setting, all_but};
 use super::selection::{CURVATURE, WITHIN_REACH, best_with};
 use crate::Effect;
 use crate::identify::normal::Fit;
@@ -36,8 +36,7 @@ const BEYOND_DOUBT: f64 = 100.0;
 /// about as well as this one, or nearly so where they are significant too. The best
 /// fitting first.
 pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, structure: bool, options: &Options) -> Vec<String> {
-    let mut rest = model.named.clone();
-    let one = rest.remove(k);
+    let (one, rest) = (model.named[k], all_but(&model.named, k));
     let (Ok(setting), Ok(own)) = (bench.at(&rest), bench.at(&model.named)) else { return Vec::new() };
     let Some(tests) = bench.tests(&rest, options) else { return Vec::new() };
     let Ok(without) = setting.fit(&rest) else { return Vec::new() };
@@ -173,8 +172,7 @@ pub struct Rival {
 pub fn rivals(bench: &Bench<'_>, model: &Fitted) -> Vec<Rival> {
     let mut found: Vec<Rival> = Vec::new();
     for k in 0..model.named.len() {
-        let mut rest = model.named.clone();
-        let one = rest.remove(k);
+        let (one, rest) = (model.named[k], all_but(&model.named, k));
         let Ok(setting) = bench.at(&rest) else { continue };
         for candidate in (0..setting.candidates.len()).filter(|&candidate| candidate != one.candidate) {
             let Some(rival) = best_with(&setting, &rest, candidate) else { continue };

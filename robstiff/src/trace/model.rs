@@ -65,6 +65,13 @@ pub struct Named {
     pub variant: usize,
 }
 
+/// The effects of a model without the one at place `k`.
+pub fn all_but(named: &[Named], k: usize) -> Vec<Named> {
+    let mut rest = named.to_vec();
+    rest.remove(k);
+    rest
+}
+
 /// A model with its fit.
 #[derive(Clone, Debug)]
 pub struct Fitted {

@@ -16,7 +16,7 @@ use std::vec::Vec;
 
 use super::bench::Bench;
 use super::bootstrap::{Alternatives, Reference, ScoreTest};
-use super::model::{Fitted, Named, Setting};
+use super::model::{Fitted, Named, Setting, all_but};
 use super::step::{Step, Tested};
 use super::{Options, Progress};
 
@@ -200,10 +200,7 @@ pub fn without_insignificant<M>(
 ) -> Option<(Named, M)> {
     let mut found: Vec<usize> = (0..named.len()).filter(|&k| p_values[k] > options.alpha).collect();
     found.sort_by(|&a, &b| p_values[b].total_cmp(&p_values[a]));
-    found.into_iter().find_map(|k| {
-        let mut rest = named.to_vec();
-        Some((rest.remove(k), fit(&rest)?))
-    })
+    found.into_iter().find_map(|k| Some((named[k], fit(&all_but(named, k))?)))
 }
 
 /// The first of the best models of a beam that passes.
@@ -264,8 +261,7 @@ fn passes(bench: &Bench<'_>, smaller: &Fitted, proposed: &Fitted, against_smalle
     let left_out = |model: &Fitted| Some(bench.at(&model.named).ok()?.left_out_rms(&model.fit));
     let predicts_better = matches!((left_out(proposed), left_out(smaller)), (Some(new), Some(old)) if new < old);
     let p_value = |k: usize| {
-        let mut rest = proposed.named.clone();
-        let one = rest.remove(k);
+        let (one, rest) = (proposed.named[k], all_but(&proposed.named, k));
         if rest == smaller.named {
             return against_smaller.p_value(one.candidate);
         }
@@ -277,8 +273,7 @@ fn passes(bench: &Bench<'_>, smaller: &Fitted, proposed: &Fitted, against_smalle
 /// The family-wise p-value of each effect, that of the model without it.
 fn p_values(bench: &Bench<'_>, named: &[Named], options: &Options) -> Vec<f64> {
     let one = |k: usize| {
-        let mut rest = named.to_vec();
-        let one = rest.remove(k);
+        let (one, rest) = (named[k], all_but(named, k));
         bench.tests(&rest, options).map_or(1.0, |tests| tests.p_value(one.candidate))
     };
     (0..named.len()).map(one).collect()
@@ -327,8 +322,7 @@ fn improve(setting: &Setting<'_>, mut beam: Vec<Fitted>) -> Vec<Fitted> {
         }
         for model in &best {
             for k in 0..model.named.len() {
-                let mut rest = model.named.clone();
-                rest.remove(k);
+                let rest = all_but(&model.named, k);
                 let swapped =
                     (0..setting.candidates.len()).filter_map(|candidate| best_loosely(setting, &rest, candidate));
                 beam.extend(swapped);

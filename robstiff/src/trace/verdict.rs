@@ -10,7 +10,7 @@ use super::bench::Bench;
 use super::catalogue::{CREEP, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY};
 use super::features::LOAD_ORDER;
 use super::lack_of_fit::{LackOfFit, StructureTest};
-use super::model::{Fitted, Named};
+use super::model::{Fitted, Named, all_but};
 use super::selection::Selection;
 
 /// What a tracing came to.
@@ -75,8 +75,7 @@ pub fn to_take_back(bench: &Bench<'_>, model: &Fitted, left: &LackOfFit) -> Vec<
         return (0..model.named.len()).filter(|&k| nonlinear(&model.named[k])).collect();
     }
     let share = |k: usize| {
-        let mut rest = model.named.clone();
-        rest.remove(k);
+        let rest = all_but(&model.named, k);
         // Both over the same degrees of freedom but for a few.
         let without = bench.fit(&rest).map_or(f64::INFINITY, |fitted| fitted.fit.rss);
         let noise = model.fit.rss * (1.0 - left.fraction);

@@ -9,7 +9,7 @@ use std::vec::Vec;
 use super::Bench;
 use crate::trace::catalogue::{BASE_SLIP, Candidate, Catalogue, LIKELY, Number, Variant, catalogue};
 use crate::trace::isolated;
-use crate::trace::model::Named;
+use crate::trace::model::{Named, all_but};
 use crate::trace::slip::{Moment, likeliest_slip};
 
 /// A column this small against the largest of a joint is zero but for rounding.
@@ -109,8 +109,7 @@ impl Bench<'_> {
             models.push(named.to_vec());
         }
         for k in 0..named.len() {
-            let mut rest = named.to_vec();
-            rest.remove(k);
+            let rest = all_but(named, k);
             if !rest.iter().any(slips) {
                 models.push(rest);
             }

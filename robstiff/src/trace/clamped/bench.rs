@@ -12,7 +12,7 @@ use crate::identify::problem::Problem;
 use crate::trace::Options;
 use crate::trace::bootstrap::ScoreTest;
 use crate::trace::catalogue::{Candidate, KINDS, Kind, Variant};
-use crate::trace::model::{Fitted, Named};
+use crate::trace::model::{Fitted, Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
 
 /// How many of the best proposals are put to the tests in one step.
@@ -168,8 +168,7 @@ impl Bench {
     /// the index of that.
     pub fn replaced(&self, named: &[Named]) -> Vec<(usize, Fitted)> {
         let without = |k: usize| {
-            let mut rest = named.to_vec();
-            let one = rest.remove(k);
+            let (one, rest) = (named[k], all_but(named, k));
             let others = self.extended(&rest).into_iter();
             others.filter(move |other| !other.named.iter().any(|n| n.candidate == one.candidate)).map(move |m| (k, m))
         };
@@ -178,8 +177,7 @@ impl Bench {
 
     /// The family-wise p-value of an effect of a model, that of the model without it.
     fn p_value(&self, named: &[Named], k: usize, options: &Options) -> f64 {
-        let mut rest = named.to_vec();
-        let one = rest.remove(k);
+        let (one, rest) = (named[k], all_but(named, k));
         let p_value = || {
             let test = self.test(&rest)?;
             let (statistic, _) = test.statistics()[one.candidate]?;

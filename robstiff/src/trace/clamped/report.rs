@@ -17,7 +17,7 @@ use crate::identify::readable::{UNREADABLE, is_readable};
 use crate::identify::{Estimate, Identification, NoiseSource};
 use crate::trace::catalogue::{KINDS, OUTLIERS};
 use crate::trace::found::{EffectParameter, Found, Place};
-use crate::trace::model::Fitted;
+use crate::trace::model::{Fitted, all_but};
 use crate::trace::selection::WITHIN_REACH;
 use crate::trace::{Misfit, NamedEffect, PoseError, Rival, RowResidual, Trace, Verdict, verdict};
 
@@ -188,8 +188,7 @@ fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: 
 
 /// The name of wild rows, where one of them explains what an effect does.
 fn wild_row(bench: &Bench, model: &Fitted, effect: usize) -> Option<String> {
-    let mut rest = model.named.clone();
-    rest.remove(effect);
+    let rest = all_but(&model.named, effect);
     let off = one_off(bench, &bench.fit(&rest)?)?;
     (off.bic < model.bic + WITHIN_REACH).then(|| format!("{}@{}", OUTLIERS.name, Place::Rig))
 }

@@ -18,7 +18,7 @@ use crate::identify::problem::{Problem, rms};
 use crate::trace::Options;
 use crate::trace::bootstrap::ScoreTest;
 use crate::trace::catalogue::{Candidate, Variant};
-use crate::trace::model::Named;
+use crate::trace::model::{Named, all_but};
 
 /// Positions with everything that may explain them, at a model.
 pub struct Bench<'c> {
@@ -202,8 +202,7 @@ impl<'c> Bench<'c> {
     /// Every model with one effect replaced, with the index of that, the best first.
     pub fn replaced(&self, named: &[Named]) -> Vec<(usize, Proposed)> {
         let without = |k: usize| {
-            let mut rest = named.to_vec();
-            let one = rest.remove(k);
+            let (one, rest) = (named[k], all_but(named, k));
             let others = self.extended(&rest).into_iter();
             others.filter(move |other| !other.named.iter().any(|n| n.candidate == one.candidate)).map(move |m| (k, m))
         };
@@ -230,8 +229,7 @@ impl<'c> Bench<'c> {
     pub fn pruned(&self, mut model: Proposed) -> Proposed {
         loop {
             let without = |k: usize| {
-                let mut rest = model.named.clone();
-                rest.remove(k);
+                let rest = all_but(&model.named, k);
                 self.proposed(rest)
             };
             let best = (0..model.named.len()).filter_map(without).min_by(|a, b| a.bic.total_cmp(&b.bic));
@@ -250,8 +248,7 @@ impl<'c> Bench<'c> {
 
     /// The family-wise p-value of an effect, that of the model without it.
     pub fn p_value(&self, named: &[Named], effect: usize, options: &Options) -> f64 {
-        let mut rest = named.to_vec();
-        let one = rest.remove(effect);
+        let (one, rest) = (named[effect], all_but(named, effect));
         let p = self.test(&rest).and_then(|test| {
             let (statistic, _) = test.statistics()[one.candidate]?;
             Some(test.reference(options.draws, options.seed).p_value(statistic))

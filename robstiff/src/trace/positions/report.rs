@@ -21,7 +21,7 @@ use crate::trace::catalogue::{KINDS, OUTLIERS, Variant};
 use crate::trace::found::{EffectParameter, Found, Place};
 use crate::trace::held_out;
 use crate::trace::lack_of_fit::StructureTest;
-use crate::trace::model::Named;
+use crate::trace::model::{Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
 use crate::trace::{Misfit, NamedEffect, Options, PoseError, Rival, RowResidual, Trace, Verdict, verdict};
 
@@ -193,8 +193,7 @@ fn effects(
         };
         let of_shape = form.shape.iter().map(|number| EffectParameter { std: spread_of_shape(one), ..number.clone() });
         let parameters: Vec<EffectParameter> = form.columns.iter().map(number).chain(of_shape).collect();
-        let mut rest = model.named.clone();
-        rest.remove(k);
+        let rest = all_but(&model.named, k);
         let without = bench.solve(&rest, &model.solved.state).map_or(f64::INFINITY, |rest| rest.solved.fit.rss);
         let mut same_as: Vec<String> = Vec::new();
         for (_, other) in replaced.iter().filter(|(of, other)| *of == k && alike(bench, model, other.rss)) {

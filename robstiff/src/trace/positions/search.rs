@@ -15,7 +15,7 @@ use crate::identify::positions::regression::STANDS;
 use crate::identify::positions::wild::{Wild, wild_rows};
 use crate::trace::bootstrap::{Reference, price};
 use crate::trace::lack_of_fit::LackOfFit;
-use crate::trace::model::{Fitted, Named};
+use crate::trace::model::{Fitted, Named, all_but};
 use crate::trace::selection::{CURVATURE, Selection, WITHIN_REACH, without_insignificant};
 use crate::trace::step::{Against, Step};
 use crate::trace::verdict::FEWEST_POSES;
@@ -312,8 +312,7 @@ fn sideways(bench: &Bench<'_>, model: Model, reference: &Reference, options: &Op
 fn weakest(bench: &Bench<'_>, model: &Model, reference: &Reference) -> Option<(usize, f64)> {
     let variance = model.solved.fit.rss / model.solved.problem.freedom(&model.solved.fit);
     let p = |k: usize| {
-        let mut rest = model.named.clone();
-        rest.remove(k);
+        let rest = all_but(&model.named, k);
         let without = bench.solve(&rest, &model.solved.state).map_or(f64::INFINITY, |rest| rest.solved.fit.rss);
         let price = price(bench.variant(model.named[k]));
         reference.p_value((without - model.solved.fit.rss) / variance - price)
@@ -324,8 +323,7 @@ fn weakest(bench: &Bench<'_>, model: &Model, reference: &Reference) -> Option<(u
 /// The model without effects that later ones made superfluous.
 fn without_superfluous(bench: &mut Bench<'_>, mut model: Model, reference: &Reference, options: &Options) -> Model {
     while let Some((k, _)) = weakest(bench, &model, reference).filter(|(_, p)| *p > options.alpha) {
-        let mut rest = model.named.clone();
-        rest.remove(k);
+        let rest = all_but(&model.named, k);
         let Some(smaller) = bench.solve(&rest, &model.solved.state) else { break };
         bench.turn_to(&smaller);
         model = smaller;
@@ -352,8 +350,7 @@ fn significant<'c>(bench: &mut Bench<'c>, mut model: Model, options: &Options) -
 fn without_borrowed(bench: &Bench<'_>, model: &Model, left: &LackOfFit) -> Option<Model> {
     let own = model.solved.fit.rss;
     let smaller = (0..model.named.len()).filter_map(|k| {
-        let mut rest = model.named.clone();
-        rest.remove(k);
+        let rest = all_but(&model.named, k);
         bench.solve(&rest, &model.solved.state)
     });
     let least = smaller.min_by(|a, b| a.solved.fit.rss.total_cmp(&b.solved.fit.rss))?;

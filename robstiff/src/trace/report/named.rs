@@ -14,7 +14,7 @@ use crate::trace::bench::Bench;
 use crate::trace::catalogue::{BASE_SLIP, OUTLIERS};
 use crate::trace::found::{EffectParameter, Found, Place};
 use crate::trace::isolated::Event;
-use crate::trace::model::{Fitted, Named, Setting};
+use crate::trace::model::{Fitted, Named, Setting, all_but};
 use crate::trace::{NamedEffect, Options, Outcome};
 
 /// The named effects, the one whose removal costs most first: each with the error on
@@ -52,8 +52,7 @@ pub fn effects(
 /// The places of a model's effects, that without which the criterion is worst first.
 fn by_cost(bench: &Bench<'_>, model: &Fitted) -> Vec<usize> {
     let without = |k: usize| {
-        let mut rest = model.named.clone();
-        rest.remove(k);
+        let rest = all_but(&model.named, k);
         bench.fit(&rest).map_or(f64::INFINITY, |without| without.bic)
     };
     let mut costs: Vec<(f64, usize)> = (0..model.named.len()).map(|k| (without(k), k)).collect();
