@@ -292,7 +292,6 @@ fn search(
         // What is missing now may drive the rest beyond what physics allows.
         let loosely = |why: String| bench.at(&named)?.fit_loosely(&named).ok_or(why);
         let rest = bench.fit(&named).or_else(loosely)?;
-        let rest = bench.tried(&named, Bench::learn_noise).unwrap_or(rest);
         let settled = settled(bench, rest, options);
         (selection.model, selection.p_values) = (settled.model, settled.p_values);
         taken_back += settled.dropped.len();

@@ -173,20 +173,22 @@ pub struct Settled {
     pub dropped: Vec<Named>,
 }
 
-/// A model with the rows that are wild judged at it, and without effects that such rows,
-/// or an earlier noise, had made significant; but for those that the rest cannot be fitted
-/// without.
+/// A model with the noise learnt and the rows that are wild judged at it, and without
+/// effects that such rows, or an earlier noise, had made significant; but for those that the
+/// rest cannot be fitted without.
 pub fn settled(bench: &mut Bench<'_>, mut model: Fitted, options: &Options) -> Settled {
     let mut dropped = Vec::new();
     loop {
-        if let Some(better) = bench.tried(&model.named, Bench::look_again) {
-            model = better;
+        for judge in [Bench::learn_noise, Bench::look_again] {
+            if let Some(better) = bench.tried(&model.named, judge) {
+                model = better;
+            }
         }
         let p_values = p_values(bench, &model.named, options);
         let smaller = without_insignificant(&model.named, &p_values, options, |rest| bench.fit(rest).ok());
         let Some((one, smaller)) = smaller else { return Settled { model, p_values, dropped } };
         dropped.push(one);
-        model = bench.tried(&smaller.named, Bench::learn_noise).unwrap_or(smaller);
+        model = smaller;
     }
 }
 

@@ -14,11 +14,11 @@ use crate::identify::clamped::regression::problem;
 use crate::identify::clamped::wild;
 use crate::identify::covariance::outliers::FEW;
 use crate::identify::normal::Sign;
-use crate::trace::bootstrap::{Reference, ScoreTest};
+use crate::trace::bootstrap::ScoreTest;
 use crate::trace::catalogue::{Candidate, KINDS, Variant};
 use crate::trace::found::Place;
 use crate::trace::lack_of_fit::{LackOfFit, StructureTest};
-use crate::trace::model::Fitted;
+use crate::trace::model::{Fitted, Named};
 use crate::trace::selection::{Selection, without_insignificant};
 use crate::trace::step::{Against, Step};
 use crate::trace::verdict::FEWEST_POSES;
@@ -70,11 +70,8 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
         unnamed: false,
     };
     course.run(options, progress)?;
-    let Course { bench, model: found, wild, steps, mut unnamed, .. } = course;
-    let names = found.named.len();
-    let (model, p_values) = significant(&bench, found, options);
-    // What a name had said better than others may still be missing.
-    unnamed |= model.named.len() < names && is_missing(&bench, &model, options);
+    let p_values = course.settle(options)?;
+    let Course { bench, model, wild, steps, unnamed, .. } = course;
     progress("looking for structure in what is left");
     let left = structure(&bench, &model, options);
     let selection = Selection { model, p_values, steps, unnamed };
@@ -145,6 +142,30 @@ impl Course {
         }
     }
 
+    /// Drops the effects that rows which are left out by now, or effects named since, had made
+    /// significant, one by one, with all rows judged anew; the p-values of those that stay.
+    fn settle(&mut self, options: &Options) -> Result<Vec<f64>, String> {
+        let mut dropped = Vec::new();
+        let p_values = loop {
+            let p_values = self.bench.p_values(&self.model.named, options);
+            let fit = |rest: &[Named]| self.bench.fit(rest);
+            let smaller = without_insignificant(&self.model.named, &p_values, options, fit);
+            let Some((one, smaller)) = smaller else { break p_values };
+            dropped.push(self.bench.candidates[one.candidate].name());
+            self.model = smaller;
+            self.look_again()?;
+        };
+        if !dropped.is_empty()
+            && let Some((mut step, _, missing)) = self.tested(options)
+        {
+            // What they had said better than others may still be missing.
+            self.unnamed |= missing;
+            step.outcome = format!("no longer significant: {}", dropped.join(", "));
+            self.steps.push(step);
+        }
+        Ok(p_values)
+    }
+
     /// Judges all rows anew. Wild rows must not vote for an effect; those that were wild
     /// while one was missing are looked at again once it is named. They stay out where
     /// physics does not allow the model with them, or what they do has another name.
@@ -190,7 +211,8 @@ impl Course {
                 left_out_rms: with.map(|with| bench.left_out_rms(&with.fit)),
             }
         });
-        Some((step, single, any_significant(&statistics, &reference, options)))
+        let missing = statistics.iter().flatten().any(|(gains, _)| reference.p_value(*gains) <= options.alpha);
+        Some((step, single, missing))
     }
 
     /// The first of the best models with one effect more that passes; where none does, with
@@ -234,28 +256,6 @@ impl Course {
         self.bench = polished.with_compliances(&fine.fit);
         self.model = self.bench.fit(&fine.named).unwrap_or(fine);
     }
-}
-
-/// The model with the p-value of each effect, without those that rows which are left out
-/// by now, or effects named since, had made significant.
-fn significant(bench: &Bench, mut model: Fitted, options: &Options) -> (Fitted, Vec<f64>) {
-    loop {
-        let p_values = bench.p_values(&model.named, options);
-        let smaller = without_insignificant(&model.named, &p_values, options, |rest| bench.fit(rest));
-        let Some((_, smaller)) = smaller else { return (model, p_values) };
-        model = smaller;
-    }
-}
-
-/// Whether any candidate is significant beside a model.
-fn is_missing(bench: &Bench, model: &Fitted, options: &Options) -> bool {
-    bench
-        .test(&model.named)
-        .is_some_and(|test| any_significant(&test.statistics(), &test.reference(options.draws, options.seed), options))
-}
-
-fn any_significant(statistics: &[Option<(f64, usize)>], reference: &Reference, options: &Options) -> bool {
-    statistics.iter().flatten().any(|(gains, _)| reference.p_value(*gains) <= options.alpha)
 }
 
 /// The same model on other rows.
