@@ -59,16 +59,7 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
         let left = LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() };
         return Ok(Found { bench, selection, left, wild: (Vec::new(), 1.0), too_little: Some(why) });
     }
-    let mut course = Course {
-        most: (FEW * bench.axes.rows.len() as f64).floor() as usize,
-        bench,
-        model: base,
-        wild: (Vec::new(), 0.0),
-        strict: false,
-        kept: false,
-        steps: Vec::new(),
-        unnamed: false,
-    };
+    let mut course = Course::new(bench, base);
     course.run(options, progress)?;
     let p_values = course.settle(options)?;
     let Course { bench, model, wild, steps, unnamed, .. } = course;
@@ -99,6 +90,20 @@ struct Course {
 }
 
 impl Course {
+    /// One that begins with a model.
+    fn new(bench: Bench, model: Fitted) -> Self {
+        Self {
+            most: (FEW * bench.axes.rows.len() as f64).floor() as usize,
+            bench,
+            model,
+            wild: (Vec::new(), 0.0),
+            strict: false,
+            kept: false,
+            steps: Vec::new(),
+            unnamed: false,
+        }
+    }
+
     /// Adds effects for as long as something is missing.
     fn run(&mut self, options: &Options, progress: &Progress<'_>) -> Result<(), String> {
         loop {
@@ -326,5 +331,41 @@ fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit {
         structure,
         fraction: if structure { (statistic / freedom).clamp(0.0, 1.0) } else { 0.0 },
         depends_on,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::Data;
+    use crate::identify::clamped::slopes;
+    use crate::samples::five_axis;
+    use crate::trace::clamped::tests::{measured, ramp};
+
+    /// A name that stood on a row which is left out goes, and the row comes back.
+    #[test]
+    fn what_is_not_significant_does_not_stay_named() {
+        let lost = |axis, torque: f64| if axis == 2 { 0.5e-4 * torque / torque.hypot(20.0) } else { 0.0 };
+        let campaign = measured(&five_axis(), &ramp(14), 1, lost);
+        let Data::Clamped(rows) = &campaign.data else { unreachable!("made of clamped axes") };
+        let identified = slopes(&campaign, rows, &[]).expect("every axis is loaded");
+        let whole = Bench::new(Axes::new(&campaign.robot, rows, &identified), None);
+        let name = |one: &Named| whole.candidates[one.candidate].name();
+        let truth = whole.extended(&[]).into_iter().find(|model| name(&model.named[0]) == "lost_motion@joint 2");
+        let truth = truth.expect("it is in the catalogue").named;
+        let besides = whole.extended(&truth);
+        assert!(besides.len() > 5);
+        for model in besides {
+            let line = whole.axes.rows[40].line;
+            let (bench, model) = refitted(whole.axes.without(&[40]), &whole, &model).expect("physically possible");
+            let mut course = Course::new(bench, model);
+            course.wild = (std::vec![line], 1e-6);
+            let p_values = course.settle(&Options::default()).expect("the axes show their compliances");
+            assert_eq!(course.model.named.iter().map(name).collect::<Vec<_>>(), ["lost_motion@joint 2"]);
+            assert!(p_values.len() == 1 && p_values[0] < 0.001, "{p_values:?}");
+            assert_eq!((course.bench.axes.rows.len(), course.wild.0.len()), (rows.len(), 0));
+            let outcome = &course.steps.last().expect("it says what it dropped").outcome;
+            assert!(outcome.starts_with("no longer significant: ") && !course.unnamed, "{outcome}");
+        }
     }
 }

@@ -20,7 +20,7 @@ const NOISE: f64 = 1e-6;
 
 /// The same torques (Nm) on every axis; `more` is what an axis turns by besides its
 /// compliance (rad).
-fn measured(robot: &Description, torques: &[f64], seed: u64, more: impl Fn(usize, f64) -> f64) -> Campaign {
+pub(super) fn measured(robot: &Description, torques: &[f64], seed: u64, more: impl Fn(usize, f64) -> f64) -> Campaign {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut rows = Vec::new();
     for (joint, axis) in robot.joints.iter().zip(1..) {
@@ -43,7 +43,7 @@ fn names(trace: &Trace) -> Vec<String> {
     trace.effects.iter().map(|named| named.effect.to_string()).collect()
 }
 
-fn ramp(count: usize) -> Vec<f64> {
+pub(super) fn ramp(count: usize) -> Vec<f64> {
     (1..=count).map(|k| 1000.0 * k as f64 / count as f64).collect()
 }
 
