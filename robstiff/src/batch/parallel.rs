@@ -70,10 +70,11 @@ impl Room for () {
 }
 
 /// Runs a function on the poses and the room of each piece; it is told where the piece
-/// starts. The calling thread takes pieces, too, and does not wait until another is awake.
+/// starts. The calling thread takes pieces, too, and begins before another is awake; it returns
+/// when all that were woken have looked whether there is one left.
 fn pieces<V: View<T, N>, T: Float, R: Room, const N: usize>(poses: V, results: R, run: impl Fn(usize, V, R) + Sync) {
     let count = poses.count();
-    assert!(results.fits(count), "there must be as many results as poses");
+    assert!(results.fits(count), "there must be as many results as poses, {count}");
     let left = Mutex::new((0..count, results));
     let next = || {
         let (poses, results) = &mut *left.lock().expect("a thread that has the lock does not panic");

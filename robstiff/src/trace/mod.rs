@@ -30,6 +30,7 @@ pub mod point;
 pub mod positions;
 mod report;
 pub mod selection;
+mod settle;
 mod sizes;
 pub mod slip;
 pub mod step;
@@ -58,7 +59,8 @@ use self::isolated::Event;
 use self::lack_of_fit::{LackOfFit, Yardstick};
 use self::model::{Fitted, Setting};
 use self::report::report;
-use self::selection::{Selection, select, settled};
+use self::selection::{Selection, select};
+use self::settle::{settled, told};
 use crate::campaign::{Campaign, Data};
 use crate::identify::encoders::EncodersRead;
 use crate::identify::prepare::Prepared;
@@ -294,6 +296,9 @@ fn search(
         let rest = bench.fit(&named).or_else(loosely)?;
         let settled = settled(bench, rest, options);
         (selection.model, selection.p_values) = (settled.model, settled.p_values);
+        if let Some((step, _)) = told(bench, &selection.model, &settled.dropped, options) {
+            selection.steps.push(step);
+        }
         taken_back += settled.dropped.len();
         left = test(bench, &selection.model)?;
         // What a name had accounted for is there, found by a test or not.

@@ -17,6 +17,7 @@ use std::vec::Vec;
 use super::bench::Bench;
 use super::bootstrap::{Alternatives, Reference, ScoreTest};
 use super::model::{Fitted, Named, Setting, all_but};
+use super::settle::{Settled, settled, told};
 use super::step::{Step, Tested};
 use super::{Options, Progress};
 
@@ -150,59 +151,11 @@ pub fn select(
         }
     }
     let Settled { model, p_values, dropped } = settled(bench, model, options);
-    if !dropped.is_empty()
-        && let Some(tests) = bench.tests(&model.named, options)
-    {
-        // What they had said better than others may still be missing.
-        unnamed |= tests.smallest_p() <= options.alpha;
-        let mut step = table(&*bench.at(&model.named)?, &model, &tests, options);
-        let names: Vec<String> = dropped.iter().map(|one| bench.candidates()[one.candidate].name()).collect();
-        step.outcome = std::format!("no longer significant: {}", names.join(", "));
+    if let Some((step, missing)) = told(bench, &model, &dropped, options) {
         steps.push(step);
+        unnamed |= missing;
     }
     Ok(Selection { model, p_values, steps, unnamed })
-}
-
-/// A model as the rows and the noise have it that it stands on.
-pub struct Settled {
-    /// The model.
-    pub model: Fitted,
-    /// The family-wise p-value of each of its effects.
-    pub p_values: Vec<f64>,
-    /// What was dropped.
-    pub dropped: Vec<Named>,
-}
-
-/// A model with the noise learnt and the rows that are wild judged at it, and without
-/// effects that such rows, or an earlier noise, had made significant; but for those that the
-/// rest cannot be fitted without.
-pub fn settled(bench: &mut Bench<'_>, mut model: Fitted, options: &Options) -> Settled {
-    let mut dropped = Vec::new();
-    loop {
-        for judge in [Bench::learn_noise, Bench::look_again] {
-            if let Some(better) = bench.tried(&model.named, judge) {
-                model = better;
-            }
-        }
-        let p_values = p_values(bench, &model.named, options);
-        let smaller = without_insignificant(&model.named, &p_values, options, |rest| bench.fit(rest).ok());
-        let Some((one, smaller)) = smaller else { return Settled { model, p_values, dropped } };
-        dropped.push(one);
-        model = smaller;
-    }
-}
-
-/// The effect of a model that is the least significant of those which are not and without
-/// which the rest can be fitted; with that fit.
-pub fn without_insignificant<M>(
-    named: &[Named],
-    p_values: &[f64],
-    options: &Options,
-    fit: impl Fn(&[Named]) -> Option<M>,
-) -> Option<(Named, M)> {
-    let mut found: Vec<usize> = (0..named.len()).filter(|&k| p_values[k] > options.alpha).collect();
-    found.sort_by(|&a, &b| p_values[b].total_cmp(&p_values[a]));
-    found.into_iter().find_map(|k| Some((named[k], fit(&all_but(named, k))?)))
 }
 
 /// The first of the best models of a beam that passes.
@@ -273,7 +226,7 @@ fn passes(bench: &Bench<'_>, smaller: &Fitted, proposed: &Fitted, against_smalle
 }
 
 /// The family-wise p-value of each effect, that of the model without it.
-fn p_values(bench: &Bench<'_>, named: &[Named], options: &Options) -> Vec<f64> {
+pub fn p_values(bench: &Bench<'_>, named: &[Named], options: &Options) -> Vec<f64> {
     let one = |k: usize| {
         let (one, rest) = (named[k], all_but(named, k));
         bench.tests(&rest, options).map_or(1.0, |tests| tests.p_value(one.candidate))
@@ -365,7 +318,8 @@ fn best_of(mut models: Vec<Fitted>) -> Vec<Fitted> {
     kept
 }
 
-fn table(setting: &Setting<'_>, model: &Fitted, tests: &Tests, options: &Options) -> Step {
+/// All candidates against a model.
+pub fn table(setting: &Setting<'_>, model: &Fitted, tests: &Tests, options: &Options) -> Step {
     let name = |one: &Named| setting.candidates[one.candidate].name();
     let before = setting.left_out_rms(&model.fit);
     let candidates = (0..setting.candidates.len()).map(|candidate| {

@@ -75,6 +75,16 @@ impl Step {
         }
     }
 
+    /// A model that nothing can be tested against.
+    pub fn bare(named: Vec<String>) -> Self {
+        Self { named, candidates: Vec::new(), outcome: String::new() }
+    }
+
+    /// Says that these effects were dropped on the way to the model.
+    pub fn dropped(&mut self, names: &[String]) {
+        self.outcome = format!("no longer significant: {}", names.join(", "));
+    }
+
     /// Says that these effects are named now.
     pub fn came_to(&mut self, names: &[String]) {
         self.outcome = format!("named {}", names.join(", "));

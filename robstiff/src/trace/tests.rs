@@ -2,6 +2,7 @@
 //! is the statistics, not the mechanics.
 
 use std::format;
+use std::rc::Rc;
 use std::string::ToString;
 use std::vec;
 
@@ -9,6 +10,7 @@ use nalgebra::DVector;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::bench::Known;
 use super::*;
 use crate::campaign::{Data, Displacements, Frame, Noise, Observation};
 use crate::elements::Parameter;
@@ -175,6 +177,26 @@ fn what_is_not_significant_does_not_stay_named() {
         assert!(settled.p_values.len() == 1 && settled.p_values[0] < 0.001, "{:?}", settled.p_values);
         assert_eq!(settled.dropped.len(), 1);
     }
+}
+
+/// Whatever they were like when the model was come to.
+#[test]
+fn a_model_settles_on_its_own_rows_and_noise() {
+    let campaign = campaign(&five_axis(), 24, &[TILT_3], 3);
+    let prepared = Prepared::new(&campaign).expect("a campaign of displacements");
+    let mut bench = Bench::new(&campaign, &prepared).expect("it shows the joints");
+    let alone = bench.fit(&[]).expect("no effects");
+    let found = select(&mut bench, alone, &Options::default(), &|_| {});
+    let model = found.expect("it shows the joints").model;
+    let learnt = bench.noise.covariance.own[0];
+    let mut noise = Known::clone(&bench.noise);
+    noise.covariance.own.iter_mut().for_each(|own| *own *= 3.0);
+    bench.noise = Rc::new(noise);
+    bench.left_out[..6].fill(true);
+    let settled = settled(&mut bench, model, &Options::default());
+    assert_eq!((settled.dropped.len(), settled.model.named.len()), (0, 1));
+    assert!(!bench.left_out.contains(&true), "rows that fit came back");
+    assert!((bench.noise.covariance.own[0] / learnt - 1.0).abs() < 0.01, "{}", bench.noise.covariance.own[0]);
 }
 
 #[test]

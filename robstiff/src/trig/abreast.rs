@@ -172,7 +172,7 @@ impl<F: Float> Pairs<F> for F {
 
     #[inline(always)]
     fn signs_of_pairs(shifted: Self) -> Self {
-        shifted
+        F::signs(shifted).0
     }
 
     #[inline(always)]

@@ -19,7 +19,8 @@ use crate::trace::catalogue::{Candidate, KINDS, Variant};
 use crate::trace::found::Place;
 use crate::trace::lack_of_fit::{LackOfFit, StructureTest};
 use crate::trace::model::{Fitted, Named};
-use crate::trace::selection::{Selection, without_insignificant};
+use crate::trace::selection::Selection;
+use crate::trace::settle::without_insignificant;
 use crate::trace::step::{Against, Step};
 use crate::trace::verdict::FEWEST_POSES;
 use crate::trace::{Options, Progress};
@@ -148,26 +149,31 @@ impl Course {
     }
 
     /// Drops the effects that rows which are left out by now, or effects named since, had made
-    /// significant, one by one, with all rows judged anew; the p-values of those that stay.
+    /// significant, one by one, and judges rows anew each time; the p-values of those that stay.
     fn settle(&mut self, options: &Options) -> Result<Vec<f64>, String> {
-        let mut dropped = Vec::new();
+        let before = self.model.named.clone();
         let p_values = loop {
             let p_values = self.bench.p_values(&self.model.named, options);
             let fit = |rest: &[Named]| self.bench.fit(rest);
             let smaller = without_insignificant(&self.model.named, &p_values, options, fit);
-            let Some((one, smaller)) = smaller else { break p_values };
-            dropped.push(self.bench.candidates[one.candidate].name());
+            let Some((_, smaller)) = smaller else { break p_values };
             self.model = smaller;
+            // A row that is wild now may take further names with it.
             self.look_again()?;
         };
-        if !dropped.is_empty()
-            && let Some((mut step, _, missing)) = self.tested(options)
-        {
-            // What they had said better than others may still be missing.
-            self.unnamed |= missing;
-            step.outcome = format!("no longer significant: {}", dropped.join(", "));
-            self.steps.push(step);
+        let name = |one: &Named| self.bench.candidates[one.candidate].name();
+        let dropped: Vec<String> = before.iter().filter(|one| !self.model.named.contains(one)).map(name).collect();
+        if dropped.is_empty() {
+            return Ok(p_values);
         }
+        let (mut step, missing) = match self.tested(options) {
+            Some((step, _, missing)) => (step, missing),
+            None => (Step::bare(self.model.named.iter().map(name).collect()), false),
+        };
+        step.dropped(&dropped);
+        self.steps.push(step);
+        // What they had said better than others may still be missing.
+        self.unnamed |= missing;
         Ok(p_values)
     }
 
@@ -367,5 +373,10 @@ mod tests {
             let outcome = &course.steps.last().expect("it says what it dropped").outcome;
             assert!(outcome.starts_with("no longer significant: ") && !course.unnamed, "{outcome}");
         }
+        // What is dropped may have said a little of what no one says then.
+        let alone = whole.extended(&[]).into_iter().rfind(|model| model.named != truth).expect("it has others");
+        let mut course = Course::new(Bench::new(whole.axes.clone(), None), alone);
+        let p_values = course.settle(&Options::default()).expect("the axes show their compliances");
+        assert_eq!((p_values.len(), course.steps.len(), course.unnamed), (0, 1, true));
     }
 }
