@@ -8,8 +8,9 @@
 //! poses left out of the fit, each in turn, are predicted better than by the
 //! smaller model. An effect that was named early and is no longer needed falls
 //! out this way, so steps go forward, sideways and back; what stands is tested
-//! again with the rows and the noise that it stands on. Poses held out take no
-//! part: they judge what was found.
+//! again with the rows and the noise that it stands on, and where something is
+//! missing without what that drops, the search goes on from there, once. Poses
+//! held out take no part: they judge what was found.
 
 use std::string::String;
 use std::vec::Vec;
@@ -95,33 +96,60 @@ pub fn select(
     options: &Options,
     progress: &Progress<'_>,
 ) -> Result<Selection, String> {
-    let mut beam = std::vec![model.clone()];
     let mut steps = Vec::new();
+    let mut resumed = false;
+    loop {
+        let unnamed = grow(bench, &mut model, &mut steps, options, progress)?;
+        let settled = settled(bench, model, options);
+        let told = told(bench, &settled.model, &settled.dropped, options);
+        let missing = told.is_some_and(|(step, missing)| {
+            steps.push(step);
+            missing
+        });
+        // Once, for the same may be named and dropped time and again.
+        if resumed || !missing {
+            let Settled { model, p_values, .. } = settled;
+            return Ok(Selection { model, p_values, steps, unnamed: unnamed || missing });
+        }
+        (model, resumed) = (settled.model, true);
+    }
+}
+
+/// Adds effects to a model for as long as one passes every test; whether something is missing
+/// for which none does.
+fn grow(
+    bench: &mut Bench<'_>,
+    model: &mut Fitted,
+    steps: &mut Vec<Step>,
+    options: &Options,
+    progress: &Progress<'_>,
+) -> Result<bool, String> {
+    let mut beam = std::vec![model.clone()];
     let mut unnamed = false;
     while model.named.len() < MOST_EFFECTS {
         progress(&std::format!("searching for effect {}", model.named.len() + 1));
         // Without rows that look wild physics may not allow what was accepted.
         if let Some(better) = bench.tried(&model.named, Bench::look_again) {
-            model = better;
+            *model = better;
         }
         let mut setting = bench.at(&model.named)?;
-        if let Some(better) = sideways(bench, &setting, &model, options) {
-            model = better;
+        if let Some(better) = sideways(bench, &setting, model, options) {
+            *model = better;
             setting = bench.at(&model.named)?;
         }
         let Some(tests) = bench.tests(&model.named, options) else { break };
-        let mut step = table(&setting, &model, &tests, options);
+        let mut step = table(&setting, model, &tests, options);
         if tests.smallest_p() > options.alpha {
             step.outcome = String::from("nothing is missing significantly");
             steps.push(step);
             break;
         }
         beam = improve(&setting, extend(&setting, &beam));
-        let mut accepted = propose(bench, &setting, &beam, &model, &tests, options);
+        let mut accepted = propose(bench, &setting, &beam, model, &tests, options);
         if accepted.is_none() {
             // What is missing besides can keep either of two from passing alone.
             beam = improve(&setting, extend(&setting, &beam));
-            accepted = propose(bench, &setting, &beam, &model, &tests, options);
+            accepted = propose(bench, &setting, &beam, model, &tests, options);
         }
         let Some(proposed) = accepted else {
             unnamed = true;
@@ -132,30 +160,25 @@ pub fn select(
         let names: Vec<String> = proposed.named.iter().map(|one| setting.candidates[one.candidate].name()).collect();
         step.came_to(&names);
         steps.push(step);
-        model = proposed;
+        *model = proposed;
         // What a grid's value leaves of an effect must not look like another.
         let (polished, named) = bench.polished(&model.named).simplified(&model.named);
         if let Ok(better) = polished.fit(&named) {
-            (*bench, model) = (polished, better);
+            (*bench, *model) = (polished, better);
         }
         // Nor with other weights.
         if let Some(better) = bench.tried(&model.named, Bench::learn_noise) {
-            model = better;
+            *model = better;
         }
     }
     if bench.may_be_simpler(&model.named) {
         // The noise is better known than when they were named.
         let (polished, named) = bench.polished(&model.named).simplified(&model.named);
         if let Ok(better) = polished.fit(&named) {
-            (*bench, model) = (polished, better);
+            (*bench, *model) = (polished, better);
         }
     }
-    let Settled { model, p_values, dropped } = settled(bench, model, options);
-    if let Some((step, missing)) = told(bench, &model, &dropped, options) {
-        steps.push(step);
-        unnamed |= missing;
-    }
-    Ok(Selection { model, p_values, steps, unnamed })
+    Ok(unnamed)
 }
 
 /// The first of the best models of a beam that passes.

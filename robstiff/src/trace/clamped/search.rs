@@ -62,7 +62,13 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
     }
     let mut course = Course::new(bench, base);
     course.run(options, progress)?;
-    let p_values = course.settle(options)?;
+    let (mut p_values, missing) = course.settle(options)?;
+    if missing {
+        // Once, for the same may be named and dropped time and again.
+        (course.strict, course.unnamed) = (false, false);
+        course.run(options, progress)?;
+        (p_values, _) = course.settle(options)?;
+    }
     let Course { bench, model, wild, steps, unnamed, .. } = course;
     progress("looking for structure in what is left");
     let left = structure(&bench, &model, options);
@@ -149,8 +155,9 @@ impl Course {
     }
 
     /// Drops the effects that rows which are left out by now, or effects named since, had made
-    /// significant, one by one, and judges rows anew each time; the p-values of those that stay.
-    fn settle(&mut self, options: &Options) -> Result<Vec<f64>, String> {
+    /// significant, one by one, and judges rows anew each time; the p-values of those that stay,
+    /// and whether something is missing then, which those dropped had said better than others.
+    fn settle(&mut self, options: &Options) -> Result<(Vec<f64>, bool), String> {
         let before = self.model.named.clone();
         let p_values = loop {
             let p_values = self.bench.p_values(&self.model.named, options);
@@ -164,7 +171,7 @@ impl Course {
         let name = |one: &Named| self.bench.candidates[one.candidate].name();
         let dropped: Vec<String> = before.iter().filter(|one| !self.model.named.contains(one)).map(name).collect();
         if dropped.is_empty() {
-            return Ok(p_values);
+            return Ok((p_values, false));
         }
         let (mut step, missing) = match self.tested(options) {
             Some((step, _, missing)) => (step, missing),
@@ -172,9 +179,8 @@ impl Course {
         };
         step.dropped(&dropped);
         self.steps.push(step);
-        // What they had said better than others may still be missing.
         self.unnamed |= missing;
-        Ok(p_values)
+        Ok((p_values, missing))
     }
 
     /// Judges all rows anew. Wild rows must not vote for an effect; those that were wild
@@ -366,7 +372,7 @@ mod tests {
             let (bench, model) = refitted(whole.axes.without(&[40]), &whole, &model).expect("physically possible");
             let mut course = Course::new(bench, model);
             course.wild = (std::vec![line], 1e-6);
-            let p_values = course.settle(&Options::default()).expect("the axes show their compliances");
+            let (p_values, _) = course.settle(&Options::default()).expect("the axes show their compliances");
             assert_eq!(course.model.named.iter().map(name).collect::<Vec<_>>(), ["lost_motion@joint 2"]);
             assert!(p_values.len() == 1 && p_values[0] < 0.001, "{p_values:?}");
             assert_eq!((course.bench.axes.rows.len(), course.wild.0.len()), (rows.len(), 0));
@@ -376,7 +382,10 @@ mod tests {
         // What is dropped may have said a little of what no one says then.
         let alone = whole.extended(&[]).into_iter().rfind(|model| model.named != truth).expect("it has others");
         let mut course = Course::new(Bench::new(whole.axes.clone(), None), alone);
-        let p_values = course.settle(&Options::default()).expect("the axes show their compliances");
-        assert_eq!((p_values.len(), course.steps.len(), course.unnamed), (0, 1, true));
+        let (p_values, missing) = course.settle(&Options::default()).expect("the axes show their compliances");
+        assert_eq!((p_values.len(), course.steps.len(), missing, course.unnamed), (0, 1, true, true));
+        // The search goes on from there.
+        course.run(&Options::default(), &|_| {}).expect("the axes show their compliances");
+        assert_eq!(course.model.named.iter().map(name).collect::<Vec<_>>(), ["lost_motion@joint 2"]);
     }
 }
