@@ -85,13 +85,14 @@ pub fn search<'c>(
         taken_back: 0,
     };
     if too_little.is_none() {
-        course = course.run(&mut bench, false, options, progress).judged(&mut bench, noise, options, progress);
+        course = course.run(&mut bench, false, options, progress).judged(&mut bench, false, noise, options, progress);
         if !course.left.structure && !course.unnamed {
             // With structure accounted for, rows need stand out from noise alone.
             let before = course.wild.rows.clone();
             let stay = course.leave_wild_out(&mut bench, true, Kept::WhereAnEffectSaysIt);
             if course.wild.rows != before || stay {
-                course = course.run(&mut bench, true, options, progress).judged(&mut bench, noise, options, progress);
+                course =
+                    course.run(&mut bench, true, options, progress).judged(&mut bench, true, noise, options, progress);
             }
         }
     }
@@ -124,19 +125,7 @@ impl Course {
                 break;
             }
             progress(&format!("searching for effect {}", model.named.len() + 1));
-            let Some(test) = bench.test(&model.named) else { break };
-            let reference = test.reference(options.draws, options.seed);
-            let singles = bench.extended(&model.named);
-            let statistics = test.statistics();
-            let mut step = Step::against(&bench.candidates, &model.named, |candidate| {
-                let with = singles.iter().find(|fit| fit.named.iter().any(|one| one.candidate == candidate));
-                Against {
-                    gains: statistics[candidate].map(|(statistic, _)| (statistic, reference.p_value(statistic))),
-                    bic: with.map(|with| with.bic),
-                    left_out_rms: None,
-                }
-            });
-            let missing = step.candidates.iter().any(|tested| tested.p_value <= options.alpha);
+            let Some((mut step, singles, reference, missing)) = tested(bench, model, options) else { break };
             let better = if missing { extended(bench, model, &singles, options) } else { None };
             if better.is_none() && stay {
                 step.outcome = "no effect passes in whose favour wild rows had stayed".to_string();
@@ -190,10 +179,45 @@ impl Course {
         stay
     }
 
+    /// Drops the effects that are not significant beside the others, one by one, and judges
+    /// rows anew each time.
+    fn settle(&mut self, bench: &mut Bench<'_>, strict: bool, options: &Options) {
+        let before = self.model.named.clone();
+        loop {
+            let Model { named, solved, .. } = &self.model;
+            self.p_values = (0..named.len()).map(|k| bench.p_value(named, k, options)).collect();
+            let solve = |rest: &[Named]| bench.solve(rest, &solved.state);
+            let Some((_, smaller)) = without_insignificant(named, &self.p_values, options, solve) else { break };
+            bench.turn_to(&smaller);
+            self.model = smaller;
+            self.leave_wild_out(bench, strict, Kept::Never);
+        }
+        let name = |one: &Named| bench.candidates[one.candidate].name();
+        let dropped: Vec<String> = before.iter().filter(|one| !self.model.named.contains(one)).map(name).collect();
+        if dropped.is_empty() {
+            return;
+        }
+        let (mut step, missing) = match tested(bench, &self.model, options) {
+            Some((step, _, _, missing)) => (step, missing),
+            None => (Step::bare(self.model.named.iter().map(name).collect()), false),
+        };
+        step.dropped(&dropped);
+        self.steps.push(step);
+        // What they had said better than others may still be missing.
+        self.unnamed |= missing;
+    }
+
     /// Asks how sure the effects are and whether structure is left, and takes names back
     /// that may be borrowed.
-    fn judged(mut self, bench: &mut Bench<'_>, noise: Option<f64>, options: &Options, progress: &Progress<'_>) -> Self {
-        (self.model, self.p_values) = significant(bench, self.model, options);
+    fn judged(
+        mut self,
+        bench: &mut Bench<'_>,
+        strict: bool,
+        noise: Option<f64>,
+        options: &Options,
+        progress: &Progress<'_>,
+    ) -> Self {
+        self.settle(bench, strict, options);
         progress("looking for structure in what is left");
         self.left = structure(bench, &self.model, noise, options);
         while self.left.structure
@@ -201,13 +225,33 @@ impl Course {
         {
             self.taken_back += self.model.named.len() - rest.named.len();
             bench.turn_to(&rest);
-            (self.model, self.p_values) = significant(bench, rest, options);
+            self.model = rest;
+            self.settle(bench, strict, options);
             self.left = structure(bench, &self.model, noise, options);
             // What a name had accounted for is there, found by a test or not.
             self.left.structure = true;
         }
         self
     }
+}
+
+/// The tests of all candidates against a model, the models with one of them more, the best
+/// first, the distribution of the largest statistic, and whether something is missing.
+fn tested(bench: &Bench<'_>, model: &Model, options: &Options) -> Option<(Step, Vec<Proposed>, Reference, bool)> {
+    let test = bench.test(&model.named)?;
+    let reference = test.reference(options.draws, options.seed);
+    let singles = bench.extended(&model.named);
+    let statistics = test.statistics();
+    let step = Step::against(&bench.candidates, &model.named, |candidate| {
+        let with = singles.iter().find(|fit| fit.named.iter().any(|one| one.candidate == candidate));
+        Against {
+            gains: statistics[candidate].map(|(statistic, _)| (statistic, reference.p_value(statistic))),
+            bic: with.map(|with| with.bic),
+            left_out_rms: None,
+        }
+    });
+    let missing = step.candidates.iter().any(|tested| tested.p_value <= options.alpha);
+    Some((step, singles, reference, missing))
 }
 
 /// The first of the best models with one effect more that passes; where none does,
@@ -330,19 +374,6 @@ fn without_superfluous(bench: &mut Bench<'_>, mut model: Model, reference: &Refe
         model = smaller;
     }
     model
-}
-
-/// The model with the p-value of each effect, without those that are not significant
-/// beside the others.
-fn significant<'c>(bench: &mut Bench<'c>, mut model: Model, options: &Options) -> (Model, Vec<f64>) {
-    loop {
-        let p_values: Vec<f64> = (0..model.named.len()).map(|k| bench.p_value(&model.named, k, options)).collect();
-        let solve = |rest: &[Named]| bench.solve(rest, &model.solved.state);
-        let smaller = without_insignificant(&model.named, &p_values, options, solve);
-        let Some((_, smaller)) = smaller else { return (model, p_values) };
-        bench.turn_to(&smaller);
-        model = smaller;
-    }
 }
 
 /// The model without the effect that accounts for least, where that is less than what
