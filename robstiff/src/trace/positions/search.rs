@@ -72,18 +72,9 @@ pub fn search<'c>(
     let base = bench
         .solve(&[], &start)
         .ok_or_else(|| String::from("these positions do not tell the description's own numbers from each other"))?;
-    let model = base.clone();
-    bench.turn_to(&model);
-    let too_little = too_little(&model);
-    let mut course = Course {
-        model,
-        wild: Wild::default(),
-        p_values: Vec::new(),
-        steps: Vec::new(),
-        unnamed: false,
-        left: LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() },
-        taken_back: 0,
-    };
+    bench.turn_to(&base);
+    let too_little = too_little(&base);
+    let mut course = Course::new(base.clone());
     if too_little.is_none() {
         course = course.run(&mut bench, false, options, progress).judged(&mut bench, false, noise, options, progress);
         if !course.left.structure && !course.unnamed {
@@ -114,6 +105,19 @@ struct Course {
 }
 
 impl Course {
+    /// One that begins with a model.
+    fn new(model: Model) -> Self {
+        Self {
+            model,
+            wild: Wild::default(),
+            p_values: Vec::new(),
+            steps: Vec::new(),
+            unnamed: false,
+            left: LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() },
+            taken_back: 0,
+        }
+    }
+
     /// Adds effects for as long as something is missing.
     fn run(mut self, bench: &mut Bench<'_>, strict: bool, options: &Options, progress: &Progress<'_>) -> Self {
         let mut tried: Vec<Vec<Named>> = Vec::new();
@@ -387,4 +391,47 @@ fn without_borrowed(bench: &Bench<'_>, model: &Model, left: &LackOfFit) -> Optio
     });
     let least = smaller.min_by(|a, b| a.solved.fit.rss.total_cmp(&b.solved.fit.rss))?;
     (least.solved.fit.rss - own < left.fraction * own).then_some(least)
+}
+
+#[cfg(test)]
+mod tests {
+    use robstiff_robots::{Description, catalogue};
+
+    use super::*;
+    use crate::Effect;
+    use crate::campaign::Data;
+    use crate::campaign::made_positions::Plan;
+
+    /// A name that is not significant goes, and a row that fits comes back.
+    #[test]
+    fn what_is_not_significant_does_not_stay_named() {
+        let text = catalogue::find("kuka-kr270-r2700").expect("in the catalogue");
+        let robot = Description::parse("kuka-kr270-r2700.yaml", text).expect("a description");
+        let hidden = std::vec![Effect::JointZeroOffset { joint: 3, value: 5e-3 }];
+        let campaign = Plan { hidden, ..Plan::new(robot, 1) }.run();
+        let Data::Position(data) = &campaign.data else { unreachable!("made of positions") };
+        let mut bench = Bench::new(&campaign, data).expect("they tell where the robot stands");
+        let start = bench.prepared.state(bench.regression.numbers.len());
+        let base = bench.solve(&[], &start).expect("no effects");
+        bench.turn_to(&base);
+        let names = |bench: &Bench<'_>, named: &[Named]| -> Vec<String> {
+            named.iter().map(|one| bench.candidates[one.candidate].name()).collect()
+        };
+        let single = bench.extended(&[]).into_iter();
+        let truth = { single }.find(|one| names(&bench, &one.named) == ["joint_zero_offset@joint 3"]);
+        let truth = bench.solve(&truth.expect("in the catalogue").named, &start).expect("physically possible");
+        bench.turn_to(&truth);
+        for besides in bench.extended(&truth.named).into_iter().take(3) {
+            let model = bench.solve(&besides.named, &truth.solved.state).expect("physically possible");
+            bench.rows.left_out[10] = true;
+            bench.turn_to(&model);
+            let mut course = Course::new(model);
+            course.settle(&mut bench, false, &Options::default());
+            assert_eq!(names(&bench, &course.model.named), ["joint_zero_offset@joint 3"]);
+            assert!(course.p_values.len() == 1 && course.p_values[0] < 0.001, "{:?}", course.p_values);
+            assert!(!bench.rows.left_out.contains(&true) && !course.unnamed);
+            let [step] = &course.steps[..] else { panic!("{} steps", course.steps.len()) };
+            assert!(step.outcome.starts_with("no longer significant: "), "{}", step.outcome);
+        }
+    }
 }
