@@ -15,9 +15,11 @@
 
 pub mod bench;
 mod between;
+mod course;
 mod drift;
 mod frames;
 mod offers;
+mod proposals;
 mod report;
 mod rig;
 mod search;
