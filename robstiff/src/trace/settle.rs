@@ -6,6 +6,7 @@ use std::vec::Vec;
 
 use super::Options;
 use super::bench::Bench;
+use super::catalogue::Candidate;
 use super::model::{Fitted, Named, all_but};
 use super::selection::{p_values, table};
 use super::step::Step;
@@ -52,19 +53,28 @@ pub fn without_insignificant<M>(
     found.into_iter().find_map(|k| Some((named[k], fit(&all_but(named, k))?)))
 }
 
-/// The step that says what was dropped on the way to a model, if something was, and whether
-/// anything is missing there: what was dropped had said it better than others.
+/// What was dropped on the way to a model, as [`dropped_step`] tells it.
 pub fn told(bench: &Bench<'_>, model: &Fitted, dropped: &[Named], options: &Options) -> Option<(Step, bool)> {
+    dropped_step(bench.candidates(), &model.named, dropped, || {
+        let (tests, setting) = (bench.tests(&model.named, options)?, bench.at(&model.named).ok()?);
+        Some((table(&setting, model, &tests, options), tests.smallest_p() <= options.alpha))
+    })
+}
+
+/// The step that says what was dropped on the way to a model, if something was, and whether
+/// anything is missing there, which what was dropped had said better than others; `tested` are
+/// all candidates against the model, and the same of them.
+pub fn dropped_step(
+    candidates: &[Candidate],
+    named: &[Named],
+    dropped: &[Named],
+    tested: impl FnOnce() -> Option<(Step, bool)>,
+) -> Option<(Step, bool)> {
     if dropped.is_empty() {
         return None;
     }
-    let name = |one: &Named| bench.candidates()[one.candidate].name();
-    let tests = bench.tests(&model.named, options);
-    let missing = tests.as_ref().is_some_and(|tests| tests.smallest_p() <= options.alpha);
-    let mut step = match (bench.at(&model.named), tests) {
-        (Ok(setting), Some(tests)) => table(&setting, model, &tests, options),
-        _ => Step::bare(model.named.iter().map(name).collect()),
-    };
-    step.dropped(&dropped.iter().map(name).collect::<Vec<String>>());
+    let names = |of: &[Named]| -> Vec<String> { of.iter().map(|one| candidates[one.candidate].name()).collect() };
+    let (mut step, missing) = tested().unwrap_or_else(|| (Step::bare(names(named)), false));
+    step.dropped(&names(dropped));
     Some((step, missing))
 }

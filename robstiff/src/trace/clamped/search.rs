@@ -20,7 +20,7 @@ use crate::trace::found::Place;
 use crate::trace::lack_of_fit::{LackOfFit, StructureTest};
 use crate::trace::model::{Fitted, Named};
 use crate::trace::selection::Selection;
-use crate::trace::settle::without_insignificant;
+use crate::trace::settle::{dropped_step, without_insignificant};
 use crate::trace::step::{Against, Step};
 use crate::trace::verdict::FEWEST_POSES;
 use crate::trace::{Options, Progress};
@@ -168,16 +168,10 @@ impl Course {
             // A row that is wild now may take further names with it.
             self.look_again()?;
         };
-        let name = |one: &Named| self.bench.candidates[one.candidate].name();
-        let dropped: Vec<String> = before.iter().filter(|one| !self.model.named.contains(one)).map(name).collect();
-        if dropped.is_empty() {
-            return Ok((p_values, false));
-        }
-        let (mut step, missing) = match self.tested(options) {
-            Some((step, _, missing)) => (step, missing),
-            None => (Step::bare(self.model.named.iter().map(name).collect()), false),
-        };
-        step.dropped(&dropped);
+        let dropped: Vec<Named> = before.into_iter().filter(|one| !self.model.named.contains(one)).collect();
+        let tested = || self.tested(options).map(|(step, _, missing)| (step, missing));
+        let told = dropped_step(&self.bench.candidates, &self.model.named, &dropped, tested);
+        let Some((step, missing)) = told else { return Ok((p_values, false)) };
         self.steps.push(step);
         self.unnamed |= missing;
         Ok((p_values, missing))

@@ -11,7 +11,7 @@ use crate::identify::positions::regression::STANDS;
 use crate::identify::positions::wild::{Wild, wild_rows};
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::Named;
-use crate::trace::settle::without_insignificant;
+use crate::trace::settle::{dropped_step, without_insignificant};
 use crate::trace::step::Step;
 use crate::trace::{Options, Progress};
 
@@ -128,19 +128,12 @@ impl Course {
             self.model = smaller;
             self.leave_wild_out(bench, strict, Kept::Never);
         }
-        let name = |one: &Named| bench.candidates[one.candidate].name();
-        let dropped: Vec<String> = before.iter().filter(|one| !self.model.named.contains(one)).map(name).collect();
-        if dropped.is_empty() {
-            return;
+        let dropped: Vec<Named> = before.into_iter().filter(|one| !self.model.named.contains(one)).collect();
+        let tested = || tested(bench, &self.model, options).map(|(step, _, _, missing)| (step, missing));
+        if let Some((step, missing)) = dropped_step(&bench.candidates, &self.model.named, &dropped, tested) {
+            self.steps.push(step);
+            self.unnamed |= missing;
         }
-        let (mut step, missing) = match tested(bench, &self.model, options) {
-            Some((step, _, _, missing)) => (step, missing),
-            None => (Step::bare(self.model.named.iter().map(name).collect()), false),
-        };
-        step.dropped(&dropped);
-        self.steps.push(step);
-        // What they had said better than others may still be missing.
-        self.unnamed |= missing;
     }
 
     /// Asks how sure the effects are and whether structure is left, and takes names back
