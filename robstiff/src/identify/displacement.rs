@@ -19,8 +19,6 @@ use crate::campaign::Campaign;
 /// A campaign that sees none of them, or asks for numbers that no description takes.
 pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     let mut prepared = Prepared::new(campaign)?;
-    let wild = prepared.covariance.wild();
-    prepared.leave_out(&wild)?;
     let mut problem = prepared.problem();
     let mut fitted = fit(&prepared, &problem)?;
     // The description is the final model here: once more with axes weighed by what
@@ -50,7 +48,7 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     let freedom = problem.total.rows.saturating_sub(fitted.columns.len()).max(1) as f64;
     let (noise, noise_source) = prepared.noise(fitted.rss / freedom);
     let rows = prepared.samples.rows.len();
-    let kept = (0..rows).filter(|&row| !prepared.left_out[row]);
+    let (left_out, kept): (Vec<usize>, Vec<usize>) = (0..rows).partition(|&row| prepared.left_out[row]);
     Ok(Identification {
         description: with_values(&campaign.robot, &values),
         correlation: among_all(&correlation(&covariance), &fitted.columns, estimates.len()),
@@ -59,8 +57,8 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
         poses: prepared.samples.poses,
         noise: Some((noise, noise_source)),
         covariance: Some(prepared.covariance.clone()),
-        left_out: wild.iter().map(|&row| prepared.data.rows[row].line).collect(),
-        rms_declared: Some(declared_rms(&prepared, kept.clone())),
+        left_out: left_out.iter().map(|&row| prepared.data.rows[row].line).collect(),
+        rms_declared: Some(declared_rms(&prepared, kept.iter().copied())),
         rms: Some(rms(&residuals, prepared.samples.axes, kept)),
     })
 }

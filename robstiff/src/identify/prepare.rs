@@ -28,7 +28,8 @@ pub struct Prepared<'c> {
     pub samples: Rc<Samples>,
     /// Whether each pose is fitted to.
     pub training: Vec<bool>,
-    /// Whether each row is left out of the fit.
+    /// Whether each row is left out of the fit, for it [does not
+    /// belong](Covariance::beyond_doubt).
     pub left_out: Vec<bool>,
     /// The description's own numbers.
     pub own: Vec<Declared>,
@@ -44,8 +45,6 @@ pub struct Prepared<'c> {
     pub covariance: Covariance,
     /// The second order of the joints' displacement (m).
     pub correction: DVector<f64>,
-    /// Whether displacements and rotations are weighed by what is known of their noise.
-    weighed: bool,
 }
 
 /// Rotation weights settle to three digits within this many passes.
@@ -67,12 +66,11 @@ impl<'c> Prepared<'c> {
         let Data::Displacement(data) = &campaign.data else {
             return Err(Error(String::from("this needs a campaign of kind `displacement`")));
         };
-        let mut prepared = Self::by(&campaign.robot, campaign, data)?;
+        let prepared = Self::by(&campaign.robot, campaign, data)?;
         if !prepared.own.iter().any(|number| number.column.is_law()) {
             return Ok(prepared);
         }
         // Laws that are no longer as declared would pass for noise.
-        prepared.leave_out(&prepared.covariance.wild())?;
         Self::by(&with_values(&campaign.robot, &prepared.values), campaign, data)
     }
 
@@ -93,8 +91,8 @@ impl<'c> Prepared<'c> {
             data,
             description,
             correction: DVector::zeros(samples.length()),
-            values: Vec::new(),
-            visibility: Vec::new(),
+            values: own.iter().map(|number| number.value).collect(),
+            visibility: std::vec![Visibility::Seen; own.len()],
             own,
             straight: Rc::new(straight),
             declared_noise: noise.displacement,
@@ -102,33 +100,13 @@ impl<'c> Prepared<'c> {
             left_out: std::vec![false; samples.rows.len()],
             samples: Rc::new(samples),
             training,
-            weighed,
         };
-        prepared.begin()?;
+        prepared.covariance.wild().into_iter().for_each(|row| prepared.left_out[row] = true);
+        if !weighed && prepared.samples.axes > 3 {
+            prepared.settle_weight()?;
+        }
+        prepared.look()?;
         Ok(prepared)
-    }
-
-    /// Leaves rows out, and looks again.
-    ///
-    /// # Errors
-    /// Rows of which the others see none of the numbers.
-    pub fn leave_out(&mut self, rows: &[usize]) -> Result<(), Error> {
-        if rows.is_empty() {
-            return Ok(());
-        }
-        rows.iter().for_each(|&row| self.left_out[row] = true);
-        self.correction.fill(0.0);
-        self.begin()
-    }
-
-    /// Weighs the readings, as declared, and looks.
-    fn begin(&mut self) -> Result<(), Error> {
-        self.values = self.own.iter().map(|number| number.value).collect();
-        self.visibility = std::vec![Visibility::Seen; self.own.len()];
-        if !self.weighed && self.samples.axes > 3 {
-            self.settle_weight()?;
-        }
-        self.look()
     }
 
     /// The columns that are fitted: those of the numbers that are seen.

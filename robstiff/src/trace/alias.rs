@@ -77,6 +77,11 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, structure: bool, opt
 /// need not have passed the tests by which effects are named, for these ask for poses
 /// that agree, and a part that few poses load has few.
 pub fn same_as_wild(bench: &Bench<'_>, model: &Fitted, events: &[Event]) -> Vec<String> {
+    let is_fitted_to = |event: &&Event| event.rows.iter().all(|&row| bench.is_fitted_to(row));
+    let events: Vec<&Event> = events.iter().filter(is_fitted_to).collect();
+    if events.is_empty() {
+        return Vec::new();
+    }
     let out: Vec<usize> = events.iter().flat_map(|event| &event.rows).copied().collect();
     let (whole, rest) = (bench.leaving_out(&[]), bench.leaving_out(&out));
     let named = &model.named;

@@ -37,6 +37,8 @@ pub mod step;
 #[cfg(test)]
 mod tests;
 pub mod verdict;
+#[cfg(test)]
+mod wild_tests;
 mod written;
 #[cfg(test)]
 mod written_tests;
@@ -57,7 +59,7 @@ pub use verdict::Verdict;
 use self::bench::Bench;
 use self::isolated::Event;
 use self::lack_of_fit::{LackOfFit, Yardstick};
-use self::model::{Fitted, Setting};
+use self::model::{Fitted, Named, Setting};
 use self::report::report;
 use self::selection::{Selection, select};
 use self::settle::{settled, told};
@@ -242,19 +244,41 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
         return report(campaign, &prepared, &bench, &outcome, options).map_err(Error);
     }
     let mut outcome = search(&mut bench, &prepared, base, options, progress).map_err(Error)?;
+    if outcome.structure() {
+        // Rows that stand out from noise alone look like structure.
+        bench.spare_memory();
+        let mut closer = Bench::new(campaign, &prepared).map_err(Error)?;
+        closer.by_own_pose = true;
+        let again = search_again(&mut closer, &prepared, &[], &outcome, options, progress).map_err(Error)?;
+        if let Some(again) = again.filter(|again| !again.structure()) {
+            (bench, outcome) = (closer, again);
+        }
+    }
     if !outcome.structure() {
         // With structure accounted for, rows need stand out from noise alone.
         bench.strict = true;
-        if let Some(model) = bench.tried(&outcome.selection.model.named, Bench::look_again) {
-            let mut steps = outcome.selection.steps;
-            outcome = search(&mut bench, &prepared, model, options, progress).map_err(Error)?;
-            steps.append(&mut outcome.selection.steps);
-            outcome.selection.steps = steps;
-        }
+        let named = outcome.selection.model.named.clone();
+        let again = search_again(&mut bench, &prepared, &named, &outcome, options, progress).map_err(Error)?;
+        outcome = again.unwrap_or(outcome);
     }
     outcome.judge_by_held_out(&bench, options).map_err(Error)?;
     progress("asking what could be mistaken for what");
     report(campaign, &prepared, &bench, &outcome, options).map_err(Error)
+}
+
+/// Searches again, beginning with some effects, where other rows are wild now.
+fn search_again(
+    bench: &mut Bench<'_>,
+    prepared: &Prepared<'_>,
+    named: &[Named],
+    before: &Outcome,
+    options: &Options,
+    progress: &Progress<'_>,
+) -> Result<Option<Outcome>, String> {
+    let Some(model) = bench.tried(named, Bench::look_again) else { return Ok(None) };
+    let mut outcome = search(bench, prepared, model, options, progress)?;
+    outcome.selection.steps.splice(..0, before.selection.steps.iter().cloned());
+    Ok(Some(outcome))
 }
 
 /// Searches for effects, and takes names back that leave too much.

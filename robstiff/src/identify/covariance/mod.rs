@@ -117,6 +117,8 @@ pub struct Covariance {
     /// and it is known.
     pub encoders: Option<EncoderNoise>,
     visits: Vec<usize>,
+    /// How many rows were asked for readings that do not belong.
+    asked: usize,
     /// From the base frame to that measured in, a row each.
     turns: Option<Arc<[Matrix3<f64>]>>,
 }
@@ -129,6 +131,7 @@ impl Covariance {
     /// is no other: how noisy the readings are, they say themselves.
     pub fn estimate(samples: &Samples, frame: Frame, declared: Noise, of_pose: impl Fn(usize) -> bool) -> Self {
         let mut covariance = Self::assumed(samples, frame, declared);
+        covariance.asked = samples.rows.iter().filter(|row| of_pose(row.pose)).count();
         let readings = covariance.measured(samples);
         let mut left_out = std::vec![false; samples.rows.len()];
         let at = |level, left_out: &[bool]| {
@@ -179,19 +182,26 @@ impl Covariance {
             tails: None,
             encoders: None,
             visits: samples.visits(),
+            asked: 0,
             turns: (frame == Frame::Tool).then(|| samples.rows.iter().map(to_tool).collect()),
         }
     }
 
-    /// The rows of readings that certainly do not belong ([`STRICT`](outliers::STRICT)),
-    /// which numbers are better fitted without; none where that is no matter of
-    /// [single rows](outliers::FEW).
+    /// The readings that [certainly](outliers::STRICT) do not belong; none where that is no
+    /// matter of [single rows](outliers::FEW) of those that were asked.
+    pub fn beyond_doubt(&self) -> Vec<Outlier> {
+        let mut wild = self.outliers.clone();
+        wild.retain(|outlier| outlier.p_value <= outliers::STRICT);
+        let rows: usize = wild.iter().map(|outlier| outlier.rows.len()).sum();
+        if rows as f64 > outliers::FEW * self.asked as f64 { Vec::new() } else { wild }
+    }
+
+    /// Their rows, which numbers are better fitted without.
     pub fn wild(&self) -> Vec<usize> {
-        let wild = self.outliers.iter().filter(|outlier| outlier.p_value <= outliers::STRICT);
-        let mut rows: Vec<usize> = wild.flat_map(|outlier| outlier.rows.iter().copied()).collect();
+        let mut rows: Vec<usize> = self.beyond_doubt().into_iter().flat_map(|outlier| outlier.rows).collect();
         rows.sort_unstable();
         rows.dedup();
-        if rows.len() as f64 > outliers::FEW * self.visits.len() as f64 { Vec::new() } else { rows }
+        rows
     }
 
     /// Axes per row.

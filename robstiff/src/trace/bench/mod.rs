@@ -50,6 +50,9 @@ pub struct Bench<'c> {
     pub noise: Rc<Known>,
     /// Whether rows need only stand out from noise, not from structure.
     pub strict: bool,
+    /// Whether rows of poses fitted to are wild, too, where the others of their own pose
+    /// contradict them, as those of poses held out always are.
+    pub by_own_pose: bool,
     /// Where a slip that all later rows keep may have begun.
     moments: Vec<Moment>,
     settings: Solved<Setting<'c>>,
@@ -78,7 +81,7 @@ impl<'c> Bench<'c> {
     /// Why not even the description's own model can be fitted.
     pub fn new(campaign: &'c Campaign, prepared: &'c Prepared<'c>) -> Result<Self, String> {
         let rows = prepared.samples.rows.len();
-        let mut bench = Self::bare(campaign, prepared);
+        let mut bench = Self { left_out: prepared.left_out.clone(), ..Self::bare(campaign, prepared) };
         let evenly = |count: usize, before: bool| {
             (1..=count).map(move |k| Moment { row: (k * rows / (count + 1)).clamp(1, rows), before })
         };
@@ -103,6 +106,7 @@ impl<'c> Bench<'c> {
             left_out: vec![false; prepared.samples.rows.len()],
             noise: Rc::new(Known::of(prepared)),
             strict: false,
+            by_own_pose: false,
             moments: Vec::new(),
             settings: RefCell::default(),
             stored: Rc::default(),
@@ -209,6 +213,11 @@ impl<'c> Bench<'c> {
         let columns = named.iter().flat_map(|one| &self.candidates[one.candidate].variants[one.variant].columns);
         let numbers = columns.map(|&column| (column, &self.numbers[column - self.own.len()]));
         numbers.filter(|(_, number)| number.enters.is_some()).collect()
+    }
+
+    /// Whether a row is of a pose that is fitted to.
+    pub fn is_fitted_to(&self, row: usize) -> bool {
+        self.prepared.training[self.prepared.samples.rows[row].pose]
     }
 
     /// How rows are weighed.

@@ -9,9 +9,10 @@
 
 use std::rc::Rc;
 use std::string::String;
+use std::vec::Vec;
 
 use super::Bench;
-use crate::identify::covariance::{Basis, Covariance};
+use crate::identify::covariance::{Basis, Covariance, Outlier};
 use crate::identify::noise::{PureError, repetitions};
 use crate::identify::prepare::Prepared;
 use crate::identify::samples::Samples;
@@ -41,7 +42,7 @@ impl Known {
             let unloaded = known.covariance.shared.sqrt();
             let of_tool = known.covariance.own.iter().map(|own| (*own, own * unloaded));
             let encoders = known.covariance.encoders.iter().flat_map(|noise| noise.own.iter().map(|own| (*own, *own)));
-            of_tool.chain(encoders).collect::<std::vec::Vec<_>>()
+            of_tool.chain(encoders).collect::<Vec<_>>()
         };
         let moved = |a: f64, b: f64, size: f64| (a - b).abs() > CHANGED * size;
         of(self).into_iter().zip(of(other)).any(|(a, b)| moved(a.0, b.0, a.0) || moved(a.1, b.1, a.0))
@@ -72,15 +73,41 @@ impl Bench<'_> {
         repetitions(straight, covariance, |pose| self.prepared.training[pose], |row| self.left_out[row])
     }
 
+    /// The readings of poses for which `of_pose` holds that the others of their own pose
+    /// contradict, whatever the compliance there: without what a model's effects do, for that
+    /// may not be linear in the load.
+    ///
+    /// # Errors
+    /// Why the model cannot be fitted.
+    pub(super) fn contradicted(
+        &self,
+        named: &[Named],
+        of_pose: impl Fn(usize) -> bool,
+    ) -> Result<Vec<Outlier>, String> {
+        let samples = if named.is_empty() { Rc::clone(&self.prepared.straight) } else { Rc::new(self.left_by(named)?) };
+        let frame = self.prepared.data.measured_frame;
+        Ok(Covariance::estimate(&samples, frame, self.campaign.noise, of_pose).beyond_doubt())
+    }
+
     fn noise_without(&self, named: &[Named]) -> Result<Known, String> {
         let prepared = self.prepared;
+        let samples = self.left_by(named)?;
+        let training = |pose: usize| prepared.training[pose];
+        let frame = prepared.data.measured_frame;
+        let mut covariance = Covariance::estimate(&samples, frame, self.campaign.noise, training);
+        covariance.encoders = covariance.encoders.or_else(|| self.noise.covariance.encoders.clone());
+        Ok(Known { covariance, straight: Rc::new(samples) })
+    }
+
+    /// The rows with what a model leaves in place of what was read.
+    fn left_by(&self, named: &[Named]) -> Result<Samples, String> {
         let setting = self.at(named)?;
         let fit = setting.fit(named)?.fit;
         // What the model leaves, not the readings less each effect's column: what
         // creeps has its creep in every column. That the joints are taken out as
         // well is no matter, for a response in proportion to the load is free.
         let left = setting.residuals(&fit) - &setting.correction;
-        let mut samples = Samples::clone(&prepared.samples);
+        let mut samples = Samples::clone(&self.prepared.samples);
         let axes = samples.axes;
         for i in 0..samples.rows.len() {
             let of_encoders = samples.encoders_of(i);
@@ -91,10 +118,6 @@ impl Bench<'_> {
                 row.rotation = left.fixed_rows::<3>(i * axes + 3).into_owned();
             }
         }
-        let training = |pose: usize| prepared.training[pose];
-        let frame = prepared.data.measured_frame;
-        let mut covariance = Covariance::estimate(&samples, frame, self.campaign.noise, training);
-        covariance.encoders = covariance.encoders.or_else(|| self.noise.covariance.encoders.clone());
-        Ok(Known { covariance, straight: Rc::new(samples) })
+        Ok(samples)
     }
 }

@@ -8,8 +8,8 @@ use std::vec::Vec;
 
 use super::Bench;
 use crate::trace::catalogue::{BASE_SLIP, Candidate, Catalogue, LIKELY, Number, Variant, catalogue};
-use crate::trace::isolated;
-use crate::trace::model::{Named, all_but};
+use crate::trace::isolated::{self, Event};
+use crate::trace::model::{Fitted, Named, Setting, all_but};
 use crate::trace::slip::{Moment, likeliest_slip};
 
 /// A column this small against the largest of a joint is zero but for rounding.
@@ -70,7 +70,7 @@ impl Bench<'_> {
         for _ in 0..ROUNDS {
             let setting = self.at(named)?;
             let fitted = setting.fit(named)?;
-            let wild = isolated::events(&setting, &fitted, self.strict);
+            let wild = self.wild(&setting, &fitted)?;
             let mut left_out = vec![false; self.left_out.len()];
             wild.iter().flat_map(|event| &event.rows).for_each(|&row| left_out[row] = true);
             self.events = wild.into();
@@ -97,6 +97,24 @@ impl Bench<'_> {
             self.forget();
         }
         Ok(changed)
+    }
+
+    /// What is wrong in single visits, held against a model; of poses held out, which no model
+    /// may find fault with, against the other readings there.
+    fn wild(&self, setting: &Setting<'_>, fitted: &Fitted) -> Result<Vec<Event>, String> {
+        let mut wild = isolated::events(setting, fitted, self.strict);
+        let training = &self.prepared.training;
+        let judged = |pose: usize| self.by_own_pose || !training[pose];
+        for fitted_to in [true, false] {
+            let of_pose = |pose: usize| judged(pose) && training[pose] == fitted_to;
+            if (0..training.len()).any(of_pose) {
+                let rows: Vec<usize> = wild.iter().flat_map(|event| event.rows.iter().copied()).collect();
+                let contradicted = self.contradicted(&fitted.named, of_pose)?.into_iter();
+                let others = contradicted.filter(|one| !one.rows.iter().any(|row| rows.contains(row)));
+                wild.extend(others.map(Event::from));
+            }
+        }
+        Ok(wild)
     }
 
     /// Where slips that all later rows keep may have begun: what a model says,

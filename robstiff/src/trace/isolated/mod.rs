@@ -14,6 +14,12 @@
 //! distribution (`OF_MEDIAN`). Where the noise is another at each pose (`by_pose`),
 //! what stands out must stand out from that of its own pose as well, and where its tails
 //! are heavy, from tails like them.
+//!
+//! Without any model the other readings of its own pose can contradict one
+//! ([`Covariance::beyond_doubt`](crate::identify::covariance::Covariance::beyond_doubt)).
+//! Such rows have no part in the first fit, which one that is far enough off would move until
+//! all others look wild; in poses held out, where no model may find fault, they are what is
+//! wild; and where structure is left, it is asked whether they are all of it.
 
 mod by_pose;
 
@@ -25,6 +31,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use self::by_pose::ByPose;
 use super::model::{Fitted, Setting};
+use crate::identify::covariance::Outlier;
 use crate::identify::covariance::heavy::{freedom_of_tails, scale_of_tails};
 use crate::identify::covariance::outliers::{FEW, STANDS_OUT, STRICT, by_median};
 use crate::probability::{as_normal, told};
@@ -34,16 +41,19 @@ use crate::probability::{as_normal, told};
 pub struct Event {
     /// The rows it is seen in, of the campaign.
     pub rows: Vec<usize>,
-    /// By how much they are off (m).
-    pub shift: Vector3<f64>,
-    /// What it explains over the variance of a reading, as if that were known.
-    pub statistic: f64,
     /// The probability of so much under noise alone, over all that was looked
     /// at.
     pub p_value: f64,
-    /// Whether several rows to the visit's end are off by the same, but not
+    /// By how much they are off (m), where these are several rows to the visit's end, but not
     /// all.
-    pub is_slip: bool,
+    pub slip: Option<Vector3<f64>>,
+}
+
+/// What the other readings of its own pose contradict.
+impl From<Outlier> for Event {
+    fn from(Outlier { rows, p_value, .. }: Outlier) -> Self {
+        Self { rows, p_value, slip: None }
+    }
 }
 
 /// What must be explained where there are too few rows to take the straight line out:
@@ -229,14 +239,14 @@ fn search(visits: &mut [Visit], strict: bool, tells: f64, known: &Known) -> Vec<
         }
         let worst = (0..visits.len()).filter_map(|k| {
             let own = |pattern: &[f64]| Some(known.by_pose.as_ref()?.noise(visits, k, pattern, &scale));
-            worst(&visits[k], &scale, &own, strict, threshold).map(|event| (k, event))
+            worst(&visits[k], &scale, &own, strict, threshold).map(|(statistic, event)| (statistic, k, event))
         });
-        let Some((k, event)) = worst.max_by(|a, b| a.1.statistic.total_cmp(&b.1.statistic)) else { break };
+        let Some((statistic, k, event)) = worst.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
         let visit = &mut visits[k];
         for (i, row) in visit.rows.iter().enumerate() {
             visit.used[i] &= !event.rows.contains(row);
         }
-        let p_value = told(hypotheses as f64 * table.sf(event.statistic));
+        let p_value = told(hypotheses as f64 * table.sf(statistic));
         found.push(Event { p_value, ..event });
         if found.iter().map(|event| event.rows.len()).sum::<usize>() > most {
             return Vec::new();
@@ -278,14 +288,15 @@ fn scale(visits: &[Visit], strict: bool, tells: f64, tails: Option<f64>) -> Scal
 }
 
 /// The worst of a visit, if it stands out from all rows and from the noise of its own
-/// pose, where that is known.
+/// pose, where that is known; with what it explains over the variance of a reading, as if
+/// that were known.
 fn worst(
     visit: &Visit,
     scale: &Scale,
     own: &dyn Fn(&[f64]) -> Option<by_pose::Noise>,
     strict: bool,
     threshold: f64,
-) -> Option<Event> {
+) -> Option<(f64, Event)> {
     let used: Vec<usize> = (0..visit.rows.len()).filter(|&i| visit.used[i]).collect();
     let event = |pattern: Vec<f64>, is_slip: bool| {
         let explained = visit.explained(&pattern, strict)?;
@@ -305,22 +316,17 @@ fn worst(
             (false, false) => STANDS_OUT_AS_IT_IS,
         };
         let rows = rows().map(|i| visit.rows[i]).collect();
-        (over.sum() > enough && statistic > threshold).then_some(Event {
-            rows,
-            shift: explained.shift,
-            statistic,
-            p_value: 1.0,
-            is_slip,
-        })
+        let event = Event { rows, p_value: 1.0, slip: is_slip.then_some(explained.shift) };
+        (over.sum() > enough && statistic > threshold).then_some((statistic, event))
     };
     let single = used.iter().filter_map(|&i| event(visit.single(i), false));
-    let single = single.max_by(|a, b| a.statistic.total_cmp(&b.statistic));
+    let single = single.max_by(|a, b| a.0.total_cmp(&b.0));
     // The last row alone is a single one, all rows the unloaded reading.
     let from = used.iter().enumerate().filter(|(k, _)| k + 2 <= used.len());
     let several = from.filter_map(|(k, &i)| event(visit.from(i), k > 0));
-    let several = several.max_by(|a, b| a.statistic.total_cmp(&b.statistic));
+    let several = several.max_by(|a, b| a.0.total_cmp(&b.0));
     match (single, several) {
-        (Some(single), Some(several)) if several.statistic > single.statistic + TIE => Some(several),
+        (Some(single), Some(several)) if several.0 > single.0 + TIE => Some(several),
         (Some(single), _) => Some(single),
         (None, several) => several,
     }

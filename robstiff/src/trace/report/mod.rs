@@ -84,7 +84,7 @@ pub fn report(
     let mut effects = effects(bench, &setting, model, outcome, &spread, options);
     let holdout_rms = misfit(of_written, written).holdout_rms;
     let slipped = effects.iter_mut().find(|named| named.effect.kind() == BASE_SLIP.name);
-    let may_be = if outcome.events.is_empty() { Vec::new() } else { same_as_wild(bench, found, &outcome.events) };
+    let may_be = same_as_wild(bench, found, &outcome.events);
     let isolated = isolated(prepared, outcome, holdout_rms, slipped, &may_be);
     effects.extend(isolated);
     // What a named effect may as well be has shown, if it is there.

@@ -128,7 +128,7 @@ pub fn isolated(
         same_as: besides(other),
         partial: outcome.structure(),
     };
-    let (slips, wild): (Vec<&Event>, Vec<&Event>) = outcome.events.iter().partition(|event| event.is_slip);
+    let (slips, wild): (Vec<&Event>, Vec<&Event>) = outcome.events.iter().partition(|event| event.slip.is_some());
     let mut found = Vec::new();
     let mut outliers = wild;
     let already = slipped.is_some();
@@ -143,11 +143,11 @@ pub fn isolated(
                 _ => outliers.push(slip),
             }
         }
-    } else if let [slip] = slips[..] {
+    } else if let [slip @ Event { slip: Some(shift), .. }] = slips[..] {
         let number =
             |(name, value): (&'static str, &f64)| EffectParameter { name, value: *value, std: None, unit: "m" };
         let mut parameters: Vec<EffectParameter> =
-            ["dx", "dy", "dz"].into_iter().zip(slip.shift.iter()).map(number).collect();
+            ["dx", "dy", "dz"].into_iter().zip(shift.iter()).map(number).collect();
         let first = slip.rows.iter().map(line).min().unwrap_or_default();
         parameters.push(EffectParameter { name: "line", value: first as f64, std: None, unit: "1" });
         let effect = Found::new(&BASE_SLIP, Part::Base.into(), parameters);
