@@ -49,6 +49,9 @@ pub trait Evaluate<const N: usize>: Sync {
     /// the base frame): m, rad.
     fn deflections(&self, poses: Poses<'_, N>, wrench: &Vector6<f64>, deflections: &mut [Vector6<f64>]);
 
+    /// The same under a wrench of each pose's own.
+    fn deflections_under(&self, poses: Poses<'_, N>, wrenches: &[Vector6<f64>], deflections: &mut [Vector6<f64>]);
+
     /// The upper triangles of [`Robot::compliance`] by rows at each pose.
     fn triangles(&self, poses: Poses<'_, N>, triangles: &mut [[f64; 21]]);
 }
@@ -58,6 +61,13 @@ impl<R: Robot<N> + Sync, const N: usize> Evaluate<N> for R {
         match poses {
             Poses::Grid(grid) => batch::deflection(self, grid, wrench, deflections),
             Poses::List(list) => batch::deflection(self, list, wrench, deflections),
+        }
+    }
+
+    fn deflections_under(&self, poses: Poses<'_, N>, wrenches: &[Vector6<f64>], deflections: &mut [Vector6<f64>]) {
+        match poses {
+            Poses::Grid(grid) => batch::deflections(self, grid, wrenches, deflections),
+            Poses::List(list) => batch::deflections(self, list, wrenches, deflections),
         }
     }
 

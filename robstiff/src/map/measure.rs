@@ -3,8 +3,9 @@
 use std::vec;
 use std::vec::Vec;
 
-use nalgebra::{Matrix6, Vector6};
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
+use super::largest::largest;
 use super::{Evaluate, Poses};
 use crate::analysis::principal_directions;
 
@@ -16,11 +17,10 @@ pub enum Measure {
     /// frame), and where to.
     Deviation(Vector6<f64>),
     /// How far a force of this size (N) moves the TCP in the direction in which
-    /// it moves it most, and that direction. Small forces: the compliance times
-    /// the force.
+    /// it moves it most, and that direction.
     AnyDirection(f64),
     /// The force per displacement along it in the weakest direction, the tool free
-    /// to turn, and that direction.
+    /// to turn, and that direction: of small forces, about the unloaded state.
     Stiffness,
     /// The same, and the upper triangle of the 6 x 6 compliance by rows.
     Compliance,
@@ -124,12 +124,14 @@ impl Measure {
         }
         let mut triangles = vec![[0.0; 21]; count];
         robot.triangles(poses, &mut triangles);
-        for (i, triangle) in triangles.iter().enumerate() {
-            let (softest, weak) = weakest(triangle);
-            columns[0][i] = match self {
-                Self::AnyDirection(force) => force * softest,
-                _ => softest.recip(),
-            };
+        let principal: Vec<_> = triangles.iter().map(principal).collect();
+        let softest: Vec<(f64, Vector3<f64>)> = match self {
+            Self::AnyDirection(force) => largest(robot, poses, *force, &principal),
+            _ => principal.iter().map(|(directions, of)| (of[0].max(0.0), directions.column(0).into_owned())).collect(),
+        };
+        for (i, (triangle, (figure, direction))) in triangles.iter().zip(softest).enumerate() {
+            columns[0][i] = if self.worse_is_larger() { figure } else { figure.recip() };
+            let weak = direction * direction[direction.iamax()].signum();
             for k in 0..3 {
                 columns[1 + k][i] = weak[k];
             }
@@ -143,20 +145,13 @@ impl Measure {
     }
 }
 
-/// The displacement per force in the weakest direction (m/N), and that, with its
-/// largest component positive.
-fn weakest(triangle: &[f64; 21]) -> (f64, [f64; 3]) {
+/// The principal directions of the translational compliance as columns, the softest first, and
+/// its compliances (m/N); no numbers where it has none.
+fn principal(triangle: &[f64; 21]) -> (Matrix3<f64>, Vector3<f64>) {
     let [xx, xy, xz, ..] = *triangle;
     let (yy, yz, zz) = (triangle[6], triangle[7], triangle[11]);
     let mut compliance = Matrix6::zeros();
     compliance.fixed_view_mut::<3, 3>(0, 0).copy_from_slice(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]);
-    match principal_directions(&compliance) {
-        Some(principal) => {
-            let direction = principal.directions.column(0);
-            let sign = direction[direction.iamax()].signum();
-            // Rounding may leave a rigid arm a little below zero.
-            (principal.compliances[0].max(0.0), [0, 1, 2].map(|k| direction[k] * sign))
-        }
-        None => (f64::NAN, [f64::NAN; 3]),
-    }
+    principal_directions(&compliance)
+        .map_or((Matrix3::repeat(f64::NAN), Vector3::repeat(f64::NAN)), |found| (found.directions, found.compliances))
 }

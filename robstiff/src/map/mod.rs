@@ -34,6 +34,7 @@
 mod axis;
 mod cartesian;
 mod evaluate;
+mod largest;
 mod measure;
 mod place;
 pub mod read;

@@ -79,6 +79,47 @@ fn cells_are_what_the_reference_says_there() {
     }
 }
 
+/// With backlash the slope without a load is several times that under one: the largest of
+/// many directions is found, and none that was tried is larger.
+#[test]
+fn the_largest_deviation_is_that_under_the_force() {
+    let own = catalogue::find("rv130hsc.yaml").unwrap();
+    let laws = "effects:\n  - {kind: lost_motion, at: joint 2, gap: 200 urad, knee: 100 Nm}\n  \
+                - {kind: stiffness_nonlinearity, at: joint 3, added: -1e-7, knee: 300 Nm}\n";
+    let bent = Description::parse("bent.yaml", &std::format!("{own}{laws}")).unwrap();
+    let generic = Generic::<5>::new(&bent).unwrap();
+    let at = |name: &str, from: f64, to: f64, count| Axis::angles(name, from, to, count);
+    let axes = [
+        at("q1", 0.4, 0.4, 1),
+        at("q2", -0.9, 0.1, 3),
+        at("q3", 0.1, 0.8, 3),
+        at("q4", 0.3, 0.3, 1),
+        at("q5", 0.9, 0.9, 1),
+    ];
+    let mut tables = Vec::new();
+    let space = JointSpace::new(&axes, &mut tables);
+    let any = all(&generic, &space, &Measure::AnyDirection(500.0));
+    let moved = |q: &SVector<f64, 5>, u: Vector3<f64>| {
+        let force = u.normalize() * 500.0;
+        generic.deflection(q, &Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0)).xyz().norm()
+    };
+    for cell in 0..space.cells() {
+        let indices = space.indices(cell);
+        let q = SVector::<f64, 5>::from_fn(|joint, _| axes[joint].values[indices[joint]]);
+        let (largest, weak) = (any[0][cell], Vector3::new(any[1][cell], any[2][cell], any[3][cell]));
+        assert!((moved(&q, weak) / largest - 1.0).abs() < 1e-12);
+        // Fibonacci's lattice on half a sphere, three degrees apart.
+        let most = (0..2000).map(|k| {
+            let (z, turn) = ((f64::from(k) + 0.5) / 2e3, f64::from(k) * 2.399_963);
+            let radius = (1.0 - z * z).sqrt();
+            moved(&q, Vector3::new(radius * turn.cos(), radius * turn.sin(), z))
+        });
+        let most = most.fold(0.0, f64::max);
+        assert!(largest >= most && largest < 1.002 * most, "{largest} {most}");
+        assert!(largest < 0.9 * 500.0 * principal_directions(&generic.compliance(&q)).unwrap().compliances[0]);
+    }
+}
+
 /// An arm that turns about z and slides outwards: a force moves it only around z,
 /// most where it acts around, by the compliance times the radius squared.
 const POLAR: &str = "name: Polar\nconvention: standard\njoints:\n  \

@@ -99,13 +99,10 @@ impl Program {
     }
 
     /// Room for its values, with the numbers in it.
-    fn room(&self, wrench: &Vector6<f64>) -> Vec<Abreast> {
+    fn room(&self) -> Vec<Abreast> {
         let mut values = vec![Lanes::splat(0.0); self.slots];
         for &(slot, value) in &self.numbers {
             values[slot] = Lanes::splat(value);
-        }
-        for &(slot, index) in &self.wrench {
-            values[slot] = Lanes::splat(wrench[index]);
         }
         values
     }
@@ -149,20 +146,23 @@ impl<const N: usize> Tape<N> {
         }
     }
 
-    /// Runs a program at all poses; `give` takes a pose's number and its lane of
-    /// every output.
+    /// Runs a program at all poses under the wrench of each; `give` takes a pose's number
+    /// and its lane of every output.
     fn run<const M: usize>(
         program: &Program,
         outputs: [usize; M],
         poses: Poses<'_, N>,
-        wrench: &Vector6<f64>,
+        wrench: impl Fn(usize) -> Vector6<f64>,
         mut give: impl FnMut(usize, [f64; M]),
     ) {
-        let (mut values, mut turns) = (program.room(wrench), Vec::new());
+        let (mut values, mut turns) = (program.room(), Vec::new());
         let count = poses.len();
         for first in (0..count).step_by(WIDTH) {
             // The last pose fills up what is left of the last lanes.
             let q: [SVector<f64, N>; WIDTH] = array::from_fn(|lane| poses.pose((first + lane).min(count - 1)));
+            for &(slot, index) in &program.wrench {
+                values[slot] = Lanes(array::from_fn(|lane| wrench((first + lane).min(count - 1))[index]));
+            }
             let q: [Abreast; N] = array::from_fn(|joint| Lanes(array::from_fn(|lane| q[lane][joint])));
             program.run(&q, &mut values, &mut turns);
             for pose in first..count.min(first + WIDTH) {
@@ -174,9 +174,12 @@ impl<const N: usize> Tape<N> {
 
 impl<const N: usize> Evaluate<N> for Tape<N> {
     fn deflections(&self, poses: Poses<'_, N>, wrench: &Vector6<f64>, deflections: &mut [Vector6<f64>]) {
-        Self::run(&self.deflection, array::from_fn(|k| k), poses, wrench, |pose, d: [f64; 6]| {
-            deflections[pose] = d.into();
-        });
+        Self::run(&self.deflection, array::from_fn(|k| k), poses, |_| *wrench, |pose, d| deflections[pose] = d.into());
+    }
+
+    fn deflections_under(&self, poses: Poses<'_, N>, wrenches: &[Vector6<f64>], deflections: &mut [Vector6<f64>]) {
+        let wrench = |pose: usize| wrenches[pose];
+        Self::run(&self.deflection, array::from_fn(|k| k), poses, wrench, |pose, d| deflections[pose] = d.into());
     }
 
     fn triangles(&self, poses: Poses<'_, N>, triangles: &mut [[f64; 21]]) {
@@ -185,7 +188,7 @@ impl<const N: usize> Evaluate<N> for Tape<N> {
         for (entry, place) in entries.iter_mut().zip(upper) {
             *entry = place;
         }
-        Self::run(&self.compliance, entries, poses, &Vector6::zeros(), |pose, triangle| triangles[pose] = triangle);
+        Self::run(&self.compliance, entries, poses, |_| Vector6::zeros(), |pose, triangle| triangles[pose] = triangle);
     }
 }
 
@@ -205,9 +208,14 @@ mod tests {
         let (mut deflections, mut triangles) = (vec![Vector6::zeros(); q.len()], vec![[0.0; 21]; q.len()]);
         tape.deflections(Poses::List(&q), &wrench, &mut deflections);
         tape.triangles(Poses::List(&q), &mut triangles);
+        let wrenches: Vec<Vector6<f64>> = (0..q.len()).map(|k| wrench * (1.0 - 0.05 * k as f64)).collect();
+        let mut under = deflections.clone();
+        tape.deflections_under(Poses::List(&q), &wrenches, &mut under);
         for (k, q) in q.iter().enumerate() {
             let (d, h) = (generic.deflection(q, &wrench), generic.compliance(q));
             assert!((deflections[k] - d).norm() <= 1e-12 * d.norm(), "{}", robot.name);
+            let own = generic.deflection(q, &wrenches[k]);
+            assert!((under[k] - own).norm() <= 1e-12 * d.norm(), "{}", robot.name);
             let mut entry = 0;
             for row in 0..6 {
                 for column in row..6 {
