@@ -26,6 +26,12 @@ const LAST_STEP: f64 = 1e-5;
 /// More steps than any pose needs: some twenty halvings, and a few between.
 const MOST_STEPS: usize = 200;
 
+/// How far the TCP moves (m), and the direction of the force that moves it.
+type Farthest = (f64, Vector3<f64>);
+
+/// The principal directions as columns, and the compliances in them (m/N).
+type Principal = (Matrix3<f64>, Vector3<f64>);
+
 /// How far a force of a size (N) moves the TCP (m) at each pose, in the direction in which it
 /// moves it most, and that direction, in the base frame. `principal` are the principal
 /// directions of the translational compliance there as columns, the softest first, and the
@@ -34,13 +40,13 @@ pub fn largest<const N: usize>(
     robot: &impl Evaluate<N>,
     poses: Poses<'_, N>,
     force: f64,
-    principal: &[(Matrix3<f64>, Vector3<f64>)],
-) -> Vec<(f64, Vector3<f64>)> {
-    let linear = |(directions, compliances): &(Matrix3<f64>, Vector3<f64>)| {
+    principal: &[Principal],
+) -> Vec<Farthest> {
+    let linear = |(directions, compliances): &Principal| {
         // Rounding may leave a rigid arm a little below zero.
         (force * compliances[0].max(0.0), directions.column(0).into_owned())
     };
-    let mut found: Vec<(f64, Vector3<f64>)> = principal.iter().map(linear).collect();
+    let mut found: Vec<Farthest> = principal.iter().map(linear).collect();
     let bent = not_linear(robot, poses, force, principal);
     if bent.is_empty() {
         return found;
@@ -59,7 +65,7 @@ fn not_linear<const N: usize>(
     robot: &impl Evaluate<N>,
     poses: Poses<'_, N>,
     force: f64,
-    principal: &[(Matrix3<f64>, Vector3<f64>)],
+    principal: &[Principal],
 ) -> Vec<usize> {
     let mut differs = vec![false; poses.len()];
     let mut deflections = vec![Vector6::zeros(); poses.len()];
@@ -81,7 +87,7 @@ fn search<const N: usize>(
     q: &[SVector<f64, N>],
     force: f64,
     begin: &[Matrix3<f64>],
-) -> Vec<(f64, Vector3<f64>)> {
+) -> Vec<Farthest> {
     let mut deflections = vec![Vector6::zeros(); q.len()];
     let mut moved = |directions: &[Vector3<f64>]| -> Vec<f64> {
         let wrench = |u: &Vector3<f64>| Vector6::new(u.x, u.y, u.z, 0.0, 0.0, 0.0) * force;
@@ -90,8 +96,8 @@ fn search<const N: usize>(
         deflections.iter().map(|deflection| deflection.xyz().norm()).collect()
     };
     let mut best = vec![(f64::NEG_INFINITY, Vector3::zeros()); q.len()];
-    let mut take = |directions: &[Vector3<f64>], best: &mut [(f64, Vector3<f64>)]| -> Vec<bool> {
-        let better = |((best, moved), direction): ((&mut (f64, Vector3<f64>), f64), &Vector3<f64>)| {
+    let mut take = |directions: &[Vector3<f64>], best: &mut [Farthest]| -> Vec<bool> {
+        let better = |((best, moved), direction): ((&mut Farthest, f64), &Vector3<f64>)| {
             let is_better = moved > best.0;
             if is_better {
                 *best = (moved, *direction);

@@ -103,10 +103,10 @@ fn the_largest_deviation_is_that_under_the_force() {
         let force = u.normalize() * 500.0;
         generic.deflection(q, &Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0)).xyz().norm()
     };
-    for cell in 0..space.cells() {
+    for (cell, &largest) in any[0].iter().enumerate() {
         let indices = space.indices(cell);
         let q = SVector::<f64, 5>::from_fn(|joint, _| axes[joint].values[indices[joint]]);
-        let (largest, weak) = (any[0][cell], Vector3::new(any[1][cell], any[2][cell], any[3][cell]));
+        let weak = Vector3::new(any[1][cell], any[2][cell], any[3][cell]);
         assert!((moved(&q, weak) / largest - 1.0).abs() < 1e-12);
         // Fibonacci's lattice on half a sphere, three degrees apart.
         let most = (0..2000).map(|k| {
