@@ -5,7 +5,7 @@ use std::vec::Vec;
 
 use super::Options;
 use super::bench::Bench;
-use super::catalogue::{EITHER, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY};
+use super::catalogue::{EITHER, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY, tells_hysteresis};
 use super::found::Place;
 use super::isolated::Event;
 use super::model::{Fitted, Named, Setting, all_but};
@@ -112,12 +112,12 @@ fn best_first(mut found: Vec<(f64, String)>) -> impl Iterator<Item = String> {
     found.into_iter().map(|(_, name)| name)
 }
 
-/// The hysteresis that a softening may as well be where each visit has one row: a
-/// play operator that comes from rest, `tau - r` beyond `r`, is a dead zone, and a
-/// joint with one is softer at large torques. Hysteresis is no candidate then.
+/// The hysteresis that a softening may as well be where the joint's torque never goes back
+/// ([`tells_hysteresis`]). Hysteresis is no candidate then.
 fn dead_zone(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted, one: Named) -> Option<String> {
     let (own, scene) = (&setting.candidates[one.candidate], bench.scene());
-    if own.kind.name != STIFFNESS_NONLINEARITY.name || scene.has_sequences() {
+    let Place::Part(Part::Joint(joint)) = own.place else { return None };
+    if own.kind.name != STIFFNESS_NONLINEARITY.name || tells_hysteresis(&scene, joint) {
         return None;
     }
     let softens = |column: &usize| {

@@ -92,21 +92,34 @@ holdout: {fraction: 0.25, seed: 1}
     assert!(off.after.holdout_rms > 4.0 * off.after.rms && off.why.contains("held out"), "{}", off.why);
 }
 
-/// With one row a visit, hysteresis is softer at large torques and no more: it must
-/// not be told as that. What is written does what was told.
+/// Where loads never go back, hysteresis is softer at large torques and no more: neither must
+/// be told as the other. What is written does what was told.
 #[test]
-fn hysteresis_of_single_rows_may_be_what_softens() {
-    let plan = "\
+fn hysteresis_under_loads_that_only_rise_may_be_what_softens() {
+    for ramp in ["[1]", "[0.25, 0.5, 0.75, 1]"] {
+        either_lags_or_softens(&format!("{{kind: hysteresis, {LAG}}}"), ramp);
+        either_lags_or_softens(&format!("{{kind: stiffness_nonlinearity, {SOFTENING}}}"), ramp);
+    }
+}
+
+const LAG: &str = "at: joint 2, weight1: 8e-8 rad/Nm, radius1: 150 Nm";
+const SOFTENING: &str = "at: joint 2, added: -1e-7 rad/Nm, knee: 400 Nm";
+
+fn either_lags_or_softens(hidden: &str, ramp: &str) {
+    let plan = format!(
+        "\
 scatter: 0.2
-poses: {count: 30, floor: 100 mm, column: 600 mm}
-force: {bounds: [500 N, 1300 N]}
-noise: {displacement: 8 um, stated: no}
+poses: {{count: 30, floor: 100 mm, column: 600 mm}}
+ramp: {ramp}
+force: {{bounds: [500 N, 1300 N]}}
+noise: {{displacement: 8 um, stated: no}}
 hidden:
   effects:
-    - {kind: hysteresis, at: joint 2, weight1: 8e-8 rad/Nm, radius1: 150 Nm}
-";
+    - {hidden}
+"
+    );
     for seed in [3, 5, 7] {
-        let campaign = measured(&robot(""), seed, plan);
+        let campaign = measured(&robot(""), seed, &plan);
         let found = traced(&campaign);
         let softer = found.effects.iter().find(|named| named.effect.to_string() == "stiffness_nonlinearity@joint 2");
         if let Some(softer) = softer {

@@ -30,12 +30,12 @@ const NAMES: [&str; 3] = ["weight1", "weight2", "weight3"];
 const OF_RADII: [&str; 3] = ["radius1", "radius2", "radius3"];
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
-    // Without loads that follow one another there is no order to depend on.
-    if !scene.has_sequences() {
-        return (1..=scene.joints()).for_each(|joint| offers.invisible(Part::Joint(joint)));
-    }
     for joint in 1..=scene.joints() {
         let Some(largest) = scene.largest_torque(joint) else { continue };
+        if !is_told(scene, joint) {
+            offers.invisible(Part::Joint(joint));
+            continue;
+        }
         let (unit, torque) = (scene.compliance_unit(joint), if scene.turns(joint) { "Nm" } else { "N" });
         let radii = RADII.map(|fraction| fraction * largest);
         let number = move |radius: f64| {
@@ -54,6 +54,34 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         let numbers: Vec<Number> = radii.map(number).into();
         offers.add(Part::Joint(joint), numbers, sets.map(form).collect());
     }
+}
+
+/// Whether a campaign tells the hysteresis of a joint (from 1) from a dead zone: it does where
+/// the torque goes back in a visit. A play operator that comes from rest is `tau - r` beyond
+/// `r`, and a joint with some is softer at large torques, no more.
+pub fn is_told(scene: &Scene<'_>, joint: usize) -> bool {
+    let (torques, rows) = (scene.samples.torques(joint), &scene.data.rows);
+    let mut visits = vec![Vec::new(); scene.data.visits.len()];
+    rows.iter().zip(&torques).for_each(|(row, &torque)| visits[row.visit].push(torque));
+    let largest = scene.largest_torque(joint).unwrap_or(0.0);
+    visits.iter().any(|visit| goes_back(visit, largest))
+}
+
+/// Whether torques in the order of loading, from rest, go back by so much that the operator of
+/// the smallest radius notices: by twice that.
+fn goes_back(torques: &[f64], largest: f64) -> bool {
+    let mut farthest = 0.0_f64;
+    torques.iter().any(|&torque| {
+        if torque * farthest >= 0.0 && torque.abs() >= farthest.abs() {
+            farthest = torque;
+        }
+        (farthest - torque).abs() > 2.0 * RADII[0] * largest
+    })
+}
+
+/// The same of a clamped axis.
+pub fn is_told_on(axes: &Axes, axis: usize) -> bool {
+    goes_back(&axes.torques(axis), axes.largest(axis))
 }
 
 /// An axis begins at rest; its rows follow each other.
@@ -84,5 +112,18 @@ fn on_axes(axes: &Axes) -> Vec<OnAxes> {
         let forms = sets().map(|set| of(axis, &radii(set, axes.largest(axis))));
         OnAxes::one_of(forms.collect())
     };
-    axes.loaded().filter(|&axis| axes.rows_of(axis).len() > 1).filter_map(of_axis).collect()
+    axes.loaded().filter(|&axis| is_told_on(axes, axis)).filter_map(of_axis).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_torques_that_go_back_tell_a_play_from_a_dead_zone() {
+        let back = |torques: &[f64]| goes_back(torques, 100.0);
+        assert!(!back(&[]) && !back(&[100.0]) && !back(&[20.0, 50.0, 50.0, 100.0]) && !back(&[-20.0, -100.0]));
+        assert!(!back(&[20.0, 100.0, 96.0]), "less than any operator notices");
+        assert!(back(&[20.0, 100.0, 60.0]) && back(&[-100.0, -60.0]) && back(&[20.0, -20.0]));
+    }
 }

@@ -53,7 +53,7 @@ use robstiff_robots::effect::Place as Part;
 pub use self::base_slip::{KIND as BASE_SLIP, LIKELY};
 pub use self::creep::KIND as CREEP;
 pub use self::dh_error::{ENTRIES as DH_ENTRIES, MOST as DH_MOST, UNITS as DH_UNITS};
-pub use self::hysteresis::KIND as HYSTERESIS;
+pub use self::hysteresis::{KIND as HYSTERESIS, is_told as tells_hysteresis, is_told_on as axis_tells_hysteresis};
 pub use self::joint_coupling::share_a_drive;
 pub use self::joint_zero_offset::MOST as ZERO_MOST;
 pub use self::lost_motion::{EITHER, KIND as LOST_MOTION, KNEES as LOST_KNEES, WIDEST as WIDEST_GAP};
@@ -182,12 +182,6 @@ impl Scene<'_> {
         // Below this share of what the load could do it is rounding.
         let possible = self.samples.rows.iter().map(|row| row.wrench.norm()).fold(0.0, f64::max);
         (largest > 1e-9 * possible).then_some(largest)
-    }
-
-    /// Whether loads follow one another in any visit.
-    pub fn has_sequences(&self) -> bool {
-        let mut loaded = std::vec![false; self.data.visits.len()];
-        self.data.rows.iter().any(|row| core::mem::replace(&mut loaded[row.visit], true))
     }
 
     /// The unit of a compliance of a joint (from 1).

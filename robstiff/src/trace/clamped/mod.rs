@@ -18,6 +18,7 @@ mod one_off;
 mod report;
 mod search;
 mod spread;
+mod structure;
 #[cfg(test)]
 mod tests;
 

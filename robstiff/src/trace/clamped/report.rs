@@ -5,6 +5,7 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
+use robstiff_robots::effect::Place as Part;
 
 use super::bench::Bench;
 use super::one_off::one_off;
@@ -15,7 +16,7 @@ use crate::identify::baseline::{declared, with_values};
 use crate::identify::normal::Fit;
 use crate::identify::readable::{UNREADABLE, is_readable};
 use crate::identify::{Estimate, Identification, NoiseSource};
-use crate::trace::catalogue::{KINDS, OUTLIERS};
+use crate::trace::catalogue::{Candidate, HYSTERESIS, KINDS, OUTLIERS, STIFFNESS_NONLINEARITY, axis_tells_hysteresis};
 use crate::trace::found::{EffectParameter, Found, Place};
 use crate::trace::model::{Fitted, all_but};
 use crate::trace::selection::WITHIN_REACH;
@@ -147,6 +148,8 @@ fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: 
     let mut named = Vec::new();
     for (k, &one) in model.named.iter().enumerate() {
         let (form, candidate) = (bench.form(one), &bench.candidates[one.candidate]);
+        let softens = model.fit.coefficients.get(at).is_some_and(|&added| added < 0.0);
+        let dead_zone = dead_zone(bench, candidate).filter(|_| softens);
         let mut parameters: Vec<EffectParameter> = Vec::new();
         for number in &form.numbers {
             let std = Some(spread[(at, at)].sqrt());
@@ -170,7 +173,11 @@ fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: 
             lines: Vec::new(),
             p_value: found.selection.p_values[k],
             holdout_rms,
-            same_as: near.filter_map(|(_, model)| other(model)).chain(wild_row(bench, model, k)).collect(),
+            same_as: near
+                .filter_map(|(_, model)| other(model))
+                .chain(dead_zone)
+                .chain(wild_row(bench, model, k))
+                .collect(),
             partial,
         });
     }
@@ -184,6 +191,13 @@ fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: 
         named.push(NamedEffect { effect, parameters, lines, p_value, holdout_rms, same_as: Vec::new(), partial });
     }
     named
+}
+
+/// The hysteresis that a softening of the axis may as well be, where its loads never go back.
+fn dead_zone(bench: &Bench, candidate: &Candidate) -> Option<String> {
+    let Place::Part(Part::Joint(axis)) = candidate.place else { return None };
+    let is_curve = candidate.kind.name == STIFFNESS_NONLINEARITY.name;
+    (is_curve && !axis_tells_hysteresis(&bench.axes, axis)).then(|| format!("{}@{}", HYSTERESIS.name, candidate.place))
 }
 
 /// The name of wild rows, where one of them explains what an effect does.

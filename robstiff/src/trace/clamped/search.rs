@@ -2,22 +2,15 @@
 
 use std::format;
 use std::string::{String, ToString};
-use std::vec;
 use std::vec::Vec;
-
-use nalgebra::{DMatrix, DVector};
 
 use super::axes::Axes;
 use super::bench::Bench;
 use super::one_off::one_off;
-use crate::identify::clamped::regression::problem;
+use super::structure::structure;
 use crate::identify::clamped::wild;
 use crate::identify::covariance::outliers::FEW;
-use crate::identify::normal::Sign;
-use crate::trace::bootstrap::ScoreTest;
-use crate::trace::catalogue::{Candidate, KINDS, Variant};
-use crate::trace::found::Place;
-use crate::trace::lack_of_fit::{LackOfFit, StructureTest};
+use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::{Fitted, Named};
 use crate::trace::selection::Selection;
 use crate::trace::settle::{dropped_step, without_insignificant};
@@ -285,59 +278,6 @@ fn too_little(bench: &Bench) -> Option<String> {
             FEWEST_POSES.max(3 * numbers)
         )
     })
-}
-
-/// Whether what is left depends on the torque, by any smooth curve, or on the
-/// order of rows, of any axis.
-fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit {
-    let columns = bench.columns(&model.named);
-    let mut raw: Vec<DVector<f64>> = columns.iter().map(|&column| bench.raw.column(column).into_owned()).collect();
-    let mut signs: Vec<Sign> = columns.iter().map(|&column| bench.signs[column]).collect();
-    let (first, axes) = (raw.len(), &bench.axes);
-    let (mut candidates, mut names) = (Vec::new(), Vec::new());
-    for axis in axes.loaded() {
-        let (rows, torques, largest) = (axes.rows_of(axis), axes.torques(axis), axes.largest(axis));
-        let mut add = |name: String, values: Vec<f64>| {
-            let variant = Variant::new(vec![raw.len()], Vec::new());
-            raw.push(super::axes_column(axes.rows.len(), &rows, values));
-            signs.push(Sign::Free);
-            candidates.push(Candidate { kind: KINDS[0], place: Place::Rig, variants: vec![variant], check: None });
-            names.push(name);
-        };
-        let of = |law: fn(f64) -> f64| torques.iter().map(|torque| law(torque / largest)).collect::<Vec<f64>>();
-        for law in [|t: f64| t * t.abs(), |t: f64| t * t * t, f64::abs, |t: f64| t / t.hypot(0.1)] {
-            add(format!("torque of axis {axis}"), of(law));
-        }
-        add(format!("row order of axis {axis}"), (0..rows.len()).map(|k| k as f64).collect());
-    }
-    let none = LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() };
-    let problem = problem(&axes.rows, DMatrix::from_columns(&raw));
-    let null: Vec<usize> = (0..first).collect();
-    let Some(test) = ScoreTest::among(&problem, &candidates, &signs, first, &null) else { return none };
-    let reference = test.reference(options.draws, options.seed);
-    let mut found: Vec<(f64, f64, String)> = test
-        .statistics()
-        .into_iter()
-        .zip(names)
-        .filter_map(|(statistic, name)| Some((statistic?.0, reference.p_value(statistic?.0), name)))
-        .collect();
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let Some(&(statistic, p_value, _)) = found.first() else { return none };
-    let structure = p_value <= options.alpha;
-    // Several laws of an axis have one name.
-    let mut depends_on: Vec<String> = Vec::new();
-    for (_, p, name) in &found {
-        if *p <= options.alpha && !depends_on.contains(name) {
-            depends_on.push(name.clone());
-        }
-    }
-    let freedom = problem.freedom(&model.fit);
-    LackOfFit {
-        tests: vec![StructureTest { name: "what is left depends on torque or order".to_string(), statistic, p_value }],
-        structure,
-        fraction: if structure { (statistic / freedom).clamp(0.0, 1.0) } else { 0.0 },
-        depends_on,
-    }
 }
 
 #[cfg(test)]

@@ -57,6 +57,30 @@ fn a_curve_of_one_gear_is_no_wild_reading() {
     }
 }
 
+/// No gear of the catalogue turns by a wave of its torque: it is seen, and not taken for noise.
+#[test]
+fn a_wave_of_the_torque_is_structure() {
+    let torques: Vec<f64> = ramp(14).into_iter().chain(ramp(7).into_iter().map(|torque| -torque)).collect();
+    for seed in 0..4 {
+        let wave = |axis, torque: f64| if axis == 2 { 2e-5 * (torque / 120.0).sin() } else { 0.0 };
+        let trace = traced(&measured(&five_axis(), &torques, seed, wave));
+        let told = (trace.verdict, names(&trace), trace.depends_on);
+        assert_eq!(told, (Verdict::Unexplained, Vec::new(), ["torque of axis 2".to_string()].into()), "seed {seed}");
+    }
+}
+
+/// Under loads that only rise a play operator is a dead zone: what softens may as well lag.
+#[test]
+fn what_softens_under_loads_that_only_rise_may_be_hysteresis() {
+    for seed in 0..4 {
+        let softer =
+            |axis, torque: f64| if axis == 2 { 1e-7 * (torque - 300.0 * (torque / 300.0).tanh()) } else { 0.0 };
+        let trace = traced(&measured(&five_axis(), &ramp(14), seed, softer));
+        assert_eq!(names(&trace), ["stiffness_nonlinearity@joint 2"], "seed {seed}");
+        assert!(trace.effects[0].same_as.contains(&"hysteresis@joint 2".to_string()), "{:?}", trace.effects[0].same_as);
+    }
+}
+
 /// Two of eight rows of an axis do not hide each other.
 #[test]
 fn wild_readings_of_one_axis_are_told() {
