@@ -89,6 +89,11 @@ pub struct Fitted {
 /// this many standard deviations is no accident of the noise.
 const BELOW_ZERO: f64 = 2.0;
 
+/// A joint that is held at zero may take this share of what an effect explains: so much a true
+/// one loses to noise, or to being linear at numbers that are far off without it. A name for
+/// something else takes its share from the joints, and loses most of it with them.
+const LITTLE: f64 = 0.05;
+
 /// Of what may be besides, that of which less is left says nothing new.
 const OF_ITS_OWN: f64 = 1e-3;
 
@@ -255,7 +260,7 @@ impl Setting<'_> {
             return Ok(());
         }
         // A clipped joint is only held against the model where noise does not
-        // explain it.
+        // explain it, and where that takes much of what an effect explains.
         let clipped = (0..self.base_of(fit))
             .filter(|&k| self.signs[fit.columns[k]] == Sign::Nonnegative && fit.coefficients[k] == 0.0);
         for k in clipped {
@@ -265,11 +270,24 @@ impl Setting<'_> {
             };
             let freedom = (total.rows - fit.columns.len()).max(1) as f64;
             let std = (inverse[(k, k)] * free.rss / freedom).sqrt();
-            if free.coefficients[k] < -BELOW_ZERO * std {
+            let taken = fit.rss - free.rss;
+            if free.coefficients[k] < -BELOW_ZERO * std && taken > LITTLE * self.least_explained(fit, named) {
                 return Err(format!("joint {} would have a negative compliance", fit.columns[k] + 1));
             }
         }
         Ok(())
+    }
+
+    /// By how much the sum of squares grows without one of the effects, the one without which
+    /// it grows least.
+    fn least_explained(&self, fit: &Fit, named: &[Named]) -> f64 {
+        let without = |&one: &Named| {
+            let own = &self.variant(one).columns;
+            let rest: Vec<usize> = fit.columns.iter().copied().filter(|column| !own.contains(column)).collect();
+            let signs: Vec<Sign> = rest.iter().map(|&column| self.signs[column]).collect();
+            self.problem.total.solve_signed(&rest, &signs).map_or(0.0, |rest| rest.rss - fit.rss)
+        };
+        named.iter().map(without).fold(f64::INFINITY, f64::min)
     }
 
     /// The compliance of a joint (from 1) in a fit; its own where it was held.
