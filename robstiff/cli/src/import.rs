@@ -1,5 +1,6 @@
 //! `robstiff import`: a description from a URDF file.
 
+use std::fs;
 use std::path::PathBuf;
 
 use robstiff::nalgebra::{Matrix4, SVector};
@@ -31,6 +32,9 @@ pub struct Arguments {
     /// Where the description is written
     #[arg(long, value_name = "ROBOT.yaml")]
     out: PathBuf,
+    /// Replace a description that is there already and differs
+    #[arg(long)]
+    force: bool,
     /// Write what was done as JSON to FILE
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -67,6 +71,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "the description would be off the file by up to {} m or rad, and is not written; \
              are there axes that are almost parallel, by angles that were rounded?",
             text::significant(apart, 2)
+        )));
+    }
+    // Compliances may have been typed into it since.
+    let differs = || fs::read(&arguments.out).map_or(true, |there| there != yaml.as_bytes());
+    if arguments.out.is_file() && !arguments.force && differs() {
+        return Err(Failure::new(format!(
+            "{} is there already, and would be overwritten; choose another file, or say --force",
+            arguments.out.display()
         )));
     }
     let mut files = Files::default();

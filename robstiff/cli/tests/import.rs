@@ -40,6 +40,28 @@ fn what_cannot_be_imported_is_explained_and_not_written() {
 }
 
 #[test]
+fn a_description_with_compliances_in_it_is_not_replaced() {
+    let folder = folder("import-again");
+    let out = inside(&folder, "arm.yaml");
+    let import = ["import", &arm(), "--tip", "cutter_tip", "--out", &out];
+    // The first finds nothing there, the second itself.
+    assert_eq!([run(&import).code, run(&import).code], [0, 0]);
+    let imported = fs::read_to_string(&out).unwrap();
+    let edited = format!("{imported}# compliances by hand\n");
+    fs::write(&out, &edited).unwrap();
+    let said = run(&import);
+    assert_eq!((said.code, said.out.as_str()), (1, ""));
+    assert!(
+        said.err.contains("arm.yaml is there already, and would be overwritten; choose another file"),
+        "{}",
+        said.err
+    );
+    assert_eq!(fs::read_to_string(&out).unwrap(), edited);
+    assert_eq!(run(&[&import[..], &["--force"]].concat()).code, 0);
+    assert_eq!(fs::read_to_string(&out).unwrap(), imported);
+}
+
+#[test]
 fn axes_that_are_almost_parallel_are_refused() {
     let folder = folder("import-nearly");
     let (nearly, out) = (inside(&folder, "nearly.urdf"), inside(&folder, "nearly.yaml"));
