@@ -123,6 +123,10 @@ pub struct Estimate {
     pub at_bound: bool,
 }
 
+/// What is said of readings by which every joint that they show would be less than
+/// rigid: they are of something else, or of the wrong sign.
+pub const AGAINST_THE_LOADS: &str = "the readings do not follow the loads";
+
 /// Beyond this deviation from the declared value a joint deserves a look: the
 /// seed paper's identified compliances stayed below it against the maker's.
 pub const NOTEWORTHY_DEVIATION: f64 = 0.25;
@@ -161,13 +165,22 @@ impl Estimate {
 /// Identifies the compliances of a campaign's robot.
 ///
 /// # Errors
-/// A campaign that shows none of them, or deflections against their torque.
+/// A campaign that shows none of them, or deflections and readings against their loads.
 pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
-    match &campaign.data {
+    let found = match &campaign.data {
         Data::Displacement(_) => displacement::identify(campaign),
         Data::Position(data) => positions::identify(campaign, data),
-        Data::Clamped(rows) => clamped::identify(campaign, rows),
+        Data::Clamped(rows) => return clamped::identify(campaign, rows),
+    }?;
+    let joints = &found.estimates[..campaign.robot.joints.len()];
+    let mut seen = joints.iter().filter(|joint| joint.visibility == Visibility::Seen).peekable();
+    if seen.peek().is_some() && seen.all(|joint| joint.at_bound) {
+        return Err(Error(format!(
+            "{AGAINST_THE_LOADS}: by them every joint would be less than rigid; \
+             check the signs of loads and readings, their frames and their units"
+        )));
     }
+    Ok(found)
 }
 
 /// The estimates of a description's own numbers, given what the data see of each;
