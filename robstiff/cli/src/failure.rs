@@ -3,6 +3,7 @@
 use std::fmt;
 use std::process::ExitCode;
 
+use robstiff::campaign::Campaign;
 use robstiff_robots::{Diagnostics, ReadError};
 
 /// A failure that is explained to the person who ran the command.
@@ -18,6 +19,11 @@ impl Failure {
     /// A failure from a sentence.
     pub fn new(sentence: impl fmt::Display) -> Self {
         Self::Explained(format!("error: {sentence}"))
+    }
+
+    /// A failure of what a campaign was asked for, which names its file.
+    pub fn about(campaign: &Campaign) -> impl Fn(robstiff::identify::Error) -> Self {
+        move |error| Self::new(format_args!("{}: {error}", campaign.path.display()))
     }
 
     /// What the process exits with.

@@ -30,7 +30,7 @@ pub struct Arguments {
 /// Identifies the compliances.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let campaign = input::campaign(&arguments.campaign)?;
-    let found = identify(&campaign)?;
+    let found = identify(&campaign).map_err(Failure::about(&campaign))?;
     let mut files = Files::default();
     files.protect_campaign(&campaign);
     files.add(arguments.out.join("robot.yaml"), found.description.to_yaml());

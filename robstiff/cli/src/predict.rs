@@ -33,7 +33,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, _) = input::robot(&arguments.robot)?;
     let campaign = input::campaign(&arguments.campaign)?;
-    let prediction = predict(&robot, &campaign)?;
+    let prediction = predict(&robot, &campaign).map_err(Failure::about(&campaign))?;
     let mut files = Files::default();
     files.protect(&arguments.robot);
     files.protect_campaign(&campaign);

@@ -93,11 +93,41 @@ fn readings_against_the_loads_are_said_to_be() {
     let campaign = turned(&folder, "F");
     let out = inside(&folder, "out");
     let said = fail(1, &["identify", &campaign, "--out", &out]);
-    assert!(said.contains("the readings do not follow the loads: ") && said.contains("signs"), "{said}");
+    assert!(said.contains("campaign.yaml: the readings do not follow the loads: ") && said.contains("signs"), "{said}");
     assert!(!Path::new(&out).exists());
     let page = succeed(&["trace", &campaign, "--out", &out]);
     assert!(page.contains("Joint 3 is at its bound 0") && page.contains("Verdict: insufficient"), "{page}");
     assert!(page.contains("The readings do not follow the loads."), "{page}");
+}
+
+/// Why a campaign shows no compliance, with its file.
+#[test]
+fn what_hides_every_compliance_is_told() {
+    let folder = folder("nothing");
+    let (campaign, out) = (copy(&folder), inside(&folder, "out"));
+    let [plan, loads] = ["campaign.yaml", "loads.csv"].map(|name| fs::read_to_string(folder.join(name)).unwrap());
+    let told = |plan: &str, loads: &str| {
+        fs::write(folder.join("campaign.yaml"), plan).unwrap();
+        fs::write(folder.join("loads.csv"), loads).unwrap();
+        let said = run(&["identify", &campaign, "--out", &out]);
+        assert_eq!((said.code, said.out.as_str()), (1, ""));
+        assert!(said.err.contains("campaign.yaml: ") && !Path::new(&out).exists(), "{}", said.err);
+        said.err
+    };
+    let (header, rows) = loads.split_once('\n').unwrap();
+    let unloaded = rows.lines().map(|row| {
+        let field = |(i, field): (usize, &str)| if (7..10).contains(&i) { "0".to_owned() } else { field.to_owned() };
+        row.split(',').enumerate().map(field).collect::<Vec<_>>().join(",")
+    });
+    let unloaded = format!("{header}\n{}\n", unloaded.collect::<Vec<_>>().join("\n"));
+    assert!(told(&plan, &unloaded).contains("every force and moment is zero: nothing pushes the arm"));
+    let few = told(&plan, &loads.lines().take(3).collect::<Vec<_>>().join("\n"));
+    assert!(few.contains("2 rows at 2 poses cannot tell the 6 compliances of the robot from each other"), "{few}");
+    let noisy = told(&format!("{plan}\nnoise: {{displacement: 8}}\n"), &loads);
+    assert!(noisy.contains("the noise of 8 m that the campaign declares hides all"), "{noisy}");
+    let line = plan.lines().count() + 2;
+    let warned = format!("warning: {campaign}: `displacement` of the noise on line {line} is 8 m, more than 10 mm");
+    assert!(noisy.contains(&warned), "{noisy}");
 }
 
 #[test]
@@ -237,7 +267,7 @@ fn an_error_that_is_not_finite_is_none() {
     fs::write(folder.join("loads.csv"), loads.replacen("-0.000686", "1e200", 1)).unwrap();
     let Ran { code, err, .. } = run(&["predict", "fanuc-r2000ic", &campaign, "--json", &inside(&folder, "error.json")]);
     assert!(
-        code == 1 && err.contains("dx is more than 100 mm") && err.contains("error: the numbers are too large"),
+        code == 1 && err.contains("dx is more than 100 mm") && err.contains("campaign.yaml: the numbers are too large"),
         "{err}"
     );
     assert_eq!(names(&folder), ["campaign.yaml", "loads.csv", "robot.yaml"]);

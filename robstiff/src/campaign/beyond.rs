@@ -78,3 +78,24 @@ pub fn warn_of(table: &Table<'_>, what: &str, mut lines: impl Iterator<Item = us
     table.warn(&format!("{what} in {count} {rows}, first on line {first}{ask}"));
     true
 }
+
+/// A length with its unit.
+pub fn told_length(length: f64) -> String {
+    told(length, &[(1.0, "m"), (1e-3, "mm"), (1e-6, "um")])
+}
+
+/// An angle with its unit.
+pub fn told_angle(angle: f64) -> String {
+    told(angle, &[(1.0, "rad"), (1e-3, "mrad"), (1e-6, "urad")])
+}
+
+/// A value to two digits in the first of the units, largest first, that it is one of at
+/// least, else in the last.
+fn told(value: f64, units: &[(f64, &str)]) -> String {
+    let Some((factor, unit)) = units.iter().find(|(factor, _)| value >= *factor).or(units.last()) else {
+        return String::new();
+    };
+    let number = value / factor;
+    let digits = usize::from(number < 9.95 && number.fract() != 0.0);
+    format!("{number:.digits$} {unit}")
+}

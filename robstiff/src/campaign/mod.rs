@@ -23,6 +23,7 @@ use std::path::PathBuf;
 use std::string::String;
 use std::vec::Vec;
 
+pub(crate) use beyond::told_length;
 pub(crate) use clock::apart;
 pub use joints::{Column, JointTable};
 use robstiff_robots::Description;

@@ -10,6 +10,7 @@ use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, ReadError};
 
+use super::beyond::{told_angle, told_length};
 use super::{Campaign, Data, Frame, Holdout, Noise, clamped, displacements, positions};
 use crate::table::{Table, text_of};
 
@@ -43,6 +44,8 @@ struct Plan {
     holdout: Option<Holdout>,
     /// The fields that are not used, with their lines.
     unused: Vec<(&'static str, usize)>,
+    /// What is said of noise that no instrument has.
+    noisy: Vec<String>,
 }
 
 impl Campaign {
@@ -76,6 +79,7 @@ impl Campaign {
             let kind = if plan.kind == Kind::Clamped { "clamped" } else { "position" };
             format!("{}: `{field}` on line {line} is not used with `kind: {kind}`", path.display())
         });
+        let noisy = plan.noisy.iter().map(|said| format!("{}: {said}", path.display()));
         let far = [("wrench", plan.wrench.1), ("measured", plan.measured.1)].into_iter().filter_map(|(field, at)| {
             let distance = at.iter().map(|value| value * value).sum::<f64>().sqrt();
             (distance > FAR_FROM_TCP && plan.kind != Kind::Clamped).then(|| {
@@ -86,7 +90,7 @@ impl Campaign {
         let poses = data.poses().len();
         let kept = plan.holdout.map(|holdout| holdout.count(poses)).filter(|kept| 2 * kept > poses);
         let kept = kept.map(|kept| format!("{}: `holdout` keeps {kept} of {poses} poses from the fit", path.display()));
-        let warnings = far.chain(unused).chain(kept).chain(of_table).collect();
+        let warnings = far.chain(noisy).chain(unused).chain(kept).chain(of_table).collect();
         Ok(Self {
             name: plan.name,
             path: path.to_owned(),
@@ -117,6 +121,7 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
     let wrench = place(&map, "wrench");
     let measured = place(&map, "measured");
     let noise = noise(&map);
+    let noisy = noise.map(|noise| noisy(&map, noise)).unwrap_or_default();
     let holdout = holdout(&map);
     let unused = kind.map(|kind| unused(&map, kind)).unwrap_or_default();
     Some(Plan {
@@ -129,6 +134,7 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
         noise: noise?,
         holdout: holdout?,
         unused,
+        noisy,
     })
 }
 
@@ -187,6 +193,23 @@ fn noise(map: &Map<'_>) -> Option<Noise> {
         return None;
     }
     Some(Noise { displacement: displacement.flatten(), rotation: rotation.flatten() })
+}
+
+/// No instrument for deflections is so noisy (m, rad).
+const NOISIEST: f64 = 0.01;
+
+/// What is said of declared noise that no instrument has, with its line: mostly of micrometres
+/// that no unit is written with.
+fn noisy(map: &Map<'_>, noise: Noise) -> Vec<String> {
+    let line = |field: &str| Some(map.get("noise")?.any_map("")?.get(field)?.line());
+    let one = |field: &str, value: Option<f64>, told: fn(f64) -> String, most: &str| {
+        let (value, line) = (value.filter(|value| *value > NOISIEST)?, line(field)?);
+        let value = told(value);
+        Some(format!("`{field}` of the noise on line {line} is {value}, more than {most}: is its unit missing?"))
+    };
+    let displacement = one("displacement", noise.displacement, told_length, "10 mm");
+    let rotation = one("rotation", noise.rotation, told_angle, "10 mrad");
+    displacement.into_iter().chain(rotation).collect()
 }
 
 #[allow(clippy::option_option, reason = "the outer one is a problem, the inner one a field left out")]

@@ -1,5 +1,6 @@
 //! From a campaign to a regression: noise, weights, and what the data can see.
 
+use std::format;
 use std::rc::Rc;
 use std::string::String;
 use std::vec::Vec;
@@ -16,7 +17,8 @@ use super::problem::{Problem, Weights, raw};
 use super::samples::{Column, Samples};
 use super::second_order::{beyond_linear, straightened};
 use super::{Error, NoiseSource};
-use crate::campaign::{Campaign, Data, Displacements};
+use crate::campaign::{Campaign, Data, Displacements, told_length};
+use crate::triage::words::count;
 
 /// A campaign made ready for regressions.
 pub struct Prepared<'c> {
@@ -55,6 +57,9 @@ const WEIGHT_PASSES: usize = 4;
 /// its estimate would be a number made of noise.
 const DECLARED_STANDS_OUT: f64 = 1.0;
 const IDENTIFIED_STANDS_OUT: f64 = 2.0;
+
+/// With fewer readings for each number than this, scatter says nothing of the instrument.
+const READINGS_A_NUMBER: usize = 2;
 
 impl<'c> Prepared<'c> {
     /// Evaluates the robot on the campaign and fits the description's own
@@ -224,9 +229,32 @@ impl<'c> Prepared<'c> {
 pub fn fit(prepared: &Prepared<'_>, problem: &Problem) -> Result<super::normal::Fit, Error> {
     let seen = prepared.seen();
     let signs: Vec<Sign> = seen.iter().map(|&i| prepared.own[i].sign).collect();
-    let none = || Error(String::from("these poses and loads show none of the robot's compliances"));
-    if seen.is_empty() {
-        return Err(none());
+    let fitted = if seen.is_empty() { None } else { problem.total.solve_signed(&seen, &signs) };
+    fitted.ok_or_else(|| nothing_shows(prepared, problem))
+}
+
+/// Why the data show none of the numbers.
+fn nothing_shows(prepared: &Prepared<'_>, problem: &Problem) -> Error {
+    if prepared.data.rows.iter().all(|row| row.wrench.iter().all(|&load| load == 0.0)) {
+        return Error(String::from("every force and moment is zero: nothing pushes the arm"));
     }
-    problem.total.solve_signed(&seen, &signs).ok_or_else(none)
+    let (rows, poses, numbers) = (prepared.data.rows.len(), prepared.samples.poses, prepared.own.len());
+    // By the geometry, before anything is held against the noise.
+    let shown = visibility(&problem.total, numbers);
+    let is_seen = shown.contains(&Visibility::Seen);
+    let is_confounded = shown.iter().any(|visibility| matches!(visibility, Visibility::Confounded(_)));
+    let too_few = prepared.declared_noise.is_none() && problem.total.rows < READINGS_A_NUMBER * numbers;
+    Error(match prepared.declared_noise.filter(|_| is_seen) {
+        Some(noise) => {
+            format!("the noise of {} that the campaign declares hides all that the loads do", told_length(noise))
+        }
+        None if (is_seen && too_few) || (!is_seen && is_confounded) => format!(
+            "{} at {} cannot tell the {} of the robot from each other: load the arm at more poses",
+            count(rows, "row"),
+            count(poses, "pose"),
+            count(numbers, "compliance")
+        ),
+        None if is_seen => String::from("the readings scatter by more than the loads do to any joint"),
+        None => String::from("these poses and loads show none of the robot's compliances"),
+    })
 }

@@ -30,7 +30,7 @@ mod return_to_zero;
 mod reversal;
 #[cfg(test)]
 mod tests;
-mod words;
+pub(crate) mod words;
 
 use std::string::String;
 use std::vec::Vec;

@@ -86,7 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         _ => None,
     };
     spinner.finish_and_clear();
-    let traced = traced?;
+    let traced = traced.map_err(Failure::about(&campaign))?;
 
     let document = document::document(&traced, &triage, &campaign);
     let mut report = content::report(&traced, &triage, &campaign, &options)?;
