@@ -8,6 +8,7 @@ use crate::JointKind;
 use crate::table::{Numbers, Table};
 
 /// The unit that a column without one is taken to be written in.
+#[derive(Clone, Copy)]
 pub struct Usual {
     what: &'static str,
     named: &'static str,
@@ -19,6 +20,15 @@ pub const LENGTHS: Usual = Usual { what: "lengths", named: "millimetres", unit: 
 
 /// Angles as controllers give them.
 pub const ANGLES: Usual = Usual { what: "angles", named: "degrees", unit: "deg" };
+
+/// Displacements under load as gauges and trackers give them.
+const MICROMETRES: Usual = Usual { what: "lengths", named: "micrometres", unit: "um" };
+
+/// Rotations under load.
+const MILLIRADIANS: Usual = Usual { what: "angles", named: "milliradians", unit: "mrad" };
+
+/// The same, as small as they often are.
+const MICRORADIANS: Usual = Usual { what: "angles", named: "microradians", unit: "urad" };
 
 impl Usual {
     /// That of a joint's coordinate.
@@ -42,30 +52,46 @@ pub struct Beyond {
     pub most: f64,
     /// The same with its unit.
     pub told: &'static str,
-    /// What is asked for where the header says no unit.
-    pub usual: Option<Usual>,
+    /// What is asked for where the header says no unit: of the first that the largest
+    /// number is at most so large in, else of the last.
+    pub usual: &'static [(f64, Usual)],
 }
 
-/// A tool under load goes less far.
-pub const DISPLACEMENT: Beyond = Beyond { most: 0.1, told: "100 mm", usual: Some(LENGTHS) };
+/// A tool under load goes less far: by up to 20 mm, so that larger numbers are of um.
+pub const DISPLACEMENT: Beyond =
+    Beyond { most: 0.1, told: "100 mm", usual: &[(20.0, LENGTHS), (f64::INFINITY, MICROMETRES)] };
 
-/// A tool under load turns less far, a joint as well.
-pub const ROTATION: Beyond = Beyond { most: 0.1, told: "0.1 rad", usual: Some(ANGLES) };
+/// A tool under load turns less far, a joint as well: by up to 20 mrad, more than a degree.
+pub const ROTATION: Beyond =
+    Beyond { most: 0.1, told: "0.1 rad", usual: &[(20.0, MILLIRADIANS), (f64::INFINITY, MICRORADIANS)] };
 
 /// The largest arms carry some 2.3 t.
-pub const FORCE: Beyond = Beyond { most: 1e5, told: "100 kN", usual: None };
+pub const FORCE: Beyond = Beyond { most: 1e5, told: "100 kN", usual: &[] };
 
 /// No joint of them holds so much.
-pub const MOMENT: Beyond = Beyond { most: 1e6, told: "1 MNm", usual: None };
+pub const MOMENT: Beyond = Beyond { most: 1e6, told: "1 MNm", usual: &[] };
 
 /// As for forces.
-pub const PAYLOAD: Beyond = Beyond { most: 1e4, told: "10 t", usual: None };
+pub const PAYLOAD: Beyond = Beyond { most: 1e4, told: "10 t", usual: &[] };
 
 impl Beyond {
     /// Warns of the numbers of a column, each with its line, that are larger.
-    pub fn warn(&self, table: &Table<'_>, column: Numbers, numbers: impl Iterator<Item = (usize, f64)>) {
+    pub fn warn(&self, table: &Table<'_>, column: Numbers, numbers: impl Iterator<Item = (usize, f64)> + Clone) {
+        let largest = numbers.clone().map(|(_, number)| number.abs()).fold(0.0, f64::max);
+        self.warn_among(table, column, numbers, largest);
+    }
+
+    /// The same of a column among others of one unit, with the largest number of all.
+    pub fn warn_among(
+        &self,
+        table: &Table<'_>,
+        column: Numbers,
+        numbers: impl Iterator<Item = (usize, f64)>,
+        largest: f64,
+    ) {
         let lines = numbers.filter(|(_, number)| number.abs() > self.most).map(|(line, _)| line);
-        let ask = self.usual.as_ref().map(|usual| usual.asked(table, column)).unwrap_or_default();
+        let usual = self.usual.iter().find(|(most, _)| largest <= *most).map(|(_, usual)| usual);
+        let ask = usual.map(|usual| usual.asked(table, column)).unwrap_or_default();
         warn_of(table, &format!("{} is more than {}", table.name_of(column), self.told), lines, &ask);
     }
 }

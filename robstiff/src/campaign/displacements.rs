@@ -77,16 +77,22 @@ pub fn read(
 
 /// Warns of loads and displacements that no robot comes to.
 fn check_sizes(table: &Table<'_>, columns: &Columns, rows: &[Observation]) {
+    let largest = |of: fn(&Observation) -> Option<[f64; 3]>| {
+        rows.iter().filter_map(of).flatten().map(f64::abs).fold(0.0, f64::max)
+    };
+    let displaced = largest(|row| Some(row.displacement));
+    let turned = largest(|row| row.rotation);
     for k in 0..3 {
         let force = rows.iter().map(|row| (row.line, row.wrench[k]));
         FORCE.warn(table, columns.force[k], force);
         if let Some(column) = columns.moment[k] {
             MOMENT.warn(table, column, rows.iter().map(|row| (row.line, row.wrench[3 + k])));
         }
-        DISPLACEMENT.warn(table, columns.displacement[k], rows.iter().map(|row| (row.line, row.displacement[k])));
+        let displacement = rows.iter().map(|row| (row.line, row.displacement[k]));
+        DISPLACEMENT.warn_among(table, columns.displacement[k], displacement, displaced);
         if let Some(columns) = columns.rotation {
             let rotation = rows.iter().filter_map(|row| Some((row.line, row.rotation?[k])));
-            ROTATION.warn(table, columns[k], rotation);
+            ROTATION.warn_among(table, columns[k], rotation, turned);
         }
     }
 }

@@ -141,8 +141,26 @@ fn numbers_beyond_all_robots_are_warned_of() {
     let warnings = Folder::new("clamped-beyond", &campaign, table).read().expect("nothing is wrong").warnings;
     assert!(warnings[0].ends_with("torque is more than 1 MNm in 1 row, first on line 3"));
     assert!(warnings[1].ends_with(
-        "deflection is more than 0.1 rad in 1 row, first on line 3: are the angles in degrees? write `deflection [deg]`"
+        "deflection is more than 0.1 rad in 1 row, first on line 3: \
+         are the angles in milliradians? write `deflection [mrad]`"
     ));
+}
+
+/// Of numbers without a unit the one is asked for that makes them what loads do.
+#[test]
+fn the_unit_that_is_asked_for_makes_displacements_plausible() {
+    let asked = |name: &str, rows: &str| {
+        let folder = Folder::new(name, CAMPAIGN, &format!("pose,q1,q2,Fx,Fy,Fz,dx,dy,dz,rx,ry,rz\n{rows}"));
+        let warnings = folder.read().expect("nothing is wrong").warnings;
+        let units = |warning: &String| warning.rsplit_once("write ").map(|(_, unit)| unit.to_owned());
+        warnings.iter().filter_map(units).collect::<Vec<_>>()
+    };
+    // The small ones of a row are in the unit of the others.
+    let of = |unit: &str, angle: &str| {
+        ["dx", "rx", "dy"].map(|name| format!("`{name} [{}]`", if name == "rx" { angle } else { unit }))
+    };
+    assert_eq!(asked("um", "a,0,0,1,2,3,473.1,-1.5,0,1.2,0,0\n"), of("um", "mrad"));
+    assert_eq!(asked("mm", "a,0,0,1,2,3,0.473,-0.15,0,300,0,0\n"), of("mm", "urad"));
 }
 
 /// Angles under load are read with their units, all of a kind or none.
