@@ -115,6 +115,11 @@ pub fn told_angle(angle: f64) -> String {
     told(angle, &[(1.0, "rad"), (1e-3, "mrad"), (1e-6, "urad")])
 }
 
+/// A force with its unit.
+pub fn told_force(force: f64) -> String {
+    told(force, &[(1e3, "kN"), (1.0, "N")])
+}
+
 /// A value to two digits in the first of the units, largest first, that it is one of at
 /// least, else in the last.
 fn told(value: f64, units: &[(f64, &str)]) -> String {

@@ -9,7 +9,7 @@ use robstiff_robots::quantity::Dimension;
 
 use super::beyond::{DISPLACEMENT, FORCE, MOMENT, ROTATION, Usual, warn_of};
 use super::poses::{AtPose, Columns as PoseColumns, Poses, dimension_of};
-use super::{Displacements, Frame, Observation};
+use super::{Displacements, Frame, Observation, alone};
 use crate::JointKind;
 use crate::table::{Numbers, Record, Table};
 
@@ -75,7 +75,8 @@ pub fn read(
     complete.then_some(data)
 }
 
-/// Warns of loads and displacements that no robot comes to.
+/// Warns of loads and displacements that no robot comes to, and of a load that stands
+/// alone.
 fn check_sizes(table: &Table<'_>, columns: &Columns, rows: &[Observation]) {
     let largest = |of: fn(&Observation) -> Option<[f64; 3]>| {
         rows.iter().filter_map(of).flatten().map(f64::abs).fold(0.0, f64::max)
@@ -94,6 +95,9 @@ fn check_sizes(table: &Table<'_>, columns: &Columns, rows: &[Observation]) {
             let rotation = rows.iter().filter_map(|row| Some((row.line, row.rotation?[k])));
             ROTATION.warn_among(table, columns[k], rotation, turned);
         }
+    }
+    if let Some(said) = alone::largest_force(rows) {
+        table.warn(&said);
     }
 }
 

@@ -4,6 +4,7 @@
 //! Reading checks everything and converts to SI; nothing is computed with the
 //! robot yet, so rows hold what the file says, in the frames the file says.
 
+mod alone;
 mod beyond;
 mod clamped;
 mod clock;

@@ -163,6 +163,31 @@ fn the_unit_that_is_asked_for_makes_displacements_plausible() {
     assert_eq!(asked("mm", "a,0,0,1,2,3,0.473,-0.15,0,300,0,0\n"), of("mm", "urad"));
 }
 
+/// One row with ten times its force is told, with its line; levels of load are not.
+#[test]
+fn a_force_that_stands_alone_is_warned_of() {
+    let warned = |name: &str, visits: usize, forces: &[f64]| {
+        let rows = forces.iter().enumerate().map(|(i, force)| format!("a,v{},0,0,{force},0,0,0,0,0\n", i % visits));
+        let folder = Folder::new(name, CAMPAIGN, &format!("{HEADER}\n{}", rows.collect::<String>()));
+        folder.read().expect("nothing is wrong").warnings
+    };
+    let loads = [0.0, 400.0, 800.0, 1300.0, 800.0, 400.0, 0.0, 400.0, 820.0, 1250.0];
+    let mut slip = loads;
+    slip[8] *= 10.0;
+    let said = warned("slip", 2, &slip);
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(said[0].contains("loads.csv: line 10: a force of 8.2 kN, the next largest is 1.3 kN: "), "{said:?}");
+    assert_eq!(warned("none", 2, &loads), Vec::<String>::new());
+    assert_eq!(warned("few", 2, &slip[..9]), Vec::<String>::new());
+    // Two levels, each often; and two visits, each with its own.
+    let levels: Vec<f64> = loads.iter().chain(&[8000.0, 8000.0]).copied().collect();
+    assert_eq!(warned("levels", 3, &levels), Vec::<String>::new());
+    let alternating: Vec<f64> = (0..12).map(|i| if i % 2 == 0 { 100.0 } else { 1000.0 }).collect();
+    assert_eq!(warned("two-visits", 2, &alternating), Vec::<String>::new());
+    let one_visit: Vec<f64> = (0..12).map(|i| if i % 4 == 0 { 1000.0 } else { 100.0 }).collect();
+    assert_eq!(warned("one-visit", 4, &one_visit).len(), 1);
+}
+
 /// Angles under load are read with their units, all of a kind or none.
 #[test]
 fn angles_under_load_are_read() {
