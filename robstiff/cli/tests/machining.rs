@@ -223,6 +223,23 @@ fn stability_of(folder: &Path, cut: &str, backlash: Option<(&str, &str)>) -> ser
     json(&told)
 }
 
+/// Beyond depths at which it chatters a narrow window of stable ones does not count.
+#[test]
+fn a_feed_is_stable_where_every_depth_up_to_the_cuts_is() {
+    let told = stability(&folder("machining-windows"), None);
+    let feeds = told["feeds"].as_array().unwrap();
+    let stable = |feed: &&serde_json::Value| feed["stable"].as_bool().unwrap();
+    assert_eq!(feeds.iter().filter(stable).count(), 17);
+    for feed in feeds {
+        assert_eq!(stable(&feed), feed["limiting_depth_m"].as_f64().unwrap() > 0.002, "{feed}");
+    }
+    let at = "0,-90 deg,90 deg,0,60 deg,0";
+    let deep = changed(&folder("machining-deep"), "roughing.yaml", ["depth: 2 mm", "depth: 6 mm"]);
+    let page = succeed(&["stability", "kuka-kr270-r2700", &deep, "--at", at, "--frequency", "15 Hz"]);
+    assert!(page.contains("Up to 6 mm no feed is stable.\n"), "{page}");
+    assert!(page.contains("to 5.79 mm, less than 6 mm.\n"), "{page}");
+}
+
 /// The slope at no torque, which no cut has, made the arm eight and thirty times as soft.
 #[test]
 fn backlash_that_the_cut_takes_up_does_not_make_an_arm_soft() {

@@ -32,6 +32,12 @@ impl Limits {
     pub fn is_stable(&self, depth: f64) -> bool {
         depth <= self.greatest && self.unstable.iter().all(|[from, to]| depth < *from || depth > *to)
     }
+
+    /// Whether every depth up to this \[m\] is stable, as a cut that reaches it needs: it
+    /// passes through those below, and stays at less where the stock is uneven.
+    pub fn is_stable_up_to(&self, depth: f64) -> bool {
+        depth <= self.greatest && self.limiting().is_none_or(|limit| depth < limit)
+    }
 }
 
 impl Modes {

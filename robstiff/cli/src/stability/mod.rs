@@ -188,7 +188,7 @@ fn document(predicted: &Predicted, robot: &Description, cut: &Cut, q: &[f64]) ->
             "softest_N_per_m": softest(&feed.modes),
             "limiting_depth_m": feed.limits.limiting(),
             "unstable_m": feed.limits.unstable,
-            "stable": feed.limits.is_stable(cut.depth),
+            "stable": feed.limits.is_stable_up_to(cut.depth),
         })
     };
     json!({

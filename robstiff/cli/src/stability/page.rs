@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use robstiff::milling::Cut;
 use robstiff::nalgebra::{SymmetricEigen, Vector3};
-use robstiff::stability::{FeedLimit, best};
+use robstiff::stability::{FeedLimit, Limits, best};
 use robstiff_robots::Description;
 
 use super::{Predicted, softest};
@@ -84,19 +84,27 @@ fn feeds(Predicted { feeds, stiffens, .. }: &Predicted) -> String {
 
 fn verdict(predicted: &Predicted, cut: &Cut) -> String {
     let given = millimetres(cut.depth);
-    let stable = predicted.feeds.iter().filter(|feed| feed.limits.is_stable(cut.depth)).count();
+    let count =
+        |is: fn(&Limits, f64) -> bool| predicted.feeds.iter().filter(|feed| is(&feed.limits, cut.depth)).count();
+    let stable = count(Limits::is_stable_up_to);
     let all = predicted.feeds.len();
     let mut verdict = match stable {
-        0 => format!("At {given} mm no feed is stable.\n"),
-        _ if stable == all => format!("At {given} mm every feed is stable.\n"),
-        _ => format!("At {given} mm, {stable} of {all} directions of feed are stable.\n"),
+        0 => format!("Up to {given} mm no feed is stable.\n"),
+        _ if stable == all => format!("Up to {given} mm every feed is stable.\n"),
+        _ => format!("Up to {given} mm, {stable} of {all} directions of feed are stable.\n"),
     };
+    let beyond = count(Limits::is_stable) - stable;
+    if beyond > 0 {
+        let (are, they) = if beyond == 1 { ("is", "it chatters") } else { ("are", "they chatter") };
+        verdict += &format!("{beyond} more {are} stable at {given} mm itself, but {they} at less.\n");
+    }
     if let Some(best) = best(&predicted.feeds) {
         let [x, y, z] = [best.feed.x, best.feed.y, best.feed.z].map(|part| decimals(part, 3));
         let angle = decimals(best.angle.to_degrees(), 0);
         verdict += &match best.limits.limiting() {
             Some(limit) => {
-                format!("Best feed: {angle} deg, along ({x}, {y}, {z}), to {} mm.\n", millimetres(limit))
+                let short = if limit < cut.depth { format!(", less than {given} mm") } else { String::new() };
+                format!("Best feed: {angle} deg, along ({x}, {y}, {z}), to {} mm{short}.\n", millimetres(limit))
             }
             None => format!(
                 "Best feed: {angle} deg, along ({x}, {y}, {z}), beyond {} mm.\n",
