@@ -51,9 +51,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     protect(&mut files, &arguments.cut, &file);
     if let Some(path) = &arguments.csv {
         let Some(revolution) = &revolution else {
-            return Err(Failure::new(
-                "the record has neither `angle` nor `t` with a `speed`, so nobody can tell what a revolution is",
-            ));
+            return Err(Failure::new(format_args!("{}, so nobody can tell what a revolution is", lacks(&file.forces))));
         };
         files.add(path, table(&file.forces, revolution));
     }
@@ -62,6 +60,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let said = files.write()?;
     output::print(page(&file, &mean, revolution.as_ref()) + &said)
+}
+
+/// What a record lacks that tells no revolution.
+pub fn lacks(forces: &Forces) -> &'static str {
+    match forces {
+        Forces::Measured { force, speed } if force.has_angles(*speed) => {
+            "the record does not resolve a revolution: it is shorter, or coarser than four samples a turn"
+        }
+        _ => "the record has neither `angle` nor `t` with a `speed`",
+    }
 }
 
 /// The files of a cut, which are not to be overwritten.
@@ -85,22 +93,24 @@ fn page(file: &CutFile, mean: &Vector3<f64>, revolution: Option<&Revolution>) ->
         }
     }
     page += "\nForce on the tool [N]\n";
-    let mut rows = match revolution {
-        Some(_) => Table::new(1, ["along", "mean", "least", "greatest"]),
-        None => Table::new(1, ["along", "mean"]),
+    // A record that tells no revolution has its own least and greatest.
+    let recorded = match &file.forces {
+        Forces::Measured { force, .. } => force.samples.iter().map(|sample| (0.0, sample.force)).collect(),
+        Forces::Model(_) => Vec::new(),
     };
+    let recorded = Revolution { samples: recorded };
+    let shown = revolution.unwrap_or(&recorded);
+    let mut rows = Table::new(1, ["along", "mean", "least", "greatest"]);
     for (axis, name) in axes(&file.forces).into_iter().enumerate() {
-        let mut row = vec![name.to_owned(), decimals(mean[axis], 1)];
-        if let Some(revolution) = revolution {
-            let range = revolution.range(axis);
-            row.extend([range.least, range.greatest].map(|force| decimals(force, 1)));
-        }
-        rows.row(row);
+        let range = shown.range(axis);
+        let numbers = [mean[axis], range.least, range.greatest].map(|force| decimals(force, 1));
+        rows.row([&[name.to_owned()], &numbers[..]].concat());
     }
     page += &rows.to_string();
-    page += &format!("size of the mean force {} N", decimals(mean.norm(), 1));
-    if let Some(revolution) = revolution {
-        page += &format!(", greatest force {} N", decimals(revolution.peak(), 1));
+    let [mean, peak] = [mean.norm(), shown.peak()].map(|force| decimals(force, 1));
+    page += &format!("size of the mean force {mean} N, greatest force {peak} N");
+    if revolution.is_none() {
+        page += &format!("\n{}; least and greatest are of its samples", lacks(&file.forces));
     }
     page.push('\n');
     if let Forces::Model(cut) = &file.forces {

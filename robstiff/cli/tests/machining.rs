@@ -140,6 +140,22 @@ fn recorded_forces_along_fixed_axes_need_no_direction() {
     assert!(fail(2, &online).contains("--toward goes along the tool's axis"));
 }
 
+/// Fifteen revolutions from a sample to the next would be one angle.
+#[test]
+fn a_record_that_does_not_resolve_a_revolution_is_told() {
+    let folder = folder("machining-coarse");
+    let [cut, out] = ["cut.yaml", "out.csv"].map(|name| inside(&folder, name));
+    fs::write(folder.join("dyn.csv"), "t [s],Fx,Fy,Fz\n0,0,0,0\n0.1,100,50,-20\n0.2,120,60,-22\n0.3,0,0,0\n").unwrap();
+    fs::write(&cut, "speed: 9000 rpm\nmeasured: {file: dyn.csv, frame: cut, on: workpiece}\n").unwrap();
+    let page = succeed(&["forces", &cut]);
+    assert!(page.contains("does not resolve a revolution: it is shorter, or coarser"), "{page}");
+    let of_feed = page.lines().find(|line| line.trim_start().starts_with("feed")).unwrap();
+    assert_eq!(of_feed.split_whitespace().collect::<Vec<_>>(), ["feed", "-55.0", "-120.0", "0.0"], "{page}");
+    let said = fail(1, &["forces", &cut, "--csv", &out]);
+    assert!(said.contains("so nobody can tell what a revolution is"), "{said}");
+    assert_eq!(names(&folder), ["cut.yaml", "dyn.csv"]);
+}
+
 #[test]
 fn a_path_that_is_not_solved_is_not_drawn() {
     let folder = folder("machining-unsolved");

@@ -41,6 +41,12 @@ pub struct Sample {
     pub force: Vector3<f64>,
 }
 
+/// Times and speeds are written with fewer digits.
+const ROUNDING: f64 = 1e-6;
+
+/// Samples further apart than this \[rad\] do not show a revolution.
+const COARSEST: f64 = 0.25 * TAU * (1.0 + ROUNDING);
+
 /// What the columns are.
 const COLUMNS: [&str; 3] = ["Fx", "Fy", "Fz"];
 
@@ -86,14 +92,49 @@ impl MeasuredForce {
         self.samples.iter().map(|sample| sample.force).sum::<Vector3<f64>>() / self.samples.len().max(1) as f64
     }
 
+    /// The angle of the spindle at each sample \[rad\]: the recorded one, or the time's at
+    /// the speed of the spindle \[rad/s\]; `None` where neither is known.
+    fn angles(&self, speed: Option<f64>) -> Option<Vec<f64>> {
+        self.samples.iter().map(|sample| sample.angle.or_else(|| Some(sample.time? * speed?))).collect()
+    }
+
+    /// Whether the record, with the speed of the spindle \[rad/s\], says at which angle
+    /// each sample was taken.
+    pub fn has_angles(&self, speed: Option<f64>) -> bool {
+        self.angles(speed).is_some()
+    }
+
+    /// Whether the record resolves a revolution: by its times it is at least as long as
+    /// one, and has a sample for each quarter; recorded angles leave out no more than a
+    /// quarter. A record that is coarser has its samples at whatever angles.
+    pub fn resolves_revolution(&self, speed: Option<f64>) -> bool {
+        let Some(mut angles) = self.angles(speed) else { return false };
+        let recorded = self.samples.iter().all(|sample| sample.angle.is_some());
+        if recorded {
+            angles.iter_mut().for_each(|angle| *angle = angle.rem_euclid(TAU));
+        }
+        angles.sort_by(f64::total_cmp);
+        let (Some(first), Some(last)) = (angles.first(), angles.last()) else { return false };
+        if recorded {
+            let gaps = angles.windows(2).map(|pair| pair[1] - pair[0]);
+            gaps.fold(first + TAU - last, f64::max) <= COARSEST
+        } else {
+            let step = (last - first) / (angles.len() - 1).max(1) as f64;
+            step <= COARSEST && last - first + step >= TAU * (1.0 - ROUNDING)
+        }
+    }
+
     /// The mean force over a revolution in so many equal parts, each at the angle
     /// of its middle; a part without samples is left out. The angle is the
     /// recorded one, or the time's at the speed of the spindle \[rad/s\]; `None`
-    /// where neither is known.
+    /// where neither is known, and of a record that does not
+    /// [resolve](Self::resolves_revolution) a revolution.
     pub fn revolution(&self, count: usize, speed: Option<f64>) -> Option<Revolution> {
+        if !self.resolves_revolution(speed) {
+            return None;
+        }
         let mut sums = std::vec![(0_usize, Vector3::zeros()); count];
-        for sample in &self.samples {
-            let angle = sample.angle.or_else(|| Some(sample.time? * speed?))?;
+        for (sample, angle) in self.samples.iter().zip(self.angles(speed)?) {
             let part = (angle.rem_euclid(TAU) / TAU * count as f64) as usize;
             // Just below a whole turn the quotient may round up to it.
             let (number, sum) = &mut sums[part.min(count - 1)];

@@ -308,6 +308,16 @@ fn records_are_averaged() {
     assert_eq!(turn.samples.iter().map(|(_, force)| force.x).collect::<Vec<_>>(), [1.0, 2.0, 3.0, 4.0]);
     assert_eq!((turn.range(0).least, turn.range(0).greatest, turn.peak()), (1.0, 4.0, 4.0));
 
+    // Twice as fast they are too coarse, four times as slow too short; so are a few angles.
+    for (times, resolves) in [(1.0, true), (2.0, false), (0.25, false)] {
+        assert_eq!(timed.resolves_revolution(Some(TAU / 0.1 * times)), resolves, "{times}");
+    }
+    let few = |angles: [f64; 4]| {
+        let text = format!("angle [deg],Fx,Fy,Fz\n{}", angles.map(|angle| format!("{angle},1,0,0\n")).concat());
+        MeasuredForce::parse("f.csv", &text, ForceFrame::Cut, false).unwrap().0.revolution(4, None).is_some()
+    };
+    assert!(few([0.0, 270.0, 90.0, 540.0]) && !few([0.0, 30.0, 60.0, 90.0]));
+
     let text = "t [s],Fx,Fy,Fz\n0,1,0,0\n2,1,0,0\n1,1,0,0\n";
     let (_, warnings) = MeasuredForce::parse("f.csv", text, ForceFrame::Cut, false).unwrap();
     assert_eq!(warnings, ["f.csv: the times go back on line 4"]);

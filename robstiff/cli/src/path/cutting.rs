@@ -246,9 +246,8 @@ impl Asked {
             Forces::Measured { force, speed } => force.revolution(ANGLES, *speed),
         };
         let Some(revolution) = revolution else {
-            return Err(Failure::new(
-                "the record has neither `angle` nor `t` with a `speed`, so nobody can tell the peak of a revolution",
-            ));
+            let lacks = forces::lacks(&file.forces);
+            return Err(Failure::new(format_args!("{lacks}, so nobody can tell the peak of a revolution")));
         };
         Ok(load.with_revolution(revolution.samples.into_iter().map(|(_, force)| force).collect()))
     }
