@@ -93,6 +93,9 @@ pub enum Unreached {
         /// What is left in the posture that came nearest.
         remaining: Remaining,
     },
+    /// The arm has five axes and gets there with the tool at another turn about its axis:
+    /// told of the points of a path, whose file says which axis that is.
+    TurnAboutTool,
     /// The target or the seed has a number that is not finite.
     NotFinite,
 }
@@ -122,6 +125,9 @@ impl fmt::Display for Unreached {
             Self::NotConverged { remaining } => {
                 f.write_str("no posture was found; the nearest misses it by ")?;
                 left(f, remaining)
+            }
+            Self::TurnAboutTool => {
+                f.write_str("five axes hold the direction of the tool's axis only, not the turn about it")
             }
             Self::NotFinite => f.write_str("the target or the seed has a number that is not finite"),
         }

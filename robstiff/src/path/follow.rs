@@ -6,7 +6,7 @@ use std::vec::Vec;
 use nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
 use robstiff_robots::{Diagnostic, Diagnostics, Line};
 
-use super::{Goal, Jump, PathPoint, SolvedPath, ToolPath, Unreached, Unsolved, Waypoint};
+use super::{Goal, Jump, Orientation, PathPoint, SolvedPath, ToolPath, Unreached, Unsolved, Waypoint};
 use crate::inverse::{Inverse, Target};
 use crate::{JointKind, Robot};
 
@@ -52,10 +52,7 @@ impl ToolPath {
         start: Option<&SVector<f64, N>>,
     ) -> Result<SolvedPath<N>, Unsolved> {
         let inverse = Inverse::new(robot);
-        let middle = SVector::from_iterator(robot.limits().map(|limits| match limits {
-            Some([low, high]) => 0.5 * (low + high),
-            None => 0.0,
-        }));
+        let middle = middle(robot);
         let seeds = match (start, self.points.first().map(|point| &point.goal)) {
             (Some(start), _) => std::vec![*start],
             (None, Some(Goal::Tool(target))) => inverse.all(target, &middle).unwrap_or_else(|_| std::vec![middle]),
@@ -77,7 +74,7 @@ impl ToolPath {
             .points
             .iter()
             .zip(&followed.postures)
-            .filter_map(|(point, q)| q.err().map(|why| (point.line, why)))
+            .filter_map(|(point, q)| q.err().map(|why| (point.line, self.but_for_the_turn(robot, &point.goal, why))))
             .collect();
         let shown = missed.iter().take(MOST_SHOWN).map(|(line, why)| self.problem(*line, why)).collect();
         if let Some(problems) = Diagnostics::new(shown) {
@@ -98,8 +95,23 @@ impl ToolPath {
         Ok(SolvedPath { points: points.collect(), jumps: followed.jumps })
     }
 
+    /// Why a point is not reached; that is the turn about the tool's axis, where five axes
+    /// get there with another.
+    fn but_for_the_turn<const N: usize, R: Robot<N>>(&self, robot: &R, goal: &Goal, why: Unreached) -> Unreached {
+        let Goal::Tool(Target { position, orientation: Orientation::Full(turn) }) = goal else { return why };
+        if N != 5 {
+            return why;
+        }
+        let any = Target::axis(*position, self.tool, turn * self.tool);
+        match Inverse::new(robot).nearest(&any, &middle(robot)) {
+            Ok(_) => Unreached::TurnAboutTool,
+            Err(_) => why,
+        }
+    }
+
     fn problem(&self, line: usize, why: &Unreached) -> Diagnostic {
         let help = match why {
+            Unreached::TurnAboutTool => "give the columns `ux,uy,uz` in place of the full orientation",
             Unreached::OutsideLimits { .. } => {
                 "move the workpiece, turn the tool, or widen `limits` if they are too tight"
             }
@@ -115,6 +127,14 @@ impl ToolPath {
         let width = source_line.chars().count();
         Diagnostic::new(&self.file, Line { number: line, text: &source_line }, (1, width), message, help)
     }
+}
+
+/// The middle of the joints' ranges.
+fn middle<const N: usize, R: Robot<N>>(robot: &R) -> SVector<f64, N> {
+    SVector::from_iterator(robot.limits().map(|limits| match limits {
+        Some([low, high]) => 0.5 * (low + high),
+        None => 0.0,
+    }))
 }
 
 fn follow<const N: usize, R: Robot<N>>(
@@ -170,7 +190,7 @@ fn jump<const N: usize, R: Robot<N>>(
     let [first, last] = [from, to].map(orientation);
     let middle = Target {
         position: (position(from) + position(to)) * 0.5,
-        orientation: super::Orientation::Full(first.try_slerp(&last, 0.5, 1e-9).unwrap_or(first).to_rotation_matrix()),
+        orientation: Orientation::Full(first.try_slerp(&last, 0.5, 1e-9).unwrap_or(first).to_rotation_matrix()),
     };
     let off = middle.remaining(&halfway);
     let (turn, slack) = (first.angle_to(&last), 5_f64.to_radians());

@@ -29,6 +29,8 @@ pub struct ToolPath {
     pub points: Vec<Waypoint>,
     /// What the reader noticed without refusing the file.
     pub warnings: Vec<String>,
+    /// The tool's axis in the TCP's frame.
+    tool: Unit<Vector3<f64>>,
     /// The file's text, to show its lines.
     text: String,
 }
@@ -121,7 +123,7 @@ impl core::fmt::Display for Unsolved {
         let count = self.points.len();
         let lines = lines(self.points.iter().map(|(line, _)| *line));
         write!(f, "{}\n\n{count} of {} points cannot be reached: {lines}", self.problems, self.of)?;
-        if count == self.of {
+        if count == self.of && !self.points.iter().all(|(_, why)| *why == Unreached::TurnAboutTool) {
             f.write_str("; is the path given in another frame, in another unit, or along another axis of the tool?")?;
         }
         Ok(())

@@ -105,7 +105,7 @@ impl ToolPath {
             rows.collect::<Vec<_>>().into_iter().collect::<Option<Vec<_>>>()
         });
         let (points, warnings) = table.finish(points)?;
-        Ok(Self { file: file.to_owned(), points, warnings, text: text.to_owned() })
+        Ok(Self { file: file.to_owned(), points, warnings, tool, text: text.to_owned() })
     }
 
     /// A line of the file (from 1).

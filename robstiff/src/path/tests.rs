@@ -142,6 +142,25 @@ fn five_axes_follow_a_tool_axis() {
     }
 }
 
+/// A full orientation asks five axes for what only six have.
+#[test]
+fn five_axes_are_told_that_they_do_not_hold_a_turn_about_the_tool() {
+    let description = catalogued("rv130hsc");
+    let robot = Generic::<5>::new(&description).unwrap();
+    let unsolved = |position: &str| {
+        let text = format!("x [mm],y [mm],z [mm],a [deg],b [deg],c [deg]\n{position},0,90,17\n");
+        let path = ToolPath::parse("p.csv", &text, &description, Vector3::x_axis()).unwrap();
+        path.solve(&robot, None).unwrap_err()
+    };
+    let said = unsolved("1300,-50,600");
+    assert_eq!(said.points, [(2, Unreached::TurnAboutTool)]);
+    let said = said.to_string();
+    assert!(said.contains("not the turn about it") && said.contains("`ux,uy,uz`"), "{said}");
+    assert!(said.ends_with("1 of 1 points cannot be reached: line 2"), "{said}");
+    let far = unsolved("9300,-50,600");
+    assert!(!far.points.contains(&(2, Unreached::TurnAboutTool)), "{far}");
+}
+
 #[test]
 fn a_path_can_be_placed() {
     let (description, _) = abb();
