@@ -1,5 +1,6 @@
 //! What commands are given: robots by path or by name, and joint coordinates.
 
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use robstiff::campaign::Campaign;
@@ -103,7 +104,24 @@ pub fn coordinates_of(option: &str, given: &str, robot: &Description) -> Result<
         };
         quantity::parse(part, dimension).map_err(|error| Failure::Usage(format!("{option}, q{}: {error}", index + 1)))
     };
+    let bare = parts.iter().map(|part| part.trim().parse::<f64>().ok());
+    if let Some(asked) = are_degrees(bare, robot) {
+        output::complain(format_args!("warning: {option}: {asked}"));
+    }
     parts.iter().enumerate().map(coordinate).collect()
+}
+
+/// Asks, of numbers given to joints without a unit, whether they are in degrees, if one turns
+/// a joint by more than a turn.
+pub fn are_degrees(bare: impl Iterator<Item = Option<f64>>, robot: &Description) -> Option<String> {
+    let beyond = |((number, joint), value): ((usize, &Joint), Option<f64>)| {
+        let value = value.filter(|value| joint.kind == JointKind::Revolute && value.abs() > TAU)?;
+        Some((number, value))
+    };
+    let (number, value) = (1..).zip(&robot.joints).zip(bare).find_map(beyond)?;
+    Some(format!(
+        "q{number} = {value} rad is more than a turn: are the angles in degrees? write `{value} deg`, and so all others"
+    ))
 }
 
 /// Sentences on coordinates that the joints' limits leave out.
@@ -159,6 +177,14 @@ mod tests {
             let failure = coordinates(text, &five_axes()).unwrap_err();
             assert!(matches!(&failure, Failure::Usage(message) if message.contains(part)), "{failure}");
         }
+    }
+
+    #[test]
+    fn numbers_of_more_than_a_turn_are_asked_about() {
+        let asked = |bare: [Option<f64>; 5]| are_degrees(bare.into_iter(), &five_axes());
+        assert_eq!(asked([Some(0.0), Some(-3.1), None, Some(6.2), None]), None);
+        let said = asked([Some(0.0), Some(-90.0), None, None, Some(45.0)]).unwrap();
+        assert!(said.starts_with("q2 = -90 rad is more than a turn: are the angles in degrees?"), "{said}");
     }
 
     #[test]

@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{fail, folder, inside, json, names, succeed};
+use common::{fail, folder, inside, json, names, run, succeed};
 
 const JOINTS: &str = "force: [0, 400 N, -200 N]\njoints:\n  - 0\n  - {from: -80 deg, to: 60 deg, count: 7}\n  \
                       - {from: -60 deg, to: 90 deg, count: 6}\n  - 0\n  - {from: 30 deg, to: 60 deg, count: 2}\n";
@@ -131,6 +131,20 @@ fn wrong_maps_are_explained_and_leave_nothing() {
     fail(2, &["map", "rv130hsc", &map, "--place", "4 x 3"]);
     fail(1, &["map", "rv130hsc", &map, "--csv", &map]);
     assert_eq!(names(&folder), ["map.yaml"]);
+}
+
+/// Degrees without a unit are computed with as what they are, but not without a word.
+#[test]
+fn joints_of_many_turns_are_asked_about() {
+    let folder = folder("map-degrees");
+    let map = inside(&folder, "map.yaml");
+    let asked = |joints: &str| {
+        fs::write(&map, format!("force: 500 N\njoints: {joints}\n")).unwrap();
+        run(&["map", "kuka-kr270-r2700", &map]).err
+    };
+    let said = asked("[0, {from: -90, to: -60, count: 4}, 90, 0, 60, 0]");
+    assert!(said.contains("map.yaml: q2 = -90 rad is more than a turn: are the angles in degrees?"), "{said}");
+    assert_eq!(asked("[0, {from: -90 deg, to: -60 deg, count: 4}, 1.5, 0, 1, 0]"), "");
 }
 
 #[test]

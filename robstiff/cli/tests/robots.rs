@@ -128,3 +128,17 @@ fn a_reader_that_has_gone_away_is_no_failure() {
     let output = common::robstiff(&["emit", "rv130hsc"]).stdout(writer).output().unwrap();
     assert_eq!((output.status.code(), output.stderr.len()), (Some(0), 0));
 }
+
+/// Degrees without a unit are radians, which is asked about where they are many turns.
+#[test]
+fn a_pose_of_many_turns_is_asked_about() {
+    let show = |at: &str| run(&["show", "kuka-kr270-r2700", "--at", at]);
+    let ran = show("0,-90,90,0,60,0");
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    assert!(
+        ran.err.contains("warning: --at: q2 = -90 rad is more than a turn: are the angles in degrees?"),
+        "{}",
+        ran.err
+    );
+    assert_eq!(show("0,-90 deg,1.5,0,1,0").err, "");
+}

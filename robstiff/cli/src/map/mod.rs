@@ -21,6 +21,7 @@ use robstiff::map::read::{Over, Positions, Task};
 use robstiff::map::{Axis, CartesianSpace, Chunk, Evaluate, JointSpace, Measure, Space, Tool, best_placement, stream};
 use robstiff::nalgebra::Isometry3;
 use robstiff_robots::Description;
+use robstiff_robots::document::{Document, Node};
 use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;
@@ -92,7 +93,28 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn task(path: &Path, robot: &Description) -> Result<Task, Failure> {
     let text =
         fs::read_to_string(path).map_err(|error| Failure::new(format!("cannot read {}: {error}", path.display())))?;
-    Ok(Task::parse(&path.display().to_string(), &text, robot)?)
+    let file = path.display().to_string();
+    // Beyond the joints' limits they are refused, so before.
+    if let Some(asked) = are_degrees(&file, &text, robot) {
+        output::complain(format_args!("warning: {file}: {asked}"));
+    }
+    Ok(Task::parse(&file, &text, robot)?)
+}
+
+/// Asks whether `joints` without a unit are in degrees, as of `--at`.
+fn are_degrees(file: &str, text: &str, robot: &Description) -> Option<String> {
+    let document = Document::parse(file, text).ok()?;
+    let joints = document.root().any_map("")?.get("joints")?.sequence()?;
+    let number = |node: &Node<'_>| node.is_number().then(|| node.quantity(Dimension::Number)).flatten();
+    let bare = |node: &Node<'_>| {
+        if !node.is_map() {
+            return number(node);
+        }
+        let ends = node.any_map("")?;
+        let ends = ["from", "to"].into_iter().filter_map(|end| number(&ends.get(end)?));
+        ends.max_by(|one, other| one.abs().total_cmp(&other.abs()))
+    };
+    input::are_degrees(joints.iter().map(bare), robot)
 }
 
 fn map<const N: usize>(
