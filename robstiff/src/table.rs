@@ -84,6 +84,10 @@ impl<'t> Table<'t> {
             return Err(table.problem(1, 0, "the file is empty", "the first line names the columns").into());
         };
         table.header_line = line_of(&header, text);
+        if header.get(0).is_some_and(|name| name.starts_with('#')) {
+            let help = "the first line must be the header, which names the columns: `pose,q1 [deg],Fx [N]`";
+            return Err(table.problem(table.header_line, usize::MAX, "a comment line?", help).into());
+        }
         for (separator, message) in
             [(';', "the columns are separated by semicolons"), ('\t', "the columns are separated by tabs")]
         {
@@ -133,12 +137,9 @@ impl<'t> Table<'t> {
         } else {
             let fields = if found == 1 { "field" } else { "fields" };
             let message = format!("this row has {found} {fields}, the header has {expected}");
-            self.report(
-                line,
-                found.min(expected),
-                &message,
-                "give every row one field a column, with a point as decimal sign",
-            );
+            let help = "give every row one field a column, with a point as decimal sign";
+            let comma = decimal_comma(row).filter(|_| found > expected);
+            self.report(line, found.min(expected), &message, comma.as_deref().unwrap_or(help));
         }
     }
 
@@ -178,7 +179,7 @@ impl<'t> Table<'t> {
     /// The index of a column of ids whose absence is reported.
     pub fn require_name(&self, name: &str) -> Option<usize> {
         let index = self.position(name);
-        if index.is_none() {
+        if index.is_none() && self.in_round_brackets(name).is_none() {
             let names: Vec<_> = self.header.iter().map(|header| format!("`{}`", header.name)).collect();
             let other = self.header.iter().position(|header| header.name.eq_ignore_ascii_case(name));
             let help = match other {
@@ -191,11 +192,27 @@ impl<'t> Table<'t> {
         index
     }
 
-    /// The index of a column.
+    /// The index of a column. One whose unit is in round brackets is reported.
     pub fn position(&self, name: &str) -> Option<usize> {
-        let index = self.header.iter().position(|header| header.name == name)?;
-        self.asked_for.borrow_mut().push(index);
-        Some(index)
+        let index = self.header.iter().position(|header| header.name == name);
+        match (index, self.in_round_brackets(name)) {
+            (Some(index), _) => self.asked_for.borrow_mut().push(index),
+            (None, Some((field, unit))) => {
+                let help = format!("write `{name} [{unit}]`");
+                self.report(self.header_line, field, "the unit is in round brackets", &help);
+            }
+            (None, None) => {}
+        }
+        index
+    }
+
+    /// The column that is called so up to a round bracket, by index, and what is in the
+    /// bracket.
+    fn in_round_brackets(&self, name: &str) -> Option<(usize, &str)> {
+        self.header.iter().enumerate().find_map(|(field, header)| {
+            let (before, unit) = header.name.split_once('(')?;
+            (before.trim() == name).then(|| (field, unit.trim_end_matches(')').trim()))
+        })
     }
 
     /// A number of a row in SI; what is not a finite number is reported.
@@ -209,12 +226,12 @@ impl<'t> Table<'t> {
             Err(_) => format!("`{text}` is not a number"),
         };
         let name = &self.header[column.index].name;
-        self.report(
-            record.line,
-            column.index,
-            &problem,
-            &format!("the column `{name}` holds finite numbers, e.g. `0.25`"),
-        );
+        let point = text.replacen(',', ".", 1);
+        let help = match text.contains(',') && point.parse::<f64>().is_ok() {
+            true => comma_help(&point),
+            false => format!("the column `{name}` holds finite numbers, e.g. `0.25`"),
+        };
+        self.report(record.line, column.index, &problem, &help);
         None
     }
 
@@ -326,6 +343,23 @@ fn line_of(record: &csv::StringRecord, text: &str) -> usize {
     let rest = text.as_bytes().iter().skip(position.byte() as usize);
     let skipped = rest.take_while(|byte| matches!(byte, b'\r' | b'\n')).filter(|&&byte| byte == b'\n').count();
     position.line() as usize + skipped
+}
+
+/// What is said of a number with a comma, written with a point.
+fn comma_help(point: &str) -> String {
+    format!("a decimal comma? write `{point}`")
+}
+
+/// The same of a row whose commas divide numbers: of the first two fields that look like
+/// one, a whole number and three digits or more.
+fn decimal_comma(row: &csv::StringRecord) -> Option<String> {
+    let fields: Vec<&str> = row.iter().collect();
+    let is_divided = |pair: &&[&str]| {
+        let digits = pair[1].len() >= 3 && pair[1].bytes().all(|byte| byte.is_ascii_digit());
+        digits && pair[0].parse::<i64>().is_ok()
+    };
+    let pair = fields.windows(2).find(is_divided)?;
+    Some(comma_help(&format!("{}.{}", pair[0], pair[1])))
 }
 
 /// Where a field is in its line: its column in characters from 1, and its

@@ -6,6 +6,12 @@ use std::process::ExitCode;
 use robstiff::campaign::Campaign;
 use robstiff_robots::{Diagnostics, ReadError};
 
+/// Problems of a file that are shown; a column that is wrong is wrong in every row.
+const MOST_SHOWN: usize = 10;
+
+/// Readers of tables give up behind so many.
+const READERS_STOP: usize = 100;
+
 /// A failure that is explained to the person who ran the command.
 #[derive(Debug)]
 pub enum Failure {
@@ -46,8 +52,11 @@ impl fmt::Display for Failure {
 
 impl From<ReadError> for Failure {
     fn from(error: ReadError) -> Self {
-        // Readers' messages begin with `error:` themselves.
-        Self::Explained(error.to_string())
+        match error {
+            ReadError::Invalid(problems) => problems.into(),
+            // Readers' messages begin with `error:` themselves.
+            error @ ReadError::Io { .. } => Self::Explained(error.to_string()),
+        }
     }
 }
 
@@ -65,6 +74,13 @@ impl From<robstiff::path::Unsolved> for Failure {
 
 impl From<Diagnostics> for Failure {
     fn from(problems: Diagnostics) -> Self {
-        Self::Explained(problems.to_string())
+        let shown: Vec<String> = problems.iter().take(MOST_SHOWN).map(ToString::to_string).collect();
+        let message = shown.join("\n\n");
+        let all = problems.iter().count();
+        let least = if all >= READERS_STOP { "at least " } else { "" };
+        Self::Explained(match all - shown.len() {
+            0 => message,
+            more => format!("{message}\n\nand {least}{more} more"),
+        })
     }
 }

@@ -155,6 +155,20 @@ fn predicts_every_row() {
     assert!(((squares / (3.0 * 43.0)).sqrt() / rms - 1.0).abs() < 1e-6);
 }
 
+/// A column that is wrong is wrong in every row.
+#[test]
+fn ten_problems_of_a_table_are_shown_and_the_others_counted() {
+    let folder = folder("many-problems");
+    let campaign = copy(&folder);
+    let loads = fs::read_to_string(folder.join("loads.csv")).unwrap();
+    let rows = loads.lines().skip(1).map(|row| row.replacen(',', ",x", 1));
+    let loads = [loads.lines().next().unwrap().to_owned()].into_iter().chain(rows).collect::<Vec<_>>().join("\n");
+    fs::write(folder.join("loads.csv"), loads).unwrap();
+    let said = fail(1, &["identify", &campaign, "--out", &inside(&folder, "out")]);
+    assert_eq!(said.matches("error: ").count(), 10, "{said}");
+    assert!(said.trim_end().ends_with("and 33 more"), "{said}");
+}
+
 #[test]
 fn traces_the_missing_effect_and_writes_everything() {
     let folder = folder("trace");

@@ -91,6 +91,24 @@ fn every_problem_of_a_table_has_its_place() {
     assert_eq!(problems("empty", CAMPAIGN, ""), ["1:1 the file is empty"]);
 }
 
+/// What spreadsheets and people make of a table is told as what it is.
+#[test]
+fn tables_as_others_write_them_are_told_how() {
+    let told = |name: &str, table: &str| {
+        let said = Folder::new(name, CAMPAIGN, table).read().expect_err("something is wrong").to_string();
+        said.replace(&std::env::temp_dir().display().to_string(), "")
+    };
+    let row = "a,v,0,0,1,2,3,4,5,6";
+    let comment = told("comment", &format!("# hall 2, by me\n{HEADER}\n{row}\n"));
+    assert!(comment.contains("a comment line?") && comment.contains("the first line must be the header"), "{comment}");
+    let round = told("round", &format!("{}\n{row}\n", HEADER.replace("q1 [deg]", "q1 (deg)")));
+    assert!(round.contains("write `q1 [deg]`") && round.matches("error: ").count() == 1, "{round}");
+    let quoted = told("quoted-comma", &format!("{HEADER}\n{}\n", row.replace("v,0", "v,\"-126,6154\"")));
+    assert!(quoted.contains("a decimal comma? write `-126.6154`"), "{quoted}");
+    let divided = told("comma", &format!("{HEADER}\n{}\n", row.replace("v,0", "v,-126,6154")));
+    assert!(divided.contains("this row has 11 fields") && divided.contains("write `-126.6154`"), "{divided}");
+}
+
 /// Degrees in a column without a unit are radians that no joint reaches.
 #[test]
 fn coordinates_that_joints_do_not_reach_are_warned_of() {
