@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use robstiff::campaign::{Campaign, Data};
+use robstiff::identify::predict::PredictedRow;
 use robstiff::identify::{Prediction, predict};
 use serde_json::json;
 
@@ -43,6 +44,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "rms_um": json::number(prediction.rms * 1e6),
             "p95_um": json::number(prediction.p95 * 1e6),
             "max_um": json::number(prediction.max * 1e6),
+            "max_line": worst_line(&prediction),
         });
         files.add(path, json::document(&document));
     }
@@ -53,10 +55,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::print(page(&robot.name, &prediction) + &said)
 }
 
+/// The line of the largest error, the first where several are.
+fn worst_line(prediction: &Prediction) -> Option<usize> {
+    let worse = |one: &PredictedRow, other: &PredictedRow| other.error() > one.error();
+    prediction.rows.iter().reduce(|one, other| if worse(one, other) { other } else { one }).map(|row| row.line)
+}
+
 fn page(robot: &str, prediction: &Prediction) -> String {
     let Prediction { rows, rms, p95, max } = prediction;
+    let line = worst_line(prediction).map(|line| format!(" (line {line})")).unwrap_or_default();
     format!(
-        "{robot} on {}: error {} um rms, {} um at the 95th percentile, {} um at most\n\
+        "{robot} on {}: error {} um rms, {} um at the 95th percentile, {} um at most{line}\n\
          (the length of a row's residual over the root of 3, as the noise of one axis)\n",
         count(rows.len(), "row"),
         micrometres(*rms),

@@ -137,7 +137,8 @@ fn predicts_every_row() {
     let page = succeed(&["predict", "fanuc-r2000ic", &campaign(), "--json", &path, "--csv", &table]);
     assert!(page.contains("um rms"), "{page}");
     let error = json(&path);
-    assert_eq!(keys(&error), ["rows", "rms_um", "p95_um", "max_um"]);
+    assert_eq!(keys(&error), ["rows", "rms_um", "p95_um", "max_um", "max_line"]);
+    assert!(page.contains(&format!("um at most (line {})", error["max_line"])), "{page}");
     assert_eq!(error["rows"], 43);
     let [rms, p95, max] = ["rms_um", "p95_um", "max_um"].map(|key| error[key].as_f64().unwrap());
     assert!(rms < p95 && p95 <= max);
@@ -167,6 +168,12 @@ fn ten_problems_of_a_table_are_shown_and_the_others_counted() {
     let said = fail(1, &["identify", &campaign, "--out", &inside(&folder, "out")]);
     assert_eq!(said.matches("error: ").count(), 10, "{said}");
     assert!(said.trim_end().ends_with("and 33 more"), "{said}");
+}
+
+#[test]
+fn a_dash_is_no_file() {
+    let said = fail(2, &["predict", "fanuc-r2000ic", &campaign(), "--json", "-"]);
+    assert!(said.contains("`-` does not stand for standard output"), "{said}");
 }
 
 #[test]

@@ -133,6 +133,17 @@ fn wrong_maps_are_explained_and_leave_nothing() {
     assert_eq!(names(&folder), ["map.yaml"]);
 }
 
+#[test]
+fn a_map_that_no_pose_reaches_is_refused() {
+    let folder = folder("map-unreached");
+    let (map, out) = (inside(&folder, "map.yaml"), inside(&folder, "out.csv"));
+    let far = "positions: {x: {from: 9 m, to: 10 m, count: 3}, y: 0, z: 1 m}\ntool: {direction: [0, 0, -1]}\n";
+    fs::write(&map, far).unwrap();
+    let said = fail(1, &["map", "rv130hsc", &map, "--csv", &out]);
+    assert!(said.contains("no pose reaches any of it") && said.contains("is it in the robot's base frame"), "{said}");
+    assert_eq!(names(&folder), ["map.yaml"]);
+}
+
 /// Degrees without a unit are computed with as what they are, but not without a word.
 #[test]
 fn joints_of_many_turns_are_asked_about() {

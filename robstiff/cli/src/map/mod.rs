@@ -83,6 +83,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         7 => map::<7>(&robot, &task, arguments, &mut files),
         _ => map::<8>(&robot, &task, arguments, &mut files),
     }?;
+    if mapped.summary.unreachable == mapped.summary.cells {
+        // A page without a number, and tables of nothing.
+        return Err(Failure::new(format_args!("no pose reaches any of it\n{}", mapped.page().trim_end())));
+    }
     if let Some(path) = &arguments.json {
         files.add(path, json::document(&mapped.json()));
     }

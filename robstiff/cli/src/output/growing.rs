@@ -52,8 +52,13 @@ impl Files {
         Ok(())
     }
 
-    /// Stops where a path is one of the files read, or one of `others`.
+    /// Stops where a path is one of the files read, or one of `others`, or a dash.
     pub(super) fn refuse(&self, path: &Path, others: &[&Path]) -> Result<(), Failure> {
+        if path == Path::new("-") {
+            return Err(Failure::Usage(
+                "`-` does not stand for standard output, where the page goes; name a file".to_owned(),
+            ));
+        }
         if others.iter().any(|other| same_file(other, path)) {
             return Err(Failure::Usage(format!("{} would be written twice", path.display())));
         }
