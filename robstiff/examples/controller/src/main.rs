@@ -14,13 +14,31 @@ use robstiff_controller::{Controller, JOINTS, Limits};
 /// ten milliseconds of patience.
 static LIMITS: Limits = Limits { size: 2.5e-4, rate: 1e-4, hold: 10 };
 
-/// The entry, where a real controller waits for its timer. `black_box` stands
-/// for the encoders, the force sensor and the drives.
+/// The entry. The kernel, which calls nothing, leaves no return address on the
+/// stack; code behind a call expects one, and its aligned stores would fault.
 ///
 /// # Safety
 /// Nothing else is called `_start`.
+#[cfg(target_arch = "x86_64")]
+#[unsafe(no_mangle)]
+#[unsafe(naked)]
+pub extern "C" fn _start() -> ! {
+    core::arch::naked_asm!("and rsp, -16", "call {run}", "ud2", run = sym run)
+}
+
+/// The entry.
+///
+/// # Safety
+/// Nothing else is called `_start`.
+#[cfg(not(target_arch = "x86_64"))]
 #[unsafe(no_mangle)]
 pub extern "C" fn _start() -> ! {
+    run()
+}
+
+/// Control steps without end, where a real controller waits for its timer.
+/// `black_box` stands for the encoders, the force sensor and the drives.
+extern "C" fn run() -> ! {
     let mut controller = Controller::new(LIMITS);
     loop {
         let q: [f32; JOINTS] = black_box([0.3, -0.4, 0.5, 0.2, 1.2]);
