@@ -15,7 +15,7 @@ use robstiff_codegen::{Origin, skeleton, tokens};
 use robstiff_robots::Description;
 
 use crate::input::Input;
-use crate::locate::{Located, locate};
+use crate::locate::{Located, locate, with_ending};
 
 /// Expands `[path to robstiff] visibility "file.yaml"`; `robstiff::robot!`
 /// adds the path.
@@ -32,7 +32,7 @@ fn expand(input: &Input) -> TokenStream {
     let Input { runtime, visibility, file } = input;
     let origin =
         |file: &str| Origin { file: file.to_owned(), runtime: runtime.clone(), visibility: quote!(#visibility) };
-    let asked = file.value();
+    let asked = with_ending(&file.value());
     let Located { shown, text, watched } = match locate(&asked, file.span()) {
         Ok(located) => located,
         Err(message) => return failed(input, &message, None, &origin(&asked)),

@@ -17,6 +17,14 @@ pub(crate) struct Located {
     pub watched: Option<String>,
 }
 
+/// The file's name with its ending: `.yaml` where none is given.
+pub(crate) fn with_ending(file: &str) -> String {
+    match Path::new(file).extension() {
+        Some(_) => file.to_owned(),
+        None => format!("{file}.yaml"),
+    }
+}
+
 /// Looks next to the calling source file, in the crate's manifest folder, in
 /// its `robots/`, and in the catalogue that ships with robstiff, in this order.
 /// Where the file is nowhere, or cannot be read, the message says so.
@@ -25,6 +33,9 @@ pub(crate) fn locate(file: &str, call: Span) -> Result<Located, String> {
     let folders = folders(call, manifest.as_deref());
     for folder in &folders {
         let path = folder.join(file);
+        if path.is_dir() {
+            continue;
+        }
         match fs::read_to_string(&path) {
             Ok(text) => {
                 let path =
@@ -78,5 +89,19 @@ fn shown(path: &Path, manifest: Option<&Path>) -> String {
         Some(inside) if inside.as_os_str().is_empty() => "the crate's folder".to_owned(),
         Some(inside) => inside.display().to_string(),
         None => path.display().to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ending_may_be_left_out() {
+        for (file, expected) in
+            [("arm", "arm.yaml"), ("arm.yaml", "arm.yaml"), ("arm.yml", "arm.yml"), ("arms.d/deep", "arms.d/deep.yaml")]
+        {
+            assert_eq!(with_ending(file), expected);
+        }
     }
 }

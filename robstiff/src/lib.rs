@@ -108,11 +108,11 @@ pub use state::State;
 ///
 /// `robot!("rv130hsc.yaml")` finds the file next to the calling source file,
 /// in the crate's manifest folder, in its `robots/`, or in the catalogue that
-/// ships with robstiff, in this order; the crate is built again when the file
-/// changes. It defines a unit struct named as the description says, public
-/// unless a visibility precedes the file's name (`robot!(pub(crate)
-/// "rv130hsc.yaml")`), with the description's numbers as constants, and
-/// implements [`Robot`] for it.
+/// ships with robstiff, in this order; the ending `.yaml` may be left out. The
+/// crate is built again when the file changes. It defines a unit struct named as
+/// the description says, public unless a visibility precedes the file's name
+/// (`robot!(pub(crate) "rv130hsc.yaml")`), with the description's numbers as
+/// constants, and implements [`Robot`] for it.
 ///
 /// # Errors
 /// A description with mistakes is a compile error that shows its own lines.

@@ -13,6 +13,7 @@ BesideMain 2e-6
 InManifest 3e-6
 InFolder 4e-6
 InSubfolder 5e-6
+NamedAsAFolder 7e-6
 OwnRv130hsc 6e-6
 StaubliRx160, KukaKr270R2700
 ";
@@ -20,6 +21,8 @@ StaubliRx160, KukaKr270R2700
 #[test]
 fn finds_descriptions_and_follows_them() {
     let user = User::new("renamed");
+    // A folder is no description, whatever its name.
+    std::fs::create_dir(user.folder.join("src/folder.yaml")).expect("a folder");
     assert_eq!(user.prints(), PRINTED);
 
     // Nothing else changes than the description.
