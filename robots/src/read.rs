@@ -154,12 +154,9 @@ fn name(node: &Node) -> Option<String> {
     Some(name.to_owned())
 }
 
-/// Names that generated code needs for other things.
-const TAKEN: [&str; 17] = [
+/// Names that generated code imports, and `Self`, which is no name.
+const TAKEN: [&str; 14] = [
     "Self",
-    "Option",
-    "Some",
-    "None",
     "Robot",
     "Real",
     "Statics",

@@ -28,6 +28,7 @@
 //   joint_torques  12 trig, 174 mul, 123 add
 //   statics        16 trig, 543 mul, 524 add
 
+use ::core::convert::From as _;
 use robstiff::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
 use robstiff::{Convention, Effect, JointKind, Real, Robot, Statics};
 
@@ -217,8 +218,15 @@ impl Robot<6> for EveryEffect {
     }
 
     #[inline]
-    fn limits(&self) -> [Option<[f64; 2]>; 6] {
-        [Some([-3.2288591161895095, 3.2288591161895095]), None, None, None, None, None]
+    fn limits(&self) -> [::core::option::Option<[f64; 2]>; 6] {
+        [
+            ::core::option::Option::Some([-3.2288591161895095, 3.2288591161895095]),
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+        ]
     }
 
     #[inline]

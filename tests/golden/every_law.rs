@@ -38,6 +38,7 @@
 //   statics        16 trig, 570 mul, 492 add
 //   deflection_with 14 trig, 341 mul, 257 add, 6 root
 
+use ::core::convert::From as _;
 use robstiff::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
 use robstiff::{Convention, DhEntry, Effect, JointKind, Real, Robot, State, Statics};
 
@@ -282,8 +283,16 @@ impl Robot<7> for EveryLaw {
     }
 
     #[inline]
-    fn limits(&self) -> [Option<[f64; 2]>; 7] {
-        [None, None, None, None, None, None, None]
+    fn limits(&self) -> [::core::option::Option<[f64; 2]>; 7] {
+        [
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+        ]
     }
 
     #[inline]

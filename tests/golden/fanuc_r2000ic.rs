@@ -18,6 +18,7 @@
 //   joint_torques  12 trig, 83 mul, 54 add
 //   statics        14 trig, 238 mul, 191 add, 10 neg
 
+use ::core::convert::From as _;
 use robstiff::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
 use robstiff::{Convention, Effect, JointKind, Real, Robot, Statics};
 
@@ -158,8 +159,15 @@ impl Robot<6> for FanucR2000ic {
     }
 
     #[inline]
-    fn limits(&self) -> [Option<[f64; 2]>; 6] {
-        [None, None, None, None, None, None]
+    fn limits(&self) -> [::core::option::Option<[f64; 2]>; 6] {
+        [
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+        ]
     }
 
     #[inline]

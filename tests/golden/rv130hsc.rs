@@ -17,6 +17,7 @@
 //   joint_torques  10 trig, 50 mul, 33 add
 //   statics        12 trig, 160 mul, 117 add, 11 neg
 
+use ::core::convert::From as _;
 use robstiff::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
 use robstiff::{Convention, Effect, JointKind, Real, Robot, Statics};
 
@@ -139,8 +140,14 @@ impl Robot<5> for Rv130hsc {
     }
 
     #[inline]
-    fn limits(&self) -> [Option<[f64; 2]>; 5] {
-        [None, None, None, None, None]
+    fn limits(&self) -> [::core::option::Option<[f64; 2]>; 5] {
+        [
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+            ::core::option::Option::None,
+        ]
     }
 
     #[inline]

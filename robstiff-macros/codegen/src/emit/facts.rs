@@ -21,9 +21,9 @@ pub(super) fn facts(robot: &Description) -> Vec<TokenStream> {
     let limits = robot.joints.iter().map(|joint| match joint.limits {
         Some([low, high]) => {
             let (low, high) = (number(low), number(high));
-            quote!(Some([#low, #high]))
+            quote!(::core::option::Option::Some([#low, #high]))
         }
-        None => quote!(None),
+        None => quote!(::core::option::Option::None),
     });
     let effects = robot.effects.iter().map(effect);
     let placement = |placement| {

@@ -49,7 +49,8 @@ pub fn skeleton(name: &str, joints: Option<usize>, origin: &Origin) -> TokenStre
             let joints = Literal::usize_unsuffixed(joints);
             (quote!(), quote!(#joints))
         }
-        None => (quote!(<const N: usize>), quote!(N)),
+        // No robot has an underscore in its name.
+        None => (quote!(<const JOINT_COUNT: usize>), quote!(JOINT_COUNT)),
     };
     let methods = signatures().map(|(signature, _)| {
         let signature = signature(&count);
@@ -99,7 +100,7 @@ fn signatures() -> [(Signature, Kind); 15] {
         (|_| quote!(fn convention(&self) -> Convention), Fact),
         (|n| quote!(fn joint_kinds(&self) -> [JointKind; #n]), Fact),
         (|n| quote!(fn joint_compliance(&self) -> SVector<f64, #n>), Fact),
-        (|n| quote!(fn limits(&self) -> [Option<[f64; 2]>; #n]), Fact),
+        (|n| quote!(fn limits(&self) -> [::core::option::Option<[f64; 2]>; #n]), Fact),
         (|_| quote!(fn effects(&self) -> &[Effect]), Fact),
         (|_| quote!(fn base(&self) -> Matrix4<f64>), Fact),
         (|_| quote!(fn tool(&self) -> Matrix4<f64>), Fact),
@@ -132,7 +133,10 @@ fn imports(runtime: &TokenStream, more: &[&str]) -> TokenStream {
     names.extend(more);
     names.sort_unstable();
     let names = names.into_iter().map(|name| Ident::new(name, Span::call_site()));
+    // Beyond these, paths are whole: the user's file may go without a prelude,
+    // or have an `Option` of its own.
     quote! {
+        use ::core::convert::From as _;
         use #runtime::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
         use #runtime::{#(#names),*};
     }
@@ -273,7 +277,9 @@ fn by_entries(robot: &Description, n: &TokenStream) -> TokenStream {
         #(#[doc = #docs])*
         #silence
         #[inline(always)]
-        fn compliance_entries<T: Real>(&self, q: &SVector<T, #n>, mut put: impl FnMut(usize, T)) { #statements }
+        fn compliance_entries<T: Real>(&self, q: &SVector<T, #n>, mut put: impl ::core::ops::FnMut(usize, T)) {
+            #statements
+        }
     }
 }
 
