@@ -47,7 +47,8 @@ struct Row {
 /// Evaluates an expression with a robot whose number of joints is known only at
 /// run time: `with_robot!(&description, |robot| expression)`, where `robot` is
 /// a `Generic<N>` for the `N` the description has. The expression is compiled
-/// for every `N` from 1 to 8, so let it call a generic function.
+/// for every `N` from 1 to 8, so let it call a generic function. The description
+/// is evaluated once.
 ///
 /// # Panics
 /// On a description that was not read but built, with no or more than eight
@@ -72,12 +73,15 @@ macro_rules! with_robot {
         $crate::with_robot!($description, |$robot| $body, 1 2 3 4 5 6 7 8)
     };
     ($description:expr, |$robot:ident| $body:expr, $($count:literal)+) => {
-        match $description.joints.len() {
-            $($count => {
-                let $robot = $crate::Generic::<$count>::new($description).expect("this arm has the same count");
-                $body
-            })+
-            count => panic!("a robot has one to eight joints, this one has {count}"),
+        // A match, since what the description borrows from may be made in passing.
+        match $description {
+            description => match description.joints.len() {
+                $($count => {
+                    let $robot = $crate::Generic::<$count>::new(description).expect("this arm has the same count");
+                    $body
+                })+
+                count => panic!("a robot has one to eight joints, this one has {count}"),
+            },
         }
     };
 }

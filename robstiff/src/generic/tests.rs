@@ -132,3 +132,14 @@ fn another_number_of_joints_is_refused() {
     assert_eq!(error, WrongJointCount { expected: 6, found: 5 });
     assert_eq!(std::format!("{error}"), "a robot with 6 joints was asked for, the description has 5");
 }
+
+#[test]
+fn a_description_is_evaluated_once() {
+    let mut calls = 0;
+    let mut read = || {
+        calls += 1;
+        five_axis()
+    };
+    assert_eq!(crate::with_robot!(&read(), |robot| robot.joint_kinds().len()), 5);
+    assert_eq!(calls, 1);
+}
