@@ -24,6 +24,10 @@ def number(x):
     return f"{x:.1f}" if x < 99.95 else f"{x:.0f}"
 
 
+def bold(cell):
+    return cell and f"**{cell}**"
+
+
 class Times:
     """The least times by way, flags, quantity and robot."""
 
@@ -41,12 +45,12 @@ class Times:
         return "" if None in found else " / ".join(map(number, found))
 
     def gain(self, quantity, **flags):
-        """The best peer's time by ours."""
-        return " / ".join(
-            f"{self.best(quantity, robot, lambda way: not own(way), **flags) / ours:.2f}"
-            for robot in self.robots
-            for ours in [self.best(quantity, robot, comparable, **flags)]
-        )
+        """The best peer's time by ours; nothing where no peer has one."""
+        peers = [self.best(quantity, robot, lambda way: not own(way), **flags) for robot in self.robots]
+        ours = [self.best(quantity, robot, comparable, **flags) for robot in self.robots]
+        if None in peers + ours:
+            return ""
+        return " / ".join(f"{peer / our:.2f}" for peer, our in zip(peers, ours))
 
     def ways(self, quantities):
         """In the order of their times."""
@@ -75,7 +79,7 @@ def short(times):
         ]
 
     rows = [[name, *row(name)] for name in names]
-    rows.append(["**best peer / robstiff**", *(f"**{times.gain(q)}**" for q in columns)])
+    rows.append(["**best peer / robstiff**", *(bold(times.gain(q)) for q in columns)])
     rows.append(["robstiff, no flags", *row(OURS, **unflagged)])
     rows.append(["best peer / robstiff, no flags for either", *(times.gain(q, **unflagged) for q in columns)])
     return table([f"ns a pose, {' / '.join(times.robots)}", *columns.values()], rows)
@@ -88,7 +92,7 @@ def full(times, columns):
         for way in times.ways(columns)
         for flags in dict.fromkeys(flags for w, flags, q, _ in times.least if w == way and q in columns)
     ]
-    rows.append(["**best peer / robstiff**", "best", *(f"**{times.gain(q)}**" for q in columns)])
+    rows.append(["**best peer / robstiff**", "best", *(bold(times.gain(q)) for q in columns)])
     return table([f"ns a pose, {' / '.join(times.robots)}", "flags", *columns.values()], rows)
 
 
