@@ -129,7 +129,9 @@ fn sin_cos(x: __m256d, shifted: __m256d, places: [usize; 4]) -> (__m256d, __m256
 #[inline]
 #[target_feature(enable = "avx2")]
 fn look_up(places: [usize; 4]) -> (__m256d, __m256d) {
-    // SAFETY: two numbers each.
+    const { assert!(align_of::<Circle>() >= 16 && size_of::<[f64; 2]>() == 16) }
+    // SAFETY: a place is the two numbers that are read, 16 bytes, and every one is a
+    // multiple of that behind the start of the circle, which is aligned to more.
     let [a, b, c, d] = places.map(|place| unsafe { _mm_load_pd(CIRCLE.0[place].as_ptr()) });
     let (even, odd) = (_mm256_set_m128d(c, a), _mm256_set_m128d(d, b));
     (_mm256_unpacklo_pd(even, odd), _mm256_unpackhi_pd(even, odd))
