@@ -95,10 +95,11 @@ pub trait Real:
     /// `1 / self`.
     fn recip(self) -> Self;
 
-    /// 1 with the sign of the number, for zero either: what joints with
-    /// hysteresis need beyond the arithmetic.
+    /// 1 with the sign of the number, for zero that of the zero.
+    /// [`Dual`](crate::Dual) tells by it which of two numbers is the larger, and
+    /// takes the slopes of that.
     ///
-    /// The default takes a root, and for zero it is not a number; a scalar that
+    /// The default takes a root, and of zero it is not a number; a scalar that
     /// can compare does better.
     #[inline]
     fn signum(self) -> Self {
