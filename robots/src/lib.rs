@@ -25,6 +25,8 @@ mod read;
 #[cfg(feature = "read")]
 mod suggest;
 #[cfg(feature = "read")]
+pub mod text;
+#[cfg(feature = "read")]
 mod units;
 #[cfg(feature = "urdf")]
 pub mod urdf;

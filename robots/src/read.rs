@@ -12,6 +12,7 @@ use crate::diagnostic::Diagnostics;
 use crate::document::{Document, Map, Node};
 use crate::effect::{Convention, Effect, JointKind};
 use crate::quantity::Dimension;
+use crate::text;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -29,7 +30,7 @@ pub enum ReadError {
         /// What the system said.
         error: io::Error,
     },
-    /// The file was read, but does not describe a robot.
+    /// The file was read, but is not what it should be.
     Invalid(Diagnostics),
 }
 
@@ -58,8 +59,7 @@ impl Description {
     /// A file that cannot be read, and everything [`parse`](Self::parse) finds.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
         let path = path.as_ref();
-        let text = std::fs::read_to_string(path).map_err(|error| ReadError::Io { path: path.to_owned(), error })?;
-        Self::parse(&path.display().to_string(), &text).map_err(ReadError::Invalid)
+        Self::parse(&path.display().to_string(), &text::read(path)?).map_err(ReadError::Invalid)
     }
 
     /// Reads a description; `file` is the name that problems show.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
 use proc_macro2::Span;
-use robstiff_robots::catalogue;
+use robstiff_robots::{catalogue, text};
 
 /// A description that was found.
 pub(crate) struct Located {
@@ -36,15 +36,14 @@ pub(crate) fn locate(file: &str, call: Span) -> Result<Located, String> {
         if path.is_dir() {
             continue;
         }
-        match fs::read_to_string(&path) {
-            Ok(text) => {
+        match fs::read(&path) {
+            Ok(bytes) => {
                 let path =
                     fs::canonicalize(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-                return Ok(Located {
-                    shown: shown(&path, manifest.as_deref()),
-                    text,
-                    watched: path.to_str().map(str::to_owned),
-                });
+                let shown = shown(&path, manifest.as_deref());
+                let text = text::decoded(&shown, bytes)
+                    .map_err(|problems| format!("the robot description cannot be read\n\n{problems}"))?;
+                return Ok(Located { shown, text, watched: path.to_str().map(str::to_owned) });
             }
             Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {}
             Err(error) => return Err(format!("cannot read {}: {error}", path.display())),

@@ -32,7 +32,7 @@ pub struct Table<'t> {
 /// The text of a file; a byte order mark, as spreadsheets write it, is no part
 /// of it.
 pub fn text_of(path: &Path) -> Result<String, ReadError> {
-    let text = std::fs::read_to_string(path).map_err(|error| ReadError::Io { path: path.to_owned(), error })?;
+    let text = robstiff_robots::text::read(path)?;
     Ok(text.strip_prefix('\u{feff}').map(ToOwned::to_owned).unwrap_or(text))
 }
 

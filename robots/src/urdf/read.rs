@@ -8,7 +8,7 @@ use roxmltree::{Document, Node};
 
 use super::{Body, Connection, Motion, Tree};
 use crate::suggest::list;
-use crate::{Diagnostic, Diagnostics, JointKind, Line, ReadError};
+use crate::{Diagnostic, Diagnostics, JointKind, Line, ReadError, text};
 
 /// A reader with the problems found so far.
 struct Reader<'t> {
@@ -27,8 +27,7 @@ impl Tree {
     /// place.
     pub fn read(path: impl AsRef<std::path::Path>) -> Result<Self, ReadError> {
         let path = path.as_ref();
-        let text = std::fs::read_to_string(path).map_err(|error| ReadError::Io { path: path.to_owned(), error })?;
-        Self::parse(&path.display().to_string(), &text).map_err(ReadError::Invalid)
+        Self::parse(&path.display().to_string(), &text::read(path)?).map_err(ReadError::Invalid)
     }
 
     /// Reads a URDF text; `file` is the name that problems show.

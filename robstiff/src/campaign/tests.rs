@@ -361,6 +361,18 @@ fn a_missing_file_is_named() {
     assert!(error.to_string().contains("nowhere/campaign.yaml"));
 }
 
+/// Spreadsheets save in the encoding of the country they are in.
+#[test]
+fn files_in_other_encodings_are_told_with_their_place() {
+    for file in ["campaign.yaml", "loads.csv", "robot.yaml"] {
+        let folder = Folder::new("encoding", CAMPAIGN, "");
+        std::fs::write(folder.0.join(file), b"a\n# M\xfcller\n").unwrap();
+        let Err(ReadError::Invalid(problems)) = folder.read() else { panic!("{file} is read") };
+        let problem = problems.iter().next().unwrap();
+        assert_eq!((problem.line, problem.column, problem.help.as_str()), (2, 4, "save the file as UTF-8"), "{file}");
+    }
+}
+
 /// Clamped axes have no poses to hold out, and no tool.
 #[test]
 fn what_clamped_axes_do_not_use_is_warned_of() {

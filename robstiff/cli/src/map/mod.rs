@@ -11,7 +11,6 @@ mod table;
 mod tape;
 
 use std::convert::Infallible;
-use std::fs;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -95,8 +94,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn task(path: &Path, robot: &Description) -> Result<Task, Failure> {
-    let text =
-        fs::read_to_string(path).map_err(|error| Failure::new(format!("cannot read {}: {error}", path.display())))?;
+    let text = robstiff_robots::text::read(path)?;
     let file = path.display().to_string();
     // Beyond the joints' limits they are refused, so before.
     if let Some(asked) = are_degrees(&file, &text, robot) {
