@@ -95,12 +95,20 @@ pub(crate) fn without_byte_order_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }
 
-/// The line (from 1) at which a second document begins.
+/// The line (from 1) at which a second document begins, behind the end of the
+/// first if that is marked.
 fn second_document(text: &str) -> Option<usize> {
+    let is_marker = |line: &str| line.trim_end() == "..." || line.starts_with("... ");
     let begins = |line: &str| line.trim_end() == "---" || line.starts_with("--- ");
     let is_before = |line: &str| begins(line) || line.trim().is_empty() || line.starts_with(['#', '%']);
+    let mut ended = false;
     let mut lines = text.lines().enumerate().skip_while(|(_, line)| is_before(line));
-    lines.find(|(_, line)| begins(line)).map(|(index, _)| index + 1)
+    let second = lines.find(|(_, line)| {
+        let is_second = begins(line) || (ended && !is_before(line) && !is_marker(line));
+        ended |= is_marker(line);
+        is_second
+    });
+    second.map(|(index, _)| index + 1)
 }
 
 fn syntax_problem(file: &str, text: &str, error: &serde_yaml::Error) -> Diagnostic {

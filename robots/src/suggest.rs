@@ -11,6 +11,18 @@ pub(crate) fn closest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c s
         .map(|(_, candidate)| candidate)
 }
 
+/// What other tables call a field, one that stands for it here, and how.
+const CALLED: [(&str, &str, &str); 2] = [
+    ("stiffness", "compliance", "`compliance: 3e6 Nm/rad`, which is inverted"),
+    ("offset", "theta", "`theta` of a joint that turns, `d` of one that slides"),
+];
+
+/// How a field is written that other tables call by this name.
+pub(crate) fn called(word: &str, fields: &[&str]) -> Option<String> {
+    let (.., help) = CALLED.iter().find(|(other, field, _)| *other == word && fields.contains(field))?;
+    Some(format!("write {help}"))
+}
+
 /// "`a`, `b`, `c`", for the list of what would be right.
 pub(crate) fn list<'c>(words: impl IntoIterator<Item = &'c str>) -> String {
     words.into_iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")

@@ -2,7 +2,7 @@
 
 use super::{Content, Document, Step, locate};
 use crate::quantity::{self, Dimension};
-use crate::suggest::{closest, list};
+use crate::suggest::{called, closest, list};
 
 /// A value in a document, with its place.
 #[derive(Clone, Debug)]
@@ -33,7 +33,7 @@ impl<'d> Node<'d> {
         self.document.report(&self.steps, &self.path, self.content, message.into(), help.into());
     }
 
-    fn expected(&self, what: &str, help: impl Into<String>) {
+    pub(crate) fn expected(&self, what: &str, help: impl Into<String>) {
         self.error(format!("{what} is expected here, not {}", self.content), help);
     }
 
@@ -61,10 +61,12 @@ impl<'d> Node<'d> {
                 continue;
             }
             let known = list(fields.iter().copied());
-            let help = match closest(name, fields.iter().copied()) {
+            let slip = map.decimal_comma(index).or_else(|| map.missing_space(index, fields));
+            let help = match (slip.or_else(|| called(name, fields)), closest(name, fields.iter().copied())) {
                 _ if name == "<<" => "merge keys are not supported: write the fields out".to_owned(),
-                Some(meant) => format!("did you mean `{meant}`? the fields are {known}"),
-                None => format!("the fields are {known}"),
+                (Some(help), _) => help,
+                (None, Some(meant)) => format!("did you mean `{meant}`? the fields are {known}"),
+                (None, None) => format!("the fields are {known}"),
             };
             map.error_at_key(index, format!("unknown field `{name}`"), help);
         }
@@ -91,9 +93,25 @@ impl<'d> Node<'d> {
         Some(items.iter().enumerate().map(item).collect())
     }
 
+    /// The value, where it is a text; nothing is reported.
+    pub(crate) fn as_text(&self) -> Option<&'d str> {
+        match self.content {
+            Content::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// The value, where it is a whole number; nothing is reported.
+    pub(crate) fn as_integer(&self) -> Option<i64> {
+        match self.content {
+            Content::Integer(value) => Some(*value),
+            _ => None,
+        }
+    }
+
     /// The value as text.
     pub fn text(&self) -> Option<&'d str> {
-        let Content::Text(text) = self.content else {
+        let Some(text) = self.as_text() else {
             self.expected("a text", "put quotes around a text that looks like a number or another value");
             return None;
         };
@@ -118,11 +136,11 @@ impl<'d> Node<'d> {
 
     /// The value as a whole number.
     pub fn integer(&self) -> Option<i64> {
-        let Content::Integer(value) = self.content else {
+        let value = self.as_integer();
+        if value.is_none() {
             self.expected("a whole number", "e.g. `1`");
-            return None;
-        };
-        Some(*value)
+        }
+        value
     }
 
     /// The value as a finite quantity, in SI units: a number in SI, or a text
@@ -255,11 +273,35 @@ impl<'d> Map<'d> {
         document.report(&steps, &self.path_of(index), key, message, help.into());
     }
 
+    /// What is right, where this field is what stands behind a decimal comma:
+    /// `{a: 1,5 m}` reads as `{a: 1, "5 m": nothing}`.
+    fn decimal_comma(&self, index: usize) -> Option<String> {
+        let name = self.key(index.checked_sub(1)?)?;
+        let Content::Integer(whole) = &self.entries[index - 1].1 else { return None };
+        let decimals = match &self.entries[index] {
+            (Content::Integer(digits), Content::Null) => digits.to_string(),
+            (Content::Text(text), Content::Null) => text.clone(),
+            _ => return None,
+        };
+        // Places are whole numbers.
+        let is_number = decimals.starts_with(|first: char| first.is_ascii_digit()) && name != "at";
+        is_number.then(|| format!("a decimal point, not a comma: `{name}: {whole}.{decimals}`"))
+    }
+
+    /// What is right, where this field has swallowed its value: `{a:1 m}` reads
+    /// as `{"a:1 m": nothing}`.
+    fn missing_space(&self, index: usize, fields: &[&str]) -> Option<String> {
+        let (name, value) = self.key(index)?.split_once(':')?;
+        (self.entries[index].1 == Content::Null && fields.contains(&name))
+            .then(|| format!("a space after `:`, e.g. `{name}: {value}`"))
+    }
+
     fn check_key(&self, index: usize) {
         let key = &self.entries[index].0;
         let Some(name) = self.key(index) else {
             // `{at: joints 2,3}` reads as `{at: joints 2, 3: nothing}`.
-            let help = "inside `{..}` a text with a comma needs quotes, e.g. `at: \"joints 2,3\"`";
+            let quotes = || "inside `{..}` a text with a comma needs quotes, e.g. `at: \"joints 2,3\"`".to_owned();
+            let help = self.decimal_comma(index).unwrap_or_else(quotes);
             return self.error_at_key(index, format!("the name of a field is expected here, not {key}"), help);
         };
         if self.entries[..index].iter().any(|(earlier, _)| earlier == key) {

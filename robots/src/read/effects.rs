@@ -153,7 +153,16 @@ fn kind(node: &Node) -> Option<&'static About> {
 
 /// The place of an effect of this kind, on the robot.
 fn place(node: &Node, about: &About, count: Option<usize>) -> Option<Place> {
-    let text = node.text()?;
+    let Some(text) = node.as_text() else {
+        let help = match (meant(node).as_deref(), about.at) {
+            (Some([joint]), At::Joint | At::TurningJoint) => format!("write `at: joint {joint}`"),
+            (Some([i, j]), At::TurningJoints) => format!("write `at: \"joints {i},{j}\"`"),
+            (Some([link]), At::Link) => format!("write `at: link {link}`"),
+            _ => format!("write e.g. `at: {}`", about.at.example()),
+        };
+        node.expected("a place", help);
+        return None;
+    };
     let place = match parse_place(text) {
         Some(place) if about.at.takes(place) => place,
         _ => {
@@ -185,6 +194,14 @@ fn place(node: &Node, about: &About, count: Option<usize>) -> Option<Place> {
         return None;
     }
     Some(place)
+}
+
+/// The whole numbers that stand alone where a place is expected.
+fn meant(node: &Node) -> Option<Vec<i64>> {
+    if !node.is_sequence() {
+        return Some(vec![node.as_integer()?]);
+    }
+    node.sequence()?.iter().map(Node::as_integer).collect()
 }
 
 fn parse_place(text: &str) -> Option<Place> {
