@@ -40,6 +40,8 @@ pub struct Document {
     file: String,
     text: String,
     root: Content,
+    /// Whether bare numbers are refused that are certainly in another unit than SI.
+    wary: bool,
     problems: RefCell<Vec<Diagnostic>>,
 }
 
@@ -52,9 +54,16 @@ impl Document {
         let text = without_byte_order_mark(text);
         let root = Content::deserialize(serde_yaml::Deserializer::from_str(text));
         let root = root.map_err(|error| syntax_problem(file, text, &error))?;
-        let document = Self { file: file.to_owned(), text: text.to_owned(), root, problems: RefCell::default() };
+        let (file, text) = (file.to_owned(), text.to_owned());
+        let document = Self { file, text, root, wary: false, problems: RefCell::default() };
         document.root().check_keys();
         Ok(document)
+    }
+
+    /// The document, in which a number without a unit must be one that a robot
+    /// can have in SI: in degrees or millimetres it is refused.
+    pub(crate) fn wary(self) -> Self {
+        Self { wary: true, ..self }
     }
 
     /// The document's top value.

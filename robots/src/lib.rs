@@ -11,6 +11,8 @@ pub mod dimension;
 pub mod effect;
 
 #[cfg(feature = "read")]
+mod bare;
+#[cfg(feature = "read")]
 pub mod catalogue;
 #[cfg(feature = "read")]
 pub mod description;

@@ -67,7 +67,7 @@ impl Description {
     /// # Errors
     /// All that is wrong with the text, each problem with its place.
     pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
-        let document = Document::parse(file, text)?;
+        let document = Document::parse(file, text)?.wary();
         let description = description(&document.root());
         document.finish(description)
     }
@@ -277,6 +277,13 @@ fn links(node: &Node, joints: Option<usize>) -> Option<Vec<Link>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn with_its_unit_a_number_may_be_any() {
+        let text = "name: Arm\nconvention: standard\njoints:\n  - {theta: 90 rad, limits: [-4*pi, 6*pi], compliance: 3 rad/Nm}\n  \
+                    - {type: prismatic, a: 50, limits: [0, 80 m], alpha: 12.5, compliance: 1}\n";
+        Description::parse("arm.yaml", text).unwrap_or_else(|problems| panic!("{problems}"));
+    }
 
     #[test]
     fn suggests_names_that_are_names() {

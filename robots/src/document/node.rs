@@ -1,6 +1,7 @@
 //! Walking a document, with checks that report rather than stop.
 
 use super::{Content, Document, Step, locate};
+use crate::bare::in_si;
 use crate::quantity::{self, Dimension};
 use crate::suggest::{called, closest, list};
 
@@ -155,6 +156,9 @@ impl<'d> Node<'d> {
                 return None;
             }
         };
+        let is_bare = self.is_number() || self.as_text().is_some_and(|text| text.trim().parse::<f64>().is_ok());
+        let value =
+            value.and_then(|value| if is_bare && self.document.wary { in_si(value, dimension) } else { Ok(value) });
         value.map_err(|error| self.error(error.message, error.help)).ok()
     }
 
