@@ -50,15 +50,7 @@ pub struct Joint {
 impl Description {
     /// The joints with the rows of the DH table as the effects correct them.
     pub fn corrected_joints(&self) -> Vec<Joint> {
-        let mut joints = self.joints.clone();
-        for effect in &self.effects {
-            let Some(joint) = effect.row().and_then(|row| joints.get_mut(row - 1)) else { continue };
-            let mut row = Row { theta: joint.theta, d: joint.d, a: joint.a, alpha: joint.alpha };
-            effect.correct(&mut row);
-            (joint.theta, joint.d) = (row.theta, row.d);
-            (joint.a, joint.alpha) = (row.a, row.alpha);
-        }
-        joints
+        corrected(&self.joints, &self.effects)
     }
 
     /// Whether a link (from 1) is nothing but the stroke of a joint that slides:
@@ -66,15 +58,46 @@ impl Description {
     pub fn is_stroke(&self, link: usize) -> bool {
         is_stroke(self.convention, &self.joints, link)
     }
+
+    /// Whether a link (from 1) can be a beam: it has a length, as the effects
+    /// correct it, and is more than a stroke.
+    pub fn is_beam(&self, link: usize) -> bool {
+        !self.is_stroke(link) && has_length(self.convention, &self.corrected_joints(), link)
+    }
 }
 
-/// Likewise, of a description that is being read.
-pub(crate) fn is_stroke(convention: Convention, joints: &[Joint], link: usize) -> bool {
+/// The joints with the rows of the DH table as these effects correct them.
+pub(crate) fn corrected<'e>(joints: &[Joint], effects: impl IntoIterator<Item = &'e Effect>) -> Vec<Joint> {
+    let mut joints = joints.to_vec();
+    for effect in effects {
+        let Some(joint) = effect.row().and_then(|row| joints.get_mut(row - 1)) else { continue };
+        let mut row = Row { theta: joint.theta, d: joint.d, a: joint.a, alpha: joint.alpha };
+        effect.correct(&mut row);
+        (joint.theta, joint.d) = (row.theta, row.d);
+        (joint.a, joint.alpha) = (row.a, row.alpha);
+    }
+    joints
+}
+
+/// The joint whose row of the DH table is a link's (from 1).
+fn of_link(convention: Convention, joints: &[Joint], link: usize) -> Option<&Joint> {
     let row = match convention {
         Convention::Standard => link,
         Convention::Modified => link + 1,
     };
-    joints.get(row - 1).is_some_and(|joint| joint.kind == JointKind::Prismatic && joint.a == 0.0)
+    joints.get(row - 1)
+}
+
+/// Whether a link is a stroke, of a description that is being read.
+pub(crate) fn is_stroke(convention: Convention, joints: &[Joint], link: usize) -> bool {
+    of_link(convention, joints, link).is_some_and(|joint| joint.kind == JointKind::Prismatic && joint.a == 0.0)
+}
+
+/// Whether a link has a length, of joints that have been [`corrected`]; what
+/// slides has one but for a point.
+pub(crate) fn has_length(convention: Convention, joints: &[Joint], link: usize) -> bool {
+    of_link(convention, joints, link)
+        .is_none_or(|joint| joint.kind == JointKind::Prismatic || joint.a != 0.0 || joint.d != 0.0)
 }
 
 /// Coordinates beyond a limit by less than this are on it (rad or m): a limit in

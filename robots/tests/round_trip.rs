@@ -190,8 +190,8 @@ impl Random {
             links,
             effects,
         };
-        let strokes: Vec<usize> = (1..robot.joints.len()).filter(|&link| robot.is_stroke(link)).collect();
-        robot.effects.retain(|effect| !matches!(effect.place(), Place::Link(link) if strokes.contains(&link)));
+        let points: Vec<usize> = (1..robot.joints.len()).filter(|&link| !robot.is_beam(link)).collect();
+        robot.effects.retain(|effect| !matches!(effect.place(), Place::Link(link) if points.contains(&link)));
         robot
     }
 }

@@ -1,6 +1,6 @@
 //! The effects of a description, and what physics asks of them.
 
-use crate::description::{Joint, Link, is_stroke};
+use crate::description::{Joint, Link, corrected, has_length, is_stroke};
 use crate::document::{Map, Node};
 use crate::effect::gravity_sag::GRAVITY;
 use crate::effect::physics::{About, At, MOST_SAG, Parameter, Range};
@@ -49,6 +49,9 @@ pub(super) fn effects(node: &Node, arm: &Arm<'_>) -> Option<Vec<Effect>> {
     }
     if let Some(joints) = arm.joints {
         check_couplings(&items, &read, joints);
+        if let Some(convention) = arm.convention {
+            check_lengths(&items, &read, convention, joints);
+        }
         if let Some(links) = arm.links {
             check_sag(&items, &read, joints, links);
         }
@@ -300,6 +303,24 @@ fn check_couplings(items: &[Node], effects: &[Option<Effect>], joints: &[Joint])
         last.error(
             "the couplings are too strong together: the joints' compliance matrix is not positive definite",
             "weaken one of them, else a load could do negative work",
+        );
+    }
+}
+
+/// That links which yield have a length, with all that is wrong with the table.
+fn check_lengths(items: &[Node], effects: &[Option<Effect>], convention: Convention, joints: &[Joint]) {
+    // One that has problems of its own may give a link its length.
+    let Some(all) = effects.iter().copied().collect::<Option<Vec<Effect>>>() else { return };
+    let joints = corrected(joints, &all);
+    for (item, effect) in items.iter().zip(&all) {
+        let Place::Link(link) = effect.place() else { continue };
+        if has_length(convention, &joints, link) {
+            continue;
+        }
+        let at = item.any_map("").and_then(|map| map.get("at"));
+        at.as_ref().unwrap_or(item).error(
+            format!("link {link} has no length, and what is no beam neither bends nor twists"),
+            "describe what yields there as `transverse_compliance` of a joint beside it",
         );
     }
 }
