@@ -41,10 +41,13 @@ pub(super) fn effects(node: &Node, arm: &Arm<'_>) -> Option<Vec<Effect>> {
         let Some(effect) = effect else { continue };
         let same = |other: &&Option<Effect>| other.is_some_and(|other| other.to_string() == effect.to_string());
         if let Some(first) = read[..index].iter().position(|other| same(&other)) {
-            items[index].error(
-                format!("the effect `{effect}` is given twice"),
-                format!("the first is `{}`; merge the two", items[first].path()),
-            );
+            let (message, help) = match read[first] {
+                Some(other) if orders(&other) != orders(effect) => {
+                    (format!("`{effect}` has a second order, and a description takes one a joint"), "keep the larger")
+                }
+                _ => (format!("the effect `{effect}` is given twice"), "merge the two"),
+            };
+            items[index].error(message, format!("the first is `{}`; {help}", items[first].path()));
         }
     }
     if let Some(joints) = arm.joints {
@@ -57,6 +60,14 @@ pub(super) fn effects(node: &Node, arm: &Arm<'_>) -> Option<Vec<Effect>> {
         }
     }
     read.into_iter().collect()
+}
+
+/// Whose sum is not one of its kind.
+fn orders(effect: &Effect) -> Option<f64> {
+    match effect {
+        Effect::TransmissionError { order, .. } => Some(*order),
+        _ => None,
+    }
 }
 
 fn effect(node: &Node, arm: &Arm<'_>) -> Option<Effect> {
