@@ -217,10 +217,11 @@ fn paragraph(text: &str) -> Vec<String> {
 }
 
 /// The lines of a description's text as docs, in which brackets are no links
-/// and no tags.
+/// and no tags, and fences begin no code, which would be run as a test.
 fn lines(text: &str) -> Vec<String> {
     // A comment with a lone carriage return is no Rust.
     let escaped = text.trim().replace('\r', "\n").replace('[', "\\[").replace('<', "\\<");
+    let escaped = escaped.replace("```", "\\`\\`\\`").replace("~~~", "\\~\\~\\~");
     escaped.lines().map(|line| format!(" {}", line.trim()).trim_end().to_owned()).collect()
 }
 
