@@ -3,9 +3,9 @@
 use proc_macro2::TokenStream;
 use robstiff_robots::Description;
 use syn::parse::{Parse, ParseStream};
-use syn::{LitStr, Visibility, bracketed};
+use syn::{LitStr, Token, Visibility, bracketed};
 
-/// `[path to robstiff] visibility "file.yaml"`.
+/// `[path to robstiff] visibility "file.yaml"`, with a comma behind it or not.
 pub(crate) struct Input {
     /// How the calling crate reaches robstiff: `$crate` of a macro in it, which
     /// is right whatever the user calls the dependency.
@@ -28,6 +28,7 @@ impl Parse for Input {
         let file = input.parse().map_err(|error| {
             syn::Error::new(error.span(), "expected a description's file, e.g. robot!(\"rv130hsc.yaml\")")
         })?;
+        input.parse::<Option<Token![,]>>()?;
         if !input.is_empty() {
             return Err(input.error("expected nothing after the file's name"));
         }

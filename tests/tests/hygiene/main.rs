@@ -43,7 +43,7 @@ mod with_other_things {
 }
 
 mod named_as_in_the_prelude {
-    robstiff::robot!("option.yaml");
+    robstiff::robot!("option.yaml",);
     robstiff::robot!("fn-mut.yaml");
 }
 
