@@ -1,6 +1,7 @@
 //! Reading a description: every rule of the schema, every problem of a file at
 //! once.
 
+mod couplings;
 mod effects;
 mod outline;
 

@@ -7,6 +7,8 @@ use crate::effect::physics::{About, At, MOST_SAG, Parameter, Range};
 use crate::effect::{CATALOGUE, Convention, DhEntry, Effect, JointKind, Place};
 use crate::suggest::{closest, list};
 
+use super::couplings::check_couplings;
+
 /// What happens once, at some moment; a description holds what lasts.
 const EVENTS: &[&str] = &["base_slip", "reflector_slip"];
 
@@ -265,59 +267,6 @@ fn revolute(map: &Map, joints: Option<&[Joint]>, place: Place) -> Option<()> {
     Some(())
 }
 
-/// What is left of each joint's compliance where all its effects together take
-/// away the most; each by itself has been checked.
-fn least_compliances(items: &[Node], effects: &[Option<Effect>], joints: &[Joint]) -> Vec<f64> {
-    let mut least: Vec<f64> = joints.iter().map(Joint::compliance).collect();
-    for (item, effect) in items.iter().zip(effects) {
-        let Some((effect, Place::Joint(joint))) = effect.as_ref().map(|effect| (effect, effect.place())) else {
-            continue;
-        };
-        let taken = effect.least(joints[joint - 1].compliance());
-        least[joint - 1] += taken;
-        if taken < 0.0 && least[joint - 1] <= 0.0 {
-            item.error(
-                format!("with the effects before, joint {joint} would have no compliance left"),
-                "weaken one of them: together they must leave the joint's compliance positive",
-            );
-        }
-    }
-    least
-}
-
-/// That the joints' compliance matrix `H_q` with all couplings in it is
-/// positive definite: a load can do no negative work on the robot. The diagonal
-/// is the joints' least compliance over all torques.
-fn check_couplings(items: &[Node], effects: &[Option<Effect>], joints: &[Joint]) {
-    let least = least_compliances(items, effects, joints);
-    // H_q scaled to a diagonal of ones, so that no product underflows.
-    let count = joints.len();
-    let mut scaled: Vec<Vec<f64>> =
-        (0..count).map(|i| (0..count).map(|j| f64::from(u8::from(i == j))).collect()).collect();
-    let mut last = None;
-    for (item, effect) in items.iter().zip(effects) {
-        let Some(Effect::JointCoupling { joints: [i, j], value }) = effect else { continue };
-        let bound = least[i - 1].max(0.0).sqrt() * least[j - 1].max(0.0).sqrt();
-        if value.abs() < bound {
-            scaled[j - 1][i - 1] = value / bound;
-            last = Some(item);
-            continue;
-        }
-        let field = item.any_map("").and_then(|map| map.get("value"));
-        field.as_ref().unwrap_or(item).error(
-            format!("the coupling must be weaker than sqrt(h_{i} h_{j}) = {bound:.3e} rad/Nm"),
-            if bound == 0.0 { "a rigid joint cannot be coupled" } else { "else a load could do negative work" },
-        );
-        return;
-    }
-    if let (Some(last), false) = (last, is_positive_definite(&mut scaled)) {
-        last.error(
-            "the couplings are too strong together: the joints' compliance matrix is not positive definite",
-            "weaken one of them, else a load could do negative work",
-        );
-    }
-}
-
 /// That links which yield have a length, with all that is wrong with the table.
 fn check_lengths(items: &[Node], effects: &[Option<Effect>], convention: Convention, joints: &[Joint]) {
     // One that has problems of its own may give a link its length.
@@ -382,32 +331,9 @@ fn most_sag(joints: &[Joint], links: &[Link], joint: usize) -> f64 {
     }
 }
 
-/// Cholesky decomposition in place, of the lower triangle.
-fn is_positive_definite(matrix: &mut [Vec<f64>]) -> bool {
-    for i in 0..matrix.len() {
-        for j in 0..=i {
-            let sum: f64 = (0..j).map(|k| matrix[i][k] * matrix[j][k]).sum();
-            let rest = matrix[i][j] - sum;
-            if i == j && rest <= 0.0 {
-                return false;
-            }
-            matrix[i][j] = if i == j { rest.sqrt() } else { rest / matrix[j][j] };
-        }
-    }
-    true
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_matrix_is_positive_definite_or_not() {
-        let mut weak = vec![vec![1.0], vec![0.7, 1.0], vec![0.7, 0.7, 1.0]];
-        assert!(is_positive_definite(&mut weak));
-        let mut strong = vec![vec![1.0], vec![0.7, 1.0], vec![0.7, -0.7, 1.0]];
-        assert!(!is_positive_definite(&mut strong));
-    }
 
     #[test]
     fn places_read_as_they_are_written() {
