@@ -94,6 +94,8 @@ pub mod trace;
 #[cfg(feature = "identify")]
 pub mod triage;
 mod trig;
+#[cfg(feature = "identify")]
+mod words;
 
 pub use dual::Dual;
 #[cfg(feature = "generic")]

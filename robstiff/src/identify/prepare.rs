@@ -18,7 +18,7 @@ use super::samples::{Column, Samples};
 use super::second_order::{beyond_linear, straightened};
 use super::{Error, NoiseSource};
 use crate::campaign::{Campaign, Data, Displacements, told_length};
-use crate::triage::words::count;
+use crate::words::count;
 
 /// A campaign made ready for regressions.
 pub struct Prepared<'c> {

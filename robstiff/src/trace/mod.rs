@@ -66,7 +66,7 @@ use self::settle::{settled, told};
 use crate::campaign::{Campaign, Data};
 use crate::identify::encoders::EncodersRead;
 use crate::identify::prepare::Prepared;
-use crate::identify::{Error, Estimate, NoiseSource, is_at_bound};
+use crate::identify::{AGAINST_THE_LOADS, Error, Estimate, NoiseSource, is_at_bound};
 
 /// How to trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -387,7 +387,7 @@ fn against_the_loads(prepared: &Prepared<'_>, setting: &Setting<'_>, base: &Fitt
     joints.peek()?;
     joints
         .all(|(&column, &value)| is_at_bound(prepared.own[column].sign, prepared.own[column].value, value))
-        .then(|| String::from("the readings do not follow the loads"))
+        .then(|| String::from(AGAINST_THE_LOADS))
 }
 
 /// Why a campaign cannot tell what is missing, if so.

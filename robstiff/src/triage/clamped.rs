@@ -9,10 +9,10 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::words::percent;
 use super::{Raw, Verdict};
 use crate::campaign::{Campaign, ClampedRow};
 use crate::probability::{fisher_tail, student_tail};
+use crate::words::percent;
 
 /// What measurement errors of the torque may make of it.
 const MATTERS: f64 = 0.01;

@@ -11,9 +11,9 @@ use nalgebra::Vector3;
 
 use super::evidence::{Evidence, Line};
 use super::randomisation::{Witness, flip};
-use super::words::percent;
 use super::{Raw, Verdict};
 use crate::campaign::Observation;
+use crate::words::percent;
 
 /// What encoders resolve of it at best.
 const MATTERS: f64 = 0.02;

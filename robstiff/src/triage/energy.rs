@@ -9,9 +9,9 @@ use nalgebra::Vector6;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::evidence::Evidence;
-use super::words::count;
 use super::{Raw, Verdict};
 use crate::probability::student_tail;
+use crate::words::count;
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
     let Some(wrenches) = &evidence.wrenches else {

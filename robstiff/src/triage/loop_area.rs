@@ -8,8 +8,8 @@ use std::vec::Vec;
 
 use super::evidence::{Evidence, Line};
 use super::randomisation::{Witness, flip};
-use super::words::{micrometres, percent};
 use super::{Raw, Verdict};
+use crate::words::{micrometres, percent};
 
 const MATTERS: f64 = 0.005;
 

@@ -30,7 +30,6 @@ mod return_to_zero;
 mod reversal;
 #[cfg(test)]
 mod tests;
-pub(crate) mod words;
 
 use std::string::String;
 use std::vec::Vec;

@@ -5,11 +5,11 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::evidence::Evidence;
-use super::words::{count, micrometres};
 use super::{Raw, Verdict};
 use crate::identify::covariance::WILD;
 use crate::identify::covariance::contrasts::Level;
 use crate::probability::chi_square_tail;
+use crate::words::{count, micrometres};
 
 const SEVERAL: &str = "several loads along one line within a visit, more than the directions of load at the pose";
 

@@ -7,9 +7,9 @@ use std::vec::Vec;
 
 use nalgebra::Vector3;
 
-use super::words::{count, micrometres};
 use super::{Raw, Verdict};
 use crate::campaign::Positions;
+use crate::words::{count, micrometres};
 
 /// The check that makes sense of positions.
 pub(super) fn checks(data: &Positions) -> Vec<(&'static str, &'static str, Verdict)> {

@@ -8,8 +8,8 @@ use std::vec::Vec;
 
 use super::evidence::Evidence;
 use super::randomisation::{Witness, flip};
-use super::words::percent;
 use super::{Raw, Verdict};
+use crate::words::percent;
 
 /// What measurement errors of the force and of the second order may make of it.
 const MATTERS: f64 = 0.01;

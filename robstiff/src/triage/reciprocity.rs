@@ -15,9 +15,9 @@ use nalgebra::{Vector3, Vector6};
 
 use super::evidence::{Evidence, Line};
 use super::randomisation::{Witness, flip};
-use super::words::percent;
 use super::{Raw, Verdict};
 use crate::probability::fisher_tail;
+use crate::words::percent;
 
 const MATTERS: f64 = 0.01;
 

@@ -13,9 +13,9 @@ use nalgebra::DMatrix;
 
 use super::evidence::Evidence;
 use super::randomisation::{Witness, flip};
-use super::words::micrometres;
 use super::{Raw, Verdict};
 use crate::identify::covariance::contrasts::{Level, contrasts};
+use crate::words::micrometres;
 
 /// A drift over its whole range below this share of a reading's noise does not
 /// matter.

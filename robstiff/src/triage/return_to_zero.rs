@@ -7,8 +7,8 @@ use std::vec::Vec;
 
 use super::evidence::Evidence;
 use super::randomisation::{Witness, flip};
-use super::words::micrometres;
 use super::{Raw, Verdict};
+use crate::words::micrometres;
 
 /// What matters, against the noise of a reading.
 const MATTERS: f64 = 0.1;

@@ -10,8 +10,8 @@ use nalgebra::Vector3;
 
 use super::evidence::Evidence;
 use super::randomisation::{Witness, flip};
-use super::words::percent;
 use super::{Raw, Verdict};
+use crate::words::percent;
 
 const MATTERS: f64 = 0.01;
 
