@@ -59,7 +59,7 @@ pub use verdict::Verdict;
 use self::bench::Bench;
 use self::isolated::Event;
 use self::lack_of_fit::{LackOfFit, Yardstick};
-use self::model::{Fitted, Named, Setting};
+use self::model::{Fitted, Setting};
 use self::report::report;
 use self::selection::{Selection, select};
 use self::settle::{settled, told};
@@ -244,41 +244,28 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
         return report(campaign, &prepared, &bench, &outcome, options).map_err(Error);
     }
     let mut outcome = search(&mut bench, &prepared, base, options, progress).map_err(Error)?;
-    if outcome.structure() {
-        // Rows that stand out from noise alone look like structure.
+    if outcome.structure() && prepared.left_out.contains(&true) {
+        // Rows that the others of their pose contradict look like structure.
         bench.spare_memory();
         let mut closer = Bench::new(campaign, &prepared).map_err(Error)?;
         closer.by_own_pose = true;
-        let again = search_again(&mut closer, &prepared, &[], &outcome, options, progress).map_err(Error)?;
-        if let Some(again) = again.filter(|again| !again.structure()) {
-            (bench, outcome) = (closer, again);
+        let base = closer.fit(&[]).map_err(Error)?;
+        let again = search(&mut closer, &prepared, base, options, progress).map_err(Error)?;
+        if !again.structure() {
+            (bench, outcome) = (closer, again.after(outcome));
         }
     }
     if !outcome.structure() {
         // With structure accounted for, rows need stand out from noise alone.
         bench.strict = true;
-        let named = outcome.selection.model.named.clone();
-        let again = search_again(&mut bench, &prepared, &named, &outcome, options, progress).map_err(Error)?;
-        outcome = again.unwrap_or(outcome);
+        if let Some(model) = bench.tried(&outcome.selection.model.named, Bench::look_again) {
+            let again = search(&mut bench, &prepared, model, options, progress).map_err(Error)?;
+            outcome = again.after(outcome);
+        }
     }
     outcome.judge_by_held_out(&bench, options).map_err(Error)?;
     progress("asking what could be mistaken for what");
     report(campaign, &prepared, &bench, &outcome, options).map_err(Error)
-}
-
-/// Searches again, beginning with some effects, where other rows are wild now.
-fn search_again(
-    bench: &mut Bench<'_>,
-    prepared: &Prepared<'_>,
-    named: &[Named],
-    before: &Outcome,
-    options: &Options,
-    progress: &Progress<'_>,
-) -> Result<Option<Outcome>, String> {
-    let Some(model) = bench.tried(named, Bench::look_again) else { return Ok(None) };
-    let mut outcome = search(bench, prepared, model, options, progress)?;
-    outcome.selection.steps.splice(..0, before.selection.steps.iter().cloned());
-    Ok(Some(outcome))
 }
 
 /// Searches for effects, and takes names back that leave too much.
@@ -349,6 +336,12 @@ impl Outcome {
     fn nothing(model: Fitted, verdict: Verdict, why: String) -> Self {
         let selection = Selection { model, p_values: Vec::new(), steps: Vec::new(), unnamed: false };
         Self { selection, left: None, events: Vec::new(), verdict, why }
+    }
+
+    /// The same, with the steps that came before.
+    fn after(mut self, before: Self) -> Self {
+        self.selection.steps.splice(..0, before.selection.steps);
+        self
     }
 
     /// Asks the poses held out, which had no part in the search, whether the model

@@ -81,7 +81,11 @@ impl<'c> Bench<'c> {
     /// Why not even the description's own model can be fitted.
     pub fn new(campaign: &'c Campaign, prepared: &'c Prepared<'c>) -> Result<Self, String> {
         let rows = prepared.samples.rows.len();
-        let mut bench = Self { left_out: prepared.left_out.clone(), ..Self::bare(campaign, prepared) };
+        let mut bench = Self {
+            left_out: prepared.left_out.clone(),
+            events: prepared.covariance.beyond_doubt().into_iter().map(Event::from).collect(),
+            ..Self::bare(campaign, prepared)
+        };
         let evenly = |count: usize, before: bool| {
             (1..=count).map(move |k| Moment { row: (k * rows / (count + 1)).clamp(1, rows), before })
         };
