@@ -44,7 +44,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "rms_um": json::number(prediction.rms * 1e6),
             "p95_um": json::number(prediction.p95 * 1e6),
             "max_um": json::number(prediction.max * 1e6),
-            "max_line": worst_line(&prediction),
         });
         files.add(path, json::document(&document));
     }
