@@ -1,6 +1,7 @@
 //! Why a command stops.
 
 use std::fmt;
+use std::path::Path;
 use std::process::ExitCode;
 
 use robstiff::campaign::Campaign;
@@ -30,6 +31,15 @@ impl Failure {
     /// A failure of what a campaign was asked for, which names its file.
     pub fn about(campaign: &Campaign) -> impl Fn(robstiff::identify::Error) -> Self {
         move |error| Self::new(format_args!("{}: {error}", campaign.path.display()))
+    }
+
+    /// What is said where a file would be overwritten and `--force` is not given; `other` is
+    /// what may be chosen instead.
+    pub fn there_already(path: &Path, other: &str) -> Self {
+        Self::new(format_args!(
+            "{} is there already, and would be overwritten; choose another {other}, or say --force",
+            path.display()
+        ))
     }
 
     /// What the process exits with.

@@ -76,10 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     // Compliances may have been typed into it since.
     let differs = || fs::read(&arguments.out).map_or(true, |there| there != yaml.as_bytes());
     if arguments.out.is_file() && !arguments.force && differs() {
-        return Err(Failure::new(format!(
-            "{} is there already, and would be overwritten; choose another file, or say --force",
-            arguments.out.display()
-        )));
+        return Err(Failure::there_already(&arguments.out, "file"));
     }
     let mut files = Files::default();
     files.protect(&arguments.urdf);

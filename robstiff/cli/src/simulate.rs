@@ -52,10 +52,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     ] {
         let path = arguments.out.join(name);
         if path.exists() && !arguments.force {
-            return Err(Failure::new(format!(
-                "{} is there already, and would be overwritten; choose another folder, or say --force",
-                path.display()
-            )));
+            return Err(Failure::there_already(&path, "folder"));
         }
         files.add(path, text);
     }

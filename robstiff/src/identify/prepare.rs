@@ -106,7 +106,8 @@ impl<'c> Prepared<'c> {
             samples: Rc::new(samples),
             training,
         };
-        prepared.covariance.wild().into_iter().for_each(|row| prepared.left_out[row] = true);
+        let wild = prepared.covariance.beyond_doubt();
+        wild.iter().flat_map(|outlier| &outlier.rows).for_each(|&row| prepared.left_out[row] = true);
         if !weighed && prepared.samples.axes > 3 {
             prepared.settle_weight()?;
         }

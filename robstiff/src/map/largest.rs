@@ -27,10 +27,16 @@ const LAST_STEP: f64 = 1e-5;
 const MOST_STEPS: usize = 200;
 
 /// How far the TCP moves (m), and the direction of the force that moves it.
-type Farthest = (f64, Vector3<f64>);
+pub type Farthest = (f64, Vector3<f64>);
 
 /// The principal directions as columns, and the compliances in them (m/N).
-type Principal = (Matrix3<f64>, Vector3<f64>);
+pub type Principal = (Matrix3<f64>, Vector3<f64>);
+
+/// The compliance in the softest direction (m/N), and that.
+pub fn softest((directions, compliances): &Principal) -> (f64, Vector3<f64>) {
+    // Rounding may leave a rigid arm a little below zero.
+    (compliances[0].max(0.0), directions.column(0).into_owned())
+}
 
 /// How far a force of a size (N) moves the TCP (m) at each pose, in the direction in which it
 /// moves it most, and that direction, in the base frame. `principal` are the principal
@@ -42,11 +48,8 @@ pub fn largest<const N: usize>(
     force: f64,
     principal: &[Principal],
 ) -> Vec<Farthest> {
-    let linear = |(directions, compliances): &Principal| {
-        // Rounding may leave a rigid arm a little below zero.
-        (force * compliances[0].max(0.0), directions.column(0).into_owned())
-    };
-    let mut found: Vec<Farthest> = principal.iter().map(linear).collect();
+    let linear = |(compliance, direction)| (force * compliance, direction);
+    let mut found: Vec<Farthest> = principal.iter().map(softest).map(linear).collect();
     let bent = not_linear(robot, poses, force, principal);
     if bent.is_empty() {
         return found;

@@ -5,7 +5,7 @@ use std::vec::Vec;
 
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
-use super::largest::largest;
+use super::largest::{Principal, largest, softest};
 use super::{Evaluate, Poses};
 use crate::analysis::principal_directions;
 
@@ -125,11 +125,11 @@ impl Measure {
         let mut triangles = vec![[0.0; 21]; count];
         robot.triangles(poses, &mut triangles);
         let principal: Vec<_> = triangles.iter().map(principal).collect();
-        let softest: Vec<(f64, Vector3<f64>)> = match self {
+        let found = match self {
             Self::AnyDirection(force) => largest(robot, poses, *force, &principal),
-            _ => principal.iter().map(|(directions, of)| (of[0].max(0.0), directions.column(0).into_owned())).collect(),
+            _ => principal.iter().map(softest).collect(),
         };
-        for (i, (triangle, (figure, direction))) in triangles.iter().zip(softest).enumerate() {
+        for (i, (triangle, (figure, direction))) in triangles.iter().zip(found).enumerate() {
             columns[0][i] = if self.worse_is_larger() { figure } else { figure.recip() };
             let weak = direction * direction[direction.iamax()].signum();
             for k in 0..3 {
@@ -147,7 +147,7 @@ impl Measure {
 
 /// The principal directions of the translational compliance as columns, the softest first, and
 /// its compliances (m/N); no numbers where it has none.
-fn principal(triangle: &[f64; 21]) -> (Matrix3<f64>, Vector3<f64>) {
+fn principal(triangle: &[f64; 21]) -> Principal {
     let [xx, xy, xz, ..] = *triangle;
     let (yy, yz, zz) = (triangle[6], triangle[7], triangle[11]);
     let mut compliance = Matrix6::zeros();

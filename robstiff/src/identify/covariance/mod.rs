@@ -20,7 +20,7 @@
 //!   [`EQUAL_AXES`]);
 //! - wild readings ([`outliers`]), sought before anything more is freed, are
 //!   listed and set aside: they would pass for noise. Those that are so beyond doubt
-//!   ([`Covariance::wild`]) identification leaves out, too; tracing looks for its own.
+//!   ([`Covariance::beyond_doubt`]) no fit begins with; tracing looks for its own, too.
 //!
 //! Where poses have too few rows for that (one load a pose), the axes are taken
 //! to be equal and `lambda` to be 1, and [`Covariance::refined`] weighs the axes
@@ -194,14 +194,6 @@ impl Covariance {
         wild.retain(|outlier| outlier.p_value <= outliers::STRICT);
         let rows: usize = wild.iter().map(|outlier| outlier.rows.len()).sum();
         if rows as f64 > outliers::FEW * self.asked as f64 { Vec::new() } else { wild }
-    }
-
-    /// Their rows, which numbers are better fitted without.
-    pub fn wild(&self) -> Vec<usize> {
-        let mut rows: Vec<usize> = self.beyond_doubt().into_iter().flat_map(|outlier| outlier.rows).collect();
-        rows.sort_unstable();
-        rows.dedup();
-        rows
     }
 
     /// Axes per row.
