@@ -41,7 +41,8 @@ pub struct Prepared<'c> {
     pub values: Vec<f64>,
     /// The rows less what is not linear in the load: the second order and declared laws.
     pub straight: Rc<Samples>,
-    /// The declared noise of one displacement reading (m).
+    /// The declared noise of one displacement reading (m), unless the readings themselves say
+    /// that it is [far less](Covariance::is_far_below).
     pub declared_noise: Option<f64>,
     /// How noisy the readings are, and how they hang together.
     pub covariance: Covariance,
@@ -100,7 +101,7 @@ impl<'c> Prepared<'c> {
             visibility: std::vec![Visibility::Seen; own.len()],
             own,
             straight: Rc::new(straight),
-            declared_noise: noise.displacement,
+            declared_noise: noise.displacement.filter(|&declared| !covariance.is_far_below(declared)),
             covariance,
             left_out: std::vec![false; samples.rows.len()],
             samples: Rc::new(samples),

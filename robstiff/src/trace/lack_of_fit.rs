@@ -34,23 +34,12 @@ use super::bootstrap::rademacher;
 use super::features::features;
 use super::model::{Fitted, Setting};
 use super::sizes::{Shares, of_encoders, size};
+use super::yardstick::Yardstick;
 use crate::campaign::Displacements;
 use crate::identify::covariance::Covariance;
-use crate::identify::noise::PureError;
 use crate::identify::normal::Fit;
 use crate::identify::problem::Problem;
 use crate::probability::told;
-
-/// What the noise of one displacement reading is held to be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Yardstick {
-    /// Declared: its variance (m^2).
-    Declared(f64),
-    /// From repeated readings.
-    Repeated(PureError),
-    /// Not known but for the residuals.
-    Unknown,
-}
 
 /// The most tests for structure that share a level, those of held-out poses among them.
 const TESTS: f64 = 6.0;

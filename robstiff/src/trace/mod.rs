@@ -42,6 +42,7 @@ mod wild_tests;
 mod written;
 #[cfg(test)]
 mod written_tests;
+mod yardstick;
 
 use std::format;
 use std::string::String;
@@ -58,15 +59,17 @@ pub use verdict::Verdict;
 
 use self::bench::Bench;
 use self::isolated::Event;
-use self::lack_of_fit::{LackOfFit, Yardstick};
+use self::lack_of_fit::LackOfFit;
 use self::model::{Fitted, Setting};
 use self::report::report;
 use self::selection::{Selection, select};
 use self::settle::{settled, told};
+use self::yardstick::Yardstick;
 use crate::campaign::{Campaign, Data};
 use crate::identify::encoders::EncodersRead;
 use crate::identify::prepare::Prepared;
 use crate::identify::{AGAINST_THE_LOADS, Error, Estimate, NoiseSource, is_at_bound};
+use crate::words::micrometres;
 
 /// How to trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -279,7 +282,7 @@ fn search(
     let mut selection = select(bench, start, options, progress)?;
     progress("looking for structure in what is left");
     let test = |bench: &Bench<'_>, model: &Fitted| -> Result<LackOfFit, String> {
-        let yardstick = yardstick(prepared, bench);
+        let yardstick = Yardstick::of(prepared, bench);
         bench.spare_memory();
         Ok(lack_of_fit::test(
             &*bench.at(&model.named)?,
@@ -318,7 +321,15 @@ fn search(
     let events = bench.events.to_vec();
     let may_lag = !left.structure && verdict::may_lag(bench, &selection.model);
     left.structure |= may_lag;
-    let (verdict, why) = verdict::judge(&selection, &left, events.len(), taken_back, may_lag);
+    let (verdict, mut why) = verdict::judge(&selection, &left, events.len(), taken_back, may_lag);
+    if left.structure
+        && let Some(repeated) = yardstick::noisier_than_declared(prepared, bench)
+    {
+        why.push_str(&format!(
+            "; repeated loads themselves differ by {} a reading, so the noise may be larger than declared",
+            micrometres(repeated)
+        ));
+    }
     Ok(Outcome { selection, left: Some(left), events, verdict, why })
 }
 
@@ -359,15 +370,6 @@ impl Outcome {
     /// Whether structure is left.
     fn structure(&self) -> bool {
         self.left.as_ref().is_some_and(|left| left.structure) || self.selection.unnamed
-    }
-}
-
-fn yardstick(prepared: &Prepared<'_>, bench: &Bench<'_>) -> Yardstick {
-    let repeated = bench.repeated();
-    match (prepared.declared_noise, repeated.variance()) {
-        (Some(noise), _) => Yardstick::Declared(noise * noise),
-        (None, Some(_)) => Yardstick::Repeated(repeated),
-        (None, None) => Yardstick::Unknown,
     }
 }
 

@@ -2,8 +2,9 @@
 
 use std::borrow::ToOwned;
 
-use super::lack_of_fit::{StructureTest, Yardstick, freedom};
+use super::lack_of_fit::{StructureTest, freedom};
 use super::model::{Fitted, Setting};
+use super::yardstick::Yardstick;
 use crate::identify::covariance::Covariance;
 use crate::probability::{chi_square_tail, fisher_tail, told};
 

@@ -51,10 +51,17 @@ pub(super) fn replicates(evidence: &Evidence<'_>) -> Verdict {
     };
     let freedom = pure.freedom as f64;
     let declared = evidence.campaign.noise.displacement;
-    let ratio = declared.map(|declared| variance / (declared * declared));
-    let p_value = ratio.and_then(|ratio| chi_square_tail(freedom * ratio, freedom));
+    let too_large = declared.is_some_and(|declared| evidence.covariance.is_far_below(declared));
+    let tail = declared.and_then(|declared| chi_square_tail(freedom * variance / (declared * declared), freedom));
+    let p_value = tail.map(|tail| if too_large { 1.0 - tail } else { tail });
     let noise = micrometres(variance.sqrt());
     let declared = declared.map(|declared| format!(", {} are declared", micrometres(declared))).unwrap_or_default();
+    let fails = if too_large {
+        "the noise is far less than declared, which is in another unit or of another instrument; what the readings say \
+         of it counts"
+    } else {
+        "the noise is larger than declared, or the displacement depends on more than the load (hysteresis, drift)"
+    };
     Ok(Raw {
         statistic: 1e6 * variance.sqrt(),
         unit: "um a reading",
@@ -63,10 +70,7 @@ pub(super) fn replicates(evidence: &Evidence<'_>) -> Verdict {
         witnesses: pure.freedom,
         said: [
             format!("Repeated loads differ by {noise} a reading{declared}."),
-            format!(
-                "Repeated loads differ by {noise} a reading{declared}: the noise is larger than declared, or the \
-                 displacement depends on more than the load (hysteresis, drift)."
-            ),
+            format!("Repeated loads differ by {noise} a reading{declared}: {fails}."),
         ],
     })
 }

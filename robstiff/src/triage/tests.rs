@@ -203,6 +203,15 @@ fn noise_that_is_declared_too_small_is_found() {
 }
 
 #[test]
+fn noise_that_is_declared_far_too_large_is_found() {
+    let mut campaign = plan(10).run();
+    campaign.noise.displacement = Some(1e-3);
+    violates("replicates", &campaign);
+    campaign.noise.displacement = Some(2e-5);
+    assert_eq!(names(&triage(&campaign)), Vec::<&str>::new());
+}
+
+#[test]
 fn wild_readings_are_listed() {
     let triage = triage(&plan(11).run_with(|i, row| {
         if i == 100 {

@@ -76,6 +76,10 @@ const FEWEST: usize = 10;
 /// program.
 pub const NOISELESS: f64 = 1e-9;
 
+/// Noise declared so many times as large as readings show is not theirs: from 30 degrees
+/// of freedom on, the fewest asked for, chance makes it so once in 1e11.
+const FAR_ABOVE: f64 = 3.0;
+
 /// Wild readings are looked for at most so many times over.
 const PASSES: usize = 8;
 
@@ -211,6 +215,14 @@ impl Covariance {
     /// The same of a rotation reading (rad), where there are any.
     pub fn rotation_reading(&self) -> Option<f64> {
         (self.basis != Basis::Assumed && self.axes() > 3).then(|| self.reference(3..6))
+    }
+
+    /// Whether declared noise of a displacement reading (m) is another instrument's, or in
+    /// another unit: far above what the readings say. Less than they say may be right, for
+    /// what is no function of the load makes them differ, too; and readings [made by a
+    /// program](NOISELESS) say nothing of an instrument.
+    pub fn is_far_below(&self, declared: f64) -> bool {
+        self.reading().is_some_and(|reading| reading > NOISELESS && FAR_ABOVE * reading < declared)
     }
 
     /// What displacements leave where so much is free at each pose for which

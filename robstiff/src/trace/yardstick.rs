@@ -1,0 +1,75 @@
+//! What residuals are held against: how noisy a reading is, and where that is known from.
+
+use super::bench::Bench;
+use crate::identify::noise::PureError;
+use crate::identify::prepare::Prepared;
+use crate::probability::chi_square_tail;
+
+/// What the noise of one displacement reading is held to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Yardstick {
+    /// Declared: its variance (m^2).
+    Declared(f64),
+    /// From repeated readings.
+    Repeated(PureError),
+    /// Not known but for the residuals.
+    Unknown,
+}
+
+impl Yardstick {
+    /// What there is: a declared noise before one from repetitions.
+    pub(super) fn of(prepared: &Prepared<'_>, bench: &Bench<'_>) -> Self {
+        let repeated = bench.repeated();
+        match (prepared.declared_noise, repeated.variance()) {
+            (Some(noise), _) => Self::Declared(noise * noise),
+            (None, Some(_)) => Self::Repeated(repeated),
+            (None, None) => Self::Unknown,
+        }
+    }
+}
+
+/// Level at which repeated loads are noisier than declared.
+const NOISIER: f64 = 0.01;
+
+/// What repeated loads differ by (m), where it is beyond the declared noise.
+pub(super) fn noisier_than_declared(prepared: &Prepared<'_>, bench: &Bench<'_>) -> Option<f64> {
+    let (declared, repeated) = (prepared.declared_noise?, bench.repeated());
+    let variance = repeated.variance()?;
+    let tail = chi_square_tail(repeated.sum / (declared * declared), repeated.freedom as f64)?;
+    (tail <= NOISIER).then(|| variance.sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::campaign::{Campaign, Noise};
+    use crate::samples::five_axis;
+    use crate::trace::Verdict;
+    use crate::trace::tests::{SIGMA, TILT_3, campaign, names, traced};
+
+    fn declared(displacement: f64) -> Campaign {
+        let noise = Noise { displacement: Some(displacement), rotation: None };
+        Campaign { noise, ..campaign(&five_axis(), 24, &[TILT_3], 3) }
+    }
+
+    /// Noise declared in another unit hides no joint, nor what is missing.
+    #[test]
+    fn noise_that_the_readings_contradict_is_not_theirs() {
+        let found = traced(&declared(1e3 * SIGMA));
+        let without = traced(&Campaign { noise: Noise::default(), ..declared(SIGMA) });
+        assert_eq!((names(&found), found.verdict), (names(&without), Verdict::Explained));
+        assert_eq!((found.noise, found.noise_source), (without.noise, without.noise_source));
+        assert_eq!(found.estimates, without.estimates);
+    }
+
+    /// More is left than was declared, but no model of the load could leave less.
+    #[test]
+    fn noise_declared_too_small_is_told_as_what_it_may_be() {
+        let found = traced(&declared(0.5 * SIGMA));
+        assert_eq!(
+            (names(&found), found.verdict),
+            (std::vec!["transverse_compliance@joint 3".into()], Verdict::Partial)
+        );
+        assert!(found.why.ends_with("so the noise may be larger than declared"), "{}", found.why);
+        assert!(!traced(&declared(SIGMA)).why.contains("larger than declared"));
+    }
+}
