@@ -9,7 +9,7 @@ use super::normal::Fit;
 use super::prepare::{Prepared, fit};
 use super::problem::rms;
 use super::readable::{UNREADABLE, readable};
-use super::uncertainty::{correlation, covariance};
+use super::uncertainty::{correlation, covariance, of_held};
 use super::{Error, Identification, estimates};
 use crate::campaign::Campaign;
 
@@ -40,7 +40,8 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
         (description, places)
     };
     let fitted = readable(&problem.total, &fitted, &signs, described).ok_or_else(|| Error(UNREADABLE.into()))?;
-    let covariance = covariance(&problem, &fitted, &signs);
+    let covariance =
+        covariance(&problem, &fitted, &signs) + of_held(&problem, &fitted, &signs, &prepared.held(&fitted));
     let values = prepared.with(&fitted);
     let estimates =
         estimates(&campaign.robot, (&prepared.own, &prepared.visibility), &values, &fitted.columns, &covariance);

@@ -13,6 +13,8 @@ pub mod clamped;
 pub mod covariance;
 pub mod displacement;
 pub mod encoders;
+#[cfg(test)]
+mod held_tests;
 pub mod holdout;
 pub mod noise;
 pub mod normal;

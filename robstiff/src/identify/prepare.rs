@@ -16,7 +16,7 @@ use super::normal::Sign;
 use super::problem::{Problem, Weights, raw};
 use super::samples::{Column, Samples};
 use super::second_order::{beyond_linear, straightened};
-use super::{Error, NoiseSource};
+use super::{Error, NOTEWORTHY_DEVIATION, NoiseSource, is_at_bound};
 use crate::campaign::{Campaign, Data, Displacements, told_length};
 use crate::words::count;
 
@@ -119,6 +119,25 @@ impl<'c> Prepared<'c> {
     /// The columns that are fitted: those of the numbers that are seen.
     pub fn seen(&self) -> Vec<usize> {
         (0..self.own.len()).filter(|&i| self.visibility[i] == Visibility::Seen).collect()
+    }
+
+    /// The numbers that a fit holds, by column, each with the standard deviation of what it may
+    /// be off by: those lost in the noise, at their declared value
+    /// ([`NOTEWORTHY_DEVIATION`]), and those clipped at zero, from it. Others are no surer
+    /// than that lets them be.
+    pub fn held(&self, fit: &super::normal::Fit) -> Vec<(usize, f64)> {
+        let spread = |column: usize| {
+            let number = &self.own[column];
+            match fit.columns.iter().position(|&fitted| fitted == column) {
+                Some(k) => is_at_bound(number.sign, number.value, fit.coefficients[k]).then_some(number.value),
+                None if self.visibility[column] == Visibility::Unseen => {
+                    Some(NOTEWORTHY_DEVIATION * number.value.abs())
+                }
+                None => None,
+            }
+        };
+        let held = |column| spread(column).filter(|&spread| spread > 0.0).map(|spread| (column, spread));
+        (0..self.own.len()).filter_map(held).collect()
     }
 
     /// The description's numbers with those of a fit.

@@ -49,8 +49,7 @@ pub fn covariance(problem: &Problem, fit: &Fit, signs: &[Sign]) -> DMatrix<f64> 
 /// The same where it is known of some coefficients beforehand that they are near
 /// their value: `known` holds one over their variance, 0 where nothing is.
 pub fn covariance_with(problem: &Problem, fit: &Fit, signs: &[Sign], known: &[f64]) -> DMatrix<f64> {
-    let held = |&k: &usize| signs[k] == Sign::Nonnegative && fit.coefficients[k] == 0.0;
-    let free: Vec<usize> = (0..signs.len()).filter(|k| !held(k)).collect();
+    let free = free(fit, signs);
     let mut whole = DMatrix::zeros(signs.len(), signs.len());
     // Where all are held there is nothing to be sure of.
     let part = (!free.is_empty()).then(|| of_free(problem, fit, &free, known)).flatten();
@@ -61,6 +60,46 @@ pub fn covariance_with(problem: &Problem, fit: &Fit, signs: &[Sign], known: &[f6
         }
     }
     whole
+}
+
+/// By how much each of some columns would shift the coefficients of a fit, a
+/// column each, were it there once; those that are held at zero stay.
+pub fn shifts(problem: &Problem, fit: &Fit, signs: &[Sign], columns: &[usize]) -> DMatrix<f64> {
+    let free = free(fit, signs);
+    let fitted: Vec<usize> = free.iter().map(|&k| fit.columns[k]).collect();
+    let mut shifts = DMatrix::zeros(fit.columns.len(), columns.len());
+    let Some(inverse) = problem.total.inverse(&fitted) else { return shifts };
+    for (k, &column) in columns.iter().enumerate() {
+        let along = DVector::from_fn(fitted.len(), |i, _| problem.total.gram[(fitted[i], column)]);
+        let shift = &inverse * along;
+        free.iter().zip(&shift).for_each(|(&row, &by)| shifts[(row, k)] = by);
+    }
+    shifts
+}
+
+/// The covariance that columns which are held at a value give to the coefficients of a fit,
+/// each with the standard deviation of what it may be off by, or of what the readings would
+/// say of it, whichever is less.
+pub fn of_held(problem: &Problem, fit: &Fit, signs: &[Sign], held: &[(usize, f64)]) -> DMatrix<f64> {
+    let gram = &problem.total.gram;
+    let variance = fit.rss / problem.freedom(fit);
+    let columns: Vec<usize> = held.iter().map(|&(column, _)| column).collect();
+    let shifts = shifts(problem, fit, signs, &columns);
+    let of_one = |(k, &(column, spread)): (usize, &(usize, f64))| {
+        let shift = shifts.column(k);
+        // Of a column at zero nothing shifts its own coefficient.
+        let taken: f64 = fit.columns.iter().zip(shift.iter()).map(|(&other, by)| by * gram[(other, column)]).sum();
+        let alone = gram[(column, column)] - taken;
+        let of_readings = if alone > 0.0 { variance / alone } else { f64::INFINITY };
+        shift * shift.transpose() * of_readings.min(spread * spread)
+    };
+    held.iter().enumerate().map(of_one).fold(DMatrix::zeros(signs.len(), signs.len()), |sum, one| sum + one)
+}
+
+/// The coefficients of a fit, by place, that are not held at zero by their sign.
+fn free(fit: &Fit, signs: &[Sign]) -> Vec<usize> {
+    let held = |&k: &usize| signs[k] == Sign::Nonnegative && fit.coefficients[k] == 0.0;
+    (0..signs.len()).filter(|k| !held(k)).collect()
 }
 
 fn of_free(problem: &Problem, fit: &Fit, free: &[usize], known: &[f64]) -> Option<DMatrix<f64>> {

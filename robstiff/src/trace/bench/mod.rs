@@ -35,7 +35,7 @@ use crate::identify::samples::{Column, Samples};
 /// Everything that is needed to fit a campaign with effects of the catalogue.
 pub struct Bench<'c> {
     campaign: &'c Campaign,
-    prepared: &'c Prepared<'c>,
+    pub(super) prepared: &'c Prepared<'c>,
     own: Rc<[Column]>,
     candidates: Rc<[Candidate]>,
     numbers: Rc<[Number]>,

@@ -1,6 +1,5 @@
 //! How sure the numbers of a model are.
 
-use core::ops::Range;
 use std::rc::Rc;
 use std::vec;
 use std::vec::Vec;
@@ -9,13 +8,14 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::identify::normal::{Fit, Sign};
 use crate::identify::problem::Problem;
-use crate::identify::uncertainty::{covariance, covariance_with};
+use crate::identify::uncertainty::{covariance, covariance_with, of_held, shifts};
 use crate::trace::bench::Bench;
 use crate::trace::model::{Fitted, Setting};
 
 /// The covariance of a model's coefficients, and behind them of the logarithms
 /// of its numbers out of grids, in the order of its effects; with what readings
-/// may have besides that no column says.
+/// may have besides that no column says, and what numbers may be off by that are
+/// [held](crate::identify::prepare::Prepared::held).
 pub fn spread_of(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted) -> DMatrix<f64> {
     let mut signs: Vec<Sign> = model.fit.columns.iter().map(|&column| setting.signs[column]).collect();
     let mut known = vec![0.0; signs.len()];
@@ -38,14 +38,17 @@ pub fn spread_of(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted) -> DM
             unsure.push(of(&setting.point, &variant.columns.iter().map(value).collect::<Vec<f64>>()));
         }
     }
-    if shapes.is_empty() && unsure.is_empty() {
+    let held = bench.prepared.held(&model.fit);
+    if shapes.is_empty() && unsure.is_empty() && held.is_empty() {
         let (problem, fit) = setting.alone(&model.fit);
         return covariance(&problem, &fit, &signs);
     }
     let count = model.fit.columns.len() + shapes.len();
     let examples = unsure.iter().flatten().cloned();
-    let raw: Vec<DVector<f64>> =
+    let mut raw: Vec<DVector<f64>> =
         model.fit.columns.iter().map(|&column| setting.raw(column)).chain(shapes).chain(examples).collect();
+    let first_held = raw.len();
+    raw.extend(held.iter().map(|&(column, _)| setting.raw(column)));
     let readings = Rc::clone(&setting.problem.readings);
     let samples = &setting.point.samples;
     let problem = Problem::new(samples, DMatrix::from_columns(&raw), readings, &setting.correction, bench.weights());
@@ -56,26 +59,13 @@ pub fn spread_of(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted) -> DM
     let mut spread = covariance_with(&problem, &fit, &signs, &known);
     let mut next = count;
     for examples in &unsure {
-        let shifts = shifts(&problem, &fit, &signs, next..next + examples.len());
+        let columns: Vec<usize> = (next..next + examples.len()).collect();
+        let shifts = shifts(&problem, &fit, &signs, &columns);
         spread += &shifts * shifts.transpose() / examples.len().max(1) as f64;
         next += examples.len();
     }
-    spread
-}
-
-/// By how much each of some columns would shift the coefficients of a fit, a
-/// column each, were it there; those that are held stay.
-fn shifts(problem: &Problem, fit: &Fit, signs: &[Sign], examples: Range<usize>) -> DMatrix<f64> {
-    let free: Vec<usize> =
-        (0..fit.columns.len()).filter(|&k| !(signs[k] == Sign::Nonnegative && fit.coefficients[k] == 0.0)).collect();
-    let mut shifts = DMatrix::zeros(fit.columns.len(), examples.len());
-    let Some(inverse) = problem.total.inverse(&free) else { return shifts };
-    for (k, example) in examples.enumerate() {
-        let along = DVector::from_fn(free.len(), |i, _| problem.total.gram[(free[i], example)]);
-        let shift = &inverse * along;
-        free.iter().zip(&shift).for_each(|(&row, &by)| shifts[(row, k)] = by);
-    }
-    shifts
+    let held: Vec<(usize, f64)> = held.iter().enumerate().map(|(k, &(_, spread))| (first_held + k, spread)).collect();
+    spread + of_held(&problem, &fit, &signs, &held)
 }
 
 /// A number out of a grid of which nothing is known beforehand is within ten
