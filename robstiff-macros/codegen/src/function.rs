@@ -4,11 +4,9 @@
 use std::collections::HashMap;
 use std::fmt;
 
-use robstiff_robots::Description;
 use robstiff_robots::effect::physics::PLAYS;
 
 use crate::graph::{Graph, Id, Node, Op, Sym};
-use crate::symbolic::{ALGORITHMS, STATEFUL, remembers};
 
 /// The expressions of one function and which of them are its results.
 #[derive(Debug)]
@@ -177,13 +175,6 @@ fn column(op: Op, columns: &HashMap<Id, [f64; 4]>, values: &[f64]) -> [f64; 4] {
         Op::Direction(a) => each(&|k| if k < 3 { columns[&a][k] } else { 0.0 }),
         op => unreachable!("{op:?} gives a number"),
     }
-}
-
-/// The functions that are generated for a robot, by the names of the methods.
-pub fn functions(robot: &Description) -> Vec<(&'static str, Function)> {
-    let stateful = remembers(robot).then_some(STATEFUL);
-    let algorithms = ALGORITHMS.into_iter().chain(stateful);
-    algorithms.map(|(name, algorithm)| (name, Function::of(|g| algorithm(g, robot)))).collect()
 }
 
 /// Operations of one evaluation.

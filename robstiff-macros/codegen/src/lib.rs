@@ -21,5 +21,5 @@ pub mod symbolic;
 
 #[cfg(feature = "text")]
 pub use emit::source;
-pub use emit::{Origin, skeleton, tokens};
-pub use function::{Cost, Function, functions};
+pub use emit::{Origin, functions, skeleton, tokens};
+pub use function::{Cost, Function};

@@ -1,46 +1,72 @@
-//! What a description states, as the bodies of methods that return it.
+//! The methods of `Robot` that state what the description says: all there is to say of
+//! one is its entry in [`FACTS`].
 
 use proc_macro2::{Literal, TokenStream};
 use quote::{ToTokens, format_ident, quote};
-use robstiff_robots::{Convention, Description, DhEntry, Effect, JointKind, Place};
+use robstiff_robots::{Convention, Description, DhEntry, Effect, JointKind, Place, Placement};
 
+use super::Signature;
 use crate::symbolic;
 
-/// The methods that state facts of the description, in the order of the trait.
-pub(super) fn facts(robot: &Description) -> Vec<TokenStream> {
-    let name = &robot.name;
-    let convention = match robot.convention {
-        Convention::Standard => quote!(Convention::Standard),
-        Convention::Modified => quote!(Convention::Modified),
-    };
-    let kinds = robot.joints.iter().map(|joint| match joint.kind {
-        JointKind::Revolute => quote!(JointKind::Revolute),
-        JointKind::Prismatic => quote!(JointKind::Prismatic),
-    });
-    let compliances = robot.joints.iter().map(|joint| number(joint.compliance()));
-    let limits = robot.joints.iter().map(|joint| match joint.limits {
-        Some([low, high]) => {
-            let (low, high) = (number(low), number(high));
-            quote!(::core::option::Option::Some([#low, #high]))
-        }
-        None => quote!(::core::option::Option::None),
-    });
-    let effects = robot.effects.iter().map(effect);
-    let placement = |placement| {
-        let entries = symbolic::chain::homogeneous(placement).map(number);
-        quote!(Matrix4::new(#(#entries),*))
-    };
-    let (base, tool) = (placement(&robot.base), placement(&robot.tool));
-    vec![
-        quote!(#name),
-        convention,
-        quote!([#(#kinds),*]),
-        quote!(SVector::from([#(#compliances),*])),
-        quote!([#(#limits),*]),
-        quote!(&[#(#effects),*]),
-        base,
-        tool,
-    ]
+/// A method that states a fact.
+pub(super) struct Fact {
+    /// The method's signature.
+    pub signature: Signature,
+    /// What it returns.
+    pub value: fn(&Description) -> TokenStream,
+}
+
+/// Those of every robot, in the order of the trait.
+pub(super) const FACTS: [Fact; 8] = [
+    Fact { signature: |_| quote!(fn name(&self) -> &str), value: |robot| robot.name.to_token_stream() },
+    Fact {
+        signature: |_| quote!(fn convention(&self) -> Convention),
+        value: |robot| match robot.convention {
+            Convention::Standard => quote!(Convention::Standard),
+            Convention::Modified => quote!(Convention::Modified),
+        },
+    },
+    Fact {
+        signature: |n| quote!(fn joint_kinds(&self) -> [JointKind; #n]),
+        value: |robot| {
+            let kinds = robot.joints.iter().map(|joint| match joint.kind {
+                JointKind::Revolute => quote!(JointKind::Revolute),
+                JointKind::Prismatic => quote!(JointKind::Prismatic),
+            });
+            quote!([#(#kinds),*])
+        },
+    },
+    Fact {
+        signature: |n| quote!(fn joint_compliance(&self) -> SVector<f64, #n>),
+        value: |robot| {
+            let compliances = robot.joints.iter().map(|joint| number(joint.compliance()));
+            quote!(SVector::from([#(#compliances),*]))
+        },
+    },
+    Fact {
+        signature: |n| quote!(fn limits(&self) -> [::core::option::Option<[f64; 2]>; #n]),
+        value: |robot| {
+            let limits = robot.joints.iter().map(|joint| match joint.limits.map(|limits| limits.map(number)) {
+                Some([low, high]) => quote!(::core::option::Option::Some([#low, #high])),
+                None => quote!(::core::option::Option::None),
+            });
+            quote!([#(#limits),*])
+        },
+    },
+    Fact {
+        signature: |_| quote!(fn effects(&self) -> &[Effect]),
+        value: |robot| {
+            let effects = robot.effects.iter().map(effect);
+            quote!(&[#(#effects),*])
+        },
+    },
+    Fact { signature: |_| quote!(fn base(&self) -> Matrix4<f64>), value: |robot| frame(&robot.base) },
+    Fact { signature: |_| quote!(fn tool(&self) -> Matrix4<f64>), value: |robot| frame(&robot.tool) },
+];
+
+fn frame(placement: &Placement) -> TokenStream {
+    let entries = symbolic::chain::homogeneous(placement).map(number);
+    quote!(Matrix4::new(#(#entries),*))
 }
 
 fn effect(effect: &Effect) -> TokenStream {

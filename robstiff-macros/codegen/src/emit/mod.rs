@@ -1,8 +1,8 @@
 //! From functions to Rust: a type, and its `Robot` implementation.
 
 mod body;
+mod calculations;
 mod facts;
-mod functions;
 mod fuse;
 mod names;
 mod operation;
@@ -11,6 +11,12 @@ mod robot;
 mod text;
 mod turns;
 
+pub use calculations::functions;
 pub use robot::{Origin, skeleton, tokens};
 #[cfg(feature = "text")]
 pub use text::source;
+
+use proc_macro2::TokenStream;
+
+/// The signature of a method of `Robot`, for a number of joints.
+type Signature = fn(&TokenStream) -> TokenStream;

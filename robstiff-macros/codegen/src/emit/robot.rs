@@ -5,9 +5,10 @@ use quote::{format_ident, quote};
 use robstiff_robots::{Description, Place};
 use syn::Ident;
 
+use super::Signature;
 use super::body::{Body, Reader, body, handing_over};
-use super::facts::{facts, number};
-use super::functions::{Generated, compliance_entries, functions};
+use super::calculations::{Build, CALCULATIONS, Generated, compliance_entries};
+use super::facts::{FACTS, Fact, number};
 use crate::function::{Cost, Function};
 use crate::graph::{Op, Parameter};
 use crate::symbolic;
@@ -25,7 +26,7 @@ pub struct Origin {
 
 /// The items for one robot: the type, its constants, its implementation.
 pub fn tokens(robot: &Description, origin: &Origin) -> TokenStream {
-    let functions = functions(robot);
+    let functions = Generated::all(robot);
     let definition = definition(robot, origin, &functions);
     let imports = imports_of(robot, &origin.runtime);
     let implementation = implementation(robot, &functions, Reader::Compiler);
@@ -52,14 +53,14 @@ pub fn skeleton(name: &str, joints: Option<usize>, origin: &Origin) -> TokenStre
         // No robot has an underscore in its name.
         None => (quote!(<const JOINT_COUNT: usize>), quote!(JOINT_COUNT)),
     };
-    let methods = signatures().map(|(signature, _)| {
+    let methods = signatures().map(|signature| {
         let signature = signature(&count);
         quote!(#signature { ::core::unimplemented!() })
     });
     // Where the number of joints is unknown, a call of what does not depend on
     // it must not ask for it.
     let inherent = joints.is_none().then(|| {
-        let facts = signatures().into_iter().filter_map(|(signature, _)| {
+        let facts = signatures().filter_map(|signature| {
             let [one, other] = [quote!(1), quote!(2)].map(|joints| signature(&joints));
             (one.to_string() == other.to_string()).then(|| quote!(pub #one { ::core::unimplemented!() }))
         });
@@ -82,49 +83,10 @@ pub fn skeleton(name: &str, joints: Option<usize>, origin: &Origin) -> TokenStre
     }
 }
 
-/// Whether a method of `Robot` states what the description says, or calculates.
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    Fact,
-    Calculation,
-}
-
-/// The signature of a method, for a number of joints.
-type Signature = fn(&TokenStream) -> TokenStream;
-
-/// The methods of `Robot` in its order.
-fn signatures() -> [(Signature, Kind); 15] {
-    use Kind::{Calculation, Fact};
-    [
-        (|_| quote!(fn name(&self) -> &str), Fact),
-        (|_| quote!(fn convention(&self) -> Convention), Fact),
-        (|n| quote!(fn joint_kinds(&self) -> [JointKind; #n]), Fact),
-        (|n| quote!(fn joint_compliance(&self) -> SVector<f64, #n>), Fact),
-        (|n| quote!(fn limits(&self) -> [::core::option::Option<[f64; 2]>; #n]), Fact),
-        (|_| quote!(fn effects(&self) -> &[Effect]), Fact),
-        (|_| quote!(fn base(&self) -> Matrix4<f64>), Fact),
-        (|_| quote!(fn tool(&self) -> Matrix4<f64>), Fact),
-        (|n| quote!(fn transform<T: Real>(&self, q: &SVector<T, #n>) -> Matrix4<T>), Calculation),
-        (|n| quote!(fn link_frames<T: Real>(&self, q: &SVector<T, #n>) -> [Matrix4<T>; #n]), Calculation),
-        (|n| quote!(fn jacobian<T: Real>(&self, q: &SVector<T, #n>) -> SMatrix<T, 6, #n>), Calculation),
-        (|n| quote!(fn compliance<T: Real>(&self, q: &SVector<T, #n>) -> Matrix6<T>), Calculation),
-        (|n| quote!(fn deflection<T: Real>(&self, q: &SVector<T, #n>, wrench: &Vector6<T>) -> Vector6<T>), Calculation),
-        (
-            |n| quote!(fn joint_torques<T: Real>(&self, q: &SVector<T, #n>, wrench: &Vector6<T>) -> SVector<T, #n>),
-            Calculation,
-        ),
-        (|n| quote!(fn statics<T: Real>(&self, q: &SVector<T, #n>) -> Statics<#n, T>), Calculation),
-    ]
-}
-
-/// The method of `Robot` that is generated besides where loads are remembered.
-fn stateful(n: &TokenStream) -> TokenStream {
-    quote!(fn deflection_with<T: Real>(
-        &self,
-        q: &SVector<T, #n>,
-        wrench: &Vector6<T>,
-        state: &mut State<#n, T>,
-    ) -> Vector6<T>)
+/// The signatures of the methods of every robot, in the order of the trait.
+fn signatures() -> impl Iterator<Item = Signature> {
+    let calculations = CALCULATIONS.into_iter().map(|calculation| calculation.signature);
+    FACTS.into_iter().map(|fact| fact.signature).chain(calculations)
 }
 
 /// What every implementation names, and `more` that this one does.
@@ -185,8 +147,8 @@ pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Gene
     });
     let runtime = &origin.runtime;
     let costs = functions.iter().map(|generated| {
-        let name = format_ident!("{}_COST", generated.name.to_uppercase());
-        let doc = format!(" Operations of `{}`.", generated.name);
+        let name = format_ident!("{}_COST", generated.method.name.to_uppercase());
+        let doc = format!(" Operations of `{}`.", generated.method.name);
         let Cost { trig, mul, add, neg, root } = generated.function.cost();
         let [trig, mul, add, neg, root] = [trig, mul, add, neg, root].map(Literal::usize_unsuffixed);
         quote! {
@@ -230,41 +192,45 @@ pub(super) fn implementation(robot: &Description, functions: &[Generated], reade
     let name = Ident::new(&robot.name, Span::call_site());
     let n = Literal::usize_unsuffixed(robot.joints.len());
     let count = quote!(#n);
-    let (stated, calculated): (Vec<_>, Vec<_>) = signatures().into_iter().partition(|(_, kind)| *kind == Kind::Fact);
-    let stated = stated.into_iter().zip(facts(robot)).map(|((signature, _), fact)| {
-        let signature = signature(&count);
-        quote!(#[inline] #signature { #fact })
+    let facts = FACTS.into_iter().map(|Fact { signature, value }| {
+        let (signature, value) = (signature(&count), value(robot));
+        quote!(#[inline] #signature { #value })
     });
-    let calculated = calculated.into_iter().map(|(signature, _)| signature).chain([stateful as Signature]);
-    let calculated = calculated.zip(functions).map(|(signature, generated)| {
-        let signature = signature(&count);
-        let Body { statements, outputs } = body(&generated.function, reader);
-        let result = generated.result(&outputs);
-        let mut calculation = quote!(#statements #result);
-        if let (Some(in_columns), Reader::Compiler) = (&generated.in_columns, reader) {
-            let Body { statements, outputs } = body(&in_columns.function, reader);
-            let result = in_columns.result(&outputs);
-            calculation = quote!(if T::COLUMNS { #statements #result } else { #calculation });
-        }
-        let mut docs = paragraph(generated.doc);
-        docs.push(format!(" {}.", generated.function.cost()));
-        // What a function does not depend on is unused.
-        let silence = ignores_an_input(&generated.function).then(|| quote!(#[allow(unused_variables)]));
-        // Only a caller that sees the code can leave out what it does not
-        // need, and compute several poses abreast.
-        quote!(#(#[doc = #docs])* #silence #[inline(always)] #signature { #calculation })
-    });
+    let calculations = functions.iter().map(|generated| calculation(robot, generated, reader, &count));
     // People read the compliance once.
     let by_entries = (reader == Reader::Compiler).then(|| by_entries(robot, &count));
     let silence = lints();
     quote! {
         #silence
         impl Robot<#n> for #name {
-            #(#stated)*
-            #(#calculated)*
+            #(#facts)*
+            #(#calculations)*
             #by_entries
         }
     }
+}
+
+/// A method that calculates.
+fn calculation(robot: &Description, generated: &Generated, reader: Reader, n: &TokenStream) -> TokenStream {
+    let Generated { method, function, in_columns } = generated;
+    let written = |function: &Function, result: Build| {
+        let Body { statements, outputs } = body(function, reader);
+        let result = result(robot, &outputs);
+        quote!(#statements #result)
+    };
+    let mut code = written(function, method.result);
+    if let (Some((function, result)), Reader::Compiler) = (in_columns, reader) {
+        let in_columns = written(function, *result);
+        code = quote!(if T::COLUMNS { #in_columns } else { #code });
+    }
+    let mut docs = paragraph(method.doc);
+    docs.push(format!(" {}.", function.cost()));
+    // What a function does not depend on is unused.
+    let silence = ignores_an_input(function).then(|| quote!(#[allow(unused_variables)]));
+    let signature = (method.signature)(n);
+    // Only a caller that sees the code can leave out what it does not
+    // need, and compute several poses abreast.
+    quote!(#(#[doc = #docs])* #silence #[inline(always)] #signature { #code })
 }
 
 /// The method that hands over the compliance's entries one by one.

@@ -5,7 +5,7 @@ use quote::quote;
 use robstiff_robots::{Convention, Description, JointKind};
 
 use super::body::Reader;
-use super::functions::{Generated, functions};
+use super::calculations::Generated;
 use super::robot::{Origin, definition, implementation, imports_of};
 
 /// The source of a module with one robot: a header that names the
@@ -14,7 +14,7 @@ use super::robot::{Origin, definition, implementation, imports_of};
 /// and with plain operators, without the ways that only compilers read (whole
 /// columns, fused products, entries one by one).
 pub fn source(robot: &Description, origin: &Origin) -> String {
-    let functions = functions(robot);
+    let functions = Generated::all(robot);
     let (imports, definition) = (imports_of(robot, &origin.runtime), definition(robot, origin, &functions));
     let implementation = implementation(robot, &functions, Reader::Person);
     let file = syn::parse2(quote!(#imports #definition #implementation)).expect("generated code is Rust");
@@ -44,7 +44,7 @@ fn header(robot: &Description, origin: &Origin, functions: &[Generated]) -> Stri
     }
     out += "//\n// Operations of one call:\n";
     for generated in functions {
-        out += &format!("//   {:<14} {}\n", generated.name, generated.function.cost());
+        out += &format!("//   {:<14} {}\n", generated.method.name, generated.function.cost());
     }
     out + "\n"
 }

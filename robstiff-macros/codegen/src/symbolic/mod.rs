@@ -44,20 +44,6 @@ pub fn statics<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
 /// How the entries of a result are calculated.
 pub type Algorithm = for<'g> fn(&'g Graph, &Description) -> Vec<Sym<'g>>;
 
-/// What is generated for every robot, by the names of the methods.
-pub const ALGORITHMS: [(&str, Algorithm); 7] = [
-    ("transform", transform),
-    ("link_frames", link_frames),
-    ("jacobian", jacobian),
-    ("compliance", compliance),
-    ("deflection", deflection),
-    ("joint_torques", joint_torques),
-    ("statics", statics),
-];
-
-/// What is generated besides for a robot that [remembers] its loads.
-pub const STATEFUL: (&str, Algorithm) = ("deflection_with", deflection_with);
-
 /// Whether a robot's deflection depends on the loads before.
 pub fn remembers(robot: &Description) -> bool {
     robot.effects.iter().any(|effect| effect.plays_in_use() > 0)

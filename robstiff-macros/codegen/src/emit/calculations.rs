@@ -1,0 +1,186 @@
+//! The methods of `Robot` that calculate: all there is to say of one is its entry in
+//! [`CALCULATIONS`].
+
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+use robstiff_robots::Description;
+
+use super::Signature;
+use crate::function::Function;
+use crate::symbolic::{self, Algorithm, columns};
+
+/// Builds a result from its entries.
+pub(super) type Build = fn(&Description, &[TokenStream]) -> TokenStream;
+
+/// A method that calculates.
+pub(super) struct Calculation {
+    /// The method's name.
+    pub name: &'static str,
+    /// What it gives, with shape, frame and unit.
+    pub doc: &'static str,
+    /// The method's signature.
+    pub signature: Signature,
+    algorithm: Algorithm,
+    /// How its result is built.
+    pub result: Build,
+    /// The same for scalars that compute with columns as with one number.
+    in_columns: Option<(Algorithm, Build)>,
+}
+
+/// Those of every robot, in the order of the trait.
+pub(super) const CALCULATIONS: [Calculation; 7] = [
+    Calculation {
+        name: "transform",
+        doc: "Frame of the tool centre point in the base frame, 4 x 4 homogeneous (m).",
+        signature: |n| quote!(fn transform<T: Real>(&self, q: &SVector<T, #n>) -> Matrix4<T>),
+        algorithm: symbolic::transform,
+        result: |_, entries| quote!(Matrix4::new(#(#entries),*)),
+        in_columns: Some((columns::transform, |_, frame| quote!(Matrix4::from([#(#frame),*])))),
+    },
+    Calculation {
+        name: "link_frames",
+        doc: "Frames behind the joints in the base frame, 4 x 4 homogeneous (m); the last is the flange.",
+        signature: |n| quote!(fn link_frames<T: Real>(&self, q: &SVector<T, #n>) -> [Matrix4<T>; #n]),
+        algorithm: symbolic::link_frames,
+        result: |_, entries| {
+            let frames = entries.chunks(16).map(|frame| quote!(Matrix4::new(#(#frame),*)));
+            quote!([#(#frames),*])
+        },
+        in_columns: None,
+    },
+    Calculation {
+        name: "jacobian",
+        doc: "Jacobian of the tool centre point in the base frame, 6 rows: translation (m/rad), rotation.",
+        signature: |n| quote!(fn jacobian<T: Real>(&self, q: &SVector<T, #n>) -> SMatrix<T, 6, #n>),
+        algorithm: symbolic::jacobian,
+        result: |_, entries| jacobian(entries),
+        in_columns: Some((columns::jacobian, |_, entries| jacobian(entries))),
+    },
+    Calculation {
+        name: "compliance",
+        doc: "Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
+
+            It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
+            rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.",
+        signature: |n| quote!(fn compliance<T: Real>(&self, q: &SVector<T, #n>) -> Matrix6<T>),
+        algorithm: symbolic::compliance,
+        result: |_, entries| quote!(Matrix6::new(#(#entries),*)),
+        in_columns: Some((columns::compliance, |_, entries| quote!(Matrix6::new(#(#entries),*)))),
+    },
+    Calculation {
+        name: "deflection",
+        doc: "Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm).",
+        signature: |n| quote!(fn deflection<T: Real>(&self, q: &SVector<T, #n>, wrench: &Vector6<T>) -> Vector6<T>),
+        algorithm: symbolic::deflection,
+        result: |_, entries| quote!(Vector6::new(#(#entries),*)),
+        in_columns: None,
+    },
+    Calculation {
+        name: "joint_torques",
+        doc: "Joint torques (Nm) (forces (N) of sliding joints) that hold a wrench at the tool centre point.",
+        signature: |n| quote!(fn joint_torques<T: Real>(&self, q: &SVector<T, #n>, wrench: &Vector6<T>) -> SVector<T, #n>),
+        algorithm: symbolic::joint_torques,
+        result: |_, entries| quote!(SVector::from([#(#entries),*])),
+        in_columns: None,
+    },
+    Calculation {
+        name: "statics",
+        doc: "Transform, Jacobian and compliance of one pose, with what they have in common.",
+        signature: |n| quote!(fn statics<T: Real>(&self, q: &SVector<T, #n>) -> Statics<#n, T>),
+        algorithm: symbolic::statics,
+        result: |_, entries| {
+            let (frame, rest) = entries.split_at(16);
+            statics(&quote!(Matrix4::new(#(#frame),*)), rest)
+        },
+        in_columns: Some((columns::statics, |_, outputs| {
+            let (frame, rest) = outputs.split_at(4);
+            statics(&quote!(Matrix4::from([#(#frame),*])), rest)
+        })),
+    },
+];
+
+/// What is generated besides for robots that [remember](symbolic::remembers) their loads.
+const DEFLECTION_WITH: Calculation = Calculation {
+    name: "deflection_with",
+    doc: "Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm)
+        that follows the loads in the state.",
+    signature: |n| {
+        quote!(fn deflection_with<T: Real>(
+            &self,
+            q: &SVector<T, #n>,
+            wrench: &Vector6<T>,
+            state: &mut State<#n, T>,
+        ) -> Vector6<T>)
+    },
+    algorithm: symbolic::deflection_with,
+    result: |robot, entries| {
+        let (displacement, plays) = entries.split_at(6);
+        let after = symbolic::plays(robot).into_iter().zip(plays).map(|((joint, index), play)| {
+            let (joint, index) = (Literal::usize_unsuffixed(joint), Literal::usize_unsuffixed(index));
+            quote!(state.plays[#joint][#index] = #play;)
+        });
+        quote!(#(#after)* Vector6::new(#(#displacement),*))
+    },
+    in_columns: None,
+};
+
+/// A Jacobian from its entries, column by column.
+fn jacobian(entries: &[TokenStream]) -> TokenStream {
+    let columns = entries.chunks(6).map(|column| quote!([#(#column),*]));
+    quote!(SMatrix::from([#(#columns),*]))
+}
+
+/// Transform, Jacobian and compliance together.
+fn statics(transform: &TokenStream, rest: &[TokenStream]) -> TokenStream {
+    let (columns, compliance) = rest.split_at(rest.len() - 36);
+    let jacobian = jacobian(columns);
+    quote!(Statics { transform: #transform, jacobian: #jacobian, compliance: Matrix6::new(#(#compliance),*) })
+}
+
+impl Calculation {
+    /// All of a robot; that with a state last, if the robot has one.
+    fn all(robot: &Description) -> impl Iterator<Item = Self> {
+        CALCULATIONS.into_iter().chain(symbolic::remembers(robot).then_some(DEFLECTION_WITH))
+    }
+
+    fn function(&self, robot: &Description) -> Function {
+        Function::of(|g| (self.algorithm)(g, robot))
+    }
+}
+
+/// The functions that are generated for a robot, by the names of the methods.
+pub fn functions(robot: &Description) -> Vec<(&'static str, Function)> {
+    Calculation::all(robot).map(|calculation| (calculation.name, calculation.function(robot))).collect()
+}
+
+/// A method for one robot.
+pub(super) struct Generated {
+    /// The method.
+    pub method: Calculation,
+    /// What its result is built from.
+    pub function: Function,
+    /// The same in columns, where that is less.
+    pub in_columns: Option<(Function, Build)>,
+}
+
+impl Generated {
+    /// All of a robot, in the order of the trait.
+    pub fn all(robot: &Description) -> Vec<Self> {
+        Calculation::all(robot).map(|method| Self::of(method, robot)).collect()
+    }
+
+    fn of(method: Calculation, robot: &Description) -> Self {
+        let function = method.function(robot);
+        let in_columns = method.in_columns.map(|(algorithm, result)| (Function::of(|g| algorithm(g, robot)), result));
+        let in_columns = in_columns.filter(|(columns, _)| columns.cost_in_columns() < function.cost_in_columns());
+        Self { method, function, in_columns }
+    }
+}
+
+/// The upper triangle of the compliance, by rows.
+pub(super) fn compliance_entries(robot: &Description) -> Function {
+    Function::of(|g| {
+        let entries = symbolic::compliance(g, robot);
+        (0..6).flat_map(|i| entries[6 * i + i..6 * (i + 1)].to_vec()).collect()
+    })
+}
