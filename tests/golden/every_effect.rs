@@ -188,7 +188,7 @@ impl EveryEffect {
     };
 }
 
-#[allow(clippy::approx_constant, dead_code)]
+#[allow(clippy::approx_constant, unused_variables)]
 impl Robot<6> for EveryEffect {
     #[inline]
     fn name(&self) -> &str {

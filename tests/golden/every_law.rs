@@ -244,7 +244,7 @@ impl EveryLaw {
     };
 }
 
-#[allow(clippy::approx_constant, dead_code)]
+#[allow(clippy::approx_constant, unused_variables)]
 impl Robot<7> for EveryLaw {
     #[inline]
     fn name(&self) -> &str {

@@ -122,7 +122,7 @@ impl FanucR2000ic {
     };
 }
 
-#[allow(clippy::approx_constant, dead_code)]
+#[allow(clippy::approx_constant, unused_variables)]
 impl Robot<6> for FanucR2000ic {
     #[inline]
     fn name(&self) -> &str {

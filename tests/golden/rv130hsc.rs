@@ -111,7 +111,7 @@ impl Rv130hsc {
     };
 }
 
-#[allow(clippy::approx_constant, dead_code)]
+#[allow(clippy::approx_constant, unused_variables)]
 impl Robot<5> for Rv130hsc {
     #[inline]
     fn name(&self) -> &str {

@@ -10,7 +10,7 @@ use super::body::{Body, Reader, body, handing_over};
 use super::calculations::{Build, CALCULATIONS, Generated, compliance_entries};
 use super::facts::{FACTS, Fact, number};
 use crate::function::{Cost, Function};
-use crate::graph::{Op, Parameter};
+use crate::graph::Parameter;
 use crate::symbolic;
 
 /// Where generated code comes from and where it will stand.
@@ -27,7 +27,7 @@ pub struct Origin {
 /// The items for one robot: the type, its constants, its implementation.
 pub fn tokens(robot: &Description, origin: &Origin) -> TokenStream {
     let functions = Generated::all(robot);
-    let definition = definition(robot, origin, &functions);
+    let definition = definition(robot, origin, &functions, Reader::Compiler);
     let imports = imports_of(robot, &origin.runtime);
     let implementation = implementation(robot, &functions, Reader::Compiler);
     quote! {
@@ -57,27 +57,27 @@ pub fn skeleton(name: &str, joints: Option<usize>, origin: &Origin) -> TokenStre
         let signature = signature(&count);
         quote!(#signature { ::core::unimplemented!() })
     });
+    // Also missing docs would be an error of their own.
+    let doc = quote!(#[doc = " A robot whose description has mistakes."]);
     // Where the number of joints is unknown, a call of what does not depend on
     // it must not ask for it.
     let inherent = joints.is_none().then(|| {
         let facts = signatures().filter_map(|signature| {
             let [one, other] = [quote!(1), quote!(2)].map(|joints| signature(&joints));
-            (one.to_string() == other.to_string()).then(|| quote!(pub #one { ::core::unimplemented!() }))
+            (one.to_string() == other.to_string()).then(|| quote!(#doc pub #one { ::core::unimplemented!() }))
         });
-        quote! {
-            #[allow(dead_code, missing_docs)]
-            impl #name { #(#facts)* }
-        }
+        quote!(impl #name { #(#facts)* })
     });
     let imports = imports(runtime, &[]);
     quote! {
+        #doc
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #visibility struct #name;
         const _: () = {
             #imports
             #inherent
             impl #generics Robot<#count> for #name {
-                #(#[allow(unused_variables)] #methods)*
+                #(#methods)*
             }
         };
     }
@@ -117,7 +117,7 @@ pub(super) fn imports_of(robot: &Description, runtime: &TokenStream) -> TokenStr
 }
 
 /// The type with its documentation and its named numbers.
-pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Generated]) -> TokenStream {
+pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Generated], reader: Reader) -> TokenStream {
     let Origin { file, visibility, .. } = origin;
     let name = Ident::new(&robot.name, Span::call_site());
     let mut docs = Vec::new();
@@ -157,13 +157,14 @@ pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Gene
                 #runtime::Cost { trig: #trig, mul: #mul, add: #add, neg: #neg, root: #root };
         }
     });
-    let silence = lints();
+    // Nobody needs every constant.
+    let allow = allow(reader, "dead_code");
     quote! {
         #(#[doc = #docs])*
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         #visibility struct #name;
 
-        #silence
+        #allow
         impl #name {
             #(#constants)*
             #(#costs)*
@@ -199,9 +200,10 @@ pub(super) fn implementation(robot: &Description, functions: &[Generated], reade
     let calculations = functions.iter().map(|generated| calculation(robot, generated, reader, &count));
     // People read the compliance once.
     let by_entries = (reader == Reader::Compiler).then(|| by_entries(robot, &count));
-    let silence = lints();
+    // What a function does not depend on is unused.
+    let allow = allow(reader, "unused_variables");
     quote! {
-        #silence
+        #allow
         impl Robot<#n> for #name {
             #(#facts)*
             #(#calculations)*
@@ -225,12 +227,10 @@ fn calculation(robot: &Description, generated: &Generated, reader: Reader, n: &T
     }
     let mut docs = paragraph(method.doc);
     docs.push(format!(" {}.", function.cost()));
-    // What a function does not depend on is unused.
-    let silence = ignores_an_input(function).then(|| quote!(#[allow(unused_variables)]));
     let signature = (method.signature)(n);
     // Only a caller that sees the code can leave out what it does not
     // need, and compute several poses abreast.
-    quote!(#(#[doc = #docs])* #silence #[inline(always)] #signature { #code })
+    quote!(#(#[doc = #docs])* #[inline(always)] #signature { #code })
 }
 
 /// The method that hands over the compliance's entries one by one.
@@ -239,10 +239,8 @@ fn by_entries(robot: &Description, n: &TokenStream) -> TokenStream {
     let statements = handing_over(&function);
     let mut docs = paragraph("Upper triangle of `compliance`, each entry as soon as it is known.");
     docs.push(format!(" {}.", function.cost()));
-    let silence = ignores_an_input(&function).then(|| quote!(#[allow(unused_variables)]));
     quote! {
         #(#[doc = #docs])*
-        #silence
         #[inline(always)]
         fn compliance_entries<T: Real>(&self, q: &SVector<T, #n>, mut put: impl ::core::ops::FnMut(usize, T)) {
             #statements
@@ -250,18 +248,14 @@ fn by_entries(robot: &Description, n: &TokenStream) -> TokenStream {
     }
 }
 
-/// A limit of 180 degrees is no misspelt pi, and nobody needs every constant.
-fn lints() -> TokenStream {
-    quote!(#[allow(clippy::approx_constant, dead_code)])
-}
-
-/// Whether a function does not read its joint coordinates, or takes a wrench
-/// and does not read that.
-fn ignores_an_input(function: &Function) -> bool {
-    let uses = function.uses();
-    let nodes = function.graph().nodes();
-    let reads = |of: fn(&Op) -> bool| nodes.iter().zip(&uses).any(|(node, &used)| used > 0 && of(&node.op));
-    let takes_wrench = nodes.iter().any(|node| matches!(node.op, Op::Wrench(_)));
-    !reads(|op| matches!(op, Op::Coordinate(_) | Op::Sin(_) | Op::Cos(_)))
-        || (takes_wrench && !reads(|op| matches!(op, Op::Wrench(_))))
+/// What lints must not say of generated code: a limit of 180 degrees is no misspelt pi.
+/// That something is `unused`, in the words of a lint, is said of source for people
+/// alone: in what a macro of another crate expands to rustc does not look for it, and
+/// there an `allow` is an error if the user's crate forbids the lint.
+fn allow(reader: Reader, unused: &str) -> TokenStream {
+    let unused = Ident::new(unused, Span::call_site());
+    match reader {
+        Reader::Compiler => quote!(#[allow(clippy::approx_constant)]),
+        Reader::Person => quote!(#[allow(clippy::approx_constant, #unused)]),
+    }
 }

@@ -15,7 +15,8 @@ use super::robot::{Origin, definition, implementation, imports_of};
 /// columns, fused products, entries one by one).
 pub fn source(robot: &Description, origin: &Origin) -> String {
     let functions = Generated::all(robot);
-    let (imports, definition) = (imports_of(robot, &origin.runtime), definition(robot, origin, &functions));
+    let imports = imports_of(robot, &origin.runtime);
+    let definition = definition(robot, origin, &functions, Reader::Person);
     let implementation = implementation(robot, &functions, Reader::Person);
     let file = syn::parse2(quote!(#imports #definition #implementation)).expect("generated code is Rust");
     header(robot, origin, &functions) + &polished(&unparse(&file))
