@@ -7,7 +7,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::fuse::Fusion;
-use super::names::{Names, WRENCH, before};
+use super::lines::Lines;
 use super::operation::{Binding, arithmetic, column, sum};
 use super::turns::{Lane, Turn, Turns};
 use crate::angle::Angle;
@@ -34,10 +34,7 @@ pub(super) enum Reader {
 pub(super) fn body(function: &Function, reader: Reader) -> Body {
     let writer = match reader {
         Reader::Compiler => Writer::fusing(function, Turns::of(function)),
-        Reader::Person => {
-            let turns = Turns::none();
-            Writer { function, names: Names::of(function, &turns), fusion: Fusion::none(function), turns }
-        }
+        Reader::Person => Writer::of(function, Turns::none(), Fusion::none(function)),
     };
     let statements = writer.statements(reader == Reader::Person, |_| None);
     let outputs = function.outputs().iter().map(|&id| writer.operand(id, Binding::Sum)).collect();
@@ -62,15 +59,24 @@ pub(super) fn handing_over(function: &Function) -> TokenStream {
 
 struct Writer<'f> {
     function: &'f Function,
-    names: Names,
+    /// The operations that outputs depend on.
+    live: Vec<Op>,
+    lines: Lines,
     fusion: Fusion,
     turns: Turns,
 }
 
 impl<'f> Writer<'f> {
+    fn of(function: &'f Function, turns: Turns, fusion: Fusion) -> Self {
+        let nodes = function.graph().nodes();
+        let live = nodes.iter().zip(function.uses()).filter(|(_, used)| *used > 0).map(|(node, _)| node.op).collect();
+        Self { function, live, lines: Lines::of(function, &turns, &fusion), fusion, turns }
+    }
+
     /// For the compiler: with products and sums fused.
     fn fusing(function: &'f Function, turns: Turns) -> Self {
-        Self { function, names: Names::of(function, &turns), fusion: Fusion::of(function, &turns), turns }
+        let fusion = Fusion::of(function, &turns);
+        Self::of(function, turns, fusion)
     }
 
     /// All lines, and after each what belongs there.
@@ -78,7 +84,7 @@ impl<'f> Writer<'f> {
         let graph = self.function.graph();
         let nodes = graph.nodes();
         let mut out = TokenStream::new();
-        let constants = self.names.lines().filter(|(id, _)| nodes[*id].constant.is_some());
+        let (constants, others): (Vec<_>, Vec<_>) = self.lines.all().partition(|(id, _)| nodes[*id].constant.is_some());
         for (id, name) in constants {
             let (name, value) = (format_ident!("{name}"), self.constant(id, Binding::Sum));
             out.extend(quote!(let #name = T::of(#value);));
@@ -88,18 +94,14 @@ impl<'f> Writer<'f> {
         out.extend(self.sin_cos());
         let mut turned = BTreeSet::new();
         let mut remarks = graph.remarks().to_vec().into_iter().peekable();
-        for (id, node) in self.live() {
-            if node.constant.is_some() {
-                continue;
-            }
+        for (id, name) in others {
             if let Some(turn) = self.turns.with(id) {
                 // Where the first of its results is due.
-                if self.fusion.is_used(id) && turned.insert(turn.first()) {
+                if turned.insert(turn.first()) {
                     out.extend(self.block_turn(turn));
                 }
                 continue;
             }
-            let Some(name) = self.names.get(id).filter(|_| self.fusion.is_used(id)) else { continue };
             let (name, value) = (format_ident!("{name}"), self.expression(id).0);
             // Of several remarks before a line, the last one speaks of it.
             let mut remark = None;
@@ -120,48 +122,27 @@ impl<'f> Writer<'f> {
         let node = self.function.graph().nodes()[id];
         if node.constant.is_some() {
             None
-        } else if self.names.get(id).is_some() && self.fusion.is_used(id) {
+        } else if self.lines.name(id).is_some() {
             Some(id)
         } else {
             node.op.operands().filter_map(|operand| self.last_line(operand)).max()
         }
     }
 
-    fn live(&self) -> Vec<(Id, crate::graph::Node)> {
-        let uses = self.function.uses();
-        self.function.graph().nodes().iter().copied().enumerate().filter(|(id, _)| uses[*id] > 0).collect()
-    }
-
     /// `let [fx, _, fz, ..] = wrench.data.0[0];`, if the wrench matters.
-    fn wrench(&self) -> TokenStream {
-        let used: Vec<usize> = self
-            .live()
-            .into_iter()
-            .filter_map(|(_, node)| if let Op::Wrench(index) = node.op { Some(index) } else { None })
-            .collect();
-        if used.is_empty() {
-            return TokenStream::new();
-        }
-        let entries = (0..6).map(|index| {
-            if used.contains(&index) {
-                let name = format_ident!("{}", WRENCH[index]);
-                quote!(#name)
-            } else {
-                quote!(_)
-            }
-        });
-        quote!(let [#(#entries),*] = wrench.data.0[0];)
+    fn wrench(&self) -> Option<TokenStream> {
+        let matters = self.live.iter().any(|op| matches!(op, Op::Wrench(_)));
+        let entries = (0..6).map(|index| self.pattern(Op::Wrench(index)));
+        matters.then(|| quote!(let [#(#entries),*] = wrench.data.0[0];))
     }
 
     /// `let before2_1 = state.plays[1][0];` for each play operator that matters.
     fn plays(&self) -> TokenStream {
-        let plays = self.live().into_iter().filter_map(|(_, node)| match node.op {
-            Op::Play(joint, index) => {
-                let name = format_ident!("{}", before(joint, index));
-                let (joint, index) = (Literal::usize_unsuffixed(joint), Literal::usize_unsuffixed(index));
-                Some(quote!(let #name = state.plays[#joint][#index];))
-            }
-            _ => None,
+        let plays = self.live.iter().filter_map(|&op| {
+            let Op::Play(joint, index) = op else { return None };
+            let name = self.input(op);
+            let (joint, index) = (Literal::usize_unsuffixed(joint), Literal::usize_unsuffixed(index));
+            Some(quote!(let #name = state.plays[#joint][#index];))
         });
         plays.collect()
     }
@@ -169,24 +150,13 @@ impl<'f> Writer<'f> {
     /// `let [(s1, c1), (s23, c23)] = T::sin_cos_all([q[0], q[1] + q[2]]);`:
     /// all angles together, so that scalars may compute them side by side.
     fn sin_cos(&self) -> Option<TokenStream> {
-        let live = self.live();
-        let is_live = |op: Op| live.iter().any(|(_, node)| node.op == op);
-        let pattern = |op: Op, letter: char, label: &str| {
-            if is_live(op) {
-                let name = format_ident!("{letter}{label}");
-                quote!(#name)
-            } else {
-                quote!(_)
-            }
-        };
         let angles = self.function.graph().angles();
-        let is_needed = |&index: &usize| is_live(Op::Sin(index)) || is_live(Op::Cos(index));
+        let is_needed = |&index: &usize| self.live.contains(&Op::Sin(index)) || self.live.contains(&Op::Cos(index));
         let mut order: Vec<usize> = (0..angles.len()).filter(is_needed).collect();
-        arrange(&mut order, &angles, live.iter().any(|(_, node)| node.op.is_column()));
+        arrange(&mut order, &angles, self.live.iter().any(|op| op.is_column()));
         let (mut patterns, mut sums) = (Vec::new(), Vec::new());
         for index in order {
-            let label = self.names.angle(index);
-            let (sin, cos) = (pattern(Op::Sin(index), 's', label), pattern(Op::Cos(index), 'c', label));
+            let [sin, cos] = [Op::Sin(index), Op::Cos(index)].map(|op| self.pattern(op));
             patterns.push(quote!((#sin, #cos)));
             sums.push(sum(&angles[index]));
         }
@@ -197,16 +167,26 @@ impl<'f> Writer<'f> {
         }
     }
 
+    /// The name of an input, or `_` if it does not matter.
+    fn pattern(&self, op: Op) -> TokenStream {
+        if !self.live.contains(&op) {
+            return quote!(_);
+        }
+        let name = self.input(op);
+        quote!(#name)
+    }
+
+    fn input(&self, op: Op) -> Ident {
+        format_ident!("{}", self.lines.input(op))
+    }
+
     /// `let [[tt_xx, rr_xx, tr_xx, _], ..] = T::turn_blocks([[..], ..], (s1, c1));`
     /// and the results that are negatives of what stands there.
     fn block_turn(&self, turn: &Turn) -> TokenStream {
         let mut after: [[Option<Ident>; 4]; 5] = Default::default();
         let mut negatives = TokenStream::new();
-        let (negated, plain): (Vec<_>, Vec<_>) = turn
-            .results()
-            .filter(|&(id, _)| self.fusion.is_used(id))
-            .map(|(id, place)| (self.names.get(id).expect("a result has a line"), place))
-            .partition(|(_, place)| place.is_negated);
+        let results = turn.results().filter_map(|(id, place)| Some((self.lines.name(id)?, place)));
+        let (negated, plain): (Vec<_>, Vec<_>) = results.partition(|(_, place)| place.is_negated);
         for (name, Lane { row, lane, .. }) in plain {
             after[row][lane] = Some(format_ident!("{name}"));
         }
@@ -230,7 +210,7 @@ impl<'f> Writer<'f> {
 
     /// A node where it is used: its name if it has a line, else its expression.
     fn operand(&self, id: Id, context: Binding) -> TokenStream {
-        if let Some(name) = self.names.get(id) {
+        if let Some(name) = self.lines.name(id) {
             let name = format_ident!("{name}");
             return quote!(#name);
         }
@@ -263,20 +243,8 @@ impl<'f> Writer<'f> {
                 let index = Literal::usize_unsuffixed(index);
                 (quote!(q[#index]), Binding::Unit)
             }
-            Op::Wrench(index) => {
-                let name = format_ident!("{}", WRENCH[index]);
-                (quote!(#name), Binding::Unit)
-            }
-            Op::Sin(index) => {
-                let name = format_ident!("s{}", self.names.angle(index));
-                (quote!(#name), Binding::Unit)
-            }
-            Op::Cos(index) => {
-                let name = format_ident!("c{}", self.names.angle(index));
-                (quote!(#name), Binding::Unit)
-            }
-            Op::Play(joint, index) => {
-                let name = format_ident!("{}", before(joint, index));
+            Op::Wrench(_) | Op::Sin(_) | Op::Cos(_) | Op::Play(..) => {
+                let name = self.input(op);
                 (quote!(#name), Binding::Unit)
             }
             Op::Max(a, b) => {

@@ -4,7 +4,7 @@ mod body;
 mod calculations;
 mod facts;
 mod fuse;
-mod names;
+mod lines;
 mod operation;
 mod robot;
 #[cfg(feature = "text")]

@@ -1,22 +1,19 @@
-//! Names for the nodes of a function.
+//! Which nodes of a function get a line of their own in its code, and under which name.
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::fuse::Fusion;
 use super::turns::Turns;
 use crate::function::Function;
 use crate::graph::{Id, Op};
 
 /// The components of a wrench.
-pub(super) const WRENCH: [&str; 6] = ["fx", "fy", "fz", "mx", "my", "mz"];
+const WRENCH: [&str; 6] = ["fx", "fy", "fz", "mx", "my", "mz"];
 
-/// A play operator before the load.
-pub(super) fn before(joint: usize, index: usize) -> String {
-    format!("before{}_{}", joint + 1, index + 1)
-}
-
-/// Which nodes get a line of their own, and under which name.
-pub(super) struct Names {
-    of: BTreeMap<Id, String>,
+/// The lines of a function: a node that is not among them is written where it is used, if
+/// at all.
+pub(super) struct Lines {
+    names: BTreeMap<Id, String>,
     angles: Vec<String>,
 }
 
@@ -24,12 +21,14 @@ pub(super) struct Names {
 /// its own.
 const OPERANDS_PER_LINE: usize = 6;
 
-impl Names {
-    /// Chooses the names: hints of the algorithms, names of parameters, and
-    /// numbers for the rest; never one name twice.
-    pub fn of(function: &Function, turns: &Turns) -> Self {
-        let mut needed = lines(function);
+impl Lines {
+    /// Decides on the lines, and chooses their names: hints of the algorithms, names of
+    /// parameters, and numbers for the rest; never one name twice.
+    pub fn of(function: &Function, turns: &Turns, fusion: &Fusion) -> Self {
+        let mut needed = needed(function);
         needed.extend(turns.results());
+        // Products that sums take up are not there any more.
+        needed.retain(|&id| fusion.is_used(id));
         let graph = function.graph();
         let mut taken: BTreeSet<String> =
             ["q", "wrench", "state"].iter().chain(&WRENCH).map(|name| name.to_string()).collect();
@@ -40,7 +39,7 @@ impl Names {
             taken.extend([format!("s{label}"), format!("c{label}")]);
             angles.push(label);
         }
-        let mut of = BTreeMap::new();
+        let mut names = BTreeMap::new();
         // Hints first, so that a number never takes the name of a thing.
         for &id in &needed {
             let wish = match graph.nodes()[id].constant {
@@ -50,12 +49,12 @@ impl Names {
             if let Some(name) = wish {
                 let name = numbered(name, |name| !taken.contains(name));
                 taken.insert(name.clone());
-                of.insert(id, name);
+                names.insert(id, name);
             }
         }
         let (mut constants, mut temporaries) = (1.., 1..);
         for &id in &needed {
-            of.entry(id).or_insert_with(|| {
+            names.entry(id).or_insert_with(|| {
                 let (letter, numbers) = match graph.nodes()[id].constant {
                     Some(_) => ('k', &mut constants),
                     None => ('t', &mut temporaries),
@@ -64,22 +63,29 @@ impl Names {
                 names.find(|name| taken.insert(name.clone())).expect("endless")
             });
         }
-        Self { of, angles }
+        Self { names, angles }
     }
 
-    /// What follows the s and the c of an angle's sine and cosine.
-    pub fn angle(&self, index: usize) -> &str {
-        &self.angles[index]
+    /// The name of a node's line, if it has one.
+    pub fn name(&self, id: Id) -> Option<&str> {
+        self.names.get(&id).map(String::as_str)
     }
 
-    /// The name, if the node has a line.
-    pub fn get(&self, id: Id) -> Option<&str> {
-        self.of.get(&id).map(String::as_str)
+    /// The nodes with a line, in order of evaluation, and its name.
+    pub fn all(&self) -> impl Iterator<Item = (Id, &str)> {
+        self.names.iter().map(|(id, name)| (*id, name.as_str()))
     }
 
-    /// The nodes with a line, in order of evaluation.
-    pub fn lines(&self) -> impl Iterator<Item = (Id, &str)> {
-        self.of.iter().map(|(id, name)| (*id, name.as_str()))
+    /// The name of what a function begins with: a component of the wrench, a play operator
+    /// before the load, a sine, a cosine.
+    pub fn input(&self, op: Op) -> String {
+        match op {
+            Op::Wrench(index) => WRENCH[index].to_owned(),
+            Op::Play(joint, index) => format!("before{}_{}", joint + 1, index + 1),
+            Op::Sin(index) => format!("s{}", self.angles[index]),
+            Op::Cos(index) => format!("c{}", self.angles[index]),
+            op => unreachable!("{op:?} is calculated"),
+        }
     }
 }
 
@@ -91,7 +97,7 @@ fn numbered(name: String, is_free: impl Fn(&String) -> bool) -> String {
 
 /// The live nodes that need a line: what is used twice, what an algorithm
 /// named, constants, and whatever would make a line too wide.
-fn lines(function: &Function) -> BTreeSet<Id> {
+fn needed(function: &Function) -> BTreeSet<Id> {
     let graph = function.graph();
     let (nodes, uses, hints) = (graph.nodes(), function.uses(), graph.hints());
     let is_constant = |id: Id| needs_constant(nodes[id].op, nodes[id].constant);
