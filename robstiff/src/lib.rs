@@ -114,7 +114,8 @@ pub use state::State;
 /// crate is built again when the file changes. It defines a unit struct named as
 /// the description says, public unless a visibility precedes the file's name
 /// (`robot!(pub(crate) "rv130hsc.yaml")`), with the description's numbers as
-/// constants, and implements [`Robot`] for it.
+/// constants in SI units (`D1`, `A1` and `H1` are the lengths of the first row and
+/// the compliance of the first joint), and implements [`Robot`] for it.
 ///
 /// # Errors
 /// A description with mistakes is a compile error that shows its own lines.

@@ -62,6 +62,8 @@ impl EveryEffect {
     pub const D1: f64 = 0.75;
     /// DH length a of row 1 (m).
     pub const A1: f64 = 0.35;
+    /// DH offset d of row 2 (m).
+    pub const D2: f64 = 0.0;
     /// DH length a of row 2 (m).
     pub const A2: f64 = 1.25;
     /// DH offset d of row 3 (m).
@@ -74,10 +76,16 @@ impl EveryEffect {
     pub const COS_ALPHA3: f64 = 0.03489949670250108;
     /// DH offset d of row 4 (m).
     pub const D4: f64 = 1.1;
+    /// DH length a of row 4 (m).
+    pub const A4: f64 = 0.0;
     /// DH offset d of row 5 (m).
     pub const D5: f64 = 0.08;
+    /// DH length a of row 5 (m).
+    pub const A5: f64 = 0.0;
     /// DH offset d of row 6 (m).
     pub const D6: f64 = 0.23;
+    /// DH length a of row 6 (m).
+    pub const A6: f64 = 0.0;
     /// TCP in the flange frame, along X (m).
     pub const TOOL_X: f64 = 0.05;
     /// TCP in the flange frame, along Y (m).
@@ -110,6 +118,8 @@ impl EveryEffect {
     pub const TORSION2: f64 = 1.2e-7;
     /// Bending compliance L / EI of link 3 (rad/Nm).
     pub const BENDING3: f64 = 9e-8;
+    /// Torsion compliance L / GJ of link 3 (rad/Nm).
+    pub const TORSION3: f64 = 0.0;
     /// Tilt compliance of base (rad/Nm).
     pub const BASE_TILT: f64 = 2e-8;
     /// Translation compliance of base (m/N).

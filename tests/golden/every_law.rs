@@ -58,6 +58,8 @@ impl EveryLaw {
     pub const ERROR_THETA2: f64 = -0.003;
     /// Error of a3 (m).
     pub const ERROR_A3: f64 = 0.0007;
+    /// Periods of the angle error in a turn of joint 3.
+    pub const ORDER3: f64 = 1.0;
     /// Angle error with the sine of joint 3 (rad).
     pub const SIN_ERROR3: f64 = 0.0003;
     /// Angle error with the cosine of joint 3 (rad).
@@ -68,6 +70,8 @@ impl EveryLaw {
     pub const ERROR_ALPHA4: f64 = 0.002;
     /// Periods of the angle error in a turn of joint 4.
     pub const ORDER4: f64 = 2.0;
+    /// Angle error with the sine of joint 4 (rad).
+    pub const SIN_ERROR4: f64 = 0.0;
     /// Angle error with the cosine of joint 4 (rad).
     pub const COS_ERROR4: f64 = 0.001;
     /// Error of d5 (m).
@@ -76,6 +80,8 @@ impl EveryLaw {
     pub const ORDER7: f64 = 41.0;
     /// Angle error with the sine of joint 7 (rad).
     pub const SIN_ERROR7: f64 = 8e-5;
+    /// Angle error with the cosine of joint 7 (rad).
+    pub const COS_ERROR7: f64 = 0.0;
     /// Frame 0 in the base frame, along X (m).
     pub const BASE_X: f64 = 0.1;
     /// Frame 0 in the base frame, along Y (m).
@@ -92,10 +98,18 @@ impl EveryLaw {
     pub const COS_BASE_ROLL: f64 = 0.955336489125606;
     /// DH offset d of row 1 (m).
     pub const D1: f64 = 0.2;
+    /// DH length a of row 1 (m).
+    pub const A1: f64 = 0.0;
     /// DH offset d of row 2 (m).
     pub const D2: f64 = 0.65;
+    /// DH length a of row 2 (m).
+    pub const A2: f64 = 0.0;
+    /// DH offset d of row 3 (m).
+    pub const D3: f64 = 0.0;
     /// DH length a of row 3, corrected (m).
     pub const A3: f64 = 0.3307;
+    /// DH offset d of row 4 (m).
+    pub const D4: f64 = 0.0;
     /// DH length a of row 4 (m).
     pub const A4: f64 = 1.15;
     /// Sine of DH twist alpha of row 4.
@@ -106,8 +120,14 @@ impl EveryLaw {
     pub const D5: f64 = 1.2188999999999999;
     /// DH length a of row 5 (m).
     pub const A5: f64 = 0.115;
+    /// DH offset d of row 6 (m).
+    pub const D6: f64 = 0.0;
+    /// DH length a of row 6 (m).
+    pub const A6: f64 = 0.0;
     /// DH offset d of row 7 (m).
     pub const D7: f64 = 0.215;
+    /// DH length a of row 7 (m).
+    pub const A7: f64 = 0.0;
     /// TCP in the flange frame, along X (m).
     pub const TOOL_X: f64 = 0.05;
     /// TCP in the flange frame, along Y (m).
@@ -168,6 +188,14 @@ impl EveryLaw {
     pub const RADIUS1_6: f64 = 15.0;
     /// Compliance by which a play operator turns the joint of joint 6 (rad/Nm).
     pub const WEIGHT1_6: f64 = 4e-7;
+    /// Torque below which a play operator stays of joint 6 (Nm).
+    pub const RADIUS2_6: f64 = 0.0;
+    /// Compliance by which a play operator turns the joint of joint 6 (rad/Nm).
+    pub const WEIGHT2_6: f64 = 0.0;
+    /// Torque below which a play operator stays of joint 6 (Nm).
+    pub const RADIUS3_6: f64 = 0.0;
+    /// Compliance by which a play operator turns the joint of joint 6 (rad/Nm).
+    pub const WEIGHT3_6: f64 = 0.0;
     /// Relative change of the compliance with cos q of joint 3.
     pub const COS1_3: f64 = 0.1;
     /// Relative change of the compliance with sin q of joint 3.
@@ -176,6 +204,12 @@ impl EveryLaw {
     pub const COS2_3: f64 = 0.03;
     /// Relative change of the compliance with sin 2q of joint 3.
     pub const SIN2_3: f64 = 0.04;
+    /// Relative change of the compliance with cos q of joint 6.
+    pub const COS1_6: f64 = 0.0;
+    /// Relative change of the compliance with sin q of joint 6.
+    pub const SIN1_6: f64 = 0.0;
+    /// Relative change of the compliance with cos 2q of joint 6.
+    pub const COS2_6: f64 = 0.0;
     /// Relative change of the compliance with sin 2q of joint 6.
     pub const SIN2_6: f64 = -0.3;
     /// Operations of `transform`.

@@ -191,7 +191,7 @@ impl Graph {
         Ref::map(self.nodes.borrow(), Vec::as_slice)
     }
 
-    /// The named numbers, which [`Op::Parameter`] indexes.
+    /// The named numbers, used or not, which [`Op::Parameter`] indexes.
     pub fn parameters(&self) -> Ref<'_, [Parameter]> {
         Ref::map(self.parameters.borrow(), Vec::as_slice)
     }
@@ -219,18 +219,18 @@ impl Graph {
         self.intern(Op::Number(value.to_bits()), Some(value))
     }
 
-    /// A number of the description; 0 and +-1 lose their name, so that they
-    /// fold. The same name always stands for the same value.
+    /// A number of the description. 0 and +-1 are written without their name, so that
+    /// they fold. The same name always stands for the same value.
     pub fn parameter(&self, name: &str, value: f64, doc: &str) -> Sym<'_> {
-        if value == 0.0 || value.abs() == 1.0 {
-            return self.number(value);
-        }
         let mut parameters = self.parameters.borrow_mut();
         let index = parameters.iter().position(|p| p.name == name).unwrap_or_else(|| {
             parameters.push(Parameter { name: name.to_owned(), value, doc: doc.to_owned() });
             parameters.len() - 1
         });
         debug_assert_eq!(parameters[index].value.to_bits(), value.to_bits(), "two values for {name}");
+        if value == 0.0 || value.abs() == 1.0 {
+            return self.number(value);
+        }
         self.intern(Op::Parameter(index), Some(value))
     }
 

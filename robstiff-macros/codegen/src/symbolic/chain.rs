@@ -153,6 +153,9 @@ impl Series {
 }
 
 fn place<'g>(g: &'g Graph, steps: &mut Vec<Step<'g>>, placement: &Placement, name: &str, what: &str) {
+    if *placement == Placement::default() {
+        return;
+    }
     let at = |axis: usize, letter| {
         g.parameter(&format!("{name}_{letter}"), placement.xyz[axis], &format!("{what}, along {letter} (m)."))
     };
