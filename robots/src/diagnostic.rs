@@ -123,6 +123,10 @@ impl std::error::Error for Diagnostic {}
 pub struct Diagnostics(Vec<Diagnostic>);
 
 impl Diagnostics {
+    /// Readers record no more problems than these: nobody reads them, each costs a pass
+    /// over the text, and a column that is wrong is wrong in every row.
+    pub const MOST: usize = 100;
+
     /// The problems in the order of the file, each said once; `None` if there
     /// are none.
     pub fn new(mut problems: Vec<Diagnostic>) -> Option<Self> {

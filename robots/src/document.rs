@@ -30,10 +30,6 @@ use content::{Step, extent, locate, source_line};
 use serde::Deserialize;
 use std::cell::RefCell;
 
-/// Problems beyond this many are not recorded: nobody reads them, and each
-/// costs a pass over the text.
-const MOST_PROBLEMS: usize = 100;
-
 /// A YAML document and the problems found in it so far.
 #[derive(Debug)]
 pub struct Document {
@@ -87,7 +83,7 @@ impl Document {
     }
 
     fn report(&self, steps: &[Step], path: &str, content: &Content, message: String, help: String) {
-        if self.problems.borrow().len() >= MOST_PROBLEMS {
+        if self.problems.borrow().len() >= Diagnostics::MOST {
             return;
         }
         let (line, column) = locate(&self.text, steps);

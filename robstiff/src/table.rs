@@ -11,10 +11,6 @@ use std::vec::Vec;
 use robstiff_robots::quantity::{Dimension, scale};
 use robstiff_robots::{Diagnostic, Diagnostics, Line, ReadError};
 
-/// Problems beyond this many are not recorded: nobody reads them, and a column
-/// that is wrong is wrong in every row.
-const MOST_PROBLEMS: usize = 100;
-
 /// A table, and the problems found in it so far.
 pub struct Table<'t> {
     file: &'t str,
@@ -267,7 +263,7 @@ impl<'t> Table<'t> {
 
     /// Reports a problem with a field (by its index) of a line.
     pub fn report(&self, line: usize, field: usize, message: &str, help: &str) {
-        if self.problems.borrow().len() < MOST_PROBLEMS {
+        if self.problems.borrow().len() < Diagnostics::MOST {
             let problem = self.problem(line, field, message, help);
             self.problems.borrow_mut().push(problem);
         }

@@ -7,11 +7,8 @@ use std::process::ExitCode;
 use robstiff::campaign::Campaign;
 use robstiff_robots::{Diagnostics, ReadError};
 
-/// Problems of a file that are shown; a column that is wrong is wrong in every row.
+/// Problems of a file that are shown: of those that readers record, enough to see what is wrong.
 const MOST_SHOWN: usize = 10;
-
-/// Readers of tables give up behind so many.
-const READERS_STOP: usize = 100;
 
 /// A failure that is explained to the person who ran the command.
 #[derive(Debug)]
@@ -87,7 +84,7 @@ impl From<Diagnostics> for Failure {
         let shown: Vec<String> = problems.iter().take(MOST_SHOWN).map(ToString::to_string).collect();
         let message = shown.join("\n\n");
         let all = problems.iter().count();
-        let least = if all >= READERS_STOP { "at least " } else { "" };
+        let least = if all >= Diagnostics::MOST { "at least " } else { "" };
         Self::Explained(match all - shown.len() {
             0 => message,
             more => format!("{message}\n\nand {least}{more} more"),

@@ -103,7 +103,8 @@ fn task(path: &Path, robot: &Description) -> Result<Task, Failure> {
     Ok(Task::parse(&file, &text, robot)?)
 }
 
-/// Asks whether `joints` without a unit are in degrees, as of `--at`.
+/// Asks whether `joints` without a unit are in degrees, as of `--at`; in a document of its own,
+/// so that what is wrong with the file is left for its reader to report.
 fn are_degrees(file: &str, text: &str, robot: &Description) -> Option<String> {
     let document = Document::parse(file, text).ok()?;
     let joints = document.root().any_map("")?.get("joints")?.sequence()?;
