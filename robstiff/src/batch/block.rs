@@ -30,6 +30,12 @@ pub struct Joints<T, const N: usize> {
 #[repr(align(64))]
 struct Numbers<T, const M: usize>([[T; BLOCK]; M]);
 
+/// How many numbers are in a vector, 1 where that is not known, and whether there is an
+/// instruction that multiplies and adds: a value, so that a call says no more than this
+/// and leaves the other types to the compiler.
+#[derive(Clone, Copy)]
+pub struct Width<const LANES: usize, const FUSED: bool>;
+
 /// Computes the quantity at all poses of a source, block by block.
 ///
 /// Number `k` of all poses of a block lies side by side, so that the loops
@@ -41,17 +47,17 @@ struct Numbers<T, const M: usize>([[T; BLOCK]; M]);
 ///    ([`Sink::take_vector`]) or by way of the block ([`Sink::take`]).
 ///
 /// All is inlined, because it takes the instructions that may be used from the
-/// function around it. `LANES` numbers fit into one, 1 where that is not known, and
-/// `PART` are the poses whose results are rearranged at once.
+/// function around it. Results that are rearranged are computed `part` by part.
 #[inline(always)]
-pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const PART: usize, const FUSED: bool>(
-    quantity: &mut Q,
+pub fn run<T, S, K, const N: usize, const M: usize, const LANES: usize, const PART: usize, const FUSED: bool>(
+    quantity: &mut impl Quantity<T, N, M>,
     source: &mut S,
     sink: &mut K,
     instructions: impl Instructions,
+    whole: Width<LANES, FUSED>,
+    part: Width<PART, FUSED>,
 ) where
     T: Float,
-    Q: Quantity<T, N, M>,
     S: Source<T, N>,
     K: Sink<T, M>,
 {
@@ -71,10 +77,10 @@ pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const
         // `const`, so that the other ways are not compiled at all.
         let is_done = match filled {
             Filled::Each(_) if const { matches!(K::VECTORS, Vectors::Whole) } => {
-                evaluate_vectors::<T, Q, K, N, M, LANES, FUSED>(quantity, first, count, &joints, sink, instructions)
+                evaluate_vectors(quantity, first, count, &joints, sink, instructions, whole)
             }
             Filled::Each(_) if const { matches!(K::VECTORS, Vectors::Parts) } => {
-                evaluate_vectors::<T, Q, K, N, M, PART, FUSED>(quantity, first, count, &joints, sink, instructions)
+                evaluate_vectors(quantity, first, count, &joints, sink, instructions, part)
             }
             _ => false,
         };
@@ -83,10 +89,8 @@ pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const
             let numbers =
                 if K::VECTORS == Vectors::No || S::ROWS { &mut kept } else { &mut Numbers([[T::ZERO; BLOCK]; M]) };
             match filled {
-                Filled::Each(_) => evaluate::<T, Q, N, M, FUSED>(quantity, count, &joints, &mut numbers.0),
-                Filled::Row(_) if const { S::ROWS } => {
-                    evaluate_row::<T, Q, N, M, FUSED>(quantity, &joints, &mut numbers.0)
-                }
+                Filled::Each(_) => evaluate(quantity, count, &joints, &mut numbers.0, whole),
+                Filled::Row(_) if const { S::ROWS } => evaluate_row(quantity, &joints, &mut numbers.0, whole),
                 Filled::Row(_) => {}
                 Filled::Beyond(_) => one_by_one(quantity, count, |pose| source.pose(first + pose), &mut numbers.0),
             }
@@ -98,21 +102,19 @@ pub fn run<T, Q, S, K, const N: usize, const M: usize, const LANES: usize, const
 
 /// The quantity at the first poses of a block.
 #[inline(always)]
-fn evaluate<T, Q, const N: usize, const M: usize, const FUSED: bool>(
-    quantity: &Q,
+fn evaluate<T: Float, const N: usize, const M: usize, const LANES: usize, const FUSED: bool>(
+    quantity: &impl Quantity<T, N, M>,
     count: usize,
     joints: &Joints<T, N>,
     numbers: &mut [[T; BLOCK]; M],
-) where
-    T: Float,
-    Q: Quantity<T, N, M>,
-{
+    width: Width<LANES, FUSED>,
+) {
     for vector in 0..count.div_ceil(VECTOR).min(BLOCK / VECTOR) {
         // Of a length that leaves no doubt: no index needs a check, and no rest of a
         // vector a loop of its own.
         for lane in 0..VECTOR {
             let pose = vector * VECTOR + lane;
-            evaluate_one::<T, Q, N, M, BLOCK, FUSED, false>(quantity, pose, joints, numbers, pose);
+            evaluate_one(quantity, pose, pose, joints, numbers, pose, width);
         }
     }
 }
@@ -120,35 +122,29 @@ fn evaluate<T, Q, const N: usize, const M: usize, const FUSED: bool>(
 /// The quantity at a row of poses that differ in the first joint: what depends
 /// on the others alone, the compiler computes before the loop.
 #[inline(always)]
-fn evaluate_row<T, Q, const N: usize, const M: usize, const FUSED: bool>(
-    quantity: &Q,
+fn evaluate_row<T: Float, const N: usize, const M: usize, const LANES: usize, const FUSED: bool>(
+    quantity: &impl Quantity<T, N, M>,
     joints: &Joints<T, N>,
     numbers: &mut [[T; BLOCK]; M],
-) where
-    T: Float,
-    Q: Quantity<T, N, M>,
-{
+    width: Width<LANES, FUSED>,
+) {
     for pose in 0..BLOCK {
-        evaluate_one::<T, Q, N, M, BLOCK, FUSED, true>(quantity, pose, joints, numbers, pose);
+        evaluate_one(quantity, pose, 0, joints, numbers, pose, width);
     }
 }
 
 /// The quantity at the first poses of a block, from the registers to the sink; or
 /// nothing, and `false`, where they are no whole vectors.
 #[inline(always)]
-fn evaluate_vectors<T, Q, K, const N: usize, const M: usize, const LANES: usize, const FUSED: bool>(
-    quantity: &Q,
+fn evaluate_vectors<T: Float, const N: usize, const M: usize, const LANES: usize, const FUSED: bool>(
+    quantity: &impl Quantity<T, N, M>,
     first: usize,
     count: usize,
     joints: &Joints<T, N>,
-    sink: &mut K,
+    sink: &mut impl Sink<T, M>,
     instructions: impl Instructions,
-) -> bool
-where
-    T: Float,
-    Q: Quantity<T, N, M>,
-    K: Sink<T, M>,
-{
+    width: Width<LANES, FUSED>,
+) -> bool {
     if const { LANES == 1 } || !count.is_multiple_of(LANES) {
         return false;
     }
@@ -157,7 +153,7 @@ where
         if start >= count {
             break;
         }
-        let numbers = evaluate_vector::<T, Q, N, M, LANES, FUSED>(quantity, start, joints);
+        let numbers = evaluate_vector(quantity, start, joints, width);
         sink.take_vector(first + start, &numbers, instructions);
     }
     true
@@ -168,36 +164,35 @@ where
 /// Of one vector each, and on their own, so that the numbers are in registers: the
 /// compiler does not know that what lies behind references is apart.
 #[inline(always)]
-fn evaluate_vector<T, Q, const N: usize, const M: usize, const LANES: usize, const FUSED: bool>(
-    quantity: &Q,
+fn evaluate_vector<T: Float, const N: usize, const M: usize, const LANES: usize, const FUSED: bool>(
+    quantity: &impl Quantity<T, N, M>,
     first: usize,
     joints: &Joints<T, N>,
-) -> [[T; LANES]; M]
-where
-    T: Float,
-    Q: Quantity<T, N, M>,
-{
+    width: Width<LANES, FUSED>,
+) -> [[T; LANES]; M] {
     let mut numbers = [[T::ZERO; LANES]; M];
     for lane in 0..LANES {
-        evaluate_one::<T, Q, N, M, LANES, FUSED, false>(quantity, first + lane, joints, &mut numbers, lane);
+        evaluate_one(quantity, first + lane, first + lane, joints, &mut numbers, lane, width);
     }
     numbers
 }
 
-/// The quantity at a pose of a block, to a place among the numbers.
+/// The quantity at a pose of a block, to a place among the numbers; the coordinates of
+/// all joints but the first are those of `others`.
 #[inline(always)]
-fn evaluate_one<T, Q, const N: usize, const M: usize, const PLACES: usize, const FUSED: bool, const ROW: bool>(
-    quantity: &Q,
+fn evaluate_one<T, const N: usize, const M: usize, const PLACES: usize, const LANES: usize, const FUSED: bool>(
+    quantity: &impl Quantity<T, N, M>,
     pose: usize,
+    others: usize,
     joints: &Joints<T, N>,
     numbers: &mut [[T; PLACES]; M],
     place: usize,
+    _: Width<LANES, FUSED>,
 ) where
     T: Float,
-    Q: Quantity<T, N, M>,
 {
     let q = SVector::from_fn(|joint, _| {
-        let pose = if ROW && joint > 0 { 0 } else { pose };
+        let pose = if joint > 0 { others } else { pose };
         Known::<T, FUSED>::angle(joints.values[joint][pose], joints.sines[joint][pose], joints.cosines[joint][pose])
     });
     quantity.put_numbers(pose, &q, Known::number, |k, number| numbers[k][place] = number.value);
@@ -205,8 +200,8 @@ fn evaluate_one<T, Q, const N: usize, const M: usize, const PLACES: usize, const
 
 #[cold]
 #[inline(never)]
-fn one_by_one<T: Float, Q: Quantity<T, N, M>, const N: usize, const M: usize>(
-    quantity: &Q,
+fn one_by_one<T: Float, const N: usize, const M: usize>(
+    quantity: &impl Quantity<T, N, M>,
     count: usize,
     q: impl Fn(usize) -> SVector<T, N>,
     numbers: &mut [[T; BLOCK]; M],

@@ -11,13 +11,14 @@
     expect(unsafe_code, reason = "only the machine knows which instructions it has")
 )]
 
+use super::Float;
+use super::block::{self, Width};
 use super::instructions::Portable;
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 use super::instructions::{Avx2, Avx512};
 use super::quantities::Quantity;
 use super::sink::Sink;
 use super::source::Source;
-use super::{Float, block};
 use crate::trig;
 
 /// A set of instructions.
@@ -81,7 +82,10 @@ pub fn run_at<T, Q, const N: usize, const M: usize>(
     assert!(Level::available().any(|available| available == level), "the machine has no {level:?}");
     let (quantity, source, sink) = (&mut quantity, &mut source, &mut sink);
     match level {
-        Level::Portable => block::run::<T, Q, _, _, N, M, 1, 1, { trig::FUSED }>(quantity, source, sink, Portable),
+        Level::Portable => {
+            let width = Width::<1, { trig::FUSED }>;
+            block::run(quantity, source, sink, Portable, width, width);
+        }
         // SAFETY: AVX2 and FMA are available, the assertion says.
         #[cfg(all(feature = "std", target_arch = "x86_64"))]
         Level::Avx2 => unsafe { avx2(quantity, source, sink) },
@@ -102,9 +106,9 @@ fn avx2<T, Q, const N: usize, const M: usize>(
     Q: Quantity<T, N, M>,
 {
     if const { size_of::<T>() == size_of::<f64>() } {
-        block::run::<T, Q, _, _, N, M, 4, 4, true>(quantity, source, sink, Avx2::new());
+        block::run(quantity, source, sink, Avx2::new(), Width::<4, true>, Width::<4, true>);
     } else {
-        block::run::<T, Q, _, _, N, M, 8, 8, true>(quantity, source, sink, Avx2::new());
+        block::run(quantity, source, sink, Avx2::new(), Width::<8, true>, Width::<8, true>);
     }
 }
 
@@ -126,8 +130,8 @@ fn avx512<T, Q, const N: usize, const M: usize>(
     Q: Quantity<T, N, M>,
 {
     if const { size_of::<T>() == size_of::<f64>() } {
-        block::run::<T, Q, _, _, N, M, WIDE, 4, true>(quantity, source, sink, Avx512::new());
+        block::run(quantity, source, sink, Avx512::new(), Width::<WIDE, true>, Width::<4, true>);
     } else {
-        block::run::<T, Q, _, _, N, M, { 2 * WIDE }, 8, true>(quantity, source, sink, Avx512::new());
+        block::run(quantity, source, sink, Avx512::new(), Width::<{ 2 * WIDE }, true>, Width::<8, true>);
     }
 }
