@@ -40,13 +40,14 @@ fn homogeneous<'g>(g: &'g Graph, frame: &Frame<'g>, suffix: &str) -> Vec<Sym<'g>
     entries
 }
 
-/// The columns of the Jacobian at the TCP in the base frame.
-struct Columns<'g> {
+/// What a unit of each joint coordinate moves at the TCP, in the base frame: the columns
+/// of the Jacobian.
+struct Twists<'g> {
     translation: Vec<Vec3<'g>>,
     rotation: Vec<Vec3<'g>>,
 }
 
-impl<'g> Columns<'g> {
+impl<'g> Twists<'g> {
     fn to_base(&self, start: &Start<'g>) -> Self {
         let to_base = |vectors: &[Vec3<'g>]| vectors.iter().map(|&v| start.to_base(v)).collect();
         Self { translation: to_base(&self.translation), rotation: to_base(&self.rotation) }
@@ -54,7 +55,7 @@ impl<'g> Columns<'g> {
 
     /// `[z x lever; z]` for a revolute joint, `[z; 0]` for a prismatic one.
     fn of(g: &'g Graph, robot: &Description, forward: &Forward<'g>) -> Self {
-        let mut columns = Self { translation: Vec::new(), rotation: Vec::new() };
+        let mut twists = Self { translation: Vec::new(), rotation: Vec::new() };
         for ((number, joint), stand) in (1..).zip(&robot.joints).zip(&forward.joints) {
             let axis = stand.axis.named(&format!("z{number}"));
             let lever = stand.lever.named(&format!("r{number}"));
@@ -62,10 +63,10 @@ impl<'g> Columns<'g> {
                 JointKind::Revolute => (axis.cross(lever), axis),
                 JointKind::Prismatic => (axis, Vec3::zero(g)),
             };
-            columns.translation.push(translation.named(&format!("j{number}")));
-            columns.rotation.push(rotation);
+            twists.translation.push(translation.named(&format!("j{number}")));
+            twists.rotation.push(rotation);
         }
-        columns
+        twists
     }
 
     /// `J^T F`.
@@ -81,8 +82,8 @@ pub fn jacobian<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
 }
 
 pub(super) fn jacobian_from<'g>(g: &'g Graph, start: &Start<'g>, robot: &Description) -> Vec<Sym<'g>> {
-    let columns = Columns::of(g, robot, &start.forward()).to_base(start);
-    columns.translation.iter().zip(&columns.rotation).flat_map(|(t, r)| t.0.into_iter().chain(r.0)).collect()
+    let twists = Twists::of(g, robot, &start.forward()).to_base(start);
+    twists.translation.iter().zip(&twists.rotation).flat_map(|(t, r)| t.0.into_iter().chain(r.0)).collect()
 }
 
 fn wrench<'g>(g: &'g Graph, start: &Start<'g>) -> (Vec3<'g>, Vec3<'g>) {
@@ -94,7 +95,7 @@ fn wrench<'g>(g: &'g Graph, start: &Start<'g>) -> (Vec3<'g>, Vec3<'g>) {
 pub fn joint_torques<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
     cheapest(g, robot, |g, start| {
         let (force, moment) = wrench(g, start);
-        Columns::of(g, robot, &start.forward()).torques(force, moment)
+        Twists::of(g, robot, &start.forward()).torques(force, moment)
     })
 }
 
@@ -131,12 +132,12 @@ fn loaded<'g>(
     let (force, moment) = wrench(g, start);
     let mut sum = Displacement { translation: Vec3::zero(g), rotation: Vec3::zero(g) };
 
-    let columns = Columns::of(g, robot, &forward);
-    let torques = columns.torques(force, moment);
+    let twists = Twists::of(g, robot, &forward);
+    let torques = twists.torques(force, moment);
     let (turns, plays) = joint_turns(g, &elastic, &torques, before);
     for (i, turn) in turns.into_iter().enumerate() {
-        sum.translation = sum.translation + columns.translation[i].scaled(turn);
-        sum.rotation = sum.rotation + columns.rotation[i].scaled(turn);
+        sum.translation = sum.translation + twists.translation[i].scaled(turn);
+        sum.rotation = sum.rotation + twists.rotation[i].scaled(turn);
     }
     let moment_at = |lever: Vec3<'g>| moment + lever.cross(force);
     for (stand, &transverse) in forward.joints.iter().zip(&elastic.transverse) {
