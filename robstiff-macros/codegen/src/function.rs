@@ -178,6 +178,9 @@ fn column(op: Op, columns: &HashMap<Id, [f64; 4]>, values: &[f64]) -> [f64; 4] {
 }
 
 /// Operations of one evaluation.
+///
+/// Generated code has the same fields in the runtime's type of this name, which it finds,
+/// as all that it names, at a path of the runtime: this crate is built before that one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
     /// Sines and cosines, counted singly.

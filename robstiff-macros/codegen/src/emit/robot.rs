@@ -149,6 +149,7 @@ pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Gene
     let costs = functions.iter().map(|generated| {
         let name = format_ident!("{}_COST", generated.method.name.to_uppercase());
         let doc = format!(" Operations of `{}`.", generated.method.name);
+        // Both types name all their fields here: one that only one of them has does not compile.
         let Cost { trig, mul, add, neg, root } = generated.function.cost();
         let [trig, mul, add, neg, root] = [trig, mul, add, neg, root].map(Literal::usize_unsuffixed);
         quote! {
