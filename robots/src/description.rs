@@ -23,7 +23,7 @@ pub struct Description {
     pub tool: Placement,
     /// Masses for gravity: empty, or one a joint.
     pub links: Vec<Link>,
-    /// What measurements added to the joints' compliance.
+    /// What is beyond the table and the joints' compliance.
     pub effects: Vec<Effect>,
 }
 

@@ -29,7 +29,7 @@ pub trait Robot<const N: usize> {
     /// Lower and upper limits of the joint coordinates, where they are known.
     fn limits(&self) -> [Option<[f64; 2]>; N];
 
-    /// What the description adds to the joints' compliance.
+    /// What the description adds to the table and to the joints' own compliance.
     fn effects(&self) -> &[Effect];
 
     /// Frame 0 in the base frame.

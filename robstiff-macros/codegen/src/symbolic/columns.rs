@@ -5,7 +5,7 @@
 //! whole axes, without the zeros that single numbers leave out and without
 //! their products of angles. What a joint moves at the TCP is `z x lever`, and
 //! with the lever in the joint's own axes that is `u y - v x`: the levers are
-//! carried from the tip to the base in single numbers, two products a turn.
+//! carried from the tip to the base in single numbers, at most four products a turn.
 //! The compliance is the sum of `h (T, R) (T, R)^T` over the joints, by cyclic
 //! diagonals. Gain: `benches/README.md`.
 

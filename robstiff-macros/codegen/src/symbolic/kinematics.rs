@@ -40,8 +40,8 @@ fn homogeneous<'g>(g: &'g Graph, frame: &Frame<'g>, suffix: &str) -> Vec<Sym<'g>
     entries
 }
 
-/// What a unit of each joint coordinate moves at the TCP, in the base frame: the columns
-/// of the Jacobian.
+/// What a unit of each joint coordinate moves at the TCP, as the walk's
+/// [`forward`](Start::forward) has it or in the base frame: the columns of the Jacobian.
 struct Twists<'g> {
     translation: Vec<Vec3<'g>>,
     rotation: Vec<Vec3<'g>>,

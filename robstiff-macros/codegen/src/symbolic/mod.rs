@@ -1,5 +1,6 @@
 //! The mathematics, on symbols.
 //!
+//! - [`elastic`]: what yields, under the names that generated code has for it;
 //! - [`chain`](mod@chain): a description as elementary steps from base to TCP;
 //! - [`turning`]: what is turned on the way, parallel axes as one angle;
 //! - [`forward`](mod@forward): frames and levers, from the base to the TCP;
