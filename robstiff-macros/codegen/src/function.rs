@@ -6,7 +6,7 @@ use std::fmt;
 
 use robstiff_robots::effect::physics::PLAYS;
 
-use crate::graph::{Graph, Id, Node, Op, Sym};
+use crate::graph::{CYCLED, Graph, Id, Node, Op, Sym};
 
 /// The expressions of one function and which of them are its results.
 #[derive(Debug)]
@@ -171,7 +171,7 @@ fn column(op: Op, columns: &HashMap<Id, [f64; 4]>, values: &[f64]) -> [f64; 4] {
         Op::PlusScaled(a, b, by) => each(&|k| columns[&a][k] + columns[&b][k] * values[by]),
         Op::Product(a, b) => each(&|k| columns[&a][k] * columns[&b][k]),
         Op::PlusProduct(a, b, c) => each(&|k| columns[&a][k] + columns[&b][k] * columns[&c][k]),
-        Op::Cycled(a) => each(&|k| columns[&a][[1, 2, 0, 3][k]]),
+        Op::Cycled(a) => each(&|k| columns[&a][CYCLED[k]]),
         Op::Direction(a) => each(&|k| if k < 3 { columns[&a][k] } else { 0.0 }),
         op => unreachable!("{op:?} gives a number"),
     }

@@ -58,13 +58,16 @@ pub enum Op {
     Product(Id, Id),
     /// The sum of a column and of the product of two others.
     PlusProduct(Id, Id, Id),
-    /// A column with y, z, x for its first three entries.
+    /// A column with its entries in the order [`CYCLED`].
     Cycled(Id),
     /// A column with 0 for its last entry.
     Direction(Id),
     /// An entry of a column, from 0.
     Entry(Id, usize),
 }
+
+/// Which entries a column has once it is cycled: y, z, x, and the last as it was.
+pub const CYCLED: [usize; 4] = [1, 2, 0, 3];
 
 impl Op {
     /// The nodes that this one is computed from.

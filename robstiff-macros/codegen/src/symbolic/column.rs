@@ -4,7 +4,7 @@
 //! to be computed, nothing is, as with single numbers.
 
 use super::vector::Vec3;
-use crate::graph::{Graph, Id, Op, Sym};
+use crate::graph::{CYCLED, Graph, Id, Op, Sym};
 
 /// A node that is four numbers.
 #[derive(Clone, Copy)]
@@ -43,6 +43,10 @@ impl<'g> Column<'g> {
         self.sym(self.id).op()
     }
 
+    fn make(self, op: Op) -> Self {
+        Self { g: self.g, id: self.g.intern(op, None).id() }
+    }
+
     /// The entries, if they are nodes of their own.
     fn entries(self) -> Option<[Sym<'g>; 4]> {
         if let Op::Column(entries) = self.op() { Some(entries.map(|entry| self.sym(entry))) } else { None }
@@ -66,7 +70,7 @@ impl<'g> Column<'g> {
     pub fn direction(self) -> Self {
         match self.entries() {
             Some([x, y, z, _]) => Self::of(self.g, [x, y, z, self.g.number(0.0)]),
-            None => Self { g: self.g, id: self.g.intern(Op::Direction(self.id), None).id() },
+            None => self.make(Op::Direction(self.id)),
         }
     }
 
@@ -83,7 +87,7 @@ impl<'g> Column<'g> {
             Op::PlusScaled(a, b, _) => column(a).is_zero_at(i) && column(b).is_zero_at(i),
             Op::Product(a, b) => column(a).is_zero_at(i) || column(b).is_zero_at(i),
             Op::PlusProduct(a, b, c) => column(a).is_zero_at(i) && (column(b).is_zero_at(i) || column(c).is_zero_at(i)),
-            Op::Cycled(a) => column(a).is_zero_at([1, 2, 0, 3][i]),
+            Op::Cycled(a) => column(a).is_zero_at(CYCLED[i]),
             Op::Column(entries) => self.sym(entries[i]).is_zero(),
             _ => unreachable!("a column"),
         }
@@ -116,7 +120,7 @@ impl<'g> Column<'g> {
         if let Some(entries) = self.entries().filter(|entries| entries.iter().all(|&entry| is_free(entry, factor))) {
             return Self::of(self.g, entries.map(|entry| entry * factor));
         }
-        Self { g: self.g, id: self.g.intern(Op::Scaled(self.id, factor.id()), None).id() }
+        self.make(Op::Scaled(self.id, factor.id()))
     }
 
     /// `self + other * factor`.
@@ -136,7 +140,7 @@ impl<'g> Column<'g> {
                 return Self::of(self.g, std::array::from_fn(|i| own[i] + others[i] * factor));
             }
         }
-        Self { g: self.g, id: self.g.intern(Op::PlusScaled(self.id, other.id, factor.id()), None).id() }
+        self.make(Op::PlusScaled(self.id, other.id, factor.id()))
     }
 
     /// The product, entry by entry.
@@ -149,7 +153,7 @@ impl<'g> Column<'g> {
         {
             return Self::of(self.g, std::array::from_fn(|i| own[i] * others[i]));
         }
-        Self { g: self.g, id: self.g.intern(Op::Product(self.id, other.id), None).id() }
+        self.make(Op::Product(self.id, other.id))
     }
 
     /// `self + other * by`, entry by entry.
@@ -160,7 +164,7 @@ impl<'g> Column<'g> {
         if self.is_zero() {
             return other.times(by);
         }
-        Self { g: self.g, id: self.g.intern(Op::PlusProduct(self.id, other.id, by.id), None).id() }
+        self.make(Op::PlusProduct(self.id, other.id, by.id))
     }
 
     fn is_zero_in_product(self, other: Self) -> bool {
@@ -171,8 +175,8 @@ impl<'g> Column<'g> {
     pub fn cycled(self) -> Self {
         match self.entries() {
             // Numbers are moved as a whole, constants not at all.
-            Some([x, y, z, w]) if self.is_constant() => Self::of(self.g, [y, z, x, w]),
-            _ => Self { g: self.g, id: self.g.intern(Op::Cycled(self.id), None).id() },
+            Some(entries) if self.is_constant() => Self::of(self.g, CYCLED.map(|i| entries[i])),
+            _ => self.make(Op::Cycled(self.id)),
         }
     }
 }
