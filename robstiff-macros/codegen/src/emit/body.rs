@@ -6,9 +6,9 @@ use std::mem::swap;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::fuse::Fusion;
+use super::fuse::{FusedSum, Fusion};
 use super::lines::Lines;
-use super::operation::{Binding, arithmetic, column, sum};
+use super::operation::{Binding, arithmetic, call, column, sum};
 use super::turns::{Lane, Turn, Turns};
 use crate::angle::Angle;
 use crate::function::Function;
@@ -220,16 +220,17 @@ impl<'f> Writer<'f> {
 
     /// What a node computes, from its operands.
     fn expression(&self, id: Id) -> (TokenStream, Binding) {
-        if let Some((x, y, is_first)) = self.fusion.product(self.function, id) {
-            return (self.fused(id, x, y, is_first), Binding::Unit);
+        if let Some(sum) = self.fusion.sum(self.function, id) {
+            return (self.fused(&sum), Binding::Unit);
         }
         let graph = self.function.graph();
         let op = graph.nodes()[id].op;
-        if let Some(arithmetic) = arithmetic(op, |id, context| self.operand(id, context)) {
+        let operand = |id, context| self.operand(id, context);
+        if let Some(arithmetic) = arithmetic(op, operand) {
             return arithmetic;
         }
-        if let Some(column) = column(op, |id| self.operand(id, Binding::Sum)) {
-            return (column, Binding::Unit);
+        if let Some(code) = call(op, operand).or_else(|| column(op, |id| self.operand(id, Binding::Sum))) {
+            return (code, Binding::Unit);
         }
         match op {
             Op::Number(bits) => match f64::from_bits(bits) {
@@ -247,51 +248,24 @@ impl<'f> Writer<'f> {
                 let name = self.input(op);
                 (quote!(#name), Binding::Unit)
             }
-            Op::Max(a, b) => {
-                let (a, b) = (self.operand(a, Binding::Unit), self.operand(b, Binding::Sum));
-                (quote!(#a.max(#b)), Binding::Unit)
-            }
-            Op::Min(a, b) => {
-                let (a, b) = (self.operand(a, Binding::Unit), self.operand(b, Binding::Sum));
-                (quote!(#a.min(#b)), Binding::Unit)
-            }
-            Op::Sqrt(a) => {
-                let a = self.operand(a, Binding::Unit);
-                (quote!(#a.sqrt()), Binding::Unit)
-            }
-            Op::Recip(a) => {
-                let a = self.operand(a, Binding::Unit);
-                (quote!(#a.recip()), Binding::Unit)
-            }
             Op::Entry(column, entry) => {
                 let (column, entry) = (self.operand(column, Binding::Unit), Literal::usize_unsuffixed(entry));
                 (quote!(#column[#entry]), Binding::Unit)
             }
-            op => unreachable!("{op:?} is arithmetic"),
+            op => unreachable!("{op:?} is written above"),
         }
     }
 
-    /// A sum with the product `x y` in it: `x.mul_add(y, ..)`.
-    fn fused(&self, id: Id, x: Id, y: Id, is_first: bool) -> TokenStream {
-        let (Op::Add(a, b) | Op::Sub(a, b)) = self.function.graph().nodes()[id].op else {
-            unreachable!("only sums take up products")
-        };
-        let is_difference = matches!(self.function.graph().nodes()[id].op, Op::Sub(..));
-        let (x, y) = (self.operand(x, Binding::Unit), self.operand(y, Binding::Sum));
-        let rest = if is_first { b } else { a };
-        match (is_difference, is_first) {
-            (false, _) => {
-                let rest = self.operand(rest, Binding::Sum);
-                quote!(#x.mul_add(#y, #rest))
-            }
-            (true, true) => {
-                let rest = self.operand(rest, Binding::Sign);
-                quote!(#x.mul_add(#y, -#rest))
-            }
-            (true, false) => {
-                let rest = self.operand(rest, Binding::Sum);
-                quote!((-#x).mul_add(#y, #rest))
-            }
+    /// `x.mul_add(y, rest)`.
+    fn fused(&self, sum: &FusedSum) -> TokenStream {
+        let (x, y) = (self.operand(sum.factors.0, Binding::Unit), self.operand(sum.factors.1, Binding::Sum));
+        let x = if sum.product_is_negative { quote!((-#x)) } else { x };
+        if sum.rest_is_negative {
+            let rest = self.operand(sum.rest, Binding::Sign);
+            quote!(#x.mul_add(#y, -#rest))
+        } else {
+            let rest = self.operand(sum.rest, Binding::Sum);
+            quote!(#x.mul_add(#y, #rest))
         }
     }
 

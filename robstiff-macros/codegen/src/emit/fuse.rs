@@ -16,6 +16,18 @@ use super::turns::Turns;
 use crate::function::Function;
 use crate::graph::{Id, Op};
 
+/// A sum of a product and of the rest, each with its sign: `x.mul_add(y, rest)`.
+pub(super) struct FusedSum {
+    /// The factors of the product.
+    pub factors: (Id, Id),
+    /// Whether it is subtracted.
+    pub product_is_negative: bool,
+    /// The other summand.
+    pub rest: Id,
+    /// Whether that is subtracted.
+    pub rest_is_negative: bool,
+}
+
 /// For every node, the operand that is a product and is computed together
 /// with it.
 pub(super) struct Fusion {
@@ -89,15 +101,18 @@ impl Fusion {
         fusion
     }
 
-    /// The factors of the product that a sum takes up, and whether it is the
-    /// first of the two summands.
-    pub fn product(&self, function: &Function, id: Id) -> Option<(Id, Id, bool)> {
+    /// What a sum is that takes up a product.
+    pub fn sum(&self, function: &Function, id: Id) -> Option<FusedSum> {
         let product = self.product[id]?;
         let nodes = function.graph().nodes();
-        match (nodes[product].op, nodes[id].op) {
-            (Op::Mul(x, y), Op::Add(a, _) | Op::Sub(a, _)) => Some((x, y, a == product)),
-            _ => None,
-        }
+        let Op::Mul(x, y) = nodes[product].op else { return None };
+        let (rest, product_is_negative, rest_is_negative) = match nodes[id].op {
+            Op::Add(a, b) => (if a == product { b } else { a }, false, false),
+            Op::Sub(a, b) if a == product => (b, false, true),
+            Op::Sub(a, _) => (a, true, false),
+            _ => return None,
+        };
+        Some(FusedSum { factors: (x, y), product_is_negative, rest, rest_is_negative })
     }
 
     /// Whether anything is left that uses a node's value.

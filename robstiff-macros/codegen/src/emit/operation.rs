@@ -40,6 +40,19 @@ pub(super) fn arithmetic(op: Op, write: impl Fn(Id, Binding) -> TokenStream) -> 
     })
 }
 
+/// What is called as a method of its first operand; nothing for other operations.
+pub(super) fn call(op: Op, write: impl Fn(Id, Binding) -> TokenStream) -> Option<TokenStream> {
+    let (method, a, b) = match op {
+        Op::Max(a, b) => (quote!(max), a, Some(b)),
+        Op::Min(a, b) => (quote!(min), a, Some(b)),
+        Op::Sqrt(a) => (quote!(sqrt), a, None),
+        Op::Recip(a) => (quote!(recip), a, None),
+        _ => return None,
+    };
+    let (a, b) = (write(a, Binding::Unit), b.map(|b| write(b, Binding::Sum)));
+    Some(quote!(#a.#method(#b)))
+}
+
 /// What gives a column, of operands that `write` writes as arguments; nothing for
 /// other operations.
 pub(super) fn column(op: Op, write: impl Fn(Id) -> TokenStream) -> Option<TokenStream> {
