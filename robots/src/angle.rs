@@ -63,11 +63,11 @@ mod tests {
         for turns in 0..4_u8 {
             let (s, c) = sin_cos_of_turns(turns);
             let angle = f64::from(turns) * FRAC_PI_2;
-            assert!((s - libm_sin(angle)).abs() < 1e-15 && (c - libm_sin(angle + FRAC_PI_2)).abs() < 1e-15);
+            assert!((s - sin(angle)).abs() < 1e-15 && (c - sin(angle + FRAC_PI_2)).abs() < 1e-15);
         }
     }
 
-    fn libm_sin(x: f64) -> f64 {
+    fn sin(x: f64) -> f64 {
         extern crate std;
         std::primitive::f64::sin(x)
     }
