@@ -1,5 +1,5 @@
 //! Broken descriptions, with what a person is told of each: `bad/*.yaml` and
-//! `bad/*.txt`. To accept new wording, run with `BLESS=1` and read the diff.
+//! `bad/*.txt`. To accept new wording, run with `ROBSTIFF_BLESS=1` and read the diff.
 #![cfg(feature = "read")]
 
 use robstiff_robots::Description;
@@ -16,7 +16,7 @@ fn problems_are_told_in_these_words() {
         let name = file.file_name().unwrap().to_str().unwrap();
         let told = Description::parse(name, &fs::read_to_string(&file).unwrap()).expect_err(name).to_string() + "\n";
         let expected = file.with_extension("txt");
-        if std::env::var_os("BLESS").is_some() {
+        if std::env::var_os("ROBSTIFF_BLESS").is_some_and(|value| value == "1") {
             fs::write(&expected, told).unwrap();
         } else {
             assert_eq!(told, fs::read_to_string(&expected).unwrap_or_default(), "{name}");

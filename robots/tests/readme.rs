@@ -1,5 +1,5 @@
 //! The README's example is a description, and its table of effects the
-//! catalogue's. To write the table anew, run with `BLESS=1`.
+//! catalogue's. To write the table anew, run with `ROBSTIFF_BLESS=1`.
 #![cfg(feature = "read")]
 
 use robstiff_robots::Description;
@@ -24,7 +24,7 @@ fn the_table_of_effects_is_the_catalogues() {
     let (before, rest) = readme.split_once(head).expect("a table of effects");
     let (found, after) = rest.split_once("\n\n").expect("an end of the table");
     let expected: Vec<String> = CATALOGUE.iter().map(|about| row(about)).collect();
-    if std::env::var_os("BLESS").is_some() {
+    if std::env::var_os("ROBSTIFF_BLESS").is_some_and(|value| value == "1") {
         fs::write(&path, format!("{before}{head}{}\n\n{after}", expected.join("\n"))).unwrap();
     } else {
         assert_eq!(found, expected.join("\n"));
