@@ -107,7 +107,8 @@ const ON_THE_LIMIT: f64 = 1e-6;
 impl Joint {
     /// The joint's compliance, the sum of its parts [rad/Nm or m/N].
     pub fn compliance(&self) -> f64 {
-        self.compliance.iter().map(|part| part.value).sum()
+        // The sum of nothing is a negative zero.
+        self.compliance.iter().map(|part| part.value).sum::<f64>() + 0.0
     }
 
     /// Whether a coordinate (rad or m) is within the limits, if there are any.

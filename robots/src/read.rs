@@ -286,6 +286,14 @@ mod tests {
         Description::parse("arm.yaml", text).unwrap_or_else(|problems| panic!("{problems}"));
     }
 
+    /// The sum of no numbers is a negative zero, which is written as one.
+    #[test]
+    fn a_rigid_joint_has_no_sign() {
+        let text = "name: Arm\nconvention: standard\njoints: [{a: 1 m}]\n";
+        let arm = Description::parse("arm.yaml", text).unwrap_or_else(|problems| panic!("{problems}"));
+        assert!(arm.joints[0].compliance().is_sign_positive());
+    }
+
     #[test]
     fn suggests_names_that_are_names() {
         for (name, suggested) in [
