@@ -116,12 +116,37 @@ fn second_document(text: &str) -> Option<usize> {
     second.map(|(index, _)| index + 1)
 }
 
+/// The line (from 1) that is indented less than the first one, which the parser takes for
+/// a second document.
+fn outdented(text: &str) -> Option<usize> {
+    let says_something = |line: &str| !matches!(line.trim_start().chars().next(), None | Some('#' | '%'));
+    let indent = |line: &str| line.len() - line.trim_start_matches(' ').len();
+    let mut lines = text.lines().enumerate().filter(|(_, line)| says_something(line));
+    let first = indent(lines.next()?.1);
+    lines.find(|(_, line)| indent(line) < first).map(|(index, _)| index + 1)
+}
+
+/// Line and column of the byte that the parser tells in place of them, where it does: of
+/// characters that no YAML may have.
+fn place_of_byte(text: &str, message: &str) -> Option<(usize, usize)> {
+    let before = text.get(..message.rsplit_once(" at position ")?.1.parse().ok()?)?;
+    let line = before.rsplit('\n').next().unwrap_or_default();
+    Some((1 + before.matches('\n').count(), 1 + line.chars().count()))
+}
+
 fn syntax_problem(file: &str, text: &str, error: &serde_yaml::Error) -> Diagnostic {
-    let place = error.location().map(|at| (at.line(), at.column()));
+    let told = error.to_string();
+    let place = place_of_byte(text, &told).or_else(|| error.location().map(|at| (at.line(), at.column())));
     // The parser does not tell where a second document begins.
-    let (line, column) = place.or_else(|| Some((second_document(text)?, 1))).unwrap_or((1, 1));
+    let second = if place.is_none() { second_document(text) } else { None };
+    let outdented = if place.or(second.map(|line| (line, 1))).is_none() { outdented(text) } else { None };
+    let (line, column) = place.or_else(|| Some((second.or(outdented)?, 1))).unwrap_or((1, 1));
     // The place is shown on its own; a second place in the message is of use.
-    let message = error.to_string().replacen(&format!(" at line {line} column {column}"), "", 1);
+    let message = told.replacen(&format!(" at line {line} column {column}"), "", 1);
+    let message = match outdented {
+        Some(_) => "this line is indented less than the first",
+        None => message.split(" at position ").next().unwrap_or_default(),
+    };
     Diagnostic::new(
         file,
         Line { number: line, text: source_line(text, line) },

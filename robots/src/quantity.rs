@@ -129,9 +129,12 @@ pub fn scale(unit: &str, dimension: Dimension) -> Result<f64, QuantityError> {
 /// The largest quantity, in SI: sums and products of a few stay finite.
 const MOST: f64 = 1e30;
 
-/// The number, if it is finite and no larger than [`MOST`]; a negative zero
+/// The number, in SI, if it is finite and no larger than 1e30; a negative zero
 /// becomes zero.
-pub(crate) fn finite(value: f64) -> Result<f64, QuantityError> {
+///
+/// # Errors
+/// What is not finite, or larger.
+pub fn finite(value: f64) -> Result<f64, QuantityError> {
     if !value.is_finite() {
         return error(
             format!("`{value}` is not finite"),
@@ -142,6 +145,12 @@ pub(crate) fn finite(value: f64) -> Result<f64, QuantityError> {
         return error(format!("`{value:e}` in SI units is too large"), format!("at most {MOST:e}; check the unit"));
     }
     Ok(value + 0.0)
+}
+
+/// The shortest digits that read back as this number, with an exponent where there would be
+/// many zeros.
+pub fn number(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
 }
 
 /// Reads `value unit`, or a number in SI, or for an angle a fraction of pi

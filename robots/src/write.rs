@@ -4,7 +4,7 @@
 use crate::angle::snapped;
 use crate::description::{Description, Joint, Link, Placement};
 use crate::effect::{Convention, Effect, JointKind, Place};
-use crate::quantity::{self, Dimension};
+use crate::quantity::{self, Dimension, number};
 use std::fmt::Write;
 
 /// The width texts are folded to.
@@ -130,11 +130,6 @@ fn effect(effect: &Effect) -> String {
     let stated = written.into_iter().filter(|(_, default, _)| all_default || default.is_none());
     fields.extend(stated.map(|(name, _, text)| (name, text)));
     flow_map(&fields)
-}
-
-/// The shortest digits that read back as this number.
-fn number(value: f64) -> String {
-    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
 }
 
 fn in_unit(value: f64, unit: &str) -> String {

@@ -7,6 +7,8 @@ use serde::de::{
 };
 use std::fmt;
 
+use crate::quantity::number;
+
 /// A YAML value. Maps keep every entry in its order, so that a key given twice
 /// can be shown where it stands.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +31,7 @@ impl fmt::Display for Content {
             Self::Null => f.write_str("nothing"),
             Self::Bool(value) => write!(f, "`{value}`"),
             Self::Integer(value) => write!(f, "the number {value}"),
-            Self::Number(value) => write!(f, "the number {value}"),
+            Self::Number(value) => write!(f, "the number {}", number(*value)),
             Self::Text(text) if text.chars().count() <= 40 && !text.contains('\n') => write!(f, "`{text}`"),
             Self::Text(_) => f.write_str("a text"),
             Self::Sequence(_) => f.write_str("a list"),

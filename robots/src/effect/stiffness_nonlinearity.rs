@@ -58,7 +58,10 @@ impl Physics<2> for StiffnessNonlinearity {
         (added <= -compliance).then(|| Complaint {
             parameter: "added",
             message: format!("without load, {place} would have no compliance left: {compliance:e} {added:+e} rad/Nm"),
-            help: format!("`added` must be above -{compliance:e} rad/Nm"),
+            help: match compliance {
+                0.0 => format!("{place} is rigid: give it a `compliance`, or `added` above 0"),
+                _ => format!("`added` must be above -{compliance:e} rad/Nm"),
+            },
         })
     }
 

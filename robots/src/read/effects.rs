@@ -299,7 +299,12 @@ fn check_sag(items: &[Node], effects: &[Option<Effect>], joints: &[Joint], links
         let largest = (0..joints.len()).filter(|&joint| joints[joint].kind == JointKind::Revolute);
         let largest = largest.map(|joint| (joint + 1, share * most_sag(joints, links, joint)));
         let Some((joint, sag)) = largest.max_by(|(_, one), (_, other)| one.total_cmp(other)) else { continue };
-        if sag > MOST_SAG {
+        if sag.is_infinite() {
+            item.error(
+                format!("nothing bounds by how much joint {joint} sags: a joint behind it slides without limits"),
+                "give every joint that slides its `limits`, e.g. `limits: [0 m, 1.5 m]`",
+            );
+        } else if sag > MOST_SAG {
             item.error(
                 format!("joint {joint} could sag by {:.0} mrad, more than {} mrad", sag * 1e3, MOST_SAG * 1e3),
                 "check the masses, the joint's compliance, and the limits of joints that slide",
