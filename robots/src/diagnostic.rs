@@ -89,6 +89,32 @@ fn shown(text: impl Iterator<Item = char>) -> String {
     line
 }
 
+/// The longest line that is shown whole, and the longest message, in characters: more of
+/// a table's row or of a list that somebody's program wrote fills a terminal.
+const LONGEST: usize = 240;
+
+/// How much is shown before the place in a line of which only a part is.
+const BEFORE: usize = 80;
+
+/// A line, or of a long one what is about the `column` (from 0), and the column in that.
+fn around(line: &str, column: usize) -> (String, usize) {
+    let count = line.chars().count();
+    if count <= LONGEST {
+        return (line.to_owned(), column);
+    }
+    let from = column.saturating_sub(BEFORE).min(count - LONGEST);
+    let (before, behind) = (if from > 0 { ".. " } else { "" }, if from + LONGEST < count { " .." } else { "" });
+    let part: String = line.chars().skip(from).take(LONGEST).collect();
+    (format!("{before}{part}{behind}"), column - from + before.len())
+}
+
+/// A message, or of a long one, which quotes the file, its beginning.
+fn beginning(message: &str) -> String {
+    let mut shown = message.chars();
+    let beginning: String = shown.by_ref().take(LONGEST).collect();
+    if shown.next().is_some() { beginning + " .." } else { beginning }
+}
+
 fn shown_columns(text: impl Iterator<Item = char>) -> usize {
     shown(text).chars().map(columns).sum()
 }
@@ -97,11 +123,11 @@ impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { file, line, column, width, path, message, help, source_line } = self;
         let gutter = line.to_string().len();
-        let before = column.saturating_sub(1);
-        let indent = shown_columns(source_line.chars().take(before));
-        let carets = shown_columns(source_line.chars().skip(before).take(*width)).max(1);
+        let (source_line, before) = &around(source_line, column.saturating_sub(1));
+        let indent = shown_columns(source_line.chars().take(*before));
+        let carets = shown_columns(source_line.chars().skip(*before).take(*width)).max(1);
         // They quote the file, too.
-        let [message, help] = [message, help].map(|text| shown(text.chars()));
+        let [message, help] = [&beginning(message), help].map(|text| shown(text.chars()));
         write!(f, "error: {message}\n{:gutter$}--> {file}:{line}:{column}", "")?;
         if !path.is_empty() {
             write!(f, "  ({path})")?;
@@ -191,6 +217,22 @@ mod tests {
 
     fn carets(source_line: &str, column: usize, width: usize) -> String {
         diagnostic(source_line, column, width).to_string().lines().last().unwrap().to_owned()
+    }
+
+    #[test]
+    fn of_a_long_line_the_part_is_shown_that_matters() {
+        let row = format!("{}abc,{}", "1.25,".repeat(1000), "3.5,".repeat(1000));
+        let told = diagnostic(&row, 5001, 3).to_string();
+        let lines: Vec<&str> = told.lines().collect();
+        assert!(lines.iter().all(|line| line.chars().count() < 260), "{told}");
+        assert!(told.contains("--> loads.csv:12:5001"), "{told}");
+        let caret = lines[4].find('^').expect("a caret");
+        assert_eq!(&lines[3][caret..caret + 4], "abc,");
+        assert!(lines[3].starts_with("12 | .. ") && lines[3].ends_with(" .."), "{told}");
+        let first = diagnostic(&row, 1, 4).to_string();
+        assert!(first.lines().nth(3).is_some_and(|line| line.starts_with("12 | 1.25,")), "{first}");
+        let quoting = Diagnostic { message: "x".repeat(1000), ..diagnostic("1", 1, 1) }.to_string();
+        assert!(quoting.lines().all(|line| line.len() < 260), "{quoting}");
     }
 
     #[test]
