@@ -39,9 +39,22 @@ impl Tree {
     /// What is wrong with it, each problem at its place.
     pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
         let document = Document::parse(text).map_err(|error| {
-            let at = error.pos();
-            let line = line(text, at.row as usize);
-            Diagnostic::new(file, line, (at.col as usize, 1), format!("this is not XML: {error}"), "")
+            let help = "close every element and every quote; `&` and `<` in a text are `&amp;` and `&lt;`";
+            let problem = |number, column, message: &str| {
+                Diagnostic::new(file, line(text, number), (column, 1), format!("this is not XML: {message}"), help)
+            };
+            // Of a file that is cut off the parser tells the beginning.
+            if matches!(error, roxmltree::Error::UnexpectedEndOfStream | roxmltree::Error::UnclosedRootNode) {
+                let last = text.lines().last().unwrap_or_default();
+                return problem(
+                    text.lines().count().max(1),
+                    1 + last.chars().count(),
+                    "the file ends before its root element does",
+                );
+            }
+            let (at, message) = (error.pos(), error.to_string());
+            // The place is shown on its own.
+            problem(at.row as usize, at.col as usize, message.trim_end_matches(&format!(" at {at}")))
         })?;
         let mut reader = Reader { file, text, problems: Vec::new(), warnings: Vec::new(), rounded: 0 };
         let tree = reader.tree(document.root_element());
@@ -265,12 +278,9 @@ impl Reader<'_> {
         let words: Vec<&str> = attribute.value().split_whitespace().collect();
         let mut values = [0.0; K];
         if words.len() != K {
-            let (found, s) = (words.len(), if K == 1 { "" } else { "s" });
-            self.report(
-                &place,
-                &format!("`{name}` has {found} numbers, {K} expected"),
-                &format!("{K} number{s}, in SI"),
-            );
+            let numbers = |count| format!("{count} number{}", if count == 1 { "" } else { "s" });
+            let message = format!("`{name}` has {}, {K} expected", numbers(words.len()));
+            self.report(&place, &message, &format!("{}, in SI", numbers(K)));
             return None;
         }
         for (value, word) in values.iter_mut().zip(words) {
@@ -309,11 +319,16 @@ fn element<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
     node.children().find(|child| child.has_tag_name(name))
 }
 
+/// Decimals beyond which powers of ten are no longer exact.
+const MOST_DECIMALS: usize = 22;
+
 /// The multiple of 90 degrees that a number of at least two decimals is, when
 /// that is rounded or, as is common too, truncated to as many.
 fn unrounded(value: f64, text: &str) -> Option<f64> {
     let (_, decimals) = text.split_once('.')?;
-    if decimals.len() < 2 || !decimals.bytes().all(|byte| byte.is_ascii_digit()) {
+    // No number is written with more than its digits.
+    let counts = (2..=MOST_DECIMALS).contains(&decimals.len());
+    if !counts || !decimals.bytes().all(|byte| byte.is_ascii_digit()) {
         return None;
     }
     let exact = (value / FRAC_PI_2).round() * FRAC_PI_2;

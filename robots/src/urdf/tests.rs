@@ -133,10 +133,18 @@ fn mistakes_are_shown_where_they_are() {
         ("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 0\"/>", "the axis has no direction"),
         ("lower=\"-2.967\"", "lower=\"9\"", "the lower limit is above the upper"),
         ("<mass value=\"400\"/>", "<mass value=\"-1\"/>", "the mass is negative"),
-        ("</robot>", "", "this is not XML"),
+        ("xyz=\"0 0 0.78\"", "xyz=\"1\"", "`xyz` has 1 number, 3 expected"),
+        ("</robot>", "", "this is not XML: the file ends before its root element does\n  --> arm.urdf:LINES:1"),
+        (
+            "<axis xyz=\"0 0 1\"/>",
+            "<axis xyz=\"0 & 1\"/>",
+            "this is not XML: malformed entity reference\n  --> arm.urdf:34:",
+        ),
+        ("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 & 1\"/>", "`&` and `<` in a text are `&amp;` and `&lt;`"),
         ("<child link=\"link_2\"/>", "<child link=\"link_1\"/>", "hangs on two joints"),
     ] {
-        let said = refused(from, to);
+        let (said, lines) = (refused(from, to), ARM.lines().count().to_string());
+        let part = &part.replace("LINES", &lines);
         assert!(said.contains(part), "{to}: {said}");
     }
     let floating = ARM.replacen("type=\"revolute\"", "type=\"floating\"", 1);
@@ -156,8 +164,10 @@ fn angles_that_were_rounded_are_exact_again() {
         let exact = Rotation3::new(Vector3::z() * quarters * core::f64::consts::FRAC_PI_2);
         assert!((turn.matrix() - exact.matrix()).abs().max() < 1e-15, "{text}");
     }
-    // A unit of the last decimal beside what it would be rounded to.
-    for (text, angle) in [("1.55", 1.55), ("1.58", 1.58), ("3.13", 3.13), ("1.5709", 1.5709)] {
+    // A unit of the last decimal beside what it would be rounded to, and more decimals than
+    // any power of ten.
+    let endless = format!("1.{}", "0".repeat(400));
+    for (text, angle) in [("1.55", 1.55), ("1.58", 1.58), ("3.13", 3.13), ("1.5709", 1.5709), (&endless, 1.0)] {
         let arm = ARM.replacen("rpy=\"0 1.5708 0\"", &format!("rpy=\"0 0 {text}\""), 1);
         let kept = Tree::parse("arm.urdf", &arm).unwrap();
         assert!((kept.joints[6].origin.rotation.angle() - angle).abs() < 1e-12, "{text}");
