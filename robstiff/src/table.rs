@@ -1,6 +1,8 @@
 //! A CSV file as a table of checked numbers, every problem at its place.
 #![cfg_attr(not(feature = "identify"), allow(dead_code, reason = "campaigns need more of it than machining"))]
 
+mod lines;
+
 use core::cell::RefCell;
 use std::borrow::ToOwned;
 use std::format;
@@ -11,10 +13,13 @@ use std::vec::Vec;
 use robstiff_robots::quantity::{Dimension, scale};
 use robstiff_robots::{Diagnostic, Diagnostics, Line, ReadError};
 
+pub use lines::Lines;
+use lines::extent;
+
 /// A table, and the problems found in it so far.
 pub struct Table<'t> {
     file: &'t str,
-    lines: Vec<&'t str>,
+    lines: Lines<'t>,
     header: Vec<Header>,
     /// The line of the header, from 1.
     header_line: usize,
@@ -62,7 +67,7 @@ impl<'t> Table<'t> {
     pub fn parse(file: &'t str, text: &'t str) -> Result<Self, Diagnostics> {
         let mut table = Self {
             file,
-            lines: text.lines().collect(),
+            lines: Lines::new(text),
             header: Vec::new(),
             header_line: 1,
             records: Vec::new(),
@@ -79,7 +84,10 @@ impl<'t> Table<'t> {
         let Some(Ok(header)) = rows.next() else {
             return Err(table.problem(1, 0, "the file is empty", "the first line names the columns").into());
         };
-        table.header_line = line_of(&header, text);
+        table.header_line = table.line_of(&header);
+        if let Some(field) = open_quote(&header) {
+            return Err(table.problem(table.header_line, field, NOT_CLOSED, CLOSE).into());
+        }
         if header.get(0).is_some_and(|name| name.starts_with('#')) {
             let help = "the first line must be the header, which names the columns: `pose,q1 [deg],Fx [N]`";
             return Err(table.problem(table.header_line, usize::MAX, "a comment line?", help).into());
@@ -96,7 +104,7 @@ impl<'t> Table<'t> {
         table.check_header();
         for row in rows {
             match row {
-                Ok(row) => table.push(&row, line_of(&row, text)),
+                Ok(row) => table.push(&row, table.line_of(&row)),
                 Err(error) => table.report(1, 0, &format!("this is not CSV: {error}"), ""),
             }
         }
@@ -105,6 +113,11 @@ impl<'t> Table<'t> {
             return Err(table.problem(line, 0, "there are no rows", "each line below the header is one row").into());
         }
         Ok(table)
+    }
+
+    /// The line that a record begins in, from 1.
+    fn line_of(&self, record: &csv::StringRecord) -> usize {
+        record.position().map_or(1, |position| self.lines.number_at(position.byte() as usize))
     }
 
     fn check_header(&self) {
@@ -127,6 +140,9 @@ impl<'t> Table<'t> {
     }
 
     fn push(&mut self, row: &csv::StringRecord, line: usize) {
+        if let Some(field) = open_quote(row) {
+            return self.report(line, field, NOT_CLOSED, CLOSE);
+        }
         let (expected, found) = (self.header.len(), row.len());
         if found == expected {
             self.records.push(Record { line, fields: row.iter().map(ToOwned::to_owned).collect() });
@@ -295,7 +311,7 @@ impl<'t> Table<'t> {
     }
 
     fn problem(&self, line: usize, field: usize, message: &str, help: &str) -> Diagnostic {
-        let source_line = self.lines.get(line - 1).copied().unwrap_or_default();
+        let source_line = self.lines.line(line);
         let line = Line { number: line, text: source_line };
         Diagnostic::new(self.file, line, extent(source_line, field), message, help)
     }
@@ -332,13 +348,14 @@ impl Header {
     }
 }
 
-/// The line that a record begins in. The reader's own position is where it
-/// began to look for the record, before the empty lines that it skips.
-fn line_of(record: &csv::StringRecord, text: &str) -> usize {
-    let Some(position) = record.position() else { return 1 };
-    let rest = text.as_bytes().iter().skip(position.byte() as usize);
-    let skipped = rest.take_while(|byte| matches!(byte, b'\r' | b'\n')).filter(|&&byte| byte == b'\n').count();
-    position.line() as usize + skipped
+/// What is said of a quote that takes in the end of its line, and what is right.
+const NOT_CLOSED: &str = "the quote is not closed on its line";
+const CLOSE: &str = "a row is one line: close the quote, or leave it out; no field goes on in the next line";
+
+/// The field, if there is one, in which a row goes on over the end of its line. A quote that
+/// is not closed takes in all rows up to the next one, and these would be lost without a word.
+fn open_quote(row: &csv::StringRecord) -> Option<usize> {
+    row.iter().position(|field| field.contains(['\r', '\n']))
 }
 
 /// What is said of a number with a comma, written with a point.
@@ -358,38 +375,9 @@ fn decimal_comma(row: &csv::StringRecord) -> Option<String> {
     Some(comma_help(&format!("{}.{}", pair[0], pair[1])))
 }
 
-/// Where a field is in its line: its column in characters from 1, and its
-/// width.
-fn extent(line: &str, field: usize) -> (usize, usize) {
-    let (mut quoted, mut index, mut column, mut width) = (false, 0, 1, 0);
-    for (i, character) in line.chars().enumerate() {
-        match character {
-            '"' => quoted = !quoted,
-            ',' if !quoted => {
-                if index == field {
-                    break;
-                }
-                index += 1;
-                (column, width) = (i + 2, 0);
-                continue;
-            }
-            _ => {}
-        }
-        width += 1;
-    }
-    if index < field { (1, line.chars().count()) } else { (column, width) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn fields_are_found_in_their_line() {
-        assert_eq!(extent("1,abc,3", 1), (3, 3));
-        assert_eq!(extent("\"a,b\",x", 1), (7, 1));
-        assert_eq!(extent("1,2", 5), (1, 3));
-    }
 
     #[test]
     fn headers_have_names_and_units() {

@@ -84,6 +84,10 @@ fn every_problem_of_a_table_has_its_place() {
     let blank = found("blank", "a,v,0,0,1,2,3,4,5,6\n ,v,9,0,1,2,3,4,5,6\nb, ,9,0,1,2,3,4,5,6\n,w,8,0,1,2,3,4,5,6\n");
     assert_eq!(blank, ["3:1 the pose has no id", "4:3 the visit has no id", "5:1 the pose has no id"]);
     assert_eq!(found("none", ""), ["1:1 there are no rows"]);
+    let open = found("open-quote", "a,v,0,0,1,2,3,4,5,6\n\"b,v,0,0,1,2,3,4,5,6\nc,w,0,0,1,2,3,4,x,6\n");
+    assert_eq!(open, ["3:1 the quote is not closed on its line"]);
+    let returns = found("returns", "a,v,0,0,1,2,3,4,5,6\r\rb,w,0,0,1,2,3,4,x,6\r");
+    assert_eq!(returns, ["4:17 `x` is not a number"]);
     let visits = found("visit", "a,v,0,0,1,2,3,4,5,6\nb,v,9,0,1,2,3,4,5,6\n");
     assert_eq!(visits, ["3:3 visit `v` began at pose `a`, this row is at pose `b`"]);
     let poses = found("pose", "a,v,0,0,1,2,3,4,5,6\na,w,0.01,0,1,2,3,4,5,6\n");
@@ -107,6 +111,16 @@ fn tables_as_others_write_them_are_told_how() {
     assert!(quoted.contains("a decimal comma? write `-126.6154`"), "{quoted}");
     let divided = told("comma", &format!("{HEADER}\n{}\n", row.replace("v,0", "v,-126,6154")));
     assert!(divided.contains("this row has 11 fields") && divided.contains("write `-126.6154`"), "{divided}");
+}
+
+/// A quote that is not closed takes the rows behind it into a column that nobody reads.
+#[test]
+fn no_row_is_lost_in_a_note() {
+    let rows = "a,v,0,0,1,2,3,4,5,6,\nb,w,9,0,1,2,3,4,5,6,\"slow\nc,x,8,0,1,2,3,4,5,6,\n";
+    let found = problems("note", CAMPAIGN, &format!("{HEADER},note\n{rows}"));
+    assert_eq!(found, ["3:21 the quote is not closed on its line"]);
+    let header = problems("note-in-header", CAMPAIGN, &format!("{HEADER},\"note\n{rows}"));
+    assert_eq!(header, ["1:57 the quote is not closed on its line"]);
 }
 
 /// Degrees in a column without a unit are radians that no joint reaches.

@@ -12,7 +12,7 @@ use robstiff_robots::{Description, Diagnostics, ReadError};
 
 use super::{Goal, Target, ToolPath, Waypoint};
 use crate::JointKind;
-use crate::table::{Numbers, Record, Table, text_of};
+use crate::table::{Lines, Numbers, Record, Table, text_of};
 
 /// A unit quaternion is rounded by less than this.
 const ROUNDED: f64 = 1e-3;
@@ -110,7 +110,7 @@ impl ToolPath {
 
     /// A line of the file (from 1).
     pub(super) fn line(&self, line: usize) -> String {
-        self.text.lines().nth(line - 1).unwrap_or_default().to_owned()
+        Lines::new(&self.text).line(line).to_owned()
     }
 }
 
