@@ -129,8 +129,12 @@ pub fn scale(unit: &str, dimension: Dimension) -> Result<f64, QuantityError> {
 /// The largest quantity, in SI: sums and products of a few stay finite.
 const MOST: f64 = 1e30;
 
-/// The number, in SI, if it is finite and no larger than 1e30; a negative zero
-/// becomes zero.
+/// What is smaller, in SI, is zero: nothing real is so small, and squares of what is left
+/// are not zero.
+const LEAST: f64 = 1e-30;
+
+/// The number, in SI, if it is finite and no larger than 1e30; a negative zero, and what
+/// is smaller than 1e-30, becomes zero.
 ///
 /// # Errors
 /// What is not finite, or larger.
@@ -144,7 +148,7 @@ pub fn finite(value: f64) -> Result<f64, QuantityError> {
     if value.abs() > MOST {
         return error(format!("`{value:e}` in SI units is too large"), format!("at most {MOST:e}; check the unit"));
     }
-    Ok(value + 0.0)
+    Ok(if value.abs() < LEAST { 0.0 } else { value })
 }
 
 /// The shortest digits that read back as this number, with an exponent where there would be
@@ -298,6 +302,16 @@ mod tests {
         assert!((from_arcmin * 1000.0 * 10_800.0 / PI - 1.0).abs() < 1e-15);
         let from_rpm = parse("30 rpm", Dimension::RotationalSpeed).unwrap();
         assert!((from_rpm / PI - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn what_nothing_real_is_as_small_as_is_zero() {
+        for text in ["1e-31 m", "-1e-31", "-0", "5e-324 mm"] {
+            let read = parse(text, Dimension::Length).unwrap();
+            assert!(read == 0.0 && read.is_sign_positive(), "{text}");
+        }
+        assert_eq!(parse("-1e-30 m", Dimension::Length), Ok(-1e-30));
+        assert_eq!(parse("1e40 Nm/rad", Dimension::Compliance), Ok(0.0));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use robstiff_robots::quantity::{Dimension, scale};
+use robstiff_robots::quantity::{Dimension, finite, scale};
 use robstiff_robots::{Diagnostic, Diagnostics, Line, ReadError};
 
 pub use lines::Lines;
@@ -227,12 +227,18 @@ impl<'t> Table<'t> {
         })
     }
 
-    /// A number of a row in SI; what is not a finite number is reported.
+    /// A number of a row in SI; what is not a finite number, or beyond all sums, is reported.
     pub fn number(&self, record: &Record, column: Numbers) -> Option<f64> {
         let text = &record.fields[column.index];
         let number = text.parse::<f64>().map(|number| number * column.scale);
         let problem = match number {
-            Ok(number) if number.is_finite() => return Some(number),
+            Ok(number) if number.is_finite() => match finite(number) {
+                Ok(number) => return Some(number),
+                Err(error) => {
+                    self.report(record.line, column.index, &error.message, &error.help);
+                    return None;
+                }
+            },
             Ok(_) => format!("`{text}` is not finite"),
             Err(_) if text.is_empty() => "a number is missing".to_owned(),
             Err(_) => format!("`{text}` is not a number"),

@@ -79,6 +79,7 @@ fn every_problem_of_a_table_has_its_place() {
     assert_eq!(found("text", "a,v,0,0,1,2,3,4,x,6\n"), ["2:17 `x` is not a number"]);
     assert_eq!(found("nan", "a,v,0,0,1,2,3,4,NaN,inf\n"), ["2:17 `NaN` is not finite", "2:21 `inf` is not finite"]);
     assert_eq!(found("huge", "a,v,0,0,1,1e307,3,4,5,6\n"), ["2:11 `1e307` is not finite"]);
+    assert_eq!(found("too-large", "a,v,0,0,1,2,1e31,4,5,6\n"), ["2:13 `1e31` in SI units is too large"]);
     assert_eq!(found("missing", "a,v,0,0,1,2,3,4,,6\n"), ["2:17 a number is missing"]);
     assert_eq!(found("short", "a,v,0,0,1,2,3,4,5\n"), ["2:1 this row has 9 fields, the header has 10"]);
     let blank = found("blank", "a,v,0,0,1,2,3,4,5,6\n ,v,9,0,1,2,3,4,5,6\nb, ,9,0,1,2,3,4,5,6\n,w,8,0,1,2,3,4,5,6\n");
@@ -121,6 +122,15 @@ fn no_row_is_lost_in_a_note() {
     assert_eq!(found, ["3:21 the quote is not closed on its line"]);
     let header = problems("note-in-header", CAMPAIGN, &format!("{HEADER},\"note\n{rows}"));
     assert_eq!(header, ["1:57 the quote is not closed on its line"]);
+}
+
+/// Of numbers that nothing real is as small as, squares would be zero.
+#[test]
+fn what_nothing_real_is_as_small_as_is_zero() {
+    let folder = Folder::new("tiny", CAMPAIGN, &format!("{HEADER}\na,v,0,0,1e-250,2,-0,4,5,6\n"));
+    let Data::Displacement(data) = folder.read().expect("nothing is wrong").data else { panic!("kind displacement") };
+    let [x, _, z, ..] = data.rows[0].wrench;
+    assert!([x, z].iter().all(|force| *force == 0.0 && force.is_sign_positive()), "{x} {z}");
 }
 
 /// Degrees in a column without a unit are radians that no joint reaches.
