@@ -26,6 +26,8 @@ pub struct Table<'t> {
     /// The rows below the header; all as long as it.
     pub records: Vec<Record>,
     asked_for: RefCell<Vec<usize>>,
+    /// The names of columns that were asked for and are not there.
+    absent: RefCell<Vec<String>>,
     problems: RefCell<Vec<Diagnostic>>,
     warnings: RefCell<Vec<String>>,
 }
@@ -72,6 +74,7 @@ impl<'t> Table<'t> {
             header_line: 1,
             records: Vec::new(),
             asked_for: RefCell::default(),
+            absent: RefCell::default(),
             problems: RefCell::default(),
             warnings: RefCell::default(),
         };
@@ -213,7 +216,7 @@ impl<'t> Table<'t> {
                 let help = format!("write `{name} [{unit}]`");
                 self.report(self.header_line, field, "the unit is in round brackets", &help);
             }
-            (None, None) => {}
+            (None, None) => self.absent.borrow_mut().push(name.to_owned()),
         }
         index
     }
@@ -333,10 +336,14 @@ impl<'t> Table<'t> {
         if let Some(problems) = Diagnostics::new(self.problems.into_inner()) {
             return Err(problems);
         }
-        let asked_for = self.asked_for.into_inner();
+        let (asked_for, absent) = (self.asked_for.into_inner(), self.absent.into_inner());
         let unknown = self.header.iter().enumerate().filter(|(i, _)| !asked_for.contains(i));
         let mut warnings = self.warnings.into_inner();
-        warnings.extend(unknown.map(|(_, header)| format!("{}: the column `{}` is not used", self.file, header.name)));
+        warnings.extend(unknown.map(|(_, Header { name, .. })| {
+            let meant = absent.iter().find(|meant| meant.eq_ignore_ascii_case(name));
+            let ask = meant.map(|meant| format!(": write `{meant}` if it is that")).unwrap_or_default();
+            format!("{}: the column `{name}` is not used{ask}", self.file)
+        }));
         Ok((value.expect("a value was given up without a problem being reported"), warnings))
     }
 }

@@ -133,6 +133,16 @@ fn what_nothing_real_is_as_small_as_is_zero() {
     assert!([x, z].iter().all(|force| *force == 0.0 && force.is_sign_positive()), "{x} {z}");
 }
 
+/// Columns that may be left out are as good as left out in other letters.
+#[test]
+fn columns_in_other_letters_are_asked_about() {
+    let header = HEADER.replace("visit", "Visit");
+    let folder = Folder::new("letters", CAMPAIGN, &format!("{header},Mz,note\na,v,0,0,1,2,3,4,5,6,7,\n"));
+    let warnings = folder.read().expect("nothing is wrong").warnings;
+    let said = warnings.iter().filter_map(|warning| warning.split_once(": the column ")).map(|(_, said)| said);
+    assert_eq!(said.collect::<Vec<_>>(), ["`Visit` is not used: write `visit` if it is that", "`note` is not used"]);
+}
+
 /// Degrees in a column without a unit are radians that no joint reaches.
 #[test]
 fn coordinates_that_joints_do_not_reach_are_warned_of() {
