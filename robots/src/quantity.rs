@@ -151,6 +151,23 @@ pub fn finite(value: f64) -> Result<f64, QuantityError> {
     Ok(if value.abs() < LEAST { 0.0 } else { value })
 }
 
+/// The largest angle \[rad\]: of larger ones rounding takes more and more of what is beyond
+/// whole turns.
+const MOST_ANGLE: f64 = 1e6;
+
+/// The [`finite`] number, if it can be of this kind.
+pub(crate) fn checked(value: f64, dimension: Dimension) -> Result<f64, QuantityError> {
+    let value = finite(value)?;
+    if dimension == Dimension::Angle && value.abs() > MOST_ANGLE {
+        let turns = value.abs() / std::f64::consts::TAU;
+        return error(
+            format!("{value:e} rad is {turns:.1e} turns, and rounding leaves little of what is beyond them"),
+            format!("at most {MOST_ANGLE:e} rad; check the unit"),
+        );
+    }
+    Ok(value)
+}
+
 /// The shortest digits that read back as this number, with an exponent where there would be
 /// many zeros.
 pub fn number(value: f64) -> String {
@@ -196,11 +213,11 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
         return error(format!("`{text}` is not finite"), dimension.help());
     }
     if unit.is_empty() {
-        return finite(value);
+        return checked(value, dimension);
     }
     let unit = find(unit, dimension)?;
     if !unit.inverse {
-        return finite(value * unit.times / unit.per);
+        return checked(value * unit.times / unit.per, dimension);
     }
     if value == 0.0 {
         return error("a stiffness of zero has no compliance".into(), "a rigid joint has no `compliance` at all");
@@ -302,6 +319,15 @@ mod tests {
         assert!((from_arcmin * 1000.0 * 10_800.0 / PI - 1.0).abs() < 1e-15);
         let from_rpm = parse("30 rpm", Dimension::RotationalSpeed).unwrap();
         assert!((from_rpm / PI - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn angles_of_more_turns_than_count_are_refused() {
+        assert_eq!(parse("1e6 rad", Dimension::Angle), Ok(1e6));
+        for text in ["-2e6 rad", "1e30 deg", "1e7*pi"] {
+            assert!(message(text, Dimension::Angle).contains(" turns, and rounding leaves little"), "{text}");
+        }
+        assert_eq!(parse("2e6 m", Dimension::Length), Ok(2e6));
     }
 
     #[test]

@@ -43,8 +43,12 @@ impl Random {
     fn angle(&mut self) -> f64 {
         let degrees = self.below(1440) as f64 / 2.0 - 360.0;
         let whole = f64::to_radians((self.below(9) as f64 - 4.0) * 90.0);
-        let any = self.value();
+        let any = self.any_angle();
         snapped([degrees.to_radians(), whole, any][self.below(3)])
+    }
+
+    fn any_angle(&mut self) -> f64 {
+        self.value().clamp(-1e6, 1e6)
     }
 
     fn vector(&mut self, value: fn(&mut Self) -> f64) -> [f64; 3] {
@@ -147,18 +151,18 @@ impl Random {
         }
         if revolute(joint) {
             effects.push(Effect::StiffnessNonlinearity { joint, added: self.positive(), knee: self.positive() });
-            effects.push(Effect::LostMotion { joint, gap: self.value().abs(), knee: self.positive() });
+            effects.push(Effect::LostMotion { joint, gap: self.any_angle().abs(), knee: self.positive() });
             effects.push(self.hysteresis(joint));
             let [cos1, sin1, cos2, sin2] =
                 [0; 4].map(|_| [0.0, self.unit() / 16.0, -self.unit() / 16.0][self.below(3)]);
             effects.push(Effect::PoseDependentCompliance { joint, cos1, sin1, cos2, sin2 });
-            effects.push(Effect::JointZeroOffset { joint, value: self.value() });
+            effects.push(Effect::JointZeroOffset { joint, value: self.any_angle() });
             let [sin, cos] = [0; 2].map(|_| [0.0, self.unit() * 3e-3][self.below(2)]);
             let order = (1 + self.below(1000)) as f64;
             effects.push(Effect::TransmissionError { joint, order, sin, cos });
         }
         let entry = [DhEntry::A, DhEntry::Alpha, DhEntry::D, DhEntry::Theta][self.below(4)](joint);
-        effects.push(Effect::DhError { entry, value: self.value() });
+        effects.push(Effect::DhError { entry, value: self.any_angle() });
         effects.retain(|_| self.below(2) == 0);
         effects
     }

@@ -148,8 +148,8 @@ impl<'d> Node<'d> {
     /// `value unit`.
     pub fn quantity(&self, dimension: Dimension) -> Option<f64> {
         let value = match self.content {
-            Content::Integer(value) => quantity::finite(*value as f64),
-            Content::Number(value) => quantity::finite(*value),
+            Content::Integer(value) => quantity::checked(*value as f64, dimension),
+            Content::Number(value) => quantity::checked(*value, dimension),
             Content::Text(text) => quantity::parse(text, dimension),
             _ => {
                 self.expected(dimension.name(), dimension.help());
