@@ -79,9 +79,13 @@ impl Axis {
     }
 
     /// The number of a further shape; `None` where the rows do not tell it from
-    /// an offset and a slope.
+    /// an offset and a slope, or have no torque.
     fn further(&self, shape: impl Fn(usize) -> f64) -> Option<Further> {
         let (rows, largest) = (self.torques.len(), self.largest());
+        // An axis without a torque has no slope, and no decomposition ends.
+        if largest == 0.0 {
+            return None;
+        }
         let design = DMatrix::from_fn(rows, 3, |i, k| match k {
             0 => 1.0,
             1 => self.torques[i] / largest,

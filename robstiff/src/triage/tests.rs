@@ -341,3 +341,10 @@ fn clamped_axes_are_asked_too() {
     assert_eq!(names(&of(&|_, torque| -6e-7 * torque)), ["energy"]);
     assert_eq!(names(&of(&|k, _| 1e-5 * k as f64)), ["order"]);
 }
+
+/// A decomposition of what is divided by no torque would not end.
+#[test]
+fn an_axis_without_a_torque_is_not_asked() {
+    let rows = (0..8).map(|k| ClampedRow { line: 2 + k, axis: 1, torque: 0.0, deflection: 1e-6 * k as f64 }).collect();
+    assert_eq!(triage(&campaign(five_axis(), Data::Clamped(rows))).asked().count(), 0);
+}
