@@ -83,16 +83,14 @@ impl Files {
             // A draft that is dropped takes its file with it.
             drafts.push(Draft::new(path, text, &mut made).map_err(|error| cannot_write(path, &error))?);
         }
-        let mut said = String::new();
-        for Growing { path, draft, .. } in &self.grown {
+        let grown = self.grown.iter().map(|Growing { draft, .. }| draft);
+        let drafts: Vec<(&Path, &Draft)> = paths.into_iter().zip(grown.chain(&drafts)).collect();
+        // A device may be full: that shows before any file is in its place.
+        let (streams, files): (Vec<_>, Vec<_>) = drafts.iter().partition(|(_, draft)| draft.is_stream());
+        for (path, draft) in streams.into_iter().chain(files) {
             draft.publish().map_err(|error| cannot_write(path, &error))?;
-            said += &format!("wrote {}\n", path.display());
         }
-        for ((path, _), draft) in self.files.iter().zip(drafts) {
-            draft.publish().map_err(|error| cannot_write(path, &error))?;
-            said += &format!("wrote {}\n", path.display());
-        }
-        Ok(said)
+        Ok(drafts.iter().map(|(path, _)| format!("wrote {}\n", path.display())).collect())
     }
 }
 
@@ -189,6 +187,10 @@ impl Draft {
         let temporary = folder.join(hidden);
         let file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
         Ok((Self::Beside { temporary, target }, Some(file)))
+    }
+
+    fn is_stream(&self) -> bool {
+        matches!(self, Self::Stream { .. })
     }
 
     fn publish(&self) -> io::Result<()> {

@@ -111,6 +111,17 @@ fn the_robot_that_was_read_is_not_overwritten() {
     assert_eq!(fs::read_to_string(&path).unwrap(), text);
 }
 
+/// No file is left where another output cannot be written.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_device_that_is_full_leaves_no_file() {
+    let folder = folder("full");
+    let code = inside(&folder, "arm.rs");
+    let said = fail(1, &["emit", "rv130hsc", "--out", &code, "--json", "/dev/full"]);
+    assert!(said.contains("cannot write /dev/full"), "{said}");
+    assert_eq!(names(&folder), Vec::<String>::new());
+}
+
 #[test]
 fn wrong_usage_is_two_and_help_is_zero() {
     for arguments in [&["polish"][..], &[], &["show"], &["trace", "x.yaml"], &["emit", "a", "b"]] {
