@@ -125,7 +125,7 @@ impl ToolPath {
     pub(crate) fn diagnostic(&self, line: usize, message: String, help: &str) -> Diagnostic {
         let source_line = self.line(line);
         let width = source_line.chars().count();
-        Diagnostic::new(&self.file, Line { number: line, text: &source_line }, (1, width), message, help)
+        Diagnostic::new(&self.file, Line { number: line, text: source_line }, (1, width), message, help)
     }
 }
 

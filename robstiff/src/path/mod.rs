@@ -31,8 +31,8 @@ pub struct ToolPath {
     pub warnings: Vec<String>,
     /// The tool's axis in the TCP's frame.
     tool: Unit<Vector3<f64>>,
-    /// The file's text, to show its lines.
-    text: String,
+    /// The file's lines, to show them.
+    lines: Vec<String>,
 }
 
 /// One point of a [`ToolPath`].

@@ -105,12 +105,18 @@ impl ToolPath {
             rows.collect::<Vec<_>>().into_iter().collect::<Option<Vec<_>>>()
         });
         let (points, warnings) = table.finish(points)?;
-        Ok(Self { file: file.to_owned(), points, warnings, tool, text: text.to_owned() })
+        Ok(Self {
+            file: file.to_owned(),
+            points,
+            warnings,
+            tool,
+            lines: Lines::new(text).all().map(ToOwned::to_owned).collect(),
+        })
     }
 
     /// A line of the file (from 1).
-    pub(super) fn line(&self, line: usize) -> String {
-        Lines::new(&self.text).line(line).to_owned()
+    pub(super) fn line(&self, line: usize) -> &str {
+        self.lines.get(line - 1).map_or("", String::as_str)
     }
 }
 

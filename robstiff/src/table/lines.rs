@@ -28,6 +28,12 @@ impl<'t> Lines<'t> {
         self.text[start(number - 1)..start(number)].trim_end_matches(['\r', '\n'])
     }
 
+    /// All lines, in order.
+    #[cfg(feature = "machining")]
+    pub fn all(&self) -> impl Iterator<Item = &'t str> {
+        (1..=self.starts.len()).map(|number| self.line(number))
+    }
+
     /// The number of the line, from 1, of what comes first from a byte on. Where a reader
     /// began to look for a row is before the empty lines that it skips.
     pub fn number_at(&self, byte: usize) -> usize {
