@@ -3,6 +3,7 @@
 use super::covariance::Covariance;
 use super::covariance::contrasts::Level;
 use super::samples::Samples;
+use crate::probability::chi_square_tail;
 
 /// A sum of squares due to noise alone, and its degrees of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +29,11 @@ impl PureError {
         }
         let unequal = if sum > 0.0 { (squares * freedom as f64 / (sum * sum)).max(1.0) } else { 1.0 };
         Self { sum, freedom, unequal }
+    }
+
+    /// The probability of so much if one reading has this noise (m), by chi-square.
+    pub fn tail_beside(&self, noise: f64) -> Option<f64> {
+        chi_square_tail(self.sum / (noise * noise), self.freedom as f64)
     }
 
     /// The variance of one reading, if enough was repeated to say.

@@ -3,7 +3,6 @@
 use super::bench::Bench;
 use crate::identify::noise::PureError;
 use crate::identify::prepare::Prepared;
-use crate::probability::chi_square_tail;
 
 /// What the noise of one displacement reading is held to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,12 +18,11 @@ pub enum Yardstick {
 impl Yardstick {
     /// What there is: a declared noise before one from repetitions.
     pub(super) fn of(prepared: &Prepared<'_>, bench: &Bench<'_>) -> Self {
-        let repeated = bench.repeated();
-        match (prepared.declared_noise, repeated.variance()) {
-            (Some(noise), _) => Self::Declared(noise * noise),
-            (None, Some(_)) => Self::Repeated(repeated),
-            (None, None) => Self::Unknown,
+        if let Some(noise) = prepared.declared_noise {
+            return Self::Declared(noise * noise);
         }
+        let repeated = bench.repeated();
+        if repeated.variance().is_some() { Self::Repeated(repeated) } else { Self::Unknown }
     }
 }
 
@@ -35,8 +33,7 @@ const NOISIER: f64 = 0.01;
 pub(super) fn noisier_than_declared(prepared: &Prepared<'_>, bench: &Bench<'_>) -> Option<f64> {
     let (declared, repeated) = (prepared.declared_noise?, bench.repeated());
     let variance = repeated.variance()?;
-    let tail = chi_square_tail(repeated.sum / (declared * declared), repeated.freedom as f64)?;
-    (tail <= NOISIER).then(|| variance.sqrt())
+    (repeated.tail_beside(declared)? <= NOISIER).then(|| variance.sqrt())
 }
 
 #[cfg(test)]

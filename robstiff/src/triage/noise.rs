@@ -49,10 +49,9 @@ pub(super) fn replicates(evidence: &Evidence<'_>) -> Verdict {
     let Some(variance) = pure.variance() else {
         return Err(String::from("the same load at the same pose again, a dozen times in all"));
     };
-    let freedom = pure.freedom as f64;
     let declared = evidence.campaign.noise.displacement;
     let too_large = declared.is_some_and(|declared| evidence.covariance.is_far_below(declared));
-    let tail = declared.and_then(|declared| chi_square_tail(freedom * variance / (declared * declared), freedom));
+    let tail = declared.and_then(|declared| pure.tail_beside(declared));
     let p_value = tail.map(|tail| if too_large { 1.0 - tail } else { tail });
     let noise = micrometres(variance.sqrt());
     let declared = declared.map(|declared| format!(", {} are declared", micrometres(declared))).unwrap_or_default();
