@@ -136,11 +136,12 @@ fn place_of_byte(text: &str, message: &str) -> Option<(usize, usize)> {
 
 fn syntax_problem(file: &str, text: &str, error: &serde_yaml::Error) -> Diagnostic {
     let told = error.to_string();
-    let place = place_of_byte(text, &told).or_else(|| error.location().map(|at| (at.line(), at.column())));
-    // The parser does not tell where a second document begins.
-    let second = if place.is_none() { second_document(text) } else { None };
-    let outdented = if place.or(second.map(|line| (line, 1))).is_none() { outdented(text) } else { None };
-    let (line, column) = place.or_else(|| Some((second.or(outdented)?, 1))).unwrap_or((1, 1));
+    let place = place_of_byte(text, &told)
+        .or_else(|| error.location().map(|at| (at.line(), at.column())))
+        // The parser does not tell where a second document begins, nor what it takes for one.
+        .or_else(|| Some((second_document(text)?, 1)));
+    let outdented = if place.is_none() { outdented(text) } else { None };
+    let (line, column) = place.or(outdented.map(|line| (line, 1))).unwrap_or((1, 1));
     // The place is shown on its own; a second place in the message is of use.
     let message = told.replacen(&format!(" at line {line} column {column}"), "", 1);
     let message = match outdented {

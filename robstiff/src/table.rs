@@ -10,7 +10,7 @@ use std::path::Path;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use robstiff_robots::quantity::{Dimension, finite, scale};
+use robstiff_robots::quantity::{Dimension, QuantityError, finite, scale};
 use robstiff_robots::{Diagnostic, Diagnostics, Line, ReadError};
 
 pub use lines::Lines;
@@ -235,13 +235,10 @@ impl<'t> Table<'t> {
         let text = &record.fields[column.index];
         let number = text.parse::<f64>().map(|number| number * column.scale);
         let problem = match number {
-            Ok(number) if number.is_finite() => match finite(number) {
-                Ok(number) => return Some(number),
-                Err(error) => {
-                    self.report(record.line, column.index, &error.message, &error.help);
-                    return None;
-                }
-            },
+            Ok(number) if number.is_finite() => {
+                let report = |error: QuantityError| self.report(record.line, column.index, &error.message, &error.help);
+                return finite(number).map_err(report).ok();
+            }
             Ok(_) => format!("`{text}` is not finite"),
             Err(_) if text.is_empty() => "a number is missing".to_owned(),
             Err(_) => format!("`{text}` is not a number"),

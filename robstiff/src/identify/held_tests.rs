@@ -1,12 +1,12 @@
 //! How sure numbers are beside others that the readings do not tell.
 
-use std::string::{String, ToString};
-use std::vec;
+use std::string::ToString;
 use std::vec::Vec;
 
 use robstiff_robots::{Description, catalogue};
 
 use super::{Identification, identify};
+use crate::campaign::made::campaign;
 use crate::campaign::{Campaign, Noise};
 use crate::simulate::{Scenario, simulate};
 
@@ -29,17 +29,8 @@ fn identified(seed: usize) -> Option<(Identification, Description)> {
     let scenario = ONE_POSE.replace("SEED", &seed.to_string());
     let scenario = Scenario::parse("try.yaml", &scenario, &robot).expect("a scenario");
     let simulated = simulate(&robot, &scenario).expect("it can be measured");
-    let campaign = Campaign {
-        name: String::new(),
-        path: "".into(),
-        robot_path: "".into(),
-        observations_path: "".into(),
-        robot,
-        data: simulated.data,
-        noise: Noise { displacement: Some(8e-6), rotation: None },
-        holdout: None,
-        warnings: vec![],
-    };
+    let noise = Noise { displacement: Some(8e-6), rotation: None };
+    let campaign = Campaign { noise, ..campaign(robot, simulated.data) };
     Some((identify(&campaign).ok()?, simulated.truth))
 }
 
