@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use super::{Chain, Tree};
 use crate::{Description, JointKind, Placement};
 
-const ARM: &str = include_str!("../../../robstiff/cli/docs/files/arm.urdf");
+const ARM: &str = include_str!("arm.urdf");
 
 /// One turn and one shift after the other: the table's own meaning.
 fn by_table(robot: &Description, q: &[f64]) -> Matrix4<f64> {
