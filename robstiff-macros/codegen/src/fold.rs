@@ -218,7 +218,7 @@ mod tests {
         assert_eq!(x * one, x);
         assert!((x * zero).is_zero() && (x - x).is_zero());
         assert_eq!(g.number(-1.0) * x, -x);
-        assert_eq!(g.parameter("A1", 1.0, ""), one);
+        assert_eq!(g.named_number("A1", 1.0, ""), one);
     }
 
     #[test]
@@ -245,7 +245,7 @@ mod tests {
     fn constants_meet_and_keep_their_names() {
         let g = Graph::new();
         let x = g.coordinate(0);
-        let (a, h) = (g.parameter("A1", 0.41, ""), g.parameter("H1", 3e-7, ""));
+        let (a, h) = (g.named_number("A1", 0.41, ""), g.named_number("H1", 3e-7, ""));
         let product = h * (a * x);
         assert_eq!(product, (h * a) * x);
         let Op::Mul(constant, _) = product.op() else { panic!("a product") };

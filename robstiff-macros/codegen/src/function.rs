@@ -72,7 +72,7 @@ impl Function {
                     cost.add += 4;
                 }
                 Op::Number(_)
-                | Op::Parameter(_)
+                | Op::NamedNumber(_)
                 | Op::Coordinate(_)
                 | Op::Wrench(_)
                 | Op::Play(..)
@@ -136,7 +136,7 @@ impl Function {
         for (id, node) in nodes.iter().enumerate() {
             values.push(match node.op {
                 Op::Number(bits) => f64::from_bits(bits),
-                Op::Parameter(index) => self.graph.parameters()[index].value,
+                Op::NamedNumber(index) => self.graph.named_numbers()[index].value,
                 Op::Coordinate(index) => coordinates[index],
                 Op::Wrench(index) => wrench[index],
                 Op::Play(joint, index) => plays[joint][index],

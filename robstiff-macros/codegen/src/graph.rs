@@ -21,7 +21,7 @@ pub enum Op {
     /// A number, by its bits.
     Number(u64),
     /// A number of the description that has a name.
-    Parameter(usize),
+    NamedNumber(usize),
     /// Joint coordinate, from 0 (rad or m).
     Coordinate(usize),
     /// Component of the wrench at the TCP, from 0 (N, then Nm).
@@ -101,7 +101,7 @@ impl Op {
             Self::PlusProduct(a, b, c) => Self::PlusProduct(of(a), of(b), of(c)),
             Self::Column(entries) => Self::Column(entries.map(of)),
             Self::Number(_)
-            | Self::Parameter(_)
+            | Self::NamedNumber(_)
             | Self::Coordinate(_)
             | Self::Wrench(_)
             | Self::Play(..)
@@ -133,7 +133,7 @@ impl Op {
 
 /// A number of the description under the name that generated code gives it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Parameter {
+pub struct NamedNumber {
     /// The name in generated code, e.g. `A2`.
     pub name: String,
     /// Its value in SI units.
@@ -175,7 +175,7 @@ pub struct BlockTurn {
 pub struct Graph {
     nodes: RefCell<Vec<Node>>,
     known: RefCell<HashMap<Op, Id>>,
-    parameters: RefCell<Vec<Parameter>>,
+    named_numbers: RefCell<Vec<NamedNumber>>,
     angles: RefCell<Vec<Angle>>,
     deviations: RefCell<BTreeMap<usize, (Id, Id)>>,
     hints: RefCell<BTreeMap<Id, String>>,
@@ -194,9 +194,9 @@ impl Graph {
         Ref::map(self.nodes.borrow(), Vec::as_slice)
     }
 
-    /// The named numbers, used or not, which [`Op::Parameter`] indexes.
-    pub fn parameters(&self) -> Ref<'_, [Parameter]> {
-        Ref::map(self.parameters.borrow(), Vec::as_slice)
+    /// The named numbers, used or not, which [`Op::NamedNumber`] indexes.
+    pub fn named_numbers(&self) -> Ref<'_, [NamedNumber]> {
+        Ref::map(self.named_numbers.borrow(), Vec::as_slice)
     }
 
     /// The angles, which [`Op::Sin`] and [`Op::Cos`] index.
@@ -224,17 +224,17 @@ impl Graph {
 
     /// A number of the description. 0 and +-1 are written without their name, so that
     /// they fold. The same name always stands for the same value.
-    pub fn parameter(&self, name: &str, value: f64, doc: &str) -> Sym<'_> {
-        let mut parameters = self.parameters.borrow_mut();
-        let index = parameters.iter().position(|p| p.name == name).unwrap_or_else(|| {
-            parameters.push(Parameter { name: name.to_owned(), value, doc: doc.to_owned() });
-            parameters.len() - 1
+    pub fn named_number(&self, name: &str, value: f64, doc: &str) -> Sym<'_> {
+        let mut named_numbers = self.named_numbers.borrow_mut();
+        let index = named_numbers.iter().position(|p| p.name == name).unwrap_or_else(|| {
+            named_numbers.push(NamedNumber { name: name.to_owned(), value, doc: doc.to_owned() });
+            named_numbers.len() - 1
         });
-        debug_assert_eq!(parameters[index].value.to_bits(), value.to_bits(), "two values for {name}");
+        debug_assert_eq!(named_numbers[index].value.to_bits(), value.to_bits(), "two values for {name}");
         if value == 0.0 || value.abs() == 1.0 {
             return self.number(value);
         }
-        self.intern(Op::Parameter(index), Some(value))
+        self.intern(Op::NamedNumber(index), Some(value))
     }
 
     /// Joint coordinate `index`, from 0.

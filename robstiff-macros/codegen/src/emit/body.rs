@@ -239,7 +239,7 @@ impl<'f> Writer<'f> {
                 -1.0 => (quote!(-T::one()), Binding::Sign),
                 value => unreachable!("{value} has a line"),
             },
-            Op::Parameter(_) => unreachable!("a parameter has a line"),
+            Op::NamedNumber(_) => unreachable!("a named number has a line"),
             Op::Coordinate(index) => {
                 let index = Literal::usize_unsuffixed(index);
                 (quote!(q[#index]), Binding::Unit)
@@ -280,15 +280,15 @@ impl<'f> Writer<'f> {
                 let literal = Literal::f64_unsuffixed(value.abs());
                 if value < 0.0 { (quote!(-#literal), Binding::Sign) } else { (quote!(#literal), Binding::Unit) }
             }
-            Op::Parameter(index) => {
-                let name = format_ident!("{}", graph.parameters()[index].name);
+            Op::NamedNumber(index) => {
+                let name = format_ident!("{}", graph.named_numbers()[index].name);
                 (quote!(Self::#name), Binding::Unit)
             }
             Op::Recip(a) => {
                 let a = self.constant(a, Binding::Sign);
                 (quote!(1.0 / #a), Binding::Product)
             }
-            op => unreachable!("{op:?} of constants: nothing takes the root of a parameter"),
+            op => unreachable!("{op:?} of constants: nothing takes the root of a named number"),
         });
         if binding < context { quote!((#expression)) } else { expression }
     }

@@ -23,7 +23,7 @@ const OPERANDS_PER_LINE: usize = 6;
 
 impl Lines {
     /// Decides on the lines, and chooses their names: hints of the algorithms, names of
-    /// parameters, and numbers for the rest; never one name twice.
+    /// named numbers, and numbers for the rest; never one name twice.
     pub fn of(function: &Function, turns: &Turns, fusion: &Fusion) -> Self {
         let mut needed = needed(function);
         needed.extend(turns.results());
@@ -158,11 +158,11 @@ fn needs_constant(op: Op, constant: Option<f64>) -> bool {
     }
 }
 
-/// `a2` for a parameter, `h5_a5` for a product of parameters.
+/// `a2` for a named number, `h5_a5` for a product of them.
 fn constant_name(function: &Function, id: Id) -> Option<String> {
     let graph = function.graph();
     match graph.nodes()[id].op {
-        Op::Parameter(index) => Some(graph.parameters()[index].name.to_lowercase()),
+        Op::NamedNumber(index) => Some(graph.named_numbers()[index].name.to_lowercase()),
         Op::Mul(a, b) => {
             let name = format!("{}_{}", constant_name(function, a)?, constant_name(function, b)?);
             (name.len() <= 16).then_some(name)

@@ -10,7 +10,7 @@ use super::body::{Body, Reader, body, handing_over};
 use super::calculations::{Build, CALCULATIONS, Generated, compliance_entries};
 use super::facts::{FACTS, Fact, number};
 use crate::function::{Cost, Function};
-use crate::graph::Parameter;
+use crate::graph::NamedNumber;
 use crate::symbolic;
 
 /// Where generated code comes from and where it will stand.
@@ -131,15 +131,15 @@ pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Gene
         docs.push(String::new());
         docs.extend(lines(&robot.source));
     }
-    let mut parameters: Vec<Parameter> = Vec::new();
-    for parameter in functions.iter().flat_map(|generated| generated.function.graph().parameters().to_vec()) {
-        if !parameters.contains(&parameter) {
-            parameters.push(parameter);
+    let mut numbers: Vec<NamedNumber> = Vec::new();
+    for named in functions.iter().flat_map(|generated| generated.function.graph().named_numbers().to_vec()) {
+        if !numbers.contains(&named) {
+            numbers.push(named);
         }
     }
-    let constants = parameters.iter().map(|parameter| {
-        let (doc, value) = (format!(" {}", parameter.doc), number(parameter.value));
-        let name = format_ident!("{}", parameter.name);
+    let constants = numbers.iter().map(|named| {
+        let (doc, value) = (format!(" {}", named.doc), number(named.value));
+        let name = format_ident!("{}", named.name);
         quote! {
             #[doc = #doc]
             pub const #name: f64 = #value;

@@ -70,7 +70,7 @@ fn steps<'g>(g: &'g Graph, robot: &Description, aside: &[Option<Sym<'g>>], serie
         let number = i + 1;
         let entry = |name: &str, value: f64, stated: f64, what: &str| {
             let corrected = if value == stated { "" } else { ", corrected" };
-            g.parameter(&format!("{name}{number}"), value, &format!("{what} of row {number}{corrected} (m)."))
+            g.named_number(&format!("{name}{number}"), value, &format!("{what} of row {number}{corrected} (m)."))
         };
         let d = entry("D", joint.d, stated.d, "DH offset d");
         let a = entry("A", joint.a, stated.a, "DH length a");
@@ -157,7 +157,7 @@ fn place<'g>(g: &'g Graph, steps: &mut Vec<Step<'g>>, placement: &Placement, nam
         return;
     }
     let at = |axis: usize, letter| {
-        g.parameter(&format!("{name}_{letter}"), placement.xyz[axis], &format!("{what}, along {letter} (m)."))
+        g.named_number(&format!("{name}_{letter}"), placement.xyz[axis], &format!("{what}, along {letter} (m)."))
     };
     let [roll, pitch, yaw] = placement.rpy;
     steps.push(Step::Move(Vec3([at(0, 'X'), at(1, 'Y'), at(2, 'Z')])));
@@ -176,8 +176,8 @@ fn tilt<'g>(g: &'g Graph, axis: usize, angle: f64, name: &str, what: &str) -> Op
             (g.number(s), g.number(c))
         }
         None => (
-            g.parameter(&format!("SIN_{name}"), angle.sin(), &format!("Sine of {what}.")),
-            g.parameter(&format!("COS_{name}"), angle.cos(), &format!("Cosine of {what}.")),
+            g.named_number(&format!("SIN_{name}"), angle.sin(), &format!("Sine of {what}.")),
+            g.named_number(&format!("COS_{name}"), angle.cos(), &format!("Cosine of {what}.")),
         ),
     };
     Some(Step::Tilt(Tilt { axis, sin_cos }))

@@ -64,7 +64,7 @@ pub fn joint_compliances<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> 
             JointKind::Revolute => "rad/Nm",
             JointKind::Prismatic => "m/N",
         };
-        g.parameter(&format!("H{i}"), joint.compliance(), &format!("Compliance of joint {i} ({unit})."))
+        g.named_number(&format!("H{i}"), joint.compliance(), &format!("Compliance of joint {i} ({unit})."))
     };
     (1..).zip(&robot.joints).map(joint).collect()
 }
@@ -88,7 +88,11 @@ pub fn parameters<'g>(g: &'g Graph, effect: &Effect) -> Vec<Sym<'g>> {
             "" => String::new(),
             unit => format!(" ({unit})"),
         };
-        g.parameter(&format!("{}{suffix}", parameter.symbol), value, &format!("{} of {place}{unit}.", parameter.what))
+        g.named_number(
+            &format!("{}{suffix}", parameter.symbol),
+            value,
+            &format!("{} of {place}{unit}.", parameter.what),
+        )
     };
     effect.parameters().map(named).collect()
 }

@@ -45,10 +45,11 @@ struct Link<'g> {
 
 fn link<'g>(g: &'g Graph, robot: &Description, i: usize) -> Link<'g> {
     let (link, number) = (robot.links[i], i + 1);
-    let weight = g.parameter(&format!("WEIGHT{number}"), GRAVITY * link.mass, &format!("Weight of link {number} (N)."));
+    let weight =
+        g.named_number(&format!("WEIGHT{number}"), GRAVITY * link.mass, &format!("Weight of link {number} (N)."));
     let along = |axis: usize, letter: &str| {
         let doc = format!("Centre of mass of link {number} in its frame, along {} (m).", letter.to_lowercase());
-        g.parameter(&format!("CENTRE{number}_{letter}"), link.center_of_mass[axis], &doc)
+        g.named_number(&format!("CENTRE{number}_{letter}"), link.center_of_mass[axis], &doc)
     };
     Link { weight, centre: Vec3([along(0, "X"), along(1, "Y"), along(2, "Z")]) }
 }

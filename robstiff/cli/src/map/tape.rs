@@ -128,7 +128,7 @@ impl Program {
                 Op::Recip(a) => values[a].recip(),
                 Op::Max(a, b) => values[a].max(values[b]),
                 Op::Min(a, b) => values[a].min(values[b]),
-                Op::Number(_) | Op::Parameter(_) | Op::Wrench(_) | Op::Play(..) => {
+                Op::Number(_) | Op::NamedNumber(_) | Op::Wrench(_) | Op::Play(..) => {
                     unreachable!("these are there from the start")
                 }
                 op => unreachable!("compliance and deflection are computed in numbers, without {op:?}"),
