@@ -31,7 +31,7 @@ pub use laws::{
     commanded_rates, deviation, joint_turns, own_weight_torque, plays, share_of_weight, turn, turn_about, turns_under,
     unloaded_turn,
 };
-pub use robstiff_robots::effect::physics::Spring as Parameter;
+pub use robstiff_robots::effect::physics::Spring;
 
 /// Where the parts of a robot are in one pose; every frame a homogeneous
 /// 4 x 4 matrix (lengths in m) in the base frame.
@@ -64,9 +64,9 @@ impl<T: Real> Geometry<'_, T> {
         }
     }
 
-    /// What a parameter of value 1 adds to the compliance at the TCP in the
+    /// What a spring of value 1 adds to the compliance at the TCP in the
     /// base frame, 6 x 6 symmetric; its units are those of a compliance over
-    /// those of the parameter.
+    /// those of the spring.
     ///
     /// A link is a uniform round beam: it bends at every point `o(xi)` between
     /// its ends by the same compliance per length, and the integral of
@@ -76,23 +76,23 @@ impl<T: Real> Geometry<'_, T> {
     ///
     /// # Panics
     /// If there is no such joint or link.
-    pub fn unit_compliance(&self, parameter: Parameter) -> Matrix6<T> {
+    pub fn unit_compliance(&self, spring: Spring) -> Matrix6<T> {
         let outer = |s: Vector6<T>| s * s.transpose();
-        match parameter {
-            Parameter::Joint(joint) => outer(self.joint_twist(joint)),
-            Parameter::Transverse(joint) => self.tilt(&self.joint_frames[joint - 1]),
-            Parameter::LinkBending(link) => self.bending(link),
-            Parameter::LinkTorsion(link) => {
+        match spring {
+            Spring::Joint(joint) => outer(self.joint_twist(joint)),
+            Spring::Transverse(joint) => self.tilt(&self.joint_frames[joint - 1]),
+            Spring::LinkBending(link) => self.bending(link),
+            Spring::LinkTorsion(link) => {
                 let lever = self.lever(&self.joint_frames[link - 1]);
                 lever * self.along_link(link) * lever.transpose()
             }
-            Parameter::BaseTilt => self.tilt(&self.base),
-            Parameter::BaseTranslation | Parameter::ToolTranslation => translations() * translations().transpose(),
-            Parameter::ToolRotation => {
+            Spring::BaseTilt => self.tilt(&self.base),
+            Spring::BaseTranslation | Spring::ToolTranslation => translations() * translations().transpose(),
+            Spring::ToolRotation => {
                 let lever = self.lever(&self.flange);
                 lever * lever.transpose()
             }
-            Parameter::Coupling([i, j]) => {
+            Spring::Coupling([i, j]) => {
                 let product = self.joint_twist(i) * self.joint_twist(j).transpose();
                 product + product.transpose()
             }
@@ -147,7 +147,7 @@ impl<T: Real> Geometry<'_, T> {
 }
 
 /// The linear elements of an effect, with their compliances.
-pub fn parameters(effect: &Effect) -> impl Iterator<Item = (Parameter, f64)> + use<> {
+pub fn springs(effect: &Effect) -> impl Iterator<Item = (Spring, f64)> + use<> {
     let numbers = effect.numbers();
     effect.springs().map(move |(k, spring)| (spring, numbers[k]))
 }
@@ -250,7 +250,7 @@ where
     (0..N + effects.len()).map(move |k| {
         let geometry = pose.geometry();
         match k.checked_sub(N) {
-            None => (Element::Joint(k + 1), geometry.unit_compliance(Parameter::Joint(k + 1)) * T::of(own[k])),
+            None => (Element::Joint(k + 1), geometry.unit_compliance(Spring::Joint(k + 1)) * T::of(own[k])),
             Some(k) => {
                 (Element::Effect(&effects[k]), effect_compliance(&geometry, &effects[k], own.as_slice(), q.as_slice()))
             }
@@ -281,7 +281,7 @@ where
 {
     let (pose, own, torques) = (Pose::of(robot, q), robot.joint_compliance(), robot.joint_torques(q, wrench));
     let geometry = pose.geometry();
-    let joint = |i: usize| geometry.unit_compliance(Parameter::Joint(i + 1)) * T::of(own[i]);
+    let joint = |i: usize| geometry.unit_compliance(Spring::Joint(i + 1)) * T::of(own[i]);
     let joints = (0..N).fold(Matrix6::zeros(), |sum, i| sum + joint(i));
     robot.effects().iter().fold(joints, |sum, effect| {
         sum + with_law(&geometry, effect, |joint| {
@@ -297,10 +297,10 @@ fn with_law<T: Real>(
     effect: &Effect,
     slope: impl FnOnce(usize) -> Option<T>,
 ) -> Matrix6<T> {
-    let springs = parameters(effect)
-        .fold(Matrix6::zeros(), |sum, (parameter, value)| sum + geometry.unit_compliance(parameter) * T::of(value));
-    let law = effect.row().and_then(|joint| Some(geometry.unit_compliance(Parameter::Joint(joint)) * slope(joint)?));
-    law.map_or(springs, |law| springs + law)
+    let sum = springs(effect)
+        .fold(Matrix6::zeros(), |sum, (spring, value)| sum + geometry.unit_compliance(spring) * T::of(value));
+    let law = effect.row().and_then(|joint| Some(geometry.unit_compliance(Spring::Joint(joint)) * slope(joint)?));
+    law.map_or(sum, |law| sum + law)
 }
 
 /// Which share of the displacement along a force comes from one element,

@@ -8,7 +8,7 @@ use nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
 use robstiff_robots::angle::{quarter_turns, sin_cos_of_turns};
 use robstiff_robots::{Description, Joint, Placement};
 
-use crate::elements::{Parameter, Pose, contributions, deviation, parameters, plays, turn};
+use crate::elements::{Pose, Spring, contributions, deviation, plays, springs, turn};
 use crate::{Convention, Effect, JointKind, Real, Robot, State};
 use sag::Sag;
 
@@ -235,12 +235,12 @@ impl<const N: usize> Robot<N> for Generic<N> {
         let geometry = pose.geometry();
         let mut compliance = Matrix6::zeros();
         for i in 0..N {
-            compliance += geometry.unit_compliance(Parameter::Joint(i + 1)) * T::of(self.compliance[i]);
+            compliance += geometry.unit_compliance(Spring::Joint(i + 1)) * T::of(self.compliance[i]);
         }
         let mut beyond = Vector6::zeros();
         for effect in &self.effects {
-            for (parameter, value) in parameters(effect) {
-                compliance += geometry.unit_compliance(parameter) * T::of(value);
+            for (spring, value) in springs(effect) {
+                compliance += geometry.unit_compliance(spring) * T::of(value);
             }
             let Some(i) = effect.row().map(|joint| joint - 1) else { continue };
             let twist = geometry.joint_twist(i + 1);

@@ -5,7 +5,7 @@ use std::vec::Vec;
 use nalgebra::{SVector, Vector6};
 
 use super::{Deviation, Load};
-use crate::elements::{Element, Parameter, Pose, parameters, plays, turn};
+use crate::elements::{Element, Pose, Spring, plays, springs, turn};
 use crate::path::SolvedPath;
 use crate::{Robot, State};
 
@@ -21,12 +21,12 @@ pub fn parts<'r, const N: usize, R: Robot<N>>(
 ) -> impl Iterator<Item = (Element<'r>, Vector6<f64>)> + use<'r, N, R> {
     let (pose, own) = (Pose::of(robot, q), robot.joint_compliance());
     let geometry = pose.geometry();
-    let joint = |i: usize| geometry.unit_compliance(Parameter::Joint(i + 1)) * wrench * own[i];
+    let joint = |i: usize| geometry.unit_compliance(Spring::Joint(i + 1)) * wrench * own[i];
     let mut found: Vec<_> = (0..N).map(|i| (Element::Joint(i + 1), joint(i))).collect();
     for effect in robot.effects() {
         let mut part = Vector6::zeros();
-        for (parameter, value) in parameters(effect) {
-            part += geometry.unit_compliance(parameter) * wrench * value;
+        for (spring, value) in springs(effect) {
+            part += geometry.unit_compliance(spring) * wrench * value;
         }
         if let Some(i) = effect.row().map(|joint| joint - 1) {
             let twist = geometry.joint_twist(i + 1);

@@ -16,7 +16,7 @@ use std::vec::Vec;
 use nalgebra::{Isometry3, Matrix4, Matrix6, SVector, Vector3, Vector6};
 
 use super::laws::{plays, turns_under};
-use super::{Parameter, Pose, parameters};
+use super::{Pose, Spring, springs};
 use crate::{Robot, State};
 
 /// The arm is closer to its equilibrium by some 1e-3 with each pass, a very soft one
@@ -138,15 +138,15 @@ fn parts<const N: usize>(robot: &impl Robot<N>, q: &SVector<f64, N>) -> Vec<Part
     // Before, at, and behind the axis of a joint, counted from 1.
     let mut parts: Vec<((usize, usize), Part)> =
         (0..N).map(|joint| ((joint + 1, 1), Part::Joint(joint, geometry.joint_twist(joint + 1)))).collect();
-    for (parameter, value) in robot.effects().iter().flat_map(parameters) {
-        let at = match parameter {
-            Parameter::BaseTilt | Parameter::BaseTranslation => (0, 0),
-            Parameter::Transverse(joint) => (joint, 0),
-            Parameter::LinkBending(link) | Parameter::LinkTorsion(link) => (link, 2),
-            Parameter::ToolRotation | Parameter::ToolTranslation => (N + 1, 0),
-            Parameter::Joint(_) | Parameter::Coupling(_) => continue,
+    for (spring, value) in robot.effects().iter().flat_map(springs) {
+        let at = match spring {
+            Spring::BaseTilt | Spring::BaseTranslation => (0, 0),
+            Spring::Transverse(joint) => (joint, 0),
+            Spring::LinkBending(link) | Spring::LinkTorsion(link) => (link, 2),
+            Spring::ToolRotation | Spring::ToolTranslation => (N + 1, 0),
+            Spring::Joint(_) | Spring::Coupling(_) => continue,
         };
-        parts.push((at, Part::Spring(geometry.unit_compliance(parameter) * value)));
+        parts.push((at, Part::Spring(geometry.unit_compliance(spring) * value)));
     }
     parts.sort_by_key(|(at, _)| *at);
     parts.into_iter().map(|(_, part)| part).collect()

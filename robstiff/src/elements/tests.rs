@@ -14,7 +14,7 @@ fn cantilever() -> Pose<2, f64> {
 
 #[test]
 fn link_bends_like_a_cantilever() {
-    let bending = cantilever().geometry().unit_compliance(Parameter::LinkBending(1));
+    let bending = cantilever().geometry().unit_compliance(Spring::LinkBending(1));
     // With the parameter L / EI = 1: L^3/3EI, L^2/2EI and L/EI at the tip.
     let (deflection, slope, turn) = (LENGTH * LENGTH / 3.0, LENGTH / 2.0, 1.0);
     #[rustfmt::skip]
@@ -31,7 +31,7 @@ fn link_bends_like_a_cantilever() {
 
 #[test]
 fn link_twists_about_its_length() {
-    let torsion = cantilever().geometry().unit_compliance(Parameter::LinkTorsion(1));
+    let torsion = cantilever().geometry().unit_compliance(Spring::LinkTorsion(1));
     let mut expected = Matrix6::zeros();
     expected[(3, 3)] = 1.0;
     assert_eq!(torsion, expected);
@@ -58,7 +58,7 @@ fn link_is_many_small_springs() {
                     sum += s * s.transpose() / f64::from(springs);
                 }
             }
-            let bending = geometry.unit_compliance(Parameter::LinkBending(link));
+            let bending = geometry.unit_compliance(Spring::LinkBending(link));
             assert!((bending - sum).amax() < 1e-6 * sum.amax());
         }
     }
@@ -70,8 +70,8 @@ fn link_without_length_adds_nothing() {
     let robot = Generic::<6>::new(&odd()).unwrap();
     for q in poses() {
         let pose = Pose::of(&robot, &q);
-        assert_eq!(pose.geometry().unit_compliance(Parameter::LinkBending(4)), Matrix6::zeros());
-        assert_eq!(pose.geometry().unit_compliance(Parameter::LinkTorsion(4)), Matrix6::zeros());
+        assert_eq!(pose.geometry().unit_compliance(Spring::LinkBending(4)), Matrix6::zeros());
+        assert_eq!(pose.geometry().unit_compliance(Spring::LinkTorsion(4)), Matrix6::zeros());
     }
 }
 
@@ -96,17 +96,17 @@ fn patterns_are_compliances_moved_to_the_tool() {
         let flange = robot.link_frames(&q)[5];
         let joint = joint_frame(&robot, &q, 3);
         assert_eq!(joint, robot.link_frames(&q)[2]);
-        for (parameter, frame, diagonal) in [
-            (Parameter::Transverse(3), joint, [0.0, 0.0, 0.0, 1.0, 1.0, 0.0]),
-            (Parameter::Joint(4), joint_frame(&robot, &q, 4), [0.0, 0.0, 0.0, 0.0, 0.0, 1.0]),
-            (Parameter::Joint(3), joint, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
-            (Parameter::BaseTilt, base, [0.0, 0.0, 0.0, 1.0, 1.0, 0.0]),
-            (Parameter::BaseTranslation, base, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
-            (Parameter::ToolRotation, flange, [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]),
-            (Parameter::ToolTranslation, flange, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
+        for (spring, frame, diagonal) in [
+            (Spring::Transverse(3), joint, [0.0, 0.0, 0.0, 1.0, 1.0, 0.0]),
+            (Spring::Joint(4), joint_frame(&robot, &q, 4), [0.0, 0.0, 0.0, 0.0, 0.0, 1.0]),
+            (Spring::Joint(3), joint, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
+            (Spring::BaseTilt, base, [0.0, 0.0, 0.0, 1.0, 1.0, 0.0]),
+            (Spring::BaseTranslation, base, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
+            (Spring::ToolRotation, flange, [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]),
+            (Spring::ToolTranslation, flange, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
         ] {
-            let error = (geometry.unit_compliance(parameter) - moved(&frame, diagonal)).amax();
-            assert!(error < 1e-14, "{parameter:?}: {error:e}");
+            let error = (geometry.unit_compliance(spring) - moved(&frame, diagonal)).amax();
+            assert!(error < 1e-14, "{spring:?}: {error:e}");
         }
     }
 }
@@ -123,7 +123,7 @@ fn joint_frames_follow_the_convention() {
 fn coupling_is_an_entry_beside_the_diagonal() {
     let robot = Generic::<5>::new(&five_axis()).unwrap();
     for q in poses() {
-        let pattern = Pose::of(&robot, &q).geometry().unit_compliance(Parameter::Coupling([2, 4]));
+        let pattern = Pose::of(&robot, &q).geometry().unit_compliance(Spring::Coupling([2, 4]));
         let mut entry = nalgebra::Matrix5::zeros();
         (entry[(1, 3)], entry[(3, 1)]) = (1.0, 1.0);
         let jacobian = robot.jacobian(&q);

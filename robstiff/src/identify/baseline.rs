@@ -9,7 +9,7 @@ use robstiff_robots::{Description, Part};
 use super::normal::{Normal, Sign, independent};
 use super::samples::Column;
 use crate::Effect;
-use crate::elements::{Parameter, parameters};
+use crate::elements::{Spring, springs};
 
 /// One number of a description that measurements can change.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ pub struct Declared {
 /// of its effects.
 pub fn declared(description: &Description) -> Vec<Declared> {
     let joints = description.joints.iter().enumerate().map(|(i, joint)| Declared {
-        column: Column::Linear(Parameter::Joint(i + 1)),
+        column: Column::Spring(Spring::Joint(i + 1)),
         value: joint.compliance(),
         sign: Sign::Nonnegative,
         effect: None,
@@ -55,15 +55,15 @@ pub fn columns_of(effect: &Effect) -> Vec<(Column, f64)> {
             let in_use = operators.filter(|(_, (_, weight))| *weight != 0.0);
             in_use.map(|(operator, (radius, weight))| (Column::Play { joint, operator, radius }, weight)).collect()
         }
-        _ => parameters(effect).map(|(parameter, value)| (Column::Linear(parameter), value)).collect(),
+        _ => springs(effect).map(|(spring, value)| (Column::Spring(spring), value)).collect(),
     }
 }
 
 /// Compliances and play are not negative; a coupling and a change with torque can be.
 pub fn sign_of(column: Column) -> Sign {
     match column {
-        Column::Linear(Parameter::Coupling(_)) | Column::Knee { .. } => Sign::Free,
-        Column::Linear(_) | Column::Gap { .. } | Column::Play { .. } => Sign::Nonnegative,
+        Column::Spring(Spring::Coupling(_)) | Column::Knee { .. } => Sign::Free,
+        Column::Spring(_) | Column::Gap { .. } | Column::Play { .. } => Sign::Nonnegative,
     }
 }
 
@@ -125,7 +125,7 @@ impl Declared {
     /// The value that a description has of it.
     pub fn of(&self, description: &Description) -> f64 {
         match (self.effect, self.column) {
-            (None, Column::Linear(Parameter::Joint(joint))) => description.joints[joint - 1].compliance(),
+            (None, Column::Spring(Spring::Joint(joint))) => description.joints[joint - 1].compliance(),
             (Some(effect), column) => {
                 let own = columns_of(&description.effects[effect]).into_iter().find(|(of, _)| *of == column);
                 // A weight that has become zero has no column any more.
@@ -139,7 +139,7 @@ impl Declared {
     /// proportion: the measurement sees their sum.
     pub fn set(&self, description: &mut Description, value: f64) {
         match (self.effect, self.column) {
-            (None, Column::Linear(Parameter::Joint(joint))) => {
+            (None, Column::Spring(Spring::Joint(joint))) => {
                 set_compliance(&mut description.joints[joint - 1].compliance, value);
             }
             (Some(effect), column) => set_parameter(&mut description.effects[effect], column, value),
@@ -166,11 +166,11 @@ pub fn set_compliance(parts: &mut Vec<Part>, value: f64) {
 pub fn set_parameter(effect: &mut Effect, column: Column, number: f64) {
     match (effect, column) {
         (Effect::TransverseCompliance { value, .. }, _) | (Effect::JointCoupling { value, .. }, _) => *value = number,
-        (Effect::LinkCompliance { bending, .. }, Column::Linear(Parameter::LinkBending(_))) => *bending = number,
+        (Effect::LinkCompliance { bending, .. }, Column::Spring(Spring::LinkBending(_))) => *bending = number,
         (Effect::LinkCompliance { torsion, .. }, _) => *torsion = number,
-        (Effect::BaseCompliance { tilt, .. }, Column::Linear(Parameter::BaseTilt)) => *tilt = number,
+        (Effect::BaseCompliance { tilt, .. }, Column::Spring(Spring::BaseTilt)) => *tilt = number,
         (Effect::BaseCompliance { translation, .. }, _) => *translation = number,
-        (Effect::ToolCompliance { rotation, .. }, Column::Linear(Parameter::ToolRotation)) => *rotation = number,
+        (Effect::ToolCompliance { rotation, .. }, Column::Spring(Spring::ToolRotation)) => *rotation = number,
         (Effect::ToolCompliance { translation, .. }, _) => *translation = number,
         (Effect::StiffnessNonlinearity { added, knee, .. }, column) => {
             *added = number;

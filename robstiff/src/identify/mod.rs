@@ -48,7 +48,7 @@ use self::normal::Sign;
 use self::samples::Column;
 use crate::JointKind;
 use crate::campaign::{Campaign, Data};
-use crate::elements::Parameter;
+use crate::elements::Spring;
 
 /// Why a campaign does not give what was asked of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -211,7 +211,7 @@ pub(crate) fn is_at_bound(sign: Sign, declared: f64, value: f64) -> bool {
 /// `joint 3`, or an effect's full name with its number's where it has several.
 pub(crate) fn element_name(description: &Description, number: &Declared) -> String {
     match (number.effect, number.column) {
-        (None, Column::Linear(Parameter::Joint(joint))) => format!("joint {joint}"),
+        (None, Column::Spring(Spring::Joint(joint))) => format!("joint {joint}"),
         (Some(effect), column) => {
             let name = description.effects[effect].to_string();
             let number = parameter_name(column);
@@ -224,12 +224,12 @@ pub(crate) fn element_name(description: &Description, number: &Declared) -> Stri
 /// What a description calls a column's number.
 pub fn parameter_name(column: Column) -> &'static str {
     match column {
-        Column::Linear(Parameter::Joint(_) | Parameter::Transverse(_) | Parameter::Coupling(_)) => "value",
-        Column::Linear(Parameter::LinkBending(_)) => "bending",
-        Column::Linear(Parameter::LinkTorsion(_)) => "torsion",
-        Column::Linear(Parameter::BaseTilt) => "tilt",
-        Column::Linear(Parameter::ToolRotation) => "rotation",
-        Column::Linear(Parameter::BaseTranslation | Parameter::ToolTranslation) => "translation",
+        Column::Spring(Spring::Joint(_) | Spring::Transverse(_) | Spring::Coupling(_)) => "value",
+        Column::Spring(Spring::LinkBending(_)) => "bending",
+        Column::Spring(Spring::LinkTorsion(_)) => "torsion",
+        Column::Spring(Spring::BaseTilt) => "tilt",
+        Column::Spring(Spring::ToolRotation) => "rotation",
+        Column::Spring(Spring::BaseTranslation | Spring::ToolTranslation) => "translation",
         Column::Knee { .. } => "added",
         Column::Gap { .. } => "gap",
         Column::Play { operator, .. } => ["weight1", "weight2", "weight3"][operator],
@@ -239,9 +239,9 @@ pub fn parameter_name(column: Column) -> &'static str {
 /// The unit of a column's number.
 pub fn unit_of(description: &Description, column: Column) -> &'static str {
     match column {
-        Column::Linear(Parameter::BaseTranslation | Parameter::ToolTranslation) => "m/N",
+        Column::Spring(Spring::BaseTranslation | Spring::ToolTranslation) => "m/N",
         Column::Gap { .. } => "rad",
-        Column::Linear(Parameter::Joint(joint)) | Column::Knee { joint, .. } | Column::Play { joint, .. }
+        Column::Spring(Spring::Joint(joint)) | Column::Knee { joint, .. } | Column::Play { joint, .. }
             if description.joints[joint - 1].kind == JointKind::Prismatic =>
         {
             "m/N"

@@ -1,5 +1,5 @@
 //! A campaign's displacements seen from the robot: every row brought to the
-//! base frame, with the geometry that turns parameters into displacements.
+//! base frame, with the geometry that turns loads and compliances into displacements.
 
 use std::sync::Arc;
 use std::vec::Vec;
@@ -11,15 +11,15 @@ use robstiff_robots::effect::physics::PLAYS;
 use super::encoders::Encoders;
 use super::setup::Setup;
 use crate::campaign::{Displacements, Frame};
-use crate::elements::{Geometry, Parameter, Pose, turn};
+use crate::elements::{Geometry, Pose, Spring, turn};
 use crate::{Effect, JointKind, Robot};
 
 /// A column of the regression: what a unit of one number adds to every
 /// displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Column {
-    /// A number in which the compliance is linear.
-    Linear(Parameter),
+    /// The compliance of a spring.
+    Spring(Spring),
     /// The `added` of a [`StiffnessNonlinearity`](crate::Effect) with a given
     /// knee.
     Knee {
@@ -49,7 +49,7 @@ pub enum Column {
 impl Column {
     /// Whether it is of a law of its joint, in which the joint's torque is not linear.
     pub fn is_law(self) -> bool {
-        !matches!(self, Self::Linear(_))
+        !matches!(self, Self::Spring(_))
     }
 }
 
@@ -239,9 +239,9 @@ impl Samples {
     /// What a unit of a column's number adds to the readings, stacked alike.
     pub fn column(&self, column: Column) -> DVector<f64> {
         match column {
-            Column::Linear(number @ Parameter::Joint(joint)) => {
+            Column::Spring(spring @ Spring::Joint(joint)) => {
                 let torques = self.torques(joint);
-                self.turned(joint, |at| self.share(number, &self.rows[at]) * torques[at])
+                self.turned(joint, |at| self.share(spring, &self.rows[at]) * torques[at])
             }
             Column::Knee { joint, knee } => self.of_joint(joint, |torque| torque / (torque / knee).hypot(1.0)),
             Column::Gap { joint, knee } => self.of_joint(joint, |torque| 0.5 * torque / torque.hypot(knee)),
@@ -249,7 +249,7 @@ impl Samples {
                 let plays = self.plays(&self.torques(joint), radius);
                 self.turned(joint, |at| plays[at])
             }
-            Column::Linear(parameter) => self.under(&[(parameter, 1.0)]),
+            Column::Spring(spring) => self.under(&[(spring, 1.0)]),
         }
     }
 
@@ -269,37 +269,36 @@ impl Samples {
         self.stacked_with(|at, row| row.read(&(row.twists[joint - 1] * amount(at))), by_encoder)
     }
 
-    /// What numbers in which the compliance is linear add to the readings,
-    /// stacked alike.
-    pub fn under(&self, numbers: &[(Parameter, f64)]) -> DVector<f64> {
+    /// What springs, each with its compliance, add to the readings, stacked alike.
+    pub fn under(&self, springs: &[(Spring, f64)]) -> DVector<f64> {
         let mut stacked = DVector::zeros(self.length());
         let mut compliance = Matrix6::zeros();
         for (i, row) in self.rows.iter().enumerate() {
             if i == 0 || !Arc::ptr_eq(&row.joint_frames, &self.rows[i - 1].joint_frames) {
                 let geometry = self.geometry(row);
-                let numbers = numbers.iter().filter(|(_, value)| *value != 0.0);
-                let of = |&(number, value): &(Parameter, f64)| {
-                    geometry.unit_compliance(number) * (value * self.share(number, row))
+                let springs = springs.iter().filter(|(_, value)| *value != 0.0);
+                let of = |&(spring, value): &(Spring, f64)| {
+                    geometry.unit_compliance(spring) * (value * self.share(spring, row))
                 };
-                compliance = numbers.map(of).sum();
+                compliance = springs.map(of).sum();
             }
             let six = row.read(&(compliance * row.wrench));
             stacked.rows_mut(i * self.axes, self.axes).copy_from(&six.rows(0, self.axes));
             for (at, &joint) in self.encoders_of(i).zip(self.encoders.iter()) {
                 let torque = |joint: usize| row.twists[joint - 1].dot(&row.wrench);
-                let of = |&(number, value): &(Parameter, f64)| {
-                    value * self.share(number, row) * turn_of_joint(number, joint, torque)
+                let of = |&(spring, value): &(Spring, f64)| {
+                    value * self.share(spring, row) * turn_of_joint(spring, joint, torque)
                 };
-                stacked[at] = numbers.iter().map(of).sum();
+                stacked[at] = springs.iter().map(of).sum();
             }
         }
         stacked
     }
 
-    /// What a unit of a number in which the compliance is linear is at a row: of a
+    /// What a unit of a spring's compliance is at a row: of a
     /// joint whose compliance varies with its coordinate it is a share.
-    pub fn share(&self, number: Parameter, row: &Sample) -> f64 {
-        let Parameter::Joint(joint) = number else { return 1.0 };
+    pub fn share(&self, spring: Spring, row: &Sample) -> f64 {
+        let Spring::Joint(joint) = spring else { return 1.0 };
         let of_joint = self.varying.iter().filter(|effect| effect.row() == Some(joint));
         let change = |effect: &Effect| turn(effect, 1.0, row.q[joint - 1], 1.0, [0.0; PLAYS]).unwrap_or(0.0);
         1.0 + of_joint.map(change).sum::<f64>()
@@ -376,13 +375,13 @@ pub fn play(torque: f64, radius: f64, before: f64) -> f64 {
     (torque - radius).max((torque + radius).min(before))
 }
 
-/// What a joint (from 1) turns by for a unit of a number in which the compliance
-/// is linear (rad or m), given the torque of each joint.
-pub fn turn_of_joint(number: Parameter, joint: usize, torque: impl Fn(usize) -> f64) -> f64 {
-    match number {
-        Parameter::Joint(own) if own == joint => torque(joint),
-        Parameter::Coupling([i, j]) if i == joint => torque(j),
-        Parameter::Coupling([i, j]) if j == joint => torque(i),
+/// What a joint (from 1) turns by for a unit of a spring's compliance (rad or m),
+/// given the torque of each joint.
+pub fn turn_of_joint(spring: Spring, joint: usize, torque: impl Fn(usize) -> f64) -> f64 {
+    match spring {
+        Spring::Joint(own) if own == joint => torque(joint),
+        Spring::Coupling([i, j]) if i == joint => torque(j),
+        Spring::Coupling([i, j]) if j == joint => torque(i),
         _ => 0.0,
     }
 }

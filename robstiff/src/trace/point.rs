@@ -8,7 +8,7 @@ use nalgebra::{Const, DVector, Dyn, Matrix3, Matrix6, OMatrix, Vector3, Vector6}
 use robstiff_robots::Description;
 
 use crate::campaign::Displacements;
-use crate::elements::Parameter;
+use crate::elements::Spring;
 use crate::identify::samples::{Sample, Samples, stack, turn_of, turn_of_joint};
 use crate::identify::setup::Setup;
 
@@ -73,17 +73,17 @@ impl<'c> Point<'c> {
     }
 
     /// The same with a model: what its elastic effects do to the readings, and
-    /// the numbers in which its compliance is linear.
-    pub fn with_model(mut self, declared: &Samples, elastic: DVector<f64>, linear: &[(Parameter, f64)]) -> Self {
+    /// its springs, each with its compliance.
+    pub fn with_model(mut self, declared: &Samples, elastic: DVector<f64>, springs: &[(Spring, f64)]) -> Self {
         self.elastic = elastic;
         let value = |joint: usize| {
-            let own = linear.iter().filter(|(parameter, _)| *parameter == Parameter::Joint(joint));
+            let own = springs.iter().filter(|(spring, _)| *spring == Spring::Joint(joint));
             own.map(|(_, value)| value).sum::<f64>()
         };
         self.compliance = (1..=self.samples.joints()).map(value).collect();
         let first = first_rows(self.data);
         let by_pose: Vec<Matrix6<f64>> =
-            first.iter().map(|&row| compliance(&self.samples, &self.samples.rows[row], linear)).collect();
+            first.iter().map(|&row| compliance(&self.samples, &self.samples.rows[row], springs)).collect();
         let reading = |row: &Sample| {
             let per_wrench = by_pose[row.pose];
             let columns: [Vector6<f64>; 6] = core::array::from_fn(|k| row.read(&per_wrench.column(k).into_owned()));
@@ -91,8 +91,8 @@ impl<'c> Point<'c> {
         };
         self.readings = self.samples.rows.iter().map(reading).collect();
         let rows = first.iter().map(|&row| &self.samples.rows[row]);
-        self.turned = rows.map(|row| turned(&self.samples, row, linear)).collect();
-        (self.slopes, self.turned_slopes) = self.find_slopes(declared, linear, &first);
+        self.turned = rows.map(|row| turned(&self.samples, row, springs)).collect();
+        (self.slopes, self.turned_slopes) = self.find_slopes(declared, springs, &first);
         self
     }
 
@@ -100,7 +100,7 @@ impl<'c> Point<'c> {
     fn find_slopes(
         &self,
         declared: &Samples,
-        linear: &[(Parameter, f64)],
+        springs: &[(Spring, f64)],
         first: &[usize],
     ) -> (Slopes<Matrix6<f64>>, Slopes<Turned>) {
         let mut data = self.data.clone();
@@ -124,7 +124,7 @@ impl<'c> Point<'c> {
                     setup.sag = None;
                     let samples = one_a_pose.with_setup(self.description, &data, &setup);
                     let per_file = |row: &Sample| {
-                        let compliance = compliance(&samples, row, linear);
+                        let compliance = compliance(&samples, row, springs);
                         let tool = turn_of(&row.tcp);
                         let offset = setup.wrench(&data, &tool, &[0.0; 6]);
                         let column = |k: usize| {
@@ -135,7 +135,7 @@ impl<'c> Point<'c> {
                         let wrenches = Matrix6::from_columns(&core::array::from_fn::<_, 6, _>(column));
                         let read = wrenches.column_iter().map(|wrench| row.read(&(compliance * wrench)));
                         let read = Matrix6::from_columns(&read.collect::<Vec<_>>());
-                        (read, turned(&samples, row, linear) * wrenches)
+                        (read, turned(&samples, row, springs) * wrenches)
                     };
                     samples.rows.iter().map(per_file).collect::<Vec<_>>()
                 });
@@ -269,21 +269,20 @@ fn first_rows(data: &Displacements) -> Vec<usize> {
     first
 }
 
-/// What encoders read per wrench, of numbers in which the compliance is linear, at
-/// a row.
-fn turned(samples: &Samples, row: &Sample, linear: &[(Parameter, f64)]) -> Turned {
+/// What encoders read per wrench, of springs, at a row.
+fn turned(samples: &Samples, row: &Sample, springs: &[(Spring, f64)]) -> Turned {
     let of = |joint: usize, k: usize| -> f64 {
-        let of = |&(number, value): &(Parameter, f64)| {
-            value * samples.share(number, row) * turn_of_joint(number, joint, |j| row.twists[j - 1][k])
+        let of = |&(spring, value): &(Spring, f64)| {
+            value * samples.share(spring, row) * turn_of_joint(spring, joint, |j| row.twists[j - 1][k])
         };
-        linear.iter().map(of).sum()
+        springs.iter().map(of).sum()
     };
     Turned::from_fn(samples.encoders.len(), |encoder, k| of(samples.encoders[encoder], k))
 }
 
-/// The Cartesian compliance of numbers in which it is linear, at a row.
-fn compliance(samples: &Samples, row: &Sample, linear: &[(Parameter, f64)]) -> Matrix6<f64> {
+/// The Cartesian compliance of springs, at a row.
+fn compliance(samples: &Samples, row: &Sample, springs: &[(Spring, f64)]) -> Matrix6<f64> {
     let geometry = samples.geometry(row);
-    let of = |&(p, value): &(Parameter, f64)| geometry.unit_compliance(p) * (value * samples.share(p, row));
-    linear.iter().filter(|(_, value)| *value != 0.0).map(of).sum()
+    let of = |&(spring, value): &(Spring, f64)| geometry.unit_compliance(spring) * (value * samples.share(spring, row));
+    springs.iter().filter(|(_, value)| *value != 0.0).map(of).sum()
 }

@@ -13,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use super::bench::Known;
 use super::*;
 use crate::campaign::{Data, Displacements, Frame, Noise, Observation};
-use crate::elements::Parameter;
+use crate::elements::Spring;
 use crate::identify::samples::{Column, Samples};
 use crate::identify::{Visibility, predict};
 use crate::samples::five_axis;
@@ -140,7 +140,7 @@ fn declared_laws_of_joints_are_fitted_again() {
     }
 }
 
-pub(super) const TILT_3: (Column, f64) = (Column::Linear(Parameter::Transverse(3)), 6e-7);
+pub(super) const TILT_3: (Column, f64) = (Column::Spring(Spring::Transverse(3)), 6e-7);
 
 #[test]
 fn a_missing_effect_is_named_and_goes_into_the_description() {
@@ -284,7 +284,7 @@ fn a_joint_a_little_below_zero_does_not_rule_out_what_is_missing() {
     let sure = traced(&campaign(&arm, 24, &[TILT_3], 3));
     for (joint, (own, estimate)) in (1..).zip(arm.joints.iter().zip(&sure.estimates)) {
         let below = 3.0 * estimate.std.expect("every joint is seen");
-        let hidden = (Column::Linear(Parameter::Joint(joint)), -own.compliance() - below);
+        let hidden = (Column::Spring(Spring::Joint(joint)), -own.compliance() - below);
         let found = traced(&campaign(&arm, 24, &[TILT_3, hidden], 3));
         let told = (names(&found), found.verdict, found.estimates[joint - 1].at_bound);
         assert_eq!(told, (vec!["transverse_compliance@joint 3".into()], Verdict::Explained, true), "joint {joint}");
@@ -295,7 +295,7 @@ fn a_joint_a_little_below_zero_does_not_rule_out_what_is_missing() {
 /// of the base; tilts of a spherical wrist differ by joint compliances.
 #[test]
 fn exact_aliases_are_said() {
-    let found = traced(&campaign(&five_axis(), 24, &[(Column::Linear(Parameter::BaseTilt), 1e-7)], 3));
+    let found = traced(&campaign(&five_axis(), 24, &[(Column::Spring(Spring::BaseTilt), 1e-7)], 3));
     assert_eq!(names(&found), ["base_compliance@base"]);
     assert!(found.effects[0].same_as.contains(&"transverse_compliance@joint 1".to_string()));
 }
@@ -305,7 +305,7 @@ fn exact_aliases_are_said() {
 #[test]
 fn what_is_not_in_the_catalogue_stays_unexplained() {
     let mut campaign = campaign(&five_axis(), 24, &[], 4);
-    let samples = displacements(&mut campaign, |samples| samples.column(Column::Linear(Parameter::Joint(2))));
+    let samples = displacements(&mut campaign, |samples| samples.column(Column::Spring(Spring::Joint(2))));
     if let Data::Displacement(data) = &mut campaign.data {
         for (i, row) in data.rows.iter_mut().enumerate() {
             let softer = 2e-7 * i as f64 / 240.0;

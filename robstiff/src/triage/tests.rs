@@ -13,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use super::*;
 use crate::campaign::made::{Plan, campaign, normal};
 use crate::campaign::{ClampedRow, Data};
-use crate::elements::Parameter;
+use crate::elements::Spring;
 use crate::identify::samples::{Column, Samples};
 use crate::samples::five_axis;
 
@@ -243,7 +243,7 @@ fn encoders_tell_gears_from_bearings() {
     let all = triage(&with_encoders(Vec::new(), false));
     let found = finding(&all, "encoders");
     assert!(!found.violated && found.statistic.abs() < 1.0, "{found:?}");
-    let tilt = vec![(Column::Linear(Parameter::Transverse(3)), 1e-6)];
+    let tilt = vec![(Column::Spring(Spring::Transverse(3)), 1e-6)];
     let found = violates("encoders", &with_encoders(tilt, false));
     assert!((5.0..60.0).contains(&found.statistic), "{found:?}");
     let found = violates("encoders", &with_encoders(Vec::new(), true));
@@ -285,7 +285,7 @@ fn a_clean_robot_passes() {
         plan.shares_unloaded = seed % 2 == 0;
         plan.noise = if seed % 3 == 0 { [6e-6, 9e-6, 1.5e-5] } else { [1e-5; 3] };
         if seed % 4 == 1 {
-            plan.hidden = vec![(Column::Linear(Parameter::Transverse(3)), 6e-7)];
+            plan.hidden = vec![(Column::Spring(Spring::Transverse(3)), 6e-7)];
         }
         if seed % 4 == 2 {
             (plan.visits, plan.poses, plan.there_and_back) = (2, 24, false);

@@ -2,7 +2,7 @@
 //! themselves, and then told by tracing.
 
 use nalgebra::{Matrix3, Matrix6, SVector, Vector3};
-use robstiff::elements::{Parameter, Pose};
+use robstiff::elements::{Pose, Spring};
 use robstiff::trace::Trace;
 use robstiff::{Effect, Generic};
 use robstiff_robots::Description;
@@ -12,11 +12,11 @@ use robstiff_tests::simulator::{Scenario, five_axis, six_axis};
 use crate::bench::{assert_most, names_all, plan, trace_files, traced};
 
 /// The compliances of elements of value 1 in random poses.
-fn units<const N: usize, const K: usize>(arm: &Description, parameters: [Parameter; K]) -> Vec<[Matrix6<f64>; K]> {
+fn units<const N: usize, const K: usize>(arm: &Description, springs: [Spring; K]) -> Vec<[Matrix6<f64>; K]> {
     let generic = Generic::<N>::new(arm).expect("as many joints");
     let unit = |q: &SVector<f64, N>| {
         let pose = Pose::of(&generic, q);
-        parameters.map(|parameter| pose.geometry().unit_compliance(parameter))
+        springs.map(|spring| pose.geometry().unit_compliance(spring))
     };
     trials::<N>(50, 60).map(|(q, _)| unit(&q)).collect()
 }
@@ -53,8 +53,8 @@ fn assert_told(what: &str, arm: &Description, hidden: Effect, aliases: &[&str], 
 #[test]
 fn tilts_of_a_wrist_are_one() {
     let arm = six_axis();
-    let [t4, t5, t6] = [4, 5, 6].map(Parameter::Transverse);
-    let [j4, j5, j6] = [4, 5, 6].map(Parameter::Joint);
+    let [t4, t5, t6] = [4, 5, 6].map(Spring::Transverse);
+    let [j4, j5, j6] = [4, 5, 6].map(Spring::Joint);
     for [t4, t5, t6, j4, j5, j6] in units::<6, 6>(&arm, [t4, t5, t6, j4, j5, j6]) {
         assert!(same(&(t5 + j5), &(t6 + j6)) && !same(&(t4 + j4), &(t5 + j5)));
     }
@@ -72,8 +72,7 @@ fn tilts_of_a_wrist_are_one() {
 fn under_forces_a_wrist_tilts_as_its_tool() {
     let arm = six_axis();
     let lever = [0.12, 0.12 + 0.23].map(|length: f64| length * length);
-    for [tool, t6, j6] in units::<6, 3>(&arm, [Parameter::ToolRotation, Parameter::Transverse(6), Parameter::Joint(6)])
-    {
+    for [tool, t6, j6] in units::<6, 3>(&arm, [Spring::ToolRotation, Spring::Transverse(6), Spring::Joint(6)]) {
         assert!(of_forces(&j6).amax() < 1e-20);
         assert!(same(&(of_forces(&tool) / lever[0]), &(of_forces(&t6) / lever[1])));
         assert!(!same(&(tool / lever[0]), &(t6 / lever[1])));
@@ -89,7 +88,7 @@ fn translation_of_the_base_is_that_of_the_tool() {
         let hidden = Effect::BaseCompliance { tilt: 0.0, translation: 8e-8 };
         assert_told("a translation", &arm, hidden, &["tool_compliance@tool"], |scenario| scenario);
     }
-    for [base, tool] in units::<5, 2>(&five_axis(), [Parameter::BaseTranslation, Parameter::ToolTranslation]) {
+    for [base, tool] in units::<5, 2>(&five_axis(), [Spring::BaseTranslation, Spring::ToolTranslation]) {
         assert_eq!(base, tool);
     }
 }
@@ -97,7 +96,7 @@ fn translation_of_the_base_is_that_of_the_tool() {
 /// In the standard convention the frame of joint 1 stands on the base.
 #[test]
 fn tilt_of_the_base_is_that_of_joint_1() {
-    for [base, tilt] in units::<5, 2>(&five_axis(), [Parameter::BaseTilt, Parameter::Transverse(1)]) {
+    for [base, tilt] in units::<5, 2>(&five_axis(), [Spring::BaseTilt, Spring::Transverse(1)]) {
         assert!(same(&base, &tilt));
     }
     let hidden = Effect::TransverseCompliance { joint: 1, value: 4e-8 };
@@ -109,12 +108,12 @@ fn tilt_of_the_base_is_that_of_joint_1() {
 /// is positive. A negative one is no beam.
 #[test]
 fn bending_in_the_plane_is_two_joints_and_their_coupling() {
-    let parameters = [Parameter::LinkBending(2), Parameter::Joint(2), Parameter::Joint(3), Parameter::Coupling([2, 3])];
+    let springs = [Spring::LinkBending(2), Spring::Joint(2), Spring::Joint(3), Spring::Coupling([2, 3])];
     let generic = Generic::<6>::new(&six_axis()).expect("six joints");
     for (mut q, _) in trials::<6>(50, 60) {
         q[3] = 0.0;
         let pose = Pose::of(&generic, &q);
-        let [beam, two, three, both] = parameters.map(|parameter| pose.geometry().unit_compliance(parameter));
+        let [beam, two, three, both] = springs.map(|spring| pose.geometry().unit_compliance(spring));
         let axis: Vector3<f64> = pose.geometry().joint_frames[1].fixed_view::<3, 1>(0, 2).into_owned();
         let plane = Matrix3::identity() - axis * axis.transpose();
         let in_plane = |compliance: Matrix6<f64>| plane * compliance.fixed_view::<3, 3>(0, 0) * plane;

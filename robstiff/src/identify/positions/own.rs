@@ -8,7 +8,7 @@ use std::vec::Vec;
 
 use robstiff_robots::Description;
 use robstiff_robots::effect::Dimension;
-use robstiff_robots::effect::physics::{Parameter as About, Range};
+use robstiff_robots::effect::physics::{Parameter, Range};
 
 use super::model::{ANGLE_STEP, COMPLIANCE_STEP, Enters, LENGTH_STEP, Model, SHARE_STEP};
 use crate::Effect;
@@ -67,16 +67,16 @@ pub fn kinematic(description: &Description) -> Vec<Own> {
 
 fn of_kinematic(at: usize, effect: &Effect) -> Vec<Own> {
     let all = effect.parameters().enumerate();
-    let numbers: Vec<_> = all.filter(|(_, (about, _))| !matches!(about.range, Range::Whole(_))).collect();
+    let numbers: Vec<_> = all.filter(|(_, (parameter, _))| !matches!(parameter.range, Range::Whole(_))).collect();
     let alone = numbers.len() == 1;
-    let own = |(number, (about, value)): (usize, (&About, f64))| {
-        let (unit, step) = match about.quantity.at(effect.place()) {
+    let own = |(number, (parameter, value)): (usize, (&Parameter, f64))| {
+        let (unit, step) = match parameter.quantity.at(effect.place()) {
             Dimension::Angle => ("rad", ANGLE_STEP),
             Dimension::Length => ("m", LENGTH_STEP),
             _ => ("1", SHARE_STEP),
         };
-        let name = if alone { effect.to_string() } else { format!("{effect} {}", about.name) };
-        let sign = if about.range == Range::Any { Sign::Free } else { Sign::Nonnegative };
+        let name = if alone { effect.to_string() } else { format!("{effect} {}", parameter.name) };
+        let sign = if parameter.range == Range::Any { Sign::Free } else { Sign::Nonnegative };
         Own { name, unit, value, sign, step, which: Which::Kinematic { effect: at, number } }
     };
     numbers.into_iter().map(own).collect()

@@ -11,7 +11,7 @@ use robstiff_robots::effect::Place as Part;
 
 use super::source::{Kept, Source, start};
 use crate::campaign::{Campaign, Displacements, Frame, Observation};
-use crate::elements::{Geometry, Parameter};
+use crate::elements::{Geometry, Spring};
 use crate::identify::Error;
 use crate::identify::covariance::Covariance;
 use crate::identify::prepare::Prepared;
@@ -35,10 +35,10 @@ pub struct Adapter<'c> {
     /// The time of the last reading (s).
     last: f64,
     compliance: Vec<f64>,
-    /// The forward model at what was traced: its setup, the numbers in which its
-    /// compliance is linear, and all its elastic ones.
+    /// The forward model at what was traced: its setup, its springs, and all its
+    /// elastic numbers.
     setup: Setup,
-    linear: Vec<(Parameter, f64)>,
+    springs: Vec<(Spring, f64)>,
     elastic: Vec<(Kept, f64)>,
     kept: Vec<Kept>,
     known: DMatrix<f64>,
@@ -87,7 +87,7 @@ impl<'c> Adapter<'c> {
             last: prepared.data.rows.iter().filter_map(|row| row.time).fold(0.0, f64::max),
             compliance: bench.scene().compliance,
             setup,
-            linear: bench.linear_parameters(&fitted.fit),
+            springs: bench.springs(&fitted.fit),
             elastic,
             kept: columns.iter().map(|&column| source.kept(column)).collect(),
             known: problem.total.gram.clone(),
@@ -165,7 +165,7 @@ impl<'c> Adapter<'c> {
         for (kept, value) in &self.elastic {
             elastic.axpy(*value, &column(&bare, kept), 1.0);
         }
-        let point = bare.with_model(&declared, elastic, &self.linear);
+        let point = bare.with_model(&declared, elastic, &self.springs);
         let anchors = self.anchors.rows.len();
         let (first, rows) = (6 * anchors, 6 * (data.rows.len() - anchors));
         let mut columns = DMatrix::zeros(rows, self.kept.len());
@@ -334,13 +334,13 @@ fn parts(geometry: &Geometry<'_, f64>, row: &Sample, kept: &Kept, read: &Vector6
         (joint, geometry.joint_twist(joint) * torque)
     };
     let place = match kept {
-        Kept::Own(Column::Linear(Parameter::Coupling([i, j]))) => return vec![gear(*i, *j), gear(*j, *i)],
+        Kept::Own(Column::Spring(Spring::Coupling([i, j]))) => return vec![gear(*i, *j), gear(*j, *i)],
         Kept::Own(Column::Knee { joint, .. } | Column::Gap { joint, .. } | Column::Play { joint, .. }) => *joint,
-        Kept::Own(Column::Linear(parameter)) => match *parameter {
-            Parameter::Joint(i) | Parameter::Transverse(i) | Parameter::LinkBending(i) | Parameter::LinkTorsion(i) => i,
-            Parameter::BaseTilt | Parameter::BaseTranslation => 0,
-            Parameter::ToolRotation | Parameter::ToolTranslation => joints + 1,
-            Parameter::Coupling(_) => unreachable!("it has two places"),
+        Kept::Own(Column::Spring(spring)) => match *spring {
+            Spring::Joint(i) | Spring::Transverse(i) | Spring::LinkBending(i) | Spring::LinkTorsion(i) => i,
+            Spring::BaseTilt | Spring::BaseTranslation => 0,
+            Spring::ToolRotation | Spring::ToolTranslation => joints + 1,
+            Spring::Coupling(_) => unreachable!("it has two places"),
         },
         Kept::Of(_, Place::Part(Part::Joints([i, j])), _) => return vec![gear(*i, *j), gear(*j, *i)],
         Kept::Of(_, Place::Part(Part::Base), _) => 0,

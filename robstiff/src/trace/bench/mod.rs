@@ -26,7 +26,7 @@ use super::point::Point;
 use super::selection::Tests;
 use super::slip::Moment;
 use crate::campaign::Campaign;
-use crate::elements::Parameter;
+use crate::elements::Spring;
 use crate::identify::normal::{Fit, Sign};
 use crate::identify::prepare::Prepared;
 use crate::identify::problem::{Problem, Weights};
@@ -245,7 +245,7 @@ impl<'c> Bench<'c> {
         let declared: &Samples = &self.prepared.samples;
         let point = self.point(setup.clone());
         let elastic = self.prediction(&point, fit, &nonlinear);
-        let point = point.with_model(declared, elastic, &self.linear_parameters(fit));
+        let point = point.with_model(declared, elastic, &self.springs(fit));
         let count = self.own.len() + self.numbers.len();
         self.spare_memory();
         let mut raw = DMatrix::zeros(readings.len(), count);
@@ -304,15 +304,15 @@ impl<'c> Bench<'c> {
         found
     }
 
-    /// The numbers of a model in which its compliance is linear.
-    pub fn linear_parameters(&self, fit: &Fit) -> Vec<(Parameter, f64)> {
+    /// The springs of a model, each with its compliance.
+    pub fn springs(&self, fit: &Fit) -> Vec<(Spring, f64)> {
         let held = self.prepared.own.iter().enumerate().filter(|(column, _)| !fit.columns.contains(column));
         let held = held.filter_map(|(_, number)| match number.column {
-            Column::Linear(parameter) => Some((parameter, number.value)),
+            Column::Spring(spring) => Some((spring, number.value)),
             Column::Knee { .. } | Column::Gap { .. } | Column::Play { .. } => None,
         });
         let fitted = fit.columns.iter().zip(fit.coefficients.iter());
-        let fitted = fitted.filter_map(|(&column, &value)| Some((self.parameter(column)?, value)));
+        let fitted = fitted.filter_map(|(&column, &value)| Some((self.spring(column)?, value)));
         held.chain(fitted).collect()
     }
 }

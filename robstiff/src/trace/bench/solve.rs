@@ -9,7 +9,7 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 use super::Bench;
-use crate::elements::Parameter;
+use crate::elements::Spring;
 use crate::identify::baseline::Visibility;
 use crate::identify::normal::{Fit, Sign};
 use crate::identify::problem::Problem;
@@ -202,27 +202,27 @@ impl<'c> Bench<'c> {
     /// that are held included.
     pub(super) fn prediction(&self, point: &Point<'c>, fit: &Fit, nonlinear: &[(usize, &Number)]) -> DVector<f64> {
         let mut sum = point.samples.readings() - self.readings(point, &fit.columns);
-        // Numbers in which the compliance is linear, in one go.
-        let mut linear = Vec::new();
+        // Springs in one go.
+        let mut springs = Vec::new();
         for (&column, &value) in fit.columns.iter().zip(fit.coefficients.iter()) {
             let is_nonlinear = nonlinear.iter().any(|(of, _)| *of == column);
-            match self.parameter(column) {
-                Some(parameter) if !is_nonlinear => linear.push((parameter, value)),
+            match self.spring(column) {
+                Some(spring) if !is_nonlinear => springs.push((spring, value)),
                 None if value != 0.0 && !is_nonlinear && self.is_elastic(column) => {
                     sum.axpy(value, &self.linear(point, column), 1.0);
                 }
                 _ => {}
             }
         }
-        sum + point.with_creep(point.samples.under(&linear))
+        sum + point.with_creep(point.samples.under(&springs))
     }
 
-    /// The number that a column is of, where the compliance is linear in it.
-    pub(super) fn parameter(&self, column: usize) -> Option<Parameter> {
+    /// The spring whose compliance a column is of, where it is one.
+    pub(super) fn spring(&self, column: usize) -> Option<Spring> {
         match self.own.get(column) {
-            Some(Column::Linear(parameter)) => Some(*parameter),
+            Some(Column::Spring(spring)) => Some(*spring),
             Some(Column::Knee { .. } | Column::Gap { .. } | Column::Play { .. }) => None,
-            None => self.numbers[column - self.own.len()].parameter,
+            None => self.numbers[column - self.own.len()].spring,
         }
     }
 

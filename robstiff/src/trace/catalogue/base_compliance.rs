@@ -2,7 +2,7 @@
 //! the same in every direction. The turn about z is joint 1's.
 
 use super::{Kind, Offers, Part, Scene, two_compliances};
-use crate::elements::Parameter;
+use crate::elements::Spring;
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -15,6 +15,6 @@ pub static KIND: Kind = Kind {
 };
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
-    let two = [("tilt", Parameter::BaseTilt), ("translation", Parameter::BaseTranslation)];
+    let two = [("tilt", Spring::BaseTilt), ("translation", Spring::BaseTranslation)];
     two_compliances(scene, offers, Part::Base, two);
 }

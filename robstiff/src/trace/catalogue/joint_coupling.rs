@@ -8,7 +8,7 @@ use std::vec;
 use nalgebra::Vector3;
 
 use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
-use crate::elements::Parameter;
+use crate::elements::Spring;
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -26,7 +26,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for j in 2..=scene.joints() {
         for i in (1..j).filter(|&i| scene.turns(i) && scene.turns(j) && share_a_drive(i, j, &axis)) {
             let number =
-                Number::compliance(scene, "value", [f64::NEG_INFINITY, f64::INFINITY], Parameter::Coupling([i, j]));
+                Number::compliance(scene, "value", [f64::NEG_INFINITY, f64::INFINITY], Spring::Coupling([i, j]));
             let check = move |numbers: &[(&str, f64)], joint: &dyn Fn(usize) -> f64| {
                 let bound = (joint(i) * joint(j)).sqrt();
                 (numbers[0].1.abs() < bound)

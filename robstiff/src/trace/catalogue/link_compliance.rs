@@ -4,7 +4,7 @@
 use std::format;
 
 use super::{Kind, Offers, Part, Scene, place_words, two_compliances};
-use crate::elements::Parameter;
+use crate::elements::Spring;
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -25,7 +25,7 @@ pub static KIND: Kind = Kind {
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for link in (1..scene.joints()).filter(|&link| !scene.description.is_stroke(link)) {
-        let two = [("bending", Parameter::LinkBending(link)), ("torsion", Parameter::LinkTorsion(link))];
+        let two = [("bending", Spring::LinkBending(link)), ("torsion", Spring::LinkTorsion(link))];
         two_compliances(scene, offers, Part::Link(link), two);
     }
 }

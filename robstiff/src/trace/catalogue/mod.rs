@@ -66,7 +66,7 @@ use super::point::Point;
 use super::slip::Moment;
 use crate::JointKind;
 use crate::campaign::Displacements;
-use crate::elements::Parameter;
+use crate::elements::Spring;
 use crate::identify::normal::Sign;
 use crate::identify::samples::{Column, Samples, turn_of};
 use crate::identify::setup::Setup;
@@ -224,8 +224,8 @@ pub struct Number {
     pub regressor: Regressor,
     /// How it enters the forward model, where it does so other than linearly.
     pub enters: Option<Enters>,
-    /// The compliance it is, where it is one that holds for every load.
-    pub parameter: Option<Parameter>,
+    /// The spring whose compliance it is, where it is one that holds for every load.
+    pub spring: Option<Spring>,
     /// Whether it is elastic: it moves the arm, and is seen as the arm is.
     pub elastic: bool,
     /// Whether what it does creeps with the arm.
@@ -248,7 +248,7 @@ impl Number {
             range,
             regressor: Rc::new(of),
             enters: None,
-            parameter: None,
+            spring: None,
             elastic: true,
             creeps: true,
             share_of: None,
@@ -265,12 +265,12 @@ impl Number {
         Self { elastic: false, creeps: false, ..Self::elastic(name, unit, range, of) }
     }
 
-    /// A compliance.
-    fn compliance(scene: &Scene<'_>, name: &'static str, range: [f64; 2], parameter: Parameter) -> Self {
-        let column = Column::Linear(parameter);
+    /// The compliance of a spring.
+    fn compliance(scene: &Scene<'_>, name: &'static str, range: [f64; 2], spring: Spring) -> Self {
+        let column = Column::Spring(spring);
         let unit = unit_of(scene.description, column);
         let of = move |point: &Point<'_>| point.samples.column(column);
-        Self { parameter: Some(parameter), ..Self::elastic(name, unit, range, of) }
+        Self { spring: Some(spring), ..Self::elastic(name, unit, range, of) }
     }
 
     /// A number of the setup.
@@ -304,14 +304,14 @@ impl Number {
 pub const WRENCH_STEP: f64 = 1e-4;
 
 /// A candidate with one compliance.
-fn one_compliance(scene: &Scene<'_>, offers: &mut Offers<'_>, place: Part, name: &'static str, parameter: Parameter) {
-    let number = Number::compliance(scene, name, MORE_THAN_NONE, parameter);
+fn one_compliance(scene: &Scene<'_>, offers: &mut Offers<'_>, place: Part, name: &'static str, spring: Spring) {
+    let number = Number::compliance(scene, name, MORE_THAN_NONE, spring);
     offers.add(place, vec![number], vec![Form::of([0])]);
 }
 
 /// A candidate with two compliances, of which one or both can be there.
-fn two_compliances(scene: &Scene<'_>, offers: &mut Offers<'_>, place: Part, two: [(&'static str, Parameter); 2]) {
-    let number = |(name, parameter)| Number::compliance(scene, name, MORE_THAN_NONE, parameter);
+fn two_compliances(scene: &Scene<'_>, offers: &mut Offers<'_>, place: Part, two: [(&'static str, Spring); 2]) {
+    let number = |(name, spring)| Number::compliance(scene, name, MORE_THAN_NONE, spring);
     let forms = vec![Form::of([0]), Form::of([1]), Form::of([0, 1])];
     offers.add(place, two.into_iter().map(number).collect(), forms);
 }

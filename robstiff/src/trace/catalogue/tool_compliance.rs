@@ -2,7 +2,7 @@
 //! origin, the same in every direction, `h s s^T` for three axes each.
 
 use super::{Kind, Offers, Part, Scene, two_compliances};
-use crate::elements::Parameter;
+use crate::elements::Spring;
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -15,6 +15,6 @@ pub static KIND: Kind = Kind {
 };
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
-    let two = [("rotation", Parameter::ToolRotation), ("translation", Parameter::ToolTranslation)];
+    let two = [("rotation", Spring::ToolRotation), ("translation", Spring::ToolTranslation)];
     two_compliances(scene, offers, Part::Tool, two);
 }

@@ -4,7 +4,7 @@
 use std::format;
 
 use super::{Kind, Offers, Part, Scene, one_compliance, place_words};
-use crate::elements::Parameter;
+use crate::elements::Spring;
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -18,6 +18,6 @@ pub static KIND: Kind = Kind {
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for joint in 1..=scene.joints() {
-        one_compliance(scene, offers, Part::Joint(joint), "h", Parameter::Transverse(joint));
+        one_compliance(scene, offers, Part::Joint(joint), "h", Spring::Transverse(joint));
     }
 }
