@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{}: {}", traced.verdict, traced.why);
     for named in &traced.effects {
         println!("  {}, p = {:.3}", named.effect, named.p_value);
-        for parameter in &named.parameters {
+        for parameter in &named.effect.parameters {
             println!("    {} = {:.3e} {}", parameter.name, parameter.value, parameter.unit);
         }
     }

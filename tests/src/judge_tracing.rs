@@ -58,7 +58,7 @@ impl Told {
         let names = trace.effects.iter().map(|named| Name {
             name: named.effect.to_string(),
             same_as: named.same_as.clone(),
-            parameters: named.parameters.iter().map(number).collect(),
+            parameters: named.effect.parameters.iter().map(number).collect(),
         });
         let joints = trace.estimates.iter().filter(|estimate| estimate.name.starts_with("joint "));
         Self {

@@ -202,12 +202,12 @@ fn numbers(trace: &Trace, hidden: &[Hidden]) -> [usize; 2] {
         };
         // A simpler form has taken up the rest.
         let of_truth = hidden.parameters().iter().filter(|(_, truth)| *truth != 0.0).count();
-        if named.parameters.iter().filter(|number| number.std.is_some()).count() < of_truth {
+        if named.effect.parameters.iter().filter(|number| number.std.is_some()).count() < of_truth {
             continue;
         }
         for (name, truth) in hidden.parameters() {
             let spelt = |told: &str| told == name || (told == "offset" && name == "value");
-            let told = named.parameters.iter().find(|number| spelt(number.name));
+            let told = named.effect.parameters.iter().find(|number| spelt(number.name));
             let Some((value, std)) = told.and_then(|number| Some((number.value, number.std?))) else { continue };
             count[0] += 1;
             count[1] += usize::from((value - truth).abs() <= 1.96 * std);

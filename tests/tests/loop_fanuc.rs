@@ -66,7 +66,7 @@ fn the_tilt_of_joint_3_is_missing() {
     };
     // The value is that of the tilt alone, and surer.
     assert_near("the tilt (rad/Nm)", value, 6.37e-7, 0.05);
-    assert!(named.parameters[0].std.is_some_and(|std| std < 0.1 * value), "{:?}", named.parameters);
+    assert!(named.effect.parameters[0].std.is_some_and(|std| std < 0.1 * value), "{:?}", named.effect.parameters);
     assert!(named.p_value < 0.01, "{}", named.p_value);
     assert!(matches!(found.verdict, Verdict::Explained | Verdict::Partial));
     assert!((0.0..1.0).contains(&found.unexplained) && !found.why.is_empty());

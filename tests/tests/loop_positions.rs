@@ -101,7 +101,7 @@ fn the_arms_own_weight_is_named() {
         positions.hidden = vec![Hidden::GravitySag(links)];
     });
     for (_, trace) in found {
-        let share = trace.effects[0].parameters[0].value;
+        let share = trace.effects[0].effect.parameters[0].value;
         assert!((share - 1.0).abs() < 0.05, "{share}");
     }
 }
@@ -130,7 +130,7 @@ fn where_a_payload_hangs_is_named_and_not_written() {
     for (_, trace) in found {
         assert!(trace.description.effects.is_empty());
         for (axis, truth) in ["x", "y", "z"].into_iter().zip(off) {
-            let number = trace.effects[0].parameters.iter().find(|number| number.name == axis);
+            let number = trace.effects[0].effect.parameters.iter().find(|number| number.name == axis);
             let Some((value, std)) = number.and_then(|number| Some((number.value, number.std?))) else { continue };
             assert!((value - truth).abs() < 4.0 * std, "{axis}: {value} +- {std}");
         }
@@ -150,7 +150,7 @@ fn gears_are_named_with_their_knees() {
     for (_, trace) in found {
         let named = &trace.effects[0];
         for (name, truth) in [("added", added), ("knee", knee)] {
-            let Some(number) = named.parameters.iter().find(|number| number.name == name) else { continue };
+            let Some(number) = named.effect.parameters.iter().find(|number| number.name == name) else { continue };
             let std = number.std.expect("a fitted number");
             assert!((number.value - truth).abs() < 4.0 * std && std < 0.2 * truth, "{number:?}");
         }
@@ -210,7 +210,7 @@ fn faults_of_the_rig_are_named_and_not_written() {
     }
     for (_, trace) in &grows {
         // The hall warms up all the time: the drift may as well be one with that.
-        let number = &trace.effects[0].parameters[0];
+        let number = &trace.effects[0].effect.parameters[0];
         let off = if number.unit == "1/K" { number.value - 4e-5 } else { 0.0 };
         assert!(number.name == "expansion" && off.abs() < 4.0 * number.std.expect("a fitted number"), "{number:?}");
     }
@@ -219,7 +219,7 @@ fn faults_of_the_rig_are_named_and_not_written() {
         assert_eq!(trace.effects[0].effect.value("line"), 26.0);
     }
     for (_, trace) in &settles {
-        let constant = trace.effects[0].parameters.iter().find(|number| number.name == "constant");
+        let constant = trace.effects[0].effect.parameters.iter().find(|number| number.name == "constant");
         let constant = constant.expect("what settles has a time constant");
         assert!((constant.value - 700.0).abs() < 4.0 * constant.std.expect("a fitted number"), "{constant:?}");
     }

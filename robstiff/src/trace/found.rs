@@ -8,7 +8,7 @@ use robstiff_robots::Description;
 use robstiff_robots::effect::physics::Parameter;
 use robstiff_robots::effect::{CATALOGUE, Place as Part};
 
-use super::catalogue::Kind;
+use super::catalogue::{Kind, OUTLIERS};
 use crate::Effect;
 use crate::identify::readable::is_readable;
 
@@ -16,8 +16,7 @@ use crate::identify::readable::is_readable;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
     kind: &'static Kind,
-    /// Where it is.
-    pub place: Place,
+    place: Place,
     /// Its numbers with their uncertainty.
     pub parameters: Vec<EffectParameter>,
 }
@@ -73,6 +72,12 @@ impl Found {
     /// An effect of a kind.
     pub(super) fn new(kind: &'static Kind, place: Place, parameters: Vec<EffectParameter>) -> Self {
         Self { kind, place, parameters }
+    }
+
+    /// Wild readings: the rig's, so many rows of them.
+    pub(super) fn outliers(rows: usize) -> Self {
+        let rows = EffectParameter { name: "rows", value: rows as f64, std: None, unit: "1" };
+        Self::new(&OUTLIERS, Place::Rig, std::vec![rows])
     }
 
     /// The kind, e.g. `transverse_compliance`.

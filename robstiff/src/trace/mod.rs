@@ -169,10 +169,8 @@ pub struct Misfit {
 /// An effect that was named.
 #[derive(Clone, Debug)]
 pub struct NamedEffect {
-    /// The effect.
+    /// The effect, its numbers with their uncertainty.
     pub effect: Found,
-    /// Its numbers with their uncertainty.
-    pub parameters: Vec<EffectParameter>,
     /// The lines of the CSV file that it concerns, where it is about single
     /// rows.
     pub lines: Vec<usize>,

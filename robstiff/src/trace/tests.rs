@@ -147,7 +147,7 @@ fn a_missing_effect_is_named_and_goes_into_the_description() {
     let campaign = campaign(&five_axis(), 24, &[TILT_3], 3);
     let found = traced(&campaign);
     assert_eq!((names(&found), found.verdict), (vec!["transverse_compliance@joint 3".to_string()], Verdict::Explained));
-    let h = &found.effects[0].parameters[0];
+    let h = &found.effects[0].effect.parameters[0];
     assert!((h.value - TILT_3.1).abs() < 4.0 * h.std.expect("a compliance has one"), "{h:?}");
     assert!(found.after.rms < 1.5 * SIGMA * 2_f64.sqrt() && found.identified.rms > 2.0 * found.after.rms);
     assert!((found.noise / SIGMA - 1.0).abs() < 0.2, "{}", found.noise);

@@ -22,7 +22,7 @@ fn wild_rows_are_told_and_left_out() {
     let found = traced(&shifted(&[TILT_3], &[11, 90, 203], 60.0));
     assert_eq!(names(&found), ["transverse_compliance@joint 3", "outliers@rig"]);
     assert_eq!(found.effects[1].lines, [13, 92, 205]);
-    let h = &found.effects[0].parameters[0];
+    let h = &found.effects[0].effect.parameters[0];
     assert!((h.value - TILT_3.1).abs() < 4.0 * h.std.expect("a compliance has one"), "{h:?}");
 }
 

@@ -108,21 +108,41 @@ fn plain(setting: &Setting<'_>, model: &Fitted, one: Named) -> Found {
     Found::new(candidate.kind, candidate.place, in_order(numbers, variant.shape.clone()))
 }
 
-/// The description with identified numbers and named effects, which says so.
+/// The description with identified numbers and named effects, which says what from:
+/// the campaign, or what it is where it has no name.
 ///
 /// # Errors
-/// Why there is none.
-pub fn described(campaign: &Campaign, values: &[f64], effects: &[NamedEffect]) -> Result<Description, String> {
-    let mut description = with_values(&campaign.robot, values);
+/// As for [`with_effects`].
+pub fn described(
+    campaign: &Campaign,
+    nameless: &str,
+    values: &[f64],
+    effects: &[NamedEffect],
+) -> Result<Description, String> {
+    let from = if campaign.name.is_empty() { nameless } else { &campaign.name };
+    with_effects(with_values(&campaign.robot, values), effects, |names| {
+        let with = if names.is_empty() { String::new() } else { format!(", with {names}") };
+        format!("Compliances identified from {from}{with}.")
+    })
+}
+
+/// A description with as many of the named effects as it takes; a sentence with the names
+/// of these is added to its source.
+///
+/// # Errors
+/// A description that could not be read back without the effects.
+pub fn with_effects(
+    mut description: Description,
+    effects: &[NamedEffect],
+    sentence: impl FnOnce(&str) -> String,
+) -> Result<Description, String> {
     if !is_readable(&description) {
         return Err(String::from(UNREADABLE));
     }
     let written = effects.iter().filter(|named| named.effect.write_into(&mut description));
     let names: Vec<String> = written.map(|named| named.effect.to_string()).collect();
-    let added = if names.is_empty() { String::new() } else { format!(", with {}", names.join(", ")) };
-    let campaign = if campaign.name.is_empty() { "a campaign" } else { &campaign.name };
-    let separator = if description.source.is_empty() { "" } else { "\n" };
-    description.source =
-        format!("{}{separator}Compliances identified from {campaign}{added}.", description.source.trim_end());
+    let source = description.source.trim_end();
+    let separator = if source.is_empty() { "" } else { "\n" };
+    description.source = format!("{source}{separator}{}", sentence(&names.join(", ")));
     Ok(description)
 }

@@ -69,6 +69,7 @@ pub fn told(trace: &Trace) -> String {
         .iter()
         .map(|named| {
             let numbers: Vec<String> = named
+                .effect
                 .parameters
                 .iter()
                 .map(|p| format!("{} {:.3e} +- {:.0e}", p.name, p.value, p.std.unwrap_or(0.0)))

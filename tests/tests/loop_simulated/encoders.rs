@@ -48,7 +48,7 @@ fn a_coupling_is_named_with_less_data() {
     let [without, with] = both(&arm, &hidden, 12, 700..706);
     assert!(count(&without, &hidden) <= 2, "named without encoders: {}", told(&without[0].1));
     assert_most("a coupling, with encoders", 5, &with, |_, trace| {
-        let number = &trace.effects[0].parameters[0];
+        let number = &trace.effects[0].effect.parameters[0];
         is_alone(trace, &hidden)
             && (number.value - 6e-8).abs() < 4.0 * number.std.expect("it has one")
             && trace.encoders.as_ref().is_some_and(|read| read.noise.iter().all(|noise| (4e-6..6e-6).contains(noise)))

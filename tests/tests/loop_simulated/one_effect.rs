@@ -128,7 +128,7 @@ fn numbers_are_near(trace: &Trace, hidden: Effect) -> bool {
         _ => panic!("{hidden} has no {name}"),
     };
     let near = |value: f64, expected: f64, std: f64| (value - expected).abs() < FEW * std;
-    named.parameters.iter().all(|p| near(p.value, expected(p.name), p.std.expect("a compliance has one")))
+    named.effect.parameters.iter().all(|p| near(p.value, expected(p.name), p.std.expect("a compliance has one")))
 }
 
 fn joints_are_near(trace: &Trace, truth: &Description) -> bool {

@@ -54,7 +54,7 @@ fn misfit(misfit: &Misfit) -> Value {
 }
 
 fn effect(named: &NamedEffect) -> Value {
-    let parameters = named.parameters.iter().map(|parameter| {
+    let parameters = named.effect.parameters.iter().map(|parameter| {
         json!({
             "name": parameter.name,
             "value": number(parameter.value),

@@ -12,14 +12,14 @@ use super::one_off::one_off;
 use super::search::Found as Searched;
 use super::spread::spread;
 use crate::campaign::{Campaign, ClampedRow};
-use crate::identify::baseline::{declared, with_values};
+use crate::identify::baseline::declared;
 use crate::identify::normal::Fit;
-use crate::identify::readable::{UNREADABLE, is_readable};
 use crate::identify::{Estimate, Identification, NoiseSource};
 use crate::trace::catalogue::{Candidate, HYSTERESIS, KINDS, OUTLIERS, STIFFNESS_NONLINEARITY, axis_tells_hysteresis};
 use crate::trace::found::{EffectParameter, Found, Place};
 use crate::trace::model::{Fitted, all_but};
 use crate::trace::selection::WITHIN_REACH;
+use crate::trace::written::described;
 use crate::trace::{Misfit, NamedEffect, PoseError, Rival, RowResidual, Trace, Verdict, verdict};
 
 /// A tracing in full.
@@ -56,20 +56,10 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
     let spread = spread(bench, model);
     let values = values(campaign, bench, model);
     let effects = if tells { effects(found, &spread, structure, after.holdout_rms) } else { Vec::new() };
-    let mut description = campaign.robot.clone();
-    if tells {
-        description = with_values(&campaign.robot, &values);
-        if !is_readable(&description) {
-            return Err(UNREADABLE.to_string());
-        }
-        let written = effects.iter().filter(|named| named.effect.write_into(&mut description));
-        let names: Vec<String> = written.map(|named| named.effect.to_string()).collect();
-        let with = if names.is_empty() { String::new() } else { format!(", with {}", names.join(", ")) };
-        let from = if campaign.name.is_empty() { "clamped axes" } else { &campaign.name };
-        let own = description.source.trim_end().to_string();
-        let separator = if own.is_empty() { "" } else { "\n" };
-        description.source = format!("{own}{separator}Compliances identified from {from}{with}.");
-    }
+    let description = match tells {
+        true => described(campaign, "clamped axes", &values, &effects)?,
+        false => campaign.robot.clone(),
+    };
     let fitted_axes: Vec<usize> = bench.axes.loaded().collect();
     let estimates = identified.estimates.iter().enumerate().map(|(i, estimate)| {
         let at = fitted_axes.iter().position(|&axis| axis == i + 1);
@@ -168,8 +158,7 @@ fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: 
             Some(bench.candidates[new.candidate].name())
         };
         named.push(NamedEffect {
-            effect: Found::new(candidate.kind, candidate.place, parameters.clone()),
-            parameters,
+            effect: Found::new(candidate.kind, candidate.place, parameters),
             lines: Vec::new(),
             p_value: found.selection.p_values[k],
             holdout_rms,
@@ -185,10 +174,8 @@ fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: 
     if !lines.is_empty() {
         let mut lines = lines.clone();
         lines.sort_unstable();
-        let rows = EffectParameter { name: "rows", value: lines.len() as f64, std: None, unit: "1" };
-        let effect = Found::new(&OUTLIERS, Place::Rig, std::vec![rows.clone()]);
-        let (parameters, p_value) = (std::vec![rows], *p_value);
-        named.push(NamedEffect { effect, parameters, lines, p_value, holdout_rms, same_as: Vec::new(), partial });
+        let effect = Found::outliers(lines.len());
+        named.push(NamedEffect { effect, lines, p_value: *p_value, holdout_rms, same_as: Vec::new(), partial });
     }
     named
 }

@@ -15,14 +15,14 @@ use crate::identify::positions::own::with_values;
 use crate::identify::positions::regression::{STANDS, Solved};
 use crate::identify::positions::{estimated, of_numbers, residuals};
 use crate::identify::problem::rms;
-use crate::identify::readable::{UNREADABLE, is_readable};
 use crate::identify::uncertainty::covariance;
-use crate::trace::catalogue::{KINDS, OUTLIERS, Variant};
-use crate::trace::found::{EffectParameter, Found, Place};
+use crate::trace::catalogue::{KINDS, Variant};
+use crate::trace::found::{EffectParameter, Found};
 use crate::trace::held_out;
 use crate::trace::lack_of_fit::StructureTest;
 use crate::trace::model::{Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
+use crate::trace::written::with_effects;
 use crate::trace::{Misfit, NamedEffect, Options, PoseError, Rival, RowResidual, Trace, Verdict, verdict};
 
 /// A tracing in full.
@@ -70,20 +70,17 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
     let (spread_before, spread) = (spread_of(bench, base), spread_of(bench, model));
     let replaced = if tells { bench.replaced(&model.named) } else { Vec::new() };
     let effects = if tells { effects(found, &replaced, &spread, (structure, after.holdout_rms)) } else { Vec::new() };
-    let mut description = campaign.robot.clone();
-    if tells {
-        description = with_values(&campaign.robot, &bench.prepared.own, &values);
-        if !is_readable(&description) {
-            return Err(UNREADABLE.to_string());
+    let description = match tells {
+        true => {
+            let description = with_values(&campaign.robot, &bench.prepared.own, &values);
+            let from = if campaign.name.is_empty() { "absolute positions" } else { &campaign.name };
+            with_effects(description, &effects, |names| {
+                let with = if names.is_empty() { "nothing added" } else { names };
+                format!("Traced from {from}: {with}.")
+            })?
         }
-        let written = effects.iter().filter(|named| named.effect.write_into(&mut description));
-        let names: Vec<String> = written.map(|named| named.effect.to_string()).collect();
-        let with = if names.is_empty() { String::from("nothing added") } else { names.join(", ") };
-        let from = if campaign.name.is_empty() { "absolute positions" } else { &campaign.name };
-        let own = description.source.trim_end().to_string();
-        let separator = if own.is_empty() { "" } else { "\n" };
-        description.source = format!("{own}{separator}Traced from {from}: {with}.");
-    }
+        false => campaign.robot.clone(),
+    };
     let turn = model.solved.state.registration.turn.inverse();
     let in_base = |left: &DVector<f64>, row: usize| -> [f64; 3] {
         let left: Vector3<f64> = left.fixed_rows::<3>(3 * row).into_owned();
@@ -209,8 +206,7 @@ fn effects(
             without,
             one,
             NamedEffect {
-                effect: Found::new(candidate.kind, candidate.place, parameters.clone()),
-                parameters,
+                effect: Found::new(candidate.kind, candidate.place, parameters),
                 lines: Vec::new(),
                 p_value: found.selection.p_values[k],
                 holdout_rms,
@@ -232,11 +228,8 @@ fn effects(
     if !found.wild.rows.is_empty() {
         let mut lines: Vec<usize> = found.wild.rows.iter().map(|&row| bench.prepared.data.rows[row].line).collect();
         lines.sort_unstable();
-        let rows = EffectParameter { name: "rows", value: lines.len() as f64, std: None, unit: "1" };
-        let effect = Found::new(&OUTLIERS, Place::Rig, std::vec![rows.clone()]);
         named.push(NamedEffect {
-            effect,
-            parameters: std::vec![rows],
+            effect: Found::outliers(lines.len()),
             lines,
             p_value: found.wild.p,
             holdout_rms,

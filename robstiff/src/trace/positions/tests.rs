@@ -47,7 +47,7 @@ fn errors_of_the_table_are_found_together() {
         assert_eq!(trace.effects.len(), hidden.len(), "{:?}", names(&trace));
         for effect in hidden {
             let found = trace.effects.iter().find(|named| named.effect.to_string() == effect.to_string());
-            let number = &found.unwrap_or_else(|| panic!("{effect}: {:?}", names(&trace))).parameters[0];
+            let number = &found.unwrap_or_else(|| panic!("{effect}: {:?}", names(&trace))).effect.parameters[0];
             let off = number.value - effect.numbers()[0];
             assert!(off.abs() < 4.0 * number.std.expect("a number that was fitted"), "{effect}: {number:?}");
         }
@@ -102,7 +102,7 @@ fn wild_readings_do_not_hide_an_effect() {
     let trace = traced(&Plan { hidden, ..Plan::new(six_axis(), 1) }.run_with(wild));
     assert_eq!(names(&trace), ["joint_zero_offset@joint 3", "outliers@rig"]);
     assert_eq!(trace.effects[1].lines, [7, 19, 42]);
-    assert!((trace.effects[0].parameters[0].value - 5e-3).abs() < 5e-5);
+    assert!((trace.effects[0].effect.parameters[0].value - 5e-3).abs() < 5e-5);
     assert!(trace.after.rms < 4e-5);
 }
 
@@ -230,7 +230,7 @@ fn a_gear_softens_by_what_it_is_found_to_have() {
         (names(&trace), trace.verdict),
         (vec!["stiffness_nonlinearity@joint 2".to_string()], Verdict::Explained)
     );
-    let number = &trace.effects[0].parameters[0];
+    let number = &trace.effects[0].effect.parameters[0];
     assert!((number.value - added).abs() < 4.0 * number.std.expect("a fitted number"), "{number:?}");
 }
 

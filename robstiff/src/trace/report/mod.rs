@@ -98,7 +98,11 @@ pub fn report(
         (campaign.robot.clone(), declared, declared_residuals(prepared))
     } else {
         let values = values(prepared, of_written, written);
-        (described(campaign, &values, &effects)?, misfit(of_written, written), of_written.residuals(&written.fit))
+        (
+            described(campaign, "a campaign", &values, &effects)?,
+            misfit(of_written, written),
+            of_written.residuals(&written.fit),
+        )
     };
     let (residuals, pose_errors) = residuals(prepared, &all, &all.residuals(&base.fit), &left_after);
     let left = outcome.left.as_ref();

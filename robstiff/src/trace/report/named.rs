@@ -1,7 +1,6 @@
 //! The effects of a model, and what is wrong in single visits, as they are told.
 
 use std::string::String;
-use std::vec;
 use std::vec::Vec;
 
 use nalgebra::DMatrix;
@@ -11,8 +10,8 @@ use super::spread::share_of;
 use crate::identify::prepare::Prepared;
 use crate::trace::alias::same_as;
 use crate::trace::bench::Bench;
-use crate::trace::catalogue::{BASE_SLIP, OUTLIERS};
-use crate::trace::found::{EffectParameter, Found, Place};
+use crate::trace::catalogue::BASE_SLIP;
+use crate::trace::found::{EffectParameter, Found};
 use crate::trace::isolated::Event;
 use crate::trace::model::{Fitted, Named, Setting, all_but};
 use crate::trace::{NamedEffect, Options, Outcome};
@@ -37,8 +36,7 @@ pub fn effects(
         let parameters = parameters(setting, fine, spread, k);
         let candidate = &setting.candidates[model.named[k].candidate];
         NamedEffect {
-            effect: Found::new(candidate.kind, candidate.place, parameters.clone()),
-            parameters,
+            effect: Found::new(candidate.kind, candidate.place, parameters),
             lines: Vec::new(),
             p_value: outcome.selection.p_values[k],
             holdout_rms,
@@ -120,7 +118,6 @@ pub fn isolated(
         first.map(String::from).into_iter().chain(others).collect()
     };
     let one = |effect: Found, lines: Vec<usize>, events: &[&Event], other: Option<&str>| NamedEffect {
-        parameters: effect.parameters.clone(),
         effect,
         lines,
         p_value: events.iter().map(|event| event.p_value).fold(0.0, f64::max),
@@ -158,11 +155,9 @@ pub fn isolated(
     if !outliers.is_empty() {
         let mut lines: Vec<usize> = outliers.iter().flat_map(|event| event.rows.iter().map(line)).collect();
         lines.sort_unstable();
-        let rows = EffectParameter { name: "rows", value: lines.len() as f64, std: None, unit: "1" };
-        let effect = Found::new(&OUTLIERS, Place::Rig, vec![rows]);
         // One visit alone may as well have been where the robot slipped.
         let slip = (outliers.len() == 1 && !already).then_some("base_slip@base");
-        found.push(one(effect, lines, &outliers, slip));
+        found.push(one(Found::outliers(lines.len()), lines, &outliers, slip));
     }
     found
 }
