@@ -146,7 +146,10 @@ impl std::error::Error for Diagnostic {}
 
 /// All the problems of a file: at least one, in the order of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Diagnostics(Vec<Diagnostic>);
+pub struct Diagnostics {
+    problems: Vec<Diagnostic>,
+    may_be_more: bool,
+}
 
 impl Diagnostics {
     /// Readers record no more problems than these: nobody reads them, each costs a pass
@@ -156,21 +159,29 @@ impl Diagnostics {
     /// The problems in the order of the file, each said once; `None` if there
     /// are none.
     pub fn new(mut problems: Vec<Diagnostic>) -> Option<Self> {
+        // Of as many as these, before repetitions are dropped, a reader may have lost some.
+        let may_be_more = problems.len() >= Self::MOST;
         problems.sort_by_key(|problem| (problem.line, problem.column));
         // What an anchor holds is checked wherever an alias repeats it.
         problems.dedup_by(|b, a| (a.line, a.column, &a.message) == (b.line, b.column, &b.message));
-        (!problems.is_empty()).then_some(Self(problems))
+        (!problems.is_empty()).then_some(Self { problems, may_be_more })
     }
 
     /// The problems, in the order of the file.
     pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
-        self.0.iter()
+        self.problems.iter()
+    }
+
+    /// Whether the file may have more problems than these: the reader found as many as it
+    /// [records](Self::MOST).
+    pub fn may_be_more(&self) -> bool {
+        self.may_be_more
     }
 }
 
 impl From<Diagnostic> for Diagnostics {
     fn from(problem: Diagnostic) -> Self {
-        Self(vec![problem])
+        Self { problems: vec![problem], may_be_more: false }
     }
 }
 
@@ -263,5 +274,16 @@ mod tests {
         let all = Diagnostics::new(vec![late.clone(), early.clone(), late.clone()]).unwrap();
         assert_eq!(all.iter().collect::<Vec<_>>(), [&early, &late]);
         assert_eq!(Diagnostics::new(Vec::new()), None);
+    }
+
+    #[test]
+    fn repetitions_do_not_hide_that_there_may_be_more() {
+        let all = |count: usize| {
+            let problems = (1..=count).map(|column| diagnostic("1,2,3", column.div_ceil(2), 1));
+            Diagnostics::new(problems.collect()).unwrap()
+        };
+        assert!(!all(Diagnostics::MOST - 1).may_be_more());
+        let repeated = all(Diagnostics::MOST);
+        assert_eq!((repeated.iter().count(), repeated.may_be_more()), (Diagnostics::MOST / 2, true));
     }
 }

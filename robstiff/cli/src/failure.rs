@@ -84,7 +84,7 @@ impl From<Diagnostics> for Failure {
         let shown: Vec<String> = problems.iter().take(MOST_SHOWN).map(ToString::to_string).collect();
         let message = shown.join("\n\n");
         let all = problems.iter().count();
-        let least = if all >= Diagnostics::MOST { "at least " } else { "" };
+        let least = if problems.may_be_more() { "at least " } else { "" };
         Self::Explained(match all - shown.len() {
             0 => message,
             more => format!("{message}\n\nand {least}{more} more"),
