@@ -111,11 +111,11 @@ impl Op {
     }
 
     /// Cycles until the result is known once the operands are, much the same on
-    /// all current machines; a product, fused or not, a sum, a root.
+    /// all current machines; a product, fused or not, a sum or a comparison, a root.
     pub fn latency(self) -> usize {
         match self {
             Self::Mul(..) | Self::Scaled(..) | Self::PlusScaled(..) | Self::Product(..) | Self::PlusProduct(..) => 4,
-            Self::Add(..) | Self::Sub(..) | Self::Cycled(_) => 3,
+            Self::Add(..) | Self::Sub(..) | Self::Max(..) | Self::Min(..) | Self::Cycled(_) => 3,
             Self::Sqrt(_) | Self::Recip(_) => 13,
             _ => 0,
         }
