@@ -9,7 +9,7 @@ use super::noise::repetitions;
 use super::samples::Samples;
 use super::second_order::beyond_linear;
 use super::*;
-use crate::campaign::{Displacements, Frame, Noise, Observation};
+use crate::campaign::{Displacements, Frame, Noise, Observation, made};
 use crate::samples::{arm, five_axis};
 use crate::{Convention, Effect, Generic, Robot};
 
@@ -55,17 +55,7 @@ fn campaign(truth: &Description, declared: Description, frame: Frame, at: [f64; 
         visits: (0..30).map(|i| format!("{i}")).collect(),
         rows: rows.collect(),
     };
-    Campaign {
-        name: String::new(),
-        path: "".into(),
-        robot_path: "".into(),
-        observations_path: "".into(),
-        robot: declared,
-        data: Data::Displacement(data),
-        noise: Noise::default(),
-        holdout: None,
-        warnings: vec![],
-    }
+    made::campaign(declared, Data::Displacement(data))
 }
 
 fn stiffer(description: &Description) -> Description {

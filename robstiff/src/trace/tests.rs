@@ -1,102 +1,29 @@
 //! Tracing on campaigns made from the regression's own columns: what is tested
 //! is the statistics, not the mechanics.
 
-use std::format;
 use std::rc::Rc;
 use std::string::ToString;
 use std::vec;
 
 use nalgebra::DVector;
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use super::bench::Known;
 use super::*;
-use crate::campaign::{Data, Displacements, Frame, Noise, Observation};
+use crate::campaign::Data;
+use crate::campaign::made::{Plan, normal};
 use crate::elements::Spring;
 use crate::identify::samples::{Column, Samples};
 use crate::identify::{Visibility, predict};
 use crate::samples::five_axis;
 
 pub(super) const SIGMA: f64 = 1e-5;
-const RAMP: [f64; 5] = [0.35, 0.7, 1.0, 0.7, 0.35];
-
-fn gauss(rng: &mut ChaCha8Rng) -> f64 {
-    let radius = (-2.0 * (1.0 - rng.random::<f64>()).ln()).sqrt();
-    radius * (core::f64::consts::TAU * rng.random::<f64>()).cos()
-}
 
 /// A campaign of two ramps a pose on an arm with further numbers, each column
 /// times its value; joint compliances as declared.
 pub(super) fn campaign(robot: &Description, poses: usize, hidden: &[(Column, f64)], seed: u64) -> Campaign {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let mut data = Displacements {
-        wrench_frame: Frame::Base,
-        wrench_at: [0.0; 3],
-        measured_frame: Frame::Base,
-        measured_at: [0.0; 3],
-        poses: (0..poses).map(|pose| format!("{pose}")).collect(),
-        visits: (0..2 * poses).map(|visit| format!("{visit}")).collect(),
-        rows: Vec::new(),
-    };
-    for visit in 0..2 * poses {
-        let q = if visit % 2 == 0 {
-            robot.joints.iter().map(|_| rng.random_range(-1.2..1.2)).collect()
-        } else {
-            data.rows[data.rows.len() - 1].q.clone()
-        };
-        let force: [f64; 3] = core::array::from_fn(|_| rng.random_range(-700.0..700.0));
-        for share in RAMP {
-            let mut wrench = [0.0; 6];
-            (0..3).for_each(|k| wrench[k] = share * force[k]);
-            let line = data.rows.len() + 2;
-            data.rows.push(Observation {
-                line,
-                pose: visit / 2,
-                visit,
-                time: None,
-                temperature: None,
-                q: q.clone(),
-                wrench,
-                displacement: [0.0; 3],
-                rotation: None,
-                encoders: None,
-                motors: None,
-            });
-        }
-    }
-    let samples = Samples::of_description(robot, &data);
-    let mut exact = DVector::zeros(3 * data.rows.len());
-    for (column, value) in crate::identify::baseline::declared(robot)
-        .iter()
-        .map(|number| (number.column, number.value))
-        .chain(hidden.iter().copied())
-    {
-        exact.axpy(value, &samples.column(column), 1.0);
-    }
-    let second = crate::identify::second_order::beyond_linear(
-        &samples,
-        &robot.joints.iter().map(robstiff_robots::Joint::compliance).collect::<Vec<_>>(),
-    );
-    exact += second;
-    let mut unloaded = [0.0; 3];
-    for (i, row) in data.rows.iter_mut().enumerate() {
-        if i % RAMP.len() == 0 {
-            unloaded = core::array::from_fn(|_| SIGMA * gauss(&mut rng));
-        }
-        row.displacement = core::array::from_fn(|k| exact[3 * i + k] + SIGMA * gauss(&mut rng) - unloaded[k]);
-    }
-    Campaign {
-        name: "test".to_string(),
-        path: "".into(),
-        robot_path: "".into(),
-        observations_path: "".into(),
-        robot: robot.clone(),
-        data: Data::Displacement(data),
-        noise: Noise::default(),
-        holdout: None,
-        warnings: Vec::new(),
-    }
+    Plan { robot: robot.clone(), poses, hidden: hidden.to_vec(), noise: [SIGMA; 3], ..Plan::new(seed) }.run()
 }
 
 pub(super) fn traced(campaign: &Campaign) -> Trace {
@@ -325,7 +252,7 @@ fn displacements(campaign: &mut Campaign, of: impl Fn(&Samples) -> DVector<f64>)
 /// A drift is the rig's: it is named, corrected for and not written down.
 #[test]
 fn faults_of_the_rig_stay_out_of_the_robot() {
-    let mut campaign = campaign(&five_axis(), 24, &[], 4);
+    let mut campaign = campaign(&five_axis(), 24, &[], 5);
     if let Data::Displacement(data) = &mut campaign.data {
         for (i, row) in data.rows.iter_mut().enumerate() {
             row.displacement[0] += 4e-7 * (i as f64 - 120.0);
@@ -347,7 +274,7 @@ fn the_bootstrap_has_its_nominal_size() {
         if let Data::Displacement(data) = &mut campaign.data {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             for row in data.rows.iter_mut().filter(|row| row.pose % 3 == 0) {
-                row.displacement.iter_mut().for_each(|d| *d += 2.0 * SIGMA * gauss(&mut rng));
+                row.displacement.iter_mut().for_each(|d| *d += 2.0 * SIGMA * normal(&mut rng));
             }
         }
         let prepared = Prepared::new(&campaign).expect("displacements");
