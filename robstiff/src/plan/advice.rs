@@ -26,14 +26,13 @@ const WORTH_IT: f64 = 1.5;
 /// Markers with this share of the best separation do about as well.
 const ABOUT_AS_WELL: f64 = 0.8;
 
-/// What would tell a pair apart, the best first. `without` is the separation
-/// with the visits alone.
+/// What would tell a pair, by its index, apart, the best first. `without` is the
+/// separation (sigmas) with the visits alone.
 pub fn remedies(
     regressors: &impl Regressors,
     judge: &Judge,
     visits: &[Visit],
-    contest: &Contest,
-    pair: usize,
+    (contest, pair): (&Contest, usize),
     without: f64,
 ) -> Vec<Remedy> {
     let separation = |sensor: Sensor| {

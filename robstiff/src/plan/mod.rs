@@ -205,7 +205,8 @@ fn best(regressors: &impl Regressors, rivals: &Rivals, space: &Space, options: &
     let chosen: Vec<Visit> = chosen.into_iter().map(|k| visits[k].clone()).collect();
     let chosen = refine(&judge, regressors, space, options.criterion, chosen);
     let chosen = in_order(&judge, regressors, options.criterion, chosen);
-    told(regressors, rivals, &judge, space, &everything, &open, &chosen)
+    let told = Told { regressors, rivals, judge: &judge, everything: &everything, open: &open };
+    told.plan(&chosen, space.assumptions.clone())
 }
 
 /// The first proposals, as a trace holds them: what separates rivals.
@@ -229,69 +230,81 @@ pub fn next(campaign: &Campaign, trace: &Trace, count: usize) -> Result<Vec<Prop
     Ok(plan.proposals.iter().filter_map(proposal).collect())
 }
 
-/// What is expected of the chosen visits, in their order.
-fn told(
-    regressors: &impl Regressors,
-    rivals: &Rivals,
-    judge: &Judge,
-    space: &Space,
-    everything: &DMatrix<f64>,
-    open: &[usize],
-    chosen: &[Visit],
-) -> Plan {
-    let mut sum = regressors.known();
-    let before = judge.separations(&sum);
-    let std_before = judge.stds(&sum);
-    let mut last = before.clone();
-    let mut proposals = Vec::new();
-    for (visit, information) in chosen.iter().zip(regressors.information(chosen, None)) {
-        sum += information;
-        let separation = judge.separations(&sum);
-        // What the harmonic mean of the criterion gains from the pair.
-        let share = |separation: &[f64], k: usize| (separation[k] * separation[k]).max(f64::MIN_POSITIVE).recip();
-        let gain = |&k: &usize| share(&last, k) - share(&separation, k);
-        let separates = open.iter().copied().max_by(|a, b| gain(a).total_cmp(&gain(b)));
-        proposals.push(Planned {
-            visit: visit.clone(),
-            greatest: visit.greatest(),
-            separates,
-            separation: separation.clone(),
-            std: judge.stds(&sum),
-        });
-        last = separation;
+/// What tells what is to be expected of visits.
+struct Told<'p, R> {
+    regressors: &'p R,
+    rivals: &'p Rivals,
+    judge: &'p Judge,
+    /// What all that could be measured would give.
+    everything: &'p DMatrix<f64>,
+    /// The pairs that differ in that.
+    open: &'p [usize],
+}
+
+impl<R: Regressors> Told<'_, R> {
+    /// What is expected of the chosen visits, in their order.
+    fn plan(&self, chosen: &[Visit], assumptions: Vec<String>) -> Plan {
+        let (proposals, sum) = self.proposals(chosen);
+        let known = self.regressors.known();
+        let [before, after] = [&known, &sum].map(|information| self.judge.separations(information));
+        let pairs = (0..self.rivals.pairs.len()).map(|k| self.pair(chosen, k, before[k], after[k])).collect();
+        let [now, then] = [&known, &sum].map(|information| self.judge.stds(information));
+        let number = |(k, number): (usize, &rivals::Number)| Number {
+            name: number.name.clone(),
+            value: number.value,
+            unit: number.unit,
+            now: now[k],
+            after: then[k],
+        };
+        let numbers = self.rivals.numbers.iter().enumerate().map(number).collect();
+        Plan { proposals, pairs, numbers, assumptions }
     }
-    let std_after = judge.stds(&sum);
-    let pairs = (0..rivals.pairs.len()).map(|k| {
-        let names = rivals.pairs[k].names.clone();
-        let angle = judge.angle(everything, k);
-        let outlook = if !open.contains(&k) {
+
+    /// The visits with what is known after each, and what is known after all.
+    fn proposals(&self, chosen: &[Visit]) -> (Vec<Planned>, DMatrix<f64>) {
+        let mut sum = self.regressors.known();
+        let mut last = self.judge.separations(&sum);
+        let mut proposals = Vec::new();
+        for (visit, information) in chosen.iter().zip(self.regressors.information(chosen, None)) {
+            sum += information;
+            let separation = self.judge.separations(&sum);
+            // What the harmonic mean of the criterion gains from the pair.
+            let share = |separation: &[f64], k: usize| (separation[k] * separation[k]).max(f64::MIN_POSITIVE).recip();
+            let gain = |&k: &usize| share(&last, k) - share(&separation, k);
+            let separates = self.open.iter().copied().max_by(|a, b| gain(a).total_cmp(&gain(b)));
+            proposals.push(Planned {
+                visit: visit.clone(),
+                greatest: visit.greatest(),
+                separates,
+                separation: separation.clone(),
+                std: self.judge.stds(&sum),
+            });
+            last = separation;
+        }
+        (proposals, sum)
+    }
+
+    /// A pair of rivals, by index, with its separation (sigmas) before and after the visits.
+    fn pair(&self, chosen: &[Visit], k: usize, now: f64, after: f64) -> Pair {
+        let contest = &self.rivals.pairs[k];
+        let outlook = if !self.open.contains(&k) {
             Outlook::Alias
-        } else if last[k] >= TOLD_APART {
+        } else if after >= TOLD_APART {
             Outlook::Separable
         } else {
-            let gain = (last[k] * last[k] - before[k] * before[k]) / chosen.len().max(1) as f64;
-            let lacking = TOLD_APART * TOLD_APART - before[k] * before[k];
+            let gain = (after * after - now * now) / chosen.len().max(1) as f64;
+            let lacking = TOLD_APART * TOLD_APART - now * now;
             Outlook::Slow((lacking / gain.max(f64::MIN_POSITIVE)).ceil().min(1e6) as usize)
         };
         let remedies = match outlook {
             Outlook::Separable => Vec::new(),
-            _ => advice::remedies(regressors, judge, chosen, &rivals.pairs[k], k, last[k]),
+            _ => advice::remedies(self.regressors, self.judge, chosen, (contest, k), after),
         };
-        let readings = regressors.readings(chosen) as f64;
+        let readings = self.regressors.readings(chosen) as f64;
         // Of the less clear of the two, the one with more numbers.
-        let further = rivals.pairs[k].further_numbers() as f64;
-        let log_bayes = 0.5 * (last[k] * last[k] - further * readings.ln());
-        Pair { names, now: before[k], after: last[k], log_bayes, angle, outlook, remedies }
-    });
-    let pairs = pairs.collect();
-    let numbers = rivals.numbers.iter().zip(std_before.iter().zip(&std_after));
-    let numbers = numbers.map(|(number, (&now, &after))| Number {
-        name: number.name.clone(),
-        value: number.value,
-        unit: number.unit,
-        now,
-        after,
-    });
-    let numbers = numbers.collect();
-    Plan { proposals, pairs, numbers, assumptions: space.assumptions.clone() }
+        let further = contest.further_numbers() as f64;
+        let log_bayes = 0.5 * (after * after - further * readings.ln());
+        let angle = self.judge.angle(self.everything, k);
+        Pair { names: contest.names.clone(), now, after, log_bayes, angle, outlook, remedies }
+    }
 }
