@@ -194,7 +194,7 @@ fn faults_of_the_rig_are_named_and_not_written() {
     let warmer = Hidden::Expansion { rate: 4e-5, follows: Follows::Temperature };
     let grows = assert_named("thermal_drift@rig", 920, |positions, _| positions.hidden = vec![warmer.clone()]);
     let knocked = assert_named("reflector_slip@rig", 960, |positions, _| {
-        positions.hidden = vec![Hidden::Outside(Outside::MarkerSlip { shift: [2e-4, -2e-4, 1e-4], when: 0.4 })];
+        positions.hidden = vec![Hidden::ReflectorSlip { shift: [2e-4, -2e-4, 1e-4], when: 0.4 }];
     });
     let (rate, follows) = ([3e-4, 0.0, -2e-4], Follows::Settling(700.0));
     let settles = assert_named("thermal_drift@rig", 940, |positions, _| {

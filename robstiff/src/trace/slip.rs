@@ -3,10 +3,11 @@
 use std::vec;
 use std::vec::Vec;
 
-use nalgebra::{DMatrix, DVector, Matrix3x6, Matrix6, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix3x6, Matrix6, Vector3};
 
 use super::model::{Fitted, Setting};
 use crate::identify::normal::Scaled;
+use crate::identify::samples::{Sample, turn_of};
 use crate::identify::whitening::{mean_share, whiten};
 
 /// With less than this share left, the rest of the model says the same.
@@ -20,6 +21,44 @@ const WORTH_A_LOOK: f64 = 15.0;
 /// residual variance: as much as three more numbers do of noise (chi-square with
 /// three degrees of freedom at 0.1 %).
 const TURNS: f64 = 16.3;
+
+/// What slips.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slipping {
+    /// The robot, or the tracker: by a shift in the base frame, and maybe a turn.
+    Base,
+    /// The reflector on the tool: by a shift in the tool frame.
+    Reflector,
+}
+
+impl Slipping {
+    /// All there are.
+    pub const ALL: [Self; 2] = [Self::Base, Self::Reflector];
+
+    /// How many of the numbers of [`moves`](Self::moves) a slip may have, the first ones.
+    fn numbers(self) -> &'static [usize] {
+        match self {
+            Self::Base => &[3, 6],
+            Self::Reflector => &[3],
+        }
+    }
+
+    /// What a unit of shift (m), and of turn about the origin of the base frame (rad),
+    /// moves at a row, in the base frame.
+    pub fn moves(self, sample: &Sample) -> Matrix3x6<f64> {
+        let (shift, turn) = match self {
+            Self::Base => {
+                let at = sample.tcp.fixed_view::<3, 1>(0, 3) + sample.marker;
+                (Matrix3::identity(), -at.cross_matrix())
+            }
+            Self::Reflector => (turn_of(&sample.tcp), Matrix3::zeros()),
+        };
+        let mut moves = Matrix3x6::zeros();
+        moves.fixed_view_mut::<3, 3>(0, 0).copy_from(&shift);
+        moves.fixed_view_mut::<3, 3>(0, 3).copy_from(&turn);
+        moves
+    }
+}
 
 /// A slip that whole visits keep: the rows from one on have the shift, or where
 /// the unloaded readings were taken in a round before, and the slip was within
@@ -39,11 +78,42 @@ impl Moment {
     }
 }
 
+/// When something may have slipped so that whole visits keep it, the likeliest first.
+#[derive(Clone, Debug, Default)]
+pub struct Moments {
+    of_base: Vec<Moment>,
+    of_reflector: Vec<Moment>,
+}
+
+impl Moments {
+    /// The same for everything that slips.
+    pub fn alike(moments: &[Moment]) -> Self {
+        Self { of_base: moments.to_vec(), of_reflector: moments.to_vec() }
+    }
+
+    /// When this may have slipped.
+    pub fn of(&self, slipping: Slipping) -> &[Moment] {
+        match slipping {
+            Slipping::Base => &self.of_base,
+            Slipping::Reflector => &self.of_reflector,
+        }
+    }
+
+    /// Puts moments in the place of the first.
+    pub fn replace_first(&mut self, slipping: Slipping, by: &[Moment]) {
+        let moments = match slipping {
+            Slipping::Base => &mut self.of_base,
+            Slipping::Reflector => &mut self.of_reflector,
+        };
+        moments[..by.len()].copy_from_slice(by);
+    }
+}
+
 /// The slip that whole visits keep which is most likely, if one is near
-/// significant: a shift, or a shift with a turn about the base. Rows that are left
+/// significant: a shift, or of the base a shift with a turn. Rows that are left
 /// out next to its moment have no part in finding it; they are laid to the side
 /// that they look like.
-pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted) -> Option<Moment> {
+pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted, slipping: Slipping) -> Option<Moment> {
     let (problem, fit) = setting.alone(&model.fit);
     let (axes, rows) = (problem.axes, setting.point.samples.rows.len());
     let mut fitted_to = vec![false; rows];
@@ -56,14 +126,15 @@ pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted) -> Option<Moment> {
     }
     // A step is whitened like the readings; its products with what is whitened
     // are sums over rows of that whitened once more. Where axes differ in noise
-    // their scale cancels for a shift; for a turn, or in a measuring frame that
-    // turns with the tool, this is a first look only, like the moment it gives:
+    // their scale cancels for a shift of the base; for others, or in a measuring frame
+    // that turns with the tool, this is a first look only, like the moment it gives:
     // the tests have the whole.
     let visits = setting.point.samples.visits();
     let shared = problem.shared;
     whiten(&mut white, &visits, axes, shared);
     let scan = Scan {
         setting,
+        slipping,
         fitted_to,
         white,
         inverse: problem.total.inverse(columns)?,
@@ -79,6 +150,7 @@ pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted) -> Option<Moment> {
 /// What is needed to look at all moments.
 struct Scan<'s, 'c> {
     setting: &'s Setting<'c>,
+    slipping: Slipping,
     fitted_to: Vec<bool>,
     /// The model's columns and what it leaves, whitened twice.
     white: DMatrix<f64>,
@@ -120,9 +192,8 @@ impl Scan<'_, '_> {
                 energy += moves.tr_mul(&moves) * (step_energy(sizes[visit], inside[visit], shared) - before);
             }
             let moment = Moment { row: row + usize::from(before), before };
-            for slip in
-                [self.slip(&energy, &sums, 3, moment), self.slip(&energy, &sums, 6, moment)].into_iter().flatten()
-            {
+            let numbers = self.slipping.numbers().iter();
+            for slip in numbers.filter_map(|&numbers| self.slip(&energy, &sums, numbers, moment)) {
                 if best.as_ref().is_none_or(|best| slip.gain > best.gain) {
                     best = Some(slip);
                 }
@@ -147,11 +218,7 @@ impl Scan<'_, '_> {
 
     /// What a unit of shift and turn moves at a row.
     fn moves(&self, row: usize) -> Matrix3x6<f64> {
-        let sample = &self.setting.point.samples.rows[row];
-        let at = sample.tcp.fixed_view::<3, 1>(0, 3) + sample.marker;
-        let mut moves = Matrix3x6::identity();
-        moves.fixed_view_mut::<3, 3>(0, 3).copy_from(&-at.cross_matrix());
-        moves
+        self.slipping.moves(&self.setting.point.samples.rows[row])
     }
 
     /// The moment among rows that are left out around it.

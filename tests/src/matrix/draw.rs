@@ -10,7 +10,7 @@ use robstiff_robots::{Description, Effect, JointKind, Link};
 use crate::simulator::{DhColumn, Follows, Hidden, Mount, Outside};
 
 /// The kinds of the catalogue.
-pub const KINDS: [&str; 22] = [
+pub const KINDS: [&str; 23] = [
     "transverse_compliance",
     "link_compliance",
     "base_compliance",
@@ -33,19 +33,12 @@ pub const KINDS: [&str; 22] = [
     "creep",
     "outliers",
     "base_slip",
+    "reflector_slip",
 ];
 
 /// Those outside it.
-pub const OUTSIDE: [&str; 8] = [
-    "viscous_joint",
-    "cable",
-    "link_growth",
-    "soft_foundation",
-    "cross_dependence",
-    "loose_flange",
-    "marker_slip",
-    "warming_joint",
-];
+pub const OUTSIDE: [&str; 7] =
+    ["viscous_joint", "cable", "link_growth", "soft_foundation", "cross_dependence", "loose_flange", "warming_joint"];
 
 /// What was drawn.
 #[derive(Clone, Debug)]
@@ -145,6 +138,7 @@ pub fn draw(kind: &str, arm: &Description, mount: Mount, random: &mut ChaCha8Rng
             let turn = three(random).map(|share| 1e-5 * share);
             (Hidden::BaseSlip { shift: along.map(|share| 3e-5 * share), turn, when }, 20.0)
         }
+        "reflector_slip" => (Hidden::ReflectorSlip { shift: along.map(|share| 5e-5 * share), when }, 20.0),
         _ => outside(kind, arm, random),
     };
     Drawn { hidden, most }
@@ -154,7 +148,6 @@ fn outside(kind: &str, arm: &Description, random: &mut ChaCha8Rng) -> (Hidden, f
     let joint: usize = random.random_range(1..=3);
     let h = arm.joints[joint - 1].compliance();
     let turn: f64 = random.random_range(0.0..std::f64::consts::TAU);
-    let when = random.random_range(0.2..0.8);
     let (outside, most) = match kind {
         "viscous_joint" => {
             let constant = random.random_range(60.0..180.0);
@@ -171,7 +164,6 @@ fn outside(kind: &str, arm: &Description, random: &mut ChaCha8Rng) -> (Hidden, f
             (Outside::CrossDependence { joint, of, cos: 0.3 * turn.cos(), sin: 0.3 * turn.sin() }, 3.1)
         }
         "loose_flange" => (Outside::LooseFlange { gap: 1e-4, knee: 40.0 }, 20.0),
-        "marker_slip" => (Outside::MarkerSlip { shift: three(random).map(|share| 5e-5 * share), when }, 20.0),
         "warming_joint" => (Outside::WarmingJoint { joint, per_kelvin: 0.02 }, 10.0),
         _ => panic!("there is no kind `{kind}`"),
     };
@@ -197,7 +189,7 @@ fn masses(arm: &Description) -> Vec<Link> {
 
 /// Whether it shows only in displacements from an unloaded reading long before.
 pub fn takes_hours(kind: &str) -> bool {
-    ["thermal_drift", "base_slip", "link_growth", "marker_slip"].contains(&kind)
+    ["thermal_drift", "base_slip", "link_growth", "reflector_slip"].contains(&kind)
 }
 
 /// Whether it needs the loads of a visit to follow each other without the arm

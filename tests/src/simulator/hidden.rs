@@ -140,6 +140,13 @@ pub enum Hidden {
         /// When, as a share of the campaign's duration.
         when: f64,
     },
+    /// The reflector slips in its nest on the tool at one moment and stays there.
+    ReflectorSlip {
+        /// In the tool frame (m).
+        shift: [f64; 3],
+        /// When, as a share of the campaign's duration.
+        when: f64,
+    },
     /// What the catalogue does not have.
     Outside(Outside),
 }
@@ -203,6 +210,7 @@ impl Hidden {
             Self::Creep { .. } => "creep",
             Self::Outliers { .. } => "outliers",
             Self::BaseSlip { .. } => "base_slip",
+            Self::ReflectorSlip { .. } => "reflector_slip",
             Self::Outside(outside) => outside.kind(),
         }
     }
@@ -262,6 +270,7 @@ impl Hidden {
             Self::BaseSlip { shift, turn, .. } => {
                 axes("d", shift).into_iter().chain(axes("r", turn)).collect::<Vec<_>>()
             }
+            Self::ReflectorSlip { shift, .. } => axes("d", shift),
             Self::Hysteresis { operators, .. } => {
                 let numbered = operators.iter().enumerate().flat_map(|(index, &(radius, weight))| {
                     [(format!("radius{}", index + 1), radius), (format!("weight{}", index + 1), weight)]
@@ -293,7 +302,8 @@ impl Hidden {
             | Self::LoadCellScale { scale: three, .. }
             | Self::LeverArm(three)
             | Self::TrackerMisalignment(three)
-            | Self::ThermalDrift { rate: three, .. } => three.iter_mut().collect(),
+            | Self::ThermalDrift { rate: three, .. }
+            | Self::ReflectorSlip { shift: three, .. } => three.iter_mut().collect(),
             Self::TrackerScale(one) | Self::Expansion { rate: one, .. } | Self::Creep { share: one, .. } => vec![one],
             Self::Outliers { size, .. } => vec![size],
             Self::BaseSlip { shift, turn, .. } => shift.iter_mut().chain(turn).collect(),

@@ -264,6 +264,7 @@ fn all() -> Vec<Hidden> {
         Hidden::Creep { share: 0.02, onset: 10.0 },
         Hidden::Outliers { share: 0.1, size: 1e-4 },
         Hidden::BaseSlip { shift: [1e-4, 0.0, 0.0], turn: [0.0; 3], when: 0.5 },
+        Hidden::ReflectorSlip { shift: [1e-4, 0.0, 0.0], when: 0.5 },
     ];
     let outside = [
         Outside::ViscousJoint { joint: 2, compliance: 1e-7, constant: 90.0 },
@@ -272,7 +273,6 @@ fn all() -> Vec<Hidden> {
         Outside::SoftFoundation { compliance: 5e-8, knee: 1000.0 },
         Outside::CrossDependence { joint: 2, of: 3, cos: 0.3, sin: 0.1 },
         Outside::LooseFlange { gap: 1e-4, knee: 50.0 },
-        Outside::MarkerSlip { shift: [1e-4, 0.0, 0.0], when: 0.5 },
         Outside::WarmingJoint { joint: 2, per_kelvin: 0.05 },
     ];
     all.extend(outside.map(Hidden::Outside));

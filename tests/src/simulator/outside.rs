@@ -63,13 +63,6 @@ pub enum Outside {
         /// The force that closes most of it (N).
         knee: f64,
     },
-    /// The marker slips in its clamp at one moment, and stays there.
-    MarkerSlip {
-        /// In the tool frame (m).
-        shift: [f64; 3],
-        /// When, as a share of the campaign's duration.
-        when: f64,
-    },
     /// Grease and belts soften with warmth: the joint's compliance times
     /// `1 + per_kelvin (T - T at the beginning)`.
     WarmingJoint {
@@ -90,7 +83,6 @@ impl Outside {
             Self::SoftFoundation { .. } => "soft_foundation",
             Self::CrossDependence { .. } => "cross_dependence",
             Self::LooseFlange { .. } => "loose_flange",
-            Self::MarkerSlip { .. } => "marker_slip",
             Self::WarmingJoint { .. } => "warming_joint",
         }
     }
@@ -103,7 +95,6 @@ impl Outside {
             Self::Cable { link, .. } | Self::LinkGrowth { link, .. } => format!("link {link}"),
             Self::SoftFoundation { .. } => "base".into(),
             Self::LooseFlange { .. } => "tool".into(),
-            Self::MarkerSlip { .. } => "rig".into(),
         }
     }
 
@@ -115,7 +106,6 @@ impl Outside {
             Self::LinkGrowth { per_kelvin, .. } | Self::WarmingJoint { per_kelvin, .. } => vec![per_kelvin],
             Self::CrossDependence { cos, sin, .. } => vec![cos, sin],
             Self::LooseFlange { gap, .. } => vec![gap],
-            Self::MarkerSlip { shift, .. } => shift.iter_mut().collect(),
         }
     }
 }

@@ -11,7 +11,7 @@ use super::arm::GRAVITY;
 use super::frame::Frame;
 use super::noise::{Stream, normal};
 use super::rig::Rig;
-use super::{Arm, Hidden, Outside};
+use super::{Arm, Hidden};
 
 /// How long a row takes (s).
 const A_ROW: f64 = 60.0;
@@ -22,7 +22,7 @@ pub struct Positions {
     /// The arm as it is.
     pub truth: Description,
     /// What else there is of the arm; of the rig `BaseSlip`, `TrackerScale`, `Expansion`,
-    /// `ThermalDrift`, `MarkerSlip`, and what the fields below say.
+    /// `ThermalDrift`, `ReflectorSlip`, and what the fields below say.
     pub hidden: Vec<Hidden>,
     /// How many poses, and how often the arm comes to each.
     pub poses: [usize; 2],
@@ -102,7 +102,7 @@ impl Positions {
                         Hidden::BaseSlip { shift, turn, when } if is_after(*when) => {
                             at = Frame::turned((*turn).into()).turn * at + Vector3::from(*shift);
                         }
-                        Hidden::Outside(Outside::MarkerSlip { shift, when }) if is_after(*when) => {
+                        Hidden::ReflectorSlip { shift, when } if is_after(*when) => {
                             at += tool * Vector3::from(*shift);
                         }
                         Hidden::ThermalDrift { rate, follows } => {

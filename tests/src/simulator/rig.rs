@@ -93,7 +93,7 @@ impl<'a> Rig<'a> {
                 Hidden::ThermalDrift { rate, follows } => {
                     point += Vector3::from(*rate) * self.drift(*follows, stand.time)
                 }
-                Hidden::Outside(Outside::MarkerSlip { shift, when }) if stand.time > when * self.end => {
+                Hidden::ReflectorSlip { shift, when } if stand.time > when * self.end => {
                     point += stand.tool * Vector3::from(*shift);
                 }
                 _ => {}

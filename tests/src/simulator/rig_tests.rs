@@ -109,7 +109,7 @@ fn slips_are_there_from_their_moment_on() {
     let when = 0.6;
     let slip = Scenario { unloaded_first: true, ..small(rigid(), Hidden::BaseSlip { shift, turn, when }) }.run();
     let end = slip.rows.last().unwrap().time;
-    let marker = Hidden::Outside(Outside::MarkerSlip { shift, when });
+    let marker = Hidden::ReflectorSlip { shift, when };
     let marker = Scenario { unloaded_first: true, ..small(rigid(), marker) }.run();
     for (row, other) in slip.rows.iter().zip(&marker.rows) {
         let posed = Arm::new(&rigid(), &[]).at(&row.q);

@@ -23,6 +23,7 @@ use crate::plan::rivals::{Group, Rivals};
 use crate::trace::bench::Bench;
 use crate::trace::catalogue::{Scene, catalogue};
 use crate::trace::point::Point;
+use crate::trace::slip::Moments;
 use crate::trace::{Place, Trace};
 
 /// A traced campaign, with the numbers that planning looks at.
@@ -150,7 +151,7 @@ impl<'c> Adapter<'c> {
             data: &data,
             samples: &declared,
             compliance: self.compliance.clone(),
-            moments: &[],
+            moments: &Moments::default(),
         };
         let everything = catalogue(&scene, 0);
         let column = |point: &Point<'_>, kept: &Kept| match kept {

@@ -24,7 +24,7 @@ use super::isolated::Event;
 use super::model::{Fitted, Named, Setting, Stored};
 use super::point::Point;
 use super::selection::Tests;
-use super::slip::Moment;
+use super::slip::{Moment, Moments};
 use crate::campaign::Campaign;
 use crate::elements::Spring;
 use crate::identify::normal::{Fit, Sign};
@@ -53,8 +53,8 @@ pub struct Bench<'c> {
     /// Whether rows of poses fitted to are wild, too, where the others of their own pose
     /// contradict them, as those of poses held out always are.
     pub by_own_pose: bool,
-    /// Where a slip that all later rows keep may have begun.
-    moments: Vec<Moment>,
+    /// Where slips that all later rows keep may have begun.
+    moments: Moments,
     settings: Solved<Setting<'c>>,
     /// The columns that were formed last.
     stored: Rc<RefCell<Stored>>,
@@ -90,7 +90,8 @@ impl<'c> Bench<'c> {
             (1..=count).map(move |k| Moment { row: (k * rows / (count + 1)).clamp(1, rows), before })
         };
         // What the likeliest will be take the first places.
-        bench.moments = evenly(LIKELY, false).chain(evenly(MOMENTS, false)).chain(evenly(MOMENTS, true)).collect();
+        let moments = evenly(LIKELY, false).chain(evenly(MOMENTS, false)).chain(evenly(MOMENTS, true));
+        bench.moments = Moments::alike(&moments.collect::<Vec<Moment>>());
         bench.set_up()?;
         Ok(bench)
     }
@@ -111,7 +112,7 @@ impl<'c> Bench<'c> {
             noise: Rc::new(Known::of(prepared)),
             strict: false,
             by_own_pose: false,
-            moments: Vec::new(),
+            moments: Moments::default(),
             settings: RefCell::default(),
             stored: Rc::default(),
             states: RefCell::default(),

@@ -7,10 +7,10 @@ use std::vec;
 use std::vec::Vec;
 
 use super::Bench;
-use crate::trace::catalogue::{BASE_SLIP, Candidate, Catalogue, LIKELY, Number, Variant, catalogue};
+use crate::trace::catalogue::{Candidate, Catalogue, LIKELY, Number, Variant, catalogue};
 use crate::trace::isolated::{self, Event};
 use crate::trace::model::{Fitted, Named, Setting, all_but};
-use crate::trace::slip::{Moment, likeliest_slip};
+use crate::trace::slip::{Moment, Slipping, likeliest_slip};
 
 /// A column this small against the largest of a joint is zero but for rounding.
 const ZERO: f64 = 1e-7;
@@ -74,23 +74,24 @@ impl Bench<'_> {
             let mut left_out = vec![false; self.left_out.len()];
             wild.iter().flat_map(|event| &event.rows).for_each(|&row| left_out[row] = true);
             self.events = wild.into();
-            let moments = self.likely_slips(named);
-            let moves = moments.iter().any(|moment| !self.moments[..LIKELY].contains(moment));
+            let likely = Slipping::ALL.map(|slipping| (slipping, self.likely_slips(named, slipping)));
+            let moves = likely.iter().any(|(slipping, moments)| {
+                moments.iter().any(|moment| !self.moments.of(*slipping)[..LIKELY].contains(moment))
+            });
             if left_out == self.left_out && !moves {
                 break;
             }
             drop(setting);
             changed = true;
             self.left_out = left_out;
-            self.moments[..moments.len()].copy_from_slice(&moments);
+            likely.iter().for_each(|(slipping, moments)| self.moments.replace_first(*slipping, moments));
             // Which forms of which candidates are seen stays as it was.
             let (kept, invisible) = (Rc::clone(&self.candidates), self.invisible.clone());
             self.set_up()?;
             self.invisible = invisible;
             let moved = |candidate: &Candidate| {
                 let same = self.candidates.iter().find(|other| other.name() == candidate.name());
-                let is_slip = candidate.kind == &BASE_SLIP;
-                same.filter(|_| is_slip).unwrap_or(candidate).clone()
+                same.filter(|_| Slipping::has(candidate.kind.name)).unwrap_or(candidate).clone()
             };
             self.candidates = kept.iter().map(moved).collect();
             self.numbers = self.refined_numbers(0..self.candidates.len());
@@ -117,11 +118,11 @@ impl Bench<'_> {
         Ok(wild)
     }
 
-    /// Where slips that all later rows keep may have begun: what a model says,
+    /// Where a slip that all later rows keep may have begun: what a model says,
     /// and what it says without one of its effects, which may be in place of a
     /// slip or be one.
-    fn likely_slips(&self, named: &[Named]) -> Vec<Moment> {
-        let slips = |one: &Named| self.candidates[one.candidate].kind == &BASE_SLIP;
+    fn likely_slips(&self, named: &[Named], slipping: Slipping) -> Vec<Moment> {
+        let slips = |one: &Named| self.candidates[one.candidate].kind == slipping.kind();
         let mut models: Vec<Vec<Named>> = Vec::new();
         if !named.iter().any(slips) {
             models.push(named.to_vec());
@@ -136,7 +137,7 @@ impl Bench<'_> {
         for named in models {
             let Ok(setting) = self.at(&named) else { continue };
             let Ok(fitted) = setting.fit(&named) else { continue };
-            moments.extend(likeliest_slip(&setting, &fitted).filter(|moment| !moments.contains(moment)));
+            moments.extend(likeliest_slip(&setting, &fitted, slipping).filter(|moment| !moments.contains(moment)));
         }
         moments.truncate(LIKELY);
         moments

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 
 use super::{Form, Kind, Number, Offers, Part, SHIFT, Scene, TURN};
 use crate::identify::samples::stack;
-use crate::trace::slip::Moment;
+use crate::trace::slip::{Moment, Slipping};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -47,16 +47,16 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         })
     };
     let three = |&moment: &Moment| (0..3).map(move |k| (moment, k));
-    let likely = &scene.moments[..LIKELY.min(scene.moments.len())];
-    let shifts = scene.moments.iter().flat_map(three).map(shift);
+    let moments = scene.moments.of(Slipping::Base);
+    let likely = &moments[..LIKELY.min(moments.len())];
+    let shifts = moments.iter().flat_map(three).map(shift);
     let numbers: Vec<Number> = shifts.chain(likely.iter().flat_map(three).map(turn)).collect();
-    let turns = 3 * scene.moments.len();
-    let line = |moment: Moment| scene.data.rows[moment.row.min(scene.data.rows.len() - 1)].line as f64;
-    let form = |(i, &moment): (usize, &Moment)| Form::of(3 * i..3 * i + 3).with("line", line(moment), "1");
-    let mut forms: Vec<Form> = scene.moments.iter().enumerate().map(form).collect();
+    let turns = 3 * moments.len();
+    let form = |(i, &moment): (usize, &Moment)| Form::of(3 * i..3 * i + 3).with("line", scene.line(moment), "1");
+    let mut forms: Vec<Form> = moments.iter().enumerate().map(form).collect();
     forms.extend(likely.iter().enumerate().map(|(i, &moment)| {
         let own = (3 * i..3 * i + 3).chain(turns + 3 * i..turns + 3 * i + 3);
-        Form::of(own).with("line", line(moment), "1")
+        Form::of(own).with("line", scene.line(moment), "1")
     }));
     offers.add(Part::Base, numbers, forms);
 }

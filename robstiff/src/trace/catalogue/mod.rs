@@ -59,11 +59,12 @@ pub use self::joint_zero_offset::MOST as ZERO_MOST;
 pub use self::lost_motion::{EITHER, KIND as LOST_MOTION, KNEES as LOST_KNEES, WIDEST as WIDEST_GAP};
 pub use self::offers::{Candidate, Catalogue, Form, Offers, Variant, catalogue};
 pub use self::outliers::KIND as OUTLIERS;
+pub use self::reflector_slip::KIND as REFLECTOR_SLIP;
 pub use self::stiffness_nonlinearity::{KIND as STIFFNESS_NONLINEARITY, KNEES as HARDENING_KNEES};
 use super::clamped::{Axes, OnAxes};
 use super::found::{Found, Place};
 use super::point::Point;
-use super::slip::Moment;
+use super::slip::{Moment, Moments, Slipping};
 use crate::JointKind;
 use crate::campaign::Displacements;
 use crate::elements::Spring;
@@ -108,6 +109,21 @@ impl Kind {
     }
 }
 
+impl Slipping {
+    /// The kind of such slips.
+    pub fn kind(self) -> &'static Kind {
+        match self {
+            Self::Base => &BASE_SLIP,
+            Self::Reflector => &REFLECTOR_SLIP,
+        }
+    }
+
+    /// Whether a kind is one of a slip.
+    pub fn has(kind: &str) -> bool {
+        Self::ALL.iter().any(|slipping| slipping.kind().name == kind)
+    }
+}
+
 impl PartialEq for Kind {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name
@@ -132,9 +148,9 @@ pub static KINDS: [&Kind; 25] = [
     &tracker_misalignment::KIND,
     &tracker_scale::KIND,
     &reflector_offset::KIND,
-    &reflector_slip::KIND,
     &outliers::KIND,
     &base_slip::KIND,
+    &reflector_slip::KIND,
     &tool_compliance::KIND,
     &base_compliance::KIND,
     &transverse_compliance::KIND,
@@ -160,8 +176,8 @@ pub struct Scene<'c> {
     pub samples: &'c Samples,
     /// The compliance of each joint (rad/Nm or m/N), identified, from 0.
     pub compliance: Vec<f64>,
-    /// When the robot may have slipped, the likeliest first.
-    pub moments: &'c [Moment],
+    /// When something may have slipped.
+    pub moments: &'c Moments,
 }
 
 impl Scene<'_> {
@@ -182,6 +198,11 @@ impl Scene<'_> {
         // Below this share of what the load could do it is rounding.
         let possible = self.samples.rows.iter().map(|row| row.wrench.norm()).fold(0.0, f64::max);
         (largest > 1e-9 * possible).then_some(largest)
+    }
+
+    /// The line of the first row after a slip, or of the last row.
+    pub fn line(&self, moment: Moment) -> f64 {
+        self.data.rows[moment.row.min(self.data.rows.len() - 1)].line as f64
     }
 
     /// The unit of a compliance of a joint (from 1).

@@ -1,10 +1,16 @@
-//! The reflector moved on the tool at some moment: every absolute position from then on
-//! is of another point, off by `r` in the tool frame. Displacements of one pose show it
-//! only where the unloaded reading was before it; there it has no name of its own.
+//! The reflector moved on the tool at some moment: every reading from then on is of
+//! another point, off by a shift in the tool frame. Absolute positions see that at once,
+//! displacements where the unloaded reading was before it. A slip within a visit is
+//! found with what is wrong in single visits; here are those that all later rows keep.
 
 use std::format;
+use std::vec::Vec;
 
-use super::{Kind, Offers, Scene};
+use nalgebra::Vector3;
+
+use super::{Form, Kind, Number, Offers, Place, SHIFT, Scene};
+use crate::identify::samples::turn_of;
+use crate::trace::slip::{Moment, Slipping};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -17,4 +23,18 @@ pub static KIND: Kind = Kind {
     on_axes: None,
 };
 
-fn offer(_: &Scene<'_>, _: &mut Offers<'_>) {}
+/// A longer way is another place (m).
+const MOST: f64 = 5e-3;
+
+fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    let moments = scene.moments.of(Slipping::Reflector);
+    let shift = |(moment, k): (Moment, usize)| {
+        Number::of_reading(SHIFT[k], "m", [-MOST, MOST], move |point| {
+            let tool = |row: usize| turn_of(&point.samples.rows[row].tcp);
+            point.of_reading(|row| if moment.has(row) { tool(row).column(k).into() } else { Vector3::zeros() })
+        })
+    };
+    let numbers: Vec<Number> = moments.iter().flat_map(|&moment| (0..3).map(move |k| (moment, k))).map(shift).collect();
+    let form = |(i, &moment): (usize, &Moment)| Form::of(3 * i..3 * i + 3).with("line", scene.line(moment), "1");
+    offers.add(Place::Rig, numbers, moments.iter().enumerate().map(form).collect());
+}

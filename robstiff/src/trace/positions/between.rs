@@ -11,11 +11,12 @@ use nalgebra::DVector;
 
 use super::bench::{Bench, Model, TIE};
 use super::offers::Between;
-use super::slips::{SLIPPED_AT, is_slip, line};
+use super::slips::{SLIPPED_AT, line};
 use crate::identify::positions::regression::STANDS;
 use crate::trace::catalogue::{EITHER, Variant};
 use crate::trace::found::Found;
 use crate::trace::model::Named;
+use crate::trace::slip::Slipping;
 
 /// The first and the last factor between numbers that are tried; the first is that
 /// between those of the grid, or less.
@@ -42,7 +43,7 @@ impl Bench<'_> {
         let forms = self.candidates[candidate].variants.iter().enumerate().filter(|(_, form)| has(form));
         let (variant, _) = forms.min_by(|(_, a), (_, b)| off(a).total_cmp(&off(b)))?;
         let named = Named { candidate, variant };
-        if is_slip(found.kind()) {
+        if Slipping::has(found.kind()) {
             let line = of(SLIPPED_AT)?;
             let moment = self.prepared.data.rows.iter().position(|row| row.line as f64 == line)?;
             self.move_slip(named, moment);
@@ -57,7 +58,7 @@ impl Bench<'_> {
     /// The model with slips that it names at the moments between those tried which leave
     /// least.
     pub fn at_its_moments(&mut self, model: Model) -> Model {
-        let is_slip = |one: &Named| is_slip(self.candidates[one.candidate].kind.name);
+        let is_slip = |one: &Named| Slipping::has(self.candidates[one.candidate].kind.name);
         let slips: Vec<Named> = model.named.iter().copied().filter(is_slip).collect();
         slips.into_iter().fold(model, |model, slip| self.at_its_moment(model, slip))
     }

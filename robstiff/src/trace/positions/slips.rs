@@ -31,11 +31,6 @@ const TURN: [&str; 3] = ["rx", "ry", "rz"];
 const OF_BASE: &str = "base_slip";
 const OF_REFLECTOR: &str = "reflector_slip";
 
-/// Whether a kind, by its name, is one of them.
-pub fn is_slip(kind: &str) -> bool {
-    [OF_BASE, OF_REFLECTOR].contains(&kind)
-}
-
 /// The number by which a slip says when it was.
 pub const SLIPPED_AT: &str = "line";
 

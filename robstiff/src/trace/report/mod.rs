@@ -12,8 +12,8 @@ use self::named::{effects, isolated};
 use self::spread::spread_of;
 use super::alias::{rivals, same_as_wild};
 use super::bench::Bench;
-use super::catalogue::BASE_SLIP;
 use super::model::{Fitted, Setting};
+use super::slip::Slipping;
 use super::written::{described, values, within_description, without_untold};
 use super::{Misfit, Options, Outcome, PoseError, RowResidual, Trace, Verdict};
 use crate::campaign::Campaign;
@@ -83,7 +83,7 @@ pub fn report(
     };
     let mut effects = effects(bench, &setting, model, outcome, &spread, options);
     let holdout_rms = misfit(of_written, written).holdout_rms;
-    let slipped = effects.iter_mut().find(|named| named.effect.kind() == BASE_SLIP.name);
+    let slipped = effects.iter_mut().find(|named| Slipping::has(named.effect.kind()));
     let may_be = same_as_wild(bench, found, &outcome.events);
     let isolated = isolated(prepared, outcome, holdout_rms, slipped, &may_be);
     effects.extend(isolated);

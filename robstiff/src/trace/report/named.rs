@@ -113,16 +113,16 @@ pub fn isolated(
 ) -> Vec<NamedEffect> {
     let line = |row: &usize| prepared.data.rows[*row].line;
     // First as what is said of single visits.
-    let besides = |first: Option<&str>| {
-        let others = may_be.iter().filter(|name| first != Some(name.as_str())).cloned();
-        first.map(String::from).into_iter().chain(others).collect()
+    let besides = |first: &[&str]| {
+        let others = may_be.iter().filter(|name| !first.contains(&name.as_str())).cloned();
+        first.iter().copied().map(String::from).chain(others).collect()
     };
-    let one = |effect: Found, lines: Vec<usize>, events: &[&Event], other: Option<&str>| NamedEffect {
+    let one = |effect: Found, lines: Vec<usize>, events: &[&Event], first: &[&str]| NamedEffect {
         effect,
         lines,
         p_value: events.iter().map(|event| event.p_value).fold(0.0, f64::max),
         holdout_rms,
-        same_as: besides(other),
+        same_as: besides(first),
         partial: outcome.structure(),
     };
     let (slips, wild): (Vec<&Event>, Vec<&Event>) = outcome.events.iter().partition(|event| event.slip.is_some());
@@ -148,16 +148,19 @@ pub fn isolated(
         let first = slip.rows.iter().map(line).min().unwrap_or_default();
         parameters.push(EffectParameter { name: "line", value: first as f64, std: None, unit: "1" });
         let effect = Found::new(&BASE_SLIP, Part::Base.into(), parameters);
-        found.push(one(effect, slip.rows.iter().map(line).collect(), &[slip], Some("outliers@rig")));
+        let lines = slip.rows.iter().map(line).collect();
+        // At one pose a shift in the base frame is one in the tool frame.
+        found.push(one(effect, lines, &[slip], &["outliers@rig", "reflector_slip@rig"]));
     } else {
         outliers.extend(slips);
     }
     if !outliers.is_empty() {
         let mut lines: Vec<usize> = outliers.iter().flat_map(|event| event.rows.iter().map(line)).collect();
         lines.sort_unstable();
-        // One visit alone may as well have been where the robot slipped.
-        let slip = (outliers.len() == 1 && !already).then_some("base_slip@base");
-        found.push(one(Found::outliers(lines.len()), lines, &outliers, slip));
+        // One visit alone may as well have been where the robot slipped, or the reflector.
+        let slips: &[&str] =
+            if outliers.len() == 1 && !already { &["base_slip@base", "reflector_slip@rig"] } else { &[] };
+        found.push(one(Found::outliers(lines.len()), lines, &outliers, slips));
     }
     found
 }
