@@ -61,14 +61,6 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         false => campaign.robot.clone(),
     };
     let fitted_axes: Vec<usize> = bench.axes.loaded().collect();
-    let estimates = identified.estimates.iter().enumerate().map(|(i, estimate)| {
-        let at = fitted_axes.iter().position(|&axis| axis == i + 1);
-        let std = at.filter(|&k| model.fit.coefficients[k] > 0.0).map(|k| spread[(k, k)].sqrt());
-        let clipped = at.is_some() && values[i] == 0.0;
-        let std = std.or(estimate.std.filter(|_| !clipped));
-        let at_bound = clipped && estimate.declared > 0.0;
-        Estimate { value: values[i], std, at_bound, ..estimate.clone() }
-    });
     let residual = |(i, row): (usize, &ClampedRow)| RowResidual {
         line: row.line,
         pose: row.axis - 1,
@@ -79,14 +71,6 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         let of = |left: &DVector<f64>| rms(&left.select_rows(&whole.axes.rows_of(axis)));
         PoseError { pose: format!("axis {axis}"), held_out: false, before: of(&left_before), after: of(&left_after) }
     };
-    let rivals = bench.replaced(&model.named).into_iter().filter(|(_, other)| other.bic < model.bic + WITHIN_REACH);
-    let mut rivals: Vec<Rival> = rivals
-        .map(|(_, other)| Rival {
-            names: other.named.iter().map(|one| bench.candidates[one.candidate].name()).collect(),
-            bic_difference: other.bic - model.bic,
-        })
-        .collect();
-    rivals.sort_by(|a, b| a.bic_difference.total_cmp(&b.bic_difference));
     Ok(Trace {
         encoders: None,
         robot: campaign.robot.name.clone(),
@@ -102,13 +86,13 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         why,
         unexplained: found.left.fraction,
         depends_on: if structure { found.left.depends_on.clone() } else { Vec::new() },
-        rivals: if tells { rivals } else { Vec::new() },
+        rivals: if tells { rivals(bench, model) } else { Vec::new() },
         invisible: invisible(campaign, bench),
         next: Vec::new(),
         description,
         effects,
         estimates_before: identified.estimates.clone(),
-        estimates: estimates.collect(),
+        estimates: estimates(identified, bench, model, &values, &spread),
         steps: found.selection.steps.clone(),
         structure: found.left.tests.clone(),
         residuals: whole.axes.rows.iter().enumerate().map(residual).collect(),
@@ -116,6 +100,40 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         differences: true,
         pose_errors: fitted_axes.iter().map(error).collect(),
     })
+}
+
+/// The estimates of identification with the compliances of a model, whose numbers have a
+/// covariance; of an axis that is not loaded as they are.
+fn estimates(
+    identified: &Identification,
+    bench: &Bench,
+    model: &Fitted,
+    values: &[f64],
+    spread: &DMatrix<f64>,
+) -> Vec<Estimate> {
+    let fitted_axes: Vec<usize> = bench.axes.loaded().collect();
+    let of_model = |(i, estimate): (usize, &Estimate)| {
+        let at = fitted_axes.iter().position(|&axis| axis == i + 1);
+        let std = at.filter(|&k| model.fit.coefficients[k] > 0.0).map(|k| spread[(k, k)].sqrt());
+        let clipped = at.is_some() && values[i] == 0.0;
+        let std = std.or(estimate.std.filter(|_| !clipped));
+        let at_bound = clipped && estimate.declared > 0.0;
+        Estimate { value: values[i], std, at_bound, ..estimate.clone() }
+    };
+    identified.estimates.iter().enumerate().map(of_model).collect()
+}
+
+/// Other models of as many effects that are about as good, the best first.
+fn rivals(bench: &Bench, model: &Fitted) -> Vec<Rival> {
+    let within = bench.replaced(&model.named).into_iter().filter(|(_, other)| other.bic < model.bic + WITHIN_REACH);
+    let mut rivals: Vec<Rival> = within
+        .map(|(_, other)| Rival {
+            names: other.named.iter().map(|one| bench.candidates[one.candidate].name()).collect(),
+            bic_difference: other.bic - model.bic,
+        })
+        .collect();
+    rivals.sort_by(|a, b| a.bic_difference.total_cmp(&b.bic_difference));
+    rivals
 }
 
 fn rms(residuals: &DVector<f64>) -> f64 {

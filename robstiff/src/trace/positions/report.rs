@@ -5,6 +5,7 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector, Vector3};
+use robstiff_robots::Description;
 
 use super::bench::{Bench, Model, Proposed};
 use super::search::Searched;
@@ -31,12 +32,13 @@ use crate::trace::{Misfit, NamedEffect, Options, PoseError, Rival, RowResidual, 
 /// Compliances that no description takes beside its own effects.
 pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> Result<Trace, String> {
     let (bench, model, base) = (&found.bench, &found.model, &found.base);
-    let (data, rows) = (bench.prepared.data, bench.prepared.data.rows.len());
-    let wild = &found.wild.rows;
+    let data = bench.prepared.data;
     let mut left = found.left.clone();
     let (mut verdict, mut why) = match found.too_little.clone().or_else(|| no_noise(bench, model)) {
         Some(why) => (Verdict::Insufficient, why),
-        None => verdict::judge(&found.selection, &left, usize::from(!wild.is_empty()), found.taken_back, false),
+        None => {
+            verdict::judge(&found.selection, &left, usize::from(!found.wild.rows.is_empty()), found.taken_back, false)
+        }
     };
     let tells = verdict != Verdict::Insufficient;
     if let Some(test) = unseen(model, options).filter(|_| tells)
@@ -45,58 +47,16 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
         (verdict, why) = judged;
     }
     let structure = left.structure || found.selection.unnamed;
-    let training = &bench.rows.training;
-    let fitted_to = |left: &DVector<f64>, keep: &dyn Fn(&usize) -> bool| {
-        rms(left, 3, (0..rows).filter(keep).filter(|&row| training[data.rows[row].pose]))
-    };
-    let held_out = |left: &DVector<f64>| rms(left, 3, (0..rows).filter(|&row| !training[data.rows[row].pose]));
-    let left_declared = bench.prepared.declared_residuals(campaign);
-    let left_before = residuals(&bench.regression, &base.solved.state);
-    let rms_declared = fitted_to(&left_declared, &|_| true);
-    let unseen_declared = if training.contains(&false) { held_out(&left_declared) } else { rms_declared };
-    let declared = Misfit { rms: rms_declared, holdout_rms: unseen_declared };
-    let identified = Misfit { rms: fitted_to(&left_before, &|_| true), holdout_rms: unseen_rms(bench, base) };
-    // Data that can tell nothing change nothing.
-    let (after, left_after) = match tells {
-        true => {
-            let left = residuals(&bench.regression, &model.solved.state);
-            let rms = fitted_to(&left, &|row| !wild.contains(row));
-            (Misfit { rms, holdout_rms: unseen_rms(bench, model) }, left)
-        }
-        false => (declared, left_declared),
-    };
-
+    let Errors { declared, identified, after, left: [left_before, left_after] } = errors(campaign, found, tells);
     let values = bench.prepared.values(&model.solved.state);
     let (spread_before, spread) = (spread_of(bench, base), spread_of(bench, model));
     let replaced = if tells { bench.replaced(&model.named) } else { Vec::new() };
     let effects = if tells { effects(found, &replaced, &spread, (structure, after.holdout_rms)) } else { Vec::new() };
     let description = match tells {
-        true => {
-            let description = with_values(&campaign.robot, &bench.prepared.own, &values);
-            let from = if campaign.name.is_empty() { "absolute positions" } else { &campaign.name };
-            with_effects(description, &effects, |names| {
-                let with = if names.is_empty() { "nothing added" } else { names };
-                format!("Traced from {from}: {with}.")
-            })?
-        }
+        true => described(campaign, bench, &values, &effects)?,
         false => campaign.robot.clone(),
     };
-    let turn = model.solved.state.registration.turn.inverse();
-    let in_base = |left: &DVector<f64>, row: usize| -> [f64; 3] {
-        let left: Vector3<f64> = left.fixed_rows::<3>(3 * row).into_owned();
-        (turn * left).into()
-    };
-    let residual = |(i, row): (usize, &PositionRow)| RowResidual {
-        line: row.line,
-        pose: row.pose,
-        before: in_base(&left_before, i),
-        after: in_base(&left_after, i),
-    };
-    let pose_error = |(pose, id): (usize, &String)| {
-        let of = |left: &DVector<f64>| rms(left, 3, (0..rows).filter(|&row| data.rows[row].pose == pose));
-        PoseError { pose: id.clone(), held_out: !training[pose], before: of(&left_before), after: of(&left_after) }
-    };
-    let kept_back = data.poses.iter().zip(training.iter()).filter(|(_, training)| !**training);
+    let kept_back = data.poses.iter().zip(bench.rows.training.iter()).filter(|(_, training)| !**training);
     let freedom = model.solved.problem.freedom(&model.solved.fit);
     let (noise, noise_source) = match campaign.noise.displacement {
         Some(noise) => (noise, NoiseSource::Declared),
@@ -106,7 +66,7 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
     Ok(Trace {
         encoders: None,
         robot: campaign.robot.name.clone(),
-        rows,
+        rows: data.rows.len(),
         poses: data.poses.len(),
         held_out: kept_back.map(|(id, _)| id.clone()).collect(),
         noise,
@@ -130,11 +90,92 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
         effects,
         steps: found.selection.steps.clone(),
         structure: left.tests,
-        residuals: data.rows.iter().enumerate().map(residual).collect(),
+        residuals: row_residuals(bench, model, [&left_before, &left_after]),
         components: 3,
         differences: false,
-        pose_errors: data.poses.iter().enumerate().map(pose_error).collect(),
+        pose_errors: pose_errors(bench, [&left_before, &left_after]),
     })
+}
+
+/// How far off the models of a tracing are.
+struct Errors {
+    declared: Misfit,
+    identified: Misfit,
+    /// With the effects; as declared where the data cannot tell.
+    after: Misfit,
+    /// What is left of the readings with the numbers identified again, and after, stacked (m).
+    left: [DVector<f64>; 2],
+}
+
+fn errors(campaign: &Campaign, found: &Searched<'_>, tells: bool) -> Errors {
+    let (bench, model, base) = (&found.bench, &found.model, &found.base);
+    let (data, training) = (bench.prepared.data, &bench.rows.training);
+    let rows = || 0..data.rows.len();
+    let is_fitted_to = |row: &usize| training[data.rows[*row].pose];
+    let left_declared = bench.prepared.declared_residuals(campaign);
+    let rms_declared = rms(&left_declared, 3, rows().filter(is_fitted_to));
+    let unseen_declared = match training.contains(&false) {
+        true => rms(&left_declared, 3, rows().filter(|row| !is_fitted_to(row))),
+        false => rms_declared,
+    };
+    let declared = Misfit { rms: rms_declared, holdout_rms: unseen_declared };
+    let left_before = residuals(&bench.regression, &base.solved.state);
+    let rms_before = rms(&left_before, 3, rows().filter(is_fitted_to));
+    let identified = Misfit { rms: rms_before, holdout_rms: unseen_rms(bench, base) };
+    // Data that can tell nothing change nothing.
+    let (after, left_after) = match tells {
+        true => {
+            let left = residuals(&bench.regression, &model.solved.state);
+            let rms = rms(&left, 3, rows().filter(is_fitted_to).filter(|row| !found.wild.rows.contains(row)));
+            (Misfit { rms, holdout_rms: unseen_rms(bench, model) }, left)
+        }
+        false => (declared, left_declared),
+    };
+    Errors { declared, identified, after, left: [left_before, left_after] }
+}
+
+/// The description with the numbers of a model and its effects, which says so.
+///
+/// # Errors
+/// As for [`with_effects`].
+fn described(
+    campaign: &Campaign,
+    bench: &Bench<'_>,
+    values: &[f64],
+    effects: &[NamedEffect],
+) -> Result<Description, String> {
+    let description = with_values(&campaign.robot, &bench.prepared.own, values);
+    let from = if campaign.name.is_empty() { "absolute positions" } else { &campaign.name };
+    with_effects(description, effects, |names| {
+        let with = if names.is_empty() { "nothing added" } else { names };
+        format!("Traced from {from}: {with}.")
+    })
+}
+
+/// What is left of each row before and after, stacked in the frame of what reads it (m), in
+/// the base frame of the robot where a model has it stand.
+fn row_residuals(bench: &Bench<'_>, model: &Model, left: [&DVector<f64>; 2]) -> Vec<RowResidual> {
+    let turn = model.solved.state.registration.turn.inverse();
+    let residual = |(i, row): (usize, &PositionRow)| {
+        let in_base = |left: &DVector<f64>| -> [f64; 3] {
+            let left: Vector3<f64> = left.fixed_rows::<3>(3 * i).into_owned();
+            (turn * left).into()
+        };
+        let [before, after] = left.map(in_base);
+        RowResidual { line: row.line, pose: row.pose, before, after }
+    };
+    bench.prepared.data.rows.iter().enumerate().map(residual).collect()
+}
+
+/// The rms of each pose of what is left before and after, stacked (m).
+fn pose_errors(bench: &Bench<'_>, left: [&DVector<f64>; 2]) -> Vec<PoseError> {
+    let data = bench.prepared.data;
+    let error = |(pose, id): (usize, &String)| {
+        let rows = || (0..data.rows.len()).filter(|&row| data.rows[row].pose == pose);
+        let [before, after] = left.map(|left| rms(left, 3, rows()));
+        PoseError { pose: id.clone(), held_out: !bench.rows.training[pose], before, after }
+    };
+    data.poses.iter().enumerate().map(error).collect()
 }
 
 /// Asks the poses held out, which had no part in the search, whether a model predicts
@@ -164,6 +205,8 @@ fn no_noise(bench: &Bench<'_>, model: &Model) -> Option<String> {
 /// Of how far positions are from their middle, more than this is no noise.
 const NOISIEST: f64 = 0.01;
 
+/// The named effects, the one without which most is left first: each with the error on
+/// unseen poses (m) that it and those before it leave; wild readings come last.
 fn effects(
     found: &Searched<'_>,
     replaced: &[(usize, Proposed)],
@@ -192,16 +235,8 @@ fn effects(
         let parameters: Vec<EffectParameter> = form.columns.iter().map(number).chain(of_shape).collect();
         let rest = all_but(&model.named, k);
         let without = bench.solve(&rest, &model.solved.state).map_or(f64::INFINITY, |rest| rest.solved.fit.rss);
-        let mut same_as: Vec<String> = Vec::new();
-        for (_, other) in replaced.iter().filter(|(of, other)| *of == k && alike(bench, model, other.rss)) {
-            same_as.extend(new_in(&other.named, &model.named).map(|candidate| bench.candidates[candidate].name()));
-        }
         let value = parameters.first().map_or(0.0, |number| number.value);
-        let twin = bench.twin(one).filter(|_| bench.may_be_its_twin(one, value)).into_iter();
-        same_as.extend(
-            twin.map(|twin| bench.candidates[twin].name()).filter(|name| !same_as.contains(name)).collect::<Vec<_>>(),
-        );
-        same_as.extend(parts(bench, &rest, one).into_iter().filter(|name| !same_as.contains(name)).collect::<Vec<_>>());
+        let same_as = same_as(bench, model, k, value, replaced);
         named.push((
             without,
             one,
@@ -238,6 +273,23 @@ fn effects(
         });
     }
     named
+}
+
+/// Full names of what these positions do not tell effect `k` of a model from, whose first
+/// number has this value.
+fn same_as(bench: &Bench<'_>, model: &Model, k: usize, value: f64, replaced: &[(usize, Proposed)]) -> Vec<String> {
+    let one = model.named[k];
+    let near = replaced.iter().filter(|(of, other)| *of == k && alike(bench, model, other.rss));
+    let near = near.flat_map(|(_, other)| new_in(&other.named, &model.named));
+    let twin = bench.twin(one).filter(|_| bench.may_be_its_twin(one, value));
+    let name = |candidate: usize| bench.candidates[candidate].name();
+    let mut names: Vec<String> = near.map(name).collect();
+    for other in twin.map(name).into_iter().chain(parts(bench, &all_but(&model.named, k), one)) {
+        if !names.contains(&other) {
+            names.push(other);
+        }
+    }
+    names
 }
 
 /// The covariance of a model's numbers, and of those out of grids behind them, where
