@@ -157,15 +157,18 @@ impl Asked {
         }
     }
 
-    /// Simulates each variant. `robots` are the robot and what a controller that
-    /// does not know it takes it for; the sensor is silent in this time (s).
+    /// Simulates each variant on the robot, with a model for what a controller that does not
+    /// know it takes it for; the sensor is silent in this time (s).
+    ///
+    /// # Errors
+    /// What cannot be simulated, or would take too long: why.
     pub fn simulate<const N: usize>(
         &self,
         (robot, model): (&impl Robot<N>, &impl Robot<N>),
         variants: &[Variant],
         silent: Option<&Range<f64>>,
     ) -> Result<Seen, Failure> {
-        let (timeline, stops, name): (_, Vec<Stop>, _) = match self {
+        let (name, left) = match self {
             Self::Sine { q, wrench, frequencies, name } => {
                 if silent.is_some() {
                     return Err(Failure::Usage(
@@ -173,76 +176,105 @@ impl Asked {
                     ));
                 }
                 let q = SVector::from_column_slice(q);
-                let what = by_frequency((robot, model), &q, wrench, frequencies, variants)?;
-                return Ok(Seen { name: name.clone(), left: what });
+                (name, by_frequency((robot, model), &q, wrench, frequencies, variants)?)
             }
             Self::Record { q, samples, name } => {
-                let timeline = Timeline::at_pose(&SVector::from_column_slice(q), samples.iter().copied())
-                    .filter(|timeline| timeline.duration() > 0.0)
-                    .ok_or_else(|| Failure::new(format!("the record of {name} has no duration")))?;
-                let part = timeline.duration() / PARTS as f64;
-                let stops = (1..=PARTS).map(|k| Stop { time: part * k as f64, place: None }).collect();
-                (timeline, stops, name)
+                let (timeline, stops) = of_record(q, samples, name)?;
+                (name, along(name, (robot, model), (&timeline, stops), variants, silent)?)
             }
             Self::Path { path, source, axis, feed, name } => {
-                let solved = path.solve(robot, None)?;
-                let load = match source {
-                    Source::Table(table) => {
-                        table.load(&solved, ForceFrame::Base, *axis, Surface::Side).map_err(Failure::new)?
-                    }
-                    Source::Cut(file) => load_of_cut(&file.forces, &solved, *axis, Surface::Side),
-                };
-                let speed = match source {
-                    Source::Cut(CutFile { forces: Forces::Model(cut), .. }) => feed.or(cut.feed_speed()),
-                    _ => *feed,
-                };
-                // The force of the tool where the arm lets it go, as without correction.
-                let deviation = Deviation::of(robot, &solved, &load).map_err(Failure::new)?;
-                let wrenches: Vec<Vector6<f64>> = deviation.points.iter().map(|point| point.wrench).collect();
-                let timeline = Timeline::of_path(&solved, &wrenches, speed)
-                    .map_err(|error| Failure::new(format!("{error}; give --feed \"600 mm/min\"")))?;
-                let stops = timeline.times().zip(&solved.points);
-                let stops = stops.map(|(time, point)| Stop { time, place: Some((point.line, point.s)) }).collect();
-                (timeline, stops, name)
+                let (timeline, stops) = of_path(robot, path, source, *axis, *feed)?;
+                (name, along(name, (robot, model), (&timeline, stops), variants, silent)?)
             }
         };
-        let duration = timeline.duration();
-        if let Some(variant) = variants.iter().find(|variant| variant.controller.step > duration) {
-            return Err(Failure::new(format!(
-                "{name} takes {} s, less than a control step of {} s",
-                significant(duration, 4),
-                significant(variant.controller.step, 4)
-            )));
-        }
-        bound::along(name, duration, variants)?;
-        if silent.is_some_and(|silent| silent.start >= duration) {
-            output::complain(format_args!(
-                "warning: {name} ends after {} s, before --lost begins",
-                significant(duration, 4)
-            ));
-        }
-        let reading = |time: f64, wrench: &Vector6<f64>| {
-            (!silent.is_some_and(|silent| silent.contains(&time))).then_some(*wrench)
-        };
-        let mut without = None;
-        let mut in_cut = 0.0;
-        let mut with = Vec::new();
-        for variant in variants {
-            let seen = if variant.knows {
-                simulate_along((robot, robot), &timeline, &variant.controller, reading)
-            } else {
-                simulate_along((robot, model), &timeline, &variant.controller, reading)
-            };
-            in_cut = seen.iter().filter(|instant| instant.in_cut).count() as f64 / seen.len() as f64;
-            if in_cut == 0.0 {
-                return Err(Failure::new(format!("{name}: there is no force anywhere")));
-            }
-            without.get_or_insert_with(|| Course::of(&seen, &stops, |instant| instant.uncorrected));
-            with.push(Course::of(&seen, &stops, |instant| instant.corrected));
-        }
-        let without = without.expect("there is at least one variant");
-        Ok(Seen { name: name.clone(), left: What::Along { stops, in_cut, without, with } })
+        Ok(Seen { name: name.clone(), left })
     }
+}
+
+/// A record at a pose over time, told in parts of equal length.
+fn of_record<const N: usize>(
+    q: &[f64],
+    samples: &[(f64, Vector6<f64>)],
+    name: &str,
+) -> Result<(Timeline<N>, Vec<Stop>), Failure> {
+    let timeline = Timeline::at_pose(&SVector::from_column_slice(q), samples.iter().copied())
+        .filter(|timeline| timeline.duration() > 0.0)
+        .ok_or_else(|| Failure::new(format!("the record of {name} has no duration")))?;
+    let part = timeline.duration() / PARTS as f64;
+    let stops = (1..=PARTS).map(|k| Stop { time: part * k as f64, place: None }).collect();
+    Ok((timeline, stops))
+}
+
+/// A path under what pushes the tool, over time, told point by point.
+fn of_path<const N: usize>(
+    robot: &impl Robot<N>,
+    path: &ToolPath,
+    source: &Source,
+    axis: Unit<Vector3<f64>>,
+    feed: Option<f64>,
+) -> Result<(Timeline<N>, Vec<Stop>), Failure> {
+    let solved = path.solve(robot, None)?;
+    let load = match source {
+        Source::Table(table) => table.load(&solved, ForceFrame::Base, axis, Surface::Side).map_err(Failure::new)?,
+        Source::Cut(file) => load_of_cut(&file.forces, &solved, axis, Surface::Side),
+    };
+    let speed = match source {
+        Source::Cut(CutFile { forces: Forces::Model(cut), .. }) => feed.or(cut.feed_speed()),
+        _ => feed,
+    };
+    // The force of the tool where the arm lets it go, as without correction.
+    let deviation = Deviation::of(robot, &solved, &load).map_err(Failure::new)?;
+    let wrenches: Vec<Vector6<f64>> = deviation.points.iter().map(|point| point.wrench).collect();
+    let timeline = Timeline::of_path(&solved, &wrenches, speed)
+        .map_err(|error| Failure::new(format!("{error}; give --feed \"600 mm/min\"")))?;
+    let stops = timeline.times().zip(&solved.points);
+    let stops = stops.map(|(time, point)| Stop { time, place: Some((point.line, point.s)) }).collect();
+    Ok((timeline, stops))
+}
+
+/// Simulates each variant over a path or a record of this name.
+fn along<const N: usize>(
+    name: &str,
+    (robot, model): (&impl Robot<N>, &impl Robot<N>),
+    (timeline, stops): (&Timeline<N>, Vec<Stop>),
+    variants: &[Variant],
+    silent: Option<&Range<f64>>,
+) -> Result<What, Failure> {
+    let duration = timeline.duration();
+    if let Some(variant) = variants.iter().find(|variant| variant.controller.step > duration) {
+        return Err(Failure::new(format!(
+            "{name} takes {} s, less than a control step of {} s",
+            significant(duration, 4),
+            significant(variant.controller.step, 4)
+        )));
+    }
+    bound::along(name, duration, variants)?;
+    if silent.is_some_and(|silent| silent.start >= duration) {
+        output::complain(format_args!(
+            "warning: {name} ends after {} s, before --lost begins",
+            significant(duration, 4)
+        ));
+    }
+    let reading =
+        |time: f64, wrench: &Vector6<f64>| (!silent.is_some_and(|silent| silent.contains(&time))).then_some(*wrench);
+    let mut without = None;
+    let mut in_cut = 0.0;
+    let mut with = Vec::new();
+    for variant in variants {
+        let seen = if variant.knows {
+            simulate_along((robot, robot), timeline, &variant.controller, reading)
+        } else {
+            simulate_along((robot, model), timeline, &variant.controller, reading)
+        };
+        in_cut = seen.iter().filter(|instant| instant.in_cut).count() as f64 / seen.len() as f64;
+        if in_cut == 0.0 {
+            return Err(Failure::new(format!("{name}: there is no force anywhere")));
+        }
+        without.get_or_insert_with(|| Course::of(&seen, &stops, |instant| instant.uncorrected));
+        with.push(Course::of(&seen, &stops, |instant| instant.corrected));
+    }
+    let without = without.expect("there is at least one variant");
+    Ok(What::Along { stops, in_cut, without, with })
 }
 
 fn by_frequency<const N: usize>(
