@@ -17,6 +17,8 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
     let (mut witnesses, mut sum, mut strokes, mut rows) = (Vec::new(), 0.0, 0.0, 0_usize);
     for line in &evidence.lines {
         let mut visits = line.visits.clone();
+        // Rows of other visits may come in between.
+        visits.sort_unstable();
         visits.dedup();
         for visit in visits {
             let path = path(evidence, line, visit);

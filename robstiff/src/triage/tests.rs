@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::*;
 use crate::campaign::made::{Plan, campaign, normal};
-use crate::campaign::{ClampedRow, Data};
+use crate::campaign::{ClampedRow, Data, Observation};
 use crate::elements::Spring;
 use crate::identify::samples::{Column, Samples};
 use crate::samples::five_axis;
@@ -22,11 +22,11 @@ fn plan(seed: u64) -> Plan {
     Plan { visits: 4, ramp: vec![0.35, 0.7, 1.0, 0.7, 0.35, 0.0], there_and_back: true, poses: 24, ..Plan::new(seed) }
 }
 
-fn force(row: &crate::campaign::Observation) -> Vector3<f64> {
+fn force(row: &Observation) -> Vector3<f64> {
     Vector3::from_column_slice(&row.wrench[..3])
 }
 
-fn push(row: &mut crate::campaign::Observation, by: Vector3<f64>) {
+fn push(row: &mut Observation, by: Vector3<f64>) {
     (0..3).for_each(|k| row.displacement[k] += by[k]);
 }
 
@@ -161,6 +161,24 @@ fn friction_makes_a_loop() {
         }),
     );
     assert!(found.statistic > 0.0 && found.said.contains("hysteresis"), "{found:?}");
+}
+
+/// A visit is one loop, wherever the rows of others come in between.
+#[test]
+fn a_loop_counts_once() {
+    let mut campaign = plan(6).run_with(|i, row| {
+        if (3..5).contains(&(i % 6)) {
+            let behind = force(row).normalize() * (1e-6 * row.pose as f64);
+            push(row, behind);
+        }
+    });
+    let statistic = |campaign: &Campaign| finding(&triage(campaign), "loop area").statistic;
+    let visit_by_visit = statistic(&campaign);
+    let Data::Displacement(data) = &mut campaign.data else { unreachable!("made of displacements") };
+    let place = |row: &Observation| if row.pose.is_multiple_of(2) { (row.line - 2) % 6 } else { 0 };
+    data.rows.sort_by_key(|row| (row.pose, place(row)));
+    let load_by_load = statistic(&campaign);
+    assert!((load_by_load / visit_by_visit - 1.0).abs() < 1e-6, "{load_by_load} and {visit_by_visit}");
 }
 
 #[test]
