@@ -144,11 +144,13 @@ fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
     let moment = ["Mx", "My", "Mz"].map(|name| table.numbers(name, Dimension::Torque));
     let displacement = all(["dx", "dy", "dz"], Dimension::Length);
     let turns = ["rx", "ry", "rz"];
-    let rotation = match turns.iter().any(|name| table.position(name).is_some()) {
-        true => Some(all(turns, Dimension::Angle)?),
-        false => None,
-    };
+    let rotation = turns.iter().any(|name| table.position(name).is_some()).then(|| all(turns, Dimension::Angle));
     let (encoders, motors) = (under_load('j'), under_load('m'));
+    // Every missing column is reported before any gives up.
+    let rotation = match rotation {
+        Some(found) => Some(found?),
+        None => None,
+    };
     Some(Columns {
         at: at?,
         time,

@@ -256,6 +256,11 @@ fn angles_under_load_are_read() {
         problems("half", CAMPAIGN, &format!("{half}\na,0,0,1,2,3,4,5,6,0,0,0,0\n")),
         ["1:1 the column `j2` is missing"]
     );
+    let turned = half.replace("m1,m2", "rx,ry");
+    assert_eq!(
+        problems("turned", CAMPAIGN, &format!("{turned}\na,0,0,1,2,3,4,5,6,0,0,0,0\n")),
+        ["1:1 the column `rz` is missing", "1:1 the column `j2` is missing"]
+    );
     assert_eq!(
         problems("no-angle", CAMPAIGN, &format!("{header}\na,0,0,1,2,3,4,5,6,0,x,0,\n")),
         ["2:21 `x` is not a number", "2:25 a number is missing"]
