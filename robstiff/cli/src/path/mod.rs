@@ -21,6 +21,9 @@ use crate::text::{Table, count, decimals};
 use crate::{input, json};
 use cutting::{Asked, Cutting};
 
+/// Jumps that are shown; the others are counted.
+const MOST_JUMPS: usize = 20;
+
 /// Joint coordinates of a tool path, how far a cut pushes the tool off it, and the corrected path
 ///
 /// PATH.csv has a point a row: `x y z` and an orientation (`qw qx qy qz`, a
@@ -178,7 +181,7 @@ fn page(robot: &Description, file: &str, solved: &Solved) -> String {
     if !solved.jumps.is_empty() {
         page += "\nThe arm changes its posture between\n";
     }
-    for jump in solved.jumps.iter().take(20) {
+    for jump in solved.jumps.iter().take(MOST_JUMPS) {
         let joint = &robot.joints[jump.joint - 1];
         writeln!(
             page,
@@ -193,8 +196,8 @@ fn page(robot: &Description, file: &str, solved: &Solved) -> String {
         )
         .expect("a string takes any text");
     }
-    if solved.jumps.len() > 20 {
-        page += &format!("  and {} more\n", solved.jumps.len() - 20);
+    if solved.jumps.len() > MOST_JUMPS {
+        page += &format!("  and {} more\n", solved.jumps.len() - MOST_JUMPS);
     }
     if let Some(cutting) = &solved.cutting {
         page += &deviation::page(cutting);
