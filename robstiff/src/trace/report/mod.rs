@@ -53,25 +53,7 @@ pub fn report(
     let fitted_rows = || all.problem.blocks.iter().flat_map(|block| block.rows.iter().copied());
     let unseen = if all.problem.held_out.is_empty() { &all.problem.blocks } else { &all.problem.held_out };
     let unseen_rows = || unseen.iter().flat_map(|block| block.rows.iter().copied());
-    let misfit = |setting: &Setting<'_>, fitted: &Fitted| Misfit {
-        rms: rms(
-            &setting.residuals(&fitted.fit),
-            setting.problem.axes,
-            setting.problem.blocks.iter().flat_map(|block| block.rows.iter().copied()),
-        ),
-        holdout_rms: setting.holdout_rms(&fitted.fit),
-    };
-    let residual_variance = model.fit.rss / problem.freedom(&model.fit);
-    // Repeated readings differ by more than noise where they depend on time or
-    // order; a model that accounts for it knows better.
-    let (noise, noise_source) = match prepared.noise(residual_variance) {
-        (repeated, NoiseSource::Repetitions) if repeated * repeated > residual_variance => {
-            (residual_variance.sqrt(), NoiseSource::Residuals)
-        }
-        // Learnt again without what the effects do.
-        (before, NoiseSource::Poses) => (bench.noise.covariance.reading().unwrap_or(before), NoiseSource::Poses),
-        known => known,
-    };
+    let (noise, noise_source) = noise(prepared, bench, model.fit.rss / problem.freedom(&model.fit));
     let estimates_before = numbers(campaign, prepared, &all, &base, &spread_of(&untouched, &all, &base));
     let spread = spread_of(bench_of_numbers, &setting, model);
     // What is told of the joints, and the errors, are those of what is written.
@@ -137,6 +119,30 @@ pub fn report(
     })
 }
 
+/// How far off a model is at its setting.
+fn misfit(setting: &Setting<'_>, model: &Fitted) -> Misfit {
+    let fitted_rows = setting.problem.blocks.iter().flat_map(|block| block.rows.iter().copied());
+    Misfit {
+        rms: rms(&setting.residuals(&model.fit), setting.problem.axes, fitted_rows),
+        holdout_rms: setting.holdout_rms(&model.fit),
+    }
+}
+
+/// The noise of one reading (m), and where it is known from, by the variance of what the
+/// model leaves (m^2).
+fn noise(prepared: &Prepared<'_>, bench: &Bench<'_>, residual_variance: f64) -> (f64, NoiseSource) {
+    match prepared.noise(residual_variance) {
+        // Repeated readings differ by more than noise where they depend on time or
+        // order; a model that accounts for it knows better.
+        (repeated, NoiseSource::Repetitions) if repeated * repeated > residual_variance => {
+            (residual_variance.sqrt(), NoiseSource::Residuals)
+        }
+        // Learnt again without what the effects do.
+        (before, NoiseSource::Poses) => (bench.noise.covariance.reading().unwrap_or(before), NoiseSource::Poses),
+        known => known,
+    }
+}
+
 /// The estimates of the description's own numbers in a model.
 fn numbers(
     campaign: &Campaign,
@@ -154,6 +160,8 @@ fn numbers(
     )
 }
 
+/// What is left of each row and of each pose before and after, given stacked, in the base
+/// frame (m).
 fn residuals(
     prepared: &Prepared<'_>,
     setting: &Setting<'_>,
