@@ -88,7 +88,7 @@ impl<'c> Prepared<'c> {
         let training = training(samples.poses, campaign.holdout);
         let own = declared(description);
         let noise = campaign.noise;
-        let straight = straightened(&samples, known);
+        let straight = straightened(&samples, known, |pose| training[pose]);
         let covariance = Covariance::estimate(&straight, data.measured_frame, noise, |pose| training[pose]);
         // Readings that no one knows the noise of have no weight.
         let samples = if covariance.encoders.is_none() { samples.without_encoders() } else { samples };

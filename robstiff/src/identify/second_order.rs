@@ -15,35 +15,81 @@ use super::baseline::declared;
 use super::samples::{Sample, Samples, stack};
 use crate::elements::{Part, Rest, at_rest, displacement_at};
 
+/// A second order that is a larger share than this of the linear displacements is of numbers
+/// in another unit: no arm that machines comes to a tenth of it.
+const MOST: f64 = 0.1;
+
+/// Compliances that make displacements so many times as large as they are, or more, are not
+/// of the right size: forces in kilograms, or stiffness per arcmin, make them so.
+const TOO_LARGE: f64 = 2.0;
+
 /// The displacement of the marker (m) and its rotation (rad) through the joints with
 /// the load in equilibrium at the moved arm, less the linear ones `J H_q J^T F`;
 /// stacked like [`Samples::readings`]. `compliance` holds one number a joint (rad/Nm
-/// or m/N).
+/// or m/N). Zero where it is [too much](MOST) in half of the rows, and in rows where it is
+/// beyond all numbers.
 pub fn beyond_linear(samples: &Samples, compliance: &[f64]) -> DVector<f64> {
-    let beyond: Vec<(Vector6<f64>, Vec<f64>)> = samples.rows.iter().map(|row| of_row(row, compliance)).collect();
-    samples.stacked_with(|at, _| beyond[at].0, |at, k| beyond[at].1[samples.encoders[k] - 1])
+    let beyond: Vec<Beyond> = samples.rows.iter().map(|row| of_row(row, compliance)).collect();
+    let is_known = 2 * beyond.iter().filter(|of| of.share <= MOST).count() > beyond.len();
+    let of = |at: usize| Some(&beyond[at]).filter(|of| is_known && of.share.is_finite());
+    samples.stacked_with(
+        |at, _| of(at).map_or_else(Vector6::zeros, |of| of.moved),
+        |at, k| of(at).map_or(0.0, |of| of.turns[samples.encoders[k] - 1]),
+    )
 }
 
-/// Of one row, with the part of each joint's turn.
-fn of_row(row: &Sample, compliance: &[f64]) -> (Vector6<f64>, Vec<f64>) {
+/// The second order of a row.
+struct Beyond {
+    /// Of the marker (m) and its rotation (rad).
+    moved: Vector6<f64>,
+    /// Of each joint's turn (rad or m).
+    turns: Vec<f64>,
+    /// Its share of the linear displacement.
+    share: f64,
+}
+
+fn of_row(row: &Sample, compliance: &[f64]) -> Beyond {
     let joints: Vec<Part> = row.twists.iter().enumerate().map(|(joint, twist)| Part::Joint(joint, *twist)).collect();
     let turned = |torques: &[f64]| torques.iter().zip(compliance).map(|(torque, h)| torque * h).collect();
     let Rest { motion, turns, .. } = at_rest(&joints, |_| row.wrench, turned);
     let first: Vec<f64> = row.twists.iter().zip(compliance).map(|(twist, h)| h * twist.dot(&row.wrench)).collect();
     let linear: Vector6<f64> = row.twists.iter().zip(&first).map(|(twist, turn)| twist * *turn).sum();
     let [shift, turn]: [Vector3<f64>; 2] = [0, 3].map(|from| linear.fixed_rows::<3>(from).into_owned());
-    let six = displacement_at(&motion, &row.marker) - stack(&(shift + turn.cross(&row.marker)), &turn);
-    (six, turns.iter().zip(first).map(|(turn, first)| turn - first).collect())
+    let linear = stack(&(shift + turn.cross(&row.marker)), &turn);
+    let moved = displacement_at(&motion, &row.marker) - linear;
+    let share = if moved == Vector6::zeros() { 0.0 } else { moved.norm() / linear.norm() };
+    Beyond { moved, turns: turns.iter().zip(first).map(|(turn, first)| turn - first).collect(), share }
 }
 
 /// The samples with the second order, and what declared laws of joints do, fitted or not,
 /// taken from their readings, so that these are linear in the load as far as the
-/// description, whose compliances are of about the right size, accounts for them.
-pub fn straightened(samples: &Samples, description: &Description) -> Samples {
-    let compliance: Vec<f64> = description.joints.iter().map(robstiff_robots::Joint::compliance).collect();
+/// description accounts for them. Where its compliances are [too large](TOO_LARGE) by the
+/// poses for which `of_pose` holds, the second order is that of such as are not.
+pub fn straightened(samples: &Samples, description: &Description, of_pose: impl Fn(usize) -> bool) -> Samples {
+    let mut compliance: Vec<f64> = description.joints.iter().map(robstiff_robots::Joint::compliance).collect();
+    let size = size(samples, &compliance, of_pose);
+    if size * TOO_LARGE < 1.0 {
+        compliance.iter_mut().for_each(|compliance| *compliance *= size);
+    }
     let mut beyond = beyond_linear(samples, &compliance);
     for number in declared(description).into_iter().filter(|number| number.column.is_law()) {
         beyond.axpy(number.value, &samples.column(number.column), 1.0);
     }
     samples.clone().less(&beyond)
+}
+
+/// How many times as large displacements are as joints of such compliances make them: the
+/// median of the rows, which a wild one does not move; 0 where they go the other way.
+fn size(samples: &Samples, compliance: &[f64], of_pose: impl Fn(usize) -> bool) -> f64 {
+    let of_row = |row: &Sample| {
+        let linear: Vector6<f64> = row.twists.iter().zip(compliance).map(|(s, h)| s * (h * s.dot(&row.wrench))).sum();
+        let turn: Vector3<f64> = linear.fixed_rows::<3>(3).into_owned();
+        let moved = linear.fixed_rows::<3>(0) + turn.cross(&row.marker);
+        let length = moved.norm();
+        (length > 0.0).then(|| row.displacement.dot(&(moved / length)) / length)
+    };
+    let rows = samples.rows.iter().filter(|row| of_pose(row.pose));
+    let mut sizes: Vec<f64> = rows.filter_map(of_row).collect();
+    let middle = sizes.len() / 2;
+    if sizes.is_empty() { 1.0 } else { sizes.select_nth_unstable_by(middle, f64::total_cmp).1.max(0.0) }
 }

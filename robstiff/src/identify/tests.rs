@@ -239,6 +239,26 @@ fn the_second_order_is_that_of_a_lever() {
     assert!((beyond - exact).amax() < 1e-12);
 }
 
+/// Displacements in another unit are those of joints so many times as compliant, which by the
+/// formula for moved arms go round in circles.
+#[test]
+fn displacements_in_another_unit_have_no_second_order() {
+    let truth = five_axis();
+    for unit in [1e3, 1e6, 1e12] {
+        let mut campaign = campaign(&truth, stiffer(&truth), Frame::Base, [0.0; 3], true);
+        let Data::Displacement(data) = &mut campaign.data else { unreachable!("made above") };
+        for row in &mut data.rows {
+            row.displacement = row.displacement.map(|d| unit * d);
+            row.rotation = row.rotation.map(|rotation| rotation.map(|r| unit * r));
+        }
+        let found = identify(&campaign).expect("all joints are seen");
+        for (estimate, joint) in found.estimates.iter().zip(&truth.joints) {
+            let off = (estimate.value / unit / joint.compliance() - 1.0).abs();
+            assert!(off < 1e-6, "{unit:e}: {} off by {off}", estimate.name);
+        }
+    }
+}
+
 /// Repetitions see the scatter between readings of one load, not the load.
 #[test]
 fn repetitions_give_the_noise() {

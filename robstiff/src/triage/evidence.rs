@@ -72,7 +72,7 @@ pub struct Contrast {
 impl<'c> Evidence<'c> {
     /// The evidence of a campaign of displacements.
     pub fn new(campaign: &'c Campaign, data: &'c Displacements) -> Self {
-        let samples = straightened(&Samples::of_description(&campaign.robot, data), &campaign.robot);
+        let samples = straightened(&Samples::of_description(&campaign.robot, data), &campaign.robot, |_| true);
         let covariance = Covariance::estimate(&samples, data.measured_frame, campaign.noise, |_| true);
         let (lines, unloaded) = lines(&samples);
         let wrenches = wrenches(&samples);

@@ -229,6 +229,28 @@ fn noise_that_is_declared_far_too_large_is_found() {
     assert_eq!(names(&triage(&campaign)), Vec::<&str>::new());
 }
 
+/// Nothing but the description is wrong: forces in kilograms, stiffness per arcmin, or
+/// compliances for stiffnesses.
+#[test]
+fn readings_are_not_blamed_for_a_description_that_is_too_soft() {
+    for factor in [9.81, 3438.0, 1e6, 1e12] {
+        for plan in [plan(15), Plan { visits: 1, ramp: vec![0.5, 1.0], ..Plan::new(3) }] {
+            let mut campaign = plan.run();
+            let parts = campaign.robot.joints.iter_mut().flat_map(|joint| &mut joint.compliance);
+            parts.for_each(|part| part.value *= factor);
+            let triage = triage(&campaign);
+            assert_eq!(names(&triage), Vec::<&str>::new(), "{factor:e}");
+            for (check, found) in triage.asked() {
+                assert!(
+                    found.statistic.is_finite() && !found.said.contains("NaN"),
+                    "{factor:e} {}: {found:?}",
+                    check.name
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn wild_readings_are_listed() {
     let triage = triage(&plan(11).run_with(|i, row| {

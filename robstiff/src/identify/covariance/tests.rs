@@ -21,7 +21,7 @@ fn estimate(plan: &Plan) -> Covariance {
 
 fn of(campaign: &Campaign) -> Covariance {
     let data = displacements(campaign);
-    let samples = straightened(&Samples::of_description(&campaign.robot, data), &campaign.robot);
+    let samples = straightened(&Samples::of_description(&campaign.robot, data), &campaign.robot, |_| true);
     Covariance::estimate(&samples, data.measured_frame, campaign.noise, |_| true)
 }
 
