@@ -219,19 +219,9 @@ impl<'c> Prepared<'c> {
     fn look(&mut self) -> Result<(), Error> {
         let problem = self.problem();
         self.visibility = visibility(&problem.total, self.own.len());
-        let fitted = fit(self, &self.problem())?;
-        let total = &problem.total;
-        let freedom = total.rows.saturating_sub(fitted.columns.len()).max(1) as f64;
-        let variance = self.declared_noise.map_or(fitted.rss / freedom, |noise| noise * noise);
-        if let Some(inverse) = total.inverse(&fitted.columns) {
-            for (k, &column) in fitted.columns.iter().enumerate() {
-                let std = (inverse[(k, k)] * variance).sqrt();
-                let lost = self.own[column].value.abs() < DECLARED_STANDS_OUT * std
-                    && fitted.coefficients[k].abs() < IDENTIFIED_STANDS_OUT * std;
-                if lost {
-                    self.visibility[column] = Visibility::Unseen;
-                }
-            }
+        // One after the other, for of two that look alike either is seen without the other.
+        while let Some(column) = self.lost(&self.problem())? {
+            self.visibility[column] = Visibility::Unseen;
         }
         let problem = self.problem();
         let fitted = fit(self, &problem)?;
@@ -240,6 +230,23 @@ impl<'c> Prepared<'c> {
         }
         self.correction = beyond_linear(&self.samples, &self.values[..self.samples.joints()]);
         Ok(())
+    }
+
+    /// The column of the number that is lost in the noise by most, of those that are.
+    fn lost(&self, problem: &Problem) -> Result<Option<usize>, Error> {
+        let fitted = fit(self, problem)?;
+        let total = &problem.total;
+        let Some(inverse) = total.inverse(&fitted.columns) else { return Ok(None) };
+        let freedom = total.rows.saturating_sub(fitted.columns.len()).max(1) as f64;
+        let (noise, _) = self.noise(fitted.rss / freedom);
+        let lost = fitted.columns.iter().enumerate().filter_map(|(k, &column)| {
+            let std = inverse[(k, k)].sqrt() * noise;
+            let declared = self.own[column].value.abs() / std;
+            let stands_out =
+                declared >= DECLARED_STANDS_OUT || fitted.coefficients[k].abs() >= IDENTIFIED_STANDS_OUT * std;
+            (!stands_out).then_some((declared, column))
+        });
+        Ok(lost.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, column)| column))
     }
 }
 

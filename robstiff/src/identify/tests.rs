@@ -6,10 +6,12 @@ use nalgebra::{DVector, Vector3, Vector6};
 
 use super::covariance::Covariance;
 use super::noise::repetitions;
-use super::samples::Samples;
+use super::samples::{Column, Samples};
 use super::second_order::beyond_linear;
 use super::*;
+use crate::campaign::made::Plan;
 use crate::campaign::{Displacements, Frame, Noise, Observation, made};
+use crate::elements::Spring;
 use crate::samples::{arm, five_axis};
 use crate::{Convention, Effect, Generic, Robot};
 
@@ -257,6 +259,22 @@ fn displacements_in_another_unit_have_no_second_order() {
             assert!(off < 1e-6, "{unit:e}: {} off by {off}", estimate.name);
         }
     }
+}
+
+/// What the description lacks is not the noise that hides two joints with axes 3 cm apart,
+/// and where nothing else says how large that is, one of them is seen without the other.
+#[test]
+fn joints_that_look_alike_are_not_both_lost() {
+    let mut robot = five_axis();
+    robot.joints[1].a = 0.03;
+    let hidden = vec![(Column::Spring(Spring::Transverse(4)), 6e-6)];
+    let plan = Plan { robot, hidden, ..Plan::new(5) };
+    let seen = |plan: Plan| {
+        let found = identify(&plan.run()).expect("joints are seen");
+        found.estimates[1..3].iter().filter(|estimate| estimate.visibility == Visibility::Seen).count()
+    };
+    assert_eq!(seen(plan.clone()), 2);
+    assert_eq!(seen(Plan { visits: 1, ramp: vec![1.0], ..plan }), 1);
 }
 
 /// Repetitions see the scatter between readings of one load, not the load.
