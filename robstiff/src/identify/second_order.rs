@@ -17,11 +17,11 @@ use crate::elements::{Part, Rest, at_rest, displacement_at};
 
 /// A second order that is a larger share than this of the linear displacements is of numbers
 /// in another unit: no arm that machines comes to a tenth of it.
-const MOST: f64 = 0.1;
+pub const MOST: f64 = 0.1;
 
 /// Compliances that make displacements so many times as large as they are, or more, are not
 /// of the right size: forces in kilograms, or stiffness per arcmin, make them so.
-const TOO_LARGE: f64 = 2.0;
+pub const TOO_LARGE: f64 = 2.0;
 
 /// The displacement of the marker (m) and its rotation (rad) through the joints with
 /// the load in equilibrium at the moved arm, less the linear ones `J H_q J^T F`;
