@@ -9,7 +9,7 @@ use robstiff_robots::quantity::Dimension;
 
 use super::beyond::{DISPLACEMENT, FORCE, MOMENT, ROTATION, Usual, warn_of};
 use super::poses::{AtPose, Columns as PoseColumns, Poses, dimension_of};
-use super::{Displacements, Frame, Observation, alone};
+use super::{Displacements, Frame, Observation, alone, unread};
 use crate::JointKind;
 use crate::table::{Numbers, Record, Table};
 
@@ -61,6 +61,7 @@ pub fn read(
     }
     columns.at.check_ranges(table, &robot.joints, &rows);
     check_sizes(table, &columns, &rows);
+    check_read(table, &columns, &rows);
     for (name, columns, angles) in [
         ('j', &columns.encoders, (|row| row.encoders.as_deref()) as fn(&Observation) -> Option<&[f64]>),
         ('m', &columns.motors, |row| row.motors.as_deref()),
@@ -98,6 +99,20 @@ fn check_sizes(table: &Table<'_>, columns: &Columns, rows: &[Observation]) {
     }
     if let Some(said) = alone::largest_force(rows) {
         table.warn(&said);
+    }
+}
+
+/// Warns of what looks as if nobody had read it.
+fn check_read(table: &Table<'_>, columns: &Columns, rows: &[Observation]) {
+    let copies = unread::copies(rows).into_iter();
+    warn_of(table, "all numbers are those of an earlier row", copies, ": are these copies?");
+    let moved = unread::still(rows, |row| Some(row.displacement));
+    let turned = unread::still(rows, |row| row.rotation);
+    let of_displacement = columns.displacement.into_iter().zip(moved);
+    let of_rotation = columns.rotation.into_iter().flatten().zip(turned);
+    for (column, _) in of_displacement.chain(of_rotation).filter(|(_, is_still)| *is_still) {
+        let name = table.name_of(column);
+        table.warn(&format!("{name} is 0 in every row: was it read? each says that nothing moves that way"));
     }
 }
 

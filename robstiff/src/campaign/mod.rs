@@ -19,6 +19,7 @@ mod positions;
 pub(crate) mod read;
 #[cfg(test)]
 mod tests;
+mod unread;
 
 use std::path::PathBuf;
 use std::string::String;

@@ -215,6 +215,33 @@ fn the_unit_that_is_asked_for_makes_displacements_plausible() {
     assert_eq!(asked("mm", "a,0,0,1,2,3,0.473,-0.15,0,300,0,0\n"), of("mm", "urad"));
 }
 
+/// A column of zeros and rows that were copied are asked about; an arm that was not loaded, and
+/// rows that differ in their time alone, are not.
+#[test]
+fn what_nobody_read_is_warned_of() {
+    let warned = |name: &str, header: &str, row: &dyn Fn(usize) -> String| {
+        let rows: String = (0..10).map(row).collect();
+        let folder = Folder::new(name, CAMPAIGN, &format!("{header}\n{rows}"));
+        let said = folder.read().expect("nothing is wrong").warnings;
+        said.iter()
+            .map(|said| said.split_once("loads.csv: ").expect("it names the file").1.to_owned())
+            .collect::<Vec<_>>()
+    };
+    let moved = |i: usize| format!("a,v{i},0,0,100,50,20,{}e-5,0.00001,0\n", i + 1);
+    assert_eq!(
+        warned("still", HEADER, &moved),
+        ["dz is 0 in every row: was it read? each says that nothing moves that way"]
+    );
+    let copied = |i: usize| format!("a,v{i},0,0,100,50,20,{}e-5,0.00001,-0.00001\n", i % 9);
+    assert_eq!(
+        warned("copied", HEADER, &copied),
+        ["all numbers are those of an earlier row in 1 row, first on line 11: are these copies?"]
+    );
+    let timed = |i: usize| format!("a,v{i},{i},0,0,100,50,20,{}e-5,0.00001,-0.00001\n", i % 9);
+    assert_eq!(warned("timed", "pose,visit,time,q1,q2,Fx,Fy,Fz,dx,dy,dz", &timed), Vec::<String>::new());
+    assert_eq!(warned("unloaded", HEADER, &|i| format!("a,v{i},0,0,0,0,0,0,0,0\n")), Vec::<String>::new());
+}
+
 /// One row with ten times its force is told, with its line; levels of load are not.
 #[test]
 fn a_force_that_stands_alone_is_warned_of() {
