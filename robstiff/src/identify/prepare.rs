@@ -219,9 +219,12 @@ impl<'c> Prepared<'c> {
     fn look(&mut self) -> Result<(), Error> {
         let problem = self.problem();
         self.visibility = visibility(&problem.total, self.own.len());
-        // One after the other, for of two that look alike either is seen without the other.
-        while let Some(column) = self.lost(&self.problem())? {
-            self.visibility[column] = Visibility::Unseen;
+        loop {
+            let lost = self.lost(&self.problem())?;
+            if lost.is_empty() {
+                break;
+            }
+            lost.into_iter().for_each(|column| self.visibility[column] = Visibility::Unseen);
         }
         let problem = self.problem();
         let fitted = fit(self, &problem)?;
@@ -232,11 +235,13 @@ impl<'c> Prepared<'c> {
         Ok(())
     }
 
-    /// The column of the number that is lost in the noise by most, of those that are.
-    fn lost(&self, problem: &Problem) -> Result<Option<usize>, Error> {
+    /// The column of the number that is lost in the noise by most, of those that are: of two
+    /// that look alike either may be seen without the other. All columns where none stands
+    /// out, for then the readings say nothing of any.
+    fn lost(&self, problem: &Problem) -> Result<Vec<usize>, Error> {
         let fitted = fit(self, problem)?;
         let total = &problem.total;
-        let Some(inverse) = total.inverse(&fitted.columns) else { return Ok(None) };
+        let Some(inverse) = total.inverse(&fitted.columns) else { return Ok(Vec::new()) };
         let freedom = total.rows.saturating_sub(fitted.columns.len()).max(1) as f64;
         let (noise, _) = self.noise(fitted.rss / freedom);
         let lost = fitted.columns.iter().enumerate().filter_map(|(k, &column)| {
@@ -246,7 +251,10 @@ impl<'c> Prepared<'c> {
                 declared >= DECLARED_STANDS_OUT || fitted.coefficients[k].abs() >= IDENTIFIED_STANDS_OUT * std;
             (!stands_out).then_some((declared, column))
         });
-        Ok(lost.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, column)| column))
+        let mut lost: Vec<(f64, usize)> = lost.collect();
+        lost.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let count = if lost.len() == fitted.columns.len() { lost.len() } else { 1 };
+        Ok(lost.into_iter().take(count).map(|(_, column)| column).collect())
     }
 }
 
