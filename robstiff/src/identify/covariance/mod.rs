@@ -72,7 +72,7 @@ pub const WILD: f64 = 0.01;
 /// (`sqrt(2 / 10)` is 45 %).
 const FEWEST: usize = 10;
 
-/// Readings nearer than this to each other have no noise (m): they were made by a
+/// Readings nearer than this to each other have no noise (m, or rad): they were made by a
 /// program.
 pub const NOISELESS: f64 = 1e-9;
 

@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::axes::{Axes, OnAxes, OnAxesForm};
 use crate::identify::clamped::regression::problem;
+use crate::identify::covariance::NOISELESS;
 use crate::identify::normal::{Fit, Sign};
 use crate::identify::problem::Problem;
 use crate::trace::Options;
@@ -135,6 +136,12 @@ impl Bench {
             (self.problem.readings[row] - fitted).powi(2)
         });
         (squares.sum::<f64>() / self.problem.blocks.len() as f64).sqrt()
+    }
+
+    /// Whether a fit leaves less than any noise: the readings were made by a program, and what
+    /// is left is rounding.
+    pub fn leaves_nothing(&self, fit: &Fit) -> bool {
+        fit.rss < self.axes.rows.len() as f64 * NOISELESS * NOISELESS
     }
 
     /// What a fit leaves of the rows (rad).

@@ -107,6 +107,9 @@ impl Course {
     /// Adds effects for as long as something is missing.
     fn run(&mut self, options: &Options, progress: &Progress<'_>) -> Result<(), String> {
         loop {
+            if self.bench.leaves_nothing(&self.model.fit) {
+                return Ok(());
+            }
             self.look_again()?;
             if self.model.named.len() >= MOST_EFFECTS {
                 return Ok(());
@@ -272,6 +275,9 @@ fn refitted(axes: Axes, bench: &Bench, model: &Fitted) -> Option<(Bench, Fitted)
 /// Why rows cannot tell what is missing, if so: every row is a witness.
 fn too_little(bench: &Bench) -> Option<String> {
     let (rows, numbers) = (bench.axes.rows.len(), bench.base);
+    if bench.axes.rows.iter().all(|row| row.deflection == 0.0) {
+        return Some(String::from("no axis moves in any row"));
+    }
     (rows < FEWEST_POSES.max(3 * numbers)).then(|| {
         format!(
             "{rows} rows are too few to judge {numbers} axes by, at least {} are needed",

@@ -26,6 +26,10 @@ const WAVES: u8 = 4;
 /// Whether what is left depends on the torque, by any smooth curve, or on the
 /// order of rows, of any axis.
 pub fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit {
+    let none = LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() };
+    if bench.leaves_nothing(&model.fit) {
+        return none;
+    }
     let columns = bench.columns(&model.named);
     let mut raw: Vec<DVector<f64>> = columns.iter().map(|&column| bench.raw.column(column).into_owned()).collect();
     let mut signs: Vec<Sign> = columns.iter().map(|&column| bench.signs[column]).collect();
@@ -52,7 +56,6 @@ pub fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit 
         }
         add(format!("row order of axis {axis}"), (0..rows.len()).map(|k| k as f64).collect());
     }
-    let none = LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() };
     let problem = problem(&axes.rows, DMatrix::from_columns(&raw));
     let null: Vec<usize> = (0..first).collect();
     let Some(test) = ScoreTest::among(&problem, &candidates, &signs, first, &null) else { return none };

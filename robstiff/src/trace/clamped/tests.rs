@@ -47,6 +47,26 @@ pub(super) fn ramp(count: usize) -> Vec<f64> {
     (1..=count).map(|k| 1000.0 * k as f64 / count as f64).collect()
 }
 
+/// What a program rounds is no structure, and axes that never move say nothing.
+#[test]
+fn readings_without_noise_leave_nothing_to_find() {
+    let mut campaign = measured(&five_axis(), &ramp(14), 0, |_, _| 0.0);
+    let told = |campaign: &Campaign| {
+        let trace = traced(campaign);
+        (trace.verdict, names(&trace))
+    };
+    let exact = |campaign: &mut Campaign, share: f64| {
+        let Data::Clamped(rows) = &mut campaign.data else { unreachable!("made of clamped axes") };
+        for row in rows {
+            row.deflection = share * campaign.robot.joints[row.axis - 1].compliance() * row.torque;
+        }
+    };
+    exact(&mut campaign, 1.1);
+    assert_eq!(told(&campaign), (Verdict::Adequate, Vec::new()));
+    exact(&mut campaign, 0.0);
+    assert_eq!(told(&campaign), (Verdict::Insufficient, Vec::new()));
+}
+
 #[test]
 fn a_curve_of_one_gear_is_no_wild_reading() {
     for seed in 0..3 {
