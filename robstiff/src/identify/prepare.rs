@@ -12,7 +12,7 @@ use super::baseline::{Declared, Visibility, declared, visibility, with_values};
 use super::covariance::contrasts::Level;
 use super::covariance::{Basis, Covariance};
 use super::holdout::training;
-use super::normal::Sign;
+use super::normal::{Fit, Sign};
 use super::problem::{Problem, Weights, raw};
 use super::samples::{Column, Samples};
 use super::second_order::{beyond_linear, straightened};
@@ -219,15 +219,15 @@ impl<'c> Prepared<'c> {
     fn look(&mut self) -> Result<(), Error> {
         let problem = self.problem();
         self.visibility = visibility(&problem.total, self.own.len());
-        loop {
-            let lost = self.lost(&self.problem())?;
+        let fitted = loop {
+            let problem = self.problem();
+            let fitted = fit(self, &problem)?;
+            let lost = self.lost(&problem, &fitted);
             if lost.is_empty() {
-                break;
+                break fitted;
             }
             lost.into_iter().for_each(|column| self.visibility[column] = Visibility::Unseen);
-        }
-        let problem = self.problem();
-        let fitted = fit(self, &problem)?;
+        };
         for (&column, &value) in fitted.columns.iter().zip(fitted.coefficients.iter()) {
             self.values[column] = value;
         }
@@ -238,10 +238,9 @@ impl<'c> Prepared<'c> {
     /// The column of the number that is lost in the noise by most, of those that are: of two
     /// that look alike either may be seen without the other. All columns where none stands
     /// out, for then the readings say nothing of any.
-    fn lost(&self, problem: &Problem) -> Result<Vec<usize>, Error> {
-        let fitted = fit(self, problem)?;
+    fn lost(&self, problem: &Problem, fitted: &Fit) -> Vec<usize> {
         let total = &problem.total;
-        let Some(inverse) = total.inverse(&fitted.columns) else { return Ok(Vec::new()) };
+        let Some(inverse) = total.inverse(&fitted.columns) else { return Vec::new() };
         let freedom = total.rows.saturating_sub(fitted.columns.len()).max(1) as f64;
         let (noise, _) = self.noise(fitted.rss / freedom);
         let lost = fitted.columns.iter().enumerate().filter_map(|(k, &column)| {
@@ -254,7 +253,7 @@ impl<'c> Prepared<'c> {
         let mut lost: Vec<(f64, usize)> = lost.collect();
         lost.sort_by(|a, b| a.0.total_cmp(&b.0));
         let count = if lost.len() == fitted.columns.len() { lost.len() } else { 1 };
-        Ok(lost.into_iter().take(count).map(|(_, column)| column).collect())
+        lost.into_iter().take(count).map(|(_, column)| column).collect()
     }
 }
 
@@ -262,7 +261,7 @@ impl<'c> Prepared<'c> {
 ///
 /// # Errors
 /// If none is seen.
-pub fn fit(prepared: &Prepared<'_>, problem: &Problem) -> Result<super::normal::Fit, Error> {
+pub fn fit(prepared: &Prepared<'_>, problem: &Problem) -> Result<Fit, Error> {
     let seen = prepared.seen();
     let signs: Vec<Sign> = seen.iter().map(|&i| prepared.own[i].sign).collect();
     let fitted = if seen.is_empty() { None } else { problem.total.solve_signed(&seen, &signs) };
