@@ -80,32 +80,22 @@ impl Moment {
 
 /// When something may have slipped so that whole visits keep it, the likeliest first.
 #[derive(Clone, Debug, Default)]
-pub struct Moments {
-    of_base: Vec<Moment>,
-    of_reflector: Vec<Moment>,
-}
+pub struct Moments([Vec<Moment>; Slipping::ALL.len()]);
 
 impl Moments {
     /// The same for everything that slips.
     pub fn alike(moments: &[Moment]) -> Self {
-        Self { of_base: moments.to_vec(), of_reflector: moments.to_vec() }
+        Self(Slipping::ALL.map(|_| moments.to_vec()))
     }
 
     /// When this may have slipped.
     pub fn of(&self, slipping: Slipping) -> &[Moment] {
-        match slipping {
-            Slipping::Base => &self.of_base,
-            Slipping::Reflector => &self.of_reflector,
-        }
+        &self.0[slipping as usize]
     }
 
     /// Puts moments in the place of the first.
     pub fn replace_first(&mut self, slipping: Slipping, by: &[Moment]) {
-        let moments = match slipping {
-            Slipping::Base => &mut self.of_base,
-            Slipping::Reflector => &mut self.of_reflector,
-        };
-        moments[..by.len()].copy_from_slice(by);
+        self.0[slipping as usize][..by.len()].copy_from_slice(by);
     }
 }
 
