@@ -15,12 +15,12 @@ use robstiff_tests::matrix::{Case, Group, POSES, Record, groups, run_keeping, ta
 #[command(name = "matrix")]
 struct Arguments {
     /// How many campaigns, shared out among the groups
-    #[arg(long, default_value_t = 400)]
+    #[arg(long, default_value_t = 448)]
     count: usize,
     /// Seed of all of them
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Only these groups: kinds, or nothing, one, two, three, outside
+    /// Only these groups: kinds, or nothing, one, two, three, outside, beside
     #[arg(long, value_delimiter = ',')]
     only: Vec<String>,
     /// Only this arm

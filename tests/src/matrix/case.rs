@@ -1,7 +1,7 @@
 //! Which campaigns there are, and how large what is hidden in them.
 
 use nalgebra::DVector;
-use rand::seq::SliceRandom;
+use rand::seq::{IndexedRandom, SliceRandom};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
@@ -45,6 +45,8 @@ pub enum Group {
     Several(usize),
     /// One thing outside the catalogue.
     Outside(&'static str),
+    /// One effect of the catalogue, and beside it one thing that is outside.
+    Beside,
 }
 
 impl Group {
@@ -55,15 +57,16 @@ impl Group {
             Self::One(kind) | Self::Outside(kind) => kind,
             Self::Several(2) => "two",
             Self::Several(_) => "three",
+            Self::Beside => "beside",
         }
     }
 
-    /// How many of a matrix of 400 campaigns are of this group.
+    /// How many of a matrix of 448 campaigns are of this group.
     pub fn share(self) -> usize {
         match self {
             Self::Nothing => 80,
             Self::One(_) | Self::Outside(_) => 8,
-            Self::Several(2) => 48,
+            Self::Several(2) | Self::Beside => 48,
             Self::Several(_) => 32,
         }
     }
@@ -75,6 +78,7 @@ pub fn groups() -> Vec<Group> {
     all.extend(KINDS.map(Group::One));
     all.extend([Group::Several(2), Group::Several(3)]);
     all.extend(OUTSIDE.map(Group::Outside));
+    all.push(Group::Beside);
     all
 }
 
@@ -175,12 +179,14 @@ impl Case {
             Group::One(_) => (1, Expected::Names),
             Group::Several(count) => (count, Expected::Names),
             Group::Outside(_) => (1, Expected::NoWholeTruth),
+            Group::Beside => (2, Expected::NoWholeTruth),
         };
         let enough = if matches!(self.group, Group::Outside(_)) { IS_OUTSIDE } else { MATTERS };
         let mut largest: Option<Ready> = None;
         for _ in 0..TRIES {
             let kinds = match self.group {
                 Group::One(kind) | Group::Outside(kind) => vec![kind],
+                Group::Beside => beside(&mut random),
                 _ => several(count, &mut random),
             };
             let tool = random.random();
@@ -243,6 +249,13 @@ fn several(count: usize, random: &mut ChaCha8Rng) -> Vec<&'static str> {
     let mut kinds: Vec<&str> = KINDS.into_iter().filter(|kind| *kind != "gravity_sag").collect();
     kinds.shuffle(random);
     kinds.truncate(count);
+    kinds
+}
+
+/// A kind of the catalogue, of those that can matter, and one that is outside.
+fn beside(random: &mut ChaCha8Rng) -> Vec<&'static str> {
+    let mut kinds = several(1, random);
+    kinds.extend(OUTSIDE.choose(random));
     kinds
 }
 
@@ -314,7 +327,7 @@ mod tests {
                 assert!(plan(one) != plan(other) && one.seed != other.seed);
             }
         }
-        assert_eq!(groups().iter().map(|group| group.share()).sum::<usize>(), 400);
+        assert_eq!(groups().iter().map(|group| group.share()).sum::<usize>(), 448);
     }
 
     #[test]

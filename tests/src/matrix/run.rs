@@ -56,10 +56,17 @@ impl Record {
         }
     }
 
+    /// Whether an effect that matters is hidden, alone, with others or beside something
+    /// outside the catalogue.
+    pub fn has_a_name_to_find(&self) -> bool {
+        let Ready { case, expected, .. } = &self.ready;
+        *expected == Expected::Names || (case.group == Group::Beside && *expected == Expected::NoWholeTruth)
+    }
+
     /// Whether names that are not the truth are said to be the whole truth.
     pub fn misleads(&self) -> bool {
         let names_all = match self.ready.case.group {
-            Group::Outside(_) => false,
+            Group::Outside(_) | Group::Beside => false,
             _ => self.judgement.alone,
         };
         self.judgement.whole_truth && !names_all
@@ -106,11 +113,12 @@ pub fn run_keeping(case: Case, kept: Option<&Path>) -> Record {
         };
     };
     let told = Told::of(&traced);
-    let outside = matches!(ready.case.group, Group::Outside(_));
-    let hidden: &[Hidden] = match outside {
-        // It has no name to be found.
-        true => &[],
-        false => &ready.scenario.hidden,
+    let outside = matches!(ready.case.group, Group::Outside(_) | Group::Beside);
+    let hidden: &[Hidden] = match ready.case.group {
+        // What is outside has no name to be found.
+        Group::Outside(_) => &[],
+        Group::Beside => &ready.scenario.hidden[..1],
+        _ => &ready.scenario.hidden,
     };
     let names: Vec<String> = hidden.iter().map(Hidden::name).collect();
     let judgement = judge(&told, &names, |name, index| would_do(&ready, name, index));

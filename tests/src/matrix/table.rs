@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::case::{Expected, Group};
+use super::case::Group;
 use super::interval::interval;
 use super::run::Record;
 use crate::judge_tracing::{Held, within};
@@ -28,8 +28,9 @@ pub fn markdown(records: &[Record]) -> String {
     add("**all outside**", records.iter().filter(outside).collect());
     add("**all**", records.iter().collect());
     text + "\n\
-        As expected: named, or nothing named where nothing can be seen, or no whole truth told outside the catalogue; \
-        of the runs of which something is expected. Named, alone: of the runs whose effects matter, up to aliases. \
+        As expected: named, or nothing named where nothing can be seen, or no whole truth told of what is outside the catalogue; \
+        of the runs of which something is expected. Named, alone: of the runs whose effects matter, up to aliases; \
+        beside something outside the catalogue, the effect. \
         A wrong name, misled (names that are not the truth, told as the whole of it): of all runs. \
         Brackets: 95 % (Clopper, Pearson). Verdicts: adequate, explained, partial, unexplained, insufficient. \
         Unseen: rms over runs of the error after on poses the fit has not seen, over that of noise alone. \
@@ -42,7 +43,7 @@ fn row(name: &str, records: &[&Record]) -> String {
         if all == 0 { String::from("-") } else { format!("{right}/{all} [{:.0}-{:.0} %]", 100.0 * low, 100.0 * high) }
     };
     let expected: Vec<bool> = records.iter().filter_map(|record| record.is_as_expected()).collect();
-    let matters: Vec<_> = records.iter().filter(|record| record.ready.expected == Expected::Names).collect();
+    let matters: Vec<_> = records.iter().filter(|record| record.has_a_name_to_find()).collect();
     let count = |of: &dyn Fn(&Record) -> bool| records.iter().filter(|record| of(record)).count();
     let verdicts = ["adequate", "explained", "partial", "unexplained", "insufficient"].map(|verdict| {
         count(&|record| record.told.as_ref().is_some_and(|told| told.verdict.to_string() == verdict)).to_string()
