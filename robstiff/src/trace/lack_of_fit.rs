@@ -81,7 +81,7 @@ pub struct StructureTest {
 
 /// Rows beyond this many are thinned evenly for the pairwise sums, whose
 /// effort is quadratic.
-const MOST_ROWS: usize = 1200;
+pub(super) const MOST_ROWS: usize = 1200;
 
 /// Tests the residuals of a model.
 pub fn test(

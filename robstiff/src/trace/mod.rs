@@ -15,6 +15,7 @@
 
 pub mod agreement;
 pub mod alias;
+pub mod along;
 pub mod bench;
 pub mod bootstrap;
 pub mod catalogue;
@@ -292,16 +293,15 @@ fn search(
         ))
     };
     let mut left = test(bench, &selection.model)?;
-    let mut taken_back = 0;
+    let mut taken_back: Vec<String> = Vec::new();
     loop {
         let weak = verdict::to_take_back(bench, &selection.model, &left);
         if weak.is_empty() {
             break;
         }
-        taken_back += weak.len();
         let mut named = selection.model.named.clone();
         for k in weak.into_iter().rev() {
-            named.remove(k);
+            taken_back.push(bench.candidates()[named.remove(k).candidate].name());
         }
         // What is missing now may drive the rest beyond what physics allows.
         let loosely = |why: String| bench.at(&named)?.fit_loosely(&named).ok_or(why);
@@ -311,7 +311,6 @@ fn search(
         if let Some((step, _)) = told(bench, &selection.model, &settled.dropped, options) {
             selection.steps.push(step);
         }
-        taken_back += settled.dropped.len();
         left = test(bench, &selection.model)?;
         // What a name had accounted for is there, found by a test or not.
         left.structure = true;
@@ -319,7 +318,7 @@ fn search(
     let events = bench.events.to_vec();
     let may_lag = !left.structure && verdict::may_lag(bench, &selection.model);
     left.structure |= may_lag;
-    let (verdict, mut why) = verdict::judge(&selection, &left, events.len(), taken_back, may_lag);
+    let (verdict, mut why) = verdict::judge(&selection, &left, events.len(), &taken_back, may_lag);
     if left.structure
         && let Some(repeated) = yardstick::noisier_than_declared(prepared, bench)
     {

@@ -231,17 +231,45 @@ fn exact_aliases_are_said() {
 /// seen and not named.
 #[test]
 fn what_is_not_in_the_catalogue_stays_unexplained() {
-    let mut campaign = campaign(&five_axis(), 24, &[], 4);
-    let samples = displacements(&mut campaign, |samples| samples.column(Column::Spring(Spring::Joint(2))));
-    if let Data::Displacement(data) = &mut campaign.data {
-        for (i, row) in data.rows.iter_mut().enumerate() {
-            let softer = 2e-7 * i as f64 / 240.0;
-            row.displacement = core::array::from_fn(|k| row.displacement[k] + softer * samples[3 * i + k]);
-        }
-    }
-    let found = traced(&campaign);
+    let found = traced(&softening(&[], 2e-7));
     assert!(matches!(found.verdict, Verdict::Unexplained | Verdict::Partial), "{:?}", names(&found));
     assert!(found.effects.iter().all(|named| named.partial) && !found.why.is_empty());
+}
+
+/// A campaign whose joint 2 grows softer from the first row to the last, by so much (rad/Nm).
+fn softening(hidden: &[(Column, f64)], by: f64) -> Campaign {
+    let mut campaign = campaign(&five_axis(), 24, hidden, 4);
+    let moves = displacements(&mut campaign, |samples| samples.column(Column::Spring(Spring::Joint(2))));
+    if let Data::Displacement(data) = &mut campaign.data {
+        let rows = data.rows.len() as f64;
+        for (i, row) in data.rows.iter_mut().enumerate() {
+            let softer = by * i as f64 / rows;
+            row.displacement = core::array::from_fn(|k| row.displacement[k] + softer * moves[3 * i + k]);
+        }
+    }
+    campaign
+}
+
+/// What no effect accounts for lies along those of the joint that does it, and beside it
+/// what is true stays named.
+#[test]
+fn what_is_left_lies_along_what_it_is_like() {
+    let campaign = softening(&[TILT_3], 4e-7);
+    let prepared = Prepared::new(&campaign).expect("a campaign of displacements");
+    let bench = Bench::new(&campaign, &prepared).expect("it shows the joints");
+    let setting = bench.at(&[]).expect("no effects");
+    let of = |name: &str| (0..bench.candidates().len()).find(|&one| bench.candidates()[one].name() == name);
+    let [tilt, curve] = ["transverse_compliance@joint 3", "stiffness_nonlinearity@joint 2"].map(of);
+    let tilt = selection::best_with(&setting, &[], tilt.expect("in the catalogue")).expect("possible");
+    let both = selection::best_with(&setting, &tilt.named, curve.expect("in the catalogue")).expect("possible");
+    let (at_tilt, at_both) = (bench.at(&tilt.named).expect("linear"), bench.at(&both.named).expect("a knee"));
+    let (alone, beside) = (along::along(&at_tilt, &tilt), along::along(&at_both, &both));
+    let of_curve = both.named.iter().position(|one| !tilt.named.contains(one)).expect("there are two");
+    assert!(alone[0].ratio < 0.8 && beside[1 - of_curve].ratio < 0.8, "{alone:?} {beside:?}");
+    assert!(beside[of_curve].ratio > 0.95 && beside[of_curve].is_significant, "{beside:?}");
+
+    let found = traced(&campaign);
+    assert_eq!((names(&found), found.verdict), (vec!["transverse_compliance@joint 3".into()], Verdict::Partial));
 }
 
 fn displacements(campaign: &mut Campaign, of: impl Fn(&Samples) -> DVector<f64>) -> DVector<f64> {

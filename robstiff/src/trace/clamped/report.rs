@@ -31,7 +31,7 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
     let wild = &found.wild.0;
     let (verdict, why) = match &found.too_little {
         Some(why) => (Verdict::Insufficient, why.clone()),
-        None => verdict::judge(&found.selection, &found.left, usize::from(!wild.is_empty()), 0, false),
+        None => verdict::judge(&found.selection, &found.left, usize::from(!wild.is_empty()), &[], false),
     };
     let structure = found.left.structure || found.selection.unnamed;
     let tells = verdict != Verdict::Insufficient;

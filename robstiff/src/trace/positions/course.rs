@@ -32,8 +32,8 @@ pub struct Course {
     pub unnamed: bool,
     /// What the model leaves.
     pub left: LackOfFit,
-    /// How many names were taken back.
-    pub taken_back: usize,
+    /// The full names of what was taken back.
+    pub taken_back: Vec<String>,
 }
 
 impl Course {
@@ -46,7 +46,7 @@ impl Course {
             steps: Vec::new(),
             unnamed: false,
             left: LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() },
-            taken_back: 0,
+            taken_back: Vec::new(),
         }
     }
 
@@ -152,7 +152,8 @@ impl Course {
         while self.left.structure
             && let Some(rest) = without_borrowed(bench, &self.model, &self.left)
         {
-            self.taken_back += self.model.named.len() - rest.named.len();
+            let gone = self.model.named.iter().filter(|one| !rest.named.contains(one));
+            self.taken_back.extend(gone.map(|one| bench.candidates[one.candidate].name()));
             bench.turn_to(&rest);
             self.model = rest;
             self.settle(bench, strict, options);

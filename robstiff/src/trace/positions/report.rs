@@ -37,7 +37,7 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
     let (mut verdict, mut why) = match found.too_little.clone().or_else(|| no_noise(bench, model)) {
         Some(why) => (Verdict::Insufficient, why),
         None => {
-            verdict::judge(&found.selection, &left, usize::from(!found.wild.rows.is_empty()), found.taken_back, false)
+            verdict::judge(&found.selection, &left, usize::from(!found.wild.rows.is_empty()), &found.taken_back, false)
         }
     };
     let tells = verdict != Verdict::Insufficient;

@@ -7,6 +7,7 @@
 
 use std::format;
 use std::string::String;
+use std::vec::Vec;
 
 use super::bench::{Bench, Model};
 use super::course::{Course, Kept};
@@ -31,8 +32,8 @@ pub struct Searched<'c> {
     pub left: LackOfFit,
     /// The rows that are wild.
     pub wild: Wild,
-    /// How many names were taken back.
-    pub taken_back: usize,
+    /// The full names of what was taken back.
+    pub taken_back: Vec<String>,
     /// Why the data cannot tell, if so.
     pub too_little: Option<String>,
 }
