@@ -134,10 +134,7 @@ pub fn judge(
         (_, false) => (Verdict::Explained, String::from("what the named effects leave looks like noise")),
         (0, true) if !taken_back.is_empty() => (
             Verdict::Unexplained,
-            format!(
-                "what is missing is a little like {}, taken back for what it leaves: {because}",
-                taken_back.join(" and ")
-            ),
+            format!("what fitted was taken back for what it leaves ({}): {because}", taken_back.join(", ")),
         ),
         (0, true) => {
             (Verdict::Unexplained, format!("structure is left that no effect of the catalogue accounts for: {because}"))
