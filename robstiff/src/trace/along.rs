@@ -17,7 +17,7 @@ use std::vec::Vec;
 use nalgebra::{DVector, Vector6};
 
 use super::catalogue::Variant;
-use super::lack_of_fit::MOST_ROWS;
+use super::lack_of_fit::rows_looked_at;
 use super::model::{Fitted, Setting};
 
 /// The place in the catalogue, in order of what lies along each effect, that is compared
@@ -40,11 +40,9 @@ pub struct Along {
     pub is_significant: bool,
 }
 
-/// By effect of a model, how much of what the model leaves lies along it.
+/// By effect of a model that has some, how much of what the model leaves lies along it.
 pub fn along(setting: &Setting<'_>, model: &Fitted) -> Vec<Along> {
-    let Some(left) = Left::of(setting, model).filter(|_| !model.named.is_empty()) else {
-        return vec![Along::default(); model.named.len()];
-    };
+    let Some(left) = Left::of(setting, model) else { return vec![Along::default(); model.named.len()] };
     let of_variant = |variant: &Variant| left.along(setting, &variant.columns);
     let most_of = |variants: &[Variant]| variants.iter().map(|one| of_variant(one).mean).fold(0.0, f64::max);
     let mut catalogue: Vec<f64> = setting.candidates.iter().map(|candidate| most_of(&candidate.variants)).collect();
@@ -85,10 +83,7 @@ impl Left {
         let (problem, fit) = setting.alone(&model.fit);
         let stacked = problem.white_residuals(&fit.columns, &fit.coefficients);
         let axes = problem.axes;
-        let all: Vec<usize> = problem.blocks.iter().flat_map(|block| block.rows.iter().map(|row| row * axes)).collect();
-        // As many as the other tests of what is left take.
-        let stride = all.len().div_ceil(MOST_ROWS).max(1);
-        let rows: Vec<usize> = all.into_iter().step_by(stride).collect();
+        let rows: Vec<usize> = rows_looked_at(&problem).into_iter().map(|row| row * axes).collect();
         let residuals: Vec<Vector6<f64>> = rows.iter().map(|&row| reading(&stacked, row, axes)).collect();
         let variance = residuals.iter().map(Vector6::norm_squared).sum::<f64>() / (rows.len() * axes) as f64;
         (variance > 0.0).then_some(Self { rows, axes, residuals, variance })

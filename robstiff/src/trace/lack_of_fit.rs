@@ -79,9 +79,16 @@ pub struct StructureTest {
     pub p_value: f64,
 }
 
-/// Rows beyond this many are thinned evenly for the pairwise sums, whose
-/// effort is quadratic.
-pub(super) const MOST_ROWS: usize = 1200;
+/// Rows beyond this many are thinned evenly: the effort of pairwise sums is
+/// quadratic.
+const MOST_ROWS: usize = 1200;
+
+/// The rows fitted to that what is left is looked at in: all, or some of them evenly.
+pub(super) fn rows_looked_at(problem: &Problem) -> Vec<usize> {
+    let trained: Vec<usize> = problem.blocks.iter().flat_map(|block| block.rows.iter().copied()).collect();
+    let stride = trained.len().div_ceil(MOST_ROWS).max(1);
+    trained.into_iter().step_by(stride).collect()
+}
 
 /// Tests the residuals of a model.
 pub fn test(
@@ -232,9 +239,7 @@ impl Resemblance {
     fn new(setting: &Setting<'_>, model: &Fitted, data: &Displacements, options: &super::Options) -> Option<Self> {
         let (problem, fit) = setting.alone(&model.fit);
         let columns = &fit.columns;
-        let trained: Vec<usize> = problem.blocks.iter().flat_map(|block| block.rows.iter().copied()).collect();
-        let stride = trained.len().div_ceil(MOST_ROWS);
-        let rows: Vec<usize> = trained.into_iter().step_by(stride).collect();
+        let rows = rows_looked_at(&problem);
         let residuals = problem.white_residuals(columns, &problem.total.solve(columns)?.coefficients);
         let axis_rows = |axis: usize| rows.iter().map(|row| row * problem.axes + axis).collect::<Vec<_>>();
         let own = [0, 1, 2].map(|axis| residuals.select_rows(&axis_rows(axis)));

@@ -64,7 +64,7 @@ const AS_MUCH: f64 = 0.95;
 /// The effects of a model that are to be taken back because structure is left
 /// all the same: one at a time, that which is worth least.
 pub fn to_take_back(bench: &Bench<'_>, model: &Fitted, left: &LackOfFit) -> Vec<usize> {
-    if !left.structure {
+    if !left.structure || model.named.is_empty() {
         return Vec::new();
     }
     // A gear with hysteresis is softer at small torques, on the way back: what

@@ -61,6 +61,11 @@ impl Group {
         }
     }
 
+    /// Whether something outside the catalogue is hidden, alone or beside an effect.
+    pub fn hides_what_is_outside(self) -> bool {
+        matches!(self, Self::Outside(_) | Self::Beside)
+    }
+
     /// How many of a matrix of 448 campaigns are of this group.
     pub fn share(self) -> usize {
         match self {
@@ -129,7 +134,7 @@ pub struct Ready {
     pub scenario: Scenario,
     /// What each hidden thing leaves, in multiples of the noise of a reading,
     /// once the joints and the others have been fitted; of a thing outside the
-    /// catalogue, once the joints and the likest of the catalogue have been.
+    /// catalogue that is alone, once the joints and the likest of the catalogue have been.
     pub left: Vec<f64>,
     /// What is to be expected.
     pub expected: Expected,

@@ -65,10 +65,7 @@ impl Record {
 
     /// Whether names that are not the truth are said to be the whole truth.
     pub fn misleads(&self) -> bool {
-        let names_all = match self.ready.case.group {
-            Group::Outside(_) | Group::Beside => false,
-            _ => self.judgement.alone,
-        };
+        let names_all = self.judgement.alone && !self.ready.case.group.hides_what_is_outside();
         self.judgement.whole_truth && !names_all
     }
 }
@@ -113,7 +110,7 @@ pub fn run_keeping(case: Case, kept: Option<&Path>) -> Record {
         };
     };
     let told = Told::of(&traced);
-    let outside = matches!(ready.case.group, Group::Outside(_) | Group::Beside);
+    let outside = ready.case.group.hides_what_is_outside();
     let hidden: &[Hidden] = match ready.case.group {
         // What is outside has no name to be found.
         Group::Outside(_) => &[],
