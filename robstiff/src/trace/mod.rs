@@ -18,6 +18,7 @@ pub mod agreement;
 pub mod alias;
 pub mod along;
 pub mod bench;
+pub mod beyond;
 pub mod bootstrap;
 pub mod catalogue;
 pub mod clamped;
@@ -31,6 +32,7 @@ pub mod model;
 pub mod point;
 pub mod positions;
 mod report;
+mod search;
 pub mod selection;
 mod settle;
 mod sizes;
@@ -60,18 +62,13 @@ pub use step::{Step, Tested};
 pub use verdict::Verdict;
 
 use self::bench::Bench;
-use self::isolated::Event;
-use self::lack_of_fit::LackOfFit;
 use self::model::{Fitted, Setting};
 use self::report::report;
-use self::selection::{Selection, select};
-use self::settle::{settled, told};
-use self::yardstick::Yardstick;
+use self::search::{Outcome, search};
 use crate::campaign::{Campaign, Data};
 use crate::identify::encoders::EncodersRead;
 use crate::identify::prepare::Prepared;
 use crate::identify::{AGAINST_THE_LOADS, Error, Estimate, NoiseSource, is_at_bound};
-use crate::words::micrometres;
 
 /// How to trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -129,6 +126,8 @@ pub struct Trace {
     pub unexplained: f64,
     /// The columns the residual depends on, the strongest first.
     pub depends_on: Vec<String>,
+    /// What it looks like that the catalogue has no name for, each as a noun for a sentence.
+    pub looks_like: Vec<String>,
     /// Other models of as many effects that fit about as well, the best first.
     pub rivals: Vec<Rival>,
     /// Full names of what these data could not show if it were there.
@@ -269,106 +268,6 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
     outcome.judge_by_held_out(&bench, options).map_err(Error)?;
     progress("asking what could be mistaken for what");
     report(campaign, &prepared, &bench, &outcome, options).map_err(Error)
-}
-
-/// Searches for effects, and takes names back that leave too much.
-fn search(
-    bench: &mut Bench<'_>,
-    prepared: &Prepared<'_>,
-    start: Fitted,
-    options: &Options,
-    progress: &Progress<'_>,
-) -> Result<Outcome, String> {
-    let mut selection = select(bench, start, options, progress)?;
-    progress("looking for structure in what is left");
-    let test = |bench: &Bench<'_>, model: &Fitted| -> Result<LackOfFit, String> {
-        let yardstick = Yardstick::of(prepared, bench);
-        bench.spare_memory();
-        Ok(lack_of_fit::test(
-            &*bench.at(&model.named)?,
-            model,
-            prepared.data,
-            yardstick,
-            &bench.noise.covariance,
-            options,
-        ))
-    };
-    let mut left = test(bench, &selection.model)?;
-    let mut taken_back: Vec<String> = Vec::new();
-    loop {
-        let weak = verdict::to_take_back(bench, &selection.model, &left);
-        if weak.is_empty() {
-            break;
-        }
-        let mut named = selection.model.named.clone();
-        for k in weak.into_iter().rev() {
-            taken_back.push(bench.candidates()[named.remove(k).candidate].name());
-        }
-        // What is missing now may drive the rest beyond what physics allows.
-        let loosely = |why: String| bench.at(&named)?.fit_loosely(&named).ok_or(why);
-        let rest = bench.fit(&named).or_else(loosely)?;
-        let settled = settled(bench, rest, options);
-        (selection.model, selection.p_values) = (settled.model, settled.p_values);
-        if let Some((step, _)) = told(bench, &selection.model, &settled.dropped, options) {
-            selection.steps.push(step);
-        }
-        left = test(bench, &selection.model)?;
-        // What a name had accounted for is there, found by a test or not.
-        left.structure = true;
-    }
-    let events = bench.events.to_vec();
-    let may_lag = !left.structure && verdict::may_lag(bench, &selection.model);
-    left.structure |= may_lag;
-    let (verdict, mut why) = verdict::judge(&selection, &left, events.len(), &taken_back, may_lag);
-    if left.structure
-        && let Some(repeated) = yardstick::noisier_than_declared(prepared, bench)
-    {
-        why.push_str(&format!(
-            "; repeated loads themselves differ by {} a reading, so the noise may be larger than declared",
-            micrometres(repeated)
-        ));
-    }
-    Ok(Outcome { selection, left: Some(left), events, verdict, why })
-}
-
-/// What was found, before it is told.
-struct Outcome {
-    selection: Selection,
-    left: Option<LackOfFit>,
-    /// What is wrong in single visits.
-    events: Vec<Event>,
-    verdict: Verdict,
-    why: String,
-}
-
-impl Outcome {
-    fn nothing(model: Fitted, verdict: Verdict, why: String) -> Self {
-        let selection = Selection { model, p_values: Vec::new(), steps: Vec::new(), unnamed: false };
-        Self { selection, left: None, events: Vec::new(), verdict, why }
-    }
-
-    /// The same, with the steps that came before.
-    fn after(mut self, before: Self) -> Self {
-        self.selection.steps.splice(..0, before.selection.steps);
-        self
-    }
-
-    /// Asks the poses held out, which had no part in the search, whether the model
-    /// predicts them.
-    fn judge_by_held_out(&mut self, bench: &Bench<'_>, options: &Options) -> Result<(), String> {
-        let Some(left) = &mut self.left else { return Ok(()) };
-        let setting = bench.at(&self.selection.model.named)?;
-        let test = held_out::of_displacements(&setting, &self.selection.model, options);
-        if let Some(judged) = test.and_then(|test| held_out::judged(test, self.verdict, left, options)) {
-            (self.verdict, self.why) = judged;
-        }
-        Ok(())
-    }
-
-    /// Whether structure is left.
-    fn structure(&self) -> bool {
-        self.left.as_ref().is_some_and(|left| left.structure) || self.selection.unnamed
-    }
 }
 
 /// That the readings do not follow the loads, if so: every joint they show

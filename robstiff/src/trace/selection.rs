@@ -48,6 +48,15 @@ pub struct Selection {
     pub unnamed: bool,
 }
 
+impl Selection {
+    /// The same, with the steps that came before.
+    #[must_use]
+    pub fn after(mut self, before: Self) -> Self {
+        self.steps.splice(..0, before.steps);
+        self
+    }
+}
+
 /// A test of the whole catalogue against one model.
 pub struct Tests {
     /// The candidates without the model.

@@ -10,6 +10,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use super::bench::Known;
+use super::selection::select;
+use super::settle::settled;
 use super::*;
 use crate::campaign::Data;
 use crate::campaign::made::{Plan, normal};

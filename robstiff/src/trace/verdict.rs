@@ -108,15 +108,22 @@ pub fn may_lag(bench: &Bench<'_>, model: &Fitted) -> bool {
 /// A test with such a probability found nothing: structure is known otherwise.
 const SAYS_NOTHING: f64 = 0.1;
 
-/// The verdict on a model that stands, with so many names besides for what is
-/// wrong in single visits, and with the full names of what was taken back; and why.
-pub fn judge(
-    selection: &Selection,
-    left: &LackOfFit,
-    isolated: usize,
-    taken_back: &[String],
-    may_lag: bool,
-) -> (Verdict, String) {
+/// What is known of a model besides what it leaves.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Besides<'a> {
+    /// So many names besides, for what is wrong in single visits.
+    pub isolated: usize,
+    /// Full names that were taken back.
+    pub taken_back: &'a [String],
+    /// What accounts for what is left and has no name, each as a noun for a sentence.
+    pub looks_like: &'a [String],
+    /// Whether the model [may be](may_lag) a lag taken to pieces.
+    pub may_lag: bool,
+}
+
+/// The verdict on a model that stands, and why.
+pub fn judge(selection: &Selection, left: &LackOfFit, besides: &Besides<'_>) -> (Verdict, String) {
+    let &Besides { isolated, taken_back, looks_like, may_lag } = besides;
     let named = selection.model.named.len() + isolated;
     let structure = left.structure || selection.unnamed;
     let strongest = left.tests.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value));
@@ -127,24 +134,32 @@ pub fn judge(
         }
         None => String::from("what the names that were taken back had accounted for"),
     };
-    match (named, structure) {
-        (0, false) => {
-            (Verdict::Adequate, String::from("nothing is missing significantly, and what is left looks like noise"))
+    let taken_back = taken_back.join(", ");
+    let verdict = match (named, structure) {
+        (0, false) => Verdict::Adequate,
+        (_, false) => Verdict::Explained,
+        (0, true) => Verdict::Unexplained,
+        (_, true) => Verdict::Partial,
+    };
+    let why = match verdict {
+        Verdict::Adequate => String::from("nothing is missing significantly, and what is left looks like noise"),
+        Verdict::Explained => String::from("what the named effects leave looks like noise"),
+        _ if !looks_like.is_empty() => {
+            let instead =
+                if taken_back.is_empty() { taken_back } else { format!("; in its place had fitted {taken_back}") };
+            format!(
+                "what is left looks like {}, for which the catalogue has no name{instead}: {because}",
+                looks_like.join(" and ")
+            )
         }
-        (_, false) => (Verdict::Explained, String::from("what the named effects leave looks like noise")),
-        (0, true) if !taken_back.is_empty() => (
-            Verdict::Unexplained,
-            format!("what fitted was taken back for what it leaves ({}): {because}", taken_back.join(", ")),
-        ),
-        (0, true) => {
-            (Verdict::Unexplained, format!("structure is left that no effect of the catalogue accounts for: {because}"))
+        Verdict::Unexplained if !taken_back.is_empty() => {
+            format!("what fitted was taken back for what it leaves ({taken_back}): {because}")
         }
-        (_, true) if may_lag => (
-            Verdict::Partial,
-            String::from("hysteresis with a curve or creep besides is also how a joint looks that lags"),
-        ),
-        (_, true) => (Verdict::Partial, format!("structure is left beyond the named effects: {because}")),
-    }
+        Verdict::Unexplained => format!("structure is left that no effect of the catalogue accounts for: {because}"),
+        _ if may_lag => String::from("hysteresis with a curve or creep besides is also how a joint looks that lags"),
+        _ => format!("structure is left beyond the named effects: {because}"),
+    };
+    (verdict, why)
 }
 
 /// The verdict, and why, where it would be that nothing is left, but a test finds that

@@ -66,7 +66,7 @@ impl Group {
         matches!(self, Self::Outside(_) | Self::Beside)
     }
 
-    /// How many of a matrix of 448 campaigns are of this group.
+    /// How many of a matrix of 464 campaigns are of this group.
     pub fn share(self) -> usize {
         match self {
             Self::Nothing => 80,
@@ -332,7 +332,7 @@ mod tests {
                 assert!(plan(one) != plan(other) && one.seed != other.seed);
             }
         }
-        assert_eq!(groups().iter().map(|group| group.share()).sum::<usize>(), 448);
+        assert_eq!(groups().iter().map(|group| group.share()).sum::<usize>(), 464);
     }
 
     #[test]

@@ -37,8 +37,17 @@ pub const KINDS: [&str; 23] = [
 ];
 
 /// Those outside it.
-pub const OUTSIDE: [&str; 7] =
-    ["viscous_joint", "cable", "link_growth", "soft_foundation", "cross_dependence", "loose_flange", "warming_joint"];
+pub const OUTSIDE: [&str; 9] = [
+    "viscous_joint",
+    "cable",
+    "link_growth",
+    "soft_foundation",
+    "cross_dependence",
+    "loose_flange",
+    "loose_taper",
+    "hardening_bearing",
+    "warming_joint",
+];
 
 /// What was drawn.
 #[derive(Clone, Debug)]
@@ -164,6 +173,8 @@ fn outside(kind: &str, arm: &Description, random: &mut ChaCha8Rng) -> (Hidden, f
             (Outside::CrossDependence { joint, of, cos: 0.3 * turn.cos(), sin: 0.3 * turn.sin() }, 3.1)
         }
         "loose_flange" => (Outside::LooseFlange { gap: 1e-4, knee: 40.0 }, 20.0),
+        "loose_taper" => (Outside::LooseTaper { gap: 2e-4, knee: 15.0 }, 20.0),
+        "hardening_bearing" => (Outside::HardeningBearing { joint, compliance: 3e-7, knee: 150.0 }, 30.0),
         "warming_joint" => (Outside::WarmingJoint { joint, per_kelvin: 0.02 }, 10.0),
         _ => panic!("there is no kind `{kind}`"),
     };

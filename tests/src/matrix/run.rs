@@ -27,6 +27,8 @@ pub struct Record {
     pub told: Option<Told>,
     /// The judgement.
     pub judgement: Judgement,
+    /// What is left looks like these.
+    pub looks_like: Vec<String>,
     /// The error on poses that the fit has not seen, after, over what noise
     /// alone would leave there.
     pub unseen: f64,
@@ -101,6 +103,7 @@ pub fn run_keeping(case: Case, kept: Option<&Path>) -> Record {
         return Record {
             ready,
             told: None,
+            looks_like: Vec::new(),
             judgement,
             unseen,
             elsewhere,
@@ -130,6 +133,7 @@ pub fn run_keeping(case: Case, kept: Option<&Path>) -> Record {
         unseen: traced.after.holdout_rms / floor,
         elsewhere: elsewhere(&ready, &traced) / floor,
         judgement,
+        looks_like: traced.looks_like,
         told: Some(told),
         ready,
         seconds,

@@ -70,6 +70,7 @@ impl Arm {
             | Hidden::DhError { row: joint, .. }
             | Hidden::Outside(
                 Outside::ViscousJoint { joint, .. }
+                | Outside::HardeningBearing { joint, .. }
                 | Outside::WarmingJoint { joint, .. }
                 | Outside::Cable { link: joint, .. }
                 | Outside::LinkGrowth { link: joint, .. },
@@ -252,6 +253,9 @@ impl Arm {
             if let Hidden::Outside(Outside::LooseFlange { gap, knee }) = *hidden {
                 chain.push(Motion::Slide, Response::Gap { gap, knee });
             }
+            if let Hidden::Outside(Outside::LooseTaper { gap, knee }) = *hidden {
+                chain.push(Motion::Turn, Response::Gap { gap, knee });
+            }
         }
     }
 
@@ -262,6 +266,13 @@ impl Arm {
                 && joint == index + 1
             {
                 chain.spring(Motion::Turn, Vector3::new(value, value, 0.0));
+            }
+        }
+        for hidden in &self.hidden {
+            if let Hidden::Outside(Outside::HardeningBearing { joint, compliance, knee }) = *hidden
+                && joint == index + 1
+            {
+                chain.push(Motion::Turn, Response::Stiffening { compliance, knee });
             }
         }
         let motion = match self.description.joints[index].kind {

@@ -273,6 +273,8 @@ fn all() -> Vec<Hidden> {
         Outside::SoftFoundation { compliance: 5e-8, knee: 1000.0 },
         Outside::CrossDependence { joint: 2, of: 3, cos: 0.3, sin: 0.1 },
         Outside::LooseFlange { gap: 1e-4, knee: 50.0 },
+        Outside::LooseTaper { gap: 2e-4, knee: 50.0 },
+        Outside::HardeningBearing { joint: 2, compliance: 2e-7, knee: 300.0 },
         Outside::WarmingJoint { joint: 2, per_kelvin: 0.05 },
     ];
     all.extend(outside.map(Hidden::Outside));

@@ -63,6 +63,24 @@ pub enum Outside {
         /// The force that closes most of it (N).
         knee: f64,
     },
+    /// A taper whose seat is worn: it turns by half the gap about x of the flange frame, to
+    /// the side of the moment.
+    LooseTaper {
+        /// From one side to the other (rad).
+        gap: f64,
+        /// The moment that closes most of it (Nm).
+        knee: f64,
+    },
+    /// Rollers with little preload: the bearing of a joint tilts about the axes across its own
+    /// by `compliance / sqrt(1 + (m / knee)^2)` per moment `m`.
+    HardeningBearing {
+        /// The joint.
+        joint: usize,
+        /// Unloaded (rad/Nm).
+        compliance: f64,
+        /// (Nm)
+        knee: f64,
+    },
     /// Grease and belts soften with warmth: the joint's compliance times
     /// `1 + per_kelvin (T - T at the beginning)`.
     WarmingJoint {
@@ -83,6 +101,8 @@ impl Outside {
             Self::SoftFoundation { .. } => "soft_foundation",
             Self::CrossDependence { .. } => "cross_dependence",
             Self::LooseFlange { .. } => "loose_flange",
+            Self::LooseTaper { .. } => "loose_taper",
+            Self::HardeningBearing { .. } => "hardening_bearing",
             Self::WarmingJoint { .. } => "warming_joint",
         }
     }
@@ -90,22 +110,26 @@ impl Outside {
     /// Where it is.
     pub fn place(&self) -> String {
         match self {
-            Self::ViscousJoint { joint, .. } | Self::WarmingJoint { joint, .. } => format!("joint {joint}"),
+            Self::ViscousJoint { joint, .. }
+            | Self::HardeningBearing { joint, .. }
+            | Self::WarmingJoint { joint, .. } => format!("joint {joint}"),
             Self::CrossDependence { joint, of, .. } => format!("joint {joint} by {of}"),
             Self::Cable { link, .. } | Self::LinkGrowth { link, .. } => format!("link {link}"),
             Self::SoftFoundation { .. } => "base".into(),
-            Self::LooseFlange { .. } => "tool".into(),
+            Self::LooseFlange { .. } | Self::LooseTaper { .. } => "tool".into(),
         }
     }
 
     /// The numbers it is proportional to.
     pub(super) fn sizes(&mut self) -> Vec<&mut f64> {
         match self {
-            Self::ViscousJoint { compliance, .. } | Self::SoftFoundation { compliance, .. } => vec![compliance],
+            Self::ViscousJoint { compliance, .. }
+            | Self::SoftFoundation { compliance, .. }
+            | Self::HardeningBearing { compliance, .. } => vec![compliance],
             Self::Cable { stiffness, .. } => vec![stiffness],
             Self::LinkGrowth { per_kelvin, .. } | Self::WarmingJoint { per_kelvin, .. } => vec![per_kelvin],
             Self::CrossDependence { cos, sin, .. } => vec![cos, sin],
-            Self::LooseFlange { gap, .. } => vec![gap],
+            Self::LooseFlange { gap, .. } | Self::LooseTaper { gap, .. } => vec![gap],
         }
     }
 }

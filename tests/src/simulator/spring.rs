@@ -24,7 +24,8 @@ pub(super) enum Response {
     /// About x and y alike, with a compliance that falls with the moment `m`
     /// there: `compliance m / sqrt(1 + (m / knee)^2)`.
     Stiffening { compliance: f64, knee: f64 },
-    /// Along x only, half a gap (m) to the side of the force, with a knee (N).
+    /// Along or about x only, half a gap (m or rad) to the side of the force or moment, with
+    /// a knee (N or Nm).
     Gap { gap: f64, knee: f64 },
 }
 

@@ -67,6 +67,8 @@ fn work_done_is_energy_stored() {
         Hidden::LostMotion { joint: 3, gap: 3e-4, knee: 2000.0 },
         Hidden::Outside(Outside::SoftFoundation { compliance: 4e-8, knee: 9000.0 }),
         Hidden::Outside(Outside::LooseFlange { gap: 2e-4, knee: 3000.0 }),
+        Hidden::Outside(Outside::LooseTaper { gap: 2e-4, knee: 600.0 }),
+        Hidden::Outside(Outside::HardeningBearing { joint: 2, compliance: 1e-7, knee: 4000.0 }),
     ];
     let arm = arm.iter().fold(Arm::new(&six_axis(), &every_effect()), |arm, hidden| arm.hiding(hidden)).at(&POSE);
     let full = [9e3, -7e3, 1.2e4, 0.0, 0.0, 0.0];

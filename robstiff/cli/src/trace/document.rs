@@ -23,7 +23,11 @@ pub fn document(trace: &Trace, triage: &Triage, campaign: &Campaign) -> Value {
         "after": misfit(&trace.after),
         "verdict": trace.verdict.to_string(),
         "why": trace.why,
-        "unexplained": {"fraction": number(trace.unexplained), "depends_on": trace.depends_on},
+        "unexplained": {
+            "fraction": number(trace.unexplained),
+            "depends_on": trace.depends_on,
+            "looks_like": trace.looks_like,
+        },
         "numbers": identify::numbers(&trace.estimates),
         "rivals": trace.rivals.iter().map(rival).collect::<Value>(),
         "invisible": trace.invisible,

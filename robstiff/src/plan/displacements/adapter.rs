@@ -66,7 +66,7 @@ impl<'c> Adapter<'c> {
         let wild: Vec<usize> =
             (0..).zip(&prepared.data.rows).filter(|(_, row)| lines.contains(&row.line)).map(|(i, _)| i).collect();
         let bench = Bench::new(campaign, prepared).map_err(Error)?.leaving_out(&wild);
-        let everything = catalogue(&bench.scene(), prepared.own.len());
+        let everything = catalogue(&bench.scene(), prepared.own.len(), false);
         let source = Source { bench: &bench, prepared, everything: &everything };
         let mut columns = prepared.seen();
         let (rivals, model) = source.rivals(campaign, trace, groups, &mut columns)?;
@@ -153,7 +153,7 @@ impl<'c> Adapter<'c> {
             compliance: self.compliance.clone(),
             moments: &Moments::default(),
         };
-        let everything = catalogue(&scene, 0);
+        let everything = catalogue(&scene, 0, false);
         let column = |point: &Point<'_>, kept: &Kept| match kept {
             Kept::Own(column) => point.samples.column(*column),
             Kept::Of(kind, place, which) => start(&everything, kind, *place, 0).map_or_else(

@@ -53,6 +53,8 @@ pub struct Bench<'c> {
     /// Whether rows of poses fitted to are wild, too, where the others of their own pose
     /// contradict them, as those of poses held out always are.
     pub by_own_pose: bool,
+    /// Whether the candidates have those without a name among them, behind all others.
+    wide: bool,
     /// Where slips that all later rows keep may have begun.
     moments: Moments,
     settings: Solved<Setting<'c>>,
@@ -96,6 +98,34 @@ impl<'c> Bench<'c> {
         Ok(bench)
     }
 
+    /// One that judges alike, fresh, in whose catalogue is also what has no name.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn widened(&self) -> Result<Self, String> {
+        let mut bench =
+            Self { strict: self.strict, by_own_pose: self.by_own_pose, ..Self::new(self.campaign, self.prepared)? };
+        bench.wide = true;
+        bench.set_up()?;
+        Ok(bench)
+    }
+
+    /// The same without what has no name.
+    #[must_use]
+    pub fn narrowed(mut self) -> Self {
+        self.wide = false;
+        let (nameless, named): (Vec<Candidate>, Vec<Candidate>) =
+            self.candidates.iter().cloned().partition(Candidate::is_nameless);
+        let variants = nameless.iter().flat_map(|candidate| &candidate.variants);
+        if let Some(&first) = variants.flat_map(|variant| &variant.columns).min() {
+            self.numbers = self.numbers[..first - self.own.len()].into();
+            self.signs = self.signs[..first].into();
+        }
+        self.candidates = named.into();
+        self.forget();
+        self
+    }
+
     /// The bench of a prepared campaign with nothing in its catalogue: it fits
     /// the description's own model.
     pub fn bare(campaign: &'c Campaign, prepared: &'c Prepared<'c>) -> Self {
@@ -112,6 +142,7 @@ impl<'c> Bench<'c> {
             noise: Rc::new(Known::of(prepared)),
             strict: false,
             by_own_pose: false,
+            wide: false,
             moments: Moments::default(),
             settings: RefCell::default(),
             stored: Rc::default(),
@@ -157,6 +188,11 @@ impl<'c> Bench<'c> {
         &self.candidates
     }
 
+    /// The full names of a model's effects.
+    pub fn names(&self, named: &[Named]) -> Vec<String> {
+        named.iter().map(|one| self.candidates[one.candidate].name()).collect()
+    }
+
     /// The regression at a model's solution.
     ///
     /// # Errors
@@ -196,6 +232,16 @@ impl<'c> Bench<'c> {
     /// Why the model is no physical one.
     pub fn fit(&self, named: &[Named]) -> Result<Fitted, String> {
         self.at(named)?.fit(named)
+    }
+
+    /// A model at its solution, whether physics allows it or not: what is missing besides
+    /// can drive its numbers beyond that.
+    ///
+    /// # Errors
+    /// Why it cannot be fitted at all.
+    pub fn fit_or_loosely(&self, named: &[Named]) -> Result<Fitted, String> {
+        let setting = self.at(named)?;
+        setting.fit(named).or_else(|why| setting.fit_loosely(named).ok_or(why))
     }
 
     /// A proposal with its nonlinear numbers in their own form; as it is where

@@ -23,7 +23,7 @@ impl Bench<'_> {
     /// Forms the catalogue, without what the data cannot show.
     pub(super) fn set_up(&mut self) -> Result<(), String> {
         self.forget();
-        let Catalogue { candidates, numbers, invisible } = catalogue(&self.scene(), self.own.len());
+        let Catalogue { candidates, numbers, invisible } = catalogue(&self.scene(), self.own.len(), self.wide);
         let signs = self.prepared.signs().into_iter().chain(numbers.iter().map(Number::sign));
         self.signs = signs.collect();
         self.numbers = numbers.into();
@@ -49,6 +49,7 @@ impl Bench<'_> {
             let is_seen = |variant: &&Variant| variant.columns.iter().all(visible);
             let variants: Vec<Variant> = candidate.variants.iter().filter(is_seen).cloned().collect();
             match variants.is_empty() {
+                true if candidate.is_nameless() => {}
                 true => lost.push(candidate.name()),
                 false => kept.push(Candidate { variants, ..candidate.clone() }),
             }

@@ -28,6 +28,7 @@ mod load_cell_bias;
 mod load_cell_misalignment;
 mod load_cell_scale;
 mod lost_motion;
+mod nameless;
 mod offers;
 mod outliers;
 mod pose_dependent_compliance;
@@ -57,6 +58,7 @@ pub use self::hysteresis::{KIND as HYSTERESIS, is_told as tells_hysteresis, is_t
 pub use self::joint_coupling::share_a_drive;
 pub use self::joint_zero_offset::MOST as ZERO_MOST;
 pub use self::lost_motion::{EITHER, KIND as LOST_MOTION, KNEES as LOST_KNEES, WIDEST as WIDEST_GAP};
+pub use self::nameless::{LAG, NAMELESS};
 pub use self::offers::{Candidate, Catalogue, Form, Offers, Variant, catalogue};
 pub use self::outliers::KIND as OUTLIERS;
 pub use self::reflector_slip::KIND as REFLECTOR_SLIP;

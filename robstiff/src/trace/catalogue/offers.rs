@@ -7,7 +7,7 @@ use std::vec::Vec;
 
 use nalgebra::DVector;
 
-use super::{Check, KINDS, Kind, MORE_THAN_NONE, Number, Refine, Scene, TOOL_FRAME, Unsure};
+use super::{Check, KINDS, Kind, MORE_THAN_NONE, NAMELESS, Number, Refine, Scene, TOOL_FRAME, Unsure};
 use crate::Effect;
 use crate::trace::found::{EffectParameter, Place};
 use crate::trace::point::Point;
@@ -68,6 +68,11 @@ impl Candidate {
     /// The full name, `kind@at`.
     pub fn name(&self) -> String {
         std::format!("{}@{}", self.kind.name, self.place)
+    }
+
+    /// Whether it is no effect of the catalogue, and only held against those that are.
+    pub fn is_nameless(&self) -> bool {
+        NAMELESS.contains(&self.kind)
     }
 }
 
@@ -207,11 +212,12 @@ impl Offers<'_> {
 }
 
 /// What may be missing from a scene's description; its columns follow `first`
-/// columns of the description's own.
-pub fn catalogue(scene: &Scene<'_>, first: usize) -> Catalogue {
+/// columns of the description's own. If `wide`, with what has no name behind all that has.
+pub fn catalogue(scene: &Scene<'_>, first: usize, wide: bool) -> Catalogue {
     let catalogue = Catalogue { candidates: Vec::new(), numbers: Vec::new(), invisible: Vec::new() };
     let mut offers = Offers { kind: KINDS[0], declared: &scene.description.effects, first, catalogue };
-    for kind in KINDS {
+    let nameless: &[&Kind] = if wide { &NAMELESS } else { &[] };
+    for &kind in KINDS.iter().chain(nameless) {
         offers.kind = kind;
         (kind.offer)(scene, &mut offers);
     }

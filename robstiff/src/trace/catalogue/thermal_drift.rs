@@ -107,30 +107,32 @@ const SQUARED: [&str; 3] = ["square_x", "square_y", "square_z"];
 const CUBED: [&str; 3] = ["cube_x", "cube_y", "cube_z"];
 
 /// Time constants tried of what settles, the shortest first (s).
-const CONSTANTS: [f64; 3] = [1800.0, 3600.0, 7200.0];
+pub const CONSTANTS: [f64; 3] = [1800.0, 3600.0, 7200.0];
 
 /// What a drift may follow.
-struct Course {
+pub struct Course {
     /// The time or the temperature, by row.
-    at: Rc<Vec<f64>>,
+    pub at: Rc<Vec<f64>>,
     /// The same at the unloaded reading of the row's visit, taken one step before
     /// its first row.
-    before_visit: Rc<Vec<f64>>,
+    pub before_visit: Rc<Vec<f64>>,
     /// The same where all unloaded readings were taken in a round before the
     /// first row, where there was time for that.
-    before_round: Option<Rc<Vec<f64>>>,
+    pub before_round: Option<Rc<Vec<f64>>>,
     /// Whether the file tells how far it was whenever a reading was taken.
-    told: bool,
+    pub told: bool,
     /// The same at the beginning of the campaign.
-    begins: f64,
+    pub begins: f64,
     /// How far the drift is, with a time constant.
-    law: fn(f64, f64) -> f64,
-    unit: &'static str,
+    pub law: fn(f64, f64) -> f64,
+    /// The unit of a rate.
+    pub unit: &'static str,
     /// The time constant, where it settles.
-    settles: Option<f64>,
+    pub settles: Option<f64>,
 }
 
-fn courses(data: &Displacements) -> Vec<Course> {
+/// What readings may drift with.
+pub fn courses(data: &Displacements) -> Vec<Course> {
     let (clock, pace) = data.clock();
     let timed = data.rows.iter().all(|row| row.time.is_some());
     let first = |values: &[f64], step: &dyn Fn(usize) -> f64| -> Rc<Vec<f64>> {

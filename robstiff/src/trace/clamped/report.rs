@@ -19,8 +19,9 @@ use crate::trace::catalogue::{Candidate, HYSTERESIS, KINDS, OUTLIERS, STIFFNESS_
 use crate::trace::found::{EffectParameter, Found, Place};
 use crate::trace::model::{Fitted, all_but};
 use crate::trace::selection::WITHIN_REACH;
+use crate::trace::verdict::{self, Besides};
 use crate::trace::written::described;
-use crate::trace::{Misfit, NamedEffect, PoseError, Rival, RowResidual, Trace, Verdict, verdict};
+use crate::trace::{Misfit, NamedEffect, PoseError, Rival, RowResidual, Trace, Verdict};
 
 /// A tracing in full.
 ///
@@ -31,7 +32,10 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
     let wild = &found.wild.0;
     let (verdict, why) = match &found.too_little {
         Some(why) => (Verdict::Insufficient, why.clone()),
-        None => verdict::judge(&found.selection, &found.left, usize::from(!wild.is_empty()), &[], false),
+        None => {
+            let besides = Besides { isolated: usize::from(!wild.is_empty()), ..Besides::default() };
+            verdict::judge(&found.selection, &found.left, &besides)
+        }
     };
     let structure = found.left.structure || found.selection.unnamed;
     let tells = verdict != Verdict::Insufficient;
@@ -86,6 +90,7 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         why,
         unexplained: found.left.fraction,
         depends_on: if structure { found.left.depends_on.clone() } else { Vec::new() },
+        looks_like: Vec::new(),
         rivals: if tells { rivals(bench, model) } else { Vec::new() },
         invisible: invisible(campaign, bench),
         next: Vec::new(),

@@ -23,8 +23,9 @@ use crate::trace::held_out;
 use crate::trace::lack_of_fit::StructureTest;
 use crate::trace::model::{Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
+use crate::trace::verdict::{self, Besides};
 use crate::trace::written::with_effects;
-use crate::trace::{Misfit, NamedEffect, Options, PoseError, Rival, RowResidual, Trace, Verdict, verdict};
+use crate::trace::{Misfit, NamedEffect, Options, PoseError, Rival, RowResidual, Trace, Verdict};
 
 /// A tracing in full.
 ///
@@ -37,7 +38,9 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
     let (mut verdict, mut why) = match found.too_little.clone().or_else(|| no_noise(bench, model)) {
         Some(why) => (Verdict::Insufficient, why),
         None => {
-            verdict::judge(&found.selection, &left, usize::from(!found.wild.rows.is_empty()), &found.taken_back, false)
+            let isolated = usize::from(!found.wild.rows.is_empty());
+            let besides = Besides { isolated, taken_back: &found.taken_back, ..Besides::default() };
+            verdict::judge(&found.selection, &left, &besides)
         }
     };
     let tells = verdict != Verdict::Insufficient;
@@ -78,6 +81,7 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
         why,
         unexplained: left.fraction,
         depends_on: if structure { left.depends_on } else { Vec::new() },
+        looks_like: Vec::new(),
         rivals: rivals(bench, model, &replaced),
         invisible: invisible(campaign, bench),
         next: Vec::new(),

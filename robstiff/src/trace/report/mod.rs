@@ -103,6 +103,7 @@ pub fn report(
         why: outcome.why.clone(),
         unexplained: left.map_or(0.0, |left| left.fraction),
         depends_on: left.map_or_else(Vec::new, |left| left.depends_on.clone()),
+        looks_like: outcome.looks_like.clone(),
         rivals: if outcome.verdict == Verdict::Insufficient { Vec::new() } else { rivals(bench, found) },
         invisible,
         next: Vec::new(),

@@ -1,0 +1,113 @@
+//! Does something that has no name account for what the named effects leave?
+//!
+//! Where structure is left, the search is made once more among more: the catalogue, and
+//! what arms are known to have [beside it](super::catalogue::NAMELESS). If that finds a
+//! model with something nameless in it, admitted by the same tests, and no structure is left
+//! then, the names in that model are the true ones: what had been named and is not among
+//! them was named for want of better.
+
+use std::format;
+use std::string::String;
+use std::vec;
+use std::vec::Vec;
+
+use super::Options;
+use super::bench::Bench;
+use super::catalogue::{CREEP, HYSTERESIS, LAG, LOST_MOTION, STIFFNESS_NONLINEARITY};
+use super::found::Found;
+use super::lack_of_fit::LackOfFit;
+use super::model::{Fitted, Named};
+use super::selection::{Selection, WITHIN_REACH, best_with, select};
+use super::step::Step;
+use super::verdict;
+
+/// What came of a search beyond the catalogue.
+pub enum Searched<'c> {
+    /// Something nameless accounts for what is left.
+    Yes(Beyond<'c>),
+    /// Nothing does that was found.
+    No {
+        /// Whether a lag fits about as well as the hysteresis with a curve that
+        /// [may be one](verdict::may_lag).
+        lag: bool,
+    },
+}
+
+/// A model with something nameless in it.
+pub struct Beyond<'c> {
+    /// The bench without what has no name.
+    pub bench: Bench<'c>,
+    /// The effects that have a name, fitted without the rest; as they were tested with it.
+    pub selection: Selection,
+    /// What there is besides, each as a noun for a sentence.
+    pub nameless: Vec<String>,
+}
+
+/// Searches among what has no name, too, for what a model leaves, which `test` looks at.
+///
+/// # Errors
+/// Why not even the description's own model can be fitted.
+pub fn search<'c>(
+    bench: &Bench<'c>,
+    named: &Fitted,
+    options: &Options,
+    test: impl Fn(&Bench<'c>, &Fitted) -> Result<LackOfFit, String>,
+) -> Result<Searched<'c>, String> {
+    bench.spare_memory();
+    let mut wide = bench.widened()?;
+    let base = wide.fit(&[])?;
+    // Its stages are those that were told before.
+    let found = select(&mut wide, base, options, &|_| ())?;
+    let is_nameless = |one: &Named| wide.candidates()[one.candidate].is_nameless();
+    if !found.model.named.iter().any(is_nameless) {
+        let lag = verdict::may_lag(bench, named) && lag_is_near(&wide, &found.model);
+        return Ok(Searched::No { lag });
+    }
+    if found.unnamed || test(&wide, &found.model)?.structure {
+        return Ok(Searched::No { lag: true });
+    }
+    without_nameless(wide, &found).map(Searched::Yes)
+}
+
+/// A model told without what has no name in it.
+fn without_nameless<'c>(wide: Bench<'c>, found: &Selection) -> Result<Beyond<'c>, String> {
+    let model = &found.model.named;
+    let is_nameless = |&k: &usize| wide.candidates()[model[k].candidate].is_nameless();
+    let (nameless, named): (Vec<usize>, Vec<usize>) = (0..model.len()).partition(is_nameless);
+    let words = |&k: &usize| {
+        let (candidate, variant) = (&wide.candidates()[model[k].candidate], model[k].variant);
+        Found::new(candidate.kind, candidate.place, candidate.variants[variant].shape.clone()).words()
+    };
+    let nameless: Vec<String> = nameless.iter().map(words).collect();
+    let p_values = named.iter().map(|&k| found.p_values[k]).collect();
+    let named: Vec<Named> = named.iter().map(|&k| model[k]).collect();
+    let bench = wide.narrowed();
+    let model = bench.fit_or_loosely(&named)?;
+    let mut step = Step::bare(bench.names(&named));
+    step.outcome = format!("beside what has no name in the catalogue: {}", nameless.join(", "));
+    let selection = Selection { model, p_values, steps: vec![step], unnamed: false };
+    Ok(Beyond { bench, selection, nameless })
+}
+
+/// Whether a joint that lags fits about as well as a model that names its hysteresis: in place
+/// of that, of a curve of the same joint, and of creep.
+fn lag_is_near(wide: &Bench<'_>, model: &Fitted) -> bool {
+    let candidates = wide.candidates();
+    let sticks = |one: &&Named| candidates[one.candidate].kind.name == HYSTERESIS.name;
+    model.named.iter().filter(sticks).any(|hysteresis| {
+        let place = candidates[hysteresis.candidate].place;
+        let is_of_lag = |one: &Named| {
+            let own = &candidates[one.candidate];
+            let of_joint = [HYSTERESIS.name, STIFFNESS_NONLINEARITY.name, LOST_MOTION.name].contains(&own.kind.name);
+            own.kind.name == CREEP.name || (of_joint && own.place == place)
+        };
+        let rest: Vec<Named> = model.named.iter().copied().filter(|one| !is_of_lag(one)).collect();
+        let lag = candidates.iter().position(|other| other.kind.name == LAG.name && other.place == place);
+        let with = lag.and_then(|lag| best_with(&*wide.at(&rest).ok()?, &rest, lag));
+        // Where no reading tells how late a joint is, nothing tells it from one that sticks.
+        with.is_none_or(|with| {
+            let polished = wide.polished(&with.named).fit(&with.named);
+            polished.is_ok_and(|lagging| lagging.bic < model.bic + WITHIN_REACH)
+        })
+    })
+}
