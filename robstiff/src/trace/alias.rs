@@ -5,7 +5,8 @@ use std::vec::Vec;
 
 use super::Options;
 use super::bench::Bench;
-use super::catalogue::{EITHER, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY, tells_hysteresis};
+use super::bootstrap::ScoreTest;
+use super::catalogue::{Candidate, EITHER, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY, Variant, tells_hysteresis};
 use super::found::Place;
 use super::isolated::Event;
 use super::model::{Fitted, Named, Setting, all_but};
@@ -46,7 +47,8 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, structure: bool, opt
     for candidate in (0..setting.candidates.len()).filter(|&candidate| candidate != one.candidate) {
         let Some(rival) = best_with(&setting, &rest, candidate) else { continue };
         let variant = variant_of(&rival, candidate);
-        let exact = tests.scores.distance(setting.variant(one), setting.variant(variant)) < EXACT;
+        let exact = tests.scores.distance(setting.variant(one), setting.variant(variant)) < EXACT
+            || has_alias_of_a_part(&tests.scores, setting.variant(one), &setting.candidates[candidate]);
         let is_significant = tests.p_value(candidate) <= options.alpha;
         let predicts = || setting.left_out_rms(&rival.fit) < unseen;
         let is_near = |rival: &Fitted, at: &Setting<'_>| {
@@ -70,6 +72,31 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, structure: bool, opt
         }
     }
     best_first(found).chain(dead_zone(bench, &own, model, one)).collect()
+}
+
+/// Of an effect with more numbers than this, none has an alias of its own.
+const PARTS: usize = 4;
+
+/// Whether a candidate may stand for some of an effect's numbers, the others kept: a
+/// translation of the base, told with its tilt, is one of the tool as well.
+fn has_alias_of_a_part(scores: &ScoreTest, own: &Variant, candidate: &Candidate) -> bool {
+    let columns = &own.columns;
+    if !own.shape.is_empty() || columns.len() > PARTS {
+        return false;
+    }
+    (1..(1_u32 << columns.len()) - 1).any(|set| {
+        let of = |inside: bool| -> Vec<usize> {
+            (0..columns.len()).filter(|k| (set >> k & 1 == 1) == inside).map(|k| columns[k]).collect()
+        };
+        let (part, kept) = (of(true), of(false));
+        let alike = |other: &Variant| {
+            let with_the_others = other.columns.iter().chain(&kept).copied().collect();
+            other.columns.len() == part.len()
+                && scores.distance(&Variant::new(part.clone(), Vec::new()), &Variant::new(with_the_others, Vec::new()))
+                    < EXACT
+        };
+        candidate.variants.iter().any(alike)
+    })
 }
 
 /// The names of what may as well have made the rows that are left out as wild: effects

@@ -1,10 +1,11 @@
-//! Does something that has no name account for what the named effects leave?
+//! Does something that has no name account for what is told better than the named effects do?
 //!
 //! Where structure is left, the search is made once more among more: the catalogue, and
 //! what arms are known to have [beside it](super::catalogue::NAMELESS). If that finds a
 //! model with something nameless in it, admitted by the same tests, and no structure is left
 //! then, the names in that model are the true ones: what had been named and is not among
-//! them was named for want of better.
+//! them was named for want of better. Where no structure is left, one thing without a name is
+//! tried in place of one to three that have one, for effects together can be much like another.
 
 use std::format;
 use std::string::String;
@@ -17,7 +18,7 @@ use super::catalogue::{CREEP, HYSTERESIS, LAG, LOST_MOTION, STIFFNESS_NONLINEARI
 use super::found::Found;
 use super::lack_of_fit::LackOfFit;
 use super::model::{Fitted, Named};
-use super::selection::{Selection, WITHIN_REACH, best_with, select};
+use super::selection::{CURVATURE, Selection, WITHIN_REACH, best_with, p_values, select};
 use super::step::Step;
 use super::verdict;
 
@@ -43,7 +44,8 @@ pub struct Beyond<'c> {
     pub nameless: Vec<String>,
 }
 
-/// Searches among what has no name, too, for what a model leaves, which `test` looks at.
+/// Searches among what has no name, too, for what a model leaves, in which `test` finds
+/// structure.
 ///
 /// # Errors
 /// Why not even the description's own model can be fitted.
@@ -68,6 +70,52 @@ pub fn search<'c>(
     }
     without_nameless(wide, &found).map(Searched::Yes)
 }
+
+/// Tries something nameless in place of some effects of a model that leaves no
+/// structure, which `test` asks of the other model, too.
+///
+/// # Errors
+/// Why not even the description's own model can be fitted.
+pub fn instead<'c>(
+    bench: &Bench<'c>,
+    model: &Fitted,
+    options: &Options,
+    test: impl Fn(&Bench<'c>, &Fitted) -> Result<LackOfFit, String>,
+) -> Result<Option<Beyond<'c>>, String> {
+    bench.spare_memory();
+    let wide = bench.widened_as_it_is()?;
+    let setting = wide.at(&model.named)?;
+    let sets = (1..1_u32 << model.named.len()).filter(|set| set.count_ones() <= MOST_REPLACED);
+    let without = |set: u32| -> Vec<Named> {
+        let rest = model.named.iter().enumerate().filter(|(k, _)| set >> k & 1 == 0);
+        rest.map(|(_, one)| *one).collect()
+    };
+    let nameless = || (0..wide.candidates().len()).filter(|&candidate| wide.candidates()[candidate].is_nameless());
+    let with = |rest: Vec<Named>| nameless().filter_map(|candidate| best_with(&setting, &rest, candidate)).collect();
+    let mut others: Vec<Fitted> = sets.map(without).flat_map::<Vec<Fitted>, _>(with).collect();
+    others.retain(|other| other.bic < model.bic - WITHIN_REACH + CURVATURE);
+    others.sort_by(|a, b| a.bic.total_cmp(&b.bic));
+    // At their own solution, with what is out of a grid where it fits best.
+    let refitted = others.iter().take(TRIED).filter_map(|other| {
+        let polished = wide.polished(&other.named);
+        let model = polished.fit(&other.named).ok()?;
+        Some((polished, model))
+    });
+    let best = refitted.min_by(|a, b| a.1.bic.total_cmp(&b.1.bic));
+    let Some((wide, other)) = best.filter(|(_, other)| other.bic < model.bic - WITHIN_REACH) else { return Ok(None) };
+    let p_values = p_values(&wide, &other.named, options);
+    if p_values.iter().any(|&p| p > options.alpha) || test(&wide, &other)?.structure {
+        return Ok(None);
+    }
+    let found = Selection { model: other, p_values, steps: Vec::new(), unnamed: false };
+    without_nameless(wide, &found).map(Some)
+}
+
+/// How many effects one thing without a name may be told as.
+const MOST_REPLACED: u32 = 3;
+
+/// How many of the best by the linear criterion are fitted at their own solution.
+const TRIED: usize = 4;
 
 /// A model told without what has no name in it.
 fn without_nameless<'c>(wide: Bench<'c>, found: &Selection) -> Result<Beyond<'c>, String> {

@@ -79,15 +79,21 @@ pub struct StructureTest {
     pub p_value: f64,
 }
 
-/// Rows beyond this many are thinned evenly: the effort of pairwise sums is
-/// quadratic.
+/// Rows beyond about this many are thinned: the effort of pairwise sums is quadratic.
 const MOST_ROWS: usize = 1200;
 
-/// The rows fitted to that what is left is looked at in: all, or some of them evenly.
+/// The rows fitted to that what is left is looked at in: all, or some of them.
 pub(super) fn rows_looked_at(problem: &Problem) -> Vec<usize> {
     let trained: Vec<usize> = problem.blocks.iter().flat_map(|block| block.rows.iter().copied()).collect();
-    let stride = trained.len().div_ceil(MOST_ROWS).max(1);
-    trained.into_iter().step_by(stride).collect()
+    thinned(trained.len()).map(|place| trained[place]).collect()
+}
+
+/// Places among so many that are looked at. Every other row can be the same step of every load
+/// sequence; multiples of the golden ratio fall evenly on each step of any.
+fn thinned(count: usize) -> impl Iterator<Item = usize> {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let share = MOST_ROWS as f64 / count as f64;
+    (0..count).filter(move |&place| (place as f64 * GOLDEN).fract() < share)
 }
 
 /// Tests the residuals of a model.
@@ -372,6 +378,28 @@ fn keep_between_poses(kernel: &mut DMatrix<f64>, setting: &Setting<'_>, rows: &[
     for j in 0..rows.len() {
         for i in (0..rows.len()).filter(|&i| pose(i) == pose(j)) {
             kernel[(i, j)] = 0.0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All steps of a load sequence are looked at, and all of the campaign.
+    #[test]
+    fn rows_are_thinned_evenly() {
+        assert_eq!(thinned(MOST_ROWS).count(), MOST_ROWS);
+        for count in [1201, 1202, 2400, 7200, 40_000] {
+            let places: Vec<usize> = thinned(count).collect();
+            assert!(places.len().abs_diff(MOST_ROWS) < 10, "{} of {count}", places.len());
+            for (parts, part) in [(2, 1), (5, 1), (10, 1), (10, count / 10 + 1)] {
+                for k in 0..parts {
+                    let own = places.iter().filter(|&place| place / part % parts == k).count();
+                    let even = MOST_ROWS as f64 / parts as f64;
+                    assert!((own as f64 - even).abs() < 0.1 * even, "{own} of {count} in part {k} of {parts}");
+                }
+            }
         }
     }
 }

@@ -89,18 +89,23 @@ pub fn search<'c>(
     let mut left = test(bench, &selection.model)?;
     let mut may_lag = verdict::may_lag(bench, &selection.model);
     let (mut taken_back, mut looks_like) = (Vec::new(), Vec::new());
+    let mut found = None;
     if left.structure || selection.unnamed || may_lag {
         progress("looking for what has no name in the catalogue");
-        let found = beyond::search(bench, &selection.model, options, test)?;
-        may_lag &= !matches!(found, Searched::No { lag: false });
-        if let Searched::Yes(beyond) = found {
-            taken_back = names_lost(bench, &selection.model, &beyond);
-            looks_like = beyond.nameless;
-            selection = beyond.selection.after(selection);
-            *bench = beyond.bench;
-            left = test(bench, &selection.model)?;
-            left.structure = true;
+        match beyond::search(bench, &selection.model, options, test)? {
+            Searched::Yes(beyond) => found = Some(beyond),
+            Searched::No { lag } => may_lag &= lag,
         }
+    } else if !selection.model.named.is_empty() {
+        found = beyond::instead(bench, &selection.model, options, test)?;
+    }
+    if let Some(beyond) = found {
+        taken_back = names_lost(bench, &selection.model, &beyond);
+        looks_like = beyond.nameless;
+        selection = beyond.selection.after(selection);
+        *bench = beyond.bench;
+        left = test(bench, &selection.model)?;
+        left.structure = true;
     }
     if looks_like.is_empty() {
         take_back(bench, &mut selection, &mut left, &mut taken_back, options, test)?;

@@ -229,6 +229,19 @@ fn exact_aliases_are_said() {
     assert!(found.effects[0].same_as.contains(&"transverse_compliance@joint 1".to_string()));
 }
 
+/// The base that yields alike in every direction moves the tool as the tool itself does, and
+/// is told in one breath with the base's tilt.
+#[test]
+fn exact_aliases_of_a_part_are_said() {
+    let hidden = [(Column::Spring(Spring::BaseTilt), 1e-7), (Column::Spring(Spring::ToolTranslation), 1e-7)];
+    let found = traced(&campaign(&five_axis(), 24, &hidden, 3));
+    assert_eq!(names(&found), ["base_compliance@base"]);
+    let same_as = &found.effects[0].same_as;
+    assert!(
+        ["transverse_compliance@joint 1", "tool_compliance@tool"].iter().all(|name| same_as.contains(&(*name).into()))
+    );
+}
+
 /// A gear that grows softer with the rows, as nothing in the catalogue does, is
 /// seen and not named.
 #[test]

@@ -5,7 +5,7 @@
 use nalgebra::{Rotation3, Vector3};
 use robstiff::trace::{Trace, Verdict};
 use robstiff_robots::Description;
-use robstiff_tests::simulator::{Arm, Row, Simulated, five_axis, six_axis};
+use robstiff_tests::simulator::{Arm, Hidden, Outside, Row, Simulated, five_axis, six_axis};
 
 use crate::bench::{FLOOR, assert_most, plan, trace_files};
 
@@ -87,6 +87,22 @@ fn warming_of_five() {
 #[test]
 fn warming_of_six() {
     is_not_explained("a warming gear", &six_axis(), warm);
+}
+
+/// Two effects of joint 3 together are much like it, and leave nothing: a compliance that varies
+/// with its angle, and a periodic error of that.
+#[test]
+fn a_compliance_that_follows_another_joint_is_not_told_as_two_effects_of_that() {
+    let rod = Outside::CrossDependence { joint: 2, of: 3, cos: 0.4, sin: 0.0 };
+    let trace = |seed| {
+        let simulated = plan(&six_axis(), &[], seed).hiding(Hidden::Outside(rod.clone())).run();
+        (seed, trace_files(&simulated, &six_axis(), ""))
+    };
+    let traces: Vec<(u64, Trace)> = (300..306).map(trace).collect();
+    assert_most("a rod between joints 2 and 3", 5, &traces, |_, trace| {
+        let words = "a compliance of joint 2 that changes with the angle of joint 3";
+        trace.verdict == Verdict::Unexplained && trace.effects.is_empty() && trace.looks_like == [words]
+    });
 }
 
 fn with_fault(arm: &Description, fault: fn(&mut Simulated)) -> Vec<(u64, Trace)> {

@@ -110,6 +110,21 @@ impl<'c> Bench<'c> {
         Ok(bench)
     }
 
+    /// The same with what has no name in the catalogue, too.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn widened_as_it_is(&self) -> Result<Self, String> {
+        let mut bench = Self { wide: true, ..self.copy() };
+        bench.set_up()?;
+        // What has a name stays as it was taken to where it fits best.
+        let nameless = bench.candidates.iter().filter(|candidate| candidate.is_nameless());
+        bench.candidates = self.candidates.iter().chain(nameless).cloned().collect();
+        bench.numbers = bench.refined_numbers(0..bench.candidates.len());
+        bench.forget();
+        Ok(bench)
+    }
+
     /// The same without what has no name.
     #[must_use]
     pub fn narrowed(mut self) -> Self {

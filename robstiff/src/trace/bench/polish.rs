@@ -269,7 +269,7 @@ impl<'c> Bench<'c> {
     }
 
     /// The same, with nothing known of models.
-    fn copy(&self) -> Self {
+    pub(super) fn copy(&self) -> Self {
         Self {
             own: Rc::clone(&self.own),
             candidates: Rc::clone(&self.candidates),
