@@ -53,10 +53,11 @@ impl Description {
         corrected(&self.joints, &self.effects)
     }
 
-    /// Whether a link (from 1) is nothing but the stroke of a joint that slides:
-    /// it may have no length, and then no direction along which to be a beam.
+    /// Whether a link (from 1) is nothing but the stroke of a joint that slides, as
+    /// the effects correct it: it may have no length, and then no direction along
+    /// which to be a beam.
     pub fn is_stroke(&self, link: usize) -> bool {
-        is_stroke(self.convention, &self.joints, link)
+        is_stroke(self.convention, &self.corrected_joints(), link)
     }
 
     /// Whether a link (from 1) can be a beam: it has a length, as the effects
@@ -88,7 +89,7 @@ fn of_link(convention: Convention, joints: &[Joint], link: usize) -> Option<&Joi
     joints.get(row - 1)
 }
 
-/// Whether a link is a stroke, of a description that is being read.
+/// Whether a link is a stroke, of joints that have been [`corrected`].
 pub(crate) fn is_stroke(convention: Convention, joints: &[Joint], link: usize) -> bool {
     of_link(convention, joints, link).is_some_and(|joint| joint.kind == JointKind::Prismatic && joint.a == 0.0)
 }

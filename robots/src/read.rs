@@ -77,7 +77,9 @@ impl Description {
     /// write it, against the joints of this robot; what is wrong is reported
     /// there.
     pub fn read_effects(&self, node: &Node<'_>) -> Option<Vec<Effect>> {
-        let (joints, links) = (Some(&self.joints[..]), Some(&self.links[..]));
+        // These come on top of the robot's own.
+        let joints = self.corrected_joints();
+        let (joints, links) = (Some(&joints[..]), Some(&self.links[..]));
         let arm = effects::Arm { convention: Some(self.convention), joints, links, count: Some(self.joints.len()) };
         effects::effects(node, &arm)
     }
@@ -284,6 +286,18 @@ mod tests {
         let text = "name: Arm\nconvention: standard\njoints:\n  - {theta: 90 rad, limits: [-4*pi, 6*pi], compliance: 3 rad/Nm}\n  \
                     - {type: prismatic, a: 50, limits: [0, 80 m], alpha: 12.5, compliance: 1}\n";
         Description::parse("arm.yaml", text).unwrap_or_else(|problems| panic!("{problems}"));
+    }
+
+    /// What comes on top of a robot is held against its links as they are.
+    #[test]
+    fn effects_on_top_see_the_corrected_table() {
+        let text = "name: Arm\nconvention: standard\njoints: [{compliance: 1e-7 rad/Nm}, {a: 1 m}]\n\
+                    effects: [{kind: dh_error, at: a1, value: 1 mm}]\n";
+        let arm = Description::parse("arm.yaml", text).unwrap_or_else(|problems| panic!("{problems}"));
+        let document = Document::parse("more.yaml", "[{kind: link_compliance, at: link 1, bending: 1e-7 rad/Nm}]\n");
+        let document = document.unwrap_or_else(|problems| panic!("{problems}"));
+        let effects = arm.read_effects(&document.root());
+        assert_eq!(document.finish(effects).unwrap_or_else(|problems| panic!("{problems}")).len(), 1);
     }
 
     /// The sum of no numbers is a negative zero, which is written as one.

@@ -55,7 +55,7 @@ pub(super) fn effects(node: &Node, arm: &Arm<'_>) -> Option<Vec<Effect>> {
     if let Some(joints) = arm.joints {
         check_couplings(&items, &read, joints);
         if let Some(convention) = arm.convention {
-            check_lengths(&items, &read, convention, joints);
+            check_links(&items, &read, convention, joints);
         }
         if let Some(links) = arm.links {
             check_sag(&items, &read, joints, links);
@@ -92,15 +92,6 @@ fn effect(node: &Node, arm: &Arm<'_>) -> Option<Effect> {
     let place = place?;
     if matches!(about.at, At::TurningJoint | At::TurningJoints) {
         revolute(&map, joints, place)?;
-    }
-    if let (Place::Link(link), Some(convention), Some(joints)) = (place, arm.convention, joints)
-        && is_stroke(convention, joints, link)
-    {
-        map.get("at")?.error(
-            format!("link {link} is nothing but a stroke: where that is 0, the link is no beam"),
-            "describe what yields there as `transverse_compliance` of a joint beside it",
-        );
-        return None;
     }
     let effect = Effect::of_kind(about.kind, place, &numbers?).expect("a place and numbers of this kind");
     let compliance = match place {
@@ -267,21 +258,24 @@ fn revolute(map: &Map, joints: Option<&[Joint]>, place: Place) -> Option<()> {
     Some(())
 }
 
-/// That links which yield have a length, with all that is wrong with the table.
-fn check_lengths(items: &[Node], effects: &[Option<Effect>], convention: Convention, joints: &[Joint]) {
-    // One that has problems of its own may give a link its length.
+/// That links which yield are beams, with all that is wrong with the table.
+fn check_links(items: &[Node], effects: &[Option<Effect>], convention: Convention, joints: &[Joint]) {
+    // One that has problems of its own may give a link its length, or take it.
     let Some(all) = effects.iter().copied().collect::<Option<Vec<Effect>>>() else { return };
     let joints = corrected(joints, &all);
     for (item, effect) in items.iter().zip(&all) {
         let Place::Link(link) = effect.place() else { continue };
-        if has_length(convention, &joints, link) {
+        let message = if is_stroke(convention, &joints, link) {
+            format!("link {link} is nothing but a stroke: where that is 0, the link is no beam")
+        } else if !has_length(convention, &joints, link) {
+            format!("link {link} has no length, and what is no beam neither bends nor twists")
+        } else {
             continue;
-        }
+        };
         let at = item.any_map("").and_then(|map| map.get("at"));
-        at.as_ref().unwrap_or(item).error(
-            format!("link {link} has no length, and what is no beam neither bends nor twists"),
-            "describe what yields there as `transverse_compliance` of a joint beside it",
-        );
+        at.as_ref()
+            .unwrap_or(item)
+            .error(message, "describe what yields there as `transverse_compliance` of a joint beside it");
     }
 }
 
