@@ -54,11 +54,14 @@ pub(super) fn effects(node: &Node, arm: &Arm<'_>) -> Option<Vec<Effect>> {
     }
     if let Some(joints) = arm.joints {
         check_couplings(&items, &read, joints);
-        if let Some(convention) = arm.convention {
+        // An effect that has problems of its own may correct any row.
+        let all: Option<Vec<Effect>> = read.iter().copied().collect();
+        let corrected = all.map(|all| corrected(joints, &all));
+        if let (Some(convention), Some(joints)) = (arm.convention, &corrected) {
             check_links(&items, &read, convention, joints);
         }
         if let Some(links) = arm.links {
-            check_sag(&items, &read, joints, links);
+            check_sag(&items, &read, corrected.as_deref(), links);
         }
     }
     read.into_iter().collect()
@@ -258,16 +261,13 @@ fn revolute(map: &Map, joints: Option<&[Joint]>, place: Place) -> Option<()> {
     Some(())
 }
 
-/// That links which yield are beams, with all that is wrong with the table.
+/// That links which yield are beams, of joints that have been corrected.
 fn check_links(items: &[Node], effects: &[Option<Effect>], convention: Convention, joints: &[Joint]) {
-    // One that has problems of its own may give a link its length, or take it.
-    let Some(all) = effects.iter().copied().collect::<Option<Vec<Effect>>>() else { return };
-    let joints = corrected(joints, &all);
-    for (item, effect) in items.iter().zip(&all) {
-        let Place::Link(link) = effect.place() else { continue };
-        let message = if is_stroke(convention, &joints, link) {
+    for (item, effect) in items.iter().zip(effects) {
+        let Some(Place::Link(link)) = effect.map(|effect| effect.place()) else { continue };
+        let message = if is_stroke(convention, joints, link) {
             format!("link {link} is nothing but a stroke: where that is 0, the link is no beam")
-        } else if !has_length(convention, &joints, link) {
+        } else if !has_length(convention, joints, link) {
             format!("link {link} has no length, and what is no beam neither bends nor twists")
         } else {
             continue;
@@ -279,8 +279,9 @@ fn check_links(items: &[Node], effects: &[Option<Effect>], convention: Conventio
     }
 }
 
-/// That the weights which a sag comes of are known, and that it is small.
-fn check_sag(items: &[Node], effects: &[Option<Effect>], joints: &[Joint], links: &[Link]) {
+/// That the weights which a sag comes of are known, and that it is small; of
+/// joints that have been corrected, if they could be.
+fn check_sag(items: &[Node], effects: &[Option<Effect>], joints: Option<&[Joint]>, links: &[Link]) {
     for (item, effect) in items.iter().zip(effects) {
         let Some(Effect::GravitySag { share }) = effect else { continue };
         if links.iter().all(|link| link.mass == 0.0) {
@@ -290,6 +291,7 @@ fn check_sag(items: &[Node], effects: &[Option<Effect>], joints: &[Joint], links
             );
             continue;
         }
+        let Some(joints) = joints else { continue };
         let largest = (0..joints.len()).filter(|&joint| joints[joint].kind == JointKind::Revolute);
         let largest = largest.map(|joint| (joint + 1, share * most_sag(joints, links, joint)));
         let Some((joint, sag)) = largest.max_by(|(_, one), (_, other)| one.total_cmp(other)) else { continue };
