@@ -17,6 +17,8 @@ fn angle() -> impl Strategy<Value = f64> {
     prop_oneof![
         8 => prop::sample::select(vec![0.0, quarter, -quarter, 2.0 * quarter, -2.0 * quarter]),
         2 => -3.0..3.0_f64,
+        // Many turns.
+        1 => -1e6..1e6_f64,
         // Its cosine is -1, and its sine is not 0.
         1 => Just(2.0 * quarter + 5e-9),
     ]

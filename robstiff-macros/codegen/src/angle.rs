@@ -3,7 +3,7 @@
 //! Turns about parallel axes add up to one angle, and one angle needs one sine
 //! and cosine: `q2 + q3` instead of products of four.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::ops::{Add, Neg};
 
 use robstiff_robots::angle::quarter_turns;
@@ -31,12 +31,12 @@ pub(crate) struct Reduced {
 impl Angle {
     /// A constant angle (rad).
     pub fn constant(offset: f64) -> Self {
-        Self { offset, ..Self::default() }
+        Self { offset: within_half_a_turn(offset), ..Self::default() }
     }
 
     /// The coordinate of a joint (from 0) plus a constant (rad).
     pub fn of_joint(joint: usize, offset: f64) -> Self {
-        Self { terms: vec![(joint, 1)], offset, ..Self::default() }
+        Self { terms: vec![(joint, 1)], offset: within_half_a_turn(offset), ..Self::default() }
     }
 
     /// A multiple of the coordinate of a joint (from 0).
@@ -118,9 +118,10 @@ impl Add<&Angle> for Angle {
         }
         self.offset += other.offset;
         // Sums of quarter turns stay exact.
-        if let Some(turns) = quarter_turns(self.offset) {
-            self.offset = f64::from(turns) * FRAC_PI_2;
-        }
+        self.offset = match quarter_turns(self.offset) {
+            Some(turns) => f64::from(turns) * FRAC_PI_2,
+            None => within_half_a_turn(self.offset),
+        };
         self
     }
 }
@@ -135,6 +136,22 @@ impl Neg for Angle {
         self.offset = -self.offset;
         self
     }
+}
+
+/// An angle without its whole turns, to rounding, and as it is where it has none: a
+/// coordinate that is added to a large one loses its last places.
+fn within_half_a_turn(angle: f64) -> f64 {
+    // A turn in parts of 33 and 20 bits and what a number has no room for. Up to 2^20
+    // turns, which no description comes near, their multiples are exact, and so are
+    // the first two differences: multiples of the smaller of both sides' last places.
+    const HIGH: f64 = f64::from_bits(TAU.to_bits() >> 20 << 20);
+    const LOW: f64 = TAU - HIGH;
+    const BEYOND: f64 = 2.449_293_598_294_706_4e-16;
+    if angle.abs() <= PI {
+        return angle;
+    }
+    let turns = (angle / TAU).round();
+    angle - turns * HIGH - turns * LOW - turns * BEYOND
 }
 
 #[cfg(test)]
@@ -157,6 +174,25 @@ mod tests {
         let g = Graph::new();
         let (s, c) = g.sin_cos(&Angle::constant(2.0 * FRAC_PI_2));
         assert_eq!((s.constant(), c.constant()), (Some(0.0), Some(-1.0)));
+    }
+
+    #[test]
+    fn offsets_have_no_whole_turns() {
+        for offset in [-PI, -3.1, 0.1 + 0.2, 3.0, PI] {
+            assert_eq!(Angle::of_joint(0, offset).offset(), offset);
+        }
+        for step in 0..20_000_i32 {
+            let stated = f64::from(step - 10_000).powi(3) * 1.1e-6;
+            for reduced in [Angle::of_joint(0, stated), Angle::constant(stated)].map(|angle| angle.offset()) {
+                assert!(reduced.abs() <= PI, "{stated}");
+                // The platform reduces exactly.
+                let (s, c) = stated.sin_cos();
+                let (sine, cosine) = reduced.sin_cos();
+                assert!((s - sine).abs() < 4e-16 && (c - cosine).abs() < 4e-16, "{stated}: {reduced}");
+            }
+        }
+        let sum = Angle::of_joint(0, 3.0) + &Angle::constant(2.5);
+        assert!((sum.offset() - (5.5 - TAU)).abs() < 1e-15);
     }
 
     #[test]
