@@ -6,13 +6,14 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::ops::{Add, Neg};
 
-use robstiff_robots::angle::quarter_turns;
+use robstiff_robots::angle::{quarter_turns, snapped};
 
 /// `sum of factor * q_joint + offset`, with joints from 0 in ascending order,
 /// and the deviations of joints that stand aside of their coordinates.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Angle {
     terms: Vec<(usize, i32)>,
+    /// Within half a turn, and a multiple of 90 degrees exactly or not at all.
     offset: f64,
     deviations: Vec<(usize, i32)>,
 }
@@ -31,12 +32,12 @@ pub(crate) struct Reduced {
 impl Angle {
     /// A constant angle (rad).
     pub fn constant(offset: f64) -> Self {
-        Self { offset: within_half_a_turn(offset), ..Self::default() }
+        Self { offset: stated(offset), ..Self::default() }
     }
 
     /// The coordinate of a joint (from 0) plus a constant (rad).
     pub fn of_joint(joint: usize, offset: f64) -> Self {
-        Self { terms: vec![(joint, 1)], offset: within_half_a_turn(offset), ..Self::default() }
+        Self { terms: vec![(joint, 1)], offset: stated(offset), ..Self::default() }
     }
 
     /// A multiple of the coordinate of a joint (from 0).
@@ -68,7 +69,7 @@ impl Angle {
 
     /// Whether it is exactly 0 for every pose.
     pub fn is_zero(&self) -> bool {
-        self.terms.is_empty() && self.deviations.is_empty() && quarter_turns(self.offset) == Some(0)
+        self.terms.is_empty() && self.deviations.is_empty() && whole_quarters(self.offset) == Some(0)
     }
 
     /// Digits that name it: `23` for q2 + q3, `2m3` for q2 - q3, with an `o`
@@ -91,7 +92,7 @@ impl Angle {
     }
 
     pub(crate) fn reduced(&self) -> Reduced {
-        let turns = quarter_turns(self.offset);
+        let turns = whole_quarters(self.offset);
         let offset = if turns.is_some() { 0.0 } else { self.offset };
         let mut rest = Self { terms: self.terms.clone(), offset, ..Self::default() };
         let negated = rest.terms.first().is_some_and(|&(_, factor)| factor < 0);
@@ -116,12 +117,7 @@ impl Add<&Angle> for Angle {
             }
             terms.retain(|term| term.1 != 0);
         }
-        self.offset += other.offset;
-        // Sums of quarter turns stay exact.
-        self.offset = match quarter_turns(self.offset) {
-            Some(turns) => f64::from(turns) * FRAC_PI_2,
-            None => within_half_a_turn(self.offset),
-        };
+        self.offset = sum(self.offset, other.offset);
         self
     }
 }
@@ -136,6 +132,33 @@ impl Neg for Angle {
         self.offset = -self.offset;
         self
     }
+}
+
+/// A multiple of 90 degrees, within half a turn.
+fn multiple(quarters: u8) -> f64 {
+    [0.0, FRAC_PI_2, PI, -FRAC_PI_2][usize::from(quarters % 4)]
+}
+
+/// An angle of a description: a multiple of 90 degrees where it is near one.
+fn stated(angle: f64) -> f64 {
+    quarter_turns(angle).map_or_else(|| within_half_a_turn(angle), multiple)
+}
+
+/// The sum of two angles that [`sum`] or [`stated`] gave. What a description says is
+/// a multiple of 90 degrees if it is near one, what comes of it only to rounding.
+fn sum(one: f64, other: f64) -> f64 {
+    if let (Some(one), Some(other)) = (whole_quarters(one), whole_quarters(other)) {
+        return multiple(one + other);
+    }
+    let rounding = 1e-15 * (one.abs() + other.abs()).max(1.0);
+    let sum = within_half_a_turn(one + other);
+    let near = snapped(sum);
+    if (sum - near).abs() > rounding { sum } else { stated(near) }
+}
+
+/// The number of quarter turns, reduced to `0..4`, of an angle that is exactly one.
+fn whole_quarters(angle: f64) -> Option<u8> {
+    quarter_turns(angle).filter(|_| snapped(angle) == angle)
 }
 
 /// An angle without its whole turns, to rounding, and as it is where it has none: a
@@ -178,7 +201,7 @@ mod tests {
 
     #[test]
     fn offsets_have_no_whole_turns() {
-        for offset in [-PI, -3.1, 0.1 + 0.2, 3.0, PI] {
+        for offset in [-PI + 1e-6, -FRAC_PI_2, -0.1, 0.1 + 0.2, 3.0, PI] {
             assert_eq!(Angle::of_joint(0, offset).offset(), offset);
         }
         for step in 0..20_000_i32 {
@@ -193,6 +216,22 @@ mod tests {
         }
         let sum = Angle::of_joint(0, 3.0) + &Angle::constant(2.5);
         assert!((sum.offset() - (5.5 - TAU)).abs() < 1e-15);
+    }
+
+    /// A multiple of 90 degrees in a description may be rounded; a sum of two angles
+    /// that are none is none.
+    #[test]
+    fn sums_are_right_angles_only_to_rounding() {
+        let (stated, off) = (Angle::of_joint(0, FRAC_PI_2 + 5e-10), Angle::constant(0.7));
+        assert_eq!(stated.offset(), FRAC_PI_2);
+        assert_eq!((stated + &off).offset(), FRAC_PI_2 + 0.7);
+        for quarters in -1..4 {
+            let right = f64::from(quarters) * FRAC_PI_2;
+            let near = off.clone() + &Angle::constant(right - 0.7 + 5e-10);
+            assert!(near.reduced().rest.is_some() && (near.offset() - right - 5e-10).sin().abs() < 1e-15);
+            let there = Angle::constant(0.4) + &(off.clone() + &Angle::constant(right - 1.1));
+            assert!(there.reduced().rest.is_none());
+        }
     }
 
     #[test]
