@@ -78,7 +78,9 @@ pub trait Robot<const N: usize> {
     /// without hysteresis it is [`deflection`](Self::deflection).
     ///
     /// The wrench is reached from the one before without turning back on the
-    /// way; unloading is a load, too: the wrench zero.
+    /// way; unloading is a load, too: the wrench zero. After one that is not a
+    /// number neither deflection nor state tells anything: go on from the state
+    /// before it.
     fn deflection_with<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>, state: &mut State<N, T>) -> Vector6<T> {
         let _ = state;
         self.deflection(q, wrench)

@@ -4,7 +4,7 @@
 use nalgebra::{Matrix6, SVector, SymmetricEigen, Vector4, Vector6};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use robstiff::{Convention, DhEntry, Dual, Effect, Generic, Robot, State};
+use robstiff::{Convention, DhEntry, Dual, Effect, Generic, Lanes, Real, Robot, State};
 use robstiff_robots::{Description, Link};
 use robstiff_tests::arms::{EveryEffect, EveryLaw, description};
 use robstiff_tests::judge::{Sizes, trials};
@@ -159,6 +159,26 @@ fn play_operators_are_dragged() {
                 assert!((found - expected).abs() < 1e-9, "{found} {expected}");
             }
         }
+    }
+}
+
+/// A wrench that is not a number is seen in every play operator of a joint that it
+/// turns: on a rigid joint, nothing else would tell.
+#[test]
+fn what_is_not_a_number_stays_none() {
+    fn check<T: Real>(robot: &impl Robot<7>, q: &SVector<f64, 7>, wrench: &Vector6<T>, is_nan: impl Fn(&T) -> bool) {
+        let q = q.map(T::of);
+        let mut state = State::new();
+        let moved = robot.deflection_with(&q, wrench, &mut state);
+        assert!(moved.iter().chain(&state.plays[2]).chain(&state.plays[5][..1]).all(&is_nan));
+        assert!(robot.deflection(&q, wrench).iter().all(is_nan));
+    }
+    for (q, _) in trials::<7>(POSES, 49) {
+        let none = Vector6::repeat(f64::NAN);
+        check(&EveryLaw, &q, &none, |number| number.is_nan());
+        check(&EveryLaw, &q, &none.map(|_| f32::NAN), |number| number.is_nan());
+        check(&EveryLaw, &q, &none.map(|none| Lanes([1.0, none])), |number| number.0.map(f64::is_nan) == [false, true]);
+        check(&with(|_| true), &q, &none, |number| number.is_nan());
     }
 }
 

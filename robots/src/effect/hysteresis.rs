@@ -75,7 +75,9 @@ impl Physics<6> for Hysteresis {
     }
 
     fn plays<S: Scalar>([r1, _, r2, _, r3, _]: [S; 6], torque: S, [a, b, c]: [S; PLAYS]) -> [S; PLAYS] {
-        let play = |radius: S, before: S| (torque - radius).max((torque + radius).min(before));
+        // The torque last: floats take the second of two where one is not a number, and what
+        // is not a number would stay unseen on a rigid joint.
+        let play = |radius: S, before: S| before.min(torque + radius).max(torque - radius);
         [play(r1, a), play(r2, b), play(r3, c)]
     }
 
