@@ -226,11 +226,14 @@ fn every_line_is_used() {
 /// Of texts that look like code, and of one with lines as they once ended on a Mac.
 #[test]
 fn any_description_becomes_docs() {
-    let said = "Reads\rMatrix4::new(\nand, besides,\n[links] <and> tags\n```\nnot code\n```\n~~~\nnor this\n~~~";
+    let said = "Reads\rMatrix4::new(\nand, besides,\n[links] <and> tags\n```\nnot code\n```\n~~~\nnor this\n~~~\n\
+                and \u{202e}back\u{2069}";
     let robot = Description { description: said.into(), source: said.into(), ..five_axes() };
     let text = text(&robot, "arm.yaml");
     assert!(syn::parse_file(&text).is_ok());
-    for line in ["/// Reads\n", "/// Matrix4::new(\n", "/// and, besides,\n", "/// \\[links] \\<and> tags\n"] {
+    for line in
+        ["/// Reads\n", "/// Matrix4::new(\n", "/// and, besides,\n", "/// \\[links] \\<and> tags\n", "/// and back\n"]
+    {
         assert!(text.contains(line), "{line}");
     }
     // Code would be run as a test of the user's.

@@ -216,6 +216,8 @@ pub(super) fn implementation(robot: &Description, functions: &[Generated], reade
 /// A method that calculates.
 fn calculation(robot: &Description, generated: &Generated, reader: Reader, n: &TokenStream) -> TokenStream {
     let Generated { method, function, in_columns } = generated;
+    // rustc refuses what turns the direction of a source file's text.
+    let escaped = escaped.replace(|c| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'), "");
     let written = |function: &Function, result: Build| {
         let Body { statements, outputs } = body(function, reader);
         let result = result(robot, &outputs);
