@@ -3,8 +3,9 @@
 //!
 //! It finds the description (module `locate`), has it read and checked, and hands it
 //! to the generator. What is wrong with a description becomes one compile error
-//! that shows the description's own lines, next to a skeleton of the type, so
-//! that nothing else fails because of it.
+//! that shows the description's own lines, next to a skeleton of the type with the
+//! constants that do not come of effects, so that hardly anything else fails because
+//! of it.
 
 mod input;
 mod locate;

@@ -3,7 +3,7 @@
 //! pinned in `golden.rs`.
 
 use robstiff::{Convention, DhEntry, Effect, JointKind};
-use robstiff_codegen::{Cost, Function, Origin, functions, source, symbolic};
+use robstiff_codegen::{Cost, Function, Origin, functions, skeleton, source, symbolic, tokens};
 use robstiff_robots::{Description, Joint, Part, Placement};
 use robstiff_tests::arms::{self, description};
 
@@ -21,8 +21,12 @@ fn deflection_cost(robot: &Description) -> Cost {
 }
 
 fn text(robot: &Description, file: &str) -> String {
+    source(robot, &origin(file))
+}
+
+fn origin(file: &str) -> Origin {
     let path = |text: &str| text.parse().expect("a token");
-    source(robot, &Origin { file: file.to_owned(), runtime: path("robstiff"), visibility: path("pub") })
+    Origin { file: file.to_owned(), runtime: path("robstiff"), visibility: path("pub") }
 }
 
 /// One method of a generated source.
@@ -238,6 +242,23 @@ fn any_description_becomes_docs() {
     }
     // Code would be run as a test of the user's.
     assert!(!text.contains("```") && !text.contains("~~~"), "{text}");
+}
+
+/// One mistake in a description is one error, whatever the user's code names.
+#[test]
+fn a_robot_with_mistakes_has_the_constants_of_one_without() {
+    let names = |code: String| -> Vec<String> {
+        code.split("pub const ").skip(1).map(|rest| rest.split_once(' ').expect("a type").0.to_owned()).collect()
+    };
+    for &file in arms::FILES {
+        let robot = Description { effects: Vec::new(), ..description(file) };
+        for joints in [Some(robot.joints.len()), None] {
+            let known = names(skeleton(&robot.name, joints, &origin(file)).to_string());
+            for name in names(tokens(&robot, &origin(file)).to_string()) {
+                assert!(known.contains(&name), "{file}: {name}");
+            }
+        }
+    }
 }
 
 #[test]

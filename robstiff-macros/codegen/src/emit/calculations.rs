@@ -100,7 +100,7 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
 ];
 
 /// What is generated besides for robots that [remember](symbolic::remembers) their loads.
-const DEFLECTION_WITH: Calculation = Calculation {
+pub(super) const DEFLECTION_WITH: Calculation = Calculation {
     name: "deflection_with",
     doc: "Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm)
         that follows the loads in the state.",

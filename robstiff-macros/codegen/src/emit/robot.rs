@@ -7,7 +7,7 @@ use syn::Ident;
 
 use super::Signature;
 use super::body::{Body, Reader, body, handing_over};
-use super::calculations::{Build, CALCULATIONS, Generated, compliance_entries};
+use super::calculations::{Build, CALCULATIONS, Calculation, DEFLECTION_WITH, Generated, compliance_entries};
 use super::facts::{FACTS, Fact, number};
 use crate::function::{Cost, Function};
 use crate::graph::NamedNumber;
@@ -39,9 +39,10 @@ pub fn tokens(robot: &Description, origin: &Origin) -> TokenStream {
     }
 }
 
-/// What stands in for a robot whose description is wrong: the type and a
-/// `Robot` implementation without code, so that the description's errors are
-/// the only ones.
+/// What stands in for a robot whose description is wrong: the type, the constants
+/// that need no effects, and a `Robot` implementation without code, so that the
+/// description's errors are the only ones. Who names a number of an effect is told
+/// that there is none.
 pub fn skeleton(name: &str, joints: Option<usize>, origin: &Origin) -> TokenStream {
     let Origin { runtime, visibility, .. } = origin;
     let name = Ident::new(name, Span::call_site());
@@ -68,6 +69,11 @@ pub fn skeleton(name: &str, joints: Option<usize>, origin: &Origin) -> TokenStre
         });
         quote!(impl #name { #(#facts)* })
     });
+    let constants = constants_of_any(joints.unwrap_or(MOST_JOINTS));
+    let costs = CALCULATIONS.iter().chain([&DEFLECTION_WITH]).map(|calculation| {
+        let name = cost_of(calculation);
+        quote!(#doc pub const #name: #runtime::Cost = #runtime::Cost { trig: 0, mul: 0, add: 0, neg: 0, root: 0 };)
+    });
     let imports = imports(runtime, &[]);
     quote! {
         #doc
@@ -76,11 +82,35 @@ pub fn skeleton(name: &str, joints: Option<usize>, origin: &Origin) -> TokenStre
         const _: () = {
             #imports
             #inherent
+            impl #name {
+                #(#doc pub const #constants: f64 = 1.0;)*
+                #(#costs)*
+            }
             impl #generics Robot<#count> for #name {
                 #(#methods)*
             }
         };
     }
+}
+
+/// As many joints as a robot has at most.
+const MOST_JOINTS: usize = 8;
+
+/// The names of the numbers that a robot may have whose effects are not known.
+fn constants_of_any(joints: usize) -> impl Iterator<Item = Ident> {
+    let of_rows = (1..=joints)
+        .flat_map(|row| ["D", "A", "H", "SIN_ALPHA", "COS_ALPHA"].map(|column| format_ident!("{column}{row}")));
+    let of_places = ["BASE", "TOOL"].into_iter().flat_map(|place| {
+        let along = ["X", "Y", "Z"].map(|axis| format_ident!("{place}_{axis}"));
+        let turns = [("SIN", "PITCH"), ("COS", "PITCH"), ("SIN", "ROLL"), ("COS", "ROLL")];
+        along.into_iter().chain(turns.map(|(function, angle)| format_ident!("{function}_{place}_{angle}")))
+    });
+    of_rows.chain(of_places)
+}
+
+/// The name of the constant that has the operations of a calculation.
+fn cost_of(calculation: &Calculation) -> Ident {
+    format_ident!("{}_COST", calculation.name.to_uppercase())
 }
 
 /// The signatures of the methods of every robot, in the order of the trait.
@@ -147,7 +177,7 @@ pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Gene
     });
     let runtime = &origin.runtime;
     let costs = functions.iter().map(|generated| {
-        let name = format_ident!("{}_COST", generated.method.name.to_uppercase());
+        let name = cost_of(&generated.method);
         let doc = format!(" Operations of `{}`.", generated.method.name);
         // Both types name all their fields here: one that only one of them has does not compile.
         let Cost { trig, mul, add, neg, root } = generated.function.cost();
@@ -186,6 +216,8 @@ fn lines(text: &str) -> Vec<String> {
     // A comment with a lone carriage return is no Rust.
     let escaped = text.trim().replace('\r', "\n").replace('[', "\\[").replace('<', "\\<");
     let escaped = escaped.replace("```", "\\`\\`\\`").replace("~~~", "\\~\\~\\~");
+    // rustc refuses what turns the direction of a source file's text.
+    let escaped = escaped.replace(|c| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'), "");
     escaped.lines().map(|line| format!(" {}", line.trim()).trim_end().to_owned()).collect()
 }
 
@@ -216,8 +248,6 @@ pub(super) fn implementation(robot: &Description, functions: &[Generated], reade
 /// A method that calculates.
 fn calculation(robot: &Description, generated: &Generated, reader: Reader, n: &TokenStream) -> TokenStream {
     let Generated { method, function, in_columns } = generated;
-    // rustc refuses what turns the direction of a source file's text.
-    let escaped = escaped.replace(|c| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'), "");
     let written = |function: &Function, result: Build| {
         let Body { statements, outputs } = body(function, reader);
         let result = result(robot, &outputs);
