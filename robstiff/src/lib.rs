@@ -111,7 +111,10 @@ pub use state::State;
 /// `robot!("rv130hsc.yaml")` finds the file next to the calling source file,
 /// in the crate's manifest folder, in its `robots/`, or in the catalogue that
 /// ships with robstiff, in this order; the ending `.yaml` may be left out. The
-/// crate is built again when the file changes. It defines a unit struct named as
+/// crate is built again when the file changes. A new file that comes before it in this
+/// order, such as a copy of the catalogue's to edit, is only noticed once the source
+/// that calls is touched, or with a `build.rs` that prints
+/// `cargo:rerun-if-changed=robots`. It defines a unit struct named as
 /// the description says, public unless a visibility precedes the file's name
 /// (`robot!(pub(crate) "rv130hsc.yaml")`), with the description's numbers as
 /// constants in SI units (`D1`, `A1` and `H1` are the lengths of the first row and
