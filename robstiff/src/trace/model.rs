@@ -224,37 +224,41 @@ impl Setting<'_> {
         fit.columns.iter().filter(|&&column| column < self.own.len()).count()
     }
 
-    fn check(&self, fit: &Fit, named: &[Named]) -> Result<(), String> {
+    /// Holds the numbers of one effect of a fit against physics.
+    ///
+    /// # Errors
+    /// What it would be that physics does not allow.
+    pub fn check_effect(&self, fit: &Fit, one: Named) -> Result<(), String> {
         let joint = |joint: usize| self.joint_value(fit, joint);
-        let mut at = self.base_of(fit);
+        let candidate = &self.candidates[one.candidate];
+        let (mut numbers, mut places) = (Vec::new(), Vec::new());
+        for &column in &self.variant(one).columns {
+            let at = fit.columns.iter().position(|&of| of == column).expect("its own model has it");
+            let (number, value) = (&self.numbers[column - self.own.len()], fit.coefficients[at]);
+            let [least, most] = number.range;
+            if !(least < value && value < most) {
+                return Err(format!("its {} would be {value:.2e} {}", number.name, number.unit));
+            }
+            numbers.push((number.name, value));
+            places.push(at);
+        }
+        let Some(check) = &candidate.check else { return Ok(()) };
+        let Err(why) = check(&numbers, &joint) else { return Ok(()) };
+        // Noise can take a number that is near what is possible beyond it.
+        let width = self.widths(fit).ok_or(why)?;
+        let nearer =
+            |(&at, &(name, value)): (&usize, &(&'static str, f64))| (name, value - value.clamp(-width[at], width[at]));
+        let nearer: Vec<_> = places.iter().zip(&numbers).map(nearer).collect();
+        let softer = |joint: usize| {
+            let fitted = fit.columns.iter().position(|&column| column == joint - 1);
+            self.joint_value(fit, joint) + fitted.map_or(0.0, |k| width[k])
+        };
+        check(&nearer, &softer)
+    }
+
+    fn check(&self, fit: &Fit, named: &[Named]) -> Result<(), String> {
         for &one in named {
-            let candidate = &self.candidates[one.candidate];
-            let mut numbers = Vec::new();
-            for &column in &self.variant(one).columns {
-                let (number, value) = (&self.numbers[column - self.own.len()], fit.coefficients[at]);
-                let [least, most] = number.range;
-                if !(least < value && value < most) {
-                    return Err(format!("its {} would be {value:.2e} {}", number.name, number.unit));
-                }
-                numbers.push((number.name, value));
-                at += 1;
-            }
-            if let Some(check) = &candidate.check
-                && let Err(why) = check(&numbers, &joint)
-            {
-                // Noise can take a number that is near what is possible beyond it.
-                let width = self.widths(fit).ok_or_else(|| why.clone())?;
-                let first = at - numbers.len();
-                let nearer = |(k, &(name, value)): (usize, &(&'static str, f64))| {
-                    (name, value - value.clamp(-width[first + k], width[first + k]))
-                };
-                let nearer: Vec<_> = numbers.iter().enumerate().map(nearer).collect();
-                let softer = |joint: usize| {
-                    let fitted = fit.columns.iter().position(|&column| column == joint - 1);
-                    self.joint_value(fit, joint) + fitted.map_or(0.0, |k| width[k])
-                };
-                check(&nearer, &softer)?;
-            }
+            self.check_effect(fit, one)?;
         }
         if named.is_empty() {
             return Ok(());

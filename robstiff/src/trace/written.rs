@@ -59,7 +59,8 @@ pub fn within_description(
 }
 
 /// The model without effects that a description has a word for but takes at no such
-/// numbers, with its setting; `None` where there are none of these.
+/// numbers, fitted again, with its setting; `None` where there are none of these. What made
+/// up for such an effect can be driven beyond physics without it, and goes with it.
 pub fn without_untold<'c>(
     campaign: &Campaign,
     prepared: &Prepared<'_>,
@@ -67,19 +68,73 @@ pub fn without_untold<'c>(
     setting: &Setting<'_>,
     model: &Fitted,
 ) -> Option<(Rc<Setting<'c>>, Fitted)> {
-    let mut description = with_values(&campaign.robot, &values(prepared, setting, model));
-    let mut told = |&one: &Named| {
-        let found = plain(setting, model, one);
-        found.is_of_rig() || found.effect().is_none() || found.write_into(&mut description)
+    let fit = |rest: &[Named]| {
+        let setting = bench.at(rest).ok()?;
+        let fitted = setting.fit(rest).ok().or_else(|| setting.fit_loosely(rest))?;
+        Some((Rc::clone(&setting), within_description(campaign, prepared, &setting, &fitted)))
     };
-    let rest: Vec<Named> = model.named.iter().copied().filter(&mut told).collect();
-    if rest.len() == model.named.len() {
+    let stays = |(setting, fitted): &(Rc<Setting<'c>>, Fitted)| {
+        let mut stays = taken(campaign, prepared, setting, fitted);
+        stays.retain(|&one| setting.check_effect(&fitted.fit, one).is_ok());
+        stays
+    };
+    fitted_again(model.named.len(), taken(campaign, prepared, setting, model), fit, stays)
+}
+
+/// A model of fewer effects than there were, fitted until all stay that it has; `None` where
+/// it has as many, or not even one without effects can be fitted.
+pub fn fitted_again<M>(
+    before: usize,
+    mut rest: Vec<Named>,
+    fit: impl Fn(&[Named]) -> Option<M>,
+    stays: impl Fn(&M) -> Vec<Named>,
+) -> Option<M> {
+    if rest.len() == before {
         return None;
     }
-    let setting = bench.at(&rest).ok()?;
-    let fitted = setting.fit(&rest).ok().or_else(|| setting.fit_loosely(&rest))?;
-    let fitted = within_description(campaign, prepared, &setting, &fitted);
-    Some((setting, fitted))
+    loop {
+        match fit(&rest) {
+            Some(model) => {
+                let stays = stays(&model);
+                if stays.len() == rest.len() {
+                    return Some(model);
+                }
+                rest = stays;
+            }
+            None => drop(rest.pop()?),
+        }
+    }
+}
+
+/// The effects of a model but those that a description has a word for and does not take.
+fn taken(campaign: &Campaign, prepared: &Prepared<'_>, setting: &Setting<'_>, model: &Fitted) -> Vec<Named> {
+    let description = with_values(&campaign.robot, &values(prepared, setting, model));
+    taken_by(description, &model.named, |one| plain(setting, model, one))
+}
+
+/// Of some effects, those that a description takes one after the other or has no word for.
+pub fn taken_by(mut description: Description, named: &[Named], found: impl Fn(Named) -> Found) -> Vec<Named> {
+    let mut is_taken = |&one: &Named| {
+        let found = found(one);
+        found.is_of_rig() || found.effect().is_none() || found.write_into(&mut description)
+    };
+    named.iter().copied().filter(&mut is_taken).collect()
+}
+
+/// The effects of a model with its own numbers, in the order in which they are told.
+pub fn own_effects(setting: &Setting<'_>, model: &Fitted, told: &[NamedEffect]) -> Vec<Found> {
+    in_told_order(model.named.iter().map(|&one| plain(setting, model, one)), told)
+}
+
+/// Effects in the order in which they are told.
+pub fn in_told_order(effects: impl Iterator<Item = Found>, told: &[NamedEffect]) -> Vec<Found> {
+    let place = |found: &Found| {
+        let same = |named: &NamedEffect| named.effect.kind() == found.kind() && named.effect.place() == found.place();
+        told.iter().position(same)
+    };
+    let mut effects: Vec<Found> = effects.collect();
+    effects.sort_by_key(place);
+    effects
 }
 
 /// The description's own numbers in a model.
@@ -117,7 +172,7 @@ pub fn described(
     campaign: &Campaign,
     nameless: &str,
     values: &[f64],
-    effects: &[NamedEffect],
+    effects: &[Found],
 ) -> Result<Description, String> {
     let from = if campaign.name.is_empty() { nameless } else { &campaign.name };
     with_effects(with_values(&campaign.robot, values), effects, |names| {
@@ -133,14 +188,14 @@ pub fn described(
 /// A description that could not be read back without the effects.
 pub fn with_effects(
     mut description: Description,
-    effects: &[NamedEffect],
+    effects: &[Found],
     sentence: impl FnOnce(&str) -> String,
 ) -> Result<Description, String> {
     if !is_readable(&description) {
         return Err(String::from(UNREADABLE));
     }
-    let written = effects.iter().filter(|named| named.effect.write_into(&mut description));
-    let names: Vec<String> = written.map(|named| named.effect.to_string()).collect();
+    let written = effects.iter().filter(|effect| effect.write_into(&mut description));
+    let names: Vec<String> = written.map(ToString::to_string).collect();
     let source = description.source.trim_end();
     let separator = if source.is_empty() { "" } else { "\n" };
     description.source = format!("{source}{separator}{}", sentence(&names.join(", ")));

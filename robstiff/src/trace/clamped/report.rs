@@ -7,20 +7,21 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 use robstiff_robots::effect::Place as Part;
 
+use super::axes::AxisNumber;
 use super::bench::Bench;
 use super::one_off::one_off;
 use super::search::Found as Searched;
 use super::spread::spread;
 use crate::campaign::{Campaign, ClampedRow};
-use crate::identify::baseline::declared;
+use crate::identify::baseline::{declared, with_values};
 use crate::identify::normal::Fit;
 use crate::identify::{Estimate, Identification, NoiseSource};
 use crate::trace::catalogue::{Candidate, HYSTERESIS, KINDS, OUTLIERS, STIFFNESS_NONLINEARITY, axis_tells_hysteresis};
 use crate::trace::found::{EffectParameter, Found, Place};
-use crate::trace::model::{Fitted, all_but};
+use crate::trace::model::{Fitted, Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
 use crate::trace::verdict::{self, Besides};
-use crate::trace::written::described;
+use crate::trace::written::{described, fitted_again, in_told_order, taken_by};
 use crate::trace::{Misfit, NamedEffect, PoseError, Rival, RowResidual, Trace, Verdict};
 
 /// A tracing in full.
@@ -53,15 +54,23 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
     let left_declared = DVector::from_iterator(whole.axes.rows.len(), as_declared);
     let declared = Misfit { rms: rms(&left_declared), holdout_rms: rms(&left_declared) };
     let left_before = whole.residuals(&base.fit);
+    // What is told of the axes, and the errors, are those of what is written; the effects that
+    // are told are the model's that was found.
+    let fewer = without_untold(campaign, bench, model);
+    let written = fewer.as_ref().unwrap_or(model);
     // Data that can tell nothing change nothing.
     let (after, left_after) =
-        if tells { (misfit(bench, &model.fit), whole.residuals(&model.fit)) } else { (declared, left_declared) };
+        if tells { (misfit(bench, &written.fit), whole.residuals(&written.fit)) } else { (declared, left_declared) };
 
-    let spread = spread(bench, model);
-    let values = values(campaign, bench, model);
+    let spread_written = spread(bench, written);
+    let spread = if fewer.is_some() { spread(bench, model) } else { spread_written.clone() };
+    let values = values(campaign, bench, written);
     let effects = if tells { effects(found, &spread, structure, after.holdout_rms) } else { Vec::new() };
     let description = match tells {
-        true => described(campaign, "clamped axes", &values, &effects)?,
+        true => {
+            let own = written.named.iter().map(|&one| of_model(bench, written, one));
+            described(campaign, "clamped axes", &values, &in_told_order(own, &effects))?
+        }
         false => campaign.robot.clone(),
     };
     let fitted_axes: Vec<usize> = bench.axes.loaded().collect();
@@ -97,7 +106,7 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         description,
         effects,
         estimates_before: identified.estimates.clone(),
-        estimates: estimates(identified, bench, model, &values, &spread),
+        estimates: estimates(identified, bench, written, &values, &spread_written),
         steps: found.selection.steps.clone(),
         structure: found.left.tests.clone(),
         residuals: whole.axes.rows.iter().enumerate().map(residual).collect(),
@@ -105,6 +114,31 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         differences: true,
         pose_errors: fitted_axes.iter().map(error).collect(),
     })
+}
+
+/// The model without effects that a description has a word for but takes at no such numbers,
+/// fitted again; `None` where there are none of these.
+fn without_untold(campaign: &Campaign, bench: &Bench, model: &Fitted) -> Option<Fitted> {
+    let stays = |model: &Fitted| {
+        let description = with_values(&campaign.robot, &values(campaign, bench, model));
+        taken_by(description, &model.named, |one| of_model(bench, model, one))
+    };
+    fitted_again(model.named.len(), stays(model), |rest| bench.fit(rest), stays)
+}
+
+/// An effect of a model with its numbers alone.
+fn of_model(bench: &Bench, model: &Fitted, one: Named) -> Found {
+    let (form, candidate) = (bench.form(one), &bench.candidates[one.candidate]);
+    let at = model.fit.columns.iter().position(|column| candidate.variants[one.variant].columns[0] == *column);
+    let fitted = model.fit.coefficients.iter().skip(at.expect("its own model has it"));
+    let number = |(number, &value): (&AxisNumber, &f64)| EffectParameter {
+        name: number.name,
+        value,
+        std: None,
+        unit: number.unit,
+    };
+    let numbers = form.numbers.iter().zip(fitted).map(number);
+    Found::new(candidate.kind, candidate.place, numbers.chain(form.shape.iter().cloned()).collect())
 }
 
 /// The estimates of identification with the compliances of a model, whose numbers have a

@@ -228,3 +228,19 @@ fn noise_is_no_wild_reading() {
     let count = (0..100).filter(wild).count();
     assert!(count <= 2, "{count} of 100");
 }
+
+/// Descriptions have no hardening of an axis that slides: what is written is fitted without.
+#[test]
+fn what_is_written_does_what_is_told() {
+    let mut robot = five_axis();
+    robot.joints[1].kind = crate::JointKind::Prismatic;
+    let hard = |axis, force: f64| if axis == 2 { 2e-7 * force / (force / 300.0).hypot(1.0) } else { 0.0 };
+    let campaign = measured(&robot, &ramp(14), 1, hard);
+    let trace = traced(&campaign);
+    assert_eq!(names(&trace), ["stiffness_nonlinearity@joint 2"]);
+    assert!(trace.description.effects.is_empty());
+    let Data::Clamped(rows) = &campaign.data else { unreachable!("made of clamped axes") };
+    let left = |row: &ClampedRow| row.deflection - trace.description.joints[row.axis - 1].compliance() * row.torque;
+    let rms = (rows.iter().map(|row| left(row).powi(2)).sum::<f64>() / rows.len() as f64).sqrt();
+    assert!((rms / trace.after.rms - 1.0).abs() < 1e-6, "{rms} and {}", trace.after.rms);
+}

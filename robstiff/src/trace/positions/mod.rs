@@ -27,6 +27,7 @@ mod slips;
 mod structure;
 #[cfg(test)]
 mod tests;
+mod written;
 
 use self::bench::Bench;
 use super::{Options, Progress, Trace};

@@ -5,14 +5,13 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector, Vector3};
-use robstiff_robots::Description;
 
 use super::bench::{Bench, Model, Proposed};
 use super::search::Searched;
+use super::written::{described, own_effects, without_untold};
 use crate::campaign::{Campaign, PositionRow};
 use crate::identify::NoiseSource;
 use crate::identify::normal::Sign;
-use crate::identify::positions::own::with_values;
 use crate::identify::positions::regression::{STANDS, Solved};
 use crate::identify::positions::{estimated, of_numbers, residuals};
 use crate::identify::problem::rms;
@@ -24,7 +23,6 @@ use crate::trace::lack_of_fit::StructureTest;
 use crate::trace::model::{Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
 use crate::trace::verdict::{self, Besides};
-use crate::trace::written::with_effects;
 use crate::trace::{Misfit, NamedEffect, Options, PoseError, Rival, RowResidual, Trace, Verdict};
 
 /// A tracing in full.
@@ -50,13 +48,19 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
         (verdict, why) = judged;
     }
     let structure = left.structure || found.selection.unnamed;
-    let Errors { declared, identified, after, left: [left_before, left_after] } = errors(campaign, found, tells);
-    let values = bench.prepared.values(&model.solved.state);
+    // What is told of the joints, and the errors, are those of what is written; the effects
+    // that are told are the model's that was found.
+    let fewer = without_untold(campaign, bench, model);
+    let written = fewer.as_ref().unwrap_or(model);
+    let Errors { declared, identified, after, left: [left_before, left_after] } =
+        errors(campaign, found, written, tells);
+    let values = bench.prepared.values(&written.solved.state);
     let (spread_before, spread) = (spread_of(bench, base), spread_of(bench, model));
+    let spread_written = if fewer.is_some() { spread_of(bench, written) } else { spread.clone() };
     let replaced = if tells { bench.replaced(&model.named) } else { Vec::new() };
     let effects = if tells { effects(found, &replaced, &spread, (structure, after.holdout_rms)) } else { Vec::new() };
     let description = match tells {
-        true => described(campaign, bench, &values, &effects)?,
+        true => described(campaign, bench, &values, &own_effects(bench, written, &effects))?,
         false => campaign.robot.clone(),
     };
     let kept_back = data.poses.iter().zip(bench.rows.training.iter()).filter(|(_, training)| !**training);
@@ -87,14 +91,14 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
         next: Vec::new(),
         estimates_before: estimated(&bench.prepared, &values_before, &spread_before),
         estimates: match tells {
-            true => estimated(&bench.prepared, &values, &spread),
+            true => estimated(&bench.prepared, &values, &spread_written),
             false => estimated(&bench.prepared, &values_before, &spread_before),
         },
         description,
         effects,
         steps: found.selection.steps.clone(),
         structure: left.tests,
-        residuals: row_residuals(bench, model, [&left_before, &left_after]),
+        residuals: row_residuals(bench, written, [&left_before, &left_after]),
         components: 3,
         differences: false,
         pose_errors: pose_errors(bench, [&left_before, &left_after]),
@@ -111,8 +115,8 @@ struct Errors {
     left: [DVector<f64>; 2],
 }
 
-fn errors(campaign: &Campaign, found: &Searched<'_>, tells: bool) -> Errors {
-    let (bench, model, base) = (&found.bench, &found.model, &found.base);
+fn errors(campaign: &Campaign, found: &Searched<'_>, written: &Model, tells: bool) -> Errors {
+    let (bench, base) = (&found.bench, &found.base);
     let (data, training) = (bench.prepared.data, &bench.rows.training);
     let rows = || 0..data.rows.len();
     let is_fitted_to = |row: &usize| training[data.rows[*row].pose];
@@ -129,31 +133,13 @@ fn errors(campaign: &Campaign, found: &Searched<'_>, tells: bool) -> Errors {
     // Data that can tell nothing change nothing.
     let (after, left_after) = match tells {
         true => {
-            let left = residuals(&bench.regression, &model.solved.state);
+            let left = residuals(&bench.regression, &written.solved.state);
             let rms = rms(&left, 3, rows().filter(is_fitted_to).filter(|row| !found.wild.rows.contains(row)));
-            (Misfit { rms, holdout_rms: unseen_rms(bench, model) }, left)
+            (Misfit { rms, holdout_rms: unseen_rms(bench, written) }, left)
         }
         false => (declared, left_declared),
     };
     Errors { declared, identified, after, left: [left_before, left_after] }
-}
-
-/// The description with the numbers of a model and its effects, which says so.
-///
-/// # Errors
-/// As for [`with_effects`].
-fn described(
-    campaign: &Campaign,
-    bench: &Bench<'_>,
-    values: &[f64],
-    effects: &[NamedEffect],
-) -> Result<Description, String> {
-    let description = with_values(&campaign.robot, &bench.prepared.own, values);
-    let from = if campaign.name.is_empty() { "absolute positions" } else { &campaign.name };
-    with_effects(description, effects, |names| {
-        let with = if names.is_empty() { "nothing added" } else { names };
-        format!("Traced from {from}: {with}.")
-    })
 }
 
 /// What is left of each row before and after, stacked in the frame of what reads it (m), in

@@ -312,3 +312,16 @@ fn too_few_poses_tell_nothing() {
     assert_eq!((trace.verdict, trace.effects.len()), (Verdict::Insufficient, 0));
     assert!(trace.description.effects.is_empty() && trace.why.contains("8 poses"));
 }
+
+/// What is written is fitted without a wave that no description takes.
+#[test]
+fn what_is_written_does_what_is_told() {
+    let wave = Effect::TransmissionError { joint: 5, order: 1.0, sin: 8e-3, cos: 0.0 };
+    let zero = Effect::JointZeroOffset { joint: 3, value: 2e-3 };
+    let campaign = Plan { hidden: vec![wave, zero], ..Plan::new(six_axis(), 6) }.run();
+    let trace = traced(&campaign);
+    assert_eq!(names(&trace), [zero.to_string(), wave.to_string()]);
+    assert!(trace.description.effects.iter().all(|effect| effect.to_string() == zero.to_string()));
+    let predicted = crate::identify::predict(&trace.description, &campaign).expect("the same robot").rms;
+    assert!((predicted / trace.after.rms - 1.0).abs() < 1e-3, "{predicted} and {}", trace.after.rms);
+}

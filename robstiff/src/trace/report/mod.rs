@@ -14,7 +14,7 @@ use super::alias::{rivals, same_as_wild};
 use super::bench::Bench;
 use super::model::{Fitted, Setting};
 use super::slip::Slipping;
-use super::written::{described, values, within_description, without_untold};
+use super::written::{described, own_effects, values, within_description, without_untold};
 use super::{Misfit, Options, Outcome, PoseError, RowResidual, Trace, Verdict};
 use crate::campaign::Campaign;
 use crate::identify::displacement::{declared_residuals, declared_rms};
@@ -56,7 +56,8 @@ pub fn report(
     let (noise, noise_source) = noise(prepared, bench, model.fit.rss / problem.freedom(&model.fit));
     let estimates_before = numbers(campaign, prepared, &all, &base, &spread_of(&untouched, &all, &base));
     let spread = spread_of(bench_of_numbers, &setting, model);
-    // What is told of the joints, and the errors, are those of what is written.
+    // What is told of the joints, and the errors, are those of what is written; the effects
+    // that are told are the model's that was found.
     let (of_written, written) = written.as_ref().map_or((&setting, model), |(setting, model)| (setting, model));
     let estimates = if written.named == model.named {
         numbers(campaign, prepared, &setting, model, &spread)
@@ -81,7 +82,7 @@ pub fn report(
     } else {
         let values = values(prepared, of_written, written);
         (
-            described(campaign, "a campaign", &values, &effects)?,
+            described(campaign, "a campaign", &values, &own_effects(of_written, written, &effects))?,
             misfit(of_written, written),
             of_written.residuals(&written.fit),
         )
