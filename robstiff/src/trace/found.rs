@@ -6,11 +6,11 @@ use std::vec::Vec;
 
 use robstiff_robots::Description;
 use robstiff_robots::effect::physics::Parameter;
-use robstiff_robots::effect::{CATALOGUE, Place as Part};
+use robstiff_robots::effect::{CATALOGUE, DhEntry, Place as Part};
 
 use super::catalogue::{Kind, OUTLIERS};
-use crate::Effect;
 use crate::identify::readable::is_readable;
+use crate::{Effect, JointKind};
 
 /// An effect that was found, with its numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,9 +123,21 @@ impl Found {
         Effect::of_kind(self.kind.name, self.place.part()?, &numbers)
     }
 
+    /// The same as the description of a robot writes it, where a joint that slides has its zero
+    /// in the table.
+    pub fn effect_on(&self, robot: &Description) -> Option<Effect> {
+        let slides = |joint: usize| robot.joints.get(joint - 1).is_some_and(|joint| joint.kind == JointKind::Prismatic);
+        match self.effect()? {
+            Effect::JointZeroOffset { joint, value } if slides(joint) => {
+                Some(Effect::DhError { entry: DhEntry::D(joint), value })
+            }
+            effect => Some(effect),
+        }
+    }
+
     /// Writes the effect into a description; whether that takes it.
     pub(super) fn write_into(&self, description: &mut Description) -> bool {
-        let Some(effect) = self.effect().filter(|_| !self.is_of_rig()) else { return false };
+        let Some(effect) = self.effect_on(description).filter(|_| !self.is_of_rig()) else { return false };
         let mut with = description.clone();
         with.effects.push(effect);
         // What a fit allows may still be beyond what a description takes, such

@@ -225,10 +225,11 @@ fn rivalry(trace: &Trace, rival: &Rival) -> String {
 
 /// Whether the description that is written has the effect.
 pub fn is_written(trace: &Trace, named: &NamedEffect) -> bool {
-    let same = |effect: &robstiff::Effect| {
-        effect.kind() == named.effect.kind() && named.effect.place() == effect.place().into()
-    };
-    !named.effect.is_of_rig() && trace.description.effects.iter().any(same)
+    let written = named.effect.effect_on(&trace.description).filter(|_| !named.effect.is_of_rig());
+    written.is_some_and(|written| {
+        let same = |effect: &robstiff::Effect| effect.kind() == written.kind() && effect.place() == written.place();
+        trace.description.effects.iter().any(same)
+    })
 }
 
 /// The lines of the table that an effect is about, as ` (lines 3 and 7)`.

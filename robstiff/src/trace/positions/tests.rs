@@ -325,3 +325,17 @@ fn what_is_written_does_what_is_told() {
     let predicted = crate::identify::predict(&trace.description, &campaign).expect("the same robot").rms;
     assert!((predicted / trace.after.rms - 1.0).abs() < 1e-3, "{predicted} and {}", trace.after.rms);
 }
+
+/// A zero of a joint that slides is written as the error of its length.
+#[test]
+fn a_zero_of_a_joint_that_slides_is_written() {
+    let mut robot = six_axis();
+    robot.joints[2].kind = crate::JointKind::Prismatic;
+    let hidden = vec![Effect::DhError { entry: DhEntry::D(3), value: 1e-3 }];
+    let campaign = Plan { hidden: hidden.clone(), ..Plan::new(robot, 7) }.run();
+    let trace = traced(&campaign);
+    assert_eq!(names(&trace), ["joint_zero_offset@joint 3"]);
+    assert_eq!(trace.description.effects[0].to_string(), hidden[0].to_string());
+    let predicted = crate::identify::predict(&trace.description, &campaign).expect("the same robot").rms;
+    assert!((predicted / trace.after.rms - 1.0).abs() < 1e-3, "{predicted} and {}", trace.after.rms);
+}
