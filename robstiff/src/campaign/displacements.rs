@@ -9,7 +9,7 @@ use robstiff_robots::quantity::Dimension;
 
 use super::beyond::{DISPLACEMENT, FORCE, MOMENT, ROTATION, Usual, warn_of};
 use super::poses::{AtPose, Columns as PoseColumns, Poses, dimension_of};
-use super::{Displacements, Frame, Observation, alone, unread};
+use super::{Displacements, Frame, Observation, alone, reference, unread};
 use crate::JointKind;
 use crate::table::{Numbers, Record, Table};
 
@@ -50,12 +50,21 @@ pub fn read(
     let columns = columns(table, robot)?;
     let (mut poses, mut rows) = (Poses::default(), Vec::new());
     let mut complete = true;
-    for record in &table.records {
+    let observed: Vec<_> = table.records.iter().map(|record| (record, observation(table, &columns, record))).collect();
+    let is_reference = |row: &Option<Observation>| row.as_ref().is_some_and(reference::is_reference);
+    // Where there are no others they are asked about as what nobody read.
+    let all = observed.iter().all(|(_, row)| is_reference(row));
+    let (references, observed): (Vec<_>, Vec<_>) = observed.into_iter().partition(|(_, row)| !all && is_reference(row));
+    if let Some(said) = reference::said(references.iter().map(|(record, _)| record.line)) {
+        table.warn(&said);
+    }
+    for (record, row) in observed {
         let (pose, visit, named) = poses.named(table, &columns.at, record);
-        let Some(row) = observation(table, &columns, record, pose, visit).filter(|_| named) else {
+        let Some(row) = row.filter(|_| named) else {
             complete = false;
             continue;
         };
+        let row = Observation { pose, visit, ..row };
         poses.enter(table, &columns.at, record, (&row, visit), &rows);
         rows.push(row);
     }
@@ -179,14 +188,9 @@ fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
     })
 }
 
-/// One row; every number is checked before any gives it up.
-fn observation(
-    table: &Table<'_>,
-    columns: &Columns,
-    record: &Record,
-    pose: usize,
-    visit: usize,
-) -> Option<Observation> {
+/// One row, whose pose and visit are not numbered yet; every number is checked before any
+/// gives it up.
+fn observation(table: &Table<'_>, columns: &Columns, record: &Record) -> Option<Observation> {
     let optional = |column: Option<Numbers>| column.map(|column| table.number(record, column));
     let time = optional(columns.time);
     let temperature = optional(columns.temperature);
@@ -211,8 +215,8 @@ fn observation(
     let (force, q) = (force?, q?);
     Some(Observation {
         line: record.line,
-        pose,
-        visit,
+        pose: 0,
+        visit: 0,
         time: time.flatten(),
         temperature: temperature.flatten(),
         q,

@@ -17,6 +17,7 @@ pub(crate) mod made_positions;
 mod poses;
 mod positions;
 pub(crate) mod read;
+mod reference;
 #[cfg(test)]
 mod tests;
 mod unread;

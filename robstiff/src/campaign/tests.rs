@@ -124,6 +124,33 @@ fn no_row_is_lost_in_a_note() {
     assert_eq!(header, ["1:57 the quote is not closed on its line"]);
 }
 
+/// A row without load and displacement is the unloaded reading itself, and a visit or pose
+/// that has no other is none.
+#[test]
+fn rows_of_the_unloaded_reading_are_left_out() {
+    let rows =
+        "a,v,0,0,0,0,0,0,0,0\na,v,0,0,1,2,3,4,5,6\na,v,0,0,0,0,0,0,0,1\nb,w,9,0,-0,0,0,0,0,0\nc,x,8,0,1,0,0,0,0,0\n";
+    let read = |name: &str, rows: &str| {
+        let campaign = Folder::new(name, CAMPAIGN, &format!("{HEADER}\n{rows}")).read().expect("nothing is wrong");
+        let Data::Displacement(data) = campaign.data else { panic!("kind displacement") };
+        let said = campaign.warnings.iter().filter_map(|warning| warning.split_once("loads.csv: "));
+        (data, said.map(|(_, said)| said.to_owned()).collect::<Vec<_>>())
+    };
+    let (data, warnings) = read("references", rows);
+    let places: Vec<_> = data.rows.iter().map(|row| (row.line, row.pose, row.visit)).collect();
+    assert_eq!(places, [(3, 0, 0), (4, 0, 0), (6, 1, 1)]);
+    assert_eq!(
+        (data.poses, data.visits),
+        (std::vec!["a".to_owned(), "c".to_owned()], std::vec!["v".to_owned(), "x".to_owned()])
+    );
+    let said = "line 2 and 1 more: no load and no displacement, which is the unloaded reading itself; left out";
+    assert!(warnings.contains(&said.to_owned()), "{warnings:?}");
+    // Where there is nothing else, nothing was read.
+    assert_eq!(read("references-alone", "a,v,0,0,0,0,0,0,0,0\n").0.rows.len(), 1);
+    let found = problems("reference-nan", CAMPAIGN, &format!("{HEADER}\na,v,0,0,0,0,0,0,0,0\nb,w,0,0,0,0,0,NaN,0,0\n"));
+    assert_eq!(found, ["3:15 `NaN` is not finite"]);
+}
+
 /// Of numbers that nothing real is as small as, squares would be zero.
 #[test]
 fn what_nothing_real_is_as_small_as_is_zero() {
@@ -246,7 +273,8 @@ fn what_nobody_read_is_warned_of() {
 #[test]
 fn a_force_that_stands_alone_is_warned_of() {
     let warned = |name: &str, visits: usize, forces: &[f64]| {
-        let rows = forces.iter().enumerate().map(|(i, force)| format!("a,v{},0,0,{force},0,0,0,0,0\n", i % visits));
+        let row = |(i, force)| format!("a,v{},0,0,{force},0,0,{i},1e-3,1e-6\n", i % visits);
+        let rows = forces.iter().enumerate().map(row);
         let folder = Folder::new(name, CAMPAIGN, &format!("{HEADER}\n{}", rows.collect::<String>()));
         folder.read().expect("nothing is wrong").warnings
     };
