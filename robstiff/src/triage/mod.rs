@@ -36,6 +36,7 @@ use std::vec::Vec;
 
 use self::evidence::Evidence;
 use crate::campaign::{Campaign, Data};
+use crate::identify::covariance::tails;
 use crate::probability::told;
 
 /// The probability that anything is found where nothing is wrong.
@@ -128,6 +129,9 @@ const CHECKS: [Registered; 14] = [
     ("outliers", "does every reading belong to the others?", noise::outliers),
     ("encoders", "how much of the displacement do the joints account for?", encoders::check),
 ];
+
+// A p-value by simulation can be small enough for the level with all checks counted.
+const _: () = assert!(CHECKS.len() as f64 <= LEVEL * (1 + tails::DRAWS) as f64);
 
 /// Asks the readings of a campaign.
 pub fn triage(campaign: &Campaign) -> Triage {

@@ -211,6 +211,25 @@ fn drift_and_expansion_are_found() {
     violates("temperature", &warm);
 }
 
+/// Student's noise of three degrees of freedom is beyond the level with all checks counted,
+/// normal noise is not.
+#[test]
+fn heavy_tails_are_found() {
+    let tails = |seed: u64, is_heavy: bool| {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut noise = || {
+            let spread: f64 = (0..3).map(|_| normal(&mut random).powi(2)).sum::<f64>() / 3.0;
+            1e-5 * normal(&mut random) / if is_heavy { spread.sqrt() } else { 1.0 }
+        };
+        let campaign = Plan { noise: [0.0; 3], ..plan(30 + seed) }.run_with(|_, row| {
+            row.displacement = row.displacement.map(|reading| reading + noise());
+        });
+        finding(&triage(&campaign), "tails").violated
+    };
+    assert!((0..4).all(|seed| tails(seed, true)));
+    assert!((0..8).all(|seed| !tails(seed, false)));
+}
+
 #[test]
 fn noise_that_is_declared_too_small_is_found() {
     let mut campaign = plan(10).run();

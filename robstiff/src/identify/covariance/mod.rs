@@ -32,7 +32,7 @@ mod estimated;
 pub mod heavy;
 pub mod outliers;
 pub mod reml;
-mod tails;
+pub mod tails;
 #[cfg(test)]
 mod tests;
 mod whitener;
