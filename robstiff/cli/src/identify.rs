@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use robstiff::campaign::{Campaign, Data, Displacements, Positions};
 use robstiff::identify::covariance::{Basis, Covariance};
-use robstiff::identify::{Estimate, Identification, NoiseSource, Visibility, identify};
+use robstiff::identify::{Estimate, Identification, NoiseSource, Visibility, identify, off_by_one_factor};
 use robstiff_robots::Description;
 use serde_json::{Value, json};
 
@@ -35,7 +35,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     files.protect_campaign(&campaign);
     files.add(arguments.out.join("robot.yaml"), found.description.to_yaml());
     if let Some(path) = &arguments.json {
-        files.add(path, json::document(&document(&found)));
+        files.add(path, json::document(&document(&campaign, &found)));
     }
     let said = files.write()?;
     output::print(page(&campaign, &found) + &said)
@@ -47,7 +47,10 @@ fn page(campaign: &Campaign, found: &Identification) -> String {
         poses => format!("{}: {} at {}\n\n", campaign.robot.name, count(found.rows, "row"), count(poses, "pose")),
     };
     page += &compliances(&found.estimates);
-    page += &unseen(&found.estimates);
+    page += &unseen(found);
+    if let Some(said) = off_by_one_factor(campaign, &found.estimates) {
+        page += &format!("\n{said}\n");
+    }
     page += &compound(&found.description);
     if let Data::Position(data) = &campaign.data
         && !payloads_vary(data)
@@ -166,7 +169,8 @@ fn compound(description: &Description) -> String {
 }
 
 /// Sentences on what the data cannot see, or see against the load.
-fn unseen(estimates: &[Estimate]) -> String {
+fn unseen(found: &Identification) -> String {
+    let estimates = &found.estimates;
     let mut said = String::new();
     for estimate in estimates {
         match &estimate.visibility {
@@ -188,7 +192,7 @@ fn unseen(estimates: &[Estimate]) -> String {
     if said.is_empty() { said } else { said + "\n" }
 }
 
-fn document(found: &Identification) -> Value {
+fn document(campaign: &Campaign, found: &Identification) -> Value {
     json!({
         "robot": found.description.name,
         "rows": found.rows,
@@ -200,6 +204,7 @@ fn document(found: &Identification) -> Value {
         "identified": {"rms_um": found.rms.map(|rms| json::number(rms * 1e6))},
         "compliances": numbers(&found.estimates),
         "correlation": json::matrix(&found.correlation),
+        "warnings": off_by_one_factor(campaign, &found.estimates).into_iter().collect::<Value>(),
     })
 }
 

@@ -24,6 +24,7 @@ pub mod prepare;
 pub mod problem;
 pub mod readable;
 pub mod samples;
+pub mod scale;
 pub mod second_order;
 pub mod setup;
 #[cfg(test)]
@@ -41,6 +42,7 @@ use robstiff_robots::Description;
 
 pub use baseline::Visibility;
 pub use predict::{Prediction, predict};
+pub use scale::off_by_one_factor;
 
 use self::baseline::Declared;
 use self::covariance::Covariance;

@@ -25,7 +25,7 @@ pub fn report(trace: &Trace, triage: &Triage, campaign: &Campaign, options: &Opt
         description: campaign.robot.description.trim().to_owned(),
         campaign: campaign.name.clone(),
         headline: story::headline(trace),
-        summary: story::summary(trace),
+        summary: story::summary(trace, campaign),
         verdict: trace.verdict.to_string(),
         settled: matches!(trace.verdict, Verdict::Adequate | Verdict::Explained),
         rows: trace.rows,

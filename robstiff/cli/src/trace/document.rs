@@ -3,6 +3,7 @@
 use robstiff::JointKind;
 use robstiff::campaign::Campaign;
 use robstiff::identify::encoders::EncodersRead;
+use robstiff::identify::off_by_one_factor;
 use robstiff::trace::{Misfit, NamedEffect, Proposal, Rival, Trace};
 use robstiff::triage::Triage;
 use serde_json::{Value, json};
@@ -28,6 +29,7 @@ pub fn document(trace: &Trace, triage: &Triage, campaign: &Campaign) -> Value {
             "depends_on": trace.depends_on,
             "looks_like": trace.looks_like,
         },
+        "warnings": off_by_one_factor(campaign, &trace.estimates_before).into_iter().collect::<Value>(),
         "numbers": identify::numbers(&trace.estimates),
         "rivals": trace.rivals.iter().map(rival).collect::<Value>(),
         "invisible": trace.invisible,

@@ -90,7 +90,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let document = document::document(&traced, &triage, &campaign);
     let mut report = content::report(&traced, &triage, &campaign, &options)?;
-    let mut page = triage::page(&triage) + &story::page(&traced);
+    let mut page = triage::page(&triage) + &story::page(&traced, &campaign);
     if let Some(found) = &correction {
         let said = correction::sentence(found.as_ref());
         page += &format!("\n{said}\n");

@@ -1,9 +1,10 @@
 //! What a tracing came to, in sentences.
 
 use robstiff::JointKind;
-use robstiff::identify::Estimate;
+use robstiff::campaign::Campaign;
 use robstiff::identify::baseline::Visibility;
 use robstiff::identify::encoders::EncodersRead;
+use robstiff::identify::{Estimate, off_by_one_factor};
 use robstiff::trace::{EffectParameter, NamedEffect, Proposal, Rival, RowResidual, Trace, Verdict};
 use robstiff_robots::Joint;
 
@@ -57,8 +58,10 @@ pub fn headline(trace: &Trace) -> String {
 }
 
 /// What follows the finding, a sentence each.
-pub fn summary(trace: &Trace) -> Vec<String> {
+pub fn summary(trace: &Trace, campaign: &Campaign) -> Vec<String> {
     let mut sentences = vec![sentence(&trace.why)];
+    // Of the joints alone: what an effect changes in them is no unit.
+    sentences.extend(off_by_one_factor(campaign, &trace.estimates_before));
     sentences.extend(trace.encoders.iter().flat_map(|read| encoders(read, trace)));
     sentences.extend(on_the_same_rows(trace));
     if trace.verdict == Verdict::Insufficient {
@@ -283,7 +286,7 @@ pub fn pose(next: &Proposal, joints: &[Joint]) -> String {
 }
 
 /// The story for a terminal.
-pub fn page(trace: &Trace) -> String {
+pub fn page(trace: &Trace, campaign: &Campaign) -> String {
     let mut noise = format!("noise: {} um a reading ({})", micrometres(trace.noise), source_of(trace.noise_source));
     if trace.differences {
         noise += &format!(", up to {} um a displacement, the difference of two", micrometres(self::noise(trace)));
@@ -299,7 +302,7 @@ pub fn page(trace: &Trace) -> String {
         errors.row([name.to_owned(), micrometres(misfit.rms), micrometres(misfit.holdout_rms)]);
     }
     page += &format!("{errors}  (unseen: {})\n\nVerdict: {}. {}.\n", unseen(trace), trace.verdict, headline(trace));
-    for said in summary(trace) {
+    for said in summary(trace, campaign) {
         page += &format!("{said}\n");
     }
     let groups: [(&str, Vec<&NamedEffect>); 3] = [

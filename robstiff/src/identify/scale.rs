@@ -1,0 +1,82 @@
+//! A factor that all joints have in common: no robot is a thousand times as compliant as
+//! its maker says, but a force in another unit makes it so, and fits as well.
+
+use std::format;
+use std::string::String;
+use std::vec::Vec;
+
+use super::{Estimate, Visibility};
+use crate::campaign::{Campaign, Data};
+
+/// No joints are all off from what is declared by more than this factor.
+const FARTHEST: f64 = 30.0;
+
+/// A factor that is in common is each joint's own within this one.
+const ALIKE: f64 = 3.0;
+
+/// What looks like a unit that was taken for another, in a sentence: that all joints which
+/// the data see, two at least, come out off from their declared compliances by about one
+/// factor, beyond 30 either way. `estimates` are of the campaign's robot, its joints first.
+pub fn off_by_one_factor(campaign: &Campaign, estimates: &[Estimate]) -> Option<String> {
+    let joints = estimates.iter().take(campaign.robot.joints.len());
+    let seen = joints.filter(|joint| joint.visibility == Visibility::Seen && joint.declared > 0.0);
+    let mut factors: Vec<f64> = seen.map(|joint| joint.value / joint.declared).collect();
+    factors.sort_by(f64::total_cmp);
+    let median = factors.get(factors.len() / 2).copied().filter(|_| factors.len() > 1)?;
+    let is_alike = |factor: &f64| (ALIKE.recip()..=ALIKE).contains(&(factor / median));
+    if (FARTHEST.recip()..FARTHEST).contains(&median) || !factors.iter().all(is_alike) {
+        return None;
+    }
+    let is_softer = median > 1.0;
+    let [large, small] = if is_softer { ["k", ""] } else { ["", "k"] };
+    let [fine, coarse] = if is_softer { ["u", "m"] } else { ["m", "u"] };
+    let likely = match &campaign.data {
+        Data::Displacement(_) => {
+            format!("a force in {large}N taken for {small}N, or a displacement in {fine}m taken for {coarse}m,")
+        }
+        Data::Clamped(_) => {
+            format!("a torque in {large}Nm taken for {small}Nm, or a deflection in {fine}rad taken for {coarse}rad,")
+        }
+        Data::Position(_) => String::from("a payload or a position in another unit"),
+    };
+    Some(format!(
+        "All joints come out about {} times as {} as declared: {likely} looks like that.",
+        one_digit(median.max(median.recip())),
+        if is_softer { "compliant" } else { "stiff" }
+    ))
+}
+
+/// A number above 1 to its first digit.
+fn one_digit(value: f64) -> String {
+    let ten = 10.0_f64.powf(value.log10().floor());
+    format!("{:.0}", (value / ten).round() * ten)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::made::Plan;
+    use crate::identify::identify;
+
+    /// What is told of a campaign whose forces are as many times what they were.
+    fn told(times: f64, of_one_joint: f64) -> Option<String> {
+        let mut campaign = Plan::new(1).run_with(|_, row| row.wrench = row.wrench.map(|load| times * load));
+        crate::identify::baseline::set_compliance(&mut campaign.robot.joints[1].compliance, of_one_joint);
+        off_by_one_factor(&campaign, &identify(&campaign).expect("joints are seen").estimates)
+    }
+
+    #[test]
+    fn a_factor_of_all_joints_is_told_as_a_unit() {
+        let declared = Plan::new(1).robot.joints[1].compliance();
+        assert_eq!(told(1.0, declared), None);
+        // Of one joint it is that joint's.
+        assert_eq!(told(1.0, declared / 1000.0), None);
+        assert_eq!(told(0.1, declared), None);
+        let softer = "All joints come out about 1000 times as compliant as declared: a force in kN taken for N, or a \
+                      displacement in um taken for mm, looks like that.";
+        assert_eq!(told(1e-3, declared).as_deref(), Some(softer));
+        let stiffer = "All joints come out about 1000 times as stiff as declared: a force in N taken for kN, or a \
+                       displacement in mm taken for um, looks like that.";
+        assert_eq!(told(1e3, declared).as_deref(), Some(stiffer));
+    }
+}
