@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use crate::failure::Failure;
 use crate::output::{self, Files};
 use crate::text::{Table, and, count, decimals, micrometres, significant, uncertain};
+use crate::trace::words::spoken;
 use crate::{input, json};
 
 /// The compliances that fit a campaign, with their uncertainty
@@ -151,11 +152,20 @@ fn stiffness_unit(unit: &str) -> &'static str {
     if unit == "m/N" { "N/m" } else { "Nm/rad" }
 }
 
-/// Of a number that is zero because it cannot be less.
-pub fn at_bound(name: &str) -> String {
+/// Of a number that is zero because it cannot be less. A law of a joint, by its full name,
+/// among the effects that go with it has the joint's compliance in it.
+pub fn at_bound(name: &str, mut effects: impl Iterator<Item = String>) -> String {
+    let is_law =
+        |effect: &String| effect.split_once('@').is_some_and(|(kind, place)| LAWS.contains(&kind) && place == name);
+    if let Some(law) = effects.find(is_law) {
+        return format!("{name} is at its bound 0: its compliance is in the {}", spoken(&law));
+    }
     let what = if name.starts_with("joint ") { "this joint" } else { "it" };
     format!("{name} is at its bound 0: the data do not follow the load on {what}")
 }
+
+/// Laws by which a joint gives way, and which may be all that it gives way by.
+const LAWS: [&str; 3] = ["stiffness_nonlinearity", "lost_motion", "hysteresis"];
 
 /// Sentences on joints whose compliance is a sum of parts.
 fn compound(description: &Description) -> String {
@@ -174,7 +184,10 @@ fn unseen(found: &Identification) -> String {
     let mut said = String::new();
     for estimate in estimates {
         match &estimate.visibility {
-            Visibility::Seen if estimate.at_bound => said += &format!("\n{}", at_bound(&estimate.name)),
+            Visibility::Seen if estimate.at_bound => {
+                let effects = found.description.effects.iter().map(ToString::to_string);
+                said += &format!("\n{}", at_bound(&estimate.name, effects));
+            }
             Visibility::Seen => {}
             Visibility::Unseen => {
                 said += &format!("\n{} does not show in these data and keeps its value", estimate.name);
@@ -241,4 +254,18 @@ fn number(estimate: &Estimate, all: &[Estimate]) -> Value {
         "deviation": estimate.deviation().map(json::number),
         "noteworthy": estimate.is_noteworthy(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_joint_at_its_bound_may_give_way_by_a_law() {
+        let told = |effects: &[&str]| at_bound("joint 2", effects.iter().map(|&effect| effect.to_owned()));
+        let others = ["hysteresis@joint 3", "transverse_compliance@joint 2"];
+        assert_eq!(told(&others), "joint 2 is at its bound 0: the data do not follow the load on this joint");
+        let law = told(&[others[0], "lost_motion@joint 2"]);
+        assert_eq!(law, "joint 2 is at its bound 0: its compliance is in the lost motion of joint 2");
+    }
 }

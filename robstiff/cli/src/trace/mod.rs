@@ -8,7 +8,7 @@ mod document;
 mod pictures;
 mod story;
 mod triage;
-mod words;
+pub mod words;
 
 use std::path::PathBuf;
 use std::time::Duration;

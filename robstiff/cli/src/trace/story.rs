@@ -69,7 +69,9 @@ pub fn summary(trace: &Trace, campaign: &Campaign) -> Vec<String> {
     }
     sentences.extend(fitted_again(trace));
     let clipped = trace.estimates.iter().filter(|estimate| estimate.at_bound);
-    sentences.extend(clipped.map(|estimate| sentence(&at_bound(&estimate.name))));
+    let declared = || trace.description.effects.iter().map(ToString::to_string);
+    let effects = || trace.effects.iter().map(|named| named.effect.to_string()).chain(declared());
+    sentences.extend(clipped.map(|estimate| sentence(&at_bound(&estimate.name, effects()))));
     if !trace.depends_on.is_empty() && matches!(trace.verdict, Verdict::Partial | Verdict::Unexplained) {
         sentences.push(format!("What is left depends on {}.", and(&trace.depends_on)));
     }
