@@ -16,12 +16,13 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use super::{Form, Kind, Number, Offers, Place, SHIFT, Scene};
 use crate::campaign::{Displacements, apart};
 use crate::trace::clamped::{Axes, AxisNumber, OnAxes, axes_column};
+use crate::trace::found::{EffectParameter, Found};
 
 /// The kind.
 pub static KIND: Kind = Kind {
     name: "thermal_drift",
     of_rig: true,
-    words: |_| "a drift of the readings".into(),
+    words: |found| if stands_still(found) { "an offset of the readings" } else { "a drift of the readings" }.into(),
     explanation: "The readings move while nothing pulls: the robot or the stand of the tracker warms up, or settles. \
         Warm up before, read the unloaded arm at every visit, and mix the order of poses.",
     offer,
@@ -30,6 +31,20 @@ pub static KIND: Kind = Kind {
 
 /// More than this over a campaign is a mishap (m).
 const MOST: f64 = 5e-3;
+
+/// Numbers within so many standard deviations of zero are none.
+const NONE: f64 = 2.0;
+
+/// Whether readings are off that do not drift: their rates are zero, and with them all that
+/// grows, but not the offset.
+fn stands_still(found: &Found) -> bool {
+    let is_one_of =
+        |names: &[&[&str; 3]], number: &EffectParameter| names.iter().any(|names| names.contains(&number.name));
+    let is_none = |number: &&EffectParameter| number.std.is_some_and(|std| number.value.abs() < NONE * std);
+    let mut moves = found.parameters.iter().filter(|number| is_one_of(&[&SHIFT, &BY_VISIT, &SQUARED, &CUBED], number));
+    let mut offsets = found.parameters.iter().filter(|number| is_one_of(&[&OFFSET], number));
+    moves.all(|number| is_none(&number)) && offsets.any(|number| !is_none(&number))
+}
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let mut numbers: Vec<Number> = Vec::new();
@@ -262,4 +277,22 @@ fn on_axes(axes: &Axes) -> Vec<OnAxes> {
         })
         .sum();
     [OnAxes::new(Place::Rig, numbers, &[], [Vec::new()].into(), move |_| [since.clone()].into())].into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_offset_alone_is_no_drift() {
+        let number = |name, value| EffectParameter { name, value, std: Some(1e-6), unit: "m" };
+        let words = |rate: f64, offset: f64| {
+            let rates = SHIFT.map(|name| number(name, rate));
+            let offsets = OFFSET.map(|name| number(name, offset));
+            Found::new(&KIND, Place::Rig, rates.into_iter().chain(offsets).collect()).words()
+        };
+        assert_eq!(words(5e-7, 1.5e-3), "an offset of the readings");
+        assert_eq!(words(5e-6, 1.5e-3), "a drift of the readings");
+        assert_eq!(words(5e-6, 0.0), "a drift of the readings");
+    }
 }
