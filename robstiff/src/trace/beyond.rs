@@ -20,19 +20,6 @@ use super::lack_of_fit::LackOfFit;
 use super::model::{Fitted, Named};
 use super::selection::{CURVATURE, Selection, WITHIN_REACH, best_with, p_values, select};
 use super::step::Step;
-use super::verdict;
-
-/// What came of a search beyond the catalogue.
-pub enum Searched<'c> {
-    /// Something nameless accounts for what is left.
-    Yes(Beyond<'c>),
-    /// Nothing does that was found.
-    No {
-        /// Whether a lag fits about as well as the hysteresis with a curve that
-        /// [may be one](verdict::may_lag).
-        lag: bool,
-    },
-}
 
 /// A model with something nameless in it.
 pub struct Beyond<'c> {
@@ -44,31 +31,25 @@ pub struct Beyond<'c> {
     pub nameless: Vec<String>,
 }
 
-/// Searches among what has no name, too, for what a model leaves, in which `test` finds
-/// structure.
+/// Searches among what has no name, too, where `test` finds structure in what names leave.
 ///
 /// # Errors
 /// Why not even the description's own model can be fitted.
 pub fn search<'c>(
     bench: &Bench<'c>,
-    named: &Fitted,
     options: &Options,
     test: impl Fn(&Bench<'c>, &Fitted) -> Result<LackOfFit, String>,
-) -> Result<Searched<'c>, String> {
+) -> Result<Option<Beyond<'c>>, String> {
     bench.spare_memory();
     let mut wide = bench.widened()?;
     let base = wide.fit(&[])?;
     // Its stages are those that were told before.
     let found = select(&mut wide, base, options, &|_| ())?;
     let is_nameless = |one: &Named| wide.candidates()[one.candidate].is_nameless();
-    if !found.model.named.iter().any(is_nameless) {
-        let lag = verdict::may_lag(bench, named) && lag_is_near(&wide, &found.model);
-        return Ok(Searched::No { lag });
+    if found.unnamed || !found.model.named.iter().any(is_nameless) || test(&wide, &found.model)?.structure {
+        return Ok(None);
     }
-    if found.unnamed || test(&wide, &found.model)?.structure {
-        return Ok(Searched::No { lag: true });
-    }
-    without_nameless(wide, &found).map(Searched::Yes)
+    without_nameless(wide, &found).map(Some)
 }
 
 /// Tries something nameless in place of some effects of a model that leaves no
@@ -101,8 +82,15 @@ pub fn instead<'c>(
         let model = polished.fit(&other.named).ok()?;
         Some((polished, model))
     });
-    let best = refitted.min_by(|a, b| a.1.bic.total_cmp(&b.1.bic));
-    let Some((wide, other)) = best.filter(|(_, other)| other.bic < model.bic - WITHIN_REACH) else { return Ok(None) };
+    // Better by the criterion, and not for being simpler alone: what is told by many numbers can
+    // be like it without being it.
+    let saved = |other: &Fitted| model.fit.columns.len().saturating_sub(other.fit.columns.len()) as f64;
+    let price = AKAIKE * model.fit.rss / setting.problem.freedom(&model.fit);
+    let is_better = |(_, other): &(Bench<'c>, Fitted)| {
+        other.bic < model.bic - WITHIN_REACH && other.fit.rss < model.fit.rss + price * saved(other)
+    };
+    let best = refitted.filter(is_better).min_by(|a, b| a.1.bic.total_cmp(&b.1.bic));
+    let Some((wide, other)) = best else { return Ok(None) };
     let p_values = p_values(&wide, &other.named, options);
     if p_values.iter().any(|&p| p > options.alpha) || test(&wide, &other)?.structure {
         return Ok(None);
@@ -113,6 +101,10 @@ pub fn instead<'c>(
 
 /// How many effects one thing without a name may be told as.
 const MOST_REPLACED: u32 = 3;
+
+/// What a number may save at most, in residual variances, for a model with fewer to fit as well
+/// as noise allows (Akaike, IEEE Trans. Autom. Control 19, 1974).
+const AKAIKE: f64 = 2.0;
 
 /// How many of the best by the linear criterion are fitted at their own solution.
 const TRIED: usize = 4;
@@ -138,8 +130,9 @@ fn without_nameless<'c>(wide: Bench<'c>, found: &Selection) -> Result<Beyond<'c>
 }
 
 /// Whether a joint that lags fits about as well as a model that names its hysteresis: in place
-/// of that, of a curve of the same joint, and of creep.
-fn lag_is_near(wide: &Bench<'_>, model: &Fitted) -> bool {
+/// of that, of a curve of the same joint, and of creep. Where it cannot be told, it does.
+pub fn lag_is_near(bench: &Bench<'_>, model: &Fitted) -> bool {
+    let Ok(wide) = bench.widened_as_it_is() else { return true };
     let candidates = wide.candidates();
     let sticks = |one: &&Named| candidates[one.candidate].kind.name == HYSTERESIS.name;
     model.named.iter().filter(sticks).any(|hysteresis| {
@@ -152,7 +145,6 @@ fn lag_is_near(wide: &Bench<'_>, model: &Fitted) -> bool {
         let rest: Vec<Named> = model.named.iter().copied().filter(|one| !is_of_lag(one)).collect();
         let lag = candidates.iter().position(|other| other.kind.name == LAG.name && other.place == place);
         let with = lag.and_then(|lag| best_with(&*wide.at(&rest).ok()?, &rest, lag));
-        // Where no reading tells how late a joint is, nothing tells it from one that sticks.
         with.is_none_or(|with| {
             let polished = wide.polished(&with.named).fit(&with.named);
             polished.is_ok_and(|lagging| lagging.bic < model.bic + WITHIN_REACH)

@@ -9,7 +9,7 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::bench::Bench;
-use super::beyond::{self, Beyond, Searched};
+use super::beyond::{self, Beyond};
 use super::isolated::Event;
 use super::lack_of_fit::{self, LackOfFit};
 use super::model::Fitted;
@@ -87,18 +87,15 @@ pub fn search<'c>(
     progress("looking for structure in what is left");
     let test = |bench: &Bench<'c>, model: &Fitted| left_by(bench, prepared, model, options);
     let mut left = test(bench, &selection.model)?;
-    let mut may_lag = verdict::may_lag(bench, &selection.model);
-    let (mut taken_back, mut looks_like) = (Vec::new(), Vec::new());
-    let mut found = None;
-    if left.structure || selection.unnamed || may_lag {
+    let found = if left.structure || selection.unnamed {
         progress("looking for what has no name in the catalogue");
-        match beyond::search(bench, &selection.model, options, test)? {
-            Searched::Yes(beyond) => found = Some(beyond),
-            Searched::No { lag } => may_lag &= lag,
-        }
-    } else if !selection.model.named.is_empty() {
-        found = beyond::instead(bench, &selection.model, options, test)?;
-    }
+        beyond::search(bench, options, test)?
+    } else if selection.model.named.is_empty() {
+        None
+    } else {
+        beyond::instead(bench, &selection.model, options, test)?
+    };
+    let (mut taken_back, mut looks_like) = (Vec::new(), Vec::new());
     if let Some(beyond) = found {
         taken_back = names_lost(bench, &selection.model, &beyond);
         looks_like = beyond.nameless;
@@ -110,7 +107,8 @@ pub fn search<'c>(
     if looks_like.is_empty() {
         take_back(bench, &mut selection, &mut left, &mut taken_back, options, test)?;
     }
-    may_lag &= !left.structure && verdict::may_lag(bench, &selection.model);
+    let may_lag =
+        !left.structure && verdict::may_lag(bench, &selection.model) && beyond::lag_is_near(bench, &selection.model);
     left.structure |= may_lag;
     let events = bench.events.to_vec();
     let besides =

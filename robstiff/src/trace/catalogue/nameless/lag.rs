@@ -32,8 +32,9 @@ pub static KIND: Kind = Kind {
 
 const CONSTANT: &str = "constant";
 
-/// The time constants tried, in steps from one row to the next.
-const CONSTANTS: [f64; 5] = [0.5, 1.0, 2.0, 4.0, 8.0];
+/// The time constants tried, in steps from one row to the next. What has arrived long before the
+/// next row looks like what sticks.
+const CONSTANTS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let (_, pace) = scene.data.clock();
@@ -54,7 +55,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         };
         let forms = (0..).zip(constants).map(|(k, constant)| Form::of([k]).with(CONSTANT, constant, time));
         let forms = forms.map(|form| form.refined(move |constants| vec![number(constants[0])]));
-        let forms = forms.map(|form| form.within([0.5 * first, 2.0 * last])).collect();
+        let forms = forms.map(|form| form.within([first, 2.0 * last])).collect();
         offers.add(Part::Joint(joint), constants.map(number).into(), forms);
     }
 }
