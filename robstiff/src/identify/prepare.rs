@@ -12,7 +12,7 @@ use super::baseline::{Declared, Visibility, declared, visibility, with_values};
 use super::covariance::contrasts::Level;
 use super::covariance::{Basis, Covariance};
 use super::holdout::training;
-use super::normal::{Fit, Sign};
+use super::normal::{Fit, Normal, Sign};
 use super::problem::{Problem, Weights, raw};
 use super::samples::{Column, Samples};
 use super::second_order::{beyond_linear, straightened};
@@ -37,6 +37,9 @@ pub struct Prepared<'c> {
     pub own: Vec<Declared>,
     /// What the data can see of them.
     pub visibility: Vec<Visibility>,
+    /// The columns of those that are lost in noise which nothing but the fit itself tells of.
+    /// What is missing in it, and rows that are wild, pass for noise: another model may see them.
+    pub doubted: Vec<usize>,
     /// What they are: identified where seen, declared elsewhere.
     pub values: Vec<f64>,
     /// The rows less what is not linear in the load: the second order and declared laws.
@@ -99,6 +102,7 @@ impl<'c> Prepared<'c> {
             correction: DVector::zeros(samples.length()),
             values: own.iter().map(|number| number.value).collect(),
             visibility: std::vec![Visibility::Seen; own.len()],
+            doubted: Vec::new(),
             own,
             straight: Rc::new(straight),
             declared_noise: noise.displacement.filter(|&declared| !covariance.is_far_below(declared)),
@@ -222,11 +226,14 @@ impl<'c> Prepared<'c> {
         let fitted = loop {
             let problem = self.problem();
             let fitted = fit(self, &problem)?;
-            let lost = self.lost(&problem, &fitted);
+            let lost = self.lost(&problem.total, &fitted, |_| true);
             if lost.is_empty() {
                 break fitted;
             }
-            lost.into_iter().for_each(|column| self.visibility[column] = Visibility::Unseen);
+            lost.iter().for_each(|&column| self.visibility[column] = Visibility::Unseen);
+            if self.noise(0.0).1 == NoiseSource::Residuals {
+                self.doubted.extend(lost);
+            }
         };
         for (&column, &value) in fitted.columns.iter().zip(fitted.coefficients.iter()) {
             self.values[column] = value;
@@ -235,15 +242,15 @@ impl<'c> Prepared<'c> {
         Ok(())
     }
 
-    /// The column of the number that is lost in the noise by most, of those that are: of two
-    /// that look alike either may be seen without the other. All columns where none stands
-    /// out, for then the readings say nothing of any.
-    fn lost(&self, problem: &Problem, fitted: &Fit) -> Vec<usize> {
-        let total = &problem.total;
+    /// The column of the description's number that is lost in the noise by most, of those that
+    /// are and for which `may` holds: of two that look alike either may be seen without the
+    /// other. All columns where none stands out, for then the readings say nothing of any.
+    pub fn lost(&self, total: &Normal, fitted: &Fit, may: impl Fn(usize) -> bool) -> Vec<usize> {
         let Some(inverse) = total.inverse(&fitted.columns) else { return Vec::new() };
         let freedom = total.rows.saturating_sub(fitted.columns.len()).max(1) as f64;
         let (noise, _) = self.noise(fitted.rss / freedom);
-        let lost = fitted.columns.iter().enumerate().filter_map(|(k, &column)| {
+        let own = fitted.columns.iter().enumerate().filter(|&(_, &column)| column < self.own.len() && may(column));
+        let lost = own.filter_map(|(k, &column)| {
             let std = inverse[(k, k)].sqrt() * noise;
             let declared = self.own[column].value.abs() / std;
             let stands_out =

@@ -245,12 +245,15 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
         let outcome = Outcome::nothing(base, Verdict::Insufficient, why);
         return report(campaign, &prepared, &bench, &outcome, options).map_err(Error);
     }
+    drop(setting);
+    let base = if bench.fit_doubted().map_err(Error)? { bench.fit(&[]).map_err(Error)? } else { base };
     let mut outcome = search(&mut bench, &prepared, base, options, progress).map_err(Error)?;
     if outcome.structure() && prepared.left_out.contains(&true) {
         // Rows that the others of their pose contradict look like structure.
         bench.spare_memory();
         let mut closer = Bench::new(campaign, &prepared).map_err(Error)?;
         closer.by_own_pose = true;
+        closer.fit_doubted().map_err(Error)?;
         let base = closer.fit(&[]).map_err(Error)?;
         let again = search(&mut closer, &prepared, base, options, progress).map_err(Error)?;
         if !again.structure() {
@@ -264,6 +267,9 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
             let again = search(&mut bench, &prepared, model, options, progress).map_err(Error)?;
             outcome = again.after(outcome);
         }
+    }
+    if let Some(model) = bench.tried(&outcome.selection.model.named, Bench::hold_lost) {
+        outcome.selection.model = model;
     }
     outcome.judge_by_held_out(&bench, options).map_err(Error)?;
     progress("asking what could be mistaken for what");

@@ -2,6 +2,7 @@
 //! their own form, by Gauss-Newton steps with all numbers together, and the
 //! whole catalogue linearised at what comes out.
 
+mod held;
 mod noise;
 mod polish;
 mod prepare;
@@ -37,6 +38,8 @@ pub struct Bench<'c> {
     campaign: &'c Campaign,
     pub(super) prepared: &'c Prepared<'c>,
     own: Rc<[Column]>,
+    /// The columns of the description's numbers that are fitted.
+    base: Rc<[usize]>,
     candidates: Rc<[Candidate]>,
     numbers: Rc<[Number]>,
     signs: Rc<[Sign]>,
@@ -106,6 +109,7 @@ impl<'c> Bench<'c> {
         let mut bench =
             Self { strict: self.strict, by_own_pose: self.by_own_pose, ..Self::new(self.campaign, self.prepared)? };
         bench.wide = true;
+        bench.fit_to(&self.base);
         bench.set_up()?;
         Ok(bench)
     }
@@ -148,6 +152,7 @@ impl<'c> Bench<'c> {
             campaign,
             prepared,
             own: prepared.own.iter().map(|number| number.column).collect(),
+            base: prepared.seen().into(),
             candidates: Rc::new([]),
             numbers: Rc::new([]),
             signs: prepared.signs().into(),

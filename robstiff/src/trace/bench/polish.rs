@@ -272,6 +272,7 @@ impl<'c> Bench<'c> {
     pub(super) fn copy(&self) -> Self {
         Self {
             own: Rc::clone(&self.own),
+            base: Rc::clone(&self.base),
             candidates: Rc::clone(&self.candidates),
             numbers: Rc::clone(&self.numbers),
             signs: Rc::clone(&self.signs),

@@ -52,7 +52,7 @@ impl<'c> Bench<'c> {
     /// The solution of a model by Gauss-Newton steps from file and description
     /// as declared.
     pub(super) fn solve(&self, named: &[Named]) -> Result<State, String> {
-        let hidden = self.prepared.visibility.contains(&Visibility::Unseen);
+        let hidden = (0..self.own.len()).any(|column| self.is_hidden(column));
         let more = if hidden && self.is_nonlinear(named) { self.solve_with(named, true).ok() } else { None };
         more.map_or_else(|| self.solve_with(named, false), Ok)
     }
@@ -63,7 +63,7 @@ impl<'c> Bench<'c> {
     /// it would spoil the rest.
     fn base_at(&self, point: &Point<'c>) -> Vec<usize> {
         let prepared = self.prepared;
-        let Some(noise) = self.noise.covariance.reading() else { return prepared.seen() };
+        let Some(noise) = self.noise.covariance.reading() else { return self.base.to_vec() };
         let whitener = self.noise.covariance.whitener(&self.left_out);
         let samples = &point.samples;
         let trained = |row: &usize| prepared.training[samples.rows[*row].pose] && !self.left_out[*row];
@@ -74,12 +74,13 @@ impl<'c> Bench<'c> {
                 (0..samples.rows.len()).filter(trained).flat_map(places).map(|at| white[at] * white[at]).sum();
             square.sqrt() * prepared.own[column].value.abs() > STANDS_OUT * noise
         };
-        let seen = |column: &usize| match prepared.visibility[*column] {
-            Visibility::Seen => true,
-            Visibility::Unseen => is_turned(*column),
-            Visibility::Confounded(_) => false,
-        };
+        let seen = |column: &usize| self.base.contains(column) || (self.is_hidden(*column) && is_turned(*column));
         (0..prepared.own.len()).filter(seen).collect()
+    }
+
+    /// Whether a number of the description is held because the data do not show it.
+    fn is_hidden(&self, column: usize) -> bool {
+        self.prepared.visibility[column] == Visibility::Unseen && !self.base.contains(&column)
     }
 
     /// The same with or without numbers of the description that are seen at the
@@ -91,7 +92,7 @@ impl<'c> Bench<'c> {
         for _ in 0..PASSES {
             let setup = self.setup(&nonlinear, &theta);
             let point = self.point(setup.clone());
-            let base = if more { self.base_at(&point) } else { self.prepared.seen() };
+            let base = if more { self.base_at(&point) } else { self.base.to_vec() };
             let effects = named.iter().flat_map(|one| &self.candidates[one.candidate].variants[one.variant].columns);
             let columns: Vec<usize> = base.iter().chain(effects).copied().collect();
             let place = |of: usize| columns.iter().position(|column| *column == of).expect("one of the model's");
