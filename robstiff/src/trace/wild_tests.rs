@@ -4,6 +4,7 @@ use std::vec;
 
 use super::tests::{SIGMA, TILT_3, campaign, names, traced};
 use super::*;
+use crate::campaign::made::Plan;
 use crate::campaign::{Data, Holdout};
 use crate::samples::five_axis;
 
@@ -43,6 +44,38 @@ fn rows_that_their_own_pose_contradicts_are_no_structure() {
     let found = traced(&shifted(&[], &[11, 90, 203], 12.0));
     assert_eq!((names(&found), found.verdict), (vec!["outliers@rig".into()], Verdict::Explained));
     assert_eq!(found.effects[0].lines, [13, 92, 205]);
+}
+
+/// One load at each of few poses, of which nothing but a fit tells the noise; a row is off
+/// along z by so much (m).
+fn one_load(poses: usize, seed: u64, off: Option<(usize, f64)>) -> Campaign {
+    let mut campaign =
+        Plan { poses, visits: 1, ramp: vec![1.0], shares_unloaded: false, noise: [SIGMA; 3], ..Plan::new(seed) }.run();
+    if let (Data::Displacement(data), Some((row, off))) = (&mut campaign.data, off) {
+        data.rows[row].displacement[2] += off;
+    }
+    campaign
+}
+
+/// Where no other reading at its pose contradicts it, a row of few moves the fit and hides in
+/// what that leaves of all others.
+#[test]
+fn a_row_alone_at_its_pose_cannot_hide() {
+    for (seed, off) in (1..=6).flat_map(|seed| [6e-4, 5e-3].map(|off| (seed, off))) {
+        let found = traced(&one_load(15, seed, Some((3, off))));
+        let told = (names(&found), found.verdict);
+        assert_eq!(told, (vec!["outliers@rig".into()], Verdict::Explained), "{off} m, seed {seed}: {}", found.why);
+        assert_eq!(found.effects[0].lines, [5], "{off} m, seed {seed}");
+    }
+}
+
+/// Each is judged by how well the others say what it is.
+#[test]
+fn rows_alone_at_their_poses_that_are_right_are_not_wild() {
+    for (seed, poses) in (1..=10).flat_map(|seed| [12, 15, 20].map(|poses| (seed, poses))) {
+        let found = traced(&one_load(poses, seed, None));
+        assert_eq!((names(&found), found.verdict), (vec![], Verdict::Adequate), "{poses} poses, seed {seed}");
+    }
 }
 
 /// A wild reading in a pose held out says nothing against the model.

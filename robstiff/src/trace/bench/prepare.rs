@@ -104,8 +104,11 @@ impl Bench<'_> {
     /// What is wrong in single visits, held against a model; of poses held out, which no model
     /// may find fault with, against the other readings there.
     fn wild(&self, setting: &Setting<'_>, fitted: &Fitted) -> Result<Vec<Event>, String> {
-        let mut wild = isolated::events(setting, fitted, self.strict);
         let training = &self.prepared.training;
+        let mut wild = isolated::alone::events(setting, fitted, training, self.strict);
+        if wild.is_empty() {
+            wild = isolated::events(setting, fitted, self.strict);
+        }
         let judged = |pose: usize| self.by_own_pose || !training[pose];
         for fitted_to in [true, false] {
             let of_pose = |pose: usize| judged(pose) && training[pose] == fitted_to;

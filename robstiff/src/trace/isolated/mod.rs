@@ -13,7 +13,9 @@
 //! itself uncertain; what is held against it has the tails of Student's
 //! distribution (`OF_MEDIAN`). Where the noise is another at each pose (`by_pose`),
 //! what stands out must stand out from that of its own pose as well, and where its tails
-//! are heavy, from tails like them.
+//! are heavy, from tails like them. Of few rows with one load at each pose a wild one moves the
+//! fit until it stands out no more; these are held against the fit without them first
+//! ([`alone`]).
 //!
 //! Without any model the other readings of its own pose can contradict one
 //! ([`Covariance::beyond_doubt`](crate::identify::covariance::Covariance::beyond_doubt)).
@@ -21,6 +23,7 @@
 //! all others look wild; in poses held out, where no model may find fault, they are what is
 //! wild; and where structure is left, it is asked whether they are all of it.
 
+pub mod alone;
 mod by_pose;
 
 use std::vec;
