@@ -95,7 +95,7 @@ fn warming_of_six() {
 fn a_compliance_that_follows_another_joint_is_not_told_as_two_effects_of_that() {
     let rod = Outside::CrossDependence { joint: 2, of: 3, cos: 0.4, sin: 0.0 };
     let trace = |seed| {
-        let simulated = plan(&six_axis(), &[], seed).hiding(Hidden::Outside(rod.clone())).run();
+        let simulated = plan(&six_axis(), &[], seed).hiding(Hidden::Outside(rod)).run();
         (seed, trace_files(&simulated, &six_axis(), ""))
     };
     let traces: Vec<(u64, Trace)> = (300..306).map(trace).collect();
