@@ -21,6 +21,8 @@ mod reference;
 #[cfg(test)]
 mod tests;
 mod unread;
+#[cfg(test)]
+mod warned_tests;
 
 use std::path::PathBuf;
 use std::string::String;
