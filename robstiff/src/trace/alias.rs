@@ -5,7 +5,6 @@ use std::vec::Vec;
 
 use super::Options;
 use super::bench::Bench;
-use super::bootstrap::ScoreTest;
 use super::catalogue::{Candidate, EITHER, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY, Variant, tells_hysteresis};
 use super::found::Place;
 use super::isolated::Event;
@@ -47,8 +46,7 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, structure: bool, opt
     for candidate in (0..setting.candidates.len()).filter(|&candidate| candidate != one.candidate) {
         let Some(rival) = best_with(&setting, &rest, candidate) else { continue };
         let variant = variant_of(&rival, candidate);
-        let exact = tests.scores.distance(setting.variant(one), setting.variant(variant)) < EXACT
-            || has_alias_of_a_part(&tests.scores, setting.variant(one), &setting.candidates[candidate]);
+        let exact = tests.scores.distance(setting.variant(one), setting.variant(variant)) < EXACT;
         let is_significant = tests.p_value(candidate) <= options.alpha;
         let predicts = || setting.left_out_rms(&rival.fit) < unseen;
         let is_near = |rival: &Fitted, at: &Setting<'_>| {
@@ -77,26 +75,34 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, structure: bool, opt
 /// Of an effect with more numbers than this, none has an alias of its own.
 const PARTS: usize = 4;
 
-/// Whether a candidate may stand for some of an effect's numbers, the others kept: a
-/// translation of the base, told with its tilt, is one of the tool as well.
-fn has_alias_of_a_part(scores: &ScoreTest, own: &Variant, candidate: &Candidate) -> bool {
+/// The names of what some numbers of effect `k` of a model may as well be, the others kept: a
+/// translation of the base, told with its tilt, is one of the tool as well. Exact aliases alone,
+/// of those that are not named.
+pub fn in_part(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -> Vec<String> {
+    let (one, rest) = (model.named[k], all_but(&model.named, k));
+    let (Ok(setting), Some(tests)) = (bench.at(&rest), bench.tests(&rest, options)) else { return Vec::new() };
+    let own = setting.variant(one);
     let columns = &own.columns;
     if !own.shape.is_empty() || columns.len() > PARTS {
-        return false;
+        return Vec::new();
     }
-    (1..(1_u32 << columns.len()) - 1).any(|set| {
-        let of = |inside: bool| -> Vec<usize> {
-            (0..columns.len()).filter(|k| (set >> k & 1 == 1) == inside).map(|k| columns[k]).collect()
-        };
-        let (part, kept) = (of(true), of(false));
-        let alike = |other: &Variant| {
-            let with_the_others = other.columns.iter().chain(&kept).copied().collect();
-            other.columns.len() == part.len()
-                && scores.distance(&Variant::new(part.clone(), Vec::new()), &Variant::new(with_the_others, Vec::new()))
-                    < EXACT
-        };
-        candidate.variants.iter().any(alike)
-    })
+    let has_alias = |candidate: &Candidate| {
+        (1..(1_u32 << columns.len()) - 1).any(|set| {
+            let of = |inside: bool| -> Vec<usize> {
+                (0..columns.len()).filter(|k| (set >> k & 1 == 1) == inside).map(|k| columns[k]).collect()
+            };
+            let (part, kept) = (of(true), of(false));
+            let alike = |other: &Variant| {
+                let with_the_others = other.columns.iter().chain(&kept).copied().collect();
+                let [part, other] = [part.clone(), with_the_others].map(|columns| Variant::new(columns, Vec::new()));
+                tests.scores.distance(&part, &other) < EXACT
+            };
+            candidate.variants.iter().filter(|other| other.columns.len() == part.len()).any(alike)
+        })
+    };
+    let named = |candidate: usize| model.named.iter().any(|one| one.candidate == candidate);
+    let others = setting.candidates.iter().enumerate().filter(|&(candidate, _)| !named(candidate));
+    others.filter(|(_, candidate)| has_alias(candidate)).map(|(_, candidate)| candidate.name()).collect()
 }
 
 /// The names of what may as well have made the rows that are left out as wild: effects

@@ -181,6 +181,8 @@ pub struct NamedEffect {
     pub holdout_rms: f64,
     /// Full names of what these data cannot tell it from.
     pub same_as: Vec<String>,
+    /// Full names of what some of its numbers alone may as well be, the others kept.
+    pub in_part: Vec<String>,
     /// Whether structure is left beyond all named effects.
     pub partial: bool,
 }

@@ -101,7 +101,7 @@ fn named(trace: &Trace, named: &NamedEffect) -> Effect {
         numbers: story::told(named).map(number).collect(),
         p_value: named.p_value,
         holdout_rms_um: named.holdout_rms * 1e6,
-        same_as: story::either(&named.same_as),
+        same_as: story::either(&[&named.same_as[..], &named.in_part].concat()),
     }
 }
 

@@ -74,7 +74,8 @@ fn effect(named: &NamedEffect) -> Value {
         "parameters": parameters.collect::<Value>(),
         "p_value": number(named.p_value),
         "holdout_rms_um": number(named.holdout_rms * 1e6),
-        "same_as": named.same_as,
+        "same_as": named.same_as.iter().chain(&named.in_part).collect::<Vec<&String>>(),
+        "in_part": named.in_part,
         "partial": named.partial,
         "lines": named.lines,
     })

@@ -364,6 +364,9 @@ fn effect(named: &NamedEffect) -> String {
     if !named.same_as.is_empty() {
         said += &format!("\n    these data cannot tell it from {}", either(&named.same_as));
     }
+    if !named.in_part.is_empty() {
+        said += &format!("\n    some of it may as well be {}", either(&named.in_part));
+    }
     said + "\n"
 }
 

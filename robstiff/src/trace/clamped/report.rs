@@ -219,6 +219,7 @@ fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: 
             lines: Vec::new(),
             p_value: found.selection.p_values[k],
             holdout_rms,
+            in_part: Vec::new(),
             same_as: near
                 .filter_map(|(_, model)| other(model))
                 .chain(dead_zone)
@@ -232,7 +233,8 @@ fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: 
         let mut lines = lines.clone();
         lines.sort_unstable();
         let effect = Found::outliers(lines.len());
-        named.push(NamedEffect { effect, lines, p_value: *p_value, holdout_rms, same_as: Vec::new(), partial });
+        let (same_as, in_part) = (Vec::new(), Vec::new());
+        named.push(NamedEffect { effect, lines, p_value: *p_value, holdout_rms, same_as, in_part, partial });
     }
     named
 }

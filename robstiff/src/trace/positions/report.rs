@@ -236,6 +236,7 @@ fn effects(
                 p_value: found.selection.p_values[k],
                 holdout_rms,
                 same_as,
+                in_part: Vec::new(),
                 partial,
             },
         ));
@@ -259,6 +260,7 @@ fn effects(
             p_value: found.wild.p,
             holdout_rms,
             same_as: Vec::new(),
+            in_part: Vec::new(),
             partial,
         });
     }

@@ -8,7 +8,7 @@ use robstiff_robots::effect::Place as Part;
 
 use super::spread::share_of;
 use crate::identify::prepare::Prepared;
-use crate::trace::alias::same_as;
+use crate::trace::alias::{in_part, same_as};
 use crate::trace::bench::Bench;
 use crate::trace::catalogue::BASE_SLIP;
 use crate::trace::found::{EffectParameter, Found};
@@ -35,12 +35,15 @@ pub fn effects(
         let holdout_rms = bench.at(&so_far).ok().and_then(|setting| unseen(&setting)).unwrap_or(f64::NAN);
         let parameters = parameters(setting, fine, spread, k);
         let candidate = &setting.candidates[model.named[k].candidate];
+        let same_as = same_as(bench, model, k, outcome.structure(), options);
+        let in_part = in_part(bench, model, k, options);
         NamedEffect {
             effect: Found::new(candidate.kind, candidate.place, parameters),
             lines: Vec::new(),
             p_value: outcome.selection.p_values[k],
             holdout_rms,
-            same_as: same_as(bench, model, k, outcome.structure(), options),
+            in_part: in_part.into_iter().filter(|name| !same_as.contains(name)).collect(),
+            same_as,
             partial: outcome.structure(),
         }
     });
@@ -123,6 +126,7 @@ pub fn isolated(
         p_value: events.iter().map(|event| event.p_value).fold(0.0, f64::max),
         holdout_rms,
         same_as: besides(first),
+        in_part: Vec::new(),
         partial: outcome.structure(),
     };
     let (slips, wild): (Vec<&Event>, Vec<&Event>) = outcome.events.iter().partition(|event| event.slip.is_some());
