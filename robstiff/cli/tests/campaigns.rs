@@ -205,6 +205,7 @@ fn traces_the_missing_effect_and_writes_everything() {
             "verdict",
             "why",
             "unexplained",
+            "warnings",
             "numbers",
             "rivals",
             "invisible",
@@ -215,11 +216,14 @@ fn traces_the_missing_effect_and_writes_everything() {
     assert_eq!(keys(&trace["before"]), ["declared", "identified"]);
     assert_eq!(keys(&trace["before"]["declared"]), ["rms_um", "holdout_rms_um"]);
     assert_eq!(keys(&trace["after"]), ["rms_um", "holdout_rms_um"]);
-    assert_eq!(keys(&trace["unexplained"]), ["fraction", "depends_on"]);
+    assert_eq!(keys(&trace["unexplained"]), ["fraction", "depends_on", "looks_like"]);
     // What others found in these data: the tilt of joint 3, or what looks like it.
     let effects = trace["effects"].as_array().unwrap();
     let effect = effects.iter().find(|effect| effect["kind"] == "transverse_compliance").unwrap();
-    assert_eq!(keys(effect), ["kind", "at", "parameters", "p_value", "holdout_rms_um", "same_as", "partial", "lines"]);
+    assert_eq!(
+        keys(effect),
+        ["kind", "at", "parameters", "p_value", "holdout_rms_um", "same_as", "in_part", "partial", "lines"]
+    );
     assert_eq!(keys(&effect["parameters"][0]), ["name", "value", "std", "unit"]);
     assert_eq!(effect["at"], "joint 3");
 
