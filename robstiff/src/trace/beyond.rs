@@ -1,4 +1,4 @@
-//! Does something that has no name account for what is told better than the named effects do?
+//! Is what is missing something that has no name, and not what was named?
 //!
 //! Where structure is left, the search is made once more among more: the catalogue, and
 //! what arms are known to have [beside it](super::catalogue::NAMELESS). If that finds a

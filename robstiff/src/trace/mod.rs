@@ -7,8 +7,9 @@
 //! out first ([`isolated`]); [`selection`] searches for the effects the data ask
 //! for, admitted by the family-wise [`bootstrap`] test and by poses held out;
 //! [`alias`] says what the data cannot tell apart; [`lack_of_fit`] asks whether
-//! structure is left, [`mod@along`] whether it points where a named effect does, and
-//! [`verdict`] takes names back and draws the conclusion.
+//! structure is left, [`beyond`] whether something without a name accounts for it or for what
+//! names do, [`mod@along`] whether it points where a named effect does, and [`verdict`] takes
+//! names back and draws the conclusion; `search.rs` has the order of all this.
 //!
 //! Levels: an effect is named, and structure is found, at a family-wise
 //! [`Options::alpha`] of 1 % each, so a robot that lacks nothing is called
