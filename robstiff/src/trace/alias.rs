@@ -220,8 +220,7 @@ pub fn rivals(bench: &Bench<'_>, model: &Fitted) -> Vec<Rival> {
             let Ok(rival) = bench.refit(&setting, &rival) else { continue };
             let bic_difference = rival.bic - model.bic;
             if bic_difference < WITHIN_REACH {
-                let names = rival.named.iter().map(|one| setting.candidates[one.candidate].name()).collect();
-                found.push(Rival { names, bic_difference });
+                found.push(Rival { names: bench.names(&rival.named), bic_difference });
             }
         }
     }

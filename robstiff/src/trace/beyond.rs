@@ -14,12 +14,13 @@ use std::vec::Vec;
 
 use super::Options;
 use super::bench::Bench;
-use super::catalogue::{CREEP, HYSTERESIS, LAG, LOST_MOTION, STIFFNESS_NONLINEARITY};
+use super::catalogue::{HYSTERESIS, LAG};
 use super::found::Found;
 use super::lack_of_fit::LackOfFit;
 use super::model::{Fitted, Named};
 use super::selection::{CURVATURE, Selection, WITHIN_REACH, best_with, p_values, select};
 use super::step::Step;
+use super::verdict::makes_up_a_lag;
 
 /// A model with something nameless in it.
 pub struct Beyond<'c> {
@@ -137,11 +138,7 @@ pub fn lag_is_near(bench: &Bench<'_>, model: &Fitted) -> bool {
     let sticks = |one: &&Named| candidates[one.candidate].kind.name == HYSTERESIS.name;
     model.named.iter().filter(sticks).any(|hysteresis| {
         let place = candidates[hysteresis.candidate].place;
-        let is_of_lag = |one: &Named| {
-            let own = &candidates[one.candidate];
-            let of_joint = [HYSTERESIS.name, STIFFNESS_NONLINEARITY.name, LOST_MOTION.name].contains(&own.kind.name);
-            own.kind.name == CREEP.name || (of_joint && own.place == place)
-        };
+        let is_of_lag = |one: &Named| one == hysteresis || makes_up_a_lag(&candidates[one.candidate], place);
         let rest: Vec<Named> = model.named.iter().copied().filter(|one| !is_of_lag(one)).collect();
         let lag = candidates.iter().position(|other| other.kind.name == LAG.name && other.place == place);
         let with = lag.and_then(|lag| best_with(&*wide.at(&rest).ok()?, &rest, lag));

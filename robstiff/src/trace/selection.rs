@@ -166,8 +166,7 @@ fn grow(
             steps.push(step);
             break;
         };
-        let names: Vec<String> = proposed.named.iter().map(|one| setting.candidates[one.candidate].name()).collect();
-        step.came_to(&names);
+        step.came_to(&bench.names(&proposed.named));
         steps.push(step);
         *model = proposed;
         // What a grid's value leaves of an effect must not look like another.

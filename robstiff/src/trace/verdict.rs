@@ -7,8 +7,9 @@ use std::vec::Vec;
 
 use super::along::{Along, along};
 use super::bench::Bench;
-use super::catalogue::{CREEP, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY};
+use super::catalogue::{CREEP, Candidate, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY};
 use super::features::LOAD_ORDER;
+use super::found::Place;
 use super::lack_of_fit::{LackOfFit, StructureTest};
 use super::model::{Fitted, Named, all_but};
 use super::selection::Selection;
@@ -105,13 +106,14 @@ pub fn to_take_back(bench: &Bench<'_>, model: &Fitted, left: &LackOfFit) -> Vec<
 /// gear can have both; no test of residuals tells, for next to nothing is left.
 pub fn may_lag(bench: &Bench<'_>, model: &Fitted) -> bool {
     let candidates = || model.named.iter().map(|one| &bench.candidates()[one.candidate]);
-    candidates().filter(|one| one.kind.name == HYSTERESIS.name).any(|one| {
-        let beside = |other: &super::catalogue::Candidate| {
-            let curve = [STIFFNESS_NONLINEARITY.name, LOST_MOTION.name].contains(&other.kind.name);
-            other.kind.name == CREEP.name || (curve && other.place == one.place)
-        };
-        candidates().any(beside)
-    })
+    let sticks = |one: &&Candidate| one.kind.name == HYSTERESIS.name;
+    candidates().filter(sticks).any(|one| candidates().any(|other| makes_up_a_lag(other, one.place)))
+}
+
+/// Whether an effect makes up a lag of the joint at a place, beside its hysteresis.
+pub fn makes_up_a_lag(other: &Candidate, place: Place) -> bool {
+    let curve = [STIFFNESS_NONLINEARITY.name, LOST_MOTION.name].contains(&other.kind.name);
+    other.kind.name == CREEP.name || (curve && other.place == place)
 }
 
 /// A test with such a probability found nothing: structure is known otherwise.

@@ -120,12 +120,10 @@ impl<'c> Bench<'c> {
     /// As for [`new`](Self::new).
     pub fn widened_as_it_is(&self) -> Result<Self, String> {
         let mut bench = Self { wide: true, ..self.copy() };
-        bench.set_up()?;
-        // What has a name stays as it was taken to where it fits best.
-        let nameless = bench.candidates.iter().filter(|candidate| candidate.is_nameless());
-        bench.candidates = self.candidates.iter().chain(nameless).cloned().collect();
-        bench.numbers = bench.refined_numbers(0..bench.candidates.len());
-        bench.forget();
+        bench.set_up_again(|kept, now| {
+            let nameless = now.iter().filter(|candidate| candidate.is_nameless());
+            kept.iter().chain(nameless).cloned().collect()
+        })?;
         Ok(bench)
     }
 

@@ -86,19 +86,30 @@ impl Bench<'_> {
             changed = true;
             self.left_out = left_out;
             likely.iter().for_each(|(slipping, moments)| self.moments.replace_first(*slipping, moments));
-            // Which forms of which candidates are seen stays as it was.
-            let (kept, invisible) = (Rc::clone(&self.candidates), self.invisible.clone());
-            self.set_up()?;
-            self.invisible = invisible;
-            let moved = |candidate: &Candidate| {
-                let same = self.candidates.iter().find(|other| other.name() == candidate.name());
-                same.filter(|_| Slipping::has(candidate.kind.name)).unwrap_or(candidate).clone()
-            };
-            self.candidates = kept.iter().map(moved).collect();
-            self.numbers = self.refined_numbers(0..self.candidates.len());
-            self.forget();
+            self.set_up_again(|kept, now| {
+                let moved = |candidate: &Candidate| {
+                    let same = now.iter().find(|other| other.name() == candidate.name());
+                    same.filter(|_| Slipping::has(candidate.kind.name)).unwrap_or(candidate).clone()
+                };
+                kept.iter().map(moved).collect()
+            })?;
         }
         Ok(changed)
+    }
+
+    /// Forms the columns anew. Which forms of which candidates are seen stays as it was, and so
+    /// do numbers out of grids: the candidates are made by `of`, of those kept and the new ones.
+    pub(super) fn set_up_again(
+        &mut self,
+        of: impl FnOnce(&[Candidate], &[Candidate]) -> Vec<Candidate>,
+    ) -> Result<(), String> {
+        let (kept, invisible) = (Rc::clone(&self.candidates), self.invisible.clone());
+        self.set_up()?;
+        self.invisible = invisible;
+        self.candidates = of(&kept, &self.candidates).into();
+        self.numbers = self.refined_numbers(0..self.candidates.len());
+        self.forget();
+        Ok(())
     }
 
     /// What is wrong in single visits, held against a model; of poses held out, which no model
