@@ -55,16 +55,18 @@ impl Frame {
 
 /// `sin(t) / t`, `(1 - cos t) / t^2` and `(t - sin t) / t^3` of the length `t`
 /// of a rotation vector, from series where the closed forms cancel.
+#[inline]
 fn ratios(vector: &Vector3<f64>) -> [f64; 3] {
+    // Each term of a series by the one before it. Springs turn in every round of every
+    // load, so these are products and not quotients.
+    const FIRST: [f64; 5] = [1.0 / 6.0, 1.0 / 20.0, 1.0 / 42.0, 1.0 / 72.0, 1.0 / 110.0];
+    const SECOND: [f64; 5] = [1.0 / 12.0, 1.0 / 30.0, 1.0 / 56.0, 1.0 / 90.0, 1.0 / 132.0];
+    const THIRD: [f64; 5] = [1.0 / 20.0, 1.0 / 42.0, 1.0 / 72.0, 1.0 / 110.0, 1.0 / 156.0];
     let square = vector.norm_squared();
     if square < 1e-2 {
         // The first terms left out are below 1e-17.
-        let sum = |terms: [f64; 5]| terms.iter().rev().fold(0.0, |rest, term| (1.0 - rest) / term * square);
-        return [
-            1.0 - sum([6.0, 20.0, 42.0, 72.0, 110.0]),
-            0.5 * (1.0 - sum([12.0, 30.0, 56.0, 90.0, 132.0])),
-            (1.0 - sum([20.0, 42.0, 72.0, 110.0, 156.0])) / 6.0,
-        ];
+        let sum = |terms: [f64; 5]| terms.iter().rev().fold(0.0, |rest, term| (1.0 - rest) * (term * square));
+        return [1.0 - sum(FIRST), 0.5 * (1.0 - sum(SECOND)), (1.0 - sum(THIRD)) / 6.0];
     }
     let angle = square.sqrt();
     let (sin, cos) = angle.sin_cos();
@@ -74,8 +76,20 @@ fn ratios(vector: &Vector3<f64>) -> [f64; 3] {
 /// The rotation matrix of a rotation vector (rad).
 pub(super) fn exp(vector: &Vector3<f64>) -> Matrix3<f64> {
     let [first, second, _] = ratios(vector);
-    let cross = vector.cross_matrix();
-    Matrix3::identity() + cross * first + cross * cross * second
+    let (along, half) = (vector * first, vector * second);
+    let [xx, yy, zz] = [half.x * vector.x, half.y * vector.y, half.z * vector.z];
+    let [xy, yz, zx] = [half.x * vector.y, half.y * vector.z, half.z * vector.x];
+    Matrix3::new(
+        1.0 - (yy + zz),
+        xy - along.z,
+        zx + along.y,
+        xy + along.z,
+        1.0 - (zz + xx),
+        yz - along.x,
+        zx - along.y,
+        yz + along.x,
+        1.0 - (xx + yy),
+    )
 }
 
 /// The rotation vector (rad) of a rotation matrix, for turns well below pi.
