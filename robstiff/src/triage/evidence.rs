@@ -6,7 +6,7 @@ use std::vec::Vec;
 use nalgebra::{Vector3, Vector6};
 
 use crate::campaign::{Campaign, Displacements, Frame};
-use crate::identify::covariance::Covariance;
+use crate::identify::covariance::{Covariance, Tails};
 use crate::identify::samples::Samples;
 use crate::identify::second_order::straightened;
 use crate::identify::whitening::mean_share;
@@ -34,6 +34,8 @@ pub struct Evidence<'c> {
     pub samples: Samples,
     /// The noise of the readings.
     pub covariance: Covariance,
+    /// The tails of the noise, where the readings say something of them.
+    pub tails: Option<Tails>,
     /// The lines of loads, pose by pose.
     pub lines: Vec<Line>,
     /// The line that each row is on, by index.
@@ -73,14 +75,15 @@ impl<'c> Evidence<'c> {
     /// The evidence of a campaign of displacements.
     pub fn new(campaign: &'c Campaign, data: &'c Displacements) -> Self {
         let samples = straightened(&Samples::of_description(&campaign.robot, data), &campaign.robot, |_| true);
-        let covariance = Covariance::estimate(&samples, data.measured_frame, campaign.noise, |_| true);
+        let (covariance, tails) =
+            Covariance::estimate_with_tails(&samples, data.measured_frame, campaign.noise, |_| true);
         let (lines, unloaded) = lines(&samples);
         let wrenches = wrenches(&samples);
         let mut line_of = std::vec![None; samples.rows.len()];
         for (index, line) in lines.iter().enumerate() {
             line.rows.iter().for_each(|&row| line_of[row] = Some(index));
         }
-        Self { campaign, data, samples, covariance, lines, line_of, unloaded, wrenches }
+        Self { campaign, data, samples, covariance, tails, lines, line_of, unloaded, wrenches }
     }
 
     /// What was read of a row along a unit vector in the base frame (m).

@@ -76,7 +76,7 @@ pub(super) fn replicates(evidence: &Evidence<'_>) -> Verdict {
 
 /// Kurtosis against that of simulated normal noise.
 pub(super) fn tails(evidence: &Evidence<'_>) -> Verdict {
-    let Some(tails) = evidence.covariance.tails else { return Err(String::from(SEVERAL)) };
+    let Some(tails) = evidence.tails else { return Err(String::from(SEVERAL)) };
     let student =
         tails.freedom.map(|freedom| format!(" as Student's with {freedom} degrees of freedom")).unwrap_or_default();
     Ok(Raw {

@@ -115,8 +115,6 @@ pub struct Covariance {
     pub unequal: bool,
     /// The readings that were set aside.
     pub outliers: Vec<Outlier>,
-    /// The tails of what is left.
-    pub tails: Option<Tails>,
     /// The noise of encoders on the output side of the gears, where they are read
     /// and it is known.
     pub encoders: Option<EncoderNoise>,
@@ -134,6 +132,27 @@ impl Covariance {
     /// `declared` only the ratio of displacement to rotation is used, where there
     /// is no other: how noisy the readings are, they say themselves.
     pub fn estimate(samples: &Samples, frame: Frame, declared: Noise, of_pose: impl Fn(usize) -> bool) -> Self {
+        Self::estimated(samples, frame, declared, of_pose).0
+    }
+
+    /// The same with the tails of what is left, where the readings say something of them: the
+    /// noise of thousands of campaigns is drawn for that, and no fit asks.
+    pub fn estimate_with_tails(
+        samples: &Samples,
+        frame: Frame,
+        declared: Noise,
+        of_pose: impl Fn(usize) -> bool,
+    ) -> (Self, Option<Tails>) {
+        let (covariance, estimated) = Self::estimated(samples, frame, declared, of_pose);
+        (covariance, estimated.and_then(|estimated| estimated.tails()))
+    }
+
+    fn estimated(
+        samples: &Samples,
+        frame: Frame,
+        declared: Noise,
+        of_pose: impl Fn(usize) -> bool,
+    ) -> (Self, Option<Estimated>) {
         let mut covariance = Self::assumed(samples, frame, declared);
         covariance.asked = samples.rows.iter().filter(|row| of_pose(row.pose)).count();
         let readings = covariance.measured(samples);
@@ -153,7 +172,7 @@ impl Covariance {
             wild.iter().flat_map(|outlier| &outlier.rows).for_each(|row| left_out[*row] = true);
             covariance.outliers.extend(wild);
         }
-        let Some(mut estimated) = at(Level::Linear, &left_out) else { return covariance };
+        let Some(mut estimated) = at(Level::Linear, &left_out) else { return (covariance, None) };
         for level in [Level::Curved, Level::Repeated] {
             if let Some(freer) = at(level, &left_out)
                 && estimated.hides_structure(&freer).is_some_and(|p| p <= NESTED)
@@ -164,10 +183,10 @@ impl Covariance {
                 estimated.share = share;
             }
         }
-        covariance.take(estimated);
+        covariance.take(&estimated);
         covariance.encoders = EncoderNoise::estimate(samples, &of_pose);
         covariance.outliers.sort_by_key(|outlier| outlier.rows[0]);
-        covariance
+        (covariance, Some(estimated))
     }
 
     /// Equal axes, one unloaded reading a visit; how noisy is not known.
@@ -183,7 +202,6 @@ impl Covariance {
             equal_axes: None,
             unequal: false,
             outliers: Vec::new(),
-            tails: None,
             encoders: None,
             visits: samples.visits(),
             asked: 0,
@@ -379,13 +397,12 @@ impl Covariance {
         }
     }
 
-    fn take(&mut self, estimated: Estimated) {
+    fn take(&mut self, estimated: &Estimated) {
         self.basis = Basis::Contrasts(estimated.level);
         self.freedom = count(&estimated.chunks);
         self.shared = estimated.shared;
         self.share = estimated.share;
         self.set_variances(&estimated.variances, self.freedom as f64);
-        self.tails = estimated.tails();
     }
 
     /// The readings in the frame measured in, a row each.

@@ -44,12 +44,12 @@ pub fn tails(chunks: &[Chunk], axes: usize, shared: f64, variances: &[f64]) -> O
         rows += chunk.rows.len();
         rows <= MOST_ROWS.max(chunk.rows.len())
     };
-    let chunks: Vec<&Chunk> = chunks.iter().take_while(seen).collect();
-    let root = |chunk: &Chunk, j: usize| (1.0 + shared * chunk.shares[j]).sqrt();
-    let measured = |chunk: &Chunk, j: usize, axis: usize| {
-        chunk.values[(j, axis)] / root(chunk, j) / variances[axis].max(f64::MIN_POSITIVE).sqrt()
+    let seen: Vec<Studentising<'_>> =
+        chunks.iter().take_while(seen).map(|chunk| Studentising::new(chunk, shared)).collect();
+    let measured = |of: &Studentising<'_>, j: usize, axis: usize| {
+        of.chunk.values[(j, axis)] / of.root[j] / variances[axis].max(f64::MIN_POSITIVE).sqrt()
     };
-    let residuals = studentised(&chunks, axes, shared, measured);
+    let residuals = studentised(&seen, axes, measured);
     if residuals.len() < 20 {
         return None;
     }
@@ -58,7 +58,7 @@ pub fn tails(chunks: &[Chunk], axes: usize, shared: f64, variances: &[f64]) -> O
     let (mut drawn, mut beyond) = (0, 0);
     while drawn < DRAWS && beyond < ENOUGH {
         drawn += 1;
-        beyond += usize::from(excess(&studentised(&chunks, axes, shared, |_, _, _| normal(&mut random))) >= kurtosis);
+        beyond += usize::from(excess(&studentised(&seen, axes, |_, _, _| normal(&mut random))) >= kurtosis);
     }
     let p_value = match beyond {
         ENOUGH => beyond as f64 / drawn as f64,
@@ -76,27 +76,44 @@ pub fn tails(chunks: &[Chunk], axes: usize, shared: f64, variances: &[f64]) -> O
     })
 }
 
+/// What makes residuals of the contrasts of a chunk, each over its standard deviation.
+struct Studentising<'c> {
+    chunk: &'c Chunk,
+    /// The standard deviation of each contrast over that of a reading.
+    root: Vec<f64>,
+    /// By row, the weights of the contrasts; of rows that the contrasts see little of, none.
+    weights: Vec<Vec<f64>>,
+}
+
+impl<'c> Studentising<'c> {
+    fn new(chunk: &'c Chunk, shared: f64) -> Self {
+        let root: Vec<f64> = chunk.shares.iter().map(|share| (1.0 + shared * share).sqrt()).collect();
+        let of_row = |i: usize| {
+            let along: Vec<f64> = root.iter().enumerate().map(|(j, root)| chunk.basis[(i, j)] / root).collect();
+            let leverage: f64 = along.iter().map(|a| a * a).sum();
+            (leverage > 0.05).then(|| along.iter().map(|a| a / leverage.sqrt()).collect())
+        };
+        let weights = (0..chunk.rows.len()).filter_map(of_row).collect();
+        Self { chunk, root, weights }
+    }
+}
+
 /// The residual of every row and axis over its standard deviation; `contrast`
 /// gives a contrast over its own.
 fn studentised(
-    chunks: &[&Chunk],
+    seen: &[Studentising<'_>],
     axes: usize,
-    shared: f64,
-    mut contrast: impl FnMut(&Chunk, usize, usize) -> f64,
+    mut contrast: impl FnMut(&Studentising<'_>, usize, usize) -> f64,
 ) -> Vec<f64> {
-    let mut residuals = Vec::new();
-    for chunk in chunks {
-        let count = chunk.shares.len();
-        let root: Vec<f64> = chunk.shares.iter().map(|share| (1.0 + shared * share).sqrt()).collect();
+    let mut residuals = Vec::with_capacity(axes * seen.iter().map(|of| of.weights.len()).sum::<usize>());
+    let mut values = Vec::new();
+    for of in seen {
         for axis in 0..axes {
-            let values: Vec<f64> = (0..count).map(|j| contrast(chunk, j, axis)).collect();
-            for i in 0..chunk.rows.len() {
-                let along = (0..count).map(|j| chunk.basis[(i, j)] / root[j]);
-                let leverage: f64 = along.clone().map(|a| a * a).sum();
-                if leverage > 0.05 {
-                    residuals.push(along.zip(&values).map(|(a, value)| a * value).sum::<f64>() / leverage.sqrt());
-                }
-            }
+            values.clear();
+            values.extend((0..of.root.len()).map(|j| contrast(of, j, axis)));
+            let residual =
+                |weights: &Vec<f64>| weights.iter().zip(&values).map(|(weight, value)| weight * value).sum::<f64>();
+            residuals.extend(of.weights.iter().map(residual));
         }
     }
     residuals
