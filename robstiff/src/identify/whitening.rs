@@ -52,12 +52,12 @@ impl ByVisit {
     /// As [`whiten`], of rows that begin at `first` of every column.
     pub fn whiten(&self, stacked: &mut DMatrix<f64>, first: usize, axes: usize) {
         for mut column in stacked.column_iter_mut() {
+            let column = &mut column.as_mut_slice()[first..];
             for (rows, share) in &self.visits {
                 for axis in 0..axes {
-                    let sum: f64 = rows.iter().map(|row| column[first + row * axes + axis]).sum();
-                    for row in rows {
-                        column[first + row * axes + axis] -= share * sum;
-                    }
+                    let sum: f64 = rows.iter().map(|row| column[row * axes + axis]).sum();
+                    let taken = share * sum;
+                    rows.iter().for_each(|row| column[row * axes + axis] -= taken);
                 }
             }
         }

@@ -33,11 +33,13 @@ impl Feature {
     /// with the force, so these kernels carry the forces' scalar product.
     pub fn kernel(&self) -> DMatrix<f64> {
         let (rows, columns) = self.coordinates.shape();
+        let points = self.coordinates.transpose();
+        let point = |i: usize| &points.as_slice()[i * columns..(i + 1) * columns];
         // For all joint angles together, per angle: otherwise no two poses
         // would be alike.
         let near = |i: usize, j: usize| {
-            let difference = self.coordinates.row(i) - self.coordinates.row(j);
-            (-0.5 * difference.norm_squared() / columns.max(1) as f64).exp()
+            let square: f64 = point(i).iter().zip(point(j)).map(|(a, b)| (a - b) * (a - b)).sum();
+            (-0.5 * square / columns.max(1) as f64).exp()
         };
         let mut kernel = DMatrix::zeros(rows, rows);
         for j in 0..rows {
