@@ -9,7 +9,7 @@ use robstiff_robots::quantity::Dimension;
 
 use super::beyond::{DISPLACEMENT, FORCE, MOMENT, ROTATION, Usual, warn_of};
 use super::poses::{AtPose, Columns as PoseColumns, Poses, dimension_of};
-use super::{Displacements, Frame, Observation, alone, reference, unread};
+use super::{Displacements, Frame, Observation, alone, reference, revisited, unread};
 use crate::JointKind;
 use crate::table::{Numbers, Record, Table};
 
@@ -27,12 +27,18 @@ struct Columns {
 }
 
 impl AtPose for Observation {
+    const UNDER_LOAD: &str = ", and what the motors' encoders read under load columns `m1`, `m2` and so on";
+
     fn line(&self) -> usize {
         self.line
     }
 
     fn pose(&self) -> usize {
         self.pose
+    }
+
+    fn set_pose(&mut self, pose: usize) {
+        self.pose = pose;
     }
 
     fn q(&self) -> &[f64] {
@@ -79,7 +85,10 @@ pub fn read(
             check_under_load(table, (name, index, robot.joints[index].kind), column, &rows, angles);
         }
     }
-    let [poses, visits] = poses.names();
+    let [mut poses, visits] = poses.names();
+    if let Some(said) = revisited::unite(&mut poses, &mut rows) {
+        table.warn(&said);
+    }
     let mut data = Displacements { wrench_frame, wrench_at, measured_frame, measured_at, poses, visits, rows };
     data.count_from_the_beginning();
     complete.then_some(data)

@@ -18,6 +18,7 @@ mod poses;
 mod positions;
 pub(crate) mod read;
 mod reference;
+mod revisited;
 #[cfg(test)]
 mod tests;
 mod unread;
@@ -127,7 +128,8 @@ pub struct Displacements {
     pub measured_frame: Frame,
     /// Where the displacement is measured, in the tool frame (m).
     pub measured_at: [f64; 3],
-    /// Pose ids in order of appearance; rows refer to them by index.
+    /// Pose ids in order of appearance; rows refer to them by index. Of several ids with the
+    /// same joint coordinates there is the first.
     pub poses: Vec<String>,
     /// Visit ids in order of appearance; rows refer to them by index. Without
     /// the column, every row is a visit of its own.
@@ -173,7 +175,8 @@ pub struct Positions {
     pub payload_at: [f64; 3],
     /// The point that is read, in the tool frame (m).
     pub measured_at: [f64; 3],
-    /// Pose ids in order of appearance; rows refer to them by index.
+    /// Pose ids in order of appearance; rows refer to them by index. Of several ids with the
+    /// same joint coordinates there is the first.
     pub poses: Vec<String>,
     /// Visit ids in order of appearance; rows refer to them by index. Without
     /// the column, every row is a visit of its own.

@@ -14,7 +14,7 @@ use crate::JointKind;
 use crate::table::{Numbers, Record, Table};
 
 /// Rows of one pose have the same joint coordinates within this (rad or m).
-const SAME_POSE: f64 = 1e-6;
+pub const SAME_POSE: f64 = 1e-6;
 
 /// No joint is wound up further than this (rad); degrees that are read as
 /// radians are.
@@ -22,11 +22,17 @@ const TWO_TURNS: f64 = 2.0 * core::f64::consts::TAU;
 
 /// A row that is read at a pose.
 pub trait AtPose {
+    /// Where else joint coordinates go that differ between the rows of a pose, if anywhere.
+    const UNDER_LOAD: &str = "";
+
     /// Its line in the file, from 1.
     fn line(&self) -> usize;
 
     /// The index of its pose.
     fn pose(&self) -> usize;
+
+    /// Gives it to another.
+    fn set_pose(&mut self, pose: usize);
 
     /// Its joint coordinates (rad or m).
     fn q(&self) -> &[f64];
@@ -149,7 +155,10 @@ fn check_pose<R: AtPose>(table: &Table<'_>, columns: &Columns, record: &Record, 
                 record,
                 columns.q[i],
                 &format!("pose `{pose}` has another q{} in line {}", i + 1, first.line()),
-                "rows of one pose have the same joint coordinates; give another pose another id",
+                &format!(
+                    "rows of one pose have the same joint coordinates; give another pose another id{}",
+                    R::UNDER_LOAD
+                ),
             );
         }
     }

@@ -8,7 +8,7 @@ use robstiff_robots::quantity::Dimension;
 
 use super::beyond::{LENGTHS, PAYLOAD, warn_of};
 use super::poses::{AtPose, Columns as PoseColumns, Poses};
-use super::{PositionRow, Positions};
+use super::{PositionRow, Positions, revisited};
 use crate::table::{Numbers, Record, Table};
 
 /// The columns of the table.
@@ -27,6 +27,10 @@ impl AtPose for PositionRow {
 
     fn pose(&self) -> usize {
         self.pose
+    }
+
+    fn set_pose(&mut self, pose: usize) {
+        self.pose = pose;
     }
 
     fn q(&self) -> &[f64] {
@@ -50,7 +54,10 @@ pub fn read(table: &Table<'_>, robot: &Description, payload_at: [f64; 3], measur
     }
     columns.at.check_ranges(table, &robot.joints, &rows);
     check_sizes(table, &columns, &rows);
-    let [poses, visits] = poses.names();
+    let [mut poses, visits] = poses.names();
+    if let Some(said) = revisited::unite(&mut poses, &mut rows) {
+        table.warn(&said);
+    }
     complete.then_some(Positions { payload_at, measured_at, poses, visits, rows })
 }
 

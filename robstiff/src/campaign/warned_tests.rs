@@ -35,6 +35,18 @@ fn rows_of_the_unloaded_reading_are_left_out() {
     assert_eq!(found, ["3:15 `NaN` is not finite"]);
 }
 
+/// An id a row is not a pose a row, and visits stay as they are.
+#[test]
+fn rows_with_the_same_joint_coordinates_are_of_one_pose() {
+    let rows = "1,v,0,0.5,1,2,3,4,5,6\n2,w,9,0.5,1,2,3,4,5,6\n3,x,0,0.5,1,2,3,4,5,6\n";
+    let campaign = Folder::new("revisited", CAMPAIGN, &format!("{HEADER}\n{rows}")).read().expect("nothing is wrong");
+    let Data::Displacement(data) = campaign.data else { panic!("kind displacement") };
+    assert_eq!(data.rows.iter().map(|row| (row.pose, row.visit)).collect::<Vec<_>>(), [(0, 0), (1, 1), (0, 2)]);
+    assert_eq!((data.poses.join(" ").as_str(), data.visits.len()), ("1 2", 3));
+    let said = "loads.csv: pose `3` has the joint coordinates of pose `1`; rows with the same count as one pose";
+    assert!(campaign.warnings.iter().any(|warning| warning.ends_with(said)), "{:?}", campaign.warnings);
+}
+
 /// Degrees in a column without a unit are radians that no joint reaches.
 #[test]
 fn coordinates_that_joints_do_not_reach_are_warned_of() {
