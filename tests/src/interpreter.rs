@@ -192,8 +192,9 @@ impl Scope<'_> {
                     "T::turn_blocks" => turn_blocks(&arguments().collect::<Vec<_>>()),
                     "T::zero" => vec![0.0],
                     "T::one" => vec![1.0],
-                    "T::of" | "Matrix4::new" | "Matrix4::from" | "Matrix6::new" | "Vector6::new" | "SMatrix::from"
-                    | "SVector::from" => arguments().collect(),
+                    "T::of" | "Matrix4::new" | "Matrix6::new" | "Vector6::new" | "core::convert::From::from" => {
+                        arguments().collect()
+                    }
                     other => panic!("a call of {other}"),
                 }
             }

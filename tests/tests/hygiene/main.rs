@@ -1,8 +1,12 @@
 //! Generated code in files that have no prelude, or other things under the
-//! names of one.
+//! names of one, or under those that the code itself has.
 
-use robstiff::Robot;
-use robstiff::nalgebra::SVector;
+mod with_its_names;
+
+use nalgebra::{Matrix6, SVector, Vector6};
+use robstiff::{Robot, State, batch};
+use robstiff_tests::arms;
+use robstiff_tests::judge::trials;
 
 mod without_prelude {
     #![no_implicit_prelude]
@@ -56,4 +60,41 @@ fn names_around_generated_code_do_not_matter() {
     let limits = named_as_in_the_prelude::Option.limits();
     assert_eq!(limits, [Some([-1.0, 1.0])]);
     assert_eq!(named_as_in_the_prelude::FnMut.compliance(&q), named_as_in_the_prelude::Option.compliance(&q));
+}
+
+/// What is under the names of its variables changes nothing, in single poses and in batches.
+#[test]
+fn names_in_generated_code_do_not_matter() {
+    is_the_same(with_its_names::Rv130hsc, arms::Rv130hsc);
+    is_the_same(with_its_names::KukaKr210L150, arms::KukaKr210L150);
+    is_the_same(with_its_names::EveryEffect, arms::EveryEffect);
+    is_the_same(with_its_names::EveryLaw, arms::EveryLaw);
+    is_the_same(with_its_names::Sliders, arms::Sliders);
+    is_the_same_in_batches(with_its_names::Rv130hsc, arms::Rv130hsc);
+    is_the_same_in_batches(with_its_names::EveryLaw, arms::EveryLaw);
+}
+
+fn is_the_same<const N: usize>(one: impl Robot<N>, other: impl Robot<N>) {
+    let (poses, wrenches): (Vec<SVector<f64, N>>, Vec<Vector6<f64>>) = trials::<N>(20, 5).unzip();
+    for (q, wrench) in poses.iter().zip(&wrenches) {
+        assert_eq!(one.transform(q), other.transform(q));
+        assert_eq!(one.link_frames(q), other.link_frames(q));
+        assert_eq!(one.jacobian(q), other.jacobian(q));
+        assert_eq!(one.compliance(q), other.compliance(q));
+        assert_eq!(one.deflection(q, wrench), other.deflection(q, wrench));
+        assert_eq!(one.joint_torques(q, wrench), other.joint_torques(q, wrench));
+        assert_eq!(one.statics(q).compliance, other.statics(q).compliance);
+        let [mut after, mut after_other] = [State::new(), State::new()];
+        assert_eq!(one.deflection_with(q, wrench, &mut after), other.deflection_with(q, wrench, &mut after_other));
+        assert_eq!(after.plays, after_other.plays);
+    }
+    assert_eq!(one.joint_compliance(), other.joint_compliance());
+}
+
+fn is_the_same_in_batches<const N: usize>(one: impl Robot<N>, other: impl Robot<N>) {
+    let poses: Vec<SVector<f64, N>> = trials::<N>(20, 5).map(|(q, _)| q).collect();
+    let [mut compliances, mut compliances_other] = [(); 2].map(|()| vec![Matrix6::zeros(); poses.len()]);
+    batch::compliance(&one, &poses[..], &mut compliances);
+    batch::compliance(&other, &poses[..], &mut compliances_other);
+    assert_eq!(compliances, compliances_other);
 }

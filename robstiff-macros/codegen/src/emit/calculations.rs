@@ -6,11 +6,13 @@ use quote::quote;
 use robstiff_robots::Description;
 
 use super::Signature;
+use super::body::Reader;
+use super::facts::from;
 use crate::function::Function;
 use crate::symbolic::{self, Algorithm, columns};
 
 /// Builds a result from its entries.
-pub(super) type Build = fn(&Description, &[TokenStream]) -> TokenStream;
+pub(super) type Build = fn(&Description, Reader, &[TokenStream]) -> TokenStream;
 
 /// A method that calculates.
 pub(super) struct Calculation {
@@ -34,15 +36,15 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
         doc: "Frame of the tool centre point in the base frame, 4 x 4 homogeneous (m).",
         signature: |n| quote!(fn transform<T: Real>(&self, q: &SVector<T, #n>) -> Matrix4<T>),
         algorithm: symbolic::transform,
-        result: |_, entries| quote!(Matrix4::new(#(#entries),*)),
-        in_columns: Some((columns::transform, |_, frame| quote!(Matrix4::from([#(#frame),*])))),
+        result: |_, _, entries| quote!(Matrix4::new(#(#entries),*)),
+        in_columns: Some((columns::transform, |_, reader, frame| from(reader, "Matrix4", frame))),
     },
     Calculation {
         name: "link_frames",
         doc: "Frames behind the joints in the base frame, 4 x 4 homogeneous (m); the last is the flange.",
         signature: |n| quote!(fn link_frames<T: Real>(&self, q: &SVector<T, #n>) -> [Matrix4<T>; #n]),
         algorithm: symbolic::link_frames,
-        result: |_, entries| {
+        result: |_, _, entries| {
             let frames = entries.chunks(16).map(|frame| quote!(Matrix4::new(#(#frame),*)));
             quote!([#(#frames),*])
         },
@@ -53,8 +55,8 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
         doc: "Jacobian of the tool centre point in the base frame, 6 rows: translation (m/rad), rotation.",
         signature: |n| quote!(fn jacobian<T: Real>(&self, q: &SVector<T, #n>) -> SMatrix<T, 6, #n>),
         algorithm: symbolic::jacobian,
-        result: |_, entries| jacobian(entries),
-        in_columns: Some((columns::jacobian, |_, entries| jacobian(entries))),
+        result: |_, reader, entries| jacobian(reader, entries),
+        in_columns: Some((columns::jacobian, |_, reader, entries| jacobian(reader, entries))),
     },
     Calculation {
         name: "compliance",
@@ -64,15 +66,15 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
             rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.",
         signature: |n| quote!(fn compliance<T: Real>(&self, q: &SVector<T, #n>) -> Matrix6<T>),
         algorithm: symbolic::compliance,
-        result: |_, entries| quote!(Matrix6::new(#(#entries),*)),
-        in_columns: Some((columns::compliance, |_, entries| quote!(Matrix6::new(#(#entries),*)))),
+        result: |_, _, entries| quote!(Matrix6::new(#(#entries),*)),
+        in_columns: Some((columns::compliance, |_, _, entries| quote!(Matrix6::new(#(#entries),*)))),
     },
     Calculation {
         name: "deflection",
         doc: "Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm).",
         signature: |n| quote!(fn deflection<T: Real>(&self, q: &SVector<T, #n>, wrench: &Vector6<T>) -> Vector6<T>),
         algorithm: symbolic::deflection,
-        result: |_, entries| quote!(Vector6::new(#(#entries),*)),
+        result: |_, _, entries| quote!(Vector6::new(#(#entries),*)),
         in_columns: None,
     },
     Calculation {
@@ -80,7 +82,7 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
         doc: "Joint torques (Nm) (forces (N) of sliding joints) that hold a wrench at the tool centre point.",
         signature: |n| quote!(fn joint_torques<T: Real>(&self, q: &SVector<T, #n>, wrench: &Vector6<T>) -> SVector<T, #n>),
         algorithm: symbolic::joint_torques,
-        result: |_, entries| quote!(SVector::from([#(#entries),*])),
+        result: |_, reader, entries| from(reader, "SVector", entries),
         in_columns: None,
     },
     Calculation {
@@ -88,13 +90,13 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
         doc: "Transform, Jacobian and compliance of one pose, with what they have in common.",
         signature: |n| quote!(fn statics<T: Real>(&self, q: &SVector<T, #n>) -> Statics<#n, T>),
         algorithm: symbolic::statics,
-        result: |_, entries| {
+        result: |_, reader, entries| {
             let (frame, rest) = entries.split_at(16);
-            statics(&quote!(Matrix4::new(#(#frame),*)), rest)
+            statics(reader, &quote!(Matrix4::new(#(#frame),*)), rest)
         },
-        in_columns: Some((columns::statics, |_, outputs| {
+        in_columns: Some((columns::statics, |_, reader, outputs| {
             let (frame, rest) = outputs.split_at(4);
-            statics(&quote!(Matrix4::from([#(#frame),*])), rest)
+            statics(reader, &from(reader, "Matrix4", frame), rest)
         })),
     },
 ];
@@ -113,7 +115,7 @@ pub(super) const DEFLECTION_WITH: Calculation = Calculation {
         ) -> Vector6<T>)
     },
     algorithm: symbolic::deflection_with,
-    result: |robot, entries| {
+    result: |robot, _, entries| {
         let (displacement, plays) = entries.split_at(6);
         let after = symbolic::plays(robot).into_iter().zip(plays).map(|((joint, index), play)| {
             let (joint, index) = (Literal::usize_unsuffixed(joint), Literal::usize_unsuffixed(index));
@@ -125,15 +127,15 @@ pub(super) const DEFLECTION_WITH: Calculation = Calculation {
 };
 
 /// A Jacobian from its entries, column by column.
-fn jacobian(entries: &[TokenStream]) -> TokenStream {
-    let columns = entries.chunks(6).map(|column| quote!([#(#column),*]));
-    quote!(SMatrix::from([#(#columns),*]))
+fn jacobian(reader: Reader, entries: &[TokenStream]) -> TokenStream {
+    let columns: Vec<_> = entries.chunks(6).map(|column| quote!([#(#column),*])).collect();
+    from(reader, "SMatrix", &columns)
 }
 
 /// Transform, Jacobian and compliance together.
-fn statics(transform: &TokenStream, rest: &[TokenStream]) -> TokenStream {
+fn statics(reader: Reader, transform: &TokenStream, rest: &[TokenStream]) -> TokenStream {
     let (columns, compliance) = rest.split_at(rest.len() - 36);
-    let jacobian = jacobian(columns);
+    let jacobian = jacobian(reader, columns);
     quote!(Statics { transform: #transform, jacobian: #jacobian, compliance: Matrix6::new(#(#compliance),*) })
 }
 

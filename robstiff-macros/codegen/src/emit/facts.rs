@@ -6,6 +6,7 @@ use quote::{ToTokens, format_ident, quote};
 use robstiff_robots::{Convention, Description, DhEntry, Effect, JointKind, Place, Placement};
 
 use super::Signature;
+use super::body::Reader;
 use crate::symbolic;
 
 /// A method that states a fact.
@@ -13,22 +14,22 @@ pub(super) struct Fact {
     /// The method's signature.
     pub signature: Signature,
     /// What it returns.
-    pub value: fn(&Description) -> TokenStream,
+    pub value: fn(&Description, Reader) -> TokenStream,
 }
 
 /// Those of every robot, in the order of the trait.
 pub(super) const FACTS: [Fact; 8] = [
-    Fact { signature: |_| quote!(fn name(&self) -> &str), value: |robot| robot.name.to_token_stream() },
+    Fact { signature: |_| quote!(fn name(&self) -> &str), value: |robot, _| robot.name.to_token_stream() },
     Fact {
         signature: |_| quote!(fn convention(&self) -> Convention),
-        value: |robot| match robot.convention {
+        value: |robot, _| match robot.convention {
             Convention::Standard => quote!(Convention::Standard),
             Convention::Modified => quote!(Convention::Modified),
         },
     },
     Fact {
         signature: |n| quote!(fn joint_kinds(&self) -> [JointKind; #n]),
-        value: |robot| {
+        value: |robot, _| {
             let kinds = robot.joints.iter().map(|joint| match joint.kind {
                 JointKind::Revolute => quote!(JointKind::Revolute),
                 JointKind::Prismatic => quote!(JointKind::Prismatic),
@@ -38,14 +39,14 @@ pub(super) const FACTS: [Fact; 8] = [
     },
     Fact {
         signature: |n| quote!(fn joint_compliance(&self) -> SVector<f64, #n>),
-        value: |robot| {
-            let compliances = robot.joints.iter().map(|joint| number(joint.compliance()));
-            quote!(SVector::from([#(#compliances),*]))
+        value: |robot, reader| {
+            let compliances: Vec<_> = robot.joints.iter().map(|joint| number(joint.compliance())).collect();
+            from(reader, "SVector", &compliances)
         },
     },
     Fact {
         signature: |n| quote!(fn limits(&self) -> [::core::option::Option<[f64; 2]>; #n]),
-        value: |robot| {
+        value: |robot, _| {
             let limits = robot.joints.iter().map(|joint| match joint.limits.map(|limits| limits.map(number)) {
                 Some([low, high]) => quote!(::core::option::Option::Some([#low, #high])),
                 None => quote!(::core::option::Option::None),
@@ -55,13 +56,13 @@ pub(super) const FACTS: [Fact; 8] = [
     },
     Fact {
         signature: |_| quote!(fn effects(&self) -> &[Effect]),
-        value: |robot| {
+        value: |robot, _| {
             let effects = robot.effects.iter().map(effect);
             quote!(&[#(#effects),*])
         },
     },
-    Fact { signature: |_| quote!(fn base(&self) -> Matrix4<f64>), value: |robot| frame(&robot.base) },
-    Fact { signature: |_| quote!(fn tool(&self) -> Matrix4<f64>), value: |robot| frame(&robot.tool) },
+    Fact { signature: |_| quote!(fn base(&self) -> Matrix4<f64>), value: |robot, _| frame(&robot.base) },
+    Fact { signature: |_| quote!(fn tool(&self) -> Matrix4<f64>), value: |robot, _| frame(&robot.tool) },
 ];
 
 fn frame(placement: &Placement) -> TokenStream {
@@ -99,6 +100,16 @@ fn effect(effect: &Effect) -> TokenStream {
         quote!(#name: #value)
     });
     quote!(Effect::#variant { #place #(#numbers),* })
+}
+
+/// A vector or matrix from a list. The compiler is told which `from` is meant: a trait of the
+/// user's may have one for all types.
+pub(super) fn from(reader: Reader, kind: &str, entries: &[TokenStream]) -> TokenStream {
+    let kind = format_ident!("{kind}");
+    match reader {
+        Reader::Compiler => quote!(::core::convert::From::from([#(#entries),*])),
+        Reader::Person => quote!(#kind::from([#(#entries),*])),
+    }
 }
 
 /// A number as one would write it: `-0.41`, `2.97e-7`.

@@ -1,6 +1,7 @@
 //! From functions to Rust: a type, and its `Robot` implementation.
 
 mod body;
+mod bound;
 mod calculations;
 mod facts;
 mod fuse;

@@ -7,6 +7,7 @@ use syn::Ident;
 
 use super::Signature;
 use super::body::{Body, Reader, body, handing_over};
+use super::bound::hidden;
 use super::calculations::{Build, CALCULATIONS, Calculation, DEFLECTION_WITH, Generated, compliance_entries};
 use super::facts::{FACTS, Fact, number};
 use crate::function::{Cost, Function};
@@ -30,10 +31,12 @@ pub fn tokens(robot: &Description, origin: &Origin) -> TokenStream {
     let definition = definition(robot, origin, &functions, Reader::Compiler);
     let imports = imports_of(robot, &origin.runtime);
     let implementation = implementation(robot, &functions, Reader::Compiler);
+    let hidden = hidden(&implementation);
     quote! {
         #definition
         const _: () = {
             #imports
+            #hidden
             #implementation
         };
     }
@@ -54,10 +57,12 @@ pub fn skeleton(name: &str, joints: Option<usize>, origin: &Origin) -> TokenStre
         // No robot has an underscore in its name.
         None => (quote!(<const JOINT_COUNT: usize>), quote!(JOINT_COUNT)),
     };
-    let methods = signatures().map(|signature| {
-        let signature = signature(&count);
-        quote!(#signature { ::core::unimplemented!() })
-    });
+    let methods: TokenStream = signatures()
+        .map(|signature| {
+            let signature = signature(&count);
+            quote!(#signature { ::core::unimplemented!() })
+        })
+        .collect();
     // Also missing docs would be an error of their own.
     let doc = quote!(#[doc = " A robot whose description has mistakes."]);
     // Where the number of joints is unknown, a call of what does not depend on
@@ -74,20 +79,21 @@ pub fn skeleton(name: &str, joints: Option<usize>, origin: &Origin) -> TokenStre
         let name = cost_of(calculation);
         quote!(#doc pub const #name: #runtime::Cost = #runtime::Cost { trig: 0, mul: 0, add: 0, neg: 0, root: 0 };)
     });
-    let imports = imports(runtime, &[]);
+    let (imports, hidden, derived) = (imports(runtime, &[]), hidden(&methods), derived(Reader::Compiler));
     quote! {
         #doc
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #derived
         #visibility struct #name;
         const _: () = {
             #imports
+            #hidden
             #inherent
             impl #name {
                 #(#doc pub const #constants: f64 = 1.0;)*
                 #(#costs)*
             }
             impl #generics Robot<#count> for #name {
-                #(#methods)*
+                #methods
             }
         };
     }
@@ -128,7 +134,6 @@ fn imports(runtime: &TokenStream, more: &[&str]) -> TokenStream {
     // Beyond these, paths are whole: the user's file may go without a prelude,
     // or have an `Option` of its own.
     quote! {
-        use ::core::convert::From as _;
         use #runtime::nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
         use #runtime::{#(#names),*};
     }
@@ -188,11 +193,12 @@ pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Gene
                 #runtime::Cost { trig: #trig, mul: #mul, add: #add, neg: #neg, root: #root };
         }
     });
+    let derived = derived(reader);
     // Nobody needs every constant.
     let allow = allow(reader, "dead_code");
     quote! {
         #(#[doc = #docs])*
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #derived
         #visibility struct #name;
 
         #allow
@@ -200,6 +206,24 @@ pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Gene
             #(#constants)*
             #(#costs)*
         }
+    }
+}
+
+/// What the type derives. Macros of other crates have the same names, and the user may have
+/// imported one.
+fn derived(reader: Reader) -> TokenStream {
+    match reader {
+        Reader::Compiler => quote! {
+            #[derive(
+                ::core::clone::Clone,
+                ::core::marker::Copy,
+                ::core::fmt::Debug,
+                ::core::default::Default,
+                ::core::cmp::PartialEq,
+                ::core::cmp::Eq,
+            )]
+        },
+        Reader::Person => quote!(#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]),
     }
 }
 
@@ -227,7 +251,7 @@ pub(super) fn implementation(robot: &Description, functions: &[Generated], reade
     let n = Literal::usize_unsuffixed(robot.joints.len());
     let count = quote!(#n);
     let facts = FACTS.into_iter().map(|Fact { signature, value }| {
-        let (signature, value) = (signature(&count), value(robot));
+        let (signature, value) = (signature(&count), value(robot, reader));
         quote!(#[inline] #signature { #value })
     });
     let calculations = functions.iter().map(|generated| calculation(robot, generated, reader, &count));
@@ -250,7 +274,7 @@ fn calculation(robot: &Description, generated: &Generated, reader: Reader, n: &T
     let Generated { method, function, in_columns } = generated;
     let written = |function: &Function, result: Build| {
         let Body { statements, outputs } = body(function, reader);
-        let result = result(robot, &outputs);
+        let result = result(robot, reader, &outputs);
         quote!(#statements #result)
     };
     let mut code = written(function, method.result);

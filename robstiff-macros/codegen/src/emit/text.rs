@@ -18,7 +18,11 @@ pub fn source(robot: &Description, origin: &Origin) -> String {
     let imports = imports_of(robot, &origin.runtime);
     let definition = definition(robot, origin, &functions, Reader::Person);
     let implementation = implementation(robot, &functions, Reader::Person);
-    let file = syn::parse2(quote!(#imports #definition #implementation)).expect("generated code is Rust");
+    // The file may go without a prelude.
+    let from = quote!(
+        use ::core::convert::From as _;
+    );
+    let file = syn::parse2(quote!(#from #imports #definition #implementation)).expect("generated code is Rust");
     header(robot, origin, &functions) + &polished(&unparse(&file))
 }
 
