@@ -283,6 +283,12 @@ impl<'t> Table<'t> {
         &record.fields[index]
     }
 
+    /// What is written in a row in a column of numbers.
+    #[cfg(feature = "identify")]
+    pub fn written<'r>(&self, record: &'r Record, column: Numbers) -> &'r str {
+        &record.fields[column.index]
+    }
+
     /// Reports a problem with a field (by its index) of a line.
     pub fn report(&self, line: usize, field: usize, message: &str, help: &str) {
         if self.problems.borrow().len() < Diagnostics::MOST {

@@ -64,6 +64,16 @@ const CASES: &[(&str, &str, &str)] = &[
     ("loads.csv", "a,1,0,30,200,400,600", "a,1,0,30,2e200,4e3,600"),
     ("loads.csv", "b,2,45,60", "b,1,45,60"),
     ("loads.csv", "b,2,45", "a,2,45"),
+    (
+        "loads.csv",
+        "visit,q1 [deg],q2 [deg],Fx [N],Fy [N],Fz [N],dx [um],dy [um],dz [um]\na,1,",
+        "time,q1 [deg],q2 [deg],Fx [N],Fy [N],Fz [N],dx [um],dy [um],dz [um]\na,08:15,",
+    ),
+    (
+        "loads.csv",
+        "visit,q1 [deg],q2 [deg],Fx [N],Fy [N],Fz [N],dx [um],dy [um],dz [um]\na,1,",
+        "time [min],q1 [deg],q2 [deg],Fx [N],Fy [N],Fz [N],dx [um],dy [um],dz [um]\na,08:15:00,",
+    ),
     ("loads.csv", "b,2,45,60,100,200,300,10,20,30", "b;2;45;60;100;200;300;10;20;30"),
 ];
 

@@ -9,14 +9,15 @@ use robstiff_robots::quantity::Dimension;
 
 use super::beyond::{DISPLACEMENT, FORCE, MOMENT, ROTATION, Usual, warn_of};
 use super::poses::{AtPose, Columns as PoseColumns, Poses, dimension_of};
-use super::{Displacements, Frame, Observation, alone, reference, revisited, unread};
+use super::{Displacements, Frame, Observation, alone, reference, revisited, times, unread};
 use crate::JointKind;
 use crate::table::{Numbers, Record, Table};
 
 /// The columns of the table.
 struct Columns {
     at: PoseColumns,
-    time: Option<Numbers>,
+    /// Of every row.
+    time: Option<Vec<Option<f64>>>,
     temperature: Option<Numbers>,
     force: [Numbers; 3],
     moment: [Option<Numbers>; 3],
@@ -56,7 +57,8 @@ pub fn read(
     let columns = columns(table, robot)?;
     let (mut poses, mut rows) = (Poses::default(), Vec::new());
     let mut complete = true;
-    let observed: Vec<_> = table.records.iter().map(|record| (record, observation(table, &columns, record))).collect();
+    let observed = table.records.iter().enumerate();
+    let observed: Vec<_> = observed.map(|(row, record)| (record, observation(table, &columns, row, record))).collect();
     let is_reference = |row: &Option<Observation>| row.as_ref().is_some_and(reference::is_reference);
     // Where there are no others they are asked about as what nobody read.
     let all = observed.iter().all(|(_, row)| is_reference(row));
@@ -171,7 +173,7 @@ fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
         found.into_iter().collect::<Option<Vec<_>>>().map(Some).ok_or(())
     };
     let at = PoseColumns::find(table, &robot.joints);
-    let time = table.numbers("time", Dimension::Time);
+    let time = times::read(table);
     let temperature = table.numbers("temperature", Dimension::Temperature);
     let force = all(["Fx", "Fy", "Fz"], Dimension::Force);
     let moment = ["Mx", "My", "Mz"].map(|name| table.numbers(name, Dimension::Torque));
@@ -199,9 +201,9 @@ fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
 
 /// One row, whose pose and visit are not numbered yet; every number is checked before any
 /// gives it up.
-fn observation(table: &Table<'_>, columns: &Columns, record: &Record) -> Option<Observation> {
+fn observation(table: &Table<'_>, columns: &Columns, row: usize, record: &Record) -> Option<Observation> {
     let optional = |column: Option<Numbers>| column.map(|column| table.number(record, column));
-    let time = optional(columns.time);
+    let time = columns.time.as_ref().map(|times| times[row]);
     let temperature = optional(columns.temperature);
     let q = columns.at.coordinates(table, record);
     let force = table.all(record, columns.force);

@@ -21,6 +21,7 @@ mod reference;
 mod revisited;
 #[cfg(test)]
 mod tests;
+mod times;
 mod unread;
 #[cfg(test)]
 mod warned_tests;
@@ -147,7 +148,8 @@ pub struct Observation {
     pub pose: usize,
     /// Index into [`Displacements::visits`].
     pub visit: usize,
-    /// Time (s). Where a file tells Unix time or that of the day, since the campaign began.
+    /// Time (s). Where a file tells Unix time or that of the day, or what a clock showed, since
+    /// the campaign began.
     pub time: Option<f64>,
     /// Temperature (degrees Celsius).
     pub temperature: Option<f64>,
@@ -194,7 +196,7 @@ pub struct PositionRow {
     pub pose: usize,
     /// Index into [`Positions::visits`].
     pub visit: usize,
-    /// Time (s).
+    /// Time (s); of a clock since the midnight before the first row.
     pub time: Option<f64>,
     /// Temperature (degrees Celsius).
     pub temperature: Option<f64>,

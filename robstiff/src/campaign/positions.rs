@@ -8,13 +8,14 @@ use robstiff_robots::quantity::Dimension;
 
 use super::beyond::{LENGTHS, PAYLOAD, warn_of};
 use super::poses::{AtPose, Columns as PoseColumns, Poses};
-use super::{PositionRow, Positions, revisited};
+use super::{PositionRow, Positions, revisited, times};
 use crate::table::{Numbers, Record, Table};
 
 /// The columns of the table.
 struct Columns {
     at: PoseColumns,
-    time: Option<Numbers>,
+    /// Of every row.
+    time: Option<Vec<Option<f64>>>,
     temperature: Option<Numbers>,
     position: [Numbers; 3],
     payload: Option<Numbers>,
@@ -43,9 +44,10 @@ pub fn read(table: &Table<'_>, robot: &Description, payload_at: [f64; 3], measur
     let columns = columns(table, robot)?;
     let (mut poses, mut rows) = (Poses::default(), Vec::new());
     let mut complete = true;
-    for record in &table.records {
+    for (number, record) in table.records.iter().enumerate() {
         let (pose, visit, named) = poses.named(table, &columns.at, record);
-        let Some(row) = row(table, &columns, record, pose, visit).filter(|_| named) else {
+        let time = columns.time.as_ref().map(|times| times[number]);
+        let Some(row) = row(table, &columns, record, (pose, visit, time)).filter(|_| named) else {
             complete = false;
             continue;
         };
@@ -81,7 +83,7 @@ fn check_sizes(table: &Table<'_>, columns: &Columns, rows: &[PositionRow]) {
 
 fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
     let at = PoseColumns::find(table, &robot.joints);
-    let time = table.numbers("time", Dimension::Time);
+    let time = times::read(table);
     let temperature = table.numbers("temperature", Dimension::Temperature);
     let position = ["px", "py", "pz"].map(|name| table.require(name, Dimension::Length));
     let payload = table.numbers("payload", Dimension::Mass);
@@ -90,9 +92,14 @@ fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
 }
 
 /// One row; every number is checked before any gives it up.
-fn row(table: &Table<'_>, columns: &Columns, record: &Record, pose: usize, visit: usize) -> Option<PositionRow> {
+fn row(
+    table: &Table<'_>,
+    columns: &Columns,
+    record: &Record,
+    (pose, visit, time): (usize, usize, Option<Option<f64>>),
+) -> Option<PositionRow> {
     let optional = |column: Option<Numbers>| column.map(|column| table.number(record, column));
-    let (time, temperature) = (optional(columns.time), optional(columns.temperature));
+    let temperature = optional(columns.temperature);
     let q = columns.at.coordinates(table, record);
     let position = table.all(record, columns.position);
     let payload = columns.payload.map_or(Some(0.0), |column| {
