@@ -225,10 +225,15 @@ const BETTER: f64 = 2.0;
 /// The best proposals of a linear search that physics allows, with nonlinear
 /// numbers in their own form, the best first.
 fn nonlinear(bench: &Bench<'_>, setting: &Setting<'_>, beam: &[Fitted]) -> Vec<Fitted> {
-    let Some(best) = beam.iter().find(|model| model.physical) else { return Vec::new() };
+    let best = beam.iter().find(|model| model.physical);
     // Curvature can change a criterion by this much before it changes the order.
-    let near = beam.iter().filter(|model| model.physical && model.bic < best.bic + CURVATURE).take(REFITTED);
-    best_of(near.filter_map(|model| bench.refit(setting, model).ok()).collect())
+    let near = |model: &&Fitted| best.is_none_or(|best| model.bic < best.bic + CURVATURE);
+    let physical = beam.iter().filter(|model| model.physical).filter(near).take(REFITTED);
+    // A joint that takes up what is missing spoils the slope there of what is, and its
+    // criterion: a lever's, of one that hardly turned without it. In its own form, with the
+    // joint as it then is, physics may allow it.
+    let otherwise = beam.iter().filter(|model| !model.physical && bench.is_nonlinear(&model.named)).take(PROPOSALS);
+    best_of(physical.chain(otherwise).filter_map(|model| bench.refit(setting, model).ok()).collect())
 }
 
 /// How many proposals are refitted in their own form.

@@ -35,7 +35,11 @@ pub struct State {
 
 /// Gauss-Newton steps before a model counts as one that has no solution; two
 /// to four do for what is physically possible.
-const PASSES: usize = 12;
+const PASSES: usize = 24;
+
+/// After so many, numbers may swing about their solution, as a lever does with a joint that
+/// nothing but it turns: they then go half of each step.
+const WHOLE: usize = 8;
 
 /// A step that moves the predictions by less than this share of the noise of a
 /// reading, all together, is none.
@@ -89,7 +93,8 @@ impl<'c> Bench<'c> {
         let nonlinear = self.nonlinear(named);
         let mut theta = vec![0.0; nonlinear.len()];
         let mut known: Option<Fit> = None;
-        for _ in 0..PASSES {
+        for pass in 0..PASSES {
+            let share = if pass < WHOLE { 1.0 } else { 0.5 };
             let setup = self.setup(&nonlinear, &theta);
             let point = self.point(setup.clone());
             let base = if more { self.base_at(&point) } else { self.base.to_vec() };
@@ -110,15 +115,15 @@ impl<'c> Bench<'c> {
             let mut tangents = Vec::new();
             if !nonlinear.is_empty() {
                 // They need coefficients, first those without them.
-                let fit = known.map_or_else(
-                    || {
+                let fit = match &known {
+                    Some(fit) => fit,
+                    None => {
                         let places: Vec<usize> = linear.iter().map(|&column| place(column)).collect();
                         let problem = self.regression(&point, raw.select_columns(&places), readings.clone());
-                        self.solved(&problem, &linear)
-                    },
-                    Ok,
-                )?;
-                tangents = self.tangents(&nonlinear, &theta, &fit);
+                        &self.solved(&problem, &linear)?
+                    }
+                };
+                tangents = self.tangents(&nonlinear, &theta, fit);
             }
             for ((column, tangent), &value) in tangents.iter().zip(&theta) {
                 // A coefficient is the whole number, not a step from here.
@@ -133,14 +138,14 @@ impl<'c> Bench<'c> {
                 // Not beyond what is possible on the way.
                 let next = fit.coefficients[at].clamp(-most, most);
                 moves.axpy(next - *theta, &problem.white.column(at), 1.0);
-                *theta = next;
+                *theta += share * (next - *theta);
             };
             nonlinear.iter().zip(&mut theta).for_each(step);
             let noise = fit.rss / problem.freedom(&fit);
             if moves.norm_squared() <= SETTLED * SETTLED * noise {
                 return Ok(State { setup, fit, tangents, readings, base });
             }
-            known = Some(fit);
+            known = Some(known.map_or_else(|| fit.clone(), |last| part_of_the_way(&last, &fit, share)));
         }
         Err(String::from("its numbers do not settle"))
     }
@@ -234,4 +239,14 @@ impl<'c> Bench<'c> {
     pub(super) fn regression(&self, point: &Point<'c>, raw: DMatrix<f64>, readings: Rc<DVector<f64>>) -> Problem {
         Problem::new(&point.samples, raw, readings, &self.prepared.correction, self.weights())
     }
+}
+
+/// The coefficients so much of the way from one fit to the next; all of it where they are
+/// not of the same columns.
+fn part_of_the_way(last: &Fit, next: &Fit, share: f64) -> Fit {
+    let mut fit = next.clone();
+    if last.columns == next.columns {
+        fit.coefficients.axpy(1.0 - share, &(&last.coefficients - &next.coefficients), 1.0);
+    }
+    fit
 }
