@@ -11,7 +11,8 @@ use crate::campaign::{Campaign, Data};
 /// No joints are all off from what is declared by more than this factor.
 const FARTHEST: f64 = 30.0;
 
-/// A factor that is in common is each joint's own within this one.
+/// A factor that is in common is each joint's own within this one, or within what its value
+/// is sure to.
 const ALIKE: f64 = 3.0;
 
 /// What looks like a unit that was taken for another, in a sentence: that all joints which
@@ -20,10 +21,13 @@ const ALIKE: f64 = 3.0;
 pub fn off_by_one_factor(campaign: &Campaign, estimates: &[Estimate]) -> Option<String> {
     let joints = estimates.iter().take(campaign.robot.joints.len());
     let seen = joints.filter(|joint| joint.visibility == Visibility::Seen && joint.declared > 0.0);
-    let mut factors: Vec<f64> = seen.map(|joint| joint.value / joint.declared).collect();
-    factors.sort_by(f64::total_cmp);
-    let median = factors.get(factors.len() / 2).copied().filter(|_| factors.len() > 1)?;
-    let is_alike = |factor: &f64| (ALIKE.recip()..=ALIKE).contains(&(factor / median));
+    // With two standard deviations of each.
+    let of = |joint: &Estimate| (joint.value / joint.declared, 2.0 * joint.std.unwrap_or(0.0) / joint.declared);
+    let mut factors: Vec<(f64, f64)> = seen.map(of).collect();
+    factors.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (median, _) = factors.get(factors.len() / 2).copied().filter(|_| factors.len() > 1)?;
+    let is_alike =
+        |&(factor, unsure): &(f64, f64)| factor + unsure >= median / ALIKE && factor - unsure <= median * ALIKE;
     if (FARTHEST.recip()..FARTHEST).contains(&median) || !factors.iter().all(is_alike) {
         return None;
     }
@@ -78,5 +82,20 @@ mod tests {
         let stiffer = "All joints come out about 1000 times as stiff as declared: a force in N taken for kN, or a \
                        displacement in mm taken for um, looks like that.";
         assert_eq!(told(1e3, declared).as_deref(), Some(stiffer));
+    }
+
+    /// One joint that the data hardly show does not hide the unit of the others.
+    #[test]
+    fn a_joint_that_is_hardly_seen_may_have_another_factor() {
+        let mut campaign = Plan::new(1).run_with(|_, row| row.wrench = row.wrench.map(|load| 1e-3 * load));
+        crate::identify::baseline::set_compliance(&mut campaign.robot.joints[1].compliance, 1e-7);
+        let mut estimates = identify(&campaign).expect("joints are seen").estimates;
+        let last = estimates.iter_mut().rfind(|joint| joint.visibility == Visibility::Seen).expect("it is");
+        last.value = 200.0 * last.declared;
+        last.std = Some(20.0 * last.declared);
+        assert_eq!(off_by_one_factor(&campaign, &estimates), None);
+        let last = estimates.iter_mut().rfind(|joint| joint.visibility == Visibility::Seen).expect("it is");
+        last.std = Some(100.0 * last.declared);
+        assert!(off_by_one_factor(&campaign, &estimates).is_some());
     }
 }
