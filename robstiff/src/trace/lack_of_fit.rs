@@ -55,6 +55,9 @@ pub(super) fn draws(options: &super::Options) -> usize {
     options.draws.max(resolving(options))
 }
 
+/// The name of the test of agreement.
+pub(super) const AGREE: &str = "readings of a pose agree";
+
 /// What the tests say.
 #[derive(Clone, Debug)]
 pub struct LackOfFit {
@@ -112,7 +115,7 @@ pub fn test(
     tests.extend(growth(setting, model));
     let agreement = agreement(setting, model, options);
     if let Some(Agreement { statistic, p_value, .. }) = agreement {
-        tests.push(StructureTest { name: "readings of a pose agree".to_owned(), statistic, p_value });
+        tests.push(StructureTest { name: AGREE.to_owned(), statistic, p_value });
     }
     let resemblance = Resemblance::new(setting, model, data, options);
     if let Some(resemblance) = &resemblance {

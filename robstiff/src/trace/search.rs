@@ -11,7 +11,7 @@ use std::vec::Vec;
 use super::bench::Bench;
 use super::beyond::{self, Beyond};
 use super::isolated::Event;
-use super::lack_of_fit::{self, LackOfFit};
+use super::lack_of_fit::{self, AGREE, LackOfFit, StructureTest};
 use super::model::Fitted;
 use super::selection::{Selection, select};
 use super::settle::{settled, told};
@@ -122,7 +122,18 @@ pub fn search<'c>(
             micrometres(repeated)
         ));
     }
+    if may_share_unloaded(prepared, &left, options) {
+        why.push_str("; rows that share an unloaded reading agree, too: a column `visit` says which do");
+    }
     Ok(Outcome { selection, left: Some(left), events, looks_like, verdict, why })
+}
+
+/// Whether what readings of a pose agree on may be their unloaded reading: of each row the
+/// file says that it has its own.
+fn may_share_unloaded(prepared: &Prepared<'_>, left: &LackOfFit, options: &Options) -> bool {
+    let data = prepared.data;
+    let agree = |test: &StructureTest| test.name == AGREE && test.p_value <= options.alpha;
+    left.structure && data.visits.len() == data.rows.len() && left.tests.iter().any(agree)
 }
 
 /// What a model leaves.
