@@ -96,13 +96,16 @@ fn faults_of_the_rig_are_named_and_not_written() {
     let named = [
         assert_named("load_cell_bias@rig", 9500, |axes| axes.torque_bias = 40.0),
         assert_named("thermal_drift@rig", 9600, |axes| axes.drift = 1.5e-6),
+        assert_named("base_slip@base", 10_000, |axes| axes.slips = vec![(29, 3e-5)]),
         assert_named("outliers@rig", 9700, |axes| axes.wild = vec![(7, 3e-4), (31, -2e-4)]),
     ];
     for (axes, trace) in named.iter().flatten() {
         assert!(trace.description.effects.is_empty(), "seed {}", axes.seed);
     }
     // Lines count from the heading.
-    assert!(named[2].iter().all(|(_, trace)| trace.effects[0].lines == [9, 33]));
+    let slipped = |(_, trace): &(Axes, Trace)| trace.effects[0].effect.value("line");
+    assert!(named[2].iter().all(|one| slipped(one) == 31.0));
+    assert!(named[3].iter().all(|(_, trace)| trace.effects[0].lines == [9, 33]));
 }
 
 #[test]

@@ -18,7 +18,7 @@ pub struct Axes {
     /// The arm as it is.
     pub truth: Description,
     /// What else there is: of the joints, creep, and of the rig what `torque_bias`,
-    /// `drift` and `wild` say.
+    /// `drift`, `wild` and `slips` say.
     pub hidden: Vec<Hidden>,
     /// The torques on every axis, in order, as shares of the largest.
     pub ramp: Vec<f64>,
@@ -32,6 +32,8 @@ pub struct Axes {
     pub drift: f64,
     /// Rows, from 0, that are off by an angle (rad).
     pub wild: Vec<(usize, f64)>,
+    /// Rows, from 0, before which the clamp of their axis slips by an angle (rad).
+    pub slips: Vec<(usize, f64)>,
     /// Seed of everything random.
     pub seed: u64,
 }
@@ -51,6 +53,7 @@ impl Axes {
             torque_bias: 0.0,
             drift: 0.0,
             wild: Vec::new(),
+            slips: Vec::new(),
             seed,
         }
     }
@@ -77,6 +80,7 @@ impl Axes {
             let turned = Vector3::from(posed.settle(&[0.0, 0.0, 0.0, 60.0, 50.0, 70.0]).rotation);
             let along = turned.normalize();
             let (mut memory, mut creep) = (posed.rested(), Creep::new(&self.hidden));
+            let first = row;
             let unloaded = self.noise * normal(&mut noise);
             for (count, share) in self.ramp.iter().enumerate() {
                 let torque = share * self.largest[usize::from(axis > 3)];
@@ -90,8 +94,11 @@ impl Axes {
                 let (since, time) = (60.0 * count as f64, 60.0 * (count + 1) as f64);
                 let grown = creep.as_mut().map_or_else(Vector3::zeros, |creep| creep.adds(&moved, since, time));
                 let wild: f64 = self.wild.iter().filter(|(at, _)| *at == row).map(|(_, off)| off).sum();
+                let slipped = self.slips.iter().filter(|(at, _)| (first..=row).contains(at));
+                let slipped: f64 = slipped.map(|(_, off)| off).sum();
                 let wandered = self.drift * (count + 1) as f64;
-                let read = along.dot(&(moved + grown)) + wandered + wild + self.noise * normal(&mut noise) - unloaded;
+                let read = along.dot(&(moved + grown)) + wandered + wild + slipped + self.noise * normal(&mut noise)
+                    - unloaded;
                 writeln!(table, "{axis},{torque},{}", 1e6 * read).expect("a text");
                 row += 1;
             }

@@ -249,7 +249,11 @@ pub fn lines(named: &NamedEffect) -> String {
 
 /// The numbers of an effect that its words do not say.
 pub fn told(named: &NamedEffect) -> impl Iterator<Item = &EffectParameter> {
-    named.effect.parameters.iter().filter(|parameter| !matches!(parameter.name, "rows" | "line" | "tool_frame"))
+    named
+        .effect
+        .parameters
+        .iter()
+        .filter(|parameter| !matches!(parameter.name, "rows" | "line" | "axis" | "tool_frame"))
 }
 
 /// A clause as a sentence.

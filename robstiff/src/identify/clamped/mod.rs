@@ -17,7 +17,6 @@ use robstiff_robots::effect::physics::PLAYS;
 
 use self::regression::torques;
 use super::baseline::{Visibility, declared, with_values};
-use super::covariance::outliers::FEW;
 use super::readable::{UNREADABLE, is_readable};
 use super::uncertainty::{WITHIN, student};
 use super::whitening::mean_share;
@@ -36,9 +35,8 @@ use crate::elements::{plays, turn};
 /// effects that do not go with the compliances found.
 pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identification, Error> {
     let less = without_laws(&campaign.robot, rows);
-    let most = (FEW * rows.len() as f64).floor() as usize;
     // What is left may be a curve of a gear.
-    let wild = wild::wild_rows(&less, &torques(&less), false, most);
+    let wild = wild::wild_rows(&less, &torques(&less), false, &wild::Room::new(&less));
     let mut left_out = wild.map_or_else(Vec::new, |(rows, _)| rows);
     left_out.sort_unstable();
     let found = slopes(campaign, rows, &left_out)?;

@@ -6,6 +6,10 @@
 //! ones, and all are wild up to the last that was significant (Rosner,
 //! Technometrics 25, 1983, 165-172). Which stands out most a median tells, which
 //! wild rows do not move.
+//!
+//! Wild rows are few, of every axis. Where many rows of one stand out, or one slip says
+//! the same of them with fewer numbers, something is missing that they all have: none of
+//! that axis is wild then.
 
 use std::vec;
 use std::vec::Vec;
@@ -14,7 +18,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::regression::{loaded, problem, rows_of};
 use crate::campaign::ClampedRow;
-use crate::identify::covariance::outliers::{STANDS_OUT, STRICT, by_median};
+use crate::identify::covariance::outliers::{FEW, STANDS_OUT, STRICT, by_median};
 use crate::identify::normal::Fit;
 use crate::identify::problem::Problem;
 use crate::identify::whitening::mean_share;
@@ -29,10 +33,100 @@ struct Worst {
     p: f64,
 }
 
-/// The rows that are wild, `most` or fewer, by index, the one that stands out most
-/// first, with the probability of the last; `raw` are the columns of the model. Unless
-/// `strict`, structure may be left, and they must stand out from that as well.
-pub fn wild_rows(rows: &[ClampedRow], raw: &DMatrix<f64>, strict: bool, most: usize) -> Option<(Vec<usize>, f64)> {
+/// How many rows may be wild, of all and of each axis (from 0).
+#[derive(Clone, Debug)]
+pub struct Room {
+    /// Of all.
+    pub all: usize,
+    of_axis: Vec<usize>,
+}
+
+/// Of an axis two rows may be wild, or this share of them, but not as many as the others.
+const FEW_OF_AXIS: f64 = 0.2;
+const TWO: usize = 2;
+
+impl Room {
+    /// That of a campaign.
+    pub fn new(rows: &[ClampedRow]) -> Self {
+        let few = |rows: usize| ((FEW_OF_AXIS * rows as f64) as usize).max(TWO).min(rows.saturating_sub(1) / 2);
+        let axes = rows.iter().map(|row| row.axis).max().unwrap_or(0);
+        Self {
+            all: (FEW * rows.len() as f64).floor() as usize,
+            of_axis: (1..=axes).map(|axis| few(rows_of(rows, axis).len())).collect(),
+        }
+    }
+
+    /// What is left of it beside rows that are wild, each told by its axis.
+    pub fn beside(&self, wild: impl IntoIterator<Item = usize>) -> Self {
+        let mut left = self.clone();
+        for axis in wild {
+            left.all = left.all.saturating_sub(1);
+            left.of_axis[axis - 1] = left.of_axis[axis - 1].saturating_sub(1);
+        }
+        left
+    }
+
+    /// An axis of which more of some rows are wild than may be.
+    fn exceeded(&self, rows: &[ClampedRow], wild: &[usize]) -> Option<usize> {
+        let count = |axis: usize| wild.iter().filter(|&&row| rows[row].axis == axis).count();
+        (1..=self.of_axis.len()).find(|&axis| count(axis) > self.of_axis[axis - 1])
+    }
+}
+
+/// The rows that are wild, by index, the one that stands out most first, with the
+/// probability of the last; `raw` are the columns of the model. Unless `strict`,
+/// structure may be left, and they must stand out from that as well.
+pub fn wild_rows(rows: &[ClampedRow], raw: &DMatrix<f64>, strict: bool, room: &Room) -> Option<(Vec<usize>, f64)> {
+    let mut at: Vec<usize> = (0..rows.len()).collect();
+    loop {
+        let own: Vec<ClampedRow> = at.iter().map(|&row| rows[row]).collect();
+        let columns = of_rows(raw, &at);
+        let (wild, p) = stand_out(&own, &columns, strict, room.all)?;
+        let slipped = || loaded(&own).into_iter().find(|&axis| slips(&own, &columns, &wild, axis));
+        let Some(axis) = room.exceeded(&own, &wild).or_else(slipped) else {
+            return Some((wild.into_iter().map(|row| at[row]).collect(), p));
+        };
+        at.retain(|&row| rows[row].axis != axis);
+    }
+}
+
+/// Columns in some rows, but those that are zero there.
+fn of_rows(raw: &DMatrix<f64>, rows: &[usize]) -> DMatrix<f64> {
+    let own = raw.select_rows(rows);
+    let moved: Vec<usize> = (0..own.ncols()).filter(|&k| own.column(k).amax() > 0.0).collect();
+    own.select_columns(&moved)
+}
+
+/// Whether one slip says of several wild rows of an axis as much with fewer numbers, by
+/// Schwarz's criterion: which row and how far it is off are two of each, and of a slip.
+fn slips(rows: &[ClampedRow], raw: &DMatrix<f64>, wild: &[usize], axis: usize) -> bool {
+    let (here, there): (Vec<usize>, Vec<usize>) = wild.iter().partition(|&&row| rows[row].axis == axis);
+    if here.len() < TWO {
+        return false;
+    }
+    let left_by = |without: &[usize], slip: bool| -> Option<f64> {
+        let kept: Vec<usize> = (0..rows.len()).filter(|row| !without.contains(row)).collect();
+        let own: Vec<ClampedRow> = kept.iter().map(|&row| rows[row]).collect();
+        let raw = of_rows(raw, &kept);
+        let base: Vec<usize> = (0..raw.ncols()).collect();
+        if !slip {
+            return Some(problem(&own, raw).total.solve(&base)?.rss);
+        }
+        let at = rows_of(&own, axis);
+        let step = |from: usize| DVector::from_fn(own.len(), |row, _| f64::from(u8::from(at[from..].contains(&row))));
+        let steps = (1..at.len()).map(step);
+        let columns: Vec<DVector<f64>> = raw.column_iter().map(|column| column.into_owned()).chain(steps).collect();
+        let total = problem(&own, DMatrix::from_columns(&columns)).equations.total;
+        let with = |k: usize| total.solve(&[&base[..], &[base.len() + k]].concat()).map(|fit| fit.rss);
+        (0..at.len() - 1).filter_map(with).min_by(f64::total_cmp)
+    };
+    let Some((without, with)) = left_by(wild, false).zip(left_by(&there, true)) else { return false };
+    let (count, more) = (rows.len() as f64, 2.0 * (here.len() - 1) as f64);
+    count * (with / without).ln() < more * count.ln()
+}
+
+/// The rows that stand out, `most` or fewer, as [`wild_rows`] gives them.
+fn stand_out(rows: &[ClampedRow], raw: &DMatrix<f64>, strict: bool, most: usize) -> Option<(Vec<usize>, f64)> {
     let (mut rows, mut raw) = (rows.to_vec(), raw.clone());
     let mut at: Vec<usize> = (0..rows.len()).collect();
     let mut taken: Vec<usize> = Vec::new();

@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 
 use super::{Form, Kind, Number, Offers, Part, SHIFT, Scene, TURN};
 use crate::identify::samples::stack;
+use crate::trace::clamped::{Axes, OnAxes, SLIPPED_AT, SLIPPED_AXIS};
 use crate::trace::slip::{Moment, Slipping};
 
 /// The kind.
@@ -17,11 +18,17 @@ pub static KIND: Kind = Kind {
     name: "base_slip",
     // A shift of the whole robot is no property of it.
     of_rig: true,
-    words: |found| format!("a slip of the base before line {}", found.value("line")),
-    explanation: "Robot, tool or tracker moved on its mount between two readings. Tighten it, and read the unloaded \
-        arm anew after the slip.",
+    words: |found| {
+        let (line, axis) = (found.value(SLIPPED_AT), found.value(SLIPPED_AXIS));
+        match axis > 0.0 {
+            true => format!("a slip of the base, the clamp or the gauge under axis {axis} before line {line}"),
+            false => format!("a slip of the base before line {line}"),
+        }
+    },
+    explanation: "Robot, tool, clamp, gauge or tracker moved on its mount between two readings, or yielded there for \
+        good. Tighten it, and read the unloaded arm anew after the slip.",
     offer,
-    on_axes: None,
+    on_axes: Some(on_axes),
 };
 
 /// At so many of the moments, the first, the robot may have turned as well.
@@ -59,4 +66,14 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         Form::of(own).with("line", scene.line(moment), "1")
     }));
     offers.add(Part::Base, numbers, forms);
+}
+
+/// What moves while an axis is loaded shifts the rows that are left of it: the next is read from
+/// an unloaded reading of its own. One row alone is a wild one.
+fn on_axes(axes: &Axes) -> Vec<OnAxes> {
+    let of_axis = |axis: usize| {
+        let moments = 1..axes.rows_of(axis).len().saturating_sub(1);
+        OnAxes::one_of(moments.map(|from| OnAxes::slip(axes, axis, from, MOST)).collect())
+    };
+    axes.loaded().filter_map(of_axis).collect()
 }

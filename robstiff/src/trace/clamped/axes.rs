@@ -60,6 +60,11 @@ impl Axes {
         Self { rows: kept.iter().map(|&row| self.every[row]).collect(), kept, ..self.clone() }
     }
 
+    /// The rows that are left out.
+    pub fn left_out(&self) -> impl Iterator<Item = &ClampedRow> {
+        (0..self.every.len()).filter(|row| !self.kept.contains(row)).map(|row| &self.every[row])
+    }
+
     /// What effects do to the rows that are used, given what they do to all.
     pub fn of_used(&self, offers: Vec<OnAxes>) -> Vec<OnAxes> {
         let used = |form: OnAxesForm| {
@@ -141,6 +146,11 @@ pub struct AxisNumber {
     pub range: [f64; 2],
 }
 
+/// The number by which a slip says the first line that has it.
+pub const SLIPPED_AT: &str = "line";
+/// The number by which it says the axis.
+pub const SLIPPED_AXIS: &str = "axis";
+
 /// What a unit of each number does to the rows, given the numbers out of grids.
 type Columns = Rc<dyn Fn(&[f64]) -> Vec<DVector<f64>>>;
 
@@ -160,6 +170,8 @@ pub struct OnAxesForm {
     pub numbers: Vec<AxisNumber>,
     /// Those out of a grid.
     pub shape: Vec<EffectParameter>,
+    /// What is told of it besides, as it is: which row of which axis it begins at.
+    pub told: Vec<EffectParameter>,
     /// What a unit of each number does to the rows.
     pub columns: Columns,
     /// Where numbers out of a grid go by this name.
@@ -186,11 +198,24 @@ impl OnAxes {
                 .zip(values)
                 .map(|(&(name, unit), value)| EffectParameter { name, value, std: None, unit })
                 .collect(),
+            told: Vec::new(),
             columns: Rc::clone(&columns),
             within: [0.0, f64::INFINITY],
             likely: None,
         };
         Self { place: place.into(), forms: grid.into_iter().map(form).collect() }
+    }
+
+    /// A shift of the readings of an axis from one of its rows on, by its place among them.
+    pub fn slip(axes: &Axes, axis: usize, from: usize, most: f64) -> Self {
+        let at = axes.rows_of(axis).split_off(from);
+        let (count, line) = (axes.rows.len(), axes.rows[at[0]].line);
+        let number = AxisNumber { name: "shift", unit: axes.turn_unit(axis), range: [-most, most] };
+        let told = |name, value: usize| EffectParameter { name, value: value as f64, std: None, unit: "1" };
+        let column = move |_: &[f64]| vec![axes_column(count, &at, at.iter().map(|_| 1.0))];
+        let mut slip = Self::new(Part::Base, vec![number], &[], vec![Vec::new()], column);
+        slip.forms[0].told = vec![told(SLIPPED_AT, line), told(SLIPPED_AXIS, axis)];
+        slip
     }
 
     /// A law of a joint with one number and a knee, which is tried at fractions of

@@ -72,11 +72,10 @@ impl Bench {
                     true => Sign::Nonnegative,
                     false => Sign::Free,
                 }));
-                Variant {
-                    within: form.within,
-                    likely: form.likely,
-                    ..Variant::new((first..columns.len()).collect(), form.shape.clone())
-                }
+                let plain = Variant::new((first..columns.len()).collect(), form.shape.clone());
+                // The row that it begins at is one more number out of a grid.
+                let parameters = plain.parameters + usize::from(!form.told.is_empty());
+                Variant { within: form.within, likely: form.likely, parameters, ..plain }
             };
             let variants = one.forms.iter().map(variant).collect();
             candidates.push(Candidate { kind, place: one.place, variants, check: None });
@@ -112,9 +111,13 @@ impl Bench {
     /// Schwarz's criterion of a model that leaves `rss` with `more` numbers besides
     /// its own.
     pub fn bic(&self, rss: f64, named: &[Named], more: usize) -> f64 {
-        let parameters = self.base + named.iter().map(|&one| self.variant(one).parameters).sum::<usize>() + more;
-        let rows = self.axes.rows.len() as f64;
+        let (parameters, rows) = (self.parameters(named) + more, self.axes.rows.len() as f64);
         rows * (rss / rows).max(f64::MIN_POSITIVE).ln() + parameters as f64 * rows.ln()
+    }
+
+    /// How many numbers a model has, those out of grids counting each as one.
+    pub fn parameters(&self, named: &[Named]) -> usize {
+        self.base + named.iter().map(|&one| self.variant(one).parameters).sum::<usize>()
     }
 
     fn variant(&self, one: Named) -> &Variant {

@@ -17,12 +17,14 @@ mod bench;
 mod one_off;
 mod report;
 mod search;
+mod slips;
 mod spread;
+mod standing;
 mod structure;
 #[cfg(test)]
 mod tests;
 
-pub use self::axes::{Axes, AxisNumber, OnAxes, axes_column};
+pub use self::axes::{Axes, AxisNumber, OnAxes, SLIPPED_AT, SLIPPED_AXIS, axes_column};
 use super::{Options, Progress, Trace};
 use crate::campaign::{Campaign, ClampedRow};
 use crate::identify::Error;

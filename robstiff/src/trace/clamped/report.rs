@@ -11,12 +11,15 @@ use super::axes::AxisNumber;
 use super::bench::Bench;
 use super::one_off::one_off;
 use super::search::Found as Searched;
+use super::slips::as_good_as_slip;
 use super::spread::spread;
 use crate::campaign::{Campaign, ClampedRow};
 use crate::identify::baseline::{declared, with_values};
 use crate::identify::normal::Fit;
 use crate::identify::{Estimate, Identification, NoiseSource};
-use crate::trace::catalogue::{Candidate, HYSTERESIS, KINDS, OUTLIERS, STIFFNESS_NONLINEARITY, axis_tells_hysteresis};
+use crate::trace::catalogue::{
+    BASE_SLIP, Candidate, HYSTERESIS, KINDS, OUTLIERS, STIFFNESS_NONLINEARITY, axis_tells_hysteresis,
+};
 use crate::trace::found::{EffectParameter, Found, Place};
 use crate::trace::model::{Fitted, Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
@@ -138,7 +141,7 @@ fn of_model(bench: &Bench, model: &Fitted, one: Named) -> Found {
         unit: number.unit,
     };
     let numbers = form.numbers.iter().zip(fitted).map(number);
-    Found::new(candidate.kind, candidate.place, numbers.chain(form.shape.iter().cloned()).collect())
+    Found::new(candidate.kind, candidate.place, numbers.chain(form.shape.iter().chain(&form.told).cloned()).collect())
 }
 
 /// The estimates of identification with the compliances of a model, whose numbers have a
@@ -209,22 +212,29 @@ fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: 
             parameters.push(EffectParameter { std, ..number.clone() });
             shape_at += 1;
         }
+        parameters.extend(form.told.iter().cloned());
         let near = replaced.iter().filter(|(of, other)| *of == k && other.bic < model.bic + WITHIN_REACH);
         let other = |other: &Fitted| {
             let new = other.named.iter().find(|new| model.named.iter().all(|old| old.candidate != new.candidate))?;
             Some(bench.candidates[new.candidate].name())
         };
+        let mut same_as: Vec<String> = Vec::new();
+        let slipped = as_good_as_slip(bench, model, k);
+        for name in
+            near.filter_map(|(_, model)| other(model)).chain(dead_zone).chain(slipped).chain(wild_row(bench, model, k))
+        {
+            // Slips of several axes have one name.
+            if name != candidate.name() && !same_as.contains(&name) {
+                same_as.push(name);
+            }
+        }
         named.push(NamedEffect {
             effect: Found::new(candidate.kind, candidate.place, parameters),
             lines: Vec::new(),
             p_value: found.selection.p_values[k],
             holdout_rms,
             in_part: Vec::new(),
-            same_as: near
-                .filter_map(|(_, model)| other(model))
-                .chain(dead_zone)
-                .chain(wild_row(bench, model, k))
-                .collect(),
+            same_as,
             partial,
         });
     }
@@ -233,10 +243,20 @@ fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: 
         let mut lines = lines.clone();
         lines.sort_unstable();
         let effect = Found::outliers(lines.len());
-        let (same_as, in_part) = (Vec::new(), Vec::new());
+        let same_as = slip_before_last(bench, &lines);
+        // Of several rows it is one.
+        let in_part = if lines.len() > 1 { same_as.clone() } else { Vec::new() };
         named.push(NamedEffect { effect, lines, p_value: *p_value, holdout_rms, same_as, in_part, partial });
     }
     named
+}
+
+/// The name of a slip, where the last row of an axis is wild, which may be the first after one.
+fn slip_before_last(bench: &Bench, lines: &[usize]) -> Vec<String> {
+    let whole = bench.axes.whole();
+    let last = |axis: usize| whole.rows_of(axis).last().map(|&row| whole.rows[row].line);
+    let is_last = whole.loaded().filter_map(last).any(|line| lines.contains(&line));
+    is_last.then(|| format!("{}@{}", BASE_SLIP.name, Place::from(Part::Base))).into_iter().collect()
 }
 
 /// The hysteresis that a softening of the axis may as well be, where its loads never go back.

@@ -7,9 +7,9 @@ use std::vec::Vec;
 use super::axes::Axes;
 use super::bench::Bench;
 use super::one_off::one_off;
+use super::standing::{Standing, no_axis, refitted};
 use super::structure::structure;
-use crate::identify::clamped::wild;
-use crate::identify::covariance::outliers::FEW;
+use crate::identify::clamped::wild::Room;
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::{Fitted, Named};
 use crate::trace::selection::Selection;
@@ -62,29 +62,20 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
         course.run(options, progress)?;
         (p_values, _) = course.settle(options)?;
     }
-    let Course { bench, model, wild, steps, unnamed, .. } = course;
+    let Course { at: Standing { bench, model, wild, .. }, steps, unnamed, .. } = course;
     progress("looking for structure in what is left");
     let left = structure(&bench, &model, options);
     let selection = Selection { model, p_values, steps, unnamed };
     Ok(Found { bench, selection, left, wild, too_little: None })
 }
 
-fn no_axis() -> String {
-    String::from("these rows show no axis's compliance")
-}
-
 /// A search on its way.
 struct Course {
-    bench: Bench,
-    model: Fitted,
-    /// The lines of rows that are left out, with the probability of the likeliest.
-    wild: (Vec<usize>, f64),
+    at: Standing,
     /// How many rows may be left out.
-    most: usize,
+    room: Room,
     /// Whether rows need stand out from noise alone: structure is accounted for.
     strict: bool,
-    /// Whether rows that are left out stay so.
-    kept: bool,
     steps: Vec<Step>,
     unnamed: bool,
 }
@@ -93,12 +84,9 @@ impl Course {
     /// One that begins with a model.
     fn new(bench: Bench, model: Fitted) -> Self {
         Self {
-            most: (FEW * bench.axes.rows.len() as f64).floor() as usize,
-            bench,
-            model,
-            wild: (Vec::new(), 0.0),
+            room: Room::new(&bench.axes.whole().rows),
+            at: Standing::new(bench, model),
             strict: false,
-            kept: false,
             steps: Vec::new(),
             unnamed: false,
         }
@@ -107,14 +95,14 @@ impl Course {
     /// Adds effects for as long as something is missing.
     fn run(&mut self, options: &Options, progress: &Progress<'_>) -> Result<(), String> {
         loop {
-            if self.bench.leaves_nothing(&self.model.fit) {
+            if self.at.bench.leaves_nothing(&self.at.model.fit) {
                 return Ok(());
             }
             self.look_again()?;
-            if self.model.named.len() >= MOST_EFFECTS {
+            if self.at.model.named.len() >= MOST_EFFECTS {
                 return Ok(());
             }
-            progress(&format!("searching for effect {}", self.model.named.len() + 1));
+            progress(&format!("searching for effect {}", self.at.model.named.len() + 1));
             let Some((mut step, single, missing)) = self.tested(options) else { return Ok(()) };
             if !missing {
                 step.outcome = "nothing is missing significantly".to_string();
@@ -123,14 +111,14 @@ impl Course {
                     return Ok(());
                 }
                 self.strict = true;
-                if self.wild_rows().is_none() {
+                if self.at.wild_rows(self.strict, &self.room).is_none() {
                     return Ok(());
                 }
                 continue;
             }
             let accepted = self.accepted(&single, options);
             // What a single row says better needs no effect.
-            let bic = accepted.as_ref().map_or(self.model.bic, |better| better.bic);
+            let bic = accepted.as_ref().map_or(self.at.model.bic, |better| better.bic);
             if let Some(line) = self.without_one(bic, options) {
                 step.outcome = format!("line {line} alone says as much");
                 self.steps.push(step);
@@ -142,9 +130,16 @@ impl Course {
                 self.steps.push(step);
                 return Ok(());
             };
+            let before = (self.at.model.named.clone(), self.at.model.bic);
             self.turn_to(better, options);
-            let candidates = &self.bench.candidates;
-            let names: Vec<String> = self.model.named.iter().map(|one| candidates[one.candidate].name()).collect();
+            if before.0 == self.at.model.named && before.1 <= self.at.model.bic {
+                self.unnamed = true;
+                step.outcome = "something is missing, but no effect stays that would say it".to_string();
+                self.steps.push(step);
+                return Ok(());
+            }
+            let candidates = &self.at.bench.candidates;
+            let names: Vec<String> = self.at.model.named.iter().map(|one| candidates[one.candidate].name()).collect();
             step.came_to(&names);
             self.steps.push(step);
         }
@@ -154,58 +149,36 @@ impl Course {
     /// significant, one by one, and judges rows anew each time; the p-values of those that stay,
     /// and whether something is missing then, which those dropped had said better than others.
     fn settle(&mut self, options: &Options) -> Result<(Vec<f64>, bool), String> {
-        let before = self.model.named.clone();
+        let before = self.at.model.named.clone();
         let p_values = loop {
-            let p_values = self.bench.p_values(&self.model.named, options);
-            let fit = |rest: &[Named]| self.bench.fit(rest);
-            let smaller = without_insignificant(&self.model.named, &p_values, options, fit);
+            let p_values = self.at.bench.p_values(&self.at.model.named, options);
+            let fit = |rest: &[Named]| self.at.bench.fit(rest);
+            let smaller = without_insignificant(&self.at.model.named, &p_values, options, fit);
             let Some((_, smaller)) = smaller else { break p_values };
-            self.model = smaller;
+            self.at.model = smaller;
             // A row that is wild now may take further names with it.
             self.look_again()?;
         };
-        let dropped: Vec<Named> = before.into_iter().filter(|one| !self.model.named.contains(one)).collect();
+        // Its form may have changed.
+        let stays = |one: &Named| self.at.model.named.iter().any(|other| other.candidate == one.candidate);
+        let dropped: Vec<Named> = before.into_iter().filter(|one| !stays(one)).collect();
         let tested = || self.tested(options).map(|(step, _, missing)| (step, missing));
-        let told = dropped_step(&self.bench.candidates, &self.model.named, &dropped, tested);
+        let told = dropped_step(&self.at.bench.candidates, &self.at.model.named, &dropped, tested);
         let Some((step, missing)) = told else { return Ok((p_values, false)) };
         self.steps.push(step);
         self.unnamed |= missing;
         Ok((p_values, missing))
     }
 
-    /// Judges all rows anew. Wild rows must not vote for an effect; those that were wild
-    /// while one was missing are looked at again once it is named. They stay out where
-    /// physics does not allow the model with them, or what they do has another name.
+    /// Judges all rows anew.
     fn look_again(&mut self) -> Result<(), String> {
-        if !self.wild.0.is_empty()
-            && !self.kept
-            && let Some(whole) = refitted(self.bench.axes.whole(), &self.bench, &self.model)
-        {
-            self.wild = (Vec::new(), 0.0);
-            (self.bench, self.model) = whole;
-        }
-        while let Some((rows, p)) = self.wild_rows() {
-            self.wild.1 = p.max(self.wild.1);
-            self.wild.0.extend(rows.iter().map(|&row| self.bench.axes.rows[row].line));
-            self.bench = Bench::new(self.bench.axes.without(&rows), Some(&self.bench.offers));
-            let stands = self.bench.fit(&self.model.named);
-            // A name that stood on the row would come back with it, time and again.
-            self.kept |= stands.is_none();
-            self.model = stands.or_else(|| self.bench.fit(&[])).ok_or_else(no_axis)?;
-        }
-        Ok(())
-    }
-
-    /// The rows that are wild beside the model, with the probability of the likeliest.
-    fn wild_rows(&self) -> Option<(Vec<usize>, f64)> {
-        let columns = self.bench.raw.select_columns(&self.model.fit.columns);
-        wild::wild_rows(&self.bench.axes.rows, &columns, self.strict, self.most - self.wild.0.len())
+        self.at.look_again(self.strict, &self.room)
     }
 
     /// The tests of all candidates against the model, the models with one of them more, the
     /// best first, and whether something is missing, if only what physics does not allow.
     fn tested(&self, options: &Options) -> Option<(Step, Vec<Fitted>, bool)> {
-        let (bench, model) = (&self.bench, &self.model);
+        let (bench, model) = (&self.at.bench, &self.at.model);
         let test = bench.test(&model.named)?;
         let reference = test.reference(options.draws, options.seed);
         let statistics = test.statistics();
@@ -225,51 +198,45 @@ impl Course {
     /// The first of the best models with one effect more that passes; where none does, with
     /// two.
     fn accepted(&self, single: &[Fitted], options: &Options) -> Option<Fitted> {
-        self.bench.accepted(single, &self.model, options).or_else(|| {
-            let extended = single.iter().take(EXTENDED).flat_map(|one| self.bench.extended(&one.named));
+        self.at.bench.accepted(single, &self.at.model, options).or_else(|| {
+            let extended = single.iter().take(EXTENDED).flat_map(|one| self.at.bench.extended(&one.named));
             let mut pairs: Vec<Fitted> = extended.collect();
             pairs.sort_by(|a, b| a.bic.total_cmp(&b.bic));
-            self.bench.accepted(&pairs, &self.model, options)
+            self.at.bench.accepted(&pairs, &self.at.model, options)
         })
     }
 
     /// Leaves the row out that alone says what is missing better than a model of this
     /// criterion, if there is one; its line.
     fn without_one(&mut self, bic: f64, options: &Options) -> Option<usize> {
-        let off = one_off(&self.bench, &self.model)?;
+        let off = one_off(&self.at.bench, &self.at.model)?;
         // Not so of what is no number.
-        if !(off.p <= options.alpha && off.bic < bic && self.wild.0.len() < self.most) {
+        if !(off.p <= options.alpha && off.bic < bic && self.at.room_in(&self.room).all > 0) {
             return None;
         }
-        let line = self.bench.axes.rows[off.row].line;
-        let without = refitted(self.bench.axes.without(&[off.row]), &self.bench, &self.model)?;
-        (self.bench, self.model) = without;
-        self.wild.0.push(line);
-        self.wild.1 = off.p.max(self.wild.1);
-        self.kept = true;
+        let line = self.at.bench.axes.rows[off.row].line;
+        let without = refitted(self.at.bench.axes.without(&[off.row]), &self.at.bench, &self.at.model)?;
+        (self.at.bench, self.at.model) = without;
+        self.at.wild.0.push(line);
+        self.at.wild.1 = off.p.max(self.at.wild.1);
+        self.at.kept = true;
         Some(line)
     }
 
     /// Goes on from a model, or from one that is better with one effect replaced, with
     /// numbers out of grids where they fit best.
     fn turn_to(&mut self, mut better: Fitted, options: &Options) {
-        let replaced = self.bench.replaced(&better.named).into_iter().map(|(_, model)| model);
+        let replaced = self.at.bench.replaced(&better.named).into_iter().map(|(_, model)| model);
         let best = replaced.min_by(|a, b| a.bic.total_cmp(&b.bic)).filter(|best| best.bic < better.bic - BETTER);
-        if let Some(other) = best.filter(|other| self.bench.is_significant(&other.named, options)) {
+        if let Some(other) = best.filter(|other| self.at.bench.is_significant(&other.named, options)) {
             better = other;
         }
-        let polished = self.bench.polished(&better.named);
-        let fine = polished.fit(&better.named).unwrap_or(better);
-        self.bench = polished.with_compliances(&fine.fit);
-        self.model = self.bench.fit(&fine.named).unwrap_or(fine);
+        match self.at.bench.at_best(&better.named) {
+            Some(best) => (self.at.bench, self.at.model) = best,
+            None => self.at.model = better,
+        }
+        self.at.without_slips();
     }
-}
-
-/// The same model on other rows.
-fn refitted(axes: Axes, bench: &Bench, model: &Fitted) -> Option<(Bench, Fitted)> {
-    let other = Bench::new(axes, Some(&bench.offers));
-    let fitted = other.fit(&model.named)?;
-    Some((other, fitted))
 }
 
 /// Why rows cannot tell what is missing, if so: every row is a witness.
@@ -311,11 +278,11 @@ mod tests {
             let line = whole.axes.rows[40].line;
             let (bench, model) = refitted(whole.axes.without(&[40]), &whole, &model).expect("physically possible");
             let mut course = Course::new(bench, model);
-            course.wild = (std::vec![line], 1e-6);
+            course.at.wild = (std::vec![line], 1e-6);
             let (p_values, _) = course.settle(&Options::default()).expect("the axes show their compliances");
-            assert_eq!(course.model.named.iter().map(name).collect::<Vec<_>>(), ["lost_motion@joint 2"]);
+            assert_eq!(course.at.model.named.iter().map(name).collect::<Vec<_>>(), ["lost_motion@joint 2"]);
             assert!(p_values.len() == 1 && p_values[0] < 0.001, "{p_values:?}");
-            assert_eq!((course.bench.axes.rows.len(), course.wild.0.len()), (rows.len(), 0));
+            assert_eq!((course.at.bench.axes.rows.len(), course.at.wild.0.len()), (rows.len(), 0));
             let outcome = &course.steps.last().expect("it says what it dropped").outcome;
             assert!(outcome.starts_with("no longer significant: ") && !course.unnamed, "{outcome}");
         }
@@ -326,6 +293,6 @@ mod tests {
         assert_eq!((p_values.len(), course.steps.len(), missing, course.unnamed), (0, 1, true, true));
         // The search goes on from there.
         course.run(&Options::default(), &|_| {}).expect("the axes show their compliances");
-        assert_eq!(course.model.named.iter().map(name).collect::<Vec<_>>(), ["lost_motion@joint 2"]);
+        assert_eq!(course.at.model.named.iter().map(name).collect::<Vec<_>>(), ["lost_motion@joint 2"]);
     }
 }

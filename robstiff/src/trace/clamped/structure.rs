@@ -24,7 +24,7 @@ use crate::trace::model::Fitted;
 const WAVES: u8 = 4;
 
 /// Whether what is left depends on the torque, by any smooth curve, or on the
-/// order of rows, of any axis.
+/// order of rows, by a straight line or a step, of any axis.
 pub fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit {
     let none = LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() };
     if bench.leaves_nothing(&model.fit) {
@@ -37,15 +37,20 @@ pub fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit 
     let (mut candidates, mut names) = (Vec::new(), Vec::new());
     for axis in axes.loaded() {
         let (rows, torques, largest) = (axes.rows_of(axis), axes.torques(axis), axes.largest(axis));
-        let mut add = |name: String, values: Vec<f64>| {
-            let variant = Variant::new(vec![raw.len()], Vec::new());
-            raw.push(axes_column(axes.rows.len(), &rows, values));
-            signs.push(Sign::Free);
-            candidates.push(Candidate { kind: KINDS[0], place: Place::Rig, variants: vec![variant], check: None });
+        // Each with the number of its parameters.
+        let mut add = |name: String, forms: Vec<(Vec<f64>, usize)>| {
+            let variant = |(values, parameters): (Vec<f64>, usize)| {
+                raw.push(axes_column(axes.rows.len(), &rows, values));
+                signs.push(Sign::Free);
+                Variant { parameters, ..Variant::new(vec![raw.len() - 1], Vec::new()) }
+            };
+            let variants = forms.into_iter().map(variant).collect();
+            candidates.push(Candidate { kind: KINDS[0], place: Place::Rig, variants, check: None });
             names.push(name);
         };
         let mut depends = |law: &dyn Fn(f64) -> f64| {
-            add(format!("torque of axis {axis}"), torques.iter().map(|torque| law(torque / largest)).collect());
+            let values = torques.iter().map(|torque| law(torque / largest)).collect();
+            add(format!("torque of axis {axis}"), vec![(values, 1)]);
         };
         for law in [|t: f64| t * t.abs(), |t: f64| t * t * t, f64::abs, |t: f64| t / t.hypot(0.1)] {
             depends(&law);
@@ -54,7 +59,12 @@ pub fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit 
             depends(&|t| (waves * t).sin());
             depends(&|t| (waves * t).cos());
         }
-        add(format!("row order of axis {axis}"), (0..rows.len()).map(|k| k as f64).collect());
+        let order = |of: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..rows.len()).map(of).collect() };
+        // A drift, or a slip before some row, which is a number as well. One row alone is a wild one.
+        let drift = (order(&|k| k as f64), 1);
+        let slip = |from: usize| (order(&|k| f64::from(u8::from(k >= from))), 2);
+        let slips = (2..rows.len().saturating_sub(1)).map(slip);
+        add(format!("row order of axis {axis}"), slips.chain([drift]).collect());
     }
     let problem = problem(&axes.rows, DMatrix::from_columns(&raw));
     let null: Vec<usize> = (0..first).collect();

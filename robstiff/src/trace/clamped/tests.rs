@@ -244,3 +244,97 @@ fn what_is_written_does_what_is_told() {
     let rms = (rows.iter().map(|row| left(row).powi(2)).sum::<f64>() / rows.len() as f64).sqrt();
     assert!((rms / trace.after.rms - 1.0).abs() < 1e-6, "{rms} and {}", trace.after.rms);
 }
+
+/// The torques of a loop up, down and to the other side.
+fn both_ways() -> Vec<f64> {
+    let up = ramp(7);
+    let loop_of =
+        |sign: f64| -> Vec<f64> { up.iter().chain(up.iter().rev().skip(1)).map(|torque| sign * torque).collect() };
+    loop_of(1.0).into_iter().chain(loop_of(-1.0)).collect()
+}
+
+/// Nearly half of an axis shifted is no matter of single rows, nor of its gear.
+#[test]
+fn a_slip_is_told_with_its_row() {
+    let torques = both_ways();
+    for (seed, from) in [(0, 9), (1, 16), (2, 22), (3, torques.len() - 2)] {
+        let mut campaign = measured(&five_axis(), &torques, 700 + seed, |_, _| 0.0);
+        let Data::Clamped(rows) = &mut campaign.data else { unreachable!("made of clamped axes") };
+        let of_axis = rows.iter_mut().filter(|row| row.axis == 3);
+        of_axis.skip(from).for_each(|row| row.deflection += 15.0 * NOISE);
+        let trace = traced(&campaign);
+        assert_eq!((trace.verdict, names(&trace)), (Verdict::Explained, ["base_slip@base".into()].into()), "{seed}");
+        let slip = &trace.effects[0].effect;
+        let line = 2 * torques.len() + from + 2;
+        assert_eq!((slip.value("axis"), slip.value("line")), (3.0, line as f64), "{seed}");
+        assert!((slip.value("shift") / (15.0 * NOISE) - 1.0).abs() < 0.2, "{seed}: {}", slip.value("shift"));
+        assert!(slip.is_of_rig() && trace.description.effects.is_empty());
+    }
+}
+
+/// Each axis has an unloaded reading of its own: each may slip.
+#[test]
+fn slips_of_two_axes_are_two() {
+    let mut campaign = measured(&five_axis(), &both_ways(), 710, |_, _| 0.0);
+    let Data::Clamped(rows) = &mut campaign.data else { unreachable!("made of clamped axes") };
+    for (axis, from, off) in [(2, 10, 20.0), (5, 17, -25.0)] {
+        let of_axis = rows.iter_mut().filter(|row| row.axis == axis);
+        of_axis.skip(from).for_each(|row| row.deflection += off * NOISE);
+    }
+    let trace = traced(&campaign);
+    assert_eq!(names(&trace), ["base_slip@base"; 2]);
+    assert_eq!([0, 1].map(|k| trace.effects[k].effect.value("axis")), [2.0, 5.0]);
+    assert!(trace.effects.iter().all(|named| !named.same_as.contains(&"base_slip@base".into())));
+}
+
+/// After the last row of an axis none shows whether it has slipped.
+#[test]
+fn a_wild_last_row_may_be_a_slip() {
+    for (row, may_be) in [(2, 0), (13, 1)] {
+        let mut campaign = measured(&five_axis(), &ramp(14), 720, |_, _| 0.0);
+        let Data::Clamped(rows) = &mut campaign.data else { unreachable!("made of clamped axes") };
+        rows[14 + row].deflection += 60.0 * NOISE;
+        let trace = traced(&campaign);
+        assert_eq!(names(&trace), ["outliers@rig"]);
+        assert_eq!(trace.effects[0].same_as.iter().filter(|name| *name == "base_slip@base").count(), may_be);
+    }
+}
+
+/// A gear with two plays shifts where its loads turn: that is no slip beside one play.
+#[test]
+fn a_gear_that_lags_does_not_slip() {
+    for seed in 0..4 {
+        let states = core::cell::Cell::new([0.0; 2]);
+        let lags = |axis, torque: f64| {
+            if axis != 2 {
+                return 0.0;
+            }
+            let [near, far] = states.get();
+            states.set([play(torque, 210.0, near), play(torque, 370.0, far)]);
+            let [near, far] = states.get();
+            0.6e-7 * near + 0.4e-7 * far
+        };
+        let trace = traced(&measured(&five_axis(), &both_ways(), 730 + seed, lags));
+        assert_eq!(names(&trace), ["hysteresis@joint 2"], "seed {seed}");
+    }
+}
+
+/// Most rows of an axis fit a line without those that its gear hardens in: they come back with
+/// the gear's own knee.
+#[test]
+fn a_curve_is_polished_on_the_rows_that_it_stands_on() {
+    let torques: Vec<f64> = [10.0, 30.0, 60.0, 100.0, 200.0, 350.0, 500.0, 750.0, 1000.0].into();
+    let back: Vec<f64> = torques.iter().rev().skip(1).copied().collect();
+    let up: Vec<f64> = torques.iter().copied().chain(back).collect();
+    let loads: Vec<f64> = up.iter().copied().chain(up.iter().map(|torque| -torque)).collect();
+    for seed in 0..4 {
+        let hard = |axis, torque: f64| {
+            if axis == 5 { 1.2e-6 * torque / (torque / 400.0).hypot(1.0) } else { 0.0 }
+        };
+        let trace = traced(&measured(&five_axis(), &loads, 740 + seed, hard));
+        let told = (trace.verdict, names(&trace));
+        assert_eq!(told, (Verdict::Explained, ["stiffness_nonlinearity@joint 5".into()].into()), "seed {seed}");
+        let knee = trace.effects[0].effect.value("knee");
+        assert!((knee / 400.0 - 1.0).abs() < 0.05, "seed {seed}: {knee}");
+    }
+}
