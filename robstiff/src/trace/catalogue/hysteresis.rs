@@ -87,7 +87,7 @@ pub fn is_told_on(axes: &Axes, axis: usize) -> bool {
 /// An axis begins at rest; its rows follow each other.
 fn on_axes(axes: &Axes) -> Vec<OnAxes> {
     let of = |axis: usize, radii: &[f64]| {
-        let torques = axes.torques(axis);
+        let torques = axes.loads(axis);
         let (at, count) = (axes.rows_of(axis), axes.rows.len());
         let number = |name| AxisNumber { name, unit: axes.unit(axis), range: [0.0, f64::INFINITY] };
         let numbers = NAMES[..radii.len()].iter().copied().map(number).collect();

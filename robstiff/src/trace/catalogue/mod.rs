@@ -57,6 +57,7 @@ pub use self::dh_error::{ENTRIES as DH_ENTRIES, MOST as DH_MOST, UNITS as DH_UNI
 pub use self::hysteresis::{KIND as HYSTERESIS, is_told as tells_hysteresis, is_told_on as axis_tells_hysteresis};
 pub use self::joint_coupling::share_a_drive;
 pub use self::joint_zero_offset::MOST as ZERO_MOST;
+pub use self::load_cell_bias::KIND as LOAD_CELL_BIAS;
 pub use self::lost_motion::{EITHER, KIND as LOST_MOTION, KNEES as LOST_KNEES, WIDEST as WIDEST_GAP};
 pub use self::nameless::{LAG, NAMELESS};
 pub use self::offers::{Candidate, Catalogue, Form, Offers, Variant, catalogue};

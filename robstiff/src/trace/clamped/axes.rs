@@ -27,6 +27,8 @@ pub struct Axes {
     kept: Rc<[usize]>,
     /// The compliance of each axis (rad/Nm or m/N), from 0.
     pub compliance: Vec<f64>,
+    /// What acts besides the torque that is read (Nm), by a model that says so.
+    pub bias: f64,
     kinds: Vec<JointKind>,
     seen: Vec<bool>,
     declared: Vec<Effect>,
@@ -42,6 +44,7 @@ impl Axes {
             kept: (0..rows.len()).collect(),
             rows,
             compliance: joints.iter().map(|estimate| estimate.value).collect(),
+            bias: 0.0,
             kinds: robot.joints.iter().map(|joint| joint.kind).collect(),
             declared: robot.effects.clone(),
             seen: joints.iter().map(|estimate| estimate.visibility == Visibility::Seen).collect(),
@@ -95,6 +98,11 @@ impl Axes {
     /// The torques on an axis (Nm), in order.
     pub fn torques(&self, axis: usize) -> Vec<f64> {
         self.rows.iter().filter(|row| row.axis == axis).map(|row| row.torque).collect()
+    }
+
+    /// What loads the gear of an axis (Nm), in order: what is read, and what acts besides.
+    pub fn loads(&self, axis: usize) -> Vec<f64> {
+        self.torques(axis).into_iter().map(|torque| torque + self.bias).collect()
     }
 
     /// How far an axis turns by its compliance alone (rad), in order.
@@ -228,7 +236,7 @@ impl OnAxes {
         [tried, within]: [&[f64]; 2],
         turn: fn(torque: f64, knee: f64) -> f64,
     ) -> Self {
-        let (torques, largest) = (axes.torques(axis), axes.largest(axis));
+        let (torques, largest) = (axes.loads(axis), axes.largest(axis));
         let (at, count) = (axes.rows_of(axis), axes.rows.len());
         let column = move |knee: f64| axes_column(count, &at, torques.iter().map(|&torque| turn(torque, knee)));
         let knees = tried.iter().map(|fraction| vec![fraction * largest]).collect();

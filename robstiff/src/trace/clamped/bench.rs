@@ -12,7 +12,7 @@ use crate::identify::normal::{Fit, Sign};
 use crate::identify::problem::Problem;
 use crate::trace::Options;
 use crate::trace::bootstrap::ScoreTest;
-use crate::trace::catalogue::{Candidate, KINDS, Kind, Variant};
+use crate::trace::catalogue::{Candidate, KINDS, Kind, LOAD_CELL_BIAS, Variant};
 use crate::trace::model::{Fitted, Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
 
@@ -251,13 +251,21 @@ impl Bench {
         Self::new(self.axes.clone(), Some(&offers))
     }
 
-    /// The same with the compliances of a fit in what effects do, which some
-    /// depend on.
-    pub fn with_compliances(&self, fit: &Fit) -> Self {
+    /// The same with the compliances of a model, and its bias of the torque, in what effects
+    /// do, which depends on them.
+    pub fn with_numbers(&self, model: &Fitted) -> Self {
         let mut axes = self.axes.clone();
         let loaded: Vec<usize> = axes.loaded().collect();
-        for (axis, &value) in loaded.into_iter().zip(fit.coefficients.iter()) {
+        for (axis, &value) in loaded.into_iter().zip(model.fit.coefficients.iter()) {
             axes.compliance[axis - 1] = value;
+        }
+        let mut at = self.base;
+        axes.bias = 0.0;
+        for &one in &model.named {
+            if self.candidates[one.candidate].kind == &LOAD_CELL_BIAS {
+                axes.bias = model.fit.coefficients[at];
+            }
+            at += self.form(one).numbers.len();
         }
         Self::new(axes, Some(&self.offers))
     }

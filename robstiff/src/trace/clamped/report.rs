@@ -243,9 +243,9 @@ fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: 
         let mut lines = lines.clone();
         lines.sort_unstable();
         let effect = Found::outliers(lines.len());
-        let same_as = slip_before_last(bench, &lines);
+        let slip = slip_before_last(bench, &lines);
         // Of several rows it is one.
-        let in_part = if lines.len() > 1 { same_as.clone() } else { Vec::new() };
+        let (same_as, in_part) = if lines.len() > 1 { (Vec::new(), slip) } else { (slip, Vec::new()) };
         named.push(NamedEffect { effect, lines, p_value: *p_value, holdout_rms, same_as, in_part, partial });
     }
     named

@@ -67,7 +67,7 @@ fn dead_zone(bench: &Bench, model: &Fitted, slip: usize) -> Option<(String, f64)
     rest.retain(|one| bench.candidates[one.candidate].place != place);
     let base: Vec<usize> = bench.columns(&rest);
     let raw = bench.raw.select_columns(&base);
-    let (rows, torques, largest) = (axes.rows_of(axis), axes.torques(axis), axes.largest(axis));
+    let (rows, torques, largest) = (axes.rows_of(axis), axes.loads(axis), axes.largest(axis));
     let left = |radius: f64| {
         let turns = torques.iter().map(|torque| torque - torque.clamp(-radius, radius));
         let mut with = raw.clone().insert_column(base.len(), 0.0);

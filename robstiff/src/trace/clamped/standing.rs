@@ -175,10 +175,18 @@ impl Bench {
 
     /// The same with some effects' numbers out of grids where they fit best, and the model.
     pub fn at_best(&self, named: &[Named]) -> Option<(Self, Fitted)> {
-        let polished = self.polished(named);
-        let fine = polished.fit(named)?;
-        let bench = polished.with_compliances(&fine.fit);
-        let model = bench.fit(&fine.named).unwrap_or(fine);
-        Some((bench, model))
+        // What acts besides the torque shifts where the laws of gears begin, and they it.
+        let once = |bench: &Self| -> Option<(Self, Fitted)> {
+            let polished = bench.polished(named);
+            let fine = polished.fit(named)?;
+            let bench = polished.with_numbers(&fine);
+            let model = bench.fit(named).unwrap_or(fine);
+            Some((bench, model))
+        };
+        let first = once(self)?;
+        if first.0.axes.bias == 0.0 {
+            return Some(first);
+        }
+        once(&first.0)
     }
 }
