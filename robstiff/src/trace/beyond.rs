@@ -105,7 +105,7 @@ const MOST_REPLACED: u32 = 3;
 
 /// What a number may save at most, in residual variances, for a model with fewer to fit as well
 /// as noise allows (Akaike, IEEE Trans. Autom. Control 19, 1974).
-const AKAIKE: f64 = 2.0;
+pub const AKAIKE: f64 = 2.0;
 
 /// How many of the best by the linear criterion are fitted at their own solution.
 const TRIED: usize = 4;

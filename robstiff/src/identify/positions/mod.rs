@@ -49,6 +49,7 @@ use crate::campaign::{Campaign, Positions};
 const PASSES: usize = 3;
 
 /// A campaign of positions, ready to be fitted.
+#[derive(Clone)]
 pub struct Prepared<'c> {
     /// The positions.
     pub data: &'c Positions,

@@ -22,6 +22,21 @@ pub struct Model {
     pub marker: Vector3<f64>,
     /// Where the payload hangs, in the tool frame (m).
     pub hook: Vector3<f64>,
+    /// Joints that go where another's coordinate, or their own, takes them besides.
+    pub followers: Vec<Follower>,
+}
+
+/// A joint that goes farther than it reads, by a share of how far a joint has gone.
+#[derive(Clone, Copy, Debug)]
+pub struct Follower {
+    /// The joint, from 1.
+    pub joint: usize,
+    /// The one that it follows, from 1; itself where its encoder has a scale of its own.
+    pub of: usize,
+    /// The coordinate of that one at which it adds nothing (rad or m).
+    pub from: f64,
+    /// How much of what is beyond.
+    pub share: f64,
 }
 
 /// The step of central differences of an angle (rad).
@@ -68,7 +83,12 @@ pub struct Seen {
 impl Model {
     /// A description as it is, and the points as the campaign says.
     pub fn new(description: &Description, data: &Positions) -> Self {
-        Self { description: description.clone(), marker: data.measured_at.into(), hook: data.payload_at.into() }
+        Self {
+            description: description.clone(),
+            marker: data.measured_at.into(),
+            hook: data.payload_at.into(),
+            followers: Vec::new(),
+        }
     }
 
     /// The point at each row, in the base frame (m). The payload's weight, against z
@@ -85,7 +105,7 @@ impl Model {
 
     fn seen_on<const N: usize>(&self, robot: &impl Robot<N>, data: &Positions) -> Vec<Seen> {
         let seen = |row: &PositionRow| {
-            let q = SVector::<f64, N>::from_column_slice(&row.q);
+            let q = self.coordinates(row);
             let tcp = match row.payload {
                 0.0 => robot.transform(&q),
                 _ => deformed(robot, &q, |tcp| self.weight(tcp, row), &mut crate::State::new()).tcp,
@@ -103,10 +123,19 @@ impl Model {
 
     fn torques_on<const N: usize>(&self, robot: &impl Robot<N>, data: &Positions) -> Vec<Vec<f64>> {
         let torques = |row: &PositionRow| {
-            let q = SVector::<f64, N>::from_column_slice(&row.q);
+            let q = self.coordinates(row);
             robot.joint_torques(&q, &self.weight(&robot.transform(&q), row)).iter().copied().collect()
         };
         data.rows.iter().map(torques).collect()
+    }
+
+    /// The coordinates that the joints of a row have.
+    fn coordinates<const N: usize>(&self, row: &PositionRow) -> SVector<f64, N> {
+        let mut q = SVector::from_column_slice(&row.q);
+        for follower in &self.followers {
+            q[follower.joint - 1] += follower.share * (row.q[follower.of - 1] - follower.from);
+        }
+        q
     }
 
     /// The wrench of a payload at the TCP, in the base frame (N, Nm).

@@ -357,7 +357,7 @@ fn frame_words(found: &Found) -> &'static str {
 }
 
 /// `joint 3`, `the base`: a place in a sentence.
-fn place_words(found: &Found) -> String {
+pub fn place_words(found: &Found) -> String {
     match found.place() {
         Place::Part(entry @ Part::Entry(_)) => std::format!("{entry}"),
         Place::Part(part) => std::format!("{}", part.words()),

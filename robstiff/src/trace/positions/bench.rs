@@ -1,11 +1,12 @@
 //! The regression of absolute positions with the catalogue behind it, and the models
 //! that are fitted with it.
 
+use std::rc::Rc;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::offers::{Between, Form, Number, Possible, offers};
+use super::offers::{Between, Form, Number, Offer, Possible, offers};
 use super::rig::{Rig, reflector};
 use crate::campaign::{Campaign, Positions};
 use crate::identify::Error;
@@ -21,6 +22,7 @@ use crate::trace::catalogue::{Candidate, Variant};
 use crate::trace::model::{Named, all_but};
 
 /// Positions with everything that may explain them, at a model.
+#[derive(Clone)]
 pub struct Bench<'c> {
     /// The positions and what they show of the description's own numbers.
     pub prepared: Prepared<'c>,
@@ -33,7 +35,7 @@ pub struct Bench<'c> {
     /// The rows that are fitted to.
     pub rows: Rows,
     /// What moves the readings, whatever the robot does.
-    pub(super) rig: Rig,
+    pub(super) rig: Rc<Rig>,
     /// What numbers out of grids may be between those of the grid, by the form.
     pub(super) betweens: Vec<(Named, Between)>,
     /// Whether the numbers of a form are possible together, of each candidate.
@@ -81,34 +83,89 @@ impl<'c> Bench<'c> {
     pub fn new(campaign: &Campaign, data: &'c Positions) -> Result<Self, Error> {
         let of_reflector = reflector().numbers.into_iter().map(|number| number.enters);
         let prepared = Prepared::with_kinematics(campaign, data, of_reflector)?;
-        let rig = Rig::new(&campaign.robot, data);
-        let (mut candidates, mut numbers) = (Vec::new(), Vec::new());
-        let (mut betweens, mut possible) = (Vec::new(), Vec::new());
-        let own = prepared.own.len();
-        for offer in offers(campaign, data, &rig) {
-            let candidate = candidates.len();
-            let between = |(variant, form): (usize, &Form)| Some((Named { candidate, variant }, form.between.clone()?));
-            betweens.extend(offer.forms.iter().enumerate().filter_map(between));
-            possible.push(offer.possible);
-            let first = STANDS + own + numbers.len();
-            let variant =
-                |form: Form| Variant::new(form.numbers.iter().map(|number| first + number).collect(), form.shape);
-            let variants = offer.forms.into_iter().map(variant).collect();
-            candidates.push(Candidate { kind: offer.kind, place: offer.place, variants, check: None });
-            numbers.extend(offer.numbers);
-        }
-        let regression = prepared.regression(numbers.iter().map(|number| (number.enters.clone(), number.sign())));
-        let all: Vec<usize> = (0..regression.numbers.len()).collect();
+        let rig = Rc::new(Rig::new(&campaign.robot, data));
+        let regression = prepared.regression([]);
         let rows = prepared.rows.clone();
-        let (problem, _) = regression.at(&prepared.state(all.len()), &all, &rows);
-        let signs = regression.signs_of(&all);
-        Ok(Self { prepared, regression, candidates, numbers, rows, rig, betweens, possible, problem, signs })
+        let own: Vec<usize> = (0..regression.numbers.len()).collect();
+        let (problem, _) = regression.at(&prepared.state(own.len()), &own, &rows);
+        let signs = regression.signs_of(&own);
+        let offered = offers(campaign, data, &rig);
+        let mut bench = Self {
+            prepared,
+            regression,
+            candidates: Vec::new(),
+            numbers: Vec::new(),
+            rows,
+            rig,
+            betweens: Vec::new(),
+            possible: Vec::new(),
+            problem,
+            signs,
+        };
+        bench.offer(offered);
+        bench.turn_to_state(&bench.prepared.state(bench.regression.numbers.len()));
+        Ok(bench)
+    }
+
+    /// Adds to what may be missing.
+    fn offer(&mut self, offers: impl IntoIterator<Item = Offer>) {
+        for offer in offers {
+            let candidate = self.candidates.len();
+            let between = |(variant, form): (usize, &Form)| Some((Named { candidate, variant }, form.between.clone()?));
+            self.betweens.extend(offer.forms.iter().enumerate().filter_map(between));
+            self.possible.push(offer.possible);
+            let first = STANDS + self.regression.numbers.len();
+            let variant = |form: Form| {
+                let columns = form.numbers.iter().map(|number| first + number).collect();
+                // Marks are told, and cost nothing.
+                let mut variant = Variant::new(columns, form.shape);
+                variant.shape.extend(form.marks);
+                variant
+            };
+            let variants = offer.forms.into_iter().map(variant).collect();
+            self.candidates.push(Candidate { kind: offer.kind, place: offer.place, variants, check: None });
+            for number in offer.numbers {
+                self.regression.numbers.push(number.enters.clone());
+                self.regression.signs.push(number.sign());
+                self.signs.push(number.sign());
+                self.numbers.push(number);
+            }
+        }
+    }
+
+    /// The same with more that may be missing, at a model, and that model there.
+    pub fn widened(&self, model: &Model, more: impl IntoIterator<Item = Offer>) -> (Self, Model) {
+        let (mut wide, mut model) = (self.clone(), model.clone());
+        wide.offer(more);
+        model.solved.state.values.resize(wide.regression.numbers.len(), 0.0);
+        wide.turn_to(&model);
+        (wide, model)
+    }
+
+    /// The same with so many candidates only, and a state there.
+    pub fn narrowed(mut self, candidates: usize, state: &State) -> (Self, State) {
+        let gone = self.candidates.split_off(candidates);
+        let columns = gone.iter().flat_map(|gone| &gone.variants).flat_map(|form| &form.columns);
+        let (own, mut state) = (self.prepared.own.len(), state.clone());
+        let numbers = columns.min().map_or(self.regression.numbers.len(), |first| first - STANDS);
+        self.possible.truncate(candidates);
+        self.numbers.truncate(numbers - own);
+        self.regression.numbers.truncate(numbers);
+        self.regression.signs.truncate(numbers);
+        self.signs.truncate(STANDS + numbers);
+        state.values.truncate(numbers);
+        self.turn_to_state(&state);
+        (self, state)
     }
 
     /// Turns to a model, and to the rows that it is fitted to.
     pub fn turn_to(&mut self, model: &Model) {
+        self.turn_to_state(&model.solved.state);
+    }
+
+    fn turn_to_state(&mut self, state: &State) {
         let all: Vec<usize> = (0..self.regression.numbers.len()).collect();
-        (self.problem, _) = self.regression.at(&model.solved.state, &all, &self.rows);
+        (self.problem, _) = self.regression.at(state, &all, &self.rows);
     }
 
     /// The numbers of a model, the description's own first.

@@ -10,14 +10,19 @@
 //! ([`bootstrap`](super::bootstrap)); a `search` names what is significant, predicts
 //! poses left out better, and is physical; moments of slips, knees of gears and time
 //! constants, which the catalogue has in steps, are then looked for `between` them; rows that do not belong are
-//! left out (`wild`); what remains is tested for `structure`. Effects enter the forward
-//! model itself, and are fitted in it.
+//! left out (`wild`); what remains is tested for `structure`; names are held against what
+//! has none (`beyond`, `nameless`). Effects enter the forward model itself, and are fitted
+//! in it.
 
 pub mod bench;
 mod between;
+mod beyond;
+#[cfg(test)]
+mod beyond_tests;
 mod course;
 mod drift;
 mod frames;
+mod nameless;
 mod offers;
 mod proposals;
 mod report;
@@ -47,6 +52,6 @@ pub fn trace(
 ) -> Result<Trace, Error> {
     progress("finding where the robot stands");
     let bench = Bench::new(campaign, data)?;
-    let found = search::search(bench, campaign.noise.displacement, options, progress).map_err(Error)?;
+    let found = search::search(campaign, bench, options, progress).map_err(Error)?;
     report::report(campaign, &found, options).map_err(Error)
 }

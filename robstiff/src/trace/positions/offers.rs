@@ -41,6 +41,7 @@ const WIDEST_KNEE: f64 = 4.0;
 const MOST_SAG: f64 = 2.0;
 
 /// A number of an effect.
+#[derive(Clone)]
 pub struct Number {
     /// Its name.
     pub name: &'static str,
@@ -65,6 +66,8 @@ pub struct Form {
     pub numbers: Vec<usize>,
     /// Numbers out of a grid.
     pub shape: Vec<EffectParameter>,
+    /// What it says besides that is no number to be found.
+    pub marks: Vec<EffectParameter>,
     /// What the one of these may be between those of the grid, if anything.
     pub between: Option<Between>,
 }
@@ -84,7 +87,7 @@ pub struct Between {
 impl Form {
     /// Some numbers alone.
     pub fn of(numbers: impl IntoIterator<Item = usize>) -> Self {
-        Self { numbers: numbers.into_iter().collect(), shape: vec![], between: None }
+        Self { numbers: numbers.into_iter().collect(), shape: vec![], marks: vec![], between: None }
     }
 }
 
@@ -226,9 +229,9 @@ fn gears(robot: &Description, data: &Positions) -> Vec<Offer> {
         let range_of_knee = [NARROWEST_KNEE * largest, widest * largest];
         let between = Between { range: range_of_knee, whole: largest, enters: Rc::new(move |knee| vec![enters(knee)]) };
         let form = |(k, &value): (usize, &f64)| Form {
-            numbers: vec![k],
             shape: vec![EffectParameter { name: "knee", value, std: None, unit: torque }],
             between: Some(between.clone()),
+            ..Form::of([k])
         };
         let place = Part::Joint(joint).into();
         let (numbers, forms) = (knees.iter().map(number).collect(), knees.iter().enumerate().map(form).collect());
@@ -305,9 +308,8 @@ fn waves(joint: usize) -> Offer {
         enters: of_effect(name, Part::Joint(joint), at, vec![order, 0.0, 0.0], ANGLE_STEP),
     };
     let form = |(k, &value): (usize, &f64)| Form {
-        numbers: vec![2 * k, 2 * k + 1],
         shape: vec![EffectParameter { name: "order", value, std: None, unit: "1" }],
-        between: None,
+        ..Form::of([2 * k, 2 * k + 1])
     };
     Offer {
         kind: kind(name),

@@ -59,7 +59,7 @@ pub fn extended(bench: &Bench<'_>, model: &Model, singles: &[Proposed], options:
 
 /// The best of some proposals, given the best first, in their own form; among equals
 /// the one that comes first in the catalogue.
-fn refitted(bench: &Bench<'_>, proposals: &[Proposed], from: &Model) -> Vec<Model> {
+pub fn refitted(bench: &Bench<'_>, proposals: &[Proposed], from: &Model) -> Vec<Model> {
     let Some(best) = proposals.first().map(|one| one.bic) else { return Vec::new() };
     let near = proposals.iter().take_while(|one| one.bic < best + CURVATURE).take(REFITTED);
     let mut models: Vec<Model> = near.filter_map(|one| bench.solve(&one.named, &from.solved.state)).collect();

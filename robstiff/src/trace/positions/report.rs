@@ -37,7 +37,12 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
         Some(why) => (Verdict::Insufficient, why),
         None => {
             let isolated = usize::from(!found.wild.rows.is_empty());
-            let besides = Besides { isolated, taken_back: &found.taken_back, ..Besides::default() };
+            let besides = Besides {
+                isolated,
+                taken_back: &found.taken_back,
+                looks_like: &found.looks_like,
+                ..Besides::default()
+            };
             verdict::judge(&found.selection, &left, &besides)
         }
     };
@@ -85,7 +90,7 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
         why,
         unexplained: left.fraction,
         depends_on: if structure { left.depends_on } else { Vec::new() },
-        looks_like: Vec::new(),
+        looks_like: found.looks_like.clone(),
         rivals: rivals(bench, model, &replaced),
         invisible: invisible(campaign, bench),
         next: Vec::new(),

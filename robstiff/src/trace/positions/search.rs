@@ -10,7 +10,10 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::bench::{Bench, Model};
+use super::beyond;
 use super::course::{Course, Kept};
+use super::structure::structure;
+use crate::campaign::Campaign;
 use crate::identify::positions::wild::Wild;
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::Fitted;
@@ -34,43 +37,65 @@ pub struct Searched<'c> {
     pub wild: Wild,
     /// The full names of what was taken back.
     pub taken_back: Vec<String>,
+    /// What is left looks like these, each as a noun for a sentence.
+    pub looks_like: Vec<String>,
     /// Why the data cannot tell, if so.
     pub too_little: Option<String>,
 }
 
-/// Searches for effects; `noise` is the one that is declared (m).
+/// Searches for effects, and holds what is found against what has no name.
 ///
 /// # Errors
 /// Why not even the description's own numbers can be fitted.
 pub fn search<'c>(
+    campaign: &Campaign,
     mut bench: Bench<'c>,
-    noise: Option<f64>,
     options: &Options,
     progress: &Progress<'_>,
 ) -> Result<Searched<'c>, String> {
+    let noise = campaign.noise.displacement;
     let start = bench.prepared.state(bench.regression.numbers.len());
     let base = bench
         .solve(&[], &start)
         .ok_or_else(|| String::from("these positions do not tell the description's own numbers from each other"))?;
     bench.turn_to(&base);
     let too_little = too_little(&base);
-    let mut course = Course::new(base.clone());
+    let (mut course, mut looks_like) = (Course::new(base.clone()), Vec::new());
     if too_little.is_none() {
-        course = course.run(&mut bench, false, options, progress).judged(&mut bench, false, noise, options, progress);
-        if !course.left.structure && !course.unnamed {
-            // With structure accounted for, rows need stand out from noise alone.
-            let before = course.wild.rows.clone();
-            let stay = course.leave_wild_out(&mut bench, true, Kept::WhereAnEffectSaysIt);
-            if course.wild.rows != before || stay {
-                course =
-                    course.run(&mut bench, true, options, progress).judged(&mut bench, true, noise, options, progress);
-            }
+        course = ended(course, &mut bench, noise, options, progress);
+        progress("looking for what has no name in the catalogue");
+        // Its stages are those that were told before.
+        let goes_on = |course: Course, wide: &mut Bench<'c>| ended(course, wide, noise, options, &|_| ());
+        if let Some(beyond) = beyond::search(campaign, &bench, &course, goes_on) {
+            (bench, course, looks_like) = (beyond.bench, beyond.course, beyond.looks_like);
+            course.left = structure(&bench, &course.model, noise, options);
+            course.left.structure = true;
         }
     }
     let Course { model, wild, p_values, steps, unnamed, left, taken_back } = course;
     let fitted = Fitted { named: model.named.clone(), fit: model.solved.fit.clone(), bic: model.bic, physical: true };
     let selection = Selection { model: fitted, p_values, steps, unnamed };
-    Ok(Searched { bench, base, model, selection, left, wild, taken_back, too_little })
+    Ok(Searched { bench, base, model, selection, left, wild, taken_back, looks_like, too_little })
+}
+
+/// A course at its end, from where it is; `noise` is the one that is declared (m).
+fn ended(
+    course: Course,
+    bench: &mut Bench<'_>,
+    noise: Option<f64>,
+    options: &Options,
+    progress: &Progress<'_>,
+) -> Course {
+    let mut course = course.run(bench, false, options, progress).judged(bench, false, noise, options, progress);
+    if !course.left.structure && !course.unnamed {
+        // With structure accounted for, rows need stand out from noise alone.
+        let before = course.wild.rows.clone();
+        let stay = course.leave_wild_out(bench, true, Kept::WhereAnEffectSaysIt);
+        if course.wild.rows != before || stay {
+            course = course.run(bench, true, options, progress).judged(bench, true, noise, options, progress);
+        }
+    }
+    course
 }
 
 /// Why positions cannot tell what is missing, if so.

@@ -2,7 +2,8 @@
 //!
 //! What is left is held against everything smooth that an arm could do: every joint
 //! stands aside, turned about any axis of its frame, as some harmonic of its own
-//! coordinate says, or about its own axis as one of two joints together; what is read
+//! coordinate says, or about its own axis as one of two joints together, or in proportion
+//! to its own coordinate or another's; what is read
 //! is aside by the square of where it is; joints yield by the square of the payload;
 //! all moves with time, temperature or the order of rows, by powers of them. The
 //! largest statistic against its own distribution under random signs of whole poses,
@@ -212,6 +213,13 @@ fn everything(bench: &Bench<'_>, model: &Model) -> Vec<Smooth> {
     for (k, own) in phases.iter().enumerate() {
         let square = stacked(&|row| aside(k, 0)(row) * (data.rows[row].payload * HUNDRED_KILOGRAMS).powi(2));
         all.push(Smooth { of: std::vec!["payload".to_string()], columns: std::vec![square] });
+        for (j, along) in phases.iter().enumerate() {
+            let Some(along) = along else { continue };
+            let middle = along.iter().sum::<f64>() / along.len() as f64;
+            let line = stacked(&|row| aside(k, 0)(row) * (along[row] - middle));
+            let of = if j == k { std::vec![name(k)] } else { std::vec![name(k), name(j)] };
+            all.push(Smooth { of, columns: std::vec![line] });
+        }
         let Some(own) = own else { continue };
         for axis in 0..3 {
             for order in 1..=HARMONICS {

@@ -15,16 +15,16 @@ use crate::campaign::{Campaign, Data, Holdout};
 use crate::identify::baseline::Visibility;
 use crate::trace::{Options, Trace, Verdict, trace};
 
-fn six_axis() -> Description {
+pub fn six_axis() -> Description {
     let text = catalogue::find("kuka-kr270-r2700").expect("in the catalogue");
     Description::parse("kuka-kr270-r2700.yaml", text).expect("a description")
 }
 
-fn traced(campaign: &Campaign) -> Trace {
+pub fn traced(campaign: &Campaign) -> Trace {
     trace(campaign, &Options { draws: 599, ..Options::default() }, &|_| {}).expect("positions")
 }
 
-fn names(trace: &Trace) -> Vec<String> {
+pub fn names(trace: &Trace) -> Vec<String> {
     let mut names: Vec<String> = trace.effects.iter().map(|named| named.effect.to_string()).collect();
     names.sort();
     names

@@ -1,0 +1,156 @@
+//! Is what is missing something that has no name, and not what was named?
+//!
+//! As of [displacements](crate::trace::beyond): the search goes on among more, the catalogue
+//! and what has [no name](super::nameless), from where one such thing stands beside what was
+//! named, or in place of some of it. If it comes to a model with something nameless in it,
+//! admitted by the same tests, and no structure is left, the names in that model are the true
+//! ones. Where no structure had been left, that model must also take a name's place, and be
+//! better by the criterion and not for being simpler alone.
+
+use std::format;
+use std::string::String;
+use std::vec::Vec;
+
+use super::bench::{Bench, Model, Proposed};
+use super::course::Course;
+use super::nameless::{OF, is_nameless, middle, offers, reach};
+use super::proposals::refitted;
+use crate::campaign::Campaign;
+use crate::identify::positions::regression::STANDS;
+use crate::trace::beyond::AKAIKE;
+use crate::trace::found::Found;
+use crate::trace::model::{Named, all_but};
+use crate::trace::selection::WITHIN_REACH;
+use crate::trace::step::Step;
+
+/// A course that came to something nameless, told without it.
+pub struct Beyond<'c> {
+    /// The bench without what has no name.
+    pub bench: Bench<'c>,
+    /// The effects that have a name, fitted without the rest; as they were tested with it.
+    pub course: Course,
+    /// What there is besides, each as a noun for a sentence.
+    pub looks_like: Vec<String>,
+}
+
+/// Holds what a course came to against what has no name; `goes_on` is the search from a
+/// model on.
+pub fn search<'c>(
+    campaign: &Campaign,
+    bench: &Bench<'c>,
+    course: &Course,
+    goes_on: impl FnOnce(Course, &mut Bench<'c>) -> Course,
+) -> Option<Beyond<'c>> {
+    let unsaid = course.left.structure || course.unnamed;
+    if course.model.leaves_nothing() || (!unsaid && course.model.named.is_empty()) {
+        return None;
+    }
+    let (mut wide, model) = bench.widened(&course.model, offers(&campaign.robot, bench.prepared.data));
+    let start = refitted(&wide, &seeds(&wide, &model), &model).into_iter().next()?;
+    if start.bic > model.bic - WITHIN_REACH {
+        return None;
+    }
+    wide.turn_to(&start);
+    let found = goes_on(Course::new(start), &mut wide);
+    let has_nameless = found.model.named.iter().any(|one| is_nameless(&wide.candidates[one.candidate]));
+    if !has_nameless || found.left.structure || found.unnamed {
+        return None;
+    }
+    let (nameless, named) = told(campaign, &wide, &found.model);
+    let lost = names_lost(&wide, course, &named);
+    if !unsaid && (lost.is_empty() || !is_better(&wide, &found.model, &model)) {
+        return None;
+    }
+    without_nameless(wide, (bench.candidates.len(), course), found, (&nameless, &named), lost)
+}
+
+/// Models with one thing without a name beside what a model names, or in place of one or all
+/// of it, and without what that makes needless, the best first.
+fn seeds(wide: &Bench<'_>, model: &Model) -> Vec<Proposed> {
+    let mut rests: Vec<Vec<Named>> = (0..model.named.len()).map(|k| all_but(&model.named, k)).collect();
+    rests.extend([model.named.clone(), Vec::new()]);
+    let nameless = |candidate: &usize| is_nameless(&wide.candidates[*candidate]);
+    let with = |rest: &Vec<Named>| -> Vec<Proposed> {
+        let candidates = (0..wide.candidates.len()).filter(nameless);
+        candidates.filter_map(|candidate| wide.with(rest, candidate)).map(|one| wide.pruned(one)).collect()
+    };
+    let mut seeds: Vec<Proposed> = rests.iter().flat_map(with).collect();
+    seeds.retain(|seed| seed.named.iter().any(|one| nameless(&one.candidate)));
+    seeds.sort_by(|a, b| a.bic.total_cmp(&b.bic));
+    seeds.dedup_by(|a, b| a.named == b.named);
+    seeds
+}
+
+/// Whether a model with something nameless is better than one without, on its own rows.
+fn is_better(wide: &Bench<'_>, other: &Model, model: &Model) -> bool {
+    let Some(model) = wide.solve(&model.named, &model.solved.state) else { return true };
+    let (fit, solved) = (&model.solved.fit, &other.solved.fit);
+    // What is told by many numbers can be like it without being it.
+    let saved = fit.columns.len().saturating_sub(solved.columns.len()) as f64;
+    let price = AKAIKE * fit.rss / model.solved.problem.freedom(fit);
+    other.bic < model.bic - WITHIN_REACH && solved.rss < fit.rss + price * saved
+}
+
+/// What is nameless in a model, and the rest without zeros that are where something nameless
+/// counts from.
+fn told(campaign: &Campaign, wide: &Bench<'_>, model: &Model) -> (Vec<Named>, Vec<Named>) {
+    let (robot, data) = (&campaign.robot, wide.prepared.data);
+    let (nameless, mut named): (Vec<Named>, Vec<Named>) =
+        model.named.iter().partition(|one| is_nameless(&wide.candidates[one.candidate]));
+    let value = |one: Named| model.solved.state.values[wide.variant(one).columns[0] - STANDS].abs();
+    let counts_from = |zero: Named, one: Named| {
+        let shape = &wide.variant(one).shape;
+        let of = shape.iter().find(|mark| mark.name == OF).map_or(0, |mark| mark.value as usize);
+        wide.candidates[one.candidate].place == wide.candidates[zero.candidate].place
+            && middle(data, of).is_some()
+            && value(zero) <= value(one) * reach(robot, data, of)
+    };
+    named.retain(|&zero| {
+        let is_zero = wide.candidates[zero.candidate].kind.name == "joint_zero_offset";
+        !(is_zero && nameless.iter().any(|&one| counts_from(zero, one)))
+    });
+    (nameless, named)
+}
+
+/// Full names of a course, those taken back among them, that are not among others.
+fn names_lost(wide: &Bench<'_>, course: &Course, named: &[Named]) -> Vec<String> {
+    let names =
+        |named: &[Named]| -> Vec<String> { named.iter().map(|one| wide.candidates[one.candidate].name()).collect() };
+    let (kept, mut lost) = (names(named), names(&course.model.named));
+    lost.extend(course.taken_back.iter().cloned());
+    lost.retain(|name| !kept.contains(name));
+    lost
+}
+
+/// A course told without what has no name in it, which had begun from another with so many
+/// candidates.
+fn without_nameless<'c>(
+    wide: Bench<'c>,
+    (candidates, before): (usize, &Course),
+    found: Course,
+    (nameless, named): (&[Named], &[Named]),
+    lost: Vec<String>,
+) -> Option<Beyond<'c>> {
+    let words = |one: &Named| {
+        let candidate = &wide.candidates[one.candidate];
+        Found::new(candidate.kind, candidate.place, wide.variant(*one).shape.clone()).words()
+    };
+    let looks_like: Vec<String> = nameless.iter().map(words).collect();
+    let p_value = |one: &Named| {
+        let at = found.model.named.iter().position(|other| other == one);
+        at.map_or(1.0, |at| found.p_values[at])
+    };
+    let (mut bench, state) = wide.narrowed(candidates, &found.model.solved.state);
+    // What is possible only beside something nameless is not told.
+    let (named, model) = match bench.solve(named, &state) {
+        Some(model) => (named, model),
+        None => (&[][..], bench.solve(&[], &state)?),
+    };
+    bench.turn_to(&model);
+    let mut step = Step::bare(named.iter().map(|one| bench.candidates[one.candidate].name()).collect());
+    step.outcome = format!("beside what has no name in the catalogue: {}", looks_like.join(", "));
+    let mut steps = before.steps.clone();
+    steps.push(step);
+    let p_values = named.iter().map(p_value).collect();
+    Some(Beyond { bench, course: Course { model, p_values, steps, taken_back: lost, ..found }, looks_like })
+}
