@@ -105,6 +105,9 @@ pub struct Trace {
     pub poses: usize,
     /// The poses held out, by id.
     pub held_out: Vec<String>,
+    /// Lines of poses held out that are not judged by: the fit does not say on which side of
+    /// the moment of a slip they are.
+    pub undecided: Vec<usize>,
     /// The noise of one reading (m).
     pub noise: f64,
     /// Where the noise is known from.

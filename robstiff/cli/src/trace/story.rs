@@ -64,6 +64,7 @@ pub fn summary(trace: &Trace, campaign: &Campaign) -> Vec<String> {
     sentences.extend(off_by_one_factor(campaign, &trace.estimates_before));
     sentences.extend(trace.encoders.iter().flat_map(|read| encoders(read, trace)));
     sentences.extend(on_the_same_rows(trace));
+    sentences.extend(undecided(trace));
     if trace.verdict == Verdict::Insufficient {
         sentences.push("The description keeps its declared values.".to_owned());
     }
@@ -174,6 +175,19 @@ fn on_the_same_rows(trace: &Trace) -> Option<String> {
         rms(before, true),
         rms(after, true)
     ))
+}
+
+/// The lines of poses held out that nothing is judged by.
+fn undecided(trace: &Trace) -> Option<String> {
+    let lines: Vec<String> = trace.undecided.iter().map(usize::to_string).collect();
+    let (s, are) = if lines.len() == 1 { ("", "is") } else { ("s", "are") };
+    (!lines.is_empty()).then(|| {
+        format!(
+            "Line{s} {}, held out, {are} not judged by: no line fitted to tells on which side of the slip {}.",
+            and(&lines),
+            if lines.len() == 1 { "it is" } else { "they are" }
+        )
+    })
 }
 
 /// What else there could be, a sentence each.

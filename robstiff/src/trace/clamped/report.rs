@@ -102,6 +102,7 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         why,
         unexplained: found.left.fraction,
         depends_on: if structure { found.left.depends_on.clone() } else { Vec::new() },
+        undecided: Vec::new(),
         looks_like: Vec::new(),
         rivals: if tells { rivals(bench, model) } else { Vec::new() },
         invisible: invisible(campaign, bench),

@@ -28,10 +28,13 @@ mod proposals;
 mod report;
 mod rig;
 mod search;
+#[cfg(test)]
+mod slip_tests;
 mod slips;
 mod structure;
 #[cfg(test)]
 mod tests;
+mod unseen;
 mod written;
 
 use self::bench::Bench;

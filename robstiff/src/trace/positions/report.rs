@@ -8,18 +8,18 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::bench::{Bench, Model, Proposed};
 use super::search::Searched;
+use super::unseen::{undecided, unseen, unseen_rms};
 use super::written::{described, own_effects, without_untold};
 use crate::campaign::{Campaign, PositionRow};
 use crate::identify::NoiseSource;
 use crate::identify::normal::Sign;
-use crate::identify::positions::regression::{STANDS, Solved};
+use crate::identify::positions::regression::STANDS;
 use crate::identify::positions::{estimated, of_numbers, residuals};
 use crate::identify::problem::rms;
 use crate::identify::uncertainty::covariance;
 use crate::trace::catalogue::{KINDS, Variant};
 use crate::trace::found::{EffectParameter, Found};
 use crate::trace::held_out;
-use crate::trace::lack_of_fit::StructureTest;
 use crate::trace::model::{Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
 use crate::trace::verdict::{self, Besides};
@@ -47,7 +47,8 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
         }
     };
     let tells = verdict != Verdict::Insufficient;
-    if let Some(test) = unseen(model, options).filter(|_| tells)
+    let undecided = undecided(bench, model);
+    if let Some(test) = unseen(model, &undecided, options).filter(|_| tells)
         && let Some(judged) = held_out::judged(test, verdict, &mut left, options)
     {
         (verdict, why) = judged;
@@ -58,12 +59,13 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
     let fewer = without_untold(campaign, bench, model);
     let written = fewer.as_ref().unwrap_or(model);
     let Errors { declared, identified, after, left: [left_before, left_after] } =
-        errors(campaign, found, written, tells);
+        errors(campaign, found, (written, tells), &undecided);
     let values = bench.prepared.values(&written.solved.state);
     let (spread_before, spread) = (spread_of(bench, base), spread_of(bench, model));
     let spread_written = if fewer.is_some() { spread_of(bench, written) } else { spread.clone() };
     let replaced = if tells { bench.replaced(&model.named) } else { Vec::new() };
-    let effects = if tells { effects(found, &replaced, &spread, (structure, after.holdout_rms)) } else { Vec::new() };
+    let effects =
+        if tells { effects(found, &replaced, &spread, &undecided, (structure, after.holdout_rms)) } else { Vec::new() };
     let description = match tells {
         true => described(campaign, bench, &values, &own_effects(bench, written, &effects))?,
         false => campaign.robot.clone(),
@@ -80,6 +82,7 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
         robot: campaign.robot.name.clone(),
         rows: data.rows.len(),
         poses: data.poses.len(),
+        undecided: undecided.iter().map(|&row| data.rows[row].line).collect(),
         held_out: kept_back.map(|(id, _)| id.clone()).collect(),
         noise,
         noise_source,
@@ -120,7 +123,7 @@ struct Errors {
     left: [DVector<f64>; 2],
 }
 
-fn errors(campaign: &Campaign, found: &Searched<'_>, written: &Model, tells: bool) -> Errors {
+fn errors(campaign: &Campaign, found: &Searched<'_>, (written, tells): (&Model, bool), undecided: &[usize]) -> Errors {
     let (bench, base) = (&found.bench, &found.base);
     let (data, training) = (bench.prepared.data, &bench.rows.training);
     let rows = || 0..data.rows.len();
@@ -128,19 +131,19 @@ fn errors(campaign: &Campaign, found: &Searched<'_>, written: &Model, tells: boo
     let left_declared = bench.prepared.declared_residuals(campaign);
     let rms_declared = rms(&left_declared, 3, rows().filter(is_fitted_to));
     let unseen_declared = match training.contains(&false) {
-        true => rms(&left_declared, 3, rows().filter(|row| !is_fitted_to(row))),
+        true => rms(&left_declared, 3, rows().filter(|row| !is_fitted_to(row) && !undecided.contains(row))),
         false => rms_declared,
     };
     let declared = Misfit { rms: rms_declared, holdout_rms: unseen_declared };
     let left_before = residuals(&bench.regression, &base.solved.state);
     let rms_before = rms(&left_before, 3, rows().filter(is_fitted_to));
-    let identified = Misfit { rms: rms_before, holdout_rms: unseen_rms(bench, base) };
+    let identified = Misfit { rms: rms_before, holdout_rms: unseen_rms(bench, base, undecided) };
     // Data that can tell nothing change nothing.
     let (after, left_after) = match tells {
         true => {
             let left = residuals(&bench.regression, &written.solved.state);
             let rms = rms(&left, 3, rows().filter(is_fitted_to).filter(|row| !found.wild.rows.contains(row)));
-            (Misfit { rms, holdout_rms: unseen_rms(bench, written) }, left)
+            (Misfit { rms, holdout_rms: unseen_rms(bench, written, undecided) }, left)
         }
         false => (declared, left_declared),
     };
@@ -173,13 +176,6 @@ fn pose_errors(bench: &Bench<'_>, left: [&DVector<f64>; 2]) -> Vec<PoseError> {
     data.poses.iter().enumerate().map(error).collect()
 }
 
-/// Asks the poses held out, which had no part in the search, whether a model predicts
-/// them.
-fn unseen(model: &Model, options: &Options) -> Option<StructureTest> {
-    let Solved { problem, fit, signs, .. } = &model.solved;
-    if model.leaves_nothing() { None } else { held_out::predicted(problem, fit, signs, options) }
-}
-
 /// Why what a model leaves is no noise, if so: nothing reads as badly as that.
 fn no_noise(bench: &Bench<'_>, model: &Model) -> Option<String> {
     let rows = &bench.prepared.data.rows;
@@ -190,7 +186,7 @@ fn no_noise(bench: &Bench<'_>, model: &Model) -> Option<String> {
     (left > NOISIEST * apart).then(|| {
         format!(
             "the model leaves {:.0} mm of positions that are {:.0} mm from their middle, which is no noise: angles or \
-             lengths in another unit, axes of another hand, or a reflector that is not where the campaign says",
+             lengths in another unit, axes of another hand, or a reflector that is not where the campaign says, or the tracker moved in between",
             left * 1e3,
             apart * 1e3
         )
@@ -206,6 +202,7 @@ fn effects(
     found: &Searched<'_>,
     replaced: &[(usize, Proposed)],
     spread: &DMatrix<f64>,
+    undecided: &[usize],
     (partial, holdout_rms): (bool, f64),
 ) -> Vec<NamedEffect> {
     let (bench, model) = (&found.bench, &found.model);
@@ -253,7 +250,7 @@ fn effects(
         so_far.push(*one);
         so_far.sort_unstable();
         let smaller = bench.solve(&so_far, &model.solved.state);
-        named.holdout_rms = smaller.map_or(holdout_rms, |smaller| unseen_rms(bench, &smaller));
+        named.holdout_rms = smaller.map_or(holdout_rms, |smaller| unseen_rms(bench, &smaller, undecided));
     }
     let mut named: Vec<NamedEffect> = named.into_iter().map(|(.., named)| named).collect();
     if !found.wild.rows.is_empty() {
@@ -308,17 +305,6 @@ fn spread_of(bench: &Bench<'_>, model: &Model) -> DMatrix<f64> {
     let spread = of_numbers(&covariance(&problem, &fit, &signs));
     let told = (own..all).all(|k| spread[(k - STANDS, k - STANDS)] > 0.0);
     if told { spread } else { plain() }
-}
-
-/// The error of a model on poses that its fit has not seen (m): those held out, or each
-/// by the fit without it.
-fn unseen_rms(bench: &Bench<'_>, model: &Model) -> f64 {
-    let (data, training) = (bench.prepared.data, &bench.rows.training);
-    if !training.contains(&false) {
-        return bench.left_out_rms(&model.solved);
-    }
-    let held_out = (0..data.rows.len()).filter(|&row| !training[data.rows[row].pose]);
-    rms(&residuals(&bench.regression, &model.solved.state), 3, held_out)
 }
 
 /// Full names of what an effect of several numbers says as well, beside the rest of the

@@ -95,6 +95,7 @@ pub fn report(
         rows: prepared.samples.rows.len(),
         poses: prepared.samples.poses,
         held_out,
+        undecided: Vec::new(),
         noise,
         noise_source,
         declared,

@@ -1,0 +1,56 @@
+//! Slips beside poses held out, and slips that are not the only one.
+
+use std::string::ToString;
+use std::vec;
+
+use nalgebra::Vector3;
+
+use super::tests::{names, six_axis, traced};
+use crate::campaign::made_positions::Plan;
+use crate::campaign::{Holdout, PositionRow};
+use crate::identify::holdout::training;
+use crate::trace::Verdict;
+
+/// Moves readings from some rows on, each by what comes to it then.
+fn moved(shifts: &[(usize, [f64; 3])]) -> impl FnMut(usize, &mut PositionRow) {
+    move |row: usize, read: &mut PositionRow| {
+        let shift: Vector3<f64> =
+            shifts.iter().filter(|(from, _)| row >= *from).map(|(_, by)| Vector3::from(*by)).sum();
+        read.position = (Vector3::from(read.position) + shift).into();
+    }
+}
+
+/// No row fitted to says on which side of a slip rows held out next to it are: they judge
+/// nothing.
+#[test]
+fn rows_held_out_beside_a_slip_do_not_judge_it() {
+    for seed in 1..5 {
+        let plan = Plan::new(six_axis(), seed);
+        let holdout = Some(Holdout { fraction: 0.25, seed });
+        let fitted_to = training(plan.poses, holdout);
+        // Of two such rows the slip is between.
+        let between = (10..plan.poses - 10).find(|&row| !fitted_to[row - 1] && !fitted_to[row]);
+        let moment = between.expect("neighbours among fifteen of sixty");
+        let mut campaign = plan.run_with(moved(&[(moment, [1e-3, 0.0, -2e-4])]));
+        campaign.holdout = holdout;
+        let trace = traced(&campaign);
+        assert_eq!((names(&trace), trace.verdict), (vec!["base_slip@base".to_string()], Verdict::Explained));
+        // The header is line 1.
+        assert!(trace.undecided.contains(&(moment + 1)) && trace.undecided.contains(&(moment + 2)));
+        assert!(trace.undecided.len() < 8 && trace.after.holdout_rms < 5e-5, "{:?}", trace.after);
+    }
+}
+
+/// A tracker that stands elsewhere for some of the rows leaves more than noise.
+#[test]
+fn a_tracker_that_moved_in_between_is_told() {
+    let moved = |row: usize, read: &mut PositionRow| {
+        if row >= 30 {
+            let [x, y, z] = read.position;
+            read.position = [0.6 * x - 0.8 * y + 1.0, 0.8 * x + 0.6 * y, z];
+        }
+    };
+    let trace = traced(&Plan::new(six_axis(), 1).run_with(moved));
+    assert_eq!(trace.verdict, Verdict::Insufficient);
+    assert!(trace.why.ends_with("or the tracker moved in between"), "{}", trace.why);
+}
