@@ -4,7 +4,7 @@
 //! `matrix_sample`: of the rate that is claimed, a count below them has a probability
 //! of 1 in 1000.
 
-use robstiff::campaign::Campaign;
+use robstiff::campaign::{Campaign, Data};
 use robstiff::identify::predict;
 use robstiff::trace::{Options, Trace, Verdict, trace};
 use robstiff_robots::{Description, Effect, Link};
@@ -244,5 +244,37 @@ fn what_is_outside_the_catalogue_is_not_explained() {
             let honest = matches!(trace.verdict, Verdict::Unexplained | Verdict::Partial);
             assert!(honest, "{} {run}: {} {told:?}", hidden.name(), trace.verdict);
         }
+    }
+}
+
+/// A joint that goes farther than it reads, and a reflector that was put back, are none of
+/// the effects that look like them, and are told for what they look like.
+#[test]
+fn what_has_no_name_is_told_for_what_it_looks_like() {
+    let knocked = |when: f64, by: f64| Hidden::ReflectorSlip { shift: [by, -by, 0.5 * by], when };
+    let back = "another slip of the reflector on the tool before line ";
+    let cases = [
+        ("an encoder of joint 4 that has a scale of its own", Some([4, 4]), vec![], None),
+        ("joint 5 going along with joint 4", Some([5, 4]), vec![], None),
+        (back, None, vec![knocked(0.3, 2e-4), knocked(0.6, -2e-4)], Some("reflector_slip@rig")),
+    ];
+    for (seed, (words, follows, hidden, beside)) in (1000..).step_by(20).zip(cases) {
+        let right = (0..RUNS).filter(|&run| {
+            let (mut positions, declared) = positions(run, seed);
+            positions.hidden.clone_from(&hidden);
+            let mut campaign = read(&positions, &declared, positions.reflector);
+            if let (Some([joint, of]), Data::Position(data)) = (follows, &mut campaign.data) {
+                data.rows.iter_mut().for_each(|row| row.q[joint - 1] -= 4e-4 * row.q[of - 1]);
+            }
+            let trace = traced(&campaign);
+            let named: Vec<String> = trace.effects.iter().map(|named| named.effect.to_string()).collect();
+            println!("{words} {run}: {} {named:?} {:?}", trace.verdict, trace.looks_like);
+            named.iter().map(String::as_str).eq(beside)
+                && trace.description.effects.is_empty()
+                && trace.looks_like.len() == 1
+                && trace.looks_like[0].starts_with(words)
+        });
+        let (count, least) = (right.count(), fewest(RUNS as usize, 0.95, 1e-3));
+        assert!(count >= least, "{words}: {count} of {RUNS}, not {least}");
     }
 }

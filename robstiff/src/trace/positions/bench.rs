@@ -133,8 +133,10 @@ impl<'c> Bench<'c> {
         }
     }
 
-    /// The same with more that may be missing, at a model, and that model there.
-    pub fn widened(&self, model: &Model, more: impl IntoIterator<Item = Offer>) -> (Self, Model) {
+    /// The same with more that may be missing, at a model, and that model there. To spare
+    /// memory this one is without its columns until it is turned to a model again.
+    pub fn widened(&mut self, model: &Model, more: impl IntoIterator<Item = Offer>) -> (Self, Model) {
+        (self.problem, _) = self.regression.at(&model.solved.state, &[], &self.rows);
         let (mut wide, mut model) = (self.clone(), model.clone());
         wide.offer(more);
         model.solved.state.values.resize(wide.regression.numbers.len(), 0.0);

@@ -13,7 +13,7 @@ use std::vec::Vec;
 
 use super::bench::{Bench, Model, Proposed};
 use super::course::Course;
-use super::nameless::{OF, is_nameless, middle, offers, reach};
+use super::nameless::{OF, again, is_nameless, middle, offers, reach};
 use super::proposals::refitted;
 use crate::campaign::Campaign;
 use crate::identify::positions::regression::STANDS;
@@ -37,7 +37,7 @@ pub struct Beyond<'c> {
 /// model on.
 pub fn search<'c>(
     campaign: &Campaign,
-    bench: &Bench<'c>,
+    bench: &mut Bench<'c>,
     course: &Course,
     goes_on: impl FnOnce(Course, &mut Bench<'c>) -> Course,
 ) -> Option<Beyond<'c>> {
@@ -45,15 +45,40 @@ pub fn search<'c>(
     if course.model.leaves_nothing() || (!unsaid && course.model.named.is_empty()) {
         return None;
     }
-    let (mut wide, model) = bench.widened(&course.model, offers(&campaign.robot, bench.prepared.data));
+    let found = among_more(campaign, bench, course, unsaid, goes_on);
+    if found.is_none() {
+        bench.turn_to(&course.model);
+    }
+    found
+}
+
+/// The same, where there is something to hold against; `unsaid` is whether something is left.
+fn among_more<'c>(
+    campaign: &Campaign,
+    bench: &mut Bench<'c>,
+    course: &Course,
+    unsaid: bool,
+    goes_on: impl FnOnce(Course, &mut Bench<'c>) -> Course,
+) -> Option<Beyond<'c>> {
+    let slipped = |kind: &str| {
+        let mut named = course.model.named.iter().map(|one| bench.candidates[one.candidate].kind.name);
+        named.any(|name| name == kind) || course.taken_back.iter().any(|name| name.starts_with(kind))
+    };
+    let nameless = offers(&campaign.robot, bench.prepared.data, &bench.rig, slipped);
+    let (mut wide, model) = bench.widened(&course.model, nameless);
     let start = refitted(&wide, &seeds(&wide, &model), &model).into_iter().next()?;
     if start.bic > model.bic - WITHIN_REACH {
         return None;
     }
     wide.turn_to(&start);
     let found = goes_on(Course::new(start), &mut wide);
-    let has_nameless = found.model.named.iter().any(|one| is_nameless(&wide.candidates[one.candidate]));
-    if !has_nameless || found.left.structure || found.unnamed {
+    let mut kinds = found.model.named.iter().map(|one| &wide.candidates[one.candidate]);
+    let has_nameless = kinds.clone().any(is_nameless);
+    // One slip has a name.
+    let first =
+        |second: &'static str| found.model.named.iter().any(|one| wide.candidates[one.candidate].kind.name == second);
+    let is_told = kinds.all(|candidate| again(candidate).is_none_or(first));
+    if !has_nameless || !is_told || found.left.structure || found.unnamed {
         return None;
     }
     let (nameless, named) = told(campaign, &wide, &found.model);

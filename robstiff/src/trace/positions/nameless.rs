@@ -1,5 +1,6 @@
 //! What arms are known to have that positions show and the catalogue has no name for: an
-//! encoder with a scale of its own, a joint that another one takes along.
+//! encoder with a scale of its own, a joint that another one takes along; a slip after another,
+//! as of a base or a reflector that somebody put back.
 //!
 //! No description has a word for any of it, so none is ever named; it is what names are held
 //! [against](super::beyond).
@@ -13,6 +14,8 @@ use robstiff_robots::Description;
 use robstiff_robots::effect::Place as Part;
 
 use super::offers::{Form, Number, Offer, any};
+use super::rig::Rig;
+use super::slips::{OF_BASE, OF_REFLECTOR, SLIPPED_AT};
 use crate::JointKind;
 use crate::campaign::Positions;
 use crate::identify::positions::model::{ANGLE_STEP, Enters, Follower, Model};
@@ -32,6 +35,26 @@ pub static FOLLOWER: Kind = Kind {
     on_axes: None,
 };
 
+/// A second slip of the base, and of the reflector: a name says one moment.
+pub static BASE_AGAIN: Kind = Kind {
+    name: "base_slip_again",
+    of_rig: true,
+    words: |found| format!("another slip of the base before line {}", found.value(SLIPPED_AT)),
+    ..FOLLOWER
+};
+pub static REFLECTOR_AGAIN: Kind = Kind {
+    name: "reflector_slip_again",
+    of_rig: true,
+    words: |found| format!("another slip of the reflector on the tool before line {}", found.value(SLIPPED_AT)),
+    ..FOLLOWER
+};
+
+/// The name of a first slip of the kind that a candidate is a second of, if it is one.
+pub fn again(candidate: &Candidate) -> Option<&'static str> {
+    let seconds = [(&BASE_AGAIN, OF_BASE), (&REFLECTOR_AGAIN, OF_REFLECTOR)];
+    seconds.into_iter().find(|(second, _)| candidate.kind == *second).map(|(_, first)| first)
+}
+
 /// The joint that is followed, and whether that is the joint itself.
 pub const OF: &str = "of";
 const OWN: &str = "own";
@@ -41,12 +64,18 @@ const MOST: f64 = 0.1;
 
 /// Whether a candidate has no name.
 pub fn is_nameless(candidate: &Candidate) -> bool {
-    candidate.kind == &FOLLOWER
+    candidate.kind == &FOLLOWER || again(candidate).is_some()
 }
 
-/// Everything that has no name.
-pub fn offers(robot: &Description, data: &Positions) -> Vec<Offer> {
-    (1..=robot.joints.len()).filter_map(|joint| follower(robot, data, joint)).collect()
+/// Everything that has no name; second slips where `slipped` is whether one of a kind may have
+/// been first.
+pub fn offers(robot: &Description, data: &Positions, rig: &Rig, slipped: impl Fn(&str) -> bool) -> Vec<Offer> {
+    let base = || rig.slip_of_base(data).map(|first| Offer { kind: &BASE_AGAIN, ..first });
+    let reflector = || rig.slip_of_reflector(data).map(|first| Offer { kind: &REFLECTOR_AGAIN, ..first });
+    let base = slipped(OF_BASE).then(base).flatten();
+    let reflector = slipped(OF_REFLECTOR).then(reflector).flatten();
+    let followers = (1..=robot.joints.len()).filter_map(|joint| follower(robot, data, joint));
+    base.into_iter().chain(reflector).chain(followers).collect()
 }
 
 /// A joint that follows, one or another or itself; counted from where that is zero, or from

@@ -66,7 +66,7 @@ pub fn search<'c>(
         progress("looking for what has no name in the catalogue");
         // Its stages are those that were told before.
         let goes_on = |course: Course, wide: &mut Bench<'c>| ended(course, wide, noise, options, &|_| ());
-        if let Some(beyond) = beyond::search(campaign, &bench, &course, goes_on) {
+        if let Some(beyond) = beyond::search(campaign, &mut bench, &course, goes_on) {
             (bench, course, looks_like) = (beyond.bench, beyond.course, beyond.looks_like);
             course.left = structure(&bench, &course.model, noise, options);
             course.left.structure = true;

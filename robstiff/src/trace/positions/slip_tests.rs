@@ -41,6 +41,29 @@ fn rows_held_out_beside_a_slip_do_not_judge_it() {
     }
 }
 
+/// A name says one moment: of a base that was put back the other is told, and no drift.
+#[test]
+fn a_slip_that_goes_back_is_not_explained_by_one() {
+    let there = [3e-4, -2e-4, 1e-4];
+    for seed in 1..4 {
+        let back = there.map(|by: f64| -by);
+        let trace = traced(&Plan::new(six_axis(), seed).run_with(moved(&[(20, there), (37, back)])));
+        assert_eq!((trace.verdict, names(&trace)), (Verdict::Partial, vec!["base_slip@base".to_string()]));
+        let line = if trace.effects[0].effect.value("line") == 22.0 { 39 } else { 22 };
+        assert_eq!(trace.looks_like, [std::format!("another slip of the base before line {line}")]);
+    }
+}
+
+/// Neither is one that comes three times.
+#[test]
+fn slips_time_and_again_are_structure() {
+    for seed in 1..4 {
+        let slips = [(14, [3e-4, 0.0, 0.0]), (29, [-3e-4, 3e-4, 0.0]), (44, [0.0, -3e-4, 3e-4])];
+        let trace = traced(&Plan::new(six_axis(), seed).run_with(moved(&slips)));
+        assert!(matches!(trace.verdict, Verdict::Partial | Verdict::Unexplained), "{} {:?}", trace.why, names(&trace));
+    }
+}
+
 /// A tracker that stands elsewhere for some of the rows leaves more than noise.
 #[test]
 fn a_tracker_that_moved_in_between_is_told() {

@@ -28,8 +28,8 @@ const ROWS_AND_MOMENTS: usize = 100_000;
 const TURN: [&str; 3] = ["rx", "ry", "rz"];
 
 /// The kinds of a slip.
-const OF_BASE: &str = "base_slip";
-const OF_REFLECTOR: &str = "reflector_slip";
+pub const OF_BASE: &str = "base_slip";
+pub const OF_REFLECTOR: &str = "reflector_slip";
 
 /// The number by which a slip says when it was.
 pub const SLIPPED_AT: &str = "line";

@@ -5,7 +5,8 @@
 //! coordinate says, or about its own axis as one of two joints together, or in proportion
 //! to its own coordinate or another's; what is read
 //! is aside by the square of where it is; joints yield by the square of the payload;
-//! all moves with time, temperature or the order of rows, by powers of them. The
+//! all moves with time, temperature or the order of rows, by powers of them, or at some
+//! moment, as it stands or with the tool. The
 //! largest statistic against its own distribution under random signs of whole poses,
 //! as in the search. Its size is held against the noise, where that is declared, or
 //! where the robot came to a pose again.
@@ -16,7 +17,7 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use super::bench::{Bench, Model};
 use super::frames::frames;
@@ -35,6 +36,9 @@ const HARMONICS: u8 = 6;
 
 /// Payloads are of about this size (1/kg).
 const HUNDRED_KILOGRAMS: f64 = 0.01;
+
+/// So many moments are asked whether all readings are others from then on.
+const MOMENTS: usize = 24;
 
 /// Something smooth: the columns of the table that it depends on, and columns of the
 /// regression in the frame that positions are read in.
@@ -241,6 +245,16 @@ fn everything(bench: &Bench<'_>, model: &Model) -> Vec<Smooth> {
         let square = |row: usize| (points[row] - middle)[i] * (points[row] - middle)[j];
         let along = |k: usize| stacked(&|row| Vector3::ith(k, square(row)));
         all.push(Smooth { of: every.clone(), columns: (0..3).map(along).collect() });
+    }
+    // It, or the reflector on the tool, moved once more: columns for few moments say that.
+    let tools: Vec<Matrix3<f64>> = described.seen(data).into_iter().map(|seen| seen.tool).collect();
+    let rows = points.len();
+    for moment in (1..rows).step_by(rows.div_ceil(MOMENTS).max(1)) {
+        let from_then_on =
+            |of: &dyn Fn(usize) -> Vector3<f64>| stacked(&|row| if row < moment { Vector3::zeros() } else { of(row) });
+        let shifts = (0..3).map(|k| from_then_on(&|_| Vector3::ith(k, 1.0))).collect();
+        let on_tool = (0..3).map(|k| from_then_on(&|row| tools[row].column(k).into())).collect();
+        all.extend([shifts, on_tool].map(|columns| Smooth { of: std::vec!["row order".to_string()], columns }));
     }
     let known = |of: &dyn Fn(usize, &PositionRow) -> Option<f64>| -> Option<Vec<f64>> {
         let values: Option<Vec<f64>> = data.rows.iter().enumerate().map(|(i, row)| of(i, row)).collect();
