@@ -127,7 +127,7 @@ fn a_wild_reading_keeps_its_load() {
         [200.0, 400.0, 600.0, 1000.0, 600.0, 400.0, 200.0, -200.0, -600.0, -1000.0, -600.0, -200.0].into();
     for seed in 0..4 {
         let state = core::cell::Cell::new(0.0);
-        let lags = |axis, torque: f64| {
+        let lags = |axis: usize, torque: f64| {
             if axis != 2 {
                 return 0.0;
             }
@@ -305,7 +305,7 @@ fn a_wild_last_row_may_be_a_slip() {
 fn a_gear_that_lags_does_not_slip() {
     for seed in 0..4 {
         let states = core::cell::Cell::new([0.0; 2]);
-        let lags = |axis, torque: f64| {
+        let lags = |axis: usize, torque: f64| {
             if axis != 2 {
                 return 0.0;
             }
@@ -316,6 +316,28 @@ fn a_gear_that_lags_does_not_slip() {
         };
         let trace = traced(&measured(&five_axis(), &both_ways(), 730 + seed, lags));
         assert_eq!(names(&trace), ["hysteresis@joint 2"], "seed {seed}");
+    }
+}
+
+/// What acts besides the torque that is read loads the gear as well: its plays turn elsewhere,
+/// which is no slip.
+#[test]
+fn a_bias_of_the_torque_shifts_where_a_gear_lags() {
+    for seed in 0..4 {
+        let (state, bias) = (core::cell::Cell::new(0.0), 60.0);
+        let lags = |axis: usize, torque: f64| {
+            let elastic = five_axis().joints[axis - 1].compliance() * bias;
+            if axis != 2 {
+                return elastic;
+            }
+            state.set(play(torque + bias, 250.0, state.get()));
+            elastic + 1.5e-7 * state.get()
+        };
+        let trace = traced(&measured(&five_axis(), &both_ways(), 750 + seed, lags));
+        let told = (trace.verdict, names(&trace));
+        let both = ["load_cell_bias@rig", "hysteresis@joint 2"].map(String::from).to_vec();
+        assert_eq!(told, (Verdict::Explained, both), "seed {seed}");
+        assert!((trace.effects[0].effect.value("torque") / bias - 1.0).abs() < 0.1, "seed {seed}");
     }
 }
 
