@@ -186,7 +186,8 @@ fn no_noise(bench: &Bench<'_>, model: &Model) -> Option<String> {
     (left > NOISIEST * apart).then(|| {
         format!(
             "the model leaves {:.0} mm of positions that are {:.0} mm from their middle, which is no noise: angles or \
-             lengths in another unit, axes of another hand, or a reflector that is not where the campaign says, or the tracker moved in between",
+             lengths in another unit, axes of another hand, a reflector that is not where the campaign says, or a \
+             tracker that moved in between",
             left * 1e3,
             apart * 1e3
         )

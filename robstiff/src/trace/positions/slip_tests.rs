@@ -75,5 +75,5 @@ fn a_tracker_that_moved_in_between_is_told() {
     };
     let trace = traced(&Plan::new(six_axis(), 1).run_with(moved));
     assert_eq!(trace.verdict, Verdict::Insufficient);
-    assert!(trace.why.ends_with("or the tracker moved in between"), "{}", trace.why);
+    assert!(trace.why.ends_with("or a tracker that moved in between"), "{}", trace.why);
 }
