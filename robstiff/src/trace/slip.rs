@@ -22,6 +22,9 @@ const WORTH_A_LOOK: f64 = 15.0;
 /// three degrees of freedom at 0.1 %).
 const TURNS: f64 = 16.3;
 
+/// The number by which a slip says when it was: the first line that has it.
+pub const SLIPPED_AT: &str = "line";
+
 /// What slips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slipping {

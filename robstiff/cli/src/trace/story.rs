@@ -180,12 +180,11 @@ fn on_the_same_rows(trace: &Trace) -> Option<String> {
 /// The lines of poses held out that nothing is judged by.
 fn undecided(trace: &Trace) -> Option<String> {
     let lines: Vec<String> = trace.undecided.iter().map(usize::to_string).collect();
-    let (s, are) = if lines.len() == 1 { ("", "is") } else { ("s", "are") };
+    let [s, are, they] = if lines.len() == 1 { ["", "is", "it is"] } else { ["s", "are", "they are"] };
     (!lines.is_empty()).then(|| {
         format!(
-            "Line{s} {}, held out, {are} not judged by: no line fitted to tells on which side of the slip {}.",
-            and(&lines),
-            if lines.len() == 1 { "it is" } else { "they are" }
+            "Line{s} {}, held out, {are} not judged by: no line fitted to tells on which side of the slip {they}.",
+            and(&lines)
         )
     })
 }

@@ -10,8 +10,8 @@ use nalgebra::Vector3;
 
 use super::{Form, Kind, Number, Offers, Part, SHIFT, Scene, TURN};
 use crate::identify::samples::stack;
-use crate::trace::clamped::{Axes, OnAxes, SLIPPED_AT, SLIPPED_AXIS};
-use crate::trace::slip::{Moment, Slipping};
+use crate::trace::clamped::{Axes, OnAxes, SLIPPED_AXIS};
+use crate::trace::slip::{Moment, SLIPPED_AT, Slipping};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -59,11 +59,11 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let shifts = moments.iter().flat_map(three).map(shift);
     let numbers: Vec<Number> = shifts.chain(likely.iter().flat_map(three).map(turn)).collect();
     let turns = 3 * moments.len();
-    let form = |(i, &moment): (usize, &Moment)| Form::of(3 * i..3 * i + 3).with("line", scene.line(moment), "1");
+    let form = |(i, &moment): (usize, &Moment)| Form::of(3 * i..3 * i + 3).with(SLIPPED_AT, scene.line(moment), "1");
     let mut forms: Vec<Form> = moments.iter().enumerate().map(form).collect();
     forms.extend(likely.iter().enumerate().map(|(i, &moment)| {
         let own = (3 * i..3 * i + 3).chain(turns + 3 * i..turns + 3 * i + 3);
-        Form::of(own).with("line", scene.line(moment), "1")
+        Form::of(own).with(SLIPPED_AT, scene.line(moment), "1")
     }));
     offers.add(Part::Base, numbers, forms);
 }

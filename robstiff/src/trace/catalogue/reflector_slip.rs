@@ -10,13 +10,13 @@ use nalgebra::Vector3;
 
 use super::{Form, Kind, Number, Offers, Place, SHIFT, Scene};
 use crate::identify::samples::turn_of;
-use crate::trace::slip::{Moment, Slipping};
+use crate::trace::slip::{Moment, SLIPPED_AT, Slipping};
 
 /// The kind.
 pub static KIND: Kind = Kind {
     name: "reflector_slip",
     of_rig: true,
-    words: |found| format!("a slip of the reflector on the tool before line {}", found.value("line")),
+    words: |found| format!("a slip of the reflector on the tool before line {}", found.value(SLIPPED_AT)),
     explanation: "The reflector moved in its nest, or the nest on the tool, between two readings. Fix it, and measure \
         the points anew from there on.",
     offer,
@@ -35,6 +35,6 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         })
     };
     let numbers: Vec<Number> = moments.iter().flat_map(|&moment| (0..3).map(move |k| (moment, k))).map(shift).collect();
-    let form = |(i, &moment): (usize, &Moment)| Form::of(3 * i..3 * i + 3).with("line", scene.line(moment), "1");
+    let form = |(i, &moment): (usize, &Moment)| Form::of(3 * i..3 * i + 3).with(SLIPPED_AT, scene.line(moment), "1");
     offers.add(Place::Rig, numbers, moments.iter().enumerate().map(form).collect());
 }

@@ -12,6 +12,7 @@ use crate::identify::baseline::Visibility;
 use crate::identify::clamped::regression::rows_of;
 use crate::identify::clamped::without_laws;
 use crate::trace::found::{EffectParameter, Place};
+use crate::trace::slip::SLIPPED_AT;
 use crate::{Effect, JointKind};
 use robstiff_robots::Description;
 use robstiff_robots::effect::Place as Part;
@@ -154,9 +155,7 @@ pub struct AxisNumber {
     pub range: [f64; 2],
 }
 
-/// The number by which a slip says the first line that has it.
-pub const SLIPPED_AT: &str = "line";
-/// The number by which it says the axis.
+/// The number by which a slip says the axis.
 pub const SLIPPED_AXIS: &str = "axis";
 
 /// What a unit of each number does to the rows, given the numbers out of grids.

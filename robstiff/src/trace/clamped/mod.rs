@@ -24,7 +24,7 @@ mod structure;
 #[cfg(test)]
 mod tests;
 
-pub use self::axes::{Axes, AxisNumber, OnAxes, SLIPPED_AT, SLIPPED_AXIS, axes_column};
+pub use self::axes::{Axes, AxisNumber, OnAxes, SLIPPED_AXIS, axes_column};
 use super::{Options, Progress, Trace};
 use crate::campaign::{Campaign, ClampedRow};
 use crate::identify::Error;

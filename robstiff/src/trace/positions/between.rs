@@ -11,12 +11,12 @@ use nalgebra::DVector;
 
 use super::bench::{Bench, Model, TIE};
 use super::offers::Between;
-use super::slips::{SLIPPED_AT, line};
+use super::slips::line;
 use crate::identify::positions::regression::STANDS;
 use crate::trace::catalogue::{EITHER, Variant};
 use crate::trace::found::Found;
 use crate::trace::model::Named;
-use crate::trace::slip::Slipping;
+use crate::trace::slip::{SLIPPED_AT, Slipping};
 
 /// The first and the last factor between numbers that are tried; the first is that
 /// between those of the grid, or less.

@@ -15,12 +15,13 @@ use robstiff_robots::effect::Place as Part;
 
 use super::offers::{Form, Number, Offer, any};
 use super::rig::Rig;
-use super::slips::{OF_BASE, OF_REFLECTOR, SLIPPED_AT};
+use super::slips::{OF_BASE, OF_REFLECTOR};
 use crate::JointKind;
 use crate::campaign::Positions;
 use crate::identify::positions::model::{ANGLE_STEP, Enters, Follower, Model};
 use crate::trace::catalogue::{Candidate, Kind, place_words};
 use crate::trace::found::EffectParameter;
+use crate::trace::slip::SLIPPED_AT;
 
 /// A joint that goes by so much of its own coordinate, or of another's, farther than it reads.
 pub static FOLLOWER: Kind = Kind {

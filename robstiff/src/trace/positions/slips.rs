@@ -14,6 +14,7 @@ use super::rig::{LONGEST, POINT, Rig, SHIFT};
 use crate::campaign::Positions;
 use crate::identify::positions::model::{Enters, LaterMoved, Moved, Seen};
 use crate::trace::found::{EffectParameter, Place};
+use crate::trace::slip::SLIPPED_AT;
 
 /// A slip does not turn more (rad).
 const MOST_TURNED: f64 = 0.05;
@@ -30,9 +31,6 @@ const TURN: [&str; 3] = ["rx", "ry", "rz"];
 /// The kinds of a slip.
 pub const OF_BASE: &str = "base_slip";
 pub const OF_REFLECTOR: &str = "reflector_slip";
-
-/// The number by which a slip says when it was.
-pub const SLIPPED_AT: &str = "line";
 
 /// How a slip says when it was.
 pub fn line(data: &Positions, moment: usize) -> EffectParameter {

@@ -3,12 +3,11 @@
 use std::vec::Vec;
 
 use super::bench::{Bench, Model};
-use super::slips::SLIPPED_AT;
 use crate::identify::positions::regression::Solved;
 use crate::identify::positions::residuals;
 use crate::identify::problem::{Block, Equations, Problem, rms};
 use crate::trace::lack_of_fit::StructureTest;
-use crate::trace::slip::Slipping;
+use crate::trace::slip::{SLIPPED_AT, Slipping};
 use crate::trace::{Options, held_out};
 
 /// The rows of poses held out that no row fitted to is between them and the moment of a slip

@@ -14,6 +14,7 @@ use crate::trace::catalogue::BASE_SLIP;
 use crate::trace::found::{EffectParameter, Found};
 use crate::trace::isolated::Event;
 use crate::trace::model::{Fitted, Named, Setting, all_but};
+use crate::trace::slip::SLIPPED_AT;
 use crate::trace::{NamedEffect, Options, Outcome};
 
 /// The named effects, the one whose removal costs most first: each with the error on
@@ -134,7 +135,7 @@ pub fn isolated(
     let mut outliers = wild;
     let already = slipped.is_some();
     if let Some(known) = slipped {
-        let moment = known.effect.value("line") as usize;
+        let moment = known.effect.value(SLIPPED_AT) as usize;
         let lines = |slip: &Event| slip.rows.iter().map(line).collect::<Vec<usize>>();
         for slip in slips {
             let lines = lines(slip);
@@ -150,7 +151,7 @@ pub fn isolated(
         let mut parameters: Vec<EffectParameter> =
             ["dx", "dy", "dz"].into_iter().zip(shift.iter()).map(number).collect();
         let first = slip.rows.iter().map(line).min().unwrap_or_default();
-        parameters.push(EffectParameter { name: "line", value: first as f64, std: None, unit: "1" });
+        parameters.push(EffectParameter { name: SLIPPED_AT, value: first as f64, std: None, unit: "1" });
         let effect = Found::new(&BASE_SLIP, Part::Base.into(), parameters);
         let lines = slip.rows.iter().map(line).collect();
         // At one pose a shift in the base frame is one in the tool frame.
