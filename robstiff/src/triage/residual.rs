@@ -14,7 +14,8 @@ use nalgebra::DMatrix;
 use super::evidence::Evidence;
 use super::randomisation::{Witness, flip};
 use super::{Raw, Verdict};
-use crate::identify::covariance::contrasts::{Level, contrasts};
+use crate::identify::covariance::contrasts::{Chunk, Level, contrasts};
+use crate::identify::samples::Samples;
 use crate::words::micrometres;
 
 /// A drift over its whole range below this share of a reading's noise does not
@@ -50,55 +51,29 @@ fn depends(
 ) -> Verdict {
     let samples = &evidence.samples;
     let column: Option<Vec<f64>> = (0..samples.rows.len()).map(of_row).collect();
-    let Some(column) = column.filter(|column| varies(column)) else { return Err(String::from(needs)) };
+    let Some(column) = column.filter(|column| range(column) > 0.0) else { return Err(String::from(needs)) };
     let mean = column.iter().sum::<f64>() / column.len() as f64;
-    let mut first: Vec<(usize, f64)> = Vec::new();
-    let since: Vec<f64> = (0..column.len())
-        .map(|row| {
-            let visit = samples.rows[row].visit;
-            match first.iter().rev().find(|(known, _)| *known == visit) {
-                Some((_, start)) => column[row] - start,
-                None => {
-                    first.push((visit, column[row]));
-                    0.0
-                }
-            }
-        })
-        .collect();
-    let course: Vec<f64> = column.iter().map(|value| value - mean).collect();
+    let courses = [column.iter().map(|value| value - mean).collect(), since_visit_began(samples, &column)];
 
     let readings = DMatrix::from_fn(samples.rows.len(), 3, |row, axis| samples.rows[row].displacement[axis]);
     let chunks = contrasts(samples, &readings, Level::Linear, |_| true, |_| false);
-    let shared = evidence.covariance.shared;
     let (mut witnesses, mut sums, mut information) = (Vec::new(), [0.0; 6], [0.0; 6]);
     for chunk in &chunks {
-        // What is left of readings and of features, whitened.
-        let whitened = DMatrix::from_fn(chunk.rows.len(), chunk.shares.len(), |i, j| {
-            chunk.basis[(i, j)] / (1.0 + shared * chunk.shares[j])
-        });
-        let left = &whitened * &chunk.values;
-        let mut scores = Vec::with_capacity(6);
-        for (kind, feature) in [&course, &since].into_iter().enumerate() {
-            let values: Vec<f64> = chunk.rows.iter().map(|&row| feature[row]).collect();
-            let contrast = |j: usize| (0..values.len()).map(|i| chunk.basis[(i, j)] * values[i]).sum::<f64>();
-            let of_unit: f64 =
-                (0..chunk.shares.len()).map(|j| contrast(j).powi(2) / (1.0 + shared * chunk.shares[j])).sum();
-            for axis in 0..3 {
-                scores.push((0..values.len()).map(|i| values[i] * left[(i, axis)]).sum());
-                information[3 * kind + axis] += of_unit;
-            }
+        let (scores, of_unit) = scored(chunk, &courses, evidence.covariance.shared);
+        for k in 0..6 {
+            sums[k] += scores[k];
+            information[k] += of_unit[k];
         }
-        sums.iter_mut().zip(&scores).for_each(|(sum, score): (&mut f64, &f64)| *sum += score);
         let mut visits = chunk.visits.clone();
         visits.dedup();
-        witnesses.push(Witness { pose: samples.rows[chunk.rows[0]].pose, visits, scores });
+        let pose = samples.rows[chunk.rows[0]].pose;
+        witnesses.push(Witness { pose, visits, scores: scores.to_vec() });
     }
     let Some(flipped) = flip(&witnesses) else { return Err(String::from(needs)) };
-    let feature = if flipped.strongest < 3 { &course } else { &since };
-    let range = feature.iter().copied().fold(f64::NEG_INFINITY, f64::max)
-        - feature.iter().copied().fold(f64::INFINITY, f64::min);
-    let drift = sums[flipped.strongest] / information[flipped.strongest].max(f64::MIN_POSITIVE) * range;
-    let over = if flipped.strongest < 3 { "over the campaign" } else { "within a visit" };
+    let (course, axis) = (flipped.strongest / 3, flipped.strongest % 3);
+    let slope = sums[flipped.strongest] / information[flipped.strongest].max(f64::MIN_POSITIVE);
+    let drift = slope * range(&courses[course]);
+    let over = ["over the campaign", "within a visit"][course];
     let matters = MATTERS * evidence.covariance.reading().unwrap_or(0.0);
     Ok(Raw {
         statistic: 1e6 * drift,
@@ -112,14 +87,50 @@ fn depends(
                 "What each pose's own linear response leaves depends on {name}: {} along {} {over}. That points to the \
                  measurement: {points}.",
                 micrometres(drift.abs()),
-                AXES[flipped.strongest % 3]
+                AXES[axis]
             ),
         ],
     })
 }
 
-fn varies(column: &[f64]) -> bool {
+/// A column less what it was at the first row of each row's visit.
+fn since_visit_began(samples: &Samples, column: &[f64]) -> Vec<f64> {
+    let mut began: Vec<(usize, f64)> = Vec::new();
+    let since = column.iter().zip(&samples.rows).map(|(value, row)| {
+        match began.iter().rev().find(|(visit, _)| *visit == row.visit) {
+            Some((_, start)) => value - start,
+            None => {
+                began.push((row.visit, *value));
+                0.0
+            }
+        }
+    });
+    since.collect()
+}
+
+/// How much of each course is in what a pose's own response leaves, course by course and
+/// axis by axis, and what one of the course's unit would give.
+fn scored(chunk: &Chunk, courses: &[Vec<f64>; 2], shared: f64) -> ([f64; 6], [f64; 6]) {
+    // What is left of readings and of features, whitened.
+    let whitened = DMatrix::from_fn(chunk.rows.len(), chunk.shares.len(), |i, j| {
+        chunk.basis[(i, j)] / (1.0 + shared * chunk.shares[j])
+    });
+    let left = &whitened * &chunk.values;
+    let (mut scores, mut information) = ([0.0; 6], [0.0; 6]);
+    for (kind, course) in courses.iter().enumerate() {
+        let values: Vec<f64> = chunk.rows.iter().map(|&row| course[row]).collect();
+        let contrast = |j: usize| (0..values.len()).map(|i| chunk.basis[(i, j)] * values[i]).sum::<f64>();
+        let of_unit = (0..chunk.shares.len()).map(|j| contrast(j).powi(2) / (1.0 + shared * chunk.shares[j])).sum();
+        for axis in 0..3 {
+            scores[3 * kind + axis] = (0..values.len()).map(|i| values[i] * left[(i, axis)]).sum();
+            information[3 * kind + axis] = of_unit;
+        }
+    }
+    (scores, information)
+}
+
+fn range(column: &[f64]) -> f64 {
     let least = column.iter().copied().fold(f64::INFINITY, f64::min);
     let most = column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    most > least
+    most - least
 }

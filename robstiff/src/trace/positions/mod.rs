@@ -31,6 +31,7 @@ mod search;
 #[cfg(test)]
 mod slip_tests;
 mod slips;
+mod smooth;
 mod structure;
 #[cfg(test)]
 mod tests;

@@ -1,28 +1,18 @@
 //! Whether something is left in positions that no model of them says.
 //!
-//! What is left is held against everything smooth that an arm could do: every joint
-//! stands aside, turned about any axis of its frame, as some harmonic of its own
-//! coordinate says, or about its own axis as one of two joints together, or in proportion
-//! to its own coordinate or another's; what is read
-//! is aside by the square of where it is; joints yield by the square of the payload;
-//! all moves with time, temperature or the order of rows, by powers of them, or at some
-//! moment, as it stands or with the tool. The
-//! largest statistic against its own distribution under random signs of whole poses,
+//! What is left is held against [everything smooth](super::smooth) that an arm could do:
+//! the largest statistic against its own distribution under random signs of whole poses,
 //! as in the search. Its size is held against the noise, where that is declared, or
 //! where the robot came to a pose again.
 
-use core::f64::consts::PI;
 use std::collections::BTreeSet;
-use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use nalgebra::{DMatrix, Vector3};
 
 use super::bench::{Bench, Model};
-use super::frames::frames;
-use crate::JointKind;
-use crate::campaign::PositionRow;
+use super::smooth::everything;
 use crate::identify::normal::Sign;
 use crate::probability::{chi_square_tail, fisher_tail, told};
 use crate::trace::Options;
@@ -30,22 +20,6 @@ use crate::trace::bootstrap::ScoreTest;
 use crate::trace::catalogue::{Candidate, KINDS, Variant};
 use crate::trace::found::Place;
 use crate::trace::lack_of_fit::{LackOfFit, StructureTest};
-
-/// The harmonics of a joint's coordinate that are looked for.
-const HARMONICS: u8 = 6;
-
-/// Payloads are of about this size (1/kg).
-const HUNDRED_KILOGRAMS: f64 = 0.01;
-
-/// So many moments are asked whether all readings are others from then on.
-const MOMENTS: usize = 24;
-
-/// Something smooth: the columns of the table that it depends on, and columns of the
-/// regression in the frame that positions are read in.
-struct Smooth {
-    of: Vec<String>,
-    columns: Vec<DVector<f64>>,
-}
 
 /// With fewer degrees of freedom a variance says too little to judge a model by.
 const FEWEST_REPEATED: f64 = 10.0;
@@ -177,111 +151,4 @@ fn resemblance(bench: &Bench<'_>, model: &Model, options: &Options) -> Vec<(f64,
         .collect();
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     found
-}
-
-fn everything(bench: &Bench<'_>, model: &Model) -> Vec<Smooth> {
-    let data = bench.prepared.data;
-    let state = &model.solved.state;
-    let described = state.model(&bench.regression.start, &bench.regression.numbers);
-    let points = described.points(data);
-    let joints = frames(&described.description, &data.rows);
-    let stacked = |of: &dyn Fn(usize) -> Vector3<f64>| {
-        let turned = (0..points.len()).flat_map(|row| {
-            let moved = state.registration.turn * of(row);
-            [moved.x, moved.y, moved.z]
-        });
-        DVector::from_vec(turned.collect())
-    };
-    let aside = |k: usize, axis: usize| {
-        let (points, joints) = (&points, &joints);
-        let kind = described.description.joints[k].kind;
-        move |row: usize| {
-            let ((z, through), x) = (joints[row].axes[k], joints[row].across[k]);
-            let axis = [z, x, z.cross(&x)][axis];
-            if kind == JointKind::Revolute { axis.cross(&(points[row] - through)) } else { axis }
-        }
-    };
-    let name = |k: usize| format!("q{}", k + 1);
-    let phases: Vec<Option<Vec<f64>>> = described
-        .description
-        .joints
-        .iter()
-        .enumerate()
-        .map(|(k, joint)| phases(&data.rows.iter().map(|row| row.q[k]).collect::<Vec<f64>>(), joint.kind))
-        .collect();
-    let waves = |k: usize, axis: usize, phase: &dyn Fn(usize) -> f64| {
-        let aside = aside(k, axis);
-        [f64::cos, f64::sin].map(|of: fn(f64) -> f64| stacked(&|row| aside(row) * of(phase(row)))).into()
-    };
-    let mut all = Vec::new();
-    for (k, own) in phases.iter().enumerate() {
-        let square = stacked(&|row| aside(k, 0)(row) * (data.rows[row].payload * HUNDRED_KILOGRAMS).powi(2));
-        all.push(Smooth { of: std::vec!["payload".to_string()], columns: std::vec![square] });
-        for (j, along) in phases.iter().enumerate() {
-            let Some(along) = along else { continue };
-            let middle = along.iter().sum::<f64>() / along.len() as f64;
-            let line = stacked(&|row| aside(k, 0)(row) * (along[row] - middle));
-            let of = if j == k { std::vec![name(k)] } else { std::vec![name(k), name(j)] };
-            all.push(Smooth { of, columns: std::vec![line] });
-        }
-        let Some(own) = own else { continue };
-        for axis in 0..3 {
-            for order in 1..=HARMONICS {
-                let columns = waves(k, axis, &|row| f64::from(order) * own[row]);
-                all.push(Smooth { of: std::vec![name(k)], columns });
-            }
-        }
-        for (j, other) in phases.iter().enumerate().filter(|(j, _)| *j != k) {
-            let Some(other) = other else { continue };
-            for sign in [-1.0, 1.0] {
-                let columns = waves(k, 0, &|row| own[row] + sign * other[row]);
-                all.push(Smooth { of: std::vec![name(k), name(j)], columns });
-            }
-        }
-    }
-    let every: Vec<String> = (0..phases.len()).filter(|&k| phases[k].is_some()).map(name).collect();
-    let middle = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
-    for (i, j) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
-        let square = |row: usize| (points[row] - middle)[i] * (points[row] - middle)[j];
-        let along = |k: usize| stacked(&|row| Vector3::ith(k, square(row)));
-        all.push(Smooth { of: every.clone(), columns: (0..3).map(along).collect() });
-    }
-    // It, or the reflector on the tool, moved once more: columns for few moments say that.
-    let tools: Vec<Matrix3<f64>> = described.seen(data).into_iter().map(|seen| seen.tool).collect();
-    let rows = points.len();
-    for moment in (1..rows).step_by(rows.div_ceil(MOMENTS).max(1)) {
-        let from_then_on =
-            |of: &dyn Fn(usize) -> Vector3<f64>| stacked(&|row| if row < moment { Vector3::zeros() } else { of(row) });
-        let shifts = (0..3).map(|k| from_then_on(&|_| Vector3::ith(k, 1.0))).collect();
-        let on_tool = (0..3).map(|k| from_then_on(&|row| tools[row].column(k).into())).collect();
-        all.extend([shifts, on_tool].map(|columns| Smooth { of: std::vec!["row order".to_string()], columns }));
-    }
-    let known = |of: &dyn Fn(usize, &PositionRow) -> Option<f64>| -> Option<Vec<f64>> {
-        let values: Option<Vec<f64>> = data.rows.iter().enumerate().map(|(i, row)| of(i, row)).collect();
-        self::phases(&values?, JointKind::Prismatic)
-    };
-    let clocks = [
-        ("time", known(&|_, row| row.time)),
-        ("temperature", known(&|_, row| row.temperature)),
-        ("row order", known(&|i, _| Some(i as f64))),
-    ];
-    for (name, clock) in clocks {
-        let Some(clock) = clock else { continue };
-        for power in 1..=3 {
-            let along = |k: usize| stacked(&|row| Vector3::ith(k, clock[row].powi(power)));
-            all.push(Smooth { of: std::vec![name.to_string()], columns: (0..3).map(along).collect() });
-        }
-    }
-    all
-}
-
-/// Values as phases of a wave: angles as they are, others as parts of half a turn.
-/// `None` where they do not vary.
-fn phases(values: &[f64], kind: JointKind) -> Option<Vec<f64>> {
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let range = values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least;
-    (range > 0.0).then(|| match kind {
-        JointKind::Revolute => values.to_vec(),
-        JointKind::Prismatic => values.iter().map(|value| PI * (value - least) / range).collect(),
-    })
 }

@@ -3,6 +3,7 @@
 pub mod named;
 mod spread;
 
+use std::rc::Rc;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
@@ -15,12 +16,12 @@ use super::bench::Bench;
 use super::model::{Fitted, Setting};
 use super::slip::Slipping;
 use super::written::{described, own_effects, values, within_description, without_untold};
-use super::{Misfit, Options, Outcome, PoseError, RowResidual, Trace, Verdict};
+use super::{Misfit, NamedEffect, Options, Outcome, PoseError, RowResidual, Trace, Verdict};
 use crate::campaign::Campaign;
 use crate::identify::displacement::{declared_residuals, declared_rms};
 use crate::identify::encoders::EncodersRead;
 use crate::identify::prepare::Prepared;
-use crate::identify::problem::{Block, rms};
+use crate::identify::problem::{Block, Equations, rms};
 use crate::identify::{Estimate, NoiseSource, estimates};
 
 /// A tracing in full: errors before and after, the effects with their
@@ -39,22 +40,10 @@ pub fn report(
     let untouched = Bench::bare(campaign, prepared);
     let all = untouched.at(&[])?;
     let base = all.fit(&[])?;
-    let found = &outcome.selection.model;
-    // Numbers are told where they fit best, not where a grid has them.
-    let polished = bench.polished(&found.named);
-    let fine = polished.at(&found.named).and_then(|setting| Ok((setting.fit(&found.named)?, setting)));
-    let (model, setting, bench_of_numbers) = match fine {
-        Ok((model, setting)) => (model, setting, &polished),
-        Err(_) => (found.clone(), bench.at(&found.named)?, bench),
-    };
-    let model = within_description(campaign, prepared, &setting, &model);
-    let written = without_untold(campaign, prepared, bench_of_numbers, &setting, &model);
-    let (model, problem) = (&model, &setting.problem);
-    let fitted_rows = || all.problem.blocks.iter().flat_map(|block| block.rows.iter().copied());
-    let unseen = if all.problem.held_out.is_empty() { &all.problem.blocks } else { &all.problem.held_out };
-    let unseen_rows = || unseen.iter().flat_map(|block| block.rows.iter().copied());
-    let (noise, noise_source) = noise(prepared, bench, model.fit.rss / problem.freedom(&model.fit));
-    let estimates_before = numbers(campaign, prepared, &all, &base, &spread_of(&untouched, &all, &base));
+    let polished = bench.polished(&outcome.selection.model.named);
+    let (bench_of_numbers, setting, model) = where_it_fits_best(bench, &polished, &outcome.selection.model)?;
+    let model = &within_description(campaign, prepared, &setting, &model);
+    let written = without_untold(campaign, prepared, bench_of_numbers, &setting, model);
     let spread = spread_of(bench_of_numbers, &setting, model);
     // What is told of the joints, and the errors, are those of what is written; the effects
     // that are told are the model's that was found.
@@ -64,37 +53,32 @@ pub fn report(
     } else {
         numbers(campaign, prepared, of_written, written, &spread_of(bench_of_numbers, of_written, written))
     };
+    let after = misfit(of_written, written);
     let mut effects = effects(bench, &setting, model, outcome, &spread, options);
-    let holdout_rms = misfit(of_written, written).holdout_rms;
     let slipped = effects.iter_mut().find(|named| Slipping::has(named.effect.kind()));
-    let may_be = same_as_wild(bench, found, &outcome.events);
-    let isolated = isolated(prepared, outcome, holdout_rms, slipped, &may_be);
+    let may_be = same_as_wild(bench, &outcome.selection.model, &outcome.events);
+    let isolated = isolated(prepared, outcome, after.holdout_rms, slipped, &may_be);
     effects.extend(isolated);
-    // What a named effect may as well be has shown, if it is there.
-    let may_be = |name: &String| effects.iter().any(|named| named.same_as.contains(name));
-    let invisible = bench.invisible.iter().filter(|name| !may_be(name)).cloned().collect();
-    let held_out = problem.held_out.iter().map(|block| prepared.data.poses[block.pose].clone()).collect();
-    let declared =
-        Misfit { rms: declared_rms(prepared, fitted_rows()), holdout_rms: declared_rms(prepared, unseen_rows()) };
+    let tells = outcome.verdict != Verdict::Insufficient;
+    let declared = declared(prepared, &all.problem);
     // Data that can tell nothing change nothing.
-    let (description, after, left_after) = if outcome.verdict == Verdict::Insufficient {
-        (campaign.robot.clone(), declared, declared_residuals(prepared))
-    } else {
-        let values = values(prepared, of_written, written);
-        (
-            described(campaign, "a campaign", &values, &own_effects(of_written, written, &effects))?,
-            misfit(of_written, written),
-            of_written.residuals(&written.fit),
-        )
+    let (description, after, left_after) = match tells {
+        true => {
+            let values = values(prepared, of_written, written);
+            let own = own_effects(of_written, written, &effects);
+            (described(campaign, "a campaign", &values, &own)?, after, of_written.residuals(&written.fit))
+        }
+        false => (campaign.robot.clone(), declared, declared_residuals(prepared)),
     };
     let (residuals, pose_errors) = residuals(prepared, &all, &all.residuals(&base.fit), &left_after);
+    let (noise, noise_source) = noise(prepared, bench, model.fit.rss / setting.problem.freedom(&model.fit));
     let left = outcome.left.as_ref();
     Ok(Trace {
         encoders: EncodersRead::of(prepared.data, &prepared.samples, &bench.noise.covariance),
         robot: campaign.robot.name.clone(),
         rows: prepared.samples.rows.len(),
         poses: prepared.samples.poses,
-        held_out,
+        held_out: setting.problem.held_out.iter().map(|block| prepared.data.poses[block.pose].clone()).collect(),
         undecided: Vec::new(),
         noise,
         noise_source,
@@ -106,12 +90,12 @@ pub fn report(
         unexplained: left.map_or(0.0, |left| left.fraction),
         depends_on: left.map_or_else(Vec::new, |left| left.depends_on.clone()),
         looks_like: outcome.looks_like.clone(),
-        rivals: if outcome.verdict == Verdict::Insufficient { Vec::new() } else { rivals(bench, found) },
-        invisible,
+        rivals: if tells { rivals(bench, &outcome.selection.model) } else { Vec::new() },
+        invisible: invisible(bench, &effects),
         next: Vec::new(),
         description,
         effects,
-        estimates_before,
+        estimates_before: numbers(campaign, prepared, &all, &base, &spread_of(&untouched, &all, &base)),
         estimates,
         steps: outcome.selection.steps.clone(),
         structure: left.map_or_else(Vec::new, |left| left.tests.clone()),
@@ -120,6 +104,34 @@ pub fn report(
         differences: true,
         pose_errors,
     })
+}
+
+/// Numbers are told where they fit best, not where a grid has them: a model that was found
+/// at its setting, and the bench of that.
+fn where_it_fits_best<'b, 'c>(
+    bench: &'b Bench<'c>,
+    polished: &'b Bench<'c>,
+    found: &Fitted,
+) -> Result<(&'b Bench<'c>, Rc<Setting<'c>>, Fitted), String> {
+    let fine = polished.at(&found.named).and_then(|setting| Ok((setting.fit(&found.named)?, setting)));
+    match fine {
+        Ok((model, setting)) => Ok((polished, setting, model)),
+        Err(_) => Ok((bench, bench.at(&found.named)?, found.clone())),
+    }
+}
+
+/// How far off the description is as it is declared.
+fn declared(prepared: &Prepared<'_>, problem: &Equations) -> Misfit {
+    let off = |blocks: &[Block]| declared_rms(prepared, blocks.iter().flat_map(|block| block.rows.iter().copied()));
+    let unseen = if problem.held_out.is_empty() { &problem.blocks } else { &problem.held_out };
+    Misfit { rms: off(&problem.blocks), holdout_rms: off(unseen) }
+}
+
+/// Full names of what could not be seen. What a named effect may as well be has shown, if it
+/// is there.
+fn invisible(bench: &Bench<'_>, effects: &[NamedEffect]) -> Vec<String> {
+    let may_be = |name: &String| effects.iter().any(|named| named.same_as.contains(name));
+    bench.invisible.iter().filter(|name| !may_be(name)).cloned().collect()
 }
 
 /// How far off a model is at its setting.
