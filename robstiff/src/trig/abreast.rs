@@ -16,17 +16,19 @@ pub(crate) trait Abreast<F>: Copy + Add<Output = Self> + Sub<Output = Self> + Mu
     /// `self * a + b`, rounded once.
     fn fused(self, a: Self, b: Self) -> Self;
 
+    /// In the first bit the last one of `shifted`: whether the quarter turns are odd.
+    fn odd(shifted: Self) -> Self;
+
     /// The signs that a sine and a cosine get from as many quarter turns more as the
     /// last bits of `shifted` say, before they are exchanged: the bit before the last
-    /// changes both, the last one that of the sine once more.
-    fn signs(shifted: Self) -> (Self, Self);
+    /// changes both, the last one, which is `odd`, that of the sine once more.
+    fn signs(shifted: Self, odd: Self) -> (Self, Self);
 
     /// With the other sign where `signs` has one.
     fn change_signs(self, signs: Self) -> Self;
 
-    /// The two exchanged where the last bit of `shifted` says that the quarter turns
-    /// are odd.
-    fn exchange(shifted: Self, sin: Self, cos: Self) -> (Self, Self);
+    /// The two exchanged where the quarter turns are odd.
+    fn exchange(odd: Self, sin: Self, cos: Self) -> (Self, Self);
 
     /// Of an angle as [`quarters`](super::quarters) shifts it: bits that are 0
     /// where it is within the domain, and some not where it is not or is a NaN.
@@ -76,7 +78,7 @@ pub(crate) trait Pairs<F>: Vector<F> {
     fn signs_of_pairs(shifted: Self) -> Self;
 
     /// As [`exchange`](Abreast::exchange).
-    fn exchange_pairs(self, shifted: Self) -> Self;
+    fn exchange_pairs(self, odd: Self) -> Self;
 }
 
 macro_rules! single {
@@ -96,11 +98,15 @@ macro_rules! single {
             }
 
             #[inline(always)]
-            fn signs(shifted: Self) -> (Self, Self) {
+            fn odd(shifted: Self) -> Self {
+                Self::from_bits(shifted.to_bits() << ($bits::BITS - 1))
+            }
+
+            #[inline(always)]
+            fn signs(shifted: Self, odd: Self) -> (Self, Self) {
                 const TOP: $bits = 1 << ($bits::BITS - 1);
-                let shifted = shifted.to_bits();
-                let both = (shifted << ($bits::BITS - 2)) & TOP;
-                (Self::from_bits(both ^ (shifted << ($bits::BITS - 1))), Self::from_bits(both))
+                let both = (shifted.to_bits() << ($bits::BITS - 2)) & TOP;
+                (Self::from_bits(both ^ odd.to_bits()), Self::from_bits(both))
             }
 
             #[inline(always)]
@@ -109,11 +115,10 @@ macro_rules! single {
             }
 
             #[inline(always)]
-            fn exchange(shifted: Self, sin: Self, cos: Self) -> (Self, Self) {
-                let last = shifted.to_bits() << ($bits::BITS - 1);
-                let (sin, cos) = (sin.to_bits(), cos.to_bits());
+            fn exchange(odd: Self, sin: Self, cos: Self) -> (Self, Self) {
+                let (odd, sin, cos) = (odd.to_bits(), sin.to_bits(), cos.to_bits());
                 // A mask and not a choice: without SSE4.1 there is no other way.
-                let exchange = (sin ^ cos) & ((last as $signed) >> ($bits::BITS - 1)) as $bits;
+                let exchange = (sin ^ cos) & ((odd as $signed) >> ($bits::BITS - 1)) as $bits;
                 (Self::from_bits(sin ^ exchange), Self::from_bits(cos ^ exchange))
             }
 
@@ -172,7 +177,7 @@ impl<F: Float> Pairs<F> for F {
 
     #[inline(always)]
     fn signs_of_pairs(shifted: Self) -> Self {
-        F::signs(shifted).0
+        F::signs(shifted, F::odd(shifted)).0
     }
 
     #[inline(always)]
@@ -186,12 +191,11 @@ single!(f64, u64, i64, double, libm::fma);
 
 /// Lanes to exchange. A blend looks at the first bit only; without one, all bits.
 macro_rules! exchange {
-    ($vector:ident, $bits:ident, $unsigned:ident, $shifted:ident) => {{
-        let shifted = $shifted.to_bits();
+    ($vector:ident, $bits:ident, $unsigned:ident, $odd:ident) => {{
         if cfg!(target_feature = "sse4.1") {
-            wide::$vector::from_bits(shifted << ($unsigned::BITS - 1))
+            $odd
         } else {
-            wide::$vector::from_bits(wide::$bits::splat(0) - (shifted & wide::$bits::splat(1)))
+            wide::$vector::from_bits(wide::$bits::splat(0) - ($odd.to_bits() >> ($unsigned::BITS - 1)))
         }
     }};
 }
@@ -210,10 +214,14 @@ macro_rules! vectors {
             }
 
             #[inline(always)]
-            fn signs(shifted: Self) -> (Self, Self) {
-                let shifted = shifted.to_bits();
-                let both = (shifted << ($unsigned::BITS - 2)) & wide::$bits::splat(1 << ($unsigned::BITS - 1));
-                (Self::from_bits(both ^ (shifted << ($unsigned::BITS - 1))), Self::from_bits(both))
+            fn odd(shifted: Self) -> Self {
+                Self::from_bits(shifted.to_bits() << ($unsigned::BITS - 1))
+            }
+
+            #[inline(always)]
+            fn signs(shifted: Self, odd: Self) -> (Self, Self) {
+                let both = (shifted.to_bits() << ($unsigned::BITS - 2)) & wide::$bits::splat(1 << ($unsigned::BITS - 1));
+                (Self::from_bits(both ^ odd.to_bits()), Self::from_bits(both))
             }
 
             #[inline(always)]
@@ -222,8 +230,8 @@ macro_rules! vectors {
             }
 
             #[inline(always)]
-            fn exchange(shifted: Self, sin: Self, cos: Self) -> (Self, Self) {
-                let exchange = exchange!($vector, $bits, $unsigned, shifted);
+            fn exchange(odd: Self, sin: Self, cos: Self) -> (Self, Self) {
+                let exchange = exchange!($vector, $bits, $unsigned, odd);
                 (exchange.select(cos, sin), exchange.select(sin, cos))
             }
 
@@ -316,12 +324,12 @@ macro_rules! vectors {
             }
 
             #[inline(always)]
-            fn exchange_pairs(self, shifted: Self) -> Self {
+            fn exchange_pairs(self, odd: Self) -> Self {
                 let (own, mut others) = (self.to_array(), self.to_array());
                 for lane in 0..$lanes {
                     others[lane] = own[lane ^ 1];
                 }
-                exchange!($vector, $bits, $unsigned, shifted).select(Self::new(others), self)
+                exchange!($vector, $bits, $unsigned, odd).select(Self::new(others), self)
             }
         }
     )*};
