@@ -8,7 +8,7 @@
 use std::fs;
 use std::path::Path;
 
-use robstiff_codegen::{Origin, functions, source, tokens};
+use robstiff_codegen::{Origin, functions, functions_in_columns, source, tokens};
 use robstiff_robots::{Description, catalogue};
 use robstiff_tests::arms::{self, description};
 
@@ -41,7 +41,7 @@ fn is_as_before(module: &str, file: &str) {
     compare(&format!("{module}.rs"), &source(&description(file), &origin(file)));
 }
 
-/// Operations of every function of every robot.
+/// Operations of every function of every robot, number by number and in whole columns.
 #[test]
 fn costs_are_as_before() {
     let mut costs = String::new();
@@ -51,6 +51,9 @@ fn costs_are_as_before() {
         for (name, function) in functions(&robot) {
             let gap = if name.len() < 14 { "" } else { " " };
             costs += &format!("  {name:<14}{gap}{}\n", function.cost());
+        }
+        for (name, function) in functions_in_columns(&robot) {
+            costs += &format!("  {name:<14}{} in columns\n", function.cost_in_columns());
         }
     }
     compare("costs.txt", &costs);

@@ -35,6 +35,21 @@ impl<'g> Sym<'g> {
         }
     }
 
+    /// The constant factor of a product, with its sign, and the rest.
+    pub fn split_constant(self) -> Option<(Self, Self)> {
+        if self.constant().is_some() {
+            return Some((self, self.graph.number(1.0)));
+        }
+        match self.op() {
+            Op::Neg(a) => self.at(a).split_constant().map(|(constant, rest)| (-constant, rest)),
+            Op::Mul(a, b) => {
+                let (a, b) = (self.at(a), self.at(b));
+                [(a, b), (b, a)].into_iter().find(|(a, _)| a.constant().is_some())
+            }
+            _ => None,
+        }
+    }
+
     /// `self * self`.
     pub fn squared(self) -> Self {
         self * self

@@ -21,5 +21,5 @@ pub mod symbolic;
 
 #[cfg(feature = "text")]
 pub use emit::source;
-pub use emit::{Origin, functions, skeleton, tokens};
+pub use emit::{Origin, functions, functions_in_columns, skeleton, tokens};
 pub use function::{Cost, Function};

@@ -1,7 +1,6 @@
 //! The statements of a generated function.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::mem::swap;
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -305,9 +304,12 @@ fn arrange(order: &mut [usize], angles: &[Angle], is_in_columns: bool) {
             let (is_sum, last) = (angles[index].terms().len() > 1, last_joint(&angles[index]));
             (!is_sum, !is_sum && last == Some(0), last)
         });
-    } else if is_in_columns && let [_, second, .., base] = order {
-        // From the tip on, because everything waits for that. Of five angles one is alone in
-        // its vector: not the base's, which all columns wait for.
-        swap(second, base);
+    } else if is_in_columns
+        && let &mut [tip, second, sum, third, base] = order
+        && angles[sum].terms().len() > 1
+    {
+        // Of five angles one is alone in its vector: the sum, which is known last. How the
+        // others stand matters little.
+        order.copy_from_slice(&[second, third, base, tip, sum]);
     }
 }

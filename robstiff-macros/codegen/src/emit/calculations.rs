@@ -155,6 +155,13 @@ pub fn functions(robot: &Description) -> Vec<(&'static str, Function)> {
     Calculation::all(robot).map(|calculation| (calculation.name, calculation.function(robot))).collect()
 }
 
+/// Those that are generated once more for scalars that compute with four numbers as with
+/// one.
+pub fn functions_in_columns(robot: &Description) -> Vec<(&'static str, Function)> {
+    let all = Generated::all(robot).into_iter();
+    all.filter_map(|generated| Some((generated.method.name, generated.in_columns?.0))).collect()
+}
+
 /// A method for one robot.
 pub(super) struct Generated {
     /// The method.

@@ -12,7 +12,7 @@ mod robot;
 mod text;
 mod turns;
 
-pub use calculations::functions;
+pub use calculations::{functions, functions_in_columns};
 pub use robot::{Origin, skeleton, tokens};
 #[cfg(feature = "text")]
 pub use text::source;

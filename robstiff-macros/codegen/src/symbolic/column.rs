@@ -61,6 +61,22 @@ impl<'g> Column<'g> {
         }
     }
 
+    /// The same, where it is known before the column is, with an operation of its own.
+    pub fn early_at(self, i: usize) -> Sym<'g> {
+        self.known_at(i).unwrap_or_else(|| self.at(i))
+    }
+
+    fn known_at(self, i: usize) -> Option<Sym<'g>> {
+        let column = |id| Self { g: self.g, id };
+        let (other, factor) = match self.op() {
+            Op::Column(entries) => return Some(self.sym(entries[i])),
+            Op::Scaled(a, factor) => (column(a), self.sym(factor)),
+            Op::PlusScaled(a, b, factor) if column(a).is_zero_at(i) => (column(b), self.sym(factor)),
+            _ => return None,
+        };
+        other.known_at(i).map(|entry| entry * factor)
+    }
+
     /// The first three entries.
     pub fn vector(self) -> Vec3<'g> {
         Vec3(std::array::from_fn(|i| self.at(i)))
@@ -96,6 +112,13 @@ impl<'g> Column<'g> {
     /// Whether it depends on no input.
     pub fn is_constant(self) -> bool {
         self.entries().is_some_and(|entries| entries.iter().all(|entry| entry.constant().is_some()))
+    }
+
+    /// The axis, from 0, and the sign of a constant unit vector along an axis.
+    pub fn unit_axis(self) -> Option<(usize, f64)> {
+        let axis = (0..3).find(|&i| !self.is_zero_at(i))?;
+        let sign = self.at(axis).constant().filter(|sign| sign.abs() == 1.0)?;
+        (0..4).all(|i| i == axis || self.is_zero_at(i)).then_some((axis, sign))
     }
 
     fn is_zero(self) -> bool {
@@ -148,12 +171,43 @@ impl<'g> Column<'g> {
         if self.is_zero_in_product(other) {
             return Self::zero(self.g);
         }
-        if let (Some(own), Some(others)) = (self.entries(), other.entries())
+        let (own, other) = self.with_constants_met(other);
+        if other.is_one() && own.is_zero_at(3) {
+            return own;
+        }
+        if let (Some(own), Some(others)) = (own.entries(), other.entries())
             && (0..4).all(|i| is_free(own[i], others[i]) || is_free(others[i], own[i]))
         {
             return Self::of(self.g, std::array::from_fn(|i| own[i] * others[i]));
         }
-        self.make(Op::Product(self.id, other.id))
+        self.make(Op::Product(own.id, other.id))
+    }
+
+    /// The two factors of a product with a number for all directions, where that meets a
+    /// constant factor of this column: they are one then.
+    fn with_constants_met(self, other: Self) -> (Self, Self) {
+        let as_they_are = (self, other);
+        let Some([number, ..]) = other.entries().filter(|_| other.is_constant()) else { return as_they_are };
+        let Op::Scaled(column, factor) = self.op() else { return as_they_are };
+        match self.sym(factor).split_constant() {
+            Some((constant, rest)) if other == Self::thrice(number) => {
+                (Self { g: self.g, id: column }.scaled(rest), Self::thrice(constant * number))
+            }
+            _ => as_they_are,
+        }
+    }
+
+    /// Whether it is 1 for all directions.
+    fn is_one(self) -> bool {
+        self == Self::thrice(self.g.number(1.0))
+    }
+
+    /// The sum, entry by entry.
+    pub fn plus(self, other: Self) -> Self {
+        match other.op() {
+            Op::Scaled(column, factor) => self.plus_scaled(Self { g: self.g, id: column }, self.sym(factor)),
+            _ => self.plus_scaled(other, self.g.number(1.0)),
+        }
     }
 
     /// `self + other * by`, entry by entry.
@@ -163,6 +217,10 @@ impl<'g> Column<'g> {
         }
         if self.is_zero() {
             return other.times(by);
+        }
+        let (other, by) = other.with_constants_met(by);
+        if by.is_one() && other.is_zero_at(3) {
+            return self.plus(other);
         }
         self.make(Op::PlusProduct(self.id, other.id, by.id))
     }
