@@ -61,12 +61,13 @@ impl<'g> Column<'g> {
         }
     }
 
-    /// The same, where it is known before the column is, with an operation of its own.
+    /// The same with operations of its own, if these are products that do not wait for the
+    /// column.
     pub fn early_at(self, i: usize) -> Sym<'g> {
-        self.known_at(i).unwrap_or_else(|| self.at(i))
+        self.product_at(i).unwrap_or_else(|| self.at(i))
     }
 
-    fn known_at(self, i: usize) -> Option<Sym<'g>> {
+    fn product_at(self, i: usize) -> Option<Sym<'g>> {
         let column = |id| Self { g: self.g, id };
         let (other, factor) = match self.op() {
             Op::Column(entries) => return Some(self.sym(entries[i])),
@@ -74,7 +75,7 @@ impl<'g> Column<'g> {
             Op::PlusScaled(a, b, factor) if column(a).is_zero_at(i) => (column(b), self.sym(factor)),
             _ => return None,
         };
-        other.known_at(i).map(|entry| entry * factor)
+        other.product_at(i).map(|entry| entry * factor)
     }
 
     /// The first three entries.
