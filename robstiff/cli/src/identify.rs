@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
-use crate::text::{Table, and, count, decimals, micrometres, significant, uncertain};
+use crate::text::{Table, and, change, count, decimals, micrometres, significant, uncertain};
 use crate::trace::words::spoken;
 use crate::{input, json};
 
@@ -120,12 +120,13 @@ fn compliances(estimates: &[Estimate]) -> String {
     let mut table = Table::new(1, ["compliance", "declared", "identified", "stiffness", "change", ""]);
     for estimate in estimates {
         let identified = match (&estimate.visibility, estimate.std) {
-            (Visibility::Seen, _) if estimate.at_bound => "0".to_owned(),
-            (Visibility::Seen, Some(std)) => uncertain(estimate.value, std),
-            (Visibility::Seen, None) => significant(estimate.value, 4),
-            _ => "not seen".to_owned(),
+            (Visibility::Seen, _) if estimate.at_bound => format!("0 {}", estimate.unit),
+            (Visibility::Seen, Some(std)) => format!("{} {}", uncertain(estimate.value, std), estimate.unit),
+            (Visibility::Seen, None) => format!("{} {}", significant(estimate.value, 4), estimate.unit),
+            (Visibility::Unseen, _) => "not seen".to_owned(),
+            (Visibility::Confounded(_), _) => "not told apart".to_owned(),
         };
-        let change = estimate.deviation().map(|deviation| format!("{:+.0} %", deviation * 100.0)).unwrap_or_default();
+        let changed = estimate.deviation().map(change).unwrap_or_default();
         let stiffness = if estimate.value > 0.0 && is_compliance(estimate.unit) {
             format!("{} {}", significant(estimate.value.recip(), 3), stiffness_unit(estimate.unit))
         } else {
@@ -134,9 +135,9 @@ fn compliances(estimates: &[Estimate]) -> String {
         table.row([
             estimate.name.clone(),
             significant(estimate.declared, 4),
-            format!("{identified} {}", estimate.unit),
+            identified,
             stiffness,
-            change,
+            changed,
             if estimate.is_noteworthy() { "beyond 25 %".to_owned() } else { String::new() },
         ]);
     }

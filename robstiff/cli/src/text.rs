@@ -26,6 +26,14 @@ fn trimmed(number: &str) -> &str {
     number.trim_end_matches('0').trim_end_matches('.')
 }
 
+/// A change in percent, with its sign where it has one.
+pub fn change(share: f64) -> String {
+    match format!("{:+.0} %", share * 100.0).as_str() {
+        "+0 %" | "-0 %" => "0 %".to_owned(),
+        said => said.to_owned(),
+    }
+}
+
 /// A number with so many decimals; what rounds to zero has no sign.
 pub fn decimals(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
@@ -151,6 +159,11 @@ mod tests {
     #[test]
     fn fields_with_commas_are_quoted() {
         assert_eq!(["p 1", "a,b", "say \"x\""].map(field), ["p 1", "\"a,b\"", "\"say \"\"x\"\"\""]);
+    }
+
+    #[test]
+    fn what_has_not_changed_has_no_sign() {
+        assert_eq!([0.314, -0.05, 0.001, -0.001].map(change), ["+31 %", "-5 %", "0 %", "0 %"]);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::content::{Candidate, Effect, Number, Report, SearchStep};
 use super::html::{Cell, Table, element, escape, number, text, words};
 use super::{arm, figure, micro, scatter};
 use crate::identify::is_compliance;
-use crate::text::{and, count, decimals, plus_minus, probability, quantity, significant};
+use crate::text::{and, change, count, decimals, plus_minus, probability, quantity, significant};
 
 /// The error of each model.
 pub fn errors(report: &Report) -> String {
@@ -196,13 +196,13 @@ pub fn compliances(report: &Report) -> String {
             number(found.map_or_else(|| "not seen".to_owned(), shown))
         };
         let last = if with_effects { one.after } else { one.identified };
-        let change = last.filter(|_| one.declared != 0.0).map(|(value, _)| value / one.declared - 1.0);
+        let changed = last.filter(|_| one.declared != 0.0).map(|(value, _)| value / one.declared - 1.0);
         let mut cells = vec![words(&one.name), number(significant(one.declared * factor, 4)), fitted(one.identified)];
         if with_effects {
             cells.push(fitted(one.after));
         }
-        let change = change.map(|change| format!("{:+.0} %", change * 100.0)).unwrap_or_default();
-        cells.extend([number(change), words(unit)]);
+        let changed = changed.map(change).unwrap_or_default();
+        cells.extend([number(changed), words(unit)]);
         table.row(false, cells);
     }
     let note = "With one standard deviation. Change: of the last model against the declared value. \
