@@ -4,6 +4,10 @@ use crate::description::Joint;
 use crate::document::Node;
 use crate::effect::{Effect, Place};
 
+/// As near to singular `H_q`, scaled to a diagonal of ones, is singular: rounding decides on
+/// which side it is.
+const ROUNDING: f64 = 1e-12;
+
 /// What is left of each joint's compliance where all its effects together take
 /// away the most; each by itself has been checked.
 fn least_compliances(items: &[Node], effects: &[Option<Effect>], joints: &[Joint]) -> Vec<f64> {
@@ -37,7 +41,7 @@ pub(super) fn check_couplings(items: &[Node], effects: &[Option<Effect>], joints
     for (item, effect) in items.iter().zip(effects) {
         let Some(Effect::JointCoupling { joints: [i, j], value }) = effect else { continue };
         let bound = least[i - 1].max(0.0).sqrt() * least[j - 1].max(0.0).sqrt();
-        if value.abs() < bound {
+        if value.abs() < bound * (1.0 - ROUNDING) {
             scaled[j - 1][i - 1] = value / bound;
             last = Some(item);
             continue;
@@ -63,7 +67,7 @@ fn is_positive_definite(matrix: &mut [Vec<f64>]) -> bool {
         for j in 0..=i {
             let sum: f64 = (0..j).map(|k| matrix[i][k] * matrix[j][k]).sum();
             let rest = matrix[i][j] - sum;
-            if i == j && rest <= 0.0 {
+            if i == j && rest <= ROUNDING {
                 return false;
             }
             matrix[i][j] = if i == j { rest.sqrt() } else { rest / matrix[j][j] };
@@ -82,5 +86,7 @@ mod tests {
         assert!(is_positive_definite(&mut weak));
         let mut strong = vec![vec![1.0], vec![0.7, 1.0], vec![0.7, -0.7, 1.0]];
         assert!(!is_positive_definite(&mut strong));
+        let mut singular = vec![vec![1.0], vec![0.8, 1.0], vec![0.6, 0.0, 1.0]];
+        assert!(!is_positive_definite(&mut singular));
     }
 }
