@@ -1,70 +1,13 @@
 //! Quantities as people write them: a number in SI units, or `value unit`.
 
+mod wording;
+
 use std::f64::consts::PI;
 use std::fmt;
 
-use crate::suggest::list;
 use crate::units::{UNITS, Unit};
 
 pub use crate::dimension::Dimension;
-
-impl Dimension {
-    /// The kind with its article: "an angle".
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Number => "a number",
-            Self::Length => "a length",
-            Self::Angle => "an angle",
-            Self::Compliance => "a rotational compliance",
-            Self::LinearCompliance => "a translational compliance",
-            Self::Mass => "a mass",
-            Self::Force => "a force",
-            Self::Torque => "a torque",
-            Self::Time => "a time",
-            Self::Speed => "a speed",
-            Self::RotationalSpeed => "a rotational speed",
-            Self::Frequency => "a frequency",
-            Self::FeedPerTooth => "a feed per tooth",
-            Self::Pressure => "a force per area",
-            Self::LineForce => "a force per length",
-            Self::Temperature => "a temperature",
-        }
-    }
-
-    const fn example(self) -> &'static str {
-        match self {
-            Self::Number => "0.25",
-            Self::Length => "865 mm",
-            Self::Angle => "-90 deg",
-            Self::Compliance => "2.97e-7 rad/Nm",
-            Self::LinearCompliance => "0.02 um/N",
-            Self::Mass => "350 kg",
-            Self::Force => "500 N",
-            Self::Torque => "120 Nm",
-            Self::Time => "0.5 s",
-            Self::Speed => "1200 mm/min",
-            Self::RotationalSpeed => "9000 rpm",
-            Self::Frequency => "15 Hz",
-            Self::FeedPerTooth => "0.1 mm",
-            Self::Pressure => "800 N/mm2",
-            Self::LineForce => "20 N/mm",
-            Self::Temperature => "21.5 C",
-        }
-    }
-
-    /// How such a quantity is written.
-    pub fn help(self) -> String {
-        let units = || UNITS.iter().filter(|unit| unit.dimension == self).map(|unit| unit.name);
-        let example = self.example();
-        match units().next() {
-            None => format!("write a number without a unit, e.g. `{example}`"),
-            Some(si) if units().count() == 1 => {
-                format!("write a number in {si}, with or without its unit, e.g. `{example}`")
-            }
-            Some(si) => format!("write a number in {si} or one of {}, e.g. `{example}`", list(units())),
-        }
-    }
-}
 
 /// Why a text is not the quantity that is expected.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -183,8 +126,12 @@ pub fn number(value: f64) -> String {
 pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
     let text = text.trim();
     let not_a_number = || {
-        let comma = if text.contains(',') { "a decimal point, not a comma: " } else { "" };
-        error(format!("`{text}` is not {}", dimension.name()), format!("{comma}{}", dimension.help()))
+        let help = match dimension {
+            Dimension::Angle if text.contains("pi") => "as in `pi/2`, `-3*pi/4` or `2*pi`".to_owned(),
+            _ if text.contains(',') => format!("a decimal point, not a comma: {}", dimension.help()),
+            _ => dimension.help(),
+        };
+        error(format!("`{text}` is not {}", dimension.name()), help)
     };
     let (number, rest) = match leading_number(text) {
         Some((number, rest)) => (Some(number), rest),
@@ -195,7 +142,7 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
             if dimension != Dimension::Angle {
                 return error(format!("`{text}` is an angle, {} is expected here", dimension.name()), dimension.help());
             }
-            if !matches!(unit, "" | "rad") {
+            if !matches!(unit, "" | "rad") && !is_more_of_it(unit) {
                 return error(format!("a fraction of pi is in rad, not in `{unit}`"), "e.g. `pi/2`");
             }
             (value, unit)
@@ -206,7 +153,7 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
             None => return not_a_number(),
         },
     };
-    if unit.starts_with(|first: char| first.is_ascii_digit() || ".,_".contains(first)) {
+    if is_more_of_it(unit) {
         return not_a_number();
     }
     if !value.is_finite() {
@@ -223,6 +170,11 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
         return error("a stiffness of zero has no compliance".into(), "a rigid joint has no `compliance` at all");
     }
     finite(unit.per / (value * unit.times))
+}
+
+/// Whether what follows a number is no unit, but a part of a number or of a formula.
+fn is_more_of_it(rest: &str) -> bool {
+    rest.starts_with(|first: char| first.is_ascii_digit() || ".,_*/+-".contains(first))
 }
 
 fn is_infinite_or_nan(text: &str) -> bool {
@@ -354,9 +306,11 @@ mod tests {
         ] {
             assert_eq!(parse(text, Dimension::Angle), Ok(angle), "{text}");
         }
-        for text in ["pie", "pi/x", "pi/", "p", "3*", "pi deg"] {
-            parse(text, Dimension::Angle).expect_err(text);
+        for text in ["pie", "pi/x", "pi/", "pi*2", "1/2*pi", "p", "3*"] {
+            assert_eq!(message(text, Dimension::Angle), format!("`{text}` is not an angle"));
         }
+        assert_eq!(message("pi deg", Dimension::Angle), "a fraction of pi is in rad, not in `deg`");
+        assert!(parse("pi*2", Dimension::Angle).unwrap_err().help.contains("`2*pi`"));
     }
 
     #[test]

@@ -76,7 +76,7 @@ fn a_reader_gets_its_values() {
     let map = document.root().map(&["name", "frame", "seed", "noise", "at"]).unwrap();
     assert_eq!(map.get("name").unwrap().text(), Some("loads"));
     assert_eq!(map.get("frame").unwrap().choice(&[("base", 0), ("tool", 1)]), Some(1));
-    assert_eq!(map.get("seed").unwrap().integer(), Some(7));
+    assert_eq!(map.get("seed").unwrap().integer(1), Some(7));
     let noise = map.get("noise").unwrap().map(&["displacement", "rotation"]).unwrap();
     assert_eq!(noise.get("displacement").unwrap().positive(Dimension::Length), Some(8e-6));
     assert!(noise.get("rotation").is_none());

@@ -1,18 +1,20 @@
 //! A CSV file as a table of checked numbers, every problem at its place.
 #![cfg_attr(not(feature = "identify"), allow(dead_code, reason = "campaigns need more of it than machining"))]
 
+mod header;
 mod lines;
 
 use core::cell::RefCell;
 use std::borrow::ToOwned;
 use std::format;
 use std::path::Path;
-use std::string::{String, ToString};
+use std::string::String;
 use std::vec::Vec;
 
 use robstiff_robots::quantity::{Dimension, QuantityError, finite, scale};
 use robstiff_robots::{Diagnostic, Diagnostics, Line, ReadError};
 
+use header::Header;
 pub use lines::Lines;
 use lines::extent;
 
@@ -39,14 +41,6 @@ pub fn text_of(path: &Path) -> Result<String, ReadError> {
     Ok(text.strip_prefix('\u{feff}').map(ToOwned::to_owned).unwrap_or(text))
 }
 
-/// `name [unit]`.
-struct Header {
-    name: String,
-    unit: Option<String>,
-    /// Whether the bracket of the unit is closed.
-    closed: bool,
-}
-
 /// One row.
 pub struct Record {
     /// The line of the file, from 1.
@@ -59,6 +53,16 @@ pub struct Record {
 pub struct Numbers {
     index: usize,
     scale: f64,
+    /// Whether only whole numbers make sense.
+    whole: bool,
+}
+
+impl Numbers {
+    /// The same, where only whole numbers make sense.
+    #[cfg(feature = "identify")]
+    pub fn whole(self) -> Self {
+        Self { whole: true, ..self }
+    }
 }
 
 impl<'t> Table<'t> {
@@ -169,9 +173,9 @@ impl<'t> Table<'t> {
             Some(unit) => scale(unit, dimension),
         };
         match scale {
-            Ok(scale) => Some(Numbers { index, scale }),
+            Ok(scale) => Some(Numbers { index, scale, whole: false }),
             Err(error) => {
-                self.report(self.header_line, index, &error.message, &error.help);
+                self.report(self.header_line, index, &error.message, &dimension.header_help(name));
                 None
             }
         }
@@ -182,7 +186,7 @@ impl<'t> Table<'t> {
     pub fn raw(&self, name: &str) -> Option<(Numbers, &str, &str)> {
         let index = self.require_name(name)?;
         let header = &self.header[index];
-        Some((Numbers { index, scale: 1.0 }, &header.name, header.unit.as_deref().unwrap_or_default()))
+        Some((Numbers { index, scale: 1.0, whole: false }, &header.name, header.unit.as_deref().unwrap_or_default()))
     }
 
     /// A column of numbers whose absence is reported.
@@ -247,6 +251,7 @@ impl<'t> Table<'t> {
         let point = text.replacen(',', ".", 1);
         let help = match text.contains(',') && point.parse::<f64>().is_ok() {
             true => comma_help(&point),
+            false if column.whole => format!("the column `{name}` holds whole numbers, e.g. `1`"),
             false => format!("the column `{name}` holds finite numbers, e.g. `0.25`"),
         };
         self.report(record.line, column.index, &problem, &help);
@@ -351,19 +356,6 @@ impl<'t> Table<'t> {
     }
 }
 
-impl Header {
-    fn parse(text: &str) -> Self {
-        let (name, unit, closed) = match text.split_once('[') {
-            Some((name, rest)) => {
-                let inside = rest.trim_end().strip_suffix(']');
-                (name, Some(inside.unwrap_or(rest).trim().to_string()), inside.is_some())
-            }
-            None => (text, None, true),
-        };
-        Self { name: name.trim().to_owned(), unit, closed }
-    }
-}
-
 /// What is said of a quote that takes in the end of its line, and what is right.
 const NOT_CLOSED: &str = "the quote is not closed on its line";
 const CLOSE: &str = "a row is one line: close the quote, or leave it out; no field goes on in the next line";
@@ -389,18 +381,4 @@ fn decimal_comma(row: &csv::StringRecord) -> Option<String> {
     };
     let pair = fields.windows(2).find(is_divided)?;
     Some(comma_help(&format!("{}.{}", pair[0], pair[1])))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn headers_have_names_and_units() {
-        let header = Header::parse("q1 [deg] ");
-        assert_eq!((header.name.as_str(), header.unit.as_deref()), ("q1", Some("deg")));
-        assert_eq!(Header::parse("pose").unit, None);
-        let open = Header::parse("dx [um");
-        assert_eq!((open.name.as_str(), open.unit.as_deref(), open.closed), ("dx", Some("um"), false));
-    }
 }

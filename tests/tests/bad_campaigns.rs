@@ -44,12 +44,16 @@ const CASES: &[(&str, &str, &str)] = &[
     ("campaign.yaml", "name: bench", "noise: {displacement: 0 um}"),
     ("campaign.yaml", "name: bench", "holdout: {fraction: 1, seed: 1}"),
     ("campaign.yaml", "name: bench", "holdout: {seed: -1, fraction: 0.2}"),
+    ("campaign.yaml", "name: bench", "holdout: {seed: 0.5, fraction: 0.2}"),
+    ("campaign.yaml", "name: bench", "holdout: {seed: 1e3, fraction: 0.2}"),
+    ("campaign.yaml", "name: bench", "holdout: {seed: 99999999999999999999, fraction: 0.2}"),
     ("campaign.yaml", "robot.yaml", "robots.yaml"),
     ("campaign.yaml", "name: bench", "name: [bench"),
     // The robot behind it.
     ("robot.yaml", "2e-6 rad/Nm", "2e-6 m/N"),
     // The table.
     ("loads.csv", ",dz [um]", ",dz [N]"),
+    ("loads.csv", "Fx [N]", "Fx [kg]"),
     ("loads.csv", "Fy [N]", "Fy (N)"),
     ("loads.csv", "dx [um]", "dx [um"),
     ("loads.csv", "dx [um]", "dx ["),

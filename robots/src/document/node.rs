@@ -135,11 +135,20 @@ impl<'d> Node<'d> {
         found
     }
 
-    /// The value as a whole number.
-    pub fn integer(&self) -> Option<i64> {
+    /// The value as a whole number, such as `example`.
+    pub fn integer(&self, example: i64) -> Option<i64> {
         let value = self.as_integer();
-        if value.is_none() {
-            self.expected("a whole number", "e.g. `1`");
+        let help = format!("e.g. `{example}`");
+        match self.content {
+            Content::Integer(_) => {}
+            // Beyond what an integer holds the parser makes it a number.
+            Content::Number(value) if value.fract() == 0.0 && value.abs() >= i64::MAX as f64 => {
+                self.error(format!("{value:e} is too large a number here"), help);
+            }
+            Content::Number(value) if value.fract() == 0.0 => {
+                self.expected("a whole number without a point or an exponent", format!("write `{value}`"));
+            }
+            _ => self.expected("a whole number", help),
         }
         value
     }
@@ -187,7 +196,8 @@ impl<'d> Node<'d> {
         let items = self.sequence()?;
         if items.len() != N {
             let found = items.len();
-            self.error(format!("{N} values are expected here, not {found}"), dimension.help());
+            let help = format!("write {N}, e.g. `{}`", dimension.example_list::<N>());
+            self.error(format!("{N} values are expected here, not {found}"), help);
         }
         let values: Vec<Option<f64>> = items.iter().map(|item| item.quantity(dimension)).collect();
         let values: Vec<f64> = values.into_iter().collect::<Option<_>>()?;

@@ -8,11 +8,11 @@ use robstiff_robots::quantity::Dimension;
 
 use super::ClampedRow;
 use super::beyond::{MOMENT, ROTATION};
-use crate::table::Table;
+use crate::table::{Numbers, Table};
 
 /// Reads the rows; `None` with the problems reported to the table.
 pub fn read(table: &Table<'_>, robot: &Description) -> Option<Vec<ClampedRow>> {
-    let axis = table.require("axis", Dimension::Number);
+    let axis = table.require("axis", Dimension::Number).map(Numbers::whole);
     let torque = table.require("torque", Dimension::Torque);
     let deflection = table.require("deflection", Dimension::Angle);
     let columns = [axis?, torque?, deflection?];

@@ -225,7 +225,7 @@ pub fn holdout(map: &Map<'_>) -> Option<Option<Holdout>> {
         Some(fraction)
     });
     let seed = match holdout.get("seed") {
-        Some(node) => node.integer().and_then(|seed| {
+        Some(node) => node.integer(1).and_then(|seed| {
             let positive = u64::try_from(seed).ok();
             if positive.is_none() {
                 node.error("a seed is not negative", "e.g. `1`");

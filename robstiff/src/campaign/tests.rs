@@ -353,6 +353,8 @@ fn clamped_rows_name_an_axis_the_robot_has() {
         problems("axis", &campaign, &format!("{header}\n3,1,1\n1.5,1,1\n")),
         ["2:1 the robot has no axis 3".to_owned(), "3:1 the robot has no axis 1.5".to_owned()]
     );
+    let named = Folder::new("axis-name", &campaign, &format!("{header}\none,1,1\n")).read().unwrap_err().to_string();
+    assert!(named.contains("`one` is not a number") && named.contains("holds whole numbers, e.g. `1`"), "{named}");
 }
 
 /// A campaign that does not exist is named.

@@ -233,7 +233,7 @@ fn axis(node: &Node<'_>, name: String, dimension: Dimension) -> Option<Axis> {
     let examples = if dimension == Dimension::Angle { ["-60 deg", "60 deg"] } else { ["1200 mm", "2000 mm"] };
     let (from, to) = (end("from", &format!("from: {}", examples[0])), end("to", &format!("to: {}", examples[1])));
     let count = map.require("count", "count: 50").and_then(|node| {
-        let count = node.integer()?;
+        let count = node.integer(50)?;
         if !(2..=MOST).contains(&count) {
             node.error(format!("a number from 2 to {MOST} is expected here, not {count}"), "e.g. `50`");
             return None;
@@ -242,7 +242,8 @@ fn axis(node: &Node<'_>, name: String, dimension: Dimension) -> Option<Axis> {
     });
     let (from, to, count) = (from?, to?, count?);
     if from >= to {
-        node.error("`from` is not below `to`", "a single value is written without `from` and `to`");
+        let help = if from > to { "swap the two" } else { "a single value is written without `from` and `to`" };
+        node.error("`from` is not below `to`", help);
         return None;
     }
     Some(Axis::between(&name, dimension, from, to, count))

@@ -151,8 +151,12 @@ fn bare(document: &Document) -> Vec<String> {
     let bare = |&(map, field, _, _): &(Option<&Map<'_>>, &str, &str, &str)| {
         map.and_then(|map| map.get(field)).is_some_and(|node| node.is_number())
     };
-    let said = |(_, field, si, unit)| format!("`{field}` has no unit and is taken in {si}: is it in {unit}?");
-    fields.into_iter().filter(bare).map(said).collect()
+    fields.into_iter().filter(bare).map(|(_, field, si, unit)| taken_in(field, si, unit)).collect()
+}
+
+/// Asks whether a field without a unit is in another than that of SI.
+fn taken_in(field: &str, si: &str, unit: &str) -> String {
+    format!("`{field}` has no unit and is taken in {si}: is it in {unit}?")
 }
 
 fn said(document: &Document, folder: &Path) -> Option<(String, Said)> {
@@ -222,7 +226,7 @@ fn mill(node: &Node<'_>) -> Option<EndMill> {
     let map = node.map(&["diameter", "teeth", "helix", "runout"])?;
     let diameter = map.require("diameter", "diameter: 16 mm").and_then(|node| node.positive(Dimension::Length));
     let teeth = map.require("teeth", "teeth: 3").and_then(|node| {
-        let teeth = node.integer()?;
+        let teeth = node.integer(3)?;
         if !(1..=100).contains(&teeth) {
             node.error(format!("a mill has 1 to 100 teeth, not {teeth}"), "e.g. `3`");
             return None;
@@ -298,7 +302,8 @@ fn engagement(map: &Map<'_>, diameter: Option<f64>) -> Option<Engagement> {
             let diameter = diameter?;
             let engagement = Engagement::of_width(direction, width, diameter);
             if engagement.is_none() {
-                let help = format!("a width of at most the tool's diameter, {} mm", diameter * 1e3);
+                let most = format!("a width of at most the tool's diameter, {} mm", diameter * 1e3);
+                let help = if node.is_number() { format!("{most}; {}", taken_in("width", "m", "mm")) } else { most };
                 node.error("the cut is wider than the tool", help);
             }
             engagement

@@ -255,6 +255,8 @@ fn mistakes_are_shown_where_they_are() {
     for (from, to, place, part) in [
         ("al6082-t6", "al6082-t", "cut.yaml:2:11", "did you mean `al6082-t6`"),
         ("width: 4 mm", "width: 40 mm", "cut.yaml:4:8", "wider than the tool"),
+        ("width: 4 mm", "width: 4", "cut.yaml:4:8", "`width` has no unit and is taken in m: is it in mm?"),
+        ("teeth: 3", "teeth: 2.5", "cut.yaml:1:32", "e.g. `3`"),
         ("width: 4 mm\n", "", "cut.yaml:1:1", "`width` is missing"),
         ("teeth: 3", "teeth: 0", "cut.yaml:1:32", "1 to 100 teeth"),
         ("feed: 0.1 mm/tooth", "feed: 0.1 m/tooth", "cut.yaml:6:7", "not below the tool's radius"),
@@ -264,6 +266,7 @@ fn mistakes_are_shown_where_they_are() {
         ("feed: 0.1 mm/tooth\nspeed: 9000 rpm", "feed_speed: 1 m/min", "cut.yaml:6:13", "without the spindle's"),
         ("helix: 30 deg", "runout: [0, 1 um]", "cut.yaml:1:43", "has 3 values, not 2"),
         ("milling: down", "milling: slot", "cut.yaml:4:8", "as wide as the tool"),
+        ("milling: down", "engagement: [3]", "cut.yaml:3:13", "write 2, e.g. `[-90 deg, 0]`"),
         ("milling: down", "engagement: [3, 1]", "cut.yaml:3:13", "lower first"),
         ("speed: 9000 rpm", "measured: {file: no.csv, frame: cut, on: tool}", "cut.yaml:7:18", "there is no file"),
     ] {

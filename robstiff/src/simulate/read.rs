@@ -87,7 +87,7 @@ fn scenario(document: &Document, robot: &Description) -> Option<Scenario> {
 }
 
 fn seed(node: &Node<'_>) -> Option<u64> {
-    let seed = u64::try_from(node.integer()?).ok();
+    let seed = u64::try_from(node.integer(1)?).ok();
     if seed.is_none() {
         node.error("a seed is not negative", "e.g. `1`");
     }
@@ -95,7 +95,7 @@ fn seed(node: &Node<'_>) -> Option<u64> {
 }
 
 fn count(node: &Node<'_>) -> Option<usize> {
-    let count = node.integer()?;
+    let count = node.integer(40)?;
     if !(1..=MOST).contains(&count) {
         node.error(format!("a number from 1 to {MOST} is expected here, not {count}"), "e.g. `40`");
         return None;
