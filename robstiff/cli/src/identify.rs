@@ -31,10 +31,12 @@ pub struct Arguments {
 /// Identifies the compliances.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let campaign = input::campaign(&arguments.campaign)?;
-    let found = identify(&campaign).map_err(Failure::about(&campaign))?;
     let mut files = Files::default();
     files.protect_campaign(&campaign);
-    files.add(arguments.out.join("robot.yaml"), found.description.to_yaml());
+    let robot = arguments.out.join("robot.yaml");
+    files.foresee(arguments.json.iter().chain([&robot]))?;
+    let found = identify(&campaign).map_err(Failure::about(&campaign))?;
+    files.add(robot, found.description.to_yaml());
     if let Some(path) = &arguments.json {
         files.add(path, json::document(&document(&campaign, &found)));
     }

@@ -1,20 +1,20 @@
 //! What commands leave behind: text on the terminal, and files that are there
 //! completely or not at all.
 
-use std::ffi::OsString;
 use std::fmt;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::process;
 
 use robstiff::campaign::Campaign;
 
 use crate::failure::Failure;
 
 mod growing;
+mod target;
 
 pub use growing::Growing;
+use target::{Target, folder_of, present, temporary};
 
 /// Prints to standard output. A reader that has gone away (`| head`) has seen
 /// what it wanted.
@@ -63,6 +63,19 @@ impl Files {
         self.protect(&campaign.observations_path);
     }
 
+    /// Stops, before the work, where one of the files that will come of it could not be
+    /// written, or is one that is read.
+    ///
+    /// # Errors
+    /// Which, and why not.
+    pub fn foresee(&self, paths: impl IntoIterator<Item: AsRef<Path>>) -> Result<(), Failure> {
+        paths.into_iter().try_for_each(|path| {
+            let path = path.as_ref();
+            self.refuse(path, &[])?;
+            Target::of(path).and_then(|target| target.check()).map_err(|error| cannot_write(path, &error))
+        })
+    }
+
     /// Writes every file under a temporary name in its folder, which is made
     /// where it is missing, and renames them only when all are complete.
     /// Returns a line for each that says so.
@@ -98,21 +111,6 @@ fn cannot_write(path: &Path, error: &io::Error) -> Failure {
     Failure::new(format!("cannot write {}: {error}", path.display()))
 }
 
-/// Whether two paths are one file, by whatever name.
-fn same_file(one: &Path, other: &Path) -> bool {
-    place(one) == place(other)
-}
-
-/// A path without detours. Of a file that is not there yet the folder may be, or the
-/// one that it will be made in.
-fn place(path: &Path) -> PathBuf {
-    fs::canonicalize(path).unwrap_or_else(|_| match (path.parent(), path.file_name()) {
-        (Some(folder), Some(name)) if folder.as_os_str().is_empty() => place(Path::new(".")).join(name),
-        (Some(folder), Some(name)) => place(folder).join(name),
-        _ => path.to_owned(),
-    })
-}
-
 /// Folders that were made for files, which go again where they stay empty.
 #[derive(Default)]
 struct Folders(Vec<PathBuf>);
@@ -120,12 +118,9 @@ struct Folders(Vec<PathBuf>);
 impl Folders {
     /// Makes a folder, and those it is in.
     fn make(&mut self, folder: &Path) -> io::Result<()> {
-        let missing = folder.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists());
+        let there = present(folder)?;
+        let missing = folder.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && *folder != there);
         let missing: Vec<&Path> = missing.collect();
-        let present = folder.ancestors().nth(missing.len()).filter(|folder| !folder.as_os_str().is_empty());
-        if let Some(file) = present.filter(|folder| !folder.is_dir()) {
-            return Err(io::Error::other(format!("{} is a file, not a folder", file.display())));
-        }
         // The outermost first.
         for folder in missing.into_iter().rev() {
             match fs::create_dir(folder) {
@@ -171,22 +166,18 @@ impl Draft {
 
     /// An empty draft, and the file to write to where there is one beside.
     fn open(path: &Path, made: &mut Folders) -> io::Result<(Self, Option<File>)> {
-        // Through a link, so that the link stays one.
-        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        match fs::metadata(&target) {
-            Ok(found) if found.is_dir() => return Err(io::Error::from(io::ErrorKind::IsADirectory)),
-            Ok(found) if !found.is_file() => return Ok((Self::Stream { target, text: String::new() }, None)),
-            _ => {}
+        match Target::of(path)? {
+            Target::Stream(target) => Ok((Self::Stream { target, text: String::new() }, None)),
+            Target::File { path: target, permissions } => {
+                let folder = folder_of(&target);
+                made.make(folder)?;
+                let (temporary, file) = temporary(folder)?;
+                let draft = Self::Beside { temporary, target };
+                // Before anything is in it that not everybody may read.
+                permissions.map_or(Ok(()), |permissions| file.set_permissions(permissions))?;
+                Ok((draft, Some(file)))
+            }
         }
-        let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        made.make(folder)?;
-        let name = target.file_name().ok_or_else(|| io::Error::from(io::ErrorKind::InvalidInput))?;
-        let mut hidden = OsString::from(".");
-        hidden.push(name);
-        hidden.push(format!(".{}.tmp", process::id()));
-        let temporary = folder.join(hidden);
-        let file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
-        Ok((Self::Beside { temporary, target }, Some(file)))
     }
 
     fn is_stream(&self) -> bool {

@@ -34,10 +34,11 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, _) = input::robot(&arguments.robot)?;
     let campaign = input::campaign(&arguments.campaign)?;
-    let prediction = predict(&robot, &campaign).map_err(Failure::about(&campaign))?;
     let mut files = Files::default();
     files.protect(&arguments.robot);
     files.protect_campaign(&campaign);
+    files.foresee(arguments.json.iter().chain(&arguments.csv))?;
+    let prediction = predict(&robot, &campaign).map_err(Failure::about(&campaign))?;
     if let Some(path) = &arguments.json {
         let document = json!({
             "rows": prediction.rows.len(),

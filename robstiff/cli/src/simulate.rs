@@ -39,11 +39,12 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, _) = input::robot(&arguments.robot)?;
     let scenario = Scenario::read(&arguments.scenario, &robot)?;
-    let simulated = simulate(&robot, &scenario)?;
-    let texts = simulated.files();
     let mut files = Files::default();
     files.protect(&arguments.robot);
     files.protect(&arguments.scenario);
+    files.foresee(arguments.json.iter().chain([&arguments.out.join("campaign.yaml")]))?;
+    let simulated = simulate(&robot, &scenario)?;
+    let texts = simulated.files();
     for (name, text) in [
         ("campaign.yaml", texts.campaign),
         texts.observations,

@@ -135,6 +135,22 @@ fn wrong_maps_are_explained_and_leave_nothing() {
     assert_eq!(names(&folder), ["map.yaml"]);
 }
 
+/// Found before the work: a map of a second or more has no time to begin.
+#[test]
+fn what_cannot_be_written_is_told_before_the_map_is_made() {
+    let folder = folder("map-unwritten");
+    let (map, csv) = (inside(&folder, "map.yaml"), inside(&folder, "m.csv"));
+    let axis = "{from: 0, to: 1, count: 30}, ".repeat(5);
+    fs::write(&map, format!("joints: [{axis}]\n")).unwrap();
+    let begun = std::time::Instant::now();
+    for beside in ["map.yaml/m.json", "", "map.yaml"] {
+        let said = fail(1, &["map", "rv130hsc", &map, "--csv", &csv, "--json", &inside(&folder, beside)]);
+        assert!(said.contains("cannot write") || said.contains("would be overwritten"), "{said}");
+    }
+    assert!(begun.elapsed().as_secs() < 2, "{:?}", begun.elapsed());
+    assert_eq!(names(&folder), ["map.yaml"]);
+}
+
 #[test]
 fn a_map_that_no_pose_reaches_is_refused() {
     let folder = folder("map-unreached");

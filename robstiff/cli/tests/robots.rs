@@ -116,10 +116,71 @@ fn the_robot_that_was_read_is_not_overwritten() {
 #[test]
 fn a_device_that_is_full_leaves_no_file() {
     let folder = folder("full");
-    let code = inside(&folder, "arm.rs");
+    let code = inside(&folder, "new/arm.rs");
     let said = fail(1, &["emit", "rv130hsc", "--out", &code, "--json", "/dev/full"]);
     assert!(said.contains("cannot write /dev/full"), "{said}");
     assert_eq!(names(&folder), Vec::<String>::new());
+}
+
+/// What is printed would be lost with the file that another takes the place of.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_output_is_not_put_in_the_place_of_an_open_file() {
+    use std::fs::OpenOptions;
+
+    let folder = folder("open-file");
+    let page = inside(&folder, "page.txt");
+    fs::write(&page, "before\n").unwrap();
+    for json in ["/dev/stdout", "/dev/fd/1", page.as_str()] {
+        let open = OpenOptions::new().append(true).open(&page).unwrap();
+        let output = common::robstiff(&["show", "rv130hsc", "--json", json]).stdout(open).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        let told = format!("error: cannot write {json}: what is printed goes to this file; name another one\n");
+        assert_eq!((output.status.code(), said), (Some(1), told));
+        assert_eq!(fs::read_to_string(&page).unwrap(), "before\n");
+    }
+    let input = fs::File::open(&page).unwrap();
+    let output = common::robstiff(&["show", "rv130hsc", "--json", "/dev/stdin"]).stdin(input).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("it stands for a file that is open; name the file itself"), "{said}");
+    // A pipe takes both.
+    let both = succeed(&["show", "rv130hsc", "--json", "/dev/stdout"]);
+    assert!(both.starts_with('{') && both.contains("Jacobian"), "{both}");
+    assert_eq!(names(&folder), ["page.txt"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_known_of_a_file_stays_when_another_takes_its_place() {
+    use std::fs::Permissions;
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
+    let folder = folder("permissions");
+    let emit = |file: &str| run(&["emit", "rv130hsc", "--out", &inside(&folder, file)]);
+    let mode = |file: &str| fs::metadata(folder.join(file)).unwrap().permissions().mode() & 0o777;
+    fs::write(folder.join("mine.rs"), "").unwrap();
+    fs::set_permissions(folder.join("mine.rs"), Permissions::from_mode(0o600)).unwrap();
+    assert_eq!((emit("mine.rs").code, mode("mine.rs")), (0, 0o600));
+    fs::set_permissions(folder.join("mine.rs"), Permissions::from_mode(0o444)).unwrap();
+    let ran = emit("mine.rs");
+    assert!(ran.code == 1 && ran.err.contains("mine.rs: it is read-only"), "{}", ran.err);
+    // A link to what is not there yet, and what it leads to.
+    symlink("new/arm.rs", folder.join("link.rs")).unwrap();
+    assert_eq!(emit("link.rs").code, 0);
+    assert!(fs::read_to_string(folder.join("new/arm.rs")).unwrap().contains("pub struct Rv130hsc"));
+    assert!(fs::symlink_metadata(folder.join("link.rs")).unwrap().is_symlink());
+    symlink("round.rs", folder.join("round.rs")).unwrap();
+    assert_eq!(emit("round.rs").code, 1);
+    assert_eq!(names(&folder), ["link.rs", "mine.rs", "new", "round.rs"]);
+}
+
+#[test]
+fn a_name_may_be_as_long_as_names_can_be() {
+    let folder = folder("long-name");
+    let name = format!("{}.rs", "a".repeat(252));
+    succeed(&["emit", "rv130hsc", "--out", &inside(&folder, &name)]);
+    fail(1, &["emit", "rv130hsc", "--out", &inside(&folder, &format!("a{name}"))]);
+    assert_eq!(names(&folder), [name]);
 }
 
 #[test]

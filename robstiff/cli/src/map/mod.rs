@@ -72,6 +72,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut files = Files::default();
     files.protect(&arguments.robot);
     files.protect(&arguments.map);
+    let Arguments { csv, parquet, svg, html, json, .. } = arguments;
+    files.foresee([csv, parquet, svg, html, json].into_iter().flatten())?;
     let mapped = match robot.joints.len() {
         1 => map::<1>(&robot, &task, arguments, &mut files),
         2 => map::<2>(&robot, &task, arguments, &mut files),

@@ -203,14 +203,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let mut files = Files::default();
     let asked = Asked::read(arguments, &robot, &mut files)?;
+    files.protect(&arguments.robot);
+    arguments.model.iter().chain(&arguments.path).for_each(|path| files.protect(path));
+    files.foresee(arguments.csv.iter().chain(&arguments.json))?;
     let variants = arguments.control.variants(&name);
     let silent = arguments.control.lost.map(|Loss([from, length])| from..from + length);
     let seen = with_robot!(&robot, |arm| {
         let model = Generic::new(&model).map_err(|error| Failure::new(format!("{name}: {error}")))?;
         asked.simulate((&arm, &model), &variants, silent.as_ref())
     })?;
-    files.protect(&arguments.robot);
-    arguments.model.iter().chain(&arguments.path).for_each(|path| files.protect(path));
     if let Some(path) = &arguments.csv {
         files.add(path, page::table(&seen, &variants));
     }

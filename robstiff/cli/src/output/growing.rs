@@ -4,7 +4,8 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::{Draft, Files, Folders, cannot_write, same_file};
+use super::target::same_file;
+use super::{Draft, Files, Folders, cannot_write};
 use crate::failure::Failure;
 
 /// A file that is written piece by piece beside its place, and takes that when

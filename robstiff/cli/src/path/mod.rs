@@ -77,9 +77,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if asked.is_some() {
         input::complain_if_rigid(&robot);
     }
-    let solved = with_robot!(&robot, |robot| solve(&robot, &path, start.as_deref(), asked.as_ref()))?;
     files.protect(&arguments.robot);
     files.protect(&arguments.path);
+    files.foresee(arguments.out.iter().chain(&arguments.json))?;
+    let solved = with_robot!(&robot, |robot| solve(&robot, &path, start.as_deref(), asked.as_ref()))?;
     if let Some(out) = &arguments.out {
         files.add(out, table(&robot, &solved));
     }

@@ -80,6 +80,12 @@ fn height(text: &str) -> Result<f64, String> {
 /// Plans.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let campaign = input::campaign(&arguments.campaign)?;
+    let mut files = Files::default();
+    files.protect_campaign(&campaign);
+    let named = |name: &str| arguments.out.as_ref().map(|out| out.join(name));
+    let documents: Vec<PathBuf> = arguments.json.iter().cloned().chain(named("plan.json")).collect();
+    let tables: Vec<PathBuf> = arguments.csv.iter().cloned().chain(named("plan.csv")).collect();
+    files.foresee(documents.iter().chain(&tables))?;
     let spinner = spinner();
     let tracing = trace::Options { seed: arguments.seed, ..trace::Options::default() };
     let traced = trace(&campaign, &tracing, &|stage| spinner.set_message(stage.to_owned()));
@@ -102,14 +108,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     spinner.finish_and_clear();
     let (planned, traced) = planned?;
 
-    let mut files = Files::default();
-    files.protect_campaign(&campaign);
     let document = json::document(&document::document(&planned, &traced, &campaign));
     let table = document::table(&planned, &campaign);
-    for path in arguments.json.iter().cloned().chain(arguments.out.iter().map(|out| out.join("plan.json"))) {
+    for path in documents {
         files.add(path, document.clone());
     }
-    for path in arguments.csv.iter().cloned().chain(arguments.out.iter().map(|out| out.join("plan.csv"))) {
+    for path in tables {
         files.add(path, table.clone());
     }
     let said = files.write()?;

@@ -75,12 +75,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     input::complain_if_rigid(&robot);
     let mut files = Files::default();
     files.protect(&arguments.robot);
+    arguments.path.iter().for_each(|path| files.protect(path));
+    files.foresee(arguments.json.iter().chain([&arguments.out]))?;
     let scene = if let Some(path) = &arguments.campaign {
         let campaign = input::campaign(path)?;
         files.protect_campaign(&campaign);
         Scene::of_campaign(&robot, &campaign)?
     } else if let Some(path) = &arguments.path {
-        files.protect(path);
         // As in the header, the name may carry its unit.
         let column = arguments.column.as_deref().map(|name| name.split('[').next().unwrap_or(name).trim());
         let table = JointTable::read(path, &robot, column)?;

@@ -121,10 +121,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for note in input::outside_limits(&q, &robot) {
         output::complain(format_args!("note: {note}"));
     }
-    let predicted = with_robot!(&robot, |arm| predict(&arm, &robot, cut, &q, arguments))?;
     let mut files = Files::default();
     files.protect(&arguments.robot);
     forces::protect(&mut files, &arguments.cut, &file);
+    files.foresee(arguments.out.iter().chain(&arguments.json))?;
+    let predicted = with_robot!(&robot, |arm| predict(&arm, &robot, cut, &q, arguments))?;
     if let Some(path) = &arguments.out {
         files.add(path, picture::svg(&predicted, cut));
     }

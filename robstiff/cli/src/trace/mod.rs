@@ -71,6 +71,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         )));
     }
     let campaign = input::campaign(&arguments.campaign)?;
+    let mut files = Files::default();
+    files.protect_campaign(&campaign);
+    let [robot, told, shown] = ["robot.yaml", "trace.json", "report.html"].map(|name| arguments.out.join(name));
+    files.foresee(arguments.json.iter().chain([&robot, &told, &shown]))?;
     let spinner = spinner();
     spinner.set_message("asking the readings themselves");
     let triage = robstiff::triage::triage(&campaign);
@@ -104,14 +108,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Data::Clamped(_) => (clamped::in_angles(document), clamped::about_axes(&report), clamped::about_axes(&page)),
     };
     let document = json::document(&document);
-    let mut files = Files::default();
-    files.protect_campaign(&campaign);
-    files.add(arguments.out.join("robot.yaml"), traced.description.to_yaml());
+    files.add(robot, traced.description.to_yaml());
     if let Some(path) = &arguments.json {
         files.add(path, document.clone());
     }
-    files.add(arguments.out.join("trace.json"), document);
-    files.add(arguments.out.join("report.html"), report);
+    files.add(told, document);
+    files.add(shown, report);
     if let Some(Some(found)) = &correction {
         files.add(arguments.out.join("correction.json"), json::document(&correction::document(found, &traced)));
     }
