@@ -294,6 +294,14 @@ fn an_ellipsoid_without_the_effects_says_so() {
 }
 
 #[test]
+fn a_path_of_another_robot_is_told() {
+    let folder = folder("view-other");
+    let ran = run(&["view", "rv130hsc", "--path", &docs("pocket-solved.csv"), "--out", &inside(&folder, "page.html")]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    assert!(ran.err.contains("pocket-solved.csv: the column `q6` is not used, Rv130hsc has no joint 6"), "{}", ran.err);
+}
+
+#[test]
 fn what_is_wrong_leaves_no_page() {
     let folder = folder("view-wrong");
     let (path, page) = (inside(&folder, "path.csv"), inside(&folder, "page.html"));

@@ -22,6 +22,8 @@ pub struct JointTable {
     pub wrenches: Option<Vec<[f64; 6]>>,
     /// The column that was asked for.
     pub column: Option<Column>,
+    /// Columns that look as if the table were another robot's.
+    pub warnings: Vec<String>,
 }
 
 /// A column of any numbers, as the file gives them.
@@ -44,9 +46,18 @@ impl JointTable {
     pub fn read(path: &Path, robot: &Description, column: Option<&str>) -> Result<Self, ReadError> {
         let (name, text) = (path.display().to_string(), text_of(path)?);
         let table = Table::parse(&name, &text).map_err(ReadError::Invalid)?;
-        let read = rows(&table, robot, column);
+        let warnings = beyond(&table, &name, robot);
+        let read = rows(&table, robot, column).map(|read| JointTable { warnings, ..read });
         table.finish(read).map(|(read, _)| read).map_err(ReadError::Invalid)
     }
+}
+
+/// Says so of columns for joints that the robot does not have, up to as many as there are.
+fn beyond(table: &Table<'_>, file: &str, robot: &Description) -> Vec<String> {
+    let beyond = robot.joints.len() + 1..;
+    let there = beyond.take_while(|joint| table.position(&format!("q{joint}")).is_some());
+    let said = |joint| format!("{file}: the column `q{joint}` is not used, {} has no joint {joint}", robot.name);
+    there.map(said).collect()
 }
 
 /// `None` with the problems reported to the table.
@@ -91,5 +102,5 @@ fn rows(table: &Table<'_>, robot: &Description, column: Option<&str>) -> Option<
         }
     };
     let (q, wrenches): (Vec<_>, Vec<_>) = rows.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
-    Some(JointTable { q, wrenches: forced.then_some(wrenches), column })
+    Some(JointTable { q, wrenches: forced.then_some(wrenches), column, warnings: Vec::new() })
 }

@@ -85,6 +85,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         // As in the header, the name may carry its unit.
         let column = arguments.column.as_deref().map(|name| name.split('[').next().unwrap_or(name).trim());
         let table = JointTable::read(path, &robot, column)?;
+        for warning in &table.warnings {
+            output::complain(format_args!("warning: {warning}"));
+        }
         Scene::new(&robot, Kind::Path, &rows(table, arguments.force)).coloured_by(column)
     } else {
         let q = pose(arguments, &robot)?;
@@ -112,7 +115,7 @@ fn pose(arguments: &Arguments, robot: &Description) -> Result<Vec<f64>, Failure>
 }
 
 fn rows(table: JointTable, force: Option<Force>) -> Vec<Row> {
-    let JointTable { q, wrenches, column } = table;
+    let JointTable { q, wrenches, column, .. } = table;
     let rows = q.into_iter().enumerate().map(|(k, q)| Row {
         q,
         wrench: force.map(Force::wrench).or_else(|| Some(wrenches.as_ref()?[k])),
