@@ -50,15 +50,23 @@ pub fn with_unit(text: &str, dimension: Dimension) -> Result<f64, String> {
     Ok(value)
 }
 
-/// Says so where a robot has nothing that gives way.
-pub fn complain_if_rigid(robot: &Description) {
+/// What is said of a robot that has nothing that gives way.
+fn rigid(robot: &Description) -> Option<String> {
     let yields = robot.joints.iter().flat_map(|joint| &joint.compliance).any(|part| part.value > 0.0);
-    if !yields && robot.effects.is_empty() {
-        output::complain(format_args!(
-            "warning: {} is rigid, nothing moves its tool: none of its joints has a `compliance`",
-            robot.name
-        ));
+    let rigid = !yields && robot.effects.is_empty();
+    rigid.then(|| format!("{} is rigid, nothing moves its tool: none of its joints has a `compliance`", robot.name))
+}
+
+/// Says so where nothing of a robot gives way.
+pub fn complain_if_rigid(robot: &Description) {
+    if let Some(said) = rigid(robot) {
+        output::complain(format_args!("warning: {said}"));
     }
+}
+
+/// Stops there, where all that is asked for is how far something moves the tool.
+pub fn refuse_if_rigid(robot: &Description) -> Result<(), Failure> {
+    rigid(robot).map_or(Ok(()), |said| Err(Failure::new(said)))
 }
 
 /// Reads a campaign, and says what its reader noticed.

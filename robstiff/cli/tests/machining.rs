@@ -86,14 +86,22 @@ fn a_path_at_another_feed_than_its_cut_is_told() {
 fn an_arm_that_does_not_yield_is_told() {
     let folder = folder("machining-rigid");
     let arm = rigid(&folder);
-    for more in [&["--frequency", "15 Hz"][..], &[]] {
-        let said = fail(1, &[&["stability", &arm, &file("roughing.yaml")], more].concat());
-        assert!(said.contains("MillingArm180 does not yield in this pose"), "{said}");
+    let (cut, pocket, table) = (file("roughing.yaml"), file("pocket.csv"), file("table.yaml"));
+    for asked in [
+        &["stability", &arm, &cut, "--frequency", "15 Hz"][..],
+        &["stability", &arm, &cut],
+        &["online", &arm, &pocket, "--cut", &cut],
+        &["online", &arm, "--force", "0, 0, -400 N"],
+        &["path", &arm, &pocket, "--cut", &cut, "--compensate"],
+        &["map", &arm, &table, "--place", "400 x 300 x 0 mm"],
+    ] {
+        let said = fail(1, asked);
+        assert!(said.contains("MillingArm180 is rigid, nothing moves its tool"), "{asked:?}: {said}");
     }
     let page = inside(&folder, "page.html");
     let ran = run(&["view", &arm, "--out", &page]);
     assert!(ran.err.contains("MillingArm180 is rigid"), "{}", ran.err);
-    let ran = run(&["map", &arm, &file("table.yaml")]);
+    let ran = run(&["map", &arm, &table]);
     assert!(ran.err.contains("MillingArm180 is rigid"), "{}", ran.err);
 }
 

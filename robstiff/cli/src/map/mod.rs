@@ -67,7 +67,11 @@ pub struct Arguments {
 /// Maps.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, _) = input::robot(&arguments.robot)?;
-    input::complain_if_rigid(&robot);
+    // Where the tool gets is in a map as well, but no place is better than another.
+    match arguments.place {
+        Some(_) => input::refuse_if_rigid(&robot)?,
+        None => input::complain_if_rigid(&robot),
+    }
     let task = task(&arguments.map, &robot)?;
     let mut files = Files::default();
     files.protect(&arguments.robot);

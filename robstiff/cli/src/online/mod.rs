@@ -196,7 +196,7 @@ impl ControlArguments {
 /// Simulates.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, _) = input::robot(&arguments.robot)?;
-    input::complain_if_rigid(&robot);
+    input::refuse_if_rigid(&robot)?;
     let (model, name) = match &arguments.model {
         Some(path) => (input::robot(path)?.0, path.display().to_string()),
         None => (stiffer(&robot), "model 10 % too stiff".to_owned()),

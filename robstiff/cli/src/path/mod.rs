@@ -75,7 +75,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut files = Files::default();
     let asked = arguments.cutting.read(arguments.tool_axis, &mut files)?;
     if asked.is_some() {
-        input::complain_if_rigid(&robot);
+        input::refuse_if_rigid(&robot)?;
     }
     files.protect(&arguments.robot);
     files.protect(&arguments.path);

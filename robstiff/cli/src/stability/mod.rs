@@ -108,6 +108,7 @@ pub struct Predicted {
 /// Predicts.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, _) = input::robot(&arguments.robot)?;
+    input::refuse_if_rigid(&robot)?;
     let file = input::cut(&arguments.cut)?;
     let Forces::Model(cut) = &file.forces else {
         return Err(Failure::new(
@@ -146,10 +147,7 @@ fn predict<const N: usize>(
     let q = SVector::from_column_slice(q);
     let compliance = translational_compliance(&arm.compliance(&q));
     if compliance.amax() == 0.0 {
-        return Err(Failure::new(format!(
-            "{} does not yield in this pose: its joints are rigid until they are given a `compliance`",
-            robot.name
-        )));
+        return Err(Failure::new(format!("{} does not yield in this pose", robot.name)));
     }
     let mass = match arguments.frequency {
         Some(frequency) => mass_of_first_mode(&compliance, frequency)
