@@ -166,35 +166,35 @@ impl EveryLaw {
     pub const KNEE3: f64 = 700.0;
     /// Total play of joint 3 (rad).
     pub const GAP3: f64 = 0.00011635528346628863;
-    /// Torque at which most of the play is taken up of joint 3 (Nm).
+    /// Torque that takes up most of the play of joint 3 (Nm).
     pub const GAP_KNEE3: f64 = 90.0;
     /// Total play of joint 5 (rad).
     pub const GAP5: f64 = 0.0002908882086657216;
-    /// Torque at which most of the play is taken up of joint 5 (Nm).
+    /// Torque that takes up most of the play of joint 5 (Nm).
     pub const GAP_KNEE5: f64 = 20.0;
-    /// Torque below which a play operator stays of joint 3 (Nm).
+    /// Torque that moves a play operator of joint 3 (Nm).
     pub const RADIUS1_3: f64 = 50.0;
-    /// Compliance by which a play operator turns the joint of joint 3 (rad/Nm).
+    /// Compliance of a play operator of joint 3 (rad/Nm).
     pub const WEIGHT1_3: f64 = 3e-8;
-    /// Torque below which a play operator stays of joint 3 (Nm).
+    /// Torque that moves a play operator of joint 3 (Nm).
     pub const RADIUS2_3: f64 = 200.0;
-    /// Compliance by which a play operator turns the joint of joint 3 (rad/Nm).
+    /// Compliance of a play operator of joint 3 (rad/Nm).
     pub const WEIGHT2_3: f64 = 4e-8;
-    /// Torque below which a play operator stays of joint 3 (Nm).
+    /// Torque that moves a play operator of joint 3 (Nm).
     pub const RADIUS3_3: f64 = 600.0;
-    /// Compliance by which a play operator turns the joint of joint 3 (rad/Nm).
+    /// Compliance of a play operator of joint 3 (rad/Nm).
     pub const WEIGHT3_3: f64 = 5e-8;
-    /// Torque below which a play operator stays of joint 6 (Nm).
+    /// Torque that moves a play operator of joint 6 (Nm).
     pub const RADIUS1_6: f64 = 15.0;
-    /// Compliance by which a play operator turns the joint of joint 6 (rad/Nm).
+    /// Compliance of a play operator of joint 6 (rad/Nm).
     pub const WEIGHT1_6: f64 = 4e-7;
-    /// Torque below which a play operator stays of joint 6 (Nm).
+    /// Torque that moves a play operator of joint 6 (Nm).
     pub const RADIUS2_6: f64 = 0.0;
-    /// Compliance by which a play operator turns the joint of joint 6 (rad/Nm).
+    /// Compliance of a play operator of joint 6 (rad/Nm).
     pub const WEIGHT2_6: f64 = 0.0;
-    /// Torque below which a play operator stays of joint 6 (Nm).
+    /// Torque that moves a play operator of joint 6 (Nm).
     pub const RADIUS3_6: f64 = 0.0;
-    /// Compliance by which a play operator turns the joint of joint 6 (rad/Nm).
+    /// Compliance of a play operator of joint 6 (rad/Nm).
     pub const WEIGHT3_6: f64 = 0.0;
     /// Relative change of the compliance with cos q of joint 3.
     pub const COS1_3: f64 = 0.1;
@@ -854,7 +854,7 @@ impl Robot<7> for EveryLaw {
         ]
     }
 
-    /// Jacobian of the tool centre point in the base frame, 6 rows: translation (m/rad), rotation.
+    /// Jacobian of the tool centre point in the base frame, 6 rows: translation (m/rad, of sliding joints m/m), rotation.
     ///
     /// 14 trig, 172 mul, 104 add.
     #[inline(always)]

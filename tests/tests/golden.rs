@@ -41,6 +41,19 @@ fn is_as_before(module: &str, file: &str) {
     compare(&format!("{module}.rs"), &source(&description(file), &origin(file)));
 }
 
+/// One joint is no joints, and a displacement per stroke is no angle's.
+#[test]
+fn docs_go_with_the_joints() {
+    let code = |joints: &str| {
+        let robot = format!("name: Slide\nconvention: standard\njoints: [{joints}]\n");
+        source(&Description::parse("slide.yaml", &robot).expect("a robot"), &origin("slide.yaml"))
+    };
+    let slide = code("{type: prismatic}");
+    assert!(slide.contains("`Slide`, 1 joint, generated") && slide.contains("translation (m/m), rotation."), "{slide}");
+    let both = code("{type: prismatic}, {a: 1 m}");
+    assert!(both.contains("2 joints, generated") && both.contains("(m/rad, of sliding joints m/m)"), "{both}");
+}
+
 /// Operations of every function of every robot, number by number and in whole columns.
 #[test]
 fn costs_are_as_before() {

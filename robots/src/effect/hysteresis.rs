@@ -25,7 +25,7 @@ const fn radius(name: &'static str, symbol: &'static str, default: Option<f64>) 
     Parameter {
         name,
         symbol,
-        what: "Torque below which a play operator stays",
+        what: "Torque that moves a play operator",
         quantity: Quantity::Of(Dimension::Torque),
         range: Range::NotNegative,
         default,
@@ -37,7 +37,7 @@ const fn weight(name: &'static str, symbol: &'static str, default: Option<f64>) 
     Parameter {
         name,
         symbol,
-        what: "Compliance by which a play operator turns the joint",
+        what: "Compliance of a play operator",
         quantity: Quantity::Of(Dimension::Compliance),
         range: Range::NotNegative,
         default,

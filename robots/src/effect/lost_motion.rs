@@ -37,7 +37,7 @@ impl Physics<2> for LostMotion {
             Parameter {
                 name: "knee",
                 symbol: "GAP_KNEE",
-                what: "Torque at which most of the play is taken up",
+                what: "Torque that takes up most of the play",
                 quantity: Quantity::Of(Dimension::Torque),
                 range: Range::Positive,
                 default: None,

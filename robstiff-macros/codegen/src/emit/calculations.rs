@@ -3,7 +3,7 @@
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
-use robstiff_robots::Description;
+use robstiff_robots::{Description, JointKind};
 
 use super::Signature;
 use super::body::Reader;
@@ -18,8 +18,9 @@ pub(super) type Build = fn(&Description, Reader, &[TokenStream]) -> TokenStream;
 pub(super) struct Calculation {
     /// The method's name.
     pub name: &'static str,
-    /// What it gives, with shape, frame and unit.
-    pub doc: &'static str,
+    /// What it gives, with shape, frame and unit; `{}` is that of a displacement per joint
+    /// coordinate.
+    doc: &'static str,
     /// The method's signature.
     pub signature: Signature,
     algorithm: Algorithm,
@@ -52,7 +53,7 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
     },
     Calculation {
         name: "jacobian",
-        doc: "Jacobian of the tool centre point in the base frame, 6 rows: translation (m/rad), rotation.",
+        doc: "Jacobian of the tool centre point in the base frame, 6 rows: translation ({}), rotation.",
         signature: |n| quote!(fn jacobian<T: Real>(&self, q: &SVector<T, #n>) -> SMatrix<T, 6, #n>),
         algorithm: symbolic::jacobian,
         result: |_, reader, entries| jacobian(reader, entries),
@@ -143,6 +144,17 @@ impl Calculation {
     /// All of a robot; that with a state last, if the robot has one.
     fn all(robot: &Description) -> impl Iterator<Item = Self> {
         CALCULATIONS.into_iter().chain(symbolic::remembers(robot).then_some(DEFLECTION_WITH))
+    }
+
+    /// What its docs say for one robot.
+    pub fn doc(&self, robot: &Description) -> String {
+        let is_of = |kind: JointKind| robot.joints.iter().all(|joint| joint.kind == kind);
+        let per_joint = match (is_of(JointKind::Revolute), is_of(JointKind::Prismatic)) {
+            (true, _) => "m/rad",
+            (false, true) => "m/m",
+            (false, false) => "m/rad, of sliding joints m/m",
+        };
+        self.doc.replace("{}", per_joint)
     }
 
     fn function(&self, robot: &Description) -> Function {

@@ -159,7 +159,11 @@ pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Gene
     if !robot.description.trim().is_empty() {
         docs.extend(paragraph(&robot.description));
     }
-    docs.push(format!(" Elastostatics of `{}`, {} joints, generated from `{file}`.", robot.name, robot.joints.len()));
+    let joints = match robot.joints.len() {
+        1 => "1 joint".to_owned(),
+        count => format!("{count} joints"),
+    };
+    docs.push(format!(" Elastostatics of `{}`, {joints}, generated from `{file}`.", robot.name));
     if !robot.source.trim().is_empty() {
         docs.push(String::new());
         docs.push(" # Sources".to_owned());
@@ -282,7 +286,7 @@ fn calculation(robot: &Description, generated: &Generated, reader: Reader, n: &T
         let in_columns = written(function, *result);
         code = quote!(if T::COLUMNS { #in_columns } else { #code });
     }
-    let mut docs = paragraph(method.doc);
+    let mut docs = paragraph(&method.doc(robot));
     docs.push(format!(" {}.", function.cost()));
     let signature = (method.signature)(n);
     // Only a caller that sees the code can leave out what it does not
