@@ -195,6 +195,10 @@ impl Scope<'_> {
                     "T::of" | "Matrix4::new" | "Matrix6::new" | "Vector6::new" | "core::convert::From::from" => {
                         arguments().collect()
                     }
+                    "core::primitive::f64::from_bits" => {
+                        let Expr::Lit(ExprLit { lit: Lit::Int(bits), .. }) = &call.args[0] else { panic!("bits") };
+                        vec![f64::from_bits(bits.base10_parse().expect("bits"))]
+                    }
                     other => panic!("a call of {other}"),
                 }
             }
@@ -213,6 +217,10 @@ impl Scope<'_> {
                 _ => panic!("a number that is no float"),
             },
             Expr::Paren(inner) => self.value(&inner.expr),
+            Expr::Const(block) => match block.block.stmts.as_slice() {
+                [Stmt::Expr(inner, None)] => self.value(inner),
+                _ => panic!("a constant"),
+            },
             Expr::Unary(unary) if matches!(unary.op, UnOp::Neg(_)) => -self.value(&unary.expr),
             Expr::Binary(binary) => {
                 let (a, b) = (self.value(&binary.left), self.value(&binary.right));

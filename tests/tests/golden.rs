@@ -54,6 +54,21 @@ fn docs_go_with_the_joints() {
     assert!(both.contains("2 joints, generated") && both.contains("(m/rad, of sliding joints m/m)"), "{both}");
 }
 
+/// An exception is an error where the user's crate forbids the lint, and Clippy looks into
+/// what macros expand to.
+#[test]
+fn code_for_the_compiler_asks_for_no_exception() {
+    let joints = "{theta: 0.318309886, a: 3.14159, limits: [-180 deg, 90 deg]}, {theta: 0.2, a: 0.3, alpha: 0.1}";
+    let robot = format!("name: Half\nconvention: standard\njoints: [{joints}]\n");
+    let code = tokens(&Description::parse("half.yaml", &robot).expect("a robot"), &origin("half.yaml")).to_string();
+    for suspect in ["allow", "3.14", "1.57", "0.318"] {
+        assert!(!code.contains(suspect), "{suspect}: {code}");
+    }
+    assert!(code.contains("0.3"), "{code}");
+    let every = tokens(&description("every-effect.yaml"), &origin("every-effect.yaml")).to_string();
+    assert!(every.contains("const {"), "sums of constants are computed at compile time");
+}
+
 /// Operations of every function of every robot, number by number and in whole columns.
 #[test]
 fn costs_are_as_before() {

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::facts::number;
 use super::fuse::{FusedSum, Fusion};
 use super::lines::Lines;
 use super::operation::{Binding, arithmetic, call, column, sum};
@@ -33,9 +34,9 @@ pub(super) enum Reader {
 pub(super) fn body(function: &Function, reader: Reader) -> Body {
     let writer = match reader {
         Reader::Compiler => Writer::fusing(function, Turns::of(function)),
-        Reader::Person => Writer::of(function, Turns::none(), Fusion::none(function)),
+        Reader::Person => Writer::of(function, reader, Turns::none(), Fusion::none(function)),
     };
-    let statements = writer.statements(reader == Reader::Person, |_| None);
+    let statements = writer.statements(|_| None);
     let outputs = function.outputs().iter().map(|&id| writer.operand(id, Binding::Sum)).collect();
     Body { statements, outputs }
 }
@@ -51,13 +52,14 @@ pub(super) fn handing_over(function: &Function) -> TokenStream {
         let (k, output) = (Literal::usize_unsuffixed(k), writer.operand(id, Binding::Sum));
         due.entry(writer.last_line(id)).or_default().extend(quote!(put(#k, #output);));
     }
-    let statements = writer.statements(false, |id| due.get(&Some(id)).cloned());
+    let statements = writer.statements(|id| due.get(&Some(id)).cloned());
     let known_before = due.get(&None);
     quote!(#statements #known_before)
 }
 
 struct Writer<'f> {
     function: &'f Function,
+    reader: Reader,
     /// The operations that outputs depend on.
     live: Vec<Op>,
     lines: Lines,
@@ -66,26 +68,30 @@ struct Writer<'f> {
 }
 
 impl<'f> Writer<'f> {
-    fn of(function: &'f Function, turns: Turns, fusion: Fusion) -> Self {
+    fn of(function: &'f Function, reader: Reader, turns: Turns, fusion: Fusion) -> Self {
         let nodes = function.graph().nodes();
         let live = nodes.iter().zip(function.uses()).filter(|(_, used)| *used > 0).map(|(node, _)| node.op).collect();
-        Self { function, live, lines: Lines::of(function, &turns, &fusion), fusion, turns }
+        Self { function, reader, live, lines: Lines::of(function, &turns, &fusion), fusion, turns }
     }
 
     /// For the compiler: with products and sums fused.
     fn fusing(function: &'f Function, turns: Turns) -> Self {
         let fusion = Fusion::of(function, &turns);
-        Self::of(function, turns, fusion)
+        Self::of(function, Reader::Compiler, turns, fusion)
     }
 
     /// All lines, and after each what belongs there.
-    fn statements(&self, with_remarks: bool, behind: impl Fn(Id) -> Option<TokenStream>) -> TokenStream {
+    fn statements(&self, behind: impl Fn(Id) -> Option<TokenStream>) -> TokenStream {
         let graph = self.function.graph();
         let nodes = graph.nodes();
         let mut out = TokenStream::new();
         let (constants, others): (Vec<_>, Vec<_>) = self.lines.all().partition(|(id, _)| nodes[*id].constant.is_some());
         for (id, name) in constants {
-            let (name, value) = (format_ident!("{name}"), self.constant(id, Binding::Sum));
+            let (name, mut value) = (format_ident!("{name}"), self.constant(id, Binding::Sum));
+            if self.reader == Reader::Compiler && self.is_sum(id) {
+                // Elsewhere Clippy asks for a `mul_add` that would be computed at run time.
+                value = quote!(const { #value });
+            }
             out.extend(quote!(let #name = T::of(#value);));
         }
         out.extend(self.wrench());
@@ -107,7 +113,9 @@ impl<'f> Writer<'f> {
             while remarks.peek().is_some_and(|(first, _)| *first <= id) {
                 remark = remarks.next();
             }
-            if let (true, Some((_, text))) = (with_remarks, remark) {
+            if self.reader == Reader::Person
+                && let Some((_, text)) = remark
+            {
                 out.extend(quote!(__remark!(#text);));
             }
             out.extend(quote!(let #name = #value;));
@@ -157,7 +165,7 @@ impl<'f> Writer<'f> {
         for index in order {
             let [sin, cos] = [Op::Sin(index), Op::Cos(index)].map(|op| self.pattern(op));
             patterns.push(quote!((#sin, #cos)));
-            sums.push(sum(&angles[index]));
+            sums.push(sum(&angles[index], self.reader));
         }
         match (patterns.as_slice(), sums.as_slice()) {
             ([], _) => None,
@@ -268,6 +276,12 @@ impl<'f> Writer<'f> {
         }
     }
 
+    /// Whether a constant has a sum in it.
+    fn is_sum(&self, id: Id) -> bool {
+        let op = self.function.graph().nodes()[id].op;
+        matches!(op, Op::Add(..) | Op::Sub(..)) || op.operands().any(|operand| self.is_sum(operand))
+    }
+
     /// A constant from the description's numbers, which the compiler computes.
     fn constant(&self, id: Id, context: Binding) -> TokenStream {
         let graph = self.function.graph();
@@ -276,8 +290,7 @@ impl<'f> Writer<'f> {
         let (expression, binding) = arithmetic.unwrap_or_else(|| match op {
             Op::Number(bits) => {
                 let value = f64::from_bits(bits);
-                let literal = Literal::f64_unsuffixed(value.abs());
-                if value < 0.0 { (quote!(-#literal), Binding::Sign) } else { (quote!(#literal), Binding::Unit) }
+                (number(value, self.reader), if value < 0.0 { Binding::Sign } else { Binding::Unit })
             }
             Op::NamedNumber(index) => {
                 let name = format_ident!("{}", graph.named_numbers()[index].name);

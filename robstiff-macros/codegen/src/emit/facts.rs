@@ -40,15 +40,18 @@ pub(super) const FACTS: [Fact; 8] = [
     Fact {
         signature: |n| quote!(fn joint_compliance(&self) -> SVector<f64, #n>),
         value: |robot, reader| {
-            let compliances: Vec<_> = robot.joints.iter().map(|joint| number(joint.compliance())).collect();
+            let compliances: Vec<_> = robot.joints.iter().map(|joint| number(joint.compliance(), reader)).collect();
             from(reader, "SVector", &compliances)
         },
     },
     Fact {
         signature: |n| quote!(fn limits(&self) -> [::core::option::Option<[f64; 2]>; #n]),
-        value: |robot, _| {
-            let limits = robot.joints.iter().map(|joint| match joint.limits.map(|limits| limits.map(number)) {
-                Some([low, high]) => quote!(::core::option::Option::Some([#low, #high])),
+        value: |robot, reader| {
+            let limits = robot.joints.iter().map(|joint| match joint.limits {
+                Some(limits) => {
+                    let [low, high] = limits.map(|limit| number(limit, reader));
+                    quote!(::core::option::Option::Some([#low, #high]))
+                }
                 None => quote!(::core::option::Option::None),
             });
             quote!([#(#limits),*])
@@ -56,21 +59,21 @@ pub(super) const FACTS: [Fact; 8] = [
     },
     Fact {
         signature: |_| quote!(fn effects(&self) -> &[Effect]),
-        value: |robot, _| {
-            let effects = robot.effects.iter().map(effect);
+        value: |robot, reader| {
+            let effects = robot.effects.iter().map(|each| effect(each, reader));
             quote!(&[#(#effects),*])
         },
     },
-    Fact { signature: |_| quote!(fn base(&self) -> Matrix4<f64>), value: |robot, _| frame(&robot.base) },
-    Fact { signature: |_| quote!(fn tool(&self) -> Matrix4<f64>), value: |robot, _| frame(&robot.tool) },
+    Fact { signature: |_| quote!(fn base(&self) -> Matrix4<f64>), value: |robot, reader| frame(&robot.base, reader) },
+    Fact { signature: |_| quote!(fn tool(&self) -> Matrix4<f64>), value: |robot, reader| frame(&robot.tool, reader) },
 ];
 
-fn frame(placement: &Placement) -> TokenStream {
-    let entries = symbolic::chain::homogeneous(placement).map(number);
+fn frame(placement: &Placement, reader: Reader) -> TokenStream {
+    let entries = symbolic::chain::homogeneous(placement).map(|entry| number(entry, reader));
     quote!(Matrix4::new(#(#entries),*))
 }
 
-fn effect(effect: &Effect) -> TokenStream {
+fn effect(effect: &Effect, reader: Reader) -> TokenStream {
     let (variant, field) = effect.variant();
     let variant = format_ident!("{variant}");
     let index = Literal::usize_unsuffixed;
@@ -96,7 +99,7 @@ fn effect(effect: &Effect) -> TokenStream {
         quote!(#field: #place,)
     });
     let numbers = effect.parameters().map(|(parameter, value)| {
-        let (name, value) = (format_ident!("{}", parameter.name), number(value));
+        let (name, value) = (format_ident!("{}", parameter.name), number(value, reader));
         quote!(#name: #value)
     });
     quote!(Effect::#variant { #place #(#numbers),* })
@@ -112,14 +115,33 @@ pub(super) fn from(reader: Reader, kind: &str, entries: &[TokenStream]) -> Token
     }
 }
 
-/// A number as one would write it: `-0.41`, `2.97e-7`.
-pub(super) fn number(value: f64) -> TokenStream {
+/// What Clippy's `approx_constant` looks for.
+#[rustfmt::skip]
+const KNOWN: [f64; 19] = {
+    use core::f64::consts::*;
+    [
+        E, FRAC_1_PI, FRAC_1_SQRT_2, FRAC_2_PI, FRAC_2_SQRT_PI, FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, FRAC_PI_6, FRAC_PI_8,
+        LN_2, LN_10, LOG10_2, LOG10_E, LOG2_10, LOG2_E, PI, SQRT_2, TAU,
+    ]
+};
+
+/// A number as one would write it: `-0.41`, `2.97e-7`. A limit of 180 degrees is no misspelt
+/// pi, for which Clippy takes it also in what macros expand to; an `allow` is an error
+/// there if the user's crate forbids the lint, so the compiler gets its bits.
+pub(super) fn number(value: f64, reader: Reader) -> TokenStream {
     let magnitude = value.abs();
     let text = if magnitude != 0.0 && !(1e-4..1e7).contains(&magnitude) {
         format!("{magnitude:e}")
     } else {
         format!("{magnitude:?}")
     };
-    let literal: Literal = text.parse().expect("a float prints as a literal");
-    if value < 0.0 { quote!(-#literal) } else { quote!(#literal) }
+    // A shorter one is nobody's pi.
+    let is_like = |known: &f64| text.len() > 3 && (magnitude / known - 1.0).abs() < 2e-3;
+    let magnitude = if reader == Reader::Compiler && KNOWN.iter().any(is_like) {
+        let bits = Literal::u64_unsuffixed(magnitude.to_bits());
+        quote!(::core::primitive::f64::from_bits(#bits))
+    } else {
+        text.parse::<Literal>().expect("a float prints as a literal").to_token_stream()
+    };
+    if value < 0.0 { quote!(-#magnitude) } else { magnitude }
 }

@@ -3,6 +3,8 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
+use super::body::Reader;
+use super::facts::number;
 use crate::angle::Angle;
 use crate::graph::{Id, Op};
 
@@ -76,7 +78,7 @@ pub(super) fn column(op: Op, write: impl Fn(Id) -> TokenStream) -> Option<TokenS
 }
 
 /// An angle as code: `q[1] + q[2] + T::of(0.1)`.
-pub(super) fn sum(angle: &Angle) -> TokenStream {
+pub(super) fn sum(angle: &Angle, reader: Reader) -> TokenStream {
     let mut sum = TokenStream::new();
     for (k, &(joint, factor)) in angle.terms().iter().enumerate() {
         let joint = Literal::usize_unsuffixed(joint);
@@ -94,7 +96,7 @@ pub(super) fn sum(angle: &Angle) -> TokenStream {
         });
     }
     if angle.offset() != 0.0 {
-        let offset = Literal::f64_unsuffixed(angle.offset().abs());
+        let offset = number(angle.offset().abs(), reader);
         let sign = if angle.offset() < 0.0 { quote!(-) } else { quote!(+) };
         sum.extend(quote!(#sign T::of(#offset)));
     }

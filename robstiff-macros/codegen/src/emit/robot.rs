@@ -177,7 +177,7 @@ pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Gene
         }
     }
     let constants = numbers.iter().map(|named| {
-        let (doc, value) = (format!(" {}", named.doc), number(named.value));
+        let (doc, value) = (format!(" {}", named.doc), number(named.value, reader));
         let name = format_ident!("{}", named.name);
         quote! {
             #[doc = #doc]
@@ -309,15 +309,14 @@ fn by_entries(robot: &Description, n: &TokenStream) -> TokenStream {
     }
 }
 
-/// What lints must not say of generated code: a limit of 180 degrees is no misspelt pi, and
-/// constants that the compiler computes are no slower with a product and a sum.
-/// That something is `unused`, in the words of a lint, is said of source for people
-/// alone: in what a macro of another crate expands to rustc does not look for it, and
-/// there an `allow` is an error if the user's crate forbids the lint.
+/// What lints must not say of source for people: a limit of 180 degrees is no misspelt pi, and
+/// something may be `unused`, in the words of a lint. In what a macro of another crate
+/// expands to rustc does not look for that, and an `allow` is an error there if the user's
+/// crate forbids the lint.
 fn allow(reader: Reader, unused: &str) -> TokenStream {
     let unused = Ident::new(unused, Span::call_site());
     match reader {
-        Reader::Compiler => quote!(#[allow(clippy::approx_constant, clippy::suboptimal_flops)]),
+        Reader::Compiler => quote!(),
         Reader::Person => quote!(#[allow(clippy::approx_constant, #unused)]),
     }
 }
