@@ -169,6 +169,14 @@ fn the_readme_shows_what_its_main_command_prints() {
 }
 
 #[test]
+fn what_the_readme_says_to_type_at_the_workpiece_works() {
+    let readme = fs::read_to_string(docs().join("../../../README.md")).unwrap();
+    let blocks = blocks(&readme);
+    let block = blocks.iter().find(|block| block.text.starts_with("robstiff import ")).unwrap();
+    bash(block, "README", &workplace("workpiece"));
+}
+
+#[test]
 fn files_that_pages_show_are_the_files() {
     for (name, page) in pages() {
         for block in blocks(&page) {
