@@ -37,7 +37,21 @@ fn proposes_poses_for_the_fanuc() {
     let pair = &plan["pairs"][0];
     assert!(number(&pair["separation_after"]) > 1.5 * number(&pair["separation_now"]), "{pair}");
     assert_eq!(pair["outlook"], "separable");
-    assert!(plan["numbers"].as_array().unwrap().iter().all(|known| number(&known["factor"]) >= 1.0));
+    let numbers = plan["numbers"].as_array().unwrap();
+    assert!(numbers.iter().all(|known| number(&known["factor"]) >= 1.0));
+    // The same plan as in the README.
+    let joints = numbers.iter().filter(|known| known["name"].as_str().unwrap().starts_with("joint "));
+    let factors: Vec<f64> = joints.map(|known| number(&known["factor"])).collect();
+    let said = format!(
+        "{:.1} sigmas apart instead of {:.1}, and the standard deviations of the joints to fall by factors of \
+         {:.2} to {:.2}.",
+        number(&pair["separation_after"]),
+        number(&pair["separation_now"]),
+        factors.iter().copied().fold(f64::INFINITY, f64::min),
+        factors.iter().copied().fold(0.0, f64::max)
+    );
+    let readme = include_str!("../../../README.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(readme.contains(&said), "{said}");
 
     // The campaign's own columns, within its range, at its greatest force.
     let table = fs::read_to_string(table).unwrap();
