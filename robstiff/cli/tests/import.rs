@@ -26,6 +26,12 @@ fn an_arm_is_imported_and_can_be_used() {
     assert!(page.contains("MillingArm180"), "{page}");
 }
 
+/// The crate that reads it has a copy for its own tests, which go without this one's files.
+#[test]
+fn the_arm_of_the_pages_is_the_one_that_is_tested() {
+    assert_eq!(fs::read_to_string(arm()).unwrap(), include_str!("../../../robots/src/urdf/arm.urdf"));
+}
+
 #[test]
 fn what_cannot_be_imported_is_explained_and_not_written() {
     let folder = folder("import-refused");
