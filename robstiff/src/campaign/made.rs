@@ -28,6 +28,10 @@ pub struct Plan {
     pub ramp: Vec<f64>,
     /// Every second visit of a pose pulls the other way than the one before.
     pub there_and_back: bool,
+    /// The direction of every load; none: another in every visit.
+    pub line: Option<Vector3<f64>>,
+    /// What acts where the file says this force (N).
+    pub acts: fn(Vector3<f64>) -> Vector3<f64>,
     /// One sigma of a reading on each axis (m).
     pub noise: [f64; 3],
     /// The same of rotations (rad), where they are read.
@@ -50,6 +54,8 @@ impl Plan {
             visits: 2,
             ramp: vec![0.35, 0.7, 1.0, 0.7, 0.35],
             there_and_back: false,
+            line: None,
+            acts: |force| force,
             noise: [1e-5; 3],
             rotation_noise: None,
             shares_unloaded: true,
@@ -86,7 +92,8 @@ impl Plan {
             force = if self.there_and_back && of_pose % 2 == 1 {
                 force.map(|component: f64| -component)
             } else {
-                let direction = Vector3::from_fn(|_, _| normal(&mut random)).normalize();
+                let drawn = Vector3::from_fn(|_, _| normal(&mut random));
+                let direction = self.line.unwrap_or(drawn).normalize();
                 (direction * random.random_range(500.0..1300.0)).into()
             };
             for share in &self.ramp {
@@ -106,7 +113,13 @@ impl Plan {
                 });
             }
         }
-        let samples = Samples::of_description(&self.robot, &data);
+        let mut acting = data.clone();
+        for row in &mut acting.rows {
+            let [x, y, z, mx, my, mz] = row.wrench;
+            let [x, y, z] = (self.acts)(Vector3::new(x, y, z)).into();
+            row.wrench = [x, y, z, mx, my, mz];
+        }
+        let samples = Samples::of_description(&self.robot, &acting);
         let axes = samples.axes;
         let mut exact = DVector::zeros(axes * data.rows.len());
         let own = declared(&self.robot).into_iter().map(|number| (number.column, number.value));

@@ -72,7 +72,7 @@ impl Judge {
         Self {
             scale: DVector::from_fn(known.nrows(), |k, _| size(k)),
             nuisance: rivals.nuisance.clone(),
-            model: rivals.model.clone(),
+            model: rivals.model.iter().map(|number| number.column).collect(),
             effects: rivals.effects.clone(),
             contests: rivals.pairs.clone(),
             pairs: (0..rivals.pairs.len()).collect(),
@@ -135,8 +135,8 @@ impl Judge {
         })
     }
 
-    /// One standard deviation of each number of the model, from the noise
-    /// alone.
+    /// One standard deviation of each number of the model, in its order, from the
+    /// noise alone.
     pub fn stds(&self, information: &DMatrix<f64>) -> Vec<f64> {
         let inverse = self.of(information, &[&self.model[..], &self.nuisance].concat()).try_inverse();
         let std = |k: usize| {

@@ -249,14 +249,14 @@ impl<R: Regressors> Told<'_, R> {
         let [before, after] = [&known, &sum].map(|information| self.judge.separations(information));
         let pairs = (0..self.rivals.pairs.len()).map(|k| self.pair(chosen, k, before[k], after[k])).collect();
         let [now, then] = [&known, &sum].map(|information| self.judge.stds(information));
-        let number = |(k, number): (usize, &rivals::Number)| Number {
+        let number = |(number, (now, after)): (&rivals::Number, (f64, f64))| Number {
             name: number.name.clone(),
             value: number.value,
             unit: number.unit,
-            now: now[k],
-            after: then[k],
+            now,
+            after,
         };
-        let numbers = self.rivals.numbers.iter().enumerate().map(number).collect();
+        let numbers = self.rivals.model.iter().zip(now.into_iter().zip(then)).map(number).collect();
         Plan { proposals, pairs, numbers, assumptions }
     }
 

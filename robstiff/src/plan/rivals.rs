@@ -22,12 +22,10 @@ const OF_TIME: [&str; 5] = ["thermal_drift", "creep", "base_slip", "reflector_sl
 pub struct Rivals {
     /// What every model has and nobody asks for.
     pub nuisance: Vec<usize>,
-    /// The model: the description's numbers and the effects named.
-    pub model: Vec<usize>,
-    /// Those of the effects, within the model.
+    /// The model: the description's numbers and those of the effects named.
+    pub model: Vec<Number>,
+    /// The columns of the effects' numbers, within the model.
     pub effects: Vec<usize>,
-    /// The model's numbers, in its order.
-    pub numbers: Vec<Number>,
     /// The pairs.
     pub pairs: Vec<Contest>,
 }
@@ -35,6 +33,8 @@ pub struct Rivals {
 /// A number of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Number {
+    /// Its column.
+    pub column: usize,
     /// `joint 3`, or an effect's number.
     pub name: String,
     /// Its unit.

@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use super::criterion::{Criterion, Judge};
 use super::exchange::Search;
 use super::regressors::Visit;
-use super::rivals::{Contest, Rival, Rivals};
+use super::rivals::{Contest, Number, Rival, Rivals};
 
 const NUMBERS: usize = 5;
 
@@ -25,9 +25,8 @@ fn setting(poses: usize) -> (Rivals, DMatrix<f64>, Vec<DMatrix<f64>>, Vec<Visit>
     let rival = |column| Rival { columns: vec![column], values: vec![2.0], parameters: 1 };
     let rivals = Rivals {
         nuisance: Vec::new(),
-        model: vec![0, 1, 2, 3],
+        model: (0..4).map(|column| Number { column, name: "h".into(), unit: "1", value: 1.0 }).collect(),
         effects: vec![3],
-        numbers: Vec::new(),
         pairs: vec![Contest::new(["a@x".into(), "b@y".into()], [rival(3), rival(4)], vec![0, 1, 2])],
     };
     let known = gram(8);

@@ -68,8 +68,7 @@ impl<'c> Adapter<'c> {
         let bench = Bench::new(campaign, prepared).map_err(Error)?.leaving_out(&wild);
         let everything = catalogue(&bench.scene(), prepared.own.len(), false);
         let source = Source { bench: &bench, prepared, everything: &everything };
-        let mut columns = prepared.seen();
-        let (rivals, model) = source.rivals(campaign, trace, groups, &mut columns)?;
+        let (rivals, model, columns) = source.rivals(campaign, trace, groups)?;
         let setting = bench.at(&model).map_err(Error)?;
         let fitted = bench.fit(&model).map_err(Error)?;
         let numbers = fitted.fit.columns.iter().zip(fitted.fit.coefficients.iter());

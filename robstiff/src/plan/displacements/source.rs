@@ -75,17 +75,14 @@ impl Source<'_> {
         (columns, values)
     }
 
-    /// The rivals of a trace, and the effects named. `columns` holds the
-    /// regression's columns that planning looks at, first those of the
-    /// description; rivals refer to them by index.
+    /// The rivals of a trace, the effects named, and the regression's columns that planning
+    /// looks at; rivals refer to them by index.
     pub fn rivals(
         &self,
         campaign: &Campaign,
         trace: &Trace,
         groups: &[Group],
-        columns: &mut Vec<usize>,
-    ) -> Result<(Rivals, Vec<Named>), Error> {
-        let base = columns.clone();
+    ) -> Result<(Rivals, Vec<Named>, Vec<usize>), Error> {
         let mut named: Vec<(String, Named)> = Vec::new();
         for effect in &trace.effects {
             let mut beside: Vec<Named> = named.iter().map(|(_, named)| *named).collect();
@@ -106,15 +103,19 @@ impl Source<'_> {
             named.iter().flat_map(of).collect()
         };
         let model = sorted(None);
-        let effects = columns_of(&model);
         let fitted = self.bench.fit(&model).map_err(Error)?;
-        let numbers = self.numbers(campaign, &fitted);
+        // With an effect, loads may turn a joint that they do not turn as the file has them.
+        let own = self.prepared.own.len();
+        let base: Vec<usize> = fitted.fit.columns.iter().copied().filter(|&column| column < own).collect();
+        let mut columns = Vec::new();
         let mut place = |column: usize| {
             columns.iter().position(|&other| other == column).unwrap_or_else(|| {
                 columns.push(column);
                 columns.len() - 1
             })
         };
+        let numbers = fitted.fit.columns.iter().zip(fitted.fit.coefficients.iter());
+        let numbers = numbers.map(|(&column, &value)| self.number(campaign, column, place(column), value)).collect();
         let mut places = |of: &[usize]| -> Vec<usize> { of.iter().map(|&column| place(column)).collect() };
         let mut contests = Vec::new();
         for Group { named: own, names } in groups {
@@ -130,30 +131,28 @@ impl Source<'_> {
             });
             contests.extend(pairs(&found.collect::<Vec<_>>(), &core));
         }
-        let whole: Vec<usize> = base.iter().chain(&effects).copied().collect();
-        let rivals =
-            Rivals { nuisance: Vec::new(), model: places(&whole), effects: places(&effects), numbers, pairs: contests };
-        Ok((rivals, model))
+        let effects = places(&columns_of(&model));
+        let rivals = Rivals { nuisance: Vec::new(), model: numbers, effects, pairs: contests };
+        Ok((rivals, model, columns))
     }
 
-    /// What the numbers of a model are.
-    fn numbers(&self, campaign: &Campaign, fitted: &Fitted) -> Vec<Number> {
-        let own = self.prepared.own.len();
-        let number = |(&column, &value): (&usize, &f64)| match (self.kept(column), column.checked_sub(own)) {
-            (Kept::Of(kind, place, _), Some(k)) => {
+    /// What a number of a model is: that of a column of the regression, which planning has
+    /// at this place.
+    fn number(&self, campaign: &Campaign, column: usize, place: usize, value: f64) -> Number {
+        let (name, unit) = match (self.kept(column), column.checked_sub(self.prepared.own.len())) {
+            (Kept::Of(kind, at, _), Some(k)) => {
                 let number = &self.everything.numbers[k];
                 let name = match number.name {
-                    "h" => format!("{kind}@{place}"),
-                    of => format!("{kind}@{place} {of}"),
+                    "h" => format!("{kind}@{at}"),
+                    of => format!("{kind}@{at} {of}"),
                 };
-                Number { name, unit: number.unit, value }
+                (name, number.unit)
             }
             _ => {
                 let number = &self.prepared.own[column];
-                let name = element_name(&campaign.robot, number);
-                Number { name, unit: unit_of(&campaign.robot, number.column), value }
+                (element_name(&campaign.robot, number), unit_of(&campaign.robot, number.column))
             }
         };
-        fitted.fit.columns.iter().zip(fitted.fit.coefficients.iter()).map(number).collect()
+        Number { column: place, name, unit, value }
     }
 }

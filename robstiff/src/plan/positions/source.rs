@@ -79,8 +79,9 @@ pub fn rivals(bench: &mut Bench<'_>, trace: &Trace, groups: &[Group]) -> Result<
         });
         contests.extend(pairs(&found.collect::<Vec<_>>(), &core));
     }
-    let numbers = whole.iter().map(|&number| told(bench, number, &model.solved.state)).collect();
-    let rivals = Rivals { nuisance: stands, model: of_model, effects, numbers, pairs: contests };
+    let number = |(&number, column)| told(bench, number, column, &model.solved.state);
+    let numbers = whole.iter().zip(of_model).map(number).collect();
+    let rivals = Rivals { nuisance: stands, model: numbers, effects, pairs: contests };
     Ok((rivals, kept, model.solved.state))
 }
 
@@ -105,17 +106,18 @@ fn with_the_table(bench: &Bench<'_>, own: &[usize]) -> Vec<usize> {
     bench.independent(&own.iter().copied().chain(of_table).collect::<Vec<usize>>())
 }
 
-/// What a number of the regression is.
-fn told(bench: &Bench<'_>, number: usize, state: &State) -> Number {
+/// What a number of the regression is, whose column is this among those kept.
+fn told(bench: &Bench<'_>, number: usize, column: usize, state: &State) -> Number {
     let own = bench.prepared.own.len();
     let value = state.values[number];
     let Some(of_effect) = number.checked_sub(own) else {
         let own = &bench.prepared.own[number];
-        return Number { name: own.name.clone(), unit: own.unit, value };
+        return Number { column, name: own.name.clone(), unit: own.unit, value };
     };
-    let column = STANDS + number;
-    let has =
-        |variants: &[crate::trace::catalogue::Variant]| variants.iter().any(|form| form.columns.contains(&column));
+    let of_catalogue = STANDS + number;
+    let has = |variants: &[crate::trace::catalogue::Variant]| {
+        variants.iter().any(|form| form.columns.contains(&of_catalogue))
+    };
     let candidate = bench.candidates.iter().find(|candidate| has(&candidate.variants));
     let effect = candidate.map(|candidate| candidate.name()).unwrap_or_default();
     let number = &bench.numbers[of_effect];
@@ -123,5 +125,5 @@ fn told(bench: &Bench<'_>, number: usize, state: &State) -> Number {
         "h" | "value" | "offset" => effect,
         name => format!("{effect} {name}"),
     };
-    Number { name, unit: number.unit, value }
+    Number { column, name, unit: number.unit, value }
 }
