@@ -30,6 +30,8 @@ pub mod held_out;
 pub mod isolated;
 pub mod lack_of_fit;
 pub mod model;
+#[cfg(test)]
+mod one_line_tests;
 pub mod point;
 pub mod positions;
 mod report;
