@@ -1,17 +1,19 @@
 //! What the data cannot tell a named effect from.
 
+use std::rc::Rc;
 use std::string::String;
 use std::vec::Vec;
 
 use super::Options;
 use super::bench::Bench;
+use super::bootstrap::Remaining;
 use super::catalogue::{Candidate, EITHER, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY, Variant, tells_hysteresis};
 use super::found::Place;
 use super::isolated::Event;
 use super::model::{Fitted, Named, Setting, all_but};
-use super::selection::{CURVATURE, WITHIN_REACH, best_with};
+use super::selection::{CURVATURE, Tests, WITHIN_REACH, best_with};
 use crate::Effect;
-use crate::identify::normal::Fit;
+use crate::identify::normal::{Fit, Sign};
 use robstiff_robots::effect::Place as Part;
 
 /// Columns that differ by less than this fraction of their energy, once the
@@ -31,24 +33,24 @@ const WITNESSES: f64 = 2.33;
 const BEYOND_DOUBT: f64 = 100.0;
 
 /// The names of what the data cannot tell effect `k` of a model from, with `structure`
-/// left or none: exact
-/// aliases, and rivals that predict poses left out better than no effect does and fit
-/// about as well as this one, or nearly so where they are significant too. The best
-/// fitting first.
+/// left or none: exact aliases at the model's own solution, and rivals that predict poses
+/// left out better than no effect does and fit about as well as this one, or nearly so
+/// where they are significant too. The best fitting first.
 pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, structure: bool, options: &Options) -> Vec<String> {
     let (one, rest) = (model.named[k], all_but(&model.named, k));
-    let (Ok(setting), Ok(own)) = (bench.at(&rest), bench.at(&model.named)) else { return Vec::new() };
-    let Some(tests) = bench.tests(&rest, options) else { return Vec::new() };
-    let Ok(without) = setting.fit(&rest) else { return Vec::new() };
-    let unseen = setting.left_out_rms(&without.fit);
+    let Ok(own) = bench.at(&model.named) else { return Vec::new() };
+    // What the others come to without it may be no model at all, and say nothing of aliases.
+    let beside = beside(&own, &rest);
+    let exact = |rival: &Fitted, candidate: usize| {
+        let (from, to) = (own.variant(one), own.variant(variant_of(rival, candidate)));
+        beside.as_ref().is_some_and(|beside| beside.distance(from, to) < EXACT)
+    };
+    let without = Without::of(bench, &rest, options);
     let of_model = own.deviances(&model.fit);
-    let mut found: Vec<(f64, String)> = Vec::new();
-    for candidate in (0..setting.candidates.len()).filter(|&candidate| candidate != one.candidate) {
-        let Some(rival) = best_with(&setting, &rest, candidate) else { continue };
-        let variant = variant_of(&rival, candidate);
-        let exact = tests.scores.distance(setting.variant(one), setting.variant(variant)) < EXACT;
+    let near = |rival: &Fitted, candidate: usize| {
+        let Some(Without { setting, tests, unseen }) = &without else { return false };
         let is_significant = tests.p_value(candidate) <= options.alpha;
-        let predicts = || setting.left_out_rms(&rival.fit) < unseen;
+        let predicts = || setting.left_out_rms(&rival.fit) < *unseen;
         let is_near = |rival: &Fitted, at: &Setting<'_>| {
             let behind = rival.bic - model.bic;
             behind < WITHIN_REACH
@@ -56,20 +58,50 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, structure: bool, opt
                     && (structure || behind < BEYOND_DOUBT)
                     && witnesses(&of_model, &at.deviances(&rival.fit)) < WITNESSES)
         };
-        let near = || {
-            // In its own form it may fit better than its tangent does.
-            let refit = || {
-                let at = bench.at(&rival.named).ok()?;
-                at.fit(&rival.named).ok().map(|rival| is_near(&rival, &at))
-            };
-            let may_fit = is_significant && bench.is_nonlinear(&rival.named) && rival.bic < model.bic + CURVATURE;
-            is_near(&rival, &setting) || (may_fit && refit().unwrap_or(false))
+        // In its own form it may fit better than its tangent does.
+        let refit = || {
+            let at = bench.at(&rival.named).ok()?;
+            at.fit(&rival.named).ok().map(|rival| is_near(&rival, &at))
         };
-        if exact || one_formula(bench, &own, model, one, candidate) || (near() && predicts()) {
-            found.push((rival.bic, setting.candidates[candidate].name()));
+        let may_fit = is_significant && bench.is_nonlinear(&rival.named) && rival.bic < model.bic + CURVATURE;
+        (is_near(rival, setting) || (may_fit && refit().unwrap_or(false))) && predicts()
+    };
+    let mut found: Vec<(f64, String)> = Vec::new();
+    for candidate in (0..own.candidates.len()).filter(|&candidate| candidate != one.candidate) {
+        let here = best_with(&own, &rest, candidate);
+        let there = without.as_ref().and_then(|without| best_with(&without.setting, &rest, candidate));
+        let Some(bic) = there.as_ref().or(here.as_ref()).map(|rival| rival.bic) else { continue };
+        if here.is_some_and(|rival| exact(&rival, candidate))
+            || one_formula(bench, &own, model, one, candidate)
+            || there.is_some_and(|rival| near(&rival, candidate))
+        {
+            found.push((bic, own.candidates[candidate].name()));
         }
     }
     best_first(found).chain(dead_zone(bench, &own, model, one)).collect()
+}
+
+/// What some effects of a model leave of all columns where the model is at its solution.
+fn beside(setting: &Setting<'_>, rest: &[Named]) -> Option<Remaining> {
+    Remaining::new(&setting.problem.total, &setting.columns(rest), setting.own.len()..setting.signs.len())
+}
+
+/// The model without an effect, as it fits best.
+struct Without<'c> {
+    setting: Rc<Setting<'c>>,
+    tests: Rc<Tests>,
+    /// The error on poses left out.
+    unseen: f64,
+}
+
+impl<'c> Without<'c> {
+    /// None where physics does not allow it.
+    fn of(bench: &Bench<'c>, rest: &[Named], options: &Options) -> Option<Self> {
+        let setting = bench.at(rest).ok()?;
+        let tests = bench.tests(rest, options)?;
+        let unseen = setting.left_out_rms(&setting.fit(rest).ok()?.fit);
+        Some(Self { setting, tests, unseen })
+    }
 }
 
 /// Of an effect with more numbers than this, none has an alias of its own.
@@ -78,14 +110,16 @@ const PARTS: usize = 4;
 /// The names of what some numbers of effect `k` of a model may as well be, the others kept: a
 /// translation of the base, told with its tilt, is one of the tool as well. Exact aliases alone,
 /// of those that are not named.
-pub fn in_part(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -> Vec<String> {
+pub fn in_part(bench: &Bench<'_>, model: &Fitted, k: usize) -> Vec<String> {
     let (one, rest) = (model.named[k], all_but(&model.named, k));
-    let (Ok(setting), Some(tests)) = (bench.at(&rest), bench.tests(&rest, options)) else { return Vec::new() };
+    let Ok(setting) = bench.at(&model.named) else { return Vec::new() };
+    let Some(beside) = beside(&setting, &rest) else { return Vec::new() };
     let own = setting.variant(one);
     let columns = &own.columns;
     if !own.shape.is_empty() || columns.len() > PARTS {
         return Vec::new();
     }
+    let others = setting.columns(&rest);
     let has_alias = |candidate: &Candidate| {
         (1..(1_u32 << columns.len()) - 1).any(|set| {
             let of = |inside: bool| -> Vec<usize> {
@@ -93,16 +127,32 @@ pub fn in_part(bench: &Bench<'_>, model: &Fitted, k: usize, options: &Options) -
             };
             let (part, kept) = (of(true), of(false));
             let alike = |other: &Variant| {
-                let with_the_others = other.columns.iter().chain(&kept).copied().collect();
+                let with_the_others: Vec<usize> = other.columns.iter().chain(&kept).copied().collect();
+                let whole = [&others[..], &with_the_others].concat();
                 let [part, other] = [part.clone(), with_the_others].map(|columns| Variant::new(columns, Vec::new()));
-                tests.scores.distance(&part, &other) < EXACT
+                beside.distance(&part, &other) < EXACT && is_possible(&setting, &whole)
             };
             candidate.variants.iter().filter(|other| other.columns.len() == part.len()).any(alike)
         })
     };
     let named = |candidate: usize| model.named.iter().any(|one| one.candidate == candidate);
-    let others = setting.candidates.iter().enumerate().filter(|&(candidate, _)| !named(candidate));
-    others.filter(|(_, candidate)| has_alias(candidate)).map(|(_, candidate)| candidate.name()).collect()
+    let unnamed = setting.candidates.iter().enumerate().filter(|&(candidate, _)| !named(candidate));
+    unnamed.filter(|(_, candidate)| has_alias(candidate)).map(|(_, candidate)| candidate.name()).collect()
+}
+
+/// Whether columns fit with numbers that are possible. A scale of the loads is in the span of
+/// all compliances, and each of these in that of the scale and the others; but the scale would
+/// have to be 1 and the others nothing.
+fn is_possible(setting: &Setting<'_>, columns: &[usize]) -> bool {
+    let signs: Vec<Sign> = columns.iter().map(|&column| setting.signs[column]).collect();
+    let Some(fit) = setting.problem.total.solve_signed(columns, &signs) else { return false };
+    let is_within = |(&column, &value): (&usize, &f64)| {
+        column.checked_sub(setting.own.len()).is_none_or(|k| {
+            let [least, most] = setting.numbers[k].range;
+            least < value && value < most
+        })
+    };
+    fit.columns.iter().zip(fit.coefficients.iter()).all(is_within)
 }
 
 /// The names of what may as well have made the rows that are left out as wild: effects

@@ -20,6 +20,7 @@
 //! Every statistic is a function of per-pose scores, so that a draw is one
 //! product of a row of signs with a small matrix.
 
+use core::ops::Range;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector, DVectorView};
@@ -49,11 +50,9 @@ const EXPLAINED: f64 = 1e-6;
 pub struct ScoreTest {
     /// By candidate, its variants.
     groups: Vec<Vec<Option<Group>>>,
-    /// The problem's column of local column 0.
-    first: usize,
-    /// `Z^T Z` with the null model projected out.
-    gram: DMatrix<f64>,
-    /// `Z^T y`, alike.
+    /// What the null model leaves of their columns.
+    remaining: Remaining,
+    /// `Z^T y` with the null model projected out.
     score: DVector<f64>,
     /// Residual variance of the null model.
     variance: f64,
@@ -75,15 +74,15 @@ struct Group {
 impl Group {
     /// The columns of a variant that the null model leaves something of, each
     /// and against each other.
-    fn new(test: &Remaining<'_>, variant: &Variant) -> Option<Self> {
-        let columns: Vec<usize> = variant.columns.iter().map(|column| column - test.first).collect();
+    fn new(test: &Remaining, variant: &Variant, signs: &[Sign]) -> Option<Self> {
+        let columns = test.local(variant);
         // Not a number where a column is zero.
         if !columns.iter().all(|&k| test.left[k] >= EXPLAINED) {
             return None;
         }
         let gram = DMatrix::from_fn(columns.len(), columns.len(), |i, j| test.gram[(columns[i], columns[j])]);
         let inverse = Scaled::apart(&gram, EXPLAINED)?.inverse();
-        let positive = variant.columns.iter().map(|&column| test.signs[column] == Sign::Nonnegative).collect();
+        let positive = variant.columns.iter().map(|&column| signs[column] == Sign::Nonnegative).collect();
         let price = price(variant);
         Some(Self { columns, inverse, positive, price })
     }
@@ -102,13 +101,54 @@ impl Group {
     }
 }
 
-/// What a null model leaves of the tested columns.
-struct Remaining<'a> {
-    gram: &'a DMatrix<f64>,
-    /// Of each column, the fraction that is left.
-    left: &'a DVector<f64>,
-    signs: &'a [Sign],
+/// What a null model leaves of the candidates' columns.
+pub struct Remaining {
+    /// The problem's column of local column 0.
     first: usize,
+    /// `Z^T Z` with the null model projected out.
+    gram: DMatrix<f64>,
+    /// Of each column, the fraction that is left.
+    left: DVector<f64>,
+    /// What of the null model each column is fitted by, a column each.
+    shares: DMatrix<f64>,
+}
+
+impl Remaining {
+    /// Of the columns `tested`, by the normal equations of all; `None` where the null model's
+    /// are collinear.
+    pub fn new(total: &Normal, null: &[usize], tested: Range<usize>) -> Option<Self> {
+        Some(Self::of(&Scaled::of(&total.gram_of(null))?, total, null, tested))
+    }
+
+    /// The same with the null model's own equations at hand.
+    fn of(factor: &Scaled, total: &Normal, null: &[usize], tested: Range<usize>) -> Self {
+        let first = tested.start;
+        let tested: Vec<usize> = tested.collect();
+        let cross = DMatrix::from_fn(null.len(), tested.len(), |i, j| total.gram[(null[i], tested[j])]);
+        let shares = factor.solve_columns(&cross);
+        let gram = total.gram_of(&tested) - cross.tr_mul(&shares);
+        let left = DVector::from_fn(tested.len(), |j, _| gram[(j, j)] / total.gram[(tested[j], tested[j])]);
+        Self { first, gram, left, shares }
+    }
+
+    fn local(&self, variant: &Variant) -> Vec<usize> {
+        variant.columns.iter().map(|column| column - self.first).collect()
+    }
+
+    /// How far the columns of one variant are from the span of another's, with
+    /// the null model projected out of both: the fraction of their energy that
+    /// is left, the largest over the columns (the squared sine of the largest
+    /// principal angle, for one column).
+    pub fn distance(&self, from: &Variant, to: &Variant) -> f64 {
+        let (from, to) = (self.local(from), self.local(to));
+        let inner = DMatrix::from_fn(to.len(), to.len(), |i, j| self.gram[(to[i], to[j])]);
+        let Some(factor) = Scaled::of(&inner) else { return 1.0 };
+        let outside = |&column: &usize| {
+            let along = DVector::from_fn(to.len(), |k, _| self.gram[(to[k], column)]);
+            1.0 - along.dot(&factor.solve(&along)) / self.gram[(column, column)]
+        };
+        from.iter().map(outside).fold(0.0, f64::max)
+    }
 }
 
 /// What each pose adds to the scores of a bootstrap draw.
@@ -159,11 +199,8 @@ impl ScoreTest {
         let fit = problem.total.solve(&own_columns)?;
         let factor = Scaled::of(&problem.total.gram)?;
         let tested: Vec<usize> = (first..signs.len()).collect();
-        let cross = DMatrix::from_fn(null.len(), tested.len(), |i, j| total.gram[(null[i], tested[j])]);
-        let shares = factor.solve_columns(&cross);
-        let gram = total.gram_of(&tested) - cross.tr_mul(&shares);
-        let left = DVector::from_fn(tested.len(), |j, _| gram[(j, j)] / total.gram[(tested[j], tested[j])]);
-        let score = total.moment_of(&tested) - shares.tr_mul(&total.moment_of(null));
+        let remaining = Remaining::of(&factor, total, null, first..signs.len());
+        let score = total.moment_of(&tested) - remaining.shares.tr_mul(&total.moment_of(null));
         let freedom = total.rows.checked_sub(null.len()).filter(|&freedom| freedom > 0)? as f64;
 
         let half = nalgebra::Cholesky::new(factor.inverse())?.l();
@@ -194,12 +231,11 @@ impl ScoreTest {
             let white = white(column);
             scores.set_column(k, &DVector::from_fn(count, |p, _| of_block(white.as_slice(), p)));
         }
-        scores -= &null_scores * &shares;
-        let remaining = Remaining { gram: &gram, left: &left, signs, first };
-        let variants = |candidate: &Candidate| candidate.variants.iter().map(|v| Group::new(&remaining, v)).collect();
-        let groups = candidates.iter().map(variants).collect();
+        scores -= &null_scores * &remaining.shares;
+        let group = |variant: &Variant| Group::new(&remaining, variant, signs);
+        let groups = candidates.iter().map(|candidate| candidate.variants.iter().map(group).collect()).collect();
         let blocks = Blocks { scores, null: null_scores * half, energy, freedom };
-        Some(Self { groups, first, gram, score, variance: fit.rss / freedom, blocks })
+        Some(Self { groups, remaining, score, variance: fit.rss / freedom, blocks })
     }
 
     /// The same where the columns of all are at hand; candidates' start at
@@ -242,20 +278,9 @@ impl ScoreTest {
         Reference { largest: largest.collect() }
     }
 
-    /// How far the columns of one variant are from the span of another's, with
-    /// the null model projected out of both: the fraction of their energy that
-    /// is left, the largest over the columns (the squared sine of the largest
-    /// principal angle, for one column).
+    /// [`Remaining::distance`], beside the null model.
     pub fn distance(&self, from: &Variant, to: &Variant) -> f64 {
-        let local = |variant: &Variant| -> Vec<usize> { variant.columns.iter().map(|c| c - self.first).collect() };
-        let (from, to) = (local(from), local(to));
-        let inner = DMatrix::from_fn(to.len(), to.len(), |i, j| self.gram[(to[i], to[j])]);
-        let Some(factor) = Scaled::of(&inner) else { return 1.0 };
-        let outside = |&column: &usize| {
-            let along = DVector::from_fn(to.len(), |k, _| self.gram[(to[k], column)]);
-            1.0 - along.dot(&factor.solve(&along)) / self.gram[(column, column)]
-        };
-        from.iter().map(outside).fold(0.0, f64::max)
+        self.remaining.distance(from, to)
     }
 }
 

@@ -73,3 +73,14 @@ fn they_are_adequate_where_nothing_is_turned() {
         assert_eq!((names(&found), found.verdict), (vec![], Verdict::Adequate), "{seed}: {}", found.why);
     }
 }
+
+/// A scale of the loads is one of all compliances and of what the bias does, so that its slope
+/// is among theirs; but it would have to be twice the load to do what a part of the bias does.
+#[test]
+fn a_scale_is_no_part_of_a_bias() {
+    let aside = |force| force + Vector3::new(60.0, -45.0, 20.0);
+    let found = traced(&Plan { line: Some(Vector3::from(DOWN)), acts: aside, ..Plan::new(3) }.run());
+    assert_eq!((names(&found), found.verdict), (vec!["load_cell_bias@rig".into()], Verdict::Explained));
+    let others = [&found.effects[0].same_as[..], &found.effects[0].in_part].concat();
+    assert!(others.is_empty(), "{others:?}");
+}

@@ -59,8 +59,6 @@ impl Selection {
 
 /// A test of the whole catalogue against one model.
 pub struct Tests {
-    /// The candidates without the model.
-    pub scores: ScoreTest,
     /// The statistic of each candidate and the variant that has it.
     pub statistics: Vec<Option<(f64, usize)>>,
     /// The distribution of the largest.
@@ -81,7 +79,7 @@ impl Tests {
         };
         let scores = ScoreTest::new(&setting.on(&columns), &columns, &alternatives)?;
         let (statistics, reference) = (scores.statistics(), scores.reference(options.draws, options.seed));
-        Some(Self { scores, statistics, reference })
+        Some(Self { statistics, reference })
     }
 
     /// The family-wise p-value of a candidate.

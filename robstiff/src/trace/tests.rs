@@ -229,6 +229,22 @@ fn exact_aliases_are_said() {
     assert!(found.effects[0].same_as.contains(&"transverse_compliance@joint 1".to_string()));
 }
 
+/// They are those of the model with all its effects: without one, the others may come to nothing
+/// that is possible, as a lever does that makes up for a soft base.
+#[test]
+fn exact_aliases_are_said_beside_other_effects() {
+    let hidden = std::vec![(Column::Spring(Spring::BaseTilt), 6e-7)];
+    let mut campaign = Plan { hidden, at: [[0.03, -0.05, 0.06], [0.0; 3]], ..Plan::new(3) }.run();
+    if let Data::Displacement(data) = &mut campaign.data {
+        data.wrench_at = [0.0; 3];
+    }
+    let found = traced(&campaign);
+    let base = found.effects.iter().find(|named| named.effect.to_string() == "base_compliance@base");
+    let base = base.unwrap_or_else(|| panic!("{:?}", names(&found)));
+    assert_eq!(names(&found).len(), 2, "{:?}", names(&found));
+    assert!(base.same_as.contains(&"transverse_compliance@joint 1".to_string()), "{:?}", base.same_as);
+}
+
 /// The base that yields alike in every direction moves the tool as the tool itself does, and
 /// is told in one breath with the base's tilt.
 #[test]

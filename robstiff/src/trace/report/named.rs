@@ -37,7 +37,7 @@ pub fn effects(
         let parameters = parameters(setting, fine, spread, k);
         let candidate = &setting.candidates[model.named[k].candidate];
         let same_as = same_as(bench, model, k, outcome.structure(), options);
-        let in_part = in_part(bench, model, k, options);
+        let in_part = in_part(bench, model, k);
         NamedEffect {
             effect: Found::new(candidate.kind, candidate.place, parameters),
             lines: Vec::new(),
