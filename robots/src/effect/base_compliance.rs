@@ -1,7 +1,9 @@
 //! `base_compliance`: the foundation yields.
 //!
 //! A compliance at the origin of frame 0. Its turn about z is that of a first
-//! joint on the same axis and is left to it.
+//! joint on the same axis and is left to it. A first joint that slides, or whose
+//! axis stands askew to z of frame 0 (modified DH with an `alpha`), does not take
+//! it up: a base that turns under such a joint is not in the catalogue.
 
 use super::physics::*;
 use super::{Dimension, Place};
