@@ -40,8 +40,9 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
         (description, places)
     };
     let fitted = readable(&problem.total, &fitted, &signs, described).ok_or_else(|| Error(UNREADABLE.into()))?;
-    let covariance =
-        covariance(&problem, &fitted, &signs) + of_held(&problem, &fitted, &signs, &prepared.held(&fitted));
+    let declared = prepared.declared_noise;
+    let covariance = covariance(&problem, &fitted, &signs, declared)
+        + of_held(&problem, &fitted, &signs, &prepared.held(&fitted), declared);
     let values = prepared.with(&fitted);
     let estimates =
         estimates(&campaign.robot, (&prepared.own, &prepared.visibility), &values, &fitted.columns, &covariance);

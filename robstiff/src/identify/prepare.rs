@@ -126,7 +126,7 @@ impl<'c> Prepared<'c> {
     }
 
     /// The numbers that a fit holds, by column, each with the standard deviation of what it may
-    /// be off by: those lost in the noise, at their declared value
+    /// be off by: those lost in the noise, or not told from others, at their declared value
     /// ([`NOTEWORTHY_DEVIATION`]), and those clipped at zero, from it. Others are no surer
     /// than that lets them be.
     pub fn held(&self, fit: &super::normal::Fit) -> Vec<(usize, f64)> {
@@ -134,9 +134,7 @@ impl<'c> Prepared<'c> {
             let number = &self.own[column];
             match fit.columns.iter().position(|&fitted| fitted == column) {
                 Some(k) => is_at_bound(number.sign, number.value, fit.coefficients[k]).then_some(number.value),
-                None if self.visibility[column] == Visibility::Unseen => {
-                    Some(NOTEWORTHY_DEVIATION * number.value.abs())
-                }
+                None if self.visibility[column] != Visibility::Seen => Some(NOTEWORTHY_DEVIATION * number.value.abs()),
                 None => None,
             }
         };

@@ -12,6 +12,11 @@
 //! as a quadratic form in independent readings (Pustejovsky and Tipton, Journal
 //! of Business and Economic Statistics 36, 2018, 672-683).
 //!
+//! With hardly more readings than coefficients what is left says nothing: nearly
+//! all is fitted. Noise that the campaign declares counts as much as
+//! [so many](DECLARED) more readings do, and no coefficient is told surer than it
+//! alone would let it be, had each reading that and no more.
+//!
 //! What is told is the standard deviation of the normal distribution that has
 //! the same 95 % interval: `V^1/2` times the quantile of Student's distribution
 //! over that of the normal one. So the 95 % interval is 1.96 of it on either
@@ -33,6 +38,10 @@ const POSES_PER_COEFFICIENT: usize = 2;
 /// approximation is poor, and an interval says next to nothing.
 const FEWEST: f64 = 3.0;
 
+/// Declared noise is taken to be known to about a quarter, as the variance of so many
+/// readings is (`1 / sqrt(2 * 10)` is 22 %).
+const DECLARED: f64 = 10.0;
+
 /// Of what a pose alone decides, this share of its readings' variance is left
 /// by the fit or less.
 const ALONE: f64 = 1e-9;
@@ -40,19 +49,26 @@ const ALONE: f64 = 1e-9;
 /// The quantile of the standard normal distribution that has 95 % within.
 pub const WITHIN: f64 = 1.959_963_984_540_054;
 
-/// The covariance of a fit's coefficients; `signs` are those of its columns. A
-/// coefficient that is held at zero by its sign has none.
-pub fn covariance(problem: &Problem, fit: &Fit, signs: &[Sign]) -> DMatrix<f64> {
-    covariance_with(problem, fit, signs, &std::vec![0.0; signs.len()])
+/// The covariance of a fit's coefficients; `signs` are those of its columns, `noise` that
+/// of a whitened reading (m), where it is declared. A coefficient that is held at zero by
+/// its sign has none.
+pub fn covariance(problem: &Problem, fit: &Fit, signs: &[Sign], noise: Option<f64>) -> DMatrix<f64> {
+    covariance_with(problem, fit, signs, &std::vec![0.0; signs.len()], noise)
 }
 
 /// The same where it is known of some coefficients beforehand that they are near
 /// their value: `known` holds one over their variance, 0 where nothing is.
-pub fn covariance_with(problem: &Problem, fit: &Fit, signs: &[Sign], known: &[f64]) -> DMatrix<f64> {
+pub fn covariance_with(
+    problem: &Problem,
+    fit: &Fit,
+    signs: &[Sign],
+    known: &[f64],
+    noise: Option<f64>,
+) -> DMatrix<f64> {
     let free = free(fit, signs);
     let mut whole = DMatrix::zeros(signs.len(), signs.len());
     // Where all are held there is nothing to be sure of.
-    let part = (!free.is_empty()).then(|| of_free(problem, fit, &free, known)).flatten();
+    let part = (!free.is_empty()).then(|| of_free(problem, fit, &free, known, noise)).flatten();
     let Some(part) = part else { return whole };
     for (i, &row) in free.iter().enumerate() {
         for (j, &column) in free.iter().enumerate() {
@@ -79,10 +95,16 @@ pub fn shifts(problem: &Problem, fit: &Fit, signs: &[Sign], columns: &[usize]) -
 
 /// The covariance that columns which are held at a value give to the coefficients of a fit,
 /// each with the standard deviation of what it may be off by, or of what the readings would
-/// say of it, whichever is less.
-pub fn of_held(problem: &Problem, fit: &Fit, signs: &[Sign], held: &[(usize, f64)]) -> DMatrix<f64> {
+/// say of it, whichever is less; `noise` is as of [`covariance`].
+pub fn of_held(
+    problem: &Problem,
+    fit: &Fit,
+    signs: &[Sign],
+    held: &[(usize, f64)],
+    noise: Option<f64>,
+) -> DMatrix<f64> {
     let gram = &problem.total.gram;
-    let variance = fit.rss / problem.freedom(fit);
+    let (variance, _) = of_reading(problem, fit, noise);
     let columns: Vec<usize> = held.iter().map(|&(column, _)| column).collect();
     let shifts = shifts(problem, fit, signs, &columns);
     let of_one = |(k, &(column, spread)): (usize, &(usize, f64))| {
@@ -102,10 +124,18 @@ fn free(fit: &Fit, signs: &[Sign]) -> Vec<usize> {
     (0..signs.len()).filter(|k| !held(k)).collect()
 }
 
-fn of_free(problem: &Problem, fit: &Fit, free: &[usize], known: &[f64]) -> Option<DMatrix<f64>> {
-    let columns: Vec<usize> = free.iter().map(|&k| fit.columns[k]).collect();
+/// The variance of a whitened reading (m^2), and the degrees of freedom that it is known
+/// with: by what a fit leaves, and by the noise that is declared.
+fn of_reading(problem: &Problem, fit: &Fit, noise: Option<f64>) -> (f64, f64) {
     let freedom = problem.freedom(fit);
-    let variance = fit.rss / freedom;
+    let Some(noise) = noise else { return (fit.rss / freedom, freedom) };
+    let (declared, all) = (noise * noise, freedom + DECLARED);
+    (((fit.rss + DECLARED * declared) / all).max(declared), all)
+}
+
+fn of_free(problem: &Problem, fit: &Fit, free: &[usize], known: &[f64], noise: Option<f64>) -> Option<DMatrix<f64>> {
+    let columns: Vec<usize> = free.iter().map(|&k| fit.columns[k]).collect();
+    let (variance, freedom) = of_reading(problem, fit, noise);
     let known = DVector::from_fn(free.len(), |i, _| known[free[i]] * variance);
     let gram = problem.total.gram_of(&columns) + DMatrix::from_diagonal(&known);
     let inverse = Scaled::of(&gram)?.inverse();
@@ -135,7 +165,9 @@ fn of_free(problem: &Problem, fit: &Fit, free: &[usize], known: &[f64]) -> Optio
         .collect();
     let factor = DVector::from_fn(columns.len(), |k, _| {
         let along = inverse.column(k).into_owned();
-        student(satterthwaite(&along, &squares, &crossed, &inverse).max(FEWEST)) / WITHIN
+        let told = student(satterthwaite(&along, &squares, &crossed, &inverse).max(FEWEST)) / WITHIN;
+        let least = noise.map_or(0.0, |noise| noise * noise * inverse[(k, k)]);
+        told.max((least / sandwich[(k, k)].max(f64::MIN_POSITIVE)).sqrt())
     });
     Some(DMatrix::from_fn(columns.len(), columns.len(), |i, j| sandwich[(i, j)] * factor[i] * factor[j]))
 }

@@ -274,7 +274,7 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
         Some(found) => found,
         None => {
             let solved = regression.solve(&seen, &start, &prepared.rows).ok_or_else(confounded)?;
-            (solved.state, of_numbers(&covariance(&solved.problem, &solved.fit, &solved.signs)))
+            (solved.state, of_numbers(&covariance(&solved.problem, &solved.fit, &solved.signs, None)))
         }
     };
     let values = prepared.values(&state);
@@ -330,7 +330,7 @@ fn by_payloads(
         if pass == PASSES {
             let model = state.model(&regression.start, &regression.numbers);
             state.registration = standing(&model, data, |row| rows.has(row, data))?;
-            return Ok(Some((state, covariance(&within, &fit, signs))));
+            return Ok(Some((state, covariance(&within, &fit, signs, None))));
         }
         pass += 1;
     }

@@ -291,7 +291,7 @@ fn same_as(bench: &Bench<'_>, model: &Model, k: usize, value: f64, replaced: &[(
 /// the rows tell these.
 fn spread_of(bench: &Bench<'_>, model: &Model) -> DMatrix<f64> {
     let solved = &model.solved;
-    let plain = || of_numbers(&covariance(&solved.problem, &solved.fit, &solved.signs));
+    let plain = || of_numbers(&covariance(&solved.problem, &solved.fit, &solved.signs, None));
     let shapes: Vec<DVector<f64>> = bench.shape_columns(model).into_iter().map(|(_, column)| column).collect();
     if shapes.is_empty() {
         return plain();
@@ -303,7 +303,7 @@ fn spread_of(bench: &Bench<'_>, model: &Model) -> DMatrix<f64> {
     fit.columns.extend(own..all);
     fit.coefficients = fit.coefficients.resize_vertically(all, 0.0);
     let signs: Vec<Sign> = solved.signs.iter().copied().chain(shapes.iter().map(|_| Sign::Free)).collect();
-    let spread = of_numbers(&covariance(&problem, &fit, &signs));
+    let spread = of_numbers(&covariance(&problem, &fit, &signs, None));
     let told = (own..all).all(|k| spread[(k - STANDS, k - STANDS)] > 0.0);
     if told { spread } else { plain() }
 }

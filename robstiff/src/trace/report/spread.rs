@@ -38,10 +38,10 @@ pub fn spread_of(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted) -> DM
             unsure.push(of(&setting.point, &variant.columns.iter().map(value).collect::<Vec<f64>>()));
         }
     }
-    let held = bench.prepared.held(&model.fit);
+    let (held, noise) = (bench.prepared.held(&model.fit), bench.prepared.declared_noise);
     if shapes.is_empty() && unsure.is_empty() && held.is_empty() {
         let (problem, fit) = setting.alone(&model.fit);
-        return covariance(&problem, &fit, &signs);
+        return covariance(&problem, &fit, &signs, noise);
     }
     let count = model.fit.columns.len() + shapes.len();
     let examples = unsure.iter().flatten().cloned();
@@ -56,7 +56,7 @@ pub fn spread_of(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted) -> DM
     let coefficients = model.fit.coefficients.clone().resize_vertically(count, 0.0);
     signs.resize(count, Sign::Free);
     let fit = Fit { columns, coefficients, rss: model.fit.rss };
-    let mut spread = covariance_with(&problem, &fit, &signs, &known);
+    let mut spread = covariance_with(&problem, &fit, &signs, &known, noise);
     let mut next = count;
     for examples in &unsure {
         let columns: Vec<usize> = (next..next + examples.len()).collect();
@@ -65,7 +65,7 @@ pub fn spread_of(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted) -> DM
         next += examples.len();
     }
     let held: Vec<(usize, f64)> = held.iter().enumerate().map(|(k, &(_, spread))| (first_held + k, spread)).collect();
-    spread + of_held(&problem, &fit, &signs, &held)
+    spread + of_held(&problem, &fit, &signs, &held, noise)
 }
 
 /// A number out of a grid of which nothing is known beforehand is within ten
