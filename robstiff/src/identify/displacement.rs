@@ -6,7 +6,7 @@ use std::vec::Vec;
 
 use super::baseline::with_values;
 use super::normal::Fit;
-use super::prepare::{Prepared, fit};
+use super::prepare::{Prepared, enough, fit};
 use super::problem::rms;
 use super::readable::{UNREADABLE, readable};
 use super::uncertainty::{correlation, covariance, of_held};
@@ -16,10 +16,12 @@ use crate::campaign::Campaign;
 /// Identifies the numbers of a description.
 ///
 /// # Errors
-/// A campaign that sees none of them, or asks for numbers that no description takes.
+/// A campaign that sees none of them, has too few rows to say how sure they are, or asks
+/// for numbers that no description takes.
 pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     let mut prepared = Prepared::new(campaign)?;
     let mut problem = prepared.problem();
+    enough(&prepared, &problem)?;
     let mut fitted = fit(&prepared, &problem)?;
     // The description is the final model here: once more with axes weighed by what
     // it leaves, where there was nothing better to weigh them by.

@@ -70,3 +70,18 @@ fn few_rows_are_no_surer_than_the_noise_that_is_declared() {
         hold(&off(Pulls { poses, visits: 1, ramp: "[1]" }, 150, true));
     }
 }
+
+/// Without a noise that is declared, rows must tell how noisy they are beside the numbers.
+#[test]
+fn too_few_rows_to_tell_the_noise_are_refused() {
+    for (seed, poses) in (1..=8).flat_map(|seed| [1, 2, 3].map(|poses| (seed, poses))) {
+        let (campaign, _) = measured(Pulls { poses, visits: 1, ramp: "[1]" }, seed, false);
+        let why = identify(&campaign).err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(why.contains("cannot tell the 6 compliances of the robot from each other"), "{seed} {poses}: {why}");
+    }
+    for poses in [4, 6] {
+        let off = off(Pulls { poses, visits: 1, ramp: "[1]" }, 100, false);
+        let beyond = off.iter().filter(|&&off| off > 1.96).count();
+        assert!(off.len() > 200 && beyond * 10 <= off.len(), "{beyond} of {} at {poses} poses", off.len());
+    }
+}

@@ -62,7 +62,8 @@ const WEIGHT_PASSES: usize = 4;
 const DECLARED_STANDS_OUT: f64 = 1.0;
 const IDENTIFIED_STANDS_OUT: f64 = 2.0;
 
-/// With fewer readings for each number than this, scatter says nothing of the instrument.
+/// With fewer readings for each number than this, scatter says nothing of the instrument,
+/// nor of how sure a number is.
 const READINGS_A_NUMBER: usize = 2;
 
 impl<'c> Prepared<'c> {
@@ -273,12 +274,34 @@ pub fn fit(prepared: &Prepared<'_>, problem: &Problem) -> Result<Fit, Error> {
     fitted.ok_or_else(|| nothing_shows(prepared, problem))
 }
 
+/// Refuses what has neither a declared noise nor the readings to tell one by: a number would
+/// have no uncertainty, or one made of chance.
+///
+/// # Errors
+/// Fewer readings than [`READINGS_A_NUMBER`] for each number that they show.
+pub fn enough(prepared: &Prepared<'_>, problem: &Problem) -> Result<(), Error> {
+    let shown = visibility(&problem.total, prepared.own.len());
+    let numbers = shown.iter().filter(|visibility| **visibility != Visibility::Unseen).count();
+    let is_known = prepared.noise(0.0).1 != NoiseSource::Residuals;
+    if is_known || problem.total.rows >= READINGS_A_NUMBER * numbers { Ok(()) } else { Err(cannot_tell(prepared)) }
+}
+
+/// What rows cannot tell that are too few.
+fn cannot_tell(prepared: &Prepared<'_>) -> Error {
+    Error(format!(
+        "{} at {} cannot tell the {} of the robot from each other: load the arm at more poses",
+        count(prepared.data.rows.len(), "row"),
+        count(prepared.samples.poses, "pose"),
+        count(prepared.own.len(), "compliance")
+    ))
+}
+
 /// Why the data show none of the numbers.
 fn nothing_shows(prepared: &Prepared<'_>, problem: &Problem) -> Error {
     if prepared.data.rows.iter().all(|row| row.wrench.iter().all(|&load| load == 0.0)) {
         return Error(String::from("every force and moment is zero: nothing pushes the arm"));
     }
-    let (rows, poses, numbers) = (prepared.data.rows.len(), prepared.samples.poses, prepared.own.len());
+    let numbers = prepared.own.len();
     // By the geometry, before anything is held against the noise.
     let shown = visibility(&problem.total, numbers);
     let is_seen = shown.contains(&Visibility::Seen);
@@ -288,12 +311,7 @@ fn nothing_shows(prepared: &Prepared<'_>, problem: &Problem) -> Error {
         Some(noise) => {
             format!("the noise of {} that the campaign declares hides all that the loads do", told_length(noise))
         }
-        None if (is_seen && too_few) || (!is_seen && is_confounded) => format!(
-            "{} at {} cannot tell the {} of the robot from each other: load the arm at more poses",
-            count(rows, "row"),
-            count(poses, "pose"),
-            count(numbers, "compliance")
-        ),
+        None if (is_seen && too_few) || (!is_seen && is_confounded) => return cannot_tell(prepared),
         None if is_seen => String::from("the readings scatter by more than the loads do to any joint"),
         None => String::from("these poses and loads show none of the robot's compliances"),
     })
