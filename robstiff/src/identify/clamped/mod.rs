@@ -3,6 +3,7 @@
 //! clamped, and the compliance is the slope of deflection over torque.
 
 pub mod regression;
+pub mod rounding;
 #[cfg(test)]
 mod tests;
 pub mod wild;
@@ -16,6 +17,7 @@ use robstiff_robots::Description;
 use robstiff_robots::effect::physics::PLAYS;
 
 use self::regression::torques;
+use self::rounding::of_rounding;
 use super::baseline::{Visibility, declared, with_values};
 use super::readable::{UNREADABLE, is_readable};
 use super::uncertainty::{WITHIN, student};
@@ -52,12 +54,13 @@ pub fn slopes(campaign: &Campaign, rows: &[ClampedRow], left_out: &[usize]) -> R
     let less = without_laws(&campaign.robot, rows);
     let kept: Vec<&ClampedRow> =
         less.iter().enumerate().filter(|(row, _)| !left_out.contains(row)).map(|(_, row)| row).collect();
+    let rounding = of_rounding(rows);
     let mut values: Vec<f64> = own.iter().map(|number| number.value).collect();
     let mut estimates = Vec::new();
     for (i, number) in own.iter().enumerate() {
         let here = |row: &&ClampedRow| number.effect.is_none() && row.axis == i + 1;
         let of_axis: Vec<&ClampedRow> = kept.iter().copied().filter(here).collect();
-        let slope = slope(&of_axis);
+        let slope = slope(&of_axis, rounding.get(i).copied().unwrap_or(0.0));
         let count =
             |goes: fn(f64) -> bool| rows.iter().filter(here).filter(|row| goes(row.torque * row.deflection)).count();
         // A sign is wrong in all rows, a wild reading in one.
@@ -121,10 +124,10 @@ pub fn without_laws(robot: &Description, rows: &[ClampedRow]) -> Vec<ClampedRow>
 }
 
 /// The slope through the origin of rows that share one unloaded reading, and its
-/// standard deviation from their scatter (none from a single row); `None` where
-/// nothing was loaded. The standard deviation is told as
-/// [`uncertainty`](super::uncertainty) tells it.
-fn slope(rows: &[&ClampedRow]) -> Option<(f64, Option<f64>)> {
+/// standard deviation from their scatter (none from a single row), which is taken for no
+/// less than some variance; `None` where nothing was loaded. The standard deviation is told
+/// as [`uncertainty`](super::uncertainty) tells it.
+fn slope(rows: &[&ClampedRow], least: f64) -> Option<(f64, Option<f64>)> {
     let share = mean_share(rows.len(), 1.0) / rows.len().max(1) as f64;
     let whitened = |of: fn(&ClampedRow) -> f64| {
         let values = DVector::from_iterator(rows.len(), rows.iter().map(|row| of(row)));
@@ -140,7 +143,8 @@ fn slope(rows: &[&ClampedRow]) -> Option<(f64, Option<f64>)> {
     let freedom = rows.len() as f64 - 1.0;
     let std = (freedom > 0.0).then(|| {
         let left = (deflections - slope * torques).norm_squared();
-        (left / freedom / squares).sqrt() * student(freedom) / WITHIN
+        let scatter = left / freedom * (student(freedom) / WITHIN).powi(2);
+        (scatter.max(least) / squares).sqrt()
     });
     Some((slope, std))
 }

@@ -17,11 +17,11 @@ fn row(torque: f64, deflection: f64) -> ClampedRow {
 #[test]
 fn the_slope_goes_through_the_origin() {
     let rows = [row(100.0, 3e-5), row(-200.0, -6e-5), row(300.0, 9e-5)];
-    let (value, std) = slope(&rows.each_ref()).expect("loaded");
+    let (value, std) = slope(&rows.each_ref(), 0.0).expect("loaded");
     assert!((value - 3e-7).abs() < 1e-18 && std.expect("three rows") < 1e-18);
-    assert_eq!(slope(&[&row(100.0, 1e-5)]).expect("loaded").1, None);
-    assert_eq!(slope(&[&row(0.0, 1e-5)]), None);
-    assert_eq!(slope(&[]), None);
+    assert_eq!(slope(&[&row(100.0, 1e-5)], 0.0).expect("loaded").1, None);
+    assert_eq!(slope(&[&row(0.0, 1e-5)], 0.0), None);
+    assert_eq!(slope(&[], 0.0), None);
 }
 
 #[test]
@@ -30,7 +30,7 @@ fn scatter_makes_the_standard_deviation() {
     // without a mean, so of it the unloaded reading has nothing. Of the torques'
     // 14 it takes 6^2 / (1 + 3). The quantile is that of two degrees of freedom.
     let rows = [row(1.0, 3.0), row(2.0, 2.0), row(3.0, 7.0)];
-    let (value, std) = slope(&rows.each_ref()).expect("loaded");
+    let (value, std) = slope(&rows.each_ref(), 0.0).expect("loaded");
     assert!((value - 2.0).abs() < 1e-12);
     let expected = (6.0_f64 / 2.0 / (14.0 - 9.0)).sqrt() * 4.302_652_73 / 1.959_963_98;
     assert!((std.expect("three rows") / expected - 1.0).abs() < 1e-8);
@@ -46,7 +46,7 @@ fn intervals_hold_what_they_say() {
             let unloaded = normal(&mut random);
             let mut read = |torque: &f64| row(*torque, 0.03 * torque + normal(&mut random) - unloaded);
             let rows: Vec<ClampedRow> = torques.iter().map(&mut read).collect();
-            let (value, std) = slope(&rows.iter().collect::<Vec<_>>()).expect("loaded");
+            let (value, std) = slope(&rows.iter().collect::<Vec<_>>(), 0.0).expect("loaded");
             (value - 0.03).abs() <= WITHIN * std.expect("two rows or more")
         });
         let share = within.count() as f64 / f64::from(runs);
@@ -140,4 +140,62 @@ fn of_two_rows_neither_is_left_out() {
     rows.truncate(26);
     rows[25].deflection = 9e-3;
     assert!(identified(rows).left_out.is_empty());
+}
+
+/// Three axes that are loaded up and down both ways, read in steps of a gauge, with noise
+/// besides (rad).
+fn rounded(seed: u64, step: f64, noise: f64) -> Vec<ClampedRow> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let compliances = [2.1e-7, 3.3e-7, 4.7e-7].map(|h: f64| h * (1.0 + 0.3 * normal(&mut random).tanh()));
+    let shares = [0.2, 0.4, 0.6, 0.8, 1.0, 0.8, 0.6, 0.4, 0.2, 0.0];
+    let row = |k: usize| {
+        let (axis, share) = (k / 20 + 1, shares[k % 10] * if k % 20 < 10 { 3000.0 } else { -3000.0 });
+        let read = compliances[axis - 1] * share + noise * normal(&mut random);
+        let deflection = if step > 0.0 { step * (read / step).round() } else { read };
+        ClampedRow { line: k + 2, axis, torque: share, deflection }
+    };
+    (0..60).map(row).collect()
+}
+
+/// The compliances of [`rounded`].
+fn compliances_of(seed: u64) -> [f64; 3] {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    [2.1e-7, 3.3e-7, 4.7e-7].map(|h: f64| h * (1.0 + 0.3 * normal(&mut random).tanh()))
+}
+
+/// Rows that fit exactly may still be off by what their gauge does not show.
+#[test]
+fn no_slope_is_surer_than_its_gauge_reads() {
+    for (step, noise) in [(2e-6, 3e-7), (5e-6, 5e-7), (1e-5, 1e-7), (5e-6, 2e-6)] {
+        let (mut beyond, mut count) = (0, 0);
+        for seed in 0..80 {
+            let rows = rounded(seed, step, noise);
+            // Now and then all fit exactly, as if no gauge had read them.
+            if of_rounding(&rows) == [0.0; 3] {
+                continue;
+            }
+            let found = identified(rows);
+            for (estimate, truth) in found.estimates.iter().zip(compliances_of(seed)) {
+                let std = estimate.std.expect("it is loaded");
+                assert!(std > 1e-4 * truth, "{estimate:?}");
+                beyond += usize::from((estimate.value - truth).abs() > WITHIN * std);
+                count += 1;
+            }
+        }
+        assert!(count > 220 && beyond * 20 <= count + 60, "{beyond} of {count} at {step} and {noise}");
+    }
+}
+
+/// What is not rounded, or finer than the noise, is as sure as its scatter says.
+#[test]
+fn readings_that_are_not_rounded_are_as_sure_as_they_scatter() {
+    let of = |rows: &[ClampedRow]| of_rounding(rows).into_iter().fold(0.0, f64::max);
+    for seed in 0..20 {
+        assert_eq!(of(&rounded(seed, 0.0, 1e-6)), 0.0);
+        // Half a step makes no difference.
+        assert!(of(&rounded(seed, 1e-6, 6e-7)) <= 0.36e-12);
+    }
+    // Nor are equal steps of the torque one of the gauge.
+    let even: Vec<ClampedRow> = (1..=8).map(|k| row(100.0 * f64::from(k), 3e-5 * f64::from(k))).collect();
+    assert_eq!(of_rounding(&even), [0.0]);
 }

@@ -17,6 +17,7 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 use super::regression::{loaded, problem, rows_of};
+use super::rounding::of_rounding;
 use crate::campaign::ClampedRow;
 use crate::identify::covariance::outliers::{FEW, STANDS_OUT, STRICT, by_median};
 use crate::identify::normal::Fit;
@@ -180,7 +181,9 @@ fn worst(rows: &[ClampedRow], raw: &DMatrix<f64>) -> Option<Worst> {
     let all = gains(rows, &problem, &fit)?;
     let whole = by_median(all.iter().copied());
     let own = of_most(rows, &(problem.readings.as_ref() - raw * &fit.coefficients));
-    let own = |row: usize| own[rows[row].axis - 1];
+    // One step of a gauge is no wild reading where all others fit exactly.
+    let rounding = of_rounding(rows);
+    let own = |row: usize| own[rows[row].axis - 1].max(rounding[rows[row].axis - 1]);
     let over = |row: usize| all[row] / own(row).max(whole);
     let row = (0..all.len()).max_by(|&a, &b| over(a).total_cmp(&over(b)))?;
     let freedom = all.len() as f64 - columns.len() as f64 - 1.0;

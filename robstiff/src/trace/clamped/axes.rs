@@ -10,6 +10,7 @@ use crate::campaign::ClampedRow;
 use crate::identify::Identification;
 use crate::identify::baseline::Visibility;
 use crate::identify::clamped::regression::rows_of;
+use crate::identify::clamped::rounding::of_rounding;
 use crate::identify::clamped::without_laws;
 use crate::trace::found::{EffectParameter, Place};
 use crate::trace::slip::SLIPPED_AT;
@@ -28,6 +29,9 @@ pub struct Axes {
     kept: Rc<[usize]>,
     /// The compliance of each axis (rad/Nm or m/N), from 0.
     pub compliance: Vec<f64>,
+    /// The least variance of the readings of each axis that their
+    /// [rounding](of_rounding) lets be, from 0.
+    pub rounding: Rc<[f64]>,
     /// What acts besides the torque that is read (Nm), by a model that says so.
     pub bias: f64,
     kinds: Vec<JointKind>,
@@ -39,8 +43,9 @@ impl Axes {
     /// The rows of a campaign on a robot whose axes were identified.
     pub fn new(robot: &Description, rows: &[ClampedRow], identified: &Identification) -> Self {
         let joints = &identified.estimates[..robot.joints.len()];
-        let rows = without_laws(robot, rows);
+        let (rounding, rows) = (of_rounding(rows), without_laws(robot, rows));
         Self {
+            rounding: rounding.into(),
             every: rows.as_slice().into(),
             kept: (0..rows.len()).collect(),
             rows,

@@ -4,7 +4,8 @@
 //! they are, and how sure that is, as for a slope alone
 //! ([`identify`](crate::identify::clamped)). So a standard deviation is that of
 //! least squares, with the quantile of Student's distribution for what the axis's
-//! own rows leave; 1.96 of it are the 95 % interval.
+//! own rows leave, and of no less than their [rounding](crate::identify::clamped::rounding);
+//! 1.96 of it are the 95 % interval.
 
 use std::vec::Vec;
 
@@ -48,11 +49,14 @@ pub fn spread(bench: &Bench, model: &Fitted) -> DMatrix<f64> {
             continue;
         }
         let freedom = rows.len().saturating_sub(columns.len()).max(1) as f64;
-        let variance = left.select_rows(&rows).norm_squared() / freedom;
+        let rounding = axes.iter().map(|axis| bench.axes.rounding[axis - 1]).fold(0.0, f64::max);
+        let scatter = left.select_rows(&rows).norm_squared() / freedom;
+        let told = (scatter * (student(freedom) / WITHIN).powi(2)).max(rounding);
+        let variance = scatter.max(rounding);
         let white = DMatrix::from_fn(rows.len(), columns.len(), |i, j| whole.white[(rows[i], columns[j])]);
         let known = DVector::from_fn(columns.len(), |j, _| linear.known[columns[j]] * variance);
         let Some(factor) = Scaled::of(&(white.tr_mul(&white) + DMatrix::from_diagonal(&known))) else { continue };
-        let of_group = factor.inverse() * (variance * (student(freedom) / WITHIN).powi(2));
+        let of_group = factor.inverse() * told;
         for (i, &row) in columns.iter().enumerate() {
             columns.iter().enumerate().for_each(|(j, &column)| spread[(row, column)] = of_group[(i, j)]);
         }

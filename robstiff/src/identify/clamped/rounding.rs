@@ -1,0 +1,72 @@
+//! What rounding does to readings of clamped axes.
+//!
+//! A gauge reads in steps. Where the noise is small against a step, rows may fit exactly,
+//! and what they leave says nothing of how sure their slope is: every reading is off by up
+//! to half a step all the same, with a variance of a twelfth of its square. Rows of one
+//! torque are then off alike, and say it once.
+
+use std::vec::Vec;
+
+use super::regression::{rows_of, torques};
+use crate::campaign::ClampedRow;
+
+/// A reading nearer than this part of the largest to another, or to a multiple of a step, is
+/// there; and a step that is less than so much of it is nothing to be unsure by.
+const SAME: f64 = 1e-8;
+const FINE: f64 = 1e-6;
+
+/// Readings in proportion to this part of a step were not rounded to it, but are alike
+/// because their torques are.
+const PROPORTIONAL: f64 = 0.25;
+
+/// Noise of half a step makes rows of one torque differ in how they are rounded. No more of
+/// them count as one than leaves what is left then as it is.
+const MOST_ALIKE: f64 = 4.0;
+
+/// The least variance of the readings of each axis (rad^2 or m^2), from 0, that their own
+/// rounding lets be; 0 where they show no step.
+pub fn of_rounding(rows: &[ClampedRow]) -> Vec<f64> {
+    let axes = rows.iter().map(|row| row.axis).max().unwrap_or(0);
+    // One gauge reads all axes, or each has its own.
+    let common = step(rows);
+    let of_axis = |axis: usize| {
+        let own: Vec<ClampedRow> = rows_of(rows, axis).into_iter().map(|row| rows[row]).collect();
+        common.or_else(|| step(&own)).map_or(0.0, |step| step * step / 12.0 * alike(&own).min(MOST_ALIKE))
+    };
+    (1..=axes).map(of_axis).collect()
+}
+
+/// The step that all readings are multiples of, if they show one: the largest that there is,
+/// by Euclid's algorithm.
+fn step(rows: &[ClampedRow]) -> Option<f64> {
+    let largest = rows.iter().map(|row| row.deflection.abs()).fold(0.0, f64::max);
+    let common = |mut step: f64, row: &ClampedRow| {
+        let mut rest = row.deflection.abs();
+        while rest > SAME * largest {
+            (step, rest) = (rest, (step - rest * (step / rest).round()).abs());
+        }
+        step
+    };
+    let step = rows.iter().fold(0.0, common);
+    (step > FINE * largest && off(rows) > PROPORTIONAL * step).then_some(step)
+}
+
+/// How far a reading is at most from being in proportion to the torque on its axis.
+fn off(rows: &[ClampedRow]) -> f64 {
+    let columns = torques(rows);
+    let of_axis = |column: nalgebra::DVectorView<'_, f64>| {
+        let own = || rows.iter().zip(column.iter()).filter(|(_, torque)| **torque != 0.0);
+        let slope = own().map(|(row, torque)| row.deflection * torque).sum::<f64>() / column.norm_squared();
+        own().map(|(row, torque)| (row.deflection - slope * torque).abs()).fold(0.0, f64::max)
+    };
+    columns.column_iter().map(of_axis).fold(0.0, f64::max)
+}
+
+/// How many loaded rows there are to a torque, whichever way.
+fn alike(rows: &[ClampedRow]) -> f64 {
+    let mut torques: Vec<f64> = rows.iter().map(|row| row.torque.abs()).filter(|&torque| torque > 0.0).collect();
+    let loaded = torques.len();
+    torques.sort_by(f64::total_cmp);
+    torques.dedup();
+    loaded as f64 / torques.len().max(1) as f64
+}
