@@ -11,7 +11,7 @@
 //! poses left out better, and is physical; moments of slips, knees of gears and time
 //! constants, which the catalogue has in steps, are then looked for `between` them; rows that do not belong are
 //! left out (`wild`); what remains is tested for `structure`; names are held against what
-//! has none (`beyond`, `nameless`). Effects enter the forward model itself, and are fitted
+//! has none (`beyond`, `nameless`; of slips, `wander`). Effects enter the forward model itself, and are fitted
 //! in it.
 
 pub mod bench;
@@ -36,6 +36,9 @@ mod structure;
 #[cfg(test)]
 mod tests;
 mod unseen;
+mod wander;
+#[cfg(test)]
+mod wander_tests;
 mod written;
 
 use self::bench::Bench;

@@ -36,17 +36,20 @@ pub static FOLLOWER: Kind = Kind {
     on_axes: None,
 };
 
+/// How the words for a second slip begin.
+pub const AGAIN: &str = "another slip";
+
 /// A second slip of the base, and of the reflector: a name says one moment.
 pub static BASE_AGAIN: Kind = Kind {
     name: "base_slip_again",
     of_rig: true,
-    words: |found| format!("another slip of the base before line {}", found.value(SLIPPED_AT)),
+    words: |found| format!("{AGAIN} of the base before line {}", found.value(SLIPPED_AT)),
     ..FOLLOWER
 };
 pub static REFLECTOR_AGAIN: Kind = Kind {
     name: "reflector_slip_again",
     of_rig: true,
-    words: |found| format!("another slip of the reflector on the tool before line {}", found.value(SLIPPED_AT)),
+    words: |found| format!("{AGAIN} of the reflector on the tool before line {}", found.value(SLIPPED_AT)),
     ..FOLLOWER
 };
 

@@ -12,7 +12,9 @@ use std::vec::Vec;
 use super::bench::{Bench, Model};
 use super::beyond;
 use super::course::{Course, Kept};
+use super::nameless::AGAIN;
 use super::structure::structure;
+use super::wander::instead_of_slips;
 use crate::campaign::Campaign;
 use crate::identify::positions::wild::Wild;
 use crate::trace::lack_of_fit::LackOfFit;
@@ -60,14 +62,25 @@ pub fn search<'c>(
         .ok_or_else(|| String::from("these positions do not tell the description's own numbers from each other"))?;
     bench.turn_to(&base);
     let too_little = too_little(&base);
-    let (mut course, mut looks_like) = (Course::new(base.clone()), Vec::new());
+    let (mut course, mut looks_like) = (Course::new(base.clone()), Vec::<String>::new());
     if too_little.is_none() {
         course = ended(course, &mut bench, noise, options, progress);
         progress("looking for what has no name in the catalogue");
         // Its stages are those that were told before.
         let goes_on = |course: Course, wide: &mut Bench<'c>| ended(course, wide, noise, options, &|_| ());
-        if let Some(beyond) = beyond::search(campaign, &mut bench, &course, goes_on) {
+        let mut instead = instead_of_slips(&mut bench, &course);
+        if instead.is_none()
+            && let Some(beyond) = beyond::search(campaign, &mut bench, &course, goes_on)
+        {
             (bench, course, looks_like) = (beyond.bench, beyond.course, beyond.looks_like);
+            instead = instead_of_slips(&mut bench, &course);
+        }
+        if let Some((without, wanders)) = instead {
+            course = without;
+            looks_like.retain(|words| !words.starts_with(AGAIN));
+            looks_like.push(wanders);
+        }
+        if !looks_like.is_empty() {
             course.left = structure(&bench, &course.model, noise, options);
             course.left.structure = true;
         }
