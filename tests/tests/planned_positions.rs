@@ -167,7 +167,7 @@ fn visits_show_what_a_campaign_does() {
     let stds = Judge::new(&known, &rivals, adapter.variance()).stds(&known);
     for named in &traced.effects {
         let told = named.effect.parameters[0].std.expect("a fitted number");
-        let at = rivals.numbers.iter().position(|number| number.name == named.effect.to_string()).expect("a number");
+        let at = rivals.model.iter().position(|number| number.name == named.effect.to_string()).expect("a number");
         assert!((stds[at] / told - 1.0).abs() < 0.5, "{}: {} {told}", named.effect, stds[at]);
     }
 }
