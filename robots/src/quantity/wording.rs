@@ -51,7 +51,7 @@ impl Dimension {
     /// A list of `N`, the others of which are zero; two of them in their order.
     pub(crate) fn example_list<const N: usize>(self) -> String {
         let mut items = ["0"; N];
-        items[if self.example().starts_with('-') { 0 } else { N - 1 }] = self.example();
+        items[N - 1] = self.example().trim_start_matches('-');
         format!("[{}]", items.join(", "))
     }
 
