@@ -278,7 +278,7 @@ pub fn fit(prepared: &Prepared<'_>, problem: &Problem) -> Result<Fit, Error> {
 /// have no uncertainty, or one made of chance.
 ///
 /// # Errors
-/// Fewer readings than [`READINGS_A_NUMBER`] for each number that they show.
+/// Fewer than two readings for each number that they show.
 pub fn enough(prepared: &Prepared<'_>, problem: &Problem) -> Result<(), Error> {
     let shown = visibility(&problem.total, prepared.own.len());
     let numbers = shown.iter().filter(|visibility| **visibility != Visibility::Unseen).count();

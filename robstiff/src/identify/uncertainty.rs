@@ -14,7 +14,7 @@
 //!
 //! With hardly more readings than coefficients what is left says nothing: nearly
 //! all is fitted. Noise that the campaign declares counts as much as
-//! [so many](DECLARED) more readings do, and no coefficient is told surer than it
+//! ten more readings do, and no coefficient is told surer than it
 //! alone would let it be, had each reading that and no more.
 //!
 //! What is told is the standard deviation of the normal distribution that has
