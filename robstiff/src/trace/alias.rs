@@ -38,12 +38,13 @@ const BEYOND_DOUBT: f64 = 100.0;
 /// where they are significant too. The best fitting first.
 pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, structure: bool, options: &Options) -> Vec<String> {
     let (one, rest) = (model.named[k], all_but(&model.named, k));
-    let Ok(own) = bench.at(&model.named) else { return Vec::new() };
-    // What the others come to without it may be no model at all, and say nothing of aliases.
-    let beside = beside(&own, &rest);
-    let exact = |rival: &Fitted, candidate: usize| {
-        let (from, to) = (own.variant(one), own.variant(variant_of(rival, candidate)));
-        beside.as_ref().is_some_and(|beside| beside.distance(from, to) < EXACT)
+    let Some(alone) = Alone::of(bench, model, &rest) else { return Vec::new() };
+    let own = &alone.own.setting;
+    let exact = |candidate: usize| {
+        let beside = alone.beside(candidate)?;
+        let rival = best_with(&beside.setting, &rest, candidate)?;
+        let [from, to] = [one, variant_of(&rival, candidate)].map(|named| beside.setting.variant(named));
+        Some(beside.left.distance(from, to) < EXACT)
     };
     let without = Without::of(bench, &rest, options);
     let of_model = own.deviances(&model.fit);
@@ -68,22 +69,57 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, structure: bool, opt
     };
     let mut found: Vec<(f64, String)> = Vec::new();
     for candidate in (0..own.candidates.len()).filter(|&candidate| candidate != one.candidate) {
-        let here = best_with(&own, &rest, candidate);
-        let there = without.as_ref().and_then(|without| best_with(&without.setting, &rest, candidate));
-        let Some(bic) = there.as_ref().or(here.as_ref()).map(|rival| rival.bic) else { continue };
-        if here.is_some_and(|rival| exact(&rival, candidate))
-            || one_formula(bench, &own, model, one, candidate)
-            || there.is_some_and(|rival| near(&rival, candidate))
+        let rival = without.as_ref().and_then(|without| best_with(&without.setting, &rest, candidate));
+        let Some(bic) = rival.as_ref().map(|rival| rival.bic).or_else(|| Some(best_with(own, &rest, candidate)?.bic))
+        else {
+            continue;
+        };
+        if exact(candidate).unwrap_or(false)
+            || one_formula(bench, own, model, one, candidate)
+            || rival.is_some_and(|rival| near(&rival, candidate))
         {
             found.push((bic, own.candidates[candidate].name()));
         }
     }
-    best_first(found).chain(dead_zone(bench, &own, model, one)).collect()
+    best_first(found).chain(dead_zone(bench, own, model, one)).collect()
 }
 
-/// What some effects of a model leave of all columns where the model is at its solution.
-fn beside(setting: &Setting<'_>, rest: &[Named]) -> Option<Remaining> {
-    Remaining::new(&setting.problem.total, &setting.columns(rest), setting.own.len()..setting.signs.len())
+/// What the others of a model leave of all columns, at a solution.
+struct Beside<'c> {
+    setting: Rc<Setting<'c>>,
+    left: Remaining,
+}
+
+impl<'c> Beside<'c> {
+    fn at(setting: Rc<Setting<'c>>, others: &[Named]) -> Option<Self> {
+        let tested = setting.own.len()..setting.signs.len();
+        let left = Remaining::new(&setting.problem.total, &setting.columns(others), tested)?;
+        Some(Self { setting, left })
+    }
+}
+
+/// Where exact aliases of an effect are asked for: at the whole model's solution, for what the
+/// others come to without the effect may be nothing that is possible. But what a load is moved by
+/// there is also in how that effect answers, of which it would be an alias: numbers that enter
+/// the forward model as loads and lengths do are asked for where the others are without it.
+struct Alone<'c> {
+    own: Beside<'c>,
+    others: Option<Beside<'c>>,
+}
+
+impl<'c> Alone<'c> {
+    fn of(bench: &Bench<'c>, model: &Fitted, others: &[Named]) -> Option<Self> {
+        let own = Beside::at(bench.at(&model.named).ok()?, others)?;
+        let others = bench.at(others).ok().and_then(|setting| Beside::at(setting, others));
+        Some(Self { own, others })
+    }
+
+    fn beside(&self, candidate: usize) -> Option<&Beside<'c>> {
+        let setting = &self.own.setting;
+        let columns = || setting.candidates[candidate].variants.iter().flat_map(|variant| &variant.columns);
+        let is_linear = columns().all(|column| setting.numbers[column - setting.own.len()].enters.is_none());
+        if is_linear { Some(&self.own) } else { self.others.as_ref() }
+    }
 }
 
 /// The model without an effect, as it fits best.
@@ -112,15 +148,15 @@ const PARTS: usize = 4;
 /// of those that are not named.
 pub fn in_part(bench: &Bench<'_>, model: &Fitted, k: usize) -> Vec<String> {
     let (one, rest) = (model.named[k], all_but(&model.named, k));
-    let Ok(setting) = bench.at(&model.named) else { return Vec::new() };
-    let Some(beside) = beside(&setting, &rest) else { return Vec::new() };
-    let own = setting.variant(one);
+    let Some(alone) = Alone::of(bench, model, &rest) else { return Vec::new() };
+    let own = alone.own.setting.variant(one);
     let columns = &own.columns;
     if !own.shape.is_empty() || columns.len() > PARTS {
         return Vec::new();
     }
-    let others = setting.columns(&rest);
-    let has_alias = |candidate: &Candidate| {
+    let has_alias = |(index, candidate): (usize, &Candidate)| {
+        let Some(Beside { setting, left }) = alone.beside(index) else { return false };
+        let others = setting.columns(&rest);
         (1..(1_u32 << columns.len()) - 1).any(|set| {
             let of = |inside: bool| -> Vec<usize> {
                 (0..columns.len()).filter(|k| (set >> k & 1 == 1) == inside).map(|k| columns[k]).collect()
@@ -130,14 +166,14 @@ pub fn in_part(bench: &Bench<'_>, model: &Fitted, k: usize) -> Vec<String> {
                 let with_the_others: Vec<usize> = other.columns.iter().chain(&kept).copied().collect();
                 let whole = [&others[..], &with_the_others].concat();
                 let [part, other] = [part.clone(), with_the_others].map(|columns| Variant::new(columns, Vec::new()));
-                beside.distance(&part, &other) < EXACT && is_possible(&setting, &whole)
+                left.distance(&part, &other) < EXACT && is_possible(setting, &whole)
             };
             candidate.variants.iter().filter(|other| other.columns.len() == part.len()).any(alike)
         })
     };
     let named = |candidate: usize| model.named.iter().any(|one| one.candidate == candidate);
-    let unnamed = setting.candidates.iter().enumerate().filter(|&(candidate, _)| !named(candidate));
-    unnamed.filter(|(_, candidate)| has_alias(candidate)).map(|(_, candidate)| candidate.name()).collect()
+    let unnamed = alone.own.setting.candidates.iter().enumerate().filter(|&(candidate, _)| !named(candidate));
+    unnamed.filter(|&candidate| has_alias(candidate)).map(|(_, candidate)| candidate.name()).collect()
 }
 
 /// Whether columns fit with numbers that are possible. A scale of the loads is in the span of
