@@ -45,9 +45,10 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let mut forms = vec![Form::of(0..3), Form::of(3..6).in_tool()];
     let but = |axis: usize, first: usize| (first..first + 3).filter(move |&k| k != first + axis);
     if let Some(axis) = line(scene, |_| Matrix3::identity()) {
+        // Where the tool only turns about that line, as a SCARA's does under weights, a turn
+        // that goes with the tool would be a lever arm's double.
         forms.push(Form::of(but(axis, 0)));
-    }
-    if let Some(axis) = line(scene, Matrix3::transpose) {
+    } else if let Some(axis) = line(scene, Matrix3::transpose) {
         forms.push(Form::of(but(axis, 3)).in_tool());
     }
     offers.add(Place::Rig, (0..6).map(number).collect(), forms);
