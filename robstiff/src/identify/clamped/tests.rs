@@ -143,8 +143,8 @@ fn of_two_rows_neither_is_left_out() {
 }
 
 /// Three axes that are loaded up and down both ways, read in steps of a gauge, with noise
-/// besides (rad).
-fn rounded(seed: u64, step: f64, noise: f64) -> Vec<ClampedRow> {
+/// besides (rad); and the compliances that they have.
+fn rounded(seed: u64, step: f64, noise: f64) -> (Vec<ClampedRow>, [f64; 3]) {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let compliances = [2.1e-7, 3.3e-7, 4.7e-7].map(|h: f64| h * (1.0 + 0.3 * normal(&mut random).tanh()));
     let shares = [0.2, 0.4, 0.6, 0.8, 1.0, 0.8, 0.6, 0.4, 0.2, 0.0];
@@ -154,13 +154,7 @@ fn rounded(seed: u64, step: f64, noise: f64) -> Vec<ClampedRow> {
         let deflection = if step > 0.0 { step * (read / step).round() } else { read };
         ClampedRow { line: k + 2, axis, torque: share, deflection }
     };
-    (0..60).map(row).collect()
-}
-
-/// The compliances of [`rounded`].
-fn compliances_of(seed: u64) -> [f64; 3] {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    [2.1e-7, 3.3e-7, 4.7e-7].map(|h: f64| h * (1.0 + 0.3 * normal(&mut random).tanh()))
+    ((0..60).map(row).collect(), compliances)
 }
 
 /// Rows that fit exactly may still be off by what their gauge does not show.
@@ -169,13 +163,13 @@ fn no_slope_is_surer_than_its_gauge_reads() {
     for (step, noise) in [(2e-6, 3e-7), (5e-6, 5e-7), (1e-5, 1e-7), (5e-6, 2e-6)] {
         let (mut beyond, mut count) = (0, 0);
         for seed in 0..80 {
-            let rows = rounded(seed, step, noise);
+            let (rows, compliances) = rounded(seed, step, noise);
             // Now and then all fit exactly, as if no gauge had read them.
             if of_rounding(&rows) == [0.0; 3] {
                 continue;
             }
             let found = identified(rows);
-            for (estimate, truth) in found.estimates.iter().zip(compliances_of(seed)) {
+            for (estimate, truth) in found.estimates.iter().zip(compliances) {
                 let std = estimate.std.expect("it is loaded");
                 assert!(std > 1e-4 * truth, "{estimate:?}");
                 beyond += usize::from((estimate.value - truth).abs() > WITHIN * std);
@@ -191,9 +185,9 @@ fn no_slope_is_surer_than_its_gauge_reads() {
 fn readings_that_are_not_rounded_are_as_sure_as_they_scatter() {
     let of = |rows: &[ClampedRow]| of_rounding(rows).into_iter().fold(0.0, f64::max);
     for seed in 0..20 {
-        assert_eq!(of(&rounded(seed, 0.0, 1e-6)), 0.0);
+        assert_eq!(of(&rounded(seed, 0.0, 1e-6).0), 0.0);
         // Half a step makes no difference.
-        assert!(of(&rounded(seed, 1e-6, 6e-7)) <= 0.36e-12);
+        assert!(of(&rounded(seed, 1e-6, 6e-7).0) <= 0.36e-12);
     }
     // Nor are equal steps of the torque one of the gauge.
     let even: Vec<ClampedRow> = (1..=8).map(|k| row(100.0 * f64::from(k), 3e-5 * f64::from(k))).collect();

@@ -132,8 +132,9 @@ fn stand_out(rows: &[ClampedRow], raw: &DMatrix<f64>, strict: bool, most: usize)
     let mut at: Vec<usize> = (0..rows.len()).collect();
     let mut taken: Vec<usize> = Vec::new();
     let mut found = None;
+    let rounding = of_rounding(&rows);
     for _ in 0..most {
-        let Some(worst) = worst(&rows, &raw) else { break };
+        let Some(worst) = worst(&rows, &raw, &rounding) else { break };
         taken.push(at.remove(worst.row));
         rows.remove(worst.row);
         raw = raw.remove_row(worst.row);
@@ -174,7 +175,8 @@ pub fn tail(gain: f64, others: f64, rows: usize, columns: usize) -> Option<f64> 
     Some(told(rows as f64 * 2.0 * tail))
 }
 
-fn worst(rows: &[ClampedRow], raw: &DMatrix<f64>) -> Option<Worst> {
+/// The row that stands out most, with the variances that rounding lets be.
+fn worst(rows: &[ClampedRow], raw: &DMatrix<f64>, rounding: &[f64]) -> Option<Worst> {
     let problem = problem(rows, raw.clone());
     let columns: Vec<usize> = (0..raw.ncols()).collect();
     let fit = problem.total.solve(&columns)?;
@@ -182,7 +184,6 @@ fn worst(rows: &[ClampedRow], raw: &DMatrix<f64>) -> Option<Worst> {
     let whole = by_median(all.iter().copied());
     let own = of_most(rows, &(problem.readings.as_ref() - raw * &fit.coefficients));
     // One step of a gauge is no wild reading where all others fit exactly.
-    let rounding = of_rounding(rows);
     let own = |row: usize| own[rows[row].axis - 1].max(rounding[rows[row].axis - 1]);
     let over = |row: usize| all[row] / own(row).max(whole);
     let row = (0..all.len()).max_by(|&a, &b| over(a).total_cmp(&over(b)))?;
