@@ -53,9 +53,17 @@ pub struct Tie {
 impl Normal {
     /// The normal equations of `x`, `y`.
     pub fn new(x: &DMatrix<f64>, y: &DVector<f64>) -> Self {
-        // The product of two stored matrices is the one that is fast.
-        let transposed = x.transpose();
-        Self { gram: &transposed * x, moment: transposed * y, energy: y.norm_squared(), rows: y.len() }
+        // The product of two stored matrices is the one that is fast; of a symmetric one the
+        // half below the diagonal is enough, in strips that hang from it.
+        let (transposed, count) = (x.transpose(), x.ncols());
+        let mut gram = DMatrix::zeros(count, count);
+        for first in (0..count).step_by(STRIP) {
+            let (width, below) = (STRIP.min(count - first), count - first);
+            let strip = transposed.rows(first, below) * x.columns(first, width);
+            gram.view_mut((first, first), (below, width)).copy_from(&strip);
+        }
+        gram.fill_upper_triangle_with_lower_triangle();
+        Self { gram, moment: transposed * y, energy: y.norm_squared(), rows: y.len() }
     }
 
     /// The same for a few columns.
@@ -187,6 +195,9 @@ impl Normal {
         Some(Scaled::new(self, columns)?.inverse())
     }
 }
+
+/// Columns of a strip of a Gram matrix.
+const STRIP: usize = 64;
 
 /// A gradient this small against the largest there can be is zero.
 const GRADIENT_TOLERANCE: f64 = 1e-12;
