@@ -14,7 +14,7 @@ use robstiff_tests::positions::{PAYLOADS, read};
 use robstiff_tests::simulator::{DhColumn, Follows, Hidden, Outside, Positions, five_axis, scattered, six_axis};
 
 /// Runs of what is to hold at a rate.
-const RUNS: u64 = 8;
+const RUNS: u64 = 6;
 
 fn traced(campaign: &Campaign) -> Trace {
     trace(campaign, &Options { draws: 999, ..Options::default() }, &|_| {})

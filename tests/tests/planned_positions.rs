@@ -135,7 +135,7 @@ fn planned_poses_separate_better_than_random_ones() {
 fn what_is_expected_comes_true() {
     let (robot, truth) = (six_axis(), tilt(3, 3e-7));
     let mut errors = Vec::new();
-    for seed in SEEDS {
+    for seed in SEEDS.take(8) {
         let first = measured(&robot, &[truth], &PAYLOADS, drawn(&robot, 40), seed);
         let plan = between(&first, &[truth, BENDING], &Options { poses: 1, ..Options::default() });
         let expected = plan.pairs[0].now.powi(2);

@@ -279,7 +279,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(cases(300))]
+    #![proptest_config(cases(160))]
 
     #[test]
     fn code_calculates_what_its_graphs_do(
