@@ -7,6 +7,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use robstiff::campaign::Campaign;
+use robstiff_robots::Description;
 
 use crate::failure::Failure;
 
@@ -74,6 +75,25 @@ impl Files {
             self.refuse(path, &[])?;
             Target::of(path).and_then(|target| target.check()).map_err(|error| cannot_write(path, &error))
         })
+    }
+
+    /// The same for a robot's description: an earlier one of the same robot is replaced, that
+    /// of another robot is somebody's.
+    ///
+    /// # Errors
+    /// As for [`foresee`](Self::foresee); whose description is there.
+    pub fn foresee_robot(&self, path: &Path, robot: &Description) -> Result<(), Failure> {
+        self.foresee([path])?;
+        // A pipe would wait for its writer.
+        match path.is_file().then(|| Description::read(path)) {
+            Some(Ok(there)) if there.name != robot.name => Err(Failure::new(format_args!(
+                "{} describes another robot, {}, and would be overwritten with {}; choose another folder",
+                path.display(),
+                there.name,
+                robot.name
+            ))),
+            _ => Ok(()),
+        }
     }
 
     /// Writes every file under a temporary name in its folder, which is made

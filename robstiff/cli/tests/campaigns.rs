@@ -311,6 +311,21 @@ fn what_was_read_is_not_overwritten() {
     assert_eq!(names(&folder), ["campaign.yaml", "loads.csv", "robot.yaml"]);
 }
 
+/// An older result of the same robot is replaced, no description of another one.
+#[test]
+fn another_robot_is_not_overwritten() {
+    let folder = folder("another-robot");
+    let robot = folder.join("robot.yaml");
+    let written = robstiff_robots::catalogue::find("rv130hsc").unwrap();
+    fs::write(&robot, written).unwrap();
+    for command in ["identify", "trace"] {
+        let message = fail(1, &[command, &campaign(), "--out", folder.to_str().unwrap()]);
+        assert!(message.contains("describes another robot, Rv130hsc"), "{message}");
+    }
+    assert_eq!(fs::read_to_string(&robot).unwrap(), written);
+    assert_eq!(names(&folder), ["robot.yaml"]);
+}
+
 /// Even one that is not there yet.
 #[test]
 fn a_file_under_two_names_is_one_file() {

@@ -74,7 +74,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut files = Files::default();
     files.protect_campaign(&campaign);
     let [robot, told, shown] = ["robot.yaml", "trace.json", "report.html"].map(|name| arguments.out.join(name));
-    files.foresee(arguments.json.iter().chain([&robot, &told, &shown]))?;
+    files.foresee(arguments.json.iter().chain([&told, &shown]))?;
+    files.foresee_robot(&robot, &campaign.robot)?;
     let spinner = spinner();
     spinner.set_message("asking the readings themselves");
     let triage = robstiff::triage::triage(&campaign);
