@@ -96,6 +96,13 @@ pub fn micrometres(length: f64) -> String {
     decimals(length * 1e6, 1)
 }
 
+/// An error or noise (m) as micrometres without the unit: to two digits where it is
+/// less than one, so that it shows what it falls by.
+pub fn fine_micrometres(length: f64) -> String {
+    let small = (1e-9..9.5e-7).contains(&length);
+    if small { significant(length * 1e6, 2) } else { micrometres(length) }
+}
+
 /// A count with its noun.
 pub fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
@@ -164,6 +171,12 @@ mod tests {
     #[test]
     fn what_has_not_changed_has_no_sign() {
         assert_eq!([0.314, -0.05, 0.001, -0.001].map(change), ["+31 %", "-5 %", "0 %", "0 %"]);
+    }
+
+    #[test]
+    fn a_small_error_shows_what_it_falls_by() {
+        let written = [2.338e-4, 9.96e-7, 9.4e-7, 8.61e-7, 5.2e-8, 0.0, f64::NAN];
+        assert_eq!(written.map(fine_micrometres), ["233.8", "1.0", "0.94", "0.86", "0.052", "0.0", "-"]);
     }
 
     #[test]

@@ -10,11 +10,11 @@ use robstiff_robots::Joint;
 
 use super::words::{by_kind, spoken};
 use crate::identify::{at_bound, source_of};
-use crate::text::{Table, and, count, decimals, micrometres, probability, quantity};
+use crate::text::{Table, and, count, decimals, fine_micrometres, probability, quantity};
 
 /// The finding in one sentence.
 pub fn headline(trace: &Trace) -> String {
-    let (before, after) = (micrometres(trace.identified.holdout_rms), micrometres(trace.after.holdout_rms));
+    let (before, after) = (fine_micrometres(trace.identified.holdout_rms), fine_micrometres(trace.after.holdout_rms));
     let words = |of_rig: bool| -> Vec<String> {
         let those = trace.effects.iter().filter(|named| named.effect.is_of_rig() == of_rig);
         those.map(|named| named.effect.words()).collect()
@@ -161,7 +161,7 @@ fn on_the_same_rows(trace: &Trace) -> Option<String> {
         let rows = trace.residuals.iter().filter(|row| all || !lines.contains(&row.line));
         let components = rows.flat_map(|row| of(row).into_iter().take(trace.components));
         let squares: Vec<f64> = components.map(|component| component * component).collect();
-        micrometres((squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt())
+        fine_micrometres((squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt())
     };
     let (before, after) = (|row: &RowResidual| row.before, |row: &RowResidual| row.after);
     Some(format!(
@@ -306,9 +306,10 @@ pub fn pose(next: &Proposal, joints: &[Joint]) -> String {
 
 /// The story for a terminal.
 pub fn page(trace: &Trace, campaign: &Campaign) -> String {
-    let mut noise = format!("noise: {} um a reading ({})", micrometres(trace.noise), source_of(trace.noise_source));
+    let mut noise =
+        format!("noise: {} um a reading ({})", fine_micrometres(trace.noise), source_of(trace.noise_source));
     if trace.differences {
-        noise += &format!(", up to {} um a displacement, the difference of two", micrometres(self::noise(trace)));
+        noise += &format!(", up to {} um a displacement, the difference of two", fine_micrometres(self::noise(trace)));
     }
     let mut page =
         format!("{}: {} at {}\n{noise}\n\n", trace.robot, count(trace.rows, "row"), count(trace.poses, "pose"));
@@ -318,7 +319,7 @@ pub fn page(trace: &Trace, campaign: &Campaign) -> String {
         stages.push(("with the effects", trace.after));
     }
     for (name, misfit) in stages {
-        errors.row([name.to_owned(), micrometres(misfit.rms), micrometres(misfit.holdout_rms)]);
+        errors.row([name.to_owned(), fine_micrometres(misfit.rms), fine_micrometres(misfit.holdout_rms)]);
     }
     page += &format!("{errors}  (unseen: {})\n\nVerdict: {}. {}.\n", unseen(trace), trace.verdict, headline(trace));
     for said in summary(trace, campaign) {
