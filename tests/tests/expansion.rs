@@ -244,6 +244,31 @@ fn any_description_becomes_docs() {
     assert!(!text.contains("```") && !text.contains("~~~"), "{text}");
 }
 
+/// An address is a link, and of the text around it nothing goes with it.
+#[test]
+fn addresses_in_a_description_are_links() {
+    let of = |said: &str| {
+        let robot = Description { source: said.into(), ..five_axes() };
+        text(&robot, "arm.yaml")
+            .split_once("# Sources\n///\n")
+            .expect("sources")
+            .1
+            .lines()
+            .next()
+            .expect("one")
+            .to_owned()
+    };
+    for (said, shown) in [
+        ("https://a.org/b?c=d_e.", "<https://a.org/b?c=d_e>."),
+        ("(see http://a.org/b), and https://a.org/c_(d)", "(see <http://a.org/b>), and <https://a.org/c_(d)>"),
+        ("[a](https://a.org)", "\\[a](<https://a.org>)"),
+        ("`https://a.org` is https://", "`https://a.org` is <https://>"),
+        ("https stands for nothing", "https stands for nothing"),
+    ] {
+        assert_eq!(of(said), format!("/// {shown}"), "{said}");
+    }
+}
+
 /// One mistake in a description is one error, whatever the user's code names.
 #[test]
 fn a_robot_with_mistakes_has_the_constants_of_one_without() {

@@ -246,7 +246,26 @@ fn lines(text: &str) -> Vec<String> {
     let escaped = escaped.replace("```", "\\`\\`\\`").replace("~~~", "\\~\\~\\~");
     // rustc refuses what turns the direction of a source file's text.
     let escaped = escaped.replace(|c| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'), "");
-    escaped.lines().map(|line| format!(" {}", line.trim()).trim_end().to_owned()).collect()
+    linked(&escaped).lines().map(|line| format!(" {}", line.trim()).trim_end().to_owned()).collect()
+}
+
+/// A text whose addresses are links, for rustdoc warns of those that are none.
+fn linked(text: &str) -> String {
+    let (mut linked, mut rest) = (String::new(), text);
+    while let Some(start) = ["https://", "http://"].into_iter().filter_map(|scheme| rest.find(scheme)).min() {
+        let (before, from) = rest.split_at(start);
+        let ends = |c: char| c.is_whitespace() || matches!(c, '<' | '>' | '[' | ']' | '\\' | '`' | '"');
+        let whole = from.split(ends).next().unwrap_or(from);
+        // A sentence's point is not the address's, nor is the end of a bracket that it is in.
+        let is_after = |c: char| matches!(c, '.' | ',' | ';' | '!' | '?') || c == ')' && !whole.contains('(');
+        let address = whole.trim_end_matches(is_after);
+        // In backticks it is no link, and may stay as it is.
+        let is_code = before.ends_with('`') && !before.ends_with("\\`");
+        linked += before;
+        linked += &if is_code { address.to_owned() } else { format!("<{address}>") };
+        rest = &from[address.len()..];
+    }
+    linked + rest
 }
 
 /// The `Robot` implementation.
