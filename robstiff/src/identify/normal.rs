@@ -53,17 +53,21 @@ pub struct Tie {
 impl Normal {
     /// The normal equations of `x`, `y`.
     pub fn new(x: &DMatrix<f64>, y: &DVector<f64>) -> Self {
-        // The product of two stored matrices is the one that is fast; of a symmetric one the
-        // half below the diagonal is enough, in strips that hang from it.
-        let (transposed, count) = (x.transpose(), x.ncols());
+        // The product of two stored matrices is the one that is fast, of parts that fit a cache.
+        // Of a symmetric one the half below the diagonal is enough, in strips that hang from it.
+        let (rows, count) = x.shape();
         let mut gram = DMatrix::zeros(count, count);
-        for first in (0..count).step_by(STRIP) {
-            let (width, below) = (STRIP.min(count - first), count - first);
-            let strip = transposed.rows(first, below) * x.columns(first, width);
-            gram.view_mut((first, first), (below, width)).copy_from(&strip);
+        for from in (0..rows).step_by(PART) {
+            let part = x.rows(from, PART.min(rows - from));
+            let transposed = part.transpose();
+            for first in (0..count).step_by(STRIP) {
+                let (width, below) = (STRIP.min(count - first), count - first);
+                let mut strip = gram.view_mut((first, first), (below, width));
+                strip.gemm(1.0, &transposed.rows(first, below), &part.columns(first, width), 1.0);
+            }
         }
         gram.fill_upper_triangle_with_lower_triangle();
-        Self { gram, moment: transposed * y, energy: y.norm_squared(), rows: y.len() }
+        Self { gram, moment: x.tr_mul(y), energy: y.norm_squared(), rows: y.len() }
     }
 
     /// The same for a few columns.
@@ -196,7 +200,8 @@ impl Normal {
     }
 }
 
-/// Columns of a strip of a Gram matrix.
+/// Rows whose products are added to a Gram matrix at once, and columns of a strip of it.
+const PART: usize = 256;
 const STRIP: usize = 64;
 
 /// A gradient this small against the largest there can be is zero.

@@ -72,7 +72,7 @@ pub struct Weights<'a> {
     pub left_out: &'a [bool],
 }
 
-/// Rows whose normal equations are formed at once: what fits a cache.
+/// Rows that are copied at once where not all are fitted to.
 const ROWS_AT_ONCE: usize = 512;
 
 impl Problem {
@@ -112,10 +112,12 @@ impl Problem {
             })
             .partition(|block: &Block| weights.training[block.pose]);
         let stacked: Vec<usize> = blocks.iter().flat_map(|block| block.stacked.iter().copied()).collect();
-        let parts = stacked
-            .chunks(ROWS_AT_ONCE)
-            .map(|rows| Normal::new(&white.select_rows(rows), &white_readings.select_rows(rows)));
-        let total = Normal::sum(parts).expect("a campaign has rows to train on");
+        let total = if stacked.len() == white.nrows() {
+            Normal::new(&white, &white_readings)
+        } else {
+            let of = |rows: &[usize]| Normal::new(&white.select_rows(rows), &white_readings.select_rows(rows));
+            Normal::sum(stacked.chunks(ROWS_AT_ONCE).map(of)).expect("a campaign has rows to train on")
+        };
         let equations = Equations {
             readings,
             white_readings: Rc::new(white_readings),
