@@ -120,10 +120,7 @@ impl<'c> Bench<'c> {
     /// As for [`new`](Self::new).
     pub fn widened_as_it_is(&self) -> Result<Self, String> {
         let mut bench = Self { wide: true, ..self.copy() };
-        bench.set_up_again(|kept, now| {
-            let nameless = now.iter().filter(|candidate| candidate.is_nameless());
-            kept.iter().chain(nameless).cloned().collect()
-        })?;
+        bench.set_up_again(Candidate::is_nameless, |kept, nameless| [kept, nameless].concat())?;
         Ok(bench)
     }
 
@@ -303,27 +300,39 @@ impl<'c> Bench<'c> {
         found
     }
 
+    /// The rows at a model's solution.
+    fn point_at(&self, named: &[Named], State { setup, fit, .. }: &State) -> Point<'c> {
+        let point = self.point(setup.clone());
+        let elastic = self.prediction(&point, fit, &self.nonlinear(named));
+        let declared: &Samples = &self.prepared.samples;
+        point.with_model(declared, elastic, &self.springs(fit))
+    }
+
+    /// The places of the rows that are fitted to in what is stacked.
+    fn fitted_to(&self) -> impl Iterator<Item = usize> {
+        let (training, samples) = (&self.prepared.training, &self.prepared.samples);
+        let is_fitted_to = |row: &usize| training[samples.rows[*row].pose] && !self.left_out[*row];
+        let places = |row: usize| (row * samples.axes..(row + 1) * samples.axes).chain(samples.encoders_of(row));
+        (0..samples.rows.len()).filter(is_fitted_to).flat_map(places)
+    }
+
     /// The regression at a model's solution, with the whole catalogue.
     fn setting(&self, named: &[Named]) -> Result<Setting<'c>, String> {
-        let State { setup, fit, tangents, readings, base } = &*self.state(named)?;
-        let nonlinear = self.nonlinear(named);
-        let declared: &Samples = &self.prepared.samples;
-        let point = self.point(setup.clone());
-        let elastic = self.prediction(&point, fit, &nonlinear);
-        let point = point.with_model(declared, elastic, &self.springs(fit));
-        let count = self.own.len() + self.numbers.len();
+        let state = self.state(named)?;
+        let State { fit, tangents, readings, base, .. } = &*state;
+        let point = self.point_at(named, &state);
+        let besides = self.besides(named, &point, fit);
+        let own = self.own.len() + self.numbers.len();
         self.spare_memory();
-        let mut raw = DMatrix::zeros(readings.len(), count);
-        for column in 0..count {
-            let tangent = tangents.iter().find(|(of, _)| *of == column);
-            match tangent {
-                Some((_, tangent)) => raw.set_column(column, tangent),
-                None => raw.set_column(column, &self.linear(&point, column)),
+        let mut raw = Vec::with_capacity(readings.len() * (own + besides.len()));
+        for column in 0..own {
+            match tangents.iter().find(|(of, _)| *of == column) {
+                Some((_, tangent)) => raw.extend_from_slice(tangent.as_slice()),
+                None => raw.extend_from_slice(self.linear(&point, column).as_slice()),
             }
         }
-        let besides = self.besides(named, &point, fit);
-        let mut raw = raw.resize_horizontally(count + besides.len(), 0.0);
-        besides.iter().enumerate().for_each(|(k, column)| raw.set_column(count + k, column));
+        besides.iter().for_each(|column| raw.extend_from_slice(column.as_slice()));
+        let raw = DMatrix::from_vec(readings.len(), own + besides.len(), raw);
         let weights = self.weights();
         let whitener = Rc::new(weights.covariance.whitener(weights.left_out));
         let readings = Rc::clone(readings);
@@ -341,7 +350,7 @@ impl<'c> Bench<'c> {
             signs: Rc::clone(&self.signs),
             base: base.clone(),
             own: Rc::clone(&self.own),
-            joint_values: self.prepared.values[..declared.joints()].to_vec(),
+            joint_values: self.prepared.values[..self.prepared.samples.joints()].to_vec(),
             tangents: tangents.clone(),
             correction: self.prepared.correction.clone(),
         })

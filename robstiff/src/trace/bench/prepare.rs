@@ -1,6 +1,7 @@
 //! The catalogue of a bench: what the data can show, which rows are wild, and where
 //! slips may have begun.
 
+use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::string::String;
 use std::vec;
@@ -22,6 +23,15 @@ const ROUNDS: usize = 4;
 impl Bench<'_> {
     /// Forms the catalogue, without what the data cannot show.
     pub(super) fn set_up(&mut self) -> Result<(), String> {
+        self.form();
+        let (kept, lost) = self.seen(self.candidates.iter())?;
+        self.candidates = kept.into();
+        self.invisible.extend(lost);
+        Ok(())
+    }
+
+    /// Forms the whole catalogue.
+    fn form(&mut self) {
         self.forget();
         let Catalogue { candidates, numbers, invisible } = catalogue(&self.scene(), self.own.len(), self.wide);
         let signs = self.prepared.signs().into_iter().chain(numbers.iter().map(Number::sign));
@@ -29,24 +39,40 @@ impl Bench<'_> {
         self.numbers = numbers.into();
         self.candidates = candidates.into();
         self.invisible = invisible;
+    }
 
-        let setting = self.at(&[])?;
-        let base = setting.fit(&[])?;
-        let noise = (base.fit.rss / setting.problem.freedom(&base.fit)).sqrt();
-        let gram = &setting.problem.total.gram;
-        let largest = setting.base.iter().map(|&j| gram[(j, j)].sqrt()).fold(0.0, f64::max);
-        let visible = |&column: &usize| {
-            let (number, size) = (&self.numbers[column - self.own.len()], gram[(column, column)].sqrt());
+    /// Candidates with the forms that the data can show, held against the description's own
+    /// model, and the full names of those that have none.
+    fn seen<'a>(
+        &self,
+        candidates: impl Iterator<Item = &'a Candidate> + Clone,
+    ) -> Result<(Vec<Candidate>, Vec<String>), String> {
+        let base = self.state(&[])?;
+        let point = self.point_at(&[], &base);
+        let whitener = self.noise.covariance.whitener(&self.left_out);
+        let places: Vec<usize> = self.fitted_to().collect();
+        let size = |column: usize| {
+            let white = whitener.whitened(self.linear(&point, column));
+            places.iter().map(|&at| white[at] * white[at]).sum::<f64>().sqrt()
+        };
+        let freedom = places.len().saturating_sub(base.fit.columns.len()).max(1);
+        let noise = (base.fit.rss / freedom as f64).sqrt();
+        let largest = base.base.iter().map(|&column| size(column)).fold(0.0, f64::max);
+        let is_visible = |&column: &usize| {
+            let number = &self.numbers[column - self.own.len()];
             match number.range[1].is_finite() {
                 // Even the most of it moves all readings together by less than
                 // the noise of one.
-                true => size * number.range[1] > noise,
-                false => size > ZERO * largest,
+                true => size(column) * number.range[1] > noise,
+                false => size(column) > ZERO * largest,
             }
         };
+        let variants = candidates.clone().flat_map(|candidate| &candidate.variants);
+        let columns: BTreeSet<usize> = variants.flat_map(|variant| &variant.columns).copied().collect();
+        let visible: BTreeSet<usize> = columns.into_iter().filter(is_visible).collect();
+        let is_seen = |variant: &&Variant| variant.columns.iter().all(|column| visible.contains(column));
         let (mut kept, mut lost) = (Vec::new(), Vec::new());
-        for candidate in self.candidates.iter() {
-            let is_seen = |variant: &&Variant| variant.columns.iter().all(visible);
+        for candidate in candidates {
             let variants: Vec<Variant> = candidate.variants.iter().filter(is_seen).cloned().collect();
             match variants.is_empty() {
                 true if candidate.is_nameless() => {}
@@ -54,11 +80,7 @@ impl Bench<'_> {
                 false => kept.push(Candidate { variants, ..candidate.clone() }),
             }
         }
-        self.candidates = kept.into();
-        self.invisible.extend(lost);
-        self.settings.get_mut().clear();
-        self.tests.get_mut().clear();
-        Ok(())
+        Ok((kept, lost))
     }
 
     /// Looks again, with a model, for rows that are wild and for the moment at
@@ -86,27 +108,33 @@ impl Bench<'_> {
             changed = true;
             self.left_out = left_out;
             likely.iter().for_each(|(slipping, moments)| self.moments.replace_first(*slipping, moments));
-            self.set_up_again(|kept, now| {
-                let moved = |candidate: &Candidate| {
-                    let same = now.iter().find(|other| other.name() == candidate.name());
-                    same.filter(|_| Slipping::has(candidate.kind.name)).unwrap_or(candidate).clone()
-                };
-                kept.iter().map(moved).collect()
-            })?;
+            self.set_up_again(
+                |candidate| Slipping::has(candidate.kind.name),
+                |kept, slips| {
+                    let moved = |candidate: &Candidate| {
+                        let same = slips.iter().find(|slip| slip.name() == candidate.name());
+                        same.unwrap_or(candidate).clone()
+                    };
+                    kept.iter().map(moved).collect()
+                },
+            )?;
         }
         Ok(changed)
     }
 
     /// Forms the columns anew. Which forms of which candidates are seen stays as it was, and so
-    /// do numbers out of grids: the candidates are made by `of`, of those kept and the new ones.
+    /// do numbers out of grids: the candidates are made by `of`, of those kept and, of the new
+    /// ones, those that are wanted.
     pub(super) fn set_up_again(
         &mut self,
+        is_wanted: impl Fn(&Candidate) -> bool,
         of: impl FnOnce(&[Candidate], &[Candidate]) -> Vec<Candidate>,
     ) -> Result<(), String> {
         let (kept, invisible) = (Rc::clone(&self.candidates), self.invisible.clone());
-        self.set_up()?;
+        self.form();
         self.invisible = invisible;
-        self.candidates = of(&kept, &self.candidates).into();
+        let (wanted, _) = self.seen(self.candidates.iter().filter(|candidate| is_wanted(candidate)))?;
+        self.candidates = of(&kept, &wanted).into();
         self.numbers = self.refined_numbers(0..self.candidates.len());
         self.forget();
         Ok(())

@@ -69,13 +69,9 @@ impl<'c> Bench<'c> {
         let prepared = self.prepared;
         let Some(noise) = self.noise.covariance.reading() else { return self.base.to_vec() };
         let whitener = self.noise.covariance.whitener(&self.left_out);
-        let samples = &point.samples;
-        let trained = |row: &usize| prepared.training[samples.rows[*row].pose] && !self.left_out[*row];
-        let places = |row: usize| (row * samples.axes..(row + 1) * samples.axes).chain(samples.encoders_of(row));
         let is_turned = |column: usize| {
             let white = whitener.whitened(self.linear(point, column));
-            let square: f64 =
-                (0..samples.rows.len()).filter(trained).flat_map(places).map(|at| white[at] * white[at]).sum();
+            let square: f64 = self.fitted_to().map(|at| white[at] * white[at]).sum();
             square.sqrt() * prepared.own[column].value.abs() > STANDS_OUT * noise
         };
         let seen = |column: &usize| self.base.contains(column) || (self.is_hidden(*column) && is_turned(*column));
