@@ -23,7 +23,7 @@
 use core::ops::Range;
 use std::vec::Vec;
 
-use nalgebra::{DMatrix, DVector, DVectorView};
+use nalgebra::{DMatrix, DVector};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -63,7 +63,7 @@ pub struct ScoreTest {
 struct Group {
     /// Local columns.
     columns: Vec<usize>,
-    /// The inverse of their Gram matrix.
+    /// The inverse of their Gram matrix, which is as symmetric as that.
     inverse: DMatrix<f64>,
     /// Which of their numbers have to be positive.
     positive: Vec<bool>,
@@ -88,11 +88,12 @@ impl Group {
     }
 
     /// What it gains, if with numbers of the right signs.
-    fn statistic(&self, score: DVectorView<'_, f64>, variance: f64) -> Option<f64> {
+    fn statistic(&self, score: &[f64], variance: f64) -> Option<f64> {
         let mut gain = 0.0;
-        for (i, &column) in self.columns.iter().enumerate() {
-            let number: f64 = self.columns.iter().enumerate().map(|(j, &k)| self.inverse[(i, j)] * score[k]).sum();
-            if self.positive[i] && number <= 0.0 {
+        let rows = self.inverse.as_slice().chunks_exact(self.columns.len());
+        for ((row, &column), &positive) in rows.zip(&self.columns).zip(&self.positive) {
+            let number: f64 = row.iter().zip(&self.columns).map(|(of, &k)| of * score[k]).sum();
+            if positive && number <= 0.0 {
                 return None;
             }
             gain += number * score[column];
@@ -126,7 +127,8 @@ impl Remaining {
         let tested: Vec<usize> = tested.collect();
         let cross = DMatrix::from_fn(null.len(), tested.len(), |i, j| total.gram[(null[i], tested[j])]);
         let shares = factor.solve_columns(&cross);
-        let gram = total.gram_of(&tested) - cross.tr_mul(&shares);
+        // The product of two stored matrices is the one that is fast.
+        let gram = total.gram_of(&tested) - cross.transpose() * &shares;
         let left = DVector::from_fn(tested.len(), |j, _| gram[(j, j)] / total.gram[(tested[j], tested[j])]);
         Self { first, gram, left, shares }
     }
@@ -255,7 +257,7 @@ impl ScoreTest {
     /// The statistic of each candidate, and the variant that has it; `None`
     /// for those that have no physical variant which gains anything.
     pub fn statistics(&self) -> Vec<Option<(f64, usize)>> {
-        let of = |group: &Option<Group>| group.as_ref()?.statistic(self.score.as_view(), self.variance);
+        let of = |group: &Option<Group>| group.as_ref()?.statistic(self.score.as_slice(), self.variance);
         let best = |groups: &Vec<Option<Group>>| {
             let gains = groups.iter().enumerate().filter_map(|(i, group)| Some((of(group)?, i)));
             gains.max_by(|a, b| a.0.total_cmp(&b.0))
@@ -272,7 +274,7 @@ impl ScoreTest {
         let groups: Vec<&Group> = self.groups.iter().flatten().flatten().collect();
         let largest = (0..draws).map(|draw| {
             let variance = (self.blocks.energy - absorbed.row(draw).norm_squared()) / self.blocks.freedom;
-            let score = scores.column(draw);
+            let score = &scores.as_slice()[draw * scores.nrows()..(draw + 1) * scores.nrows()];
             groups.iter().filter_map(|group| group.statistic(score, variance)).fold(0.0, f64::max)
         });
         Reference { largest: largest.collect() }

@@ -21,6 +21,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, SVector, Vector6};
 use super::Trace;
 use crate::campaign::{Campaign, Data};
 use crate::elements::Pose;
+use crate::identify::normal::Normal;
 use crate::identify::samples::Samples;
 use crate::{JointKind, Robot};
 
@@ -197,13 +198,13 @@ impl Rows {
     fn solve(&self, ridge: f64, of_pose: &dyn Fn(usize) -> bool) -> DVector<f64> {
         let rows: Vec<usize> = (0..self.pose.len()).filter(|&row| of_pose(self.pose[row])).collect();
         let (x, y) = (self.x.select_rows(&rows), self.y.select_rows(&rows));
-        let mut gram = x.tr_mul(&x);
+        let Normal { mut gram, moment, .. } = Normal::new(&x, &y);
         let least = f64::EPSILON * gram.diagonal().max();
         for k in 0..gram.nrows() {
             gram[(k, k)] += ridge * gram[(k, k)] + least;
         }
         let none = DVector::zeros(x.ncols());
-        Cholesky::new(gram).map_or(none, |factor| factor.solve(&x.tr_mul(&y)))
+        Cholesky::new(gram).map_or(none, |factor| factor.solve(&moment))
     }
 
     /// The ridge by which parts of the poses of some kind, each left out in turn,

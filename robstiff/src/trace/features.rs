@@ -2,6 +2,7 @@
 
 use std::borrow::ToOwned;
 use std::format;
+use std::rc::Rc;
 use std::string::String;
 use std::vec::Vec;
 
@@ -20,9 +21,9 @@ pub struct Feature {
     pub name: String,
     /// One row a row of the table, standardised.
     coordinates: DMatrix<f64>,
-    /// The force of each row over the root mean square, where an elastic
-    /// residual turns with it.
-    forces: Option<DMatrix<f64>>,
+    /// The scalar products of the forces of every two rows, over their mean square, where
+    /// an elastic residual turns with the force.
+    forces: Option<Rc<DMatrix<f64>>>,
 }
 
 impl Feature {
@@ -53,7 +54,7 @@ impl Feature {
             centre(&mut kernel);
         }
         if let Some(forces) = &self.forces {
-            kernel.component_mul_assign(&(forces * forces.transpose()));
+            kernel.component_mul_assign(forces);
         }
         kernel
     }
@@ -79,10 +80,11 @@ pub fn features(samples: &Samples, data: &Displacements, rows: &[usize]) -> Vec<
     let mean_square = size.iter().map(|size| size * size).sum::<f64>() / rows.len() as f64;
     let scale = mean_square.sqrt().max(f64::MIN_POSITIVE);
     let forces = DMatrix::from_fn(rows.len(), 3, |i, k| force(rows[i])[k] / scale);
+    let forces = Rc::new(&forces * forces.transpose());
 
     let mut found: Vec<Feature> = Vec::new();
     let mut angles: Vec<Vec<f64>> = Vec::new();
-    let mut add = |name: String, values: Vec<f64>, forces: Option<&DMatrix<f64>>| -> Option<Vec<f64>> {
+    let mut add = |name: String, values: Vec<f64>, forces: Option<&Rc<DMatrix<f64>>>| -> Option<Vec<f64>> {
         let values = standardised(values)?;
         let coordinates = DMatrix::from_column_slice(rows.len(), 1, &values);
         found.push(Feature { name, coordinates, forces: forces.cloned() });

@@ -310,8 +310,8 @@ impl Resemblance {
 /// The bootstrap draws of the residuals of some rows, by axis: a draw is the
 /// sum over poses of what each adds, with random signs.
 enum Draws {
-    /// What each pose adds, a column a pose, and the signs, a row a draw.
-    ByPose([DMatrix<f64>; 3], DMatrix<f64>),
+    /// What each pose adds, a row a pose and a column a pose, and the signs, a row a draw.
+    ByPose([(DMatrix<f64>, DMatrix<f64>); 3], DMatrix<f64>),
     /// The sums, a column a draw: the less where poses outnumber the rows.
     Summed([DMatrix<f64>; 3]),
 }
@@ -320,7 +320,8 @@ impl Draws {
     fn new(by_pose: [DMatrix<f64>; 3], signs: DMatrix<f64>) -> Self {
         let (rows, poses) = by_pose[0].shape();
         if poses <= rows {
-            return Self::ByPose(by_pose, signs);
+            // The product of two stored matrices is the one that is fast.
+            return Self::ByPose(by_pose.map(|each| (each.transpose(), each)), signs);
         }
         let signs = signs.transpose();
         Self::Summed(by_pose.map(|each| each * &signs))
@@ -331,7 +332,7 @@ impl Draws {
         match self {
             Self::ByPose(by_pose, signs) => {
                 let poses = signs.ncols();
-                let add = |sum, each: &DMatrix<f64>| sum + each.tr_mul(&(kernel * each));
+                let add = |sum, (transposed, each): &(DMatrix<f64>, DMatrix<f64>)| sum + transposed * (kernel * each);
                 let quadratic = by_pose.iter().fold(DMatrix::zeros(poses, poses), add);
                 (signs * quadratic).component_mul(signs).column_sum()
             }

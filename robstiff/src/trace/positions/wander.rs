@@ -110,7 +110,7 @@ impl Beside {
         let moment = DVector::from_fn(columns.len(), |k, _| total.moment[more(k)]);
         let readings = total.rows as f64;
         Some(Self {
-            gram: gram - crossed.tr_mul(&taken),
+            gram: gram - crossed.transpose() * &taken,
             moment: moment - taken.tr_mul(&total.moment_of(&own)),
             rss: fit.rss,
             readings,
