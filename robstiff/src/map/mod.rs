@@ -50,5 +50,5 @@ pub use evaluate::{Evaluate, Poses};
 pub use measure::{Column, Measure};
 pub use place::{Placement, best_placement};
 pub use space::{JointSpace, Space};
-pub use stream::{CHUNK, Chunk, stream};
+pub use stream::{CHUNK, Chunk, Survey, stream};
 pub use summary::{Extreme, Summary};

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use indicatif::{HumanCount, ProgressBar, ProgressStyle};
 use robstiff::Generic;
 use robstiff::map::read::{Over, Positions, Task};
-use robstiff::map::{Axis, CartesianSpace, Chunk, Evaluate, JointSpace, Measure, Space, Tool, best_placement, stream};
+use robstiff::map::{Axis, CartesianSpace, Chunk, JointSpace, Measure, Survey, Tool, best_placement};
 use robstiff::nalgebra::Isometry3;
 use robstiff_robots::Description;
 use robstiff_robots::document::{Document, Node};
@@ -141,13 +141,13 @@ fn map<const N: usize>(
             let axes: &[Axis; N] = axes.as_slice().try_into().expect("the reader checked the count");
             let mut tables = Vec::new();
             let space = JointSpace::new(axes, &mut tables);
-            write(&tape, &space, &task.measure, arguments, files)?
+            write(&Survey::new(&tape, &space, &task.measure), arguments, files)?
         }
         Over::Positions(positions) => {
             let Positions { frame, axes, tool } = positions.as_ref();
             let generic = Generic::<N>::new(robot).expect("this arm has the same count");
             let space = CartesianSpace::new(&generic, axes.clone(), tool.clone()).in_frame(*frame);
-            let mut mapped = write(&tape, &space, &task.measure, arguments, files)?;
+            let mut mapped = write(&Survey::new(&tape, &space, &task.measure), arguments, files)?;
             mapped.mapped.frame = Some(*frame).filter(|frame| *frame != Isometry3::identity());
             if let Some(size) = arguments.place {
                 mapped.mapped.placements = place(&tape, &generic, positions, &task.measure, size, &mapped.values);
@@ -185,13 +185,7 @@ fn place<const N: usize>(
     let with = |&turn: &f64| {
         let one = Tool { turns: vec![turn], ..tool.clone() };
         let space = CartesianSpace::new(robot, axes.clone(), one).in_frame(*frame);
-        let mut values = Vec::with_capacity(space.cells());
-        let figures = |chunk: &Chunk| chunk.columns[0].clone();
-        let done: Result<_, Infallible> = stream(tape, &space, measure, figures, |figures| {
-            values.extend(figures);
-            Ok(())
-        });
-        let Ok(_) = done;
+        let values = figures(&Survey::new(tape, &space, measure));
         Placed { size, turn: Some(turn), each: false, best: best_placement(axes, &values, size, measure) }
     };
     let better = |one: Placed, other: Placed| match (&one.best, &other.best) {
@@ -200,6 +194,18 @@ fn place<const N: usize>(
         _ => other,
     };
     tool.turns.iter().map(with).reduce(better).into_iter().chain([each]).collect()
+}
+
+/// The first column at all cells.
+fn figures(survey: &Survey<'_>) -> Vec<f64> {
+    let mut values = Vec::with_capacity(survey.cells);
+    let figures = |chunk: &Chunk| chunk.columns[0].clone();
+    let done: Result<_, Infallible> = survey.stream(figures, |figures| {
+        values.extend(figures);
+        Ok(())
+    });
+    let Ok(_) = done;
+    values
 }
 
 /// A map that was written.
@@ -220,22 +226,16 @@ struct Pieces {
 }
 
 /// Maps a space to the files that are asked for.
-fn write<const N: usize>(
-    robot: &impl Evaluate<N>,
-    space: &impl Space<N>,
-    measure: &Measure,
-    arguments: &Arguments,
-    files: &mut Files,
-) -> Result<Written, Failure> {
-    let columns = [measure.columns(), &space.columns()].concat();
-    let table = Table::new(space.axes(), &columns);
+fn write(survey: &Survey<'_>, arguments: &Arguments, files: &mut Files) -> Result<Written, Failure> {
+    let Survey { axes, ref columns, ref measure, cells, chunk, .. } = *survey;
+    let table = Table::new(axes, columns);
     let cannot = |error: parquet::errors::ParquetError| Failure::new(format!("cannot write the Parquet file: {error}"));
-    let groups = Columns::new(space.axes(), &columns).map_err(cannot)?;
+    let groups = Columns::new(axes, columns).map_err(cannot)?;
     let mut csv = arguments.csv.as_deref().map(|path| files.grow(path)).transpose()?;
     let parquet = arguments.parquet.as_deref().map(|path| files.grow(path)).transpose()?;
     let mut parquet = parquet.map(|file| groups.file(file).map_err(cannot)).transpose()?;
     let drawn = arguments.svg.is_some() || arguments.html.is_some();
-    let slices = drawn.then(|| Slices::new(space.axes(), measure)).flatten();
+    let slices = drawn.then(|| Slices::new(axes, measure)).flatten();
     // What is drawn is looked up while the drawing goes on.
     let wanted = slices.as_ref().map(Slices::empty);
     let mut slices = slices;
@@ -243,8 +243,8 @@ fn write<const N: usize>(
     if let Some(csv) = &mut csv {
         put(csv, table.header().as_bytes())?;
     }
-    announce(space.axes(), space.cells());
-    let progress = progress(space.cells(), space.chunk());
+    announce(axes, cells);
+    let progress = progress(cells, chunk);
     let encode = |chunk: &Chunk| Pieces {
         cells: chunk.cells.len(),
         lines: if arguments.csv.is_some() { table.lines(chunk) } else { Vec::new() },
@@ -263,7 +263,7 @@ fn write<const N: usize>(
         }
         csv.as_mut().map_or(Ok(()), |csv| put(csv, &pieces.lines))
     };
-    let summary = stream(robot, space, measure, encode, take);
+    let summary = survey.stream(encode, take);
     progress.finish_and_clear();
     let summary = summary?;
     if let Some(csv) = csv {
@@ -272,7 +272,7 @@ fn write<const N: usize>(
     if let Some(parquet) = parquet {
         files.grown(parquet.into_inner().map_err(cannot)?)?;
     }
-    let axes = space.axes().to_vec();
+    let (axes, columns) = (axes.to_vec(), columns.clone());
     let (robot, placements, frame) = (String::new(), Vec::new(), None);
     let mapped = Mapped { robot, axes, measure: *measure, columns, summary, placements, frame };
     Ok(Written { mapped, slices, values })
