@@ -58,10 +58,10 @@ fn agrees<const N: usize, R: Robot<N>>(robot: R, file: &str) {
     }
 }
 
-/// What is made of entries of the compliance.
+/// What is made of entries of the compliance. (Of the first arm, robstiff's own tests compare
+/// it on every set of instructions.)
 #[test]
 fn parts_of_the_compliance_agree() {
-    parts_agree(Rv130hsc, "rv130hsc.yaml");
     parts_agree(ModifiedSlider, "modified-slider.yaml");
     parts_agree(Snake, "snake.yaml");
 }

@@ -70,7 +70,6 @@ fn names_in_generated_code_do_not_matter() {
     is_the_same(with_its_names::EveryEffect, arms::EveryEffect);
     is_the_same(with_its_names::EveryLaw, arms::EveryLaw);
     is_the_same(with_its_names::Sliders, arms::Sliders);
-    is_the_same_in_batches(with_its_names::Rv130hsc, arms::Rv130hsc);
     is_the_same_in_batches(with_its_names::EveryLaw, arms::EveryLaw);
 }
 
