@@ -17,8 +17,8 @@ const SCALED: [&str; 3] = ["transmission_error", "load_cell_scale", "creep"];
 
 /// Some outside the catalogue that tracing knows all the same, though not by a name, and some
 /// that it knows nothing of.
-const KNOWN: [&str; 4] = ["viscous_joint", "link_growth", "cross_dependence", "loose_flange"];
-const UNKNOWN: [&str; 2] = ["cable", "loose_taper"];
+const KNOWN: [&str; 5] = ["viscous_joint", "link_growth", "cross_dependence", "loose_flange", "loose_taper"];
+const UNKNOWN: [&str; 2] = ["cable", "hardening_bearing"];
 
 const SEED: u64 = 2026;
 
@@ -112,7 +112,7 @@ fn words(hidden: &Outside) -> String {
         Outside::CrossDependence { joint, of, .. } => {
             format!("a compliance of joint {joint} that changes with the angle of joint {of}")
         }
-        Outside::LooseFlange { .. } => "loose in its seat".to_owned(),
+        Outside::LooseFlange { .. } | Outside::LooseTaper { .. } => "loose in its seat".to_owned(),
         _ => unreachable!("it is not known"),
     }
 }

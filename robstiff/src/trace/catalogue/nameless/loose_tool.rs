@@ -1,10 +1,11 @@
-//! A flange, collet or tool holder that is loose in its seat along one of its axes: it goes by
-//! half the gap to the side of the force, `gap / 2 f / sqrt(f^2 + knee^2)`.
+//! A flange, collet, taper or tool holder that is loose in its seat: along or about one of its
+//! axes it goes by half the gap to the side of the load, `gap / 2 f / sqrt(f^2 + knee^2)`, where
+//! `f` is the force along the axis or the moment about it.
 
 use std::vec;
 use std::vec::Vec;
 
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector6};
 
 use super::super::{Form, Kind, Number, Offers, Part, Scene};
 use crate::identify::samples::{Sample, stack};
@@ -19,32 +20,51 @@ pub static KIND: Kind = Kind {
     on_axes: None,
 };
 
-/// The knees tried, as fractions of the largest force along the axis.
+/// The knees tried, as fractions of the largest load along or about the axis.
 const KNEES: [f64; 3] = [1.0 / 32.0, 1.0 / 16.0, 1.0 / 8.0];
 
-/// More than this is no tool that cuts (m).
-const WIDEST: f64 = 2e-3;
+/// A load along or about an axis that is less than this fraction of the largest wrench (N, Nm)
+/// is rounding.
+const NONE: f64 = 1e-6;
+
+/// A way in which a seat can be loose, with the units of its gap and its knee.
+#[derive(Clone, Copy)]
+struct Way {
+    /// The twist of the TCP with a unit of it, for an axis of the flange.
+    twist: fn(&Sample, usize) -> Vector6<f64>,
+    units: [&'static str; 2],
+    /// More than this is no tool that cuts (m or rad).
+    widest: f64,
+}
+
+const WAYS: [Way; 2] =
+    [Way { twist: slide, units: ["m", "N"], widest: 2e-3 }, Way { twist: tilt, units: ["rad", "Nm"], widest: 1e-2 }];
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let (mut numbers, mut forms) = (Vec::new(), Vec::new());
-    for axis in 0..3 {
-        let along = |row: &Sample| push(row, axis).1;
-        let largest = scene.samples.rows.iter().map(|row| along(row).abs()).fold(0.0, f64::max);
-        if largest <= 0.0 {
-            continue;
-        }
-        for knee in KNEES.map(|fraction| fraction * largest) {
-            let number = move |knee: f64| {
-                Number::elastic("gap", "m", [0.0, WIDEST], move |point| {
-                    point.samples.stacked_by(|_, row| {
-                        let (axis, force) = push(row, axis);
-                        row.read(&stack(&(axis * (0.5 * force / force.hypot(knee))), &Vector3::zeros()))
+    let wrench = scene.samples.rows.iter().map(|row| row.wrench.norm()).fold(0.0, f64::max);
+    for way in WAYS {
+        let Way { twist, units: [of_gap, of_knee], widest } = way;
+        for axis in 0..3 {
+            let load = |row: &Sample| twist(row, axis).dot(&row.wrench).abs();
+            let largest = scene.samples.rows.iter().map(load).fold(0.0, f64::max);
+            if largest <= NONE * wrench {
+                continue;
+            }
+            for knee in KNEES.map(|fraction| fraction * largest) {
+                let number = move |knee: f64| {
+                    Number::elastic("gap", of_gap, [0.0, widest], move |point| {
+                        point.samples.stacked_by(|_, row| {
+                            let twist = twist(row, axis);
+                            let load = twist.dot(&row.wrench);
+                            row.read(&(twist * (0.5 * load / load.hypot(knee))))
+                        })
                     })
-                })
-            };
-            let form = Form::of([numbers.len()]).with("knee", knee, "N");
-            forms.push(form.refined(move |knees| vec![number(knees[0])]));
-            numbers.push(number(knee));
+                };
+                let form = Form::of([numbers.len()]).with("knee", knee, of_knee);
+                forms.push(form.refined(move |knees| vec![number(knees[0])]));
+                numbers.push(number(knee));
+            }
         }
     }
     if !forms.is_empty() {
@@ -52,8 +72,18 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     }
 }
 
-/// An axis of the flange in the base frame, and the force along it (N).
-fn push(row: &Sample, axis: usize) -> (Vector3<f64>, f64) {
-    let axis: Vector3<f64> = row.flange.fixed_view::<3, 1>(0, axis).into_owned();
-    (axis, axis.dot(&row.wrench.fixed_rows::<3>(0)))
+/// Along an axis of the flange.
+fn slide(row: &Sample, axis: usize) -> Vector6<f64> {
+    stack(&along(row, axis), &Vector3::zeros())
+}
+
+/// About an axis of the flange, in its origin.
+fn tilt(row: &Sample, axis: usize) -> Vector6<f64> {
+    let (axis, lever) = (along(row, axis), row.tcp - row.flange);
+    stack(&axis.cross(&lever.fixed_view::<3, 1>(0, 3).into_owned()), &axis)
+}
+
+/// An axis of the flange in the base frame.
+fn along(row: &Sample, axis: usize) -> Vector3<f64> {
+    row.flange.fixed_view::<3, 1>(0, axis).into_owned()
 }
