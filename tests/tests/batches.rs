@@ -58,7 +58,7 @@ fn agrees<const N: usize, R: Robot<N>>(robot: R, file: &str) {
     }
 }
 
-/// What is made of entries of the compliance. (Of the first arm, robstiff's own tests compare
+/// What is made of entries of the compliance. (Of the RV130HSC, robstiff's own tests compare
 /// it on every set of instructions.)
 #[test]
 fn parts_of_the_compliance_agree() {

@@ -70,6 +70,15 @@ impl Normal {
         Self { gram, moment: x.tr_mul(y), energy: y.norm_squared(), rows: y.len() }
     }
 
+    /// The normal equations of some rows of `x`, `y`, each once.
+    pub fn of_rows(x: &DMatrix<f64>, y: &DVector<f64>, rows: &[usize]) -> Self {
+        if rows.len() == x.nrows() {
+            return Self::new(x, y);
+        }
+        let part = |rows: &[usize]| Self::new(&x.select_rows(rows), &y.select_rows(rows));
+        Self::sum(rows.chunks(COPIED).map(part)).unwrap_or_else(|| part(&[]))
+    }
+
     /// The same for a few columns.
     pub fn small(x: &DMatrix<f64>, y: &DVector<f64>) -> Self {
         Self { gram: x.tr_mul(x), moment: x.tr_mul(y), energy: y.norm_squared(), rows: y.len() }
@@ -200,9 +209,18 @@ impl Normal {
     }
 }
 
+/// `a^T b`. The product of two stored matrices is the one that is fast: `tr_mul` goes by scalar
+/// products of columns.
+pub fn transposed_times(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+    a.transpose() * b
+}
+
 /// Rows whose products are added to a Gram matrix at once, and columns of a strip of it.
 const PART: usize = 256;
 const STRIP: usize = 64;
+
+/// Rows that are copied at once where not all are asked for.
+const COPIED: usize = 512;
 
 /// A gradient this small against the largest there can be is zero.
 const GRADIENT_TOLERANCE: f64 = 1e-12;

@@ -72,9 +72,6 @@ pub struct Weights<'a> {
     pub left_out: &'a [bool],
 }
 
-/// Rows that are copied at once where not all are fitted to.
-const ROWS_AT_ONCE: usize = 512;
-
 impl Problem {
     /// The problem of explaining `readings` by `columns`, both stacked like
     /// [`Samples::readings`], on the poses fitted to. `correction` is taken
@@ -112,12 +109,8 @@ impl Problem {
             })
             .partition(|block: &Block| weights.training[block.pose]);
         let stacked: Vec<usize> = blocks.iter().flat_map(|block| block.stacked.iter().copied()).collect();
-        let total = if stacked.len() == white.nrows() {
-            Normal::new(&white, &white_readings)
-        } else {
-            let of = |rows: &[usize]| Normal::new(&white.select_rows(rows), &white_readings.select_rows(rows));
-            Normal::sum(stacked.chunks(ROWS_AT_ONCE).map(of)).expect("a campaign has rows to train on")
-        };
+        assert!(!stacked.is_empty(), "a campaign has rows to train on");
+        let total = Normal::of_rows(&white, &white_readings, &stacked);
         let equations = Equations {
             readings,
             white_readings: Rc::new(white_readings),

@@ -28,7 +28,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::catalogue::{Candidate, Variant};
-use crate::identify::normal::{Normal, Scaled, Sign};
+use crate::identify::normal::{Normal, Scaled, Sign, transposed_times};
 use crate::identify::problem::Problem;
 
 /// What a statistic gives up for each number beyond the first. At the tail
@@ -127,8 +127,7 @@ impl Remaining {
         let tested: Vec<usize> = tested.collect();
         let cross = DMatrix::from_fn(null.len(), tested.len(), |i, j| total.gram[(null[i], tested[j])]);
         let shares = factor.solve_columns(&cross);
-        // The product of two stored matrices is the one that is fast.
-        let gram = total.gram_of(&tested) - cross.transpose() * &shares;
+        let gram = total.gram_of(&tested) - transposed_times(&cross, &shares);
         let left = DVector::from_fn(tested.len(), |j, _| gram[(j, j)] / total.gram[(tested[j], tested[j])]);
         Self { first, gram, left, shares }
     }

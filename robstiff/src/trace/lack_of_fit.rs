@@ -37,7 +37,7 @@ use super::sizes::{Shares, of_encoders, size};
 use super::yardstick::Yardstick;
 use crate::campaign::Displacements;
 use crate::identify::covariance::Covariance;
-use crate::identify::normal::Fit;
+use crate::identify::normal::{Fit, transposed_times};
 use crate::identify::problem::Problem;
 use crate::probability::told;
 
@@ -310,8 +310,8 @@ impl Resemblance {
 /// The bootstrap draws of the residuals of some rows, by axis: a draw is the
 /// sum over poses of what each adds, with random signs.
 enum Draws {
-    /// What each pose adds, a row a pose and a column a pose, and the signs, a row a draw.
-    ByPose([(DMatrix<f64>, DMatrix<f64>); 3], DMatrix<f64>),
+    /// What each pose adds, a column a pose, and the signs, a row a draw.
+    ByPose([DMatrix<f64>; 3], DMatrix<f64>),
     /// The sums, a column a draw: the less where poses outnumber the rows.
     Summed([DMatrix<f64>; 3]),
 }
@@ -320,8 +320,7 @@ impl Draws {
     fn new(by_pose: [DMatrix<f64>; 3], signs: DMatrix<f64>) -> Self {
         let (rows, poses) = by_pose[0].shape();
         if poses <= rows {
-            // The product of two stored matrices is the one that is fast.
-            return Self::ByPose(by_pose.map(|each| (each.transpose(), each)), signs);
+            return Self::ByPose(by_pose, signs);
         }
         let signs = signs.transpose();
         Self::Summed(by_pose.map(|each| each * &signs))
@@ -332,7 +331,7 @@ impl Draws {
         match self {
             Self::ByPose(by_pose, signs) => {
                 let poses = signs.ncols();
-                let add = |sum, (transposed, each): &(DMatrix<f64>, DMatrix<f64>)| sum + transposed * (kernel * each);
+                let add = |sum, each: &DMatrix<f64>| sum + transposed_times(each, &(kernel * each));
                 let quadratic = by_pose.iter().fold(DMatrix::zeros(poses, poses), add);
                 (signs * quadratic).component_mul(signs).column_sum()
             }

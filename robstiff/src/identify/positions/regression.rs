@@ -204,10 +204,7 @@ impl Regression<'_> {
         let blocks = by_pose.into_iter().enumerate().filter(|(_, rows)| !rows.is_empty()).map(block);
         let (blocks, held_out): (Vec<Block>, Vec<Block>) = blocks.partition(|block| rows.training[block.pose]);
         let stacked: Vec<usize> = blocks.iter().flat_map(|block| block.stacked.iter().copied()).collect();
-        let total = match stacked.len() == readings.len() {
-            true => Normal::new(&white, &readings),
-            false => Normal::new(&white.select_rows(&stacked), &readings.select_rows(&stacked)),
-        };
+        let total = Normal::of_rows(&white, &readings, &stacked);
         let readings = Rc::new(readings);
         let equations = Equations {
             white_readings: Rc::clone(&readings),

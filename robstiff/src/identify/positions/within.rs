@@ -47,7 +47,7 @@ pub fn within_visits(problem: &Problem, data: &Positions) -> Option<Problem> {
         }
     }
     let stacked: Vec<usize> = blocks.iter().flat_map(|block| block.stacked.iter().copied()).collect();
-    let mut total = Normal::new(&white.select_rows(&stacked), &readings.select_rows(&stacked));
+    let mut total = Normal::of_rows(&white, &readings, &stacked);
     // Each visit's mean took as much as a row.
     total.rows = total.rows.checked_sub(3 * visits.len()).filter(|&rows| rows > count)?;
     let all: Vec<usize> = (0..count).collect();

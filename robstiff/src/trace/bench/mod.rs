@@ -316,6 +316,16 @@ impl<'c> Bench<'c> {
         (0..samples.rows.len()).filter(is_fitted_to).flat_map(places)
     }
 
+    /// How large a column is, whitened, over the rows that are fitted to at a point.
+    fn size_at<'a>(&'a self, point: &'a Point<'c>) -> impl Fn(usize) -> f64 + 'a {
+        let whitener = self.noise.covariance.whitener(&self.left_out);
+        let places: Vec<usize> = self.fitted_to().collect();
+        move |column| {
+            let white = whitener.whitened(self.linear(point, column));
+            places.iter().map(|&at| white[at] * white[at]).sum::<f64>().sqrt()
+        }
+    }
+
     /// The regression at a model's solution, with the whole catalogue.
     fn setting(&self, named: &[Named]) -> Result<Setting<'c>, String> {
         let state = self.state(named)?;

@@ -49,15 +49,10 @@ impl Bench<'_> {
     ) -> Result<(Vec<Candidate>, Vec<String>), String> {
         let base = self.state(&[])?;
         let point = self.point_at(&[], &base);
-        let whitener = self.noise.covariance.whitener(&self.left_out);
-        let places: Vec<usize> = self.fitted_to().collect();
-        let size = |column: usize| {
-            let white = whitener.whitened(self.linear(&point, column));
-            places.iter().map(|&at| white[at] * white[at]).sum::<f64>().sqrt()
-        };
-        let freedom = places.len().saturating_sub(base.fit.columns.len()).max(1);
+        let size = self.size_at(&point);
+        let freedom = self.fitted_to().count().saturating_sub(base.fit.columns.len()).max(1);
         let noise = (base.fit.rss / freedom as f64).sqrt();
-        let largest = base.base.iter().map(|&column| size(column)).fold(0.0, f64::max);
+        let largest = base.base.iter().copied().map(&size).fold(0.0, f64::max);
         let is_visible = |&column: &usize| {
             let number = &self.numbers[column - self.own.len()];
             match number.range[1].is_finite() {

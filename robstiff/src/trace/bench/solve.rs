@@ -68,12 +68,8 @@ impl<'c> Bench<'c> {
     fn base_at(&self, point: &Point<'c>) -> Vec<usize> {
         let prepared = self.prepared;
         let Some(noise) = self.noise.covariance.reading() else { return self.base.to_vec() };
-        let whitener = self.noise.covariance.whitener(&self.left_out);
-        let is_turned = |column: usize| {
-            let white = whitener.whitened(self.linear(point, column));
-            let square: f64 = self.fitted_to().map(|at| white[at] * white[at]).sum();
-            square.sqrt() * prepared.own[column].value.abs() > STANDS_OUT * noise
-        };
+        let size = self.size_at(point);
+        let is_turned = |column: usize| size(column) * prepared.own[column].value.abs() > STANDS_OUT * noise;
         let seen = |column: &usize| self.base.contains(column) || (self.is_hidden(*column) && is_turned(*column));
         (0..prepared.own.len()).filter(seen).collect()
     }

@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen, Vector3};
 
 use super::bench::{Bench, Model};
 use super::course::Course;
-use crate::identify::normal::{Scaled, Sign};
+use crate::identify::normal::{Scaled, Sign, transposed_times};
 use crate::identify::positions::model::Enters;
 use crate::trace::model::{Named, all_but};
 use crate::trace::slip::Slipping;
@@ -110,7 +110,7 @@ impl Beside {
         let moment = DVector::from_fn(columns.len(), |k, _| total.moment[more(k)]);
         let readings = total.rows as f64;
         Some(Self {
-            gram: gram - crossed.transpose() * &taken,
+            gram: gram - transposed_times(&crossed, &taken),
             moment: moment - taken.tr_mul(&total.moment_of(&own)),
             rss: fit.rss,
             readings,

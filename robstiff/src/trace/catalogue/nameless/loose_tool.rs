@@ -44,32 +44,33 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let (mut numbers, mut forms) = (Vec::new(), Vec::new());
     let wrench = scene.samples.rows.iter().map(|row| row.wrench.norm()).fold(0.0, f64::max);
     for way in WAYS {
-        let Way { twist, units: [of_gap, of_knee], widest } = way;
         for axis in 0..3 {
-            let load = |row: &Sample| twist(row, axis).dot(&row.wrench).abs();
+            let load = |row: &Sample| (way.twist)(row, axis).dot(&row.wrench).abs();
             let largest = scene.samples.rows.iter().map(load).fold(0.0, f64::max);
             if largest <= NONE * wrench {
                 continue;
             }
             for knee in KNEES.map(|fraction| fraction * largest) {
-                let number = move |knee: f64| {
-                    Number::elastic("gap", of_gap, [0.0, widest], move |point| {
-                        point.samples.stacked_by(|_, row| {
-                            let twist = twist(row, axis);
-                            let load = twist.dot(&row.wrench);
-                            row.read(&(twist * (0.5 * load / load.hypot(knee))))
-                        })
-                    })
-                };
-                let form = Form::of([numbers.len()]).with("knee", knee, of_knee);
-                forms.push(form.refined(move |knees| vec![number(knees[0])]));
-                numbers.push(number(knee));
+                let form = Form::of([numbers.len()]).with("knee", knee, way.units[1]);
+                forms.push(form.refined(move |knees| vec![gap(way, axis, knees[0])]));
+                numbers.push(gap(way, axis, knee));
             }
         }
     }
     if !forms.is_empty() {
         offers.add(Part::Tool, numbers, forms);
     }
+}
+
+/// A gap along or about an axis of the flange.
+fn gap(Way { twist, units, widest }: Way, axis: usize, knee: f64) -> Number {
+    Number::elastic("gap", units[0], [0.0, widest], move |point| {
+        point.samples.stacked_by(|_, row| {
+            let twist = twist(row, axis);
+            let load = twist.dot(&row.wrench);
+            row.read(&(twist * (0.5 * load / load.hypot(knee))))
+        })
+    })
 }
 
 /// Along an axis of the flange.
