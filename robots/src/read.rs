@@ -14,6 +14,7 @@ use crate::document::{Document, Map, Node};
 use crate::effect::{Convention, Effect, JointKind};
 use crate::quantity::Dimension;
 use crate::text;
+use crate::words::count;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -264,7 +265,7 @@ fn links(node: &Node, joints: Option<usize>) -> Option<Vec<Link>> {
     let wrong = joints.filter(|joints| *joints != items.len());
     if let Some(joints) = wrong {
         node.error(
-            format!("a robot of {joints} joints has {joints} links, not {}", items.len()),
+            format!("a robot of {} has {}, not {}", count(joints, "joint"), count(joints, "link"), items.len()),
             "give the body that moves with each joint, `{}` where nothing is known, or leave `links` out",
         );
     }

@@ -97,7 +97,8 @@ pub struct WrongJointCount {
 
 impl fmt::Display for WrongJointCount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a robot with {} joints was asked for, the description has {}", self.expected, self.found)
+        let joints = if self.expected == 1 { "joint" } else { "joints" };
+        write!(f, "a robot with {} {joints} was asked for, the description has {}", self.expected, self.found)
     }
 }
 

@@ -3,6 +3,8 @@
 use std::format;
 use std::string::String;
 
+pub use robstiff_robots::words::count;
+
 /// A share in percent.
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
@@ -12,9 +14,4 @@ pub fn percent(share: f64) -> String {
 /// A length in micrometres.
 pub fn micrometres(length: f64) -> String {
     format!("{:.1} um", 1e6 * length)
-}
-
-/// A count with its noun.
-pub fn count(number: usize, noun: &str) -> String {
-    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }

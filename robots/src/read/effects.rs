@@ -6,6 +6,7 @@ use crate::effect::gravity_sag::GRAVITY;
 use crate::effect::physics::{About, At, MOST_SAG, Parameter, Range};
 use crate::effect::{CATALOGUE, Convention, DhEntry, Effect, JointKind, Place};
 use crate::suggest::{closest, list};
+use crate::words;
 
 use super::couplings::check_couplings;
 
@@ -196,7 +197,7 @@ fn place(node: &Node, about: &About, count: Option<usize>) -> Option<Place> {
             ("link", _) => format!("links count from 1 to {most}; link i is the body between joints i and i + 1"),
             _ => format!("{what}s count from 1 to {most}"),
         };
-        node.error(format!("there is no {what} {wrong} in a robot of {count} joints"), help);
+        node.error(format!("there is no {what} {wrong} in a robot of {}", words::count(count, "joint")), help);
         return None;
     }
     if matches!(place, Place::Joints([i, j]) if i == j) {

@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 
 use super::{Motion, Tree};
 use crate::suggest::{closest, list};
-use crate::{Diagnostics, JointKind};
+use crate::{Diagnostics, JointKind, words};
 
 /// The most joints a description may have.
 const MOST_JOINTS: usize = 8;
@@ -118,8 +118,7 @@ impl Tree {
         }
         if joints.is_empty() || joints.len() > MOST_JOINTS {
             let (base, tip) = (&self.links[base].name, &self.links[tip].name);
-            let count = joints.len();
-            let message = format!("{count} joints move between `{base}` and `{tip}`");
+            let message = format!("{} between `{base}` and `{tip}`", words::count(joints.len(), "moving joint"));
             return Err(self.problem(&whole, &message, "a description has one to eight; choose another base or tip"));
         }
         let (bodies, warnings) = self.bodies(&path);
@@ -176,7 +175,9 @@ impl Tree {
             _ => {
                 let names: Vec<String> = ends
                     .iter()
-                    .map(|&(end, count)| format!("`{}` (behind {count} joints)", self.links[end].name))
+                    .map(|&(end, count)| {
+                        format!("`{}` (behind {})", self.links[end].name, words::count(count, "joint"))
+                    })
                     .collect();
                 let help = format!("choose the tip: {}", names.join(", "));
                 Err(self.problem(&self.links[base].place, "the tree has several ends", &help))

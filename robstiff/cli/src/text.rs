@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+pub use robstiff_robots::words::count;
+
 /// A number with so many significant digits, as short as it can be said.
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 {
@@ -101,11 +103,6 @@ pub fn micrometres(length: f64) -> String {
 pub fn fine_micrometres(length: f64) -> String {
     let small = (1e-9..9.5e-7).contains(&length);
     if small { significant(length * 1e6, 2) } else { micrometres(length) }
-}
-
-/// A count with its noun.
-pub fn count(number: usize, noun: &str) -> String {
-    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
 /// Items as a sentence lists them: `a, b and c`.

@@ -8,6 +8,7 @@ use std::vec::Vec;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3, Vector6};
 use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
+use robstiff_robots::words::count;
 use robstiff_robots::{Description, Diagnostics, Joint, JointKind, Placement};
 
 use super::{Axis, Measure, Tool};
@@ -155,12 +156,9 @@ fn measure(map: &Map<'_>) -> Option<Measure> {
 
 fn joints(node: &Node<'_>, robot: &Description) -> Option<Vec<Axis>> {
     let items = node.sequence()?;
-    let (expected, found) = (robot.joints.len(), items.len());
-    if found != expected {
-        node.error(
-            format!("{expected} items are expected here, not {found}"),
-            format!("{} has {expected} joints: a value or `{{from, to, count}}` for each", robot.name),
-        );
+    if items.len() != robot.joints.len() {
+        let message = format!("this gives {} for {}", count(items.len(), "item"), count(robot.joints.len(), "joint"));
+        node.error(message, "give a value or `{from, to, count}` for each joint");
         return None;
     }
     let axes: Vec<Option<Axis>> = (1..)

@@ -10,6 +10,7 @@ use std::vec::Vec;
 
 use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
+use robstiff_robots::words;
 use robstiff_robots::{Description, Diagnostics, Joint, ReadError};
 
 use self::measured::{Measured, measured};
@@ -177,8 +178,9 @@ fn dimension(joint: &Joint) -> Dimension {
 fn for_each_joint<'d>(node: &Node<'d>, joints: &[Joint]) -> Option<Vec<Node<'d>>> {
     let items = node.sequence()?;
     if items.len() != joints.len() {
-        let (expected, found) = (joints.len(), items.len());
-        node.error(format!("{expected} items are expected here, not {found}"), "give one for each joint");
+        let message =
+            format!("this gives {} for {}", words::count(items.len(), "item"), words::count(joints.len(), "joint"));
+        node.error(message, "give one for each joint");
         return None;
     }
     Some(items)

@@ -2,6 +2,7 @@
 
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::{format_ident, quote};
+use robstiff_robots::words::count;
 use robstiff_robots::{Description, Place};
 use syn::Ident;
 
@@ -159,10 +160,7 @@ pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Gene
     if !robot.description.trim().is_empty() {
         docs.extend(paragraph(&robot.description));
     }
-    let joints = match robot.joints.len() {
-        1 => "1 joint".to_owned(),
-        count => format!("{count} joints"),
-    };
+    let joints = count(robot.joints.len(), "joint");
     docs.push(format!(" Elastostatics of `{}`, {joints}, generated from `{file}`.", robot.name));
     if !robot.source.trim().is_empty() {
         docs.push(String::new());
