@@ -41,6 +41,14 @@ pub struct Fit {
     pub rss: f64,
 }
 
+/// What others leave of some columns.
+pub struct Projected {
+    /// The Gram matrix of what is left.
+    pub gram: DMatrix<f64>,
+    /// What of the others each column is fitted by, a column each.
+    pub shares: DMatrix<f64>,
+}
+
 /// A coefficient that is a constant and so much of others, by their place.
 #[derive(Clone, Debug, Default)]
 pub struct Tie {
@@ -126,6 +134,15 @@ impl Normal {
     pub fn rss(&self, columns: &[usize], coefficients: &DVector<f64>) -> f64 {
         let quadratic = coefficients.dot(&(self.gram_of(columns) * coefficients));
         (self.energy - 2.0 * coefficients.dot(&self.moment_of(columns)) + quadratic).max(0.0)
+    }
+
+    /// Some columns with what others account for taken out of them; `factor` is of the Gram
+    /// matrix of those others.
+    pub fn projected(&self, columns: &[usize], factor: &Scaled, others: &[usize]) -> Projected {
+        let cross = DMatrix::from_fn(others.len(), columns.len(), |i, j| self.gram[(others[i], columns[j])]);
+        let shares = factor.solve_columns(&cross);
+        let gram = self.gram_of(columns) - transposed_times(&cross, &shares);
+        Projected { gram, shares }
     }
 
     /// Ordinary least squares on some columns; `None` where they are collinear.

@@ -28,7 +28,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::catalogue::{Candidate, Variant};
-use crate::identify::normal::{Normal, Scaled, Sign, transposed_times};
+use crate::identify::normal::{Normal, Projected, Scaled, Sign};
 use crate::identify::problem::Problem;
 
 /// What a statistic gives up for each number beyond the first. At the tail
@@ -125,9 +125,7 @@ impl Remaining {
     fn of(factor: &Scaled, total: &Normal, null: &[usize], tested: Range<usize>) -> Self {
         let first = tested.start;
         let tested: Vec<usize> = tested.collect();
-        let cross = DMatrix::from_fn(null.len(), tested.len(), |i, j| total.gram[(null[i], tested[j])]);
-        let shares = factor.solve_columns(&cross);
-        let gram = total.gram_of(&tested) - transposed_times(&cross, &shares);
+        let Projected { gram, shares } = total.projected(&tested, factor, null);
         let left = DVector::from_fn(tested.len(), |j, _| gram[(j, j)] / total.gram[(tested[j], tested[j])]);
         Self { first, gram, left, shares }
     }

@@ -36,7 +36,7 @@ use self::within::within_visits;
 use super::baseline::{Visibility, visibility};
 use super::displacement::among_all;
 use super::holdout::training;
-use super::normal::{Normal, Scaled, Sign};
+use super::normal::{Normal, Projected, Scaled, Sign};
 use super::predict::{PredictedRow, Prediction};
 use super::problem::rms;
 use super::readable::{UNREADABLE, is_readable};
@@ -226,11 +226,9 @@ fn unitless<'u>(mut beyond: Normal, whole: &Normal, unit: impl Fn(usize) -> Opti
 fn beyond_standing(total: &Normal) -> Option<Normal> {
     let stands: Vec<usize> = (0..STANDS).collect();
     let numbers: Vec<usize> = (STANDS..total.moment.len()).collect();
-    let factor = Scaled::of(&total.gram_of(&stands))?;
-    let cross = DMatrix::from_fn(STANDS, numbers.len(), |i, j| total.gram[(stands[i], numbers[j])]);
-    let shares = factor.solve_columns(&cross);
+    let Projected { gram, shares } = total.projected(&numbers, &Scaled::of(&total.gram_of(&stands))?, &stands);
     Some(Normal {
-        gram: total.gram_of(&numbers) - cross.tr_mul(&shares),
+        gram,
         moment: total.moment_of(&numbers) - shares.tr_mul(&total.moment_of(&stands)),
         energy: total.energy,
         rows: total.rows,
