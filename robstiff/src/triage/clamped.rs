@@ -109,6 +109,10 @@ impl Axis {
     }
 }
 
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
 /// The axis on which a further number stands out most, with the probability of
 /// that on any (F, times the number of axes).
 fn strongest(found: Vec<Further>) -> Option<(Further, f64, usize)> {
@@ -165,8 +169,8 @@ fn reversal(axes: &[Axis]) -> Verdict {
 
 fn order(axes: &[Axis]) -> Verdict {
     let trend = |axis: &Axis| {
-        let mean = axis.places.iter().sum::<f64>() / axis.places.len() as f64;
-        axis.further(|i| (axis.places[i] - mean) / axis.places.len() as f64)
+        let middle = mean(&axis.places);
+        axis.further(|i| (axis.places[i] - middle) / axis.places.len() as f64)
     };
     let Some((found, p_value, witnesses)) = strongest(axes.iter().filter_map(trend).collect()) else {
         return Err(String::from("four torques or more on an axis, not in rising order"));
@@ -183,20 +187,21 @@ fn order(axes: &[Axis]) -> Verdict {
     ))
 }
 
-/// The slope of every axis, one-sided (Student's t, times the number of axes).
+/// The slope of every axis beside its offset, one-sided (Student's t, times the number of axes).
 fn energy(axes: &[Axis]) -> Verdict {
     let slope = |axis: &Axis| {
-        let torques = DVector::from_column_slice(&axis.torques);
+        let torques = DVector::from_column_slice(&axis.torques).add_scalar(-mean(&axis.torques));
+        let deflections = axis.deflections.add_scalar(-axis.deflections.mean());
         let squares = torques.norm_squared();
-        let freedom = axis.torques.len().checked_sub(1).filter(|&freedom| freedom > 0 && squares > 0.0)?;
-        let slope = torques.dot(&axis.deflections) / squares;
-        let left = (&axis.deflections - &torques * slope).norm_squared() / freedom as f64;
+        let freedom = axis.torques.len().checked_sub(2).filter(|&freedom| freedom > 0 && squares > 0.0)?;
+        let slope = torques.dot(&deflections) / squares;
+        let left = (deflections - &torques * slope).norm_squared() / freedom as f64;
         let t = slope / (left / squares).sqrt().max(f64::MIN_POSITIVE);
         Some((student_tail(-t, freedom as f64)?, slope, axis.number))
     };
     let found: Vec<(f64, f64, usize)> = axes.iter().filter_map(slope).collect();
     let Some(&(p, _, number)) = found.iter().min_by(|a, b| a.0.total_cmp(&b.0)) else {
-        return Err(String::from("two torques or more on an axis"));
+        return Err(String::from("three torques or more on an axis, not all alike"));
     };
     let negative = found.iter().filter(|(_, slope, _)| *slope < 0.0).count();
     Ok(Raw {

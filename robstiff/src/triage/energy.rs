@@ -23,7 +23,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
     let (mut least, mut negative, mut sum) = (f64::INFINITY, 0, 0.0);
     for line in &evidence.lines {
         let slope = line.slope(shared);
-        let load: Vector6<f64> = wrenches[line.rows[0]] / line.loads[0];
+        let load = line.unit_load(wrenches);
         let moved = line.rows.iter().zip(&slope.weights).map(|(&row, w)| evidence.reading(row) * *w);
         let work = load.dot(&moved.sum::<Vector6<f64>>());
         // Where only the noise is declared, that; it is what weighs the readings.

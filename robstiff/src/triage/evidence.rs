@@ -125,6 +125,12 @@ impl<'c> Evidence<'c> {
 }
 
 impl Line {
+    /// The wrench of a newton along it: of its largest load, whose direction is best known.
+    pub fn unit_load(&self, wrenches: &[Vector6<f64>]) -> Vector6<f64> {
+        let largest = (0..self.rows.len()).max_by(|&a, &b| self.loads[a].abs().total_cmp(&self.loads[b].abs()));
+        largest.map_or_else(Vector6::zeros, |k| wrenches[self.rows[k]] / self.loads[k])
+    }
+
     /// The largest load (N).
     pub fn largest(&self) -> f64 {
         self.loads.iter().fold(0.0, |largest, load| load.abs().max(largest))

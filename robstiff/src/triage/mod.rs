@@ -130,8 +130,10 @@ const CHECKS: [Registered; 14] = [
     ("encoders", "how much of the displacement do the joints account for?", encoders::check),
 ];
 
-// A p-value by simulation can be small enough for the level with all checks counted.
+// P-values by simulation and by random signs can be small enough for the level with all checks
+// counted: else a check would hold that could not have failed.
 const _: () = assert!(CHECKS.len() as f64 <= LEVEL * (1 + tails::DRAWS) as f64);
+const _: () = assert!(CHECKS.len() as f64 * randomisation::LEAST_P <= LEVEL);
 
 /// Asks the readings of a campaign.
 pub fn triage(campaign: &Campaign) -> Triage {

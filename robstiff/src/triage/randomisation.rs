@@ -21,8 +21,12 @@ const DRAWS: usize = 9999;
 /// So many witnesses have all their signs tried.
 const ALL_SIGNS: usize = 13;
 
-/// Fewer witnesses than this cannot show anything: `2 / 2^6` is 3 %.
-pub const FEWEST: usize = 6;
+/// Fewer witnesses than this have too few signs to show anything.
+pub const FEWEST: usize = 12;
+
+/// The least p-value that they can have: that of all of one sign, which only the opposite
+/// signs reach as well.
+pub const LEAST_P: f64 = 1.0 / (1_u64 << (FEWEST - 1)) as f64;
 
 /// The scores of a witness.
 #[derive(Clone, Debug)]
@@ -123,19 +127,19 @@ mod tests {
     #[test]
     fn few_witnesses_are_counted_out() {
         // All of one sign: only this and its opposite are as large.
-        let witnesses: Vec<Witness> = (0..8).map(|pose| witness(pose, pose, 1.0 + pose as f64)).collect();
-        let found = flip(&witnesses).expect("eight");
-        assert_eq!((found.p_value, found.witnesses), (2.0 / 256.0, 8));
-        assert_eq!(flip(&witnesses[..5]), None);
+        let witnesses: Vec<Witness> = (0..12).map(|pose| witness(pose, pose, 1.0 + pose as f64)).collect();
+        let found = flip(&witnesses).expect("twelve");
+        assert_eq!((found.p_value, found.witnesses), (LEAST_P, 12));
+        assert_eq!(flip(&witnesses[..11]), None);
     }
 
     #[test]
     fn witnesses_of_one_pose_count_once_where_poses_are_many() {
         let many: Vec<Witness> = (0..40).map(|visit| witness(visit / 2, visit, 1.0)).collect();
         assert_eq!(flip(&many).expect("twenty poses").witnesses, 20);
-        assert_eq!(flip(&many[..16]).expect("eight poses").witnesses, 16);
-        let shared: Vec<Witness> = (0..16).map(|line| witness(line / 2, line / 2, 1.0)).collect();
-        assert_eq!(flip(&shared).expect("eight visits").witnesses, 8);
+        assert_eq!(flip(&many[..22]).expect("eleven poses").witnesses, 22);
+        let shared: Vec<Witness> = (0..26).map(|line| witness(line / 2, line / 2, 1.0)).collect();
+        assert_eq!(flip(&shared).expect("thirteen visits").witnesses, 13);
     }
 
     /// The share of p-values up to 5 % is 5 %: in 1000 between 35 and 66 with a

@@ -41,10 +41,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
     let response = |line: &Line| {
         let weights = line.slope(shared).weights;
         let moved = line.rows.iter().zip(&weights).map(|(&row, w)| evidence.reading(row) * *w).sum();
-        // The load at the line's largest, per newton along it.
-        let first = (0..line.rows.len()).max_by(|&a, &b| line.loads[a].abs().total_cmp(&line.loads[b].abs()));
-        let first = first.unwrap_or_default();
-        Response { load: wrenches[line.rows[first]] / line.loads[first], moved, weights }
+        Response { load: line.unit_load(wrenches), moved, weights }
     };
     let (mut witnesses, mut squares, mut pairs) = (Vec::new(), 0.0, 0_usize);
     let (mut differences, mut sizes) = (0.0, 0.0);
