@@ -151,7 +151,7 @@ pub struct Observation {
     /// Time (s). Where a file tells Unix time or that of the day, or what a clock showed, since
     /// the campaign began.
     pub time: Option<f64>,
-    /// Temperature (degrees Celsius).
+    /// Temperature (degrees Celsius or K, as the file has it: differences count).
     pub temperature: Option<f64>,
     /// Joint coordinates (rad or m), one a joint.
     pub q: Vec<f64>,
@@ -198,7 +198,7 @@ pub struct PositionRow {
     pub visit: usize,
     /// Time (s); of a clock since the midnight before the first row.
     pub time: Option<f64>,
-    /// Temperature (degrees Celsius).
+    /// Temperature (degrees Celsius or K, as the file has it: differences count).
     pub temperature: Option<f64>,
     /// Joint coordinates (rad or m), one a joint.
     pub q: Vec<f64>,
@@ -215,8 +215,8 @@ pub struct ClampedRow {
     pub line: usize,
     /// The loaded axis, from 1.
     pub axis: usize,
-    /// Torque about the axis (Nm).
+    /// Torque about the axis (Nm); of one that slides, force along it (N).
     pub torque: f64,
-    /// Deflection of the axis (rad).
+    /// Deflection of the axis (rad or m).
     pub deflection: f64,
 }
