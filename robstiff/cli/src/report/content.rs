@@ -1,4 +1,7 @@
-//! What a report shows, in the units it is shown in.
+//! What a report shows, in the units it is shown in: lengths in um, which of clamped axes that
+//! turn are angles in urad ([`Terms`]).
+
+use super::terms::Terms;
 
 /// A report on one campaign.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +20,8 @@ pub struct Report {
     pub verdict: String,
     /// Whether nothing is left open.
     pub settled: bool,
+    /// The words for what was read.
+    pub terms: Terms,
     /// Rows of the campaign.
     pub rows: usize,
     /// Poses of the campaign.

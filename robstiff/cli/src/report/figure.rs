@@ -4,6 +4,7 @@
 
 use super::content::{PoseError, Report, Residual};
 use super::svg::{Svg, tick_label, ticks};
+use super::terms::Terms;
 use crate::text::decimals;
 
 const WIDTH: f64 = 860.0;
@@ -13,10 +14,12 @@ const RIGHT: f64 = 44.0;
 /// The error pose by pose, and under it what the effects add there.
 pub fn errors(report: &Report) -> String {
     let poses = &report.errors;
+    let terms = report.terms;
+    let Terms { place: [place, _], printed, .. } = terms;
     let with_effects = !report.effects.is_empty();
     let (top, upper) = (34.0, 220.0);
     let (gap, lower) = if with_effects { (44.0, 80.0) } else { (0.0, 0.0) };
-    let mut svg = Svg::new(WIDTH, top + upper + gap + lower + 40.0, "Error of each pose before and after");
+    let mut svg = Svg::new(WIDTH, top + upper + gap + lower + 40.0, &format!("Error of each {place} before and after"));
 
     // A declared model may be far worse than the rest: it is cut, not the others squeezed.
     let compared = poses.iter().flat_map(|pose| [pose.identified, pose.after]).fold(report.noise_um, f64::max);
@@ -28,7 +31,7 @@ pub fn errors(report: &Report) -> String {
     for (k, _) in poses.iter().enumerate().filter(|(_, pose)| pose.held_out) {
         svg.bar("held-out", [LEFT + k as f64 * step, top], [step, upper], "");
     }
-    frame.grid(&mut svg, &marks, "error [µm]");
+    frame.grid(&mut svg, &marks, &format!("error [{printed}]"));
     // A displacement is as noisy as one reading at least, as two at most.
     let noise = [report.reading_um, report.noise_um].map(|um| frame.up(um));
     svg.bar("noise", [LEFT, noise[1]], [frame.width, noise[0] - noise[1]], "");
@@ -39,7 +42,7 @@ pub fn errors(report: &Report) -> String {
     let radius = (step * 0.28).clamp(2.0, 4.5);
     for (k, pose) in poses.iter().enumerate() {
         let x = LEFT + (k as f64 + 0.5) * step;
-        let title = pose_title(pose);
+        let title = pose_title(pose, terms);
         if with_effects {
             svg.line("stem", [x, frame.up(pose.identified)], [x, frame.up(pose.after)]);
         }
@@ -63,23 +66,24 @@ pub fn errors(report: &Report) -> String {
         let largest = poses.iter().map(|pose| pose.contribution).fold(0.0, f64::max);
         let marks = ticks(0.0, largest, 3);
         let frame = Frame { x: LEFT, y: top + upper + gap, width: frame.width, height: lower, range: ends(&marks) };
-        frame.grid(&mut svg, &marks, "what the named effects add [µm]");
+        frame.grid(&mut svg, &marks, &format!("what the named effects add [{printed}]"));
         for (k, pose) in poses.iter().enumerate() {
             let x = LEFT + (k as f64 + 0.5) * step;
             let (y, width) = (frame.up(pose.contribution), (step * 0.55).min(12.0));
-            let title = format!("pose {}: {} µm", pose.id, decimals(pose.contribution, 1));
+            let title = format!("{}: {} {printed}", terms.named(&pose.id), decimals(pose.contribution, 1));
             svg.bar("contribution", [x - width / 2.0, y], [width, frame.up(0.0) - y], &title);
         }
         pose_axis(&mut svg, poses, top + upper + gap + lower, step);
     }
-    svg.text("axis", [LEFT + frame.width / 2.0, top + upper + gap + lower + 34.0], "middle", "pose");
+    svg.text("axis", [LEFT + frame.width / 2.0, top + upper + gap + lower + 34.0], "middle", place);
     svg.html()
 }
 
-fn pose_title(pose: &PoseError) -> String {
+fn pose_title(pose: &PoseError, terms: Terms) -> String {
     let [declared, identified, after] = [pose.declared, pose.identified, pose.after].map(|um| decimals(um, 1));
     let kept = if pose.held_out { ", held out" } else { "" };
-    format!("pose {}{kept}: declared {declared} µm, identified {identified} µm, after {after} µm", pose.id)
+    let (name, unit) = (terms.named(&pose.id), terms.printed);
+    format!("{name}{kept}: declared {declared} {unit}, identified {identified} {unit}, after {after} {unit}")
 }
 
 fn legend(svg: &mut Svg, beyond: bool, with_effects: bool) {

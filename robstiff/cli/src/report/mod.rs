@@ -10,6 +10,7 @@ pub mod html;
 mod scatter;
 mod sections;
 pub mod svg;
+pub mod terms;
 #[cfg(test)]
 mod tests;
 mod triage;

@@ -3,6 +3,7 @@
 
 use super::content::{Candidate, Effect, Number, Report, SearchStep};
 use super::html::{Cell, Table, element, escape, number, text, words};
+use super::terms::Terms;
 use super::{arm, figure, micro, scatter};
 use crate::identify::is_compliance;
 use crate::text::{and, change, count, decimals, plus_minus, probability, quantity, significant};
@@ -11,10 +12,11 @@ use crate::text::{and, change, count, decimals, plus_minus, probability, quantit
 pub fn errors(report: &Report) -> String {
     let stages = report.stages.iter().flat_map(|stage| [stage.rms_um, stage.holdout_rms_um]);
     let largest = stages.chain(report.effects.iter().map(|effect| effect.holdout_rms_um)).fold(0.0, f64::max);
+    let Terms { unseen: [_, unseen], reading, component, printed, .. } = report.terms;
     let mut table = Table::new([
         words("Model"),
-        number("fitted poses [µm]"),
-        number("unseen poses [µm]"),
+        number(format!("fitted {unseen} [{printed}]")),
+        number(format!("unseen {unseen} [{printed}]")),
         words("unseen, against the noise"),
     ]);
     let meter = |um: f64| Cell::Html(figure::meter(um, [report.reading_um, report.noise_um], largest));
@@ -46,15 +48,15 @@ pub fn errors(report: &Report) -> String {
     }
     let displaced = match report.noise_um > report.reading_um {
         true => format!(
-            ", and up to {} µm a displacement, which is the difference of two; the marks are these two",
+            ", and up to {} {printed} a {reading}, which is the difference of two; the marks are these two",
             decimals(report.noise_um, 1)
         ),
         false => "; the mark is this".to_owned(),
     };
     let caption = format!(
-        "Root mean square error of one axis, over {} at {}. Unseen: {}. Noise: {} µm a reading ({}){displaced}.",
+        "Root mean square {component}, over {} at {}. Unseen: {}. Noise: {} {printed} a reading ({}){displaced}.",
         count(report.rows, "row"),
-        count(report.poses, "pose"),
+        report.terms.places(report.poses),
         report.unseen,
         decimals(report.reading_um, 1),
         report.noise_source,
@@ -67,13 +69,15 @@ fn by_pose(report: &Report) -> String {
     if report.errors.is_empty() {
         return String::new();
     }
-    let mut caption = "Root mean square error of one axis in each pose, in the order of the campaign.".to_owned();
+    let Terms { place: [place, places], component, moves, .. } = report.terms;
+    let mut caption = format!("Root mean square {component} in each {place}, in the order of the campaign.");
     if report.errors.iter().any(|pose| pose.held_out) {
-        caption += " Shaded: poses that were held out.";
+        caption += &format!(" Shaded: {places} that were held out.");
     }
     if !report.effects.is_empty() {
-        caption += " Below: how far the named effects move the tool; fitted together with them, the joints give part of \
-                    it back.";
+        caption += &format!(
+            " Below: how far the named effects {moves}; fitted together with them, the joints give part of it back."
+        );
     }
     framed(&figure::errors(report), &caption)
 }
@@ -248,7 +252,8 @@ pub fn search(report: &Report) -> String {
     }
     let note =
         "Every effect of the catalogue at every place, against the model so far. p: family-wise, over all of them.";
-    let steps: String = report.steps.iter().enumerate().map(|(index, step)| search_step(index + 1, step)).collect();
+    let steps = report.steps.iter().enumerate().map(|(index, step)| search_step(index + 1, step, report.terms));
+    let steps: String = steps.collect();
     let summary = text("summary", &format!("{} of the search", count(report.steps.len(), "step")));
     element("h2", "How it was found") + &element("details", summary + &text("p", note) + &steps)
 }
@@ -256,25 +261,25 @@ pub fn search(report: &Report) -> String {
 /// How many candidates of a step show without unfolding.
 const SHOWN: usize = 8;
 
-fn search_step(index: usize, step: &SearchStep) -> String {
+fn search_step(index: usize, step: &SearchStep, terms: Terms) -> String {
     let before =
         if step.named.is_empty() { "the joints alone".to_owned() } else { format!("with {}", and(&step.named)) };
     let heading = text("h3", &format!("Step {index}, {before}: {}", step.outcome));
     let (first, rest) = step.candidates.split_at(step.candidates.len().min(SHOWN));
-    let mut html = heading + &candidates(first);
+    let mut html = heading + &candidates(first, terms);
     if !rest.is_empty() {
         let summary = text("summary", &count(rest.len(), "weaker candidate"));
-        html += &element("details", summary + &candidates(rest));
+        html += &element("details", summary + &candidates(rest, terms));
     }
     html
 }
 
-fn candidates(candidates: &[Candidate]) -> String {
+fn candidates(candidates: &[Candidate], terms: Terms) -> String {
     let mut table = Table::new([
         words("Candidate"),
         number("statistic"),
         number("p"),
-        number("poses left out [µm]"),
+        number(format!("{} left out [{}]", terms.unseen[1], terms.printed)),
         words("why not"),
     ]);
     for candidate in candidates {

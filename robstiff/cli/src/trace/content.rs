@@ -12,6 +12,7 @@ use crate::identify::source_of;
 use crate::report::content::{
     Candidate, Compliance, Effect, Left, Next, Number, PoseError, Report, Residual, SearchStep, Stage, Structure,
 };
+use crate::report::terms::Terms;
 use crate::text::count;
 
 /// Brings together what the report shows.
@@ -20,14 +21,16 @@ use crate::text::count;
 /// What predicting the campaign says against it, which a campaign that was
 /// traced does not.
 pub fn report(trace: &Trace, triage: &Triage, campaign: &Campaign, options: &Options) -> Result<Report, Failure> {
+    let terms = Terms::of(campaign);
     Ok(Report {
         robot: trace.robot.clone(),
         description: campaign.robot.description.trim().to_owned(),
         campaign: campaign.name.clone(),
-        headline: story::headline(trace),
+        headline: story::headline(trace, terms),
         summary: story::summary(trace, campaign),
         verdict: trace.verdict.to_string(),
         settled: matches!(trace.verdict, Verdict::Adequate | Verdict::Explained),
+        terms,
         rows: trace.rows,
         poses: trace.poses,
         checks: triage.checks.iter().map(super::triage::check).collect(),
@@ -35,13 +38,14 @@ pub fn report(trace: &Trace, triage: &Triage, campaign: &Campaign, options: &Opt
         reading_um: trace.noise * 1e6,
         noise_um: story::noise(trace) * 1e6,
         noise_source: source_of(trace.noise_source).to_owned(),
-        unseen: story::unseen(trace),
+        unseen: story::unseen(trace, terms),
         stages: stages(trace),
         effects: trace.effects.iter().map(|one| named(trace, one)).collect(),
         doubts: story::doubts(trace),
         compliances: compliances(trace),
         errors: errors(trace, campaign)?,
-        residuals: trace.residuals.iter().map(residual).collect(),
+        // Those of clamped axes are no vectors.
+        residuals: trace.residuals.iter().filter(|_| trace.components == 3).map(residual).collect(),
         arms: pictures::arms(trace, campaign),
         dependences: pictures::dependences(trace, campaign),
         steps: trace.steps.iter().map(step).collect(),

@@ -11,16 +11,19 @@ use serde_json::{Value, json};
 use super::triage;
 use crate::identify;
 use crate::json::{number, numbers};
+use crate::report::terms::Terms;
 
 /// The result for other programs.
 pub fn document(trace: &Trace, triage: &Triage, campaign: &Campaign) -> Value {
+    let unit = Terms::of(campaign).unit;
+    let misfit = |misfit| misfit_in(unit, misfit);
     let mut document = json!({
         "robot": trace.robot,
         "rows": trace.rows,
         "poses": trace.poses,
-        "noise_um": number(trace.noise * 1e6),
+        (format!("noise_{unit}")): number(trace.noise * 1e6),
         "before": {"declared": misfit(&trace.declared), "identified": misfit(&trace.identified)},
-        "effects": trace.effects.iter().map(effect).collect::<Value>(),
+        "effects": trace.effects.iter().map(|named| effect(named, unit)).collect::<Value>(),
         "after": misfit(&trace.after),
         "verdict": trace.verdict.to_string(),
         "why": trace.why,
@@ -55,11 +58,15 @@ fn encoders(read: &EncodersRead, campaign: &Campaign) -> Value {
     })
 }
 
-fn misfit(misfit: &Misfit) -> Value {
-    json!({"rms_um": number(misfit.rms * 1e6), "holdout_rms_um": number(misfit.holdout_rms * 1e6)})
+/// The errors, in the unit of the campaign's.
+fn misfit_in(unit: &str, misfit: &Misfit) -> Value {
+    json!({
+        (format!("rms_{unit}")): number(misfit.rms * 1e6),
+        (format!("holdout_rms_{unit}")): number(misfit.holdout_rms * 1e6),
+    })
 }
 
-fn effect(named: &NamedEffect) -> Value {
+fn effect(named: &NamedEffect, unit: &str) -> Value {
     let parameters = named.effect.parameters.iter().map(|parameter| {
         json!({
             "name": parameter.name,
@@ -73,7 +80,7 @@ fn effect(named: &NamedEffect) -> Value {
         "at": named.effect.place().to_string(),
         "parameters": parameters.collect::<Value>(),
         "p_value": number(named.p_value),
-        "holdout_rms_um": number(named.holdout_rms * 1e6),
+        (format!("holdout_rms_{unit}")): number(named.holdout_rms * 1e6),
         "same_as": named.same_as.iter().chain(&named.in_part).collect::<Vec<&String>>(),
         "in_part": named.in_part,
         "partial": named.partial,
@@ -88,10 +95,7 @@ fn rival(rival: &Rival) -> Value {
 
 /// Degrees for joints that turn; one that slides has its millimetres there.
 fn proposal(next: &Proposal, campaign: &Campaign) -> Value {
-    let coordinates = next.q.iter().zip(&campaign.robot.joints).map(|(&q, joint)| match joint.kind {
-        JointKind::Revolute => q.to_degrees(),
-        JointKind::Prismatic => q * 1e3,
-    });
+    let coordinates = next.q.iter().zip(&campaign.robot.joints).map(|(&q, joint)| joint.for_people(q));
     let mut proposal = json!({
         "q_deg": numbers(coordinates),
         "force_N": numbers(next.force),

@@ -104,10 +104,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         page += "\nNo correction: it is one of displacements, and this campaign has none.\n";
     }
     let report = report::html(&report);
-    let (document, report, page) = match &campaign.data {
-        Data::Displacement(_) | Data::Position(_) => (document, report, page),
-        Data::Clamped(_) => (clamped::in_angles(document), clamped::about_axes(&report), clamped::about_axes(&page)),
-    };
     let document = json::document(&document);
     files.add(robot, traced.description.to_yaml());
     if let Some(path) = &arguments.json {

@@ -1,7 +1,6 @@
 //! What the pictures of a report are drawn from: the arm in its poses, and the
 //! residual against what it depends on most.
 
-use robstiff::JointKind;
 use robstiff::campaign::{Campaign, Data, Observation, PositionRow};
 use robstiff::elements::Pose;
 use robstiff::nalgebra::{DMatrix, DVector, Matrix4, SVector};
@@ -104,11 +103,8 @@ pub fn dependences(trace: &Trace, campaign: &Campaign) -> Vec<Dependence> {
 fn quantities(rows: &[Row<'_>], robot: &Description) -> Vec<(String, &'static str, Vec<f64>)> {
     let mut found: Vec<(String, &'static str, Vec<f64>)> = Vec::new();
     for (i, joint) in robot.joints.iter().enumerate() {
-        let (unit, factor) = match joint.kind {
-            JointKind::Revolute => ("deg", 1.0_f64.to_degrees()),
-            JointKind::Prismatic => ("mm", 1e3),
-        };
-        found.push((format!("q{}", i + 1), unit, rows.iter().map(|row| row.q[i] * factor).collect()));
+        let values = rows.iter().map(|row| joint.for_people(row.q[i])).collect();
+        found.push((format!("q{}", i + 1), joint.people_unit(), values));
     }
     for (k, &(name, unit, _)) in rows.first().iter().flat_map(|row| row.loads.iter().enumerate()) {
         found.push((name.to_owned(), unit, rows.iter().map(|row| row.loads[k].2).collect()));

@@ -10,10 +10,12 @@ use robstiff_robots::Joint;
 
 use super::words::{by_kind, spoken};
 use crate::identify::{at_bound, source_of};
+use crate::report::terms::Terms;
 use crate::text::{Table, and, count, decimals, fine_micrometres, probability, quantity};
 
 /// The finding in one sentence.
-pub fn headline(trace: &Trace) -> String {
+pub fn headline(trace: &Trace, terms: Terms) -> String {
+    let Terms { unseen: [_, unseen], unit, .. } = terms;
     let (before, after) = (fine_micrometres(trace.identified.holdout_rms), fine_micrometres(trace.after.holdout_rms));
     let words = |of_rig: bool| -> Vec<String> {
         let those = trace.effects.iter().filter(|named| named.effect.is_of_rig() == of_rig);
@@ -35,10 +37,10 @@ pub fn headline(trace: &Trace) -> String {
                 None => "identified joints predict",
                 Some(_) => "the description's numbers, fitted again, predict",
             };
-            format!("Nothing is missing: {what} unseen poses to {after} um")
+            format!("Nothing is missing: {what} unseen {unseen} to {after} {unit}")
         }
         Verdict::Explained | Verdict::Partial => format!(
-            "{}; with {} the error on unseen poses {} from {before} to {after} um{}{}",
+            "{}; with {} the error on unseen {unseen} {} from {before} to {after} {unit}{}{}",
             shown(),
             if trace.effects.len() == 1 { "it" } else { "them" },
             if trace.after.holdout_rms < trace.identified.holdout_rms { "falls" } else { "goes" },
@@ -50,7 +52,8 @@ pub fn headline(trace: &Trace) -> String {
         ),
         Verdict::Unexplained => {
             format!(
-                "Something is missing that no effect in the catalogue accounts for: {after} um remain on unseen poses"
+                "Something is missing that no effect in the catalogue accounts for: {after} {unit} remain on unseen \
+                 {unseen}"
             )
         }
         Verdict::Insufficient => "These data cannot tell whether anything is missing".to_owned(),
@@ -63,7 +66,7 @@ pub fn summary(trace: &Trace, campaign: &Campaign) -> Vec<String> {
     // Of the joints alone: what an effect changes in them is no unit.
     sentences.extend(off_by_one_factor(campaign, &trace.estimates_before));
     sentences.extend(trace.encoders.iter().flat_map(|read| encoders(read, trace)));
-    sentences.extend(on_the_same_rows(trace));
+    sentences.extend(on_the_same_rows(trace, Terms::of(campaign)));
     sentences.extend(undecided(trace));
     if trace.verdict == Verdict::Insufficient {
         sentences.push("The description keeps its declared values.".to_owned());
@@ -152,7 +155,7 @@ pub fn left_out(trace: &Trace) -> Vec<usize> {
 
 /// The errors on equal terms, where rows were left out: those before the
 /// effects are over all rows.
-fn on_the_same_rows(trace: &Trace) -> Option<String> {
+fn on_the_same_rows(trace: &Trace, Terms { unit, .. }: Terms) -> Option<String> {
     let lines = left_out(trace);
     if lines.is_empty() {
         return None;
@@ -165,8 +168,8 @@ fn on_the_same_rows(trace: &Trace) -> Option<String> {
     };
     let (before, after) = (|row: &RowResidual| row.before, |row: &RowResidual| row.after);
     Some(format!(
-        "The error with the effects leaves out line{} {}, that before does not. On the same rows it falls from {} to {} um \
-         without {}, and from {} to {} um with all rows.",
+        "The error with the effects leaves out line{} {}, that before does not. On the same rows it falls from {} to {} \
+         {unit} without {}, and from {} to {} {unit} with all rows.",
         if lines.len() == 1 { "" } else { "s" },
         and(&lines.iter().map(usize::to_string).collect::<Vec<_>>()),
         rms(before, false),
@@ -180,10 +183,11 @@ fn on_the_same_rows(trace: &Trace) -> Option<String> {
 /// The lines of poses held out that nothing is judged by.
 fn undecided(trace: &Trace) -> Option<String> {
     let lines: Vec<String> = trace.undecided.iter().map(usize::to_string).collect();
-    let [s, are, they] = if lines.len() == 1 { ["", "is", "it is"] } else { ["s", "are", "they are"] };
+    let [line, is, it] = if lines.len() == 1 { ["Line", "is", "it was"] } else { ["Lines", "are", "they were"] };
     (!lines.is_empty()).then(|| {
         format!(
-            "Line{s} {}, held out, {are} not judged by: no line fitted to tells on which side of the slip {they}.",
+            "{line} {}, held out, {is} left out of the error on unseen poses: no line fitted tells on which side of \
+             the slip {it}.",
             and(&lines)
         )
     })
@@ -283,37 +287,38 @@ pub fn noise(trace: &Trace) -> f64 {
 }
 
 /// How the errors on unseen poses came about.
-pub fn unseen(trace: &Trace) -> String {
+pub fn unseen(trace: &Trace, terms: Terms) -> String {
     match trace.held_out.len() {
-        0 => "each pose predicted by the fit without it".to_owned(),
+        0 => format!("each {} predicted by the fit without it", terms.unseen[0]),
         held_out => format!("{} held out of the search and of every fit", count(held_out, "pose")),
     }
 }
 
 /// The joint coordinates of a proposal.
 pub fn pose(next: &Proposal, joints: &[Joint]) -> String {
+    let numbers = next.q.iter().zip(joints).map(|(&q, joint)| decimals(joint.for_people(q), 0));
     let slides = |joint: &Joint| joint.kind == JointKind::Prismatic;
     if !joints.iter().any(slides) {
-        let degrees: Vec<String> = next.q.iter().map(|q| decimals(q.to_degrees(), 0)).collect();
-        return format!("({}) deg", degrees.join(", "));
+        return format!("({}) deg", numbers.collect::<Vec<_>>().join(", "));
     }
-    let coordinates = next.q.iter().zip(joints).map(|(&q, joint)| match joint.kind {
-        JointKind::Revolute => format!("{} deg", decimals(q.to_degrees(), 0)),
-        JointKind::Prismatic => format!("{} mm", decimals(q * 1e3, 0)),
-    });
+    let coordinates = numbers.zip(joints).map(|(number, joint)| format!("{number} {}", joint.people_unit()));
     format!("({})", coordinates.collect::<Vec<_>>().join(", "))
 }
 
 /// The story for a terminal.
 pub fn page(trace: &Trace, campaign: &Campaign) -> String {
+    let terms = Terms::of(campaign);
+    let Terms { unseen: [_, unseen], reading, unit, .. } = terms;
     let mut noise =
-        format!("noise: {} um a reading ({})", fine_micrometres(trace.noise), source_of(trace.noise_source));
+        format!("noise: {} {unit} a reading ({})", fine_micrometres(trace.noise), source_of(trace.noise_source));
     if trace.differences {
-        noise += &format!(", up to {} um a displacement, the difference of two", fine_micrometres(self::noise(trace)));
+        let of_two = fine_micrometres(self::noise(trace));
+        noise += &format!(", up to {of_two} {unit} a {reading}, the difference of two");
     }
     let mut page =
-        format!("{}: {} at {}\n{noise}\n\n", trace.robot, count(trace.rows, "row"), count(trace.poses, "pose"));
-    let mut errors = Table::new(1, ["error [um]", "fitted poses", "unseen poses"]);
+        format!("{}: {} at {}\n{noise}\n\n", trace.robot, count(trace.rows, "row"), terms.places(trace.poses));
+    let header = [format!("error [{unit}]"), format!("fitted {unseen}"), format!("unseen {unseen}")];
+    let mut errors = Table::new(1, header);
     let mut stages = vec![("as declared", trace.declared), ("joints identified again", trace.identified)];
     if !trace.effects.is_empty() {
         stages.push(("with the effects", trace.after));
@@ -321,7 +326,8 @@ pub fn page(trace: &Trace, campaign: &Campaign) -> String {
     for (name, misfit) in stages {
         errors.row([name.to_owned(), fine_micrometres(misfit.rms), fine_micrometres(misfit.holdout_rms)]);
     }
-    page += &format!("{errors}  (unseen: {})\n\nVerdict: {}. {}.\n", unseen(trace), trace.verdict, headline(trace));
+    let (judged, headline) = (self::unseen(trace, terms), headline(trace, terms));
+    page += &format!("{errors}  (unseen: {judged})\n\nVerdict: {}. {headline}.\n", trace.verdict);
     for said in summary(trace, campaign) {
         page += &format!("{said}\n");
     }
