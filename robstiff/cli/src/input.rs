@@ -50,6 +50,18 @@ pub fn with_unit(text: &str, dimension: Dimension) -> Result<f64, String> {
     Ok(value)
 }
 
+/// Three of them; the unit of the last is that of those without one.
+pub fn three_with_unit(parts: [&str; 3], dimension: Dimension) -> Result<[f64; 3], String> {
+    let [x, y, last] = parts.map(str::trim);
+    let unit = last.trim_start_matches(|c: char| c.is_ascii_digit() || ".+-eE".contains(c)).trim();
+    let quantity = |part: &str| {
+        let is_bare = part.ends_with(|c: char| c.is_ascii_digit() || c == '.');
+        let whole = if is_bare { format!("{part} {unit}") } else { part.to_owned() };
+        with_unit(&whole, dimension)
+    };
+    Ok([quantity(x)?, quantity(y)?, quantity(last)?])
+}
+
 /// What is said of a robot that has nothing that gives way.
 fn rigid(robot: &Description) -> Option<String> {
     let yields = robot.joints.iter().flat_map(|joint| &joint.compliance).any(|part| part.value > 0.0);
@@ -119,6 +131,19 @@ pub fn coordinates_of(option: &str, given: &str, robot: &Description) -> Result<
     parts.iter().enumerate().map(coordinate).collect()
 }
 
+/// The pose that `--at` gives, or where it does not the [`default_coordinates`]; says which
+/// coordinates the joints' limits leave out.
+pub fn pose(at: Option<&str>, robot: &Description) -> Result<Vec<f64>, Failure> {
+    let q = match at {
+        Some(text) => coordinates(text, robot)?,
+        None => default_coordinates(robot),
+    };
+    for note in outside_limits(&q, robot) {
+        output::complain(format_args!("note: {note}"));
+    }
+    Ok(q)
+}
+
 /// Asks, of numbers given to joints without a unit, whether they are in degrees, if one turns
 /// a joint by more than a turn.
 pub fn are_degrees(bare: impl Iterator<Item = Option<f64>>, robot: &Description) -> Option<String> {
@@ -133,7 +158,7 @@ pub fn are_degrees(bare: impl Iterator<Item = Option<f64>>, robot: &Description)
 }
 
 /// Sentences on coordinates that the joints' limits leave out.
-pub fn outside_limits(q: &[f64], robot: &Description) -> Vec<String> {
+fn outside_limits(q: &[f64], robot: &Description) -> Vec<String> {
     let outside = |(number, (&q, joint)): (usize, (&f64, &Joint))| {
         let what = joint.outside_limits().filter(|_| !joint.reaches(q))?;
         Some(format!("q{number} = {} {} is {what}", joint.for_people(q), joint.people_unit()))
@@ -143,7 +168,7 @@ pub fn outside_limits(q: &[f64], robot: &Description) -> Vec<String> {
 
 /// The pose that is shown where none is asked for: zero, and for a joint that
 /// cannot stand there the middle of its range.
-pub fn default_coordinates(robot: &Description) -> Vec<f64> {
+fn default_coordinates(robot: &Description) -> Vec<f64> {
     let coordinate = |limits: Option<[f64; 2]>| match limits {
         Some([low, high]) if !(low..=high).contains(&0.0) => 0.5 * (low + high),
         _ => 0.0,
@@ -173,6 +198,16 @@ mod tests {
         assert_eq!(with_unit("0.7", Dimension::Number), Ok(0.7));
         assert_eq!(with_unit(" 0.1", Dimension::Length), Err("`0.1` has no unit; write e.g. `0.1 mm`".to_owned()));
         assert_eq!(with_unit("4", Dimension::Time), Err("`4` has no unit; write e.g. `4 ms`".to_owned()));
+    }
+
+    #[test]
+    fn three_quantities_have_one_unit_or_their_own() {
+        let force = |parts| three_with_unit(parts, Dimension::Force);
+        assert_eq!(force(["0.5", " -1e-1 ", "2 kN"]), Ok([500.0, -100.0, 2000.0]));
+        assert_eq!(force(["300 N", "0", "-1.5 kN"]), Ok([300.0, 0.0, -1500.0]));
+        assert_eq!(force(["0", "0", "0"]), Ok([0.0; 3]));
+        assert_eq!(force(["0", "0", "-400"]), Err("`-400` has no unit; write e.g. `-400 N`".to_owned()));
+        assert!(force(["1", "2", "3 mm"]).is_err());
     }
 
     #[test]

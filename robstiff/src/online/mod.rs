@@ -210,6 +210,8 @@ fn simulate_moving<const N: usize>(
 /// What is left under a load that is `wrench` (N, Nm) times a sine of a
 /// `frequency` (Hz), in two to ten periods after what comes first has died down.
 ///
+/// Where the load does not move the tool nothing can be left of it, and both fractions are NaN.
+///
 /// # Panics
 /// If the frequency is not above zero, and as [`simulate`].
 pub fn left_of_sine<const N: usize>(

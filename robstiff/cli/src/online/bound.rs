@@ -9,6 +9,9 @@ use crate::text::significant;
 /// Points in time of all the frequencies and controls together: some minutes.
 const SINES: f64 = 1e7;
 
+/// Of one frequency that nobody asked for: some seconds.
+const QUICK: f64 = 5e5;
+
 /// Points in time along a path or a record: some gigabytes.
 const ALONG: f64 = 3e7;
 
@@ -44,6 +47,11 @@ pub fn sines(variants: &[Variant], frequencies: &[f64]) -> Result<(), Failure> {
         significant(all, 3),
         significant(SINES, 3)
     )))
+}
+
+/// Whether a frequency (Hz) is simulated in no time.
+pub fn is_quick(controller: &Controller, frequency: f64) -> bool {
+    Effort::of_sine(controller, frequency).instants() <= QUICK
 }
 
 /// Refuses controls with which a path or record of that duration (s) takes too long.

@@ -10,17 +10,14 @@ use robstiff::path::ToolPath;
 use robstiff::{Robot, with_robot};
 use robstiff_robots::Description;
 
-use super::{Arguments, Variant, bound, pose};
+use super::reach::Reach;
+use super::{Arguments, Variant, bound};
 use crate::failure::Failure;
 use crate::output::{self, Files};
 use crate::path::cutting::complain_of_feed;
 use crate::scene::Force;
 use crate::text::significant;
 use crate::{forces, input};
-
-/// Frequencies between which is looked for where a correction no longer gains (Hz).
-const LOWEST: f64 = 0.1;
-const HIGHEST: f64 = 1000.0;
 
 /// In how many parts a record is told.
 const PARTS: usize = 100;
@@ -59,7 +56,7 @@ pub enum What {
         left: Vec<Vec<robstiff::online::Left>>,
         /// For each variant, up to which frequency (Hz) less than half and less
         /// than all is left; `None` where never, or beyond what was looked at.
-        useful: Vec<[Option<f64>; 2]>,
+        useful: Vec<[Reach; 2]>,
     },
     /// Along a path or over a record.
     Along {
@@ -132,7 +129,7 @@ impl Asked {
             let axis = load.spindle_axis.unwrap_or(Unit::new_unchecked(load.tool_axis.abs()));
             return Ok(Self::Path { path: Box::new(path), source, axis, feed: load.feed, name });
         }
-        let q = pose(load.at.as_deref(), robot)?;
+        let q = input::pose(load.at.as_deref(), robot)?;
         let frequencies = load.frequencies.0.clone();
         let sine = |wrench, name| Self::Sine { q: q.clone(), wrench, frequencies: frequencies.clone(), name };
         match (cut, load.force) {
@@ -215,7 +212,7 @@ fn of_path<const N: usize>(
 ) -> Result<(Timeline<N>, Vec<Stop>), Failure> {
     let solved = path.solve(robot, None)?;
     let load = match source {
-        Source::Table(table) => table.load(&solved, ForceFrame::Base, axis, Surface::Side).map_err(Failure::new)?,
+        Source::Table(table) => table.load(&solved, ForceFrame::Base, axis, Surface::Side)?,
         Source::Cut(file) => load_of_cut(&file.forces, &solved, axis, Surface::Side),
     };
     let speed = match source {
@@ -297,10 +294,13 @@ fn by_frequency<const N: usize>(
         }
     };
     let left = variants.iter().map(|variant| frequencies.iter().map(|&each| left_of(variant, each)).collect());
+    let [lowest, highest] = [f64::min, f64::max].map(|of| frequencies.iter().copied().fold(frequencies[0], of));
+    let first = 1.0_f64.clamp(lowest, highest);
     let useful = variants.iter().map(|variant| {
         let of = |frequency: f64| left_of(variant, frequency).rms;
-        let half = reaches(0.5, 1.0, of);
-        [half, reaches(1.0, half.unwrap_or(1.0), of)]
+        let affordable = |frequency: f64| bound::is_quick(&variant.controller, frequency);
+        let half = Reach::of(0.5, first, affordable, of);
+        [half, Reach::of(1.0, half.found().unwrap_or(first), affordable, of)]
     });
     let (left, useful) = (left.collect(), useful.collect());
     Ok(What::Sine {
@@ -311,38 +311,6 @@ fn by_frequency<const N: usize>(
         left,
         useful,
     })
-}
-
-/// The frequency (Hz) at which what is left comes to a part; by doubling and
-/// halving from a first one, to a hundredth.
-fn reaches(part: f64, first: f64, left: impl Fn(f64) -> f64) -> Option<f64> {
-    let (mut low, mut high) = (first, first);
-    if left(first) < part {
-        while {
-            high *= 2.0;
-            left(high) < part
-        } {
-            low = high;
-            if high > HIGHEST {
-                return None;
-            }
-        }
-    } else {
-        while {
-            low *= 0.5;
-            left(low) >= part
-        } {
-            high = low;
-            if low < LOWEST {
-                return None;
-            }
-        }
-    }
-    while high > 1.02 * low {
-        let middle = (low * high).sqrt();
-        if left(middle) < part { low = middle } else { high = middle }
-    }
-    Some((low * high).sqrt())
 }
 
 impl Course {

@@ -3,6 +3,7 @@
 mod bound;
 mod loads;
 mod page;
+mod reach;
 
 use std::path::PathBuf;
 
@@ -228,16 +229,4 @@ fn stiffer(robot: &Description) -> Description {
     let parts = stiffer.joints.iter_mut().flat_map(|joint| &mut joint.compliance);
     parts.for_each(|part| part.value *= 1.0 - TOO_STIFF);
     stiffer
-}
-
-/// The joint coordinates of a pose.
-fn pose(at: Option<&str>, robot: &Description) -> Result<Vec<f64>, Failure> {
-    let q = match at {
-        Some(text) => input::coordinates(text, robot)?,
-        None => input::default_coordinates(robot),
-    };
-    for note in input::outside_limits(&q, robot) {
-        output::complain(format_args!("note: {note}"));
-    }
-    Ok(q)
 }

@@ -4,6 +4,7 @@ use robstiff_robots::Description;
 use serde_json::{Value, json};
 
 use super::loads::{Course, Seen, Stop, What};
+use super::reach::Reach;
 use super::{ControlArguments, Loss, Variant};
 use crate::json::{number, numbers};
 use crate::text::{Table, decimals, field, micrometres, significant};
@@ -61,7 +62,7 @@ pub fn page(robot: &Description, seen: &Seen, variants: &[Variant], control: &Co
             let mut page = format!("\nLeft of the deviation [%] (rms), by the frequency of the force\n{table}\n");
             let mut table = Table::new(1, ["", "half is gone to", "less is left to"]);
             for (variant, useful) in variants.iter().zip(useful) {
-                let cells = useful.map(|useful| useful.map_or("-".to_owned(), |f| format!("{} Hz", significant(f, 3))));
+                let cells = useful.map(|reach| reach.to_string());
                 table.row(std::iter::once(variant.name.clone()).chain(cells));
             }
             page += &format!("How fast a force it keeps up with\n{table}");
@@ -184,12 +185,14 @@ pub fn document(robot: &Description, seen: &Seen, variants: &[Variant]) -> Value
             entries.insert("wrench".to_owned(), numbers(wrench.iter().copied()));
             entries.insert("deviation_m".to_owned(), number(*deviation));
             entries.insert("frequencies_Hz".to_owned(), numbers(frequencies.iter().copied()));
-            let of = |((variant, left), useful): ((&Variant, &Vec<robstiff::online::Left>), &[Option<f64>; 2])| {
+            let of = |((variant, left), useful): ((&Variant, &Vec<robstiff::online::Left>), &[Reach; 2])| {
                 let what = json!({
                     "left_rms": numbers(left.iter().map(|left| left.rms)),
                     "left_amplitude": numbers(left.iter().map(|left| left.amplitude)),
-                    "half_gone_to_Hz": useful[0],
-                    "less_left_to_Hz": useful[1],
+                    "half_gone_to": useful[0].to_string(),
+                    "half_gone_to_Hz": useful[0].found(),
+                    "less_left_to": useful[1].to_string(),
+                    "less_left_to_Hz": useful[1].found(),
                 });
                 named(variant, what)
             };

@@ -194,7 +194,7 @@ impl Asked {
         solved: &SolvedPath<N>,
     ) -> Result<Cutting, Failure> {
         let load = match &self.source {
-            Source::Table(table, frame) => table.load(solved, *frame, self.axis, self.surface).map_err(Failure::new)?,
+            Source::Table(table, frame) => table.load(solved, *frame, self.axis, self.surface)?,
             Source::Cut(file) => {
                 complain_of_feed(file, &self.name, path);
                 self.load(file, solved)?

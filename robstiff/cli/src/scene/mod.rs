@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use robstiff::campaign::JointTable;
 use robstiff_robots::Description;
-use robstiff_robots::quantity::{self, Dimension};
+use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
@@ -65,8 +65,7 @@ impl Force {
 pub fn force(text: &str) -> Result<Force, String> {
     let parts: Vec<&str> = text.split(',').collect();
     let [x, y, z] = parts[..] else { return Err("three components are expected, e.g. \"0, 0, -400 N\"".to_owned()) };
-    let component = |part: &str| quantity::parse(part, Dimension::Force).map_err(|error| error.to_string());
-    Ok(Force([component(x)?, component(y)?, component(z)?]))
+    input::three_with_unit([x, y, z], Dimension::Force).map(Force)
 }
 
 /// Draws.
@@ -90,7 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         Scene::new(&robot, Kind::Path, &rows(table, arguments.force)).coloured_by(column)
     } else {
-        let q = pose(arguments, &robot)?;
+        let q = input::pose(arguments.at.as_deref(), &robot)?;
         let row = Row { q, wrench: arguments.force.map(Force::wrench), value: None };
         Scene::new(&robot, Kind::Pose, &[row])
     };
@@ -101,17 +100,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let said = files.write()?;
     output::print(summary(&robot, &scene) + &said)
-}
-
-fn pose(arguments: &Arguments, robot: &Description) -> Result<Vec<f64>, Failure> {
-    let q = match &arguments.at {
-        Some(text) => input::coordinates(text, robot)?,
-        None => input::default_coordinates(robot),
-    };
-    for note in input::outside_limits(&q, robot) {
-        output::complain(format_args!("note: {note}"));
-    }
-    Ok(q)
 }
 
 fn rows(table: JointTable, force: Option<Force>) -> Vec<Row> {
@@ -127,7 +115,7 @@ fn rows(table: JointTable, force: Option<Force>) -> Vec<Row> {
 fn summary(robot: &Description, scene: &Scene) -> String {
     let mut said = format!("{}: {}", robot.name, count(scene.rows, "pose"));
     if scene.poses.len() < scene.rows {
-        said += &format!(", every {}th drawn, and the extremes", scene.stride);
+        said += &format!(", one in {} drawn, and the extremes", scene.stride);
     }
     said.push('\n');
     let softest = scene.poses.iter().filter_map(|pose| pose.principal).map(|principal| principal[0]);

@@ -31,13 +31,7 @@ pub struct Arguments {
 /// Shows a robot.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, _) = input::robot(&arguments.robot)?;
-    let q = match &arguments.at {
-        Some(text) => input::coordinates(text, &robot)?,
-        None => input::default_coordinates(&robot),
-    };
-    for note in input::outside_limits(&q, &robot) {
-        output::complain(format_args!("note: {note}"));
-    }
+    let q = input::pose(arguments.at.as_deref(), &robot)?;
     let shown = Shown::new(&robot, q);
     let mut files = Files::default();
     files.protect(&arguments.robot);

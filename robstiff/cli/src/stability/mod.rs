@@ -115,13 +115,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "a measured force does not say how it changes with the chip; give the cut with tool and material",
         ));
     };
-    let q = match &arguments.at {
-        Some(text) => input::coordinates(text, &robot)?,
-        None => input::default_coordinates(&robot),
-    };
-    for note in input::outside_limits(&q, &robot) {
-        output::complain(format_args!("note: {note}"));
-    }
+    let q = input::pose(arguments.at.as_deref(), &robot)?;
     let mut files = Files::default();
     files.protect(&arguments.robot);
     forces::protect(&mut files, &arguments.cut, &file);

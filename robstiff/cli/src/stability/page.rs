@@ -28,10 +28,7 @@ pub fn page(predicted: &Predicted, robot: &Description, cut: &Cut, measured: boo
         true => format!("{} kg, by the frequency of the first", significant(mass.max(), 3)),
         false => format!("{} to {} kg, by the links", significant(mass.min(), 3), significant(mass.max(), 3)),
     };
-    page += &match frequencies.is_empty() {
-        true => "no modes: the arm does not yield\n".to_owned(),
-        false => format!("modes at {} Hz, mass at the tool {mass}", frequencies.join(", ")),
-    };
+    page += &format!("modes at {} Hz, mass at the tool {mass}", frequencies.join(", "));
     let damping = predicted.modes.damping();
     page += &match damping > 0.0 {
         true => format!(", damping ratio {}\n", significant(damping, 3)),
