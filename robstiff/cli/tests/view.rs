@@ -235,7 +235,7 @@ fn the_worst_of_a_long_path_is_drawn_and_told() {
     fs::write(&path, format!("q1 [deg],q2 [deg],q3 [deg],q4 [deg],q5 [deg],deviation [um]\n{rows}")).unwrap();
     let column = ["--column", "deviation", "--out", &page, "--json", &told];
     let said = succeed(&[&["view", "rv130hsc", "--path", &path], &column[..]].concat());
-    assert!(said.contains("every 2th drawn") && said.contains("deviation: -3 to 1828 um"), "{said}");
+    assert!(said.contains("one in 2 drawn") && said.contains("deviation: -3 to 1828 um"), "{said}");
     let told = json(&told);
     let poses = told["poses"].as_array().unwrap();
     assert_eq!(poses.len(), 2002);

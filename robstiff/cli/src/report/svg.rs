@@ -157,9 +157,11 @@ pub fn ticks(smallest: f64, largest: f64, count: usize) -> Vec<f64> {
 /// A number at an axis: no more digits than the step needs.
 pub fn tick_label(value: f64, ticks: &[f64]) -> String {
     let step = ticks.get(1).map_or(1.0, |second| second - ticks[0]);
-    // One digit more where the step is 2.5 of something.
-    let exponent = step.log10().floor();
-    let odd = (step / 10_f64.powf(exponent)).fract().abs() > 1e-6;
+    // One digit more where the step is 2.5 of something. What rounding leaves of a difference
+    // is neither a digit nor the next power of ten.
+    let exponent = (step.log10() + 1e-9).floor();
+    let leading = step / 10_f64.powf(exponent);
+    let odd = (leading - leading.round()).abs() > 1e-6;
     let decimals = (-exponent).max(0.0) as usize + usize::from(odd && exponent <= 0.0);
     crate::text::decimals(value, decimals)
 }
@@ -179,5 +181,10 @@ mod tests {
             fine.iter().map(|&tick| tick_label(tick, &fine)).collect::<Vec<_>>(),
             ["0.00", "0.25", "0.50", "0.75", "1.00"]
         );
+        // 0.4 - 0.3 is not quite 0.1, nor is 0.7 - 0.6.
+        for smallest in [0.3, 0.6] {
+            let steps = [smallest, smallest + 0.1, smallest + 0.2];
+            assert!(steps.iter().all(|&tick| tick_label(tick, &steps).len() == 3), "{smallest}");
+        }
     }
 }

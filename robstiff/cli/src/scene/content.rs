@@ -145,11 +145,14 @@ impl Scene {
         let tracked = matches!(campaign.data, Data::Position(_));
         let predicted = predict(robot, campaign)?.rows;
         let size = |row: &PredictedRow| length(if tracked { row.off } else { row.measured });
-        let largest = |pose: usize| {
-            let rows = read.iter().zip(&predicted).filter(|((of, _), _)| *of == pose);
-            rows.max_by(|(_, a), (_, b)| size(a).total_cmp(&size(b)))
-        };
-        let rows: Vec<_> = (0..ids.len()).filter_map(largest).collect();
+        // By pose, the row of the largest displacement.
+        let mut largest = vec![None; ids.len()];
+        for row @ ((pose, _), seen) in read.iter().zip(&predicted) {
+            if largest[*pose].is_none_or(|(_, known)| size(seen) >= size(known)) {
+                largest[*pose] = Some(row);
+            }
+        }
+        let rows: Vec<_> = largest.into_iter().flatten().collect();
         let asked = rows.iter().map(|((_, q), row)| Row {
             q: q.to_vec(),
             wrench: None,

@@ -16,7 +16,7 @@ const TURN: f64 = -0.9;
 const HEIGHT_ANGLE: f64 = 0.38;
 /// More ellipsoids than these hide each other.
 const MOST_ELLIPSOIDS: usize = 9;
-/// Colours of the scale.
+/// The last colour and the last width of the scale, from 0.
 const SHADES: f64 = 9.0;
 
 /// The drawing.
@@ -152,16 +152,24 @@ fn arm(svg: &mut Svg, view: &View, pose: &Pose) {
 
 fn path(svg: &mut Svg, view: &View, scene: &Scene) {
     let Some(values) = &scene.values else { return };
-    let span = (values.most - values.least).max(f64::MIN_POSITIVE);
-    let shade = |pose: &Pose| (SHADES * (pose.value.unwrap_or(values.least) - values.least) / span).round();
+    let value = |pose: &Pose| pose.value.unwrap_or(values.least);
+    let step = |value: f64, [least, most]: [f64; 2]| {
+        (SHADES * (value - least) / (most - least).max(f64::MIN_POSITIVE)).round()
+    };
+    let shade = |value: f64| step(value, [values.least, values.most]);
+    // Errors have signs: what is far from zero is bad either way.
+    let farthest = values.least.abs().max(values.most.abs());
+    let nearest = if values.least * values.most < 0.0 { 0.0 } else { values.least.abs().min(values.most.abs()) };
     for pair in scene.poses.windows(2).filter(|_| scene.kind == Kind::Path) {
         let [one, other] = [&pair[0], &pair[1]].map(|pose| pose.points.last().copied().unwrap_or_default());
-        let class = format!("path shade{:.0}", shade(&pair[0]).max(shade(&pair[1])));
+        let [first, second] = [&pair[0], &pair[1]].map(value);
+        let worse = if first.abs() > second.abs() { first } else { second };
+        let class = format!("path shade{:.0} wide{:.0}", shade(worse), step(worse.abs(), [nearest, farthest]));
         svg.line(&class, view.at(one), view.at(other));
     }
     for pose in scene.poses.iter().filter(|_| scene.kind == Kind::Campaign) {
         let at = view.at(pose.points.last().copied().unwrap_or_default());
-        svg.circle(&format!("spot shade{:.0}", shade(pose)), at, 4.5, pose.name.as_deref().unwrap_or_default());
+        svg.circle(&format!("spot shade{:.0}", shade(value(pose))), at, 4.5, pose.name.as_deref().unwrap_or_default());
     }
 }
 
