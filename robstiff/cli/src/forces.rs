@@ -45,7 +45,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let count = arguments.samples as usize;
     let (mean, revolution) = match &file.forces {
         Forces::Model(cut) => (cut.mean_force(), Some(cut.revolution(count))),
-        Forces::Measured { force, speed } => (force.mean(), force.revolution(count, *speed)),
+        Forces::Measured { force, speed } => (force.mean(*speed), force.revolution(count, *speed)),
     };
     let mut files = Files::default();
     protect(&mut files, &arguments.cut, &file);
@@ -126,7 +126,10 @@ fn page(file: &CutFile, mean: &Vector3<f64>, revolution: Option<&Revolution>) ->
 }
 
 fn engagement(cut: &Cut) -> String {
-    let teeth = crate::text::count(cut.mill.teeth, "tooth").replace("tooths", "teeth");
+    let teeth = match cut.mill.teeth {
+        1 => "1 tooth".to_owned(),
+        teeth => format!("{teeth} teeth"),
+    };
     let [entry, exit] = [cut.engagement.entry, cut.engagement.exit].map(|angle| decimals(angle.to_degrees(), 1));
     let wall = match cut.engagement.wall() {
         Some(wall) if wall > 0.0 => ", up milling (wall to the left)",

@@ -68,7 +68,7 @@ impl Forces {
     pub fn mean(&self) -> Vector3<f64> {
         match self {
             Self::Model(cut) => cut.mean_force(),
-            Self::Measured { force, .. } => force.mean(),
+            Self::Measured { force, speed } => force.mean(*speed),
         }
     }
 

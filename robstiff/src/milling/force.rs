@@ -66,8 +66,8 @@ impl Cut {
 
     /// The torque on the spindle averaged over a revolution \[Nm\].
     pub fn mean_torque(&self) -> f64 {
-        // The tangential forces alone, at the tool's radius: the force in the
-        // direction of the feed of a tooth that never leaves `phi = pi`.
+        // The tangential forces alone, at the tool's radius. Of chips from `phi = from` to
+        // `phi = to` the mean is the integral of `ktc h + kte` over the angle.
         let tangential = |piece: &Piece| {
             let chip = piece.feed * (piece.from.cos() - piece.to.cos()) + piece.extra * (piece.to - piece.from);
             self.coefficients.ktc * chip + self.coefficients.kte * (piece.to - piece.from)

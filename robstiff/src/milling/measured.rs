@@ -87,9 +87,32 @@ impl MeasuredForce {
         table.finish(samples.map(|samples| Self { frame, samples }))
     }
 
-    /// The mean of the samples \[N\].
-    pub fn mean(&self) -> Vector3<f64> {
-        self.samples.iter().map(|sample| sample.force).sum::<Vector3<f64>>() / self.samples.len().max(1) as f64
+    /// The mean of the samples \[N\], of those of whole revolutions where times or angles, with
+    /// the speed of the spindle \[rad/s\], say which these are: half a revolution more would
+    /// count some teeth twice.
+    pub fn mean(&self, speed: Option<f64>) -> Vector3<f64> {
+        let samples = &self.samples[..self.of_whole_revolutions(speed).unwrap_or(self.samples.len())];
+        samples.iter().map(|sample| sample.force).sum::<Vector3<f64>>() / samples.len().max(1) as f64
+    }
+
+    /// How many samples, from the first, are those of whole revolutions; `None` where the spindle
+    /// does not go on from each to the next, or not once around.
+    fn of_whole_revolutions(&self, speed: Option<f64>) -> Option<usize> {
+        let mut angles = self.angles(speed)?;
+        // Recorded angles may begin again at each revolution.
+        for k in 1..angles.len() {
+            while angles[k] < angles[k - 1] - 0.5 * TAU {
+                angles[k] += TAU;
+            }
+        }
+        let (first, last) = (*angles.first()?, *angles.last()?);
+        if !angles.is_sorted() {
+            return None;
+        }
+        let step = (last - first) / (angles.len() - 1).max(1) as f64;
+        let revolutions = ((last - first + step) / TAU * (1.0 + ROUNDING)).floor();
+        let end = first + revolutions * TAU - 0.5 * step;
+        (revolutions >= 1.0).then(|| angles.partition_point(|angle| *angle < end))
     }
 
     /// The angle of the spindle at each sample \[rad\]: the recorded one, or the time's at

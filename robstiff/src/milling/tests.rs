@@ -289,14 +289,14 @@ fn records_are_averaged() {
     let text = format!("{header}{}", rows.concat());
     let (tool, warnings) = MeasuredForce::parse("f.csv", &text, ForceFrame::Cut, false).unwrap();
     assert!(warnings.is_empty());
-    assert!((tool.mean() - Vector3::new(10.0, 0.0, 7.0)).norm() < 1e-9);
+    assert!((tool.mean(None) - Vector3::new(10.0, 0.0, 7.0)).norm() < 1e-9);
     let revolution = tool.revolution(4, None).unwrap();
     // The mean of a sine over a quarter is 2 / pi.
     assert!((revolution.samples[0].1 - Vector3::new(10.0 + 2.0 / PI, -4.0 / PI, 7.0)).norm() < 0.02);
     assert!((revolution.samples[3].0 - 1.75 * PI).abs() < 1e-12);
 
     let (workpiece, _) = MeasuredForce::parse("f.csv", &text, ForceFrame::Tool, true).unwrap();
-    assert!((workpiece.mean() + tool.mean()).norm() < 1e-12);
+    assert!((workpiece.mean(None) + tool.mean(None)).norm() < 1e-12);
     let frame = CutFrame::new(&-Vector3::z(), &Vector3::x()).unwrap();
     let turned = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
     assert_eq!(workpiece.to_base(Some(&frame), &turned), Some(turned));
@@ -327,4 +327,28 @@ fn records_are_averaged() {
 
     let error = MeasuredForce::parse("f.csv", "Fx,Fy\n1,x\n", ForceFrame::Cut, false).unwrap_err().to_string();
     assert!(error.contains("`Fz` is missing") && error.contains("f.csv:1:1"), "{error}");
+}
+
+/// One tooth in half immersion, recorded for more than whole turns: cut half of the time.
+#[test]
+fn a_mean_is_that_of_whole_revolutions() {
+    let table = |header: &str, turns: f64, place: fn(f64) -> f64| {
+        let rows = (0..(100.0 * turns) as u32).map(|k| {
+            let turn = f64::from(k) / 100.0;
+            format!("{},{},0,0\n", place(turn), if turn.fract() < 0.4999 { 200.0 } else { 0.0 })
+        });
+        let text = format!("{header},Fx,Fy,Fz\n{}", rows.collect::<std::string::String>());
+        MeasuredForce::parse("f.csv", &text, ForceFrame::Cut, false).unwrap().0
+    };
+    for turns in [1.0, 1.25, 2.0, 2.4] {
+        let timed = table("t [s]", turns, |turn| 0.02 * turn);
+        assert!((timed.mean(Some(50.0 * TAU)).x - 100.0).abs() < 1e-9, "{turns} turns by time");
+        let going_on = table("angle [deg]", turns, |turn| 360.0 * turn + 30.0);
+        assert!((going_on.mean(None).x - 100.0).abs() < 1e-9, "{turns} turns by angle");
+        let again = table("angle [deg]", turns, |turn| (360.0 * turn + 30.0) % 360.0);
+        assert!((again.mean(None).x - 100.0).abs() < 1e-9, "{turns} turns by angles that begin again");
+    }
+    // Less than a turn, or nobody knows of what: all that there is.
+    assert!((table("angle [deg]", 0.75, |turn| 360.0 * turn).mean(None).x - 200.0 / 1.5).abs() < 1e-9);
+    assert!((table("t [s]", 1.25, |turn| 0.02 * turn).mean(None).x - 120.0).abs() < 1e-9);
 }
