@@ -157,8 +157,13 @@ impl<'t> Table<'t> {
             let fields = if found == 1 { "field" } else { "fields" };
             let message = format!("this row has {found} {fields}, the header has {expected}");
             let help = "give every row one field a column, with a point as decimal sign";
-            let comma = decimal_comma(row).filter(|_| found > expected);
-            self.report(line, found.min(expected), &message, comma.as_deref().unwrap_or(help));
+            let help = match found.checked_sub(expected) {
+                Some(1) if row.get(expected).is_some_and(str::is_empty) => Some(ONE_TOO_MANY.to_owned()),
+                Some(more) => decimal_comma(row, more),
+                None => None,
+            }
+            .unwrap_or_else(|| help.to_owned());
+            self.report(line, found.min(expected), &message, &help);
         }
     }
 
@@ -366,19 +371,23 @@ fn open_quote(row: &csv::StringRecord) -> Option<usize> {
     row.iter().position(|field| field.contains(['\r', '\n']))
 }
 
+/// What is right where a row ends in a comma.
+const ONE_TOO_MANY: &str = "leave out the comma at the end";
+
 /// What is said of a number with a comma, written with a point.
 fn comma_help(point: &str) -> String {
     format!("a decimal comma? write `{point}`")
 }
 
-/// The same of a row whose commas divide numbers: of the first two fields that look like
-/// one, a whole number and three digits or more.
-fn decimal_comma(row: &csv::StringRecord) -> Option<String> {
+/// The same of a row with so many fields more than its header, if it has as many places where a
+/// comma may divide a number: a whole number and three digits or more. Of the first.
+fn decimal_comma(row: &csv::StringRecord, more: usize) -> Option<String> {
     let fields: Vec<&str> = row.iter().collect();
     let is_divided = |pair: &&[&str]| {
         let digits = pair[1].len() >= 3 && pair[1].bytes().all(|byte| byte.is_ascii_digit());
         digits && pair[0].parse::<i64>().is_ok()
     };
-    let pair = fields.windows(2).find(is_divided)?;
-    Some(comma_help(&format!("{}.{}", pair[0], pair[1])))
+    let divided: Vec<&[&str]> = fields.windows(2).filter(is_divided).collect();
+    let first = divided.first().filter(|_| divided.len() == more)?;
+    Some(comma_help(&format!("{}.{}", first[0], first[1])))
 }

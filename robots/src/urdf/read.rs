@@ -250,6 +250,9 @@ impl Reader<'_> {
             return None;
         }
         // Both zero or left out is how generators write that there is none.
+        if low == high && low != 0.0 {
+            self.report(&limit.range(), "a joint between these limits cannot move", "make it a joint of type `fixed`");
+        }
         (low < high).then_some([low, high])
     }
 

@@ -77,8 +77,8 @@ impl Files {
         })
     }
 
-    /// The same for a robot's description: an earlier one of the same robot is replaced, that
-    /// of another robot is somebody's.
+    /// The same for a robot's description: an earlier one of the same robot is replaced, what is
+    /// of another robot or cannot be read is somebody's.
     ///
     /// # Errors
     /// As for [`foresee`](Self::foresee); whose description is there.
@@ -90,6 +90,11 @@ impl Files {
                 "{} describes another robot, {}, and would be overwritten with {}; choose another folder",
                 path.display(),
                 there.name,
+                robot.name
+            ))),
+            Some(Err(_)) => Err(Failure::new(format_args!(
+                "{} is no description of a robot, and would be overwritten with {}; choose another folder, or mend it",
+                path.display(),
                 robot.name
             ))),
             _ => Ok(()),

@@ -38,23 +38,20 @@ pub struct Arguments {
 /// Measures.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, _) = input::robot(&arguments.robot)?;
+    input::complain_if_rigid(&robot);
     let scenario = Scenario::read(&arguments.scenario, &robot)?;
     let mut files = Files::default();
     files.protect(&arguments.robot);
     files.protect(&arguments.scenario);
-    files.foresee(arguments.json.iter().chain([&arguments.out.join("campaign.yaml")]))?;
+    let names = ["campaign.yaml", scenario.measures.file(), "robot.yaml", "truth.yaml"];
+    let paths = names.map(|name| arguments.out.join(name));
+    files.foresee(arguments.json.iter().chain(&paths))?;
+    if let Some(path) = paths.iter().find(|path| path.exists() && !arguments.force) {
+        return Err(Failure::there_already(path, "folder"));
+    }
     let simulated = simulate(&robot, &scenario)?;
     let texts = simulated.files();
-    for (name, text) in [
-        ("campaign.yaml", texts.campaign),
-        texts.observations,
-        ("robot.yaml", texts.robot),
-        ("truth.yaml", texts.truth),
-    ] {
-        let path = arguments.out.join(name);
-        if path.exists() && !arguments.force {
-            return Err(Failure::there_already(&path, "folder"));
-        }
+    for (path, text) in paths.into_iter().zip([texts.campaign, texts.observations.1, texts.robot, texts.truth]) {
         files.add(path, text);
     }
     if let Some(path) = &arguments.json {

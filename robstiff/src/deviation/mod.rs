@@ -49,7 +49,7 @@ pub use removal::{removal_rate, width};
 pub use settle::PulledIn;
 pub(crate) use settle::{Stand, displaced, settle, turned};
 pub use stretches::{Stretch, Summary};
-pub use table::{ForceTable, Mismatch};
+pub use table::ForceTable;
 
 /// Which surface is machined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,19 +1,21 @@
 //! Forces along a path from a file.
 
 use std::borrow::ToOwned;
+use std::format;
 use std::path::Path;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
 use nalgebra::{Matrix3, Unit, Vector3, Vector6};
 use robstiff_robots::quantity::Dimension;
-use robstiff_robots::{Diagnostics, ReadError};
+use robstiff_robots::words::count;
+use robstiff_robots::{Diagnostic, Diagnostics, Line, ReadError};
 
 use super::load::{contact, rotation};
 use super::{Load, Surface};
 use crate::milling::ForceFrame;
 use crate::path::SolvedPath;
-use crate::table::{Numbers, Record, Table, text_of};
+use crate::table::{Lines, Numbers, Record, Table, text_of};
 
 /// Wrenches on the tool along a path: one a point, or by arc length.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,52 +29,9 @@ pub struct ForceTable {
     pub wrenches: Vec<Vector6<f64>>,
     /// What the reader noticed without refusing the file.
     pub warnings: Vec<String>,
+    /// The lines (from 1) of the first and the last row, with what they say.
+    ends: [(usize, String); 2],
 }
-
-/// A table of forces that does not cover the path.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Mismatch {
-    /// Another number of rows than the path has points.
-    Rows {
-        /// The table's file.
-        file: String,
-        /// How many rows it has.
-        rows: usize,
-        /// How many points the path has.
-        points: usize,
-    },
-    /// The path goes on where the table has no row.
-    Beyond {
-        /// The table's file.
-        file: String,
-        /// The arc length of its first and last row (m).
-        table: [f64; 2],
-        /// That of the first and last point of the path (m).
-        path: [f64; 2],
-    },
-}
-
-impl core::fmt::Display for Mismatch {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Rows { file, rows, points } => write!(
-                f,
-                "{file} has {rows} rows, the path has {points} points; give a row for each point, or the arc length \
-                 of each row as `s [mm]`"
-            ),
-            Self::Beyond { file, table, path } => {
-                let [first, last, from, to] = [table[0], table[1], path[0], path[1]].map(|s| s * 1e3);
-                write!(
-                    f,
-                    "{file} goes from s = {first:.3} mm to {last:.3} mm, the path from {from:.3} mm to {to:.3} mm; \
-                     give forces for all of it"
-                )
-            }
-        }
-    }
-}
-
-impl core::error::Error for Mismatch {}
 
 /// Arc lengths that differ by less are the same (m).
 const SAME_LENGTH: f64 = 1e-6;
@@ -109,9 +68,13 @@ impl ForceTable {
         // Every row is checked before any gives the file up.
         let rows: Vec<_> = table.records.iter().map(row).collect();
         let rows: Option<Vec<_>> = rows.into_iter().collect();
+        let number = |record: Option<&Record>| record.map_or(1, |record| record.line);
+        let lines = Lines::new(text);
+        let ends = [number(table.records.first()), number(table.records.last())];
+        let ends = ends.map(|number| (number, lines.line(number).to_owned()));
         let (rows, warnings) = table.finish(rows)?;
         let (wrenches, s): (Vec<_>, Vec<Option<f64>>) = rows.into_iter().unzip();
-        Ok(Self { file: file.to_owned(), s: s.into_iter().collect(), wrenches, warnings })
+        Ok(Self { file: file.to_owned(), s: s.into_iter().collect(), wrenches, warnings, ends })
     }
 
     /// The load along a path, by rows or between those nearest by arc length; the
@@ -126,18 +89,8 @@ impl ForceTable {
         frame: ForceFrame,
         axis: Unit<Vector3<f64>>,
         surface: Surface,
-    ) -> Result<Load, Mismatch> {
-        let (count, file) = (path.points.len(), || self.file.clone());
-        if let Some(s) = &self.s {
-            let ends = [s[0], s[s.len() - 1]];
-            let of = path.points.iter().map(|point| point.s);
-            let path = [of.clone().fold(f64::INFINITY, f64::min), of.fold(f64::NEG_INFINITY, f64::max)];
-            if path[0] < ends[0] - SAME_LENGTH || path[1] > ends[1] + SAME_LENGTH {
-                return Err(Mismatch::Beyond { file: file(), table: ends, path });
-            }
-        } else if self.wrenches.len() != count {
-            return Err(Mismatch::Rows { file: file(), rows: self.wrenches.len(), points: count });
-        }
+    ) -> Result<Load, Diagnostics> {
+        self.check(path)?;
         let mut undirected = Vec::new();
         let contacts = path.points.iter().enumerate().map(|(i, point)| {
             let mut contact = contact(point, axis, surface, 1.0);
@@ -158,6 +111,38 @@ impl ForceTable {
         });
         let contacts = contacts.collect();
         Ok(Load { contacts, revolution: Vec::new(), undirected })
+    }
+
+    /// Holds the rows against those of a path.
+    fn check<const N: usize>(&self, path: &SolvedPath<N>) -> Result<(), Diagnostics> {
+        let [first, last] = [0, 1];
+        let Some(s) = &self.s else {
+            let (rows, points) = (self.wrenches.len(), path.points.len());
+            let message = format!("here are {}, the path has {}", count(rows, "row"), count(points, "point"));
+            let help = "give a row for each point, or the arc length of each row as `s [mm]`";
+            return if rows == points { Ok(()) } else { Err(self.problem(last, message, help)) };
+        };
+        let of_path = path.points.iter().map(|point| point.s);
+        let [from, to] = [f64::min, f64::max].map(|of| of_path.clone().reduce(of).unwrap_or(0.0));
+        let mm = |length: f64| format!("{:.3} mm", length * 1e3);
+        let help = format!("give forces for all of it, from {} to {}", mm(from), mm(to));
+        if from < s[0] - SAME_LENGTH {
+            let message = format!("the forces begin at s = {}, the path at {}", mm(s[0]), mm(from));
+            return Err(self.problem(first, message, &help));
+        }
+        let end = s[s.len() - 1];
+        if to > end + SAME_LENGTH {
+            let message = format!("the forces end at s = {}, the path at {}", mm(end), mm(to));
+            return Err(self.problem(last, message, &help));
+        }
+        Ok(())
+    }
+
+    /// A problem with the first row (0) or the last (1).
+    fn problem(&self, end: usize, message: String, help: &str) -> Diagnostics {
+        let (number, text) = &self.ends[end];
+        let width = text.chars().count();
+        Diagnostic::new(&self.file, Line { number: *number, text }, (1, width), message, help).into()
     }
 
     /// The wrench at an arc length, linear between rows.

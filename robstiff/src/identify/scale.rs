@@ -28,7 +28,7 @@ pub fn off_by_one_factor(campaign: &Campaign, estimates: &[Estimate]) -> Option<
     let (median, _) = factors.get(factors.len() / 2).copied().filter(|_| factors.len() > 1)?;
     let is_alike =
         |&(factor, unsure): &(f64, f64)| factor + unsure >= median / ALIKE && factor - unsure <= median * ALIKE;
-    if (FARTHEST.recip()..FARTHEST).contains(&median) || !factors.iter().all(is_alike) {
+    if median <= 0.0 || (FARTHEST.recip()..FARTHEST).contains(&median) || !factors.iter().all(is_alike) {
         return None;
     }
     let is_softer = median > 1.0;

@@ -63,8 +63,8 @@ const DEGREES: f64 = 180.0 / core::f64::consts::PI;
 
 impl<'r, R: Robot<N> + Sync, const N: usize> CartesianSpace<'r, R, N> {
     /// The space of positions along x, y and z (m) of the base frame, where the tool
-    /// stands as it says. What is turned furthest comes back nearest to the middle of the joints'
-    /// ranges.
+    /// stands as it says. Of joint coordinates that are a whole turn apart, a posture has those
+    /// nearest to the middle of the joints' ranges.
     pub fn new(robot: &'r R, axes: [Axis; 3], tool: Tool) -> Self {
         let limits = robot.limits();
         let middle = |i: usize| limits[i].map_or(0.0, |[low, high]| 0.5 * (low + high));

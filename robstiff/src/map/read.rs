@@ -41,6 +41,16 @@ pub enum Over {
     Positions(Box<Positions>),
 }
 
+impl Over {
+    /// Its axes.
+    pub fn axes(&self) -> &[Axis] {
+        match self {
+            Self::Joints(axes) => axes,
+            Self::Positions(positions) => &positions.axes,
+        }
+    }
+}
+
 /// Positions of the TCP, and how the tool stands there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Positions {

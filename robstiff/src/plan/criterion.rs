@@ -146,7 +146,7 @@ impl Judge {
         (0..self.model.len()).map(std).collect()
     }
 
-    /// `log det` of the scaled information of some numbers, by their count.
+    /// `log det` of the scaled information of some numbers.
     fn log_det(&self, information: &DMatrix<f64>, numbers: &[usize]) -> f64 {
         let Some(factor) = self.of(information, numbers).cholesky() else { return f64::NEG_INFINITY };
         2.0 * factor.l_dirty().diagonal().iter().map(|pivot| pivot.ln()).sum::<f64>()

@@ -164,6 +164,17 @@ pub struct Number {
 /// of 2.33 standard errors, is met in half the campaigns there.
 pub const TOLD_APART: f64 = 3.0;
 
+/// Whether measurements after a campaign can be planned.
+///
+/// # Errors
+/// A campaign of another kind.
+pub fn can_follow(campaign: &Campaign) -> Result<(), Error> {
+    match &campaign.data {
+        Data::Displacement(_) | Data::Position(_) => Ok(()),
+        Data::Clamped(_) => Err(Error(String::from("planning needs a campaign of kind `displacement` or `position`"))),
+    }
+}
+
 /// Plans the measurements after a campaign that was traced.
 ///
 /// # Errors

@@ -18,11 +18,11 @@ use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
 use robstiff_robots::effect::gravity_sag::GRAVITY;
 
-use super::Options;
 use super::regressors::Visit;
+use super::{Options, can_follow};
+use crate::Robot;
 use crate::campaign::{Campaign, Data, Displacements, Positions};
 use crate::identify::Error;
-use crate::{JointKind, Robot};
 
 /// The bases of the sequence, a joint each.
 const PRIMES: [u32; 8] = [2, 3, 5, 7, 11, 13, 17, 19];
@@ -52,12 +52,11 @@ impl Space {
     /// # Errors
     /// A campaign of another kind; no pose in the region.
     pub fn new(campaign: &Campaign, options: &Options) -> Result<Self, Error> {
+        can_follow(campaign)?;
         let visited: Vec<&[f64]> = match &campaign.data {
             Data::Displacement(data) => data.rows.iter().map(|row| &row.q[..]).collect(),
             Data::Position(data) => data.rows.iter().map(|row| &row.q[..]).collect(),
-            Data::Clamped(_) => {
-                return Err(Error(String::from("planning needs a campaign of kind `displacement` or `position`")));
-            }
+            Data::Clamped(_) => Vec::new(),
         };
         let mut assumptions = Vec::new();
         let ranges = ranges(campaign, &visited, &mut assumptions);
@@ -145,10 +144,7 @@ fn ranges(campaign: &Campaign, visited: &[&[f64]], assumptions: &mut Vec<String>
         joint.limits.unwrap_or_else(|| {
             let seen = visited.iter().map(|q| q[index]);
             let range = seen.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q), high.max(q)]);
-            let [low, high] = range.map(|q| match joint.kind {
-                JointKind::Revolute => q.to_degrees(),
-                JointKind::Prismatic => q * 1e3,
-            });
+            let [low, high] = range.map(|q| joint.for_people(q));
             without.push(format!("{} [{low:.0}, {high:.0}] {}", index + 1, joint.people_unit()));
             range
         })

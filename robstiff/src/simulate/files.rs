@@ -27,12 +27,13 @@ pub struct Files {
 impl Simulated {
     /// The texts of the files.
     pub fn files(&self) -> Files {
-        let observations = match (&self.data, &self.scenario.measures) {
-            (Data::Displacement(data), Measures::Displacements(under)) => ("loads.csv", self.loads(data, under)),
-            (Data::Position(data), _) => ("positions.csv", self.positions(data)),
+        let rows = match (&self.data, &self.scenario.measures) {
+            (Data::Displacement(data), Measures::Displacements(under)) => self.loads(data, under),
+            (Data::Position(data), Measures::Positions(_)) => self.positions(data),
             _ => unreachable!("what is simulated is what the scenario measures"),
         };
-        let campaign = self.campaign(observations.0);
+        let name = self.scenario.measures.file();
+        let (campaign, observations) = (self.campaign(name), (name, rows));
         Files { campaign, observations, robot: self.declared.to_yaml(), truth: self.truth.to_yaml() }
     }
 

@@ -76,6 +76,16 @@ pub enum Measures {
     Positions(UnderPayloads),
 }
 
+impl Measures {
+    /// The name of the file of observations.
+    pub fn file(&self) -> &'static str {
+        match self {
+            Self::Displacements(_) => "loads.csv",
+            Self::Positions(_) => "positions.csv",
+        }
+    }
+}
+
 /// Forces and moments, and how displacements under them are read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnderForces {

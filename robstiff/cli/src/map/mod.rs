@@ -73,6 +73,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => input::complain_if_rigid(&robot),
     }
     let task = task(&arguments.map, &robot)?;
+    // Before what may take minutes.
+    let varying = task.over.axes().iter().filter(|axis| axis.varies()).count();
+    if varying < 2
+        && let Some(path) = arguments.svg.as_ref().or(arguments.html.as_ref())
+    {
+        return Err(Failure::Usage(format!(
+            "{} is a picture, which needs two coordinates that vary; in {} {varying} does",
+            path.display(),
+            arguments.map.display()
+        )));
+    }
     let mut files = Files::default();
     files.protect(&arguments.robot);
     files.protect(&arguments.map);
@@ -90,7 +101,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }?;
     if mapped.summary.unreachable == mapped.summary.cells {
         // A page without a number, and tables of nothing.
-        return Err(Failure::new(format_args!("no pose reaches any of it\n{}", mapped.page().trim_end())));
+        return Err(Failure::new(format_args!(
+            "{}: no pose reaches any of it\n{}",
+            arguments.map.display(),
+            mapped.page().trim_end()
+        )));
     }
     if let Some(path) = &arguments.json {
         files.add(path, json::document(&mapped.json()));
@@ -158,9 +173,7 @@ fn map<const N: usize>(
     mapped.mapped.robot.clone_from(&robot.name);
     let pictures = [(&arguments.svg, page::svg as fn(&Mapped, &Slices) -> String), (&arguments.html, page::html)];
     for (path, draw) in pictures.into_iter().filter_map(|(path, draw)| Some((path.as_ref()?, draw))) {
-        let Some(slices) = &mapped.slices else {
-            return Err(Failure::Usage("a picture needs two coordinates that vary".to_owned()));
-        };
+        let slices = mapped.slices.as_ref().expect("it was asked before whether two coordinates vary");
         files.add(path, draw(&mapped.mapped, slices));
     }
     Ok(mapped.mapped)
@@ -287,19 +300,12 @@ fn put(file: &mut Growing, bytes: &[u8]) -> Result<(), Failure> {
 fn size(text: &str) -> Result<[f64; 3], String> {
     let help = "a size is three lengths with their unit, e.g. `400 x 300 x 100 mm`";
     let parts: Vec<&str> = text.split(['x', '×']).map(str::trim).collect();
-    let [x, y, z] = parts.as_slice() else { return Err(help.to_owned()) };
-    // The last unit is that of all without one.
-    let unit = z.trim_start_matches(|c: char| c.is_ascii_digit() || ".+-eE".contains(c)).trim();
-    let mut lengths = [0.0; 3];
-    for (length, part) in lengths.iter_mut().zip([x, y, z]) {
-        let bare = part.ends_with(|c: char| c.is_ascii_digit() || c == '.');
-        let whole = if bare { format!("{part} {unit}") } else { (*part).to_owned() };
-        *length = input::with_unit(&whole, Dimension::Length)?;
-        if *length < 0.0 {
-            return Err(format!("{whole} is negative; {help}"));
-        }
+    let &[x, y, z] = parts.as_slice() else { return Err(help.to_owned()) };
+    let lengths = input::three_with_unit([x, y, z], Dimension::Length)?;
+    match lengths.iter().zip(parts).find(|(length, _)| **length < 0.0) {
+        Some((_, part)) => Err(format!("{part} is negative; {help}")),
+        None => Ok(lengths),
     }
-    Ok(lengths)
 }
 
 /// Says how many cells are to be computed: on a terminal, and where they are many.

@@ -2,11 +2,9 @@
 
 use std::fmt::Write as _;
 
-use robstiff::JointKind;
 use robstiff::campaign::{Campaign, Data};
 use robstiff::plan::{Number, Outlook, Pair, Plan, Planned, Visit};
 use robstiff::trace::Trace;
-use robstiff_robots::Joint;
 use serde_json::{Value, json};
 
 use crate::json::{number, numbers};
@@ -24,16 +22,8 @@ pub fn document(plan: &Plan, trace: &Trace, campaign: &Campaign) -> Value {
     })
 }
 
-/// Degrees for joints that turn, millimetres for one that slides.
-pub fn people(q: f64, joint: &Joint) -> f64 {
-    match joint.kind {
-        JointKind::Revolute => q.to_degrees(),
-        JointKind::Prismatic => q * 1e3,
-    }
-}
-
 fn proposal(planned: &Planned, plan: &Plan, campaign: &Campaign) -> Value {
-    let q = planned.visit.q.iter().zip(&campaign.robot.joints).map(|(&q, joint)| people(q, joint));
+    let q = planned.visit.q.iter().zip(&campaign.robot.joints).map(|(&q, joint)| joint.for_people(q));
     let mut proposal = json!({
         "q_deg": numbers(q),
         "force_N": numbers(planned.greatest[..3].iter().copied()),
@@ -120,7 +110,7 @@ pub fn table(plan: &Plan, campaign: &Campaign) -> String {
     for (index, planned) in (1..).zip(&plan.proposals) {
         for load in loads(&planned.visit, campaign) {
             write!(csv, "next {index},next {index}").expect("a string takes any text");
-            let q = planned.visit.q.iter().zip(joints).map(|(&q, joint)| rounded(people(q, joint), 1e6));
+            let q = planned.visit.q.iter().zip(joints).map(|(&q, joint)| joint.for_people(q));
             let load = load.into_iter().take(columns.len()).map(|value| rounded(value, 1e3));
             for value in q.chain(load) {
                 write!(csv, ",{value}").expect("a string takes any text");

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use robstiff::plan::{self, Options, plan};
 use robstiff::trace::{self, trace};
-use robstiff_robots::quantity::{self, Dimension};
+use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
@@ -68,18 +68,20 @@ enum Criterion {
 
 fn size(dimension: Dimension) -> impl Fn(&str) -> Result<f64, String> + Clone {
     move |text| {
-        let value = quantity::parse(text, dimension).map_err(|error| error.to_string())?;
+        let value = input::with_unit(text, dimension)?;
         if value > 0.0 { Ok(value) } else { Err(format!("{} above zero is expected here", dimension.name())) }
     }
 }
 
 fn height(text: &str) -> Result<f64, String> {
-    quantity::parse(text, Dimension::Length).map_err(|error| error.to_string())
+    input::with_unit(text, Dimension::Length)
 }
 
 /// Plans.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let campaign = input::campaign(&arguments.campaign)?;
+    // Before minutes of tracing.
+    plan::can_follow(&campaign).map_err(Failure::about(&campaign))?;
     let mut files = Files::default();
     files.protect_campaign(&campaign);
     let named = |name: &str| arguments.out.as_ref().map(|out| out.join(name));

@@ -4,7 +4,7 @@ use robstiff::campaign::{Campaign, Data};
 use robstiff::plan::{Outlook, Pair, Plan};
 use robstiff::trace::Trace;
 
-use super::document::{columns_of_loads, people};
+use super::document::columns_of_loads;
 use crate::text::{Table, count, decimals, significant};
 
 /// The page.
@@ -38,7 +38,7 @@ fn proposals(plan: &Plan, campaign: &Campaign) -> String {
     let mut table = Table::new(0, header);
     for (index, planned) in (1..).zip(&plan.proposals) {
         let mut row = vec![format!("{index}")];
-        row.extend(planned.visit.q.iter().zip(joints).map(|(&q, joint)| decimals(people(q, joint), 1)));
+        row.extend(planned.visit.q.iter().zip(joints).map(|(&q, joint)| decimals(joint.for_people(q), 1)));
         let greatest = match &campaign.data {
             Data::Position(_) => planned.visit.payloads().into_iter().reduce(f64::max).into_iter().collect(),
             Data::Displacement(_) | Data::Clamped(_) => planned.greatest.to_vec(),

@@ -36,6 +36,9 @@ use crate::elements::{plays, turn};
 /// An axis whose deflection goes against its torque; rows that load no axis; declared
 /// effects that do not go with the compliances found.
 pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identification, Error> {
+    if rows.iter().all(|row| row.deflection == 0.0) {
+        return Err(Error(String::from("every deflection is zero: nothing was read of how the axes give way")));
+    }
     let less = without_laws(&campaign.robot, rows);
     // What is left may be a curve of a gear.
     let wild = wild::wild_rows(&less, &torques(&less), false, &wild::Room::new(&less));

@@ -19,8 +19,8 @@ const FINE: f64 = 1e-6;
 /// because their torques are.
 const PROPORTIONAL: f64 = 0.25;
 
-/// Noise of half a step makes rows of one torque differ in how they are rounded. No more of
-/// them count as one than leaves what is left then as it is.
+/// Noise of half a step makes rows of one torque differ in how they are rounded: no more than
+/// so many rows count as one.
 const MOST_ALIKE: f64 = 4.0;
 
 /// The least variance of the readings of each axis (rad^2 or m^2), from 0, that their own
