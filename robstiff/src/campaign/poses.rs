@@ -2,6 +2,7 @@
 //! coordinates.
 
 use std::borrow::ToOwned;
+use std::collections::HashMap;
 use std::format;
 use std::string::String;
 use std::vec::Vec;
@@ -49,6 +50,8 @@ pub struct Columns {
 #[derive(Default)]
 struct Ids {
     names: Vec<String>,
+    /// The index of each name.
+    known: HashMap<String, usize>,
     /// `usize::MAX` where no row is complete.
     first: Vec<usize>,
 }
@@ -88,10 +91,14 @@ impl Columns {
 impl Ids {
     /// The index of an id, new ones at the end.
     fn index_of(&mut self, id: &str) -> usize {
-        // Ids come in runs, so the last ones are the likely ones.
-        self.names.iter().rposition(|known| known == id).unwrap_or_else(|| self.push(id.to_owned()))
+        self.known.get(id).copied().unwrap_or_else(|| {
+            let index = self.push(id.to_owned());
+            self.known.insert(id.to_owned(), index);
+            index
+        })
     }
 
+    /// The index of an id that no row comes back to.
     fn push(&mut self, id: String) -> usize {
         self.names.push(id);
         self.first.push(usize::MAX);

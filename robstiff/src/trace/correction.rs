@@ -81,11 +81,11 @@ impl Correction {
             }
         }
         let left = kept.iter().flat_map(|&row| trace.residuals[row].after);
-        let rows = Rows {
-            x,
-            y: DVector::from_iterator(3 * kept.len(), left),
-            pose: kept.iter().flat_map(|&row| [samples.rows[row].pose; 3]).collect(),
-        };
+        let mut of_pose = std::vec![Vec::new(); samples.poses];
+        for (i, &row) in kept.iter().enumerate() {
+            of_pose[samples.rows[row].pose].extend(3 * i..3 * i + 3);
+        }
+        let rows = Rows { x, y: DVector::from_iterator(3 * kept.len(), left), of_pose };
         let held_out: Vec<bool> = data.poses.iter().map(|id| trace.held_out.contains(&id.to_string())).collect();
         let poses = samples.poses;
         if poses < FEWEST_POSES {
@@ -94,7 +94,7 @@ impl Correction {
         // By pose, the squares left without and with it.
         let mut squares = Vec::new();
         let mut judge = |train: &dyn Fn(usize) -> bool| {
-            let ridge = rows.ridge(poses, train);
+            let ridge = rows.ridge(train);
             let weights = rows.solve(ridge, train);
             squares.extend((0..poses).filter(|&pose| !train(pose)).filter_map(|pose| rows.squares(pose, &weights)));
             (ridge, weights)
@@ -103,7 +103,7 @@ impl Correction {
             judge(&|pose| !held_out[pose])
         } else {
             (0..PARTS).for_each(|part| drop(judge(&|pose| pose % PARTS != part)));
-            let ridge = rows.ridge(poses, &|_| true);
+            let ridge = rows.ridge(&|_| true);
             (ridge, rows.solve(ridge, &|_| true))
         };
         let count: usize = squares.iter().map(|(_, _, count)| count).sum();
@@ -189,14 +189,16 @@ fn names(joints: &[JointKind]) -> Vec<String> {
 struct Rows {
     x: DMatrix<f64>,
     y: DVector<f64>,
-    pose: Vec<usize>,
+    /// Which of them are of each pose.
+    of_pose: Vec<Vec<usize>>,
 }
 
 impl Rows {
     /// The weights from the poses of some kind; features are measured by their own
     /// size.
-    fn solve(&self, ridge: f64, of_pose: &dyn Fn(usize) -> bool) -> DVector<f64> {
-        let rows: Vec<usize> = (0..self.pose.len()).filter(|&row| of_pose(self.pose[row])).collect();
+    fn solve(&self, ridge: f64, is_asked: &dyn Fn(usize) -> bool) -> DVector<f64> {
+        let asked = self.of_pose.iter().enumerate().filter(|(pose, _)| is_asked(*pose));
+        let rows: Vec<usize> = asked.flat_map(|(_, rows)| rows).copied().collect();
         let (x, y) = (self.x.select_rows(&rows), self.y.select_rows(&rows));
         let Normal { mut gram, moment, .. } = Normal::new(&x, &y);
         let least = f64::EPSILON * gram.diagonal().max();
@@ -209,13 +211,13 @@ impl Rows {
 
     /// The ridge by which parts of the poses of some kind, each left out in turn,
     /// are predicted best.
-    fn ridge(&self, poses: usize, of_pose: &dyn Fn(usize) -> bool) -> f64 {
+    fn ridge(&self, is_asked: &dyn Fn(usize) -> bool) -> f64 {
         let left = |ridge: f64| -> f64 {
             let part = |part: usize| {
                 // Not the parts that others judge by.
                 let out = |pose: usize| (pose / PARTS + pose) % PARTS == part;
-                let weights = self.solve(ridge, &|pose| of_pose(pose) && !out(pose));
-                let judged = (0..poses).filter(|&pose| of_pose(pose) && out(pose));
+                let weights = self.solve(ridge, &|pose| is_asked(pose) && !out(pose));
+                let judged = (0..self.of_pose.len()).filter(|&pose| is_asked(pose) && out(pose));
                 judged.filter_map(|pose| self.squares(pose, &weights)).map(|(_, with, _)| with).sum::<f64>()
             };
             (0..PARTS).map(part).sum()
@@ -227,9 +229,9 @@ impl Rows {
     /// The squares left of a pose without and with the weights, and of how many
     /// components; none where it has none.
     fn squares(&self, pose: usize, weights: &DVector<f64>) -> Option<(f64, f64, usize)> {
-        let rows: Vec<usize> = (0..self.pose.len()).filter(|&row| self.pose[row] == pose).collect();
-        let y = self.y.select_rows(&rows);
-        let with = &y - self.x.select_rows(&rows) * weights;
+        let rows = &self.of_pose[pose];
+        let y = self.y.select_rows(rows);
+        let with = &y - self.x.select_rows(rows) * weights;
         (!rows.is_empty()).then(|| (y.norm_squared(), with.norm_squared(), rows.len()))
     }
 }

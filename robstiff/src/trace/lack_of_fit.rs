@@ -193,11 +193,12 @@ fn ranks(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
     let mut ranks = std::vec![0.0; values.len()];
+    let mut below = 0;
     for equal in order.chunk_by(|&a, &b| values[a] == values[b]) {
-        let first = order.iter().position(|&i| i == equal[0]).unwrap_or_default();
         for &i in equal {
-            ranks[i] = first as f64 + (equal.len() - 1) as f64 / 2.0;
+            ranks[i] = below as f64 + (equal.len() - 1) as f64 / 2.0;
         }
+        below += equal.len();
     }
     ranks
 }
