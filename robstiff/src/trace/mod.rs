@@ -8,7 +8,7 @@
 //! for, admitted by the family-wise [`bootstrap`] test and by poses held out;
 //! [`alias`] says what the data cannot tell apart; [`lack_of_fit`] asks whether
 //! structure is left, [`beyond`] whether something without a name accounts for it or for what
-//! names do, [`mod@along`] whether it points where a named effect does, and [`verdict`] takes
+//! names do, [`wander`] whether a slip is what goes there and back, [`mod@along`] whether it points where a named effect does, and [`verdict`] takes
 //! names back and draws the conclusion; `search.rs` has the order of all this.
 //!
 //! Levels: an effect is named, and structure is found, at a family-wise
@@ -44,6 +44,7 @@ pub mod step;
 #[cfg(test)]
 mod tests;
 pub mod verdict;
+pub mod wander;
 #[cfg(test)]
 mod wild_tests;
 mod written;

@@ -5,17 +5,20 @@
 //! are taken back that [the verdict](super::verdict) does not hold to be worth it.
 
 use std::format;
-use std::string::String;
+use std::string::{String, ToString};
 use std::vec::Vec;
 
 use super::bench::Bench;
 use super::beyond::{self, Beyond};
 use super::isolated::Event;
 use super::lack_of_fit::{self, AGREE, LackOfFit, StructureTest};
-use super::model::Fitted;
+use super::model::{Fitted, Named};
 use super::selection::{Selection, select};
 use super::settle::{settled, told};
+use super::step::Step;
 use super::verdict::{self, Verdict};
+use super::wander;
+use super::wander::displacements::instead_of_slips;
 use super::yardstick::{self, Yardstick};
 use super::{Options, Progress, held_out};
 use crate::identify::prepare::Prepared;
@@ -104,6 +107,12 @@ pub fn search<'c>(
         left = test(bench, &selection.model)?;
         left.structure = true;
     }
+    if let Some(without) = instead_of_slips(bench, &selection.model) {
+        looks_like.push(wander::WORDS.to_string());
+        taken_back.extend(leave_to_what_has_no_name(bench, &mut selection, &without, wander::WORDS));
+        left = test(bench, &selection.model)?;
+        left.structure = true;
+    }
     if looks_like.is_empty() {
         take_back(bench, &mut selection, &mut left, &mut taken_back, options, test)?;
     }
@@ -142,6 +151,25 @@ fn left_by(bench: &Bench<'_>, prepared: &Prepared<'_>, model: &Fitted, options: 
     bench.spare_memory();
     let setting = bench.at(&model.named)?;
     Ok(lack_of_fit::test(&setting, model, prepared.data, yardstick, &bench.noise.covariance, options))
+}
+
+/// Leaves a model as it is without what something nameless is said better by; the names that are
+/// lost.
+fn leave_to_what_has_no_name(
+    bench: &Bench<'_>,
+    selection: &mut Selection,
+    without: &Fitted,
+    nameless: &str,
+) -> Vec<String> {
+    let stays = |one: &Named| without.named.contains(one);
+    let with_p = selection.model.named.iter().zip(&selection.p_values);
+    let p_values = with_p.filter(|(one, _)| stays(one)).map(|(_, p)| *p).collect();
+    let lost: Vec<Named> = selection.model.named.iter().copied().filter(|one| !stays(one)).collect();
+    let mut step = Step::bare(bench.names(&without.named));
+    step.outcome = format!("beside what has no name in the catalogue: {nameless}");
+    selection.steps.push(step);
+    (selection.model, selection.p_values) = (without.clone(), p_values);
+    bench.names(&lost)
 }
 
 /// Full names of a model that are not among those beside something nameless.

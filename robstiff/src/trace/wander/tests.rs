@@ -1,0 +1,60 @@
+//! Slips of displacements, and what is like them.
+
+use std::string::{String, ToString};
+use std::vec;
+use std::vec::Vec;
+
+use nalgebra::Vector3;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use super::WORDS;
+use crate::campaign::Observation;
+use crate::campaign::made::{Plan, normal};
+use crate::trace::tests::{names, traced};
+use crate::trace::{Trace, Verdict};
+
+/// Thirty poses under three loads each, all held against an unloaded reading from before.
+fn plan(seed: u64) -> Plan {
+    Plan { poses: 30, visits: 1, ramp: vec![0.35, 0.7, 1.0], ..Plan::new(seed) }
+}
+
+const ROWS: f64 = 90.0;
+
+/// A campaign in which readings move by so much (m) at each row.
+fn moved(plan: &Plan, mut course: impl FnMut(usize) -> Vector3<f64>) -> Trace {
+    traced(&plan.run_with(|row, read: &mut Observation| {
+        let by = course(row);
+        (0..3).for_each(|axis| read.displacement[axis] += by[axis]);
+    }))
+}
+
+fn slips(trace: &Trace) -> Vec<String> {
+    names(trace).into_iter().filter(|name| name.contains("slip")).collect()
+}
+
+/// The base wanders, a step a row.
+#[test]
+fn a_walk_is_no_slip() {
+    let (mut told, mut as_it_should_be) = (0, 0);
+    for seed in 0..6 {
+        let (mut random, mut at) = (ChaCha8Rng::seed_from_u64(seed), Vector3::zeros());
+        let trace = moved(&plan(seed), |_| {
+            at += Vector3::from_fn(|_, _| 8e-5 / ROWS.sqrt() * normal(&mut random));
+            at
+        });
+        told += usize::from(trace.looks_like.contains(&WORDS.to_string()));
+        as_it_should_be += usize::from(slips(&trace).is_empty() && trace.verdict != Verdict::Adequate);
+    }
+    assert!(as_it_should_be >= 5 && told >= 3, "{as_it_should_be} and {told} of 6");
+}
+
+/// A slip keeps its name, whenever it was and however little.
+#[test]
+fn a_slip_is_no_drift() {
+    for (seed, (moment, size)) in (1..).zip([(12, 4e-5), (40, 3e-5), (60, 2e-4), (78, 5e-5)]) {
+        let by = size * Vector3::new(0.6, -0.5, 0.62);
+        let trace = moved(&plan(seed), |row| if row >= moment { by } else { Vector3::zeros() });
+        assert_eq!((names(&trace), trace.verdict), (vec!["base_slip@base".to_string()], Verdict::Explained), "{seed}");
+    }
+}
