@@ -131,8 +131,9 @@ fn where_a_payload_hangs_is_named_and_not_written() {
         assert!(trace.description.effects.is_empty());
         for (axis, truth) in ["x", "y", "z"].into_iter().zip(off) {
             let number = trace.effects[0].effect.parameters.iter().find(|number| number.name == axis);
-            let Some((value, std)) = number.and_then(|number| Some((number.value, number.std?))) else { continue };
-            assert!((value - truth).abs() < 4.0 * std, "{axis}: {value} +- {std}");
+            let number = number.expect(axis);
+            let std = number.std.expect("a fitted number");
+            assert!((number.value - truth).abs() < 4.0 * std, "{number:?}");
         }
     }
 }
@@ -150,7 +151,7 @@ fn gears_are_named_with_their_knees() {
     for (_, trace) in found {
         let named = &trace.effects[0];
         for (name, truth) in [("added", added), ("knee", knee)] {
-            let Some(number) = named.effect.parameters.iter().find(|number| number.name == name) else { continue };
+            let number = named.effect.parameters.iter().find(|number| number.name == name).expect(name);
             let std = number.std.expect("a fitted number");
             assert!((number.value - truth).abs() < 4.0 * std && std < 0.2 * truth, "{number:?}");
         }

@@ -135,16 +135,20 @@ fn double_precision_is_as_near_as_stated() {
 type Eight = ([f64; 8], [f64; 8], bool);
 
 /// Holds sines from a table to what is stated, of eight angles at once. The largest error in units in the last place
-/// of `f64`; 0 where the machine has not the instructions.
+/// of `f64`; `None` where the machine has not the instructions.
 #[cfg(target_arch = "x86_64")]
-fn check_table(name: &str, domain: f64, bound: f64, sin_cos: impl Fn(&[f64; 8]) -> Option<Eight>) -> f64 {
+fn check_table(name: &str, domain: f64, bound: f64, sin_cos: impl Fn(&[f64; 8]) -> Option<Eight>) -> Option<f64> {
+    if sin_cos(&[0.0; 8]).is_none() {
+        std::println!("skipped: this machine has no instructions for sines from a table {name}");
+        return None;
+    }
     let available = |eight: &[f64; 8]| sin_cos(eight).expect("it is available");
     // Only numbers that an `f32` holds too, where it is about these.
     let round = |x: f64| if domain > f64::from(f32::DOMAIN) { x } else { f64::from(x as f32) };
     let angles: std::vec::Vec<f64> = angles(domain).map(round).filter(|x| x.abs() <= domain).collect();
     let mut all = std::vec::Vec::new();
     for eight in angles.as_chunks::<8>().0 {
-        let Some((sines, cosines, is_usual)) = sin_cos(eight) else { return 0.0 };
+        let (sines, cosines, is_usual) = available(eight);
         assert!(is_usual, "{name}: {eight:?}");
         let (of_negative_sines, of_negative_cosines, _) = available(&eight.map(|x| -x));
         assert_eq!((of_negative_sines.map(|s| -s), of_negative_cosines), (sines, cosines), "{name}: {eight:?}");
@@ -162,7 +166,7 @@ fn check_table(name: &str, domain: f64, bound: f64, sin_cos: impl Fn(&[f64; 8]) 
     }
     let (sines, cosines, _) = available(&[0.0; 8]);
     assert_eq!((sines, cosines), ([0.0; 8], [1.0; 8]), "{name}");
-    places
+    Some(places)
 }
 
 /// By the two passes over a table of the circle, in the numbers of one of its modules, where the machine has AVX2.
@@ -191,9 +195,9 @@ fn tables_are_as_near_as_stated() {
     check_table("of the circle, f32", f32::DOMAIN.into(), f32::BOUND, circle!(f32, single));
     // Numbers from the table may be larger than the result, and so is what they are rounded by.
     let places = check_table("of the circle, f64", f64::DOMAIN, f64::BOUND, circle!(f64, double));
-    assert!(places <= 2.0, "{places} units in the last place");
+    assert!(places.is_none_or(|places| places <= 2.0), "{places:?} units in the last place");
     let places = check_table("in registers, f64", f64::DOMAIN, f64::BOUND, tables::sin_cos_if_available);
-    assert!(places <= 2.0, "{places} units in the last place");
+    assert!(places.is_none_or(|places| places <= 2.0), "{places:?} units in the last place");
 }
 
 #[test]

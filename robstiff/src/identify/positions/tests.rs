@@ -42,8 +42,11 @@ fn declared_effects_are_in_the_prediction() {
     assert!(predicted(&robot, &campaign).expect("positions").max < 1e-12);
 }
 
-/// Payloads show the compliances of the joints that they load; the first, about which
-/// weights do not turn, keeps its value.
+/// The joints that weights at the TCP turn: not the first, and not the last, whose axis goes
+/// through it.
+const LOADED: core::ops::Range<usize> = 1..5;
+
+/// Payloads show the compliances of the joints that they load; the others keep their values.
 #[test]
 fn payloads_show_compliances() {
     let robot = six_axis();
@@ -55,13 +58,13 @@ fn payloads_show_compliances() {
         campaign.robot = declared.clone();
         let found = identified(&campaign).expect("payloads");
         assert!(found.rms < found.rms_declared);
-        assert_eq!(found.estimates[0].visibility, Visibility::Unseen);
-        for (estimate, joint) in found.estimates.iter().zip(&robot.joints).skip(1) {
-            let std = estimate.std.unwrap_or(f64::INFINITY);
+        assert_eq!([0, 5].map(|k| found.estimates[k].visibility.clone()), [Visibility::Unseen, Visibility::Unseen]);
+        for (estimate, joint) in found.estimates[LOADED].iter().zip(&robot.joints[LOADED]) {
+            let std = estimate.std.expect("a number that shows");
             within += usize::from((estimate.value - joint.compliance()).abs() <= 1.96 * std);
         }
     }
-    assert!((88..=100).contains(&within), "{within} of 100");
+    assert!((70..=80).contains(&within), "{within} of 80");
 }
 
 /// Poses with one payload are no witnesses of how sure two others are.
@@ -91,8 +94,8 @@ fn errors_of_the_table_do_not_matter_within_a_visit() {
     plan.hidden =
         vec![Effect::JointZeroOffset { joint: 2, value: 2e-3 }, Effect::JointZeroOffset { joint: 3, value: 3e-3 }];
     let off = of(&plan);
-    for (right, off) in right.iter().zip(&off).skip(1) {
-        let std = right.std.unwrap_or(f64::INFINITY);
+    for (right, off) in right[LOADED].iter().zip(&off[LOADED]) {
+        let std = right.std.expect("a number that shows");
         assert!((right.value - off.value).abs() < 0.2 * std, "{right:?} {off:?}");
     }
     // One payload all the time says less, and only with the table as it is.
@@ -136,8 +139,8 @@ fn a_position_that_does_not_belong_is_left_out() {
     let campaign = plan.run_with(|i, row| row.position[1] += if [31, 80].contains(&i) { 0.3 } else { 0.0 });
     let found = identified(&campaign).expect("payloads");
     assert_eq!((right.left_out.len(), found.left_out), (0, vec![33, 82]));
-    for (right, found) in right.estimates.iter().zip(&found.estimates).skip(1) {
-        let std = right.std.unwrap_or(f64::INFINITY);
+    for (right, found) in right.estimates[LOADED].iter().zip(&found.estimates[LOADED]) {
+        let std = right.std.expect("a number that shows");
         assert!((right.value - found.value).abs() < std, "{right:?} {found:?}");
     }
     let off = found.rms_declared.expect("positions") / right.rms_declared.expect("positions");
