@@ -7,9 +7,10 @@
 //! turns about an axis `a` through a point `o` has `s = [a x (p - o); a]` with
 //! the TCP at `p`, one that slides along `a` has `s = [a; 0]`.
 //!
-//! The formulas are here once: the reference (`Generic`), the shares that a
-//! report shows, and the regressors of an identification all come from
-//! [`Geometry::unit_compliance`].
+//! The formulas of what is linear in the load are here once: the reference (`Generic`), the
+//! shares that a report shows, and the regressors of an identification all come from
+//! [`Geometry::unit_compliance`]. Those of gears that are not are with their effects
+//! ([`Effect`]).
 
 use core::fmt;
 

@@ -241,9 +241,10 @@ impl<'c> Prepared<'c> {
         Ok(())
     }
 
-    /// The column of the description's number that is lost in the noise by most, of those that
-    /// are and for which `may` holds: of two that look alike either may be seen without the
-    /// other. All columns where none stands out, for then the readings say nothing of any.
+    /// Of the description's numbers for which `may` holds, the column of the one that is lost in
+    /// the noise the most, if any is: one at a time, for of two that look alike either may be
+    /// seen without the other. All columns where none stands out, for then the readings say
+    /// nothing of any.
     pub fn lost(&self, total: &Normal, fitted: &Fit, may: impl Fn(usize) -> bool) -> Vec<usize> {
         let Some(inverse) = total.inverse(&fitted.columns) else { return Vec::new() };
         let freedom = total.rows.saturating_sub(fitted.columns.len()).max(1) as f64;

@@ -25,7 +25,7 @@ pub enum Column {
     Knee {
         /// The joint, from 1.
         joint: usize,
-        /// The torque at which the change is half done (Nm).
+        /// The torque at the knee (Nm).
         knee: f64,
     },
     /// The `gap` of a [`LostMotion`](crate::Effect) with a given knee.

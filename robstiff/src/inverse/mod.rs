@@ -186,13 +186,15 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
     }
 
     /// All solutions within the limits that were found, the nearest to the seed
-    /// first, each in the turn nearest to the seed. Where the closed form gives
-    /// the whole pose these are all there are, up to eight; where a joint may
-    /// stand anywhere, only where the seed has it. So they are for five axes where
-    /// the turn about the tool's axis is free, but for pairs so near to each
-    /// other that a search all around sees none of them; for six, what turns by 3
-    /// degrees tell apart. For other arms they are what descents from all over
-    /// the joint space found, for a redundant arm a choice of them.
+    /// first, each in the turn nearest to the seed.
+    ///
+    /// Where the closed form gives the whole pose these are all there are, up to
+    /// eight; where a joint may stand anywhere, it stands where the seed has it.
+    /// Where the turn about the tool's axis is free, that turn is searched: for five
+    /// axes all solutions are found but two so near to each other that the search
+    /// steps over both; for six, which have a family of them, those of turns 3
+    /// degrees apart. Other arms have what descents from all over the joint space
+    /// found, a redundant arm a choice of them.
     ///
     /// # Errors
     /// Why there is none.

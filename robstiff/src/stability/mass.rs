@@ -31,7 +31,8 @@ impl fmt::Display for MassError {
 
 impl core::error::Error for MassError {}
 
-/// Masses that differ by more than this in two directions are no statement.
+/// The least mass over the largest: where directions differ by more, the mass matrix is
+/// singular to rounding.
 const SINGULAR: f64 = 1e-9;
 
 /// The mass at the TCP in the base frame, 3 x 3 \[kg\]: `(J M^-1 J^T)^-1` with the

@@ -98,10 +98,11 @@ impl<'c> Beside<'c> {
     }
 }
 
-/// Where exact aliases of an effect are asked for: at the whole model's solution, for what the
-/// others come to without the effect may be nothing that is possible. But what a load is moved by
-/// there is also in how that effect answers, of which it would be an alias: numbers that enter
-/// the forward model as loads and lengths do are asked for where the others are without it.
+/// Where exact aliases of an effect are asked for: at the solution of the whole model. The others
+/// fitted without the effect may come to numbers that are physically impossible, so that is no
+/// place to ask at. But at the whole solution the effect's own numbers have moved the loads and
+/// lengths that rivals of its kind would move, and a rival would look like a copy of it: numbers
+/// that enter the forward model in this way are asked for where the others are without it.
 struct Alone<'c> {
     own: Beside<'c>,
     others: Option<Beside<'c>>,
@@ -286,8 +287,8 @@ fn witnesses(of_model: &[f64], of_rival: &[f64]) -> f64 {
 pub struct Rival {
     /// The full names of its effects.
     pub names: Vec<String>,
-    /// By how much its information criterion is above that of the model named;
-    /// below 6, odds are worse than twenty to one against it.
+    /// By how much its information criterion is above that of the model named. The odds against
+    /// it are `exp` of half of that (Kass and Raftery, JASA 90, 1995): 20 to 1 at 6.
     pub bic_difference: f64,
 }
 

@@ -192,7 +192,7 @@ pub fn missed(verdict: Verdict, test: &StructureTest) -> Option<(Verdict, String
     }
 }
 
-/// A probability with two digits.
+/// A probability as a sentence shows it.
 struct Shown(f64);
 
 impl fmt::Display for Shown {

@@ -109,8 +109,9 @@ impl<'c> Bench<'c> {
                             of_right = left_by(right);
                         }
                     }
-                    let better = with((0.5 * (low + high)).exp());
-                    if rss(&better) + unlikely((0.5 * (low + high)).exp().ln()) < rss(&bench) + unlikely(at.ln()) {
+                    let middle = 0.5 * (low + high);
+                    let better = with(middle.exp());
+                    if rss(&better) + unlikely(middle) < rss(&bench) + unlikely(at.ln()) {
                         bench = better;
                     }
                 }
