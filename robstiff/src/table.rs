@@ -332,6 +332,12 @@ impl<'t> Table<'t> {
         self.warnings.borrow_mut().push(format!("{}: {message}", self.file));
     }
 
+    /// What was warned of so far.
+    #[cfg(feature = "identify")]
+    pub fn noticed(&self) -> Vec<String> {
+        self.warnings.borrow().clone()
+    }
+
     fn problem(&self, line: usize, field: usize, message: &str, help: &str) -> Diagnostic {
         let source_line = self.lines.line(line);
         let line = Line { number: line, text: source_line };

@@ -19,7 +19,7 @@ pub struct Arguments {
     #[arg(value_name = "CUT.yaml")]
     cut: PathBuf,
     /// How many angles of a revolution are looked at
-    #[arg(long, value_name = "COUNT", default_value_t = 360, value_parser = clap::value_parser!(u32).range(4..=1_000_000))]
+    #[arg(long, value_name = "COUNT", default_value_t = 360, allow_hyphen_values = true, value_parser = input::whole::<u32>(4, 1_000_000))]
     samples: u32,
     /// Write the force over a revolution as a table to FILE
     #[arg(long, value_name = "FILE")]

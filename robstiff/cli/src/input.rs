@@ -50,7 +50,24 @@ pub fn with_unit(text: &str, dimension: Dimension) -> Result<f64, String> {
     Ok(value)
 }
 
-/// Three of them; the unit of the last is that of those without one.
+/// A whole number of an option, from and up to some.
+pub fn whole<T: TryFrom<u64>>(from: u64, to: u64) -> impl Fn(&str) -> Result<T, String> + Clone {
+    move |text| {
+        let number = text.trim().parse().ok().filter(|number| (from..=to).contains(number));
+        let of_type = number.and_then(|number| T::try_from(number).ok());
+        of_type.ok_or_else(|| match to {
+            u64::MAX => format!("a whole number from {from} on is expected here"),
+            _ => format!("a whole number from {from} to {to} is expected here"),
+        })
+    }
+}
+
+/// A seed.
+pub fn seed(text: &str) -> Result<u64, String> {
+    whole(0, u64::MAX)(text)
+}
+
+/// Three quantities; the unit of the last is that of those without one.
 pub fn three_with_unit(parts: [&str; 3], dimension: Dimension) -> Result<[f64; 3], String> {
     let [x, y, last] = parts.map(str::trim);
     let unit = last.trim_start_matches(|c: char| c.is_ascii_digit() || ".+-eE".contains(c)).trim();
@@ -198,6 +215,15 @@ mod tests {
         assert_eq!(with_unit("0.7", Dimension::Number), Ok(0.7));
         assert_eq!(with_unit(" 0.1", Dimension::Length), Err("`0.1` has no unit; write e.g. `0.1 mm`".to_owned()));
         assert_eq!(with_unit("4", Dimension::Time), Err("`4` has no unit; write e.g. `4 ms`".to_owned()));
+    }
+
+    #[test]
+    fn whole_numbers_are_within_their_range() {
+        assert_eq!(whole::<u16>(1, 200)("200"), Ok(200));
+        for wrong in ["0", "201", "-3", "1e2", "1.5", "many"] {
+            assert_eq!(whole::<u16>(1, 200)(wrong), Err("a whole number from 1 to 200 is expected here".to_owned()));
+        }
+        assert_eq!(seed("-1"), Err("a whole number from 0 on is expected here".to_owned()));
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! `robstiff simulate`: a campaign on a robot that hides something.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use robstiff::campaign::Data;
-use robstiff::simulate::{Scenario, Simulated, simulate};
+use robstiff::simulate::{Refused, Scenario, Simulated, simulate};
 use serde_json::json;
 
 use crate::failure::Failure;
@@ -49,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = paths.iter().find(|path| path.exists() && !arguments.force) {
         return Err(Failure::there_already(path, "folder"));
     }
-    let simulated = simulate(&robot, &scenario)?;
+    let simulated = simulate(&robot, &scenario).map_err(|refused| located(&refused, &arguments.scenario))?;
     let texts = simulated.files();
     for (path, text) in paths.into_iter().zip([texts.campaign, texts.observations.1, texts.robot, texts.truth]) {
         files.add(path, text);
@@ -59,6 +59,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let said = files.write()?;
     output::print(page(&simulated) + &said)
+}
+
+/// What is wrong with a scenario, at its place.
+fn located(refused: &Refused, scenario: &Path) -> Failure {
+    match robstiff_robots::text::read(scenario) {
+        Ok(text) => refused.located(&scenario.display().to_string(), &text).into(),
+        // It was read a moment ago.
+        Err(_) => Failure::new(refused),
+    }
 }
 
 fn page(simulated: &Simulated) -> String {

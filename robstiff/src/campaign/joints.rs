@@ -9,7 +9,7 @@ use std::vec::Vec;
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, ReadError};
 
-use super::poses::dimension_of;
+use super::poses::{check_range, dimension_of};
 use crate::table::{Table, text_of};
 
 /// Joint coordinates row by row, with what is written beside them.
@@ -22,7 +22,7 @@ pub struct JointTable {
     pub wrenches: Option<Vec<[f64; 6]>>,
     /// The column that was asked for.
     pub column: Option<Column>,
-    /// Columns that look as if the table were another robot's.
+    /// What looks as if the table were another robot's, or in another unit.
     pub warnings: Vec<String>,
 }
 
@@ -46,8 +46,10 @@ impl JointTable {
     pub fn read(path: &Path, robot: &Description, column: Option<&str>) -> Result<Self, ReadError> {
         let (name, text) = (path.display().to_string(), text_of(path)?);
         let table = Table::parse(&name, &text).map_err(ReadError::Invalid)?;
-        let warnings = beyond(&table, &name, robot);
-        let read = rows(&table, robot, column).map(|read| JointTable { warnings, ..read });
+        let mut warnings = beyond(&table, &name, robot);
+        let read = rows(&table, robot, column);
+        warnings.extend(table.noticed());
+        let read = read.map(|read| JointTable { warnings, ..read });
         table.finish(read).map(|(read, _)| read).map_err(ReadError::Invalid)
     }
 }
@@ -101,6 +103,10 @@ fn rows(table: &Table<'_>, robot: &Description, column: Option<&str>) -> Option<
             Some(Column { name: name.to_owned(), unit: unit.to_owned(), values })
         }
     };
-    let (q, wrenches): (Vec<_>, Vec<_>) = rows.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
-    Some(JointTable { q, wrenches: forced.then_some(wrenches), column, warnings: Vec::new() })
+    let (coordinates, wrenches): (Vec<_>, Vec<_>) = rows.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
+    for (index, (joint, &column)) in robot.joints.iter().zip(&q).enumerate() {
+        let read = table.records.iter().zip(&coordinates);
+        check_range(table, joint, index, column, read.map(|(record, q)| (record.line, q[index])));
+    }
+    Some(JointTable { q: coordinates, wrenches: forced.then_some(wrenches), column, warnings: Vec::new() })
 }

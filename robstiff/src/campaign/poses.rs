@@ -83,7 +83,7 @@ impl Columns {
     /// Warns of coordinates that joints do not reach.
     pub fn check_ranges<R: AtPose>(&self, table: &Table<'_>, joints: &[Joint], rows: &[R]) {
         for (index, (joint, &column)) in joints.iter().zip(&self.q).enumerate() {
-            check_range(table, joint, index, column, rows);
+            check_range(table, joint, index, column, rows.iter().map(|row| (row.line(), row.q()[index])));
         }
     }
 }
@@ -171,11 +171,17 @@ fn check_pose<R: AtPose>(table: &Table<'_>, columns: &Columns, record: &Record, 
     }
 }
 
-/// Warns of coordinates that a joint (by its index) does not reach.
-fn check_range<R: AtPose>(table: &Table<'_>, joint: &Joint, index: usize, column: Numbers, rows: &[R]) {
+/// Warns of coordinates, each with its line, that a joint (by its index) does not reach.
+pub fn check_range(
+    table: &Table<'_>,
+    joint: &Joint,
+    index: usize,
+    column: Numbers,
+    rows: impl Iterator<Item = (usize, f64)> + Clone,
+) {
     let ask = Usual::of_joint(joint.kind).asked(table, column);
     let warn = |what: &str, is_outside: &dyn Fn(f64) -> bool| {
-        let lines = rows.iter().filter(|row| is_outside(row.q()[index])).map(R::line);
+        let lines = rows.clone().filter(|(_, q)| is_outside(*q)).map(|(line, _)| line);
         warn_of(table, &format!("q{} is {what}", index + 1), lines, &ask)
     };
     let limited = joint.outside_limits().is_some_and(|what| warn(&what, &|q| !joint.reaches(q)));

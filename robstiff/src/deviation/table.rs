@@ -15,6 +15,7 @@ use super::load::{contact, rotation};
 use super::{Load, Surface};
 use crate::milling::ForceFrame;
 use crate::path::SolvedPath;
+use crate::path::read::LENGTHS;
 use crate::table::{Lines, Numbers, Record, Table, text_of};
 
 /// Wrenches on the tool along a path: one a point, or by arc length.
@@ -57,6 +58,7 @@ impl ForceTable {
         let forces = ["Fx", "Fy", "Fz"].map(|name| table.require(name, Dimension::Force));
         let moments = ["Mx", "My", "Mz"].map(|name| table.numbers(name, Dimension::Torque));
         let s = table.numbers("s", Dimension::Length);
+        s.iter().for_each(|&column| LENGTHS.check(&table, column));
         let mut last = f64::NEG_INFINITY;
         let row = |record| {
             let force = table.all(record, [forces[0]?, forces[1]?, forces[2]?]);

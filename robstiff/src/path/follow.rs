@@ -78,7 +78,8 @@ impl ToolPath {
             .collect();
         let shown = missed.iter().take(MOST_SHOWN).map(|(line, why)| self.problem(*line, why)).collect();
         if let Some(problems) = Diagnostics::new(shown) {
-            return Err(Unsolved { points: missed, of: self.points.len(), problems });
+            let of_joints = self.gives_joints();
+            return Err(Unsolved { points: missed, of: self.points.len(), problems, of_joints });
         }
         let postures: Vec<SVector<f64, N>> = followed.postures.into_iter().flatten().collect();
         let poses: Vec<Matrix4<f64>> = postures.iter().map(|q| robot.transform(q)).collect();
@@ -111,6 +112,9 @@ impl ToolPath {
 
     fn problem(&self, line: usize, why: &Unreached) -> Diagnostic {
         let help = match why {
+            Unreached::OutsideLimits { .. } if self.gives_joints() => {
+                "change the joint coordinate, or widen `limits` if they are too tight"
+            }
             Unreached::TurnAboutTool => "give the columns `ux,uy,uz` in place of the full orientation",
             Unreached::OutsideLimits { .. } => {
                 "move the workpiece, turn the tool, or widen `limits` if they are too tight"

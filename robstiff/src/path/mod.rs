@@ -6,7 +6,7 @@
 //! for every point, or the names of all points that cannot be reached.
 
 pub(crate) mod follow;
-mod read;
+pub(crate) mod read;
 #[cfg(test)]
 mod tests;
 
@@ -116,14 +116,17 @@ pub struct Unsolved {
     pub of: usize,
     /// The same for a person, the first ten.
     pub problems: Diagnostics,
+    /// Whether the file gives joint coordinates, which no frame or tool can be wrong for.
+    of_joints: bool,
 }
 
 impl core::fmt::Display for Unsolved {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let count = self.points.len();
         let lines = lines(self.points.iter().map(|(line, _)| *line));
-        write!(f, "{}\n\n{count} of {} points cannot be reached: {lines}", self.problems, self.of)?;
-        if count == self.of && !self.points.iter().all(|(_, why)| *why == Unreached::TurnAboutTool) {
+        let points = if self.of == 1 { "point" } else { "points" };
+        write!(f, "{}\n\n{count} of {} {points} cannot be reached: {lines}", self.problems, self.of)?;
+        if count == self.of && !self.of_joints && !self.points.iter().all(|(_, why)| *why == Unreached::TurnAboutTool) {
             f.write_str("; is the path given in another frame, in another unit, or along another axis of the tool?")?;
         }
         Ok(())
@@ -150,6 +153,11 @@ pub fn lines(of: impl IntoIterator<Item = usize>) -> String {
 }
 
 impl ToolPath {
+    /// Whether it gives joint coordinates, and no poses.
+    fn gives_joints(&self) -> bool {
+        self.points.iter().all(|point| matches!(point.goal, Goal::Joints(_)))
+    }
+
     /// The same path when the frame that its poses are given in stands at
     /// `place` (homogeneous, 4 x 4, m) in the base frame. Joint coordinates stay.
     #[must_use]

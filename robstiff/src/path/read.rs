@@ -23,6 +23,9 @@ const FAR: f64 = 20.0;
 /// Angles beyond this (rad) without a unit are probably in degrees.
 const TWO_TURNS: f64 = 4.0 * core::f64::consts::PI;
 
+/// Feeds beyond this (m/s) without a unit are probably in mm/min.
+const FASTEST: f64 = 10.0;
+
 /// Columns that a path may have beside it, as `robstiff path` writes them.
 const BESIDE: [&str; 16] = [
     "Fx",
@@ -91,6 +94,8 @@ impl ToolPath {
         }
         let points = columns.and_then(|columns| {
             check_units(&table, &columns, robot);
+            s.iter().for_each(|&column| LENGTHS.check(&table, column));
+            feed.iter().for_each(|&column| FEEDS.check(&table, column));
             let mut last_s = f64::NEG_INFINITY;
             let rows = table.records.iter().map(|record| {
                 let goal = goal(&table, record, &columns, tool);
@@ -245,41 +250,51 @@ fn not_back(table: &Table<'_>, record: &Record, column: Numbers, last: &mut f64)
     Some(s)
 }
 
-/// Warns of numbers without a unit that look like mm or degrees.
-fn check_units(table: &Table<'_>, columns: &Columns, robot: &Description) {
-    let check = |name: &str, column: Numbers, is_length: bool| {
-        let limit = if is_length { FAR } else { TWO_TURNS };
+/// What numbers without a unit look like that are beyond some limit in SI.
+pub struct Bare {
+    limit: f64,
+    what: &'static str,
+    unit: &'static str,
+}
+
+/// Lengths in mm, not in m.
+pub const LENGTHS: Bare = Bare { limit: FAR, what: "lengths in millimetres", unit: "mm" };
+
+/// Angles in degrees, not in rad.
+const ANGLES: Bare = Bare { limit: TWO_TURNS, what: "angles in degrees", unit: "deg" };
+
+/// Feeds in mm/min, not in m/s.
+const FEEDS: Bare = Bare { limit: FASTEST, what: "feeds in millimetres a minute", unit: "mm/min" };
+
+impl Bare {
+    /// Warns of a column that looks like it.
+    pub fn check(&self, table: &Table<'_>, column: Numbers) {
         if table.has_unit(column) {
             return;
         }
-        let far = |record: &&Record| table.peek(record, column).is_some_and(|value| value.abs() > limit);
+        let far = |record: &&Record| table.peek(record, column).is_some_and(|value| value.abs() > self.limit);
         if let Some(record) = table.records.iter().find(far) {
-            let (what, unit) = if is_length { ("lengths in millimetres", "mm") } else { ("angles in degrees", "deg") };
+            let (name, Self { what, unit, .. }) = (table.name_of(column), self);
             table.warn(&format!(
                 "{name} has no unit and is far out on line {}: are the {what}? write `{name} [{unit}]`",
                 record.line
             ));
         }
-    };
+    }
+}
+
+/// Warns of numbers without a unit that look like mm or degrees.
+fn check_units(table: &Table<'_>, columns: &Columns, robot: &Description) {
     match columns {
         Columns::Joints(columns) => {
-            for (index, (&column, joint)) in columns.iter().zip(&robot.joints).enumerate() {
-                check(&format!("q{}", index + 1), column, joint.kind == JointKind::Prismatic);
+            for (&column, joint) in columns.iter().zip(&robot.joints) {
+                if joint.kind == JointKind::Prismatic { LENGTHS } else { ANGLES }.check(table, column);
             }
         }
         Columns::Poses(position, orientation) => {
-            for (name, column) in ["x", "y", "z"].into_iter().zip(*position) {
-                check(name, column, true);
-            }
-            let angles = match orientation {
-                Orientations::RotationVector(columns) => Some((["rx", "ry", "rz"], columns)),
-                Orientations::Angles(columns) => Some((["a", "b", "c"], columns)),
-                _ => None,
-            };
-            if let Some((names, columns)) = angles {
-                for (name, &column) in names.into_iter().zip(columns) {
-                    check(name, column, false);
-                }
+            position.iter().for_each(|&column| LENGTHS.check(table, column));
+            if let Orientations::RotationVector(columns) | Orientations::Angles(columns) = orientation {
+                columns.iter().for_each(|&column| ANGLES.check(table, column));
             }
         }
     }

@@ -156,7 +156,7 @@ fn five_axes_are_told_that_they_do_not_hold_a_turn_about_the_tool() {
     assert_eq!(said.points, [(2, Unreached::TurnAboutTool)]);
     let said = said.to_string();
     assert!(said.contains("not the turn about it") && said.contains("`ux,uy,uz`"), "{said}");
-    assert!(said.ends_with("1 of 1 points cannot be reached: line 2"), "{said}");
+    assert!(said.ends_with("1 of 1 point cannot be reached: line 2"), "{said}");
     let far = unsolved("9300,-50,600");
     assert!(!far.points.contains(&(2, Unreached::TurnAboutTool)), "{far}");
 }

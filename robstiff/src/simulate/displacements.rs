@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, SVector, Vector3};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
+use robstiff_robots::quantity::finite;
 
 use super::draw::{PACE, Stream, names, normal, stream};
 use super::{Pull, Scenario, UnderForces};
@@ -24,9 +25,9 @@ pub fn measured(truth: &Description, scenario: &Scenario, under: &UnderForces, p
 }
 
 /// Whether all of a row are numbers, in the units of the files, too.
-pub fn is_finite(row: &Observation) -> bool {
+pub fn is_readable(row: &Observation) -> bool {
     let read = row.displacement.iter().chain(row.rotation.iter().flatten()).chain(row.encoders.iter().flatten());
-    row.wrench.iter().chain(&row.q).chain(read).all(|value| (value * 1e6).is_finite())
+    row.wrench.iter().chain(&row.q).chain(read).all(|value| finite(*value).is_ok())
 }
 
 /// The rows, with nothing read yet.

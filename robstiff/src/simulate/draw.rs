@@ -9,9 +9,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
 
-use super::{Poses, Scenario};
+use super::{Part, Poses, Refused, Scenario};
 use crate::Robot;
-use crate::identify::Error;
 
 /// The streams of a seed.
 #[derive(Clone, Copy)]
@@ -49,7 +48,7 @@ pub fn scatter(scenario: &Scenario, robot: &mut Description) {
 ///
 /// # Errors
 /// No pose in the working region.
-pub fn poses(robot: &Description, scenario: &Scenario) -> Result<Vec<Vec<f64>>, Error> {
+pub fn poses(robot: &Description, scenario: &Scenario) -> Result<Vec<Vec<f64>>, Refused> {
     let (count, within, floor, column) = match &scenario.poses {
         Poses::Listed(poses) => return Ok(poses.clone()),
         Poses::Drawn { count, within, floor, column } => (*count, within, *floor, *column),
@@ -67,9 +66,13 @@ pub fn poses(robot: &Description, scenario: &Scenario) -> Result<Vec<Vec<f64>>, 
                 return Ok(q);
             }
         }
-        Err(Error(format!(
-            "none of {TRIES} poses drawn within the joints' limits keeps the tool within the working region of `poses`"
-        )))
+        Err(Refused {
+            part: Part::Region,
+            message: format!(
+                "none of {TRIES} poses drawn within the joints' limits keeps the tool in this working region"
+            ),
+            help: String::from("a lower `floor`, a smaller `column`, or wider joint ranges in `within`"),
+        })
     };
     (0..count).map(|_| pose()).collect()
 }

@@ -20,6 +20,7 @@ mod draw;
 mod files;
 mod positions;
 mod read;
+mod refused;
 #[cfg(test)]
 mod tests;
 
@@ -30,10 +31,10 @@ use std::vec::Vec;
 use robstiff_robots::Description;
 
 pub use files::Files;
+pub use refused::{Part, Refused};
 
 use crate::Effect;
 use crate::campaign::{Data, Frame, Holdout};
-use crate::identify::Error;
 
 /// What is to be measured, how well, and what the description is not told.
 #[derive(Clone, Debug, PartialEq)]
@@ -166,31 +167,34 @@ pub struct Simulated {
 /// # Errors
 /// No pose in the working region; hidden effects that no robot with these
 /// joints can have, once the joints are scattered; loads, compliances or noise so
-/// large that readings are no numbers.
-pub fn simulate(declared: &Description, scenario: &Scenario) -> Result<Simulated, Error> {
+/// large that no campaign may have such readings.
+pub fn simulate(declared: &Description, scenario: &Scenario) -> Result<Simulated, Refused> {
     let truth = truth(declared, scenario)?;
     let poses = draw::poses(&truth, scenario)?;
-    let (data, is_finite) = match &scenario.measures {
+    let (data, is_readable) = match &scenario.measures {
         Measures::Displacements(under) => {
             let data = displacements::measured(&truth, scenario, under, &poses);
-            let finite = data.rows.iter().all(displacements::is_finite);
-            (Data::Displacement(data), finite)
+            let readable = data.rows.iter().all(displacements::is_readable);
+            (Data::Displacement(data), readable)
         }
         Measures::Positions(under) => {
             let data = positions::measured(&truth, scenario, under, &poses);
-            let finite = data.rows.iter().all(positions::is_finite);
-            (Data::Position(data), finite)
+            let readable = data.rows.iter().all(positions::is_readable);
+            (Data::Position(data), readable)
         }
     };
-    if !is_finite {
-        let error = "there are readings beyond all numbers: loads, compliances, levers or noise are too large";
-        return Err(Error(String::from(error)));
+    if !is_readable {
+        return Err(Refused {
+            part: Part::Loads,
+            message: String::from("there are readings beyond what a campaign may have"),
+            help: String::from("smaller loads, compliances, levers or noise"),
+        });
     }
     Ok(Simulated { scenario: scenario.clone(), declared: declared.clone(), truth, data })
 }
 
 /// The robot as it is: joints scattered, hidden effects added.
-fn truth(declared: &Description, scenario: &Scenario) -> Result<Description, Error> {
+fn truth(declared: &Description, scenario: &Scenario) -> Result<Description, Refused> {
     let mut truth = declared.clone();
     draw::scatter(scenario, &mut truth);
     truth.effects.extend(&scenario.hidden);
@@ -204,5 +208,5 @@ fn truth(declared: &Description, scenario: &Scenario) -> Result<Description, Err
     );
     // What reads a description knows what physics asks of one.
     Description::parse("truth.yaml", &truth.to_yaml())
-        .map_err(|problems| Error(format!("no robot can be like this, once its joints are scattered:\n{problems}")))
+        .map_err(|problems| refused::no_robot(&problems, declared.effects.len()))
 }

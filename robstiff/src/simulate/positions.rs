@@ -5,6 +5,7 @@ use std::vec::Vec;
 use nalgebra::{Rotation3, Vector3};
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
+use robstiff_robots::quantity::finite;
 
 use super::draw::{PACE, Stream, names, normal, stream};
 use super::{Scenario, UnderPayloads};
@@ -46,8 +47,8 @@ pub fn measured(truth: &Description, scenario: &Scenario, under: &UnderPayloads,
 }
 
 /// Whether all of a row are numbers, in the units of the files, too.
-pub fn is_finite(row: &PositionRow) -> bool {
-    row.q.iter().chain(&row.position).all(|value| (value * 1e6).is_finite())
+pub fn is_readable(row: &PositionRow) -> bool {
+    row.q.iter().chain(&row.position).all(|value| finite(*value).is_ok())
 }
 
 /// Sets what the tracker reads in every row.

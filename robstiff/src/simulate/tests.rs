@@ -4,7 +4,7 @@ use std::vec::Vec;
 use nalgebra::{SVector, Vector3, Vector6};
 use robstiff_robots::{Description, catalogue};
 
-use super::{Scenario, Simulated, simulate};
+use super::{Part, Scenario, Simulated, simulate};
 use crate::campaign::{Data, Displacements};
 use crate::identify::positions;
 use crate::identify::predict::{PredictedRow, Prediction};
@@ -351,8 +351,20 @@ fn what_cannot_be_measured_is_said() {
     let mut lever = read(SCENARIO);
     lever.wrench_at = [0.0, 0.0, 1e307];
     let error = simulate(&robot(), &lever).expect_err("nothing can be read");
-    assert!(error.to_string().contains("beyond all numbers"), "{error}");
+    assert_eq!(error.part, Part::Loads);
+    assert!(error.to_string().contains("beyond what a campaign may have"), "{error}");
     let text = SCENARIO.replace("floor: 100 mm", "floor: 90 m");
     let error = simulate(&robot(), &read(&text)).expect_err("nobody reaches there");
-    assert!(error.to_string().contains("working region"), "{error}");
+    let said = error.located("try.yaml", &text).to_string();
+    assert!(said.contains("working region") && said.contains("(poses.floor)") && said.contains("90 m"), "{said}");
+    // Of a coupling that only unscattered joints can have.
+    let coupled = "    - {kind: joint_coupling, at: \"joints 2,3\", value: VALUE}\n";
+    let values = robot().joints.iter().map(|joint| joint.compliance()).collect::<Vec<f64>>();
+    let value = std::format!("{:e} rad/Nm", 0.95 * (values[1] * values[2]).sqrt());
+    let text = SCENARIO.replace("scatter: 0.3", &(coupled.replace("VALUE", &value) + "scatter: 0.9"));
+    let refused = (0..40).find_map(|seed| simulate(&robot(), &Scenario { seed, ..read(&text) }).err());
+    let refused = refused.expect("some of forty are scattered too far");
+    assert_eq!(refused.part, Part::Hidden(1));
+    let said = refused.located("try.yaml", &text).to_string();
+    assert!(said.contains("(hidden.effects[1]") && said.contains("once its joints are scattered"), "{said}");
 }

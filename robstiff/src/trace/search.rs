@@ -17,7 +17,6 @@ use super::selection::{Selection, select};
 use super::settle::{settled, told};
 use super::step::Step;
 use super::verdict::{self, Verdict};
-use super::wander;
 use super::wander::displacements::instead_of_slips;
 use super::yardstick::{self, Yardstick};
 use super::{Options, Progress, held_out};
@@ -107,9 +106,9 @@ pub fn search<'c>(
         left = test(bench, &selection.model)?;
         left.structure = true;
     }
-    if let Some(without) = instead_of_slips(bench, &selection.model) {
-        looks_like.push(wander::WORDS.to_string());
-        taken_back.extend(leave_to_what_has_no_name(bench, &mut selection, &without, wander::WORDS));
+    if let Some((without, words)) = instead_of_slips(bench, &selection.model) {
+        looks_like.push(words.to_string());
+        taken_back.extend(leave_to_what_has_no_name(bench, &mut selection, &without, words));
         left = test(bench, &selection.model)?;
         left.structure = true;
     }

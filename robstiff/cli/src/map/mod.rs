@@ -57,7 +57,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
     /// Look for the best place for a workpiece of this size along x, y and z, e.g. "400 x 300 x 100 mm"
-    #[arg(long, value_name = "SIZE", value_parser = size)]
+    #[arg(long, value_name = "SIZE", allow_hyphen_values = true, value_parser = size)]
     place: Option<[f64; 3]>,
     /// Write the summary as JSON to FILE
     #[arg(long, value_name = "FILE")]

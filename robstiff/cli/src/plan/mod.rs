@@ -25,7 +25,7 @@ pub struct Arguments {
     #[arg(value_name = "CAMPAIGN.yaml")]
     campaign: PathBuf,
     /// How many poses to propose
-    #[arg(long, value_name = "COUNT", default_value_t = Options::default().poses as u16, value_parser = clap::value_parser!(u16).range(1..=200))]
+    #[arg(long, value_name = "COUNT", default_value_t = Options::default().poses as u16, allow_hyphen_values = true, value_parser = input::whole::<u16>(1, 200))]
     poses: u16,
     /// The folder for `plan.json` and `plan.csv`
     #[arg(long, value_name = "DIR")]
@@ -40,16 +40,16 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = Criterion::Compound)]
     criterion: Criterion,
     /// The greatest force, e.g. "800 N"; the campaign's where left out
-    #[arg(long, value_name = "FORCE", value_parser = size(Dimension::Force))]
+    #[arg(long, value_name = "FORCE", allow_hyphen_values = true, value_parser = size(Dimension::Force))]
     force: Option<f64>,
     /// The greatest moment, e.g. "100 Nm"; the campaign's where left out
-    #[arg(long, value_name = "MOMENT", value_parser = size(Dimension::Torque))]
+    #[arg(long, value_name = "MOMENT", allow_hyphen_values = true, value_parser = size(Dimension::Torque))]
     moment: Option<f64>,
     /// The least height of the tool above the base's origin, e.g. "300 mm"; the campaign's lowest where left out
     #[arg(long, value_name = "HEIGHT", allow_hyphen_values = true, value_parser = height)]
     floor: Option<f64>,
     /// Seed of the search and of the bootstrap of the trace; one seed gives one result
-    #[arg(long, default_value_t = Options::default().seed)]
+    #[arg(long, default_value_t = Options::default().seed, allow_hyphen_values = true, value_parser = input::seed)]
     seed: u64,
 }
 

@@ -35,13 +35,13 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Seed of the bootstrap; one seed gives one result
-    #[arg(long, default_value_t = Options::default().seed)]
+    #[arg(long, default_value_t = Options::default().seed, allow_hyphen_values = true, value_parser = input::seed)]
     seed: u64,
     /// Bootstrap draws; a p-value is no smaller than one over their number
-    #[arg(long, default_value_t = Options::default().draws as u32, value_parser = clap::value_parser!(u32).range(99..=1_000_000))]
+    #[arg(long, default_value_t = Options::default().draws as u32, allow_hyphen_values = true, value_parser = input::whole::<u32>(99, 1_000_000))]
     draws: u32,
     /// Level of the tests, over all candidates together
-    #[arg(long, default_value_t = Options::default().alpha, value_parser = level)]
+    #[arg(long, default_value_t = Options::default().alpha, allow_hyphen_values = true, value_parser = level)]
     alpha: f64,
     /// Look for a correction of what is left that is no physics, and where it predicts unseen poses
     /// better write it to `correction.json`

@@ -22,6 +22,7 @@ use crate::identify::positions::model::{ANGLE_STEP, Enters, Follower, Model};
 use crate::trace::catalogue::{Candidate, Kind, place_words};
 use crate::trace::found::EffectParameter;
 use crate::trace::slip::SLIPPED_AT;
+use crate::trace::wander::AGAIN;
 
 /// A joint that goes by so much of its own coordinate, or of another's, farther than it reads.
 pub static FOLLOWER: Kind = Kind {
@@ -35,9 +36,6 @@ pub static FOLLOWER: Kind = Kind {
     offer: |_, _| {},
     on_axes: None,
 };
-
-/// How the words for a second slip begin.
-pub const AGAIN: &str = "another slip";
 
 /// A second slip of the base, and of the reflector: a name says one moment.
 pub static BASE_AGAIN: Kind = Kind {

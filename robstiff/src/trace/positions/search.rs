@@ -12,7 +12,6 @@ use std::vec::Vec;
 use super::bench::{Bench, Model};
 use super::beyond;
 use super::course::{Course, Kept};
-use super::nameless::AGAIN;
 use super::structure::structure;
 use super::wander::instead_of_slips;
 use crate::campaign::Campaign;
@@ -21,6 +20,7 @@ use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::Fitted;
 use crate::trace::selection::Selection;
 use crate::trace::verdict::FEWEST_POSES;
+use crate::trace::wander::AGAIN;
 use crate::trace::{Options, Progress};
 
 /// What was found.

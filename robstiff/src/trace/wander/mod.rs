@@ -26,6 +26,9 @@ use crate::identify::normal::{Fit, Normal, Projected, Scaled, Sign};
 /// What it looks like, as a noun for a sentence.
 pub const WORDS: &str = "a drift of what is read that goes there and back";
 
+/// How the words for a second slip begin; all that is said of one of displacements.
+pub const AGAIN: &str = "another slip";
+
 /// The kind of what drifts and has a name.
 pub const OF_READING: &str = "thermal_drift";
 

@@ -1,0 +1,128 @@
+//! What is refused, where, and before which work.
+
+mod common;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use common::{copy, fail, folder, inside, json, run, succeed};
+
+fn file(name: &str) -> String {
+    let path: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/files").join(name);
+    path.to_str().unwrap().to_owned()
+}
+
+/// Writes a file into a folder; its path.
+fn write(folder: &Path, name: &str, text: &str) -> String {
+    fs::write(folder.join(name), text).unwrap();
+    inside(folder, name)
+}
+
+#[test]
+fn nothing_is_planned_after_clamped_axes() {
+    let folder = folder("refused-plan");
+    write(&folder, "axes.csv", "axis,torque [Nm],deflection [urad]\n1,100,30\n1,200,61\n1,-300,-90\n");
+    let robot = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots/rv130hsc.yaml");
+    let text = format!("robot: {}\nobservations: axes.csv\nkind: clamped\n", robot.display());
+    let campaign = write(&folder, "campaign.yaml", &text);
+    let said = fail(1, &["plan", &campaign]);
+    assert!(said.contains("campaign.yaml: planning needs a campaign of kind"), "{said}");
+    // Axes of which nothing was read are not rigid.
+    write(&folder, "axes.csv", "axis,torque [Nm],deflection [urad]\n1,100,0\n1,200,0\n");
+    let said = fail(1, &["identify", &campaign, "--out", &inside(&folder, "out")]);
+    assert!(said.contains("every deflection is zero") && !folder.join("out").exists(), "{said}");
+}
+
+#[test]
+fn a_map_without_two_coordinates_is_no_picture() {
+    let folder = folder("refused-map");
+    let map = write(&folder, "line.yaml", "joints: [{from: -60 deg, to: 60 deg, count: 5}, -1, 0.5, 0, 1]\n");
+    let picture = inside(&folder, "line.svg");
+    let said = fail(2, &["map", "rv130hsc", &map, "--svg", &picture]);
+    assert!(said.contains("needs two coordinates that vary") && said.contains("line.yaml 1 does"), "{said}");
+}
+
+#[test]
+fn a_scenario_is_refused_at_its_place() {
+    let folder = folder("refused-scenario");
+    let of = |region: &str, force: &str| {
+        let text = format!(
+            "seed: 1\nposes: {{count: 5{region}}}\nforce: {{bounds: [{force}]}}\nnoise: {{displacement: 8 um}}\n"
+        );
+        let scenario = write(&folder, "try.yaml", &text);
+        fail(1, &["simulate", "kuka-kr270-r2700", &scenario, "--out", &inside(&folder, "out")])
+    };
+    let said = of(", floor: 90 m", "500 N, 900 N");
+    assert!(said.contains("try.yaml:2:26  (poses.floor)") && said.contains("a lower `floor`"), "{said}");
+    // What second order makes of it is beyond what its reader takes.
+    let said = of("", "1e7, 1e8");
+    assert!(said.contains("try.yaml:3:8  (force)") && said.contains("beyond what a campaign may have"), "{said}");
+    assert!(!folder.join("out").exists());
+}
+
+#[test]
+fn what_is_no_description_is_not_replaced() {
+    let folder = folder("refused-robot");
+    let campaign = copy(&folder);
+    let out = folder.join("out");
+    fs::create_dir(&out).unwrap();
+    let mine = write(&out, "robot.yaml", "name: Mine\njoints: [oh\n");
+    for command in ["identify", "trace"] {
+        let said = fail(1, &[command, &campaign, "--out", out.to_str().unwrap()]);
+        assert!(said.contains("is no description of a robot, and would be overwritten"), "{said}");
+    }
+    assert_eq!(fs::read_to_string(mine).unwrap(), "name: Mine\njoints: [oh\n");
+}
+
+#[test]
+fn forces_name_the_row_where_they_end() {
+    let folder = folder("refused-forces");
+    let pocket = file("pocket.csv");
+    let with = |forces: &str| {
+        let forces = write(&folder, "forces.csv", forces);
+        fail(1, &["path", "kuka-kr270-r2700", &pocket, "--forces", &forces])
+    };
+    let said = with("Fx [N],Fy [N],Fz [N]\n1,2,3\n");
+    assert!(said.contains("forces.csv:2:1") && said.contains("here are 1 row, the path has 40 points"), "{said}");
+    let said = with("s [mm],Fx [N],Fy [N],Fz [N]\n0,1,2,3\n100,1,2,3\n");
+    assert!(said.contains("forces.csv:3:1") && said.contains("the forces end at s = 100.000 mm"), "{said}");
+}
+
+/// No advice that would lose a number.
+#[test]
+fn a_comma_too_many_is_no_decimal_comma() {
+    let folder = folder("refused-comma");
+    let with = |row: &str| {
+        let path = write(&folder, "path.csv", &format!("x [mm],y [mm],z [mm],ux,uy,uz,feed [mm/min]\n{row}\n"));
+        fail(1, &["path", "kuka-kr270-r2700", &path])
+    };
+    let said = with("1500,5,0,600,0,0,-1,3600");
+    assert!(said.contains("path.csv:2:") && !said.contains("write `5.0") && !said.contains("write `0.600`"), "{said}");
+    assert!(with("1500,5,600,0,0,-1,3600,").contains("leave out the comma at the end"));
+    assert!(with("1500,5,600,250,0,0,-1,3600").contains("a decimal comma? write `600.250`"));
+}
+
+#[test]
+fn a_path_in_degrees_is_asked_about() {
+    let folder = folder("asked-degrees");
+    let path = write(&folder, "path.csv", "q1,q2,q3,q4,q5,q6\n0,-90,90,0,60,0\n");
+    let page = inside(&folder, "page.html");
+    let ran = run(&["view", "kuka-kr270-r2700", "--path", &path, "--out", &page]);
+    assert_eq!(ran.code, 0);
+    assert!(ran.err.contains("are the angles in degrees? write `q2 [deg]`"), "{}", ran.err);
+}
+
+#[test]
+fn one_unit_is_that_of_all_three_components() {
+    let folder = folder("unit-of-three");
+    let of = |force: &str| {
+        let told = inside(&folder, "told.json");
+        succeed(&["online", "rv130hsc", "--force", force, "--frequencies", "5 Hz", "--json", &told]);
+        json(&told)["wrench"].clone()
+    };
+    assert_eq!(of("0.15, -0.2, 0.3 kN"), of("150 N, -200 N, 300 N"));
+    let said = fail(2, &["online", "rv130hsc", "--force", "150, -200, 300"]);
+    assert!(said.contains("`150` has no unit; write e.g. `150 N`"), "{said}");
+    let said = fail(2, &["trace", "campaign.yaml", "--out", "out", "--draws", "-1"]);
+    assert!(said.contains("a whole number from 99 to 1000000 is expected here"), "{said}");
+}
