@@ -13,7 +13,8 @@ use robstiff_robots::Description;
 
 use super::{Campaign, Data, Displacements, Frame, Noise, Observation};
 use crate::identify::baseline::declared;
-use crate::identify::samples::{Column, Samples};
+use crate::identify::column::Column;
+use crate::identify::samples::Samples;
 use crate::identify::second_order::beyond_linear;
 use crate::samples::five_axis;
 

@@ -6,8 +6,8 @@ use std::vec::Vec;
 use nalgebra::DVector;
 use robstiff_robots::{Description, Part};
 
+use super::column::Column;
 use super::normal::{Normal, Sign, independent};
-use super::samples::Column;
 use crate::Effect;
 use crate::elements::{Spring, springs};
 

@@ -10,6 +10,7 @@
 
 pub mod baseline;
 pub mod clamped;
+pub mod column;
 pub mod covariance;
 pub mod displacement;
 pub mod encoders;
@@ -45,9 +46,9 @@ pub use predict::{Prediction, predict};
 pub use scale::off_by_one_factor;
 
 use self::baseline::Declared;
+use self::column::Column;
 use self::covariance::Covariance;
 use self::normal::Sign;
-use self::samples::Column;
 use crate::JointKind;
 use crate::campaign::{Campaign, Data};
 use crate::elements::Spring;

@@ -9,12 +9,13 @@ use nalgebra::DVector;
 use robstiff_robots::Description;
 
 use super::baseline::{Declared, Visibility, declared, visibility, with_values};
+use super::column::Column;
 use super::covariance::contrasts::Level;
 use super::covariance::{Basis, Covariance};
 use super::holdout::training;
 use super::normal::{Fit, Normal, Sign};
 use super::problem::{Problem, Weights, raw};
-use super::samples::{Column, Samples};
+use super::samples::Samples;
 use super::second_order::{beyond_linear, straightened};
 use super::{Error, NOTEWORTHY_DEVIATION, NoiseSource, is_at_bound};
 use crate::campaign::{Campaign, Data, Displacements, told_length};

@@ -8,9 +8,10 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::column::Column;
 use super::covariance::Covariance;
 use super::normal::{Fit, Normal, Sign};
-use super::samples::{Column, Samples};
+use super::samples::Samples;
 
 /// Readings, and the normal equations of the columns that are to explain them.
 #[derive(Clone, Debug)]

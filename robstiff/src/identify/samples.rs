@@ -8,50 +8,12 @@ use nalgebra::{DVector, Matrix3, Matrix4, Matrix6, SVector, Vector3, Vector6};
 use robstiff_robots::Description;
 use robstiff_robots::effect::physics::PLAYS;
 
+use super::column::Column;
 use super::encoders::Encoders;
 use super::setup::Setup;
 use crate::campaign::{Displacements, Frame};
 use crate::elements::{Geometry, Pose, Spring, turn};
 use crate::{Effect, JointKind, Robot};
-
-/// A column of the regression: what a unit of one number adds to every
-/// displacement.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Column {
-    /// The compliance of a spring.
-    Spring(Spring),
-    /// The `added` of a [`StiffnessNonlinearity`](crate::Effect) with a given
-    /// knee.
-    Knee {
-        /// The joint, from 1.
-        joint: usize,
-        /// The torque at the knee (Nm).
-        knee: f64,
-    },
-    /// The `gap` of a [`LostMotion`](crate::Effect) with a given knee.
-    Gap {
-        /// The joint, from 1.
-        joint: usize,
-        /// The torque at which most of the play is taken up (Nm).
-        knee: f64,
-    },
-    /// A weight of a [`Hysteresis`](crate::Effect).
-    Play {
-        /// The joint, from 1.
-        joint: usize,
-        /// Which of its play operators.
-        operator: usize,
-        /// Its radius (Nm).
-        radius: f64,
-    },
-}
-
-impl Column {
-    /// Whether it is of a law of its joint, in which the joint's torque is not linear.
-    pub fn is_law(self) -> bool {
-        !matches!(self, Self::Spring(_))
-    }
-}
 
 /// The rows of a campaign of kind `displacement`, on a robot.
 #[derive(Clone, Debug)]
@@ -243,8 +205,9 @@ impl Samples {
                 let torques = self.torques(joint);
                 self.turned(joint, |at| self.share(spring, &self.rows[at]) * torques[at])
             }
-            Column::Knee { joint, knee } => self.of_joint(joint, |torque| torque / (torque / knee).hypot(1.0)),
-            Column::Gap { joint, knee } => self.of_joint(joint, |torque| 0.5 * torque / torque.hypot(knee)),
+            Column::Knee { joint, .. } | Column::Gap { joint, .. } => {
+                self.of_joint(joint, |torque| column.turn(torque))
+            }
             Column::Play { joint, radius, .. } => {
                 let plays = self.plays(&self.torques(joint), radius);
                 self.turned(joint, |at| plays[at])

@@ -4,9 +4,10 @@ use std::vec;
 
 use nalgebra::{DVector, Vector3, Vector6};
 
+use super::column::Column;
 use super::covariance::Covariance;
 use super::noise::repetitions;
-use super::samples::{Column, Samples};
+use super::samples::Samples;
 use super::second_order::beyond_linear;
 use super::*;
 use crate::campaign::made::Plan;

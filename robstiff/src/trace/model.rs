@@ -11,10 +11,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::catalogue::{Candidate, Number, Variant};
 use super::point::Point;
+use crate::identify::column::Column;
 use crate::identify::covariance::Whitener;
 use crate::identify::normal::{Fit, Sign};
 use crate::identify::problem::{Equations, Problem, rms};
-use crate::identify::samples::Column;
 
 /// The regression of a campaign at one point, with the catalogue behind it; the
 /// first columns are the description's own numbers. Nonlinear numbers that are

@@ -16,7 +16,8 @@ use super::*;
 use crate::campaign::Data;
 use crate::campaign::made::{Plan, normal};
 use crate::elements::Spring;
-use crate::identify::samples::{Column, Samples};
+use crate::identify::column::Column;
+use crate::identify::samples::Samples;
 use crate::identify::{Visibility, predict};
 use crate::samples::five_axis;
 

@@ -9,7 +9,7 @@ use crate::campaign::{Data, Holdout};
 use crate::samples::five_axis;
 
 /// A campaign with a shift (standard deviations) along z in some of its rows.
-fn shifted(hidden: &[(crate::identify::samples::Column, f64)], rows: &[usize], shift: f64) -> Campaign {
+fn shifted(hidden: &[(crate::identify::column::Column, f64)], rows: &[usize], shift: f64) -> Campaign {
     let mut campaign = campaign(&five_axis(), 24, hidden, 3);
     if let Data::Displacement(data) = &mut campaign.data {
         rows.iter().for_each(|&row| data.rows[row].displacement[2] += shift * SIGMA);

@@ -14,7 +14,8 @@ use super::*;
 use crate::campaign::made::{Plan, campaign, normal};
 use crate::campaign::{ClampedRow, Data, Observation};
 use crate::elements::Spring;
-use crate::identify::samples::{Column, Samples};
+use crate::identify::column::Column;
+use crate::identify::samples::Samples;
 use crate::samples::five_axis;
 
 /// Ramps both ways in visits of their own, with a look at the unloaded arm.

@@ -11,8 +11,8 @@ use super::*;
 use crate::campaign::Campaign;
 use crate::campaign::made::{Plan, displacements, normal};
 use crate::elements::Spring;
+use crate::identify::column::Column;
 use crate::identify::identify;
-use crate::identify::samples::Column;
 use crate::identify::second_order::straightened;
 
 fn estimate(plan: &Plan) -> Covariance {

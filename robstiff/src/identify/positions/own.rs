@@ -13,8 +13,8 @@ use robstiff_robots::effect::physics::{Parameter, Range};
 use super::model::{ANGLE_STEP, COMPLIANCE_STEP, Enters, LENGTH_STEP, Model, SHARE_STEP};
 use crate::Effect;
 use crate::identify::baseline::{Declared, declared};
+use crate::identify::column::Column;
 use crate::identify::normal::Sign;
-use crate::identify::samples::Column;
 use crate::identify::{element_name, unit_of};
 
 /// A number of a description that positions can change.

@@ -6,8 +6,8 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use crate::campaign::Campaign;
+use crate::identify::column::Column;
 use crate::identify::prepare::Prepared;
-use crate::identify::samples::Column;
 use crate::identify::{Error, element_name, unit_of};
 use crate::plan::rivals::{Group, Number, Rival, Rivals, computed, pairs};
 use crate::trace::bench::Bench;

@@ -28,10 +28,11 @@ use super::selection::Tests;
 use super::slip::{Moment, Moments};
 use crate::campaign::Campaign;
 use crate::elements::Spring;
+use crate::identify::column::Column;
 use crate::identify::normal::{Fit, Sign};
 use crate::identify::prepare::Prepared;
 use crate::identify::problem::{Problem, Weights};
-use crate::identify::samples::{Column, Samples};
+use crate::identify::samples::Samples;
 
 /// Everything that is needed to fit a campaign with effects of the catalogue.
 pub struct Bench<'c> {

@@ -8,6 +8,7 @@ use std::format;
 use std::vec::Vec;
 
 use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
+use crate::identify::column::Column;
 use crate::trace::clamped::{Axes, AxisNumber, OnAxes};
 
 /// The kind.
@@ -38,10 +39,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         let Some(largest) = scene.largest_torque(joint) else { continue };
         let [gap, torque] = if scene.turns(joint) { ["rad", "Nm"] } else { ["m", "N"] };
         let number = move |knee: f64| {
-            Number::elastic("gap", gap, [0.0, WIDEST], move |point| {
-                let torques = point.torques(joint);
-                point.of_joint(joint, |row| 0.5 * torques[row] / torques[row].hypot(knee))
-            })
+            Number::elastic("gap", gap, [0.0, WIDEST], move |point| point.samples.column(Column::Gap { joint, knee }))
         };
         let knees = KNEES.map(|fraction| fraction * largest);
         let forms = (0..).zip(knees).map(|(k, knee)| Form::of([k]).with("knee", knee, torque));
@@ -55,9 +53,8 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
 fn on_axes(axes: &Axes) -> Vec<OnAxes> {
     let of = |axis: usize| {
         let number = AxisNumber { name: "gap", unit: axes.turn_unit(axis), range: [0.0, WIDEST] };
-        OnAxes::with_knee(axes, axis, number, [&KNEES, &[0.0, EITHER[1]]], |torque, knee| {
-            0.5 * torque / torque.hypot(knee)
-        })
+        let curve = |joint: usize, knee: f64| Column::Gap { joint, knee };
+        OnAxes::with_knee(axes, axis, number, [&KNEES, &[0.0, EITHER[1]]], curve)
     };
     axes.loaded().map(of).collect()
 }

@@ -71,8 +71,9 @@ use super::slip::{Moment, Moments, Slipping};
 use crate::JointKind;
 use crate::campaign::Displacements;
 use crate::elements::Spring;
+use crate::identify::column::Column;
 use crate::identify::normal::Sign;
-use crate::identify::samples::{Column, Samples, turn_of};
+use crate::identify::samples::{Samples, turn_of};
 use crate::identify::setup::Setup;
 use crate::identify::unit_of;
 

@@ -7,7 +7,7 @@ use std::vec::Vec;
 
 use super::lost_motion::EITHER;
 use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
-use crate::identify::samples::Column;
+use crate::identify::column::Column;
 use crate::trace::clamped::{Axes, AxisNumber, OnAxes};
 
 /// The kind.
@@ -57,8 +57,8 @@ fn on_axes(axes: &Axes) -> Vec<OnAxes> {
     let of = |axis: usize| {
         let range = [-axes.compliance[axis - 1], f64::INFINITY];
         let number = AxisNumber { name: "added", unit: axes.unit(axis), range };
-        let turn = |torque: f64, knee: f64| torque / (torque / knee).hypot(1.0);
-        OnAxes::with_knee(axes, axis, number, [&KNEES, &[EITHER[0], f64::INFINITY]], turn)
+        let curve = |joint: usize, knee: f64| Column::Knee { joint, knee };
+        OnAxes::with_knee(axes, axis, number, [&KNEES, &[EITHER[0], f64::INFINITY]], curve)
     };
     axes.loaded().map(of).collect()
 }

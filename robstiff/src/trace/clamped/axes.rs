@@ -12,6 +12,7 @@ use crate::identify::baseline::Visibility;
 use crate::identify::clamped::regression::rows_of;
 use crate::identify::clamped::rounding::of_rounding;
 use crate::identify::clamped::without_laws;
+use crate::identify::column::Column;
 use crate::trace::found::{EffectParameter, Place};
 use crate::trace::slip::SLIPPED_AT;
 use crate::{Effect, JointKind};
@@ -231,18 +232,19 @@ impl OnAxes {
     }
 
     /// A law of a joint with one number and a knee, which is tried at fractions of
-    /// the largest torque and goes by its name between two others: `turn` is what a
-    /// unit of the number does at a torque with a knee.
+    /// the largest torque and goes by its name between two others: `curve` is the number
+    /// of a joint at a knee.
     pub fn with_knee(
         axes: &Axes,
         axis: usize,
         number: AxisNumber,
         [tried, within]: [&[f64]; 2],
-        turn: fn(torque: f64, knee: f64) -> f64,
+        curve: fn(joint: usize, knee: f64) -> Column,
     ) -> Self {
         let (torques, largest) = (axes.loads(axis), axes.largest(axis));
         let (at, count) = (axes.rows_of(axis), axes.rows.len());
-        let column = move |knee: f64| axes_column(count, &at, torques.iter().map(|&torque| turn(torque, knee)));
+        let column =
+            move |knee: f64| axes_column(count, &at, torques.iter().map(|&torque| curve(axis, knee).turn(torque)));
         let knees = tried.iter().map(|fraction| vec![fraction * largest]).collect();
         let shape = [("knee", axes.torque_unit(axis))];
         Self::new(Part::Joint(axis), vec![number], &shape, knees, move |shape| vec![column(shape[0])])

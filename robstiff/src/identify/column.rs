@@ -1,0 +1,56 @@
+//! Columns of the regression of a campaign.
+
+use robstiff_robots::effect::physics::PLAYS;
+
+use crate::Effect;
+use crate::elements::{Spring, turn};
+
+/// A column of the regression: what a unit of one number adds to every
+/// displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Column {
+    /// The compliance of a spring.
+    Spring(Spring),
+    /// The `added` of a [`StiffnessNonlinearity`](crate::Effect) with a given
+    /// knee.
+    Knee {
+        /// The joint, from 1.
+        joint: usize,
+        /// The torque at the knee (Nm).
+        knee: f64,
+    },
+    /// The `gap` of a [`LostMotion`](crate::Effect) with a given knee.
+    Gap {
+        /// The joint, from 1.
+        joint: usize,
+        /// The torque at which most of the play is taken up (Nm).
+        knee: f64,
+    },
+    /// A weight of a [`Hysteresis`](crate::Effect).
+    Play {
+        /// The joint, from 1.
+        joint: usize,
+        /// Which of its play operators.
+        operator: usize,
+        /// Its radius (Nm).
+        radius: f64,
+    },
+}
+
+impl Column {
+    /// By how much a unit of a number of a gear's curve turns its joint under a torque (rad or m), by
+    /// the law of its [`Effect`]; 0 where it is of no curve.
+    pub fn turn(self, torque: f64) -> f64 {
+        let unit = match self {
+            Self::Knee { joint, knee } => Effect::StiffnessNonlinearity { joint, added: 1.0, knee },
+            Self::Gap { joint, knee } => Effect::LostMotion { joint, gap: 1.0, knee },
+            Self::Spring(_) | Self::Play { .. } => return 0.0,
+        };
+        turn(&unit, 0.0, 0.0, torque, [0.0; PLAYS]).unwrap_or_default()
+    }
+
+    /// Whether it is of a law of its joint, in which the joint's torque is not linear.
+    pub fn is_law(self) -> bool {
+        !matches!(self, Self::Spring(_))
+    }
+}
