@@ -51,7 +51,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     protect(&mut files, &arguments.cut, &file);
     if let Some(path) = &arguments.csv {
         let Some(revolution) = &revolution else {
-            return Err(Failure::new(format_args!("{}, so nobody can tell what a revolution is", lacks(&file.forces))));
+            return Err(Failure::new(format_args!(
+                "{}: {}, so nobody can tell what a revolution is",
+                arguments.cut.display(),
+                lacks(&file.forces)
+            )));
         };
         files.add(path, table(&file.forces, revolution));
     }

@@ -222,8 +222,10 @@ fn of_path<const N: usize>(
     // The force of the tool where the arm lets it go, as without correction.
     let deviation = Deviation::of(robot, &solved, &load).map_err(Failure::new)?;
     let wrenches: Vec<Vector6<f64>> = deviation.points.iter().map(|point| point.wrench).collect();
-    let timeline = Timeline::of_path(&solved, &wrenches, speed)
-        .map_err(|error| Failure::new(format!("{error}; give --feed \"600 mm/min\"")))?;
+    let timeline = Timeline::of_path(&solved, &wrenches, speed).map_err(|error| {
+        let help = "give --feed \"600 mm/min\", or a column `feed [mm/min]`";
+        Failure::new(format_args!("{}: {error}; {help}", path.file))
+    })?;
     let stops = timeline.times().zip(&solved.points);
     let stops = stops.map(|(time, point)| Stop { time, place: Some((point.line, point.s)) }).collect();
     Ok((timeline, stops))
@@ -238,6 +240,9 @@ fn along<const N: usize>(
     silent: Option<&Range<f64>>,
 ) -> Result<What, Failure> {
     let duration = timeline.duration();
+    if duration == 0.0 {
+        return Err(Failure::new(format_args!("{name} takes no time: it has no two points apart")));
+    }
     if let Some(variant) = variants.iter().find(|variant| variant.controller.step > duration) {
         return Err(Failure::new(format!(
             "{name} takes {} s, less than a control step of {} s",

@@ -202,8 +202,8 @@ impl Asked {
         };
         if load.undirected.len() == solved.points.len() {
             return Err(Failure::new(format!(
-                "{} has no direction anywhere: no point of the path lies across the tool from the one before",
-                self.name
+                "{}: no point lies across the tool from the one before, so {} has no direction anywhere",
+                path.file, self.name
             )));
         }
         let deviation = Deviation::of(robot, solved, &load).map_err(Failure::new)?;
@@ -247,7 +247,10 @@ impl Asked {
         };
         let Some(revolution) = revolution else {
             let lacks = forces::lacks(&file.forces);
-            return Err(Failure::new(format_args!("{lacks}, so nobody can tell the peak of a revolution")));
+            return Err(Failure::new(format_args!(
+                "{}: {lacks}, so nobody can tell the peak of a revolution",
+                self.name
+            )));
         };
         Ok(load.with_revolution(revolution.samples.into_iter().map(|(_, force)| force).collect()))
     }

@@ -140,10 +140,15 @@ impl Scene {
             Data::Position(data) => {
                 (&data.poses, data.rows.iter().map(|row| (row.pose, &row.q[..])).collect(), "read less predicted")
             }
-            Data::Clamped(_) => return Err(Failure::new("campaigns of kind `clamped` are at no poses to show")),
+            Data::Clamped(_) => {
+                return Err(Failure::new(format_args!(
+                    "{}: campaigns of kind `clamped` are at no poses to show",
+                    campaign.path.display()
+                )));
+            }
         };
         let tracked = matches!(campaign.data, Data::Position(_));
-        let predicted = predict(robot, campaign)?.rows;
+        let predicted = predict(robot, campaign).map_err(Failure::about(campaign))?.rows;
         let size = |row: &PredictedRow| length(if tracked { row.off } else { row.measured });
         // By pose, the row of the largest displacement.
         let mut largest = vec![None; ids.len()];
