@@ -7,6 +7,8 @@ use nalgebra::{Isometry3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3
 use roxmltree::{Document, Node};
 
 use super::{Body, Connection, Motion, Tree};
+use crate::bare::in_si;
+use crate::quantity::Dimension;
 use crate::suggest::list;
 use crate::{Diagnostic, Diagnostics, JointKind, Line, ReadError, text};
 
@@ -211,7 +213,7 @@ impl Reader<'_> {
     fn inertia(&mut self, node: Node<'_, '_>) -> Option<(f64, Vector3<f64>)> {
         let inertial = element(node, "inertial")?;
         let mass = element(inertial, "mass")?;
-        let [value] = self.numbers(mass, "value")?;
+        let [value] = self.numbers(mass, "value", Dimension::Mass)?;
         if value < 0.0 {
             self.report(&mass.range(), "the mass is negative", "write a mass in kg, or leave `inertial` out");
             return None;
@@ -222,7 +224,8 @@ impl Reader<'_> {
 
     fn origin(&mut self, node: Node<'_, '_>) -> Option<Isometry3<f64>> {
         let Some(origin) = element(node, "origin") else { return Some(Isometry3::identity()) };
-        let xyz = if origin.has_attribute("xyz") { self.numbers(origin, "xyz") } else { Some([0.0; 3]) };
+        let xyz =
+            if origin.has_attribute("xyz") { self.numbers(origin, "xyz", Dimension::Length) } else { Some([0.0; 3]) };
         let rpy = if origin.has_attribute("rpy") { self.angles(origin) } else { Some([0.0; 3]) };
         let ([x, y, z], [roll, pitch, yaw]) = (xyz?, rpy?);
         let turn = Rotation3::from_matrix_unchecked(exact_turn(roll, pitch, yaw));
@@ -231,7 +234,7 @@ impl Reader<'_> {
 
     fn axis(&mut self, node: Node<'_, '_>) -> Option<Unit<Vector3<f64>>> {
         let Some(axis) = element(node, "axis") else { return Some(Vector3::x_axis()) };
-        let direction = Vector3::from(self.numbers(axis, "xyz")?);
+        let direction = Vector3::from(self.numbers(axis, "xyz", Dimension::Number)?);
         let unit = Unit::try_new(direction, 1e-9);
         if unit.is_none() {
             self.report(&axis.range(), "the axis has no direction", "e.g. `<axis xyz=\"0 0 1\"/>`");
@@ -241,8 +244,13 @@ impl Reader<'_> {
 
     fn limits(&mut self, node: Node<'_, '_>, kind: Option<&str>) -> Option<[f64; 2]> {
         let limit = element(node, "limit").filter(|_| matches!(kind, Some("revolute" | "prismatic")))?;
+        let dimension = if kind == Some("prismatic") { Dimension::Length } else { Dimension::Angle };
         let mut end = |name: &str| {
-            if limit.has_attribute(name) { self.numbers(limit, name).map(|[value]| value) } else { Some(0.0) }
+            if limit.has_attribute(name) {
+                self.numbers(limit, name, dimension).map(|[value]| value)
+            } else {
+                Some(0.0)
+            }
         };
         let (low, high) = (end("lower")?, end("upper")?);
         if low > high {
@@ -258,7 +266,7 @@ impl Reader<'_> {
 
     /// Roll, pitch and yaw, with those that were rounded made exact.
     fn angles(&mut self, node: Node<'_, '_>) -> Option<[f64; 3]> {
-        let mut angles: [f64; 3] = self.numbers(node, "rpy")?;
+        let mut angles: [f64; 3] = self.numbers(node, "rpy", Dimension::Angle)?;
         let texts = node.attribute("rpy").unwrap_or_default().split_whitespace();
         for (angle, text) in angles.iter_mut().zip(texts) {
             if let Some(exact) = unrounded(*angle, text) {
@@ -269,8 +277,8 @@ impl Reader<'_> {
         Some(angles)
     }
 
-    /// The finite numbers of an attribute.
-    fn numbers<const K: usize>(&mut self, node: Node<'_, '_>, name: &str) -> Option<[f64; K]> {
+    /// The finite numbers of an attribute, of which none is more than a robot can have in SI.
+    fn numbers<const K: usize>(&mut self, node: Node<'_, '_>, name: &str, dimension: Dimension) -> Option<[f64; K]> {
         let Some(attribute) = node.attribute_node(name) else {
             let tag = node.tag_name().name();
             let help = format!("write `<{tag} {name}=\"{}\"/>`", vec!["0"; K].join(" "));
@@ -288,14 +296,25 @@ impl Reader<'_> {
         }
         for (value, word) in values.iter_mut().zip(words) {
             match word.parse::<f64>() {
-                Ok(number) if number.is_finite() => *value = number,
+                Ok(number) if number.is_finite() => match in_si(number, dimension) {
+                    Ok(number) => *value = number,
+                    Err(beyond) => {
+                        self.report(&place, &beyond.message, "a URDF file has lengths in m and angles in rad");
+                        return None;
+                    }
+                },
                 _ if word.contains("${") => {
                     let help = "expand it first: `xacro FILE.xacro > FILE.urdf`";
                     self.report(&place, &format!("`{word}` is a macro of xacro"), help);
                     return None;
                 }
                 _ => {
-                    self.report(&place, &format!("`{word}` is not a finite number"), "lengths in m, angles in rad");
+                    let help = match dimension {
+                        Dimension::Mass => "a mass in kg",
+                        Dimension::Number => "a direction, of any length",
+                        _ => "lengths in m, angles in rad",
+                    };
+                    self.report(&place, &format!("`{word}` is not a finite number"), help);
                     return None;
                 }
             }

@@ -112,7 +112,7 @@ fn forces_that_do_not_fit_the_path_are_refused() {
     };
     let arguments = with("Fx,Fy,Fz\n1,2,3\n");
     let said = fail(1, &arguments.each_ref().map(String::as_str));
-    assert!(said.contains("has 1 rows, the path has 40 points"), "{said}");
+    assert!(said.contains("here is 1 row, the path has 40 points"), "{said}");
     let arguments = with("Fx,Fy\n1,2\n");
     let said = fail(1, &arguments.each_ref().map(String::as_str));
     assert!(said.contains("the column `Fz` is missing"), "{said}");

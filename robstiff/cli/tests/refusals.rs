@@ -83,7 +83,7 @@ fn forces_name_the_row_where_they_end() {
         fail(1, &["path", "kuka-kr270-r2700", &pocket, "--forces", &forces])
     };
     let said = with("Fx [N],Fy [N],Fz [N]\n1,2,3\n");
-    assert!(said.contains("forces.csv:2:1") && said.contains("here are 1 row, the path has 40 points"), "{said}");
+    assert!(said.contains("forces.csv:2:1") && said.contains("here is 1 row, the path has 40 points"), "{said}");
     let said = with("s [mm],Fx [N],Fy [N],Fz [N]\n0,1,2,3\n100,1,2,3\n");
     assert!(said.contains("forces.csv:3:1") && said.contains("the forces end at s = 100.000 mm"), "{said}");
 }
@@ -99,7 +99,7 @@ fn a_comma_too_many_is_no_decimal_comma() {
     let said = with("1500,5,0,600,0,0,-1,3600");
     assert!(said.contains("path.csv:2:") && !said.contains("write `5.0") && !said.contains("write `0.600`"), "{said}");
     assert!(with("1500,5,600,0,0,-1,3600,").contains("leave out the comma at the end"));
-    assert!(with("1500,5,600,250,0,0,-1,3600").contains("a decimal comma? write `600.250`"));
+    assert!(with("1500.0,5.0,600,250,0,0,-1.0,3600").contains("a decimal comma? write `600.250`"));
 }
 
 #[test]

@@ -120,7 +120,12 @@ impl ForceTable {
         let [first, last] = [0, 1];
         let Some(s) = &self.s else {
             let (rows, points) = (self.wrenches.len(), path.points.len());
-            let message = format!("here are {}, the path has {}", count(rows, "row"), count(points, "point"));
+            let message = format!(
+                "here {} {}, the path has {}",
+                if rows == 1 { "is" } else { "are" },
+                count(rows, "row"),
+                count(points, "point")
+            );
             let help = "give a row for each point, or the arc length of each row as `s [mm]`";
             return if rows == points { Ok(()) } else { Err(self.problem(last, message, help)) };
         };

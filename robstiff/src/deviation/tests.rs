@@ -303,9 +303,9 @@ fn forces_come_by_row_or_by_arc_length() {
     assert!((along_tool.contacts[3].wrench[2] + 100.0).abs() < 1e-6, "the tool points down");
 
     let short = load("s [mm],Fx,Fy,Fz\n0,0,0,0\n500,100,0,50\n", ForceFrame::Base).unwrap_err().to_string();
-    assert!(short.contains("forces.csv goes from s = 0.000 mm to 500.000 mm, the path from"), "{short}");
+    assert!(short.contains("the forces end at s = 500.000 mm, the path at"), "{short}");
     let few = load("Fx,Fy,Fz\n0,0,0\n", ForceFrame::Base).unwrap_err().to_string();
-    assert!(few.contains("forces.csv has 1 rows, the path has 50 points"), "{few}");
+    assert!(few.contains("here is 1 row, the path has 50 points"), "{few}");
     let problems = table("s,Fx,Fy\n0,1,2\n0,3,x\n").unwrap_err();
     assert!(problems.contains("the column `Fz` is missing"), "{problems}");
     let problems = table("s,Fx,Fy,Fz\n0,1,2,3\n0,3,2,x\n").unwrap_err();

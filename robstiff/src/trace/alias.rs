@@ -51,7 +51,7 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, structure: bool, opt
     let near = |rival: &Fitted, candidate: usize| {
         let Some(Without { setting, tests, unseen }) = &without else { return false };
         let is_significant = tests.p_value(candidate) <= options.alpha;
-        let predicts = || setting.left_out_rms(&rival.fit) < *unseen;
+        let predicts = || setting.left_out(&rival.fit).deviance < *unseen;
         let is_near = |rival: &Fitted, at: &Setting<'_>| {
             let behind = rival.bic - model.bic;
             behind < WITHIN_REACH
@@ -127,7 +127,7 @@ impl<'c> Alone<'c> {
 struct Without<'c> {
     setting: Rc<Setting<'c>>,
     tests: Rc<Tests>,
-    /// The error on poses left out.
+    /// What poses left out leave of it, whitened and squared.
     unseen: f64,
 }
 
@@ -136,7 +136,7 @@ impl<'c> Without<'c> {
     fn of(bench: &Bench<'c>, rest: &[Named], options: &Options) -> Option<Self> {
         let setting = bench.at(rest).ok()?;
         let tests = bench.tests(rest, options)?;
-        let unseen = setting.left_out_rms(&setting.fit(rest).ok()?.fit);
+        let unseen = setting.left_out(&setting.fit(rest).ok()?.fit).deviance;
         Some(Self { setting, tests, unseen })
     }
 }

@@ -46,6 +46,14 @@ pub fn price(variant: &Variant) -> f64 {
 /// projected out says nothing new.
 const EXPLAINED: f64 = 1e-6;
 
+/// Whether a test can be of all these columns: whether a null model leaves something of each, and
+/// of each against the others.
+pub fn tells_apart(total: &Normal, null: &[usize], tested: Range<usize>) -> bool {
+    Remaining::new(total, null, tested).is_some_and(|left| {
+        left.left.iter().all(|&left| left >= EXPLAINED) && Scaled::apart(&left.gram, EXPLAINED).is_some()
+    })
+}
+
 /// Candidates against a null model.
 pub struct ScoreTest {
     /// By candidate, its variants.

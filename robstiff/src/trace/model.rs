@@ -307,7 +307,8 @@ impl Setting<'_> {
     pub fn unseen_residuals(&self, fit: &Fit) -> (DVector<f64>, Vec<usize>) {
         let problem = &self.problem;
         if problem.held_out.is_empty() {
-            return self.left_out_residuals(fit);
+            let LeftOut { residuals, rows, .. } = self.left_out(fit);
+            return (residuals, rows);
         }
         let rows = problem.held_out.iter().flat_map(|block| block.rows.iter().copied()).collect();
         (self.residuals(fit), rows)
@@ -320,9 +321,9 @@ impl Setting<'_> {
         rms(&residuals, self.problem.axes, rows)
     }
 
-    /// The residuals of each pose fitted to, by the fit without it, stacked;
-    /// with the campaign's rows they are of.
-    fn left_out_residuals(&self, fit: &Fit) -> (DVector<f64>, Vec<usize>) {
+    /// What each pose fitted to leaves of the fit without it: for choosing a model. Poses held out
+    /// have no part in it.
+    pub fn left_out(&self, fit: &Fit) -> LeftOut {
         let signs: Vec<Sign> = fit.columns.iter().map(|&column| self.signs[column]).collect();
         let raw: Vec<DVector<f64>> = fit.columns.iter().map(|&column| self.raw(column)).collect();
         let problem = match self.columns.borrow().as_ref() {
@@ -334,25 +335,20 @@ impl Setting<'_> {
             }
         };
         let columns = in_place(fit).columns;
-        let mut residuals = (*problem.readings).clone();
+        let (mut residuals, mut deviance) = ((*problem.readings).clone(), 0.0);
         for block in problem.blocks.iter() {
             // The whole fit where that block alone sees a column.
             let without = problem.solve_without(block, &columns, Some(&signs));
             let coefficients = without.as_ref().unwrap_or(&fit.coefficients);
+            deviance += problem.block_residuals(block, &columns, coefficients).norm_squared();
             for &i in &block.stacked {
                 let fitted: f64 = raw.iter().zip(coefficients.iter()).map(|(column, value)| column[i] * value).sum();
                 residuals[i] -= fitted;
             }
         }
-        let rows = problem.blocks.iter().flat_map(|block| block.rows.iter().copied()).collect();
-        (residuals, rows)
-    }
-
-    /// The root mean square error on each pose fitted to, by the fit without it
-    /// (m): for choosing a model. Poses held out have no part in it.
-    pub fn left_out_rms(&self, fit: &Fit) -> f64 {
-        let (residuals, rows) = self.left_out_residuals(fit);
-        rms(&residuals, self.problem.axes, rows)
+        let rows: Vec<usize> = problem.blocks.iter().flat_map(|block| block.rows.iter().copied()).collect();
+        let rms = rms(&residuals, problem.axes, rows.iter().copied());
+        LeftOut { residuals, rows, rms, deviance }
     }
 
     /// The squared whitened residuals of each block.
@@ -361,6 +357,19 @@ impl Setting<'_> {
         let of = |block| problem.block_residuals(block, &fit.columns, &fit.coefficients).norm_squared();
         problem.blocks.iter().map(of).collect()
     }
+}
+
+/// What poses leave of fits without them.
+pub struct LeftOut {
+    /// Of the readings as measured, stacked (m, rad).
+    pub residuals: DVector<f64>,
+    /// The campaign's rows that these are of.
+    pub rows: Vec<usize>,
+    /// The root mean square of the displacements (m), as people are told it.
+    pub rms: f64,
+    /// The sum of the squares of what is left, whitened: of all that is read, each by its noise. By
+    /// this models are compared, for by it they are fitted.
+    pub deviance: f64,
 }
 
 /// A fit in the regression on its columns alone.

@@ -247,7 +247,7 @@ const PROPOSALS: usize = 3;
 /// Whether poses left out are predicted better by a proposal than by the smaller model,
 /// and each of its effects is significant.
 fn passes(bench: &Bench<'_>, smaller: &Fitted, proposed: &Fitted, against_smaller: &Tests, options: &Options) -> bool {
-    let left_out = |model: &Fitted| Some(bench.at(&model.named).ok()?.left_out_rms(&model.fit));
+    let left_out = |model: &Fitted| Some(bench.at(&model.named).ok()?.left_out(&model.fit).deviance);
     let predicts_better = matches!((left_out(proposed), left_out(smaller)), (Some(new), Some(old)) if new < old);
     let p_value = |k: usize| {
         let (one, rest) = (proposed.named[k], all_but(&proposed.named, k));
@@ -355,19 +355,19 @@ fn best_of(mut models: Vec<Fitted>) -> Vec<Fitted> {
 /// All candidates against a model.
 pub fn table(setting: &Setting<'_>, model: &Fitted, tests: &Tests, options: &Options) -> Step {
     let name = |one: &Named| setting.candidates[one.candidate].name();
-    let before = setting.left_out_rms(&model.fit);
+    let before = setting.left_out(&model.fit).deviance;
     let candidates = (0..setting.candidates.len()).map(|candidate| {
         let statistic = tests.statistics[candidate].map(|(statistic, _)| statistic);
         let p_value = tests.p_value(candidate);
         let with = best_with(setting, &model.named, candidate);
-        let left_out_rms = with.as_ref().map(|with| setting.left_out_rms(&with.fit));
+        let left_out = with.as_ref().map(|with| setting.left_out(&with.fit));
         let reason = if model.named.iter().any(|one| one.candidate == candidate) {
             "already named"
         } else if statistic.is_none() || with.is_none() {
             "it explains nothing with numbers that are physically possible"
         } else if p_value > options.alpha {
             "not significant"
-        } else if left_out_rms.is_some_and(|rms| rms >= before) {
+        } else if left_out.as_ref().is_some_and(|left| left.deviance >= before) {
             "poses left out are not predicted better"
         } else {
             "another explains more"
@@ -377,7 +377,7 @@ pub fn table(setting: &Setting<'_>, model: &Fitted, tests: &Tests, options: &Opt
             statistic,
             p_value,
             bic: with.map(|with| with.bic),
-            left_out_rms,
+            left_out_rms: left_out.map(|left| left.rms),
             reason: String::from(reason),
         }
     });

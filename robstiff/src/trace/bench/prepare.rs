@@ -7,10 +7,15 @@ use std::string::String;
 use std::vec;
 use std::vec::Vec;
 
+use nalgebra::{DMatrix, DVector};
+
 use super::Bench;
+use crate::identify::normal::Normal;
+use crate::trace::bootstrap::tells_apart;
 use crate::trace::catalogue::{Candidate, Catalogue, LIKELY, Number, Variant, catalogue};
 use crate::trace::isolated::{self, Event};
 use crate::trace::model::{Fitted, Named, Setting, all_but};
+use crate::trace::point::Point;
 use crate::trace::slip::{Moment, Slipping, likeliest_slip};
 
 /// A column this small against the largest of a joint is zero but for rounding.
@@ -20,7 +25,22 @@ const ZERO: f64 = 1e-7;
 /// was no matter of single rows.
 const ROUNDS: usize = 4;
 
-impl Bench<'_> {
+/// Of forms of which some are only there where those with more numbers are not shown, those with
+/// the most numbers that are; all others are there anyway.
+fn most_numbers(variants: Vec<Variant>, is_shown: impl Fn(&Variant) -> bool) -> Vec<Variant> {
+    let (fewer, whole): (Vec<Variant>, Vec<Variant>) =
+        variants.into_iter().partition(|variant| variant.in_place_of_more);
+    let whole: Vec<Variant> = whole.into_iter().filter(&is_shown).collect();
+    if !whole.is_empty() {
+        return whole;
+    }
+    let mut shown: Vec<Variant> = fewer.into_iter().filter(is_shown).collect();
+    let most = shown.iter().map(|variant| variant.columns.len()).max();
+    shown.retain(|variant| Some(variant.columns.len()) == most);
+    shown
+}
+
+impl<'c> Bench<'c> {
     /// Forms the catalogue, without what the data cannot show.
     pub(super) fn set_up(&mut self) -> Result<(), String> {
         self.form();
@@ -68,7 +88,10 @@ impl Bench<'_> {
         let is_seen = |variant: &&Variant| variant.columns.iter().all(|column| visible.contains(column));
         let (mut kept, mut lost) = (Vec::new(), Vec::new());
         for candidate in candidates {
-            let variants: Vec<Variant> = candidate.variants.iter().filter(is_seen).cloned().collect();
+            let mut variants: Vec<Variant> = candidate.variants.iter().filter(is_seen).cloned().collect();
+            if candidate.variants.iter().any(|variant| variant.in_place_of_more) {
+                variants = most_numbers(variants, |variant| self.tells_apart(&point, &base.base, &variant.columns));
+            }
             match variants.is_empty() {
                 true if candidate.is_nameless() => {}
                 true => lost.push(candidate.name()),
@@ -76,6 +99,18 @@ impl Bench<'_> {
             }
         }
         Ok((kept, lost))
+    }
+
+    /// Whether the data tell some columns apart from each other and from those of the
+    /// description's numbers.
+    fn tells_apart(&self, point: &Point<'c>, own: &[usize], columns: &[usize]) -> bool {
+        let whitener = self.noise.covariance.whitener(&self.left_out);
+        let places: Vec<usize> = self.fitted_to().collect();
+        let white = |&column: &usize| whitener.whitened(self.linear(point, column)).select_rows(&places);
+        let all: Vec<DVector<f64>> = own.iter().chain(columns).map(white).collect();
+        let total = Normal::new(&DMatrix::from_columns(&all), &DVector::zeros(places.len()));
+        let own: Vec<usize> = (0..own.len()).collect();
+        tells_apart(&total, &own, own.len()..all.len())
     }
 
     /// Looks again, with a model, for rows that are wild and for the moment at

@@ -4,6 +4,7 @@
 use std::format;
 use std::rc::Rc;
 use std::vec;
+use std::vec::Vec;
 
 use nalgebra::Vector3;
 
@@ -23,8 +24,9 @@ pub static KIND: Kind = Kind {
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let frames = &scene.samples.rows[0].joint_frames;
     let axis = |joint: usize| frames[joint - 1].fixed_view::<3, 1>(0, 2).into_owned();
-    for j in 2..=scene.joints() {
-        for i in (1..j).filter(|&i| scene.turns(i) && scene.turns(j) && share_a_drive(i, j, &axis)) {
+    let turning: Vec<usize> = (1..=scene.joints()).filter(|&joint| scene.turns(joint)).collect();
+    for &j in &turning {
+        for &i in turning.iter().filter(|&&i| share_a_drive(i, j, &turning, &axis)) {
             let number =
                 Number::compliance(scene, "value", [f64::NEG_INFINITY, f64::INFINITY], Spring::Coupling([i, j]));
             let check = move |numbers: &[(&str, f64)], joint: &dyn Fn(usize) -> f64| {
@@ -38,16 +40,19 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     }
 }
 
-/// The first joint of a wrist, on arms that have one.
-const WRIST: usize = 4;
+/// How many joints turn before the wrist, on arms that have one.
+const BEFORE_WRIST: usize = 3;
 
-/// Whether two joints can have a belt, rod or gear in common: neighbours with
+/// Whether a joint and one behind it can have a belt, rod or gear in common: neighbours with
 /// parallel axes (a parallelogram, a drive further down) and the joints of a
 /// wrist, whose shafts run in one another. Other pairs have no part through
 /// which one could turn the other, and would only be names for something else.
-pub fn share_a_drive(i: usize, j: usize, axis: &dyn Fn(usize) -> Vector3<f64>) -> bool {
+/// Joints that slide do not count: a belt goes along a slide, and a wrist on a rail is one.
+pub fn share_a_drive(i: usize, j: usize, turning: &[usize], axis: &dyn Fn(usize) -> Vector3<f64>) -> bool {
+    let place = |joint: usize| turning.iter().position(|&other| other == joint);
+    let (Some(first), Some(second)) = (place(i), place(j)) else { return false };
     let parallel = axis(i).cross(&axis(j)).norm() < PARALLEL;
-    (j == i + 1 && parallel) || i >= WRIST
+    first < second && ((second == first + 1 && parallel) || first >= BEFORE_WRIST)
 }
 
 /// Axes within this angle are parallel (rad); description angles are exact.

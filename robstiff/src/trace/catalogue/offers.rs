@@ -33,6 +33,8 @@ pub struct Variant {
     pub likely: Option<[f64; 2]>,
     /// What the readings may have besides that no column says, given the numbers.
     pub unsure: Option<Unsure>,
+    /// Whether it is only there where the data do not show the forms with more numbers.
+    pub in_place_of_more: bool,
 }
 
 impl Variant {
@@ -47,6 +49,7 @@ impl Variant {
             within: [0.0, f64::INFINITY],
             likely: None,
             unsure: None,
+            in_place_of_more: false,
         }
     }
 }
@@ -113,6 +116,8 @@ pub struct Form {
     pub likely: Option<[f64; 2]>,
     /// What the readings may have besides that no column says, given the numbers.
     pub unsure: Option<Unsure>,
+    /// Whether it is only there where the data do not show the forms with more numbers.
+    pub in_place_of_more: bool,
 }
 
 impl Form {
@@ -127,7 +132,14 @@ impl Form {
             within: MORE_THAN_NONE,
             likely: None,
             unsure: None,
+            in_place_of_more: false,
         }
+    }
+
+    /// The same, only there where the data do not show the forms with more numbers.
+    pub fn in_place_of_more(mut self) -> Self {
+        self.in_place_of_more = true;
+        self
     }
 
     /// The same with a number out of a grid.
@@ -199,6 +211,7 @@ impl Offers<'_> {
             within: form.within,
             likely: form.likely,
             unsure: form.unsure,
+            in_place_of_more: form.in_place_of_more,
         };
         let variants = forms.into_iter().map(variant).collect();
         self.catalogue.numbers.extend(numbers);

@@ -196,9 +196,10 @@ fn springs(name: &'static str, part: Part, numbers: &[(&'static str, &'static st
 fn couplings(robot: &Description, data: &Positions) -> Vec<Offer> {
     let axes = frames(robot, &data.rows[..1]).remove(0).axes;
     let axis = |joint: usize| axes[joint - 1].0;
-    let turn = |joint: usize| robot.joints[joint - 1].kind == JointKind::Revolute;
-    let pairs = (2..=robot.joints.len()).flat_map(|j| (1..j).map(move |i| [i, j]));
-    let pairs = pairs.filter(|&[i, j]| turn(i) && turn(j) && share_a_drive(i, j, &axis));
+    let turns = |joint: &usize| robot.joints[joint - 1].kind == JointKind::Revolute;
+    let turning: Vec<usize> = (1..=robot.joints.len()).filter(turns).collect();
+    let pairs = turning.iter().flat_map(|&j| turning.iter().map(move |&i| [i, j]));
+    let pairs = pairs.filter(|&[i, j]| share_a_drive(i, j, &turning, &axis));
     let any = [f64::NEG_INFINITY, f64::INFINITY];
     let coupling = |pair @ [i, j]: [usize; 2]| Offer {
         // What leaves both joints stable.
