@@ -59,10 +59,9 @@ fn a_drift_that_comes_back_is_no_slip() {
         let phase = 0.7 * f64::from(seed);
         let along = amplitude * Vector3::new(0.6, -0.5, 0.62);
         let trace = moved(&plan(seed.into()), |row| along * (TAU * row as f64 / ROWS + phase).sin());
-        all.push((slips(&trace), names(&trace), trace.verdict, trace.looks_like));
+        all.push((slips(&trace), names(&trace), trace.verdict));
     }
-    assert!(all.iter().all(|(slips, _, verdict, _)| slips.is_empty() && *verdict != Verdict::Adequate), "{all:?}");
-    assert!(all.iter().any(|(.., looks_like)| looks_like.contains(&WORDS.to_string())), "{all:?}");
+    assert!(all.iter().all(|(slips, _, verdict)| slips.is_empty() && *verdict != Verdict::Adequate), "{all:?}");
 }
 
 /// A slip keeps its name, whenever it was and however little.
