@@ -39,6 +39,8 @@ mod search;
 pub mod selection;
 mod settle;
 mod sizes;
+#[cfg(test)]
+mod slides_tests;
 pub mod slip;
 pub mod step;
 #[cfg(test)]

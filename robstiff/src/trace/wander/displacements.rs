@@ -19,6 +19,7 @@ const MOMENTS: usize = 64;
 /// or by slipping once more, and what it looks like; `None` where they are said best as they are.
 pub fn instead_of_slips(bench: &Bench<'_>, model: &Fitted) -> Option<(Fitted, &'static str)> {
     let name = |one: &Named| bench.candidates()[one.candidate].kind.name;
+    model.named.iter().find(|one| Slipping::has(name(one)))?;
     let slipped_again = |model: &Fitted| Asked::new(&*bench.at(&model.named).ok()?, model).slipped_again();
     let (mut model, mut best, whole) = (model.clone(), model.bic, model.named.len());
     loop {
@@ -43,9 +44,7 @@ pub fn instead_of_slips(bench: &Bench<'_>, model: &Fitted) -> Option<(Fitted, &'
     if model.named.len() < whole {
         return Some((model, WORDS));
     }
-    let slips = model.named.iter().any(|one| Slipping::has(name(one)));
-    let again = slips.then(|| slipped_again(&model)).flatten();
-    again.filter(|again| *again < best - WITHIN_REACH).map(|_| (model, AGAIN))
+    slipped_again(&model).filter(|again| *again < best - WITHIN_REACH).map(|_| (model, AGAIN))
 }
 
 /// A model, and what it leaves of more columns.
