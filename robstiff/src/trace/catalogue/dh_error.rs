@@ -20,7 +20,7 @@ pub static KIND: Kind = Kind {
 };
 
 /// Beyond this a table is not off but another robot's (rad, m, m, rad).
-pub const MOST: [f64; 4] = [0.1, 0.1, 0.1, 0.1];
+pub const MOST: [f64; 4] = [0.125, 0.125, 0.125, 0.125];
 /// The units of a table's entries.
 pub const UNITS: [&str; 4] = ["rad", "m", "m", "rad"];
 
