@@ -112,13 +112,15 @@ impl Beside {
     }
 }
 
-/// Schwarz's criterion of a model with a course of what is read besides, a wave or a walk.
-///
-/// `shifts` are the columns of shifts along three axes that follow a course over the campaign,
-/// which is from 0 to 1 in the order of its rows; `beside` is what a model leaves of columns.
+/// The columns of shifts along three axes that follow a course over the campaign, which is from
+/// 0 to 1 in the order of its rows.
+pub type Shifts<'a> = dyn Fn(&dyn Fn(f64) -> f64) -> [DVector<f64>; 3] + 'a;
+
+/// Schwarz's criterion of a model with a course of what is read besides, a wave or a walk;
+/// `beside` is what the model leaves of columns.
 pub fn beside_a_course(
     rows: usize,
-    shifts: &dyn Fn(&dyn Fn(f64) -> f64) -> [DVector<f64>; 3],
+    shifts: &Shifts<'_>,
     beside: &dyn Fn(&[DVector<f64>]) -> Option<Beside>,
 ) -> Option<f64> {
     let wave = |periods: &f64| {
