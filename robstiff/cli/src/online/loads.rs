@@ -54,8 +54,7 @@ pub enum What {
         frequencies: Vec<f64>,
         /// For each variant and frequency.
         left: Vec<Vec<robstiff::online::Left>>,
-        /// For each variant, up to which frequency (Hz) less than half and less
-        /// than all is left; `None` where never, or beyond what was looked at.
+        /// For each variant, up to which frequency less than half and less than all is left.
         useful: Vec<[Reach; 2]>,
     },
     /// Along a path or over a record.
