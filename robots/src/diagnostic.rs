@@ -55,6 +55,16 @@ impl Diagnostic {
             source_line: line.text.to_owned(),
         }
     }
+
+    /// A problem with a whole line.
+    pub fn of_line(
+        file: impl Into<String>,
+        line: Line<'_>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Self {
+        Self::new(file, line, (1, line.text.chars().count()), message, help)
+    }
 }
 
 /// How many columns a terminal gives to a character; an approximation that

@@ -117,7 +117,7 @@ impl ForceTable {
 
     /// Holds the rows against those of a path.
     fn check<const N: usize>(&self, path: &SolvedPath<N>) -> Result<(), Diagnostics> {
-        let [first, last] = [0, 1];
+        let [first, last] = &self.ends;
         let Some(s) = &self.s else {
             let (rows, points) = (self.wrenches.len(), path.points.len());
             let message = format!(
@@ -145,11 +145,9 @@ impl ForceTable {
         Ok(())
     }
 
-    /// A problem with the first row (0) or the last (1).
-    fn problem(&self, end: usize, message: String, help: &str) -> Diagnostics {
-        let (number, text) = &self.ends[end];
-        let width = text.chars().count();
-        Diagnostic::new(&self.file, Line { number: *number, text }, (1, width), message, help).into()
+    /// A problem with a row, by its line and what that says.
+    fn problem(&self, (number, text): &(usize, String), message: String, help: &str) -> Diagnostics {
+        Diagnostic::of_line(&self.file, Line { number: *number, text }, message, help).into()
     }
 
     /// The wrench at an arc length, linear between rows.

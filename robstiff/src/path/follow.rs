@@ -127,9 +127,7 @@ impl ToolPath {
 
     /// A problem with a line of the file (from 1).
     pub(crate) fn diagnostic(&self, line: usize, message: String, help: &str) -> Diagnostic {
-        let source_line = self.line(line);
-        let width = source_line.chars().count();
-        Diagnostic::new(&self.file, Line { number: line, text: source_line }, (1, width), message, help)
+        Diagnostic::of_line(&self.file, Line { number: line, text: self.line(line) }, message, help)
     }
 }
 
