@@ -1,9 +1,9 @@
 //! `robstiff simulate`: a campaign on a robot that hides something.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use robstiff::campaign::Data;
-use robstiff::simulate::{Refused, Scenario, Simulated, simulate};
+use robstiff::simulate::{Scenario, Simulated, simulate};
 use serde_json::json;
 
 use crate::failure::Failure;
@@ -39,7 +39,8 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, _) = input::robot(&arguments.robot)?;
     input::complain_if_rigid(&robot);
-    let scenario = Scenario::read(&arguments.scenario, &robot)?;
+    let (name, text) = (arguments.scenario.display().to_string(), robstiff_robots::text::read(&arguments.scenario)?);
+    let scenario = Scenario::parse(&name, &text, &robot)?;
     let mut files = Files::default();
     files.protect(&arguments.robot);
     files.protect(&arguments.scenario);
@@ -49,7 +50,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = paths.iter().find(|path| path.exists() && !arguments.force) {
         return Err(Failure::there_already(path, "folder"));
     }
-    let simulated = simulate(&robot, &scenario).map_err(|refused| located(&refused, &arguments.scenario))?;
+    let simulated = simulate(&robot, &scenario).map_err(|refused| refused.located(&name, &text))?;
     let texts = simulated.files();
     for (path, text) in paths.into_iter().zip([texts.campaign, texts.observations.1, texts.robot, texts.truth]) {
         files.add(path, text);
@@ -59,15 +60,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let said = files.write()?;
     output::print(page(&simulated) + &said)
-}
-
-/// What is wrong with a scenario, at its place.
-fn located(refused: &Refused, scenario: &Path) -> Failure {
-    match robstiff_robots::text::read(scenario) {
-        Ok(text) => refused.located(&scenario.display().to_string(), &text).into(),
-        // It was read a moment ago.
-        Err(_) => Failure::new(refused),
-    }
 }
 
 fn page(simulated: &Simulated) -> String {

@@ -24,7 +24,7 @@ pub fn measured(truth: &Description, scenario: &Scenario, under: &UnderForces, p
     data
 }
 
-/// Whether all of a row are numbers, in the units of the files, too.
+/// Whether a campaign may have all numbers of a row.
 pub fn is_readable(row: &Observation) -> bool {
     let read = row.displacement.iter().chain(row.rotation.iter().flatten()).chain(row.encoders.iter().flatten());
     row.wrench.iter().chain(&row.q).chain(read).all(|value| finite(*value).is_ok())

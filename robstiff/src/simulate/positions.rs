@@ -46,7 +46,7 @@ pub fn measured(truth: &Description, scenario: &Scenario, under: &UnderPayloads,
     data
 }
 
-/// Whether all of a row are numbers, in the units of the files, too.
+/// Whether a campaign may have all numbers of a row.
 pub fn is_readable(row: &PositionRow) -> bool {
     row.q.iter().chain(&row.position).all(|value| finite(*value).is_ok())
 }
