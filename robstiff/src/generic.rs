@@ -6,6 +6,7 @@ use std::vec::Vec;
 
 use nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
 use robstiff_robots::angle::{quarter_turns, sin_cos_of_turns};
+use robstiff_robots::words::count;
 use robstiff_robots::{Description, Joint, Placement};
 
 use crate::elements::{Pose, Spring, contributions, deviation, plays, springs, turn};
@@ -97,8 +98,8 @@ pub struct WrongJointCount {
 
 impl fmt::Display for WrongJointCount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let joints = if self.expected == 1 { "joint" } else { "joints" };
-        write!(f, "a robot with {} {joints} was asked for, the description has {}", self.expected, self.found)
+        let expected = count(self.expected, "joint");
+        write!(f, "a robot with {expected} was asked for, the description has {}", self.found)
     }
 }
 

@@ -12,6 +12,7 @@ use std::string::String;
 use std::vec::Vec;
 
 use robstiff_robots::quantity::{Dimension, QuantityError, finite, scale};
+use robstiff_robots::words::count;
 use robstiff_robots::{Diagnostic, Diagnostics, Line, ReadError};
 
 use header::Header;
@@ -154,8 +155,7 @@ impl<'t> Table<'t> {
         if found == expected {
             self.records.push(Record { line, fields: row.iter().map(ToOwned::to_owned).collect() });
         } else {
-            let fields = if found == 1 { "field" } else { "fields" };
-            let message = format!("this row has {found} {fields}, the header has {expected}");
+            let message = format!("this row has {}, the header has {expected}", count(found, "field"));
             let help = "give every row one field a column, with a point as decimal sign";
             let help = match found.checked_sub(expected) {
                 Some(1) if row.get(expected).is_some_and(str::is_empty) => Some(ONE_TOO_MANY.to_owned()),

@@ -10,6 +10,7 @@ use super::{Body, Connection, Motion, Tree};
 use crate::bare::in_si;
 use crate::quantity::Dimension;
 use crate::suggest::list;
+use crate::words::count;
 use crate::{Diagnostic, Diagnostics, JointKind, Line, ReadError, text};
 
 /// A reader with the problems found so far.
@@ -289,7 +290,7 @@ impl Reader<'_> {
         let words: Vec<&str> = attribute.value().split_whitespace().collect();
         let mut values = [0.0; K];
         if words.len() != K {
-            let numbers = |count| format!("{count} number{}", if count == 1 { "" } else { "s" });
+            let numbers = |number| count(number, "number");
             let message = format!("`{name}` has {}, {K} expected", numbers(words.len()));
             self.report(&place, &message, &format!("{}, in SI", numbers(K)));
             return None;

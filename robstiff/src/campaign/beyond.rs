@@ -4,6 +4,8 @@
 use std::format;
 use std::string::String;
 
+use robstiff_robots::words::count;
+
 use crate::JointKind;
 use crate::table::{Numbers, Table};
 
@@ -99,9 +101,8 @@ impl Beyond {
 /// Warns of rows, by their lines, if there are any; says whether there are.
 pub fn warn_of(table: &Table<'_>, what: &str, mut lines: impl Iterator<Item = usize>, ask: &str) -> bool {
     let Some(first) = lines.next() else { return false };
-    let count = 1 + lines.count();
-    let rows = if count == 1 { "row" } else { "rows" };
-    table.warn(&format!("{what} in {count} {rows}, first on line {first}{ask}"));
+    let rows = count(1 + lines.count(), "row");
+    table.warn(&format!("{what} in {rows}, first on line {first}{ask}"));
     true
 }
 

@@ -5,6 +5,7 @@ use std::vec::Vec;
 
 use nalgebra::{DVector, Vector3};
 use robstiff_robots::Description;
+use robstiff_robots::words::count;
 
 use super::baseline::declared;
 use super::samples::Samples;
@@ -58,8 +59,8 @@ impl PredictedRow {
 pub fn predict(description: &Description, campaign: &Campaign) -> Result<Prediction, Error> {
     let (expected, found) = (campaign.robot.joints.len(), description.joints.len());
     if expected != found {
-        let joints = if expected == 1 { "joint" } else { "joints" };
-        return Err(Error(std::format!("the campaign is of a robot with {expected} {joints}, this one has {found}")));
+        let expected = count(expected, "joint");
+        return Err(Error(std::format!("the campaign is of a robot with {expected}, this one has {found}")));
     }
     match &campaign.data {
         Data::Displacement(data) => displacements(description, data),

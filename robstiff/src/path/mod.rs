@@ -15,7 +15,7 @@ use std::string::String;
 use std::vec::Vec;
 
 use nalgebra::{Matrix4, SVector, Unit, Vector3};
-use robstiff_robots::Diagnostics;
+use robstiff_robots::{Diagnostics, words};
 
 pub use crate::inverse::{Orientation, Remaining, Target, Unreached};
 
@@ -124,8 +124,8 @@ impl core::fmt::Display for Unsolved {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let count = self.points.len();
         let lines = lines(self.points.iter().map(|(line, _)| *line));
-        let points = if self.of == 1 { "point" } else { "points" };
-        write!(f, "{}\n\n{count} of {} {points} cannot be reached: {lines}", self.problems, self.of)?;
+        let of = words::count(self.of, "point");
+        write!(f, "{}\n\n{count} of {of} cannot be reached: {lines}", self.problems)?;
         if count == self.of && !self.of_joints && !self.points.iter().all(|(_, why)| *why == Unreached::TurnAboutTool) {
             f.write_str("; is the path given in another frame, in another unit, or along another axis of the tool?")?;
         }
