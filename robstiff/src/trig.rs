@@ -167,8 +167,8 @@ pub(crate) fn sin_cos<F: Float>(angle: F) -> (F, F) {
 /// there is room, else one more vector filled up with the last angle.
 ///
 /// Nothing here has its address taken on the way that is usual, so that angles
-/// and results stay in registers: numbers stored one by one and loaded as a
-/// vector would have to wait for the cache.
+/// stay in registers, and results but for [`BY_MEMORY`]: numbers stored one by one
+/// and loaded as a vector would have to wait for the cache.
 #[inline(always)]
 pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K]) -> [(F, F); K] {
     let lanes = F::Vector::LANES;
@@ -207,13 +207,26 @@ pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K]) -> [(F, F); 
     }
     let mut out = [(F::ZERO, F::ZERO); K];
     for first in (0..alone).step_by(lanes) {
-        let (sin, cos) = vectors[first / lanes];
+        let (sin, cos) = handed_on(vectors[first / lanes]);
         F::Vector::scatter(sin, cos, &mut out, first);
     }
     if in_pairs > 0 {
-        pairs.scatter_pairs(&mut out, alone);
+        handed_on(pairs).scatter_pairs(&mut out, alone);
     }
     out
+}
+
+/// Whether sines and cosines go to the algebra by way of memory, in programs that are
+/// built for a machine with AVX-512 and not one of AMD's, which has SSE4a: what takes a
+/// number out of a vector, or copies it into all lanes, takes a port of the products
+/// there, a load does not. On AMD's the same costs H_x more than it saves.
+/// Gain: `benches/README.md`.
+const BY_MEMORY: bool = cfg!(all(target_feature = "avx512f", not(target_feature = "sse4a")));
+
+#[inline(always)]
+fn handed_on<V>(vectors: V) -> V {
+    // It must be taken to have changed them in memory, so that they are loaded again.
+    if BY_MEMORY { core::hint::black_box(vectors) } else { vectors }
 }
 
 #[inline(always)]
