@@ -126,3 +126,20 @@ fn one_unit_is_that_of_all_three_components() {
     let said = fail(2, &["trace", "campaign.yaml", "--out", "out", "--draws", "-1"]);
     assert!(said.contains("a whole number from 99 to 1000000 is expected here"), "{said}");
 }
+
+#[test]
+fn an_option_without_effect_is_refused() {
+    let folder = folder("refused-options");
+    let joints = write(&folder, "joints.csv", "q1,q2,q3,q4,q5\n0,-0.5,0.5,0,1\n0.1,-0.5,0.5,0,1\n");
+    let said = fail(2, &["path", "rv130hsc", &joints, "--place", "1 m, 0, 0, 0, 0, 0"]);
+    assert!(said.contains("joints.csv gives joint coordinates, which stand in no frame"), "{said}");
+    let force = ["--force", "0, 0, -400 N"];
+    for option in [["--feed", "600 mm/min"], ["--toward", "0,1,0"]] {
+        let said = fail(2, &[&["online", "rv130hsc"][..], &force, &option].concat());
+        assert!(said.contains(option[0]), "{said}");
+    }
+    let page = inside(&folder, "page.html");
+    let view = ["view", "rv130hsc", "--campaign", &file("tracker.yaml"), "--column", "feed", "--out", &page];
+    let said = fail(2, &view);
+    assert!(said.contains("--column") && !folder.join("page.html").exists(), "{said}");
+}

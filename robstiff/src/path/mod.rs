@@ -154,7 +154,7 @@ pub fn lines(of: impl IntoIterator<Item = usize>) -> String {
 
 impl ToolPath {
     /// Whether it gives joint coordinates, and no poses.
-    fn gives_joints(&self) -> bool {
+    pub fn gives_joints(&self) -> bool {
         self.points.iter().all(|point| matches!(point.goal, Goal::Joints(_)))
     }
 

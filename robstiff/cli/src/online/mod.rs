@@ -69,13 +69,13 @@ struct LoadArguments {
     #[arg(long, value_name = "q1,q2,..", allow_hyphen_values = true, conflicts_with = "path")]
     at: Option<String>,
     /// Where the feed of a cut at a pose goes, in the base frame
-    #[arg(long, value_name = "x,y,z", default_value = "1,0,0", allow_hyphen_values = true, value_parser = direction)]
+    #[arg(long, value_name = "x,y,z", default_value = "1,0,0", allow_hyphen_values = true, value_parser = direction, conflicts_with_all = ["path", "force"])]
     toward: Vector3<f64>,
     /// Frequencies at which the force at a pose comes and goes
-    #[arg(long, value_name = "FREQUENCIES", default_value = "0.2, 0.5, 1, 2, 5, 10 Hz", allow_hyphen_values = true, value_parser = frequencies)]
+    #[arg(long, value_name = "FREQUENCIES", default_value = "0.2, 0.5, 1, 2, 5, 10 Hz", allow_hyphen_values = true, value_parser = frequencies, conflicts_with = "path")]
     frequencies: Frequencies,
     /// The speed along a path that does not say it, e.g. "600 mm/min"
-    #[arg(long, value_name = "SPEED", allow_hyphen_values = true, value_parser = positive(Dimension::Speed))]
+    #[arg(long, value_name = "SPEED", requires = "path", conflicts_with_all = ["force", "at"], allow_hyphen_values = true, value_parser = positive(Dimension::Speed))]
     feed: Option<f64>,
     /// The axis in the TCP's frame that `ux uy uz` point along, and that of the spindle: x, y, z, -x, -y or -z
     #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = tool_axis)]

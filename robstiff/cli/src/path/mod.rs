@@ -70,6 +70,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         output::complain(format_args!("warning: {warning}"));
     }
     if let Some(text) = &arguments.place {
+        if path.gives_joints() {
+            return Err(Failure::Usage(format!(
+                "--place: {} gives joint coordinates, which stand in no frame",
+                arguments.path.display()
+            )));
+        }
         path = path.placed(&place(text)?);
     }
     let mut files = Files::default();
