@@ -3,16 +3,16 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-/// How near to a multiple of 90 degrees an angle counts as that multiple \[rad\].
+/// How near to a multiple of 90 degrees an angle counts as that multiple (rad).
 pub const SNAP: f64 = 1e-9;
 
-/// The number of quarter turns, reduced to `0..4`, if `angle` \[rad\] is within
+/// The number of quarter turns, reduced to `0..4`, if `angle` (rad) is within
 /// [`SNAP`] of a multiple of 90 degrees.
 pub fn quarter_turns(angle: f64) -> Option<u8> {
     whole_turns(angle).map(|turns| turns.rem_euclid(4) as u8)
 }
 
-/// The multiple of 90 degrees within [`SNAP`] of `angle` \[rad\] if there is
+/// The multiple of 90 degrees within [`SNAP`] of `angle` (rad) if there is
 /// one, else `angle` itself.
 pub fn snapped(angle: f64) -> f64 {
     whole_turns(angle).map_or(angle, |turns| turns as f64 * FRAC_PI_2)

@@ -4,10 +4,10 @@ use crate::dimension::Dimension;
 use crate::quantity::QuantityError;
 use std::f64::consts::PI;
 
-/// Two turns either way, more than the joints of an arm make \[rad\].
+/// Two turns either way, more than the joints of an arm make (rad).
 const MOST_ANGLE: f64 = 4.0 * PI;
 
-/// Longer than any arm, and than the rails that arms stand on \[m\].
+/// Longer than any arm, and than the rails that arms stand on (m).
 const MOST_LENGTH: f64 = 50.0;
 
 /// Nothing that is so soft is a robot's; a stiffness always is more than 1

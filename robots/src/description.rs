@@ -32,13 +32,13 @@ pub struct Description {
 pub struct Joint {
     /// Turning or sliding.
     pub kind: JointKind,
-    /// DH angle about z at joint coordinate 0 \[rad\].
+    /// DH angle about z at joint coordinate 0 (rad).
     pub theta: f64,
-    /// DH offset along z at joint coordinate 0 \[m\].
+    /// DH offset along z at joint coordinate 0 (m).
     pub d: f64,
-    /// DH length along x \[m\].
+    /// DH length along x (m).
     pub a: f64,
-    /// DH twist about x \[rad\].
+    /// DH twist about x (rad).
     pub alpha: f64,
     /// Lower and upper limit of the joint coordinate [rad or m].
     pub limits: Option<[f64; 2]>,
@@ -156,9 +156,9 @@ pub struct Part {
 /// Where one frame stands in another.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Placement {
-    /// The origin \[m\].
+    /// The origin (m).
     pub xyz: [f64; 3],
-    /// Roll, pitch, yaw about the fixed x, y, z axes \[rad\]:
+    /// Roll, pitch, yaw about the fixed x, y, z axes (rad):
     /// `R = Rz(yaw) Ry(pitch) Rx(roll)`.
     pub rpy: [f64; 3],
 }
@@ -166,8 +166,8 @@ pub struct Placement {
 /// Mass of the body that moves with joint `i`, for gravity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Link {
-    /// Mass \[kg\].
+    /// Mass (kg).
     pub mass: f64,
-    /// Centre of mass in the link's frame `i` \[m\].
+    /// Centre of mass in the link's frame `i` (m).
     pub center_of_mass: [f64; 3],
 }

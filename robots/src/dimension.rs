@@ -5,35 +5,35 @@
 pub enum Dimension {
     /// A plain number.
     Number,
-    /// A length \[m\].
+    /// A length (m).
     Length,
-    /// An angle \[rad\].
+    /// An angle (rad).
     Angle,
-    /// The compliance of something that turns [rad/Nm]; a stiffness is taken
+    /// The compliance of something that turns (rad/Nm); a stiffness is taken
     /// as its inverse.
     Compliance,
-    /// The compliance of something that slides [m/N]; a stiffness is taken as
+    /// The compliance of something that slides (m/N); a stiffness is taken as
     /// its inverse.
     LinearCompliance,
-    /// A mass \[kg\].
+    /// A mass (kg).
     Mass,
-    /// A force \[N\].
+    /// A force (N).
     Force,
-    /// A torque \[Nm\].
+    /// A torque (Nm).
     Torque,
-    /// A time \[s\].
+    /// A time (s).
     Time,
-    /// A speed \[m/s\].
+    /// A speed (m/s).
     Speed,
-    /// A rotational speed \[rad/s\].
+    /// A rotational speed (rad/s).
     RotationalSpeed,
-    /// A frequency \[Hz\].
+    /// A frequency (Hz).
     Frequency,
-    /// The feed of a mill per tooth \[m\].
+    /// The feed of a mill per tooth (m).
     FeedPerTooth,
-    /// A force per area, such as a cutting coefficient \[Pa\].
+    /// A force per area, such as a cutting coefficient (Pa).
     Pressure,
-    /// A force per length, such as an edge coefficient [N/m].
+    /// A force per length, such as an edge coefficient (N/m).
     LineForce,
     /// A temperature of which only differences count: `C` and `K` are the same.
     Temperature,

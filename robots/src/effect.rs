@@ -50,9 +50,9 @@ pub enum Convention {
 /// What a joint does along its axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
-    /// Turns: the joint coordinate \[rad\] adds to theta.
+    /// Turns: the joint coordinate (rad) adds to theta.
     Revolute,
-    /// Slides: the joint coordinate \[m\] adds to d.
+    /// Slides: the joint coordinate (m) adds to d.
     Prismatic,
 }
 
@@ -99,8 +99,8 @@ impl Effect {
         }
     }
 
-    /// The slope of [`turn`](Self::turn) against the torque [rad/Nm] at a torque
-    /// \[Nm\]: derived from the law, not stated. The joint's play operators stay where
+    /// The slope of [`turn`](Self::turn) against the torque (rad/Nm) at a torque
+    /// (Nm): derived from the law, not stated. The joint's play operators stay where
     /// they are: a small change turns back within their radii, and on a joint that was
     /// never loaded it does not move them yet.
     pub fn slope<S: Scalar>(

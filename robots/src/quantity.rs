@@ -94,7 +94,7 @@ pub fn finite(value: f64) -> Result<f64, QuantityError> {
     Ok(if value.abs() < LEAST { 0.0 } else { value })
 }
 
-/// The largest angle \[rad\]: of larger ones rounding takes more and more of what is beyond
+/// The largest angle (rad): of larger ones rounding takes more and more of what is beyond
 /// whole turns.
 const MOST_ANGLE: f64 = 1e6;
 

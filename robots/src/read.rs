@@ -150,8 +150,12 @@ fn every<T>(items: &[Node], read: impl FnMut(&Node) -> Option<T>) -> Option<Vec<
 fn name(node: &Node) -> Option<String> {
     let name = node.text()?;
     if !is_type_name(name) {
-        let help =
-            format!("it becomes a Rust type, so write it in upper camel case, e.g. `{}`", Description::name_like(name));
+        let why = if TAKEN.contains(&name) {
+            "it becomes a Rust type, and the generated code uses this name itself: write another one"
+        } else {
+            "it becomes a Rust type, so write it in upper camel case"
+        };
+        let help = format!("{why}, e.g. `{}`", Description::name_like(name));
         node.error(format!("`{name}` cannot name a robot"), help);
         return None;
     }

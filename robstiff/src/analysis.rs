@@ -5,7 +5,11 @@
 //! Nothing here answers with an infinity or a NaN; where there is no number,
 //! there is `None`.
 
-use nalgebra::{Matrix3, Matrix6, RealField, SMatrix, SVector, SymmetricEigen, Unit, Vector3, convert};
+use nalgebra::{
+    ClosedAddAssign, ClosedMulAssign, Matrix3, Matrix6, RealField, SMatrix, SVector, Scalar, SymmetricEigen, Unit,
+    Vector3, convert,
+};
+use num_traits::{One, Zero};
 
 #[cfg(test)]
 mod tests;
@@ -91,12 +95,12 @@ pub fn resolution<T: RealField + Copy>() -> T {
 }
 
 /// The translational block: displacement of the TCP per force at the TCP in
-/// the base frame, 3 x 3 [m/N].
-pub fn translational_compliance<T: RealField + Copy>(compliance: &Matrix6<T>) -> Matrix3<T> {
+/// the base frame, 3 x 3 (m/N).
+pub fn translational_compliance<T: Scalar>(compliance: &Matrix6<T>) -> Matrix3<T> {
     compliance.fixed_view::<3, 3>(0, 0).into_owned()
 }
 
-/// The inverse of the translational block, 3 x 3 [N/m]: the force per
+/// The inverse of the translational block, 3 x 3 (N/m): the force per
 /// displacement of a TCP that is free to turn. `None` where the robot does not
 /// yield to some force, to [`resolution`], or an entry is not finite.
 pub fn translational_stiffness<T: RealField + Copy>(compliance: &Matrix6<T>) -> Option<Matrix3<T>> {
@@ -109,13 +113,16 @@ pub fn translational_stiffness<T: RealField + Copy>(compliance: &Matrix6<T>) -> 
     (rank == 3 && is_finite(&inverse)).then_some(inverse)
 }
 
-/// The displacement of the TCP along a force per force, `u^T C u` [m/N]; the
+/// The displacement of the TCP along a force per force, `u^T C u` (m/N); the
 /// direction `u` in the base frame.
-pub fn directional_compliance<T: RealField + Copy>(compliance: &Matrix6<T>, direction: &Unit<Vector3<T>>) -> T {
+pub fn directional_compliance<T>(compliance: &Matrix6<T>, direction: &Unit<Vector3<T>>) -> T
+where
+    T: Scalar + Zero + One + ClosedAddAssign + ClosedMulAssign,
+{
     direction.dot(&(translational_compliance(compliance) * direction.as_ref()))
 }
 
-/// The force per displacement along it, `1 / (u^T C u)` [N/m], when only that
+/// The force per displacement along it, `1 / (u^T C u)` (N/m), when only that
 /// force acts and the TCP may give way to the side. `None` where the robot does
 /// not yield that way, to [`resolution`], or an entry is not finite.
 pub fn directional_stiffness<T: RealField + Copy>(compliance: &Matrix6<T>, direction: &Unit<Vector3<T>>) -> Option<T> {
@@ -128,7 +135,7 @@ pub fn directional_stiffness<T: RealField + Copy>(compliance: &Matrix6<T>, direc
 /// The directions in which a force moves the TCP exactly along itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrincipalDirections<T> {
-    /// The displacement per force in each [m/N], the softest first.
+    /// The displacement per force in each (m/N), the softest first.
     pub compliances: Vector3<T>,
     /// The directions in the base frame, perpendicular unit vectors, a column
     /// each; either sign.

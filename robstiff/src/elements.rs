@@ -292,7 +292,7 @@ where
 }
 
 /// The springs of an effect and, where it is the law of a joint (from 1), this
-/// slope of it [rad/Nm].
+/// slope of it (rad/Nm).
 fn with_law<T: Real>(
     geometry: &Geometry<'_, T>,
     effect: &Effect,

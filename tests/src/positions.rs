@@ -7,7 +7,7 @@ use rand::seq::IndexedRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use robstiff::campaign::{Campaign, Data};
-use robstiff::identify::positions::Prepared;
+use robstiff::identify::PreparedPositions;
 use robstiff::trace::{Options, Trace, Verdict, trace};
 use robstiff_robots::{Description, Effect};
 
@@ -91,7 +91,7 @@ fn matters(hidden: &Hidden, positions: &Positions) -> bool {
     let exact = Positions { hidden: vec![hidden.clone()], noise: [0.0; 2], ..positions.clone() };
     let campaign = read(&exact, &exact.truth, exact.reflector);
     let Data::Position(data) = &campaign.data else { unreachable!("written as positions") };
-    let Ok(prepared) = Prepared::new(&campaign, data) else { return false };
+    let Ok(prepared) = PreparedPositions::new(&campaign, data) else { return false };
     let (regression, start) = (prepared.regression([]), prepared.state(prepared.own.len()));
     let solved = regression.solve(&prepared.seen(), &start, &prepared.rows);
     solved.is_some_and(|solved| (solved.fit.rss / (3 * data.rows.len()) as f64).sqrt() >= MATTERS * noise)

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use nalgebra::DMatrix;
 use robstiff::Effect;
 use robstiff::campaign::{Campaign, Data, Noise, Positions};
-use robstiff::identify::positions::Prepared;
+use robstiff::identify::PreparedPositions;
 use robstiff::plan::criterion::Judge;
 use robstiff::plan::positions::Adapter;
 use robstiff::plan::regressors::Regressors;
@@ -92,7 +92,7 @@ fn favours(campaign: &Campaign, one: Effect, other: Effect) -> f64 {
     let chi_square = |effect: Effect| {
         let mut campaign = campaign.clone();
         campaign.robot.effects.push(effect);
-        let prepared = Prepared::new(&campaign, positions(&campaign)).expect("positions");
+        let prepared = PreparedPositions::new(&campaign, positions(&campaign)).expect("positions");
         let (regression, start) = (prepared.regression([]), prepared.state(prepared.own.len()));
         let solved = regression.solve(&prepared.seen(), &start, &prepared.rows).expect("solved");
         solved.fit.rss / (NOISE * NOISE)

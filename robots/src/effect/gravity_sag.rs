@@ -39,9 +39,9 @@ impl Physics<1> for GravitySag {
     }
 }
 
-/// The torque about a joint's axis \[Nm\], or the force along it \[N\], of a
-/// weight \[N\] whose first moment about the origin of the base frame \[Nm\] is
-/// `moment` in x and y; the axis goes `through` a point \[m\]. All in the base
+/// The torque about a joint's axis (Nm), or the force along it (N), of a
+/// weight (N) whose first moment about the origin of the base frame (Nm) is
+/// `moment` in x and y; the axis goes `through` a point (m). All in the base
 /// frame: `axis . sum((c_k - through) x (0, 0, -w_k))`.
 pub fn torque<S: Scalar>(kind: JointKind, axis: [S; 3], through: [S; 3], weight: S, moment: [S; 2]) -> S {
     let arm = |k: usize| moment[k] - weight * through[k];

@@ -149,24 +149,24 @@ impl Range {
 pub enum Spring {
     /// A joint along its own coordinate [rad/Nm or m/N].
     Joint(usize),
-    /// The tilt of a joint about x and y of its joint frame [rad/Nm].
+    /// The tilt of a joint about x and y of its joint frame (rad/Nm).
     Transverse(usize),
     /// The bending of a uniform, round beam from the origin of joint frame
-    /// `i` to that of joint frame `i + 1`: `L / EI` [rad/Nm].
+    /// `i` to that of joint frame `i + 1`: `L / EI` (rad/Nm).
     LinkBending(usize),
-    /// Its torsion: `L / GJ` [rad/Nm].
+    /// Its torsion: `L / GJ` (rad/Nm).
     LinkTorsion(usize),
-    /// The tilt of the base about x and y of frame 0 [rad/Nm].
+    /// The tilt of the base about x and y of frame 0 (rad/Nm).
     BaseTilt,
-    /// The displacement of the base in every direction [m/N].
+    /// The displacement of the base in every direction (m/N).
     BaseTranslation,
     /// The turn of what is mounted on the flange, about every axis through the
-    /// flange frame's origin [rad/Nm].
+    /// flange frame's origin (rad/Nm).
     ToolRotation,
     /// The displacement of what is mounted on the flange in every direction
-    /// [m/N].
+    /// (m/N).
     ToolTranslation,
-    /// The off-diagonal entry of `H_q` that two joints share [rad/Nm].
+    /// The off-diagonal entry of `H_q` that two joints share (rad/Nm).
     Coupling([usize; 2]),
 }
 
@@ -175,11 +175,11 @@ pub const PLAYS: usize = 3;
 
 /// What the law of a joint may depend on.
 pub struct Joint<'a, S> {
-    /// The joint's own compliance [rad/Nm].
+    /// The joint's own compliance (rad/Nm).
     pub compliance: S,
-    /// The torque \[Nm\].
+    /// The torque (Nm).
     pub torque: S,
-    /// The play operators after this load \[Nm\].
+    /// The play operators after this load (Nm).
     pub plays: [S; PLAYS],
     /// Sine and cosine of a whole multiple of the joint coordinate.
     pub harmonic: &'a dyn Fn(f64) -> (S, S),
@@ -235,7 +235,7 @@ pub trait Physics<const P: usize> {
         [None; P]
     }
 
-    /// By how much the joint turns more \[rad\] than by its own compliance.
+    /// By how much the joint turns more (rad) than by its own compliance.
     fn turn<S: Scalar>(_parameters: [S; P], _joint: &Joint<S>) -> Option<S> {
         None
     }
@@ -245,7 +245,7 @@ pub trait Physics<const P: usize> {
         0
     }
 
-    /// The joint's play operators \[Nm\] after a torque \[Nm\] that follows
+    /// The joint's play operators (Nm) after a torque (Nm) that follows
     /// the state `before`.
     fn plays<S: Scalar>(_parameters: [S; P], _torque: S, before: [S; PLAYS]) -> [S; PLAYS] {
         before
@@ -254,7 +254,7 @@ pub trait Physics<const P: usize> {
     /// Corrects the row of the DH table that the effect sits at.
     fn correct(_numbers: [f64; P], _place: Place, _row: &mut Row) {}
 
-    /// By how much the joint stands aside \[rad\] of its coordinate, without
+    /// By how much the joint stands aside (rad) of its coordinate, without
     /// load; at most [`MOST_DEVIATION`].
     fn deviation<S: Scalar>(_numbers: [f64; P], _parameters: [S; P], _harmonic: &dyn Fn(f64) -> (S, S)) -> Option<S> {
         None
@@ -271,25 +271,25 @@ pub trait Physics<const P: usize> {
     }
 
     /// What physics asks of the numbers beyond their ranges, on a joint with
-    /// this compliance of its own [rad/Nm].
+    /// this compliance of its own (rad/Nm).
     #[cfg(feature = "read")]
     fn check(_numbers: [f64; P], _place: Place, _compliance: f64) -> Option<Complaint> {
         None
     }
 
     /// What the effect adds at least to the tangent compliance of its joint,
-    /// over all poses and torques [rad/Nm]; negative where it takes away.
+    /// over all poses and torques (rad/Nm); negative where it takes away.
     #[cfg(feature = "read")]
     fn least(_numbers: [f64; P], _compliance: f64) -> f64 {
         0.0
     }
 }
 
-/// The most a joint may stand aside of its coordinate \[rad\], 17 arcmin: up to
+/// The most a joint may stand aside of its coordinate (rad), 17 arcmin: up to
 /// here the generator's series for its sine and cosine are exact to rounding,
 /// and more is no error of a gear.
 pub const MOST_DEVIATION: f64 = 5e-3;
 
-/// The most a joint may yield to the arm's own weight \[rad\], 1.1 degrees: as
+/// The most a joint may yield to the arm's own weight (rad), 1.1 degrees: as
 /// [`MOST_DEVIATION`], with longer series.
 pub const MOST_SAG: f64 = 2e-2;

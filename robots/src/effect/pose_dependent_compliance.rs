@@ -64,7 +64,7 @@ impl Physics<4> for PoseDependentCompliance {
     }
 }
 
-/// The least relative change over all angles, and the angle \[rad\].
+/// The least relative change over all angles, and the angle (rad).
 #[cfg(feature = "read")]
 fn least_change([cos1, sin1, cos2, sin2]: [f64; 4]) -> (f64, f64) {
     let change = |q: f64| cos1 * q.cos() + sin1 * q.sin() + cos2 * (2.0 * q).cos() + sin2 * (2.0 * q).sin();

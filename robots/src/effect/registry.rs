@@ -143,7 +143,7 @@ macro_rules! registry {
                 springs.into_iter().enumerate().filter_map(|(k, spring)| Some((k, spring?)))
             }
 
-            /// By how much its joint turns more \[rad\] than by the joint's
+            /// By how much its joint turns more (rad) than by the joint's
             /// own compliance, if the effect has a part in the joint's law;
             /// `parameters` as numbers or symbols, in order.
             ///
@@ -164,7 +164,7 @@ macro_rules! registry {
                 }
             }
 
-            /// The play operators \[Nm\] of its joint after a torque \[Nm\]
+            /// The play operators (Nm) of its joint after a torque (Nm)
             /// that follows the state `before`.
             ///
             /// # Panics
@@ -186,7 +186,7 @@ macro_rules! registry {
                 }
             }
 
-            /// By how much its joint stands aside \[rad\] of its coordinate,
+            /// By how much its joint stands aside (rad) of its coordinate,
             /// if it does: `harmonic` gives sine and cosine of a whole multiple
             /// of the coordinate.
             ///
@@ -231,7 +231,7 @@ macro_rules! registry {
             }
 
             /// What the effect adds at least to the tangent compliance of its
-            /// joint [rad/Nm].
+            /// joint (rad/Nm).
             #[cfg(feature = "read")]
             pub(crate) fn least(&self, compliance: f64) -> f64 {
                 match *self {

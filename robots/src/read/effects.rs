@@ -311,7 +311,7 @@ fn check_sag(items: &[Node], effects: &[Option<Effect>], joints: Option<&[Joint]
 }
 
 /// A bound of how far a joint (from 0) yields to the whole weight behind it
-/// \[rad\]: the arm stretched out level.
+/// (rad): the arm stretched out level.
 fn most_sag(joints: &[Joint], links: &[Link], joint: usize) -> f64 {
     let mut reach = 0.0;
     let mut torque = 0.0;

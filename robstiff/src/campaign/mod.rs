@@ -6,6 +6,7 @@
 
 mod alone;
 mod beyond;
+mod check;
 mod clamped;
 mod clock;
 mod displacements;

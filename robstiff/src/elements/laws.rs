@@ -8,9 +8,9 @@ use robstiff_robots::effect::{MOST_PARAMETERS, Scalar, Tangent, gravity_sag};
 
 use crate::{Effect, JointKind, Real, Robot, State};
 
-/// By how much a joint turns more \[rad\] under a torque \[Nm\] than by its own
-/// compliance `own` [rad/Nm], where the effect has a part in the joint's law: at
-/// the coordinate `q` \[rad\], with its play operators `plays` \[Nm\] after this
+/// By how much a joint turns more (rad) under a torque (Nm) than by its own
+/// compliance `own` (rad/Nm), where the effect has a part in the joint's law: at
+/// the coordinate `q` (rad), with its play operators `plays` (Nm) after this
 /// load.
 pub fn turn<T: Real>(effect: &Effect, own: T, q: T, torque: T, plays: [T; PLAYS]) -> Option<T> {
     let joint =
@@ -19,13 +19,13 @@ pub fn turn<T: Real>(effect: &Effect, own: T, q: T, torque: T, plays: [T; PLAYS]
     effect.turn(&numbers[..count], &joint).map(|turn| turn.0)
 }
 
-/// The slope of [`turn`] against the torque [rad/Nm] on a joint that was never
+/// The slope of [`turn`] against the torque (rad/Nm) on a joint that was never
 /// loaded.
 pub fn unloaded_turn<T: Real>(effect: &Effect, own: T, q: T) -> Option<T> {
     turn_about(effect, own, q, T::zero())
 }
 
-/// The slope of [`turn`] against the torque [rad/Nm] at a torque \[Nm\]: how a
+/// The slope of [`turn`] against the torque (rad/Nm) at a torque (Nm): how a
 /// joint yields to small changes about it. Its play operators stay where they are,
 /// for a small change turns back within their radii.
 pub fn turn_about<T: Real>(effect: &Effect, own: T, q: T, torque: T) -> Option<T> {
@@ -33,7 +33,7 @@ pub fn turn_about<T: Real>(effect: &Effect, own: T, q: T, torque: T) -> Option<T
     effect.slope(&numbers[..count], Number(own), Number(torque), &harmonic(q)).map(|turn| turn.0)
 }
 
-/// The play operators \[Nm\] of a joint after a torque \[Nm\] that follows the
+/// The play operators (Nm) of a joint after a torque (Nm) that follows the
 /// state `before`.
 pub fn plays<T: Real>(effect: &Effect, torque: T, before: [T; PLAYS]) -> [T; PLAYS] {
     let (numbers, count) = numbers(effect);
@@ -76,7 +76,7 @@ pub fn turns_under<const N: usize, R: Robot<N>>(
     turns
 }
 
-/// By how much a joint stands aside \[rad\] of its coordinate `q` \[rad\], if the
+/// By how much a joint stands aside (rad) of its coordinate `q` (rad), if the
 /// effect says so.
 pub fn deviation<T: Real>(effect: &Effect, q: T) -> Option<T> {
     let (numbers, count) = numbers(effect);
@@ -90,9 +90,9 @@ pub fn share_of_weight<T: Real>(effect: &Effect) -> Option<T> {
     effect.share_of_weight(&numbers[..count]).map(|share| share.0)
 }
 
-/// The torque \[Nm\] of a weight \[N\] about the z axis of a joint frame (the
-/// force along it \[N\] for a prismatic joint), with the weight's first moment in
-/// x and y of the base frame \[Nm\]; see
+/// The torque (Nm) of a weight (N) about the z axis of a joint frame (the
+/// force along it (N) for a prismatic joint), with the weight's first moment in
+/// x and y of the base frame (Nm); see
 /// [`gravity_sag`](robstiff_robots::effect::gravity_sag).
 pub fn own_weight_torque<T: Real>(kind: JointKind, joint_frame: &Matrix4<T>, weight: T, moment: [T; 2]) -> T {
     let column = |k: usize| core::array::from_fn(|row| Number(joint_frame[(row, k)]));

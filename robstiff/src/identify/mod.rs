@@ -8,30 +8,30 @@
 //! [`clamped`] puts the result together. Absolute [`positions`] have a regression of
 //! their own.
 
-pub mod baseline;
-pub mod clamped;
-pub mod column;
-pub mod covariance;
-pub mod displacement;
-pub mod encoders;
+pub(crate) mod baseline;
+pub(crate) mod clamped;
+pub(crate) mod column;
+pub(crate) mod covariance;
+pub(crate) mod displacement;
+pub(crate) mod encoders;
 #[cfg(test)]
 mod held_tests;
-pub mod holdout;
-pub mod noise;
-pub mod normal;
-pub mod positions;
-pub mod predict;
-pub mod prepare;
-pub mod problem;
-pub mod readable;
-pub mod samples;
-pub mod scale;
-pub mod second_order;
-pub mod setup;
+pub(crate) mod holdout;
+pub(crate) mod noise;
+pub(crate) mod normal;
+pub(crate) mod positions;
+pub(crate) mod predict;
+pub(crate) mod prepare;
+pub(crate) mod problem;
+pub(crate) mod readable;
+pub(crate) mod samples;
+pub(crate) mod scale;
+pub(crate) mod second_order;
+pub(crate) mod setup;
 #[cfg(test)]
 mod tests;
-pub mod uncertainty;
-pub mod whitening;
+pub(crate) mod uncertainty;
+pub(crate) mod whitening;
 
 use core::fmt;
 use std::format;
@@ -42,12 +42,15 @@ use nalgebra::DMatrix;
 use robstiff_robots::Description;
 
 pub use baseline::Visibility;
-pub use predict::{Prediction, predict};
+pub use clamped::without_laws;
+pub use covariance::{Basis, Covariance};
+pub use encoders::EncodersRead;
+pub use positions::Prepared as PreparedPositions;
+pub use predict::{PredictedRow, Prediction, predict};
 pub use scale::off_by_one_factor;
 
 use self::baseline::Declared;
 use self::column::Column;
-use self::covariance::Covariance;
 use self::normal::Sign;
 use crate::JointKind;
 use crate::campaign::{Campaign, Data};
@@ -170,8 +173,10 @@ impl Estimate {
 /// Identifies the compliances of a campaign's robot.
 ///
 /// # Errors
-/// A campaign that shows none of them, or deflections and readings against their loads.
+/// What [`Campaign::check`] finds; a campaign that shows none of them, or deflections and
+/// readings against their loads.
 pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
+    campaign.check().map_err(Error)?;
     let found = match &campaign.data {
         Data::Displacement(_) => displacement::identify(campaign),
         Data::Position(data) => positions::identify(campaign, data),
@@ -225,7 +230,7 @@ pub(crate) fn element_name(description: &Description, number: &Declared) -> Stri
 }
 
 /// What a description calls a column's number.
-pub fn parameter_name(column: Column) -> &'static str {
+pub(crate) fn parameter_name(column: Column) -> &'static str {
     match column {
         Column::Spring(Spring::Joint(_) | Spring::Transverse(_) | Spring::Coupling(_)) => "value",
         Column::Spring(Spring::LinkBending(_)) => "bending",

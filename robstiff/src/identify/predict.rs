@@ -54,9 +54,10 @@ impl PredictedRow {
 /// campaign's own.
 ///
 /// # Errors
-/// A campaign of another kind, a description with another number of joints, or
-/// numbers so large that an error is not finite.
+/// What [`Campaign::check`] finds; a campaign of another kind, a description with another
+/// number of joints, or numbers so large that an error is not finite.
 pub fn predict(description: &Description, campaign: &Campaign) -> Result<Prediction, Error> {
+    campaign.check().map_err(Error)?;
     let (expected, found) = (campaign.robot.joints.len(), description.joints.len());
     if expected != found {
         let expected = count(expected, "joint");

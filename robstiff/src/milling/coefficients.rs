@@ -7,21 +7,21 @@ use std::vec::Vec;
 use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
 
-/// Cutting coefficients (force per chip area, \[Pa\]) and edge coefficients
-/// (force per length of the edge, [N/m]), tangential, radial and axial.
+/// Cutting coefficients (force per chip area, Pa) and edge coefficients
+/// (force per length of the edge, N/m), tangential, radial and axial.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Coefficients {
-    /// Tangential, per chip area \[Pa\].
+    /// Tangential, per chip area (Pa).
     pub ktc: f64,
-    /// Tangential, per length of the edge [N/m].
+    /// Tangential, per length of the edge (N/m).
     pub kte: f64,
-    /// Radial, per chip area \[Pa\].
+    /// Radial, per chip area (Pa).
     pub krc: f64,
-    /// Radial, per length of the edge [N/m].
+    /// Radial, per length of the edge (N/m).
     pub kre: f64,
-    /// Axial, per chip area \[Pa\].
+    /// Axial, per chip area (Pa).
     pub kac: f64,
-    /// Axial, per length of the edge [N/m].
+    /// Axial, per length of the edge (N/m).
     pub kae: f64,
 }
 

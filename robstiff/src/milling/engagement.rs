@@ -11,7 +11,7 @@ pub enum Direction {
     Down,
 }
 
-/// The angles at which a tooth enters the material and leaves it \[rad\],
+/// The angles at which a tooth enters the material and leaves it (rad),
 /// `0 <= entry < exit <= pi`, from the normal, as the spindle turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Engagement {
@@ -39,7 +39,7 @@ impl Engagement {
         })
     }
 
-    /// The engagement between two angles \[rad\]; `None` where they are not
+    /// The engagement between two angles (rad); `None` where they are not
     /// `0 <= entry < exit <= pi`.
     pub fn between(entry: f64, exit: f64) -> Option<Self> {
         (0.0 <= entry && entry < exit && exit <= PI).then_some(Self { entry, exit })

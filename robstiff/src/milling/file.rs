@@ -57,13 +57,13 @@ pub enum Forces {
     Measured {
         /// The record.
         force: MeasuredForce,
-        /// Speed of the spindle \[rad/s\], where it is known.
+        /// Speed of the spindle (rad/s), where it is known.
         speed: Option<f64>,
     },
 }
 
 impl Forces {
-    /// The mean force on the tool \[N\]: of the model along feed, normal and axis of
+    /// The mean force on the tool (N): of the model along feed, normal and axis of
     /// the cut, of a record along its own axes.
     pub fn mean(&self) -> Vector3<f64> {
         match self {

@@ -10,13 +10,13 @@ use super::{Coefficients, Engagement};
 /// A cylindrical end mill with evenly spaced teeth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EndMill {
-    /// Diameter \[m\].
+    /// Diameter (m).
     pub diameter: f64,
     /// Number of teeth.
     pub teeth: usize,
-    /// Helix angle \[rad\]; positive for a right-handed helix.
+    /// Helix angle (rad); positive for a right-handed helix.
     pub helix: f64,
-    /// How far each tooth stands out beyond the mean radius \[m\], in the order
+    /// How far each tooth stands out beyond the mean radius (m), in the order
     /// in which they cut, as an indicator shows it; empty without runout.
     pub runout: Vec<f64>,
 }
@@ -30,16 +30,16 @@ pub struct Cut {
     pub coefficients: Coefficients,
     /// The angles of the cut.
     pub engagement: Engagement,
-    /// Axial depth \[m\].
+    /// Axial depth (m).
     pub depth: f64,
-    /// Feed per tooth \[m\].
+    /// Feed per tooth (m).
     pub feed_per_tooth: f64,
-    /// Speed of the spindle \[rad/s\], where it is known.
+    /// Speed of the spindle (rad/s), where it is known.
     pub speed: Option<f64>,
 }
 
 impl Cut {
-    /// The force on the tool averaged over a revolution \[N\], along feed,
+    /// The force on the tool averaged over a revolution (N), along feed,
     /// normal and axis; in closed form.
     ///
     /// Without runout this is `N b c / 8 pi [..] + N b / 2 pi [..]` between the
@@ -50,8 +50,8 @@ impl Cut {
         mean_force(self, &self.pieces())
     }
 
-    /// The force on the tool \[N\] along feed, normal and axis with the tip of
-    /// the first tooth at an angle \[rad\]; exact along the helix.
+    /// The force on the tool (N) along feed, normal and axis with the tip of
+    /// the first tooth at an angle (rad); exact along the helix.
     pub fn force_at(&self, angle: f64) -> Vector3<f64> {
         force_at(self, &self.pieces(), angle)
     }
@@ -64,7 +64,7 @@ impl Cut {
         Revolution { samples: (0..count).map(|k| (angle(k), force_at(self, &pieces, angle(k)))).collect() }
     }
 
-    /// The torque on the spindle averaged over a revolution \[Nm\].
+    /// The torque on the spindle averaged over a revolution (Nm).
     pub fn mean_torque(&self) -> f64 {
         // The tangential forces alone, at the tool's radius. Of chips from `phi = from` to
         // `phi = to` the mean is the integral of `ktc h + kte` over the angle.
@@ -76,12 +76,12 @@ impl Cut {
         0.5 * self.mill.diameter * self.depth * sum / core::f64::consts::TAU
     }
 
-    /// The mean power of the cut \[W\], where the speed is known.
+    /// The mean power of the cut (W), where the speed is known.
     pub fn power(&self) -> Option<f64> {
         self.speed.map(|speed| speed * self.mean_torque())
     }
 
-    /// The speed of the feed \[m/s\], where the spindle's is known.
+    /// The speed of the feed (m/s), where the spindle's is known.
     pub fn feed_speed(&self) -> Option<f64> {
         let teeth_per_second = self.speed? / core::f64::consts::TAU * self.mill.teeth as f64;
         Some(teeth_per_second * self.feed_per_tooth)
@@ -95,12 +95,12 @@ impl Cut {
 /// The force on the tool over a revolution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Revolution {
-    /// The angle of the first tooth's tip \[rad\] and the force \[N\], along the
+    /// The angle of the first tooth's tip (rad) and the force (N), along the
     /// axes of the frame that it was asked for in.
     pub samples: Vec<(f64, Vector3<f64>)>,
 }
 
-/// The least and the greatest of what changes over a revolution \[N\].
+/// The least and the greatest of what changes over a revolution (N).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// The least.
@@ -128,7 +128,7 @@ impl Revolution {
         })
     }
 
-    /// The greatest size of the force among the samples \[N\].
+    /// The greatest size of the force among the samples (N).
     pub fn peak(&self) -> f64 {
         self.samples.iter().map(|(_, force)| force.norm()).fold(0.0, f64::max)
     }

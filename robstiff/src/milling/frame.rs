@@ -36,7 +36,7 @@ impl CutFrame {
     }
 
     /// A force with components along feed, normal and axis, in the frame that
-    /// this one is given in \[N\].
+    /// this one is given in (N).
     pub fn force(&self, force: &Vector3<f64>) -> Vector3<f64> {
         self.matrix() * force
     }
@@ -51,7 +51,7 @@ impl CutFrame {
     }
 
     /// The components along feed, normal and axis of a force in the frame that
-    /// this one is given in \[N\].
+    /// this one is given in (N).
     pub fn components(&self, force: &Vector3<f64>) -> Vector3<f64> {
         self.matrix().transpose() * force
     }

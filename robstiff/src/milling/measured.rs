@@ -33,26 +33,26 @@ pub struct MeasuredForce {
 /// One sample of a recorded force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Time \[s\], where recorded.
+    /// Time (s), where recorded.
     pub time: Option<f64>,
-    /// Angle of the spindle \[rad\], where recorded.
+    /// Angle of the spindle (rad), where recorded.
     pub angle: Option<f64>,
-    /// The force on the tool \[N\].
+    /// The force on the tool (N).
     pub force: Vector3<f64>,
 }
 
 /// Times and speeds are written with fewer digits.
 const ROUNDING: f64 = 1e-6;
 
-/// Samples further apart than this \[rad\] do not show a revolution.
+/// Samples further apart than this (rad) do not show a revolution.
 const COARSEST: f64 = 0.25 * TAU * (1.0 + ROUNDING);
 
 /// What the columns are.
 const COLUMNS: [&str; 3] = ["Fx", "Fy", "Fz"];
 
 impl MeasuredForce {
-    /// Reads a table with the columns `Fx`, `Fy`, `Fz` \[N\] and, where recorded,
-    /// `t` \[s\] or `angle` \[rad\] (or other units, `Fx [kN]`); `file` is the
+    /// Reads a table with the columns `Fx`, `Fy`, `Fz` (N) and, where recorded,
+    /// `t` (s) or `angle` (rad) (or other units, `Fx [kN]`); `file` is the
     /// name that problems show, `on_workpiece` says that the forces are those on
     /// the workpiece, which the tool has with the opposite sign. With what the
     /// reader noticed without refusing the table.
@@ -87,8 +87,8 @@ impl MeasuredForce {
         table.finish(samples.map(|samples| Self { frame, samples }))
     }
 
-    /// The mean of the samples \[N\], of those of whole revolutions where times or angles, with
-    /// the speed of the spindle \[rad/s\], say which these are: half a revolution more would
+    /// The mean of the samples (N), of those of whole revolutions where times or angles, with
+    /// the speed of the spindle (rad/s), say which these are: half a revolution more would
     /// count some teeth twice.
     pub fn mean(&self, speed: Option<f64>) -> Vector3<f64> {
         let samples = &self.samples[..self.of_whole_revolutions(speed).unwrap_or(self.samples.len())];
@@ -115,13 +115,13 @@ impl MeasuredForce {
         (revolutions >= 1.0).then(|| angles.partition_point(|angle| *angle < end))
     }
 
-    /// The angle of the spindle at each sample \[rad\]: the recorded one, or the time's at
-    /// the speed of the spindle \[rad/s\]; `None` where neither is known.
+    /// The angle of the spindle at each sample (rad): the recorded one, or the time's at
+    /// the speed of the spindle (rad/s); `None` where neither is known.
     fn angles(&self, speed: Option<f64>) -> Option<Vec<f64>> {
         self.samples.iter().map(|sample| sample.angle.or_else(|| Some(sample.time? * speed?))).collect()
     }
 
-    /// Whether the record, with the speed of the spindle \[rad/s\], says at which angle
+    /// Whether the record, with the speed of the spindle (rad/s), says at which angle
     /// each sample was taken.
     pub fn has_angles(&self, speed: Option<f64>) -> bool {
         self.angles(speed).is_some()
@@ -149,7 +149,7 @@ impl MeasuredForce {
 
     /// The mean force over a revolution in so many equal parts, each at the angle
     /// of its middle; a part without samples is left out. The angle is the
-    /// recorded one, or the time's at the speed of the spindle \[rad/s\]; `None`
+    /// recorded one, or the time's at the speed of the spindle (rad/s); `None`
     /// where neither is known, and of a record that does not
     /// [resolve](Self::resolves_revolution) a revolution.
     pub fn revolution(&self, count: usize, speed: Option<f64>) -> Option<Revolution> {

@@ -19,13 +19,13 @@ use super::{Coefficients, Cut, EndMill, Engagement};
 pub(super) struct Piece {
     pub from: f64,
     pub to: f64,
-    /// The feed since the last tooth was here \[m\], `a`.
+    /// The feed since the last tooth was here (m), `a`.
     pub feed: f64,
-    /// How much further out this tooth is than that one \[m\], `d`.
+    /// How much further out this tooth is than that one (m), `d`.
     pub extra: f64,
 }
 
-/// A helix that lags by less than this over the whole depth \[rad\] is straight.
+/// A helix that lags by less than this over the whole depth (rad) is straight.
 const STRAIGHT: f64 = 1e-9;
 
 /// The pieces of each tooth's way through the material. The chip of a tooth
@@ -104,7 +104,7 @@ pub(super) fn force_at(cut: &Cut, pieces: &[Vec<Piece>], angle: f64) -> Vector3<
     force
 }
 
-/// The force on a tooth per axial length [N/m] along feed, normal and axis, in
+/// The force on a tooth per axial length (N/m) along feed, normal and axis, in
 /// the mean over angles from one to another.
 fn mean_over(coefficients: &Coefficients, piece: &Piece, from: f64, to: f64) -> Vector3<f64> {
     let Coefficients { ktc, kte, krc, kre, kac, kae } = *coefficients;

@@ -9,7 +9,7 @@ use super::{Limits, Modes};
 use crate::milling::{Coefficients, Cut, CutFrame, Engagement};
 
 /// The change of the force on the tool with its displacement per depth of cut,
-/// 3 x 3 \[N/m^2\], in the frame that `frame` is given in: the average over the
+/// 3 x 3 (N/m^2), in the frame that `frame` is given in: the average over the
 /// teeth of `g n^T`, where `n` points out along the tooth and makes its chip
 /// thicker and `g` is the force on the tooth per chip area.
 ///
@@ -49,7 +49,7 @@ pub fn rank_one(kp: f64, force: &Unit<Vector3<f64>>, normal: &Unit<Vector3<f64>>
 /// The depths that are not stable with a feed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FeedLimit {
-    /// The feed's angle in the plane \[rad\], from the first direction on.
+    /// The feed's angle in the plane (rad), from the first direction on.
     pub angle: f64,
     /// The feed, a unit vector.
     pub feed: Vector3<f64>,
@@ -59,7 +59,7 @@ pub struct FeedLimit {
     pub limits: Limits,
 }
 
-/// So many directions across a tool axis, with their angles \[rad\], evenly
+/// So many directions across a tool axis, with their angles (rad), evenly
 /// around it, clockwise looked at along the axis (from the spindle): the first is
 /// the part of x across the axis, or that of y where the axis is along x. `None`
 /// for an axis of zero length.
@@ -74,7 +74,7 @@ pub fn feeds_in_plane(axis: &Vector3<f64>, count: usize) -> Option<Vec<(f64, Vec
 
 /// The depths that are not stable for each of so many feeds across a tool axis
 /// (from the spindle to the tip), the cut turning with the feed. `modes` are those
-/// of the arm under the mean force of such a cut, 3 \[N\] in the frame of the axis:
+/// of the arm under the mean force of such a cut, 3 (N) in the frame of the axis:
 /// an arm with backlash or hardening has others under each. They are those at the
 /// depth of the cut, also where other depths are looked at. `None` for an axis of
 /// zero length, and where there are no modes.

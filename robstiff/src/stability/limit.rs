@@ -14,26 +14,26 @@ const HALVINGS: usize = 24;
 /// The depths of cut that are not stable, up to a greatest one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limits {
-    /// The greatest depth looked at \[m\].
+    /// The greatest depth looked at (m).
     pub greatest: f64,
-    /// From where to where it is not stable \[m\], in order; beyond the first
+    /// From where to where it is not stable (m), in order; beyond the first
     /// there may be stable depths again.
     pub unstable: Vec<[f64; 2]>,
 }
 
 impl Limits {
-    /// The depth from which on it is not stable \[m\]; `None` where all depths up
+    /// The depth from which on it is not stable (m); `None` where all depths up
     /// to the greatest are stable.
     pub fn limiting(&self) -> Option<f64> {
         self.unstable.first().map(|[from, _]| *from)
     }
 
-    /// Whether a depth \[m\] is stable; nobody looked beyond the greatest.
+    /// Whether a depth (m) is stable; nobody looked beyond the greatest.
     pub fn is_stable(&self, depth: f64) -> bool {
         depth <= self.greatest && self.unstable.iter().all(|[from, to]| depth < *from || depth > *to)
     }
 
-    /// Whether every depth up to this \[m\] is stable, as a cut that reaches it needs: it
+    /// Whether every depth up to this (m) is stable, as a cut that reaches it needs: it
     /// passes through those below, and stays at less where the stock is uneven.
     pub fn is_stable_up_to(&self, depth: f64) -> bool {
         depth <= self.greatest && self.limiting().is_none_or(|limit| depth < limit)
@@ -43,7 +43,7 @@ impl Limits {
 impl Modes {
     /// The depths that are not stable, of a force that changes with the tool's
     /// displacement by `depth * process * x`, `process` 3 x 3 per depth
-    /// \[N/m^2\].
+    /// (N/m^2).
     ///
     /// For two modes without damping the limits are the roots of two quadratics,
     /// `(a - d)^2 + 4 b c` and the determinant; otherwise the eigenvalues are

@@ -35,7 +35,7 @@ impl core::error::Error for MassError {}
 /// singular to rounding.
 const SINGULAR: f64 = 1e-9;
 
-/// The mass at the TCP in the base frame, 3 x 3 \[kg\]: `(J M^-1 J^T)^-1` with the
+/// The mass at the TCP in the base frame, 3 x 3 (kg): `(J M^-1 J^T)^-1` with the
 /// translational Jacobian `J` and the joints' mass matrix `M` of the links'
 /// point masses (a description gives no moments of inertia). Joints without
 /// compliance stand still.
@@ -88,8 +88,8 @@ fn inverse(matrix: &DMatrix<f64>) -> Result<DMatrix<f64>, MassError> {
 }
 
 /// The mass, the same in all directions, with which an arm of a translational
-/// compliance [m/N] has its first mode at a measured frequency \[Hz\], 3 x 3
-/// \[kg\]. `None` where the arm does not yield, or the frequency is not above
+/// compliance (m/N) has its first mode at a measured frequency (Hz), 3 x 3
+/// (kg). `None` where the arm does not yield, or the frequency is not above
 /// zero.
 pub fn mass_of_first_mode(compliance: &Matrix3<f64>, frequency: f64) -> Option<Matrix3<f64>> {
     let softest = compliance.symmetric_eigenvalues().max();

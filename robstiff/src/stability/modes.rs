@@ -8,9 +8,9 @@ use crate::analysis::resolution;
 /// there are directions in which the arm yields.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modes {
-    /// The translational compliance [m/N].
+    /// The translational compliance (m/N).
     compliance: Matrix3<f64>,
-    /// Natural frequencies [rad/s], the lowest first.
+    /// Natural frequencies (rad/s), the lowest first.
     frequencies: DVector<f64>,
     /// What a unit of each mode moves the tool by, 3 x modes, so that
     /// `shapes^T M shapes` is the identity [1/sqrt(kg)].
@@ -28,8 +28,8 @@ const MOST_ITERATIONS: usize = 10_000;
 const ROUNDING: f64 = 1e-13;
 
 impl Modes {
-    /// The modes with a translational compliance [m/N] and a mass at the tool
-    /// \[kg\], both 3 x 3, symmetric and in one frame; `damping` is the damping
+    /// The modes with a translational compliance (m/N) and a mass at the tool
+    /// (kg), both 3 x 3, symmetric and in one frame; `damping` is the damping
     /// ratio of every mode, 0 for none.
     ///
     /// A direction in which the arm yields less than
@@ -70,12 +70,12 @@ impl Modes {
         finite.then_some(Self { compliance, frequencies, shapes, damping })
     }
 
-    /// The translational compliance of the arm [m/N], 3 x 3.
+    /// The translational compliance of the arm (m/N), 3 x 3.
     pub fn compliance(&self) -> &Matrix3<f64> {
         &self.compliance
     }
 
-    /// The natural frequencies [rad/s], the lowest first.
+    /// The natural frequencies (rad/s), the lowest first.
     pub fn frequencies(&self) -> &[f64] {
         self.frequencies.as_slice()
     }
@@ -90,15 +90,15 @@ impl Modes {
         &self.shapes
     }
 
-    /// A change of the force with the displacement of the tool, 3 x 3 [N/m], as
-    /// the modes see it [1/s^2].
+    /// A change of the force with the displacement of the tool, 3 x 3 (N/m), as
+    /// the modes see it (1/s^2).
     pub(super) fn seen(&self, process: &Matrix3<f64>) -> DMatrix<f64> {
         self.shapes.transpose() * process * &self.shapes
     }
 
     /// Whether small movements of the tool die down (without damping: do not
     /// grow) under a force that changes with its displacement by `process x`,
-    /// 3 x 3 [N/m].
+    /// 3 x 3 (N/m).
     ///
     /// Without damping, by the eigenvalues of `M^-1 (K - P)`, which must be real
     /// and positive: a complex pair flutters, a negative one runs away. With

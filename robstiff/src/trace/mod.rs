@@ -15,38 +15,38 @@
 //! [`Options::alpha`] of 1 % each, so a robot that lacks nothing is called
 //! adequate in about 98 of 100 campaigns.
 
-pub mod agreement;
-pub mod alias;
-pub mod along;
-pub mod bench;
-pub mod beyond;
-pub mod bootstrap;
-pub mod catalogue;
-pub mod clamped;
-pub mod correction;
-pub mod features;
+pub(crate) mod agreement;
+pub(crate) mod alias;
+pub(crate) mod along;
+pub(crate) mod bench;
+pub(crate) mod beyond;
+pub(crate) mod bootstrap;
+pub(crate) mod catalogue;
+pub(crate) mod clamped;
+pub(crate) mod correction;
+pub(crate) mod features;
 mod found;
-pub mod held_out;
-pub mod isolated;
-pub mod lack_of_fit;
-pub mod model;
+pub(crate) mod held_out;
+pub(crate) mod isolated;
+pub(crate) mod lack_of_fit;
+pub(crate) mod model;
 #[cfg(test)]
 mod one_line_tests;
-pub mod point;
-pub mod positions;
+pub(crate) mod point;
+pub(crate) mod positions;
 mod report;
 mod search;
-pub mod selection;
+pub(crate) mod selection;
 mod settle;
 mod sizes;
 #[cfg(test)]
 mod slides_tests;
-pub mod slip;
-pub mod step;
+pub(crate) mod slip;
+pub(crate) mod step;
 #[cfg(test)]
 mod tests;
-pub mod verdict;
-pub mod wander;
+pub(crate) mod verdict;
+pub(crate) mod wander;
 #[cfg(test)]
 mod wild_tests;
 mod written;
@@ -81,8 +81,9 @@ use crate::identify::{AGAINST_THE_LOADS, Error, Estimate, NoiseSource, is_at_bou
 pub struct Options {
     /// Seed of the bootstrap; one seed gives one result.
     pub seed: u64,
-    /// Bootstrap draws. A p-value is no smaller than one over their number. Tests for
-    /// structure share a level, and take as many as it needs where these are too few.
+    /// Bootstrap draws. The p-value of an effect is no smaller than one over one more than
+    /// these. Tests for structure share a level, and take as many as it needs where these
+    /// are too few.
     pub draws: usize,
     /// Family-wise level at which effects are named, and structure is found.
     pub alpha: f64,
@@ -91,6 +92,24 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self { seed: 1, draws: 1999, alpha: 0.01 }
+    }
+}
+
+impl Options {
+    /// Whether the level is one, and the draws resolve it.
+    ///
+    /// # Errors
+    /// What is wrong, and how many draws it takes.
+    pub fn check(&self) -> Result<(), String> {
+        let Self { draws, alpha, .. } = *self;
+        if !(alpha > 0.0 && alpha < 1.0) {
+            return Err(format!("a level is a number between 0 and 1, not {alpha}"));
+        }
+        if 1.0 / (draws as f64 + 1.0) > alpha {
+            let least = alpha.recip().ceil() - 1.0;
+            return Err(format!("{draws} draws resolve no level of {alpha}; at least {least} are needed"));
+        }
+        Ok(())
     }
 }
 
@@ -238,9 +257,11 @@ pub struct PoseError {
 /// Traces a campaign.
 ///
 /// # Errors
-/// A campaign that shows none of the robot's compliances, or whose description could not be
-/// read back with what was found.
+/// What [`Options::check`] and [`Campaign::check`] find; a campaign that shows none of the
+/// robot's compliances, or whose description could not be read back with what was found.
 pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) -> Result<Trace, Error> {
+    options.check().map_err(Error)?;
+    campaign.check().map_err(Error)?;
     if let Data::Clamped(rows) = &campaign.data {
         return clamped::trace(campaign, rows, options, progress);
     }

@@ -136,6 +136,9 @@ const _: () = assert!(CHECKS.len() as f64 <= LEVEL * (1 + tails::DRAWS) as f64);
 const _: () = assert!(CHECKS.len() as f64 * randomisation::LEAST_P <= LEVEL);
 
 /// Asks the readings of a campaign.
+///
+/// # Panics
+/// Where [`Campaign::check`] finds something wrong, which it does not in one that was read.
 pub fn triage(campaign: &Campaign) -> Triage {
     let (mut checks, reading, outliers) = match &campaign.data {
         Data::Clamped(rows) => (clamped::checks(campaign, rows), None, Vec::new()),

@@ -85,7 +85,7 @@ impl Scale {
 /// The arms in one view.
 struct Scene {
     view: View,
-    /// The lower left corner \[m\].
+    /// The lower left corner (m).
     low: [f64; 2],
     /// Pixels a metre.
     per_m: f64,

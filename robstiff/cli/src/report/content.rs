@@ -26,9 +26,9 @@ pub struct Report {
     pub rows: usize,
     /// Poses of the campaign.
     pub poses: usize,
-    /// One sigma of one axis of one reading \[um\].
+    /// One sigma of one axis of one reading (um).
     pub reading_um: f64,
-    /// The same of what is read \[um\]: more where that is a displacement, the
+    /// The same of what is read (um): more where that is a displacement, the
     /// difference of two readings, at most this.
     pub noise_um: f64,
     /// Where that is known from.
@@ -74,9 +74,9 @@ pub struct Stage {
     pub name: String,
     /// What it is.
     pub remark: String,
-    /// On the rows it was fitted to \[um\].
+    /// On the rows it was fitted to (um).
     pub rms_um: f64,
-    /// On poses it has not seen \[um\].
+    /// On poses it has not seen (um).
     pub holdout_rms_um: f64,
 }
 
@@ -97,7 +97,7 @@ pub struct Effect {
     pub numbers: Vec<Number>,
     /// The family-wise p-value.
     pub p_value: f64,
-    /// The error on unseen poses with it \[um\].
+    /// The error on unseen poses with it (um).
     pub holdout_rms_um: f64,
     /// What these data cannot tell it from, in words.
     pub same_as: String,
@@ -131,7 +131,7 @@ pub struct Compliance {
     pub after: Option<(f64, f64)>,
 }
 
-/// The error in one pose, each the rms over its rows of one axis \[um\].
+/// The error in one pose, each the rms over its rows of one axis (um).
 #[derive(Clone, Debug)]
 pub struct PoseError {
     /// The pose's id.
@@ -148,7 +148,7 @@ pub struct PoseError {
     pub held_out: bool,
 }
 
-/// Residuals of one row \[um\] in the base frame.
+/// Residuals of one row (um) in the base frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Residual {
     /// With the joints identified again.
@@ -162,10 +162,10 @@ pub struct Residual {
 pub struct Arm {
     /// The pose's id.
     pub id: String,
-    /// From the ground to the TCP, joint by joint \[m\].
+    /// From the ground to the TCP, joint by joint (m).
     pub points: Vec<[f64; 3]>,
     /// The residual of the row of its largest force, the joints identified
-    /// again \[um\].
+    /// again (um).
     pub before: [f64; 3],
     /// The same with the effects.
     pub after: [f64; 3],
@@ -182,7 +182,7 @@ pub struct Dependence {
     pub axis: usize,
     /// Which share of its variance a parabola accounts for, before and after.
     pub share: [f64; 2],
-    /// The quantity, and the residual before and after \[um\].
+    /// The quantity, and the residual before and after (um).
     pub points: Vec<[f64; 3]>,
 }
 
@@ -206,7 +206,7 @@ pub struct Candidate {
     pub statistic: Option<f64>,
     /// Its family-wise p-value.
     pub p_value: f64,
-    /// The error with it on poses left out of the fit, each in turn \[um\].
+    /// The error with it on poses left out of the fit, each in turn (um).
     pub left_out_rms_um: Option<f64>,
     /// Why it was not taken; empty where it was.
     pub reason: String,

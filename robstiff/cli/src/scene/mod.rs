@@ -49,7 +49,7 @@ pub struct Arguments {
     json: Option<PathBuf>,
 }
 
-/// A force in the base frame \[N\].
+/// A force in the base frame (N).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Force(pub [f64; 3]);
 

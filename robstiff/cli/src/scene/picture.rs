@@ -60,7 +60,7 @@ fn round(value: f64) -> f64 {
     [5.0, 2.0, 1.0].into_iter().map(|step| step * power).find(|&step| step <= value).unwrap_or(power)
 }
 
-/// The length of the arm along its links \[m\].
+/// The length of the arm along its links (m).
 fn reach(scene: &Scene) -> f64 {
     let Some(pose) = scene.poses.first() else { return 1.0 };
     let links = pose.points.windows(2).map(|ends| length(std::array::from_fn(|k| ends[1][k] - ends[0][k])));
@@ -71,7 +71,7 @@ fn reach(scene: &Scene) -> f64 {
 struct View {
     corner: [f64; 2],
     per_m: f64,
-    /// The square of the floor grid \[m\], and its first and last lines.
+    /// The square of the floor grid (m), and its first and last lines.
     step: f64,
     lines: [[f64; 2]; 2],
 }

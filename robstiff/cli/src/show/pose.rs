@@ -20,7 +20,7 @@ pub struct Shown {
     pub compliance: Matrix6<f64>,
     /// Its inverse or pseudo-inverse, where it has a finite one.
     pub stiffness: Option<Stiffness<f64>>,
-    /// The inverse of the translational block [N/m], where there is one.
+    /// The inverse of the translational block (N/m), where there is one.
     pub translational_stiffness: Option<Matrix3<f64>>,
     /// The directions in which a force moves the TCP along itself, the softest
     /// first.
@@ -35,9 +35,9 @@ pub struct Shown {
 pub struct Direction {
     /// The force's direction in the base frame.
     pub unit: [f64; 3],
-    /// Displacement along it per force [m/N].
+    /// Displacement along it per force (m/N).
     pub compliance: f64,
-    /// Force per displacement [N/m]; none where the robot does not yield.
+    /// Force per displacement (N/m); none where the robot does not yield.
     pub stiffness: Option<f64>,
 }
 

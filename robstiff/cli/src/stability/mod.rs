@@ -92,7 +92,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// What is predicted of an arm in a cut.
 pub struct Predicted {
-    /// The mass at the TCP in the base frame \[kg\].
+    /// The mass at the TCP in the base frame (kg).
     mass: Matrix3<f64>,
     /// Of the arm without load, where a hammer finds them.
     modes: Modes,
@@ -100,7 +100,7 @@ pub struct Predicted {
     stiffens: bool,
     /// From the spindle to the tip, in the base frame.
     axis: Vector3<f64>,
-    /// The greatest depth looked at \[m\].
+    /// The greatest depth looked at (m).
     greatest: f64,
     feeds: Vec<FeedLimit>,
 }
@@ -167,7 +167,7 @@ fn predict<const N: usize>(
     Ok(Predicted { mass, modes, stiffens, axis, greatest, feeds })
 }
 
-/// The stiffness of the softest direction [N/m]; `None` where all are rigid.
+/// The stiffness of the softest direction (N/m); `None` where all are rigid.
 fn softest(modes: &Modes) -> Option<f64> {
     Some(modes.compliance().symmetric_eigenvalues().max()).filter(|most| *most > 0.0).map(f64::recip)
 }

@@ -1,12 +1,12 @@
 //! The errors of clamped axes.
 
 use robstiff::campaign::{Campaign, ClampedRow};
-use robstiff::identify::clamped::without_laws;
+use robstiff::identify::without_laws;
 use robstiff::trace::Trace;
 
 use crate::report::content::PoseError;
 
-/// The errors of every axis, as the report has those of poses \[urad or um\].
+/// The errors of every axis, as the report has those of poses (urad or um).
 pub fn errors(trace: &Trace, campaign: &Campaign, rows: &[ClampedRow]) -> Vec<PoseError> {
     let less = without_laws(&campaign.robot, rows);
     let declared = |name: &str| {

@@ -162,7 +162,7 @@ fn errors(trace: &Trace, campaign: &Campaign) -> Result<Vec<PoseError>, Failure>
     Ok(poses.iter().zip(&sums).map(error).collect())
 }
 
-/// Squares of one axis, summed over the rows of a pose \[m^2\].
+/// Squares of one axis, summed over the rows of a pose (m^2).
 #[derive(Clone, Default)]
 struct Sums {
     rows: usize,

@@ -37,7 +37,7 @@ pub struct Arguments {
     /// Seed of the bootstrap; one seed gives one result
     #[arg(long, default_value_t = Options::default().seed, allow_hyphen_values = true, value_parser = input::seed)]
     seed: u64,
-    /// Bootstrap draws; a p-value is no smaller than one over their number
+    /// Bootstrap draws; the p-value of an effect is no smaller than one over one more than these
     #[arg(long, default_value_t = Options::default().draws as u32, allow_hyphen_values = true, value_parser = input::whole::<u32>(99, 1_000_000))]
     draws: u32,
     /// Level of the tests, over all candidates together
@@ -62,14 +62,7 @@ fn level(text: &str) -> Result<f64, String> {
 /// Traces the campaign.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let options = Options { seed: arguments.seed, draws: arguments.draws as usize, alpha: arguments.alpha };
-    if 1.0 / f64::from(arguments.draws + 1) > options.alpha {
-        return Err(Failure::Usage(format!(
-            "{} draws resolve no level of {}; at least {:.0} are needed",
-            arguments.draws,
-            options.alpha,
-            options.alpha.recip().ceil()
-        )));
-    }
+    options.check().map_err(Failure::Usage)?;
     let campaign = input::campaign(&arguments.campaign)?;
     let mut files = Files::default();
     files.protect_campaign(&campaign);

@@ -65,7 +65,7 @@ pub fn arms(trace: &Trace, campaign: &Campaign) -> Vec<Arm> {
     largest.iter().zip(poses).filter_map(arm).collect()
 }
 
-/// From the ground to the TCP, joint by joint \[m\], in the base frame.
+/// From the ground to the TCP, joint by joint (m), in the base frame.
 fn points(robot: &Description, q: &[f64]) -> Vec<[f64; 3]> {
     with_robot!(robot, |robot| chain(&robot, q))
 }

@@ -2,8 +2,8 @@
 
 use robstiff::JointKind;
 use robstiff::campaign::Campaign;
-use robstiff::identify::baseline::Visibility;
-use robstiff::identify::encoders::EncodersRead;
+use robstiff::identify::EncodersRead;
+use robstiff::identify::Visibility;
 use robstiff::identify::{Estimate, off_by_one_factor};
 use robstiff::trace::{EffectParameter, NamedEffect, Proposal, Rival, RowResidual, Trace, Verdict};
 use robstiff_robots::Joint;
@@ -280,7 +280,7 @@ fn sentence(clause: &str) -> String {
     format!("{start}{}.", letters.as_str().trim_end_matches('.'))
 }
 
-/// The noise of what is read \[m\]: of one reading, or of the difference of a
+/// The noise of what is read (m): of one reading, or of the difference of a
 /// loaded and an unloaded one; less where the unloaded one is an average of many.
 pub fn noise(trace: &Trace) -> f64 {
     if trace.differences { trace.noise * std::f64::consts::SQRT_2 } else { trace.noise }

@@ -1,0 +1,135 @@
+//! Whether a campaign is one. What is read from files was checked there, where each problem
+//! has its line; a campaign that a program has made is checked by whatever takes it.
+
+use std::format;
+use std::string::String;
+
+use robstiff_robots::words::count;
+
+use super::{Campaign, ClampedRow, Data, Observation, PositionRow};
+
+impl Campaign {
+    /// Whether rows have as many joint coordinates as the robot, name poses, visits and axes
+    /// that there are, and hold numbers only.
+    ///
+    /// # Errors
+    /// The first row that does not, by its line, and what is wrong with it; no rows.
+    pub fn check(&self) -> Result<(), String> {
+        let joints = self.robot.joints.len();
+        let (rows, wrong) = match &self.data {
+            Data::Displacement(data) => {
+                let names = [data.poses.len(), data.visits.len()];
+                let rotations = data.rows.first().is_some_and(|row| row.rotation.is_some());
+                let wrong = |row: &Observation| of_displacement(row, joints, names, rotations);
+                (data.rows.len(), data.rows.iter().find_map(|row| Some((row.line, wrong(row)?))))
+            }
+            Data::Position(data) => {
+                let names = [data.poses.len(), data.visits.len()];
+                let wrong = |row: &PositionRow| of_position(row, joints, names);
+                (data.rows.len(), data.rows.iter().find_map(|row| Some((row.line, wrong(row)?))))
+            }
+            Data::Clamped(rows) => (rows.len(), rows.iter().find_map(|row| Some((row.line, of_clamped(row, joints)?)))),
+        };
+        match wrong {
+            Some((line, wrong)) => Err(format!("the row of line {line} {wrong}")),
+            None if rows == 0 => Err(String::from("there are no rows")),
+            None => Ok(()),
+        }
+    }
+}
+
+fn of_displacement(row: &Observation, joints: usize, names: [usize; 2], rotations: bool) -> Option<String> {
+    let readings = [&row.encoders, &row.motors].into_iter().flatten();
+    of_coordinates(&row.q, joints)
+        .or_else(|| readings.clone().find_map(|read| of_coordinates(read, joints)))
+        .or_else(|| of_names([row.pose, row.visit], names))
+        .or_else(|| {
+            (row.rotation.is_some() != rotations).then(|| String::from("has a rotation, or none, unlike the first"))
+        })
+        .or_else(|| of_numbers(row.wrench.iter().chain(&row.displacement).chain(row.rotation.iter().flatten())))
+        .or_else(|| of_numbers(row.time.iter().chain(&row.temperature)))
+}
+
+fn of_position(row: &PositionRow, joints: usize, names: [usize; 2]) -> Option<String> {
+    of_coordinates(&row.q, joints)
+        .or_else(|| of_names([row.pose, row.visit], names))
+        .or_else(|| of_numbers(row.position.iter().chain([&row.payload]).chain(&row.time).chain(&row.temperature)))
+}
+
+fn of_clamped(row: &ClampedRow, joints: usize) -> Option<String> {
+    if !(1..=joints).contains(&row.axis) {
+        return Some(format!("loads axis {}, and the robot has {}", row.axis, count(joints, "joint")));
+    }
+    of_numbers([&row.torque, &row.deflection])
+}
+
+fn of_coordinates(q: &[f64], joints: usize) -> Option<String> {
+    if q.len() != joints {
+        return Some(format!("has {} for {}", count(q.len(), "coordinate"), count(joints, "joint")));
+    }
+    of_numbers(q)
+}
+
+/// A row's pose and visit, and how many there are.
+fn of_names(indices: [usize; 2], names: [usize; 2]) -> Option<String> {
+    let mut named = ["pose", "visit"].into_iter().zip(indices).zip(names);
+    named
+        .find(|((_, index), names)| index >= names)
+        .map(|((what, index), names)| format!("is of {what} {index}, counted from 0, and there are {names}"))
+}
+
+fn of_numbers<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> Option<String> {
+    let strange = numbers.into_iter().find(|number| !number.is_finite())?;
+    Some(format!("has {strange} for a number"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::made::Plan;
+    use super::*;
+    use crate::identify::{Error, identify, predict};
+    use crate::trace::{Options, trace};
+
+    /// What is wrong with a campaign of which one row was changed.
+    fn wrong(change: impl Fn(&mut Observation)) -> String {
+        let mut campaign = Plan { poses: 4, ..Plan::new(1) }.run();
+        assert_eq!(campaign.check(), Ok(()));
+        let Data::Displacement(data) = &mut campaign.data else { unreachable!("displacements were planned") };
+        change(&mut data.rows[2]);
+        let wrong = campaign.check().expect_err("a row that was changed");
+        // All that takes a campaign says so, and nothing panics.
+        let told = Err(Error(wrong.clone()));
+        assert_eq!(identify(&campaign).map(|_| ()), told);
+        assert_eq!(predict(&campaign.robot, &campaign).map(|_| ()), told);
+        assert_eq!(trace(&campaign, &Options::default(), &|_| {}).map(|_| ()), told);
+        wrong
+    }
+
+    #[test]
+    fn a_row_that_is_none_is_named() {
+        assert!(wrong(|row| row.q.truncate(4)).ends_with("has 4 coordinates for 5 joints"));
+        assert!(wrong(|row| row.pose = 4).ends_with("is of pose 4, counted from 0, and there are 4"));
+        assert!(wrong(|row| row.displacement[1] = f64::NAN).ends_with("has NaN for a number"));
+        assert!(wrong(|row| row.encoders = Some(std::vec![0.0; 6])).ends_with("has 6 coordinates for 5 joints"));
+        assert!(wrong(|row| row.rotation = Some([0.0; 3])).contains("unlike the first"));
+        let mut campaign = Plan { poses: 4, ..Plan::new(1) }.run();
+        campaign.data = Data::Clamped(std::vec![ClampedRow { line: 3, axis: 6, torque: 1.0, deflection: 1e-6 }]);
+        let told = campaign.check().expect_err("an arm of five joints");
+        assert_eq!(told, "the row of line 3 loads axis 6, and the robot has 5 joints");
+        campaign.data = Data::Clamped(std::vec![]);
+        assert_eq!(campaign.check(), Err(String::from("there are no rows")));
+    }
+
+    #[test]
+    fn a_level_beyond_the_draws_is_refused() {
+        let campaign = Plan { poses: 4, ..Plan::new(1) }.run();
+        for options in [
+            Options { alpha: 0.0, ..Options::default() },
+            Options { alpha: f64::NAN, ..Options::default() },
+            Options { draws: 0, ..Options::default() },
+            Options { draws: 98, ..Options::default() },
+        ] {
+            assert!(trace(&campaign, &options, &|_| {}).is_err(), "{options:?}");
+        }
+    }
+}
