@@ -280,14 +280,29 @@ where
     T: Real,
     R: Robot<N>,
 {
-    let (pose, own, torques) = (Pose::of(robot, q), robot.joint_compliance(), robot.joint_torques(q, wrench));
-    let geometry = pose.geometry();
-    let joint = |i: usize| geometry.unit_compliance(Spring::Joint(i + 1)) * T::of(own[i]);
-    let joints = (0..N).fold(Matrix6::zeros(), |sum, i| sum + joint(i));
-    robot.effects().iter().fold(joints, |sum, effect| {
-        sum + with_law(&geometry, effect, |joint| {
-            turn_about(effect, T::of(own[joint - 1]), q[joint - 1], torques[joint - 1])
-        })
+    contributions_under(robot, q, wrench).fold(Matrix6::zeros(), |sum, (_, part)| sum + part)
+}
+
+/// What each joint and then each effect gives to the compliance under a wrench, as
+/// [`contributions`] are of that without load; the sum is [`compliance_under`].
+pub fn contributions_under<'r, const N: usize, T, R>(
+    robot: &'r R,
+    q: &SVector<T, N>,
+    wrench: &Vector6<T>,
+) -> impl Iterator<Item = (Element<'r>, Matrix6<T>)> + use<'r, N, T, R>
+where
+    T: Real,
+    R: Robot<N>,
+{
+    let (pose, q, torques) = (Pose::of(robot, q), *q, robot.joint_torques(q, wrench));
+    let (own, effects) = (robot.joint_compliance(), robot.effects());
+    (0..N + effects.len()).map(move |k| {
+        let geometry = pose.geometry();
+        let Some(k) = k.checked_sub(N) else {
+            return (Element::Joint(k + 1), geometry.unit_compliance(Spring::Joint(k + 1)) * T::of(own[k]));
+        };
+        let slope = |joint: usize| turn_about(&effects[k], T::of(own[joint - 1]), q[joint - 1], torques[joint - 1]);
+        (Element::Effect(&effects[k]), with_law(&geometry, &effects[k], slope))
     })
 }
 

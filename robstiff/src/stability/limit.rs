@@ -5,11 +5,18 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, Matrix3};
 
 use super::Modes;
+use super::modes::{Margin, largest_real};
 
-/// Depths are looked at in so many steps where there is no closed form.
-const STEPS: usize = 400;
-/// Halvings of a step; 1e-9 of the greatest depth.
-const HALVINGS: usize = 24;
+/// Each depth that is looked at over the one before, where there is no closed form.
+const RATIO: f64 = 1.01;
+/// The least of them, where nothing tells a larger one: of the greatest.
+const LEAST: f64 = 1e-6;
+/// Halvings of a step.
+const HALVINGS: usize = 40;
+/// Cuts by the golden section, to 1e-8 of two steps.
+const CUTS: usize = 40;
+/// The smaller part of a golden section over the larger.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// The depths of cut that are not stable, up to a greatest one.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,22 +53,23 @@ impl Modes {
     /// (N/m^2).
     ///
     /// For two modes without damping the limits are the roots of two quadratics,
-    /// `(a - d)^2 + 4 b c` and the determinant; otherwise the eigenvalues are
-    /// looked at in 400 steps, between two of which they are found by bisection:
-    /// a range narrower than a step may be missed.
+    /// `(a - d)^2 + 4 b c` and the determinant. Otherwise depths are looked at that grow by 1 %
+    /// each, from one on below which nothing can happen; where the movements come nearest to
+    /// growing, or to dying down, between depths where they do not, they are looked at there
+    /// (golden section), and limits are found by bisection. So the greatest depth has no part
+    /// in what is found below it.
     pub fn limits(&self, process: &Matrix3<f64>, greatest: f64) -> Limits {
-        let seen = self.seen(process);
-        let stable = |depth: f64| self.is_stable_seen(&(&seen * depth));
-        let bounds = match (self.frequencies().len(), self.damping() == 0.0) {
-            (0..=2, true) => self.roots(&seen),
-            _ => Self::searched(&stable, greatest),
+        let is_stable = |depth: f64| self.is_stable(&(process * depth));
+        let bounds = match (self.frequencies().len(), self.damping() == 0.0 && self.massless == Matrix3::zeros()) {
+            (0..=2, true) => self.seen(process).map_or_else(Vec::new, |seen| self.roots(&seen)),
+            _ => self.searched(process, greatest),
         };
         let mut bounds: Vec<f64> = bounds.into_iter().filter(|depth| *depth > 0.0 && *depth < greatest).collect();
         bounds.sort_by(f64::total_cmp);
         bounds.push(greatest);
         let (mut from, mut unstable) = (0.0, Vec::<[f64; 2]>::new());
         for to in bounds {
-            if to > from && !stable(0.5 * (from + to)) {
+            if to > from && !is_stable(0.5 * (from + to)) {
                 match unstable.last_mut().filter(|last| last[1] == from) {
                     Some(last) => last[1] = to,
                     None => unstable.push([from, to]),
@@ -88,24 +96,86 @@ impl Modes {
         }
     }
 
-    fn searched(stable: &impl Fn(f64) -> bool, greatest: f64) -> Vec<f64> {
-        let mut bounds = Vec::new();
-        let (mut before, mut was) = (0.0, stable(0.0));
-        for step in 1..=STEPS {
-            let depth = greatest * step as f64 / STEPS as f64;
-            let is = stable(depth);
-            if is != was {
-                let (mut low, mut high) = (before, depth);
-                for _ in 0..HALVINGS {
-                    let middle = 0.5 * (low + high);
-                    if stable(middle) == was { low = middle } else { high = middle }
-                }
-                bounds.push(high);
-            }
-            (before, was) = (depth, is);
+    fn searched(&self, process: &Matrix3<f64>, greatest: f64) -> Vec<f64> {
+        // What has no mass runs away from here on.
+        let away = largest_real(&(process * self.massless)).recip();
+        let end = if away > 0.0 && away < greatest { away } else { greatest };
+        let look = |depth: f64| {
+            let lost = Margin { is_stable: false, distance: 0.0 };
+            (depth, self.seen(&(process * depth)).map_or(lost, |seen| self.margin(&seen)))
+        };
+        let mut looked = Vec::from([look(self.nothing_below(process, end))]);
+        while let Some(&(depth, _)) = looked.last().filter(|(depth, _)| *depth < end) {
+            looked.push(look((depth * RATIO).min(end)));
         }
-        bounds
+        let mut seen = looked.clone();
+        for three in looked.windows(3) {
+            seen.extend(between(three, &look));
+        }
+        seen.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+        let limit = |pair: &[(f64, Margin)]| {
+            let [(mut low, before), (mut high, after)] = [pair[0], pair[1]];
+            if before.is_stable == after.is_stable {
+                return None;
+            }
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                if look(middle).1.is_stable == before.is_stable { low = middle } else { high = middle }
+            }
+            Some(high)
+        };
+        let mut limits: Vec<f64> = seen.windows(2).filter_map(limit).collect();
+        limits.push(end);
+        limits
     }
+
+    /// A depth (m) below which no movement grows. Eigenvalues move by no more than the change
+    /// of a symmetric matrix (Bauer and Fike): two that are real do not meet before that is half
+    /// of what keeps them apart, none gets to zero before it is the least. With damping a force
+    /// must bear what the dampers do, at least `2 zeta sqrt(1 - zeta^2)` of the least.
+    fn nothing_below(&self, process: &Matrix3<f64>, greatest: f64) -> f64 {
+        let squares: Vec<f64> = self.frequencies().iter().map(|frequency| frequency * frequency).collect();
+        let least = squares.first().copied().unwrap_or(0.0);
+        let zeta = self.damping();
+        let apart = match zeta > 0.0 {
+            true => least * if zeta < 0.5 { 2.0 * zeta * (1.0 - zeta * zeta).sqrt() } else { 0.75 },
+            false => squares.windows(2).map(|pair| 0.5 * (pair[1] - pair[0])).fold(least, f64::min),
+        };
+        let shapes = self.shapes().norm_squared();
+        let force = process.norm() * shapes;
+        // A force on what has no mass is up to twice as large where half of that is not reached.
+        let yielding = process.norm() * self.massless.norm();
+        let depth = (0.5 * apart / force).min(0.5 / yielding);
+        if depth.is_finite() { depth.clamp(LEAST * greatest, greatest) } else { greatest }
+    }
+}
+
+/// Where between three depths, of which all or none are stable, the middle one is nearest to a
+/// limit, and the other way there.
+fn between(three: &[(f64, Margin)], look: &impl Fn(f64) -> (f64, Margin)) -> Option<(f64, Margin)> {
+    let [(low, one), (_, middle), (high, other)] = three[..] else { return None };
+    let sign = if middle.is_stable { 1.0 } else { -1.0 };
+    let nearness = |margin: &Margin| sign * margin.distance;
+    let all = one.is_stable == middle.is_stable && other.is_stable == middle.is_stable;
+    if !all || nearness(&middle) >= nearness(&one) || nearness(&middle) >= nearness(&other) {
+        return None;
+    }
+    let (mut from, mut to) = (low, high);
+    let inner = |from: f64, to: f64| [to - GOLDEN * (to - from), from + GOLDEN * (to - from)];
+    let mut cuts = inner(from, to).map(look);
+    for _ in 0..CUTS {
+        if let Some(found) = cuts.iter().find(|(_, margin)| margin.is_stable != middle.is_stable) {
+            return Some(*found);
+        }
+        if nearness(&cuts[0].1) < nearness(&cuts[1].1) {
+            to = cuts[1].0;
+            cuts = [look(inner(from, to)[0]), cuts[0]];
+        } else {
+            from = cuts[0].0;
+            cuts = [cuts[1], look(inner(from, to)[1])];
+        }
+    }
+    None
 }
 
 /// The real roots of `a x^2 + b x + c`.

@@ -12,9 +12,10 @@
 //! modes meet, they flutter.
 //!
 //! # What this covers and what not
-//! - The arm's elasticity at one pose, by the 3 x 3 translational block of its
-//!   compliance: the TCP is free to turn. Directions in which it does not yield
-//!   at all are rigid and take no part. Backlash and hardening have the slope that
+//! - The arm's elasticity at one pose, with one mass at the tool by the 3 x 3
+//!   translational block of its compliance ([`Modes::new`]), or with the links'
+//!   masses by all that yields ([`Modes::of_links`]): the TCP is free to turn.
+//!   Directions in which it does not yield at all are rigid and take no part. Backlash and hardening have the slope that
 //!   they have under the mean force of the cut, see [`over_feeds`] and
 //!   [`compliance_under`](crate::elements::compliance_under): movements that cross
 //!   the backlash are not small, and not looked at.
@@ -37,5 +38,5 @@ mod tests;
 
 pub use feeds::{FeedLimit, best, feeds_in_plane, over_feeds, process, rank_one};
 pub use limit::Limits;
-pub use mass::{MassError, mass_of_first_mode, mass_of_links};
+pub use mass::{MassError, mass_of_first_mode};
 pub use modes::{Modes, has_complex_pair};

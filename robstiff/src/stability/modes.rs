@@ -1,22 +1,24 @@
 //! The modes of an arm at its tool, and whether they are stable in a cut.
 
-use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Schur, SymmetricEigen};
+use nalgebra::{Complex, DMatrix, DVector, Matrix2, Matrix3, Schur, SymmetricEigen};
 
 use crate::analysis::resolution;
 
-/// The modes of the tool on the arm, without a cut: one to three, as many as
-/// there are directions in which the arm yields.
+/// The modes of the tool on the arm, without a cut: of one mass at the tool as many as there
+/// are directions in which the arm yields, one to three; of the links' masses more.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modes {
     /// The translational compliance (m/N).
-    compliance: Matrix3<f64>,
+    pub(super) compliance: Matrix3<f64>,
     /// Natural frequencies (rad/s), the lowest first.
-    frequencies: DVector<f64>,
-    /// What a unit of each mode moves the tool by, 3 x modes, so that
-    /// `shapes^T M shapes` is the identity [1/sqrt(kg)].
-    shapes: DMatrix<f64>,
+    pub(super) frequencies: DVector<f64>,
+    /// What a unit of each mode moves the tool by, 3 x modes, where a force on the tool
+    /// accelerates it by `shapes^T f` (1/sqrt(kg)).
+    pub(super) shapes: DMatrix<f64>,
+    /// What of the compliance no mode has (m/N): what it moves has no mass.
+    pub(super) massless: Matrix3<f64>,
     /// Damping ratio of every mode.
-    damping: f64,
+    pub(super) damping: f64,
 }
 
 /// How often the eigenvalue iteration may turn.
@@ -50,7 +52,7 @@ impl Modes {
         if count == 0 {
             // Where nothing moves there is nothing to solve.
             let (frequencies, shapes) = (DVector::zeros(0), DMatrix::zeros(3, 0));
-            return Some(Self { compliance, frequencies, shapes, damping });
+            return Some(Self { compliance, frequencies, shapes, massless: Matrix3::zeros(), damping });
         }
         let directions = DMatrix::from_fn(3, count, |row, i| eigenvectors[(row, soft[i])]);
         let stiffness = DMatrix::from_fn(count, count, |i, j| if i == j { 1.0 / eigenvalues[soft[i]] } else { 0.0 });
@@ -67,7 +69,7 @@ impl Modes {
         let frequencies = DVector::from_fn(count, |i, _| eigenvalues[order[i]].max(0.0).sqrt());
         let shapes = to_tool * vectors;
         let finite = frequencies.iter().chain(shapes.iter()).all(|entry| entry.is_finite());
-        finite.then_some(Self { compliance, frequencies, shapes, damping })
+        finite.then_some(Self { compliance, frequencies, shapes, massless: Matrix3::zeros(), damping })
     }
 
     /// The translational compliance of the arm (m/N), 3 x 3.
@@ -85,15 +87,26 @@ impl Modes {
         self.damping
     }
 
-    /// What a unit of each mode moves the tool by, 3 x modes [1/sqrt(kg)].
+    /// What a unit of each mode moves the tool by, 3 x modes (1/sqrt(kg)).
     pub fn shapes(&self) -> &DMatrix<f64> {
         &self.shapes
     }
 
     /// A change of the force with the displacement of the tool, 3 x 3 (N/m), as
-    /// the modes see it (1/s^2).
-    pub(super) fn seen(&self, process: &Matrix3<f64>) -> DMatrix<f64> {
-        self.shapes.transpose() * process * &self.shapes
+    /// the modes see it (1/s^2). What has no mass gives way at once: of `x = shapes w +
+    /// massless f` and `f = process x` the force is `(I - process massless)^-1 process
+    /// shapes w`. `None` where it runs away: an eigenvalue of `process massless` is real and
+    /// not below 1.
+    pub(super) fn seen(&self, process: &Matrix3<f64>) -> Option<DMatrix<f64>> {
+        if self.massless == Matrix3::zeros() {
+            return Some(self.shapes.transpose() * process * &self.shapes);
+        }
+        let yielding = process * self.massless;
+        if largest_real(&yielding) >= 1.0 {
+            return None;
+        }
+        let force = (Matrix3::identity() - yielding).try_inverse()? * process;
+        Some(self.shapes.transpose() * force * &self.shapes)
     }
 
     /// Whether small movements of the tool die down (without damping: do not
@@ -104,23 +117,27 @@ impl Modes {
     /// and positive: a complex pair flutters, a negative one runs away. With
     /// damping, by those of the state matrix, whose real parts must be negative.
     pub fn is_stable(&self, process: &Matrix3<f64>) -> bool {
-        self.is_stable_seen(&self.seen(process))
+        self.seen(process).is_some_and(|seen| self.margin(&seen).is_stable)
     }
 
-    pub(super) fn is_stable_seen(&self, seen: &DMatrix<f64>) -> bool {
+    /// How far the modes are from growing under a change of the force that they see so.
+    pub(super) fn margin(&self, seen: &DMatrix<f64>) -> Margin {
         let count = self.frequencies.len();
         if count == 0 {
-            return true;
+            return Margin { is_stable: true, distance: 1.0 };
         }
         let squares = DMatrix::from_diagonal(&self.frequencies.component_mul(&self.frequencies));
         let stiffness = squares - seen;
         let scale = stiffness.amax();
+        // What does not converge is not called stable.
+        let lost = Margin { is_stable: false, distance: 0.0 };
         if !(scale > 0.0 && scale.is_finite()) {
-            return false;
+            return lost;
         }
         let stiffness = stiffness / scale;
         if self.damping == 0.0 {
-            return eigenvalues_are_positive(&stiffness);
+            let Some(distance) = discriminant(&stiffness) else { return lost };
+            return Margin { is_stable: eigenvalues_are_positive(&stiffness), distance };
         }
         // x'' + 2 zeta Omega x' + A x = 0, with time in units of 1 / sqrt(scale).
         let mut state = DMatrix::zeros(2 * count, 2 * count);
@@ -129,10 +146,39 @@ impl Modes {
         for i in 0..count {
             state[(count + i, count + i)] = -2.0 * self.damping * self.frequencies[i] / scale.sqrt();
         }
-        // What does not converge is not called stable.
-        Schur::try_new(state, f64::EPSILON, MOST_ITERATIONS)
-            .is_some_and(|schur| schur.complex_eigenvalues().iter().all(|eigenvalue| eigenvalue.re < 0.0))
+        let Some(eigenvalues) = eigenvalues(state) else { return lost };
+        let distance = -eigenvalues.iter().map(|eigenvalue| eigenvalue.re).fold(f64::NEG_INFINITY, f64::max);
+        Margin { is_stable: distance > 0.0, distance }
     }
+}
+
+/// Whether small movements die down, and by how much.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Margin {
+    pub is_stable: bool,
+    /// Something smooth that is zero where modes meet, or a movement begins to grow: without
+    /// damping the discriminant, with damping how fast the slowest movement dies down.
+    pub distance: f64,
+}
+
+fn eigenvalues(matrix: DMatrix<f64>) -> Option<DVector<Complex<f64>>> {
+    Some(Schur::try_new(matrix, f64::EPSILON, MOST_ITERATIONS)?.complex_eigenvalues())
+}
+
+/// The largest real eigenvalue of a 3 x 3 matrix.
+pub(super) fn largest_real(matrix: &Matrix3<f64>) -> f64 {
+    let eigenvalues = matrix.complex_eigenvalues();
+    let real = eigenvalues.iter().filter(|eigenvalue| eigenvalue.im == 0.0).map(|eigenvalue| eigenvalue.re);
+    real.fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// The product of the squared differences of a matrix's eigenvalues: zero where two meet,
+/// negative where a pair is complex.
+fn discriminant(matrix: &DMatrix<f64>) -> Option<f64> {
+    let eigenvalues = eigenvalues(matrix.clone())?;
+    let pairs = (0..eigenvalues.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+    let squared = |(i, j): (usize, usize)| (eigenvalues[i] - eigenvalues[j]).powi(2);
+    Some(pairs.map(squared).product::<Complex<f64>>().re)
 }
 
 /// Whether a 2 x 2 matrix has a pair of complex eigenvalues: the criterion of
@@ -143,9 +189,9 @@ pub fn has_complex_pair(matrix: &Matrix2<f64>) -> bool {
     apart * apart + 4.0 * matrix[(0, 1)] * matrix[(1, 0)] < 0.0
 }
 
-/// Whether all the eigenvalues of a matrix of one to three rows, with entries up
-/// to 1, are real and positive: by the discriminant and the signs of its
-/// characteristic polynomial, to rounding.
+/// Whether all the eigenvalues of a matrix with entries up to 1 are real and positive, to
+/// rounding: of one to three rows by the discriminant and the signs of its characteristic
+/// polynomial.
 fn eigenvalues_are_positive(a: &DMatrix<f64>) -> bool {
     match a.nrows() {
         1 => a[(0, 0)] > 0.0,
@@ -155,7 +201,7 @@ fn eigenvalues_are_positive(a: &DMatrix<f64>) -> bool {
             let discriminant = apart * apart + 4.0 * a[(0, 1)] * a[(1, 0)];
             discriminant >= -ROUNDING && trace > 0.0 && determinant > 0.0
         }
-        _ => {
+        3 => {
             let minor = |i: usize, j: usize| a[(i, i)] * a[(j, j)] - a[(i, j)] * a[(j, i)];
             let (c2, c1) = (a.trace(), minor(0, 1) + minor(0, 2) + minor(1, 2));
             let c0 = a.determinant();
@@ -163,6 +209,9 @@ fn eigenvalues_are_positive(a: &DMatrix<f64>) -> bool {
             let discriminant =
                 18.0 * c2 * c1 * c0 - 4.0 * c2.powi(3) * c0 + c2 * c2 * c1 * c1 - 4.0 * c1.powi(3) - 27.0 * c0 * c0;
             discriminant >= -ROUNDING && c2 > 0.0 && c1 > 0.0 && c0 > 0.0
+        }
+        _ => {
+            eigenvalues(a.clone()).is_some_and(|all| all.iter().all(|one| one.re > 0.0 && one.im * one.im <= ROUNDING))
         }
     }
 }

@@ -7,10 +7,10 @@ mod picture;
 use std::path::PathBuf;
 
 use robstiff::analysis::translational_compliance;
-use robstiff::elements::compliance_under;
+use robstiff::elements::{compliance_under, contributions, contributions_under};
 use robstiff::milling::{Cut, Forces};
 use robstiff::nalgebra::{Matrix3, SVector, Vector3, Vector6};
-use robstiff::stability::{FeedLimit, Modes, mass_of_first_mode, mass_of_links, over_feeds};
+use robstiff::stability::{FeedLimit, Modes, mass_of_first_mode, over_feeds};
 use robstiff::{Robot, with_robot};
 use robstiff_robots::Description;
 use robstiff_robots::quantity::{self, Dimension};
@@ -92,8 +92,8 @@ const ROUNDING: f64 = 1e-9;
 
 /// What is predicted of an arm in a cut.
 pub struct Predicted {
-    /// The mass at the TCP in the base frame (kg).
-    mass: Matrix3<f64>,
+    /// The mass at the TCP in the base frame (kg), where it has one in all directions.
+    mass: Option<Matrix3<f64>>,
     /// Of the arm without load, where a hammer finds them.
     modes: Modes,
     /// Whether the arm under the cut is another: backlash or hardening.
@@ -143,27 +143,38 @@ fn predict<const N: usize>(
     if compliance.amax() == 0.0 {
         return Err(Failure::new(format!("{} does not yield in this pose", robot.name)));
     }
-    let mass = match arguments.frequency {
-        Some(frequency) => mass_of_first_mode(&compliance, frequency)
-            .ok_or_else(|| Failure::new(format!("{} does not yield in this pose", robot.name)))?,
-        None => mass_of_links(arm, &robot.links, &q).map_err(|error| {
+    let not_finite = || Failure::new("the compliance in this pose is not finite");
+    let first = match arguments.frequency {
+        Some(frequency) => Some(mass_of_first_mode(&compliance, frequency).ok_or_else(not_finite)?),
+        None => None,
+    };
+    let modes = match &first {
+        Some(mass) => Modes::new(&compliance, mass, arguments.damping).ok_or_else(not_finite)?,
+        None => Modes::of_links(arm, &robot.links, &q, contributions(arm, &q), arguments.damping).map_err(|error| {
             Failure::new(format!("{error}; measure the first mode at the tool and give it: --frequency \"15 Hz\""))
         })?,
     };
-    let modes = Modes::new(&compliance, &mass, arguments.damping)
-        .ok_or_else(|| Failure::new("the compliance in this pose is not finite"))?;
     let axis = arm.transform(&q).fixed_view::<3, 3>(0, 0) * arguments.tool_axis;
     let greatest = arguments.greatest.unwrap_or(10.0 * cut.depth);
-    // The mass stays what it is when the cut takes up the backlash.
+    // Masses stay what they are when the cut takes up the backlash.
     let under = |force: &Vector3<f64>| {
         let wrench = Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0);
-        let compliance = translational_compliance(&compliance_under(arm, &q, &wrench));
-        Modes::new(&compliance, &mass, arguments.damping)
+        match &first {
+            Some(mass) => {
+                let compliance = translational_compliance(&compliance_under(arm, &q, &wrench));
+                Modes::new(&compliance, mass, arguments.damping)
+            }
+            None => {
+                let parts = contributions_under(arm, &q, &wrench);
+                Modes::of_links(arm, &robot.links, &q, parts, arguments.damping).ok()
+            }
+        }
     };
     let feeds = over_feeds(under, cut, &axis, arguments.feeds.into(), greatest)
         .ok_or_else(|| Failure::new("the compliance under the cut is not finite"))?;
     let change = |feed: &FeedLimit| (feed.modes.compliance() - compliance).amax() / compliance.amax();
     let stiffens = feeds.iter().any(|feed| change(feed) > ROUNDING);
+    let mass = first.or_else(|| modes.mass());
     Ok(Predicted { mass, modes, stiffens, axis, greatest, feeds })
 }
 
@@ -190,7 +201,7 @@ fn document(predicted: &Predicted, robot: &Description, cut: &Cut, q: &[f64]) ->
         "covers": page::COVERS,
         "mean_force_N": cut.mean_force().norm(),
         "translational_compliance": json::matrix(predicted.modes.compliance()),
-        "mass": json::matrix(&predicted.mass),
+        "mass": predicted.mass.as_ref().map(json::matrix),
         "frequencies_Hz": json::numbers(predicted.modes.frequencies().iter().map(|w| w / std::f64::consts::TAU)),
         "damping": predicted.modes.damping(),
         "tool_axis": json::numbers(predicted.axis.iter().copied()),

@@ -23,12 +23,18 @@ pub fn page(predicted: &Predicted, robot: &Description, cut: &Cut, measured: boo
     page += &directions(predicted);
     let frequencies: Vec<String> =
         predicted.modes.frequencies().iter().map(|frequency| decimals(frequency / TAU, 1)).collect();
-    let mass = SymmetricEigen::new(predicted.mass).eigenvalues;
-    let mass = match measured {
-        true => format!("{} kg, by the frequency of the first", significant(mass.max(), 3)),
-        false => format!("{} to {} kg, by the links", significant(mass.min(), 3), significant(mass.max(), 3)),
+    let mass = match predicted.mass.map(|mass| SymmetricEigen::new(mass).eigenvalues) {
+        Some(mass) if measured => {
+            format!(", mass at the tool {} kg, by the frequency of the first", significant(mass.max(), 3))
+        }
+        Some(mass) => format!(
+            ", by the masses of the links; mass at the tool {} to {} kg",
+            significant(mass.min(), 3),
+            significant(mass.max(), 3)
+        ),
+        None => ", by the masses of the links".to_owned(),
     };
-    page += &format!("modes at {} Hz, mass at the tool {mass}", frequencies.join(", "));
+    page += &format!("modes at {} Hz{mass}", frequencies.join(", "));
     let damping = predicted.modes.damping();
     page += &match damping > 0.0 {
         true => format!(", damping ratio {}\n", significant(damping, 3)),
