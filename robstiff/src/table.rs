@@ -263,6 +263,11 @@ impl<'t> Table<'t> {
         None
     }
 
+    /// Whether nothing is written there.
+    pub fn is_empty(&self, record: &Record, column: Numbers) -> bool {
+        record.fields[column.index].is_empty()
+    }
+
     /// A number of a row in SI, unchecked.
     #[cfg(feature = "machining")]
     pub fn peek(&self, record: &Record, column: Numbers) -> Option<f64> {

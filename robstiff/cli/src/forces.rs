@@ -97,13 +97,15 @@ fn page(file: &CutFile, mean: &Vector3<f64>, revolution: Option<&Revolution>) ->
         }
     }
     page += "\nForce on the tool [N]\n";
-    // A record that tells no revolution has its own least and greatest.
-    let recorded = match &file.forces {
-        Forces::Measured { force, .. } => force.samples.iter().map(|sample| (0.0, sample.force)).collect(),
-        Forces::Model(_) => Vec::new(),
+    let shown = match (&file.forces, revolution) {
+        (Forces::Model(cut), Some(revolution)) => cut.extremes(revolution.samples.len()),
+        (Forces::Measured { .. }, Some(revolution)) => revolution.clone(),
+        // A record that tells no revolution has its own least and greatest.
+        (Forces::Measured { force, .. }, None) => {
+            Revolution { samples: force.samples.iter().map(|sample| (0.0, sample.force)).collect() }
+        }
+        (Forces::Model(_), None) => Revolution { samples: Vec::new() },
     };
-    let recorded = Revolution { samples: recorded };
-    let shown = revolution.unwrap_or(&recorded);
     let mut rows = Table::new(1, ["along", "mean", "least", "greatest"]);
     for (axis, name) in axes(&file.forces).into_iter().enumerate() {
         let range = shown.range(axis);

@@ -43,6 +43,9 @@ pub struct Arguments {
 /// Poses at which both are compared.
 const POSES: usize = 1000;
 
+/// Longer than the links of any arm (m).
+const LONGEST: f64 = 20.0;
+
 /// How far apart they may be (m, and as entries of the rotation).
 const AGREES: f64 = 1e-9;
 
@@ -62,6 +65,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         chain.tip,
         if robot.links.is_empty() { "" } else { " and masses" },
     );
+    complain_of_length(&robot);
     // As it will be read, with every number as it is written.
     let yaml = robot.to_yaml();
     let robot = Description::parse(&arguments.out.display().to_string(), &yaml)?;
@@ -86,6 +90,22 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let said = files.write()?;
     output::print(page(&robot, &chain, apart) + &said)
+}
+
+/// Says so of axes that are almost parallel: their common normal is far away, and the joint's
+/// frame with it.
+fn complain_of_length(robot: &Description) {
+    for (number, joint) in (1..).zip(&robot.joints) {
+        if joint.d.abs().max(joint.a.abs()) > LONGEST {
+            output::complain(format_args!(
+                "warning: joint {number} has d = {} m and a = {} m: its axis and a neighbour's are almost parallel, so \
+                 its frame is far from the arm, where a tilt of its bearing or a link that bends would be wrong; \
+                 if they are parallel but for a calibration, round the angles in the file",
+                text::significant(joint.d, 4),
+                text::significant(joint.a, 4)
+            ));
+        }
+    }
 }
 
 /// The largest difference of an entry of the tool's frame, at poses within the

@@ -138,6 +138,11 @@ fn an_option_without_effect_is_refused() {
         let said = fail(2, &[&["online", "rv130hsc"][..], &force, &option].concat());
         assert!(said.contains(option[0]), "{said}");
     }
+    let forces = write(&folder, "forces.csv", "Fx,Fy,Fz\n0,0,100\n0,0,100\n");
+    for option in [&["--peak"][..], &["--against", &file("fast.yaml")]] {
+        let said = fail(2, &[&["path", "rv130hsc", &joints, "--forces", &forces][..], option].concat());
+        assert!(said.contains(option[0]), "{said}");
+    }
     let page = inside(&folder, "page.html");
     let view = ["view", "rv130hsc", "--campaign", &file("tracker.yaml"), "--column", "feed", "--out", &page];
     let said = fail(2, &view);

@@ -33,8 +33,8 @@ pub struct Column {
     pub name: String,
     /// Its unit; empty where the header has none.
     pub unit: String,
-    /// Its numbers, in that unit.
-    pub values: Vec<f64>,
+    /// Its numbers, in that unit; none where the cell is empty.
+    pub values: Vec<Option<f64>>,
 }
 
 impl JointTable {
@@ -98,8 +98,15 @@ fn rows(table: &Table<'_>, robot: &Description, column: Option<&str>) -> Option<
         None => None,
         Some(column) => {
             let (column, name, unit) = column?;
-            let values: Vec<_> = table.records.iter().map(|record| table.number(record, column)).collect();
+            let value = |record| {
+                if table.is_empty(record, column) { Some(None) } else { table.number(record, column).map(Some) }
+            };
+            let values: Vec<_> = table.records.iter().map(value).collect();
             let values = values.into_iter().collect::<Option<Vec<_>>>()?;
+            if values.iter().all(Option::is_none) {
+                table.report_header(&format!("the column `{name}` is empty"), "name a column with numbers");
+                return None;
+            }
             Some(Column { name: name.to_owned(), unit: unit.to_owned(), values })
         }
     };

@@ -162,34 +162,38 @@ impl Deviation {
         let stands = displaced(robot, None, path.points.iter().map(|point| point.q), path, load)?;
         let points = path.points.iter().zip(&load.contacts).zip(stands).map(|((point, contact), stand)| {
             let shift = stand.off.fixed_rows::<3>(0).into_owned();
+            let error = contact.into.map(|into| into.dot(&shift));
             DeviationPoint {
                 line: point.line,
                 s: point.s,
                 wrench: stand.wrench,
                 displacement: stand.off,
                 components: contact.frame.map(|frame| frame.components(&shift)),
-                error: contact.into.map(|into| into.dot(&shift)),
-                peak: peak(robot, &point.q, contact, &load.revolution),
+                error,
+                peak: error.and_then(|mean| peak(robot, &point.q, contact, mean, &load.revolution)),
             }
         });
         Ok(Self { points: points.collect() })
     }
 }
 
-/// The largest error under the forces of a revolution, each as if it stayed and
-/// on an arm that was never loaded.
+/// The largest error under the forces of a revolution, each as if it stayed: what it moves
+/// an arm by that was never loaded, less what the mean force does, beyond the error under
+/// that, where arm and cut have settled.
 fn peak<const N: usize>(
     robot: &impl Robot<N>,
     q: &nalgebra::SVector<f64, N>,
     contact: &Contact,
+    mean: f64,
     revolution: &[Vector3<f64>],
 ) -> Option<f64> {
     // The forces of a revolution have no direction where their mean has none.
     let into = contact.into.filter(|_| contact.wrench != Vector6::zeros())?;
+    let under = |wrench: &Vector6<f64>| into.dot(&robot.deflection(q, wrench).fixed_rows::<3>(0));
+    let under_mean = under(&contact.wrench);
     let error = |force: &Vector3<f64>| {
         let force = contact.turn * force;
-        let wrench = Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0);
-        into.dot(&robot.deflection(q, &wrench).fixed_rows::<3>(0))
+        mean + (under(&Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0)) - under_mean)
     };
     revolution.iter().map(error).max_by(|one, other| one.abs().total_cmp(&other.abs()))
 }

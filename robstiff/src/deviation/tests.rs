@@ -287,6 +287,19 @@ fn the_peak_of_a_revolution_is_beyond_the_mean() {
 }
 
 #[test]
+fn the_peak_of_a_force_that_stays_is_its_mean() {
+    let (robot, _, path) = solved::<5>("rv130hsc", Vector3::x_axis());
+    let cut = cut("3 mm", "6000 rpm", "0.1 mm/tooth");
+    let same = std::vec![cut.mean_force(); 72];
+    // The force follows the displacement, in both.
+    let load = load_of_cut(&Forces::Model(cut), &path, Vector3::x_axis(), Surface::Side).with_revolution(same);
+    for point in Deviation::of(&robot, &path, &load).unwrap().points {
+        let [peak, mean] = [point.peak.unwrap(), point.error.unwrap()];
+        assert!((peak - mean).abs() < 1e-12, "{peak} {mean}");
+    }
+}
+
+#[test]
 fn forces_come_by_row_or_by_arc_length() {
     let (_, _, path) = solved::<6>("kuka-kr270-r2700", Vector3::z_axis());
     let load = |text: &str, frame| table(text).unwrap().load(&path, frame, Vector3::z_axis(), Surface::Side);

@@ -4,8 +4,8 @@
 //! gear with backlash or one that hardens is softest without a load, so there the compliance
 //! times the force is too much by a factor, and the direction may be another: it is sought
 //! among forces of that size, from thirteen directions spread evenly over half a sphere (the
-//! other half does the same, with the signs turned) and from the best of them on by smaller
-//! and smaller steps.
+//! other half does the same, with the signs turned) and from the best four of them on, each by
+//! smaller and smaller steps: there may be maxima of nearly the same height.
 
 use std::vec;
 use std::vec::Vec;
@@ -22,6 +22,9 @@ const LINEAR: f64 = 1e-9;
 /// last: at a maximum what is left of it is its square.
 const STEP: f64 = 0.4;
 const LAST_STEP: f64 = 1e-5;
+
+/// From so many directions the way goes on to a maximum.
+const WAYS: usize = 4;
 
 /// More steps than any pose needs: some twenty halvings, and a few between.
 const MOST_STEPS: usize = 200;
@@ -98,7 +101,6 @@ fn search<const N: usize>(
         robot.deflections_under(Poses::List(q), &wrenches, &mut deflections);
         deflections.iter().map(|deflection| deflection.xyz().norm()).collect()
     };
-    let mut best = vec![(f64::NEG_INFINITY, Vector3::zeros()); q.len()];
     let mut take = |directions: &[Vector3<f64>], best: &mut [Farthest]| -> Vec<bool> {
         let better = |((best, moved), direction): ((&mut Farthest, f64), &Vector3<f64>)| {
             let is_better = moved > best.0;
@@ -109,29 +111,50 @@ fn search<const N: usize>(
         };
         best.iter_mut().zip(moved(directions)).zip(directions).map(better).collect()
     };
+    let mut looked: Vec<Vec<Farthest>> = vec![Vec::new(); q.len()];
     for direction in half_sphere() {
         let directions: Vec<Vector3<f64>> = begin.iter().map(|begin| begin * direction).collect();
-        take(&directions, &mut best);
+        let mut here = vec![(f64::NEG_INFINITY, Vector3::zeros()); q.len()];
+        take(&directions, &mut here);
+        looked.iter_mut().zip(here).for_each(|(looked, here)| looked.push(here));
     }
-    let mut steps = vec![STEP; q.len()];
+    for looked in &mut looked {
+        looked.sort_by(|(one, _), (other, _)| other.total_cmp(one));
+    }
+    let mut farthest = vec![(f64::NEG_INFINITY, Vector3::zeros()); q.len()];
+    for way in 0..WAYS {
+        let mut best: Vec<Farthest> = looked.iter().map(|looked| looked[way]).collect();
+        climb(&mut best, &mut take);
+        for (farthest, best) in farthest.iter_mut().zip(best) {
+            if best.0 > farthest.0 {
+                *farthest = best;
+            }
+        }
+    }
+    farthest
+}
+
+/// From a direction at each pose to one that moves the TCP farthest among those beside it.
+/// `take` looks at one direction at each pose, takes those that are better, and says which are.
+fn climb(best: &mut [Farthest], take: &mut impl FnMut(&[Vector3<f64>], &mut [Farthest]) -> Vec<bool>) {
+    let mut steps = vec![STEP; best.len()];
     for _ in 0..MOST_STEPS {
         if steps.iter().all(|&step| step < LAST_STEP) {
             break;
         }
         let from: Vec<Vector3<f64>> = best.iter().map(|(_, direction)| *direction).collect();
-        let mut is_better = vec![false; q.len()];
+        let mut is_better = vec![false; best.len()];
         for k in 0..4 {
             let aside = |(from, step): (&Vector3<f64>, &f64)| {
                 let [a, b] = across(from);
                 from * step.cos() + [a, b, -a, -b][k] * step.sin()
             };
             let directions: Vec<Vector3<f64>> = from.iter().zip(&steps).map(aside).collect();
-            let better = take(&directions, &mut best);
+            let better = take(&directions, best);
             is_better.iter_mut().zip(better).for_each(|(all, one)| *all |= one);
         }
         steps.iter_mut().zip(is_better).filter(|(_, is_better)| !is_better).for_each(|(step, _)| *step *= 0.5);
     }
-    best
 }
 
 /// The axes, diagonals of faces and diagonals of a cube, one of two that are opposite.

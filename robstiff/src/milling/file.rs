@@ -300,6 +300,13 @@ fn engagement(map: &Map<'_>, diameter: Option<f64>) -> Option<Engagement> {
             let node = map.require("width", "width: 4 mm")?;
             let width = node.positive(Dimension::Length)?;
             let diameter = diameter?;
+            if width == diameter {
+                node.error(
+                    "a cut as wide as the tool is a slot, with a wall on either side",
+                    "write `milling: slot`, and leave `width` out",
+                );
+                return None;
+            }
             let engagement = Engagement::of_width(direction, width, diameter);
             if engagement.is_none() {
                 let most = format!("a width of at most the tool's diameter, {} mm", diameter * 1e3);

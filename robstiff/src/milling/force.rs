@@ -4,7 +4,7 @@ use std::vec::Vec;
 
 use nalgebra::Vector3;
 
-use super::revolution::{Piece, force_at, mean_force, pieces};
+use super::revolution::{Piece, edges, force_at, mean_force, pieces};
 use super::{Coefficients, Engagement};
 
 /// A cylindrical end mill with evenly spaced teeth.
@@ -62,6 +62,16 @@ impl Cut {
         let pieces = self.pieces();
         let angle = |k: usize| core::f64::consts::TAU * k as f64 / count as f64;
         Revolution { samples: (0..count).map(|k| (angle(k), force_at(self, &pieces, angle(k)))).collect() }
+    }
+
+    /// The same, and both sides of every angle at which some part of a tooth begins or ends to
+    /// cut, where the force jumps or bends: for what is greatest and least, not for a mean.
+    pub fn extremes(&self, count: usize) -> Revolution {
+        let mut revolution = self.revolution(count);
+        let pieces = self.pieces();
+        revolution.samples.extend(edges(self, &pieces).map(|angle| (angle, force_at(self, &pieces, angle))));
+        revolution.samples.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+        revolution
     }
 
     /// The torque on the spindle averaged over a revolution (Nm).

@@ -19,14 +19,14 @@ pub struct CutFrame {
 }
 
 /// What the sine of the angle between feed and axis must exceed to have a
-/// direction across.
-const ACROSS: f64 = 1e-6;
+/// direction across: half a degree. What is less in a path that plunges is rounding.
+const ACROSS: f64 = 0.01;
 
 impl CutFrame {
     /// The frame of a tool axis (from the spindle to the tip) and a feed, of any
     /// length. Of a feed that is not perpendicular to the axis, the part that is
-    /// counts; `None` where there is none: a tool that plunges, or a vector of
-    /// zero length.
+    /// counts; `None` where there is none, or less than half a degree of it: a tool
+    /// that plunges, or a vector of zero length.
     pub fn new(axis: &Vector3<f64>, feed: &Vector3<f64>) -> Option<Self> {
         let axis = axis.try_normalize(0.0)?;
         let feed = feed.try_normalize(0.0)?;

@@ -158,7 +158,8 @@ impl MeasuredForce {
         }
         let mut sums = std::vec![(0_usize, Vector3::zeros()); count];
         for (sample, angle) in self.samples.iter().zip(self.angles(speed)?) {
-            let part = (angle.rem_euclid(TAU) / TAU * count as f64) as usize;
+            // On the bound between two parts it is of the later one, whatever rounding says.
+            let part = (angle.rem_euclid(TAU) / TAU * count as f64 + ROUNDING) as usize;
             // Just below a whole turn the quotient may round up to it.
             let (number, sum) = &mut sums[part.min(count - 1)];
             *number += 1;

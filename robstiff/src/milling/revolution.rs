@@ -28,6 +28,9 @@ pub(super) struct Piece {
 /// A helix that lags by less than this over the whole depth (rad) is straight.
 const STRAIGHT: f64 = 1e-9;
 
+/// As near to an edge as counts as beside it (rad).
+const BESIDE: f64 = 1e-7;
+
 /// The pieces of each tooth's way through the material. The chip of a tooth
 /// reaches to the surface that whichever of the teeth before it left deepest.
 pub(super) fn pieces(mill: &EndMill, engagement: Engagement, feed: f64) -> Vec<Vec<Piece>> {
@@ -75,8 +78,27 @@ pub(super) fn mean_force(cut: &Cut, pieces: &[Vec<Piece>]) -> Vector3<f64> {
     pieces.iter().flatten().map(whole).sum::<Vector3<f64>>() * (cut.depth / TAU)
 }
 
+/// Both sides of the angles at which a tooth's tip or its other end comes to the bounds of its
+/// pieces (rad, within a revolution).
+pub(super) fn edges(cut: &Cut, pieces: &[Vec<Piece>]) -> impl Iterator<Item = f64> {
+    let lag = lag(cut);
+    let step = TAU / cut.mill.teeth as f64;
+    let of_tooth = move |(tooth, pieces): (usize, &Vec<Piece>)| {
+        let bounds: Vec<f64> = pieces.iter().flat_map(|piece| [piece.from, piece.to]).collect();
+        bounds.into_iter().map(move |bound| bound + step * tooth as f64)
+    };
+    let tips: Vec<f64> = pieces.iter().enumerate().flat_map(of_tooth).collect();
+    let both = tips.into_iter().flat_map(move |tip| [tip, tip + lag]);
+    both.flat_map(|edge| [edge - BESIDE, edge + BESIDE]).map(|angle| angle.rem_euclid(TAU))
+}
+
+/// By how much the upper end of a tooth lags behind its tip (rad).
+fn lag(cut: &Cut) -> f64 {
+    2.0 * cut.mill.helix.tan() / cut.mill.diameter * cut.depth
+}
+
 pub(super) fn force_at(cut: &Cut, pieces: &[Vec<Piece>], angle: f64) -> Vector3<f64> {
-    let lag = 2.0 * cut.mill.helix.tan() / cut.mill.diameter * cut.depth;
+    let lag = lag(cut);
     let mut force = Vector3::zeros();
     for (tooth, pieces) in pieces.iter().enumerate() {
         let tip = (angle - TAU * tooth as f64 / cut.mill.teeth as f64).rem_euclid(TAU);

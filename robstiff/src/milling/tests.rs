@@ -188,6 +188,33 @@ fn power_is_that_of_the_force_along_the_edge() {
 }
 
 #[test]
+fn a_short_way_through_the_material_has_its_greatest_force() {
+    // Between two of 72 angles, with a flute that is straight: 5 degrees of a revolution are 72 of them.
+    for (from, to) in [(141.2, 144.1_f64), (0.0, 3.0), (100.2, 100.8)] {
+        let way = Engagement::between(f64::to_radians(from), to.to_radians()).unwrap();
+        let straight = cut(way, 0.0, &[]);
+        let fine = straight.revolution(72_000).peak();
+        let found = straight.extremes(72);
+        assert!(fine > 0.0 && (found.peak() / fine - 1.0).abs() < 1e-3, "{} {fine}", found.peak());
+        let helical = cut(way, 30.0, &[]);
+        assert!(helical.extremes(72).peak() > 0.995 * helical.revolution(72_000).peak());
+    }
+    // Runout has pieces of its own.
+    let uneven = cut(Engagement::SLOT, 0.0, &[1e-5, 0.0, -1e-5, 0.0]);
+    assert!(uneven.extremes(72).peak() > 0.999 * uneven.revolution(72_000).peak());
+}
+
+#[test]
+fn a_plunge_has_no_direction_but_for_rounding() {
+    let axis = Vector3::new(0.3, -0.2, -0.9);
+    // Rounded to a micrometre in steps of half a millimetre.
+    let rounded = (axis.normalize() * 0.5).map(|length| (length * 1e3_f64).round() / 1e3);
+    assert_eq!(CutFrame::new(&axis, &rounded), None);
+    let ramp = axis.normalize() + Vector3::x() * 0.1;
+    assert!(CutFrame::new(&axis, &ramp).is_some());
+}
+
+#[test]
 fn the_frame_turns_forces_into_the_base() {
     // A spindle that points down, a feed along x: left of it is +y.
     let frame = CutFrame::new(&Vector3::new(0.0, 0.0, -2.0), &Vector3::new(3.0, 0.0, 1.0)).unwrap();
@@ -255,6 +282,7 @@ fn mistakes_are_shown_where_they_are() {
     for (from, to, place, part) in [
         ("al6082-t6", "al6082-t", "cut.yaml:2:11", "did you mean `al6082-t6`"),
         ("width: 4 mm", "width: 40 mm", "cut.yaml:4:8", "wider than the tool"),
+        ("width: 4 mm", "width: 16 mm", "cut.yaml:4:8", "a cut as wide as the tool is a slot"),
         ("width: 4 mm", "width: 4", "cut.yaml:4:8", "`width` has no unit and is taken in m: is it in mm?"),
         ("teeth: 3", "teeth: 2.5", "cut.yaml:1:32", "e.g. `3`"),
         ("width: 4 mm\n", "", "cut.yaml:1:1", "`width` is missing"),
@@ -310,6 +338,13 @@ fn records_are_averaged() {
     let turn = timed.revolution(4, Some(TAU / 0.1 * (1.0 + 1e-12))).unwrap();
     assert_eq!(turn.samples.iter().map(|(_, force)| force.x).collect::<Vec<_>>(), [1.0, 2.0, 3.0, 4.0]);
     assert_eq!((turn.range(0).least, turn.range(0).greatest, turn.peak()), (1.0, 4.0, 4.0));
+
+    // Angles on the bounds of the parts: each has its own.
+    let rows: Vec<_> = (0..360).map(|k| format!("{k},{k},0,0\n")).collect();
+    let text = format!("angle [deg],Fx,Fy,Fz\n{}", rows.concat());
+    let (bounds, _) = MeasuredForce::parse("f.csv", &text, ForceFrame::Cut, false).unwrap();
+    let turn = bounds.revolution(360, None).unwrap();
+    assert!(turn.samples.len() == 360 && turn.samples.iter().zip(0..).all(|((_, force), k)| force.x == f64::from(k)));
 
     // Twice as fast they are too coarse, four times as slow too short; so are a few angles.
     for (times, resolves) in [(1.0, true), (2.0, false), (0.25, false)] {

@@ -226,6 +226,10 @@ fn arc_lengths(positions: &[Vector3<f64>]) -> Vec<f64> {
     sum.collect()
 }
 
+/// What the sum of two unit vectors must exceed to be a direction between them: they are less
+/// than 174 degrees apart.
+const TURNS_BACK: f64 = 0.1;
+
 /// The feed directions; points in one place share theirs.
 fn tangents(positions: &[Vector3<f64>]) -> Vec<Option<Unit<Vector3<f64>>>> {
     let chord = |i: usize| Unit::try_new(positions[i + 1] - positions[i], 1e-12);
@@ -241,8 +245,8 @@ fn tangents(positions: &[Vector3<f64>]) -> Vec<Option<Unit<Vector3<f64>>>> {
     type Direction = Option<Unit<Vector3<f64>>>;
     let between = |(arriving, leaving): (Direction, Direction)| {
         let (Some(before), Some(after)) = (arriving, leaving) else { return leaving.or(arriving) };
-        // Where the path turns back there is nothing halfway.
-        Unit::try_new(before.into_inner() + after.into_inner(), 1e-9).or(leaving)
+        // Where the path turns back there is nothing halfway, but for rounding of the file.
+        Unit::try_new(before.into_inner() + after.into_inner(), TURNS_BACK).or(leaving)
     };
     arriving.into_iter().zip(leaving).map(between).collect()
 }

@@ -51,6 +51,18 @@ fn points_have_postures_lengths_and_directions() {
 }
 
 #[test]
+fn a_path_that_turns_back_does_not_go_across() {
+    // The way back is a micrometre beside the way there.
+    let text = "x [mm],y [mm],z [mm],qw,qx,qy,qz\n\
+        1500,0,900,0,1,0,0\n1550,0,900,0,1,0,0\n1600,0,900,0,1,0,0\n1550,0.001,900,0,1,0,0\n1500,0,900,0,1,0,0\n";
+    let path = solve(text);
+    for (point, x) in path.points.iter().zip([1.0, 1.0, -1.0, -1.0, -1.0]) {
+        let feed = point.tangent.unwrap();
+        assert!((feed.into_inner() - Vector3::x() * x).norm() < 1e-3, "{feed:?}");
+    }
+}
+
+#[test]
 fn orientations_are_read_in_every_form() {
     let (description, _) = abb();
     let turned = |columns: &str, values: &str| {

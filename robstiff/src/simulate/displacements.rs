@@ -41,6 +41,8 @@ fn loads(scenario: &Scenario, under: &UnderForces, poses: &[Vec<f64>]) -> Displa
             let moment = under.moment.as_ref().map_or_else(Vector3::zeros, |pull| greatest(pull, visit, &mut random));
             for share in &under.ramp {
                 let (force, moment) = (force * *share, moment * *share);
+                // What is read unloaded before every load is loaded anew with each.
+                let visit = if under.shares_unloaded { visit } else { rows.len() };
                 rows.push(Observation {
                     line: rows.len() + 2,
                     pose,
@@ -64,7 +66,7 @@ fn loads(scenario: &Scenario, under: &UnderForces, poses: &[Vec<f64>]) -> Displa
         measured_frame,
         measured_at: scenario.measured_at,
         poses: names(poses.len()),
-        visits: names(poses.len() * scenario.visits),
+        visits: names(if under.shares_unloaded { poses.len() * scenario.visits } else { rows.len() }),
         rows,
     }
 }
@@ -109,8 +111,8 @@ fn deflect<const N: usize>(robot: &impl Robot<N>, under: &UnderForces, data: &mu
     }
 }
 
-/// Adds the noise of the loaded reading, and takes that of the unloaded one
-/// away: the visit's or the row's own.
+/// Adds the noise of the loaded reading, and takes that of the visit's unloaded one
+/// away.
 fn add_noise(scenario: &Scenario, under: &UnderForces, data: &mut Displacements) {
     let mut random = stream(scenario, Stream::Noise);
     let turn = under.rotation_noise.unwrap_or(0.0);
@@ -119,7 +121,7 @@ fn add_noise(scenario: &Scenario, under: &UnderForces, data: &mut Displacements)
     let mut reading = || [x, y, z, turn, turn, turn].map(|sigma| sigma * normal(&mut random));
     let (mut unloaded, mut visit) = ([0.0; 6], None);
     for row in &mut data.rows {
-        if visit != Some(row.visit) || !under.shares_unloaded {
+        if visit != Some(row.visit) {
             unloaded = reading();
             visit = Some(row.visit);
         }

@@ -104,7 +104,8 @@ pub struct UnderForces {
     /// One sigma of one reading of each joint's encoder on the output side of
     /// its gear (rad or m); none where there are no such encoders.
     pub encoder_noise: Option<Vec<f64>>,
-    /// Whether the rows of a visit share one unloaded reading.
+    /// Whether the loads of a ramp follow each other and share one unloaded reading; else each
+    /// has its own before it, and is a visit of its own.
     pub shares_unloaded: bool,
 }
 

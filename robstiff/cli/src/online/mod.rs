@@ -21,7 +21,8 @@ use crate::stability::positive;
 use crate::{input, json};
 use loads::Asked;
 
-/// How much too stiff a controller takes the robot for where nothing else is said.
+/// By what share of themselves a controller takes the joints' compliances for too small where
+/// nothing else is said.
 const TOO_STIFF: f64 = 0.1;
 
 /// What a correction of the joint targets while cutting leaves of the deviation
@@ -42,7 +43,8 @@ pub struct Arguments {
     load: LoadArguments,
     #[command(flatten)]
     control: ControlArguments,
-    /// What the controller takes the robot for; where left out, the robot with all its joints 10 % too stiff
+    /// What the controller takes the robot for; where left out, the robot with the own compliance of every joint
+    /// 10 % too small
     #[arg(long, value_name = "MODEL.yaml")]
     model: Option<PathBuf>,
     /// Write what is left to FILE: by frequency, or at each point of the path or record
@@ -223,7 +225,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::print(page::page(&robot, &seen, &variants, &arguments.control) + &said)
 }
 
-/// The same with every joint a tenth stiffer.
+/// The same with the own compliance of every joint a tenth smaller.
 fn stiffer(robot: &Description) -> Description {
     let mut stiffer = robot.clone();
     let parts = stiffer.joints.iter_mut().flat_map(|joint| &mut joint.compliance);

@@ -16,7 +16,7 @@ use crate::stability::positive;
 use crate::text::significant;
 use crate::{forces, input};
 
-/// Angles of a revolution that are looked at.
+/// Angles of a revolution that are looked at, besides those at which teeth begin and end to cut.
 const ANGLES: usize = 72;
 
 /// How wrong the model is taken to be.
@@ -35,10 +35,10 @@ pub struct ForceArguments {
     #[arg(long, value_name = "CUT.yaml", group = "load")]
     cut: Option<PathBuf>,
     /// Another cut to compare it with
-    #[arg(long, value_name = "CUT.yaml", requires = "cut")]
+    #[arg(long, value_name = "CUT.yaml", requires = "cut", conflicts_with = "forces")]
     against: Option<PathBuf>,
     /// Judge by the worst force of a revolution, not the mean
-    #[arg(long, requires = "cut")]
+    #[arg(long, requires = "cut", conflicts_with = "forces")]
     peak: bool,
     /// The machined surface: a wall beside the tool, or the floor at its tip
     #[arg(long, value_name = "SURFACE", default_value = "side", value_enum, requires = "load")]
@@ -131,6 +131,8 @@ pub struct Corrected {
 pub struct CorrectedPoint {
     pub q: Vec<f64>,
     pub pose: Matrix4<f64>,
+    /// What acts on the tool where it then is, in the base frame (N, Nm).
+    pub wrench: [f64; 6],
     pub correction: [f64; 3],
     pub remaining: f64,
     pub rounds: usize,
@@ -242,7 +244,7 @@ impl Asked {
             return Ok(load);
         }
         let revolution = match &file.forces {
-            Forces::Model(cut) => Some(cut.revolution(ANGLES)),
+            Forces::Model(cut) => Some(cut.extremes(ANGLES)),
             Forces::Measured { force, speed } => force.revolution(ANGLES, *speed),
         };
         let Some(revolution) = revolution else {
@@ -276,6 +278,7 @@ impl Asked {
         let point = |point: CompensatedPoint<N>| CorrectedPoint {
             q: point.q.iter().copied().collect(),
             pose: point.pose,
+            wrench: point.wrench.into(),
             correction: point.correction.into(),
             remaining: point.remaining.distance,
             rounds: point.rounds,

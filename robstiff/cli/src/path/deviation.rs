@@ -144,10 +144,8 @@ pub struct Columns {
 impl Columns {
     pub fn of(cutting: &Cutting) -> Self {
         let points = &cutting.deviation.points;
-        Self {
-            moments: points.iter().any(|point| point.wrench.iter().skip(3).any(|moment| *moment != 0.0)),
-            peaks: points.iter().any(|point| point.peak.is_some()),
-        }
+        let has_moment = |k: usize| acting(cutting, k).iter().skip(3).any(|moment| *moment != 0.0);
+        Self { moments: (0..points.len()).any(has_moment), peaks: points.iter().any(|point| point.peak.is_some()) }
     }
 }
 
@@ -167,16 +165,26 @@ pub fn columns(cutting: &Cutting, has: Columns) -> String {
     columns
 }
 
-/// Their cells at a point; zero where there is no direction or surface.
+/// The wrench on the tool at a point, on the corrected path where there is one: it is written
+/// beside what to command.
+fn acting(cutting: &Cutting, index: usize) -> [f64; 6] {
+    match &cutting.corrected {
+        Some(corrected) => corrected.points[index].wrench,
+        None => cutting.deviation.points[index].wrench.into(),
+    }
+}
+
+/// Their cells at a point; empty where there is no direction or surface.
 pub fn cells(cutting: &Cutting, has: Columns, index: usize) -> String {
     let point = &cutting.deviation.points[index];
-    let wrench = point.wrench.iter().take(if has.moments { 6 } else { 3 });
-    let mut cells: Vec<String> = wrench.map(|component| decimals(*component, 4)).collect();
-    let components = point.components.unwrap_or_default();
-    let lengths = [point.distance(), components[0], components[1], components[2], point.error.unwrap_or(0.0)];
-    cells.extend(lengths.map(|length| decimals(length * 1e6, 4)));
+    let wrench = acting(cutting, index).into_iter().take(if has.moments { 6 } else { 3 });
+    let mut cells: Vec<String> = wrench.map(|component| decimals(component, 4)).collect();
+    let along = |axis: usize| point.components.map(|components| components[axis]);
+    let lengths = [Some(point.distance()), along(0), along(1), along(2), point.error];
+    let cell = |length: Option<f64>| length.map_or_else(String::new, |length| decimals(length * 1e6, 4));
+    cells.extend(lengths.map(cell));
     if has.peaks {
-        cells.push(decimals(point.peak.unwrap_or(0.0) * 1e6, 4));
+        cells.push(cell(point.peak));
     }
     if let Some(corrected) = &cutting.corrected {
         let point = &corrected.points[index];
@@ -247,6 +255,7 @@ fn corrected(corrected: &Corrected) -> Value {
             "q": numbers(point.q.iter().copied()),
             "position_m": numbers((0..3).map(|axis| point.pose[(axis, 3)])),
             "quaternion_wxyz": numbers(super::quaternion(&point.pose)),
+            "wrench": numbers(point.wrench),
             "correction_m": numbers(point.correction),
             "remaining_m": number(point.remaining),
             "rounds": point.rounds,

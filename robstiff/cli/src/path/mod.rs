@@ -94,7 +94,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         files.add(path, json::document(&document(&robot, &solved)));
     }
     let said = files.write()?;
-    output::print(page(&robot, &arguments.path.display().to_string(), &solved) + &said)
+    let axis = (!path.gives_joints()).then(|| axis_name(&arguments.tool_axis));
+    output::print(page(&robot, &arguments.path.display().to_string(), &solved, axis) + &said)
 }
 
 /// A path solved, whatever the number of joints.
@@ -146,6 +147,12 @@ pub fn tool_axis(text: &str) -> Result<Unit<Vector3<f64>>, String> {
     Ok(if text.starts_with('-') { -axis } else { axis })
 }
 
+/// The name that [`tool_axis`] reads.
+fn axis_name(axis: &Vector3<f64>) -> String {
+    let along = axis.iamax();
+    format!("{}{}", if axis[along] < 0.0 { "-" } else { "" }, ["x", "y", "z"][along])
+}
+
 /// A frame from `x,y,z,roll,pitch,yaw`.
 fn place(given: &str) -> Result<Matrix4<f64>, Failure> {
     let parts: Vec<&str> = given.split(',').collect();
@@ -166,11 +173,13 @@ fn place(given: &str) -> Result<Matrix4<f64>, Failure> {
 }
 
 /// What people are told: length, ranges of the joints, changes of posture.
-fn page(robot: &Description, file: &str, solved: &Solved) -> String {
+fn page(robot: &Description, file: &str, solved: &Solved, axis: Option<String>) -> String {
     let length = solved.points.last().map_or(0.0, |point| point.s - solved.points[0].s);
     let points = count(solved.points.len(), "point");
     let mut page = format!("{} on {file}: {points}, {} mm, all reached", robot.name, decimals(length * 1e3, 1));
-    page += if solved.closed_form { " (closed form)\n\n" } else { " (damped least squares)\n\n" };
+    page += if solved.closed_form { " (closed form)" } else { " (damped least squares)" };
+    page += &axis.map(|axis| format!(", tool along {axis} of the TCP's frame")).unwrap_or_default();
+    page += "\n\n";
     let mut table = Table::new(1, ["", "from", "to", "limits", ""]);
     for (i, joint) in robot.joints.iter().enumerate() {
         let of = || solved.points.iter().map(|point| point.q[i]);

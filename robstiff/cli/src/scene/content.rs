@@ -101,7 +101,12 @@ impl Scene {
         let displacements = with_robot!(robot, |arm| displacements(&arm, kind, rows));
         // Of all rows: the worst of a path counts whether or not it is drawn.
         let sizes = rows.iter().zip(&displacements);
-        let sizes = sizes.map(|(row, moved)| row.value.as_ref().map(|(value, _)| *value).or(moved.map(length)));
+        // A row without a value among others that have one has none.
+        let has_values = rows.iter().any(|row| row.value.is_some());
+        let sizes = sizes.map(|(row, moved)| match &row.value {
+            Some((value, _)) => Some(*value),
+            None => moved.map(length).filter(|_| !has_values),
+        });
         let sizes: Vec<Option<f64>> = sizes.collect();
         let stride = rows.len().div_ceil(MOST_POSES).max(1);
         let drawn = drawn(&sizes, stride);

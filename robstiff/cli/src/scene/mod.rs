@@ -13,7 +13,7 @@ use robstiff_robots::quantity::Dimension;
 use crate::failure::Failure;
 use crate::output::{self, Files};
 use crate::text::{count, significant};
-use crate::{input, json};
+use crate::{effect, input, json};
 use content::{Kind, Row, Scene};
 
 /// The arm in 3-D with its compliance ellipsoids, at a pose, along a path or over a campaign, as a page
@@ -107,7 +107,7 @@ fn rows(table: JointTable, force: Option<Force>) -> Vec<Row> {
     let rows = q.into_iter().enumerate().map(|(k, q)| Row {
         q,
         wrench: force.map(Force::wrench).or_else(|| Some(wrenches.as_ref()?[k])),
-        value: column.as_ref().map(|column| (column.values[k], column.unit.clone())),
+        value: column.as_ref().and_then(|column| Some((column.values[k]?, column.unit.clone()))),
     });
     rows.collect()
 }
@@ -120,7 +120,10 @@ fn summary(robot: &Description, scene: &Scene) -> String {
     said.push('\n');
     let softest = scene.poses.iter().filter_map(|pose| pose.principal).map(|principal| principal[0]);
     if let Some(softest) = softest.max_by(f64::total_cmp) {
-        said += &format!("softest direction: {} um/N\n", significant(softest, 4));
+        let of = effect::unloaded(robot).map(|of| format!(", {of}")).unwrap_or_default();
+        // Of a rigid arm nothing is soft.
+        let softest = if softest > 0.0 { format!("{} um/N", significant(softest, 4)) } else { "rigid".to_owned() };
+        said += &format!("softest direction: {softest}{of}\n");
     }
     if let Some(values) = &scene.values {
         let unit = if values.unit.is_empty() { String::new() } else { format!(" {}", values.unit) };

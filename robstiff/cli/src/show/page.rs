@@ -20,6 +20,9 @@ pub fn page(robot: &Description, shown: &Shown) -> String {
         page += &format!(": {}", robot.description.trim());
     }
     page.push('\n');
+    if !robot.source.is_empty() {
+        page += &format!("source: {}\n", robot.source.split_whitespace().collect::<Vec<_>>().join(" "));
+    }
     chain(&mut page, robot);
     pose(&mut page, robot, shown);
     let rows = |heading: &str| Table::new(1, std::iter::once(heading).chain(AXES));
@@ -31,6 +34,9 @@ pub fn page(robot: &Description, shown: &Shown) -> String {
         return page;
     }
     section(&mut page, "Compliance H_x (um and urad per N and Nm)");
+    if let Some(of) = effect::unloaded(robot) {
+        page += &format!("and what comes of it, {of} (`robstiff map` takes a force)\n");
+    }
     page += &matrix(rows(""), &AXES, &shown.compliance, 1e6);
     stiffness(&mut page, robot, shown, rows(""));
     translation(&mut page, shown);
