@@ -164,8 +164,9 @@ pub fn at_bound(name: &str, mut effects: impl Iterator<Item = String>) -> String
     if let Some(law) = effects.find(is_law) {
         return format!("{name} is at its bound 0: its compliance is in the {}", spoken(&law));
     }
-    let what = if name.starts_with("joint ") { "this joint" } else { "it" };
-    format!("{name} is at its bound 0: the data do not follow the load on {what}")
+    let (what, written) =
+        if name.starts_with("joint ") { ("this joint", ", and written as rigid") } else { ("it", "") };
+    format!("{name} is at its bound 0{written}: the data do not follow the load on {what}")
 }
 
 /// Laws by which a joint gives way, and which may be all that it gives way by.
@@ -268,7 +269,10 @@ mod tests {
     fn a_joint_at_its_bound_may_give_way_by_a_law() {
         let told = |effects: &[&str]| at_bound("joint 2", effects.iter().map(|&effect| effect.to_owned()));
         let others = ["hysteresis@joint 3", "transverse_compliance@joint 2"];
-        assert_eq!(told(&others), "joint 2 is at its bound 0: the data do not follow the load on this joint");
+        assert_eq!(
+            told(&others),
+            "joint 2 is at its bound 0, and written as rigid: the data do not follow the load on this joint"
+        );
         let law = told(&[others[0], "lost_motion@joint 2"]);
         assert_eq!(law, "joint 2 is at its bound 0: its compliance is in the lost motion of joint 2");
     }

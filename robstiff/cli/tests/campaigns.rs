@@ -77,7 +77,7 @@ fn turned(folder: &Path, columns: &str) -> String {
 fn a_joint_that_does_not_follow_its_load_is_at_its_bound() {
     let folder = folder("against-one");
     let campaign = turned(&folder, "Fz");
-    let told = "joint 3 is at its bound 0: the data do not follow the load on this joint";
+    let told = "joint 3 is at its bound 0, and written as rigid: the data do not follow the load on this joint";
     let (out, path) = (inside(&folder, "out"), inside(&folder, "found.json"));
     let page = succeed(&["identify", &campaign, "--out", &out, "--json", &path]);
     assert!(page.contains(told) && !page.contains("-100 %"), "{page}");

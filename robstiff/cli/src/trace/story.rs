@@ -4,7 +4,7 @@ use robstiff::JointKind;
 use robstiff::campaign::Campaign;
 use robstiff::identify::EncodersRead;
 use robstiff::identify::Visibility;
-use robstiff::identify::{Estimate, off_by_one_factor};
+use robstiff::identify::{Estimate, off_by_one_factor, predict};
 use robstiff::trace::{EffectParameter, NamedEffect, Proposal, Rival, RowResidual, Trace, Verdict};
 use robstiff_robots::Joint;
 
@@ -67,6 +67,7 @@ pub fn summary(trace: &Trace, campaign: &Campaign) -> Vec<String> {
     sentences.extend(off_by_one_factor(campaign, &trace.estimates_before));
     sentences.extend(trace.encoders.iter().flat_map(|read| encoders(read, trace)));
     sentences.extend(on_the_same_rows(trace, Terms::of(campaign)));
+    sentences.extend(alone(trace, campaign));
     sentences.extend(undecided(trace));
     if trace.verdict == Verdict::Insufficient {
         sentences.push("The description keeps its declared values.".to_owned());
@@ -80,6 +81,19 @@ pub fn summary(trace: &Trace, campaign: &Campaign) -> Vec<String> {
         sentences.push(format!("What is left depends on {}.", and(&trace.depends_on)));
     }
     sentences
+}
+
+/// How well the description predicts that is written, where the fit has faults of the rig besides.
+fn alone(trace: &Trace, campaign: &Campaign) -> Option<String> {
+    if trace.verdict == Verdict::Insufficient || !trace.effects.iter().any(|named| named.effect.is_of_rig()) {
+        return None;
+    }
+    let error = |robot| Some(fine_micrometres(predict(robot, campaign).ok()?.rms));
+    let (written, declared) = (error(&trace.description)?, error(&campaign.robot)?);
+    Some(format!(
+        "The robot that is written has no faults of the measurement in it, and alone predicts the readings as they are \
+         to {written} um ({declared} um as declared)."
+    ))
 }
 
 /// What encoders were to the trace.
