@@ -61,6 +61,8 @@ mod dual;
 pub mod elements;
 #[cfg(feature = "generic")]
 pub mod generic;
+#[cfg(any(feature = "identify", feature = "machining"))]
+mod golden;
 #[cfg(feature = "identify")]
 pub mod identify;
 #[cfg(feature = "machining")]

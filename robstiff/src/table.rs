@@ -216,6 +216,14 @@ impl<'t> Table<'t> {
         index
     }
 
+    /// Counts columns as known where they are there, whatever is in them.
+    #[cfg(feature = "machining")]
+    pub fn ask_for(&self, names: &[&str]) {
+        for name in names {
+            self.position(name);
+        }
+    }
+
     /// The index of a column. One whose unit is in round brackets is reported.
     pub fn position(&self, name: &str) -> Option<usize> {
         let index = self.header.iter().position(|header| header.name == name);

@@ -6,12 +6,10 @@ use std::vec::Vec;
 
 use super::Observation;
 use super::beyond::told_force;
+use super::unread::FEWEST_ROWS;
 
 /// A force that is so many times the next largest stands alone.
 const TIMES: f64 = 3.0;
-
-/// Fewer rows than this are too few to tell what is usual.
-const FEWEST_ROWS: usize = 10;
 
 /// Likewise visits, beside the one that a force stands alone in.
 const FEWEST_VISITS: usize = 3;

@@ -7,7 +7,7 @@ use std::vec::Vec;
 use super::Observation;
 
 /// Fewer rows than this are too few to tell.
-const FEWEST_ROWS: usize = 10;
+pub const FEWEST_ROWS: usize = 10;
 
 /// So large a part of the rows is not read with the same result once more by chance.
 const COPIED: f64 = 0.1;

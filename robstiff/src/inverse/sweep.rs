@@ -13,6 +13,7 @@ use nalgebra::SVector;
 
 use super::screws::Turn;
 use super::wrist::{Free, Wrist};
+use crate::golden::inner;
 
 /// Turns about a free tool axis that six axes try.
 const TURNS: usize = 120;
@@ -211,13 +212,12 @@ fn touching([one, middle, other]: [Sample; 3], function: &impl Fn(f64) -> Sample
     if low - 0.25 * slope * slope / bend > LOW {
         return;
     }
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let (mut from, mut to) = (one.angle, other.angle);
     let mut lowest = middle;
     for _ in 0..CUTS {
-        let inner = [to - GOLDEN * (to - from), from + GOLDEN * (to - from)].map(function);
-        let [first, second] = inner.map(|sample| sign * sample.wrong);
-        lowest = inner[usize::from(second < first)];
+        let cuts = inner(from, to).map(function);
+        let [first, second] = cuts.map(|sample| sign * sample.wrong);
+        lowest = cuts[usize::from(second < first)];
         // As flat as that it does not get to zero.
         if (first - second).abs() < 1e-3 * first.min(second) {
             break;
@@ -227,7 +227,7 @@ fn touching([one, middle, other]: [Sample; 3], function: &impl Fn(f64) -> Sample
             zeros.extend([cut(one), cut(other)]);
             return;
         }
-        if first < second { to = inner[1].angle } else { from = inner[0].angle }
+        if first < second { to = cuts[1].angle } else { from = cuts[0].angle }
     }
     if lowest.wrong.abs() < NEARLY_RIGHT {
         zeros.push(lowest.angle);

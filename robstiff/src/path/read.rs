@@ -134,9 +134,8 @@ fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
             .collect();
         if table.position("x").is_some() {
             table.warn("the joint coordinates are used, not the poses");
-            for name in ["y", "z", "qw", "qx", "qy", "qz", "rx", "ry", "rz", "a", "b", "c", "ux", "uy", "uz"] {
-                table.position(name);
-            }
+            // Each is known, and none is said to be unused.
+            table.ask_for(&["y", "z", "qw", "qx", "qy", "qz", "rx", "ry", "rz", "a", "b", "c", "ux", "uy", "uz"]);
         }
         if table.position("remaining").is_some() {
             table.warn("the path is corrected already: its points are what to command, not where the tool is to be");

@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, Matrix3};
 
 use super::Modes;
 use super::modes::{Margin, largest_real};
+use crate::golden::inner;
 
 /// Each depth that is looked at over the one before, where there is no closed form.
 const RATIO: f64 = 1.01;
@@ -15,8 +16,6 @@ const LEAST: f64 = 1e-6;
 const HALVINGS: usize = 40;
 /// Cuts by the golden section, to 1e-8 of two steps.
 const CUTS: usize = 40;
-/// The smaller part of a golden section over the larger.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// The depths of cut that are not stable, up to a greatest one.
 #[derive(Clone, Debug, PartialEq)]
@@ -161,7 +160,6 @@ fn between(three: &[(f64, Margin)], look: &impl Fn(f64) -> (f64, Margin)) -> Opt
         return None;
     }
     let (mut from, mut to) = (low, high);
-    let inner = |from: f64, to: f64| [to - GOLDEN * (to - from), from + GOLDEN * (to - from)];
     let mut cuts = inner(from, to).map(look);
     for _ in 0..CUTS {
         if let Some(found) = cuts.iter().find(|(_, margin)| margin.is_stable != middle.is_stable) {

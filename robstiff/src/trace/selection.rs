@@ -218,7 +218,7 @@ fn sideways(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted, options: &
 }
 
 /// A criterion that is lower by this is worth another look: odds of e to one.
-const BETTER: f64 = 2.0;
+pub const BETTER: f64 = 2.0;
 
 /// The best proposals of a linear search that physics allows, with nonlinear
 /// numbers in their own form, the best first.
@@ -235,7 +235,7 @@ fn nonlinear(bench: &Bench<'_>, setting: &Setting<'_>, beam: &[Fitted]) -> Vec<F
 }
 
 /// How many proposals are refitted in their own form.
-const REFITTED: usize = 6;
+pub const REFITTED: usize = 6;
 
 /// How far behind the best by the linear criterion a proposal may be to be
 /// refitted.

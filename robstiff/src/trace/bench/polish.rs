@@ -9,6 +9,7 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 use super::Bench;
+use crate::golden::inner;
 use crate::identify::covariance::Whitener;
 use crate::identify::normal::{Normal, Sign};
 use crate::trace::catalogue::{Number, Refine, Variant};
@@ -16,12 +17,11 @@ use crate::trace::model::{Fitted, Named, Setting};
 use crate::trace::point::Point;
 
 /// Times that numbers out of grids are looked at in turn, how far from the
-/// grid's value (grids double) and how finely, in logarithms; the golden
-/// section; and the step of differences.
+/// grid's value (grids double) and how finely, in logarithms; and the step of
+/// differences.
 const SWEEPS: usize = 2;
 const REACH: f64 = 2.5;
 const FINE: f64 = 0.02;
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
 const LOG_STEP: f64 = 0.02;
 
 /// A model in which one number out of a grid takes other values, everything
@@ -95,7 +95,6 @@ impl<'c> Bench<'c> {
                         };
                         left + unlikely(log)
                     };
-                    let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
                     let [mut left, mut right] = inner(low, high);
                     let (mut of_left, mut of_right) = (left_by(left), left_by(right));
                     while high - low > FINE {

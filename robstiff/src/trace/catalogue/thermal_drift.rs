@@ -200,23 +200,30 @@ pub fn courses(data: &Displacements) -> Vec<Course> {
     courses
 }
 
+/// The place of each visit among those that have rows, in the order in which they begin, from 0;
+/// and how many these are.
+fn in_order(data: &Displacements) -> (Vec<usize>, usize) {
+    let mut place = std::vec![None; data.visits.len()];
+    let mut count = 0;
+    for row in &data.rows {
+        if place[row.visit].is_none() {
+            place[row.visit] = Some(count);
+            count += 1;
+        }
+    }
+    (place.into_iter().map(Option::unwrap_or_default).collect(), count)
+}
+
 /// When the unloaded reading of each row's visit was taken, if all were in a
 /// round just before the first row, in the order of the visits, as far apart as
 /// rows are.
 fn round(data: &Displacements, clock: &[f64], pace: f64) -> Option<Vec<f64>> {
-    let mut place = std::vec![None; data.visits.len()];
-    let mut count = 0;
-    for row in &data.rows {
-        place[row.visit].get_or_insert_with(|| {
-            count += 1;
-            count
-        });
-    }
+    let (place, count) = in_order(data);
     let pace = apart(clock, pace);
     let begin = clock[0] - pace * (count + 1) as f64;
     // Rounding aside, not before the clock was started.
     let started = begin > -1e-6 * clock.last()?.abs();
-    let time = |row: &crate::campaign::Observation| begin + pace * place[row.visit].unwrap_or(0) as f64;
+    let time = |row: &crate::campaign::Observation| begin + pace * (place[row.visit] + 1) as f64;
     started.then(|| data.rows.iter().map(time).collect())
 }
 
@@ -228,14 +235,7 @@ const PARTS: usize = 24;
 /// apart as rows are, but for what grows slowly; the campaign goes round. Empty
 /// where there is no clock.
 fn elsewhen(data: &Displacements, clock: &[f64], warmth: &[f64]) -> Vec<Vec<f64>> {
-    let mut place = std::vec![usize::MAX; data.visits.len()];
-    let mut count = 0;
-    for row in &data.rows {
-        if place[row.visit] == usize::MAX {
-            place[row.visit] = count;
-            count += 1;
-        }
-    }
+    let (place, _) = in_order(data);
     let span = clock[clock.len() - 1] - clock[0];
     let Some(warmth) = wiggle(clock, warmth, span) else { return Vec::new() };
     let pace = span / (clock.len() - 1) as f64;

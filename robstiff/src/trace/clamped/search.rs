@@ -12,7 +12,7 @@ use super::structure::structure;
 use crate::identify::clamped::wild::Room;
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::{Fitted, Named};
-use crate::trace::selection::Selection;
+use crate::trace::selection::{BETTER, Selection};
 use crate::trace::settle::{dropped_step, without_insignificant};
 use crate::trace::step::{Against, Step};
 use crate::trace::verdict::FEWEST_POSES;
@@ -23,9 +23,6 @@ const MOST_EFFECTS: usize = 4;
 
 /// How many of the best are extended where none of them passes alone.
 const EXTENDED: usize = 8;
-
-/// A model that is better by this is worth another look: odds of e to one.
-const BETTER: f64 = 2.0;
 
 /// What was found.
 pub struct Found {

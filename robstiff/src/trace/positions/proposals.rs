@@ -8,11 +8,8 @@ use crate::trace::Options;
 use crate::trace::bootstrap::{Reference, price};
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::all_but;
-use crate::trace::selection::{CURVATURE, WITHIN_REACH};
+use crate::trace::selection::{BETTER, CURVATURE, REFITTED, WITHIN_REACH};
 use crate::trace::step::{Against, Step};
-
-/// How many of the best by the linear fit are fitted in their own form.
-const REFITTED: usize = 6;
 
 /// How many of the best are extended where none of them passes alone.
 const EXTENDED: usize = 8;
@@ -20,9 +17,6 @@ const EXTENDED: usize = 8;
 /// How many of the best with one effect replaced, or in another form, are tried without
 /// what is superfluous then.
 const REPLACED: usize = 24;
-
-/// A model that is better by this is worth another look: odds of e to one.
-const BETTER: f64 = 2.0;
 
 /// The tests of all candidates against a model, the models with one of them more, the best
 /// first, the distribution of the largest statistic, and whether something is missing.
