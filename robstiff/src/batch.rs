@@ -34,7 +34,8 @@
 //! From the fastest on: [`compliance_blocks`], where results are used and not
 //! kept; [`compliance_by_entry`], unless the slices begin a multiple of 4096
 //! bytes apart; [`compliance_triangle`]; [`compliance`]. Who wants a trace or a
-//! deflection only asks for that.
+//! deflection only asks for that. Transforms, Jacobians and [`statics`](crate::Robot::statics) are
+//! computed pose by pose, or several abreast with [`Lanes`](crate::Lanes).
 //!
 //! # Panics
 //! Every function panics if there are not as many results as poses.

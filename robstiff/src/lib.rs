@@ -38,6 +38,14 @@
 //! - `online` (likewise): correcting the joint targets while cutting.
 //!
 //! Without default features the crate is `no_std` and allocates nothing.
+//!
+//! Tracing and planning draw thousands of samples, which a build without optimisation takes
+//! minutes for. A debug build is as quick with this in the `Cargo.toml` of the workspace:
+//!
+//! ```toml
+//! [profile.dev.package.robstiff]
+//! opt-level = 2
+//! ```
 #![no_std]
 
 #[cfg(feature = "std")]

@@ -15,19 +15,20 @@
 //! not from where the correction puts the tool.
 
 mod effort;
+mod loops;
 #[cfg(test)]
 mod tests;
 mod timeline;
 
-use std::collections::VecDeque;
 use std::vec::Vec;
 
 use core::f64::consts::TAU;
-use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3, Vector6};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector6};
 
 use crate::elements::joint_turns;
 use crate::{Robot, State};
 pub use effort::Effort;
+use loops::Loops;
 pub use timeline::{NoFeed, Timeline};
 
 /// What the controller corrects by.
@@ -159,13 +160,11 @@ fn simulate_moving<const N: usize>(
     let delay = controller.delay;
     assert!(step > 0.0 && delay >= 0.0, "a control step takes time, and no correction is early");
     let (mut wanted, mut silent) = (Correction::new(controller), 0.0);
-    let mut servo = [Vector2::zeros(); N];
-    let (mut target, mut underway) = (SVector::<f64, N>::zeros(), VecDeque::new());
-    let (mut seen, mut now) = (Vec::new(), 0.0);
+    let mut loops = Loops::new(controller.servo, step / points as f64);
+    let mut seen = Vec::new();
     // What the robot remembers of its loads, and what the controller thinks it does.
     let (mut state, mut known) = (State::new(), State::new());
-    let mut moves: Option<(SVector<f64, N>, SMatrix<f64, 3, N>)> = None;
-    let between = transition(controller.servo, step / points as f64);
+    let mut jacobian: Option<(SVector<f64, N>, SMatrix<f64, 3, N>)> = None;
     for k in 0..(duration / step).ceil() as usize {
         let start = k as f64 * step;
         let read = reading(start, &load(start));
@@ -176,32 +175,20 @@ fn simulate_moving<const N: usize>(
             (Some(wrench), Sensing::Encoders) => Some(-joint_turns(truth, &q, &wrench, &state)),
             (None, _) => (silent > controller.limits.hold).then(SVector::zeros),
         };
-        underway.push_back((start + delay, wanted.step(asked)));
+        loops.send(start + delay, wanted.step(asked));
         for point in 1..=points {
             // In the middle of each part, so that a value that is held is seen as late as it is.
-            let end = start + step * (point as f64 - 0.5) / points as f64;
-            let mut whole = now > 0.0;
-            while let Some(&(at, next)) = underway.front().filter(|(at, _)| *at < end) {
-                if at > now {
-                    advance(&mut servo, &target, &transition(controller.servo, at - now));
-                    (now, whole) = (at, false);
-                }
-                target = next;
-                underway.pop_front();
+            let time = start + step * (point as f64 - 0.5) / points as f64;
+            let corrections = loops.at(time);
+            let q = posture(time);
+            if jacobian.is_none_or(|(at, _)| at != q) {
+                jacobian = Some((q, truth.jacobian(&q).fixed_rows::<3>(0).into_owned()));
             }
-            let rest = if whole { between } else { transition(controller.servo, end - now) };
-            advance(&mut servo, &target, &rest);
-            now = end;
-            let moved = SVector::<f64, N>::from_fn(|i, _| servo[i].x);
-            let q = posture(now);
-            if moves.is_none_or(|(at, _)| at != q) {
-                moves = Some((q, truth.jacobian(&q).fixed_rows::<3>(0).into_owned()));
-            }
-            let wrench = load(now);
+            let wrench = load(time);
             let uncorrected = truth.deflection_with(&q, &wrench, &mut state).fixed_rows::<3>(0).into_owned();
-            let back = moves.map_or_else(Vector3::zeros, |(_, moves)| moves * moved);
+            let moved = jacobian.map_or_else(Vector3::zeros, |(_, jacobian)| jacobian * corrections);
             let in_cut = wrench != Vector6::zeros();
-            seen.push(Instant { time: now, in_cut, uncorrected, corrected: uncorrected + back });
+            seen.push(Instant { time, in_cut, uncorrected, corrected: uncorrected + moved });
         }
     }
     seen
@@ -277,23 +264,4 @@ fn back<const N: usize>(
     let displacement = model.deflection_with(q, wrench, known).fixed_rows::<3>(0).into_owned();
     let square = moves * moves.transpose() + Matrix3::identity() * damping;
     square.cholesky().map_or_else(SVector::zeros, |factor| moves.transpose() * factor.solve(&-displacement))
-}
-
-/// How position and speed, less the target, go on over a time (s).
-fn transition(servo: Servo, time: f64) -> Matrix2<f64> {
-    match servo {
-        Servo::Ideal => Matrix2::zeros(),
-        Servo::FirstOrder { bandwidth } => Matrix2::new((-TAU * bandwidth * time).exp(), 0.0, 0.0, 0.0),
-        Servo::SecondOrder { frequency, damping } => {
-            let w = TAU * frequency;
-            (Matrix2::new(0.0, 1.0, -w * w, -2.0 * damping * w) * time).exp()
-        }
-    }
-}
-
-fn advance<const N: usize>(servo: &mut [Vector2<f64>; N], target: &SVector<f64, N>, transition: &Matrix2<f64>) {
-    for (state, &target) in servo.iter_mut().zip(target) {
-        let target = Vector2::new(target, 0.0);
-        *state = transition * (*state - target) + target;
-    }
 }

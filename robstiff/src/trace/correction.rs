@@ -64,70 +64,38 @@ impl Correction {
     /// were held out judge it, or where none were, each in its turn.
     pub fn of(campaign: &Campaign, trace: &Trace) -> Option<Self> {
         let Data::Displacement(data) = &campaign.data else { return None };
-        let samples = Samples::of_description(&trace.description, data);
-        let wild = |line: usize| trace.effects.iter().any(|named| named.lines.contains(&line));
-        let kept: Vec<usize> = (0..samples.rows.len()).filter(|&row| !wild(data.rows[row].line)).collect();
-        let force = |row: usize| samples.rows[row].wrench.fixed_rows::<3>(0).norm();
-        let largest: Vec<f64> = (1..=samples.joints())
-            .map(|joint| samples.torques(joint).into_iter().map(f64::abs).fold(f64::MIN_POSITIVE, f64::max))
-            .collect();
-        let count = names(&samples.joint_kinds).len();
-        let mut x = DMatrix::zeros(3 * kept.len(), count);
-        for (i, &row) in kept.iter().enumerate() {
-            let row = &samples.rows[row];
-            let features = features(&samples.joint_kinds, &largest, &row.q, &row.twists, &row.wrench);
-            for (k, feature) in features.iter().enumerate() {
-                x.fixed_view_mut::<3, 1>(3 * i, k).copy_from(&row.read(feature).fixed_rows::<3>(0));
-            }
-        }
-        let left = kept.iter().flat_map(|&row| trace.residuals[row].after);
-        let mut of_pose = std::vec![Vec::new(); samples.poses];
-        for (i, &row) in kept.iter().enumerate() {
-            of_pose[samples.rows[row].pose].extend(3 * i..3 * i + 3);
-        }
-        let rows = Rows { x, y: DVector::from_iterator(3 * kept.len(), left), of_pose };
-        let held_out: Vec<bool> = data.poses.iter().map(|id| trace.held_out.contains(&id.to_string())).collect();
-        let poses = samples.poses;
-        if poses < FEWEST_POSES {
+        if data.poses.len() < FEWEST_POSES {
             return None;
         }
-        // By pose, the squares left without and with it.
-        let mut squares = Vec::new();
-        let mut judge = |train: &dyn Fn(usize) -> bool| {
-            let ridge = rows.ridge(train);
-            let weights = rows.solve(ridge, train);
-            squares.extend((0..poses).filter(|&pose| !train(pose)).filter_map(|pose| rows.squares(pose, &weights)));
-            (ridge, weights)
-        };
-        let found = if held_out.contains(&true) {
-            judge(&|pose| !held_out[pose])
-        } else {
-            (0..PARTS).for_each(|part| drop(judge(&|pose| pose % PARTS != part)));
-            let ridge = rows.ridge(&|_| true);
-            (ridge, rows.solve(ridge, &|_| true))
-        };
-        let count: usize = squares.iter().map(|(_, _, count)| count).sum();
-        let rms =
-            |of: &dyn Fn(&(f64, f64, usize)) -> f64| (squares.iter().map(of).sum::<f64>() / count.max(1) as f64).sqrt();
-        let unseen = [rms(&|one| one.0), rms(&|one| one.1)];
-        let gains: Vec<f64> = squares.iter().map(|(without, with, _)| without - with).collect();
+        let samples = Samples::of_description(&trace.description, data);
+        let is_wild = |line: usize| trace.effects.iter().any(|named| named.lines.contains(&line));
+        let kept: Vec<usize> = (0..samples.rows.len()).filter(|&row| !is_wild(data.rows[row].line)).collect();
+        let largest_torque =
+            |joint: usize| samples.torques(joint).into_iter().map(f64::abs).fold(f64::MIN_POSITIVE, f64::max);
+        let largest_torques: Vec<f64> = (1..=samples.joints()).map(largest_torque).collect();
+        let rows = Rows::new(&samples, &kept, &largest_torques, trace);
+        let held_out: Vec<bool> = data.poses.iter().map(|id| trace.held_out.contains(id)).collect();
+        let (made, judged) = rows.judged(&held_out);
+        let gains: Vec<f64> = judged.iter().map(|pose| pose.without - pose.with).collect();
         if gains.len() < 2 || !wins(&gains) {
             return None;
         }
-        let (ridge, weights) = found;
+        let components: usize = judged.iter().map(|pose| pose.components).sum();
+        let rms = |of: fn(&Judged) -> f64| (judged.iter().map(of).sum::<f64>() / components.max(1) as f64).sqrt();
         let range = (0..samples.joints()).map(|joint| {
             let q = || kept.iter().map(|&row| samples.rows[row].q[joint]);
             [q().fold(f64::INFINITY, f64::min), q().fold(f64::NEG_INFINITY, f64::max)]
         });
+        let force = |&row: &usize| samples.rows[row].wrench.fixed_rows::<3>(0).norm();
         Some(Self {
             features: names(&samples.joint_kinds),
-            weights: weights.iter().copied().collect(),
-            ridge,
-            unseen,
+            weights: made.weights.iter().copied().collect(),
+            ridge: made.ridge,
+            unseen: [rms(|pose| pose.without), rms(|pose| pose.with)],
             judged_on: gains.len(),
             range: range.collect(),
-            largest_force: kept.iter().map(|&row| force(row)).fold(0.0, f64::max),
-            largest_torques: largest,
+            largest_force: kept.iter().map(force).fold(0.0, f64::max),
+            largest_torques,
         })
     }
 
@@ -193,7 +161,61 @@ struct Rows {
     of_pose: Vec<Vec<usize>>,
 }
 
+/// Weights, and the ridge that they were found with.
+struct Made {
+    ridge: f64,
+    weights: DVector<f64>,
+}
+
+/// The squares left of a pose without and with weights (m^2), and of how many components.
+struct Judged {
+    without: f64,
+    with: f64,
+    components: usize,
+}
+
 impl Rows {
+    /// What a trace leaves of the rows that are kept.
+    fn new(samples: &Samples, kept: &[usize], largest_torques: &[f64], trace: &Trace) -> Self {
+        let mut x = DMatrix::zeros(3 * kept.len(), names(&samples.joint_kinds).len());
+        let mut of_pose = std::vec![Vec::new(); samples.poses];
+        for (i, &row) in kept.iter().enumerate() {
+            let row = &samples.rows[row];
+            let features = features(&samples.joint_kinds, largest_torques, &row.q, &row.twists, &row.wrench);
+            for (k, feature) in features.iter().enumerate() {
+                x.fixed_view_mut::<3, 1>(3 * i, k).copy_from(&row.read(feature).fixed_rows::<3>(0));
+            }
+            of_pose[row.pose].extend(3 * i..3 * i + 3);
+        }
+        let left = kept.iter().flat_map(|&row| trace.residuals[row].after);
+        Self { x, y: DVector::from_iterator(3 * kept.len(), left), of_pose }
+    }
+
+    /// Weights, and poses that took no part in making such: those that were held out, or where
+    /// none were all, a part at a time by the weights of the other parts.
+    fn judged(&self, held_out: &[bool]) -> (Made, Vec<Judged>) {
+        let poses = || 0..self.of_pose.len();
+        if held_out.contains(&true) {
+            let made = self.made(&|pose| !held_out[pose]);
+            let judged = poses().filter(|&pose| held_out[pose]).filter_map(|pose| self.squares(pose, &made.weights));
+            let judged = judged.collect();
+            return (made, judged);
+        }
+        let mut judged = Vec::new();
+        for part in 0..PARTS {
+            let of_others = self.made(&|pose| pose % PARTS != part);
+            let own = poses().filter(|pose| pose % PARTS == part);
+            judged.extend(own.filter_map(|pose| self.squares(pose, &of_others.weights)));
+        }
+        (self.made(&|_| true), judged)
+    }
+
+    /// The weights from the poses of some kind, with the ridge that suits them.
+    fn made(&self, is_asked: &dyn Fn(usize) -> bool) -> Made {
+        let ridge = self.ridge(is_asked);
+        Made { ridge, weights: self.solve(ridge, is_asked) }
+    }
+
     /// The weights from the poses of some kind; features are measured by their own
     /// size.
     fn solve(&self, ridge: f64, is_asked: &dyn Fn(usize) -> bool) -> DVector<f64> {
@@ -214,11 +236,12 @@ impl Rows {
     fn ridge(&self, is_asked: &dyn Fn(usize) -> bool) -> f64 {
         let left = |ridge: f64| -> f64 {
             let part = |part: usize| {
-                // Not the parts that others judge by.
+                // Along diagonals: by the remainder, which poses that judge are shared out by, what is
+                // left out there would be a part of its own here, and empty.
                 let out = |pose: usize| (pose / PARTS + pose) % PARTS == part;
                 let weights = self.solve(ridge, &|pose| is_asked(pose) && !out(pose));
                 let judged = (0..self.of_pose.len()).filter(|&pose| is_asked(pose) && out(pose));
-                judged.filter_map(|pose| self.squares(pose, &weights)).map(|(_, with, _)| with).sum::<f64>()
+                judged.filter_map(|pose| self.squares(pose, &weights)).map(|judged| judged.with).sum::<f64>()
             };
             (0..PARTS).map(part).sum()
         };
@@ -226,12 +249,12 @@ impl Rows {
         tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map_or(1.0, |(_, ridge)| ridge)
     }
 
-    /// The squares left of a pose without and with the weights, and of how many
-    /// components; none where it has none.
-    fn squares(&self, pose: usize, weights: &DVector<f64>) -> Option<(f64, f64, usize)> {
+    /// What is left of a pose; none where it has no rows.
+    fn squares(&self, pose: usize, weights: &DVector<f64>) -> Option<Judged> {
         let rows = &self.of_pose[pose];
         let y = self.y.select_rows(rows);
         let with = &y - self.x.select_rows(rows) * weights;
-        (!rows.is_empty()).then(|| (y.norm_squared(), with.norm_squared(), rows.len()))
+        let judged = Judged { without: y.norm_squared(), with: with.norm_squared(), components: rows.len() };
+        (!rows.is_empty()).then_some(judged)
     }
 }
