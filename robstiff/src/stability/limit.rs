@@ -99,17 +99,14 @@ impl Modes {
         // What has no mass runs away from here on.
         let away = largest_real(&(process * self.massless)).recip();
         let end = if away > 0.0 && away < greatest { away } else { greatest };
-        let look = |depth: f64| {
-            let lost = Margin { is_stable: false, distance: 0.0 };
-            (depth, self.seen(&(process * depth)).map_or(lost, |seen| self.margin(&seen)))
-        };
+        let look = |depth: f64| (depth, self.seen(&(process * depth)).map_or(Margin::LOST, |seen| self.margin(&seen)));
         let mut looked = Vec::from([look(self.nothing_below(process, end))]);
         while let Some(&(depth, _)) = looked.last().filter(|(depth, _)| *depth < end) {
             looked.push(look((depth * RATIO).min(end)));
         }
         let mut seen = looked.clone();
         for three in looked.windows(3) {
-            seen.extend(between(three, &look));
+            seen.extend((0..2).filter_map(|distance| between(three, distance, &look)));
         }
         seen.sort_by(|(one, _), (other, _)| one.total_cmp(other));
         let limit = |pair: &[(f64, Margin)]| {
@@ -149,12 +146,12 @@ impl Modes {
     }
 }
 
-/// Where between three depths, of which all or none are stable, the middle one is nearest to a
-/// limit, and the other way there.
-fn between(three: &[(f64, Margin)], look: &impl Fn(f64) -> (f64, Margin)) -> Option<(f64, Margin)> {
+/// Of three depths of which all are stable or none is, the middle one nearest to a limit by one
+/// of the distances: a depth between them where it is the other way, if there is one.
+fn between(three: &[(f64, Margin)], distance: usize, look: &impl Fn(f64) -> (f64, Margin)) -> Option<(f64, Margin)> {
     let [(low, one), (_, middle), (high, other)] = three[..] else { return None };
     let sign = if middle.is_stable { 1.0 } else { -1.0 };
-    let nearness = |margin: &Margin| sign * margin.distance;
+    let nearness = |margin: &Margin| sign * margin.distances[distance];
     let all = one.is_stable == middle.is_stable && other.is_stable == middle.is_stable;
     if !all || nearness(&middle) >= nearness(&one) || nearness(&middle) >= nearness(&other) {
         return None;

@@ -124,20 +124,19 @@ impl Modes {
     pub(super) fn margin(&self, seen: &DMatrix<f64>) -> Margin {
         let count = self.frequencies.len();
         if count == 0 {
-            return Margin { is_stable: true, distance: 1.0 };
+            return Margin { is_stable: true, distances: [1.0; 2] };
         }
         let squares = DMatrix::from_diagonal(&self.frequencies.component_mul(&self.frequencies));
         let stiffness = squares - seen;
         let scale = stiffness.amax();
-        // What does not converge is not called stable.
-        let lost = Margin { is_stable: false, distance: 0.0 };
         if !(scale > 0.0 && scale.is_finite()) {
-            return lost;
+            return Margin::LOST;
         }
         let stiffness = stiffness / scale;
         if self.damping == 0.0 {
-            let Some(distance) = discriminant(&stiffness) else { return lost };
-            return Margin { is_stable: eigenvalues_are_positive(&stiffness), distance };
+            let Some(discriminant) = discriminant(&stiffness) else { return Margin::LOST };
+            let distances = [discriminant, stiffness.determinant()];
+            return Margin { is_stable: eigenvalues_are_positive(&stiffness), distances };
         }
         // x'' + 2 zeta Omega x' + A x = 0, with time in units of 1 / sqrt(scale).
         let mut state = DMatrix::zeros(2 * count, 2 * count);
@@ -146,9 +145,9 @@ impl Modes {
         for i in 0..count {
             state[(count + i, count + i)] = -2.0 * self.damping * self.frequencies[i] / scale.sqrt();
         }
-        let Some(eigenvalues) = eigenvalues(state) else { return lost };
-        let distance = -eigenvalues.iter().map(|eigenvalue| eigenvalue.re).fold(f64::NEG_INFINITY, f64::max);
-        Margin { is_stable: distance > 0.0, distance }
+        let Some(eigenvalues) = eigenvalues(state) else { return Margin::LOST };
+        let dying = -eigenvalues.iter().map(|eigenvalue| eigenvalue.re).fold(f64::NEG_INFINITY, f64::max);
+        Margin { is_stable: dying > 0.0, distances: [dying; 2] }
     }
 }
 
@@ -156,9 +155,15 @@ impl Modes {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Margin {
     pub is_stable: bool,
-    /// Something smooth that is zero where modes meet, or a movement begins to grow: without
-    /// damping the discriminant, with damping how fast the slowest movement dies down.
-    pub distance: f64,
+    /// What is smooth and zero at a limit: without damping the discriminant, where modes meet,
+    /// and the determinant, where one runs away; with damping how fast the slowest movement dies
+    /// down.
+    pub distances: [f64; 2],
+}
+
+impl Margin {
+    /// What does not converge is not called stable.
+    pub(super) const LOST: Self = Self { is_stable: false, distances: [0.0; 2] };
 }
 
 fn eigenvalues(matrix: DMatrix<f64>) -> Option<DVector<Complex<f64>>> {

@@ -1,15 +1,19 @@
 //! Tracing: which effects a campaign shows that a description lacks.
 //!
-//! The way of the data: every row has a forward model ([`Setup`](crate::identify::setup::Setup)) whose
-//! nonlinear numbers are fitted in their own form ([`mod@bench`]); at what comes
-//! out, a campaign becomes a regression with a column for everything in the
-//! [`catalogue`] ([`point`], [`model`]). What is wrong in single visits is left
-//! out first ([`isolated`]); [`selection`] searches for the effects the data ask
-//! for, admitted by the family-wise [`bootstrap`] test and by poses held out;
-//! [`alias`] says what the data cannot tell apart; [`lack_of_fit`] asks whether
-//! structure is left, [`beyond`] whether something without a name accounts for it or for what
-//! names do, [`wander`] whether a slip is what goes there and back, [`mod@along`] whether it points where a named effect does, and [`verdict`] takes
-//! names back and draws the conclusion; `search.rs` has the order of all this.
+//! The way of the data, in the order of `search.rs`:
+//! 1. every row has a forward model (`identify/setup.rs`), whose nonlinear numbers are fitted in
+//!    their own form (`bench`); at what comes out, a campaign becomes a regression with a column
+//!    for everything in the `catalogue` (`point`, `model`);
+//! 2. what is wrong in single visits is left out (`isolated`);
+//! 3. `selection` searches for the effects that the data ask for, admitted by the family-wise
+//!    `bootstrap` test and by poses held out;
+//! 4. `lack_of_fit` asks whether structure is left, `beyond` whether something without a name
+//!    accounts for it or for what names do, `wander` whether a slip is what goes there and back,
+//!    `along` whether what is left points where a named effect does;
+//! 5. `verdict` takes names back and draws the conclusion;
+//! 6. `alias` says what the data cannot tell apart, and `report` puts all of it together.
+//!
+//! Positions and clamped axes go the same way on benches of their own (`positions`, `clamped`).
 //!
 //! Levels: an effect is named, and structure is found, at a family-wise
 //! [`Options::alpha`] of 1 % each, so a robot that lacks nothing is called

@@ -123,7 +123,8 @@ pub fn select(
 }
 
 /// Adds effects to a model for as long as one passes every test; whether something is missing
-/// for which none does.
+/// for which none does. The order counts: each effect is sought on the rows and with the weights
+/// that go with those before it, and is in its own form before the next one is sought.
 fn grow(
     bench: &mut Bench<'_>,
     model: &mut Fitted,
@@ -167,24 +168,27 @@ fn grow(
         step.came_to(&bench.names(&proposed.named));
         steps.push(step);
         *model = proposed;
-        // What a grid's value leaves of an effect must not look like another.
-        let (polished, named) = bench.polished(&model.named).simplified(&model.named);
-        if let Ok(better) = polished.fit(&named) {
-            (*bench, *model) = (polished, better);
-        }
-        // Nor with other weights.
+        // What a grid's value leaves of an effect must not look like another, nor what weights
+        // do that are of the noise without it.
+        polish(bench, model);
         if let Some(better) = bench.tried(&model.named, Bench::learn_noise) {
             *model = better;
         }
     }
     if bench.may_be_simpler(&model.named) {
         // The noise is better known than when they were named.
-        let (polished, named) = bench.polished(&model.named).simplified(&model.named);
-        if let Ok(better) = polished.fit(&named) {
-            (*bench, *model) = (polished, better);
-        }
+        polish(bench, model);
     }
     Ok(unnamed)
+}
+
+/// Takes the numbers of a model out of their grids, and its forms in the simplest that will do;
+/// where it cannot be fitted so, it stays as it is.
+fn polish(bench: &mut Bench<'_>, model: &mut Fitted) {
+    let (polished, named) = bench.polished(&model.named).simplified(&model.named);
+    if let Ok(better) = polished.fit(&named) {
+        (*bench, *model) = (polished, better);
+    }
 }
 
 /// The first of the best models of a beam that passes.

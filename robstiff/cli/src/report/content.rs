@@ -146,6 +146,8 @@ pub struct PoseError {
     pub contribution: f64,
     /// Whether the pose was held out.
     pub held_out: bool,
+    /// Whether a row of it was left out as wild.
+    pub wild: bool,
 }
 
 /// Residuals of one row (um) in the base frame.

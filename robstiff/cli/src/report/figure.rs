@@ -57,6 +57,9 @@ pub fn errors(report: &Report) -> String {
             svg.circle("before", [x, frame.up(pose.identified)], radius, &title);
         }
         svg.circle("after", [x, frame.up(pose.after)], radius, &title);
+        if pose.wild {
+            svg.text("small", [x + radius + 4.0, frame.up(pose.after) + 4.0], "start", "wild");
+        }
     }
     let beyond = poses.iter().any(|pose| pose.declared > frame.range[1]);
     legend(&mut svg, beyond, with_effects);
@@ -81,7 +84,12 @@ pub fn errors(report: &Report) -> String {
 
 fn pose_title(pose: &PoseError, terms: Terms) -> String {
     let [declared, identified, after] = [pose.declared, pose.identified, pose.after].map(|um| decimals(um, 1));
-    let kept = if pose.held_out { ", held out" } else { "" };
+    let kept = match (pose.held_out, pose.wild) {
+        (true, false) => ", held out",
+        (false, true) => ", with a wild reading",
+        (true, true) => ", held out, with a wild reading",
+        (false, false) => "",
+    };
     let (name, unit) = (terms.named(&pose.id), terms.printed);
     format!("{name}{kept}: declared {declared} {unit}, identified {identified} {unit}, after {after} {unit}")
 }

@@ -51,6 +51,7 @@ fn hostile() -> Report {
             after: 0.0,
             contribution: 1.0,
             held_out: true,
+            wild: true,
         }],
         residuals: vec![Residual { before: [f64::NAN; 3], after: [0.0; 3] }],
         arms: vec![Arm { id: bad(), points: vec![[f64::NAN; 3]; 3], before: [f64::NAN; 3], after: [1.0; 3] }],

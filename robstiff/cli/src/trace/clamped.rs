@@ -23,6 +23,8 @@ pub fn errors(trace: &Trace, campaign: &Campaign, rows: &[ClampedRow]) -> Vec<Po
         after: 1e6 * one.after,
         contribution: 1e6 * (one.before.powi(2) - one.after.powi(2)).max(0.0).sqrt(),
         held_out: one.held_out,
+        // Of an axis a few of many rows.
+        wild: false,
     };
     trace.pose_errors.iter().map(error).collect()
 }

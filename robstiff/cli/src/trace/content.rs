@@ -151,6 +151,9 @@ fn errors(trace: &Trace, campaign: &Campaign) -> Result<Vec<PoseError>, Failure>
         let (with, without) = (with.rows[index].predicted, without.rows[index].predicted);
         sum.contribution += mean_square(std::array::from_fn(|axis| with[axis] - without[axis]));
     }
+    let lines = story::left_out(trace);
+    let left_out = trace.residuals.iter().filter(|row| lines.contains(&row.line)).map(|row| &poses[row.pose]);
+    let wild: Vec<&String> = left_out.collect();
     let error = |(id, sum): (&String, &Sums)| PoseError {
         id: id.clone(),
         declared: sum.rms_um(sum.declared),
@@ -158,6 +161,7 @@ fn errors(trace: &Trace, campaign: &Campaign) -> Result<Vec<PoseError>, Failure>
         after: sum.rms_um(sum.after),
         contribution: sum.rms_um(sum.contribution),
         held_out: trace.held_out.contains(id),
+        wild: wild.contains(&id),
     };
     Ok(poses.iter().zip(&sums).map(error).collect())
 }

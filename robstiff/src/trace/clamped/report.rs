@@ -17,9 +17,7 @@ use crate::campaign::{Campaign, ClampedRow};
 use crate::identify::baseline::{declared, with_values};
 use crate::identify::normal::Fit;
 use crate::identify::{Estimate, Identification, NoiseSource};
-use crate::trace::catalogue::{
-    BASE_SLIP, Candidate, HYSTERESIS, KINDS, OUTLIERS, STIFFNESS_NONLINEARITY, axis_tells_hysteresis,
-};
+use crate::trace::catalogue::{BASE_SLIP, HYSTERESIS, KINDS, OUTLIERS, STIFFNESS_NONLINEARITY, axis_tells_hysteresis};
 use crate::trace::found::{EffectParameter, Found, Place};
 use crate::trace::model::{Fitted, Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
@@ -192,53 +190,21 @@ fn values(campaign: &Campaign, bench: &Bench, model: &Fitted) -> Vec<f64> {
     values
 }
 
+/// The effects that were found, with what the data cannot tell them from, and behind them the
+/// wild rows.
 fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: f64) -> Vec<NamedEffect> {
     let (bench, model) = (&found.bench, &found.selection.model);
     let replaced = bench.replaced(&model.named);
-    let (mut at, mut shape_at) = (bench.base, model.fit.columns.len());
-    let mut named = Vec::new();
-    for (k, &one) in model.named.iter().enumerate() {
-        let (form, candidate) = (bench.form(one), &bench.candidates[one.candidate]);
-        let softens = model.fit.coefficients.get(at).is_some_and(|&added| added < 0.0);
-        let dead_zone = dead_zone(bench, candidate).filter(|_| softens);
-        let mut parameters: Vec<EffectParameter> = Vec::new();
-        for number in &form.numbers {
-            let std = Some(spread[(at, at)].sqrt());
-            let value = model.fit.coefficients[at];
-            parameters.push(EffectParameter { name: number.name, value, std, unit: number.unit });
-            at += 1;
-        }
-        for number in &form.shape {
-            let std = Some(number.value * spread[(shape_at, shape_at)].sqrt());
-            parameters.push(EffectParameter { std, ..number.clone() });
-            shape_at += 1;
-        }
-        parameters.extend(form.told.iter().cloned());
-        let near = replaced.iter().filter(|(of, other)| *of == k && other.bic < model.bic + WITHIN_REACH);
-        let other = |other: &Fitted| {
-            let new = other.named.iter().find(|new| model.named.iter().all(|old| old.candidate != new.candidate))?;
-            Some(bench.candidates[new.candidate].name())
-        };
-        let mut same_as: Vec<String> = Vec::new();
-        let slipped = as_good_as_slip(bench, model, k);
-        for name in
-            near.filter_map(|(_, model)| other(model)).chain(dead_zone).chain(slipped).chain(wild_row(bench, model, k))
-        {
-            // Slips of several axes have one name.
-            if name != candidate.name() && !same_as.contains(&name) {
-                same_as.push(name);
-            }
-        }
-        named.push(NamedEffect {
-            effect: Found::new(candidate.kind, candidate.place, parameters),
-            lines: Vec::new(),
-            p_value: found.selection.p_values[k],
-            holdout_rms,
-            in_part: Vec::new(),
-            same_as,
-            partial,
-        });
-    }
+    let whole = with_spread(bench, model, spread).into_iter().enumerate().map(|(k, effect)| NamedEffect {
+        effect,
+        lines: Vec::new(),
+        p_value: found.selection.p_values[k],
+        holdout_rms,
+        in_part: Vec::new(),
+        same_as: same_as(bench, model, k, &replaced),
+        partial,
+    });
+    let mut named: Vec<NamedEffect> = whole.collect();
     let (lines, p_value) = &found.wild;
     if !lines.is_empty() {
         let mut lines = lines.clone();
@@ -252,6 +218,44 @@ fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: 
     named
 }
 
+/// The effects of a model with the uncertainty of their numbers. `spread` is the covariance of the
+/// axes' compliances, then of the numbers of each effect that enter linearly, in the order of
+/// the model, and then of the logarithms of their shapes.
+fn with_spread(bench: &Bench, model: &Fitted, spread: &DMatrix<f64>) -> Vec<Found> {
+    let (mut linear, mut shapes) = (bench.base.., model.fit.columns.len()..);
+    let next = |of: &mut core::ops::RangeFrom<usize>| of.next().map(|k| spread[(k, k)].sqrt());
+    let one = |&one: &Named| {
+        let (form, mut found) = (bench.form(one), of_model(bench, model, one));
+        let (numbers, others) = found.parameters.split_at_mut(form.numbers.len());
+        numbers.iter_mut().for_each(|number| number.std = next(&mut linear));
+        for shape in &mut others[..form.shape.len()] {
+            shape.std = next(&mut shapes).map(|relative| shape.value * relative);
+        }
+        found
+    };
+    model.named.iter().map(one).collect()
+}
+
+/// Full names of what an effect of a model may as well be; `replaced` are the models with another
+/// one in the place of each.
+fn same_as(bench: &Bench, model: &Fitted, k: usize, replaced: &[(usize, Fitted)]) -> Vec<String> {
+    let candidate = &bench.candidates[model.named[k].candidate];
+    let near = replaced.iter().filter(|(of, other)| *of == k && other.bic < model.bic + WITHIN_REACH);
+    let in_its_place = |(_, other): &(usize, Fitted)| {
+        let new = other.named.iter().find(|new| model.named.iter().all(|old| old.candidate != new.candidate))?;
+        Some(bench.candidates[new.candidate].name())
+    };
+    let names = near.filter_map(in_its_place).chain(dead_zone(bench, model, k));
+    let mut same_as: Vec<String> = Vec::new();
+    for name in names.chain(as_good_as_slip(bench, model, k)).chain(wild_row(bench, model, k)) {
+        // Slips of several axes have one name.
+        if name != candidate.name() && !same_as.contains(&name) {
+            same_as.push(name);
+        }
+    }
+    same_as
+}
+
 /// The name of a slip, where the last row of an axis is wild, which may be the first after one.
 fn slip_before_last(bench: &Bench, lines: &[usize]) -> Vec<String> {
     let whole = bench.axes.whole();
@@ -261,10 +265,12 @@ fn slip_before_last(bench: &Bench, lines: &[usize]) -> Vec<String> {
 }
 
 /// The hysteresis that a softening of the axis may as well be, where its loads never go back.
-fn dead_zone(bench: &Bench, candidate: &Candidate) -> Option<String> {
+fn dead_zone(bench: &Bench, model: &Fitted, k: usize) -> Option<String> {
+    let candidate = &bench.candidates[model.named[k].candidate];
     let Place::Part(Part::Joint(axis)) = candidate.place else { return None };
-    let is_curve = candidate.kind.name == STIFFNESS_NONLINEARITY.name;
-    (is_curve && !axis_tells_hysteresis(&bench.axes, axis)).then(|| format!("{}@{}", HYSTERESIS.name, candidate.place))
+    let added = of_model(bench, model, model.named[k]).parameters.first().map(|number| number.value);
+    let softens = candidate.kind.name == STIFFNESS_NONLINEARITY.name && added.is_some_and(|added| added < 0.0);
+    (softens && !axis_tells_hysteresis(&bench.axes, axis)).then(|| format!("{}@{}", HYSTERESIS.name, candidate.place))
 }
 
 /// The name of wild rows, where one of them explains what an effect does.
