@@ -36,7 +36,9 @@ pub fn section(report: &Report) -> String {
         // One check of many says little.
         let made = match not_asked.len() {
             0 => String::new(),
-            _ => format!(", by {} of {} that these data let be made", holds.len(), count(report.checks.len(), "check")),
+            _ => {
+                format!(", as far as {} of {} could be made on them", holds.len(), count(report.checks.len(), "check"))
+            }
         };
         html += &text("p", &format!("The readings by themselves show nothing wrong{made}."));
     } else {
