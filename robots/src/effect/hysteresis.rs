@@ -21,13 +21,14 @@ use {super::Place, std::borrow::ToOwned, std::format};
 /// Play operators between torque and turn of a joint.
 pub struct Hysteresis;
 
+/// The first one there must be; another that is left out is 0.
 const fn radius(name: &'static str, symbol: &'static str, default: Option<f64>) -> Parameter {
     Parameter {
         name,
         symbol,
         what: "Torque that moves a play operator",
         quantity: Quantity::Of(Dimension::Torque),
-        range: Range::NotNegative,
+        range: if default.is_some() { Range::NotNegative } else { Range::Positive },
         default,
         example: "50 Nm",
     }

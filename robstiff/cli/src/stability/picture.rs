@@ -10,6 +10,8 @@ use crate::text::significant;
 const SIZE: f64 = 520.0;
 const CENTER: [f64; 2] = [SIZE / 2.0, SIZE / 2.0 + 14.0];
 const RADIUS: f64 = 200.0;
+/// The shortest arrow that shows where it points.
+const SHORTEST: f64 = 24.0;
 
 /// A file has no page around it that would bring a style.
 const STYLE: &str = "<style>\n\
@@ -29,7 +31,7 @@ const STYLE: &str = "<style>\n\
 /// chatters.
 pub fn svg(predicted: &Predicted, cut: &Cut) -> String {
     let label = "Depths of cut with mode coupling over the direction of feed";
-    let mut svg = Svg::new(SIZE, SIZE + 56.0, label);
+    let mut svg = Svg::new(SIZE, SIZE + 72.0, label);
     let greatest = predicted.greatest * 1e3;
     let marks: Vec<f64> = ticks(0.0, greatest, 4).into_iter().filter(|mark| *mark <= greatest * (1.0 + 1e-9)).collect();
     let out = |depth: f64| depth * 1e3 / greatest * RADIUS;
@@ -60,15 +62,17 @@ pub fn svg(predicted: &Predicted, cut: &Cut) -> String {
         svg.circle("depth", CENTER, out(cut.depth), &format!("{} mm", significant(cut.depth * 1e3, 3)));
     }
     if let Some(best) = best(&predicted.feeds) {
-        svg.arrow("best", CENTER, at(best.angle, RADIUS));
+        // To where that feed begins to chatter, and so far at least that it is seen.
+        svg.arrow("best", CENTER, at(best.angle, out(limiting(best)).max(SHORTEST)));
     }
     svg.text("title", [SIZE / 2.0, 18.0], "middle", "Limiting depth of cut [mm] over the direction of feed");
     let legends = [
         "0°: along the base frame's x; seen from the spindle",
-        "red: mode coupling; dashed: the cut's depth; arrow: the best feed",
+        "red: mode coupling; white beyond the line: stable there, but reached only through red",
+        "dashed: the cut's depth; arrow: the best feed, to its limit",
         "not regenerative chatter of spindle, tool or workpiece",
     ];
-    for (y, legend) in [14.0, 30.0, 46.0].into_iter().zip(legends) {
+    for (y, legend) in [14.0, 30.0, 46.0, 62.0].into_iter().zip(legends) {
         svg.text("small", [SIZE / 2.0, SIZE + y], "middle", legend);
     }
     svg.file(STYLE)
