@@ -1,11 +1,11 @@
 //! Identification: the compliances of a description from a campaign, with
 //! their uncertainty.
 //!
-//! The way of the data: [`samples`] brings rows to the base frame and turns
-//! parameters into columns, with what [`encoders`] read, [`covariance`] asks the readings how noisy they are
-//! and [`whitening`] accounts for it, [`problem`] holds the regression in blocks of poses, [`normal`]
-//! solves it, [`prepare`] finds what the data can see, and [`displacement`] or
-//! [`clamped`] puts the result together. Absolute [`positions`] have a regression of
+//! The way of the data: `samples` brings rows to the base frame and turns
+//! parameters into columns, with what `encoders` read, `covariance` asks the readings how noisy they are
+//! and `whitening` accounts for it, `problem` holds the regression in blocks of poses, `normal`
+//! solves it, `prepare` finds what the data can see, and `displacement` or
+//! `clamped` puts the result together. Absolute `positions` have a regression of
 //! their own.
 
 pub(crate) mod baseline;

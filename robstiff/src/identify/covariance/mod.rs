@@ -131,13 +131,13 @@ impl Covariance {
     /// them ([`straightened`](super::second_order::straightened)); `frame` is the one displacements were measured in. Of
     /// `declared` only the ratio of displacement to rotation is used, where there
     /// is no other: how noisy the readings are, they say themselves.
-    pub fn estimate(samples: &Samples, frame: Frame, declared: Noise, of_pose: impl Fn(usize) -> bool) -> Self {
+    pub(crate) fn estimate(samples: &Samples, frame: Frame, declared: Noise, of_pose: impl Fn(usize) -> bool) -> Self {
         Self::estimated(samples, frame, declared, of_pose).0
     }
 
     /// The same with the tails of what is left, where the readings say something of them: the
     /// noise of thousands of campaigns is drawn for that, and no fit asks.
-    pub fn estimate_with_tails(
+    pub(crate) fn estimate_with_tails(
         samples: &Samples,
         frame: Frame,
         declared: Noise,
@@ -190,7 +190,7 @@ impl Covariance {
     }
 
     /// Equal axes, one unloaded reading a visit; how noisy is not known.
-    pub fn assumed(samples: &Samples, frame: Frame, declared: Noise) -> Self {
+    pub(crate) fn assumed(samples: &Samples, frame: Frame, declared: Noise) -> Self {
         let displacement = declared.displacement.unwrap_or(1.0);
         let rotation = declared.rotation.filter(|_| declared.displacement.is_some()).unwrap_or(displacement);
         Self {
@@ -211,7 +211,7 @@ impl Covariance {
 
     /// The readings that [certainly](outliers::STRICT) do not belong; none where that is no
     /// matter of [single rows](outliers::FEW) of those that were asked.
-    pub fn beyond_doubt(&self) -> Vec<Outlier> {
+    pub(crate) fn beyond_doubt(&self) -> Vec<Outlier> {
         let mut wild = self.outliers.clone();
         wild.retain(|outlier| outlier.p_value <= outliers::STRICT);
         let rows: usize = wild.iter().map(|outlier| outlier.rows.len()).sum();
@@ -239,7 +239,7 @@ impl Covariance {
     /// another unit: far above what the readings say. Less than they say may be right, for
     /// what is no function of the load makes them differ, too; and readings [made by a
     /// program](NOISELESS) say nothing of an instrument.
-    pub fn is_far_below(&self, declared: f64) -> bool {
+    pub(crate) fn is_far_below(&self, declared: f64) -> bool {
         self.reading().is_some_and(|reading| reading > NOISELESS && FAR_ABOVE * reading < declared)
     }
 
@@ -247,7 +247,7 @@ impl Covariance {
     /// `of_pose` holds, without the rows for which `without` holds, whitened like
     /// [`whitener`](Self::whitener) does. A model of the robot that is free of no more
     /// leaves at least as much of the same rows.
-    pub fn pure_error(
+    pub(crate) fn pure_error(
         &self,
         samples: &Samples,
         level: Level,
@@ -267,7 +267,7 @@ impl Covariance {
 
     /// The variance of a sum of readings of one axis with the given weights, a
     /// pair of row and weight each (m^2, rad^2).
-    pub fn variance(&self, axis: usize, weights: &[(usize, f64)]) -> f64 {
+    pub(crate) fn variance(&self, axis: usize, weights: &[(usize, f64)]) -> f64 {
         let own: f64 = weights.iter().map(|(_, weight)| weight * weight).sum();
         let mut visits: Vec<(usize, f64)> = Vec::new();
         for &(row, weight) in weights {
@@ -286,7 +286,7 @@ impl Covariance {
     /// whitened readings are independent, and each has the variance of one
     /// displacement reading, [`reading`](Self::reading) squared. A row left out
     /// shares its unloaded reading with nothing that is used.
-    pub fn whitener(&self, left_out: &[bool]) -> Whitener {
+    pub(crate) fn whitener(&self, left_out: &[bool]) -> Whitener {
         let visits = alone(&self.visits, left_out);
         let of_encoders = |noise: &EncoderNoise| (noise.by_group(left_out), self.scale(&noise.own));
         Whitener {
@@ -299,7 +299,7 @@ impl Covariance {
     }
 
     /// The same of other rows, in visits of their own, of what is read at the tool.
-    pub fn whitener_of(&self, rows: &[Sample], visits: &[usize]) -> Whitener {
+    pub(crate) fn whitener_of(&self, rows: &[Sample], visits: &[usize]) -> Whitener {
         Whitener {
             turns: self.turns.as_ref().map(|_| rows.iter().map(to_tool).collect()),
             by_visit: whitening::ByVisit::new(visits, self.shared),
@@ -312,7 +312,7 @@ impl Covariance {
     /// With rotations, of which the noise of a displacement reading is so many times that of
     /// one (m/rad).
     #[must_use]
-    pub fn with_rotations(mut self, weight: f64) -> Self {
+    pub(crate) fn with_rotations(mut self, weight: f64) -> Self {
         let own = self.reference(0..3) / whitening::reading_of(self.shared) / weight;
         self.own.truncate(3);
         self.own.extend([own; 3]);
@@ -327,7 +327,7 @@ impl Covariance {
 
     /// The noise of a displacement over that of a rotation (m/rad) times
     /// `factor`.
-    pub fn weigh_rotations(&mut self, factor: f64) {
+    pub(crate) fn weigh_rotations(&mut self, factor: f64) {
         self.own.iter_mut().skip(3).for_each(|own| *own /= factor);
     }
 
@@ -336,7 +336,7 @@ impl Covariance {
     /// final model, since what a model lacks would pass for the noise of the
     /// axes it shows on. `problem` is whitened with this covariance.
     #[must_use]
-    pub fn refined(&self, problem: &Problem, fit: &Fit) -> Self {
+    pub(crate) fn refined(&self, problem: &Problem, fit: &Fit) -> Self {
         let mut refined = self.clone();
         if matches!(self.basis, Basis::Contrasts(_)) {
             return refined;
@@ -366,7 +366,7 @@ impl Covariance {
 
     /// The variance of each axis over the mean of its kind, displacements or
     /// rotations.
-    pub fn shares_of_axes(&self) -> Vec<f64> {
+    pub(crate) fn shares_of_axes(&self) -> Vec<f64> {
         let of_kind = |own: &[f64]| {
             let mean = own.iter().map(|own| own * own).sum::<f64>() / own.len() as f64;
             own.iter().map(|own| own * own / mean).collect::<Vec<f64>>()
