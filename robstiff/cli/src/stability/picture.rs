@@ -68,7 +68,7 @@ pub fn svg(predicted: &Predicted, cut: &Cut) -> String {
     svg.text("title", [SIZE / 2.0, 18.0], "middle", "Limiting depth of cut [mm] over the direction of feed");
     let legends = [
         "0°: along the base frame's x; seen from the spindle",
-        "red: mode coupling; white beyond the line: stable there, but reached only through red",
+        "red: mode coupling; white beyond the line: reached only through red",
         "dashed: the cut's depth; arrow: the best feed, to its limit",
         "not regenerative chatter of spindle, tool or workpiece",
     ];
