@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use robstiff::campaign::{Campaign, Data, Displacements, Positions};
-use robstiff::identify::{Basis, Covariance};
-use robstiff::identify::{Estimate, Identification, NoiseSource, Visibility, identify, off_by_one_factor};
+use robstiff::identify::{
+    Basis, Covariance, Estimate, Identification, NoiseSource, Visibility, identify, off_by_one_factor,
+};
 use robstiff_robots::Description;
 use serde_json::{Value, json};
 

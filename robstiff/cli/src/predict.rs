@@ -4,8 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use robstiff::campaign::{Campaign, Data};
-use robstiff::identify::PredictedRow;
-use robstiff::identify::{Prediction, predict};
+use robstiff::identify::{PredictedRow, Prediction, predict};
 use serde_json::json;
 
 use crate::failure::Failure;

@@ -31,6 +31,8 @@
 
 mod feeds;
 mod limit;
+#[cfg(test)]
+mod links_tests;
 mod mass;
 mod modes;
 #[cfg(test)]

@@ -2,8 +2,7 @@
 
 use robstiff::analysis::principal_directions;
 use robstiff::campaign::{Campaign, Data};
-use robstiff::identify::PredictedRow;
-use robstiff::identify::predict;
+use robstiff::identify::{PredictedRow, predict};
 use robstiff::nalgebra::{Matrix4, SVector, Vector3, Vector6};
 use robstiff::{Convention, Generic, JointKind, Robot, State, with_robot};
 use robstiff_robots::{Description, Joint};

@@ -141,19 +141,18 @@ fn errors(trace: &Trace, campaign: &Campaign) -> Result<Vec<PoseError>, Failure>
     without_effects.effects.truncate(campaign.robot.effects.len());
     let (with, without) = (predict(&trace.description, campaign)?, predict(&without_effects, campaign)?);
 
+    let left_out = story::left_out(trace);
     let mut sums = vec![Sums::default(); poses.len()];
     for (index, residual) in trace.residuals.iter().enumerate() {
         let sum = &mut sums[residual.pose];
         sum.rows += 1;
+        sum.wild |= left_out.contains(&residual.line);
         sum.declared += declared.rows[index].error().powi(2);
         sum.identified += mean_square(residual.before);
         sum.after += mean_square(residual.after);
         let (with, without) = (with.rows[index].predicted, without.rows[index].predicted);
         sum.contribution += mean_square(std::array::from_fn(|axis| with[axis] - without[axis]));
     }
-    let lines = story::left_out(trace);
-    let left_out = trace.residuals.iter().filter(|row| lines.contains(&row.line)).map(|row| &poses[row.pose]);
-    let wild: Vec<&String> = left_out.collect();
     let error = |(id, sum): (&String, &Sums)| PoseError {
         id: id.clone(),
         declared: sum.rms_um(sum.declared),
@@ -161,15 +160,17 @@ fn errors(trace: &Trace, campaign: &Campaign) -> Result<Vec<PoseError>, Failure>
         after: sum.rms_um(sum.after),
         contribution: sum.rms_um(sum.contribution),
         held_out: trace.held_out.contains(id),
-        wild: wild.contains(&id),
+        wild: sum.wild,
     };
     Ok(poses.iter().zip(&sums).map(error).collect())
 }
 
-/// Squares of one axis, summed over the rows of a pose (m^2).
+/// Squares of one axis, summed over the rows of a pose (m^2), how many these are, and whether one
+/// was left out as wild.
 #[derive(Clone, Default)]
 struct Sums {
     rows: usize,
+    wild: bool,
     declared: f64,
     identified: f64,
     after: f64,

@@ -2,8 +2,7 @@
 
 use robstiff::JointKind;
 use robstiff::campaign::Campaign;
-use robstiff::identify::EncodersRead;
-use robstiff::identify::off_by_one_factor;
+use robstiff::identify::{EncodersRead, off_by_one_factor};
 use robstiff::trace::{Misfit, NamedEffect, Proposal, Rival, Trace};
 use robstiff::triage::Triage;
 use serde_json::{Value, json};

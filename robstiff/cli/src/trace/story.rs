@@ -2,9 +2,7 @@
 
 use robstiff::JointKind;
 use robstiff::campaign::Campaign;
-use robstiff::identify::EncodersRead;
-use robstiff::identify::Visibility;
-use robstiff::identify::{Estimate, off_by_one_factor, predict};
+use robstiff::identify::{EncodersRead, Estimate, Visibility, off_by_one_factor, predict};
 use robstiff::trace::{EffectParameter, NamedEffect, Proposal, Rival, RowResidual, Trace, Verdict};
 use robstiff_robots::Joint;
 
