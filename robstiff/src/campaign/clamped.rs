@@ -112,7 +112,7 @@ mod tests {
 
     /// The rows of a robot whose second axis slides, or the problems of its table.
     fn read(table: &str) -> Result<Vec<ClampedRow>, String> {
-        let folder = Folder::new("clamped-slides", &CAMPAIGN.replace("displacement", "clamped"), table);
+        let folder = Folder::new(&CAMPAIGN.replace("displacement", "clamped"), table);
         let robot =
             ROBOT.replace("- {a: 500 mm, alpha: 90 deg, compliance: 2e-6}", "- {type: prismatic, compliance: 2e-8}");
         std::fs::write(folder.0.join("robot.yaml"), robot).expect("a temporary file");

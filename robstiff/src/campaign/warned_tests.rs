@@ -14,13 +14,13 @@ use super::*;
 fn rows_of_the_unloaded_reading_are_left_out() {
     let rows =
         "a,v,0,0,0,0,0,0,0,0\na,v,0,0,1,2,3,4,5,6\na,v,0,0,0,0,0,0,0,1\nb,w,9,0,-0,0,0,0,0,0\nc,x,8,0,1,0,0,0,0,0\n";
-    let read = |name: &str, rows: &str| {
-        let campaign = Folder::new(name, CAMPAIGN, &format!("{HEADER}\n{rows}")).read().expect("nothing is wrong");
+    let read = |rows: &str| {
+        let campaign = Folder::new(CAMPAIGN, &format!("{HEADER}\n{rows}")).read().expect("nothing is wrong");
         let Data::Displacement(data) = campaign.data else { panic!("kind displacement") };
         let said = campaign.warnings.iter().filter_map(|warning| warning.split_once("loads.csv: "));
         (data, said.map(|(_, said)| said.to_owned()).collect::<Vec<_>>())
     };
-    let (data, warnings) = read("references", rows);
+    let (data, warnings) = read(rows);
     let places: Vec<_> = data.rows.iter().map(|row| (row.line, row.pose, row.visit)).collect();
     assert_eq!(places, [(3, 0, 0), (4, 0, 0), (6, 1, 1)]);
     assert_eq!(
@@ -30,8 +30,8 @@ fn rows_of_the_unloaded_reading_are_left_out() {
     let said = "line 2 and 1 more: no load and no displacement, which is the unloaded reading itself; left out";
     assert!(warnings.contains(&said.to_owned()), "{warnings:?}");
     // Where there is nothing else, nothing was read.
-    assert_eq!(read("references-alone", "a,v,0,0,0,0,0,0,0,0\n").0.rows.len(), 1);
-    let found = problems("reference-nan", CAMPAIGN, &format!("{HEADER}\na,v,0,0,0,0,0,0,0,0\nb,w,0,0,0,0,0,NaN,0,0\n"));
+    assert_eq!(read("a,v,0,0,0,0,0,0,0,0\n").0.rows.len(), 1);
+    let found = problems(CAMPAIGN, &format!("{HEADER}\na,v,0,0,0,0,0,0,0,0\nb,w,0,0,0,0,0,NaN,0,0\n"));
     assert_eq!(found, ["3:15 `NaN` is not finite"]);
 }
 
@@ -39,7 +39,7 @@ fn rows_of_the_unloaded_reading_are_left_out() {
 #[test]
 fn rows_with_the_same_joint_coordinates_are_of_one_pose() {
     let rows = "1,v,0,0.5,1,2,3,4,5,6\n2,w,9,0.5,1,2,3,4,5,6\n3,x,0,0.5,1,2,3,4,5,6\n";
-    let campaign = Folder::new("revisited", CAMPAIGN, &format!("{HEADER}\n{rows}")).read().expect("nothing is wrong");
+    let campaign = Folder::new(CAMPAIGN, &format!("{HEADER}\n{rows}")).read().expect("nothing is wrong");
     let Data::Displacement(data) = campaign.data else { panic!("kind displacement") };
     assert_eq!(data.rows.iter().map(|row| (row.pose, row.visit)).collect::<Vec<_>>(), [(0, 0), (1, 1), (0, 2)]);
     assert_eq!((data.poses.join(" ").as_str(), data.visits.len()), ("1 2", 3));
@@ -50,8 +50,8 @@ fn rows_with_the_same_joint_coordinates_are_of_one_pose() {
 /// Degrees in a column without a unit are radians that no joint reaches.
 #[test]
 fn coordinates_that_joints_do_not_reach_are_warned_of() {
-    let read = |name: &str, header: &str, rows: &str| {
-        let folder = Folder::new(name, CAMPAIGN, &format!("{header}\n{rows}"));
+    let read = |header: &str, rows: &str| {
+        let folder = Folder::new(CAMPAIGN, &format!("{header}\n{rows}"));
         let robot = ROBOT.replace("a: 1 m,", "a: 1 m, limits: [-90 deg, 90 deg],");
         std::fs::write(folder.0.join("robot.yaml"), robot).expect("a temporary file");
         let warnings = folder.read().expect("nothing is wrong").warnings;
@@ -60,7 +60,7 @@ fn coordinates_that_joints_do_not_reach_are_warned_of() {
     };
     let rows = "a,90,12,1,2,3,0,0,0\nb,-90,13,1,2,3,0,0,0\n";
     assert_eq!(
-        read("radians", "pose,q1,q2,Fx,Fy,Fz,dx,dy,dz", rows),
+        read("pose,q1,q2,Fx,Fy,Fz,dx,dy,dz", rows),
         [
             "q1 is outside its limits [-90, 90] deg in 2 rows, first on line 2: \
              are the angles in degrees? write `q1 [deg]`",
@@ -68,9 +68,9 @@ fn coordinates_that_joints_do_not_reach_are_warned_of() {
         ]
     );
     let header = "pose,q1 [deg],q2 [rad],Fx,Fy,Fz,dx,dy,dz";
-    assert_eq!(read("on-the-limit", header, rows), Vec::<String>::new());
+    assert_eq!(read(header, rows), Vec::<String>::new());
     assert_eq!(
-        read("degrees", header, "a,0,0,1,2,3,0,0,0\nb,91,0,1,2,3,0,0,0\n"),
+        read(header, "a,0,0,1,2,3,0,0,0\nb,91,0,1,2,3,0,0,0\n"),
         ["q1 is outside its limits [-90, 90] deg in 1 row, first on line 3"]
     );
 }
@@ -80,7 +80,7 @@ fn coordinates_that_joints_do_not_reach_are_warned_of() {
 fn numbers_beyond_all_robots_are_warned_of() {
     let header = "pose,q1,q2,Fx,Fy,Fz,Mx,dx,dy [um],dz,rx [rad],ry [rad],rz [rad]";
     let rows = "a,0,0,1,2,3,0,0.4,400,1e-4,0,0,0\nb,1,0,1,2,3e9,4,0.2,800,1e-4,0,0,0.5\n";
-    let folder = Folder::new("beyond", CAMPAIGN, &format!("{header}\n{rows}"));
+    let folder = Folder::new(CAMPAIGN, &format!("{header}\n{rows}"));
     let warnings = folder.read().expect("nothing is wrong").warnings;
     let file = format!("{}: ", folder.0.join("loads.csv").display());
     let said: Vec<_> = warnings.iter().map(|warning| warning.replace(&file, "")).collect();
@@ -94,7 +94,7 @@ fn numbers_beyond_all_robots_are_warned_of() {
     );
     let campaign = CAMPAIGN.replace("displacement", "clamped");
     let table = "axis,torque,deflection\n1,100,0.1\n2,5e6,0.3\n";
-    let warnings = Folder::new("clamped-beyond", &campaign, table).read().expect("nothing is wrong").warnings;
+    let warnings = Folder::new(&campaign, table).read().expect("nothing is wrong").warnings;
     assert!(warnings[0].ends_with("torque is more than 1 MNm in 1 row, first on line 3"));
     assert!(warnings[1].ends_with(
         "deflection is more than 0.1 rad in 1 row, first on line 3: \
@@ -105,8 +105,8 @@ fn numbers_beyond_all_robots_are_warned_of() {
 /// Of numbers without a unit the one is asked for that makes them what loads do.
 #[test]
 fn the_unit_that_is_asked_for_makes_displacements_plausible() {
-    let asked = |name: &str, rows: &str| {
-        let folder = Folder::new(name, CAMPAIGN, &format!("pose,q1,q2,Fx,Fy,Fz,dx,dy,dz,rx,ry,rz\n{rows}"));
+    let asked = |rows: &str| {
+        let folder = Folder::new(CAMPAIGN, &format!("pose,q1,q2,Fx,Fy,Fz,dx,dy,dz,rx,ry,rz\n{rows}"));
         let warnings = folder.read().expect("nothing is wrong").warnings;
         let units = |warning: &String| warning.rsplit_once("write ").map(|(_, unit)| unit.to_owned());
         warnings.iter().filter_map(units).collect::<Vec<_>>()
@@ -115,59 +115,56 @@ fn the_unit_that_is_asked_for_makes_displacements_plausible() {
     let of = |unit: &str, angle: &str| {
         ["dx", "rx", "dy"].map(|name| format!("`{name} [{}]`", if name == "rx" { angle } else { unit }))
     };
-    assert_eq!(asked("um", "a,0,0,1,2,3,473.1,-1.5,0,1.2,0,0\n"), of("um", "mrad"));
-    assert_eq!(asked("mm", "a,0,0,1,2,3,0.473,-0.15,0,300,0,0\n"), of("mm", "urad"));
+    assert_eq!(asked("a,0,0,1,2,3,473.1,-1.5,0,1.2,0,0\n"), of("um", "mrad"));
+    assert_eq!(asked("a,0,0,1,2,3,0.473,-0.15,0,300,0,0\n"), of("mm", "urad"));
 }
 
 /// A column of zeros and rows that were copied are asked about; an arm that was not loaded, and
 /// rows that differ in their time alone, are not.
 #[test]
 fn what_nobody_read_is_warned_of() {
-    let warned = |name: &str, header: &str, row: &dyn Fn(usize) -> String| {
+    let warned = |header: &str, row: &dyn Fn(usize) -> String| {
         let rows: String = (0..10).map(row).collect();
-        let folder = Folder::new(name, CAMPAIGN, &format!("{header}\n{rows}"));
+        let folder = Folder::new(CAMPAIGN, &format!("{header}\n{rows}"));
         let said = folder.read().expect("nothing is wrong").warnings;
         said.iter()
             .map(|said| said.split_once("loads.csv: ").expect("it names the file").1.to_owned())
             .collect::<Vec<_>>()
     };
     let moved = |i: usize| format!("a,v{i},0,0,100,50,20,{}e-5,0.00001,0\n", i + 1);
-    assert_eq!(
-        warned("still", HEADER, &moved),
-        ["dz is 0 in every row: was it read? each says that nothing moves that way"]
-    );
+    assert_eq!(warned(HEADER, &moved), ["dz is 0 in every row: was it read? each says that nothing moves that way"]);
     let copied = |i: usize| format!("a,v{i},0,0,100,50,20,{}e-5,0.00001,-0.00001\n", i % 9);
     assert_eq!(
-        warned("copied", HEADER, &copied),
+        warned(HEADER, &copied),
         ["all numbers are those of an earlier row in 1 row, first on line 11: are these copies?"]
     );
     let timed = |i: usize| format!("a,v{i},{i},0,0,100,50,20,{}e-5,0.00001,-0.00001\n", i % 9);
-    assert_eq!(warned("timed", "pose,visit,time,q1,q2,Fx,Fy,Fz,dx,dy,dz", &timed), Vec::<String>::new());
-    assert_eq!(warned("unloaded", HEADER, &|i| format!("a,v{i},0,0,0,0,0,0,0,0\n")), Vec::<String>::new());
+    assert_eq!(warned("pose,visit,time,q1,q2,Fx,Fy,Fz,dx,dy,dz", &timed), Vec::<String>::new());
+    assert_eq!(warned(HEADER, &|i| format!("a,v{i},0,0,0,0,0,0,0,0\n")), Vec::<String>::new());
 }
 
 /// One row with ten times its force is told, with its line; levels of load are not.
 #[test]
 fn a_force_that_stands_alone_is_warned_of() {
-    let warned = |name: &str, visits: usize, forces: &[f64]| {
+    let warned = |visits: usize, forces: &[f64]| {
         let row = |(i, force)| format!("a,v{},0,0,{force},0,0,{i},1e-3,1e-6\n", i % visits);
         let rows = forces.iter().enumerate().map(row);
-        let folder = Folder::new(name, CAMPAIGN, &format!("{HEADER}\n{}", rows.collect::<String>()));
+        let folder = Folder::new(CAMPAIGN, &format!("{HEADER}\n{}", rows.collect::<String>()));
         folder.read().expect("nothing is wrong").warnings
     };
     let loads = [0.0, 400.0, 800.0, 1300.0, 800.0, 400.0, 0.0, 400.0, 820.0, 1250.0];
     let mut slip = loads;
     slip[8] *= 10.0;
-    let said = warned("slip", 2, &slip);
+    let said = warned(2, &slip);
     assert_eq!(said.len(), 1, "{said:?}");
     assert!(said[0].contains("loads.csv: line 10: a force of 8.2 kN, the next largest is 1.3 kN: "), "{said:?}");
-    assert_eq!(warned("none", 2, &loads), Vec::<String>::new());
-    assert_eq!(warned("few", 2, &slip[..9]), Vec::<String>::new());
+    assert_eq!(warned(2, &loads), Vec::<String>::new());
+    assert_eq!(warned(2, &slip[..9]), Vec::<String>::new());
     // Two levels, each often; and two visits, each with its own.
     let levels: Vec<f64> = loads.iter().chain(&[8000.0, 8000.0]).copied().collect();
-    assert_eq!(warned("levels", 3, &levels), Vec::<String>::new());
+    assert_eq!(warned(3, &levels), Vec::<String>::new());
     let alternating: Vec<f64> = (0..12).map(|i| if i % 2 == 0 { 100.0 } else { 1000.0 }).collect();
-    assert_eq!(warned("two-visits", 2, &alternating), Vec::<String>::new());
+    assert_eq!(warned(2, &alternating), Vec::<String>::new());
     let one_visit: Vec<f64> = (0..12).map(|i| if i % 4 == 0 { 1000.0 } else { 100.0 }).collect();
-    assert_eq!(warned("one-visit", 4, &one_visit).len(), 1);
+    assert_eq!(warned(4, &one_visit).len(), 1);
 }
