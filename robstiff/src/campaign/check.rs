@@ -98,7 +98,7 @@ mod tests {
         change(&mut data.rows[2]);
         let wrong = campaign.check().expect_err("a row that was changed");
         // All that takes a campaign says so, and nothing panics.
-        let told = Err(Error(wrong.clone()));
+        let told = Err(Error::Invalid(wrong.clone()));
         assert_eq!(identify(&campaign).map(|_| ()), told);
         assert_eq!(predict(&campaign.robot, &campaign).map(|_| ()), told);
         assert_eq!(trace(&campaign, &Options::default(), &|_| {}).map(|_| ()), told);

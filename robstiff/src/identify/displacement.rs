@@ -8,7 +8,7 @@ use super::baseline::with_values;
 use super::normal::Fit;
 use super::prepare::{Prepared, enough, fit};
 use super::problem::rms;
-use super::readable::{UNREADABLE, readable};
+use super::readable::readable;
 use super::uncertainty::{correlation, covariance, of_held};
 use super::{Error, Identification, estimates};
 use crate::campaign::Campaign;
@@ -41,7 +41,7 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
         let places = (0..description.effects.len()).map(own).collect();
         (description, places)
     };
-    let fitted = readable(&problem.total, &fitted, &signs, described).ok_or_else(|| Error(UNREADABLE.into()))?;
+    let fitted = readable(&problem.total, &fitted, &signs, described).ok_or(Error::NoDescription)?;
     let declared = prepared.declared_noise;
     let covariance = covariance(&problem, &fitted, &signs, declared)
         + of_held(&problem, &fitted, &signs, &prepared.held(&fitted), declared);

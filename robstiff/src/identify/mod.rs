@@ -56,13 +56,42 @@ use crate::JointKind;
 use crate::campaign::{Campaign, Data};
 use crate::elements::Spring;
 
-/// Why a campaign does not give what was asked of it.
+/// Why a campaign does not give what was asked of it, in words for people.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Error(pub String);
+#[non_exhaustive]
+pub enum Error {
+    /// A campaign, or options, that are none: what [`Campaign::check`] or
+    /// [`Options::check`](crate::trace::Options::check) find.
+    Invalid(String),
+    /// Another kind of campaign is needed, or one of another robot.
+    OtherCampaign(String),
+    /// The data do not show the numbers, or do not tell them from each other.
+    NotShown(String),
+    /// By the readings, the robot would be less than rigid: they, or the loads, have a
+    /// wrong sign, unit or frame.
+    AgainstTheLoads(String),
+    /// No description takes the numbers found beside the effects that it declares.
+    NoDescription,
+    /// An error is not finite: the numbers are too large.
+    NotFinite,
+    /// A plan cannot have what was asked of it.
+    NoPlan(String),
+}
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
+        f.write_str(match self {
+            Self::Invalid(why)
+            | Self::OtherCampaign(why)
+            | Self::NotShown(why)
+            | Self::AgainstTheLoads(why)
+            | Self::NoPlan(why) => why,
+            Self::NoDescription => {
+                "the description's own effects leave a joint without compliance, or couple joints too strongly, with \
+                 the compliances that these data ask for; without these effects they could be identified"
+            }
+            Self::NotFinite => "the numbers are too large: the error is not finite",
+        })
     }
 }
 
@@ -176,7 +205,7 @@ impl Estimate {
 /// What [`Campaign::check`] finds; a campaign that shows none of them, or deflections and
 /// readings against their loads.
 pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
-    campaign.check().map_err(Error)?;
+    campaign.check().map_err(Error::Invalid)?;
     let found = match &campaign.data {
         Data::Displacement(_) => displacement::identify(campaign),
         Data::Position(data) => positions::identify(campaign, data),
@@ -185,7 +214,7 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     let joints = &found.estimates[..campaign.robot.joints.len()];
     let mut seen = joints.iter().filter(|joint| joint.visibility == Visibility::Seen).peekable();
     if seen.peek().is_some() && seen.all(|joint| joint.at_bound) {
-        return Err(Error(format!(
+        return Err(Error::AgainstTheLoads(format!(
             "{AGAINST_THE_LOADS}: by them every joint would be less than rigid; \
              check the signs of loads and readings, their frames and their units"
         )));

@@ -57,17 +57,19 @@ impl PredictedRow {
 /// What [`Campaign::check`] finds; a campaign of another kind, a description with another
 /// number of joints, or numbers so large that an error is not finite.
 pub fn predict(description: &Description, campaign: &Campaign) -> Result<Prediction, Error> {
-    campaign.check().map_err(Error)?;
+    campaign.check().map_err(Error::Invalid)?;
     let (expected, found) = (campaign.robot.joints.len(), description.joints.len());
     if expected != found {
         let expected = count(expected, "joint");
-        return Err(Error(std::format!("the campaign is of a robot with {expected}, this one has {found}")));
+        return Err(Error::OtherCampaign(std::format!(
+            "the campaign is of a robot with {expected}, this one has {found}"
+        )));
     }
     match &campaign.data {
         Data::Displacement(data) => displacements(description, data),
         Data::Position(data) => positions::predict(description, data),
         Data::Clamped(_) => {
-            Err(Error(String::from("predicting needs a campaign of kind `displacement` or `position`")))
+            Err(Error::OtherCampaign(String::from("predicting needs a campaign of kind `displacement` or `position`")))
         }
     }
 }
@@ -103,7 +105,7 @@ impl Prediction {
         let count = errors.len();
         let rms = (errors.iter().map(|error| error * error).sum::<f64>() / count as f64).sqrt();
         if !rms.is_finite() {
-            return Err(Error(String::from("the numbers are too large: the error is not finite")));
+            return Err(Error::NotFinite);
         }
         Ok(Self {
             rms,

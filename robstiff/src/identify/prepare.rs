@@ -75,7 +75,7 @@ impl<'c> Prepared<'c> {
     /// A campaign of another kind, or one that sees none of the numbers.
     pub fn new(campaign: &'c Campaign) -> Result<Self, Error> {
         let Data::Displacement(data) = &campaign.data else {
-            return Err(Error(String::from("this needs a campaign of kind `displacement`")));
+            return Err(Error::OtherCampaign(String::from("this needs a campaign of kind `displacement`")));
         };
         let prepared = Self::by(&campaign.robot, campaign, data)?;
         if !prepared.own.iter().any(|number| number.column.is_law()) {
@@ -290,7 +290,7 @@ pub fn enough(prepared: &Prepared<'_>, problem: &Problem) -> Result<(), Error> {
 
 /// What rows cannot tell that are too few.
 fn cannot_tell(prepared: &Prepared<'_>) -> Error {
-    Error(format!(
+    Error::NotShown(format!(
         "{} at {} cannot tell the {} of the robot from each other: load the arm at more poses",
         count(prepared.data.rows.len(), "row"),
         count(prepared.samples.poses, "pose"),
@@ -301,7 +301,7 @@ fn cannot_tell(prepared: &Prepared<'_>) -> Error {
 /// Why the data show none of the numbers.
 fn nothing_shows(prepared: &Prepared<'_>, problem: &Problem) -> Error {
     if prepared.data.rows.iter().all(|row| row.wrench.iter().all(|&load| load == 0.0)) {
-        return Error(String::from("every force and moment is zero: nothing pushes the arm"));
+        return Error::NotShown(String::from("every force and moment is zero: nothing pushes the arm"));
     }
     let numbers = prepared.own.len();
     // By the geometry, before anything is held against the noise.
@@ -309,7 +309,7 @@ fn nothing_shows(prepared: &Prepared<'_>, problem: &Problem) -> Error {
     let is_seen = shown.contains(&Visibility::Seen);
     let is_confounded = shown.iter().any(|visibility| matches!(visibility, Visibility::Confounded(_)));
     let too_few = prepared.declared_noise.is_none() && problem.total.rows < READINGS_A_NUMBER * numbers;
-    Error(match prepared.declared_noise.filter(|_| is_seen) {
+    Error::NotShown(match prepared.declared_noise.filter(|_| is_seen) {
         Some(noise) => {
             format!("the noise of {} that the campaign declares hides all that the loads do", told_length(noise))
         }

@@ -10,10 +10,6 @@ use robstiff_robots::effect::Place;
 use super::normal::{Fit, Normal, Sign, Tie};
 use crate::Effect;
 
-/// Why there is no description with the numbers of a fit.
-pub const UNREADABLE: &str = "the description's own effects leave a joint without compliance, or couple joints too \
-    strongly, with the compliances that these data ask for; without these effects they could be identified";
-
 /// The largest share of what would leave a joint without compliance that is kept.
 const NEXT_TO: f64 = 0.999;
 

@@ -86,7 +86,7 @@ impl Space {
         };
         space.poses = space.spread(options.candidates.max(options.poses), options.seed);
         if space.poses.len() < options.poses {
-            return Err(Error(format!(
+            return Err(Error::NoPlan(format!(
                 "within these limits and above {:.0} mm there are only {} poses of {} asked for",
                 floor * 1e3,
                 space.poses.len(),
@@ -206,7 +206,8 @@ fn loads(data: &Displacements, options: &Options, assumptions: &mut Vec<String>)
 /// The weights of the payloads of a visit, in the order of the campaign's usual one; where
 /// it has no visits of several rows, of the least and the greatest.
 fn payloads(data: &Positions, options: &Options, assumptions: &mut Vec<String>) -> Result<Vec<[f64; 6]>, Error> {
-    let refused = |what: &str| Err(Error(format!("{what}, but payloads pull by their weight, as the campaign's do")));
+    let refused =
+        |what: &str| Err(Error::NoPlan(format!("{what}, but payloads pull by their weight, as the campaign's do")));
     let greatest = data.rows.iter().map(|row| row.payload).fold(0.0, f64::max);
     if options.moment.is_some() {
         return refused("a greatest moment is given");

@@ -264,34 +264,47 @@ pub struct PoseError {
 /// What [`Options::check`] and [`Campaign::check`] find; a campaign that shows none of the
 /// robot's compliances, or whose description could not be read back with what was found.
 pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) -> Result<Trace, Error> {
-    options.check().map_err(Error)?;
-    campaign.check().map_err(Error)?;
-    if let Data::Clamped(rows) = &campaign.data {
-        return clamped::trace(campaign, rows, options, progress);
+    options.check().map_err(Error::Invalid)?;
+    campaign.check().map_err(Error::Invalid)?;
+    match &campaign.data {
+        Data::Displacement(_) => {
+            progress("identifying the joints");
+            let prepared = Prepared::new(campaign)?;
+            let (bench, outcome) = searched(campaign, &prepared, options, progress).map_err(Error::NotShown)?;
+            report(campaign, &prepared, &bench, &outcome, options)
+        }
+        Data::Position(data) => positions::trace(campaign, data, options, progress),
+        Data::Clamped(rows) => clamped::trace(campaign, rows, options, progress),
     }
-    if let Data::Position(data) = &campaign.data {
-        return positions::trace(campaign, data, options, progress);
-    }
-    progress("identifying the joints");
-    let prepared = Prepared::new(campaign)?;
-    let mut bench = Bench::new(campaign, &prepared).map_err(Error)?;
-    let setting = bench.at(&[]).map_err(Error)?;
-    let base = setting.fit(&[]).map_err(Error)?;
-    if let Some(why) = too_little(&setting).or_else(|| against_the_loads(&prepared, &setting, &base)) {
-        let outcome = Outcome::nothing(base, Verdict::Insufficient, why);
-        return report(campaign, &prepared, &bench, &outcome, options).map_err(Error);
+}
+
+/// What a campaign of displacements shows: the bench that it was found on, and what was.
+///
+/// # Errors
+/// Why not even the description's own numbers can be fitted.
+fn searched<'c>(
+    campaign: &'c Campaign,
+    prepared: &'c Prepared<'c>,
+    options: &Options,
+    progress: &Progress<'_>,
+) -> Result<(Bench<'c>, Outcome), String> {
+    let mut bench = Bench::new(campaign, prepared)?;
+    let setting = bench.at(&[])?;
+    let base = setting.fit(&[])?;
+    if let Some(why) = too_little(&setting).or_else(|| against_the_loads(prepared, &setting, &base)) {
+        return Ok((bench, Outcome::nothing(base, Verdict::Insufficient, why)));
     }
     drop(setting);
-    let base = if bench.fit_doubted().map_err(Error)? { bench.fit(&[]).map_err(Error)? } else { base };
-    let mut outcome = search(&mut bench, &prepared, base, options, progress).map_err(Error)?;
+    let base = if bench.fit_doubted()? { bench.fit(&[])? } else { base };
+    let mut outcome = search(&mut bench, prepared, base, options, progress)?;
     if outcome.structure() && prepared.left_out.contains(&true) {
         // Rows that the others of their pose contradict look like structure.
         bench.spare_memory();
-        let mut closer = Bench::new(campaign, &prepared).map_err(Error)?;
+        let mut closer = Bench::new(campaign, prepared)?;
         closer.by_own_pose = true;
-        closer.fit_doubted().map_err(Error)?;
-        let base = closer.fit(&[]).map_err(Error)?;
-        let again = search(&mut closer, &prepared, base, options, progress).map_err(Error)?;
+        closer.fit_doubted()?;
+        let base = closer.fit(&[])?;
+        let again = search(&mut closer, prepared, base, options, progress)?;
         if !again.structure() {
             (bench, outcome) = (closer, again.after(outcome));
         }
@@ -300,16 +313,16 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
         // With structure accounted for, rows need stand out from noise alone.
         bench.strict = true;
         if let Some(model) = bench.tried(&outcome.selection.model.named, Bench::look_again) {
-            let again = search(&mut bench, &prepared, model, options, progress).map_err(Error)?;
+            let again = search(&mut bench, prepared, model, options, progress)?;
             outcome = again.after(outcome);
         }
     }
     if let Some(model) = bench.tried(&outcome.selection.model.named, Bench::hold_lost) {
         outcome.selection.model = model;
     }
-    outcome.judge_by_held_out(&bench, options).map_err(Error)?;
+    outcome.judge_by_held_out(&bench, options)?;
     progress("asking what could be mistaken for what");
-    report(campaign, &prepared, &bench, &outcome, options).map_err(Error)
+    Ok((bench, outcome))
 }
 
 /// That the readings do not follow the loads, if so: every joint they show

@@ -14,10 +14,11 @@ use super::found::{EffectParameter, Found};
 use super::model::{Fitted, Named, Setting};
 use super::report::named::in_order;
 use crate::campaign::Campaign;
+use crate::identify::Error;
 use crate::identify::baseline::with_values;
 use crate::identify::normal::Sign;
 use crate::identify::prepare::Prepared;
-use crate::identify::readable::{UNREADABLE, is_readable, readable};
+use crate::identify::readable::{is_readable, readable};
 
 /// Numbers that noise takes beyond what a description says cost no more than this many
 /// times the residual variance when they are held there: three standard deviations.
@@ -168,12 +169,7 @@ fn plain(setting: &Setting<'_>, model: &Fitted, one: Named) -> Found {
 ///
 /// # Errors
 /// As for [`with_effects`].
-pub fn described(
-    campaign: &Campaign,
-    nameless: &str,
-    values: &[f64],
-    effects: &[Found],
-) -> Result<Description, String> {
+pub fn described(campaign: &Campaign, nameless: &str, values: &[f64], effects: &[Found]) -> Result<Description, Error> {
     let from = if campaign.name.is_empty() { nameless } else { &campaign.name };
     with_effects(with_values(&campaign.robot, values), effects, |names| {
         let with = if names.is_empty() { String::new() } else { format!(", with {names}") };
@@ -190,9 +186,9 @@ pub fn with_effects(
     mut description: Description,
     effects: &[Found],
     sentence: impl FnOnce(&str) -> String,
-) -> Result<Description, String> {
+) -> Result<Description, Error> {
     if !is_readable(&description) {
-        return Err(String::from(UNREADABLE));
+        return Err(Error::NoDescription);
     }
     let written = effects.iter().filter(|effect| effect.write_into(&mut description));
     let names: Vec<String> = written.map(ToString::to_string).collect();

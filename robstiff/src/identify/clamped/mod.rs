@@ -19,7 +19,7 @@ use robstiff_robots::effect::physics::PLAYS;
 use self::regression::torques;
 use self::rounding::of_rounding;
 use super::baseline::{Visibility, declared, with_values};
-use super::readable::{UNREADABLE, is_readable};
+use super::readable::is_readable;
 use super::uncertainty::{WITHIN, student};
 use super::whitening::mean_share;
 use super::{Error, Estimate, Identification, element_name, unit_of};
@@ -37,7 +37,9 @@ use crate::elements::{plays, turn};
 /// effects that do not go with the compliances found.
 pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identification, Error> {
     if rows.iter().all(|row| row.deflection == 0.0) {
-        return Err(Error(String::from("every deflection is zero: nothing was read of how the axes give way")));
+        return Err(Error::NotShown(String::from(
+            "every deflection is zero: nothing was read of how the axes give way",
+        )));
     }
     let less = without_laws(&campaign.robot, rows);
     // What is left may be a curve of a gear.
@@ -45,7 +47,7 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
     let mut left_out = wild.map_or_else(Vec::new, |(rows, _)| rows);
     left_out.sort_unstable();
     let found = slopes(campaign, rows, &left_out)?;
-    if is_readable(&found.description) { Ok(found) } else { Err(Error(UNREADABLE.into())) }
+    if is_readable(&found.description) { Ok(found) } else { Err(Error::NoDescription) }
 }
 
 /// The same of all rows but those `left_out`, by index.
@@ -69,7 +71,7 @@ pub fn slopes(campaign: &Campaign, rows: &[ClampedRow], left_out: &[usize]) -> R
         // A sign is wrong in all rows, a wild reading in one.
         if count(|work| work < 0.0) > count(|work| work > 0.0) {
             let line = of_axis[0].line;
-            return Err(Error(format!(
+            return Err(Error::AgainstTheLoads(format!(
                 "axis {} deflects against its torque (rows from line {line}): check the signs",
                 i + 1
             )));
@@ -89,7 +91,7 @@ pub fn slopes(campaign: &Campaign, rows: &[ClampedRow], left_out: &[usize]) -> R
         });
     }
     if estimates.iter().all(|estimate| estimate.visibility != Visibility::Seen) {
-        return Err(Error(String::from("no row loads its axis: every torque is zero")));
+        return Err(Error::NotShown(String::from("no row loads its axis: every torque is zero")));
     }
     Ok(Identification {
         left_out: left_out.iter().map(|&row| rows[row].line).collect(),

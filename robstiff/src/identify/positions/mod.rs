@@ -39,7 +39,7 @@ use super::holdout::training;
 use super::normal::{Normal, Projected, Scaled, Sign};
 use super::predict::{PredictedRow, Prediction};
 use super::problem::rms;
-use super::readable::{UNREADABLE, is_readable};
+use super::readable::is_readable;
 use super::uncertainty::{correlation, covariance};
 use super::{Error, Estimate, Identification, NoiseSource};
 use crate::campaign::{Campaign, Positions};
@@ -165,7 +165,7 @@ fn standing(model: &Model, data: &Positions, of_row: impl Fn(usize) -> bool) -> 
     let rows: Vec<usize> = (0..points.len()).filter(|&row| of_row(row)).collect();
     let pairs = rows.iter().map(|&row| (points[row], Vector3::from(data.rows[row].position)));
     Registration::fitted(pairs).ok_or_else(|| {
-        Error(String::from(
+        Error::NotShown(String::from(
             "the positions do not tell where the robot stands: they are fewer than three, or on a line by its description",
         ))
     })
@@ -250,7 +250,7 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
             true => "no row has a payload, so these positions show no compliance",
             false => "these payloads load no joint in a way that could not be another stand of the robot",
         };
-        return Err(Error(format!("{why}; `robstiff trace` asks what they show of the kinematics")));
+        return Err(Error::NotShown(format!("{why}; `robstiff trace` asks what they show of the kinematics")));
     }
     let regression = prepared.regression([]);
     // A row that is off by metres hides others: they are looked for again without it.
@@ -290,7 +290,7 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
     let estimates = estimated(&prepared, &values, &spread);
     let description = with_values(&campaign.robot, &prepared.own, &values);
     if !is_readable(&description) {
-        return Err(Error(UNREADABLE.into()));
+        return Err(Error::NoDescription);
     }
     let kept = (0..rows).filter(|&row| !prepared.rows.left_out[row]);
     let left_out: Vec<usize> = wild.iter().map(|&row| data.rows[row].line).collect();
@@ -335,7 +335,7 @@ fn by_payloads(
 }
 
 fn confounded() -> Error {
-    Error(String::from("these positions do not tell the compliances from each other"))
+    Error::NotShown(String::from("these positions do not tell the compliances from each other"))
 }
 
 /// Of a covariance, the part without where the robot stands.

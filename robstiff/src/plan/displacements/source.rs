@@ -103,7 +103,7 @@ impl Source<'_> {
             named.iter().flat_map(of).collect()
         };
         let model = sorted(None);
-        let fitted = self.bench.fit(&model).map_err(Error)?;
+        let fitted = self.bench.fit(&model).map_err(Error::NotShown)?;
         // With an effect, loads may turn a joint that they do not turn as the file has them.
         let own = self.prepared.own.len();
         let base: Vec<usize> = fitted.fit.columns.iter().copied().filter(|&column| column < own).collect();

@@ -95,7 +95,9 @@ fn leave_out_wild(bench: &mut Bench<'_>, trace: &Trace) {
 }
 
 fn solved(bench: &Bench<'_>, named: &[Named], from: &State) -> Result<Model, Error> {
-    bench.solve(named, from).ok_or_else(|| Error(String::from("these positions do not tell the numbers of the trace")))
+    bench
+        .solve(named, from)
+        .ok_or_else(|| Error::NotShown(String::from("these positions do not tell the numbers of the trace")))
 }
 
 /// Some numbers with those of the table and of zeros that these positions tell from them

@@ -46,6 +46,6 @@ pub fn trace(
     // It refuses what no search should be begun with.
     let identified = slopes(campaign, rows, &[])?;
     let axes = Axes::new(&campaign.robot, rows, &identified);
-    let found = search::search(axes, options, progress);
-    found.and_then(|found| report::report(campaign, &identified, &found)).map_err(Error)
+    let found = search::search(axes, options, progress).map_err(Error::NotShown)?;
+    report::report(campaign, &identified, &found)
 }

@@ -16,7 +16,7 @@ use super::spread::spread;
 use crate::campaign::{Campaign, ClampedRow};
 use crate::identify::baseline::{declared, with_values};
 use crate::identify::normal::Fit;
-use crate::identify::{Estimate, Identification, NoiseSource};
+use crate::identify::{Error, Estimate, Identification, NoiseSource};
 use crate::trace::catalogue::{BASE_SLIP, HYSTERESIS, KINDS, OUTLIERS, STIFFNESS_NONLINEARITY, axis_tells_hysteresis};
 use crate::trace::found::{EffectParameter, Found, Place};
 use crate::trace::model::{Fitted, Named, all_but};
@@ -29,7 +29,7 @@ use crate::trace::{Misfit, NamedEffect, PoseError, Rival, RowResidual, Trace, Ve
 ///
 /// # Errors
 /// Declared effects that do not go with the compliances found.
-pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched) -> Result<Trace, String> {
+pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched) -> Result<Trace, Error> {
     let (bench, model) = (&found.bench, &found.selection.model);
     let wild = &found.wild.0;
     let (verdict, why) = match &found.too_little {

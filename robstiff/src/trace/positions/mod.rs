@@ -59,6 +59,6 @@ pub fn trace(
 ) -> Result<Trace, Error> {
     progress("finding where the robot stands");
     let bench = Bench::new(campaign, data)?;
-    let found = search::search(campaign, bench, options, progress).map_err(Error)?;
-    report::report(campaign, &found, options).map_err(Error)
+    let found = search::search(campaign, bench, options, progress).map_err(Error::NotShown)?;
+    report::report(campaign, &found, options)
 }

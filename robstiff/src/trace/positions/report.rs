@@ -11,12 +11,12 @@ use super::search::Searched;
 use super::unseen::{undecided, unseen, unseen_rms};
 use super::written::{described, own_effects, without_untold};
 use crate::campaign::{Campaign, PositionRow};
-use crate::identify::NoiseSource;
 use crate::identify::normal::Sign;
 use crate::identify::positions::regression::STANDS;
 use crate::identify::positions::{estimated, of_numbers, residuals};
 use crate::identify::problem::rms;
 use crate::identify::uncertainty::covariance;
+use crate::identify::{Error, NoiseSource};
 use crate::trace::catalogue::{KINDS, Variant};
 use crate::trace::found::{EffectParameter, Found};
 use crate::trace::held_out;
@@ -29,7 +29,7 @@ use crate::trace::{Misfit, NamedEffect, Options, PoseError, Rival, RowResidual, 
 ///
 /// # Errors
 /// Compliances that no description takes beside its own effects.
-pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> Result<Trace, String> {
+pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> Result<Trace, Error> {
     let (bench, model, base) = (&found.bench, &found.model, &found.base);
     let data = bench.prepared.data;
     let mut left = found.left.clone();

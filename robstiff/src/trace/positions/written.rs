@@ -1,13 +1,13 @@
 //! What is written down of a model of absolute positions.
 
 use std::format;
-use std::string::String;
 use std::vec::Vec;
 
 use robstiff_robots::Description;
 
 use super::bench::{Bench, Model};
 use crate::campaign::Campaign;
+use crate::identify::Error;
 use crate::identify::positions::own::with_values;
 use crate::identify::positions::regression::STANDS;
 use crate::trace::NamedEffect;
@@ -53,7 +53,7 @@ pub fn described(
     bench: &Bench<'_>,
     values: &[f64],
     effects: &[Found],
-) -> Result<Description, String> {
+) -> Result<Description, Error> {
     let description = with_values(&campaign.robot, &bench.prepared.own, values);
     let from = if campaign.name.is_empty() { "absolute positions" } else { &campaign.name };
     with_effects(description, effects, |names| {

@@ -22,7 +22,7 @@ use crate::identify::displacement::{declared_residuals, declared_rms};
 use crate::identify::encoders::EncodersRead;
 use crate::identify::prepare::Prepared;
 use crate::identify::problem::{Block, Equations, rms};
-use crate::identify::{Estimate, NoiseSource, estimates};
+use crate::identify::{Error, Estimate, NoiseSource, estimates};
 
 /// A tracing in full: errors before and after, the effects with their
 /// uncertainty, and the description that says it all.
@@ -35,13 +35,14 @@ pub fn report(
     bench: &Bench<'_>,
     outcome: &Outcome,
     options: &Options,
-) -> Result<Trace, String> {
+) -> Result<Trace, Error> {
     // Before anything was corrected, wild rows and all.
     let untouched = Bench::bare(campaign, prepared);
-    let all = untouched.at(&[])?;
-    let base = all.fit(&[])?;
+    let all = untouched.at(&[]).map_err(Error::NotShown)?;
+    let base = all.fit(&[]).map_err(Error::NotShown)?;
     let polished = bench.polished(&outcome.selection.model.named);
-    let (bench_of_numbers, setting, model) = where_it_fits_best(bench, &polished, &outcome.selection.model)?;
+    let (bench_of_numbers, setting, model) =
+        where_it_fits_best(bench, &polished, &outcome.selection.model).map_err(Error::NotShown)?;
     let model = &within_description(campaign, prepared, &setting, &model);
     let written = without_untold(campaign, prepared, bench_of_numbers, &setting, model);
     let spread = spread_of(bench_of_numbers, &setting, model);
