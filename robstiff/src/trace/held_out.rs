@@ -27,7 +27,7 @@ use crate::probability::fisher_tail;
 pub fn of_displacements(setting: &Setting<'_>, model: &Fitted, options: &Options) -> Option<StructureTest> {
     let (problem, fit) = setting.alone(&model.fit);
     let signs: Vec<Sign> = model.fit.columns.iter().map(|&column| setting.signs[column]).collect();
-    predicted(&problem, &fit, &signs, options)
+    predicted(&problem, &fit, &signs, &setting.undecided(&model.named), options)
 }
 
 /// What a test of poses held out makes of a verdict, if anything; it shares its level with
@@ -45,10 +45,26 @@ pub fn judged(
     missed
 }
 
-/// Asks the poses held out of a problem that has the columns of a fit and no others;
-/// `None` where there are none.
-pub fn predicted(problem: &Problem, fit: &Fit, signs: &[Sign], options: &Options) -> Option<StructureTest> {
-    if problem.held_out.is_empty() {
+/// Asks the poses held out of a problem that has the columns of a fit and no others, but for
+/// some rows; `None` where there are none.
+pub fn predicted(
+    problem: &Problem,
+    fit: &Fit,
+    signs: &[Sign],
+    but: &[usize],
+    options: &Options,
+) -> Option<StructureTest> {
+    let without = |block: &Block| {
+        let mut rest = block.clone();
+        rest.rows.retain(|row| !but.contains(row));
+        // Of a pose that loses rows, encoders have no part either.
+        if rest.rows.len() < block.rows.len() {
+            rest.stacked.retain(|reading| rest.rows.contains(&(reading / problem.axes)));
+        }
+        (!rest.rows.is_empty()).then_some(rest)
+    };
+    let judging: Vec<Block> = problem.held_out.iter().filter_map(without).collect();
+    if judging.is_empty() {
         return None;
     }
     // What is held at zero has no error.
@@ -60,7 +76,7 @@ pub fn predicted(problem: &Problem, fit: &Fit, signs: &[Sign], options: &Options
         Normal::small(&columns, &residuals)
     };
     let total = problem.total.gram_of(&free);
-    let held_out: Vec<Normal> = problem.held_out.iter().map(left).collect();
+    let held_out: Vec<Normal> = judging.iter().map(left).collect();
     let together = beyond(&total, &Normal::sum(held_out.iter().cloned())?)?;
     let readings: usize = held_out.iter().map(|block| block.rows).sum();
     let freedom = problem.freedom(fit);

@@ -11,10 +11,11 @@ use nalgebra::{DMatrix, DVector};
 
 use super::catalogue::{Candidate, Number, Variant};
 use super::point::Point;
+use super::slip::{SLIPPED_AT, Slipping, undecided};
 use crate::identify::column::Column;
 use crate::identify::covariance::Whitener;
 use crate::identify::normal::{Fit, Sign};
-use crate::identify::problem::{Equations, Problem, rms};
+use crate::identify::problem::{Block, Equations, Problem, rms};
 
 /// The regression of a campaign at one point, with the catalogue behind it; the
 /// first columns are the description's own numbers. Nonlinear numbers that are
@@ -301,23 +302,38 @@ impl Setting<'_> {
         fitted.map_or(self.joint_values[column], |k| fit.coefficients[k])
     }
 
+    /// The rows held out of which the fit does not say on which side of a slip they are that
+    /// a model names.
+    pub fn undecided(&self, named: &[Named]) -> Vec<usize> {
+        let slips = named.iter().filter(|one| Slipping::has(self.candidates[one.candidate].kind.name));
+        let lines = slips.flat_map(|one| &self.variant(*one).shape).filter(|number| number.name == SLIPPED_AT);
+        let rows = &self.point.data.rows;
+        let moments = lines.filter_map(|line| rows.iter().position(|row| row.line as f64 == line.value));
+        let among = |blocks: &[Block]| {
+            let mut among = std::vec![false; rows.len()];
+            blocks.iter().flat_map(|block| &block.rows).for_each(|&row| among[row] = true);
+            among
+        };
+        undecided(moments, &among(&self.problem.blocks), &among(&self.problem.held_out))
+    }
+
     /// The residuals on poses the fit has not seen, stacked: of the poses held
-    /// out, or where none are, of each pose by the fit without it. With the
+    /// out but for some rows, or where none are, of each pose by the fit without it. With the
     /// campaign's rows they are of.
-    pub fn unseen_residuals(&self, fit: &Fit) -> (DVector<f64>, Vec<usize>) {
+    fn unseen_residuals(&self, fit: &Fit, but: &[usize]) -> (DVector<f64>, Vec<usize>) {
         let problem = &self.problem;
         if problem.held_out.is_empty() {
             let LeftOut { residuals, rows, .. } = self.left_out(fit);
             return (residuals, rows);
         }
-        let rows = problem.held_out.iter().flat_map(|block| block.rows.iter().copied()).collect();
-        (self.residuals(fit), rows)
+        let rows = problem.held_out.iter().flat_map(|block| block.rows.iter().copied());
+        (self.residuals(fit), rows.filter(|row| !but.contains(row)).collect())
     }
 
     /// The root mean square of [`unseen_residuals`](Self::unseen_residuals) (m):
     /// for judging a model, never for choosing one.
-    pub fn holdout_rms(&self, fit: &Fit) -> f64 {
-        let (residuals, rows) = self.unseen_residuals(fit);
+    pub fn holdout_rms(&self, fit: &Fit, but: &[usize]) -> f64 {
+        let (residuals, rows) = self.unseen_residuals(fit, but);
         rms(&residuals, self.problem.axes, rows)
     }
 

@@ -105,7 +105,7 @@ impl Moments {
 /// The slip that whole visits keep which is most likely, if one is near
 /// significant: a shift, or of the base a shift with a turn. Rows that are left
 /// out next to its moment have no part in finding it; they are laid to the side
-/// that they look like.
+/// that they look like, but for those of poses held out, which choose nothing.
 pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted, slipping: Slipping) -> Option<Moment> {
     let (problem, fit) = setting.alone(&model.fit);
     let (axes, rows) = (problem.axes, setting.point.samples.rows.len());
@@ -214,11 +214,13 @@ impl Scan<'_, '_> {
         self.slipping.moves(&self.setting.point.samples.rows[row])
     }
 
-    /// The moment among rows that are left out around it.
+    /// The moment among rows that are left out around it. Poses held out have no part in it.
     fn settled(&self, slip: &Slip, model: &Fitted) -> Moment {
         let axes = self.setting.problem.axes;
         let residuals = self.setting.residuals(&model.fit) - &self.setting.correction;
         let is_out = |row: usize| !self.fitted_to[row];
+        let mut votes = vec![true; self.fitted_to.len()];
+        self.setting.problem.held_out.iter().flat_map(|block| &block.rows).for_each(|&row| votes[row] = false);
         let row = slip.moment.row;
         let first = (0..row).rev().take_while(|&row| is_out(row)).last().unwrap_or(row);
         let last = (row..self.fitted_to.len()).take_while(|&row| is_out(row)).last().map_or(row, |row| row + 1);
@@ -229,10 +231,23 @@ impl Scan<'_, '_> {
             let moved = self.moves(row) * &by;
             left.norm_squared() - (left - moved).norm_squared()
         };
-        let with = |moment: Moment| (first..last).filter(|&row| moment.has(row)).map(better).sum::<f64>();
+        let with = |moment: Moment| (first..last).filter(|&row| votes[row] && moment.has(row)).map(better).sum::<f64>();
         let moments = (first..=last).map(|row| Moment { row, before: slip.moment.before });
-        moments.max_by(|&a, &b| with(a).total_cmp(&with(b))).unwrap_or(slip.moment)
+        moments.fold(slip.moment, |best, moment| if with(moment) > with(best) { moment } else { best })
     }
+}
+
+/// The rows held out that no row fitted to is between them and the moment of a slip, the
+/// first row after it: on which side of it they are the fit does not say.
+pub fn undecided(moments: impl IntoIterator<Item = usize>, fitted_to: &[bool], held_out: &[bool]) -> Vec<usize> {
+    let beside = |slip: usize| {
+        let before = (0..slip).rev().take_while(|&row| !fitted_to[row]);
+        before.chain((slip..fitted_to.len()).take_while(|&row| !fitted_to[row]))
+    };
+    let mut undecided: Vec<usize> = moments.into_iter().flat_map(beside).filter(|&row| held_out[row]).collect();
+    undecided.sort_unstable();
+    undecided.dedup();
+    undecided
 }
 
 /// The squared length of a step over the last `inside` of a visit's `rows`

@@ -54,14 +54,15 @@ pub fn report(
     } else {
         numbers(campaign, prepared, of_written, written, &spread_of(bench_of_numbers, of_written, written))
     };
-    let after = misfit(of_written, written);
-    let mut effects = effects(bench, &setting, model, outcome, &spread, options);
+    let undecided = setting.undecided(&model.named);
+    let after = misfit(of_written, written, &undecided);
+    let mut effects = effects(bench, &setting, model, outcome, &spread, &undecided, options);
     let slipped = effects.iter_mut().find(|named| Slipping::has(named.effect.kind()));
     let may_be = same_as_wild(bench, &outcome.selection.model, &outcome.events);
     let isolated = isolated(prepared, outcome, after.holdout_rms, slipped, &may_be);
     effects.extend(isolated);
     let tells = outcome.verdict != Verdict::Insufficient;
-    let declared = declared(prepared, &all.problem);
+    let declared = declared(prepared, &all.problem, &undecided);
     // Data that can tell nothing change nothing.
     let (description, after, left_after) = match tells {
         true => {
@@ -80,11 +81,11 @@ pub fn report(
         rows: prepared.samples.rows.len(),
         poses: prepared.samples.poses,
         held_out: setting.problem.held_out.iter().map(|block| prepared.data.poses[block.pose].clone()).collect(),
-        undecided: Vec::new(),
+        undecided: undecided.iter().map(|&row| prepared.data.rows[row].line).collect(),
         noise,
         noise_source,
         declared,
-        identified: misfit(&all, &base),
+        identified: misfit(&all, &base, &undecided),
         after,
         verdict: outcome.verdict,
         why: outcome.why.clone(),
@@ -121,11 +122,13 @@ fn where_it_fits_best<'b, 'c>(
     }
 }
 
-/// How far off the description is as it is declared.
-fn declared(prepared: &Prepared<'_>, problem: &Equations) -> Misfit {
-    let off = |blocks: &[Block]| declared_rms(prepared, blocks.iter().flat_map(|block| block.rows.iter().copied()));
-    let unseen = if problem.held_out.is_empty() { &problem.blocks } else { &problem.held_out };
-    Misfit { rms: off(&problem.blocks), holdout_rms: off(unseen) }
+/// How far off the description is as it is declared, on unseen poses but for some rows.
+fn declared(prepared: &Prepared<'_>, problem: &Equations, but: &[usize]) -> Misfit {
+    let rows = |blocks: &'_ [Block]| blocks.iter().flat_map(|block| block.rows.clone()).collect::<Vec<usize>>();
+    let fitted_to = declared_rms(prepared, rows(&problem.blocks));
+    let unseen = rows(&problem.held_out).into_iter().filter(|row| !but.contains(row));
+    let holdout_rms = if problem.held_out.is_empty() { fitted_to } else { declared_rms(prepared, unseen) };
+    Misfit { rms: fitted_to, holdout_rms }
 }
 
 /// Full names of what could not be seen. What a named effect may as well be has shown, if it
@@ -135,12 +138,12 @@ fn invisible(bench: &Bench<'_>, effects: &[NamedEffect]) -> Vec<String> {
     bench.invisible.iter().filter(|name| !may_be(name)).cloned().collect()
 }
 
-/// How far off a model is at its setting.
-fn misfit(setting: &Setting<'_>, model: &Fitted) -> Misfit {
+/// How far off a model is at its setting, on unseen poses but for some rows.
+fn misfit(setting: &Setting<'_>, model: &Fitted, but: &[usize]) -> Misfit {
     let fitted_rows = setting.problem.blocks.iter().flat_map(|block| block.rows.iter().copied());
     Misfit {
         rms: rms(&setting.residuals(&model.fit), setting.problem.axes, fitted_rows),
-        holdout_rms: setting.holdout_rms(&model.fit),
+        holdout_rms: setting.holdout_rms(&model.fit, but),
     }
 }
 

@@ -18,13 +18,14 @@ use crate::trace::slip::SLIPPED_AT;
 use crate::trace::{NamedEffect, Options, Outcome};
 
 /// The named effects, the one whose removal costs most first: each with the error on
-/// unseen poses that it and those before it leave.
+/// unseen poses, but for some rows, that it and those before it leave.
 pub fn effects(
     bench: &Bench<'_>,
     setting: &Setting<'_>,
     fine: &Fitted,
     outcome: &Outcome,
     spread: &DMatrix<f64>,
+    but: &[usize],
     options: &Options,
 ) -> Vec<NamedEffect> {
     let model = &outcome.selection.model;
@@ -32,7 +33,7 @@ pub fn effects(
     let named = by_cost(bench, model).into_iter().map(|k| {
         so_far.push(model.named[k]);
         so_far.sort_unstable();
-        let unseen = |setting: &Setting<'_>| Some(setting.holdout_rms(&setting.fit(&so_far).ok()?.fit));
+        let unseen = |setting: &Setting<'_>| Some(setting.holdout_rms(&setting.fit(&so_far).ok()?.fit, but));
         let holdout_rms = bench.at(&so_far).ok().and_then(|setting| unseen(&setting)).unwrap_or(f64::NAN);
         let parameters = parameters(setting, fine, spread, k);
         let candidate = &setting.candidates[model.named[k].candidate];

@@ -10,8 +10,9 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use super::WORDS;
-use crate::campaign::Observation;
 use crate::campaign::made::{Plan, normal};
+use crate::campaign::{Holdout, Observation};
+use crate::identify::holdout::training;
 use crate::trace::tests::{names, traced};
 use crate::trace::{Trace, Verdict};
 
@@ -71,5 +72,33 @@ fn a_slip_is_no_drift() {
         let by = size * Vector3::new(0.6, -0.5, 0.62);
         let trace = moved(&plan(seed), |row| if row >= moment { by } else { Vector3::zeros() });
         assert_eq!((names(&trace), trace.verdict), (vec!["base_slip@base".to_string()], Verdict::Explained), "{seed}");
+    }
+}
+
+/// A pose held out beside a slip neither chooses when it was nor judges it: what is told is
+/// the same on whichever side of the slip it is.
+#[test]
+fn a_pose_held_out_beside_a_slip_chooses_nothing() {
+    let by = 6e-5 * Vector3::new(0.6, -0.5, 0.62);
+    for seed in [1, 3, 4] {
+        let plan = plan(seed);
+        let holdout = Some(Holdout { fraction: 0.25, seed });
+        let fitted_to = training(plan.poses, holdout);
+        let alone = |&pose: &usize| fitted_to[pose - 1] && !fitted_to[pose] && fitted_to[pose + 1];
+        let pose = (5..25).find(alone).expect("one of seven of thirty");
+        let [with, without] = [3 * pose, 3 * pose + 3].map(|moment| {
+            let mut campaign = plan.run_with(|row, read: &mut Observation| {
+                let by = if row >= moment { by } else { Vector3::zeros() };
+                (0..3).for_each(|axis| read.displacement[axis] += by[axis]);
+            });
+            campaign.holdout = holdout;
+            traced(&campaign)
+        });
+        assert_eq!((names(&with), with.verdict), (vec!["base_slip@base".to_string()], Verdict::Explained), "{seed}");
+        // The header is line 1.
+        assert_eq!(with.undecided, [3 * pose + 2, 3 * pose + 3, 3 * pose + 4]);
+        assert_eq!(with.effects[0].effect, without.effects[0].effect);
+        let errors = |trace: &Trace| (trace.estimates.clone(), trace.after, trace.undecided.clone(), trace.verdict);
+        assert_eq!(errors(&with), errors(&without));
     }
 }
