@@ -4,7 +4,7 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use crate::trace::selection::WITHIN_REACH;
-use crate::trace::{Trace, Verdict};
+use crate::trace::{NamedEffect, Trace, Verdict};
 
 /// Rivals of one effect beyond these many are not followed: all pairs count,
 /// and the best fitting are the likely ones.
@@ -130,7 +130,12 @@ pub fn groups(trace: &Trace) -> Vec<Group> {
 /// The candidates that fit about as well as the best, in the last step that has
 /// the effects named as its model.
 fn within_reach(trace: &Trace) -> Vec<String> {
-    let mut named: Vec<String> = trace.effects.iter().map(|named| named.effect.to_string()).collect();
+    // What is wrong in single visits is in no step.
+    let was_searched = |named: &&NamedEffect| {
+        named.lines.is_empty() || trace.steps.iter().any(|step| step.named.contains(&named.effect.to_string()))
+    };
+    let mut named: Vec<String> =
+        trace.effects.iter().filter(was_searched).map(|named| named.effect.to_string()).collect();
     named.sort();
     let of_model = |step: &&crate::trace::Step| {
         let mut before = step.named.clone();

@@ -75,7 +75,7 @@ impl Found {
     }
 
     /// Wild readings: the rig's, so many rows of them.
-    pub(super) fn outliers(rows: usize) -> Self {
+    pub(crate) fn outliers(rows: usize) -> Self {
         let rows = EffectParameter { name: "rows", value: rows as f64, std: None, unit: "1" };
         Self::new(&OUTLIERS, Place::Rig, std::vec![rows])
     }
