@@ -1,16 +1,19 @@
 //! Whether a campaign is one. What is read from files was checked there, where each problem
 //! has its line; a campaign that a program has made is checked by whatever takes it.
 
-use std::format;
 use std::string::String;
+use std::vec::Vec;
+use std::{format, vec};
 
 use robstiff_robots::words::count;
 
+use super::poses::{AtPose, SAME_POSE};
 use super::{Campaign, ClampedRow, Data, Observation, PositionRow};
 
 impl Campaign {
     /// Whether rows have as many joint coordinates as the robot, name poses, visits and axes
-    /// that there are, and hold numbers only.
+    /// that there are, hold numbers only, and are all where their pose is, those of a visit at
+    /// one pose.
     ///
     /// # Errors
     /// The first row that does not, by its line, and what is wrong with it; no rows.
@@ -21,12 +24,14 @@ impl Campaign {
                 let names = [data.poses.len(), data.visits.len()];
                 let rotations = data.rows.first().is_some_and(|row| row.rotation.is_some());
                 let wrong = |row: &Observation| of_displacement(row, joints, names, rotations);
-                (data.rows.len(), data.rows.iter().find_map(|row| Some((row.line, wrong(row)?))))
+                let found = data.rows.iter().find_map(|row| Some((row.line, wrong(row)?)));
+                (data.rows.len(), found.or_else(|| misplaced(&data.rows, |row| row.visit, names)))
             }
             Data::Position(data) => {
                 let names = [data.poses.len(), data.visits.len()];
                 let wrong = |row: &PositionRow| of_position(row, joints, names);
-                (data.rows.len(), data.rows.iter().find_map(|row| Some((row.line, wrong(row)?))))
+                let found = data.rows.iter().find_map(|row| Some((row.line, wrong(row)?)));
+                (data.rows.len(), found.or_else(|| misplaced(&data.rows, |row| row.visit, names)))
             }
             Data::Clamped(rows) => (rows.len(), rows.iter().find_map(|row| Some((row.line, of_clamped(row, joints)?)))),
         };
@@ -61,6 +66,27 @@ fn of_clamped(row: &ClampedRow, joints: usize) -> Option<String> {
         return Some(format!("loads axis {}, and the robot has {}", row.axis, count(joints, "joint")));
     }
     of_numbers([&row.torque, &row.deflection])
+}
+
+/// The first row that is not where its pose is, or not at the pose where its visit began, of
+/// rows that name poses and visits that there are: by its line, and what is wrong with it.
+fn misplaced<R: AtPose>(
+    rows: &[R],
+    visit: impl Fn(&R) -> usize,
+    [poses, visits]: [usize; 2],
+) -> Option<(usize, String)> {
+    let (mut at, mut began): (Vec<Option<&R>>, Vec<Option<&R>>) = (vec![None; poses], vec![None; visits]);
+    rows.iter().find_map(|row| {
+        let pose = at[row.pose()].get_or_insert(row);
+        let start = began[visit(row)].get_or_insert(row);
+        let moved = row.q().iter().zip(pose.q()).any(|(here, there)| (here - there).abs() > SAME_POSE);
+        let wrong = match (moved, start.pose() == row.pose()) {
+            (true, _) => format!("has other joint coordinates than line {}, of the same pose", pose.line()),
+            (_, false) => format!("is at another pose than line {}, of the same visit", start.line()),
+            _ => return None,
+        };
+        Some((row.line(), wrong))
+    })
 }
 
 fn of_coordinates(q: &[f64], joints: usize) -> Option<String> {
@@ -112,12 +138,35 @@ mod tests {
         assert!(wrong(|row| row.displacement[1] = f64::NAN).ends_with("has NaN for a number"));
         assert!(wrong(|row| row.encoders = Some(std::vec![0.0; 6])).ends_with("has 6 coordinates for 5 joints"));
         assert!(wrong(|row| row.rotation = Some([0.0; 3])).contains("unlike the first"));
+        assert!(wrong(|row| row.q[0] += 0.1).contains("has other joint coordinates than line 2, of the same pose"));
         let mut campaign = Plan { poses: 4, ..Plan::new(1) }.run();
-        campaign.data = Data::Clamped(std::vec![ClampedRow { line: 3, axis: 6, torque: 1.0, deflection: 1e-6 }]);
+        campaign.data = Data::Clamped(vec![ClampedRow { line: 3, axis: 6, torque: 1.0, deflection: 1e-6 }]);
         let told = campaign.check().expect_err("an arm of five joints");
         assert_eq!(told, "the row of line 3 loads axis 6, and the robot has 5 joints");
-        campaign.data = Data::Clamped(std::vec![]);
+        campaign.data = Data::Clamped(vec![]);
         assert_eq!(campaign.check(), Err(String::from("there are no rows")));
+    }
+
+    #[test]
+    fn a_visit_is_at_one_pose() {
+        let mut campaign = Plan { poses: 4, ..Plan::new(1) }.run();
+        let Data::Displacement(data) = &mut campaign.data else { unreachable!("displacements were planned") };
+        let last = data.rows.len() - 1;
+        let line = data.rows[last].line;
+        data.rows[last].visit = 0;
+        let told = campaign.check().expect_err("a visit at two poses");
+        assert_eq!(told, format!("the row of line {line} is at another pose than line 2, of the same visit"));
+    }
+
+    /// Whoever leaves rows out may leave all of a pose out.
+    #[test]
+    fn a_pose_without_rows_is_none() {
+        let mut campaign = Plan { poses: 8, ..Plan::new(1) }.run();
+        let Data::Displacement(data) = &mut campaign.data else { unreachable!("displacements were planned") };
+        data.rows.retain(|row| row.pose != 3);
+        assert_eq!(campaign.check(), Ok(()));
+        assert!(identify(&campaign).is_ok());
+        assert!(trace(&campaign, &Options { draws: 99, ..Options::default() }, &|_| {}).is_ok());
     }
 
     #[test]

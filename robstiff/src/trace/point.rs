@@ -260,9 +260,9 @@ impl<'c> Point<'c> {
     }
 }
 
-/// The first row of each pose.
+/// The first row of each pose; of one without rows, which nothing asks for, that of all.
 fn first_rows(data: &Displacements) -> Vec<usize> {
-    let mut first = std::vec![usize::MAX; data.poses.len()];
+    let mut first = std::vec![0; data.poses.len()];
     for (i, row) in data.rows.iter().enumerate().rev() {
         first[row.pose] = i;
     }
