@@ -15,6 +15,13 @@ pub fn told(p: f64) -> f64 {
     p.clamp(f64::MIN_POSITIVE, 1.0)
 }
 
+/// Schwarz's criterion, up to a constant, of a model of so many numbers that leaves `rss` of so
+/// many readings (Annals of Statistics 6, 1978, 461-464): lower is better. All that is compared
+/// is of the same readings.
+pub fn schwarz(rss: f64, readings: f64, numbers: f64) -> f64 {
+    readings * (rss / readings).max(f64::MIN_POSITIVE).ln() + numbers * readings.ln()
+}
+
 /// The tail of Fisher's F with the degrees of freedom of its two variances.
 pub fn fisher_tail(ratio: f64, [above, below]: [f64; 2]) -> Option<f64> {
     Some(FisherSnedecor::new(above, below).ok()?.sf(number(ratio)?))

@@ -16,6 +16,7 @@ use crate::identify::column::Column;
 use crate::identify::covariance::Whitener;
 use crate::identify::normal::{Fit, Sign};
 use crate::identify::problem::{Block, Equations, Problem, rms};
+use crate::probability::schwarz;
 
 /// The regression of a campaign at one point, with the catalogue behind it; the
 /// first columns are the description's own numbers. Nonlinear numbers that are
@@ -207,8 +208,7 @@ impl Setting<'_> {
     pub fn bic(&self, named: &[Named], fit: &Fit, more: usize) -> f64 {
         let of_effects = named.iter().map(|&one| self.variant(one).parameters).sum::<usize>();
         let parameters = self.base_of(fit) + of_effects + more;
-        let rows = self.problem.total.rows as f64;
-        rows * (fit.rss / rows).max(f64::MIN_POSITIVE).ln() + parameters as f64 * rows.ln()
+        schwarz(fit.rss, self.problem.total.rows as f64, parameters as f64)
     }
 
     /// How far each coefficient of a fit may be off by noise, at most.

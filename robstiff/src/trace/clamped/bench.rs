@@ -10,6 +10,7 @@ use crate::identify::clamped::regression::problem;
 use crate::identify::covariance::NOISELESS;
 use crate::identify::normal::{Fit, Sign};
 use crate::identify::problem::Problem;
+use crate::probability::schwarz;
 use crate::trace::Options;
 use crate::trace::bootstrap::ScoreTest;
 use crate::trace::catalogue::{Candidate, KINDS, Kind, LOAD_CELL_BIAS, Variant};
@@ -111,8 +112,7 @@ impl Bench {
     /// Schwarz's criterion of a model that leaves `rss` with `more` numbers besides
     /// its own.
     pub fn bic(&self, rss: f64, named: &[Named], more: usize) -> f64 {
-        let (parameters, rows) = (self.parameters(named) + more, self.axes.rows.len() as f64);
-        rows * (rss / rows).max(f64::MIN_POSITIVE).ln() + parameters as f64 * rows.ln()
+        schwarz(rss, self.axes.rows.len() as f64, (self.parameters(named) + more) as f64)
     }
 
     /// How many numbers a model has, those out of grids counting each as one.

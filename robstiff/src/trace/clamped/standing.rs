@@ -7,6 +7,7 @@ use super::axes::Axes;
 use super::bench::Bench;
 use super::slips::instead_of_slip;
 use crate::identify::clamped::wild::{self, Room};
+use crate::probability::schwarz;
 use crate::trace::model::{Fitted, Named};
 
 /// A model with its rows.
@@ -118,7 +119,7 @@ impl Standing {
         let used = self.bench.axes.rows.len();
         let all = (used + self.wild.0.len()) as f64;
         let numbers = (self.bench.parameters(&self.model.named) + 2 * self.wild.0.len()) as f64;
-        all * (self.model.fit.rss / all).max(f64::MIN_POSITIVE).ln() + numbers * all.ln()
+        schwarz(self.model.fit.rss, all, numbers)
     }
 }
 

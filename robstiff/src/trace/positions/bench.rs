@@ -16,6 +16,7 @@ use crate::identify::positions::Prepared;
 use crate::identify::positions::model::State;
 use crate::identify::positions::regression::{Regression, Rows, STANDS, Solved};
 use crate::identify::problem::{Problem, rms};
+use crate::probability::schwarz;
 use crate::trace::Options;
 use crate::trace::bootstrap::ScoreTest;
 use crate::trace::catalogue::{Candidate, Variant};
@@ -217,8 +218,7 @@ impl<'c> Bench<'c> {
     fn bic(&self, problem: &Problem, named: &[Named], fit: &Fit) -> f64 {
         let of_effects: usize = named.iter().map(|&one| self.variant(one).parameters).sum();
         let parameters = STANDS + self.prepared.seen().len() + of_effects;
-        let readings = problem.total.rows as f64;
-        readings * (fit.rss / readings).max(f64::MIN_POSITIVE).ln() + parameters as f64 * readings.ln()
+        schwarz(fit.rss, problem.total.rows as f64, parameters as f64)
     }
 
     /// The columns of a model.

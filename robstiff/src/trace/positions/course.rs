@@ -9,6 +9,7 @@ use super::proposals::{extended, sideways, tested, without_borrowed, without_sup
 use super::structure::structure;
 use crate::identify::positions::regression::STANDS;
 use crate::identify::positions::wild::{Wild, wild_rows};
+use crate::probability::schwarz;
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::Named;
 use crate::trace::settle::{dropped_step, without_insignificant};
@@ -187,7 +188,7 @@ fn wild_at(bench: &mut Bench<'_>, model: &Model, strict: bool, kept: Kept) -> (W
     let readings = whole.total.rows as f64;
     // Which row it is, and where it is instead.
     let numbers = (STANDS + chosen.len() + 4 * wild.rows.len()) as f64;
-    let bic = readings * (wild.rss / readings).max(f64::MIN_POSITIVE).ln() + numbers * readings.ln();
+    let bic = schwarz(wild.rss, readings, numbers);
     // A slip that only the first or the last row has is that row: with as many numbers.
     let fewer = bic - readings.ln();
     match bench.extended(&model.named).first() {

@@ -22,6 +22,7 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::identify::normal::{Fit, Normal, Projected, Scaled, Sign};
+use crate::probability::schwarz;
 
 /// What it looks like, as a noun for a sentence.
 pub const WORDS: &str = "a drift of what is read that goes there and back";
@@ -71,14 +72,13 @@ impl Beside {
             moment: total.moment_of(&more) - shares.tr_mul(&total.moment_of(&own)),
             rss: fit.rss,
             readings,
-            price: bic - readings * (fit.rss / readings).max(f64::MIN_POSITIVE).ln(),
+            price: bic - schwarz(fit.rss, readings, 0.0),
         })
     }
 
     /// Schwarz's criterion where so much is left, with so many numbers more.
     fn bic(&self, rss: f64, more: usize) -> f64 {
-        let readings = self.readings;
-        readings * (rss / readings).max(f64::MIN_POSITIVE).ln() + self.price + more as f64 * readings.ln()
+        schwarz(rss, self.readings, more as f64) + self.price
     }
 
     /// The same with combinations of the columns, and so many numbers besides. `None` where the
