@@ -211,7 +211,8 @@ pub fn same_as_wild(bench: &Bench<'_>, model: &Fitted, events: &[Event]) -> Vec<
     let shifts = 3 * events.len();
     let noise = (setting.problem.total.rows - others.problem.total.rows).saturating_sub(shifts);
     let rss = fit.rss * (1.0 + noise as f64 / others.problem.freedom(&fit));
-    let as_wild = setting.bic(named, &Fit { rss, ..fit }, shifts);
+    // Which visit it is, and its shift.
+    let as_wild = setting.bic(named, &Fit { rss, ..fit }, 4 * events.len());
     let mut found: Vec<(f64, String)> = Vec::new();
     for candidate in 0..setting.candidates.len() {
         let Some(rival) = best_with(&setting, named, candidate) else { continue };
