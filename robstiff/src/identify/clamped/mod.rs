@@ -23,9 +23,9 @@ use super::readable::is_readable;
 use super::uncertainty::{WITHIN, student};
 use super::whitening::mean_share;
 use super::{Error, Estimate, Identification, element_name, unit_of};
-use crate::Effect;
 use crate::campaign::{Campaign, ClampedRow};
 use crate::elements::{plays, turn};
+use crate::{Effect, JointKind};
 
 /// Identifies the compliances of the axes that were loaded, beside the laws of
 /// joints that the description declares, from the rows that belong to the others.
@@ -42,12 +42,22 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
         )));
     }
     let less = without_laws(&campaign.robot, rows);
-    // What is left may be a curve of a gear.
-    let wild = wild::wild_rows(&less, &torques(&less), false, &wild::Room::new(&less));
-    let mut left_out = wild.map_or_else(Vec::new, |(rows, _)| rows);
+    let mut left_out: Vec<usize> = [JointKind::Revolute, JointKind::Prismatic]
+        .iter()
+        .flat_map(|&kind| wild_of(&campaign.robot, &less, kind))
+        .collect();
     left_out.sort_unstable();
     let found = slopes(campaign, rows, &left_out)?;
     if is_readable(&found.description) { Ok(found) } else { Err(Error::NoDescription) }
+}
+
+/// The wild rows of the axes of one kind, by index: radians and metres have no noise in common.
+fn wild_of(robot: &Description, rows: &[ClampedRow], kind: JointKind) -> Vec<usize> {
+    let at: Vec<usize> = (0..rows.len()).filter(|&row| robot.joints[rows[row].axis - 1].kind == kind).collect();
+    let own: Vec<ClampedRow> = at.iter().map(|&row| rows[row]).collect();
+    // What is left may be a curve of a gear.
+    let wild = wild::wild_rows(&own, &torques(&own), false, &wild::Room::new(&own));
+    wild.map_or_else(Vec::new, |(wild, _)| wild.into_iter().map(|row| at[row]).collect())
 }
 
 /// The same of all rows but those `left_out`, by index.
@@ -65,11 +75,9 @@ pub fn slopes(campaign: &Campaign, rows: &[ClampedRow], left_out: &[usize]) -> R
     for (i, number) in own.iter().enumerate() {
         let here = |row: &&ClampedRow| number.effect.is_none() && row.axis == i + 1;
         let of_axis: Vec<&ClampedRow> = kept.iter().copied().filter(here).collect();
-        let slope = slope(&of_axis, rounding.get(i).copied().unwrap_or(0.0));
-        let count =
-            |goes: fn(f64) -> bool| rows.iter().filter(here).filter(|row| goes(row.torque * row.deflection)).count();
-        // A sign is wrong in all rows, a wild reading in one.
-        if count(|work| work < 0.0) > count(|work| work > 0.0) {
+        let rounding = rounding.get(i).copied().unwrap_or(0.0);
+        let slope = slope(&of_axis, rounding);
+        if goes_against(rows.iter().filter(here), rounding) {
             let line = of_axis[0].line;
             return Err(Error::AgainstTheLoads(format!(
                 "axis {} deflects against its torque (rows from line {line}): check the signs",
@@ -105,6 +113,15 @@ pub fn slopes(campaign: &Campaign, rows: &[ClampedRow], left_out: &[usize]) -> R
         rms_declared: None,
         rms: None,
     })
+}
+
+/// Whether an axis deflects against its torque: a sign is wrong in most of its rows, a wild reading
+/// in one. Of an axis that does not move, readings may be a step off on either side; `rounding` is
+/// their variance by that.
+fn goes_against<'r>(rows: impl Iterator<Item = &'r ClampedRow> + Clone, rounding: f64) -> bool {
+    let against = rows.clone().filter(|row| row.torque * row.deflection < 0.0).count();
+    let a_step = (12.0 * rounding).sqrt() * (1.0 + 1e-9);
+    2 * against > rows.clone().count() && rows.into_iter().any(|row| row.deflection.abs() > a_step)
 }
 
 /// The rows less what laws of joints do that the description declares, each axis

@@ -79,6 +79,36 @@ fn a_wild_reading_is_no_wrong_sign() {
     assert!(told.to_string().contains("axis 1 deflects against its torque (rows from line 2)"), "{told}");
 }
 
+/// An axis that does not move is read a step off now and then.
+#[test]
+fn a_step_of_the_gauge_is_no_wrong_sign() {
+    let still = [row(100.0, 0.0), row(200.0, 0.0), row(300.0, -1e-6), row(400.0, 0.0)];
+    let others = [2e-5, 5e-5, 7e-5, 1.1e-4].iter().zip(still).map(|(&deflection, row)| ClampedRow {
+        axis: 2,
+        deflection,
+        ..row
+    });
+    let of = |rows: Vec<ClampedRow>| identify(&campaign(five_axis(), Data::Clamped(rows.clone())), &rows);
+    let found = of(still.into_iter().chain(others.clone()).collect()).expect("one axis is rigid");
+    assert!(found.estimates[0].at_bound && found.estimates[0].value == 0.0, "{:?}", found.estimates[0]);
+    let against = still.map(|row| ClampedRow { deflection: -1e-6, ..row });
+    assert!(of(against.into_iter().chain(others.clone()).collect()).is_ok(), "a step off in every row");
+    let against = still.map(|row| ClampedRow { deflection: -3e-7 * row.torque, ..row });
+    assert!(matches!(of(against.into_iter().chain(others).collect()), Err(Error::AgainstTheLoads(_))));
+}
+
+/// The noise of gears, in rad, is none of a rail's, in m.
+#[test]
+fn a_rail_among_gears_has_its_own_wild_readings() {
+    let mut robot = five_axis();
+    robot.joints[1].kind = JointKind::Prismatic;
+    let mut random = ChaCha8Rng::seed_from_u64(8);
+    let mut rows = measured(12, |axis, _| if axis == 2 { 0.0 } else { 1e-5 * normal(&mut random) });
+    rows[17].deflection += 6e-5;
+    let found = identify(&campaign(robot, Data::Clamped(rows.clone())), &rows).expect("three axes are loaded");
+    assert_eq!(found.left_out, [19]);
+}
+
 /// What the data do not follow is at its bound, and no wrong sign.
 #[test]
 fn an_axis_that_gives_way_less_than_declared_is_at_its_bound() {
@@ -91,14 +121,14 @@ fn an_axis_that_gives_way_less_than_declared_is_at_its_bound() {
 }
 
 /// Three axes with so many rows each, and noise of 1 urad.
-fn measured(count: usize, more: impl Fn(usize, f64) -> f64) -> Vec<ClampedRow> {
+fn measured(count: usize, mut more: impl FnMut(usize, f64) -> f64) -> Vec<ClampedRow> {
     let mut random = ChaCha8Rng::seed_from_u64(77);
-    let row = |k: usize| {
+    let mut row = |k: usize| {
         let (axis, torque) = (k / count + 1, 1000.0 * (k % count + 1) as f64 / count as f64);
         let deflection = 3e-7 * torque + more(axis, torque) + 1e-6 * normal(&mut random);
         ClampedRow { line: k + 2, axis, torque, deflection }
     };
-    (0..3 * count).map(row).collect()
+    (0..3 * count).map(&mut row).collect()
 }
 
 fn identified(rows: Vec<ClampedRow>) -> Identification {

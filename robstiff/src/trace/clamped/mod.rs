@@ -25,6 +25,8 @@ mod structure;
 mod tests;
 
 pub use self::axes::{Axes, AxisNumber, OnAxes, SLIPPED_AXIS, axes_column};
+use std::string::String;
+
 use super::{Options, Progress, Trace};
 use crate::campaign::{Campaign, ClampedRow};
 use crate::identify::Error;
@@ -34,14 +36,21 @@ use crate::identify::clamped::slopes;
 /// poses the axes.
 ///
 /// # Errors
-/// A campaign that loads no axis, or an axis that deflects against its torque; declared
-/// effects that do not go with the compliances found.
+/// A campaign that loads no axis, or both axes that turn and axes that slide, or an axis that
+/// deflects against its torque; declared effects that do not go with the compliances found.
 pub fn trace(
     campaign: &Campaign,
     rows: &[ClampedRow],
     options: &Options,
     progress: &Progress<'_>,
 ) -> Result<Trace, Error> {
+    let kind = |row: &ClampedRow| campaign.robot.joints[row.axis - 1].kind;
+    if rows.iter().any(|row| kind(row) != kind(&rows[0])) {
+        return Err(Error::OtherCampaign(String::from(
+            "some axes turn and some slide, and radians and metres have no noise in common: give the axes that slide a \
+             campaign of their own",
+        )));
+    }
     progress("identifying the axes");
     // It refuses what no search should be begun with.
     let identified = slopes(campaign, rows, &[])?;
