@@ -127,8 +127,7 @@ pub struct Identification {
     pub poses: usize,
     /// The noise of one displacement reading (m), and where it is from.
     pub noise: Option<(f64, NoiseSource)>,
-    /// How the readings hang together, and which do not belong; none for clamped
-    /// axes.
+    /// How the readings hang together, and which do not belong; of displacements.
     pub covariance: Option<Covariance>,
     /// The lines of rows that do not belong to the others and were left out.
     pub left_out: Vec<usize>,
@@ -214,12 +213,17 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     let joints = &found.estimates[..campaign.robot.joints.len()];
     let mut seen = joints.iter().filter(|joint| joint.visibility == Visibility::Seen).peekable();
     if seen.peek().is_some() && seen.all(|joint| joint.at_bound) {
-        return Err(Error::AgainstTheLoads(format!(
-            "{AGAINST_THE_LOADS}: by them every joint would be less than rigid; \
-             check the signs of loads and readings, their frames and their units"
-        )));
+        return Err(less_than_rigid());
     }
     Ok(found)
+}
+
+/// That by the readings every joint would be less than rigid.
+pub(crate) fn less_than_rigid() -> Error {
+    Error::AgainstTheLoads(format!(
+        "{AGAINST_THE_LOADS}: by them every joint would be less than rigid; check the signs of loads and readings, their \
+         frames and their units"
+    ))
 }
 
 /// The estimates of a description's own numbers, given what the data see of each;

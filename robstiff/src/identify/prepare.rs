@@ -17,7 +17,7 @@ use super::normal::{Fit, Normal, Sign};
 use super::problem::{Problem, Weights, raw};
 use super::samples::Samples;
 use super::second_order::{beyond_linear, straightened};
-use super::{Error, NOTEWORTHY_DEVIATION, NoiseSource, is_at_bound};
+use super::{Error, NoiseSource, is_at_bound, less_than_rigid};
 use crate::campaign::{Campaign, Data, Displacements, told_length};
 use crate::words::count;
 
@@ -62,6 +62,13 @@ const WEIGHT_PASSES: usize = 4;
 /// its estimate would be a number made of noise.
 const DECLARED_STANDS_OUT: f64 = 1.0;
 const IDENTIFIED_STANDS_OUT: f64 = 2.0;
+
+/// What a maker's compliance is taken to be off by, where a fit holds it: the seed paper's
+/// identified ones stayed within it.
+const DECLARED_IS_OFF_BY: f64 = 0.25;
+
+/// A number below zero by more standard deviations is so by no noise.
+const BELOW_ZERO: f64 = 5.0;
 
 /// With fewer readings for each number than this, scatter says nothing of the instrument,
 /// nor of how sure a number is.
@@ -129,14 +136,14 @@ impl<'c> Prepared<'c> {
 
     /// The numbers that a fit holds, by column, each with the standard deviation of what it may
     /// be off by: those lost in the noise, or not told from others, at their declared value
-    /// ([`NOTEWORTHY_DEVIATION`]), and those clipped at zero, from it. Others are no surer
+    /// ([`DECLARED_IS_OFF_BY`]), and those clipped at zero, from it. Others are no surer
     /// than that lets them be.
     pub fn held(&self, fit: &super::normal::Fit) -> Vec<(usize, f64)> {
         let spread = |column: usize| {
             let number = &self.own[column];
             match fit.columns.iter().position(|&fitted| fitted == column) {
                 Some(k) => is_at_bound(number.sign, number.value, fit.coefficients[k]).then_some(number.value),
-                None if self.visibility[column] != Visibility::Seen => Some(NOTEWORTHY_DEVIATION * number.value.abs()),
+                None if self.visibility[column] != Visibility::Seen => Some(DECLARED_IS_OFF_BY * number.value.abs()),
                 None => None,
             }
         };
@@ -298,10 +305,26 @@ fn cannot_tell(prepared: &Prepared<'_>) -> Error {
     ))
 }
 
+/// Whether the readings go against the loads of a description that is rigid: clipped at zero its
+/// joints have nothing that could stand out from the noise.
+fn is_less_than_rigid(prepared: &Prepared<'_>, problem: &Problem) -> bool {
+    let shown = visibility(&problem.total, prepared.own.len());
+    let columns: Vec<usize> = (0..shown.len()).filter(|&column| shown[column] == Visibility::Seen).collect();
+    let solved = problem.total.solve(&columns).zip(problem.total.inverse(&columns));
+    let Some((free, inverse)) = solved.filter(|_| !columns.is_empty()) else { return false };
+    let (noise, _) = prepared.noise(free.rss / problem.freedom(&free));
+    let over_std = |k: usize| free.coefficients[k] / (inverse[(k, k)].sqrt() * noise);
+    let mut all = (0..columns.len()).map(over_std);
+    all.clone().all(|value| value < IDENTIFIED_STANDS_OUT) && all.any(|value| value < -BELOW_ZERO)
+}
+
 /// Why the data show none of the numbers.
 fn nothing_shows(prepared: &Prepared<'_>, problem: &Problem) -> Error {
     if prepared.data.rows.iter().all(|row| row.wrench.iter().all(|&load| load == 0.0)) {
         return Error::NotShown(String::from("every force and moment is zero: nothing pushes the arm"));
+    }
+    if is_less_than_rigid(prepared, problem) {
+        return less_than_rigid();
     }
     let numbers = prepared.own.len();
     // By the geometry, before anything is held against the noise.

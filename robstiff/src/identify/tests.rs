@@ -303,6 +303,26 @@ fn repetitions_give_the_noise() {
     assert!((found.variance().expect("enough repetitions").sqrt() - 1e-5).abs() < 1e-12);
 }
 
+/// A robot that was imported is rigid: its compliances have no declared value to be held to.
+#[test]
+fn wrong_signs_are_told_of_a_rigid_robot_too() {
+    let rigid = {
+        let mut robot = five_axis();
+        robot.joints.iter_mut().for_each(|joint| joint.compliance.iter_mut().for_each(|part| part.value = 0.0));
+        robot
+    };
+    let mut campaign = Plan::new(3).run();
+    campaign.robot = rigid;
+    assert!(identify(&campaign).is_ok());
+    let Data::Displacement(data) = &mut campaign.data else { unreachable!("displacements were planned") };
+    data.rows.iter_mut().for_each(|row| row.displacement = row.displacement.map(|reading| -reading));
+    for declared in [None, Some(1e-5)] {
+        campaign.noise.displacement = declared;
+        let told = identify(&campaign).map(|_| ()).expect_err("signs are wrong");
+        assert!(matches!(told, Error::AgainstTheLoads(_)), "{told:?}");
+    }
+}
+
 /// Neither in the numbers nor in how displacements and rotations are weighed against each other.
 #[test]
 fn poses_held_out_have_no_part_in_the_fit() {
