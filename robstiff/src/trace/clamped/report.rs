@@ -190,19 +190,28 @@ fn values(campaign: &Campaign, bench: &Bench, model: &Fitted) -> Vec<f64> {
     values
 }
 
-/// The effects that were found, with what the data cannot tell them from, and behind them the
-/// wild rows.
+/// The effects that were found, that without which the criterion is worst first, with what the
+/// data cannot tell them from; and behind them the wild rows.
 fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: f64) -> Vec<NamedEffect> {
     let (bench, model) = (&found.bench, &found.selection.model);
     let replaced = bench.replaced(&model.named);
-    let whole = with_spread(bench, model, spread).into_iter().enumerate().map(|(k, effect)| NamedEffect {
-        effect,
-        lines: Vec::new(),
-        p_value: found.selection.p_values[k],
-        holdout_rms,
-        in_part: Vec::new(),
-        same_as: same_as(bench, model, k, &replaced),
-        partial,
+    let all = with_spread(bench, model, spread);
+    let without = |k: usize| bench.fit(&all_but(&model.named, k)).map_or(f64::INFINITY, |without| without.bic);
+    let mut costs: Vec<(f64, usize)> = (0..all.len()).map(|k| (without(k), k)).collect();
+    costs.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut so_far = Vec::new();
+    let whole = costs.into_iter().map(|(_, k)| {
+        so_far.push(model.named[k]);
+        so_far.sort_unstable();
+        NamedEffect {
+            effect: all[k].clone(),
+            lines: Vec::new(),
+            p_value: found.selection.p_values[k],
+            holdout_rms: bench.fit(&so_far).map_or(holdout_rms, |so_far| bench.left_out_rms(&so_far.fit)),
+            in_part: Vec::new(),
+            same_as: same_as(bench, model, k, &replaced),
+            partial,
+        }
     });
     let mut named: Vec<NamedEffect> = whole.collect();
     let (lines, p_value) = &found.wild;

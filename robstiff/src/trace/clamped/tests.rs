@@ -233,7 +233,7 @@ fn noise_is_no_wild_reading() {
 #[test]
 fn what_is_written_does_what_is_told() {
     let mut robot = five_axis();
-    robot.joints[1].kind = crate::JointKind::Prismatic;
+    robot.joints.iter_mut().for_each(|joint| joint.kind = crate::JointKind::Prismatic);
     let hard = |axis, force: f64| if axis == 2 { 2e-7 * force / (force / 300.0).hypot(1.0) } else { 0.0 };
     let campaign = measured(&robot, &ramp(14), 1, hard);
     let trace = traced(&campaign);
@@ -243,6 +243,17 @@ fn what_is_written_does_what_is_told() {
     let left = |row: &ClampedRow| row.deflection - trace.description.joints[row.axis - 1].compliance() * row.torque;
     let rms = (rows.iter().map(|row| left(row).powi(2)).sum::<f64>() / rows.len() as f64).sqrt();
     assert!((rms / trace.after.rms - 1.0).abs() < 1e-6, "{rms} and {}", trace.after.rms);
+}
+
+/// Radians and metres have no noise in common.
+#[test]
+fn axes_that_turn_and_axes_that_slide_are_traced_apart() {
+    let mut robot = five_axis();
+    robot.joints[1].kind = crate::JointKind::Prismatic;
+    let campaign = measured(&robot, &ramp(8), 3, |_, _| 0.0);
+    let told = trace(&campaign, &Options::default(), &|_| {}).map(|_| ()).expect_err("a rail among gears");
+    assert!(matches!(told, crate::identify::Error::OtherCampaign(_)), "{told:?}");
+    assert!(crate::identify::identify(&campaign).is_ok());
 }
 
 /// The torques of a loop up, down and to the other side.
@@ -283,8 +294,23 @@ fn slips_of_two_axes_are_two() {
     }
     let trace = traced(&campaign);
     assert_eq!(names(&trace), ["base_slip@base"; 2]);
-    assert_eq!([0, 1].map(|k| trace.effects[k].effect.value("axis")), [2.0, 5.0]);
+    assert_eq!([0, 1].map(|k| trace.effects[k].effect.value("axis")), [5.0, 2.0]);
     assert!(trace.effects.iter().all(|named| !named.same_as.contains(&"base_slip@base".into())));
+}
+
+/// Each with the error that it and those before it leave.
+#[test]
+fn what_explains_most_is_told_first() {
+    let curve = |knee: f64, torque: f64| torque / (torque / knee).hypot(1.0);
+    let hard = |axis, torque| match axis {
+        2 => 1e-7 * curve(300.0, torque),
+        4 => 6e-7 * curve(300.0, torque),
+        _ => 0.0,
+    };
+    let trace = traced(&measured(&five_axis(), &both_ways(), 730, hard));
+    assert_eq!(names(&trace), ["stiffness_nonlinearity@joint 4", "stiffness_nonlinearity@joint 2"]);
+    let [first, both] = [0, 1].map(|k| trace.effects[k].holdout_rms);
+    assert!(first < 0.5 * trace.identified.holdout_rms && both < first, "{first} {both} {:?}", trace.identified);
 }
 
 /// After the last row of an axis none shows whether it has slipped.
