@@ -82,11 +82,11 @@ fn among_more<'c>(
         return None;
     }
     let (nameless, named) = told(campaign, &wide, &found.model);
-    let lost = names_lost(&wide, course, &named);
-    if !unsaid && (lost.is_empty() || !is_better(&wide, &found.model, &model)) {
+    let loses = !names_lost(&wide, course, &named).is_empty();
+    if !(unsaid || loses && is_better(&wide, &found.model, &model)) {
         return None;
     }
-    without_nameless(wide, (bench.candidates.len(), course), found, (&nameless, &named), lost)
+    without_nameless(wide, (bench.candidates.len(), course), found, (&nameless, &named))
 }
 
 /// Models with one thing without a name beside what a model names, or in place of one or all
@@ -154,7 +154,6 @@ fn without_nameless<'c>(
     (candidates, before): (usize, &Course),
     found: Course,
     (nameless, named): (&[Named], &[Named]),
-    lost: Vec<String>,
 ) -> Option<Beyond<'c>> {
     let words = |one: &Named| {
         let candidate = &wide.candidates[one.candidate];
@@ -166,12 +165,13 @@ fn without_nameless<'c>(
         at.map_or(1.0, |at| found.p_values[at])
     };
     let (mut bench, state) = wide.narrowed(candidates, &found.model.solved.state);
-    // What is possible only beside something nameless is not told.
+    // What is possible only beside something nameless is not told, but that it is taken back.
     let (named, model) = match bench.solve(named, &state) {
         Some(model) => (named, model),
         None => (&[][..], bench.solve(&[], &state)?),
     };
     bench.turn_to(&model);
+    let lost = names_lost(&bench, before, named);
     let mut step = Step::bare(named.iter().map(|one| bench.candidates[one.candidate].name()).collect());
     step.outcome = format!("beside what has no name in the catalogue: {}", looks_like.join(", "));
     let mut steps = before.steps.clone();
