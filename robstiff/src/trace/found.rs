@@ -28,7 +28,8 @@ pub struct EffectParameter {
     pub name: &'static str,
     /// Its value.
     pub value: f64,
-    /// One standard deviation; none for a number out of a grid.
+    /// One standard deviation; none for what is counted, as an order or a line, and where the data
+    /// do not tell.
     pub std: Option<f64>,
     /// Its unit.
     pub unit: &'static str,

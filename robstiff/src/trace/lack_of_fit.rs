@@ -16,6 +16,8 @@
 //!    rank correlation); the noise of a reading does not know the load.
 //! 4. *Agreement*: readings of a pose agree more than noise does
 //!    ([`agreement`](mod@super::agreement)).
+//! 5. *Encoders*: where joints are read behind their gears, what is left of those readings
+//!    against their own noise.
 //!
 //! Where poses are held out, these are asked last of all, when nothing is chosen any
 //! more ([`held_out`](mod@super::held_out)).

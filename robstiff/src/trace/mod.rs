@@ -6,7 +6,7 @@
 //!    for everything in the `catalogue` (`point`, `model`);
 //! 2. what is wrong in single visits is left out (`isolated`);
 //! 3. `selection` searches for the effects that the data ask for, admitted by the family-wise
-//!    `bootstrap` test and by poses held out;
+//!    `bootstrap` test and by poses left out in turn;
 //! 4. `lack_of_fit` asks whether structure is left, `beyond` whether something without a name
 //!    accounts for it or for what names do, `wander` whether a slip is what goes there and back,
 //!    `along` whether what is left points where a named effect does;

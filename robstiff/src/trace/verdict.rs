@@ -68,7 +68,8 @@ const AS_MUCH: f64 = 0.95;
 const NEARLY_ALL: f64 = 0.95;
 
 /// The effects of a model that are to be taken back because structure is left
-/// all the same: one at a time, that which is worth least.
+/// all the same: one at a time, that which is worth least; but of gears that harden or soften
+/// all, where what is left depends on the order of loads.
 pub fn to_take_back(bench: &Bench<'_>, model: &Fitted, left: &LackOfFit) -> Vec<usize> {
     if !left.structure || model.named.is_empty() {
         return Vec::new();
@@ -143,7 +144,8 @@ pub fn judge(selection: &Selection, left: &LackOfFit, besides: &Besides<'_>) -> 
         None if selection.unnamed => {
             String::from("something is missing significantly, but no effect of the catalogue passes every test")
         }
-        None => String::from("what the names that were taken back had accounted for"),
+        None if !taken_back.is_empty() => String::from("what the names that were taken back had accounted for"),
+        None => String::from("with it the readings are accounted for better"),
     };
     let taken_back = taken_back.join(", ");
     let verdict = match (named, structure) {

@@ -116,8 +116,8 @@ pub(super) fn outliers(evidence: &Evidence<'_>) -> Verdict {
                 format!("{} stands out, not beyond doubt.", count(wild.len(), "reading"))
             },
             format!(
-                "{} {} not belong to the others; see the list. They are left out of the estimate of the noise, and of \
-                 nothing else.",
+                "{} {} not belong to the others; see the list. They are left out of the estimate of the noise; what does \
+                 not belong beyond doubt, of fits, too.",
                 count(wild.len(), "reading"),
                 if wild.len() == 1 { "does" } else { "do" }
             ),

@@ -224,8 +224,8 @@ impl Covariance {
     }
 
     /// One sigma of one axis of one displacement reading (m): a displacement is
-    /// the difference of two, however they are shared. `None` where nothing is
-    /// known but the model.
+    /// the difference of two, however they are shared. `None` where it is but
+    /// assumed.
     pub fn reading(&self) -> Option<f64> {
         (self.basis != Basis::Assumed).then(|| self.reference(0..3))
     }

@@ -76,7 +76,7 @@ pub struct Solved {
 
 impl Regression<'_> {
     /// Fits some numbers, beginning with a state. `None` where the rows do not tell
-    /// them from each other or from where the robot stands, or no fit is come to.
+    /// them from each other or from where the robot stands, or steps lead out of all numbers.
     pub fn solve(&self, chosen: &[usize], start: &State, rows: &Rows) -> Option<Solved> {
         let mut state = start.clone();
         for (number, value) in state.values.iter_mut().enumerate() {
