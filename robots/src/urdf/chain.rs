@@ -78,7 +78,6 @@ impl Tree {
     /// Links that are not there or not on one chain, several ends to choose
     /// from, joints that a chain of revolute and prismatic ones cannot have.
     pub fn chain(&self, base: Option<&str>, tip: Option<&str>) -> Result<Chain, Diagnostics> {
-        let whole = 0..self.text.len().min(1);
         let base = match base {
             Some(name) => self.link(name, "base")?,
             None => self.root()?,
@@ -119,7 +118,7 @@ impl Tree {
         if joints.is_empty() || joints.len() > MOST_JOINTS {
             let (base, tip) = (&self.links[base].name, &self.links[tip].name);
             let message = format!("{} between `{base}` and `{tip}`", words::count(joints.len(), "moving joint"));
-            return Err(self.problem(&whole, &message, "a description has one to eight; choose another base or tip"));
+            return Err(self.problem(&self.whole(), &message, "a description has one to eight; choose another base or tip"));
         }
         let (bodies, warnings) = self.bodies(&path);
         Ok(Chain {
@@ -140,7 +139,7 @@ impl Tree {
                 Some(near) => format!("did you mean `{near}`? the links are {}", list(names())),
                 None => format!("the links are {}", list(names())),
             };
-            self.problem(&(0..self.text.len().min(1)), &format!("there is no link `{name}` to be the {what}"), &help)
+            self.problem(&self.whole(), &format!("there is no link `{name}` to be the {what}"), &help)
         })
     }
 

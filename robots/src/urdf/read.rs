@@ -8,6 +8,7 @@ use roxmltree::{Document, Node};
 
 use super::{Body, Connection, Motion, Tree};
 use crate::bare::in_si;
+use crate::document::without_byte_order_mark;
 use crate::quantity::Dimension;
 use crate::suggest::list;
 use crate::words::count;
@@ -41,6 +42,7 @@ impl Tree {
     /// # Errors
     /// What is wrong with it, each problem at its place.
     pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
+        let text = without_byte_order_mark(text);
         let document = Document::parse(text).map_err(|error| {
             let help = "close every element and every quote; `&` and `<` in a text are `&amp;` and `&lt;`";
             let problem = |number, column, message: &str| {
@@ -73,6 +75,11 @@ impl Tree {
             Some(problems) => Err(problems),
             None => Ok(Self { warnings: reader.warnings, ..tree }),
         }
+    }
+
+    /// Where problems of the whole file are shown: at its first character.
+    pub(super) fn whole(&self) -> Range<usize> {
+        0..self.text.chars().next().map_or(0, char::len_utf8)
     }
 
     /// A problem at a place of the file.

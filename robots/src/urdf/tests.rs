@@ -98,6 +98,16 @@ fn ends_and_links_are_chosen_or_asked_for() {
     assert!(apart(&part, &part.description(), &[0.1, 0.2, 0.3]) < 1e-12);
 }
 
+/// Editors on Windows begin a file with one.
+#[test]
+fn a_byte_order_mark_is_no_part_of_the_file() {
+    let tree = Tree::parse("arm.urdf", &format!("\u{feff}{ARM}")).unwrap();
+    let said = tree.chain(Some("flange"), Some("flang")).unwrap_err().to_string();
+    assert!(said.contains("there is no link `flang`") && said.contains("arm.urdf:1:1"), "{said}");
+    let said = tree.chain(Some("flange"), Some("flange")).unwrap_err().to_string();
+    assert!(said.contains("0 moving joints") && said.contains("arm.urdf:1:1"), "{said}");
+}
+
 #[test]
 fn a_scara_with_a_slide_is_imported() {
     let text = r#"<robot name="scara"><link name="a"/><link name="b"/><link name="c"/><link name="d"/><link name="e"/>
