@@ -167,7 +167,9 @@ impl Reader<'_> {
         let parent = self.end(node, "parent", links);
         let child = self.end(node, "child", links);
         let origin = self.origin(node);
-        let axis = self.axis(node);
+        // Others may have one, of any numbers: it means nothing.
+        let moves = matches!(kind.as_deref(), Some("revolute" | "continuous" | "prismatic"));
+        let axis = if moves { self.axis(node) } else { None };
         let limits = self.limits(node, kind.as_deref());
         let (name, kind) = (name?, kind?);
         let mimics = element(node, "mimic").is_some();

@@ -109,6 +109,21 @@ fn a_byte_order_mark_is_no_part_of_the_file() {
 }
 
 #[test]
+fn what_does_not_move_needs_no_axis() {
+    let joint = |kind: &str| {
+        let ends = "<parent link=\"a\"/><child link=\"b\"/><axis xyz=\"0 0 0\"/>";
+        format!(r#"<robot name="x"><link name="a"/><link name="b"/><joint name="j" type="{kind}">{ends}</joint></robot>"#)
+    };
+    for kind in ["fixed", "floating"] {
+        Tree::parse("x.urdf", &joint(kind)).unwrap_or_else(|problems| panic!("{problems}"));
+    }
+    for kind in ["revolute", "continuous", "prismatic"] {
+        let said = Tree::parse("x.urdf", &joint(kind)).unwrap_err().to_string();
+        assert!(said.contains("the axis has no direction"), "{said}");
+    }
+}
+
+#[test]
 fn a_scara_with_a_slide_is_imported() {
     let text = r#"<robot name="scara"><link name="a"/><link name="b"/><link name="c"/><link name="d"/><link name="e"/>
 <joint name="j1" type="revolute"><parent link="a"/><child link="b"/><origin xyz="0 0 0.4"/><axis xyz="0 0 1"/>
