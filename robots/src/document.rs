@@ -86,12 +86,17 @@ impl Document {
         if self.problems.borrow().len() >= Diagnostics::MOST {
             return;
         }
-        let (line, column) = locate(&self.text, steps);
-        let source_line = source_line(&self.text, line);
-        let rest: String = source_line.chars().skip(column - 1).collect();
+        let (line, column, rest) = self.place(steps);
         let place = (column, extent(&rest, content));
-        let problem = Diagnostic::new(&self.file, Line { number: line, text: source_line }, place, message, help);
+        let problem = Diagnostic::new(&self.file, line, place, message, help);
         self.problems.borrow_mut().push(Diagnostic { path: path.to_owned(), ..problem });
+    }
+
+    /// The line and the column (from 1) of a part, and what stands in the line from there on.
+    fn place(&self, steps: &[Step]) -> (Line<'_>, usize, String) {
+        let (number, column) = locate(&self.text, steps);
+        let line = Line { number, text: source_line(&self.text, number) };
+        (line, column, line.text.chars().skip(column - 1).collect())
     }
 }
 

@@ -29,6 +29,11 @@ impl<'d> Node<'d> {
         locate(&self.document.text, &self.steps).0
     }
 
+    /// What stands in the value's line from there on.
+    fn rest_of_line(&self) -> String {
+        self.document.place(&self.steps).2
+    }
+
     /// Reports a problem with this value.
     pub fn error(&self, message: impl Into<String>, help: impl Into<String>) {
         self.document.report(&self.steps, &self.path, self.content, message.into(), help.into());
@@ -291,15 +296,17 @@ impl<'d> Map<'d> {
     /// `{a: 1,5 m}` reads as `{a: 1, "5 m": nothing}`.
     fn decimal_comma(&self, index: usize) -> Option<String> {
         let name = self.key(index.checked_sub(1)?)?;
-        let Content::Integer(whole) = &self.entries[index - 1].1 else { return None };
-        let decimals = match &self.entries[index] {
-            (Content::Integer(digits), Content::Null) => digits.to_string(),
-            (Content::Text(text), Content::Null) => text.clone(),
-            _ => return None,
-        };
         // Places are whole numbers.
-        let is_number = decimals.starts_with(|first: char| first.is_ascii_digit()) && name != "at";
-        is_number.then(|| format!("a decimal point, not a comma: `{name}: {whole}.{decimals}`"))
+        if name == "at" || self.entries[index].1 != Content::Null {
+            return None;
+        }
+        let Content::Integer(_) = &self.entries[index - 1].1 else { return None };
+        // As it is written: -0 and 05 are read as other numbers.
+        let rest = self.value(index - 1).rest_of_line();
+        let (whole, rest) = rest.split_once(',')?;
+        let decimals = rest.split([',', '}']).next()?.trim();
+        let is_number = decimals.starts_with(|first: char| first.is_ascii_digit());
+        is_number.then(|| format!("a decimal point, not a comma: `{name}: {}.{decimals}`", whole.trim()))
     }
 
     /// What is right, where this field has swallowed its value: `{a:1 m}` reads
