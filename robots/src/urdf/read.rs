@@ -14,6 +14,10 @@ use crate::suggest::list;
 use crate::words::count;
 use crate::{Diagnostic, Diagnostics, JointKind, Line, ReadError, text};
 
+/// As a limit (rad or m) a way to write that there is none: also in degrees or millimetres
+/// no joint goes so far.
+const NO_LIMIT: f64 = 1e5;
+
 /// A reader with the problems found so far.
 struct Reader<'t> {
     file: &'t str,
@@ -256,13 +260,20 @@ impl Reader<'_> {
         let limit = element(node, "limit").filter(|_| matches!(kind, Some("revolute" | "prismatic")))?;
         let dimension = if kind == Some("prismatic") { Dimension::Length } else { Dimension::Angle };
         let mut end = |name: &str| {
-            if limit.has_attribute(name) {
-                self.numbers(limit, name, dimension).map(|[value]| value)
-            } else {
-                Some(0.0)
+            let Some(word) = limit.attribute(name) else { return Some(0.0) };
+            if word.trim().parse::<f64>().is_ok_and(|value| value.abs() >= NO_LIMIT) {
+                let place = limit.attribute_node(name).map_or(limit.range(), |attribute| attribute.range_value());
+                let help = match dimension {
+                    Dimension::Angle => "leave `limit` out, or make it a joint of type `continuous`",
+                    _ => "leave `limit` out where there is none",
+                };
+                self.report(&place, &format!("`{}` is no limit of a joint", word.trim()), help);
+                return None;
             }
+            self.numbers(limit, name, dimension).map(|[value]| value)
         };
-        let (low, high) = (end("lower")?, end("upper")?);
+        let (low, high) = (end("lower"), end("upper"));
+        let (low, high) = (low?, high?);
         if low > high {
             self.report(&limit.range(), "the lower limit is above the upper", "write the smaller one as `lower`");
             return None;
