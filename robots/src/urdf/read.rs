@@ -110,7 +110,9 @@ fn at(file: &str, text: &str, place: &Range<usize>, message: &str, help: &str) -
 
 impl Reader<'_> {
     fn report(&mut self, place: &Range<usize>, message: &str, help: &str) {
-        self.problems.push(at(self.file, self.text, place, message, help));
+        if self.problems.len() < Diagnostics::MOST {
+            self.problems.push(at(self.file, self.text, place, message, help));
+        }
     }
 
     fn tree(&mut self, root: Node<'_, '_>) -> Tree {

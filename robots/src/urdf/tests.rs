@@ -2,7 +2,7 @@ use nalgebra::{Matrix4, Rotation3, Vector3};
 use proptest::prelude::*;
 
 use super::{Chain, Tree};
-use crate::{Description, JointKind, Placement};
+use crate::{Description, Diagnostics, JointKind, Placement};
 
 const ARM: &str = include_str!("arm.urdf");
 
@@ -217,6 +217,13 @@ fn rings_and_files_without_links_are_refused() {
     assert!(said.contains("the link `a` hangs on itself"), "{said}");
     let said = Tree::parse("none.urdf", "<robot name=\"x\"></robot>").unwrap_err().to_string();
     assert!(said.contains("the file has no links") && said.contains("none.urdf:1:1"), "{said}");
+}
+
+#[test]
+fn no_more_problems_are_told_than_anybody_reads() {
+    let links = "<link/>\n".repeat(3 * Diagnostics::MOST);
+    let problems = Tree::parse("x.urdf", &format!("<robot name=\"x\">\n{links}</robot>")).unwrap_err();
+    assert_eq!((problems.iter().count(), problems.may_be_more()), (Diagnostics::MOST, true));
 }
 
 /// Turns by quarters, and any others.
