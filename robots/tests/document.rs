@@ -47,6 +47,14 @@ fn places_in_flow_style() {
 }
 
 #[test]
+fn quotes_that_are_escaped_end_nothing() {
+    assert_places(
+        r#"{a: "x \"y\" z", b: 'it''s', c: ["\"]", 'a''}', "\\"], d: 1}"#,
+        &[(1, 1, 60), (1, 5, 11), (1, 21, 7), (1, 33, 21), (1, 34, 5), (1, 41, 6), (1, 49, 4), (1, 59, 1)],
+    );
+}
+
+#[test]
 fn places_across_lines() {
     assert_places(
         "# first\n\n'k': |\n  long\n  text\nj: >-\n  folded\nf: {x: 1,\n    y: 2}\nw: plain text\n  goes on\n",

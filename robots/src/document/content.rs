@@ -219,7 +219,7 @@ fn is_break(character: char) -> bool {
 /// How many characters of its line the part that starts `rest` covers.
 pub(super) fn extent(rest: &str, content: &Content) -> usize {
     let bytes = match rest.chars().next() {
-        Some(quote @ ('"' | '\'')) => rest[1..].find(quote).map_or(rest.len(), |end| end + 2),
+        Some('"' | '\'') => quoted(rest).unwrap_or(rest.len()),
         Some('{' | '[') => closing_bracket(rest).unwrap_or(rest.trim_end().len()),
         Some('|' | '>') => 1,
         _ => match content {
@@ -233,19 +233,40 @@ pub(super) fn extent(rest: &str, content: &Content) -> usize {
     rest[..bytes].chars().count()
 }
 
+/// The bytes of the text in quotes that starts `rest`, if it ends there.
+fn quoted(rest: &str) -> Option<usize> {
+    let mut characters = rest.char_indices().peekable();
+    let (_, quote) = characters.next()?;
+    while let Some((at, character)) = characters.next() {
+        // Between double quotes a backslash escapes, between single ones a quote another.
+        let escapes = match quote {
+            '"' => character == '\\',
+            _ => character == quote && characters.peek().is_some_and(|(_, next)| *next == quote),
+        };
+        if escapes {
+            characters.next();
+        } else if character == quote {
+            return Some(at + 1);
+        }
+    }
+    None
+}
+
+/// The bytes of the list or map in brackets that starts `rest`, if it ends there.
 fn closing_bracket(rest: &str) -> Option<usize> {
-    let mut depth = 0_usize;
-    let mut quote = None;
-    for (at, character) in rest.char_indices() {
-        match (quote, character) {
-            (Some(open), _) if open == character => quote = None,
-            (Some(_), _) => {}
-            (None, '"' | '\'') => quote = Some(character),
-            (None, '{' | '[') => depth += 1,
-            (None, '}' | ']') if depth == 1 => return Some(at + 1),
-            (None, '}' | ']') => depth = depth.saturating_sub(1),
+    let (mut depth, mut at) = (0_usize, 0);
+    while let Some(character) = rest[at..].chars().next() {
+        match character {
+            '"' | '\'' => {
+                at += quoted(&rest[at..])?;
+                continue;
+            }
+            '{' | '[' => depth += 1,
+            '}' | ']' if depth == 1 => return Some(at + 1),
+            '}' | ']' => depth = depth.saturating_sub(1),
             _ => {}
         }
+        at += character.len_utf8();
     }
     None
 }
