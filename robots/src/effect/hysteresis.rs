@@ -91,12 +91,10 @@ impl Physics<6> for Hysteresis {
                 continue;
             }
             if *radius <= before {
-                let (than, is_left_out) = match before {
-                    0.0 => ("0", false),
-                    _ => ("the radius before it", *radius == 0.0),
-                };
+                let than = if before == 0.0 { "0" } else { "the radius before it" };
                 return Some(Complaint {
-                    parameter: if is_left_out { of.name } else { name.name },
+                    parameter: name.name,
+                    otherwise: Some(of.name),
                     message: format!("`{}` is not above {than}", name.name),
                     help: "give the radii from the smallest to the largest, above 0 Nm".to_owned(),
                 });

@@ -215,6 +215,8 @@ impl Row {
 pub struct Complaint {
     /// The parameter at fault.
     pub parameter: &'static str,
+    /// The one that asks for it, shown where it is left out.
+    pub otherwise: Option<&'static str>,
     /// What is wrong.
     pub message: String,
     /// What would be right.

@@ -53,6 +53,7 @@ impl Physics<4> for PoseDependentCompliance {
         let (least, at) = least_change(numbers);
         (least <= -1.0).then(|| Complaint {
             parameter: largest(numbers),
+            otherwise: None,
             message: format!("at q = {:.0} deg, {place} would have no compliance left", at.to_degrees()),
             help: "the amplitudes are parts of the joint's compliance, which must stay positive".to_owned(),
         })

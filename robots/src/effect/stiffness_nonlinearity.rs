@@ -57,6 +57,7 @@ impl Physics<2> for StiffnessNonlinearity {
     fn check([added, _]: [f64; 2], place: Place, compliance: f64) -> Option<Complaint> {
         (added <= -compliance).then(|| Complaint {
             parameter: "added",
+            otherwise: None,
             message: format!("without load, {place} would have no compliance left: {compliance:e} {added:+e} rad/Nm"),
             help: match compliance {
                 0.0 => format!("{place} is rigid: give it a `compliance`, or `added` above 0"),

@@ -66,6 +66,7 @@ impl Physics<3> for TransmissionError {
     fn check([_, sin, cos]: [f64; 3], _: Place, _: f64) -> Option<Complaint> {
         (sin.hypot(cos) > MOST_DEVIATION).then(|| Complaint {
             parameter: if sin.abs() > cos.abs() { "sin" } else { "cos" },
+            otherwise: None,
             message: format!(
                 "an angle error of {:.2} mrad is more than {} mrad",
                 sin.hypot(cos) * 1e3,

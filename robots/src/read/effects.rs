@@ -103,7 +103,8 @@ fn effect(node: &Node, arm: &Arm<'_>) -> Option<Effect> {
         _ => 0.0,
     };
     if let Some(complaint) = effect.check(compliance) {
-        map.get(complaint.parameter).as_ref().unwrap_or(node).error(complaint.message, complaint.help);
+        let shown = map.get(complaint.parameter).or_else(|| map.get(complaint.otherwise?));
+        shown.as_ref().unwrap_or(node).error(complaint.message, complaint.help);
         return None;
     }
     Some(effect)
