@@ -3,7 +3,7 @@
 use crate::description::{Joint, Link, corrected, has_length, is_stroke};
 use crate::document::{Map, Node};
 use crate::effect::gravity_sag::GRAVITY;
-use crate::effect::physics::{About, At, MOST_SAG, Parameter, Range};
+use crate::effect::physics::{About, At, MOST_SAG, Parameter, Quantity, Range};
 use crate::effect::{CATALOGUE, Convention, DhEntry, Effect, JointKind, Place};
 use crate::suggest::{closest, list};
 use crate::words;
@@ -119,8 +119,11 @@ fn number(map: &Map, parameter: &Parameter, place: Option<Place>) -> Option<f64>
             Some(node) => node,
         },
     };
-    // Without a place, its own problem is told; the unit of most is known.
-    let dimension = parameter.quantity.at(place.unwrap_or(Place::Base));
+    // Without a place its own problem is told; the unit of most is known.
+    let dimension = match (parameter.quantity, place) {
+        (Quantity::Of(dimension), _) => dimension,
+        (Quantity::Entry, place) => parameter.quantity.at(place?),
+    };
     match parameter.range {
         Range::Any => node.quantity(dimension),
         Range::NotNegative => node.nonnegative(dimension),
