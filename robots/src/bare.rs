@@ -2,6 +2,7 @@
 
 use crate::dimension::Dimension;
 use crate::quantity::QuantityError;
+use crate::words::above;
 use std::f64::consts::PI;
 
 /// Two turns either way, more than the joints of an arm make (rad).
@@ -29,7 +30,7 @@ pub(crate) fn in_si(value: f64, dimension: Dimension) -> Result<f64, QuantityErr
     let si = dimension.unit();
     let (message, help) = match dimension {
         Dimension::Angle => (
-            format!("{number} rad is {:.0} turns", value.abs() / (2.0 * PI)),
+            format!("{number} rad is {} turns, more than two", above(value.abs() / (2.0 * PI), 2.0)),
             format!("write `{number} deg`, or the unit if it is `{number} rad`"),
         ),
         Dimension::Length => (

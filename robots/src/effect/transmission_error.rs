@@ -12,7 +12,7 @@
 use super::physics::*;
 use super::{Dimension, Scalar};
 #[cfg(feature = "read")]
-use {super::Place, std::format};
+use {super::Place, crate::words::above, std::format};
 
 /// An error of a joint's angle, periodic in the angle.
 pub struct TransmissionError;
@@ -67,11 +67,10 @@ impl Physics<3> for TransmissionError {
         (sin.hypot(cos) > MOST_DEVIATION).then(|| Complaint {
             parameter: if sin.abs() > cos.abs() { "sin" } else { "cos" },
             otherwise: None,
-            message: format!(
-                "an angle error of {:.2} mrad is more than {} mrad",
-                sin.hypot(cos) * 1e3,
-                MOST_DEVIATION * 1e3
-            ),
+            message: {
+                let most = MOST_DEVIATION * 1e3;
+                format!("an angle error of {} mrad is more than {most} mrad", above(sin.hypot(cos) * 1e3, most))
+            },
             help: format!("the amplitude is at most {} mrad, 17 arcmin", MOST_DEVIATION * 1e3),
         })
     }

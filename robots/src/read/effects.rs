@@ -306,8 +306,9 @@ fn check_sag(items: &[Node], effects: &[Option<Effect>], joints: Option<&[Joint]
                 "give every joint that slides its `limits`, e.g. `limits: [0 m, 1.5 m]`",
             );
         } else if sag > MOST_SAG {
+            let most = MOST_SAG * 1e3;
             item.error(
-                format!("joint {joint} could sag by {:.0} mrad, more than {} mrad", sag * 1e3, MOST_SAG * 1e3),
+                format!("joint {joint} could sag by {} mrad, more than {most} mrad", words::above(sag * 1e3, most)),
                 "check the masses, the joint's compliance, and the limits of joints that slide",
             );
         }
