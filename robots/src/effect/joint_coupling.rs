@@ -2,7 +2,8 @@
 //!
 //! An off-diagonal entry of the joints' compliance, `H_q[i, j] = H_q[j, i]`;
 //! together with the others it must leave `H_q` positive definite, so
-//! `|value| < sqrt(h_i h_j)`.
+//! `|value| < sqrt(h_i h_j)`, where `h` is what the effects leave of a joint's
+//! compliance at the worst angle and torque.
 
 use super::physics::*;
 use super::{Dimension, Place};

@@ -4,8 +4,8 @@ use crate::description::Joint;
 use crate::document::Node;
 use crate::effect::{Effect, Place};
 
-/// As near to singular `H_q`, scaled to a diagonal of ones, is singular: rounding decides on
-/// which side it is.
+/// `H_q`, scaled to a diagonal of ones, that is as near to singular as this counts as
+/// singular: on which side of it such a matrix is, rounding decides.
 const ROUNDING: f64 = 1e-12;
 
 /// What is left of each joint's compliance where all its effects together take
@@ -38,22 +38,33 @@ pub(super) fn check_couplings(items: &[Node], effects: &[Option<Effect>], joints
     let mut scaled: Vec<Vec<f64>> =
         (0..count).map(|i| (0..count).map(|j| f64::from(u8::from(i == j))).collect()).collect();
     let mut last = None;
+    let mut all_fit = true;
     for (item, effect) in items.iter().zip(effects) {
-        let Some(Effect::JointCoupling { joints: [i, j], value }) = effect else { continue };
+        let Some(Effect::JointCoupling { joints: pair, value }) = effect else { continue };
+        let [i, j] = *pair;
         let bound = least[i - 1].max(0.0).sqrt() * least[j - 1].max(0.0).sqrt();
         if value.abs() < bound * (1.0 - ROUNDING) {
             scaled[j - 1][i - 1] = value / bound;
             last = Some(item);
             continue;
         }
+        all_fit = false;
+        let own = |joint: usize| joints[joint - 1].compliance();
+        let (message, help) = if let Some(rigid) = pair.iter().find(|&&joint| own(joint) == 0.0) {
+            (format!("joint {rigid} is rigid, and what does not yield cannot be coupled"), "leave the coupling out")
+        } else if bound == 0.0 {
+            // What takes all of a compliance has been reported.
+            continue;
+        } else {
+            let is_taken = pair.iter().any(|&joint| least[joint - 1] < own(joint));
+            let of = if is_taken { ", of what the effects leave of the two compliances" } else { "" };
+            let most = format!("sqrt(h_{i} h_{j}) = {bound:.3e} rad/Nm{of}");
+            (format!("the coupling must be weaker than {most}"), "else a load could do negative work")
+        };
         let field = item.any_map("").and_then(|map| map.get("value"));
-        field.as_ref().unwrap_or(item).error(
-            format!("the coupling must be weaker than sqrt(h_{i} h_{j}) = {bound:.3e} rad/Nm"),
-            if bound == 0.0 { "a rigid joint cannot be coupled" } else { "else a load could do negative work" },
-        );
-        return;
+        field.as_ref().unwrap_or(item).error(message, help);
     }
-    if let (Some(last), false) = (last, is_positive_definite(&mut scaled)) {
+    if let (Some(last), true) = (last, all_fit && !is_positive_definite(&mut scaled)) {
         last.error(
             "the couplings are too strong together: the joints' compliance matrix is not positive definite",
             "weaken one of them, else a load could do negative work",
