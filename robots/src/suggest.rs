@@ -11,9 +11,11 @@ pub(crate) fn closest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c s
         .map(|(_, candidate)| candidate)
 }
 
-/// What other tables call a field, one that stands for it here, and how.
-const CALLED: [(&str, &str, &str); 2] = [
+/// A name that a field has elsewhere, the field that stands for it here, and how to write that.
+const CALLED: [(&str, &str, &str); 4] = [
     ("stiffness", "compliance", "`compliance: 3e6 Nm/rad`, which is inverted"),
+    ("h", "value", "`value`, which reports call `h`"),
+    ("offset", "value", "`value`, which reports call `offset`"),
     ("offset", "theta", "`theta` of a joint that turns, `d` of one that slides"),
 ];
 

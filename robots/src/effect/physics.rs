@@ -79,7 +79,7 @@ impl At {
 /// One number of an effect.
 #[derive(Debug)]
 pub struct Parameter {
-    /// The name in descriptions and reports.
+    /// The name in descriptions; reports may call a `value` by another, such as `h`.
     pub name: &'static str,
     /// The name in generated code, before the number of the place.
     pub symbol: &'static str,
