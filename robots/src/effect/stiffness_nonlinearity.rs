@@ -8,7 +8,7 @@
 use super::physics::*;
 use super::{Dimension, Scalar};
 #[cfg(feature = "read")]
-use {super::Place, std::format};
+use {super::Place, std::borrow::ToOwned, std::format};
 
 /// Hardening (positive) or softening (negative) of a joint with torque.
 pub struct StiffnessNonlinearity;
@@ -55,15 +55,18 @@ impl Physics<2> for StiffnessNonlinearity {
 
     #[cfg(feature = "read")]
     fn check([added, _]: [f64; 2], place: Place, compliance: f64) -> Option<Complaint> {
-        (added <= -compliance).then(|| Complaint {
-            parameter: "added",
-            otherwise: None,
-            message: format!("without load, {place} would have no compliance left: {compliance:e} {added:+e} rad/Nm"),
-            help: match compliance {
-                0.0 => format!("{place} is rigid: give it a `compliance`, or `added` above 0"),
-                _ => format!("`added` must be above -{compliance:e} rad/Nm"),
-            },
-        })
+        let (message, help) = match compliance {
+            _ if added > -compliance => return None,
+            0.0 => (
+                format!("{place} is rigid, and would have no compliance without load"),
+                "give it a `compliance`, or `added` above 0".to_owned(),
+            ),
+            _ => (
+                format!("without load, {place} would have no compliance left: {compliance:e} {added:+e} rad/Nm"),
+                format!("`added` must be above -{compliance:e} rad/Nm"),
+            ),
+        };
+        Some(Complaint { parameter: "added", otherwise: None, message, help })
     }
 
     #[cfg(feature = "read")]
