@@ -1,5 +1,6 @@
 //! Where a description is found.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
@@ -17,12 +18,11 @@ pub(crate) struct Located {
     pub watched: Option<String>,
 }
 
-/// The file's name with its ending: `.yaml` where none is given.
+/// The file's name with its ending: `.yaml` where it has neither that nor `.yml`.
 pub(crate) fn with_ending(file: &str) -> String {
-    match Path::new(file).extension() {
-        Some(_) => file.to_owned(),
-        None => format!("{file}.yaml"),
-    }
+    // Behind another point is a part of the name: `arm-1.5`.
+    let is_ending = |ending: &OsStr| ending == "yaml" || ending == "yml";
+    if Path::new(file).extension().is_some_and(is_ending) { file.to_owned() } else { format!("{file}.yaml") }
 }
 
 /// Looks next to the calling source file, in the crate's manifest folder, in
@@ -97,9 +97,14 @@ mod tests {
 
     #[test]
     fn the_ending_may_be_left_out() {
-        for (file, expected) in
-            [("arm", "arm.yaml"), ("arm.yaml", "arm.yaml"), ("arm.yml", "arm.yml"), ("arms.d/deep", "arms.d/deep.yaml")]
-        {
+        for (file, expected) in [
+            ("arm", "arm.yaml"),
+            ("arm.yaml", "arm.yaml"),
+            ("arm.yml", "arm.yml"),
+            ("arms.d/deep", "arms.d/deep.yaml"),
+            ("arm-1.5", "arm-1.5.yaml"),
+            ("arm-1.5.yaml", "arm-1.5.yaml"),
+        ] {
             assert_eq!(with_ending(file), expected);
         }
     }
