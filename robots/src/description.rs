@@ -3,6 +3,28 @@
 use crate::effect::physics::Row;
 use crate::effect::{Convention, Effect, JointKind};
 
+/// The most joints a robot may have.
+pub const MOST_JOINTS: usize = 8;
+
+/// Names that no robot may have: those that generated code imports, and `Self`, which is no
+/// name.
+pub const TAKEN: [&str; 14] = [
+    "Self",
+    "Robot",
+    "Real",
+    "Statics",
+    "State",
+    "Effect",
+    "DhEntry",
+    "Convention",
+    "JointKind",
+    "Matrix4",
+    "Matrix6",
+    "SMatrix",
+    "SVector",
+    "Vector6",
+];
+
 /// A robot: kinematics, joint compliance, and the effects beyond it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {

@@ -47,6 +47,16 @@ pub enum Convention {
     Modified,
 }
 
+impl Convention {
+    /// The convention as descriptions spell it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Standard => "standard",
+            Self::Modified => "modified",
+        }
+    }
+}
+
 /// What a joint does along its axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
@@ -54,6 +64,16 @@ pub enum JointKind {
     Revolute,
     /// Slides: the joint coordinate (m) adds to d.
     Prismatic,
+}
+
+impl JointKind {
+    /// The dimension of the compliance of such a joint.
+    pub const fn compliance(self) -> Dimension {
+        match self {
+            Self::Revolute => Dimension::Compliance,
+            Self::Prismatic => Dimension::LinearCompliance,
+        }
+    }
 }
 
 registry! {

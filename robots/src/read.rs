@@ -8,7 +8,7 @@ mod outline;
 pub use outline::Outline;
 
 use crate::angle::snapped;
-use crate::description::{Description, Joint, Link, Part, Placement};
+use crate::description::{Description, Joint, Link, MOST_JOINTS, Part, Placement, TAKEN};
 use crate::diagnostic::Diagnostics;
 use crate::document::{Document, Map, Node};
 use crate::effect::{Convention, Effect, JointKind};
@@ -18,9 +18,6 @@ use crate::words::count;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
-
-/// The most joints a robot may have.
-const MOST_JOINTS: usize = 8;
 
 /// Why a description could not be read.
 #[derive(Debug)]
@@ -114,7 +111,7 @@ fn description(root: &Node) -> Option<Description> {
     let (summary, source) = (text("description"), text("source"));
     let convention = map
         .require("convention", "convention: standard")
-        .and_then(|node| node.choice(&[("standard", Convention::Standard), ("modified", Convention::Modified)]));
+        .and_then(|node| node.choice(&[Convention::Standard, Convention::Modified].map(|one| (one.word(), one))));
     let base = optional(&map, "base", Placement::read);
     let joints = map.require("joints", "joints: [{theta: 0 deg, d: 865 mm, alpha: -90 deg}, ..]");
     let count = joints.as_ref().filter(|node| node.is_sequence()).and_then(|node| Some(node.sequence()?.len()));
@@ -161,24 +158,6 @@ fn name(node: &Node) -> Option<String> {
     }
     Some(name.to_owned())
 }
-
-/// Names that generated code imports, and `Self`, which is no name.
-const TAKEN: [&str; 14] = [
-    "Self",
-    "Robot",
-    "Real",
-    "Statics",
-    "State",
-    "Effect",
-    "DhEntry",
-    "Convention",
-    "JointKind",
-    "Matrix4",
-    "Matrix6",
-    "SMatrix",
-    "SVector",
-    "Vector6",
-];
 
 /// Whether a text is an upper camel case identifier that is free.
 fn is_type_name(name: &str) -> bool {
@@ -238,10 +217,7 @@ fn limits(node: &Node, kind: JointKind) -> Option<[f64; 2]> {
 }
 
 fn compliance(node: &Node, kind: JointKind) -> Option<Vec<Part>> {
-    let dimension = match kind {
-        JointKind::Revolute => Dimension::Compliance,
-        JointKind::Prismatic => Dimension::LinearCompliance,
-    };
+    let dimension = kind.compliance();
     if !node.is_map() {
         return Some(vec![Part { name: String::new(), value: node.nonnegative(dimension)? }]);
     }

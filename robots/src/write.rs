@@ -3,7 +3,7 @@
 
 use crate::angle::snapped;
 use crate::description::{Description, Joint, Link, Placement};
-use crate::effect::{Convention, Effect, JointKind, Place};
+use crate::effect::{Effect, JointKind, Place};
 use crate::quantity::{self, Dimension, number};
 use std::fmt::Write;
 
@@ -24,11 +24,7 @@ impl Description {
                 writeln!(yaml, "{field}: {}", block(text)).expect("a string takes any text");
             }
         }
-        let convention = match self.convention {
-            Convention::Standard => "standard",
-            Convention::Modified => "modified",
-        };
-        yaml += &format!("convention: {convention}\n");
+        yaml += &format!("convention: {}\n", self.convention.word());
         yaml += &placement("base", &self.base);
         yaml += &list("joints", self.joints.iter().map(joint));
         yaml += &placement("tool", &self.tool);
@@ -78,10 +74,11 @@ fn joint(joint: &Joint) -> String {
             fields.push((name, written(value)));
         }
     }
-    let (coordinate, unit): (fn(f64) -> String, _) = match joint.kind {
-        JointKind::Revolute => (angle, "rad/Nm"),
-        JointKind::Prismatic => (length, "m/N"),
+    let coordinate: fn(f64) -> String = match joint.kind {
+        JointKind::Revolute => angle,
+        JointKind::Prismatic => length,
     };
+    let unit = joint.kind.compliance().unit();
     if let Some(limits) = joint.limits {
         fields.push(("limits", flow_list(limits.map(coordinate))));
     }

@@ -1,5 +1,6 @@
 //! A robot's name and number of joints from a file that may be broken.
 
+use crate::description::MOST_JOINTS;
 use crate::document::{Content, without_byte_order_mark};
 use serde::de::{Deserializer, MapAccess, Visitor};
 use std::fmt;
@@ -37,7 +38,7 @@ impl<'de> Visitor<'de> for Top<'_> {
                     self.0.name = Some(name).filter(|name| super::is_type_name(name));
                 }
                 (Content::Text(key), Content::Sequence(joints)) if key == "joints" => {
-                    self.0.joints = Some(joints.len()).filter(|count| (1..=super::MOST_JOINTS).contains(count));
+                    self.0.joints = Some(joints.len()).filter(|count| (1..=MOST_JOINTS).contains(count));
                 }
                 _ => {}
             }

@@ -3,11 +3,9 @@
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 
 use super::{Motion, Tree};
+use crate::description::MOST_JOINTS;
 use crate::suggest::{closest, list};
 use crate::{Diagnostics, JointKind, words};
-
-/// The most joints a description may have.
-const MOST_JOINTS: usize = 8;
 
 /// A serial chain of revolute and prismatic joints.
 #[derive(Clone, Debug)]
@@ -118,7 +116,8 @@ impl Tree {
         if joints.is_empty() || joints.len() > MOST_JOINTS {
             let (base, tip) = (&self.links[base].name, &self.links[tip].name);
             let message = format!("{} between `{base}` and `{tip}`", words::count(joints.len(), "moving joint"));
-            return Err(self.problem(&self.whole(), &message, "a description has one to eight; choose another base or tip"));
+            let help = format!("a description has 1 to {MOST_JOINTS}; choose another base or tip");
+            return Err(self.problem(&self.whole(), &message, &help));
         }
         let (bodies, warnings) = self.bodies(&path);
         Ok(Chain {

@@ -112,7 +112,9 @@ fn a_byte_order_mark_is_no_part_of_the_file() {
 fn what_does_not_move_needs_no_axis() {
     let joint = |kind: &str| {
         let ends = "<parent link=\"a\"/><child link=\"b\"/><axis xyz=\"0 0 0\"/>";
-        format!(r#"<robot name="x"><link name="a"/><link name="b"/><joint name="j" type="{kind}">{ends}</joint></robot>"#)
+        format!(
+            r#"<robot name="x"><link name="a"/><link name="b"/><joint name="j" type="{kind}">{ends}</joint></robot>"#
+        )
     };
     for kind in ["fixed", "floating"] {
         Tree::parse("x.urdf", &joint(kind)).unwrap_or_else(|problems| panic!("{problems}"));

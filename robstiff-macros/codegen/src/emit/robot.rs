@@ -2,6 +2,7 @@
 
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::{format_ident, quote};
+use robstiff_robots::description::MOST_JOINTS;
 use robstiff_robots::words::count;
 use robstiff_robots::{Description, Place};
 use syn::Ident;
@@ -99,9 +100,6 @@ pub fn skeleton(name: &str, joints: Option<usize>, origin: &Origin) -> TokenStre
         };
     }
 }
-
-/// As many joints as a robot has at most.
-const MOST_JOINTS: usize = 8;
 
 /// The names of the numbers that a robot may have whose effects are not known.
 fn constants_of_any(joints: usize) -> impl Iterator<Item = Ident> {
@@ -335,5 +333,30 @@ fn allow(reader: Reader, unused: &str) -> TokenStream {
     match reader {
         Reader::Compiler => quote!(),
         Reader::Person => quote!(#[allow(clippy::approx_constant, #unused)]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use proc_macro2::TokenTree;
+    use robstiff_robots::description::TAKEN;
+
+    use super::*;
+
+    /// A robot of such a name would be a second item of it.
+    #[test]
+    fn no_robot_is_named_as_what_its_code_imports() {
+        let text = "name: Arm\nconvention: standard\njoints: [{a: 1 m, compliance: 1e-7 rad/Nm}]\neffects:\n  \
+                    - {kind: hysteresis, at: joint 1, radius1: 1 Nm, weight1: 1e-8 rad/Nm}\n  \
+                    - {kind: dh_error, at: a1, value: 1 mm}\n";
+        let robot = Description::parse("arm.yaml", text).unwrap_or_else(|problems| panic!("{problems}"));
+        let imports = imports_of(&robot, &quote!(robstiff)).into_iter();
+        let lists =
+            imports.filter_map(|token| if let TokenTree::Group(list) = token { Some(list.stream()) } else { None });
+        let names = lists.flatten().filter(|token| matches!(token, TokenTree::Ident(_))).map(|name| name.to_string());
+        let taken = TAKEN.into_iter().filter(|name| *name != "Self").map(str::to_owned);
+        assert_eq!(names.collect::<BTreeSet<_>>(), taken.collect());
     }
 }

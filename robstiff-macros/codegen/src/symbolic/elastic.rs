@@ -1,7 +1,7 @@
 //! The elastic parameters of a description, as named symbols.
 
 use robstiff_robots::effect::physics::{self, PLAYS, Spring};
-use robstiff_robots::{Description, Effect, Joint, JointKind, Place, effect};
+use robstiff_robots::{Description, Effect, Joint, Place, effect};
 
 use crate::angle::Angle;
 use crate::graph::{Graph, Sym};
@@ -60,10 +60,7 @@ impl<'g> Law<'g> {
 /// The joints' own compliance (rad/Nm or m/N).
 pub fn joint_compliances<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
     let joint = |(i, joint): (usize, &Joint)| {
-        let unit = match joint.kind {
-            JointKind::Revolute => "rad/Nm",
-            JointKind::Prismatic => "m/N",
-        };
+        let unit = joint.kind.compliance().unit();
         g.named_number(&format!("H{i}"), joint.compliance(), &format!("Compliance of joint {i} ({unit})."))
     };
     (1..).zip(&robot.joints).map(joint).collect()
