@@ -86,7 +86,8 @@ pub trait Robot<const N: usize> {
         self.deflection(q, wrench)
     }
 
-    /// The joint torques that hold a wrench at the TCP, `J^T F` (Nm or N).
+    /// The torques that a wrench which acts on the TCP puts on the joints, `J^T F` (Nm, of
+    /// sliding joints forces in N). Drives hold the arm with the negative.
     fn joint_torques<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>) -> SVector<T, N>;
 
     /// [`transform`](Self::transform), [`jacobian`](Self::jacobian) and

@@ -1839,7 +1839,8 @@ impl Robot<6> for EveryEffect {
         )
     }
 
-    /// Joint torques (Nm) (forces (N) of sliding joints) that hold a wrench at the tool centre point.
+    /// What a wrench that acts on the tool centre point puts on the joints, `J^T F`:
+    /// torques (Nm). Drives hold the arm with the negative.
     ///
     /// 12 trig, 174 mul, 123 add.
     #[inline(always)]

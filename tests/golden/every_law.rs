@@ -1925,7 +1925,8 @@ impl Robot<7> for EveryLaw {
         )
     }
 
-    /// Joint torques (Nm) (forces (N) of sliding joints) that hold a wrench at the tool centre point.
+    /// What a wrench that acts on the tool centre point puts on the joints, `J^T F`:
+    /// torques (Nm), of sliding joints forces (N). Drives hold the arm with the negative.
     ///
     /// 14 trig, 211 mul, 136 add.
     #[inline(always)]

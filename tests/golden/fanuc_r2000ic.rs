@@ -754,7 +754,8 @@ impl Robot<6> for FanucR2000ic {
         )
     }
 
-    /// Joint torques (Nm) (forces (N) of sliding joints) that hold a wrench at the tool centre point.
+    /// What a wrench that acts on the tool centre point puts on the joints, `J^T F`:
+    /// torques (Nm). Drives hold the arm with the negative.
     ///
     /// 12 trig, 83 mul, 54 add.
     #[inline(always)]

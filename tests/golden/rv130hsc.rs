@@ -604,7 +604,8 @@ impl Robot<5> for Rv130hsc {
         )
     }
 
-    /// Joint torques (Nm) (forces (N) of sliding joints) that hold a wrench at the tool centre point.
+    /// What a wrench that acts on the tool centre point puts on the joints, `J^T F`:
+    /// torques (Nm). Drives hold the arm with the negative.
     ///
     /// 10 trig, 50 mul, 33 add.
     #[inline(always)]

@@ -52,6 +52,9 @@ fn docs_go_with_the_joints() {
     assert!(slide.contains("`Slide`, 1 joint, generated") && slide.contains("translation (m/m), rotation."), "{slide}");
     let both = code("{type: prismatic}, {a: 1 m}");
     assert!(both.contains("2 joints, generated") && both.contains("(m/rad, of sliding joints m/m)"), "{both}");
+    assert!(slide.contains("forces (N). Drives") && both.contains("of sliding joints forces (N). Drives"));
+    let turning = code("{a: 1 m}");
+    assert!(turning.contains("torques (Nm). Drives"), "{turning}");
 }
 
 /// An exception is an error where the user's crate forbids the lint, and Clippy looks into

@@ -19,7 +19,7 @@ pub(super) struct Calculation {
     /// The method's name.
     pub name: &'static str,
     /// What it gives, with shape, frame and unit; `{}` is that of a displacement per joint
-    /// coordinate.
+    /// coordinate, `{torques}` what joints carry.
     doc: &'static str,
     /// The method's signature.
     pub signature: Signature,
@@ -80,7 +80,8 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
     },
     Calculation {
         name: "joint_torques",
-        doc: "Joint torques (Nm) (forces (N) of sliding joints) that hold a wrench at the tool centre point.",
+        doc: "What a wrench that acts on the tool centre point puts on the joints, `J^T F`:
+            {torques}. Drives hold the arm with the negative.",
         signature: |n| quote!(fn joint_torques<T: Real>(&self, q: &SVector<T, #n>, wrench: &Vector6<T>) -> SVector<T, #n>),
         algorithm: symbolic::joint_torques,
         result: |_, reader, entries| from(reader, "SVector", entries),
@@ -149,12 +150,12 @@ impl Calculation {
     /// What its docs say for one robot.
     pub fn doc(&self, robot: &Description) -> String {
         let is_of = |kind: JointKind| robot.joints.iter().all(|joint| joint.kind == kind);
-        let per_joint = match (is_of(JointKind::Revolute), is_of(JointKind::Prismatic)) {
-            (true, _) => "m/rad",
-            (false, true) => "m/m",
-            (false, false) => "m/rad, of sliding joints m/m",
+        let (per_joint, torques) = match (is_of(JointKind::Revolute), is_of(JointKind::Prismatic)) {
+            (true, _) => ("m/rad", "torques (Nm)"),
+            (false, true) => ("m/m", "forces (N)"),
+            (false, false) => ("m/rad, of sliding joints m/m", "torques (Nm), of sliding joints forces (N)"),
         };
-        self.doc.replace("{}", per_joint)
+        self.doc.replace("{}", per_joint).replace("{torques}", torques)
     }
 
     fn function(&self, robot: &Description) -> Function {

@@ -91,7 +91,7 @@ fn wrench<'g>(g: &'g Graph, start: &Start<'g>) -> (Vec3<'g>, Vec3<'g>) {
     (part(0), part(3))
 }
 
-/// The joint torques `J^T F` that a wrench at the TCP asks for.
+/// The torques `J^T F` that a wrench which acts on the TCP puts on the joints.
 pub fn joint_torques<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
     cheapest(g, robot, |g, start| {
         let (force, moment) = wrench(g, start);
