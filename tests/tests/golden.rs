@@ -54,7 +54,22 @@ fn docs_go_with_the_joints() {
     assert!(both.contains("2 joints, generated") && both.contains("(m/rad, of sliding joints m/m)"), "{both}");
     assert!(slide.contains("forces (N). Drives") && both.contains("of sliding joints forces (N). Drives"));
     let turning = code("{a: 1 m}");
-    assert!(turning.contains("torques (Nm). Drives"), "{turning}");
+    assert!(turning.contains("torques (Nm). Drives") && turning.contains("   rigid\n"), "{turning}");
+}
+
+/// Of three numbers of one sort each says which it is.
+#[test]
+fn docs_of_constants_differ() {
+    for file in arms::FILES {
+        let code = source(&description(file), &origin(file));
+        let lines: Vec<&str> = code.lines().map(str::trim).collect();
+        let mut docs: Vec<&str> =
+            lines.windows(2).filter(|pair| pair[1].starts_with("pub const")).map(|pair| pair[0]).collect();
+        let count = docs.len();
+        docs.sort_unstable();
+        docs.dedup();
+        assert_eq!(docs.len(), count, "{file}");
+    }
 }
 
 /// An exception is an error where the user's crate forbids the lint, and Clippy looks into

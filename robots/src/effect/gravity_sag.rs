@@ -26,7 +26,7 @@ impl Physics<1> for GravitySag {
         parameters: &[super::physics::Parameter {
             name: "share",
             symbol: "SAG_SHARE",
-            what: "Share of the sag that is not corrected,",
+            what: "Uncorrected share of the sag",
             quantity: Quantity::Of(Dimension::Number),
             range: Range::NotNegative,
             default: None,

@@ -22,11 +22,11 @@ use {super::Place, std::borrow::ToOwned, std::format};
 pub struct Hysteresis;
 
 /// The first one there must be; another that is left out is 0.
-const fn radius(name: &'static str, symbol: &'static str, default: Option<f64>) -> Parameter {
+const fn radius(name: &'static str, symbol: &'static str, what: &'static str, default: Option<f64>) -> Parameter {
     Parameter {
         name,
         symbol,
-        what: "Torque that moves a play operator",
+        what,
         quantity: Quantity::Of(Dimension::Torque),
         range: if default.is_some() { Range::NotNegative } else { Range::Positive },
         default,
@@ -34,11 +34,11 @@ const fn radius(name: &'static str, symbol: &'static str, default: Option<f64>) 
     }
 }
 
-const fn weight(name: &'static str, symbol: &'static str, default: Option<f64>) -> Parameter {
+const fn weight(name: &'static str, symbol: &'static str, what: &'static str, default: Option<f64>) -> Parameter {
     Parameter {
         name,
         symbol,
-        what: "Compliance of a play operator",
+        what,
         quantity: Quantity::Of(Dimension::Compliance),
         range: Range::NotNegative,
         default,
@@ -57,12 +57,12 @@ impl Physics<6> for Hysteresis {
             repeat.",
         typical: "loops as wide as 5 to 20 % of the stroke",
         parameters: &[
-            radius("radius1", "RADIUS1_", None),
-            weight("weight1", "WEIGHT1_", None),
-            radius("radius2", "RADIUS2_", Some(0.0)),
-            weight("weight2", "WEIGHT2_", Some(0.0)),
-            radius("radius3", "RADIUS3_", Some(0.0)),
-            weight("weight3", "WEIGHT3_", Some(0.0)),
+            radius("radius1", "RADIUS1_", "Torque that moves play operator 1", None),
+            weight("weight1", "WEIGHT1_", "Compliance of play operator 1", None),
+            radius("radius2", "RADIUS2_", "Torque that moves play operator 2", Some(0.0)),
+            weight("weight2", "WEIGHT2_", "Compliance of play operator 2", Some(0.0)),
+            radius("radius3", "RADIUS3_", "Torque that moves play operator 3", Some(0.0)),
+            weight("weight3", "WEIGHT3_", "Compliance of play operator 3", Some(0.0)),
         ],
     };
 

@@ -83,7 +83,7 @@ pub struct Parameter {
     pub name: &'static str,
     /// The name in generated code, before the number of the place.
     pub symbol: &'static str,
-    /// What it is, for generated docs; "of joint 3" follows.
+    /// What it is, for generated docs; "of joint 3", "of the base" follows.
     pub what: &'static str,
     /// The quantity, which gives the unit.
     pub quantity: Quantity,

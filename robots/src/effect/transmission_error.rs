@@ -48,8 +48,8 @@ impl Physics<3> for TransmissionError {
                 default: None,
                 example: "1",
             },
-            amplitude("sin", "SIN_ERROR", "Angle error with the sine"),
-            amplitude("cos", "COS_ERROR", "Angle error with the cosine"),
+            amplitude("sin", "SIN_ERROR", "Sine amplitude of the angle error"),
+            amplitude("cos", "COS_ERROR", "Cosine amplitude of the angle error"),
         ],
     };
 

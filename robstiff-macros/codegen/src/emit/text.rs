@@ -38,9 +38,12 @@ fn header(robot: &Description, origin: &Origin, functions: &[Generated]) -> Stri
             JointKind::Revolute => (format!("{}+q{number}", degrees(joint.theta)), joint.d.to_string()),
             JointKind::Prismatic => (degrees(joint.theta), format!("{}+q{number}", joint.d)),
         };
-        let unit = joint.kind.compliance().unit();
-        let (a, alpha, h) = (joint.a, degrees(joint.alpha), joint.compliance());
-        out += &format!("//   {number:>5} {theta:>10} {d:>10} {a:>10} {alpha:>10}   {h:e} {unit}\n");
+        let h = match joint.compliance() {
+            0.0 => "rigid".to_owned(),
+            h => format!("{h:e} {}", joint.kind.compliance().unit()),
+        };
+        let (a, alpha) = (joint.a, degrees(joint.alpha));
+        out += &format!("//   {number:>5} {theta:>10} {d:>10} {a:>10} {alpha:>10}   {h}\n");
     }
     for effect in &robot.effects {
         out += &format!("// with {effect}, {}\n", effect.noun());

@@ -84,7 +84,7 @@ fn steps<'g>(g: &'g Graph, robot: &Description, aside: &[Option<Sym<'g>>], serie
             (JointKind::Prismatic, None) => (Angle::constant(joint.theta), g.coordinate(i) + d),
             (JointKind::Prismatic, Some(aside)) => (Angle::constant(joint.theta), g.coordinate(i) + aside + d),
         };
-        let twist = tilt(g, 0, joint.alpha, &format!("ALPHA{number}"), &format!("DH twist alpha of row {number}"));
+        let twist = tilt(g, 0, joint.alpha, &format!("ALPHA{number}"), &format!("the DH twist alpha of row {number}"));
         let along = Vec3([a, g.number(0.0), d]);
         match robot.convention {
             Convention::Standard => {
@@ -162,8 +162,8 @@ fn place<'g>(g: &'g Graph, steps: &mut Vec<Step<'g>>, placement: &Placement, nam
     let [roll, pitch, yaw] = placement.rpy;
     steps.push(Step::Move(Vec3([at(0, 'X'), at(1, 'Y'), at(2, 'Z')])));
     steps.push(Step::Turn(Angle::constant(yaw)));
-    steps.extend(tilt(g, 1, pitch, &format!("{name}_PITCH"), &format!("pitch of {}", name.to_lowercase())));
-    steps.extend(tilt(g, 0, roll, &format!("{name}_ROLL"), &format!("roll of {}", name.to_lowercase())));
+    steps.extend(tilt(g, 1, pitch, &format!("{name}_PITCH"), &format!("the pitch of the {}", name.to_lowercase())));
+    steps.extend(tilt(g, 0, roll, &format!("{name}_ROLL"), &format!("the roll of the {}", name.to_lowercase())));
 }
 
 /// The turn by a constant angle, if it is one; exact at multiples of 90

@@ -88,7 +88,7 @@ pub fn parameters<'g>(g: &'g Graph, effect: &Effect) -> Vec<Sym<'g>> {
         g.named_number(
             &format!("{}{suffix}", parameter.symbol),
             value,
-            &format!("{} of {place}{unit}.", parameter.what),
+            &format!("{} of {}{unit}.", parameter.what, place.words()),
         )
     };
     effect.parameters().map(named).collect()
