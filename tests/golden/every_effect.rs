@@ -50,13 +50,13 @@ impl EveryEffect {
     pub const BASE_Y: f64 = -0.2;
     /// Frame 0 in the base frame, along Z (m).
     pub const BASE_Z: f64 = 0.5;
-    /// Sine of pitch of base.
+    /// Sine of the pitch of the base.
     pub const SIN_BASE_PITCH: f64 = -0.3894183423086505;
-    /// Cosine of pitch of base.
+    /// Cosine of the pitch of the base.
     pub const COS_BASE_PITCH: f64 = 0.9210609940028851;
-    /// Sine of roll of base.
+    /// Sine of the roll of the base.
     pub const SIN_BASE_ROLL: f64 = 0.19866933079506122;
-    /// Cosine of roll of base.
+    /// Cosine of the roll of the base.
     pub const COS_BASE_ROLL: f64 = 0.9800665778412416;
     /// DH offset d of row 1 (m).
     pub const D1: f64 = 0.75;
@@ -70,9 +70,9 @@ impl EveryEffect {
     pub const D3: f64 = 0.02;
     /// DH length a of row 3 (m).
     pub const A3: f64 = 0.055;
-    /// Sine of DH twist alpha of row 3.
+    /// Sine of the DH twist alpha of row 3.
     pub const SIN_ALPHA3: f64 = -0.9993908270190958;
-    /// Cosine of DH twist alpha of row 3.
+    /// Cosine of the DH twist alpha of row 3.
     pub const COS_ALPHA3: f64 = 0.03489949670250108;
     /// DH offset d of row 4 (m).
     pub const D4: f64 = 1.1;
@@ -92,9 +92,9 @@ impl EveryEffect {
     pub const TOOL_Y: f64 = -0.02;
     /// TCP in the flange frame, along Z (m).
     pub const TOOL_Z: f64 = 0.25;
-    /// Sine of pitch of tool.
+    /// Sine of the pitch of the tool.
     pub const SIN_TOOL_PITCH: f64 = 0.29237170472273677;
-    /// Cosine of pitch of tool.
+    /// Cosine of the pitch of the tool.
     pub const COS_TOOL_PITCH: f64 = 0.9563047559630354;
     /// Compliance of joint 1 (rad/Nm).
     pub const H1: f64 = 2.4e-7;
@@ -120,17 +120,17 @@ impl EveryEffect {
     pub const BENDING3: f64 = 9e-8;
     /// Torsion compliance L / GJ of link 3 (rad/Nm).
     pub const TORSION3: f64 = 0.0;
-    /// Tilt compliance of base (rad/Nm).
+    /// Tilt compliance of the base (rad/Nm).
     pub const BASE_TILT: f64 = 2e-8;
-    /// Translation compliance of base (m/N).
+    /// Translation compliance of the base (m/N).
     pub const BASE_TRANSLATION: f64 = 3e-9;
-    /// Rotation compliance of tool (rad/Nm).
+    /// Rotation compliance of the tool (rad/Nm).
     pub const TOOL_ROTATION: f64 = 3e-7;
-    /// Translation compliance of tool (m/N).
+    /// Translation compliance of the tool (m/N).
     pub const TOOL_TRANSLATION: f64 = 1e-8;
-    /// Coupling compliance of joints 2,3 (rad/Nm).
+    /// Coupling compliance of joints 2 and 3 (rad/Nm).
     pub const COUPLING2_3: f64 = 4e-8;
-    /// Coupling compliance of joints 5,6 (rad/Nm).
+    /// Coupling compliance of joints 5 and 6 (rad/Nm).
     pub const COUPLING5_6: f64 = -1.2e-6;
     /// Additional compliance without load of joint 2 (rad/Nm).
     pub const ADDED2: f64 = 2e-7;

@@ -54,33 +54,33 @@ pub struct EveryLaw;
 
 #[allow(clippy::approx_constant, dead_code)]
 impl EveryLaw {
-    /// Error of theta2 (rad).
+    /// Error of theta of row 2 (rad).
     pub const ERROR_THETA2: f64 = -0.003;
-    /// Error of a3 (m).
+    /// Error of a of row 3 (m).
     pub const ERROR_A3: f64 = 0.0007;
     /// Periods of the angle error in a turn of joint 3.
     pub const ORDER3: f64 = 1.0;
-    /// Angle error with the sine of joint 3 (rad).
+    /// Sine amplitude of the angle error of joint 3 (rad).
     pub const SIN_ERROR3: f64 = 0.0003;
-    /// Angle error with the cosine of joint 3 (rad).
+    /// Cosine amplitude of the angle error of joint 3 (rad).
     pub const COS_ERROR3: f64 = -0.0002;
     /// Zero offset of joint 4 (rad).
     pub const ZERO_OFFSET4: f64 = 0.005235987755982988;
-    /// Error of alpha4 (rad).
+    /// Error of alpha of row 4 (rad).
     pub const ERROR_ALPHA4: f64 = 0.002;
     /// Periods of the angle error in a turn of joint 4.
     pub const ORDER4: f64 = 2.0;
-    /// Angle error with the sine of joint 4 (rad).
+    /// Sine amplitude of the angle error of joint 4 (rad).
     pub const SIN_ERROR4: f64 = 0.0;
-    /// Angle error with the cosine of joint 4 (rad).
+    /// Cosine amplitude of the angle error of joint 4 (rad).
     pub const COS_ERROR4: f64 = 0.001;
-    /// Error of d5 (m).
+    /// Error of d of row 5 (m).
     pub const ERROR_D5: f64 = -0.0011;
     /// Periods of the angle error in a turn of joint 7.
     pub const ORDER7: f64 = 41.0;
-    /// Angle error with the sine of joint 7 (rad).
+    /// Sine amplitude of the angle error of joint 7 (rad).
     pub const SIN_ERROR7: f64 = 8e-5;
-    /// Angle error with the cosine of joint 7 (rad).
+    /// Cosine amplitude of the angle error of joint 7 (rad).
     pub const COS_ERROR7: f64 = 0.0;
     /// Frame 0 in the base frame, along X (m).
     pub const BASE_X: f64 = 0.1;
@@ -88,13 +88,13 @@ impl EveryLaw {
     pub const BASE_Y: f64 = 0.2;
     /// Frame 0 in the base frame, along Z (m).
     pub const BASE_Z: f64 = 0.3;
-    /// Sine of pitch of base.
+    /// Sine of the pitch of the base.
     pub const SIN_BASE_PITCH: f64 = 0.09983341664682815;
-    /// Cosine of pitch of base.
+    /// Cosine of the pitch of the base.
     pub const COS_BASE_PITCH: f64 = 0.9950041652780258;
-    /// Sine of roll of base.
+    /// Sine of the roll of the base.
     pub const SIN_BASE_ROLL: f64 = 0.29552020666133955;
-    /// Cosine of roll of base.
+    /// Cosine of the roll of the base.
     pub const COS_BASE_ROLL: f64 = 0.955336489125606;
     /// DH offset d of row 1 (m).
     pub const D1: f64 = 0.2;
@@ -112,9 +112,9 @@ impl EveryLaw {
     pub const D4: f64 = 0.0;
     /// DH length a of row 4 (m).
     pub const A4: f64 = 1.15;
-    /// Sine of DH twist alpha of row 4.
+    /// Sine of the DH twist alpha of row 4.
     pub const SIN_ALPHA4: f64 = 0.0019999986666669333;
-    /// Cosine of DH twist alpha of row 4.
+    /// Cosine of the DH twist alpha of row 4.
     pub const COS_ALPHA4: f64 = 0.9999980000006666;
     /// DH offset d of row 5, corrected (m).
     pub const D5: f64 = 1.2188999999999999;
@@ -134,9 +134,9 @@ impl EveryLaw {
     pub const TOOL_Y: f64 = -0.02;
     /// TCP in the flange frame, along Z (m).
     pub const TOOL_Z: f64 = 0.25;
-    /// Sine of pitch of tool.
+    /// Sine of the pitch of the tool.
     pub const SIN_TOOL_PITCH: f64 = 0.29237170472273677;
-    /// Cosine of pitch of tool.
+    /// Cosine of the pitch of the tool.
     pub const COS_TOOL_PITCH: f64 = 0.9563047559630354;
     /// Compliance of joint 1 (m/N).
     pub const H1: f64 = 1.6666666666666667e-8;
@@ -158,7 +158,7 @@ impl EveryLaw {
     pub const BENDING3: f64 = 7e-8;
     /// Torsion compliance L / GJ of link 3 (rad/Nm).
     pub const TORSION3: f64 = 1.2e-7;
-    /// Coupling compliance of joints 5,6 (rad/Nm).
+    /// Coupling compliance of joints 5 and 6 (rad/Nm).
     pub const COUPLING5_6: f64 = -4e-7;
     /// Additional compliance without load of joint 3 (rad/Nm).
     pub const ADDED3: f64 = 2e-7;
@@ -172,29 +172,29 @@ impl EveryLaw {
     pub const GAP5: f64 = 0.0002908882086657216;
     /// Torque that takes up most of the play of joint 5 (Nm).
     pub const GAP_KNEE5: f64 = 20.0;
-    /// Torque that moves a play operator of joint 3 (Nm).
+    /// Torque that moves play operator 1 of joint 3 (Nm).
     pub const RADIUS1_3: f64 = 50.0;
-    /// Compliance of a play operator of joint 3 (rad/Nm).
+    /// Compliance of play operator 1 of joint 3 (rad/Nm).
     pub const WEIGHT1_3: f64 = 3e-8;
-    /// Torque that moves a play operator of joint 3 (Nm).
+    /// Torque that moves play operator 2 of joint 3 (Nm).
     pub const RADIUS2_3: f64 = 200.0;
-    /// Compliance of a play operator of joint 3 (rad/Nm).
+    /// Compliance of play operator 2 of joint 3 (rad/Nm).
     pub const WEIGHT2_3: f64 = 4e-8;
-    /// Torque that moves a play operator of joint 3 (Nm).
+    /// Torque that moves play operator 3 of joint 3 (Nm).
     pub const RADIUS3_3: f64 = 600.0;
-    /// Compliance of a play operator of joint 3 (rad/Nm).
+    /// Compliance of play operator 3 of joint 3 (rad/Nm).
     pub const WEIGHT3_3: f64 = 5e-8;
-    /// Torque that moves a play operator of joint 6 (Nm).
+    /// Torque that moves play operator 1 of joint 6 (Nm).
     pub const RADIUS1_6: f64 = 15.0;
-    /// Compliance of a play operator of joint 6 (rad/Nm).
+    /// Compliance of play operator 1 of joint 6 (rad/Nm).
     pub const WEIGHT1_6: f64 = 4e-7;
-    /// Torque that moves a play operator of joint 6 (Nm).
+    /// Torque that moves play operator 2 of joint 6 (Nm).
     pub const RADIUS2_6: f64 = 0.0;
-    /// Compliance of a play operator of joint 6 (rad/Nm).
+    /// Compliance of play operator 2 of joint 6 (rad/Nm).
     pub const WEIGHT2_6: f64 = 0.0;
-    /// Torque that moves a play operator of joint 6 (Nm).
+    /// Torque that moves play operator 3 of joint 6 (Nm).
     pub const RADIUS3_6: f64 = 0.0;
-    /// Compliance of a play operator of joint 6 (rad/Nm).
+    /// Compliance of play operator 3 of joint 6 (rad/Nm).
     pub const WEIGHT3_6: f64 = 0.0;
     /// Relative change of the compliance with cos q of joint 3.
     pub const COS1_3: f64 = 0.1;
