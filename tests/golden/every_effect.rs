@@ -62,14 +62,20 @@ impl EveryEffect {
     pub const D1: f64 = 0.75;
     /// DH length a of row 1 (m).
     pub const A1: f64 = 0.35;
+    /// DH angle theta of row 1 (rad).
+    pub const THETA1: f64 = 0.17453292519943295;
     /// DH offset d of row 2 (m).
     pub const D2: f64 = 0.0;
     /// DH length a of row 2 (m).
     pub const A2: f64 = 1.25;
+    /// DH angle theta of row 2 (rad).
+    pub const THETA2: f64 = -1.5707963267948966;
     /// DH offset d of row 3 (m).
     pub const D3: f64 = 0.02;
     /// DH length a of row 3 (m).
     pub const A3: f64 = 0.055;
+    /// DH angle theta of row 3 (rad).
+    pub const THETA3: f64 = 0.0;
     /// Sine of the DH twist alpha of row 3.
     pub const SIN_ALPHA3: f64 = -0.9993908270190958;
     /// Cosine of the DH twist alpha of row 3.
@@ -78,14 +84,20 @@ impl EveryEffect {
     pub const D4: f64 = 1.1;
     /// DH length a of row 4 (m).
     pub const A4: f64 = 0.0;
+    /// DH angle theta of row 4 (rad).
+    pub const THETA4: f64 = 0.08726646259971647;
     /// DH offset d of row 5 (m).
     pub const D5: f64 = 0.08;
     /// DH length a of row 5 (m).
     pub const A5: f64 = 0.0;
+    /// DH angle theta of row 5 (rad).
+    pub const THETA5: f64 = 0.0;
     /// DH offset d of row 6 (m).
     pub const D6: f64 = 0.23;
     /// DH length a of row 6 (m).
     pub const A6: f64 = 0.0;
+    /// DH angle theta of row 6 (rad).
+    pub const THETA6: f64 = 3.141592653589793;
     /// TCP in the flange frame, along X (m).
     pub const TOOL_X: f64 = 0.05;
     /// TCP in the flange frame, along Y (m).
@@ -96,6 +108,12 @@ impl EveryEffect {
     pub const SIN_TOOL_PITCH: f64 = 0.29237170472273677;
     /// Cosine of the pitch of the tool.
     pub const COS_TOOL_PITCH: f64 = 0.9563047559630354;
+    /// Sine of the yaw of the base.
+    pub const SIN_BASE_YAW: f64 = 0.644217687237691;
+    /// Cosine of the yaw of the base.
+    pub const COS_BASE_YAW: f64 = 0.7648421872844885;
+    /// Yaw of the tool (rad).
+    pub const TOOL_YAW: f64 = -0.19198621771937624;
     /// Compliance of joint 1 (rad/Nm).
     pub const H1: f64 = 2.4e-7;
     /// Compliance of joint 2 (rad/Nm).
@@ -140,6 +158,10 @@ impl EveryEffect {
     pub const ADDED5: f64 = -1e-6;
     /// Torque at the knee of joint 5 (Nm).
     pub const KNEE5: f64 = 90.0;
+    /// Sine of the yaw of the tool.
+    pub const SIN_TOOL_YAW: f64 = -0.1908089953765448;
+    /// Cosine of the yaw of the tool.
+    pub const COS_TOOL_YAW: f64 = 0.981627183447664;
     /// Operations of `transform`.
     pub const TRANSFORM_COST: robstiff::Cost = robstiff::Cost {
         trig: 14,
@@ -330,83 +352,83 @@ impl Robot<6> for EveryEffect {
         let tool_z = T::of(Self::TOOL_Z);
         let sin_tool_pitch = T::of(Self::SIN_TOOL_PITCH);
         let cos_tool_pitch = T::of(Self::COS_TOOL_PITCH);
-        let k1 = T::of(Self::COS_BASE_PITCH * 0.7648421872844885);
-        let k2 = T::of(Self::COS_BASE_PITCH * 0.644217687237691);
+        let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
         let k3 = T::of(-Self::SIN_BASE_PITCH);
         let k4 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
         let k5 = T::of(
-            Self::COS_BASE_ROLL * -0.644217687237691
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
+            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k6 = T::of(
-            Self::COS_BASE_ROLL * 0.7648421872844885
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
-        let k7 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.7648421872844885));
-        let k8 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.644217687237691));
+        let k7 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
+        let k8 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
         let k9 = T::of(Self::A1 * -Self::SIN_BASE_PITCH);
         let k10 = T::of(
             Self::A1
-                * (Self::COS_BASE_ROLL * -0.644217687237691
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k11 = T::of(
             Self::A1
-                * (Self::COS_BASE_ROLL * 0.7648421872844885
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+                * (Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k12 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
         let k13 = T::of(
             Self::D1
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
-                    - Self::SIN_BASE_ROLL * -0.644217687237691),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
         );
         let k14 = T::of(
             Self::D1
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)
-                    - Self::SIN_BASE_ROLL * 0.7648421872844885),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
         let k15 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k16 = T::of(
-            Self::SIN_BASE_ROLL * -0.644217687237691
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
+            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k17 = T::of(
-            Self::SIN_BASE_ROLL * 0.7648421872844885
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
+            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k18 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k19 = T::of(
             Self::A2
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k20 = T::of(
             Self::A2
-                * (Self::SIN_BASE_ROLL * 0.7648421872844885
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k21 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k22 = T::of(
             Self::A3
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k23 = T::of(
             Self::A3
-                * (Self::SIN_BASE_ROLL * 0.7648421872844885
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k24 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s6o, c6o), (s1o, c1o),
         ] = T::sin_cos_all([
             q[1] + q[2],
             q[1],
-            q[3] + T::of(0.08726646259971647),
+            q[3] + T::of(Self::THETA4),
             q[4],
             q[5],
-            q[5] + T::of(2.949606435870417),
-            q[0] + T::of(0.17453292519943295),
+            q[5] + T::of(Self::THETA6 + Self::TOOL_YAW),
+            q[0] + T::of(Self::THETA1),
         ]);
         let t1 = base_x + (k7 * c1o + k10 * s1o + k13);
         let t2 = base_y + (k8 * c1o + k11 * s1o + k14);
@@ -502,81 +524,81 @@ impl Robot<6> for EveryEffect {
         let d4 = T::of(Self::D4);
         let d5 = T::of(Self::D5);
         let d6 = T::of(Self::D6);
-        let k1 = T::of(Self::COS_BASE_PITCH * 0.7648421872844885);
-        let k2 = T::of(Self::COS_BASE_PITCH * 0.644217687237691);
+        let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
         let k3 = T::of(-Self::SIN_BASE_PITCH);
         let k4 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
         let k5 = T::of(
-            Self::COS_BASE_ROLL * -0.644217687237691
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
+            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k6 = T::of(
-            Self::COS_BASE_ROLL * 0.7648421872844885
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
-        let k7 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.7648421872844885));
-        let k8 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.644217687237691));
+        let k7 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
+        let k8 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
         let k9 = T::of(Self::A1 * -Self::SIN_BASE_PITCH);
         let k10 = T::of(
             Self::A1
-                * (Self::COS_BASE_ROLL * -0.644217687237691
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k11 = T::of(
             Self::A1
-                * (Self::COS_BASE_ROLL * 0.7648421872844885
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+                * (Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k12 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
         let k13 = T::of(
             Self::D1
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
-                    - Self::SIN_BASE_ROLL * -0.644217687237691),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
         );
         let k14 = T::of(
             Self::D1
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)
-                    - Self::SIN_BASE_ROLL * 0.7648421872844885),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
         let k15 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k16 = T::of(
-            Self::SIN_BASE_ROLL * -0.644217687237691
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
+            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k17 = T::of(
-            Self::SIN_BASE_ROLL * 0.7648421872844885
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
+            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k18 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k19 = T::of(
             Self::A2
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k20 = T::of(
             Self::A2
-                * (Self::SIN_BASE_ROLL * 0.7648421872844885
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k21 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k22 = T::of(
             Self::A3
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k23 = T::of(
             Self::A3
-                * (Self::SIN_BASE_ROLL * 0.7648421872844885
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k24 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_all([
             q[1] + q[2],
             q[1],
-            q[3] + T::of(0.08726646259971647),
+            q[3] + T::of(Self::THETA4),
             q[4],
             q[5],
-            q[0] + T::of(0.17453292519943295),
+            q[0] + T::of(Self::THETA1),
         ]);
         let p1_x = base_x + (k7 * c1o + k10 * s1o + k13);
         let p1_y = base_y + (k8 * c1o + k11 * s1o + k14);
@@ -705,90 +727,90 @@ impl Robot<6> for EveryEffect {
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
-        let k1 = T::of(Self::COS_BASE_PITCH * 0.7648421872844885);
-        let k2 = T::of(Self::COS_BASE_PITCH * 0.644217687237691);
+        let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
         let k3 = T::of(-Self::SIN_BASE_PITCH);
         let k4 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
         let k5 = T::of(
-            Self::COS_BASE_ROLL * -0.644217687237691
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
+            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k6 = T::of(
-            Self::COS_BASE_ROLL * 0.7648421872844885
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k7 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
         let k8 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
-                - Self::SIN_BASE_ROLL * -0.644217687237691,
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
         );
         let k9 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)
-                - Self::SIN_BASE_ROLL * 0.7648421872844885,
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
-        let k10 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.7648421872844885));
-        let k11 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.644217687237691));
+        let k10 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
+        let k11 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
         let k12 = T::of(Self::A1 * -Self::SIN_BASE_PITCH);
         let k13 = T::of(
             Self::A1
-                * (Self::COS_BASE_ROLL * -0.644217687237691
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k14 = T::of(
             Self::A1
-                * (Self::COS_BASE_ROLL * 0.7648421872844885
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+                * (Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k15 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
         let k16 = T::of(
             Self::D1
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
-                    - Self::SIN_BASE_ROLL * -0.644217687237691),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
         );
         let k17 = T::of(
             Self::D1
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)
-                    - Self::SIN_BASE_ROLL * 0.7648421872844885),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
         let k18 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k19 = T::of(
-            Self::SIN_BASE_ROLL * -0.644217687237691
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
+            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k20 = T::of(
-            Self::SIN_BASE_ROLL * 0.7648421872844885
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
+            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k21 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k22 = T::of(
             Self::A2
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k23 = T::of(
             Self::A2
-                * (Self::SIN_BASE_ROLL * 0.7648421872844885
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k24 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k25 = T::of(
             Self::A3
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k26 = T::of(
             Self::A3
-                * (Self::SIN_BASE_ROLL * 0.7648421872844885
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_all([
             q[1] + q[2],
             q[1],
-            q[3] + T::of(0.08726646259971647),
+            q[3] + T::of(Self::THETA4),
             q[4],
             q[5],
-            q[0] + T::of(0.17453292519943295),
+            q[0] + T::of(Self::THETA1),
         ]);
         let t1 = k1 * c1o + k5 * s1o;
         let t2 = k2 * c1o + k6 * s1o;
@@ -916,138 +938,150 @@ impl Robot<6> for EveryEffect {
         let d4 = T::of(Self::D4);
         let d5 = T::of(Self::D5);
         let k1 = T::of(
-            Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448,
+            Self::TOOL_X * Self::COS_TOOL_YAW - Self::TOOL_Y * -Self::SIN_TOOL_YAW,
         );
         let k2 = T::of(
-            Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664,
+            Self::TOOL_X * -Self::SIN_TOOL_YAW + Self::TOOL_Y * Self::COS_TOOL_YAW,
         );
         let k3 = T::of(Self::TOOL_ROTATION * Self::TOOL_Z);
         let k4 = T::of(
             Self::TOOL_ROTATION
-                * (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664),
+                * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                    + Self::TOOL_Y * Self::COS_TOOL_YAW),
         );
         let k5 = T::of(
             -(Self::TOOL_ROTATION
-                * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)),
+                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)),
         );
         let k6 = T::of(
-            -(Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664),
+            -(Self::TOOL_X * -Self::SIN_TOOL_YAW + Self::TOOL_Y * Self::COS_TOOL_YAW),
         );
         let k7 = T::of(
             Self::TOOL_ROTATION * Self::TOOL_Z
-                * (Self::TOOL_Y * 0.1908089953765448 - Self::TOOL_X * 0.981627183447664),
+                * (Self::TOOL_Y * -Self::SIN_TOOL_YAW
+                    - Self::TOOL_X * Self::COS_TOOL_YAW),
         );
         let k8 = T::of(
-            (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
+            (Self::TOOL_X * -Self::SIN_TOOL_YAW + Self::TOOL_Y * Self::COS_TOOL_YAW)
                 * -(Self::TOOL_ROTATION * Self::TOOL_Z),
         );
         let k9 = T::of(
             Self::TOOL_TRANSLATION
-                + ((Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
+                + ((Self::TOOL_X * -Self::SIN_TOOL_YAW
+                    + Self::TOOL_Y * Self::COS_TOOL_YAW)
                     * (Self::TOOL_ROTATION
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
                     + -(Self::TOOL_ROTATION
-                        * (Self::TOOL_X * 0.981627183447664
-                            - Self::TOOL_Y * 0.1908089953765448))
-                        * (Self::TOOL_Y * 0.1908089953765448
-                            - Self::TOOL_X * 0.981627183447664)),
+                        * (Self::TOOL_X * Self::COS_TOOL_YAW
+                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW))
+                        * (Self::TOOL_Y * -Self::SIN_TOOL_YAW
+                            - Self::TOOL_X * Self::COS_TOOL_YAW)),
         );
         let k10 = T::of(Self::D6 + Self::TOOL_Z);
         let k11 = T::of(
             Self::TOOL_TRANSLATION
                 + (Self::TOOL_Z * (Self::TOOL_ROTATION * Self::TOOL_Z)
                     + -(Self::TOOL_ROTATION
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
-                        * -(Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
-                + -(Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                        * -(Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                + -(Self::TOOL_X * -Self::SIN_TOOL_YAW
+                    + Self::TOOL_Y * Self::COS_TOOL_YAW)
                     * -(Self::H6
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664)),
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW)),
         );
         let k12 = T::of(
-            (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+            (Self::TOOL_X * Self::COS_TOOL_YAW - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                 * -(Self::TOOL_ROTATION
-                    * (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664))
-                + (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                + (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                     * -(Self::H6
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664)),
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW)),
         );
         let k13 = T::of(
             Self::TOOL_TRANSLATION
                 + (-(Self::TOOL_ROTATION * Self::TOOL_Z) * -Self::TOOL_Z
-                    + (Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448)
+                    + (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                         * (Self::TOOL_ROTATION
-                            * (Self::TOOL_X * 0.981627183447664
-                                - Self::TOOL_Y * 0.1908089953765448)))
-                + (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                            * (Self::TOOL_X * Self::COS_TOOL_YAW
+                                - Self::TOOL_Y * -Self::SIN_TOOL_YAW)))
+                + (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                     * (Self::H6
-                        * (Self::TOOL_X * 0.981627183447664
-                            - Self::TOOL_Y * 0.1908089953765448)),
+                        * (Self::TOOL_X * Self::COS_TOOL_YAW
+                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)),
         );
         let k14 = T::of(Self::H6 + Self::TOOL_ROTATION);
         let k15 = T::of(
             -(Self::TOOL_ROTATION
-                * (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664))
+                * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                    + Self::TOOL_Y * Self::COS_TOOL_YAW))
                 + -(Self::H6
-                    * (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664)),
+                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                        + Self::TOOL_Y * Self::COS_TOOL_YAW)),
         );
         let k16 = T::of(
             Self::TOOL_ROTATION
-                * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                 + Self::H6
-                    * (Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448),
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW),
         );
         let k17 = T::of(
             Self::TOOL_TRANSLATION
                 + (Self::TOOL_Z * (Self::TOOL_ROTATION * Self::TOOL_Z)
                     + -(Self::TOOL_ROTATION
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
-                        * -(Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
-                + -(Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                        * -(Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                + -(Self::TOOL_X * -Self::SIN_TOOL_YAW
+                    + Self::TOOL_Y * Self::COS_TOOL_YAW)
                     * -(Self::H6
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
                 - (Self::TOOL_TRANSLATION
                     + (-(Self::TOOL_ROTATION * Self::TOOL_Z) * -Self::TOOL_Z
-                        + (Self::TOOL_X * 0.981627183447664
-                            - Self::TOOL_Y * 0.1908089953765448)
+                        + (Self::TOOL_X * Self::COS_TOOL_YAW
+                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                             * (Self::TOOL_ROTATION
-                                * (Self::TOOL_X * 0.981627183447664
-                                    - Self::TOOL_Y * 0.1908089953765448)))
-                    + (Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448)
+                                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)))
+                    + (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                         * (Self::H6
-                            * (Self::TOOL_X * 0.981627183447664
-                                - Self::TOOL_Y * 0.1908089953765448))),
+                            * (Self::TOOL_X * Self::COS_TOOL_YAW
+                                - Self::TOOL_Y * -Self::SIN_TOOL_YAW))),
         );
         let k18 = T::of(
-            (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+            (Self::TOOL_X * Self::COS_TOOL_YAW - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                 * -(Self::TOOL_ROTATION
-                    * (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664))
-                + (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                + (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                     * -(Self::H6
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
-                + ((Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                + ((Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                     * -(Self::TOOL_ROTATION
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
-                    + (Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448)
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                    + (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                         * -(Self::H6
-                            * (Self::TOOL_X * 0.1908089953765448
-                                + Self::TOOL_Y * 0.981627183447664))),
+                            * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                                + Self::TOOL_Y * Self::COS_TOOL_YAW))),
         );
         let k19 = T::of(Self::H5 + Self::ADDED5);
         let k20 = T::of(-((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)));
@@ -1110,15 +1144,15 @@ impl Robot<6> for EveryEffect {
         let k38 = T::of(Self::A2 * 0.5);
         let k39 = T::of(Self::H2 + Self::ADDED2);
         let k40 = T::of(Self::COUPLING2_3 + Self::COUPLING2_3);
-        let k41 = T::of(0.7648421872844885);
-        let k42 = T::of(0.644217687237691);
+        let sin_base_yaw = T::of(Self::SIN_BASE_YAW);
+        let cos_base_yaw = T::of(Self::COS_BASE_YAW);
         let [(s6o, c6o), (s5, c5), (s4o, c4o), (s3, c3), (s23, c23), (s1o, c1o)] = T::sin_cos_all([
-            q[5] + T::of(2.949606435870417),
+            q[5] + T::of(Self::TOOL_YAW + Self::THETA6),
             q[4],
-            q[3] + T::of(0.08726646259971647),
+            q[3] + T::of(Self::THETA4),
             q[2],
             q[1] + q[2],
-            q[0] + T::of(0.17453292519943295),
+            q[0] + T::of(Self::THETA1),
         ]);
 
         // From joint 6 to the TCP.
@@ -1448,31 +1482,31 @@ impl Robot<6> for EveryEffect {
         let t218 = sin_base_pitch * t193 + cos_base_pitch * t197;
         let t219 = cos_base_pitch * t192 - sin_base_pitch * t195;
         let t220 = sin_base_pitch * t192 + cos_base_pitch * t195;
-        let t221 = k42 * (t202 - t176) + k41 * (t204 + t204);
-        let t222 = k42 * t221;
+        let t221 = sin_base_yaw * (t202 - t176) + cos_base_yaw * (t204 + t204);
+        let t222 = sin_base_yaw * t221;
         let tt_xx = t202 - t222;
-        let tt_xy = k41 * t221 - t204;
+        let tt_xy = cos_base_yaw * t221 - t204;
         let tt_yy = t176 + t222;
-        let tt_xz = k41 * t201 - k42 * t203;
-        let tt_yz = k42 * t201 + k41 * t203;
-        let t223 = k42 * (t208 - t183) + k41 * (t210 + t210);
-        let t224 = k42 * t223;
+        let tt_xz = cos_base_yaw * t201 - sin_base_yaw * t203;
+        let tt_yz = sin_base_yaw * t201 + cos_base_yaw * t203;
+        let t223 = sin_base_yaw * (t208 - t183) + cos_base_yaw * (t210 + t210);
+        let t224 = sin_base_yaw * t223;
         let rr_xx = t208 - t224;
-        let rr_xy = k41 * t223 - t210;
+        let rr_xy = cos_base_yaw * t223 - t210;
         let rr_yy = t183 + t224;
-        let rr_xz = k41 * t207 - k42 * t209;
-        let rr_yz = k42 * t207 + k41 * t209;
-        let t225 = k42 * (t216 - t191) + k41 * (t218 + t220);
-        let t226 = k42 * t225;
-        let t227 = k41 * t225;
+        let rr_xz = cos_base_yaw * t207 - sin_base_yaw * t209;
+        let rr_yz = sin_base_yaw * t207 + cos_base_yaw * t209;
+        let t225 = sin_base_yaw * (t216 - t191) + cos_base_yaw * (t218 + t220);
+        let t226 = sin_base_yaw * t225;
+        let t227 = cos_base_yaw * t225;
         let tr_xx = t216 - t226;
         let tr_xy = t227 - t220;
         let tr_yx = t227 - t218;
         let tr_yy = t191 + t226;
-        let tr_xz = k41 * t215 - k42 * t219;
-        let tr_yz = k42 * t215 + k41 * t219;
-        let tr_zx = k41 * t214 - k42 * t217;
-        let tr_zy = k42 * t214 + k41 * t217;
+        let tr_xz = cos_base_yaw * t215 - sin_base_yaw * t219;
+        let tr_yz = sin_base_yaw * t215 + cos_base_yaw * t219;
+        let tr_zx = cos_base_yaw * t214 - sin_base_yaw * t217;
+        let tr_zy = sin_base_yaw * t214 + cos_base_yaw * t217;
         Matrix6::new(
             tt_xx, tt_xy, tt_xz, tr_xx, tr_xy, tr_xz,
             tt_xy, tt_yy, tt_yz, tr_yx, tr_yy, tr_yz,
@@ -1519,92 +1553,92 @@ impl Robot<6> for EveryEffect {
         let k1 = T::of(1.0 / Self::KNEE2);
         let added5 = T::of(Self::ADDED5);
         let k2 = T::of(1.0 / Self::KNEE5);
-        let k3 = T::of(Self::COS_BASE_PITCH * 0.7648421872844885);
-        let k4 = T::of(Self::COS_BASE_PITCH * 0.644217687237691);
+        let k3 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k4 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
         let k5 = T::of(-Self::SIN_BASE_PITCH);
         let k6 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
         let k7 = T::of(
-            Self::COS_BASE_ROLL * -0.644217687237691
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
+            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k8 = T::of(
-            Self::COS_BASE_ROLL * 0.7648421872844885
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k9 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
         let k10 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
-                - Self::SIN_BASE_ROLL * -0.644217687237691,
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
         );
         let k11 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)
-                - Self::SIN_BASE_ROLL * 0.7648421872844885,
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
-        let k12 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.7648421872844885));
-        let k13 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.644217687237691));
+        let k12 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
+        let k13 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
         let k14 = T::of(Self::A1 * -Self::SIN_BASE_PITCH);
         let k15 = T::of(
             Self::A1
-                * (Self::COS_BASE_ROLL * -0.644217687237691
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k16 = T::of(
             Self::A1
-                * (Self::COS_BASE_ROLL * 0.7648421872844885
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+                * (Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k17 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
         let k18 = T::of(
             Self::D1
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
-                    - Self::SIN_BASE_ROLL * -0.644217687237691),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
         );
         let k19 = T::of(
             Self::D1
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)
-                    - Self::SIN_BASE_ROLL * 0.7648421872844885),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
         let k20 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k21 = T::of(
-            Self::SIN_BASE_ROLL * -0.644217687237691
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
+            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k22 = T::of(
-            Self::SIN_BASE_ROLL * 0.7648421872844885
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
+            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k23 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k24 = T::of(
             Self::A2
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k25 = T::of(
             Self::A2
-                * (Self::SIN_BASE_ROLL * 0.7648421872844885
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k26 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k27 = T::of(
             Self::A3
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k28 = T::of(
             Self::A3
-                * (Self::SIN_BASE_ROLL * 0.7648421872844885
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k29 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k30 = T::of(
             Self::H1
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
-                    - Self::SIN_BASE_ROLL * -0.644217687237691),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
         );
         let k31 = T::of(
             Self::H1
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)
-                    - Self::SIN_BASE_ROLL * 0.7648421872844885),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
         let k32 = T::of(Self::H1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k33 = T::of(0.5);
@@ -1625,10 +1659,10 @@ impl Robot<6> for EveryEffect {
         let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_all([
             q[1] + q[2],
             q[1],
-            q[3] + T::of(0.08726646259971647),
+            q[3] + T::of(Self::THETA4),
             q[4],
             q[5],
-            q[0] + T::of(0.17453292519943295),
+            q[0] + T::of(Self::THETA1),
         ]);
         let t1 = k3 * c1o + k7 * s1o;
         let t2 = k4 * c1o + k8 * s1o;
@@ -1860,91 +1894,91 @@ impl Robot<6> for EveryEffect {
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
-        let k1 = T::of(Self::COS_BASE_PITCH * 0.7648421872844885);
-        let k2 = T::of(Self::COS_BASE_PITCH * 0.644217687237691);
+        let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
         let k3 = T::of(-Self::SIN_BASE_PITCH);
         let k4 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
         let k5 = T::of(
-            Self::COS_BASE_ROLL * -0.644217687237691
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
+            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k6 = T::of(
-            Self::COS_BASE_ROLL * 0.7648421872844885
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k7 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
         let k8 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
-                - Self::SIN_BASE_ROLL * -0.644217687237691,
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
         );
         let k9 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)
-                - Self::SIN_BASE_ROLL * 0.7648421872844885,
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
-        let k10 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.7648421872844885));
-        let k11 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.644217687237691));
+        let k10 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
+        let k11 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
         let k12 = T::of(Self::A1 * -Self::SIN_BASE_PITCH);
         let k13 = T::of(
             Self::A1
-                * (Self::COS_BASE_ROLL * -0.644217687237691
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k14 = T::of(
             Self::A1
-                * (Self::COS_BASE_ROLL * 0.7648421872844885
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+                * (Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k15 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
         let k16 = T::of(
             Self::D1
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
-                    - Self::SIN_BASE_ROLL * -0.644217687237691),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
         );
         let k17 = T::of(
             Self::D1
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)
-                    - Self::SIN_BASE_ROLL * 0.7648421872844885),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
         let k18 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k19 = T::of(
-            Self::SIN_BASE_ROLL * -0.644217687237691
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
+            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k20 = T::of(
-            Self::SIN_BASE_ROLL * 0.7648421872844885
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
+            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k21 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k22 = T::of(
             Self::A2
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k23 = T::of(
             Self::A2
-                * (Self::SIN_BASE_ROLL * 0.7648421872844885
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k24 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k25 = T::of(
             Self::A3
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k26 = T::of(
             Self::A3
-                * (Self::SIN_BASE_ROLL * 0.7648421872844885
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
         let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_all([
             q[1] + q[2],
             q[1],
-            q[3] + T::of(0.08726646259971647),
+            q[3] + T::of(Self::THETA4),
             q[4],
             q[5],
-            q[0] + T::of(0.17453292519943295),
+            q[0] + T::of(Self::THETA1),
         ]);
         let t1 = k1 * c1o + k5 * s1o;
         let t2 = k2 * c1o + k6 * s1o;
@@ -2071,85 +2105,85 @@ impl Robot<6> for EveryEffect {
         let tool_z = T::of(Self::TOOL_Z);
         let sin_tool_pitch = T::of(Self::SIN_TOOL_PITCH);
         let cos_tool_pitch = T::of(Self::COS_TOOL_PITCH);
-        let k1 = T::of(0.644217687237691);
-        let k2 = T::of(0.7648421872844885);
-        let k3 = T::of(Self::COS_BASE_PITCH * 0.7648421872844885);
-        let k4 = T::of(Self::COS_BASE_PITCH * 0.644217687237691);
-        let k5 = T::of(-Self::SIN_BASE_PITCH);
-        let k6 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
-        let k7 = T::of(
-            Self::COS_BASE_ROLL * -0.644217687237691
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
+        let sin_base_yaw = T::of(Self::SIN_BASE_YAW);
+        let cos_base_yaw = T::of(Self::COS_BASE_YAW);
+        let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
+        let k3 = T::of(-Self::SIN_BASE_PITCH);
+        let k4 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k5 = T::of(
+            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
+        let k6 = T::of(
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
+        );
+        let k7 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
         let k8 = T::of(
-            Self::COS_BASE_ROLL * 0.7648421872844885
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
         );
-        let k9 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
-        let k10 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
-                - Self::SIN_BASE_ROLL * -0.644217687237691,
+        let k9 = T::of(
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
-        let k11 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)
-                - Self::SIN_BASE_ROLL * 0.7648421872844885,
-        );
-        let k12 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.7648421872844885));
-        let k13 = T::of(Self::A1 * (Self::COS_BASE_PITCH * 0.644217687237691));
-        let k14 = T::of(Self::A1 * -Self::SIN_BASE_PITCH);
-        let k15 = T::of(
+        let k10 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
+        let k11 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
+        let k12 = T::of(Self::A1 * -Self::SIN_BASE_PITCH);
+        let k13 = T::of(
             Self::A1
-                * (Self::COS_BASE_ROLL * -0.644217687237691
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
+        let k14 = T::of(
+            Self::A1
+                * (Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
+        );
+        let k15 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
         let k16 = T::of(
-            Self::A1
-                * (Self::COS_BASE_ROLL * 0.7648421872844885
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
-        );
-        let k17 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k18 = T::of(
             Self::D1
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)
-                    - Self::SIN_BASE_ROLL * -0.644217687237691),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
         );
+        let k17 = T::of(
+            Self::D1
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
+        );
+        let k18 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k19 = T::of(
-            Self::D1
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)
-                    - Self::SIN_BASE_ROLL * 0.7648421872844885),
+            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
-        let k20 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k21 = T::of(
-            Self::SIN_BASE_ROLL * -0.644217687237691
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885),
+        let k20 = T::of(
+            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
+        let k21 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k22 = T::of(
-            Self::SIN_BASE_ROLL * 0.7648421872844885
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691),
-        );
-        let k23 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k24 = T::of(
             Self::A2
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
+        let k23 = T::of(
+            Self::A2
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
+        );
+        let k24 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k25 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * 0.7648421872844885
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
-        );
-        let k26 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k27 = T::of(
             Self::A3
-                * (Self::SIN_BASE_ROLL * -0.644217687237691
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.7648421872844885)),
+                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
-        let k28 = T::of(
+        let k26 = T::of(
             Self::A3
-                * (Self::SIN_BASE_ROLL * 0.7648421872844885
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.644217687237691)),
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k29 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let h1 = T::of(Self::H1);
         let h3 = T::of(Self::H3);
         let h4 = T::of(Self::H4);
@@ -2162,235 +2196,247 @@ impl Robot<6> for EveryEffect {
         let tool_rotation = T::of(Self::TOOL_ROTATION);
         let coupling2_3 = T::of(Self::COUPLING2_3);
         let coupling5_6 = T::of(Self::COUPLING5_6);
-        let k30 = T::of(
-            Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448,
+        let k28 = T::of(
+            Self::TOOL_X * Self::COS_TOOL_YAW - Self::TOOL_Y * -Self::SIN_TOOL_YAW,
         );
+        let k29 = T::of(
+            Self::TOOL_X * -Self::SIN_TOOL_YAW + Self::TOOL_Y * Self::COS_TOOL_YAW,
+        );
+        let k30 = T::of(Self::TOOL_Z * Self::TOOL_ROTATION);
         let k31 = T::of(
-            Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664,
-        );
-        let k32 = T::of(Self::TOOL_Z * Self::TOOL_ROTATION);
-        let k33 = T::of(
             Self::TOOL_ROTATION
-                * (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664),
+                * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                    + Self::TOOL_Y * Self::COS_TOOL_YAW),
+        );
+        let k32 = T::of(
+            -(Self::TOOL_ROTATION
+                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)),
+        );
+        let k33 = T::of(
+            -(Self::TOOL_X * -Self::SIN_TOOL_YAW + Self::TOOL_Y * Self::COS_TOOL_YAW),
         );
         let k34 = T::of(
-            -(Self::TOOL_ROTATION
-                * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)),
+            Self::TOOL_Z * Self::TOOL_ROTATION
+                * (Self::TOOL_Y * -Self::SIN_TOOL_YAW
+                    - Self::TOOL_X * Self::COS_TOOL_YAW),
         );
         let k35 = T::of(
-            -(Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664),
-        );
-        let k36 = T::of(
-            Self::TOOL_Z * Self::TOOL_ROTATION
-                * (Self::TOOL_Y * 0.1908089953765448 - Self::TOOL_X * 0.981627183447664),
-        );
-        let k37 = T::of(
-            (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
+            (Self::TOOL_X * -Self::SIN_TOOL_YAW + Self::TOOL_Y * Self::COS_TOOL_YAW)
                 * -(Self::TOOL_Z * Self::TOOL_ROTATION),
         );
+        let k36 = T::of(
+            Self::TOOL_TRANSLATION
+                + ((Self::TOOL_X * -Self::SIN_TOOL_YAW
+                    + Self::TOOL_Y * Self::COS_TOOL_YAW)
+                    * (Self::TOOL_ROTATION
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                    + -(Self::TOOL_ROTATION
+                        * (Self::TOOL_X * Self::COS_TOOL_YAW
+                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW))
+                        * (Self::TOOL_Y * -Self::SIN_TOOL_YAW
+                            - Self::TOOL_X * Self::COS_TOOL_YAW)),
+        );
+        let k37 = T::of(Self::D6 + Self::TOOL_Z);
         let k38 = T::of(
             Self::TOOL_TRANSLATION
-                + ((Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
-                    * (Self::TOOL_ROTATION
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
+                + (Self::TOOL_Z * (Self::TOOL_Z * Self::TOOL_ROTATION)
                     + -(Self::TOOL_ROTATION
-                        * (Self::TOOL_X * 0.981627183447664
-                            - Self::TOOL_Y * 0.1908089953765448))
-                        * (Self::TOOL_Y * 0.1908089953765448
-                            - Self::TOOL_X * 0.981627183447664)),
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                        * -(Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                + -(Self::TOOL_X * -Self::SIN_TOOL_YAW
+                    + Self::TOOL_Y * Self::COS_TOOL_YAW)
+                    * -(Self::H6
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW)),
         );
-        let k39 = T::of(Self::D6 + Self::TOOL_Z);
+        let k39 = T::of(
+            (Self::TOOL_X * Self::COS_TOOL_YAW - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                * -(Self::TOOL_ROTATION
+                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                + (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    * -(Self::H6
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW)),
+        );
         let k40 = T::of(
             Self::TOOL_TRANSLATION
-                + (Self::TOOL_Z * (Self::TOOL_Z * Self::TOOL_ROTATION)
-                    + -(Self::TOOL_ROTATION
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
-                        * -(Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
-                + -(Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
-                    * -(Self::H6
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664)),
-        );
-        let k41 = T::of(
-            (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                * -(Self::TOOL_ROTATION
-                    * (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664))
-                + (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                    * -(Self::H6
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664)),
-        );
-        let k42 = T::of(
-            Self::TOOL_TRANSLATION
                 + (-(Self::TOOL_Z * Self::TOOL_ROTATION) * -Self::TOOL_Z
-                    + (Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448)
+                    + (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                         * (Self::TOOL_ROTATION
-                            * (Self::TOOL_X * 0.981627183447664
-                                - Self::TOOL_Y * 0.1908089953765448)))
-                + (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                            * (Self::TOOL_X * Self::COS_TOOL_YAW
+                                - Self::TOOL_Y * -Self::SIN_TOOL_YAW)))
+                + (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                     * (Self::H6
-                        * (Self::TOOL_X * 0.981627183447664
-                            - Self::TOOL_Y * 0.1908089953765448)),
+                        * (Self::TOOL_X * Self::COS_TOOL_YAW
+                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)),
         );
-        let k43 = T::of(Self::H6 + Self::TOOL_ROTATION);
-        let k44 = T::of(
+        let k41 = T::of(Self::H6 + Self::TOOL_ROTATION);
+        let k42 = T::of(
             -(Self::TOOL_ROTATION
-                * (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664))
+                * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                    + Self::TOOL_Y * Self::COS_TOOL_YAW))
                 + -(Self::H6
-                    * (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664)),
+                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                        + Self::TOOL_Y * Self::COS_TOOL_YAW)),
         );
-        let k45 = T::of(
+        let k43 = T::of(
             Self::TOOL_ROTATION
-                * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                 + Self::H6
-                    * (Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448),
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW),
         );
-        let k46 = T::of(
+        let k44 = T::of(
             Self::TOOL_TRANSLATION
                 + (Self::TOOL_Z * (Self::TOOL_Z * Self::TOOL_ROTATION)
                     + -(Self::TOOL_ROTATION
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
-                        * -(Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
-                + -(Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                        * -(Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                + -(Self::TOOL_X * -Self::SIN_TOOL_YAW
+                    + Self::TOOL_Y * Self::COS_TOOL_YAW)
                     * -(Self::H6
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
                 - (Self::TOOL_TRANSLATION
                     + (-(Self::TOOL_Z * Self::TOOL_ROTATION) * -Self::TOOL_Z
-                        + (Self::TOOL_X * 0.981627183447664
-                            - Self::TOOL_Y * 0.1908089953765448)
+                        + (Self::TOOL_X * Self::COS_TOOL_YAW
+                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                             * (Self::TOOL_ROTATION
-                                * (Self::TOOL_X * 0.981627183447664
-                                    - Self::TOOL_Y * 0.1908089953765448)))
-                    + (Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448)
+                                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)))
+                    + (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                         * (Self::H6
-                            * (Self::TOOL_X * 0.981627183447664
-                                - Self::TOOL_Y * 0.1908089953765448))),
+                            * (Self::TOOL_X * Self::COS_TOOL_YAW
+                                - Self::TOOL_Y * -Self::SIN_TOOL_YAW))),
         );
-        let k47 = T::of(
-            (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+        let k45 = T::of(
+            (Self::TOOL_X * Self::COS_TOOL_YAW - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                 * -(Self::TOOL_ROTATION
-                    * (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664))
-                + (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                + (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                     * -(Self::H6
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
-                + ((Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                + ((Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                     * -(Self::TOOL_ROTATION
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
-                    + (Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448)
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                    + (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
                         * -(Self::H6
-                            * (Self::TOOL_X * 0.1908089953765448
-                                + Self::TOOL_Y * 0.981627183447664))),
+                            * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                                + Self::TOOL_Y * Self::COS_TOOL_YAW))),
         );
-        let k48 = T::of(Self::H5 + Self::ADDED5);
-        let k49 = T::of(-((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)));
-        let k50 = T::of(
+        let k46 = T::of(Self::H5 + Self::ADDED5);
+        let k47 = T::of(-((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)));
+        let k48 = T::of(
             -(Self::D6 + Self::TOOL_Z)
                 * -((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)),
         );
-        let k51 = T::of(Self::TOOL_ROTATION + (Self::H5 + Self::ADDED5));
-        let k52 = T::of(
+        let k49 = T::of(Self::TOOL_ROTATION + (Self::H5 + Self::ADDED5));
+        let k50 = T::of(
             -(Self::TOOL_Z * Self::TOOL_ROTATION)
                 + -((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)),
         );
-        let k53 = T::of(Self::COUPLING5_6 * -(Self::D6 + Self::TOOL_Z));
-        let k54 = T::of(Self::TOOL_ROTATION - (Self::H6 + Self::TOOL_ROTATION));
-        let k55 = T::of(
+        let k51 = T::of(Self::COUPLING5_6 * -(Self::D6 + Self::TOOL_Z));
+        let k52 = T::of(Self::TOOL_ROTATION - (Self::H6 + Self::TOOL_ROTATION));
+        let k53 = T::of(
             Self::BENDING3
                 + Self::A3
                     * (Self::A3
                         * (-Self::BENDING3
                             * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
         );
-        let k56 = T::of(
+        let k54 = T::of(
             Self::D3
                 * (Self::A3
                     * (-Self::BENDING3
                         * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
         );
-        let k57 = T::of(
+        let k55 = T::of(
             Self::BENDING3
                 + Self::D3
                     * (Self::D3
                         * (-Self::BENDING3
                             * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
         );
-        let k58 = T::of(
+        let k56 = T::of(
             (Self::A3 * Self::A3 + Self::D3 * Self::D3)
                 * (Self::BENDING3 * 0.08333333333333333),
         );
-        let k59 = T::of(
+        let k57 = T::of(
             (Self::A3 * Self::A3 + Self::D3 * Self::D3)
                 * (Self::BENDING3 * 0.08333333333333333)
                 - Self::A3 * (Self::A3 * (Self::BENDING3 * 0.08333333333333333)),
         );
-        let k60 = T::of(
+        let k58 = T::of(
             -(Self::D3 * (Self::A3 * (Self::BENDING3 * 0.08333333333333333))),
         );
-        let k61 = T::of(
+        let k59 = T::of(
             (Self::A3 * Self::A3 + Self::D3 * Self::D3)
                 * (Self::BENDING3 * 0.08333333333333333)
                 - Self::D3 * (Self::D3 * (Self::BENDING3 * 0.08333333333333333)),
         );
-        let k62 = T::of(Self::A3 * 0.5);
-        let k63 = T::of(Self::D3 * 0.5);
-        let k64 = T::of(
+        let k60 = T::of(Self::A3 * 0.5);
+        let k61 = T::of(Self::D3 * 0.5);
+        let k62 = T::of(
             Self::A2
                 * ((Self::TORSION2 - Self::BENDING2) * (1.0 / (Self::A2 * Self::A2))),
         );
-        let k65 = T::of(Self::A2 * (Self::BENDING2 * 0.08333333333333333));
-        let k66 = T::of(Self::A2 * Self::A2 * (Self::BENDING2 * 0.08333333333333333));
-        let k67 = T::of(Self::A2 * 0.5);
-        let k68 = T::of(Self::H2 + Self::ADDED2);
-        let k69 = T::of(Self::COUPLING2_3 + Self::COUPLING2_3);
+        let k63 = T::of(Self::A2 * (Self::BENDING2 * 0.08333333333333333));
+        let k64 = T::of(Self::A2 * Self::A2 * (Self::BENDING2 * 0.08333333333333333));
+        let k65 = T::of(Self::A2 * 0.5);
+        let k66 = T::of(Self::H2 + Self::ADDED2);
+        let k67 = T::of(Self::COUPLING2_3 + Self::COUPLING2_3);
         let [(s23, c23), (s2, c2), (s3, c3), (s4o, c4o), (s5, c5), (s6, c6), (s6o, c6o),
         (s1o, c1o)] = T::sin_cos_all([
             q[1] + q[2],
             q[1],
             q[2],
-            q[3] + T::of(0.08726646259971647),
+            q[3] + T::of(Self::THETA4),
             q[4],
             q[5],
-            q[5] + T::of(2.949606435870417),
-            q[0] + T::of(0.17453292519943295),
+            q[5] + T::of(Self::THETA6 + Self::TOOL_YAW),
+            q[0] + T::of(Self::THETA1),
         ]);
-        let t1 = k12 * c1o + k15 * s1o + k18;
-        let t2 = k13 * c1o + k16 * s1o + k19;
-        let t3 = k14 * c1o + k17 * s1o + k20;
-        let t4 = k3 * c1o + k7 * s1o;
-        let t5 = k4 * c1o + k8 * s1o;
-        let t6 = k5 * c1o + k6 * s1o;
-        let z2x = k7 * c1o - k3 * s1o;
-        let z2y = k8 * c1o - k4 * s1o;
-        let z2z = k6 * c1o - k5 * s1o;
+        let t1 = k10 * c1o + k13 * s1o + k16;
+        let t2 = k11 * c1o + k14 * s1o + k17;
+        let t3 = k12 * c1o + k15 * s1o + k18;
+        let t4 = k1 * c1o + k5 * s1o;
+        let t5 = k2 * c1o + k6 * s1o;
+        let t6 = k3 * c1o + k4 * s1o;
+        let z2x = k5 * c1o - k1 * s1o;
+        let z2y = k6 * c1o - k2 * s1o;
+        let z2z = k4 * c1o - k3 * s1o;
         let t7 = a2 * s2;
-        let t8 = t4 * t7 - k24 * c2;
-        let t9 = t5 * t7 - k25 * c2;
-        let t10 = t6 * t7 - k26 * c2;
+        let t8 = t4 * t7 - k22 * c2;
+        let t9 = t5 * t7 - k23 * c2;
+        let t10 = t6 * t7 - k24 * c2;
         let t11 = a3 * s23;
-        let t12 = t4 * t11 - k27 * c23 + d3 * z2x;
-        let t13 = t5 * t11 - k28 * c23 + d3 * z2y;
-        let t14 = t6 * t11 - k29 * c23 + d3 * z2z;
-        let t15 = t4 * s23 - k21 * c23;
-        let t16 = t5 * s23 - k22 * c23;
-        let t17 = t6 * s23 - k23 * c23;
-        let t18 = k21 * s23 + t4 * c23;
-        let t19 = k22 * s23 + t5 * c23;
-        let t20 = k23 * s23 + t6 * c23;
+        let t12 = t4 * t11 - k25 * c23 + d3 * z2x;
+        let t13 = t5 * t11 - k26 * c23 + d3 * z2y;
+        let t14 = t6 * t11 - k27 * c23 + d3 * z2z;
+        let t15 = t4 * s23 - k19 * c23;
+        let t16 = t5 * s23 - k20 * c23;
+        let t17 = t6 * s23 - k21 * c23;
+        let t18 = k19 * s23 + t4 * c23;
+        let t19 = k20 * s23 + t5 * c23;
+        let t20 = k21 * s23 + t6 * c23;
         let t21 = cos_alpha3 * t18 + sin_alpha3 * z2x;
         let t22 = cos_alpha3 * t19 + sin_alpha3 * z2y;
         let t23 = cos_alpha3 * t20 + sin_alpha3 * z2z;
@@ -2468,9 +2514,9 @@ impl Robot<6> for EveryEffect {
         let r1x = t1 + r2x;
         let r1y = t2 + r2y;
         let r1z = t3 + r2z;
-        let j1x = k11 * r1z - k9 * r1y;
-        let j1y = k9 * r1x - k10 * r1z;
-        let j1z = k10 * r1y - k11 * r1x;
+        let j1x = k9 * r1z - k7 * r1y;
+        let j1y = k7 * r1x - k8 * r1z;
+        let j1z = k8 * r1y - k9 * r1x;
         let j2x = z2y * r2z - z2z * r2y;
         let j2y = z2z * r2x - z2x * r2z;
         let j2z = z2x * r2y - z2y * r2x;
@@ -2488,41 +2534,41 @@ impl Robot<6> for EveryEffect {
         let j6z = z6x * r6y - z6y * r6x;
 
         // From joint 6 to the TCP.
-        let t59 = k30 * c6o;
-        let r5x_2 = t59 - k31 * s6o;
-        let t60 = k30 * s6o;
-        let t61 = t60 + k31 * c6o;
-        let t62 = k46 * s6o + k47 * c6o;
+        let t59 = k28 * c6o;
+        let r5x_2 = t59 - k29 * s6o;
+        let t60 = k28 * s6o;
+        let t61 = t60 + k29 * c6o;
+        let t62 = k44 * s6o + k45 * c6o;
         let t63 = s6o * t62;
-        let tt5_zz = k42 + t63;
-        let t64 = k44 * s6o + k45 * c6o;
-        let tr5_yx = k33 * c6o - k34 * s6o;
-        let t65 = k35 * c6o - t60;
-        let t66 = t59 + k35 * s6o;
+        let tt5_zz = k40 + t63;
+        let t64 = k42 * s6o + k43 * c6o;
+        let tr5_yx = k31 * c6o - k32 * s6o;
+        let t65 = k33 * c6o - t60;
+        let t66 = t59 + k33 * s6o;
         let r5z_2 = d5 - t61;
 
         // From joint 5 to the TCP.
-        let t67 = k48 * r5x_2;
+        let t67 = k46 * r5x_2;
         let r4y_2 = t61 - d5;
-        let t68 = k36 * c6o - k37 * s6o + k49 * r5x_2;
-        let tt5_yy = k38 + r5x_2 * t67;
-        let tr5_yz = t67 - (k33 * s6o + k34 * c6o);
-        let t69 = k53 * t65;
+        let t68 = k34 * c6o - k35 * s6o + k47 * r5x_2;
+        let tt5_yy = k36 + r5x_2 * t67;
+        let tr5_yz = t67 - (k31 * s6o + k32 * c6o);
+        let t69 = k51 * t65;
         let t70 = coupling5_6 * t65;
         let tr5_yy = coupling5_6 * r5x_2;
         let t71 = coupling5_6 * t66;
-        let tt5_xx = k40 - t63 + k50 + (t69 + t69);
+        let tt5_xx = k38 - t63 + k48 + (t69 + t69);
         let tt5_xy = t68 + r5x_2 * t70;
-        let tt5_xz = k41 - c6o * t62 - k53 * t66;
-        let t72 = k36 * s6o + k37 * c6o + t66 * tr5_yy;
-        let tr5_xy = k44 * c6o - k45 * s6o + k53;
-        let tr5_xz = k52 + t70;
-        let r4x_2 = c5 * r5x_2 - k39 * s5;
+        let tt5_xz = k39 - c6o * t62 - k51 * t66;
+        let t72 = k34 * s6o + k35 * c6o + t66 * tr5_yy;
+        let tr5_xy = k42 * c6o - k43 * s6o + k51;
+        let tr5_xz = k50 + t70;
+        let r4x_2 = c5 * r5x_2 - k37 * s5;
         let t73 = s5 * (tt5_xx - tt5_yy) + c5 * (tt5_xy + tt5_xy);
         let t74 = s5 * t73;
         let tt4_xz = c5 * t73 - tt5_xy;
         let tt4_zz = tt5_yy + t74;
-        let t75 = k54 * s5;
+        let t75 = k52 * s5;
         let t76 = s5 * t75;
         let rr4_xz = c5 * t75;
         let rr4_xx = tool_rotation - t76;
@@ -2534,10 +2580,10 @@ impl Robot<6> for EveryEffect {
         let tr4_zx = t80 - tr5_xy;
         let tr4_zz = tr5_yy + t79;
         let t81 = s5 * tr5_xz + c5 * tr5_yz;
-        let t82 = k32 * c5 + s5 * t64;
+        let t82 = k30 * c5 + s5 * t64;
         let tt4_yz = c5 * t72 - s5 * tt5_xz;
         let tr4_xy = s5 * tr5_yz - c5 * tr5_xz;
-        let r4z_2 = d4 + (s5 * r5x_2 + k39 * c5);
+        let r4z_2 = d4 + (s5 * r5x_2 + k37 * c5);
 
         // From joint 4 to the TCP.
         let t83 = h4 * r4y_2;
@@ -2545,9 +2591,9 @@ impl Robot<6> for EveryEffect {
         let tt4_xx = tt5_xx - t74 - r5z_2 * t83;
         let t85 = c5 * tt5_xz + s5 * t72 + r4x_2 * t83;
         let tt4_yy = tt5_zz + r4x_2 * t84;
-        let rr4_zz = h4 + (k43 + t76);
+        let rr4_zz = h4 + (k41 + t76);
         let tr4_xz = t80 - tr5_yx - t83;
-        let tr4_yz = c5 * t64 - k32 * s5 + t84;
+        let tr4_yz = c5 * t64 - k30 * s5 + t84;
         let t86 = s4o * r4x_2 + c4o * r4y_2;
         let t87 = s4o * (tt4_xx - tt4_yy) - c4o * (t85 + t85);
         let t88 = s4o * t87;
@@ -2555,10 +2601,10 @@ impl Robot<6> for EveryEffect {
         let t90 = tt4_yy + t88;
         let t91 = c4o * tt4_xz - s4o * tt4_yz;
         let t92 = s4o * tt4_xz + c4o * tt4_yz;
-        let t93 = s4o * (rr4_xx - k51) + c4o * (rr4_xy + rr4_xy);
+        let t93 = s4o * (rr4_xx - k49) + c4o * (rr4_xy + rr4_xy);
         let t94 = s4o * t93;
         let t95 = c4o * t93 - rr4_xy;
-        let t96 = k51 + t94;
+        let t96 = k49 + t94;
         let t97 = c4o * rr4_xz + s4o * t77;
         let t98 = s4o * rr4_xz - c4o * t77;
         let t99 = s4o * (t71 - t79) + c4o * (tr4_xy - t82);
@@ -2586,27 +2632,27 @@ impl Robot<6> for EveryEffect {
         let tr3_yy = t104 - t116;
         let r3x_2 = a3 + (c4o * r4x_2 - s4o * r4y_2);
         let r3z_2 = d3 + (sin_alpha3 * t86 + cos_alpha3 * r4z_2);
-        let t118 = r3x_2 - k62;
-        let t119 = r3z_2 - k63;
-        let t120 = k56 * r3y_2;
-        let t121 = k56 * t118 - k55 * t119;
-        let t122 = k55 * r3y_2;
+        let t118 = r3x_2 - k60;
+        let t119 = r3z_2 - k61;
+        let t120 = k54 * r3y_2;
+        let t121 = k54 * t118 - k53 * t119;
+        let t122 = k53 * r3y_2;
         let t123 = bending3 * t119;
         let t124 = bending3 * t118;
-        let t125 = k57 * r3y_2;
-        let t126 = k57 * t118 - k56 * t119;
-        let t127 = k63 - r3z_2;
-        let t128 = k62 - r3x_2;
+        let t125 = k55 * r3y_2;
+        let t126 = k55 * t118 - k54 * t119;
+        let t127 = k61 - r3z_2;
+        let t128 = k60 - r3x_2;
         let t129 = t110 - t109;
         let t130 = t120 * t127 + t118 * t125;
-        let t131 = k59 + (t119 * t123 - t125 * t129);
-        let t132 = k60 + (t123 * t128 - r3y_2 * t120);
-        let t133 = k58 + (t121 * t127 + t118 * t126);
-        let t134 = k61 + (r3y_2 * t122 - t124 * t128);
+        let t131 = k57 + (t119 * t123 - t125 * t129);
+        let t132 = k58 + (t123 * t128 - r3y_2 * t120);
+        let t133 = k56 + (t121 * t127 + t118 * t126);
+        let t134 = k59 + (r3y_2 * t122 - t124 * t128);
         let t135 = cos_alpha3 * t89 - sin_alpha3 * t91 - t130;
         let t136 = sin_alpha3 * t89 + cos_alpha3 * t91 + t132;
         let t137 = cos_alpha3 * t111 - t92 + r3y_2 * t121;
-        let rr3_xz = sin_alpha3 * t95 + cos_alpha3 * t97 + k56;
+        let rr3_xz = sin_alpha3 * t95 + cos_alpha3 * t97 + k54;
         let tr3_zz = tr4_zz + t116 + t120;
 
         // From joint 3 to the TCP.
@@ -2623,9 +2669,9 @@ impl Robot<6> for EveryEffect {
         let tt3_yy = t90 - t112 + t133 + (t143 + r3x_2 * t142);
         let tt3_yz = t137 - r3y_2 * t138;
         let tt3_zz = tt4_zz + t112 + t134 + t144;
-        let rr3_xx = transverse3 + (rr4_xx - t94 + k55);
+        let rr3_xx = transverse3 + (rr4_xx - t94 + k53);
         let rr3_yy = transverse3 + (bending3 + (t96 - t114));
-        let rr3_zz = h3 + (rr4_zz + t114 + k57);
+        let rr3_zz = h3 + (rr4_zz + t114 + k55);
         let tr3_xy = cos_alpha3 * t102 - sin_alpha3 * t105 + t123 + t138;
         let tr3_xz = sin_alpha3 * t102 + cos_alpha3 * t105 - t125 - t141;
         let tr3_yx = cos_alpha3 * t103 - sin_alpha3 * t107 + t121 - t138;
@@ -2636,14 +2682,14 @@ impl Robot<6> for EveryEffect {
         let t146 = a2 * s3;
         let r2x_2 = r3x_2 + t145;
         let r2y_2 = r3y_2 - t146;
-        let t147 = k64 * c3;
-        let t148 = k65 * c3;
+        let t147 = k62 * c3;
+        let t148 = k63 * c3;
         let t149 = bending2 + t145 * t147;
         let t150 = t146 * t147;
-        let t151 = bending2 + t146 * (k64 * s3);
-        let t152 = k67 * c3;
+        let t151 = bending2 + t146 * (k62 * s3);
+        let t152 = k65 * c3;
         let t153 = r2x_2 - t152;
-        let t154 = r2y_2 + k67 * s3;
+        let t154 = r2y_2 + k65 * s3;
         let t155 = r3z_2 * t150;
         let t156 = r3z_2 * t149;
         let t157 = t149 * t154 + t150 * t153;
@@ -2655,11 +2701,11 @@ impl Robot<6> for EveryEffect {
         let t163 = r3z_2 * t158 + t154 * t160;
         let t164 = r3z_2 * t156 + t153 * t161;
         let t165 = t146 * t148 + (r3z_2 * t155 - t153 * t160);
-        let t166 = tt3_xx + (k66 - t145 * t148 + t163);
+        let t166 = tt3_xx + (k64 - t145 * t148 + t163);
         let tt2_xz = tt3_xz + (t158 * t162 - t154 * t155);
-        let t167 = tt3_yy + (k66 - t146 * (k65 * s3) + t164);
+        let t167 = tt3_yy + (k64 - t146 * (k63 * s3) + t164);
         let tt2_yz = tt3_yz + (t155 * t162 - t154 * t156);
-        let tt2_zz = tt3_zz + (k66 + (t154 * t157 - t159 * t162));
+        let tt2_zz = tt3_zz + (k64 + (t154 * t157 - t159 * t162));
         let rr2_xx = rr3_xx + t149;
         let rr2_xy = rr3_xy - t150;
         let rr2_yy = rr3_yy + t151;
@@ -2671,8 +2717,8 @@ impl Robot<6> for EveryEffect {
         let tr2_zy = tr3_zy - t159;
 
         // From joint 2 to the TCP.
-        let t169 = k68 * r2y_2;
-        let t170 = k68 * r2x_2;
+        let t169 = k66 * r2y_2;
+        let t170 = k66 * r2x_2;
         let t171 = t146 - r3y_2;
         let t172 = coupling2_3 * t171;
         let t173 = coupling2_3 * t129;
@@ -2684,7 +2730,7 @@ impl Robot<6> for EveryEffect {
         let tt2_xx = t166 - t169 * t171 + t174;
         let tt2_xy = tt3_xy + t165 - r2x_2 * t169 + t175;
         let tt2_yy = t167 + r2x_2 * t170 + t178;
-        let rr2_zz = bending2 + rr3_zz + k68 + k69;
+        let rr2_zz = bending2 + rr3_zz + k66 + k67;
         let tr2_xz = tr3_xz - t160 - t169 + (t172 + t173);
         let tr2_yz = tr3_yz + t161 + t170 + (t176 + t177);
         let t179 = s23 * (tt2_xy + tt2_xy) - c23 * (tt2_xx - tt2_yy);
@@ -2814,31 +2860,31 @@ impl Robot<6> for EveryEffect {
         let t276 = sin_base_pitch * t251 + cos_base_pitch * t255;
         let t277 = cos_base_pitch * t250 - sin_base_pitch * t253;
         let t278 = sin_base_pitch * t250 + cos_base_pitch * t253;
-        let t279 = k1 * (t260 - t234) + k2 * (t262 + t262);
-        let t280 = k1 * t279;
+        let t279 = sin_base_yaw * (t260 - t234) + cos_base_yaw * (t262 + t262);
+        let t280 = sin_base_yaw * t279;
         let tt_xx = t260 - t280;
-        let tt_xy = k2 * t279 - t262;
+        let tt_xy = cos_base_yaw * t279 - t262;
         let tt_yy = t234 + t280;
-        let tt_xz = k2 * t259 - k1 * t261;
-        let tt_yz = k1 * t259 + k2 * t261;
-        let t281 = k1 * (t266 - t241) + k2 * (t268 + t268);
-        let t282 = k1 * t281;
+        let tt_xz = cos_base_yaw * t259 - sin_base_yaw * t261;
+        let tt_yz = sin_base_yaw * t259 + cos_base_yaw * t261;
+        let t281 = sin_base_yaw * (t266 - t241) + cos_base_yaw * (t268 + t268);
+        let t282 = sin_base_yaw * t281;
         let rr_xx = t266 - t282;
-        let rr_xy = k2 * t281 - t268;
+        let rr_xy = cos_base_yaw * t281 - t268;
         let rr_yy = t241 + t282;
-        let rr_xz = k2 * t265 - k1 * t267;
-        let rr_yz = k1 * t265 + k2 * t267;
-        let t283 = k1 * (t274 - t249) + k2 * (t276 + t278);
-        let t284 = k1 * t283;
-        let t285 = k2 * t283;
+        let rr_xz = cos_base_yaw * t265 - sin_base_yaw * t267;
+        let rr_yz = sin_base_yaw * t265 + cos_base_yaw * t267;
+        let t283 = sin_base_yaw * (t274 - t249) + cos_base_yaw * (t276 + t278);
+        let t284 = sin_base_yaw * t283;
+        let t285 = cos_base_yaw * t283;
         let tr_xx = t274 - t284;
         let tr_xy = t285 - t278;
         let tr_yx = t285 - t276;
         let tr_yy = t249 + t284;
-        let tr_xz = k2 * t273 - k1 * t277;
-        let tr_yz = k1 * t273 + k2 * t277;
-        let tr_zx = k2 * t272 - k1 * t275;
-        let tr_zy = k1 * t272 + k2 * t275;
+        let tr_xz = cos_base_yaw * t273 - sin_base_yaw * t277;
+        let tr_yz = sin_base_yaw * t273 + cos_base_yaw * t277;
+        let tr_zx = cos_base_yaw * t272 - sin_base_yaw * t275;
+        let tr_zy = sin_base_yaw * t272 + cos_base_yaw * t275;
         Statics {
             transform: Matrix4::new(
                 x_x, y_x, z_x, p_x,
@@ -2847,7 +2893,7 @@ impl Robot<6> for EveryEffect {
                 T::zero(), T::zero(), T::zero(), T::one(),
             ),
             jacobian: SMatrix::from([
-                [j1x, j1y, j1z, k10, k11, k9],
+                [j1x, j1y, j1z, k8, k9, k7],
                 [j2x, j2y, j2z, z2x, z2y, z2z],
                 [j3x, j3y, j3z, z2x, z2y, z2z],
                 [j4x, j4y, j4z, z4x, z4y, z4z],

@@ -100,18 +100,26 @@ impl EveryLaw {
     pub const D1: f64 = 0.2;
     /// DH length a of row 1 (m).
     pub const A1: f64 = 0.0;
+    /// DH angle theta of row 1 (rad).
+    pub const THETA1: f64 = 0.0;
     /// DH offset d of row 2 (m).
     pub const D2: f64 = 0.65;
     /// DH length a of row 2 (m).
     pub const A2: f64 = 0.0;
+    /// DH angle theta of row 2, corrected (rad).
+    pub const THETA2: f64 = 0.2587993877991494;
     /// DH offset d of row 3 (m).
     pub const D3: f64 = 0.0;
     /// DH length a of row 3, corrected (m).
     pub const A3: f64 = 0.3307;
+    /// DH angle theta of row 3 (rad).
+    pub const THETA3: f64 = -1.5707963267948966;
     /// DH offset d of row 4 (m).
     pub const D4: f64 = 0.0;
     /// DH length a of row 4 (m).
     pub const A4: f64 = 1.15;
+    /// DH angle theta of row 4, corrected (rad).
+    pub const THETA4: f64 = 0.005235987755982988;
     /// Sine of the DH twist alpha of row 4.
     pub const SIN_ALPHA4: f64 = 0.0019999986666669333;
     /// Cosine of the DH twist alpha of row 4.
@@ -120,14 +128,20 @@ impl EveryLaw {
     pub const D5: f64 = 1.2188999999999999;
     /// DH length a of row 5 (m).
     pub const A5: f64 = 0.115;
+    /// DH angle theta of row 5 (rad).
+    pub const THETA5: f64 = 0.0;
     /// DH offset d of row 6 (m).
     pub const D6: f64 = 0.0;
     /// DH length a of row 6 (m).
     pub const A6: f64 = 0.0;
+    /// DH angle theta of row 6 (rad).
+    pub const THETA6: f64 = 0.0;
     /// DH offset d of row 7 (m).
     pub const D7: f64 = 0.215;
     /// DH length a of row 7 (m).
     pub const A7: f64 = 0.0;
+    /// DH angle theta of row 7 (rad).
+    pub const THETA7: f64 = 3.141592653589793;
     /// TCP in the flange frame, along X (m).
     pub const TOOL_X: f64 = 0.05;
     /// TCP in the flange frame, along Y (m).
@@ -138,6 +152,12 @@ impl EveryLaw {
     pub const SIN_TOOL_PITCH: f64 = 0.29237170472273677;
     /// Cosine of the pitch of the tool.
     pub const COS_TOOL_PITCH: f64 = 0.9563047559630354;
+    /// Sine of the yaw of the base.
+    pub const SIN_BASE_YAW: f64 = -0.5646424733950354;
+    /// Cosine of the yaw of the base.
+    pub const COS_BASE_YAW: f64 = 0.8253356149096783;
+    /// Yaw of the tool (rad).
+    pub const TOOL_YAW: f64 = -0.19198621771937624;
     /// Compliance of joint 1 (m/N).
     pub const H1: f64 = 1.6666666666666667e-8;
     /// Compliance of joint 2 (rad/Nm).
@@ -212,6 +232,10 @@ impl EveryLaw {
     pub const COS2_6: f64 = 0.0;
     /// Relative change of the compliance with sin 2q of joint 6.
     pub const SIN2_6: f64 = -0.3;
+    /// Sine of the yaw of the tool.
+    pub const SIN_TOOL_YAW: f64 = -0.1908089953765448;
+    /// Cosine of the yaw of the tool.
+    pub const COS_TOOL_YAW: f64 = 0.981627183447664;
     /// Operations of `transform`.
     pub const TRANSFORM_COST: robstiff::Cost = robstiff::Cost {
         trig: 16,
@@ -482,58 +506,58 @@ impl Robot<7> for EveryLaw {
         let tool_z = T::of(Self::TOOL_Z);
         let sin_tool_pitch = T::of(Self::SIN_TOOL_PITCH);
         let cos_tool_pitch = T::of(Self::COS_TOOL_PITCH);
-        let k5 = T::of(Self::COS_BASE_PITCH * 0.8253356149096783);
-        let k6 = T::of(Self::COS_BASE_PITCH * -0.5646424733950354);
+        let k5 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k6 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
         let k7 = T::of(-Self::SIN_BASE_PITCH);
         let k8 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
         let k9 = T::of(
-            Self::COS_BASE_ROLL * 0.5646424733950354
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783),
+            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k10 = T::of(
-            Self::COS_BASE_ROLL * 0.8253356149096783
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354),
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k11 = T::of(
-            -(Self::COS_BASE_ROLL * 0.5646424733950354
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)),
+            -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k12 = T::of(
-            -(Self::COS_BASE_ROLL * 0.8253356149096783
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)),
+            -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k13 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
         let k14 = T::of(
-            Self::SIN_BASE_ROLL * 0.5646424733950354
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783),
+            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k15 = T::of(
-            Self::SIN_BASE_ROLL * 0.8253356149096783
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354),
+            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k16 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k17 = T::of(
             Self::D2
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)
-                    - Self::SIN_BASE_ROLL * 0.5646424733950354),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
         );
         let k18 = T::of(
             Self::D2
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)
-                    - Self::SIN_BASE_ROLL * 0.8253356149096783),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
         let k19 = T::of(Self::D2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7), (s7o, c7o)] = T::sin_cos_all([
-            q[1] + T::of(0.2587993877991494),
+            q[1] + T::of(Self::THETA2),
             q[2],
             T::of(2.0) * q[3],
-            q[3] + T::of(0.005235987755982988),
+            q[3] + T::of(Self::THETA4),
             q[4],
             q[5],
             T::of(41.0) * q[6],
             q[6],
-            q[6] + T::of(2.949606435870417),
+            q[6] + T::of(Self::THETA7 + Self::TOOL_YAW),
         ]);
         let e3 = sin_error3 * s3 + cos_error3 * c3;
         let e4 = cos_error4 * c2x4;
@@ -650,62 +674,62 @@ impl Robot<7> for EveryLaw {
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
         let d7 = T::of(Self::D7);
-        let k5 = T::of(Self::COS_BASE_PITCH * 0.8253356149096783);
-        let k6 = T::of(Self::COS_BASE_PITCH * -0.5646424733950354);
+        let k5 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k6 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
         let k7 = T::of(-Self::SIN_BASE_PITCH);
         let k8 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
         let k9 = T::of(
-            Self::COS_BASE_ROLL * 0.5646424733950354
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783),
+            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k10 = T::of(
-            Self::COS_BASE_ROLL * 0.8253356149096783
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354),
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k11 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
         let k12 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)
-                - Self::SIN_BASE_ROLL * 0.5646424733950354,
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
         );
         let k13 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)
-                - Self::SIN_BASE_ROLL * 0.8253356149096783,
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
         let k14 = T::of(
-            -(Self::COS_BASE_ROLL * 0.5646424733950354
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)),
+            -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k15 = T::of(
-            -(Self::COS_BASE_ROLL * 0.8253356149096783
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)),
+            -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k16 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
         let k17 = T::of(
-            Self::SIN_BASE_ROLL * 0.5646424733950354
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783),
+            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k18 = T::of(
-            Self::SIN_BASE_ROLL * 0.8253356149096783
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354),
+            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k19 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k20 = T::of(
             Self::D2
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)
-                    - Self::SIN_BASE_ROLL * 0.5646424733950354),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
         );
         let k21 = T::of(
             Self::D2
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)
-                    - Self::SIN_BASE_ROLL * 0.8253356149096783),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
         let k22 = T::of(Self::D2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7)] = T::sin_cos_all([
-            q[1] + T::of(0.2587993877991494),
+            q[1] + T::of(Self::THETA2),
             q[2],
             T::of(2.0) * q[3],
-            q[3] + T::of(0.005235987755982988),
+            q[3] + T::of(Self::THETA4),
             q[4],
             q[5],
             T::of(41.0) * q[6],
@@ -877,51 +901,51 @@ impl Robot<7> for EveryLaw {
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
-        let k5 = T::of(Self::COS_BASE_PITCH * 0.8253356149096783);
-        let k6 = T::of(Self::COS_BASE_PITCH * -0.5646424733950354);
+        let k5 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k6 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
         let k7 = T::of(-Self::SIN_BASE_PITCH);
         let k8 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
         let k9 = T::of(
-            Self::COS_BASE_ROLL * 0.5646424733950354
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783),
+            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k10 = T::of(
-            Self::COS_BASE_ROLL * 0.8253356149096783
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354),
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k11 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
         let k12 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)
-                - Self::SIN_BASE_ROLL * 0.5646424733950354,
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
         );
         let k13 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)
-                - Self::SIN_BASE_ROLL * 0.8253356149096783,
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
         let k14 = T::of(
-            -(Self::COS_BASE_ROLL * 0.5646424733950354
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)),
+            -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k15 = T::of(
-            -(Self::COS_BASE_ROLL * 0.8253356149096783
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)),
+            -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k16 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
         let k17 = T::of(
-            Self::SIN_BASE_ROLL * 0.5646424733950354
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783),
+            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k18 = T::of(
-            Self::SIN_BASE_ROLL * 0.8253356149096783
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354),
+            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k19 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7)] = T::sin_cos_all([
-            q[1] + T::of(0.2587993877991494),
+            q[1] + T::of(Self::THETA2),
             q[2],
             T::of(2.0) * q[3],
-            q[3] + T::of(0.005235987755982988),
+            q[3] + T::of(Self::THETA4),
             q[4],
             q[5],
             T::of(41.0) * q[6],
@@ -1083,118 +1107,140 @@ impl Robot<7> for EveryLaw {
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
         let k5 = T::of(
-            0.981627183447664
-                * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                - (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
-                    * -0.1908089953765448,
+            Self::COS_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                - Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                        + Self::TOOL_Y * Self::COS_TOOL_YAW),
         );
         let k6 = T::of(
-            (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                * -0.1908089953765448
-                + 0.981627183447664
-                    * (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664),
+            Self::SIN_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                + Self::COS_TOOL_YAW
+                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                        + Self::TOOL_Y * Self::COS_TOOL_YAW),
         );
         let k7 = T::of(
             -(Self::H7
-                * ((Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                    * -0.1908089953765448
-                    + 0.981627183447664
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))),
+                * (Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    + Self::COS_TOOL_YAW
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))),
         );
         let k8 = T::of(
             Self::H7
-                * (0.981627183447664
-                    * (Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448)
-                    - (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664) * -0.1908089953765448),
+                * (Self::COS_TOOL_YAW
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    - Self::SIN_TOOL_YAW
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW)),
         );
         let k9 = T::of(
             -(Self::H7
-                * ((Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                    * -0.1908089953765448
-                    + 0.981627183447664
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664)))
-                * -((Self::TOOL_X * 0.981627183447664
-                    - Self::TOOL_Y * 0.1908089953765448) * -0.1908089953765448
-                    + 0.981627183447664
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664)),
+                * (Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    + Self::COS_TOOL_YAW
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW)))
+                * -(Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    + Self::COS_TOOL_YAW
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW)),
         );
         let k10 = T::of(
-            (0.981627183447664
-                * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                - (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
-                    * -0.1908089953765448)
+            (Self::COS_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                - Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
                 * -(Self::H7
-                    * ((Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448) * -0.1908089953765448
-                        + 0.981627183447664
-                            * (Self::TOOL_X * 0.1908089953765448
-                                + Self::TOOL_Y * 0.981627183447664))),
+                    * (Self::SIN_TOOL_YAW
+                        * (Self::TOOL_X * Self::COS_TOOL_YAW
+                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        + Self::COS_TOOL_YAW
+                            * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                                + Self::TOOL_Y * Self::COS_TOOL_YAW))),
         );
         let k11 = T::of(
-            (0.981627183447664
-                * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                - (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
-                    * -0.1908089953765448)
+            (Self::COS_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                - Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
                 * (Self::H7
-                    * (0.981627183447664
-                        * (Self::TOOL_X * 0.981627183447664
-                            - Self::TOOL_Y * 0.1908089953765448)
-                        - (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664) * -0.1908089953765448)),
+                    * (Self::COS_TOOL_YAW
+                        * (Self::TOOL_X * Self::COS_TOOL_YAW
+                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        - Self::SIN_TOOL_YAW
+                            * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                                + Self::TOOL_Y * Self::COS_TOOL_YAW))),
         );
         let k12 = T::of(Self::D7 + Self::TOOL_Z);
         let k13 = T::of(
             -(Self::H7
-                * ((Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                    * -0.1908089953765448
-                    + 0.981627183447664
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664)))
-                * -((Self::TOOL_X * 0.981627183447664
-                    - Self::TOOL_Y * 0.1908089953765448) * -0.1908089953765448
-                    + 0.981627183447664
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
-                - (0.981627183447664
-                    * (Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448)
-                    - (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664) * -0.1908089953765448)
+                * (Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    + Self::COS_TOOL_YAW
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW)))
+                * -(Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    + Self::COS_TOOL_YAW
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                - (Self::COS_TOOL_YAW
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    - Self::SIN_TOOL_YAW
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
                     * (Self::H7
-                        * (0.981627183447664
-                            * (Self::TOOL_X * 0.981627183447664
-                                - Self::TOOL_Y * 0.1908089953765448)
-                            - (Self::TOOL_X * 0.1908089953765448
-                                + Self::TOOL_Y * 0.981627183447664) * -0.1908089953765448)),
+                        * (Self::COS_TOOL_YAW
+                            * (Self::TOOL_X * Self::COS_TOOL_YAW
+                                - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                            - Self::SIN_TOOL_YAW
+                                * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                                    + Self::TOOL_Y * Self::COS_TOOL_YAW))),
         );
         let k14 = T::of(
-            (0.981627183447664
-                * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                - (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
-                    * -0.1908089953765448)
+            (Self::COS_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                - Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
                 * -(Self::H7
-                    * ((Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448) * -0.1908089953765448
-                        + 0.981627183447664
-                            * (Self::TOOL_X * 0.1908089953765448
-                                + Self::TOOL_Y * 0.981627183447664)))
-                + (0.981627183447664
-                    * (Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448)
-                    - (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664) * -0.1908089953765448)
+                    * (Self::SIN_TOOL_YAW
+                        * (Self::TOOL_X * Self::COS_TOOL_YAW
+                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        + Self::COS_TOOL_YAW
+                            * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                                + Self::TOOL_Y * Self::COS_TOOL_YAW)))
+                + (Self::COS_TOOL_YAW
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    - Self::SIN_TOOL_YAW
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
                     * -(Self::H7
-                        * ((Self::TOOL_X * 0.981627183447664
-                            - Self::TOOL_Y * 0.1908089953765448) * -0.1908089953765448
-                            + 0.981627183447664
-                                * (Self::TOOL_X * 0.1908089953765448
-                                    + Self::TOOL_Y * 0.981627183447664))),
+                        * (Self::SIN_TOOL_YAW
+                            * (Self::TOOL_X * Self::COS_TOOL_YAW
+                                - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                            + Self::COS_TOOL_YAW
+                                * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                                    + Self::TOOL_Y * Self::COS_TOOL_YAW))),
         );
         let k15 = T::of(-(Self::D7 + Self::TOOL_Z));
         let k16 = T::of((Self::D7 + Self::TOOL_Z) * -(Self::D7 + Self::TOOL_Z));
@@ -1211,14 +1257,14 @@ impl Robot<7> for EveryLaw {
         let k24 = T::of(
             1.0 / Self::GAP_KNEE3 * (Self::GAP3 * 0.5) + (Self::H3 + Self::ADDED3),
         );
-        let k25 = T::of(0.8253356149096783);
-        let k26 = T::of(-0.5646424733950354);
+        let sin_base_yaw = T::of(Self::SIN_BASE_YAW);
+        let cos_base_yaw = T::of(Self::COS_BASE_YAW);
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7)] = T::sin_cos_all([
-            q[1] + T::of(0.2587993877991494),
+            q[1] + T::of(Self::THETA2),
             q[2],
             T::of(2.0) * q[3],
-            q[3] + T::of(0.005235987755982988),
+            q[3] + T::of(Self::THETA4),
             q[4],
             q[5],
             T::of(41.0) * q[6],
@@ -1566,31 +1612,31 @@ impl Robot<7> for EveryLaw {
         let t225 = sin_base_pitch * t200 + cos_base_pitch * t204;
         let t226 = cos_base_pitch * t199 - sin_base_pitch * t202;
         let t227 = sin_base_pitch * t199 + cos_base_pitch * t202;
-        let t228 = k26 * (t209 - t183) + k25 * (t211 + t211);
-        let t229 = k26 * t228;
+        let t228 = sin_base_yaw * (t209 - t183) + cos_base_yaw * (t211 + t211);
+        let t229 = sin_base_yaw * t228;
         let tt_xx = t209 - t229;
-        let tt_xy = k25 * t228 - t211;
+        let tt_xy = cos_base_yaw * t228 - t211;
         let tt_yy = t183 + t229;
-        let tt_xz = k25 * t208 - k26 * t210;
-        let tt_yz = k26 * t208 + k25 * t210;
-        let t230 = k26 * (t215 - t190) + k25 * (t217 + t217);
-        let t231 = k26 * t230;
+        let tt_xz = cos_base_yaw * t208 - sin_base_yaw * t210;
+        let tt_yz = sin_base_yaw * t208 + cos_base_yaw * t210;
+        let t230 = sin_base_yaw * (t215 - t190) + cos_base_yaw * (t217 + t217);
+        let t231 = sin_base_yaw * t230;
         let rr_xx = t215 - t231;
-        let rr_xy = k25 * t230 - t217;
+        let rr_xy = cos_base_yaw * t230 - t217;
         let rr_yy = t190 + t231;
-        let rr_xz = k25 * t214 - k26 * t216;
-        let rr_yz = k26 * t214 + k25 * t216;
-        let t232 = k26 * (t223 - t198) + k25 * (t225 + t227);
-        let t233 = k26 * t232;
-        let t234 = k25 * t232;
+        let rr_xz = cos_base_yaw * t214 - sin_base_yaw * t216;
+        let rr_yz = sin_base_yaw * t214 + cos_base_yaw * t216;
+        let t232 = sin_base_yaw * (t223 - t198) + cos_base_yaw * (t225 + t227);
+        let t233 = sin_base_yaw * t232;
+        let t234 = cos_base_yaw * t232;
         let tr_xx = t223 - t233;
         let tr_xy = t234 - t227;
         let tr_yx = t234 - t225;
         let tr_yy = t198 + t233;
-        let tr_xz = k25 * t222 - k26 * t226;
-        let tr_yz = k26 * t222 + k25 * t226;
-        let tr_zx = k25 * t221 - k26 * t224;
-        let tr_zy = k26 * t221 + k25 * t224;
+        let tr_xz = cos_base_yaw * t222 - sin_base_yaw * t226;
+        let tr_yz = sin_base_yaw * t222 + cos_base_yaw * t226;
+        let tr_zx = cos_base_yaw * t221 - sin_base_yaw * t224;
+        let tr_zy = sin_base_yaw * t221 + cos_base_yaw * t224;
         Matrix6::new(
             tt_xx, tt_xy, tt_xz, tr_xx, tr_xy, tr_xz,
             tt_xy, tt_yy, tt_yz, tr_yx, tr_yy, tr_yz,
@@ -1652,65 +1698,65 @@ impl Robot<7> for EveryLaw {
         let cos2_3 = T::of(Self::COS2_3);
         let sin2_3 = T::of(Self::SIN2_3);
         let h6_sin2_6 = T::of(Self::H6 * Self::SIN2_6);
-        let k10 = T::of(Self::COS_BASE_PITCH * 0.8253356149096783);
-        let k11 = T::of(Self::COS_BASE_PITCH * -0.5646424733950354);
+        let k10 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k11 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
         let k12 = T::of(-Self::SIN_BASE_PITCH);
         let k13 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
         let k14 = T::of(
-            Self::COS_BASE_ROLL * 0.5646424733950354
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783),
+            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k15 = T::of(
-            Self::COS_BASE_ROLL * 0.8253356149096783
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354),
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k16 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
         let k17 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)
-                - Self::SIN_BASE_ROLL * 0.5646424733950354,
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
         );
         let k18 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)
-                - Self::SIN_BASE_ROLL * 0.8253356149096783,
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
         let k19 = T::of(
-            -(Self::COS_BASE_ROLL * 0.5646424733950354
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)),
+            -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k20 = T::of(
-            -(Self::COS_BASE_ROLL * 0.8253356149096783
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)),
+            -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k21 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
         let k22 = T::of(
-            Self::SIN_BASE_ROLL * 0.5646424733950354
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783),
+            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k23 = T::of(
-            Self::SIN_BASE_ROLL * 0.8253356149096783
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354),
+            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k24 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k25 = T::of(
             Self::H1
-                * -(Self::COS_BASE_ROLL * 0.5646424733950354
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)),
+                * -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k26 = T::of(
             Self::H1
-                * -(Self::COS_BASE_ROLL * 0.8253356149096783
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)),
+                * -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k27 = T::of(Self::H1 * -(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
         let k28 = T::of(
             Self::H2
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)
-                    - Self::SIN_BASE_ROLL * 0.5646424733950354),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
         );
         let k29 = T::of(
             Self::H2
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)
-                    - Self::SIN_BASE_ROLL * 0.8253356149096783),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
         let k30 = T::of(Self::H2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k31 = T::of(0.5 * Self::A4);
@@ -1722,10 +1768,10 @@ impl Robot<7> for EveryLaw {
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7)] = T::sin_cos_all([
-            q[1] + T::of(0.2587993877991494),
+            q[1] + T::of(Self::THETA2),
             q[2],
             T::of(2.0) * q[3],
-            q[3] + T::of(0.005235987755982988),
+            q[3] + T::of(Self::THETA4),
             q[4],
             q[5],
             T::of(41.0) * q[6],
@@ -1953,52 +1999,52 @@ impl Robot<7> for EveryLaw {
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
-        let k5 = T::of(Self::COS_BASE_PITCH * 0.8253356149096783);
-        let k6 = T::of(Self::COS_BASE_PITCH * -0.5646424733950354);
+        let k5 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k6 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
         let k7 = T::of(-Self::SIN_BASE_PITCH);
         let k8 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
         let k9 = T::of(
-            Self::COS_BASE_ROLL * 0.5646424733950354
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783),
+            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k10 = T::of(
-            Self::COS_BASE_ROLL * 0.8253356149096783
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354),
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k11 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
         let k12 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)
-                - Self::SIN_BASE_ROLL * 0.5646424733950354,
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
         );
         let k13 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)
-                - Self::SIN_BASE_ROLL * 0.8253356149096783,
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
         let k14 = T::of(
-            -(Self::COS_BASE_ROLL * 0.5646424733950354
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)),
+            -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k15 = T::of(
-            -(Self::COS_BASE_ROLL * 0.8253356149096783
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)),
+            -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k16 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
         let k17 = T::of(
-            Self::SIN_BASE_ROLL * 0.5646424733950354
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783),
+            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k18 = T::of(
-            Self::SIN_BASE_ROLL * 0.8253356149096783
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354),
+            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k19 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7)] = T::sin_cos_all([
-            q[1] + T::of(0.2587993877991494),
+            q[1] + T::of(Self::THETA2),
             q[2],
             T::of(2.0) * q[3],
-            q[3] + T::of(0.005235987755982988),
+            q[3] + T::of(Self::THETA4),
             q[4],
             q[5],
             T::of(41.0) * q[6],
@@ -2157,58 +2203,58 @@ impl Robot<7> for EveryLaw {
         let tool_z = T::of(Self::TOOL_Z);
         let sin_tool_pitch = T::of(Self::SIN_TOOL_PITCH);
         let cos_tool_pitch = T::of(Self::COS_TOOL_PITCH);
-        let k5 = T::of(-0.5646424733950354);
-        let k6 = T::of(0.8253356149096783);
-        let k7 = T::of(Self::COS_BASE_PITCH * 0.8253356149096783);
-        let k8 = T::of(Self::COS_BASE_PITCH * -0.5646424733950354);
-        let k9 = T::of(-Self::SIN_BASE_PITCH);
-        let k10 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
-        let k11 = T::of(
-            Self::COS_BASE_ROLL * 0.5646424733950354
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783),
+        let sin_base_yaw = T::of(Self::SIN_BASE_YAW);
+        let cos_base_yaw = T::of(Self::COS_BASE_YAW);
+        let k5 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k6 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
+        let k7 = T::of(-Self::SIN_BASE_PITCH);
+        let k8 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k9 = T::of(
+            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
+        let k10 = T::of(
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
+        );
+        let k11 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
         let k12 = T::of(
-            Self::COS_BASE_ROLL * 0.8253356149096783
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354),
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
         );
-        let k13 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let k13 = T::of(
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
+        );
         let k14 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)
-                - Self::SIN_BASE_ROLL * 0.5646424733950354,
+            -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k15 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)
-                - Self::SIN_BASE_ROLL * 0.8253356149096783,
+            -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k16 = T::of(
-            -(Self::COS_BASE_ROLL * 0.5646424733950354
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)),
-        );
+        let k16 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
         let k17 = T::of(
-            -(Self::COS_BASE_ROLL * 0.8253356149096783
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)),
+            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
-        let k18 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k19 = T::of(
-            Self::SIN_BASE_ROLL * 0.5646424733950354
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783),
+        let k18 = T::of(
+            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
+        let k19 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k20 = T::of(
-            Self::SIN_BASE_ROLL * 0.8253356149096783
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354),
-        );
-        let k21 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k22 = T::of(
             Self::D2
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)
-                    - Self::SIN_BASE_ROLL * 0.5646424733950354),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
         );
-        let k23 = T::of(
+        let k21 = T::of(
             Self::D2
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)
-                    - Self::SIN_BASE_ROLL * 0.8253356149096783),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
-        let k24 = T::of(Self::D2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k22 = T::of(Self::D2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let h1 = T::of(Self::H1);
         let h2 = T::of(Self::H2);
         let h3 = T::of(Self::H3);
@@ -2223,146 +2269,168 @@ impl Robot<7> for EveryLaw {
         let cos2_3 = T::of(Self::COS2_3);
         let sin2_3 = T::of(Self::SIN2_3);
         let h6_sin2_6 = T::of(Self::H6 * Self::SIN2_6);
+        let k23 = T::of(
+            Self::COS_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                - Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                        + Self::TOOL_Y * Self::COS_TOOL_YAW),
+        );
+        let k24 = T::of(
+            Self::SIN_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                + Self::COS_TOOL_YAW
+                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                        + Self::TOOL_Y * Self::COS_TOOL_YAW),
+        );
         let k25 = T::of(
-            0.981627183447664
-                * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                - (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
-                    * -0.1908089953765448,
+            -(Self::H7
+                * (Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    + Self::COS_TOOL_YAW
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))),
         );
         let k26 = T::of(
-            (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                * -0.1908089953765448
-                + 0.981627183447664
-                    * (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664),
+            Self::H7
+                * (Self::COS_TOOL_YAW
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    - Self::SIN_TOOL_YAW
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW)),
         );
         let k27 = T::of(
             -(Self::H7
-                * ((Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                    * -0.1908089953765448
-                    + 0.981627183447664
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))),
+                * (Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    + Self::COS_TOOL_YAW
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW)))
+                * -(Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    + Self::COS_TOOL_YAW
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW)),
         );
         let k28 = T::of(
-            Self::H7
-                * (0.981627183447664
-                    * (Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448)
-                    - (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664) * -0.1908089953765448),
+            (Self::COS_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                - Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                * -(Self::H7
+                    * (Self::SIN_TOOL_YAW
+                        * (Self::TOOL_X * Self::COS_TOOL_YAW
+                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        + Self::COS_TOOL_YAW
+                            * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                                + Self::TOOL_Y * Self::COS_TOOL_YAW))),
         );
         let k29 = T::of(
-            -(Self::H7
-                * ((Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                    * -0.1908089953765448
-                    + 0.981627183447664
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664)))
-                * -((Self::TOOL_X * 0.981627183447664
-                    - Self::TOOL_Y * 0.1908089953765448) * -0.1908089953765448
-                    + 0.981627183447664
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664)),
-        );
-        let k30 = T::of(
-            (0.981627183447664
-                * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                - (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
-                    * -0.1908089953765448)
-                * -(Self::H7
-                    * ((Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448) * -0.1908089953765448
-                        + 0.981627183447664
-                            * (Self::TOOL_X * 0.1908089953765448
-                                + Self::TOOL_Y * 0.981627183447664))),
-        );
-        let k31 = T::of(
-            (0.981627183447664
-                * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                - (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
-                    * -0.1908089953765448)
+            (Self::COS_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                - Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
                 * (Self::H7
-                    * (0.981627183447664
-                        * (Self::TOOL_X * 0.981627183447664
-                            - Self::TOOL_Y * 0.1908089953765448)
-                        - (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664) * -0.1908089953765448)),
+                    * (Self::COS_TOOL_YAW
+                        * (Self::TOOL_X * Self::COS_TOOL_YAW
+                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        - Self::SIN_TOOL_YAW
+                            * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                                + Self::TOOL_Y * Self::COS_TOOL_YAW))),
         );
-        let k32 = T::of(Self::D7 + Self::TOOL_Z);
-        let k33 = T::of(
+        let k30 = T::of(Self::D7 + Self::TOOL_Z);
+        let k31 = T::of(
             -(Self::H7
-                * ((Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                    * -0.1908089953765448
-                    + 0.981627183447664
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664)))
-                * -((Self::TOOL_X * 0.981627183447664
-                    - Self::TOOL_Y * 0.1908089953765448) * -0.1908089953765448
-                    + 0.981627183447664
-                        * (Self::TOOL_X * 0.1908089953765448
-                            + Self::TOOL_Y * 0.981627183447664))
-                - (0.981627183447664
-                    * (Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448)
-                    - (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664) * -0.1908089953765448)
+                * (Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    + Self::COS_TOOL_YAW
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW)))
+                * -(Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    + Self::COS_TOOL_YAW
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                - (Self::COS_TOOL_YAW
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    - Self::SIN_TOOL_YAW
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
                     * (Self::H7
-                        * (0.981627183447664
-                            * (Self::TOOL_X * 0.981627183447664
-                                - Self::TOOL_Y * 0.1908089953765448)
-                            - (Self::TOOL_X * 0.1908089953765448
-                                + Self::TOOL_Y * 0.981627183447664) * -0.1908089953765448)),
+                        * (Self::COS_TOOL_YAW
+                            * (Self::TOOL_X * Self::COS_TOOL_YAW
+                                - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                            - Self::SIN_TOOL_YAW
+                                * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                                    + Self::TOOL_Y * Self::COS_TOOL_YAW))),
         );
-        let k34 = T::of(
-            (0.981627183447664
-                * (Self::TOOL_X * 0.981627183447664 - Self::TOOL_Y * 0.1908089953765448)
-                - (Self::TOOL_X * 0.1908089953765448 + Self::TOOL_Y * 0.981627183447664)
-                    * -0.1908089953765448)
+        let k32 = T::of(
+            (Self::COS_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                - Self::SIN_TOOL_YAW
+                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
                 * -(Self::H7
-                    * ((Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448) * -0.1908089953765448
-                        + 0.981627183447664
-                            * (Self::TOOL_X * 0.1908089953765448
-                                + Self::TOOL_Y * 0.981627183447664)))
-                + (0.981627183447664
-                    * (Self::TOOL_X * 0.981627183447664
-                        - Self::TOOL_Y * 0.1908089953765448)
-                    - (Self::TOOL_X * 0.1908089953765448
-                        + Self::TOOL_Y * 0.981627183447664) * -0.1908089953765448)
+                    * (Self::SIN_TOOL_YAW
+                        * (Self::TOOL_X * Self::COS_TOOL_YAW
+                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        + Self::COS_TOOL_YAW
+                            * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                                + Self::TOOL_Y * Self::COS_TOOL_YAW)))
+                + (Self::COS_TOOL_YAW
+                    * (Self::TOOL_X * Self::COS_TOOL_YAW
+                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                    - Self::SIN_TOOL_YAW
+                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
                     * -(Self::H7
-                        * ((Self::TOOL_X * 0.981627183447664
-                            - Self::TOOL_Y * 0.1908089953765448) * -0.1908089953765448
-                            + 0.981627183447664
-                                * (Self::TOOL_X * 0.1908089953765448
-                                    + Self::TOOL_Y * 0.981627183447664))),
+                        * (Self::SIN_TOOL_YAW
+                            * (Self::TOOL_X * Self::COS_TOOL_YAW
+                                - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                            + Self::COS_TOOL_YAW
+                                * (Self::TOOL_X * -Self::SIN_TOOL_YAW
+                                    + Self::TOOL_Y * Self::COS_TOOL_YAW))),
         );
-        let k35 = T::of(-(Self::D7 + Self::TOOL_Z));
-        let k36 = T::of((Self::D7 + Self::TOOL_Z) * -(Self::D7 + Self::TOOL_Z));
-        let k37 = T::of(-Self::H7);
-        let k38 = T::of(Self::H5 + 1.0 / Self::GAP_KNEE5 * (0.5 * Self::GAP5));
-        let k39 = T::of(-Self::COUPLING5_6);
-        let k40 = T::of(
+        let k33 = T::of(-(Self::D7 + Self::TOOL_Z));
+        let k34 = T::of((Self::D7 + Self::TOOL_Z) * -(Self::D7 + Self::TOOL_Z));
+        let k35 = T::of(-Self::H7);
+        let k36 = T::of(Self::H5 + 1.0 / Self::GAP_KNEE5 * (0.5 * Self::GAP5));
+        let k37 = T::of(-Self::COUPLING5_6);
+        let k38 = T::of(
             Self::A4
                 * ((Self::TORSION3 - Self::BENDING3) * (1.0 / (Self::A4 * Self::A4))),
         );
-        let k41 = T::of(Self::A4 * (Self::BENDING3 * 0.08333333333333333));
-        let k42 = T::of(Self::A4 * Self::A4 * (Self::BENDING3 * 0.08333333333333333));
-        let k43 = T::of(0.5 * Self::A4);
-        let k44 = T::of(
+        let k39 = T::of(Self::A4 * (Self::BENDING3 * 0.08333333333333333));
+        let k40 = T::of(Self::A4 * Self::A4 * (Self::BENDING3 * 0.08333333333333333));
+        let k41 = T::of(0.5 * Self::A4);
+        let k42 = T::of(
             1.0 / Self::GAP_KNEE3 * (0.5 * Self::GAP3) + (Self::H3 + Self::ADDED3),
         );
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7), (s7o, c7o)] = T::sin_cos_all([
-            q[1] + T::of(0.2587993877991494),
+            q[1] + T::of(Self::THETA2),
             q[2],
             T::of(2.0) * q[3],
-            q[3] + T::of(0.005235987755982988),
+            q[3] + T::of(Self::THETA4),
             q[4],
             q[5],
             T::of(41.0) * q[6],
             q[6],
-            q[6] + T::of(2.949606435870417),
+            q[6] + T::of(Self::THETA7 + Self::TOOL_YAW),
         ]);
         let e3 = sin_error3 * s3 + cos_error3 * c3;
         let e4 = cos_error4 * c2x4;
@@ -2379,12 +2447,12 @@ impl Robot<7> for EveryLaw {
         let t10 = e7 * e7;
         let t11 = T::one() - t10 * (k3 - k2 * t10);
         let t12 = e7 - e7 * t10 * (k4 - k1 * t10);
-        let t13 = k7 * c2o + k11 * s2o;
-        let t14 = k8 * c2o + k12 * s2o;
-        let t15 = k9 * c2o + k10 * s2o;
-        let z3x = k11 * c2o - k7 * s2o;
-        let z3y = k12 * c2o - k8 * s2o;
-        let z3z = k10 * c2o - k9 * s2o;
+        let t13 = k5 * c2o + k9 * s2o;
+        let t14 = k6 * c2o + k10 * s2o;
+        let t15 = k7 * c2o + k8 * s2o;
+        let z3x = k9 * c2o - k5 * s2o;
+        let z3y = k10 * c2o - k6 * s2o;
+        let z3z = k8 * c2o - k7 * s2o;
         let t16 = a3 * t13;
         let t17 = a3 * t14;
         let t18 = a3 * t15;
@@ -2392,12 +2460,12 @@ impl Robot<7> for EveryLaw {
         let t20 = s3 * t5 - t19;
         let t21 = s3 * t3;
         let t22 = t21 + c3 * t5;
-        let t23 = t13 * t22 + k19 * t20;
-        let t24 = t14 * t22 + k20 * t20;
-        let t25 = t15 * t22 + k21 * t20;
-        let t26 = k19 * t22 - t13 * t20;
-        let t27 = k20 * t22 - t14 * t20;
-        let t28 = k21 * t22 - t15 * t20;
+        let t23 = t13 * t22 + k17 * t20;
+        let t24 = t14 * t22 + k18 * t20;
+        let t25 = t15 * t22 + k19 * t20;
+        let t26 = k17 * t22 - t13 * t20;
+        let t27 = k18 * t22 - t14 * t20;
+        let t28 = k19 * t22 - t15 * t20;
         let t29 = cos_alpha4 * t26 + sin_alpha4 * z3x;
         let t30 = cos_alpha4 * t27 + sin_alpha4 * z3y;
         let t31 = cos_alpha4 * t28 + sin_alpha4 * z3z;
@@ -2413,9 +2481,9 @@ impl Robot<7> for EveryLaw {
         let t38 = a4 * t23;
         let t39 = a4 * t24;
         let t40 = a4 * t25;
-        let t41 = base_x + k16 * t1 + k22 + t16 + t38;
-        let t42 = base_y + k17 * t1 + k23 + t17 + t39;
-        let t43 = base_z + k18 * t1 + k24 + t18 + t40;
+        let t41 = base_x + k14 * t1 + k20 + t16 + t38;
+        let t42 = base_y + k15 * t1 + k21 + t17 + t39;
+        let t43 = base_z + k16 * t1 + k22 + t18 + t40;
         let t44 = t7 * s4o;
         let t45 = t44 + t9 * c4o;
         let t46 = t7 * c4o;
@@ -2492,9 +2560,9 @@ impl Robot<7> for EveryLaw {
         let r2x = t16 + r3x;
         let r2y = t17 + r3y;
         let r2z = t18 + r3z;
-        let j2x = k15 * r2z - k13 * r2y;
-        let j2y = k13 * r2x - k14 * r2z;
-        let j2z = k14 * r2y - k15 * r2x;
+        let j2x = k13 * r2z - k11 * r2y;
+        let j2y = k11 * r2x - k12 * r2z;
+        let j2z = k12 * r2y - k13 * r2x;
         let j3x = z3y * r3z - z3z * r3y;
         let j3y = z3z * r3x - z3x * r3z;
         let j3z = z3x * r3y - z3y * r3x;
@@ -2516,33 +2584,33 @@ impl Robot<7> for EveryLaw {
         let t87 = s6 * c6;
 
         // From joint 7 to the TCP.
-        let r6x = k25 * t76 + k26 * t75;
-        let t88 = k25 * t75;
-        let t89 = k26 * t76;
+        let r6x = k23 * t76 + k24 * t75;
+        let t88 = k23 * t75;
+        let t89 = k24 * t76;
         let r5y_2 = t89 - t88;
-        let t90 = k34 * t76 - k33 * t75;
+        let t90 = k32 * t76 - k31 * t75;
         let t91 = t75 * t90;
-        let tt6_zz = k31 - t91;
-        let tr6_xy = k27 * t76 + k28 * t75;
+        let tt6_zz = k29 - t91;
+        let tr6_xy = k25 * t76 + k26 * t75;
         let r6z = t88 - t89;
-        let tt6_xz = k30 - t76 * t90;
-        let tr6_zy = k27 * t75 - k28 * t76;
+        let tt6_xz = k28 - t76 * t90;
+        let tr6_zy = k25 * t75 - k26 * t76;
 
         // From joint 6 to the TCP.
         let rr6_zz = h6 + h6_sin2_6 * (t87 + t87);
-        let t92 = k32 * rr6_zz;
+        let t92 = k30 * rr6_zz;
         let tr6_yz = r6x * rr6_zz;
         let t93 = r6x * t92;
         let tt6_yy = r6x * tr6_yz;
-        let tt6_xx = k29 + t91 - k36 * rr6_zz;
+        let tt6_xx = k27 + t91 - k34 * rr6_zz;
         let t94 = c6 * r6x;
-        let r5x_2 = t94 - k32 * s6;
+        let r5x_2 = t94 - k30 * s6;
         let t95 = s6 * r6x;
-        let r5z_2 = t95 + k32 * c6;
+        let r5z_2 = t95 + k30 * c6;
         let t96 = s6 * (tt6_xx - tt6_yy) - c6 * (t93 + t93);
         let t97 = s6 * t96;
         let tt5_zz = tt6_yy + t97;
-        let t98 = k37 * s6;
+        let t98 = k35 * s6;
         let t99 = s6 * t98;
         let rr5_xz = c6 * t98;
         let t100 = c6 * tr6_xy;
@@ -2550,15 +2618,15 @@ impl Robot<7> for EveryLaw {
         let t102 = c6 * t100;
         let tr5_zx = t102 - tr6_xy;
         let tr5_yx = s6 * tr6_zy;
-        let t103 = k35 * c6 - t95;
-        let t104 = t94 + k35 * s6;
+        let t103 = k33 * c6 - t95;
+        let t104 = t94 + k33 * s6;
         let tr5_zy = s6 * t92 - c6 * tr6_yz;
 
         // From joint 5 to the TCP.
-        let t105 = k38 * r5y_2;
-        let t106 = k38 * r5x_2;
+        let t105 = k36 * r5y_2;
+        let t106 = k36 * r5x_2;
         let tt5_yy = tt6_zz + r5x_2 * t106;
-        let rr5_zz = h7 + t99 + k38;
+        let rr5_zz = h7 + t99 + k36;
         let tr5_yz = t106 - c6 * tr6_zy;
         let t107 = coupling5_6 * r6z;
         let t108 = coupling5_6 * t103;
@@ -2583,8 +2651,8 @@ impl Robot<7> for EveryLaw {
         let t118 = s5 * (rr6_zz + t99);
         let t119 = s5 * t118;
         let rr4_xz = c5 * t118;
-        let rr4_xy = c5 * rr5_xz - k39 * s5;
-        let t120 = s5 * rr5_xz + k39 * c5;
+        let rr4_xy = c5 * rr5_xz - k37 * s5;
+        let t120 = s5 * rr5_xz + k37 * c5;
         let t121 = s5 * (t110 - t101) + c5 * (tr5_yx + tr5_xy);
         let t122 = s5 * t121;
         let t123 = c5 * t121;
@@ -2619,13 +2687,13 @@ impl Robot<7> for EveryLaw {
         let t135 = a4 * t132;
         let t136 = r4x_2 + t134;
         let t137 = r4y_2 + t135;
-        let t138 = k40 * t133;
-        let t139 = k41 * t133;
+        let t138 = k38 * t133;
+        let t139 = k39 * t133;
         let t140 = bending3 + t134 * t138;
         let t141 = t135 * t138;
-        let t142 = bending3 + t135 * (k40 * t132);
-        let t143 = k43 * t133;
-        let t144 = k43 * t132;
+        let t142 = bending3 + t135 * (k38 * t132);
+        let t143 = k41 * t133;
+        let t144 = k41 * t132;
         let t145 = t136 - t143;
         let t146 = t137 - t144;
         let t147 = t115 * t141;
@@ -2639,12 +2707,12 @@ impl Robot<7> for EveryLaw {
         let t155 = t115 * t150 - t152 * (t144 - t137);
         let t156 = t115 * t148 + t145 * t153;
         let t157 = t135 * t139 + (t115 * t147 + t145 * t152);
-        let t158 = tt4_xx + (k42 - t134 * t139 + t155);
+        let t158 = tt4_xx + (k40 - t134 * t139 + t155);
         let t159 = tt4_xy - t157;
         let t160 = tt4_xz - (t146 * t147 + t150 * t154);
-        let t161 = tt4_yy + (k42 - t135 * (k41 * t132) + t156);
+        let t161 = tt4_yy + (k40 - t135 * (k39 * t132) + t156);
         let t162 = tt4_yz + (t146 * t148 + t147 * t154);
-        let t163 = tt4_zz + (k42 + (t146 * t149 + t151 * t154));
+        let t163 = tt4_zz + (k40 + (t146 * t149 + t151 * t154));
         let t164 = rr4_xx + t140;
         let t165 = rr4_xy + t141;
         let t166 = rr4_yy + t142;
@@ -2709,7 +2777,7 @@ impl Robot<7> for EveryLaw {
         let tr3_xy = cos_alpha4 * t193 - sin_alpha4 * t196;
 
         // From joint 3 to the TCP.
-        let t209 = h3 * (t85 + sin2_3 * (t86 + t86)) + k44;
+        let t209 = h3 * (t85 + sin2_3 * (t86 + t86)) + k42;
         let t210 = r3y_2 * t209;
         let t211 = r3x_2 * t209;
         let tt3_xx = t158 - t178 + r3y_2 * t210;
@@ -2828,31 +2896,31 @@ impl Robot<7> for EveryLaw {
         let t287 = sin_base_pitch * t262 + cos_base_pitch * t266;
         let t288 = cos_base_pitch * t261 - sin_base_pitch * t264;
         let t289 = sin_base_pitch * t261 + cos_base_pitch * t264;
-        let t290 = k5 * (t271 - t245) + k6 * (t273 + t273);
-        let t291 = k5 * t290;
+        let t290 = sin_base_yaw * (t271 - t245) + cos_base_yaw * (t273 + t273);
+        let t291 = sin_base_yaw * t290;
         let tt_xx = t271 - t291;
-        let tt_xy = k6 * t290 - t273;
+        let tt_xy = cos_base_yaw * t290 - t273;
         let tt_yy = t245 + t291;
-        let tt_xz = k6 * t270 - k5 * t272;
-        let tt_yz = k5 * t270 + k6 * t272;
-        let t292 = k5 * (t277 - t252) + k6 * (t279 + t279);
-        let t293 = k5 * t292;
+        let tt_xz = cos_base_yaw * t270 - sin_base_yaw * t272;
+        let tt_yz = sin_base_yaw * t270 + cos_base_yaw * t272;
+        let t292 = sin_base_yaw * (t277 - t252) + cos_base_yaw * (t279 + t279);
+        let t293 = sin_base_yaw * t292;
         let rr_xx = t277 - t293;
-        let rr_xy = k6 * t292 - t279;
+        let rr_xy = cos_base_yaw * t292 - t279;
         let rr_yy = t252 + t293;
-        let rr_xz = k6 * t276 - k5 * t278;
-        let rr_yz = k5 * t276 + k6 * t278;
-        let t294 = k5 * (t285 - t260) + k6 * (t287 + t289);
-        let t295 = k5 * t294;
-        let t296 = k6 * t294;
+        let rr_xz = cos_base_yaw * t276 - sin_base_yaw * t278;
+        let rr_yz = sin_base_yaw * t276 + cos_base_yaw * t278;
+        let t294 = sin_base_yaw * (t285 - t260) + cos_base_yaw * (t287 + t289);
+        let t295 = sin_base_yaw * t294;
+        let t296 = cos_base_yaw * t294;
         let tr_xx = t285 - t295;
         let tr_xy = t296 - t289;
         let tr_yx = t296 - t287;
         let tr_yy = t260 + t295;
-        let tr_xz = k6 * t284 - k5 * t288;
-        let tr_yz = k5 * t284 + k6 * t288;
-        let tr_zx = k6 * t283 - k5 * t286;
-        let tr_zy = k5 * t283 + k6 * t286;
+        let tr_xz = cos_base_yaw * t284 - sin_base_yaw * t288;
+        let tr_yz = sin_base_yaw * t284 + cos_base_yaw * t288;
+        let tr_zx = cos_base_yaw * t283 - sin_base_yaw * t286;
+        let tr_zy = sin_base_yaw * t283 + cos_base_yaw * t286;
         Statics {
             transform: Matrix4::new(
                 x_x, y_x, z_x, p_x,
@@ -2861,8 +2929,8 @@ impl Robot<7> for EveryLaw {
                 T::zero(), T::zero(), T::zero(), T::one(),
             ),
             jacobian: SMatrix::from([
-                [k16, k17, k18, T::zero(), T::zero(), T::zero()],
-                [j2x, j2y, j2z, k14, k15, k13],
+                [k14, k15, k16, T::zero(), T::zero(), T::zero()],
+                [j2x, j2y, j2z, k12, k13, k11],
                 [j3x, j3y, j3z, z3x, z3y, z3z],
                 [j4x, j4y, j4z, z4x, z4y, z4z],
                 [j5x, j5y, j5z, z5x, z5y, z5z],
@@ -2937,65 +3005,65 @@ impl Robot<7> for EveryLaw {
         let cos2_3 = T::of(Self::COS2_3);
         let sin2_3 = T::of(Self::SIN2_3);
         let h6_sin2_6 = T::of(Self::H6 * Self::SIN2_6);
-        let k10 = T::of(Self::COS_BASE_PITCH * 0.8253356149096783);
-        let k11 = T::of(Self::COS_BASE_PITCH * -0.5646424733950354);
+        let k10 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k11 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
         let k12 = T::of(-Self::SIN_BASE_PITCH);
         let k13 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
         let k14 = T::of(
-            Self::COS_BASE_ROLL * 0.5646424733950354
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783),
+            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k15 = T::of(
-            Self::COS_BASE_ROLL * 0.8253356149096783
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354),
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k16 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
         let k17 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)
-                - Self::SIN_BASE_ROLL * 0.5646424733950354,
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
         );
         let k18 = T::of(
-            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)
-                - Self::SIN_BASE_ROLL * 0.8253356149096783,
+            Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
         let k19 = T::of(
-            -(Self::COS_BASE_ROLL * 0.5646424733950354
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)),
+            -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k20 = T::of(
-            -(Self::COS_BASE_ROLL * 0.8253356149096783
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)),
+            -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k21 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
         let k22 = T::of(
-            Self::SIN_BASE_ROLL * 0.5646424733950354
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783),
+            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
         let k23 = T::of(
-            Self::SIN_BASE_ROLL * 0.8253356149096783
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354),
+            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
         let k24 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k25 = T::of(
             Self::H1
-                * -(Self::COS_BASE_ROLL * 0.5646424733950354
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)),
+                * -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
         let k26 = T::of(
             Self::H1
-                * -(Self::COS_BASE_ROLL * 0.8253356149096783
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)),
+                * -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k27 = T::of(Self::H1 * -(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
         let k28 = T::of(
             Self::H2
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * 0.8253356149096783)
-                    - Self::SIN_BASE_ROLL * 0.5646424733950354),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
         );
         let k29 = T::of(
             Self::H2
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * -0.5646424733950354)
-                    - Self::SIN_BASE_ROLL * 0.8253356149096783),
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
         let k30 = T::of(Self::H2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k31 = T::of(0.5 * Self::A4);
@@ -3011,10 +3079,10 @@ impl Robot<7> for EveryLaw {
         let before6_1 = state.plays[5][0];
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7)] = T::sin_cos_all([
-            q[1] + T::of(0.2587993877991494),
+            q[1] + T::of(Self::THETA2),
             q[2],
             T::of(2.0) * q[3],
-            q[3] + T::of(0.005235987755982988),
+            q[3] + T::of(Self::THETA4),
             q[4],
             q[5],
             T::of(41.0) * q[6],

@@ -38,26 +38,38 @@ impl FanucR2000ic {
     pub const D1: f64 = 0.67;
     /// DH length a of row 1 (m).
     pub const A1: f64 = 0.0;
+    /// DH angle theta of row 1 (rad).
+    pub const THETA1: f64 = 0.0;
     /// DH offset d of row 2 (m).
     pub const D2: f64 = 0.0;
     /// DH length a of row 2 (m).
     pub const A2: f64 = 0.312;
+    /// DH angle theta of row 2 (rad).
+    pub const THETA2: f64 = -1.5707963267948966;
     /// DH offset d of row 3 (m).
     pub const D3: f64 = 0.0;
     /// DH length a of row 3 (m).
     pub const A3: f64 = 1.075;
+    /// DH angle theta of row 3 (rad).
+    pub const THETA3: f64 = 0.0;
     /// DH offset d of row 4 (m).
     pub const D4: f64 = 1.28;
     /// DH length a of row 4 (m).
     pub const A4: f64 = 0.225;
+    /// DH angle theta of row 4 (rad).
+    pub const THETA4: f64 = 0.0;
     /// DH offset d of row 5 (m).
     pub const D5: f64 = 0.0;
     /// DH length a of row 5 (m).
     pub const A5: f64 = 0.0;
+    /// DH angle theta of row 5 (rad).
+    pub const THETA5: f64 = 0.0;
     /// DH offset d of row 6 (m).
     pub const D6: f64 = 0.215;
     /// DH length a of row 6 (m).
     pub const A6: f64 = 0.0;
+    /// DH angle theta of row 6 (rad).
+    pub const THETA6: f64 = 0.0;
     /// TCP in the flange frame, along X (m).
     pub const TOOL_X: f64 = 0.006900000000000001;
     /// TCP in the flange frame, along Y (m).

@@ -37,22 +37,32 @@ impl Rv130hsc {
     pub const D1: f64 = 0.865;
     /// DH length a of row 1 (m).
     pub const A1: f64 = 0.41;
+    /// DH angle theta of row 1 (rad).
+    pub const THETA1: f64 = 0.0;
     /// DH offset d of row 2 (m).
     pub const D2: f64 = 0.0;
     /// DH length a of row 2 (m).
     pub const A2: f64 = 1.0;
+    /// DH angle theta of row 2 (rad).
+    pub const THETA2: f64 = -1.5707963267948966;
     /// DH offset d of row 3 (m).
     pub const D3: f64 = 0.0;
     /// DH length a of row 3 (m).
     pub const A3: f64 = 0.25;
+    /// DH angle theta of row 3 (rad).
+    pub const THETA3: f64 = 0.0;
     /// DH offset d of row 4 (m).
     pub const D4: f64 = 1.1;
     /// DH length a of row 4 (m).
     pub const A4: f64 = 0.0;
+    /// DH angle theta of row 4 (rad).
+    pub const THETA4: f64 = 0.0;
     /// DH offset d of row 5 (m).
     pub const D5: f64 = 0.0;
     /// DH length a of row 5 (m).
     pub const A5: f64 = 0.3;
+    /// DH angle theta of row 5 (rad).
+    pub const THETA5: f64 = 0.0;
     /// Compliance of joint 1 (rad/Nm).
     pub const H1: f64 = 2.97e-7;
     /// Compliance of joint 2 (rad/Nm).

@@ -10,12 +10,34 @@ use robstiff_robots::angle::{quarter_turns, snapped};
 
 /// `sum of factor * q_joint + offset`, with joints from 0 in ascending order,
 /// and the deviations of joints that stand aside of their coordinates.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Angle {
     terms: Vec<(usize, i32)>,
     /// Within half a turn, and a multiple of 90 degrees exactly or not at all.
     offset: f64,
     deviations: Vec<(usize, i32)>,
+    /// What the offset is made of, but for rounding and whole turns.
+    parts: Vec<Part>,
+}
+
+/// A number of the description in the constant part of an angle.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// The name in generated code, e.g. `THETA2`.
+    pub name: String,
+    /// What it is, for generated docs: "the yaw of the base".
+    pub what: String,
+    /// Its value (rad).
+    pub value: f64,
+    /// Whether it is subtracted.
+    pub is_negative: bool,
+}
+
+/// What an angle is made of makes it no other.
+impl PartialEq for Angle {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.terms, self.offset, &self.deviations) == (&other.terms, other.offset, &other.deviations)
+    }
 }
 
 /// An angle as `quarter_turns * 90 degrees +- rest`.
@@ -38,6 +60,14 @@ impl Angle {
     /// The coordinate of a joint (from 0) plus a constant (rad).
     pub fn of_joint(joint: usize, offset: f64) -> Self {
         Self { terms: vec![(joint, 1)], offset: stated(offset), ..Self::default() }
+    }
+
+    /// With a name for its constant part, which the description says is `value` (rad).
+    pub fn named(mut self, name: &str, value: f64, what: &str) -> Self {
+        if value != 0.0 {
+            self.parts = vec![Part { name: name.to_owned(), what: what.to_owned(), value, is_negative: false }];
+        }
+        self
     }
 
     /// A multiple of the coordinate of a joint (from 0).
@@ -67,6 +97,14 @@ impl Angle {
         self.offset
     }
 
+    /// The numbers whose sum the constant part is, where it is just that: whole turns are
+    /// left out of it, and rounding may depend on the order.
+    pub fn parts(&self) -> Option<&[Part]> {
+        let signed = |part: &Part| if part.is_negative { -part.value } else { part.value };
+        let sum = self.parts.iter().map(signed).reduce(|sum, part| sum + part)?;
+        (sum == self.offset).then_some(&self.parts)
+    }
+
     /// Whether it is exactly 0 for every pose.
     pub fn is_zero(&self) -> bool {
         self.terms.is_empty() && self.deviations.is_empty() && whole_quarters(self.offset) == Some(0)
@@ -94,7 +132,7 @@ impl Angle {
     pub(crate) fn reduced(&self) -> Reduced {
         let turns = whole_quarters(self.offset);
         let offset = if turns.is_some() { 0.0 } else { self.offset };
-        let mut rest = Self { terms: self.terms.clone(), offset, ..Self::default() };
+        let mut rest = Self { terms: self.terms.clone(), offset, parts: self.parts.clone(), ..Self::default() };
         let negated = rest.terms.first().is_some_and(|&(_, factor)| factor < 0);
         if negated {
             rest = -rest;
@@ -118,6 +156,13 @@ impl Add<&Angle> for Angle {
             terms.retain(|term| term.1 != 0);
         }
         self.offset = sum(self.offset, other.offset);
+        for part in &other.parts {
+            let opposite = |own: &Part| own.name == part.name && own.is_negative != part.is_negative;
+            match self.parts.iter().position(opposite) {
+                Some(at) => drop(self.parts.remove(at)),
+                None => self.parts.push(part.clone()),
+            }
+        }
         self
     }
 }
@@ -130,6 +175,7 @@ impl Neg for Angle {
             term.1 = -term.1;
         }
         self.offset = -self.offset;
+        self.parts.iter_mut().for_each(|part| part.is_negative = !part.is_negative);
         self
     }
 }
@@ -181,6 +227,22 @@ fn within_half_a_turn(angle: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::graph::Graph;
+
+    #[test]
+    fn the_constant_part_says_what_it_is_made_of() {
+        let theta = |joint: usize, value: f64| Angle::of_joint(joint, value).named(&format!("T{joint}"), value, "");
+        let made_of = |angle: &Angle| -> Option<String> {
+            let signed = |part: &Part| format!("{}{}", if part.is_negative { '-' } else { '+' }, part.name);
+            Some(angle.parts()?.iter().map(signed).collect())
+        };
+        let sum = -theta(1, 0.25) + &theta(2, -0.125);
+        assert_eq!(made_of(&sum).as_deref(), Some("-T1+T2"));
+        assert_eq!(made_of(&(sum.clone() + &theta(1, 0.25))).as_deref(), Some("+T2"));
+        assert_eq!(made_of(&theta(1, 0.0)), None);
+        // Without whole turns it is no longer their sum.
+        assert_eq!(made_of(&(theta(1, 3.0) + &theta(2, 2.0))), None);
+        assert_eq!(sum, -Angle::of_joint(1, 0.25) + &Angle::of_joint(2, -0.125));
+    }
 
     #[test]
     fn quarter_turns_swap_sine_and_cosine() {

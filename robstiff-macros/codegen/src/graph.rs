@@ -10,7 +10,7 @@
 use std::cell::{Ref, RefCell};
 use std::collections::{BTreeMap, HashMap};
 
-use crate::angle::Angle;
+use crate::angle::{Angle, Part};
 
 /// Index of a node in its graph.
 pub type Id = usize;
@@ -276,10 +276,11 @@ impl Graph {
         let reduced = angle.reduced();
         let (s, c) = match reduced.rest {
             None => (self.number(0.0), self.number(1.0)),
-            Some(rest) if rest.terms().is_empty() => {
-                (self.number(rest.offset().sin()), self.number(rest.offset().cos()))
-            }
+            Some(rest) if rest.terms().is_empty() => self.sin_cos_of_constant(&rest),
             Some(rest) => {
+                for Part { name, what, value, .. } in rest.parts().unwrap_or_default() {
+                    self.named_number(name, *value, &format!("{} (rad).", capitalised(what)));
+                }
                 let mut angles = self.angles.borrow_mut();
                 let index = angles.iter().position(|known| *known == rest).unwrap_or_else(|| {
                     angles.push(rest);
@@ -295,6 +296,15 @@ impl Graph {
             2 => (-s, -c),
             _ => (-c, s),
         }
+    }
+
+    fn sin_cos_of_constant(&self, angle: &Angle) -> (Sym<'_>, Sym<'_>) {
+        let Some([Part { name, what, value, is_negative }]) = angle.parts() else {
+            return (self.number(angle.offset().sin()), self.number(angle.offset().cos()));
+        };
+        let sin = self.named_number(&format!("SIN_{name}"), value.sin(), &format!("Sine of {what}."));
+        let cos = self.named_number(&format!("COS_{name}"), value.cos(), &format!("Cosine of {what}."));
+        (if *is_negative { -sin } else { sin }, cos)
     }
 
     /// The turns of whole compliances.
@@ -322,6 +332,13 @@ impl Graph {
         });
         Sym { graph: self, id }
     }
+}
+
+/// A noun as a sentence begins with it, without its article.
+fn capitalised(what: &str) -> String {
+    let noun = what.strip_prefix("the ").unwrap_or(what);
+    let mut letters = noun.chars();
+    letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect()
 }
 
 /// An expression: a node of a graph that computes like a number.

@@ -1,7 +1,7 @@
 //! Operations as code, given the code of their operands.
 
 use proc_macro2::{Literal, TokenStream};
-use quote::quote;
+use quote::{format_ident, quote};
 
 use super::body::Reader;
 use super::facts::number;
@@ -77,7 +77,7 @@ pub(super) fn column(op: Op, write: impl Fn(Id) -> TokenStream) -> Option<TokenS
     })
 }
 
-/// An angle as code: `q[1] + q[2] + T::of(0.1)`.
+/// An angle as code: `q[1] + q[2] + T::of(Self::THETA2)`.
 pub(super) fn sum(angle: &Angle, reader: Reader) -> TokenStream {
     let mut sum = TokenStream::new();
     for (k, &(joint, factor)) in angle.terms().iter().enumerate() {
@@ -95,7 +95,18 @@ pub(super) fn sum(angle: &Angle, reader: Reader) -> TokenStream {
             }
         });
     }
-    if angle.offset() != 0.0 {
+    if let Some(parts) = angle.parts() {
+        let mut offset = TokenStream::new();
+        for (k, part) in parts.iter().enumerate() {
+            let name = format_ident!("{}", part.name);
+            offset.extend(match (k, part.is_negative) {
+                (0, false) => quote!(Self::#name),
+                (_, true) => quote!(- Self::#name),
+                (_, false) => quote!(+ Self::#name),
+            });
+        }
+        sum.extend(quote!(+ T::of(#offset)));
+    } else if angle.offset() != 0.0 {
         let offset = number(angle.offset().abs(), reader);
         let sign = if angle.offset() < 0.0 { quote!(-) } else { quote!(+) };
         sum.extend(quote!(#sign T::of(#offset)));

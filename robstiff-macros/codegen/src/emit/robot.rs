@@ -103,12 +103,14 @@ pub fn skeleton(name: &str, joints: Option<usize>, origin: &Origin) -> TokenStre
 
 /// The names of the numbers that a robot may have whose effects are not known.
 fn constants_of_any(joints: usize) -> impl Iterator<Item = Ident> {
-    let of_rows = (1..=joints)
-        .flat_map(|row| ["D", "A", "H", "SIN_ALPHA", "COS_ALPHA"].map(|column| format_ident!("{column}{row}")));
+    const COLUMNS: [&str; 8] = ["THETA", "D", "A", "H", "SIN_THETA", "COS_THETA", "SIN_ALPHA", "COS_ALPHA"];
+    let of_rows = (1..=joints).flat_map(|row| COLUMNS.map(|column| format_ident!("{column}{row}")));
     let of_places = ["BASE", "TOOL"].into_iter().flat_map(|place| {
         let along = ["X", "Y", "Z"].map(|axis| format_ident!("{place}_{axis}"));
-        let turns = [("SIN", "PITCH"), ("COS", "PITCH"), ("SIN", "ROLL"), ("COS", "ROLL")];
-        along.into_iter().chain(turns.map(|(function, angle)| format_ident!("{function}_{place}_{angle}")))
+        let turns =
+            ["YAW", "PITCH", "ROLL"].into_iter().flat_map(|angle| ["SIN", "COS"].map(|function| (function, angle)));
+        let turns = turns.map(move |(function, angle)| format_ident!("{function}_{place}_{angle}"));
+        along.into_iter().chain([format_ident!("{place}_YAW")]).chain(turns)
     });
     of_rows.chain(of_places)
 }

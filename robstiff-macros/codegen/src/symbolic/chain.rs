@@ -74,15 +74,19 @@ fn steps<'g>(g: &'g Graph, robot: &Description, aside: &[Option<Sym<'g>>], serie
         };
         let d = entry("D", joint.d, stated.d, "DH offset d");
         let a = entry("A", joint.a, stated.a, "DH length a");
+        let corrected = if joint.theta == stated.theta { "" } else { ", corrected" };
+        let (name, what) = (format!("THETA{number}"), format!("the DH angle theta of row {number}{corrected}"));
+        g.named_number(&name, joint.theta, &format!("DH angle theta of row {number}{corrected} (rad)."));
+        let theta = |angle: Angle| angle.named(&name, joint.theta, &what);
         let aside = aside[i].filter(|aside| !aside.is_zero());
         let (turn, d) = match (joint.kind, aside) {
-            (JointKind::Revolute, None) => (Angle::of_joint(i, joint.theta), d),
+            (JointKind::Revolute, None) => (theta(Angle::of_joint(i, joint.theta)), d),
             (JointKind::Revolute, Some(aside)) => {
                 g.set_deviation(i, series.sin_cos(g, aside.named(format!("e{number}"))));
-                (Angle::of_joint(i, joint.theta).with_deviation(i), d)
+                (theta(Angle::of_joint(i, joint.theta)).with_deviation(i), d)
             }
-            (JointKind::Prismatic, None) => (Angle::constant(joint.theta), g.coordinate(i) + d),
-            (JointKind::Prismatic, Some(aside)) => (Angle::constant(joint.theta), g.coordinate(i) + aside + d),
+            (JointKind::Prismatic, None) => (theta(Angle::constant(joint.theta)), g.coordinate(i) + d),
+            (JointKind::Prismatic, Some(aside)) => (theta(Angle::constant(joint.theta)), g.coordinate(i) + aside + d),
         };
         let twist = tilt(g, 0, joint.alpha, &format!("ALPHA{number}"), &format!("the DH twist alpha of row {number}"));
         let along = Vec3([a, g.number(0.0), d]);
@@ -161,9 +165,10 @@ fn place<'g>(g: &'g Graph, steps: &mut Vec<Step<'g>>, placement: &Placement, nam
     };
     let [roll, pitch, yaw] = placement.rpy;
     steps.push(Step::Move(Vec3([at(0, 'X'), at(1, 'Y'), at(2, 'Z')])));
-    steps.push(Step::Turn(Angle::constant(yaw)));
-    steps.extend(tilt(g, 1, pitch, &format!("{name}_PITCH"), &format!("the pitch of the {}", name.to_lowercase())));
-    steps.extend(tilt(g, 0, roll, &format!("{name}_ROLL"), &format!("the roll of the {}", name.to_lowercase())));
+    let of = name.to_lowercase();
+    steps.push(Step::Turn(Angle::constant(yaw).named(&format!("{name}_YAW"), yaw, &format!("the yaw of the {of}"))));
+    steps.extend(tilt(g, 1, pitch, &format!("{name}_PITCH"), &format!("the pitch of the {of}")));
+    steps.extend(tilt(g, 0, roll, &format!("{name}_ROLL"), &format!("the roll of the {of}")));
 }
 
 /// The turn by a constant angle, if it is one; exact at multiples of 90
