@@ -11,6 +11,7 @@
 
 use robstiff_robots::{Description, JointKind};
 
+use super::beam::Beam;
 use super::chain::{Step, chain};
 use super::elastic::Elastic;
 use super::turning::Turning;
@@ -112,7 +113,8 @@ impl<'g> Walker<'g> {
             Step::Link(i, along) => {
                 // Before the turn, the length is a constant.
                 let length_squared = along.dot(*along);
-                self.link(self.without_pending(*along), length_squared, elastic.link[*i]);
+                let beam = Beam::of(self.g, self.without_pending(*along), length_squared, elastic.link[*i]);
+                beam.iter().for_each(|beam| self.link(beam));
             }
             Step::Base => self.add_about_z(elastic.base.0, self.g.number(0.0), elastic.base.1, elastic.base.1),
             Step::Flange => self.add_about_z(elastic.tool.0, elastic.tool.0, elastic.tool.1, elastic.tool.1),
@@ -180,23 +182,10 @@ impl<'g> Walker<'g> {
         self.add(self.lever, tt, rr);
     }
 
-    /// A round, uniform beam that begins here. As a compliance at its middle it
-    /// is block diagonal: `bending` across and `torsion` along it for turns,
-    /// and `bending L^2 / 12` across it for shifts (integrate the turns of its
-    /// slices, at levers from `lever` to `lever - along`).
-    fn link(&mut self, along: Vec3<'g>, length_squared: Sym<'g>, (bending, torsion): (Sym<'g>, Sym<'g>)) {
-        if length_squared.is_zero() || (bending.is_zero() && torsion.is_zero()) {
-            return;
-        }
-        let per_square = (torsion - bending) * length_squared.recip();
-        let bend = self.g.number(1.0 / 12.0) * bending;
-        let scaled = along.scaled(per_square);
-        let shear = along.scaled(bend);
-        let diagonal = |i: usize, j: usize, value: Sym<'g>| if i == j { value } else { self.g.number(0.0) };
-        let rr = Symmetric3::from_fn(|i, j| scaled[i] * along[j] + diagonal(i, j, bending));
-        let tt = Symmetric3::from_fn(|i, j| diagonal(i, j, bend * length_squared) - shear[i] * along[j]);
-        let middle = self.lever - along.scaled(self.g.number(0.5));
-        self.add(middle, tt, rr);
+    /// A beam that begins here.
+    fn link(&mut self, beam: &Beam<'g>) {
+        let (tt, rr) = beam.compliance();
+        self.add(beam.middle(self.lever), tt, rr);
     }
 
     /// Adds `X C X^T` for the compliance `C = diag(tt, rr)` at the point from

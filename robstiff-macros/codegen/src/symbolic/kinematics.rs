@@ -3,9 +3,10 @@
 use robstiff_robots::effect::physics::PLAYS;
 use robstiff_robots::{Description, JointKind};
 
+use super::beam::Beam;
 use super::chain::chain;
 use super::elastic::Elastic;
-use super::forward::{Forward, Frame, forward};
+use super::forward::{Forward, Frame, Stand, forward};
 use super::vector::Vec3;
 use super::waist::{Start, cheapest};
 use crate::graph::{Graph, Sym};
@@ -130,54 +131,79 @@ fn loaded<'g>(
     let elastic = Elastic::of(g, robot);
     let forward = start.forward();
     let (force, moment) = wrench(g, start);
-    let mut sum = Displacement { translation: Vec3::zero(g), rotation: Vec3::zero(g) };
-
+    let mut sum = Displacement { force, moment, translation: Vec3::zero(g), rotation: Vec3::zero(g) };
     let twists = Twists::of(g, robot, &forward);
-    let torques = twists.torques(force, moment);
-    let (turns, plays) = joint_turns(g, &elastic, &torques, before);
-    for (i, turn) in turns.into_iter().enumerate() {
-        sum.translation = sum.translation + twists.translation[i].scaled(turn);
-        sum.rotation = sum.rotation + twists.rotation[i].scaled(turn);
-    }
-    let moment_at = |lever: Vec3<'g>| moment + lever.cross(force);
-    for (stand, &transverse) in forward.joints.iter().zip(&elastic.transverse) {
-        if !transverse.is_zero() {
-            sum.turn(across(moment_at(stand.lever), stand.axis).scaled(transverse), stand.lever);
-        }
-    }
-    for (segment, &(bending, torsion)) in forward.links.iter().zip(&elastic.link) {
-        // As a compliance at the middle of the beam, see `compliance`.
-        let (along, length_squared) = (segment.along, segment.length_squared);
-        if length_squared.is_zero() || (bending.is_zero() && torsion.is_zero()) {
-            continue;
-        }
-        let middle = segment.lever - along.scaled(g.number(0.5));
-        let there = moment_at(middle);
-        let per_square = (torsion - bending) * length_squared.recip();
-        sum.turn(there.scaled(bending) + along.scaled(per_square * along.dot(there)), middle);
-        let bend = g.number(1.0 / 12.0) * bending;
-        sum.translation = sum.translation + force.scaled(bend * length_squared) - along.scaled(bend * along.dot(force));
-    }
-    let (tilt, shift) = elastic.base;
-    sum.turn(across(moment_at(forward.base.lever), forward.base.axis).scaled(tilt), forward.base.lever);
-    sum.translation = sum.translation + force.scaled(shift);
-    let (turn, shift) = elastic.tool;
-    sum.turn(moment_at(forward.flange.lever).scaled(turn), forward.flange.lever);
-    sum.translation = sum.translation + force.scaled(shift);
+    let (turns, plays) = joint_turns(g, &elastic, &twists.torques(force, moment), before);
+    sum.by_joints(&twists, &turns);
+    sum.by_tilts(&forward, &elastic);
+    sum.by_links(g, &forward, &elastic);
+    sum.by_base_and_tool(&forward, &elastic);
     let displacement = [sum.translation, sum.rotation].map(|part| start.to_base(part).0);
     (displacement.concat(), plays)
 }
 
+/// The displacement of the TCP under a wrench, element by element.
 struct Displacement<'g> {
+    force: Vec3<'g>,
+    moment: Vec3<'g>,
     translation: Vec3<'g>,
     rotation: Vec3<'g>,
 }
 
 impl<'g> Displacement<'g> {
+    /// Each joint along its coordinate.
+    fn by_joints(&mut self, twists: &Twists<'g>, turns: &[Sym<'g>]) {
+        for (i, &turn) in turns.iter().enumerate() {
+            self.translation = self.translation + twists.translation[i].scaled(turn);
+            self.rotation = self.rotation + twists.rotation[i].scaled(turn);
+        }
+    }
+
+    /// Each joint about the axes across its own.
+    fn by_tilts(&mut self, forward: &Forward<'g>, elastic: &Elastic<'g>) {
+        for (stand, &transverse) in forward.joints.iter().zip(&elastic.transverse) {
+            if !transverse.is_zero() {
+                self.tilt(stand, transverse);
+            }
+        }
+    }
+
+    fn by_links(&mut self, g: &'g Graph, forward: &Forward<'g>, elastic: &Elastic<'g>) {
+        for (segment, &compliances) in forward.links.iter().zip(&elastic.link) {
+            let Some(beam) = Beam::of(g, segment.along, segment.length_squared, compliances) else { continue };
+            let middle = beam.middle(segment.lever);
+            self.turn(beam.turn(self.moment_at(middle)), middle);
+            self.translation = beam.shifted(self.translation, self.force);
+        }
+    }
+
+    fn by_base_and_tool(&mut self, forward: &Forward<'g>, elastic: &Elastic<'g>) {
+        let (tilt, shift) = elastic.base;
+        self.tilt(&forward.base, tilt);
+        self.shift(self.force.scaled(shift));
+        let (turn, shift) = elastic.tool;
+        let lever = forward.flange.lever;
+        self.turn(self.moment_at(lever).scaled(turn), lever);
+        self.shift(self.force.scaled(shift));
+    }
+
+    /// The moment at the point from which `lever` leads to the TCP.
+    fn moment_at(&self, lever: Vec3<'g>) -> Vec3<'g> {
+        self.moment + lever.cross(self.force)
+    }
+
+    fn tilt(&mut self, stand: &Stand<'g>, compliance: Sym<'g>) {
+        self.turn(across(self.moment_at(stand.lever), stand.axis).scaled(compliance), stand.lever);
+    }
+
     /// A small turn at the point from which `lever` leads to the TCP.
     fn turn(&mut self, by: Vec3<'g>, lever: Vec3<'g>) {
-        self.translation = self.translation + by.cross(lever);
+        self.shift(by.cross(lever));
         self.rotation = self.rotation + by;
+    }
+
+    fn shift(&mut self, by: Vec3<'g>) {
+        self.translation = self.translation + by;
     }
 }
 

@@ -6,11 +6,13 @@
 //! - [`forward`](mod@forward): frames and levers, from the base to the TCP;
 //! - [`waist`]: the first joint's turn, left for the end where that is cheaper;
 //! - [`kinematics`]: transform, frames, Jacobian, torques and deflection;
+//! - [`beam`]: how a link yields;
 //! - [`weight`]: how the joints yield to the arm's own weight;
 //! - [`compliance`](mod@compliance): the Cartesian compliance, carried from the TCP to the
 //!   base;
 //! - [`columns`]: frames, Jacobian and all together once more, of whole [`mod@column`]s.
 
+pub mod beam;
 pub mod chain;
 pub mod column;
 pub mod columns;
