@@ -42,58 +42,70 @@ pub struct Arm<'g> {
 impl<'g> Arm<'g> {
     pub fn of(g: &'g Graph, robot: &Description) -> Self {
         let steps = chain(g, robot);
-        let mut levers = levers(g, &steps);
-        let mut walker = Walker::at_base(g);
-        let mut stands: Vec<Stand<'g>> = Vec::new();
-        // Stands whose axes are not turned yet by what follows about z.
-        let mut waiting = 0;
-        for step in &steps {
-            match step {
-                Step::Joint(joint) => {
-                    let revolute = robot.joints[*joint].kind == JointKind::Revolute;
-                    stands.push(Stand::at(&walker, revolute));
-                }
-                Step::Tilt(tilt) => {
-                    if tilt.is_half_turn_about_x() {
-                        stands[waiting..].iter_mut().for_each(Stand::mirror);
-                    } else {
-                        walker.settle();
-                        stands[waiting..].iter_mut().for_each(|stand| stand.settle(&walker));
-                        waiting = stands.len();
-                    }
-                    stands.last_mut().into_iter().for_each(|last| last.tilt(tilt));
-                }
-                Step::Turn(_) => stands.last_mut().into_iter().for_each(Stand::turn),
-                Step::Move(by) => stands.last_mut().into_iter().for_each(|last| last.shift(&walker, *by)),
-                _ => {}
-            }
-            walker.step(step);
-        }
-        walker.settle();
-        stands[waiting..].iter_mut().for_each(|stand| stand.settle(&walker));
-
-        let mut joints: Vec<Twist<'g>> = Vec::new();
-        for (k, stand) in stands.iter().enumerate().rev() {
-            // From the tip on: the next joint is the last of these.
-            let next = joints.last().filter(|_| stands[k + 1].is_revolute);
-            if let Some(along_normal) = stand.along_normal(&joints).filter(|_| next.is_some()) {
-                levers[k].0[0] = along_normal;
-            }
-            let beyond = stand.parallel.filter(|_| stand.is_revolute && next.is_some());
-            let (translation, rotation) = match (stand.is_revolute, next.zip(beyond)) {
-                (false, _) => (stand.axes[2].column(), Column::zero(g)),
-                (true, Some((next, beyond))) => (next.translation.plus(beyond), stand.axes[2].column()),
-                (true, None) => (stand.moves(levers[k]), stand.axes[2].column()),
-            };
-            joints.push(Twist { translation: translation.named(&format!("j{}", k + 1)), rotation, beyond });
-        }
-        joints.reverse();
+        let levers = levers(g, &steps);
+        let (stands, walker) = walk(g, robot, &steps);
+        let (joints, levers) = twists(g, &stands, levers);
         let origin = match stands.first() {
             Some(first) => along(first.origin, first.axes, levers[0]),
             None => walker.origin,
         };
         Self { joints, axes: walker.axes, origin }
     }
+}
+
+/// Where all joints are, and the frame at the end of the chain.
+fn walk<'g>(g: &'g Graph, robot: &Description, steps: &[Step<'g>]) -> (Vec<Stand<'g>>, Walker<'g>) {
+    let mut walker = Walker::at_base(g);
+    let mut stands: Vec<Stand<'g>> = Vec::new();
+    // Stands whose axes are not turned yet by what follows about z.
+    let mut waiting = 0;
+    for step in steps {
+        match step {
+            Step::Joint(joint) => {
+                let revolute = robot.joints[*joint].kind == JointKind::Revolute;
+                stands.push(Stand::at(&walker, revolute));
+            }
+            Step::Tilt(tilt) => {
+                if tilt.is_half_turn_about_x() {
+                    stands[waiting..].iter_mut().for_each(Stand::mirror);
+                } else {
+                    walker.settle();
+                    stands[waiting..].iter_mut().for_each(|stand| stand.settle(&walker));
+                    waiting = stands.len();
+                }
+                stands.last_mut().into_iter().for_each(|last| last.tilt(tilt));
+            }
+            Step::Turn(_) => stands.last_mut().into_iter().for_each(Stand::turn),
+            Step::Move(by) => stands.last_mut().into_iter().for_each(|last| last.shift(&walker, *by)),
+            _ => {}
+        }
+        walker.step(step);
+    }
+    walker.settle();
+    stands[waiting..].iter_mut().for_each(|stand| stand.settle(&walker));
+    (stands, walker)
+}
+
+/// What the joints move at the TCP; and the levers, with the parts of them that the joints
+/// behind have computed.
+fn twists<'g>(g: &'g Graph, stands: &[Stand<'g>], mut levers: Vec<Vec3<'g>>) -> (Vec<Twist<'g>>, Vec<Vec3<'g>>) {
+    let mut joints: Vec<Twist<'g>> = Vec::new();
+    for (k, stand) in stands.iter().enumerate().rev() {
+        // From the tip on: the next joint is the last of these.
+        let next = joints.last().filter(|_| stands[k + 1].is_revolute);
+        if let Some(along_normal) = stand.along_normal(&joints).filter(|_| next.is_some()) {
+            levers[k].0[0] = along_normal;
+        }
+        let beyond = stand.parallel.filter(|_| stand.is_revolute && next.is_some());
+        let (translation, rotation) = match (stand.is_revolute, next.zip(beyond)) {
+            (false, _) => (stand.axes[2].column(), Column::zero(g)),
+            (true, Some((next, beyond))) => (next.translation.plus(beyond), stand.axes[2].column()),
+            (true, None) => (stand.moves(levers[k]), stand.axes[2].column()),
+        };
+        joints.push(Twist { translation: translation.named(&format!("j{}", k + 1)), rotation, beyond });
+    }
+    joints.reverse();
+    (joints, levers)
 }
 
 /// A joint, and what follows it up to the next one.
