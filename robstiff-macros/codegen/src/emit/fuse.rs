@@ -42,63 +42,11 @@ impl Fusion {
         Self { product: vec![None; uses.len()], uses }
     }
 
-    /// Lets every sum take up one product: of two, the one that makes the sum
-    /// known earlier.
+    /// What sums take up, and what is left to use each node.
     pub fn of(function: &Function, turns: &Turns) -> Self {
-        let graph = function.graph();
-        let (nodes, uses) = (graph.nodes(), function.uses());
-        let is_product = |id: Id| match nodes[id].op {
-            _ if nodes[id].constant.is_some() || turns.with(id).is_some() => false,
-            Op::Mul(..) => uses[id] == 1,
-            _ => false,
-        };
-        let mut ready: Vec<usize> = Vec::with_capacity(nodes.len());
-        let mut product = Vec::with_capacity(nodes.len());
-        for node in nodes.iter() {
-            let last = |operands: &mut dyn Iterator<Item = Id>| operands.map(|id| ready[id]).max().unwrap_or(0);
-            let fused =
-                |taken: Id, other: Id| last(&mut nodes[taken].op.operands().chain([other])) + nodes[taken].op.latency();
-            let taken = match node.op {
-                Op::Add(a, b) | Op::Sub(a, b) if node.constant.is_none() && a != b => {
-                    let candidates = [(b, a), (a, b)].into_iter().filter(|&(taken, _)| is_product(taken));
-                    candidates.map(|(taken, other)| (fused(taken, other), taken)).min_by_key(|(done, _)| *done)
-                }
-                _ => None,
-            };
-            let done = match (taken, node.op) {
-                _ if node.constant.is_some() => 0,
-                (Some((done, _)), _) => done,
-                (None, op) => last(&mut op.operands()) + op.latency(),
-            };
-            product.push(taken.map(|(_, taken)| taken));
-            ready.push(done);
-        }
-        let mut fusion = Self { product, uses: vec![0; nodes.len()] };
-        for &output in function.outputs() {
-            fusion.uses[output] += 1;
-        }
-        let mut written = BTreeSet::new();
-        // Also signs that only a turn needs, which are not live in the graph.
-        for id in (0..nodes.len()).rev() {
-            if fusion.uses[id] == 0 {
-                continue;
-            }
-            if let Some(turn) = turns.with(id) {
-                if written.insert(turn.first()) {
-                    turn.operands().for_each(|operand| fusion.uses[operand] += 1);
-                }
-                continue;
-            }
-            for operand in nodes[id].op.operands() {
-                let used = if fusion.product[id] == Some(operand) {
-                    nodes[operand].op.operands().collect()
-                } else {
-                    vec![operand]
-                };
-                used.into_iter().for_each(|operand| fusion.uses[operand] += 1);
-            }
-        }
-        fusion
+        let product = products(function, turns);
+        let uses = uses_left(function, turns, &product);
+        Self { product, uses }
     }
 
     /// What a sum is that takes up a product.
@@ -119,4 +67,66 @@ impl Fusion {
     pub fn is_used(&self, id: Id) -> bool {
         self.uses[id] > 0
     }
+}
+
+/// Lets every sum take up one product: of two, the one that makes the sum known earlier.
+fn products(function: &Function, turns: &Turns) -> Vec<Option<Id>> {
+    let graph = function.graph();
+    let (nodes, uses) = (graph.nodes(), function.uses());
+    let is_product = |id: Id| match nodes[id].op {
+        _ if nodes[id].constant.is_some() || turns.with(id).is_some() => false,
+        Op::Mul(..) => uses[id] == 1,
+        _ => false,
+    };
+    let mut ready: Vec<usize> = Vec::with_capacity(nodes.len());
+    let mut product = Vec::with_capacity(nodes.len());
+    for node in nodes.iter() {
+        let last = |operands: &mut dyn Iterator<Item = Id>| operands.map(|id| ready[id]).max().unwrap_or(0);
+        let fused =
+            |taken: Id, other: Id| last(&mut nodes[taken].op.operands().chain([other])) + nodes[taken].op.latency();
+        let taken = match node.op {
+            Op::Add(a, b) | Op::Sub(a, b) if node.constant.is_none() && a != b => {
+                let candidates = [(b, a), (a, b)].into_iter().filter(|&(taken, _)| is_product(taken));
+                candidates.map(|(taken, other)| (fused(taken, other), taken)).min_by_key(|(done, _)| *done)
+            }
+            _ => None,
+        };
+        let done = match (taken, node.op) {
+            _ if node.constant.is_some() => 0,
+            (Some((done, _)), _) => done,
+            (None, op) => last(&mut op.operands()) + op.latency(),
+        };
+        product.push(taken.map(|(_, taken)| taken));
+        ready.push(done);
+    }
+    product
+}
+
+/// How often each node is used once sums have taken up their products.
+fn uses_left(function: &Function, turns: &Turns, product: &[Option<Id>]) -> Vec<usize> {
+    let graph = function.graph();
+    let nodes = graph.nodes();
+    let mut uses = vec![0; nodes.len()];
+    for &output in function.outputs() {
+        uses[output] += 1;
+    }
+    let mut written = BTreeSet::new();
+    // Also signs that only a turn needs, which are not live in the graph.
+    for id in (0..nodes.len()).rev() {
+        if uses[id] == 0 {
+            continue;
+        }
+        if let Some(turn) = turns.with(id) {
+            if written.insert(turn.first()) {
+                turn.operands().for_each(|operand| uses[operand] += 1);
+            }
+            continue;
+        }
+        for operand in nodes[id].op.operands() {
+            let used =
+                if product[id] == Some(operand) { nodes[operand].op.operands().collect() } else { vec![operand] };
+            used.into_iter().for_each(|operand| uses[operand] += 1);
+        }
+    }
+    uses
 }
