@@ -430,6 +430,8 @@ impl Robot<6> for EveryEffect {
             q[5] + T::of(Self::THETA6 + Self::TOOL_YAW),
             q[0] + T::of(Self::THETA1),
         ]);
+
+        // Axes and origins, from the base to the tip.
         let t1 = base_x + (k7 * c1o + k10 * s1o + k13);
         let t2 = base_y + (k8 * c1o + k11 * s1o + k14);
         let t3 = base_z + (k9 * c1o + k12 * s1o + k15);
@@ -600,6 +602,8 @@ impl Robot<6> for EveryEffect {
             q[5],
             q[0] + T::of(Self::THETA1),
         ]);
+
+        // Axes and origins, from the base to the tip.
         let p1_x = base_x + (k7 * c1o + k10 * s1o + k13);
         let p1_y = base_y + (k8 * c1o + k11 * s1o + k14);
         let p1_z = base_z + (k9 * c1o + k12 * s1o + k15);
@@ -812,6 +816,8 @@ impl Robot<6> for EveryEffect {
             q[5],
             q[0] + T::of(Self::THETA1),
         ]);
+
+        // Axes and origins, from the base to the tip.
         let t1 = k1 * c1o + k5 * s1o;
         let t2 = k2 * c1o + k6 * s1o;
         let t3 = k3 * c1o + k4 * s1o;
@@ -858,42 +864,46 @@ impl Robot<6> for EveryEffect {
         let t32 = t29 - (t21 - t24) * t28 + tool_z * z6x;
         let t33 = t30 - (t22 - t25) * t28 + tool_z * z6y;
         let t34 = t31 - (t23 - t26) * t28 + tool_z * z6z;
-        let r6x = d6 * z6x + t32;
-        let r6y = d6 * z6y + t33;
-        let r6z = d6 * z6z + t34;
-        let r5x = d5 * z5x + r6x;
-        let r5y = d5 * z5y + r6y;
-        let r5z = d5 * z5z + r6z;
-        let r4x = d4 * z4x + r5x;
-        let r4y = d4 * z4y + r5y;
-        let r4z = d4 * z4z + r5z;
-        let r3x = t6 + r4x;
-        let r3y = t7 + r4y;
-        let r3z = t8 + r4z;
-        let r2x = t1 * t4 - k22 * c2 + r3x;
-        let r2y = t2 * t4 - k23 * c2 + r3y;
-        let r2z = t3 * t4 - k24 * c2 + r3z;
-        let r1x = k10 * c1o + k13 * s1o + k16 + r2x;
-        let r1y = k11 * c1o + k14 * s1o + k17 + r2y;
-        let r1z = k12 * c1o + k15 * s1o + k18 + r2z;
-        let j1x = k9 * r1z - k7 * r1y;
-        let j1y = k7 * r1x - k8 * r1z;
-        let j1z = k8 * r1y - k9 * r1x;
-        let j2x = z2y * r2z - z2z * r2y;
-        let j2y = z2z * r2x - z2x * r2z;
-        let j2z = z2x * r2y - z2y * r2x;
-        let j3x = z2y * r3z - z2z * r3y;
-        let j3y = z2z * r3x - z2x * r3z;
-        let j3z = z2x * r3y - z2y * r3x;
-        let j4x = z4y * r4z - z4z * r4y;
-        let j4y = z4z * r4x - z4x * r4z;
-        let j4z = z4x * r4y - z4y * r4x;
-        let j5x = z5y * r5z - z5z * r5y;
-        let j5y = z5z * r5x - z5x * r5z;
-        let j5z = z5x * r5y - z5y * r5x;
-        let j6x = z6y * r6z - z6z * r6y;
-        let j6y = z6z * r6x - z6x * r6z;
-        let j6z = z6x * r6y - z6y * r6x;
+
+        // From the origins to the TCP.
+        let l6x = d6 * z6x + t32;
+        let l6y = d6 * z6y + t33;
+        let l6z = d6 * z6z + t34;
+        let l5x = d5 * z5x + l6x;
+        let l5y = d5 * z5y + l6y;
+        let l5z = d5 * z5z + l6z;
+        let l4x = d4 * z4x + l5x;
+        let l4y = d4 * z4y + l5y;
+        let l4z = d4 * z4z + l5z;
+        let l3x = t6 + l4x;
+        let l3y = t7 + l4y;
+        let l3z = t8 + l4z;
+        let l2x = t1 * t4 - k22 * c2 + l3x;
+        let l2y = t2 * t4 - k23 * c2 + l3y;
+        let l2z = t3 * t4 - k24 * c2 + l3z;
+        let l1x = k10 * c1o + k13 * s1o + k16 + l2x;
+        let l1y = k11 * c1o + k14 * s1o + k17 + l2y;
+        let l1z = k12 * c1o + k15 * s1o + k18 + l2z;
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
+        let j1x = k9 * l1z - k7 * l1y;
+        let j1y = k7 * l1x - k8 * l1z;
+        let j1z = k8 * l1y - k9 * l1x;
+        let j2x = z2y * l2z - z2z * l2y;
+        let j2y = z2z * l2x - z2x * l2z;
+        let j2z = z2x * l2y - z2y * l2x;
+        let j3x = z2y * l3z - z2z * l3y;
+        let j3y = z2z * l3x - z2x * l3z;
+        let j3z = z2x * l3y - z2y * l3x;
+        let j4x = z4y * l4z - z4z * l4y;
+        let j4y = z4z * l4x - z4x * l4z;
+        let j4z = z4x * l4y - z4y * l4x;
+        let j5x = z5y * l5z - z5z * l5y;
+        let j5y = z5z * l5x - z5x * l5z;
+        let j5z = z5x * l5y - z5y * l5x;
+        let j6x = z6y * l6z - z6z * l6y;
+        let j6y = z6z * l6x - z6x * l6z;
+        let j6z = z6x * l6y - z6y * l6x;
         SMatrix::from([
             [j1x, j1y, j1z, k8, k9, k7],
             [j2x, j2y, j2z, z2x, z2y, z2z],
@@ -907,7 +917,8 @@ impl Robot<6> for EveryEffect {
     /// Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
     ///
     /// It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
-    /// rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.
+    /// rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point, all in the
+    /// joint's own axes.
     ///
     /// 12 trig, 378 mul, 399 add.
     #[inline(always)]
@@ -1175,6 +1186,8 @@ impl Robot<6> for EveryEffect {
         let t10 = k7 * c6o - k8 * s6o + k20 * r5x;
         let tt5_yy = k9 + r5x * t9;
         let tr5_yz = t9 - (k4 * s6o + k5 * c6o);
+
+        // With the coupling of joints 5 and 6.
         let t11 = k24 * t7;
         let t12 = coupling5_6 * t7;
         let tr5_yy = coupling5_6 * r5x;
@@ -1254,6 +1267,8 @@ impl Robot<6> for EveryEffect {
         let tr3_yy = t46 - t58;
         let r3x = a3 + (r4x * c4o - r4y * s4o);
         let r3z = d3 + (sin_alpha3 * t28 + cos_alpha3 * r4z);
+
+        // With link 3.
         let t60 = r3x - k33;
         let t61 = r3z - k34;
         let t62 = k27 * r3y;
@@ -1304,6 +1319,8 @@ impl Robot<6> for EveryEffect {
         let t88 = a2 * s3;
         let r2x = r3x + t87;
         let r2y = r3y - t88;
+
+        // With link 2.
         let t89 = k35 * c3;
         let t90 = k36 * c3;
         let t91 = bending2 + t87 * t89;
@@ -1342,6 +1359,8 @@ impl Robot<6> for EveryEffect {
         let t111 = k39 * r2y;
         let t112 = k39 * r2x;
         let t113 = t88 - r3y;
+
+        // With the coupling of joints 2 and 3.
         let t114 = coupling2_3 * t113;
         let t115 = coupling2_3 * t71;
         let t116 = t71 * t114 + t113 * t115;
@@ -1392,6 +1411,8 @@ impl Robot<6> for EveryEffect {
         let tr1_yz = tr2_zx * c23 - tr2_zy * s23 + t132;
         let tr1_zx = tr2_xy - t127 + t129;
         let tr1_zy = tr2_xz * c23 - tr2_yz * s23 - t130;
+
+        // From the base to the TCP.
         let t134 = base_tilt * r1z;
         let t135 = base_tilt * r3z;
         let t136 = base_tilt * r1x;
@@ -1664,6 +1685,8 @@ impl Robot<6> for EveryEffect {
             q[5],
             q[0] + T::of(Self::THETA1),
         ]);
+
+        // Axes and origins, from the base to the tip.
         let t1 = k3 * c1o + k7 * s1o;
         let t2 = k4 * c1o + k8 * s1o;
         let t3 = k5 * c1o + k6 * s1o;
@@ -1713,42 +1736,48 @@ impl Robot<6> for EveryEffect {
         let t35 = t32 - (t24 - t27) * t31 + tool_z * z6x;
         let t36 = t33 - (t25 - t28) * t31 + tool_z * z6y;
         let t37 = t34 - (t26 - t29) * t31 + tool_z * z6z;
-        let r6x = d6 * z6x + t35;
-        let r6y = d6 * z6y + t36;
-        let r6z = d6 * z6z + t37;
-        let r5x = d5 * z5x + r6x;
-        let r5y = d5 * z5y + r6y;
-        let r5z = d5 * z5z + r6z;
-        let r4x = d4 * z4x + r5x;
-        let r4y = d4 * z4y + r5y;
-        let r4z = d4 * z4z + r5z;
-        let r3x = t9 + r4x;
-        let r3y = t10 + r4y;
-        let r3z = t11 + r4z;
-        let r2x = t5 + r3x;
-        let r2y = t6 + r3y;
-        let r2z = t7 + r3z;
-        let r1x = k12 * c1o + k15 * s1o + k18 + r2x;
-        let r1y = k13 * c1o + k16 * s1o + k19 + r2y;
-        let r1z = k14 * c1o + k17 * s1o + k20 + r2z;
-        let j1x = k11 * r1z - k9 * r1y;
-        let j1y = k9 * r1x - k10 * r1z;
-        let j1z = k10 * r1y - k11 * r1x;
-        let j2x = z2y * r2z - z2z * r2y;
-        let j2y = z2z * r2x - z2x * r2z;
-        let j2z = z2x * r2y - z2y * r2x;
-        let j3x = z2y * r3z - z2z * r3y;
-        let j3y = z2z * r3x - z2x * r3z;
-        let j3z = z2x * r3y - z2y * r3x;
-        let j4x = z4y * r4z - z4z * r4y;
-        let j4y = z4z * r4x - z4x * r4z;
-        let j4z = z4x * r4y - z4y * r4x;
-        let j5x = z5y * r5z - z5z * r5y;
-        let j5y = z5z * r5x - z5x * r5z;
-        let j5z = z5x * r5y - z5y * r5x;
-        let j6x = z6y * r6z - z6z * r6y;
-        let j6y = z6z * r6x - z6x * r6z;
-        let j6z = z6x * r6y - z6y * r6x;
+
+        // From the origins to the TCP.
+        let l6x = d6 * z6x + t35;
+        let l6y = d6 * z6y + t36;
+        let l6z = d6 * z6z + t37;
+        let l5x = d5 * z5x + l6x;
+        let l5y = d5 * z5y + l6y;
+        let l5z = d5 * z5z + l6z;
+        let l4x = d4 * z4x + l5x;
+        let l4y = d4 * z4y + l5y;
+        let l4z = d4 * z4z + l5z;
+        let l3x = t9 + l4x;
+        let l3y = t10 + l4y;
+        let l3z = t11 + l4z;
+        let l2x = t5 + l3x;
+        let l2y = t6 + l3y;
+        let l2z = t7 + l3z;
+        let l1x = k12 * c1o + k15 * s1o + k18 + l2x;
+        let l1y = k13 * c1o + k16 * s1o + k19 + l2y;
+        let l1z = k14 * c1o + k17 * s1o + k20 + l2z;
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
+        let j1x = k11 * l1z - k9 * l1y;
+        let j1y = k9 * l1x - k10 * l1z;
+        let j1z = k10 * l1y - k11 * l1x;
+        let j2x = z2y * l2z - z2z * l2y;
+        let j2y = z2z * l2x - z2x * l2z;
+        let j2z = z2x * l2y - z2y * l2x;
+        let j3x = z2y * l3z - z2z * l3y;
+        let j3y = z2z * l3x - z2x * l3z;
+        let j3z = z2x * l3y - z2y * l3x;
+        let j4x = z4y * l4z - z4z * l4y;
+        let j4y = z4z * l4x - z4x * l4z;
+        let j4z = z4x * l4y - z4y * l4x;
+        let j5x = z5y * l5z - z5z * l5y;
+        let j5y = z5z * l5x - z5x * l5z;
+        let j5z = z5x * l5y - z5y * l5x;
+        let j6x = z6y * l6z - z6z * l6y;
+        let j6y = z6z * l6x - z6x * l6z;
+        let j6z = z6x * l6y - z6y * l6x;
+
+        // What the wrench puts on the joints.
         let t38 = k10 * mx + k11 * my + k9 * mz;
         let tau1 = fx * j1x + fy * j1y + fz * j1z + t38;
         let t39 = fx * j2x + fy * j2y + fz * j2z;
@@ -1762,16 +1791,24 @@ impl Robot<6> for EveryEffect {
         let tau5 = fx * j5x + fy * j5y + fz * j5z + t43;
         let t44 = z6x * mx + z6y * my + z6z * mz;
         let tau6 = fx * j6x + fy * j6y + fz * j6z + t44;
+
+        // By how much the joints turn or slide.
         let dq1 = h1 * tau1;
         let dq4 = h4 * tau4;
         let dq3 = h3 * tau3 + coupling2_3 * tau2;
         let dq6 = h6 * tau6 + coupling5_6 * tau5;
+
+        // Of the hardening of joint 2 with torque.
         let t45 = k1 * tau2;
         let t46 = added2 * tau2 * (T::one() + t45 * t45).sqrt().recip();
         let dq2 = h2 * tau2 + coupling2_3 * tau3 + t46;
+
+        // Of the softening of joint 5 with torque.
         let t47 = k2 * tau5;
         let t48 = added5 * tau5 * (T::one() + t47 * t47).sqrt().recip();
         let dq5 = h5 * tau5 + coupling5_6 * tau6 + t48;
+
+        // What these turns make at the TCP.
         let t49 = j1x * dq1 + j2x * dq2 + j3x * dq3;
         let t50 = j1y * dq1 + j2y * dq2 + j3y * dq3;
         let t51 = j1z * dq1 + j2z * dq2 + j3z * dq3;
@@ -1784,9 +1821,11 @@ impl Robot<6> for EveryEffect {
         let t58 = t52 + z4x * dq4 + z5x * dq5;
         let t59 = t53 + z4y * dq4 + z5y * dq5;
         let t60 = t54 + z4z * dq4 + z5z * dq5;
-        let t61 = mx + (r1y * fz - r1z * fy);
-        let t62 = my + (r1z * fx - r1x * fz);
-        let t63 = mz + (r1x * fy - r1y * fx);
+
+        // And the tilt of joint 1 across its axis.
+        let t61 = mx + (l1y * fz - l1z * fy);
+        let t62 = my + (l1z * fx - l1x * fz);
+        let t63 = mz + (l1x * fy - l1y * fx);
         let t64 = k10 * t61 + k11 * t62 + k9 * t63;
         let t65 = t61 - k10 * t64;
         let t66 = t62 - k11 * t64;
@@ -1794,25 +1833,29 @@ impl Robot<6> for EveryEffect {
         let t68 = transverse1 * t65;
         let t69 = transverse1 * t66;
         let t70 = transverse1 * t67;
-        let t71 = r1z * t69 - r1y * t70;
-        let t72 = r1x * t70 - r1z * t68;
-        let t73 = r1y * t68 - r1x * t69;
-        let t74 = mx + (r3y * fz - r3z * fy);
-        let t75 = my + (r3z * fx - r3x * fz);
-        let t76 = mz + (r3x * fy - r3y * fx);
+        let t71 = l1z * t69 - l1y * t70;
+        let t72 = l1x * t70 - l1z * t68;
+        let t73 = l1y * t68 - l1x * t69;
+
+        // And the tilt of joint 3 across its axis.
+        let t74 = mx + (l3y * fz - l3z * fy);
+        let t75 = my + (l3z * fx - l3x * fz);
+        let t76 = mz + (l3x * fy - l3y * fx);
         let t77 = z2x * t74 + z2y * t75 + z2z * t76;
         let t78 = transverse3 * (t74 - z2x * t77);
         let t79 = transverse3 * (t75 - z2y * t77);
         let t80 = transverse3 * (t76 - z2z * t77);
-        let t81 = r3z * t79 - r3y * t80;
-        let t82 = r3x * t80 - r3z * t78;
-        let t83 = r3y * t78 - r3x * t79;
+        let t81 = l3z * t79 - l3y * t80;
+        let t82 = l3x * t80 - l3z * t78;
+        let t83 = l3y * t78 - l3x * t79;
         let t84 = t55 + j6x * dq6 + t71 + t81;
         let t85 = t56 + j6y * dq6 + t72 + t82;
         let t86 = t57 + j6z * dq6 + t73 + t83;
-        let t87 = r2x - k33 * t5;
-        let t88 = r2y - k33 * t6;
-        let t89 = r2z - k33 * t7;
+
+        // And link 2.
+        let t87 = l2x - k33 * t5;
+        let t88 = l2y - k33 * t6;
+        let t89 = l2z - k33 * t7;
         let t90 = mx + (fz * t88 - fy * t89);
         let t91 = my + (fx * t89 - fz * t87);
         let t92 = mz + (fy * t87 - fx * t88);
@@ -1832,9 +1875,11 @@ impl Robot<6> for EveryEffect {
         let t106 = t98 + k36 * fx - t5 * t105;
         let t107 = t99 + k36 * fy - t6 * t105;
         let t108 = t100 + k36 * fz - t7 * t105;
-        let t109 = r3x - k33 * t9;
-        let t110 = r3y - k33 * t10;
-        let t111 = r3z - k33 * t11;
+
+        // And link 3.
+        let t109 = l3x - k33 * t9;
+        let t110 = l3y - k33 * t10;
+        let t111 = l3z - k33 * t11;
         let t112 = mx + (fz * t110 - fy * t111);
         let t113 = my + (fx * t111 - fz * t109);
         let t114 = mz + (fy * t109 - fx * t110);
@@ -1851,12 +1896,16 @@ impl Robot<6> for EveryEffect {
         let t125 = t120 + k39 * fx - t9 * t124;
         let t126 = t121 + k39 * fy - t10 * t124;
         let t127 = t122 + k39 * fz - t11 * t124;
+
+        // And the base.
         let t128 = base_tilt * t65;
         let t129 = base_tilt * t66;
         let t130 = base_tilt * t67;
-        let t131 = t125 + (r1z * t129 - r1y * t130);
-        let t132 = t126 + (r1x * t130 - r1z * t128);
-        let t133 = t127 + (r1y * t128 - r1x * t129);
+        let t131 = t125 + (l1z * t129 - l1y * t130);
+        let t132 = t126 + (l1x * t130 - l1z * t128);
+        let t133 = t127 + (l1y * t128 - l1x * t129);
+
+        // And the tool.
         let t134 = tool_rotation * (mx + (t36 * fz - t37 * fy));
         let t135 = tool_rotation * (my + (t37 * fx - t35 * fz));
         let t136 = tool_rotation * (mz + (t35 * fy - t36 * fx));
@@ -1980,6 +2029,8 @@ impl Robot<6> for EveryEffect {
             q[5],
             q[0] + T::of(Self::THETA1),
         ]);
+
+        // Axes and origins, from the base to the tip.
         let t1 = k1 * c1o + k5 * s1o;
         let t2 = k2 * c1o + k6 * s1o;
         let t3 = k3 * c1o + k4 * s1o;
@@ -2026,42 +2077,48 @@ impl Robot<6> for EveryEffect {
         let t32 = t29 - (t21 - t24) * t28 + tool_z * z6x;
         let t33 = t30 - (t22 - t25) * t28 + tool_z * z6y;
         let t34 = t31 - (t23 - t26) * t28 + tool_z * z6z;
-        let r6x = d6 * z6x + t32;
-        let r6y = d6 * z6y + t33;
-        let r6z = d6 * z6z + t34;
-        let r5x = d5 * z5x + r6x;
-        let r5y = d5 * z5y + r6y;
-        let r5z = d5 * z5z + r6z;
-        let r4x = d4 * z4x + r5x;
-        let r4y = d4 * z4y + r5y;
-        let r4z = d4 * z4z + r5z;
-        let r3x = t6 + r4x;
-        let r3y = t7 + r4y;
-        let r3z = t8 + r4z;
-        let r2x = t1 * t4 - k22 * c2 + r3x;
-        let r2y = t2 * t4 - k23 * c2 + r3y;
-        let r2z = t3 * t4 - k24 * c2 + r3z;
-        let r1x = k10 * c1o + k13 * s1o + k16 + r2x;
-        let r1y = k11 * c1o + k14 * s1o + k17 + r2y;
-        let r1z = k12 * c1o + k15 * s1o + k18 + r2z;
-        let j1x = k9 * r1z - k7 * r1y;
-        let j1y = k7 * r1x - k8 * r1z;
-        let j1z = k8 * r1y - k9 * r1x;
-        let j2x = z2y * r2z - z2z * r2y;
-        let j2y = z2z * r2x - z2x * r2z;
-        let j2z = z2x * r2y - z2y * r2x;
-        let j3x = z2y * r3z - z2z * r3y;
-        let j3y = z2z * r3x - z2x * r3z;
-        let j3z = z2x * r3y - z2y * r3x;
-        let j4x = z4y * r4z - z4z * r4y;
-        let j4y = z4z * r4x - z4x * r4z;
-        let j4z = z4x * r4y - z4y * r4x;
-        let j5x = z5y * r5z - z5z * r5y;
-        let j5y = z5z * r5x - z5x * r5z;
-        let j5z = z5x * r5y - z5y * r5x;
-        let j6x = z6y * r6z - z6z * r6y;
-        let j6y = z6z * r6x - z6x * r6z;
-        let j6z = z6x * r6y - z6y * r6x;
+
+        // From the origins to the TCP.
+        let l6x = d6 * z6x + t32;
+        let l6y = d6 * z6y + t33;
+        let l6z = d6 * z6z + t34;
+        let l5x = d5 * z5x + l6x;
+        let l5y = d5 * z5y + l6y;
+        let l5z = d5 * z5z + l6z;
+        let l4x = d4 * z4x + l5x;
+        let l4y = d4 * z4y + l5y;
+        let l4z = d4 * z4z + l5z;
+        let l3x = t6 + l4x;
+        let l3y = t7 + l4y;
+        let l3z = t8 + l4z;
+        let l2x = t1 * t4 - k22 * c2 + l3x;
+        let l2y = t2 * t4 - k23 * c2 + l3y;
+        let l2z = t3 * t4 - k24 * c2 + l3z;
+        let l1x = k10 * c1o + k13 * s1o + k16 + l2x;
+        let l1y = k11 * c1o + k14 * s1o + k17 + l2y;
+        let l1z = k12 * c1o + k15 * s1o + k18 + l2z;
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
+        let j1x = k9 * l1z - k7 * l1y;
+        let j1y = k7 * l1x - k8 * l1z;
+        let j1z = k8 * l1y - k9 * l1x;
+        let j2x = z2y * l2z - z2z * l2y;
+        let j2y = z2z * l2x - z2x * l2z;
+        let j2z = z2x * l2y - z2y * l2x;
+        let j3x = z2y * l3z - z2z * l3y;
+        let j3y = z2z * l3x - z2x * l3z;
+        let j3z = z2x * l3y - z2y * l3x;
+        let j4x = z4y * l4z - z4z * l4y;
+        let j4y = z4z * l4x - z4x * l4z;
+        let j4z = z4x * l4y - z4y * l4x;
+        let j5x = z5y * l5z - z5z * l5y;
+        let j5y = z5z * l5x - z5x * l5z;
+        let j5z = z5x * l5y - z5y * l5x;
+        let j6x = z6y * l6z - z6z * l6y;
+        let j6y = z6z * l6x - z6x * l6z;
+        let j6z = z6x * l6y - z6y * l6x;
+
+        // What the wrench puts on the joints.
         let t35 = k8 * mx + k9 * my + k7 * mz;
         let tau1 = fx * j1x + fy * j1y + fz * j1z + t35;
         let t36 = fx * j2x + fy * j2y + fz * j2z;
@@ -2079,6 +2136,10 @@ impl Robot<6> for EveryEffect {
     }
 
     /// Transform, Jacobian and compliance of one pose, with what they have in common.
+    ///
+    /// Axes z and levers l of the Jacobian are in the base frame, or behind the turn of joint 1 where that is done
+    /// at the end. As in `compliance`, tt, tr and rr are of what lies beyond a joint, at the tool centre point and
+    /// in the joint's own axes, r from the joint to the tool centre point.
     ///
     /// 16 trig, 543 mul, 524 add.
     #[inline(always)]
@@ -2414,6 +2475,8 @@ impl Robot<6> for EveryEffect {
             q[5] + T::of(Self::THETA6 + Self::TOOL_YAW),
             q[0] + T::of(Self::THETA1),
         ]);
+
+        // Axes and origins, from the base to the tip.
         let t1 = k10 * c1o + k13 * s1o + k16;
         let t2 = k11 * c1o + k14 * s1o + k17;
         let t3 = k12 * c1o + k15 * s1o + k18;
@@ -2496,46 +2559,50 @@ impl Robot<6> for EveryEffect {
         let z_x = t45 * s6o - t36 * c6o;
         let z_y = t46 * s6o - t37 * c6o;
         let z_z = t47 * s6o - t38 * c6o;
-        let r6x = t48 + t53;
-        let r6y = t49 + t54;
-        let r6z = t50 + t55;
-        let r5x = t39 + r6x;
-        let r5y = t40 + r6y;
-        let r5z = t41 + r6z;
-        let r4x = t24 + r5x;
-        let r4y = t25 + r5y;
-        let r4z = t26 + r5z;
-        let r3x = t12 + r4x;
-        let r3y = t13 + r4y;
-        let r3z = t14 + r4z;
-        let r2x = t8 + r3x;
-        let r2y = t9 + r3y;
-        let r2z = t10 + r3z;
-        let r1x = t1 + r2x;
-        let r1y = t2 + r2y;
-        let r1z = t3 + r2z;
-        let j1x = k9 * r1z - k7 * r1y;
-        let j1y = k7 * r1x - k8 * r1z;
-        let j1z = k8 * r1y - k9 * r1x;
-        let j2x = z2y * r2z - z2z * r2y;
-        let j2y = z2z * r2x - z2x * r2z;
-        let j2z = z2x * r2y - z2y * r2x;
-        let j3x = z2y * r3z - z2z * r3y;
-        let j3y = z2z * r3x - z2x * r3z;
-        let j3z = z2x * r3y - z2y * r3x;
-        let j4x = z4y * r4z - z4z * r4y;
-        let j4y = z4z * r4x - z4x * r4z;
-        let j4z = z4x * r4y - z4y * r4x;
-        let j5x = z5y * r5z - z5z * r5y;
-        let j5y = z5z * r5x - z5x * r5z;
-        let j5z = z5x * r5y - z5y * r5x;
-        let j6x = z6y * r6z - z6z * r6y;
-        let j6y = z6z * r6x - z6x * r6z;
-        let j6z = z6x * r6y - z6y * r6x;
+
+        // From the origins to the TCP.
+        let l6x = t48 + t53;
+        let l6y = t49 + t54;
+        let l6z = t50 + t55;
+        let l5x = t39 + l6x;
+        let l5y = t40 + l6y;
+        let l5z = t41 + l6z;
+        let l4x = t24 + l5x;
+        let l4y = t25 + l5y;
+        let l4z = t26 + l5z;
+        let l3x = t12 + l4x;
+        let l3y = t13 + l4y;
+        let l3z = t14 + l4z;
+        let l2x = t8 + l3x;
+        let l2y = t9 + l3y;
+        let l2z = t10 + l3z;
+        let l1x = t1 + l2x;
+        let l1y = t2 + l2y;
+        let l1z = t3 + l2z;
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
+        let j1x = k9 * l1z - k7 * l1y;
+        let j1y = k7 * l1x - k8 * l1z;
+        let j1z = k8 * l1y - k9 * l1x;
+        let j2x = z2y * l2z - z2z * l2y;
+        let j2y = z2z * l2x - z2x * l2z;
+        let j2z = z2x * l2y - z2y * l2x;
+        let j3x = z2y * l3z - z2z * l3y;
+        let j3y = z2z * l3x - z2x * l3z;
+        let j3z = z2x * l3y - z2y * l3x;
+        let j4x = z4y * l4z - z4z * l4y;
+        let j4y = z4z * l4x - z4x * l4z;
+        let j4z = z4x * l4y - z4y * l4x;
+        let j5x = z5y * l5z - z5z * l5y;
+        let j5y = z5z * l5x - z5x * l5z;
+        let j5z = z5x * l5y - z5y * l5x;
+        let j6x = z6y * l6z - z6z * l6y;
+        let j6y = z6z * l6x - z6x * l6z;
+        let j6z = z6x * l6y - z6y * l6x;
 
         // From joint 6 to the TCP.
         let t59 = k28 * c6o;
-        let r5x_2 = t59 - k29 * s6o;
+        let r5x = t59 - k29 * s6o;
         let t60 = k28 * s6o;
         let t61 = t60 + k29 * c6o;
         let t62 = k44 * s6o + k45 * c6o;
@@ -2545,25 +2612,27 @@ impl Robot<6> for EveryEffect {
         let tr5_yx = k31 * c6o - k32 * s6o;
         let t65 = k33 * c6o - t60;
         let t66 = t59 + k33 * s6o;
-        let r5z_2 = d5 - t61;
+        let r5z = d5 - t61;
 
         // From joint 5 to the TCP.
-        let t67 = k46 * r5x_2;
-        let r4y_2 = t61 - d5;
-        let t68 = k34 * c6o - k35 * s6o + k47 * r5x_2;
-        let tt5_yy = k36 + r5x_2 * t67;
+        let t67 = k46 * r5x;
+        let r4y = t61 - d5;
+        let t68 = k34 * c6o - k35 * s6o + k47 * r5x;
+        let tt5_yy = k36 + r5x * t67;
         let tr5_yz = t67 - (k31 * s6o + k32 * c6o);
+
+        // With the coupling of joints 5 and 6.
         let t69 = k51 * t65;
         let t70 = coupling5_6 * t65;
-        let tr5_yy = coupling5_6 * r5x_2;
+        let tr5_yy = coupling5_6 * r5x;
         let t71 = coupling5_6 * t66;
         let tt5_xx = k38 - t63 + k48 + (t69 + t69);
-        let tt5_xy = t68 + r5x_2 * t70;
+        let tt5_xy = t68 + r5x * t70;
         let tt5_xz = k39 - c6o * t62 - k51 * t66;
         let t72 = k34 * s6o + k35 * c6o + t66 * tr5_yy;
         let tr5_xy = k42 * c6o - k43 * s6o + k51;
         let tr5_xz = k50 + t70;
-        let r4x_2 = c5 * r5x_2 - k37 * s5;
+        let r4x = c5 * r5x - k37 * s5;
         let t73 = s5 * (tt5_xx - tt5_yy) + c5 * (tt5_xy + tt5_xy);
         let t74 = s5 * t73;
         let tt4_xz = c5 * t73 - tt5_xy;
@@ -2583,18 +2652,18 @@ impl Robot<6> for EveryEffect {
         let t82 = k30 * c5 + s5 * t64;
         let tt4_yz = c5 * t72 - s5 * tt5_xz;
         let tr4_xy = s5 * tr5_yz - c5 * tr5_xz;
-        let r4z_2 = d4 + (s5 * r5x_2 + k37 * c5);
+        let r4z = d4 + (s5 * r5x + k37 * c5);
 
         // From joint 4 to the TCP.
-        let t83 = h4 * r4y_2;
-        let t84 = h4 * r4x_2;
-        let tt4_xx = tt5_xx - t74 - r5z_2 * t83;
-        let t85 = c5 * tt5_xz + s5 * t72 + r4x_2 * t83;
-        let tt4_yy = tt5_zz + r4x_2 * t84;
+        let t83 = h4 * r4y;
+        let t84 = h4 * r4x;
+        let tt4_xx = tt5_xx - t74 - r5z * t83;
+        let t85 = c5 * tt5_xz + s5 * t72 + r4x * t83;
+        let tt4_yy = tt5_zz + r4x * t84;
         let rr4_zz = h4 + (k41 + t76);
         let tr4_xz = t80 - tr5_yx - t83;
         let tr4_yz = c5 * t64 - k30 * s5 + t84;
-        let t86 = s4o * r4x_2 + c4o * r4y_2;
+        let t86 = s4o * r4x + c4o * r4y;
         let t87 = s4o * (tt4_xx - tt4_yy) - c4o * (t85 + t85);
         let t88 = s4o * t87;
         let t89 = t85 + c4o * t87;
@@ -2618,8 +2687,8 @@ impl Robot<6> for EveryEffect {
         let t107 = c4o * tr4_zx + s4o * t81;
         let t108 = s4o * tr4_zx - c4o * t81;
         let t109 = cos_alpha3 * t86;
-        let t110 = sin_alpha3 * r4z_2;
-        let r3y_2 = t109 - t110;
+        let t110 = sin_alpha3 * r4z;
+        let r3y = t109 - t110;
         let t111 = sin_alpha3 * (t90 - tt4_zz) + cos_alpha3 * (t92 + t92);
         let t112 = sin_alpha3 * t111;
         let t113 = sin_alpha3 * (t96 - rr4_zz) + cos_alpha3 * (t98 + t98);
@@ -2630,44 +2699,46 @@ impl Robot<6> for EveryEffect {
         let t116 = sin_alpha3 * t115;
         let t117 = cos_alpha3 * t115;
         let tr3_yy = t104 - t116;
-        let r3x_2 = a3 + (c4o * r4x_2 - s4o * r4y_2);
-        let r3z_2 = d3 + (sin_alpha3 * t86 + cos_alpha3 * r4z_2);
-        let t118 = r3x_2 - k60;
-        let t119 = r3z_2 - k61;
-        let t120 = k54 * r3y_2;
+        let r3x = a3 + (c4o * r4x - s4o * r4y);
+        let r3z = d3 + (sin_alpha3 * t86 + cos_alpha3 * r4z);
+
+        // With link 3.
+        let t118 = r3x - k60;
+        let t119 = r3z - k61;
+        let t120 = k54 * r3y;
         let t121 = k54 * t118 - k53 * t119;
-        let t122 = k53 * r3y_2;
+        let t122 = k53 * r3y;
         let t123 = bending3 * t119;
         let t124 = bending3 * t118;
-        let t125 = k55 * r3y_2;
+        let t125 = k55 * r3y;
         let t126 = k55 * t118 - k54 * t119;
-        let t127 = k61 - r3z_2;
-        let t128 = k60 - r3x_2;
+        let t127 = k61 - r3z;
+        let t128 = k60 - r3x;
         let t129 = t110 - t109;
         let t130 = t120 * t127 + t118 * t125;
         let t131 = k57 + (t119 * t123 - t125 * t129);
-        let t132 = k58 + (t123 * t128 - r3y_2 * t120);
+        let t132 = k58 + (t123 * t128 - r3y * t120);
         let t133 = k56 + (t121 * t127 + t118 * t126);
-        let t134 = k59 + (r3y_2 * t122 - t124 * t128);
+        let t134 = k59 + (r3y * t122 - t124 * t128);
         let t135 = cos_alpha3 * t89 - sin_alpha3 * t91 - t130;
         let t136 = sin_alpha3 * t89 + cos_alpha3 * t91 + t132;
-        let t137 = cos_alpha3 * t111 - t92 + r3y_2 * t121;
+        let t137 = cos_alpha3 * t111 - t92 + r3y * t121;
         let rr3_xz = sin_alpha3 * t95 + cos_alpha3 * t97 + k54;
         let tr3_zz = tr4_zz + t116 + t120;
 
         // From joint 3 to the TCP.
-        let t138 = transverse3 * r3z_2;
-        let t139 = transverse3 * r3y_2;
-        let t140 = transverse3 * r3x_2;
-        let t141 = h3 * r3y_2;
-        let t142 = h3 * r3x_2;
-        let t143 = r3z_2 * t138;
-        let t144 = r3y_2 * t139 + r3x_2 * t140;
+        let t138 = transverse3 * r3z;
+        let t139 = transverse3 * r3y;
+        let t140 = transverse3 * r3x;
+        let t141 = h3 * r3y;
+        let t142 = h3 * r3x;
+        let t143 = r3z * t138;
+        let t144 = r3y * t139 + r3x * t140;
         let tt3_xx = tt4_xx - t88 + t131 + (t143 - t129 * t141);
-        let tt3_xy = t135 - r3x_2 * t141;
-        let tt3_xz = t136 - r3x_2 * t138;
-        let tt3_yy = t90 - t112 + t133 + (t143 + r3x_2 * t142);
-        let tt3_yz = t137 - r3y_2 * t138;
+        let tt3_xy = t135 - r3x * t141;
+        let tt3_xz = t136 - r3x * t138;
+        let tt3_yy = t90 - t112 + t133 + (t143 + r3x * t142);
+        let tt3_yz = t137 - r3y * t138;
         let tt3_zz = tt4_zz + t112 + t134 + t144;
         let rr3_xx = transverse3 + (rr4_xx - t94 + k53);
         let rr3_yy = transverse3 + (bending3 + (t96 - t114));
@@ -2680,27 +2751,29 @@ impl Robot<6> for EveryEffect {
         let tr3_zy = t117 - t106 - t124 - t140;
         let t145 = a2 * c3;
         let t146 = a2 * s3;
-        let r2x_2 = r3x_2 + t145;
-        let r2y_2 = r3y_2 - t146;
+        let r2x = r3x + t145;
+        let r2y = r3y - t146;
+
+        // With link 2.
         let t147 = k62 * c3;
         let t148 = k63 * c3;
         let t149 = bending2 + t145 * t147;
         let t150 = t146 * t147;
         let t151 = bending2 + t146 * (k62 * s3);
         let t152 = k65 * c3;
-        let t153 = r2x_2 - t152;
-        let t154 = r2y_2 + k65 * s3;
-        let t155 = r3z_2 * t150;
-        let t156 = r3z_2 * t149;
+        let t153 = r2x - t152;
+        let t154 = r2y + k65 * s3;
+        let t155 = r3z * t150;
+        let t156 = r3z * t149;
         let t157 = t149 * t154 + t150 * t153;
-        let t158 = r3z_2 * t151;
+        let t158 = r3z * t151;
         let t159 = t150 * t154 + t151 * t153;
         let t160 = bending2 * t154;
         let t161 = bending2 * t153;
-        let t162 = t152 - r2x_2;
-        let t163 = r3z_2 * t158 + t154 * t160;
-        let t164 = r3z_2 * t156 + t153 * t161;
-        let t165 = t146 * t148 + (r3z_2 * t155 - t153 * t160);
+        let t162 = t152 - r2x;
+        let t163 = r3z * t158 + t154 * t160;
+        let t164 = r3z * t156 + t153 * t161;
+        let t165 = t146 * t148 + (r3z * t155 - t153 * t160);
         let t166 = tt3_xx + (k64 - t145 * t148 + t163);
         let tt2_xz = tt3_xz + (t158 * t162 - t154 * t155);
         let t167 = tt3_yy + (k64 - t146 * (k63 * s3) + t164);
@@ -2717,19 +2790,21 @@ impl Robot<6> for EveryEffect {
         let tr2_zy = tr3_zy - t159;
 
         // From joint 2 to the TCP.
-        let t169 = k66 * r2y_2;
-        let t170 = k66 * r2x_2;
-        let t171 = t146 - r3y_2;
+        let t169 = k66 * r2y;
+        let t170 = k66 * r2x;
+        let t171 = t146 - r3y;
+
+        // With the coupling of joints 2 and 3.
         let t172 = coupling2_3 * t171;
         let t173 = coupling2_3 * t129;
         let t174 = t129 * t172 + t171 * t173;
-        let t175 = r3x_2 * t172 + r2x_2 * t173;
-        let t176 = coupling2_3 * r2x_2;
-        let t177 = coupling2_3 * r3x_2;
-        let t178 = r3x_2 * t176 + r2x_2 * t177;
+        let t175 = r3x * t172 + r2x * t173;
+        let t176 = coupling2_3 * r2x;
+        let t177 = coupling2_3 * r3x;
+        let t178 = r3x * t176 + r2x * t177;
         let tt2_xx = t166 - t169 * t171 + t174;
-        let tt2_xy = tt3_xy + t165 - r2x_2 * t169 + t175;
-        let tt2_yy = t167 + r2x_2 * t170 + t178;
+        let tt2_xy = tt3_xy + t165 - r2x * t169 + t175;
+        let tt2_yy = t167 + r2x * t170 + t178;
         let rr2_zz = bending2 + rr3_zz + k66 + k67;
         let tr2_xz = tr3_xz - t160 - t169 + (t172 + t173);
         let tr2_yz = tr3_yz + t161 + t170 + (t176 + t177);
@@ -2745,22 +2820,22 @@ impl Robot<6> for EveryEffect {
         let tr1_zz = tr2_yy - t184;
         let rr1_yz = c23 * rr3_xz - s23 * rr3_yz;
         let rr1_xz = rr2_xy - s23 * t181;
-        let r1x_2 = a1 + (s23 * r2x_2 + c23 * r2y_2);
-        let r1z_2 = d1 + (c23 * r2x_2 - s23 * r2y_2);
+        let r1x = a1 + (s23 * r2x + c23 * r2y);
+        let r1z = d1 + (c23 * r2x - s23 * r2y);
 
         // From joint 1 to the TCP.
-        let t186 = transverse1 * r1z_2;
-        let t187 = transverse1 * r3z_2;
-        let t188 = transverse1 * r1x_2;
-        let t189 = h1 * r3z_2;
-        let t190 = h1 * r1x_2;
-        let t191 = r1z_2 * t186;
-        let tt1_xx = tt2_xx + t180 + (t191 + r3z_2 * t189);
-        let tt1_xy = s23 * tt2_xz + c23 * tt2_yz - r1x_2 * t189;
-        let tt1_xz = tt2_xy - s23 * t179 - r1x_2 * t186;
-        let tt1_yy = tt2_zz + (t191 + r1x_2 * t190);
-        let tt1_yz = c23 * tt2_xz - s23 * tt2_yz - r3z_2 * t186;
-        let tt1_zz = tt2_yy - t180 + (r3z_2 * t187 + r1x_2 * t188);
+        let t186 = transverse1 * r1z;
+        let t187 = transverse1 * r3z;
+        let t188 = transverse1 * r1x;
+        let t189 = h1 * r3z;
+        let t190 = h1 * r1x;
+        let t191 = r1z * t186;
+        let tt1_xx = tt2_xx + t180 + (t191 + r3z * t189);
+        let tt1_xy = s23 * tt2_xz + c23 * tt2_yz - r1x * t189;
+        let tt1_xz = tt2_xy - s23 * t179 - r1x * t186;
+        let tt1_yy = tt2_zz + (t191 + r1x * t190);
+        let tt1_yz = c23 * tt2_xz - s23 * tt2_yz - r3z * t186;
+        let tt1_zz = tt2_yy - t180 + (r3z * t187 + r1x * t188);
         let rr1_xx = transverse1 + (rr2_xx + t182);
         let rr1_yy = transverse1 + rr2_zz;
         let rr1_zz = h1 + (rr2_yy - t182);
@@ -2770,15 +2845,17 @@ impl Robot<6> for EveryEffect {
         let tr1_yz = c23 * tr2_zx - s23 * tr2_zy + t190;
         let tr1_zx = tr2_xy - t185 + t187;
         let tr1_zy = c23 * tr2_xz - s23 * tr2_yz - t188;
-        let t192 = base_tilt * r1z_2;
-        let t193 = base_tilt * r3z_2;
-        let t194 = base_tilt * r1x_2;
-        let t195 = base_translation + r1z_2 * t192;
+
+        // From the base to the TCP.
+        let t192 = base_tilt * r1z;
+        let t193 = base_tilt * r3z;
+        let t194 = base_tilt * r1x;
+        let t195 = base_translation + r1z * t192;
         let t196 = tt1_xx + t195;
-        let t197 = tt1_xz - r1x_2 * t192;
+        let t197 = tt1_xz - r1x * t192;
         let t198 = tt1_yy + t195;
-        let t199 = tt1_yz - r3z_2 * t192;
-        let t200 = tt1_zz + (base_translation + (r3z_2 * t193 + r1x_2 * t194));
+        let t199 = tt1_yz - r3z * t192;
+        let t200 = tt1_zz + (base_translation + (r3z * t193 + r1x * t194));
         let t201 = base_tilt + rr1_xx;
         let t202 = base_tilt + rr1_yy;
         let t203 = tr1_xy + t192;

@@ -559,19 +559,33 @@ impl Robot<7> for EveryLaw {
             q[6],
             q[6] + T::of(Self::THETA7 + Self::TOOL_YAW),
         ]);
+
+        // Of the periodic angle error of joint 3.
         let e3 = sin_error3 * s3 + cos_error3 * c3;
+
+        // Of the periodic angle error of joint 4.
         let e4 = cos_error4 * c2x4;
+
+        // Of the periodic angle error of joint 7.
         let e7 = sin_error7 * s41x7;
         let t1 = d1 + q[0];
+
+        // Sine and cosine of the angle e3 by which joint 3 stands aside.
         let t2 = e3 * e3;
         let t3 = T::one() - t2 * (k3 - k2 * t2);
         let t4 = e3 - e3 * t2 * (k4 - k1 * t2);
+
+        // Sine and cosine of the angle e4 by which joint 4 stands aside.
         let t5 = e4 * e4;
         let t6 = T::one() - t5 * (k3 - k2 * t5);
         let t7 = e4 - e4 * t5 * (k4 - k1 * t5);
+
+        // Sine and cosine of the angle e7 by which joint 7 stands aside.
         let t8 = e7 * e7;
         let t9 = T::one() - t8 * (k3 - k2 * t8);
         let t10 = e7 - e7 * t8 * (k4 - k1 * t8);
+
+        // Axes and origins, from the base to the tip.
         let t11 = k5 * c2o + k9 * s2o;
         let t12 = k6 * c2o + k10 * s2o;
         let t13 = k7 * c2o + k8 * s2o;
@@ -735,19 +749,33 @@ impl Robot<7> for EveryLaw {
             T::of(41.0) * q[6],
             q[6],
         ]);
+
+        // Of the periodic angle error of joint 3.
         let e3 = sin_error3 * s3 + cos_error3 * c3;
+
+        // Of the periodic angle error of joint 4.
         let e4 = cos_error4 * c2x4;
+
+        // Of the periodic angle error of joint 7.
         let e7 = sin_error7 * s41x7;
         let t1 = d1 + q[0];
+
+        // Sine and cosine of the angle e3 by which joint 3 stands aside.
         let t2 = e3 * e3;
         let t3 = T::one() - t2 * (k3 - k2 * t2);
         let t4 = e3 - e3 * t2 * (k4 - k1 * t2);
+
+        // Sine and cosine of the angle e4 by which joint 4 stands aside.
         let t5 = e4 * e4;
         let t6 = T::one() - t5 * (k3 - k2 * t5);
         let t7 = e4 - e4 * t5 * (k4 - k1 * t5);
+
+        // Sine and cosine of the angle e7 by which joint 7 stands aside.
         let t8 = e7 * e7;
         let t9 = T::one() - t8 * (k3 - k2 * t8);
         let t10 = e7 - e7 * t8 * (k4 - k1 * t8);
+
+        // Axes and origins, from the base to the tip.
         let p1_x = base_x + k14 * t1;
         let p1_y = base_y + k15 * t1;
         let p1_z = base_z + k16 * t1;
@@ -951,18 +979,32 @@ impl Robot<7> for EveryLaw {
             T::of(41.0) * q[6],
             q[6],
         ]);
+
+        // Of the periodic angle error of joint 3.
         let e3 = sin_error3 * s3 + cos_error3 * c3;
+
+        // Of the periodic angle error of joint 4.
         let e4 = cos_error4 * c2x4;
+
+        // Of the periodic angle error of joint 7.
         let e7 = sin_error7 * s41x7;
+
+        // Sine and cosine of the angle e3 by which joint 3 stands aside.
         let t1 = e3 * e3;
         let t2 = T::one() - t1 * (k3 - k2 * t1);
         let t3 = e3 - e3 * t1 * (k4 - k1 * t1);
+
+        // Sine and cosine of the angle e4 by which joint 4 stands aside.
         let t4 = e4 * e4;
         let t5 = T::one() - t4 * (k3 - k2 * t4);
         let t6 = e4 - e4 * t4 * (k4 - k1 * t4);
+
+        // Sine and cosine of the angle e7 by which joint 7 stands aside.
         let t7 = e7 * e7;
         let t8 = T::one() - t7 * (k3 - k2 * t7);
         let t9 = e7 - e7 * t7 * (k4 - k1 * t7);
+
+        // Axes and origins, from the base to the tip.
         let t10 = k5 * c2o + k9 * s2o;
         let t11 = k6 * c2o + k10 * s2o;
         let t12 = k7 * c2o + k8 * s2o;
@@ -1022,39 +1064,43 @@ impl Robot<7> for EveryLaw {
         let t51 = (t38 * c6 + z5x * s6) * t49;
         let t52 = (t39 * c6 + z5y * s6) * t49;
         let t53 = (t40 * c6 + z5z * s6) * t49;
-        let r7x = t51 + (t41 - t44) * t50 + tool_z * z7x;
-        let r7y = t52 + (t42 - t45) * t50 + tool_z * z7y;
-        let r7z = t53 + (t43 - t46) * t50 + tool_z * z7z;
-        let r5x = d7 * z7x + r7x;
-        let r5y = d7 * z7y + r7y;
-        let r5z = d7 * z7z + r7z;
-        let r4x = a5 * t32 + d5 * z5x + r5x;
-        let r4y = a5 * t33 + d5 * z5y + r5y;
-        let r4z = a5 * t34 + d5 * z5z + r5z;
-        let r3x = a4 * t15 + r4x;
-        let r3y = a4 * t16 + r4y;
-        let r3z = a4 * t17 + r4z;
-        let r2x = a3 * t10 + r3x;
-        let r2y = a3 * t11 + r3y;
-        let r2z = a3 * t12 + r3z;
-        let j2x = k13 * r2z - k11 * r2y;
-        let j2y = k11 * r2x - k12 * r2z;
-        let j2z = k12 * r2y - k13 * r2x;
-        let j3x = z3y * r3z - z3z * r3y;
-        let j3y = z3z * r3x - z3x * r3z;
-        let j3z = z3x * r3y - z3y * r3x;
-        let j4x = z4y * r4z - z4z * r4y;
-        let j4y = z4z * r4x - z4x * r4z;
-        let j4z = z4x * r4y - z4y * r4x;
-        let j5x = z5y * r5z - z5z * r5y;
-        let j5y = z5z * r5x - z5x * r5z;
-        let j5z = z5x * r5y - z5y * r5x;
-        let j6x = z6y * r5z - z6z * r5y;
-        let j6y = z6z * r5x - z6x * r5z;
-        let j6z = z6x * r5y - z6y * r5x;
-        let j7x = z7y * r7z - z7z * r7y;
-        let j7y = z7z * r7x - z7x * r7z;
-        let j7z = z7x * r7y - z7y * r7x;
+        let l7x = t51 + (t41 - t44) * t50 + tool_z * z7x;
+        let l7y = t52 + (t42 - t45) * t50 + tool_z * z7y;
+        let l7z = t53 + (t43 - t46) * t50 + tool_z * z7z;
+
+        // From the origins to the TCP.
+        let l5x = d7 * z7x + l7x;
+        let l5y = d7 * z7y + l7y;
+        let l5z = d7 * z7z + l7z;
+        let l4x = a5 * t32 + d5 * z5x + l5x;
+        let l4y = a5 * t33 + d5 * z5y + l5y;
+        let l4z = a5 * t34 + d5 * z5z + l5z;
+        let l3x = a4 * t15 + l4x;
+        let l3y = a4 * t16 + l4y;
+        let l3z = a4 * t17 + l4z;
+        let l2x = a3 * t10 + l3x;
+        let l2y = a3 * t11 + l3y;
+        let l2z = a3 * t12 + l3z;
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
+        let j2x = k13 * l2z - k11 * l2y;
+        let j2y = k11 * l2x - k12 * l2z;
+        let j2z = k12 * l2y - k13 * l2x;
+        let j3x = z3y * l3z - z3z * l3y;
+        let j3y = z3z * l3x - z3x * l3z;
+        let j3z = z3x * l3y - z3y * l3x;
+        let j4x = z4y * l4z - z4z * l4y;
+        let j4y = z4z * l4x - z4x * l4z;
+        let j4z = z4x * l4y - z4y * l4x;
+        let j5x = z5y * l5z - z5z * l5y;
+        let j5y = z5z * l5x - z5x * l5z;
+        let j5z = z5x * l5y - z5y * l5x;
+        let j6x = z6y * l5z - z6z * l5y;
+        let j6y = z6z * l5x - z6x * l5z;
+        let j6z = z6x * l5y - z6y * l5x;
+        let j7x = z7y * l7z - z7z * l7y;
+        let j7y = z7z * l7x - z7x * l7z;
+        let j7z = z7x * l7y - z7y * l7x;
         SMatrix::from([
             [k14, k15, k16, T::zero(), T::zero(), T::zero()],
             [j2x, j2y, j2z, k12, k13, k11],
@@ -1069,7 +1115,8 @@ impl Robot<7> for EveryLaw {
     /// Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
     ///
     /// It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
-    /// rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.
+    /// rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point, all in the
+    /// joint's own axes.
     ///
     /// 14 trig, 403 mul, 372 add.
     #[inline(always)]
@@ -1270,21 +1317,37 @@ impl Robot<7> for EveryLaw {
             T::of(41.0) * q[6],
             q[6],
         ]);
+
+        // Of the compliance of joint 3 that varies with its angle.
         let t1 = cos2_3 * ((c3 - s3) * (s3 + c3));
         let t2 = cos1_3 * c3 + sin1_3 * s3 + t1;
         let t3 = s3 * c3;
+
+        // Of the compliance of joint 6 that varies with its angle.
         let t4 = s6 * c6;
+
+        // Of the periodic angle error of joint 3.
         let e3 = sin_error3 * s3 + cos_error3 * c3;
+
+        // Of the periodic angle error of joint 4.
         let e4 = cos_error4 * c2x4;
+
+        // Of the periodic angle error of joint 7.
         let e7 = sin_error7 * s41x7;
+
+        // Sine and cosine of the angle e3 by which joint 3 stands aside.
         let t5 = e3 * e3;
         let t6 = T::one() - t5 * (k1 - k3 * t5);
         let t7 = e3 * t5 * (k4 - k2 * t5);
         let t8 = e3 - t7;
+
+        // Sine and cosine of the angle e4 by which joint 4 stands aside.
         let t9 = e4 * e4;
         let t10 = T::one() - t9 * (k1 - k3 * t9);
         let t11 = e4 * t9 * (k4 - k2 * t9);
         let t12 = e4 - t11;
+
+        // Sine and cosine of the angle e7 by which joint 7 stands aside.
         let t13 = e7 * e7;
         let t14 = T::one() - t13 * (k1 - k3 * t13);
         let t15 = e7 - e7 * t13 * (k4 - k2 * t13);
@@ -1336,6 +1399,8 @@ impl Robot<7> for EveryLaw {
         let tt5_yy = tt6_zz + r5x * t36;
         let rr5_zz = h7 + t29 + k18;
         let tr5_yz = t36 - c6 * tr6_zy;
+
+        // With the coupling of joints 5 and 6.
         let t37 = coupling5_6 * r6z;
         let t38 = coupling5_6 * t33;
         let t39 = t33 * t37 + r6z * t38;
@@ -1397,6 +1462,8 @@ impl Robot<7> for EveryLaw {
         let t67 = a4 * t63;
         let t68 = r4x + t66;
         let t69 = r4y + t67;
+
+        // With link 3.
         let t70 = k20 * t65;
         let t71 = k21 * t65;
         let t72 = bending3 + t66 * t70;
@@ -1562,6 +1629,8 @@ impl Robot<7> for EveryLaw {
 
         // From joint 1 to the TCP.
         let tt1_zz = h1 + (tt2_yy + t166);
+
+        // From the base to the TCP.
         let t181 = sin_base_roll * (tt1_zz - tt2_zz) + cos_base_roll * (t168 + t168);
         let t182 = sin_base_roll * t181;
         let t183 = tt1_zz - t182;
@@ -1777,22 +1846,40 @@ impl Robot<7> for EveryLaw {
             T::of(41.0) * q[6],
             q[6],
         ]);
+
+        // Of the periodic angle error of joint 3.
         let e3 = sin_error3 * s3 + cos_error3 * c3;
+
+        // Of the periodic angle error of joint 4.
         let e4 = cos_error4 * c2x4;
+
+        // Of the periodic angle error of joint 7.
         let e7 = sin_error7 * s41x7;
+
+        // Sine and cosine of the angle e3 by which joint 3 stands aside.
         let t1 = e3 * e3;
         let t2 = T::one() - t1 * (k3 - k2 * t1);
         let t3 = e3 - e3 * t1 * (k4 - k1 * t1);
+
+        // Sine and cosine of the angle e4 by which joint 4 stands aside.
         let t4 = e4 * e4;
         let t5 = T::one() - t4 * (k3 - k2 * t4);
         let t6 = e4 - e4 * t4 * (k4 - k1 * t4);
+
+        // Sine and cosine of the angle e7 by which joint 7 stands aside.
         let t7 = e7 * e7;
         let t8 = T::one() - t7 * (k3 - k2 * t7);
         let t9 = e7 - e7 * t7 * (k4 - k1 * t7);
+
+        // Of the compliance of joint 3 that varies with its angle.
         let t10 = cos2_3 * ((c3 - s3) * (s3 + c3));
         let t11 = cos1_3 * c3 + sin1_3 * s3 + t10;
         let t12 = s3 * c3;
+
+        // Of the compliance of joint 6 that varies with its angle.
         let t13 = s6 * c6;
+
+        // Axes and origins, from the base to the tip.
         let t14 = k10 * c2o + k14 * s2o;
         let t15 = k11 * c2o + k15 * s2o;
         let t16 = k12 * c2o + k13 * s2o;
@@ -1855,39 +1942,45 @@ impl Robot<7> for EveryLaw {
         let t58 = (c6 * t45 + s6 * z5x) * t56;
         let t59 = (c6 * t46 + s6 * z5y) * t56;
         let t60 = (c6 * t47 + s6 * z5z) * t56;
-        let r7x = t58 + (t48 - t51) * t57 + tool_z * z7x;
-        let r7y = t59 + (t49 - t52) * t57 + tool_z * z7y;
-        let r7z = t60 + (t50 - t53) * t57 + tool_z * z7z;
-        let r5x = d7 * z7x + r7x;
-        let r5y = d7 * z7y + r7y;
-        let r5z = d7 * z7z + r7z;
-        let r4x = a5 * t39 + d5 * z5x + r5x;
-        let r4y = a5 * t40 + d5 * z5y + r5y;
-        let r4z = a5 * t41 + d5 * z5z + r5z;
-        let r3x = t34 + r4x;
-        let r3y = t35 + r4y;
-        let r3z = t36 + r4z;
-        let r2x = a3 * t14 + r3x;
-        let r2y = a3 * t15 + r3y;
-        let r2z = a3 * t16 + r3z;
-        let j2x = k18 * r2z - k16 * r2y;
-        let j2y = k16 * r2x - k17 * r2z;
-        let j2z = k17 * r2y - k18 * r2x;
-        let j3x = z3y * r3z - z3z * r3y;
-        let j3y = z3z * r3x - z3x * r3z;
-        let j3z = z3x * r3y - z3y * r3x;
-        let j4x = z4y * r4z - z4z * r4y;
-        let j4y = z4z * r4x - z4x * r4z;
-        let j4z = z4x * r4y - z4y * r4x;
-        let j5x = z5y * r5z - z5z * r5y;
-        let j5y = z5z * r5x - z5x * r5z;
-        let j5z = z5x * r5y - z5y * r5x;
-        let j6x = z6y * r5z - z6z * r5y;
-        let j6y = z6z * r5x - z6x * r5z;
-        let j6z = z6x * r5y - z6y * r5x;
-        let j7x = z7y * r7z - z7z * r7y;
-        let j7y = z7z * r7x - z7x * r7z;
-        let j7z = z7x * r7y - z7y * r7x;
+        let l7x = t58 + (t48 - t51) * t57 + tool_z * z7x;
+        let l7y = t59 + (t49 - t52) * t57 + tool_z * z7y;
+        let l7z = t60 + (t50 - t53) * t57 + tool_z * z7z;
+
+        // From the origins to the TCP.
+        let l5x = d7 * z7x + l7x;
+        let l5y = d7 * z7y + l7y;
+        let l5z = d7 * z7z + l7z;
+        let l4x = a5 * t39 + d5 * z5x + l5x;
+        let l4y = a5 * t40 + d5 * z5y + l5y;
+        let l4z = a5 * t41 + d5 * z5z + l5z;
+        let l3x = t34 + l4x;
+        let l3y = t35 + l4y;
+        let l3z = t36 + l4z;
+        let l2x = a3 * t14 + l3x;
+        let l2y = a3 * t15 + l3y;
+        let l2z = a3 * t16 + l3z;
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
+        let j2x = k18 * l2z - k16 * l2y;
+        let j2y = k16 * l2x - k17 * l2z;
+        let j2z = k17 * l2y - k18 * l2x;
+        let j3x = z3y * l3z - z3z * l3y;
+        let j3y = z3z * l3x - z3x * l3z;
+        let j3z = z3x * l3y - z3y * l3x;
+        let j4x = z4y * l4z - z4z * l4y;
+        let j4y = z4z * l4x - z4x * l4z;
+        let j4z = z4x * l4y - z4y * l4x;
+        let j5x = z5y * l5z - z5z * l5y;
+        let j5y = z5z * l5x - z5x * l5z;
+        let j5z = z5x * l5y - z5y * l5x;
+        let j6x = z6y * l5z - z6z * l5y;
+        let j6y = z6z * l5x - z6x * l5z;
+        let j6z = z6x * l5y - z6y * l5x;
+        let j7x = z7y * l7z - z7z * l7y;
+        let j7y = z7z * l7x - z7x * l7z;
+        let j7z = z7x * l7y - z7y * l7x;
+
+        // What the wrench puts on the joints.
         let tau1 = k19 * fx + k20 * fy + k21 * fz;
         let t61 = k17 * mx + k18 * my + k16 * mz;
         let tau2 = fx * j2x + fy * j2y + fz * j2z + t61;
@@ -1901,25 +1994,43 @@ impl Robot<7> for EveryLaw {
         let tau6 = fx * j6x + fy * j6y + fz * j6z + t65;
         let t66 = z7x * mx + z7y * my + z7z * mz;
         let tau7 = fx * j7x + fy * j7y + fz * j7z + t66;
+
+        // By how much the joints turn or slide.
         let dq2 = h2 * tau2;
         let dq4 = h4 * tau4;
         let dq7 = h7 * tau7;
+
+        // Of the hardening of joint 3 with torque.
         let t67 = k5 * tau3;
         let t68 = added3 * tau3 * (T::one() + t67 * t67).sqrt().recip();
+
+        // Of the backlash of joint 3.
         let t69 = k6 * tau3;
         let t70 = k7 * tau3 * (T::one() + t69 * t69).sqrt().recip();
+
+        // Of the backlash of joint 5.
         let t71 = k8 * tau5;
         let t72 = k9 * tau5 * (T::one() + t71 * t71).sqrt().recip();
         let dq5 = h5 * tau5 + coupling5_6 * tau6 + t72;
+
+        // Of the hysteresis of joint 3.
         let play3_1 = T::zero().min(radius1_3 + tau3).max(tau3 - radius1_3);
         let play3_2 = T::zero().min(radius2_3 + tau3).max(tau3 - radius2_3);
         let play3_3 = T::zero().min(radius3_3 + tau3).max(tau3 - radius3_3);
         let t73 = weight1_3 * play3_1 + weight2_3 * play3_2 + weight3_3 * play3_3;
+
+        // Of the hysteresis of joint 6.
         let play6_1 = T::zero().min(radius1_6 + tau6).max(tau6 - radius1_6);
         let t74 = h6 * tau6 + coupling5_6 * tau5 + weight1_6 * play6_1;
+
+        // Of the compliance of joint 3 that varies with its angle.
         let t75 = h3 * (t11 + sin2_3 * (t12 + t12)) * tau3;
         let dq3 = h3 * tau3 + t68 + t70 + t73 + t75;
+
+        // Of the compliance of joint 6 that varies with its angle.
         let dq6 = t74 + h6_sin2_6 * (t13 + t13) * tau6;
+
+        // What these turns make at the TCP.
         let t76 = k25 * tau1 + j2x * dq2 + j3x * dq3;
         let t77 = k26 * tau1 + j2y * dq2 + j3y * dq3;
         let t78 = k27 * tau1 + j2z * dq2 + j3z * dq3;
@@ -1935,19 +2046,23 @@ impl Robot<7> for EveryLaw {
         let t88 = t82 + j6x * dq6 + j7x * dq7;
         let t89 = t83 + j6y * dq6 + j7y * dq7;
         let t90 = t84 + j6z * dq6 + j7z * dq7;
-        let t91 = mx + (r4y * fz - r4z * fy);
-        let t92 = my + (r4z * fx - r4x * fz);
-        let t93 = mz + (r4x * fy - r4y * fx);
+
+        // And the tilt of joint 4 across its axis.
+        let t91 = mx + (l4y * fz - l4z * fy);
+        let t92 = my + (l4z * fx - l4x * fz);
+        let t93 = mz + (l4x * fy - l4y * fx);
         let t94 = z4x * t91 + z4y * t92 + z4z * t93;
         let t95 = transverse4 * (t91 - z4x * t94);
         let t96 = transverse4 * (t92 - z4y * t94);
         let t97 = transverse4 * (t93 - z4z * t94);
-        let t98 = t88 + (r4z * t96 - r4y * t97);
-        let t99 = t89 + (r4x * t97 - r4z * t95);
-        let t100 = t90 + (r4y * t95 - r4x * t96);
-        let t101 = r3x - k31 * t19;
-        let t102 = r3y - k31 * t20;
-        let t103 = r3z - k31 * t21;
+        let t98 = t88 + (l4z * t96 - l4y * t97);
+        let t99 = t89 + (l4x * t97 - l4z * t95);
+        let t100 = t90 + (l4y * t95 - l4x * t96);
+
+        // And link 3.
+        let t101 = l3x - k31 * t19;
+        let t102 = l3y - k31 * t20;
+        let t103 = l3z - k31 * t21;
         let t104 = mx + (fz * t102 - fy * t103);
         let t105 = my + (fx * t103 - fz * t101);
         let t106 = mz + (fy * t101 - fx * t102);
@@ -2050,18 +2165,32 @@ impl Robot<7> for EveryLaw {
             T::of(41.0) * q[6],
             q[6],
         ]);
+
+        // Of the periodic angle error of joint 3.
         let e3 = sin_error3 * s3 + cos_error3 * c3;
+
+        // Of the periodic angle error of joint 4.
         let e4 = cos_error4 * c2x4;
+
+        // Of the periodic angle error of joint 7.
         let e7 = sin_error7 * s41x7;
+
+        // Sine and cosine of the angle e3 by which joint 3 stands aside.
         let t1 = e3 * e3;
         let t2 = T::one() - t1 * (k3 - k2 * t1);
         let t3 = e3 - e3 * t1 * (k4 - k1 * t1);
+
+        // Sine and cosine of the angle e4 by which joint 4 stands aside.
         let t4 = e4 * e4;
         let t5 = T::one() - t4 * (k3 - k2 * t4);
         let t6 = e4 - e4 * t4 * (k4 - k1 * t4);
+
+        // Sine and cosine of the angle e7 by which joint 7 stands aside.
         let t7 = e7 * e7;
         let t8 = T::one() - t7 * (k3 - k2 * t7);
         let t9 = e7 - e7 * t7 * (k4 - k1 * t7);
+
+        // Axes and origins, from the base to the tip.
         let t10 = k5 * c2o + k9 * s2o;
         let t11 = k6 * c2o + k10 * s2o;
         let t12 = k7 * c2o + k8 * s2o;
@@ -2121,39 +2250,45 @@ impl Robot<7> for EveryLaw {
         let t51 = (t38 * c6 + z5x * s6) * t49;
         let t52 = (t39 * c6 + z5y * s6) * t49;
         let t53 = (t40 * c6 + z5z * s6) * t49;
-        let r7x = t51 + (t41 - t44) * t50 + tool_z * z7x;
-        let r7y = t52 + (t42 - t45) * t50 + tool_z * z7y;
-        let r7z = t53 + (t43 - t46) * t50 + tool_z * z7z;
-        let r5x = d7 * z7x + r7x;
-        let r5y = d7 * z7y + r7y;
-        let r5z = d7 * z7z + r7z;
-        let r4x = a5 * t32 + d5 * z5x + r5x;
-        let r4y = a5 * t33 + d5 * z5y + r5y;
-        let r4z = a5 * t34 + d5 * z5z + r5z;
-        let r3x = a4 * t15 + r4x;
-        let r3y = a4 * t16 + r4y;
-        let r3z = a4 * t17 + r4z;
-        let r2x = a3 * t10 + r3x;
-        let r2y = a3 * t11 + r3y;
-        let r2z = a3 * t12 + r3z;
-        let j2x = k13 * r2z - k11 * r2y;
-        let j2y = k11 * r2x - k12 * r2z;
-        let j2z = k12 * r2y - k13 * r2x;
-        let j3x = z3y * r3z - z3z * r3y;
-        let j3y = z3z * r3x - z3x * r3z;
-        let j3z = z3x * r3y - z3y * r3x;
-        let j4x = z4y * r4z - z4z * r4y;
-        let j4y = z4z * r4x - z4x * r4z;
-        let j4z = z4x * r4y - z4y * r4x;
-        let j5x = z5y * r5z - z5z * r5y;
-        let j5y = z5z * r5x - z5x * r5z;
-        let j5z = z5x * r5y - z5y * r5x;
-        let j6x = z6y * r5z - z6z * r5y;
-        let j6y = z6z * r5x - z6x * r5z;
-        let j6z = z6x * r5y - z6y * r5x;
-        let j7x = z7y * r7z - z7z * r7y;
-        let j7y = z7z * r7x - z7x * r7z;
-        let j7z = z7x * r7y - z7y * r7x;
+        let l7x = t51 + (t41 - t44) * t50 + tool_z * z7x;
+        let l7y = t52 + (t42 - t45) * t50 + tool_z * z7y;
+        let l7z = t53 + (t43 - t46) * t50 + tool_z * z7z;
+
+        // From the origins to the TCP.
+        let l5x = d7 * z7x + l7x;
+        let l5y = d7 * z7y + l7y;
+        let l5z = d7 * z7z + l7z;
+        let l4x = a5 * t32 + d5 * z5x + l5x;
+        let l4y = a5 * t33 + d5 * z5y + l5y;
+        let l4z = a5 * t34 + d5 * z5z + l5z;
+        let l3x = a4 * t15 + l4x;
+        let l3y = a4 * t16 + l4y;
+        let l3z = a4 * t17 + l4z;
+        let l2x = a3 * t10 + l3x;
+        let l2y = a3 * t11 + l3y;
+        let l2z = a3 * t12 + l3z;
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
+        let j2x = k13 * l2z - k11 * l2y;
+        let j2y = k11 * l2x - k12 * l2z;
+        let j2z = k12 * l2y - k13 * l2x;
+        let j3x = z3y * l3z - z3z * l3y;
+        let j3y = z3z * l3x - z3x * l3z;
+        let j3z = z3x * l3y - z3y * l3x;
+        let j4x = z4y * l4z - z4z * l4y;
+        let j4y = z4z * l4x - z4x * l4z;
+        let j4z = z4x * l4y - z4y * l4x;
+        let j5x = z5y * l5z - z5z * l5y;
+        let j5y = z5z * l5x - z5x * l5z;
+        let j5z = z5x * l5y - z5y * l5x;
+        let j6x = z6y * l5z - z6z * l5y;
+        let j6y = z6z * l5x - z6x * l5z;
+        let j6z = z6x * l5y - z6y * l5x;
+        let j7x = z7y * l7z - z7z * l7y;
+        let j7y = z7z * l7x - z7x * l7z;
+        let j7z = z7x * l7y - z7y * l7x;
+
+        // What the wrench puts on the joints.
         let tau1 = k14 * fx + k15 * fy + k16 * fz;
         let t54 = k12 * mx + k13 * my + k11 * mz;
         let tau2 = fx * j2x + fy * j2y + fz * j2z + t54;
@@ -2171,6 +2306,10 @@ impl Robot<7> for EveryLaw {
     }
 
     /// Transform, Jacobian and compliance of one pose, with what they have in common.
+    ///
+    /// Axes z and levers l of the Jacobian are in the base frame, or behind the turn of joint 1 where that is done
+    /// at the end. As in `compliance`, tt, tr and rr are of what lies beyond a joint, at the tool centre point and
+    /// in the joint's own axes, r from the joint to the tool centre point.
     ///
     /// 16 trig, 570 mul, 492 add.
     #[inline(always)]
@@ -2432,21 +2571,35 @@ impl Robot<7> for EveryLaw {
             q[6],
             q[6] + T::of(Self::THETA7 + Self::TOOL_YAW),
         ]);
+
+        // Of the periodic angle error of joint 3.
         let e3 = sin_error3 * s3 + cos_error3 * c3;
+
+        // Of the periodic angle error of joint 4.
         let e4 = cos_error4 * c2x4;
+
+        // Of the periodic angle error of joint 7.
         let e7 = sin_error7 * s41x7;
         let t1 = d1 + q[0];
+
+        // Sine and cosine of the angle e3 by which joint 3 stands aside.
         let t2 = e3 * e3;
         let t3 = T::one() - t2 * (k3 - k2 * t2);
         let t4 = e3 * t2 * (k4 - k1 * t2);
         let t5 = e3 - t4;
+
+        // Sine and cosine of the angle e4 by which joint 4 stands aside.
         let t6 = e4 * e4;
         let t7 = T::one() - t6 * (k3 - k2 * t6);
         let t8 = e4 * t6 * (k4 - k1 * t6);
         let t9 = e4 - t8;
+
+        // Sine and cosine of the angle e7 by which joint 7 stands aside.
         let t10 = e7 * e7;
         let t11 = T::one() - t10 * (k3 - k2 * t10);
         let t12 = e7 - e7 * t10 * (k4 - k1 * t10);
+
+        // Axes and origins, from the base to the tip.
         let t13 = k5 * c2o + k9 * s2o;
         let t14 = k6 * c2o + k10 * s2o;
         let t15 = k7 * c2o + k8 * s2o;
@@ -2528,12 +2681,12 @@ impl Robot<7> for EveryLaw {
         let t76 = t12 * s7 - t11 * c7;
         let t77 = tool_x * t76 + tool_y * t75;
         let t78 = tool_y * t76 - tool_x * t75;
-        let r7x = t69 * t77 + t66 * t78 + tool_z * z7x;
-        let r7y = t70 * t77 + t67 * t78 + tool_z * z7y;
-        let r7z = t71 * t77 + t68 * t78 + tool_z * z7z;
-        let p_x = t41 + t54 + t72 + r7x;
-        let p_y = t42 + t55 + t73 + r7y;
-        let p_z = t43 + t56 + t74 + r7z;
+        let l7x = t69 * t77 + t66 * t78 + tool_z * z7x;
+        let l7y = t70 * t77 + t67 * t78 + tool_z * z7y;
+        let l7z = t71 * t77 + t68 * t78 + tool_z * z7z;
+        let p_x = t41 + t54 + t72 + l7x;
+        let p_y = t42 + t55 + t73 + l7y;
+        let p_z = t43 + t56 + t74 + l7z;
         let t79 = t11 * s7o + t12 * c7o;
         let t80 = t11 * c7o - t12 * s7o;
         let t81 = t69 * t80 + t66 * t79;
@@ -2548,46 +2701,54 @@ impl Robot<7> for EveryLaw {
         let z_x = t69 * t79 - t66 * t80;
         let z_y = t70 * t79 - t67 * t80;
         let z_z = t71 * t79 - t68 * t80;
-        let r5x = t72 + r7x;
-        let r5y = t73 + r7y;
-        let r5z = t74 + r7z;
-        let r4x = t54 + r5x;
-        let r4y = t55 + r5y;
-        let r4z = t56 + r5z;
-        let r3x = t38 + r4x;
-        let r3y = t39 + r4y;
-        let r3z = t40 + r4z;
-        let r2x = t16 + r3x;
-        let r2y = t17 + r3y;
-        let r2z = t18 + r3z;
-        let j2x = k13 * r2z - k11 * r2y;
-        let j2y = k11 * r2x - k12 * r2z;
-        let j2z = k12 * r2y - k13 * r2x;
-        let j3x = z3y * r3z - z3z * r3y;
-        let j3y = z3z * r3x - z3x * r3z;
-        let j3z = z3x * r3y - z3y * r3x;
-        let j4x = z4y * r4z - z4z * r4y;
-        let j4y = z4z * r4x - z4x * r4z;
-        let j4z = z4x * r4y - z4y * r4x;
-        let j5x = z5y * r5z - z5z * r5y;
-        let j5y = z5z * r5x - z5x * r5z;
-        let j5z = z5x * r5y - z5y * r5x;
-        let j6x = z6y * r5z - z6z * r5y;
-        let j6y = z6z * r5x - z6x * r5z;
-        let j6z = z6x * r5y - z6y * r5x;
-        let j7x = z7y * r7z - z7z * r7y;
-        let j7y = z7z * r7x - z7x * r7z;
-        let j7z = z7x * r7y - z7y * r7x;
+
+        // From the origins to the TCP.
+        let l5x = t72 + l7x;
+        let l5y = t73 + l7y;
+        let l5z = t74 + l7z;
+        let l4x = t54 + l5x;
+        let l4y = t55 + l5y;
+        let l4z = t56 + l5z;
+        let l3x = t38 + l4x;
+        let l3y = t39 + l4y;
+        let l3z = t40 + l4z;
+        let l2x = t16 + l3x;
+        let l2y = t17 + l3y;
+        let l2z = t18 + l3z;
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
+        let j2x = k13 * l2z - k11 * l2y;
+        let j2y = k11 * l2x - k12 * l2z;
+        let j2z = k12 * l2y - k13 * l2x;
+        let j3x = z3y * l3z - z3z * l3y;
+        let j3y = z3z * l3x - z3x * l3z;
+        let j3z = z3x * l3y - z3y * l3x;
+        let j4x = z4y * l4z - z4z * l4y;
+        let j4y = z4z * l4x - z4x * l4z;
+        let j4z = z4x * l4y - z4y * l4x;
+        let j5x = z5y * l5z - z5z * l5y;
+        let j5y = z5z * l5x - z5x * l5z;
+        let j5z = z5x * l5y - z5y * l5x;
+        let j6x = z6y * l5z - z6z * l5y;
+        let j6y = z6z * l5x - z6x * l5z;
+        let j6z = z6x * l5y - z6y * l5x;
+        let j7x = z7y * l7z - z7z * l7y;
+        let j7y = z7z * l7x - z7x * l7z;
+        let j7z = z7x * l7y - z7y * l7x;
+
+        // Of the compliance of joint 3 that varies with its angle.
         let t84 = cos2_3 * ((c3 - s3) * (s3 + c3));
         let t85 = cos1_3 * c3 + sin1_3 * s3 + t84;
         let t86 = s3 * c3;
+
+        // Of the compliance of joint 6 that varies with its angle.
         let t87 = s6 * c6;
 
         // From joint 7 to the TCP.
         let r6x = k23 * t76 + k24 * t75;
         let t88 = k23 * t75;
         let t89 = k24 * t76;
-        let r5y_2 = t89 - t88;
+        let r5y = t89 - t88;
         let t90 = k32 * t76 - k31 * t75;
         let t91 = t75 * t90;
         let tt6_zz = k29 - t91;
@@ -2604,9 +2765,9 @@ impl Robot<7> for EveryLaw {
         let tt6_yy = r6x * tr6_yz;
         let tt6_xx = k27 + t91 - k34 * rr6_zz;
         let t94 = c6 * r6x;
-        let r5x_2 = t94 - k30 * s6;
+        let r5x = t94 - k30 * s6;
         let t95 = s6 * r6x;
-        let r5z_2 = t95 + k30 * c6;
+        let r5z = t95 + k30 * c6;
         let t96 = s6 * (tt6_xx - tt6_yy) - c6 * (t93 + t93);
         let t97 = s6 * t96;
         let tt5_zz = tt6_yy + t97;
@@ -2623,28 +2784,30 @@ impl Robot<7> for EveryLaw {
         let tr5_zy = s6 * t92 - c6 * tr6_yz;
 
         // From joint 5 to the TCP.
-        let t105 = k36 * r5y_2;
-        let t106 = k36 * r5x_2;
-        let tt5_yy = tt6_zz + r5x_2 * t106;
+        let t105 = k36 * r5y;
+        let t106 = k36 * r5x;
+        let tt5_yy = tt6_zz + r5x * t106;
         let rr5_zz = h7 + t99 + k36;
         let tr5_yz = t106 - c6 * tr6_zy;
+
+        // With the coupling of joints 5 and 6.
         let t107 = coupling5_6 * r6z;
         let t108 = coupling5_6 * t103;
         let t109 = t103 * t107 + r6z * t108;
-        let t110 = coupling5_6 * r5x_2;
+        let t110 = coupling5_6 * r5x;
         let tt5_xx = tt6_xx - t97 - r6z * t105 + t109;
-        let tt5_xy = r5x_2 * t108 - (c6 * tt6_xz + r5x_2 * t105);
+        let tt5_xy = r5x * t108 - (c6 * tt6_xz + r5x * t105);
         let tt5_xz = t93 + c6 * t96 + t104 * t107;
         let tt5_yz = t104 * t110 - s6 * tt6_xz;
         let tr5_xy = c6 * t92 + s6 * tr6_yz - t107;
         let tr5_xz = t102 - t105 + t108;
         let tr5_zz = t101 + coupling5_6 * t104;
-        let t111 = r5x_2 + a5 * c5;
-        let t112 = r5y_2 - a5 * s5;
-        let r4y_2 = d5 + r5z_2;
+        let t111 = r5x + a5 * c5;
+        let t112 = r5y - a5 * s5;
+        let r4y = d5 + r5z;
         let t113 = c5 * t111;
         let t114 = s5 * t112;
-        let r4x_2 = t113 - t114;
+        let r4x = t113 - t114;
         let t115 = s5 * t111 + c5 * t112;
         let t116 = s5 * (tt5_xx - tt5_yy) + c5 * (tt5_xy + tt5_xy);
         let t117 = s5 * t116;
@@ -2660,18 +2823,18 @@ impl Robot<7> for EveryLaw {
 
         // From joint 4 to the TCP.
         let t124 = transverse4 * t115;
-        let t125 = transverse4 * r4y_2;
-        let t126 = transverse4 * r4x_2;
-        let t127 = h4 * r4y_2;
-        let t128 = h4 * r4x_2;
+        let t125 = transverse4 * r4y;
+        let t126 = transverse4 * r4x;
+        let t127 = h4 * r4y;
+        let t128 = h4 * r4x;
         let t129 = t114 - t113;
         let t130 = t115 * t124;
-        let tt4_xx = tt5_xx - t117 + (t130 + r4y_2 * t127);
-        let tt4_xy = c5 * tt5_xz - s5 * tt5_yz - r4x_2 * t127;
+        let tt4_xx = tt5_xx - t117 + (t130 + r4y * t127);
+        let tt4_xy = c5 * tt5_xz - s5 * tt5_yz - r4x * t127;
         let tt4_xz = tt5_xy - c5 * t116 - t124 * t129;
-        let tt4_yy = tt5_zz + (t130 + r4x_2 * t128);
-        let tt4_yz = r4y_2 * t124 - (s5 * tt5_xz + c5 * tt5_yz);
-        let tt4_zz = tt5_yy + t117 + (r4y_2 * t125 - t126 * t129);
+        let tt4_yy = tt5_zz + (t130 + r4x * t128);
+        let tt4_yz = r4y * t124 - (s5 * tt5_xz + c5 * tt5_yz);
+        let tt4_zz = tt5_yy + t117 + (r4y * t125 - t126 * t129);
         let rr4_xx = transverse4 + (t119 - t99);
         let rr4_yy = transverse4 + rr5_zz;
         let rr4_zz = h4 + (rr6_zz - t119);
@@ -2685,8 +2848,10 @@ impl Robot<7> for EveryLaw {
         let t133 = t46 + s4o * t131;
         let t134 = a4 * t133;
         let t135 = a4 * t132;
-        let t136 = r4x_2 + t134;
-        let t137 = r4y_2 + t135;
+        let t136 = r4x + t134;
+        let t137 = r4y + t135;
+
+        // With link 3.
         let t138 = k38 * t133;
         let t139 = k39 * t133;
         let t140 = bending3 + t134 * t138;
@@ -2725,7 +2890,7 @@ impl Robot<7> for EveryLaw {
         let t173 = tr4_yz + t153;
         let t174 = tr4_zx + t149;
         let t175 = t151 - (s5 * tr5_xz + c5 * tr5_yz + t126);
-        let r3x_2 = t47 * t136 - t45 * t137;
+        let r3x = t47 * t136 - t45 * t137;
         let t176 = t45 * t136 + t47 * t137;
         let t177 = t45 * (t158 - t161) + t47 * (t159 + t159);
         let t178 = t45 * t177;
@@ -2751,10 +2916,10 @@ impl Robot<7> for EveryLaw {
         let t197 = t45 * t170 + t47 * t173;
         let t198 = t47 * t174 - t45 * t175;
         let t199 = t45 * t174 + t47 * t175;
-        let r3y_2 = cos_alpha4 * t176 + sin_alpha4 * t115;
+        let r3y = cos_alpha4 * t176 + sin_alpha4 * t115;
         let t200 = sin_alpha4 * t176;
         let t201 = cos_alpha4 * t115;
-        let r3z_2 = t200 - t201;
+        let r3z = t200 - t201;
         let t202 = sin_alpha4 * (t180 - t163) + cos_alpha4 * (t182 + t182);
         let t203 = sin_alpha4 * t202;
         let tt3_yz = cos_alpha4 * t202 - t182;
@@ -2778,17 +2943,17 @@ impl Robot<7> for EveryLaw {
 
         // From joint 3 to the TCP.
         let t209 = h3 * (t85 + sin2_3 * (t86 + t86)) + k42;
-        let t210 = r3y_2 * t209;
-        let t211 = r3x_2 * t209;
-        let tt3_xx = t158 - t178 + r3y_2 * t210;
-        let tt3_xy = cos_alpha4 * t179 - sin_alpha4 * t181 - r3x_2 * t210;
-        let tt3_yy = t180 - t203 + r3x_2 * t211;
+        let t210 = r3y * t209;
+        let t211 = r3x * t209;
+        let tt3_xx = t158 - t178 + r3y * t210;
+        let tt3_xy = cos_alpha4 * t179 - sin_alpha4 * t181 - r3x * t210;
+        let tt3_yy = t180 - t203 + r3x * t211;
         let rr3_zz = t167 + t205 + t209;
         let tr3_xz = sin_alpha4 * t193 + cos_alpha4 * t196 - t210;
         let tr3_yz = t208 - t199 + t211;
         let t212 = t4 - e3;
-        let t213 = t20 * (r3y_2 + a3 * (t19 + s3 * t212));
-        let r2x_2 = t22 * (r3x_2 + a3 * (t21 - c3 * t212)) - t213;
+        let t213 = t20 * (r3y + a3 * (t19 + s3 * t212));
+        let r2x = t22 * (r3x + a3 * (t21 - c3 * t212)) - t213;
         let t214 = t20 * (tt3_xx - tt3_yy) + t22 * (tt3_xy + tt3_xy);
         let t215 = t20 * t214;
         let tt2_zz = tt3_yy + t215;
@@ -2811,11 +2976,11 @@ impl Robot<7> for EveryLaw {
         let tr2_zx = tr3_xy - t222;
 
         // From joint 2 to the TCP.
-        let t225 = h2 * r3z_2;
-        let t226 = h2 * r2x_2;
+        let t225 = h2 * r3z;
+        let t226 = h2 * r2x;
         let tt2_xx = tt3_xx - t215 - (t201 - t200) * t225;
-        let tt2_xy = t22 * tt3_xz - t20 * tt3_yz - r2x_2 * t225;
-        let tt2_yy = tt3_zz + r2x_2 * t226;
+        let tt2_xy = t22 * tt3_xz - t20 * tt3_yz - r2x * t225;
+        let tt2_yy = tt3_zz + r2x * t226;
         let rr2_zz = h2 + (rr3_yy + t218);
         let tr2_xz = tr3_yx - t222 - t225;
         let tr2_yz = t226 - (t20 * tr3_zx + t22 * tr3_zy);
@@ -2846,6 +3011,8 @@ impl Robot<7> for EveryLaw {
 
         // From joint 1 to the TCP.
         let tt1_zz = h1 + (tt2_yy + t228);
+
+        // From the base to the TCP.
         let t243 = sin_base_roll * (tt1_zz - tt2_zz) + cos_base_roll * (t230 + t230);
         let t244 = sin_base_roll * t243;
         let t245 = tt1_zz - t244;
@@ -3088,22 +3255,40 @@ impl Robot<7> for EveryLaw {
             T::of(41.0) * q[6],
             q[6],
         ]);
+
+        // Of the periodic angle error of joint 3.
         let e3 = sin_error3 * s3 + cos_error3 * c3;
+
+        // Of the periodic angle error of joint 4.
         let e4 = cos_error4 * c2x4;
+
+        // Of the periodic angle error of joint 7.
         let e7 = sin_error7 * s41x7;
+
+        // Sine and cosine of the angle e3 by which joint 3 stands aside.
         let t1 = e3 * e3;
         let t2 = T::one() - t1 * (k3 - k2 * t1);
         let t3 = e3 - e3 * t1 * (k4 - k1 * t1);
+
+        // Sine and cosine of the angle e4 by which joint 4 stands aside.
         let t4 = e4 * e4;
         let t5 = T::one() - t4 * (k3 - k2 * t4);
         let t6 = e4 - e4 * t4 * (k4 - k1 * t4);
+
+        // Sine and cosine of the angle e7 by which joint 7 stands aside.
         let t7 = e7 * e7;
         let t8 = T::one() - t7 * (k3 - k2 * t7);
         let t9 = e7 - e7 * t7 * (k4 - k1 * t7);
+
+        // Of the compliance of joint 3 that varies with its angle.
         let t10 = cos2_3 * ((c3 - s3) * (s3 + c3));
         let t11 = cos1_3 * c3 + sin1_3 * s3 + t10;
         let t12 = s3 * c3;
+
+        // Of the compliance of joint 6 that varies with its angle.
         let t13 = s6 * c6;
+
+        // Axes and origins, from the base to the tip.
         let t14 = k10 * c2o + k14 * s2o;
         let t15 = k11 * c2o + k15 * s2o;
         let t16 = k12 * c2o + k13 * s2o;
@@ -3166,39 +3351,45 @@ impl Robot<7> for EveryLaw {
         let t58 = (c6 * t45 + s6 * z5x) * t56;
         let t59 = (c6 * t46 + s6 * z5y) * t56;
         let t60 = (c6 * t47 + s6 * z5z) * t56;
-        let r7x = t58 + (t48 - t51) * t57 + tool_z * z7x;
-        let r7y = t59 + (t49 - t52) * t57 + tool_z * z7y;
-        let r7z = t60 + (t50 - t53) * t57 + tool_z * z7z;
-        let r5x = d7 * z7x + r7x;
-        let r5y = d7 * z7y + r7y;
-        let r5z = d7 * z7z + r7z;
-        let r4x = a5 * t39 + d5 * z5x + r5x;
-        let r4y = a5 * t40 + d5 * z5y + r5y;
-        let r4z = a5 * t41 + d5 * z5z + r5z;
-        let r3x = t34 + r4x;
-        let r3y = t35 + r4y;
-        let r3z = t36 + r4z;
-        let r2x = a3 * t14 + r3x;
-        let r2y = a3 * t15 + r3y;
-        let r2z = a3 * t16 + r3z;
-        let j2x = k18 * r2z - k16 * r2y;
-        let j2y = k16 * r2x - k17 * r2z;
-        let j2z = k17 * r2y - k18 * r2x;
-        let j3x = z3y * r3z - z3z * r3y;
-        let j3y = z3z * r3x - z3x * r3z;
-        let j3z = z3x * r3y - z3y * r3x;
-        let j4x = z4y * r4z - z4z * r4y;
-        let j4y = z4z * r4x - z4x * r4z;
-        let j4z = z4x * r4y - z4y * r4x;
-        let j5x = z5y * r5z - z5z * r5y;
-        let j5y = z5z * r5x - z5x * r5z;
-        let j5z = z5x * r5y - z5y * r5x;
-        let j6x = z6y * r5z - z6z * r5y;
-        let j6y = z6z * r5x - z6x * r5z;
-        let j6z = z6x * r5y - z6y * r5x;
-        let j7x = z7y * r7z - z7z * r7y;
-        let j7y = z7z * r7x - z7x * r7z;
-        let j7z = z7x * r7y - z7y * r7x;
+        let l7x = t58 + (t48 - t51) * t57 + tool_z * z7x;
+        let l7y = t59 + (t49 - t52) * t57 + tool_z * z7y;
+        let l7z = t60 + (t50 - t53) * t57 + tool_z * z7z;
+
+        // From the origins to the TCP.
+        let l5x = d7 * z7x + l7x;
+        let l5y = d7 * z7y + l7y;
+        let l5z = d7 * z7z + l7z;
+        let l4x = a5 * t39 + d5 * z5x + l5x;
+        let l4y = a5 * t40 + d5 * z5y + l5y;
+        let l4z = a5 * t41 + d5 * z5z + l5z;
+        let l3x = t34 + l4x;
+        let l3y = t35 + l4y;
+        let l3z = t36 + l4z;
+        let l2x = a3 * t14 + l3x;
+        let l2y = a3 * t15 + l3y;
+        let l2z = a3 * t16 + l3z;
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
+        let j2x = k18 * l2z - k16 * l2y;
+        let j2y = k16 * l2x - k17 * l2z;
+        let j2z = k17 * l2y - k18 * l2x;
+        let j3x = z3y * l3z - z3z * l3y;
+        let j3y = z3z * l3x - z3x * l3z;
+        let j3z = z3x * l3y - z3y * l3x;
+        let j4x = z4y * l4z - z4z * l4y;
+        let j4y = z4z * l4x - z4x * l4z;
+        let j4z = z4x * l4y - z4y * l4x;
+        let j5x = z5y * l5z - z5z * l5y;
+        let j5y = z5z * l5x - z5x * l5z;
+        let j5z = z5x * l5y - z5y * l5x;
+        let j6x = z6y * l5z - z6z * l5y;
+        let j6y = z6z * l5x - z6x * l5z;
+        let j6z = z6x * l5y - z6y * l5x;
+        let j7x = z7y * l7z - z7z * l7y;
+        let j7y = z7z * l7x - z7x * l7z;
+        let j7z = z7x * l7y - z7y * l7x;
+
+        // What the wrench puts on the joints.
         let tau1 = k19 * fx + k20 * fy + k21 * fz;
         let t61 = k17 * mx + k18 * my + k16 * mz;
         let tau2 = fx * j2x + fy * j2y + fz * j2z + t61;
@@ -3212,25 +3403,43 @@ impl Robot<7> for EveryLaw {
         let tau6 = fx * j6x + fy * j6y + fz * j6z + t65;
         let t66 = z7x * mx + z7y * my + z7z * mz;
         let tau7 = fx * j7x + fy * j7y + fz * j7z + t66;
+
+        // By how much the joints turn or slide.
         let dq2 = h2 * tau2;
         let dq4 = h4 * tau4;
         let dq7 = h7 * tau7;
+
+        // Of the hardening of joint 3 with torque.
         let t67 = k5 * tau3;
         let t68 = added3 * tau3 * (T::one() + t67 * t67).sqrt().recip();
+
+        // Of the backlash of joint 3.
         let t69 = k6 * tau3;
         let t70 = k7 * tau3 * (T::one() + t69 * t69).sqrt().recip();
+
+        // Of the backlash of joint 5.
         let t71 = k8 * tau5;
         let t72 = k9 * tau5 * (T::one() + t71 * t71).sqrt().recip();
         let dq5 = h5 * tau5 + coupling5_6 * tau6 + t72;
+
+        // Of the hysteresis of joint 3.
         let play3_1 = before3_1.min(radius1_3 + tau3).max(tau3 - radius1_3);
         let play3_2 = before3_2.min(radius2_3 + tau3).max(tau3 - radius2_3);
         let play3_3 = before3_3.min(radius3_3 + tau3).max(tau3 - radius3_3);
         let t73 = weight1_3 * play3_1 + weight2_3 * play3_2 + weight3_3 * play3_3;
+
+        // Of the hysteresis of joint 6.
         let play6_1 = before6_1.min(radius1_6 + tau6).max(tau6 - radius1_6);
         let t74 = h6 * tau6 + coupling5_6 * tau5 + weight1_6 * play6_1;
+
+        // Of the compliance of joint 3 that varies with its angle.
         let t75 = h3 * (t11 + sin2_3 * (t12 + t12)) * tau3;
         let dq3 = h3 * tau3 + t68 + t70 + t73 + t75;
+
+        // Of the compliance of joint 6 that varies with its angle.
         let dq6 = t74 + h6_sin2_6 * (t13 + t13) * tau6;
+
+        // What these turns make at the TCP.
         let t76 = k25 * tau1 + j2x * dq2 + j3x * dq3;
         let t77 = k26 * tau1 + j2y * dq2 + j3y * dq3;
         let t78 = k27 * tau1 + j2z * dq2 + j3z * dq3;
@@ -3246,19 +3455,23 @@ impl Robot<7> for EveryLaw {
         let t88 = t82 + j6x * dq6 + j7x * dq7;
         let t89 = t83 + j6y * dq6 + j7y * dq7;
         let t90 = t84 + j6z * dq6 + j7z * dq7;
-        let t91 = mx + (r4y * fz - r4z * fy);
-        let t92 = my + (r4z * fx - r4x * fz);
-        let t93 = mz + (r4x * fy - r4y * fx);
+
+        // And the tilt of joint 4 across its axis.
+        let t91 = mx + (l4y * fz - l4z * fy);
+        let t92 = my + (l4z * fx - l4x * fz);
+        let t93 = mz + (l4x * fy - l4y * fx);
         let t94 = z4x * t91 + z4y * t92 + z4z * t93;
         let t95 = transverse4 * (t91 - z4x * t94);
         let t96 = transverse4 * (t92 - z4y * t94);
         let t97 = transverse4 * (t93 - z4z * t94);
-        let t98 = t88 + (r4z * t96 - r4y * t97);
-        let t99 = t89 + (r4x * t97 - r4z * t95);
-        let t100 = t90 + (r4y * t95 - r4x * t96);
-        let t101 = r3x - k31 * t19;
-        let t102 = r3y - k31 * t20;
-        let t103 = r3z - k31 * t21;
+        let t98 = t88 + (l4z * t96 - l4y * t97);
+        let t99 = t89 + (l4x * t97 - l4z * t95);
+        let t100 = t90 + (l4y * t95 - l4x * t96);
+
+        // And link 3.
+        let t101 = l3x - k31 * t19;
+        let t102 = l3y - k31 * t20;
+        let t103 = l3z - k31 * t21;
         let t104 = mx + (fz * t102 - fy * t103);
         let t105 = my + (fx * t103 - fz * t101);
         let t106 = mz + (fy * t101 - fx * t102);

@@ -241,6 +241,8 @@ impl Robot<6> for FanucR2000ic {
             q[5],
             q[0],
         ]);
+
+        // Axes and origins, from the base to the tip.
         let t1 = a3 * s2;
         let t2 = c1 * s23;
         let t3 = s1 * s23;
@@ -302,6 +304,8 @@ impl Robot<6> for FanucR2000ic {
             q[5],
             q[0],
         ]);
+
+        // Axes and origins, from the base to the tip.
         let p2_x = a2 * c1;
         let p2_y = a2 * s1;
         let x2_x = c1 * s2;
@@ -402,6 +406,8 @@ impl Robot<6> for FanucR2000ic {
             q[5],
             q[0],
         ]);
+
+        // Axes and origins, from the base to the tip.
         let t1 = s23 * c4;
         let t2 = c23 * c4;
         let z5x = s23 * s4;
@@ -414,37 +420,41 @@ impl Robot<6> for FanucR2000ic {
         let t6 = (t1 * c5 + c23 * s5) * t4;
         let t7 = (t2 * c5 - s23 * s5) * t4;
         let t8 = s4 * c5 * t4 + c4 * t5;
-        let r6x = t6 - z5x * t5 + tool_z * z6x;
-        let r6y = tool_z * z6y - t8;
-        let r6z = t7 - z5z * t5 - tool_z * t3;
-        let r1y = d6 * z6y + r6y;
-        let r4x = d6 * z6x + r6x;
-        let r4z = r6z - d6 * t3;
-        let r3x = a4 * s23 + d4 * c23 + r4x;
-        let r3z = a4 * c23 - d4 * s23 + r4z;
-        let r2x = a3 * s2 + r3x;
-        let r1z = a3 * c2 + r3z;
-        let r1x = a2 + r2x;
-        let j4x = s23 * r1y;
-        let t9 = s23 * r4x + c23 * r4z;
-        let j4z = c23 * r1y;
-        let j5x = c4 * r4z - z5z * r1y;
-        let j5y = z5z * r4x - z5x * r4z;
-        let j5z = z5x * r1y - c4 * r4x;
-        let j6x = z6y * r6z + t3 * r6y;
-        let t10 = t3 * r6x + z6x * r6z;
-        let j6z = z6x * r6y - z6y * r6x;
+        let l6x = t6 - z5x * t5 + tool_z * z6x;
+        let l6y = tool_z * z6y - t8;
+        let l6z = t7 - z5z * t5 - tool_z * t3;
+        let l1y = d6 * z6y + l6y;
+
+        // From the origins to the TCP.
+        let l4x = d6 * z6x + l6x;
+        let l4z = l6z - d6 * t3;
+        let l3x = a4 * s23 + d4 * c23 + l4x;
+        let l3z = a4 * c23 - d4 * s23 + l4z;
+        let l2x = a3 * s2 + l3x;
+        let l1z = a3 * c2 + l3z;
+        let l1x = a2 + l2x;
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
+        let j4x = s23 * l1y;
+        let t9 = s23 * l4x + c23 * l4z;
+        let j4z = c23 * l1y;
+        let j5x = c4 * l4z - z5z * l1y;
+        let j5y = z5z * l4x - z5x * l4z;
+        let j5z = z5x * l1y - c4 * l4x;
+        let j6x = z6y * l6z + t3 * l6y;
+        let t10 = t3 * l6x + z6x * l6z;
+        let j6z = z6x * l6y - z6y * l6x;
         SMatrix::from([
             [
-                -(r1y * c1 + r1x * s1),
-                r1x * c1 - r1y * s1,
+                -(l1y * c1 + l1x * s1),
+                l1x * c1 - l1y * s1,
                 T::zero(),
                 T::zero(),
                 T::zero(),
                 T::one(),
             ],
-            [r1z * c1, r1z * s1, -r2x, -s1, c1, T::zero()],
-            [r3z * c1, r3z * s1, -r3x, -s1, c1, T::zero()],
+            [l1z * c1, l1z * s1, -l2x, -s1, c1, T::zero()],
+            [l3z * c1, l3z * s1, -l3x, -s1, c1, T::zero()],
             [j4x * c1 + t9 * s1, j4x * s1 - t9 * c1, j4z, c23 * c1, c23 * s1, -s23],
             [
                 j5x * c1 - j5y * s1,
@@ -468,7 +478,8 @@ impl Robot<6> for FanucR2000ic {
     /// Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
     ///
     /// It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
-    /// rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.
+    /// rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point, all in the
+    /// joint's own axes.
     ///
     /// 12 trig, 150 mul, 131 add.
     #[inline(always)]
@@ -633,6 +644,8 @@ impl Robot<6> for FanucR2000ic {
         let rr1_zz = h1 + (rr4_zz - t40);
         let tr1_xz = tr3_yx - t43 + t45;
         let tr1_yz = tr3_zx * c23 + t28 * s23 + t46;
+
+        // From the base to the TCP.
         let t47 = s1 * (tt1_xx - tt1_yy) + c1 * (tt1_xy + tt1_xy);
         let t48 = s1 * t47;
         let tt_xx = tt1_xx - t48;
@@ -696,6 +709,8 @@ impl Robot<6> for FanucR2000ic {
             q[5],
             q[0],
         ]);
+
+        // Axes and origins, from the base to the tip.
         let t1 = s23 * c4;
         let t2 = c23 * c4;
         let z5x = s23 * s4;
@@ -708,49 +723,59 @@ impl Robot<6> for FanucR2000ic {
         let t6 = (t1 * c5 + c23 * s5) * t4;
         let t7 = (t2 * c5 - s23 * s5) * t4;
         let t8 = s4 * c5 * t4 + c4 * t5;
-        let r6x = t6 - z5x * t5 + tool_z * z6x;
-        let r6y = tool_z * z6y - t8;
-        let r6z = t7 - z5z * t5 - tool_z * t3;
-        let r1y = d6 * z6y + r6y;
-        let r4x = d6 * z6x + r6x;
-        let r4z = r6z - d6 * t3;
-        let r3x = a4 * s23 + d4 * c23 + r4x;
-        let r3z = a4 * c23 - d4 * s23 + r4z;
-        let r2x = a3 * s2 + r3x;
-        let r1z = a3 * c2 + r3z;
-        let r1x = a2 + r2x;
+        let l6x = t6 - z5x * t5 + tool_z * z6x;
+        let l6y = tool_z * z6y - t8;
+        let l6z = t7 - z5z * t5 - tool_z * t3;
+        let l1y = d6 * z6y + l6y;
+
+        // From the origins to the TCP.
+        let l4x = d6 * z6x + l6x;
+        let l4z = l6z - d6 * t3;
+        let l3x = a4 * s23 + d4 * c23 + l4x;
+        let l3z = a4 * c23 - d4 * s23 + l4z;
+        let l2x = a3 * s2 + l3x;
+        let l1z = a3 * c2 + l3z;
+        let l1x = a2 + l2x;
         let t9 = fx * c1 + fy * s1;
         let t10 = fy * c1 - fx * s1;
         let t11 = c1 * mx + s1 * my;
         let t12 = c1 * my - s1 * mx;
-        let j4x = s23 * r1y;
-        let t13 = s23 * r4x + c23 * r4z;
-        let j4z = c23 * r1y;
-        let j5x = c4 * r4z - z5z * r1y;
-        let j5y = z5z * r4x - z5x * r4z;
-        let j5z = z5x * r1y - c4 * r4x;
-        let j6x = z6y * r6z + t3 * r6y;
-        let t14 = t3 * r6x + z6x * r6z;
-        let j6z = z6x * r6y - z6y * r6x;
-        let tau1 = mz + (r1x * t10 - r1y * t9);
-        let tau2 = t12 + (r1z * t9 - r2x * fz);
-        let tau3 = t12 + (r3z * t9 - r3x * fz);
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
+        let j4x = s23 * l1y;
+        let t13 = s23 * l4x + c23 * l4z;
+        let j4z = c23 * l1y;
+        let j5x = c4 * l4z - z5z * l1y;
+        let j5y = z5z * l4x - z5x * l4z;
+        let j5z = z5x * l1y - c4 * l4x;
+        let j6x = z6y * l6z + t3 * l6y;
+        let t14 = t3 * l6x + z6x * l6z;
+        let j6z = z6x * l6y - z6y * l6x;
+
+        // What the wrench puts on the joints.
+        let tau1 = mz + (l1x * t10 - l1y * t9);
+        let tau2 = t12 + (l1z * t9 - l2x * fz);
+        let tau3 = t12 + (l3z * t9 - l3x * fz);
         let t15 = t9 * j4x - t10 * t13 + fz * j4z;
         let tau4 = t15 + (c23 * t11 - s23 * mz);
         let t16 = z5x * t11 + c4 * t12 + z5z * mz;
         let tau5 = t9 * j5x + t10 * j5y + fz * j5z + t16;
         let t17 = z6x * t11 + z6y * t12 - t3 * mz;
         let tau6 = t9 * j6x - t10 * t14 + fz * j6z + t17;
+
+        // By how much the joints turn or slide.
         let dq1 = h1 * tau1;
         let dq2 = h2 * tau2;
         let dq3 = h3 * tau3;
         let dq4 = h4 * tau4;
         let dq5 = h5 * tau5;
         let dq6 = h6 * tau6;
-        let t18 = r1z * dq2 - r1y * dq1 + r3z * dq3;
-        let t19 = j4z * dq4 - (r2x * dq2 + r3x * dq3);
+
+        // What these turns make at the TCP.
+        let t18 = l1z * dq2 - l1y * dq1 + l3z * dq3;
+        let t19 = j4z * dq4 - (l2x * dq2 + l3x * dq3);
         let t20 = t18 + j4x * dq4 + j5x * dq5;
-        let t21 = r1x * dq1 - t13 * dq4 + j5y * dq5;
+        let t21 = l1x * dq1 - t13 * dq4 + j5y * dq5;
         let t22 = dq1 - s23 * dq4 + z5z * dq5;
         let t23 = t20 + j6x * dq6;
         let t24 = t21 - t14 * dq6;
@@ -797,6 +822,8 @@ impl Robot<6> for FanucR2000ic {
         let t2 = fy * c1 - fx * s1;
         let t3 = c1 * mx + s1 * my;
         let t4 = c1 * my - s1 * mx;
+
+        // Axes and origins, from the base to the tip.
         let t5 = s23 * c4;
         let t6 = c23 * c4;
         let z5x = s23 * s4;
@@ -809,39 +836,49 @@ impl Robot<6> for FanucR2000ic {
         let t10 = (t5 * c5 + c23 * s5) * t8;
         let t11 = (t6 * c5 - s23 * s5) * t8;
         let t12 = s4 * c5 * t8 + c4 * t9;
-        let r6x = t10 - z5x * t9 + tool_z * z6x;
-        let r6y = tool_z * z6y - t12;
-        let r6z = t11 - z5z * t9 - tool_z * t7;
-        let r1y = d6 * z6y + r6y;
-        let r4x = d6 * z6x + r6x;
-        let r4z = r6z - d6 * t7;
-        let r3x = a4 * s23 + d4 * c23 + r4x;
-        let r3z = a4 * c23 - d4 * s23 + r4z;
-        let r2x = a3 * s2 + r3x;
-        let r1z = a3 * c2 + r3z;
-        let r1x = a2 + r2x;
-        let j4x = s23 * r1y;
-        let j4z = c23 * r1y;
-        let j5x = c4 * r4z - z5z * r1y;
-        let j5y = z5z * r4x - z5x * r4z;
-        let j5z = z5x * r1y - c4 * r4x;
-        let j6x = z6y * r6z + t7 * r6y;
-        let j6z = z6x * r6y - z6y * r6x;
-        let tau1 = mz + (t2 * r1x - t1 * r1y);
-        let tau2 = t4 + (t1 * r1z - fz * r2x);
-        let tau3 = t4 + (t1 * r3z - fz * r3x);
-        let t13 = t2 * (s23 * r4x + c23 * r4z);
+        let l6x = t10 - z5x * t9 + tool_z * z6x;
+        let l6y = tool_z * z6y - t12;
+        let l6z = t11 - z5z * t9 - tool_z * t7;
+        let l1y = d6 * z6y + l6y;
+
+        // From the origins to the TCP.
+        let l4x = d6 * z6x + l6x;
+        let l4z = l6z - d6 * t7;
+        let l3x = a4 * s23 + d4 * c23 + l4x;
+        let l3z = a4 * c23 - d4 * s23 + l4z;
+        let l2x = a3 * s2 + l3x;
+        let l1z = a3 * c2 + l3z;
+        let l1x = a2 + l2x;
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
+        let j4x = s23 * l1y;
+        let j4z = c23 * l1y;
+        let j5x = c4 * l4z - z5z * l1y;
+        let j5y = z5z * l4x - z5x * l4z;
+        let j5z = z5x * l1y - c4 * l4x;
+        let j6x = z6y * l6z + t7 * l6y;
+        let j6z = z6x * l6y - z6y * l6x;
+
+        // What the wrench puts on the joints.
+        let tau1 = mz + (t2 * l1x - t1 * l1y);
+        let tau2 = t4 + (t1 * l1z - fz * l2x);
+        let tau3 = t4 + (t1 * l3z - fz * l3x);
+        let t13 = t2 * (s23 * l4x + c23 * l4z);
         let t14 = t1 * j4x - t13 + fz * j4z;
         let tau4 = t14 + (t3 * c23 - mz * s23);
         let t15 = t3 * z5x + t4 * c4 + mz * z5z;
         let tau5 = t1 * j5x + t2 * j5y + fz * j5z + t15;
-        let t16 = t2 * (t7 * r6x + z6x * r6z);
+        let t16 = t2 * (t7 * l6x + z6x * l6z);
         let t17 = t3 * z6x + t4 * z6y - mz * t7;
         let tau6 = t1 * j6x - t16 + fz * j6z + t17;
         SVector::from([tau1, tau2, tau3, tau4, tau5, tau6])
     }
 
     /// Transform, Jacobian and compliance of one pose, with what they have in common.
+    ///
+    /// Axes z and levers l of the Jacobian are in the base frame, or behind the turn of joint 1 where that is done
+    /// at the end. As in `compliance`, tt, tr and rr are of what lies beyond a joint, at the tool centre point and
+    /// in the joint's own axes, r from the joint to the tool centre point.
     ///
     /// 14 trig, 238 mul, 191 add, 10 neg.
     #[inline(always)]
@@ -889,6 +926,8 @@ impl Robot<6> for FanucR2000ic {
             q[5],
             q[0],
         ]);
+
+        // Axes and origins, from the base to the tip.
         let t1 = a2 * c1;
         let t2 = a2 * s1;
         let t3 = a3 * s2;
@@ -926,34 +965,38 @@ impl Robot<6> for FanucR2000ic {
         let y_x = t17 * c6 - t18 * s6;
         let r5x = tool_x * c6 - tool_y * s6;
         let r4y = tool_x * s6 + tool_y * c6;
-        let r6x = t18 * r5x + t17 * r4y + tool_z * z_x;
-        let r6y = t19 * r5x - z5y * r4y + tool_z * z_y;
-        let r6z = t20 * r5x - z5z * r4y - tool_z * t21;
-        let p_x = t1 + t5 + t9 + t22 + r6x;
-        let p_y = t2 + t6 + t10 + t23 + r6y;
-        let p_z = d1 + t4 + t11 - t24 + r6z;
-        let r4x = t22 + r6x;
-        let r4y_2 = t23 + r6y;
-        let r4z = r6z - t24;
-        let r3x = t9 + r4x;
-        let r3y = t10 + r4y_2;
-        let r3z = t11 + r4z;
-        let r2x = t5 + r3x;
-        let r2y = t6 + r3y;
-        let r1z = t4 + r3z;
-        let r1x = t1 + r2x;
-        let r1y = t2 + r2y;
-        let j2x = c1 * r1z;
-        let j2y = s1 * r1z;
-        let j3x = c1 * r3z;
-        let j3y = s1 * r3z;
-        let j4x = z4y * r4z + s23 * r4y_2;
-        let j4z = z4x * r4y_2 - z4y * r4x;
-        let j5x = z5y * r4z - z5z * r4y_2;
-        let j5y = z5z * r4x - z5x * r4z;
-        let j5z = z5x * r4y_2 - z5y * r4x;
-        let j6x = z_y * r6z + t21 * r6y;
-        let j6z = z_x * r6y - z_y * r6x;
+        let l6x = t18 * r5x + t17 * r4y + tool_z * z_x;
+        let l6y = t19 * r5x - z5y * r4y + tool_z * z_y;
+        let l6z = t20 * r5x - z5z * r4y - tool_z * t21;
+        let p_x = t1 + t5 + t9 + t22 + l6x;
+        let p_y = t2 + t6 + t10 + t23 + l6y;
+        let p_z = d1 + t4 + t11 - t24 + l6z;
+
+        // From the origins to the TCP.
+        let l4x = t22 + l6x;
+        let l4y = t23 + l6y;
+        let l4z = l6z - t24;
+        let l3x = t9 + l4x;
+        let l3y = t10 + l4y;
+        let l3z = t11 + l4z;
+        let l2x = t5 + l3x;
+        let l2y = t6 + l3y;
+        let l1z = t4 + l3z;
+        let l1x = t1 + l2x;
+        let l1y = t2 + l2y;
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
+        let j2x = c1 * l1z;
+        let j2y = s1 * l1z;
+        let j3x = c1 * l3z;
+        let j3y = s1 * l3z;
+        let j4x = z4y * l4z + s23 * l4y;
+        let j4z = z4x * l4y - z4y * l4x;
+        let j5x = z5y * l4z - z5z * l4y;
+        let j5y = z5z * l4x - z5x * l4z;
+        let j5z = z5x * l4y - z5y * l4x;
+        let j6x = z_y * l6z + t21 * l6y;
+        let j6z = z_x * l6y - z_y * l6x;
 
         // From joint 6 to the TCP.
         let t25 = k5 * s6 + k6 * c6;
@@ -968,8 +1011,8 @@ impl Robot<6> for FanucR2000ic {
         let tt5_xy = k7 * r5x;
         let tt5_yy = r5x * tr5_yz;
         let tt5_xx = k2 - t26 + k8;
-        let r4x_2 = c5 * r5x - k4 * s5;
-        let r4z_2 = s5 * r5x + k4 * c5;
+        let r4x = c5 * r5x - k4 * s5;
+        let r4z = s5 * r5x + k4 * c5;
         let t28 = s5 * (tt5_xx - tt5_yy) + c5 * (tt5_xy + tt5_xy);
         let t29 = s5 * t28;
         let tt4_xz = c5 * t28 - tt5_xy;
@@ -988,17 +1031,17 @@ impl Robot<6> for FanucR2000ic {
 
         // From joint 4 to the TCP.
         let t37 = h4 * r4y;
-        let t38 = h4 * r4x_2;
+        let t38 = h4 * r4x;
         let tt4_xx = tt5_xx - t29 + r4y * t37;
-        let t39 = c5 * tt5_xz + r4x_2 * t37;
-        let tt4_yy = tt5_zz + r4x_2 * t38;
+        let t39 = c5 * tt5_xz + r4x * t37;
+        let tt4_yy = tt5_zz + r4x * t38;
         let rr4_zz = h4 + (h6 + t32);
         let tr4_xz = t34 - t37;
         let tr4_yz = c5 * t27 + t38;
-        let t40 = r4x_2 + a4 * c4;
+        let t40 = r4x + a4 * c4;
         let t41 = r4y - a4 * s4;
-        let r3y_2 = d4 + r4z_2;
-        let r3x_2 = c4 * t40 - s4 * t41;
+        let r3y = d4 + r4z;
+        let r3x = c4 * t40 - s4 * t41;
         let t42 = s4 * t40 + c4 * t41;
         let t43 = s4 * (tt4_xx - tt4_yy) - c4 * (t39 + t39);
         let t44 = s4 * t43;
@@ -1021,28 +1064,28 @@ impl Robot<6> for FanucR2000ic {
         let tr3_zx = tr4_xy - t50;
 
         // From joint 3 to the TCP.
-        let t53 = h3 * r3y_2;
-        let t54 = h3 * r3x_2;
-        let tt3_xx = tt4_xx - t44 + r3y_2 * t53;
-        let tt3_xy = c4 * tt4_xz + s4 * t30 - r3x_2 * t53;
-        let tt3_yy = tt4_zz + r3x_2 * t54;
+        let t53 = h3 * r3y;
+        let t54 = h3 * r3x;
+        let tt3_xx = tt4_xx - t44 + r3y * t53;
+        let tt3_xy = c4 * tt4_xz + s4 * t30 - r3x * t53;
+        let tt3_yy = tt4_zz + r3x * t54;
         let rr3_zz = h3 + (h5 - t47);
         let tr3_yz = c4 * t35 - s4 * tr4_zx + t54;
         let t55 = a3 * s3;
-        let r2x_2 = r3x_2 + a3 * c3;
-        let r2y_2 = r3y_2 - t55;
+        let r2x = r3x + a3 * c3;
+        let r2y = r3y - t55;
 
         // From joint 2 to the TCP.
-        let t56 = h2 * r2y_2;
-        let t57 = h2 * r2x_2;
-        let tt2_xx = tt3_xx - t56 * (t55 - r3y_2);
-        let tt2_xy = tt3_xy - r2x_2 * t56;
-        let tt2_yy = tt3_yy + r2x_2 * t57;
+        let t56 = h2 * r2y;
+        let t57 = h2 * r2x;
+        let tt2_xx = tt3_xx - t56 * (t55 - r3y);
+        let tt2_xy = tt3_xy - r2x * t56;
+        let tt2_yy = tt3_yy + r2x * t57;
         let rr2_zz = h2 + rr3_zz;
         let t58 = t36 + t50 + t53 + t56;
         let tr2_yz = tr3_yz + t57;
-        let t59 = c23 * (r2y_2 + a2 * c23);
-        let r1x_2 = s23 * (r2x_2 + a2 * s23) + t59;
+        let t59 = c23 * (r2y + a2 * c23);
+        let r1x = s23 * (r2x + a2 * s23) + t59;
         let t60 = s23 * (tt2_xy + tt2_xy) - c23 * (tt2_xx - tt2_yy);
         let t61 = c23 * t60;
         let tt1_zz = tt2_yy - t61;
@@ -1066,13 +1109,15 @@ impl Robot<6> for FanucR2000ic {
 
         // From joint 1 to the TCP.
         let t69 = h1 * t42;
-        let t70 = h1 * r1x_2;
+        let t70 = h1 * r1x;
         let tt1_xx = tt2_xx + t61 + t42 * t69;
-        let tt1_xy = c23 * tt3_yz - s23 * t45 + r1x_2 * t69;
-        let tt1_yy = tt3_zz + r1x_2 * t70;
+        let tt1_xy = c23 * tt3_yz - s23 * t45 + r1x * t69;
+        let tt1_yy = tt3_zz + r1x * t70;
         let rr1_zz = h1 + (rr4_zz - t64);
         let tr1_xz = tr3_yx - t67 + t69;
         let tr1_yz = c23 * tr3_zx + s23 * t52 + t70;
+
+        // From the base to the TCP.
         let t71 = s1 * (tt1_xx - tt1_yy) + c1 * (tt1_xy + tt1_xy);
         let t72 = s1 * t71;
         let tt_xx = tt1_xx - t72;
@@ -1106,12 +1151,12 @@ impl Robot<6> for FanucR2000ic {
                 T::zero(), T::zero(), T::zero(), T::one(),
             ),
             jacobian: SMatrix::from([
-                [-r1y, r1x, T::zero(), T::zero(), T::zero(), T::one()],
-                [j2x, j2y, -(s1 * r2y + c1 * r2x), -s1, c1, T::zero()],
-                [j3x, j3y, -(s1 * r3y + c1 * r3x), -s1, c1, T::zero()],
-                [j4x, -(s23 * r4x + z4x * r4z), j4z, z4x, z4y, -s23],
+                [-l1y, l1x, T::zero(), T::zero(), T::zero(), T::one()],
+                [j2x, j2y, -(s1 * l2y + c1 * l2x), -s1, c1, T::zero()],
+                [j3x, j3y, -(s1 * l3y + c1 * l3x), -s1, c1, T::zero()],
+                [j4x, -(s23 * l4x + z4x * l4z), j4z, z4x, z4y, -s23],
                 [j5x, j5y, j5z, z5x, z5y, z5z],
-                [j6x, -(t21 * r6x + z_x * r6z), j6z, z_x, z_y, -t21],
+                [j6x, -(t21 * l6x + z_x * l6z), j6z, z_x, z_y, -t21],
             ]),
             compliance: Matrix6::new(
                 tt_xx, tt_xy, tt_xz, tr_xx, tr_xy, tr_xz,

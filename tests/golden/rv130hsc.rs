@@ -212,6 +212,8 @@ impl Robot<5> for Rv130hsc {
             q[4],
             q[0],
         ]);
+
+        // Axes and origins, from the base to the tip.
         let t1 = a3 * s23;
         let t2 = a1 * c1 + c1 * s2 + c1 * t1;
         let t3 = a1 * s1 + s1 * s2 + s1 * t1;
@@ -263,6 +265,8 @@ impl Robot<5> for Rv130hsc {
             q[4],
             q[0],
         ]);
+
+        // Axes and origins, from the base to the tip.
         let p1_x = a1 * c1;
         let p1_y = a1 * s1;
         let x2_x = c1 * s2;
@@ -349,35 +353,41 @@ impl Robot<5> for Rv130hsc {
             q[4],
             q[0],
         ]);
+
+        // Axes and origins, from the base to the tip.
         let z5x = s23 * s4;
         let z5z = c23 * s4;
         let t1 = a5 * c5;
         let t2 = a5 * s5;
         let j1x = s4 * t1;
-        let r5x = s23 * c4 * t1 + c23 * t2;
-        let r5z = c23 * c4 * t1 - s23 * t2;
-        let r4x = d4 * c23 + r5x;
-        let r4z = r5z - d4 * s23;
-        let r3x = a3 * s23 + r4x;
-        let r3z = a3 * c23 + r4z;
-        let r2x = s2 + r3x;
-        let r2z = c2 + r3z;
-        let r1x = a1 + r2x;
+        let l5x = s23 * c4 * t1 + c23 * t2;
+        let l5z = c23 * c4 * t1 - s23 * t2;
+
+        // From the origins to the TCP.
+        let l4x = d4 * c23 + l5x;
+        let l4z = l5z - d4 * s23;
+        let l3x = a3 * s23 + l4x;
+        let l3z = a3 * c23 + l4z;
+        let l2x = s2 + l3x;
+        let l2z = c2 + l3z;
+        let l1x = a1 + l2x;
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
         let t3 = s23 * j1x;
-        let t4 = s23 * r4x + c23 * r4z;
-        let j5x = c4 * r5z + z5z * j1x;
-        let j5y = z5z * r5x - z5x * r5z;
+        let t4 = s23 * l4x + c23 * l4z;
+        let j5x = c4 * l5z + z5z * j1x;
+        let j5y = z5z * l5x - z5x * l5z;
         SMatrix::from([
             [
-                j1x * c1 - r1x * s1,
-                j1x * s1 + r1x * c1,
+                j1x * c1 - l1x * s1,
+                j1x * s1 + l1x * c1,
                 T::zero(),
                 T::zero(),
                 T::zero(),
                 T::one(),
             ],
-            [r2z * c1, r2z * s1, -r2x, -s1, c1, T::zero()],
-            [r3z * c1, r3z * s1, -r3x, -s1, c1, T::zero()],
+            [l2z * c1, l2z * s1, -l2x, -s1, c1, T::zero()],
+            [l3z * c1, l3z * s1, -l3x, -s1, c1, T::zero()],
             [
                 t4 * s1 - t3 * c1,
                 -(t3 * s1 + t4 * c1),
@@ -389,7 +399,7 @@ impl Robot<5> for Rv130hsc {
             [
                 j5x * c1 - j5y * s1,
                 j5x * s1 + j5y * c1,
-                -(z5x * j1x + c4 * r5x),
+                -(z5x * j1x + c4 * l5x),
                 z5x * c1 - c4 * s1,
                 z5x * s1 + c4 * c1,
                 z5z,
@@ -400,7 +410,8 @@ impl Robot<5> for Rv130hsc {
     /// Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
     ///
     /// It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
-    /// rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.
+    /// rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point, all in the
+    /// joint's own axes.
     ///
     /// 10 trig, 96 mul, 78 add, 3 neg.
     #[inline(always)]
@@ -424,6 +435,8 @@ impl Robot<5> for Rv130hsc {
             q[1] + q[2],
             q[0],
         ]);
+
+        // From the flange to the TCP.
         let r5x = a5 * c5;
         let r5y = a5 * s5;
 
@@ -505,6 +518,8 @@ impl Robot<5> for Rv130hsc {
         let rr1_zz = h1 + (h4 - t23);
         let tr1_xz = tr3_yx - t29 + t32;
         let tr1_yz = tr3_zx * c23 + t12 * s23 + t33;
+
+        // From the base to the TCP.
         let t34 = s1 * (tt1_xx - tt1_yy) + c1 * (tt1_xy + tt1_xy);
         let t35 = s1 * t34;
         let tt_xx = tt1_xx - t35;
@@ -562,46 +577,58 @@ impl Robot<5> for Rv130hsc {
             q[4],
             q[0],
         ]);
+
+        // Axes and origins, from the base to the tip.
         let z5x = s23 * s4;
         let z5z = c23 * s4;
         let t1 = a5 * c5;
         let t2 = a5 * s5;
         let j1x = s4 * t1;
-        let r5x = s23 * c4 * t1 + c23 * t2;
-        let r5z = c23 * c4 * t1 - s23 * t2;
-        let r4x = d4 * c23 + r5x;
-        let r4z = r5z - d4 * s23;
-        let r3x = a3 * s23 + r4x;
-        let r3z = a3 * c23 + r4z;
-        let r2x = s2 + r3x;
-        let r2z = c2 + r3z;
-        let r1x = a1 + r2x;
+        let l5x = s23 * c4 * t1 + c23 * t2;
+        let l5z = c23 * c4 * t1 - s23 * t2;
+
+        // From the origins to the TCP.
+        let l4x = d4 * c23 + l5x;
+        let l4z = l5z - d4 * s23;
+        let l3x = a3 * s23 + l4x;
+        let l3z = a3 * c23 + l4z;
+        let l2x = s2 + l3x;
+        let l2z = c2 + l3z;
+        let l1x = a1 + l2x;
         let t3 = fx * c1 + fy * s1;
         let t4 = fy * c1 - fx * s1;
         let t5 = c1 * mx + s1 * my;
         let t6 = c1 * my - s1 * mx;
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
         let t7 = s23 * j1x;
-        let t8 = s23 * r4x + c23 * r4z;
+        let t8 = s23 * l4x + c23 * l4z;
         let t9 = c23 * j1x;
-        let j5x = c4 * r5z + z5z * j1x;
-        let j5y = z5z * r5x - z5x * r5z;
-        let t10 = z5x * j1x + c4 * r5x;
-        let tau1 = mz + (j1x * t3 + r1x * t4);
-        let tau2 = t6 + (r2z * t3 - r2x * fz);
-        let tau3 = t6 + (r3z * t3 - r3x * fz);
+        let j5x = c4 * l5z + z5z * j1x;
+        let j5y = z5z * l5x - z5x * l5z;
+        let t10 = z5x * j1x + c4 * l5x;
+
+        // What the wrench puts on the joints.
+        let tau1 = mz + (j1x * t3 + l1x * t4);
+        let tau2 = t6 + (l2z * t3 - l2x * fz);
+        let tau3 = t6 + (l3z * t3 - l3x * fz);
         let t11 = t3 * t7 + t4 * t8 + fz * t9;
         let tau4 = c23 * t5 - s23 * mz - t11;
         let t12 = z5x * t5 + c4 * t6 + z5z * mz;
         let tau5 = t3 * j5x + t4 * j5y - fz * t10 + t12;
+
+        // By how much the joints turn or slide.
         let dq1 = h1 * tau1;
         let dq2 = h2 * tau2;
         let dq3 = h3 * tau3;
         let dq4 = h4 * tau4;
         let dq5 = h5 * tau5;
-        let t13 = j1x * dq1 + r2z * dq2 + r3z * dq3;
-        let t14 = r2x * dq2 + r3x * dq3 + t9 * dq4;
+
+        // What these turns make at the TCP.
+        let t13 = j1x * dq1 + l2z * dq2 + l3z * dq3;
+        let t14 = l2x * dq2 + l3x * dq3 + t9 * dq4;
         let t15 = t13 - t7 * dq4 + j5x * dq5;
-        let t16 = r1x * dq1 - t8 * dq4 + j5y * dq5;
+        let t16 = l1x * dq1 - t8 * dq4 + j5y * dq5;
         let t17 = c23 * dq4 + z5x * dq5;
         let t18 = dq2 + dq3 + c4 * dq5;
         Vector6::new(
@@ -640,36 +667,48 @@ impl Robot<5> for Rv130hsc {
         let t2 = fy * c1 - fx * s1;
         let t3 = c1 * mx + s1 * my;
         let t4 = c1 * my - s1 * mx;
+
+        // Axes and origins, from the base to the tip.
         let z5x = s23 * s4;
         let z5z = c23 * s4;
         let t5 = a5 * c5;
         let t6 = a5 * s5;
         let j1x = s4 * t5;
-        let r5x = s23 * c4 * t5 + c23 * t6;
-        let r5z = c23 * c4 * t5 - s23 * t6;
-        let r4x = d4 * c23 + r5x;
-        let r4z = r5z - d4 * s23;
-        let r3x = a3 * s23 + r4x;
-        let r3z = a3 * c23 + r4z;
-        let r2x = s2 + r3x;
-        let r2z = c2 + r3z;
-        let r1x = a1 + r2x;
-        let j5x = c4 * r5z + z5z * j1x;
-        let j5y = z5z * r5x - z5x * r5z;
-        let tau1 = mz + (t1 * j1x + t2 * r1x);
-        let tau2 = t4 + (t1 * r2z - fz * r2x);
-        let tau3 = t4 + (t1 * r3z - fz * r3x);
-        let t7 = t2 * (s23 * r4x + c23 * r4z);
+        let l5x = s23 * c4 * t5 + c23 * t6;
+        let l5z = c23 * c4 * t5 - s23 * t6;
+
+        // From the origins to the TCP.
+        let l4x = d4 * c23 + l5x;
+        let l4z = l5z - d4 * s23;
+        let l3x = a3 * s23 + l4x;
+        let l3z = a3 * c23 + l4z;
+        let l2x = s2 + l3x;
+        let l2z = c2 + l3z;
+        let l1x = a1 + l2x;
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
+        let j5x = c4 * l5z + z5z * j1x;
+        let j5y = z5z * l5x - z5x * l5z;
+
+        // What the wrench puts on the joints.
+        let tau1 = mz + (t1 * j1x + t2 * l1x);
+        let tau2 = t4 + (t1 * l2z - fz * l2x);
+        let tau3 = t4 + (t1 * l3z - fz * l3x);
+        let t7 = t2 * (s23 * l4x + c23 * l4z);
         let t8 = t1 * (s23 * j1x) + t7;
         let t9 = t8 + fz * (c23 * j1x);
         let tau4 = t3 * c23 - mz * s23 - t9;
-        let t10 = fz * (z5x * j1x + c4 * r5x);
+        let t10 = fz * (z5x * j1x + c4 * l5x);
         let t11 = t3 * z5x + t4 * c4 + mz * z5z;
         let tau5 = t1 * j5x + t2 * j5y - t10 + t11;
         SVector::from([tau1, tau2, tau3, tau4, tau5])
     }
 
     /// Transform, Jacobian and compliance of one pose, with what they have in common.
+    ///
+    /// Axes z and levers l of the Jacobian are in the base frame, or behind the turn of joint 1 where that is done
+    /// at the end. As in `compliance`, tt, tr and rr are of what lies beyond a joint, at the tool centre point and
+    /// in the joint's own axes, r from the joint to the tool centre point.
     ///
     /// 12 trig, 160 mul, 117 add, 11 neg.
     #[inline(always)]
@@ -695,6 +734,8 @@ impl Robot<5> for Rv130hsc {
             q[4],
             q[0],
         ]);
+
+        // Axes and origins, from the base to the tip.
         let t1 = a3 * s23;
         let t2 = a3 * c23;
         let t3 = d4 * c23;
@@ -706,22 +747,24 @@ impl Robot<5> for Rv130hsc {
         let r5x = a5 * c5;
         let r5y = a5 * s5;
         let j1x = s4 * r5x;
-        let r5x_2 = t5 * r5x + c23 * r5y;
-        let r5z = t6 * r5x - s23 * r5y;
-        let t7 = a1 + s2 + t1 + t3 + r5x_2;
-        let p_z = d1 + c2 + t2 - t4 + r5z;
+        let l5x = t5 * r5x + c23 * r5y;
+        let l5z = t6 * r5x - s23 * r5y;
+        let t7 = a1 + s2 + t1 + t3 + l5x;
+        let p_z = d1 + c2 + t2 - t4 + l5z;
         let t8 = s4 * c5;
         let t9 = t5 * c5 + c23 * s5;
         let x_z = t6 * c5 - s23 * s5;
         let t10 = s4 * s5;
         let t11 = c23 * c5 - t5 * s5;
-        let r4x = t3 + r5x_2;
-        let r4z = r5z - t4;
-        let r3x = t1 + r4x;
-        let r3z = t2 + r4z;
-        let r2x = s2 + r3x;
-        let r2z = c2 + r3z;
-        let r1x = a1 + r2x;
+
+        // From the origins to the TCP.
+        let l4x = t3 + l5x;
+        let l4z = l5z - t4;
+        let l3x = t1 + l4x;
+        let l3z = t2 + l4z;
+        let l2x = s2 + l3x;
+        let l2z = c2 + l3z;
+        let l1x = a1 + l2x;
         let x_x = t9 * c1 + t8 * s1;
         let x_y = t9 * s1 - t8 * c1;
         let y_x = t11 * c1 - t10 * s1;
@@ -732,10 +775,12 @@ impl Robot<5> for Rv130hsc {
         let p_x = t7 * c1 + t12;
         let t13 = j1x * c1;
         let p_y = t7 * s1 - t13;
+
+        // What the joints move: z is an axis, l leads from it to the TCP.
         let t14 = s23 * j1x;
-        let t15 = s23 * r4x + c23 * r4z;
-        let j5x = c4 * r5z + z_z * j1x;
-        let j5y = z_z * r5x_2 - z5x * r5z;
+        let t15 = s23 * l4x + c23 * l4z;
+        let j5x = c4 * l5z + z_z * j1x;
+        let j5y = z_z * l5x - z5x * l5z;
 
         // From joint 5 to the TCP.
         let tr4_xy = a5_h5 * s5;
@@ -743,7 +788,7 @@ impl Robot<5> for Rv130hsc {
         let tt5_xx = r5y * tr4_xy;
         let t16 = r5x * tr4_xy;
         let tt5_yy = r5x * tr5_yz;
-        let r4z_2 = d4 + r5y;
+        let r4z = d4 + r5y;
 
         // From joint 4 to the TCP.
         let tr4_yz = a5_h4 * c5;
@@ -763,24 +808,24 @@ impl Robot<5> for Rv130hsc {
         let t26 = c4 * tr4_yz;
         let tr3_yx = s4 * tr5_yz;
         let tr3_zx = tr4_xy - t24;
-        let r3x_2 = a3 + c4 * r5x;
+        let r3x = a3 + c4 * r5x;
 
         // From joint 3 to the TCP.
-        let t27 = h3 * r4z_2;
-        let t28 = h3 * r3x_2;
-        let tt3_xx = tt5_xx - t18 + r4z_2 * t27;
-        let tt3_yy = tt5_yy + r3x_2 * t28;
+        let t27 = h3 * r4z;
+        let t28 = h3 * r3x;
+        let tt3_xx = tt5_xx - t18 + r4z * t27;
+        let tt3_yy = tt5_yy + r3x * t28;
         let rr3_zz = h3 + (h5 + t21);
         let tr3_yz = c4 * tr5_yz + t28;
-        let r2x_2 = r3x_2 + c3;
-        let r2y = r4z_2 - s3;
+        let r2x = r3x + c3;
+        let r2y = r4z - s3;
 
         // From joint 2 to the TCP.
         let t29 = h2 * r2y;
-        let t30 = h2 * r2x_2;
-        let tt2_xx = tt3_xx - t29 * (s3 - r4z_2);
-        let t31 = c4 * t16 + r3x_2 * t27 + r2x_2 * t29;
-        let tt2_yy = tt3_yy + r2x_2 * t30;
+        let t30 = h2 * r2x;
+        let tt2_xx = tt3_xx - t29 * (s3 - r4z);
+        let t31 = c4 * t16 + r3x * t27 + r2x * t29;
+        let tt2_yy = tt3_yy + r2x * t30;
         let rr2_zz = h2 + rr3_zz;
         let t32 = t24 + t27 + t29;
         let tr2_yz = tr3_yz + t30;
@@ -803,17 +848,19 @@ impl Robot<5> for Rv130hsc {
         let t45 = c23 * t32 + s23 * tr2_yz;
         let tr1_yx = s23 * tr3_zx - c23 * t26;
         let tt1_xz = s23 * t33 - t31;
-        let r1x_2 = a1 + (s23 * r2x_2 + c23 * r2y);
+        let r1x = a1 + (s23 * r2x + c23 * r2y);
 
         // From joint 1 to the TCP.
         let t46 = h1 * j1x;
-        let t47 = h1 * r1x_2;
+        let t47 = h1 * r1x;
         let tt1_xx = tt2_xx - t34 + j1x * t46;
-        let tt1_xy = c23 * tt3_yz - s23 * t19 + r1x_2 * t46;
-        let tt1_yy = tt3_zz + r1x_2 * t47;
+        let tt1_xy = c23 * tt3_yz - s23 * t19 + r1x * t46;
+        let tt1_yy = tt3_zz + r1x * t47;
         let rr1_zz = h1 + (h4 - t37);
         let tr1_xz = tr3_yx - t43 + t46;
         let tr1_yz = c23 * tr3_zx + s23 * t26 + t47;
+
+        // From the base to the TCP.
         let t48 = s1 * (tt1_xx - tt1_yy) + c1 * (tt1_xy + tt1_xy);
         let t49 = s1 * t48;
         let tt_xx = tt1_xx - t49;
@@ -848,15 +895,15 @@ impl Robot<5> for Rv130hsc {
             ),
             jacobian: SMatrix::from([
                 [
-                    t13 - r1x * s1,
-                    t12 + r1x * c1,
+                    t13 - l1x * s1,
+                    t12 + l1x * c1,
                     T::zero(),
                     T::zero(),
                     T::zero(),
                     T::one(),
                 ],
-                [r2z * c1, r2z * s1, -r2x, -s1, c1, T::zero()],
-                [r3z * c1, r3z * s1, -r3x, -s1, c1, T::zero()],
+                [l2z * c1, l2z * s1, -l2x, -s1, c1, T::zero()],
+                [l3z * c1, l3z * s1, -l3x, -s1, c1, T::zero()],
                 [
                     s1 * t15 - c1 * t14,
                     -(s1 * t14 + c1 * t15),
@@ -868,7 +915,7 @@ impl Robot<5> for Rv130hsc {
                 [
                     c1 * j5x - s1 * j5y,
                     s1 * j5x + c1 * j5y,
-                    -(z5x * j1x + c4 * r5x_2),
+                    -(z5x * j1x + c4 * l5x),
                     z_x,
                     z_y,
                     z_z,

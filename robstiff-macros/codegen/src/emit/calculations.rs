@@ -64,7 +64,8 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
         doc: "Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
 
             It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
-            rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point.",
+            rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point, all in the
+            joint's own axes.",
         signature: |n| quote!(fn compliance<T: Real>(&self, q: &SVector<T, #n>) -> Matrix6<T>),
         algorithm: symbolic::compliance,
         result: |_, _, entries| quote!(Matrix6::new(#(#entries),*)),
@@ -89,7 +90,11 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
     },
     Calculation {
         name: "statics",
-        doc: "Transform, Jacobian and compliance of one pose, with what they have in common.",
+        doc: "Transform, Jacobian and compliance of one pose, with what they have in common.
+
+            Axes z and levers l of the Jacobian are in the base frame, or behind the turn of joint 1 where that is done
+            at the end. As in `compliance`, tt, tr and rr are of what lies beyond a joint, at the tool centre point and
+            in the joint's own axes, r from the joint to the tool centre point.",
         signature: |n| quote!(fn statics<T: Real>(&self, q: &SVector<T, #n>) -> Statics<#n, T>),
         algorithm: symbolic::statics,
         result: |_, reader, entries| {

@@ -77,7 +77,11 @@ fn polished(source: &str) -> String {
             out.push('\n');
         }
         before = text;
-        if let Some(remark) = text.strip_prefix("__remark!(\"").and_then(|rest| rest.strip_suffix("\");")) {
+        // The printer gives a long one a line of its own.
+        let long = if text == "__remark!(" { lines.next().zip(lines.next()) } else { None };
+        let short = || text.strip_prefix("__remark!(").and_then(|rest| rest.strip_suffix(");"));
+        if let Some(remark) = long.map(|(remark, _)| remark.trim()).or_else(short) {
+            let remark = remark.trim_matches('"');
             out += &format!("\n{indent}// {remark}\n");
             continue;
         }

@@ -6,7 +6,7 @@
 use robstiff_robots::angle::{quarter_turns, sin_cos_of_turns};
 use robstiff_robots::{Convention, Description, JointKind, Placement};
 
-use super::elastic::{harmonic, parameters};
+use super::elastic::{harmonic, parameters, remark};
 use super::vector::Vec3;
 use super::weight;
 use crate::angle::Angle;
@@ -82,6 +82,7 @@ fn steps<'g>(g: &'g Graph, robot: &Description, aside: &[Option<Sym<'g>>], serie
         let (turn, d) = match (joint.kind, aside) {
             (JointKind::Revolute, None) => (theta(Angle::of_joint(i, joint.theta)), d),
             (JointKind::Revolute, Some(aside)) => {
+                g.remark(format!("Sine and cosine of the angle e{number} by which joint {number} stands aside."));
                 g.set_deviation(i, series.sin_cos(g, aside.named(format!("e{number}"))));
                 (theta(Angle::of_joint(i, joint.theta)).with_deviation(i), d)
             }
@@ -124,8 +125,9 @@ fn steps<'g>(g: &'g Graph, robot: &Description, aside: &[Option<Sym<'g>>], serie
 /// coordinate (rad).
 fn deviation<'g>(g: &'g Graph, robot: &Description, joint: usize) -> Option<Sym<'g>> {
     let effects = robot.effects.iter().filter(|effect| effect.row() == Some(joint + 1));
-    let own = effects.filter_map(|effect| {
-        effect.is_kinematic().then(|| effect.deviation(&parameters(g, effect), &harmonic(g, joint)))?
+    let own = effects.filter(|effect| effect.is_kinematic()).filter_map(|effect| {
+        remark(g, effect);
+        effect.deviation(&parameters(g, effect), &harmonic(g, joint))
     });
     own.reduce(|sum, more| sum + more)
 }

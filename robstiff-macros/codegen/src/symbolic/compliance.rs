@@ -22,8 +22,10 @@ use crate::graph::{BlockTurn, Graph, Id, Sym};
 /// The 36 entries of `H_x` at the TCP in the base frame, by rows.
 pub fn compliance<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
     let elastic = Elastic::of(g, robot);
+    let steps = chain(g, robot);
+    g.remark("From the TCP towards the base.");
     let mut walker = Walker::at_tcp(g);
-    for step in chain(g, robot).iter().rev() {
+    for step in steps.iter().rev() {
         walker.back(step, robot, &elastic);
     }
     walker.settle();
@@ -114,10 +116,19 @@ impl<'g> Walker<'g> {
                 // Before the turn, the length is a constant.
                 let length_squared = along.dot(*along);
                 let beam = Beam::of(self.g, self.without_pending(*along), length_squared, elastic.link[*i]);
-                beam.iter().for_each(|beam| self.link(beam));
+                if let Some(beam) = beam {
+                    self.g.remark(format!("With link {}.", i + 1));
+                    self.link(&beam);
+                }
             }
-            Step::Base => self.add_about_z(elastic.base.0, self.g.number(0.0), elastic.base.1, elastic.base.1),
-            Step::Flange => self.add_about_z(elastic.tool.0, elastic.tool.0, elastic.tool.1, elastic.tool.1),
+            Step::Base => {
+                self.g.remark("From the base to the TCP.");
+                self.add_about_z(elastic.base.0, self.g.number(0.0), elastic.base.1, elastic.base.1);
+            }
+            Step::Flange => {
+                self.g.remark("From the flange to the TCP.");
+                self.add_about_z(elastic.tool.0, elastic.tool.0, elastic.tool.1, elastic.tool.1);
+            }
             Step::LinkFrame(_) => {}
         }
     }
@@ -151,6 +162,7 @@ impl<'g> Walker<'g> {
                 self.twists.push((second, twist));
             }
             if first == i {
+                self.g.remark(format!("With the coupling of joints {number} and {}.", second + 1));
                 let partner =
                     self.twists.iter().find(|(joint, _)| *joint == second).expect("the later joint came first");
                 self.couple(self.twist(), partner.1, c);

@@ -40,8 +40,14 @@ pub struct Law<'g> {
 impl<'g> Law<'g> {
     fn of(g: &'g Graph, effect: Effect, parameters: &[Sym<'g>], own: &[Sym<'g>]) -> Option<Self> {
         let joint = effect.row()? - 1;
+        remark(g, &effect);
         let unloaded = effect.slope(parameters, own[joint], g.number(0.0), &harmonic(g, joint))?;
         Some(Self { joint, effect, parameters: parameters.to_vec(), unloaded })
+    }
+
+    /// Says in the code that what follows is of it.
+    pub fn remark(&self, g: &'g Graph) {
+        remark(g, &self.effect);
     }
 
     /// The play operators it uses, after a torque that follows `before`.
@@ -55,6 +61,11 @@ impl<'g> Law<'g> {
         let joint = effect::physics::Joint { compliance, torque, plays, harmonic: &harmonic(g, self.joint) };
         self.effect.turn(&self.parameters, &joint).expect("a law")
     }
+}
+
+/// Says in the code that what follows is of an effect.
+pub fn remark(g: &Graph, effect: &Effect) {
+    g.remark(format!("Of {}.", effect.noun()));
 }
 
 /// The joints' own compliance (rad/Nm or m/N).

@@ -95,6 +95,7 @@ impl<'g> Walker<'g> {
 
 /// Walks the chain from the base to the TCP.
 pub fn forward<'g>(g: &'g Graph, steps: &[Step<'g>]) -> Forward<'g> {
+    g.remark("Axes and origins, from the base to the tip.");
     let mut walker = Walker {
         g,
         axes: std::array::from_fn(|axis| Vec3::unit(g, axis)),
@@ -126,6 +127,7 @@ pub fn forward<'g>(g: &'g Graph, steps: &[Step<'g>]) -> Forward<'g> {
             Step::Flange => flange = Some(here),
         }
     }
+    g.remark("From the origins to the TCP.");
     let mut levers = vec![Vec3::zero(g)];
     for &by in moves.iter().rev() {
         levers.push(by + levers[levers.len() - 1]);

@@ -56,10 +56,11 @@ impl<'g> Twists<'g> {
 
     /// `[z x lever; z]` for a revolute joint, `[z; 0]` for a prismatic one.
     fn of(g: &'g Graph, robot: &Description, forward: &Forward<'g>) -> Self {
+        g.remark("What the joints move: z is an axis, l leads from it to the TCP.");
         let mut twists = Self { translation: Vec::new(), rotation: Vec::new() };
         for ((number, joint), stand) in (1..).zip(&robot.joints).zip(&forward.joints) {
             let axis = stand.axis.named(&format!("z{number}"));
-            let lever = stand.lever.named(&format!("r{number}"));
+            let lever = stand.lever.named(&format!("l{number}"));
             let (translation, rotation) = match joint.kind {
                 JointKind::Revolute => (axis.cross(lever), axis),
                 JointKind::Prismatic => (axis, Vec3::zero(g)),
@@ -71,7 +72,8 @@ impl<'g> Twists<'g> {
     }
 
     /// `J^T F`.
-    fn torques(&self, force: Vec3<'g>, moment: Vec3<'g>) -> Vec<Sym<'g>> {
+    fn torques(&self, g: &'g Graph, force: Vec3<'g>, moment: Vec3<'g>) -> Vec<Sym<'g>> {
+        g.remark("What the wrench puts on the joints.");
         let rows = (1..).zip(&self.translation).zip(&self.rotation);
         rows.map(|((i, t), r)| (t.dot(force) + r.dot(moment)).named(format!("tau{i}"))).collect()
     }
@@ -96,7 +98,7 @@ fn wrench<'g>(g: &'g Graph, start: &Start<'g>) -> (Vec3<'g>, Vec3<'g>) {
 pub fn joint_torques<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
     cheapest(g, robot, |g, start| {
         let (force, moment) = wrench(g, start);
-        Twists::of(g, robot, &start.forward()).torques(force, moment)
+        Twists::of(g, robot, &start.forward()).torques(g, force, moment)
     })
 }
 
@@ -133,11 +135,13 @@ fn loaded<'g>(
     let (force, moment) = wrench(g, start);
     let mut sum = Displacement { force, moment, translation: Vec3::zero(g), rotation: Vec3::zero(g) };
     let twists = Twists::of(g, robot, &forward);
-    let (turns, plays) = joint_turns(g, &elastic, &twists.torques(force, moment), before);
+    let (turns, plays) = joint_turns(g, &elastic, &twists.torques(g, force, moment), before);
+    g.remark("What these turns make at the TCP.");
     sum.by_joints(&twists, &turns);
-    sum.by_tilts(&forward, &elastic);
+    sum.by_tilts(g, &forward, &elastic);
     sum.by_links(g, &forward, &elastic);
-    sum.by_base_and_tool(&forward, &elastic);
+    sum.by_base_and_tool(g, &forward, &elastic);
+    g.remark("In the axes of the base.");
     let displacement = [sum.translation, sum.rotation].map(|part| start.to_base(part).0);
     (displacement.concat(), plays)
 }
@@ -160,27 +164,31 @@ impl<'g> Displacement<'g> {
     }
 
     /// Each joint about the axes across its own.
-    fn by_tilts(&mut self, forward: &Forward<'g>, elastic: &Elastic<'g>) {
-        for (stand, &transverse) in forward.joints.iter().zip(&elastic.transverse) {
+    fn by_tilts(&mut self, g: &'g Graph, forward: &Forward<'g>, elastic: &Elastic<'g>) {
+        for ((number, stand), &transverse) in (1..).zip(&forward.joints).zip(&elastic.transverse) {
             if !transverse.is_zero() {
+                g.remark(format!("And the tilt of joint {number} across its axis."));
                 self.tilt(stand, transverse);
             }
         }
     }
 
     fn by_links(&mut self, g: &'g Graph, forward: &Forward<'g>, elastic: &Elastic<'g>) {
-        for (segment, &compliances) in forward.links.iter().zip(&elastic.link) {
+        for ((number, segment), &compliances) in (1..).zip(&forward.links).zip(&elastic.link) {
             let Some(beam) = Beam::of(g, segment.along, segment.length_squared, compliances) else { continue };
+            g.remark(format!("And link {number}."));
             let middle = beam.middle(segment.lever);
             self.turn(beam.turn(self.moment_at(middle)), middle);
             self.translation = beam.shifted(self.translation, self.force);
         }
     }
 
-    fn by_base_and_tool(&mut self, forward: &Forward<'g>, elastic: &Elastic<'g>) {
+    fn by_base_and_tool(&mut self, g: &'g Graph, forward: &Forward<'g>, elastic: &Elastic<'g>) {
+        g.remark("And the base.");
         let (tilt, shift) = elastic.base;
         self.tilt(&forward.base, tilt);
         self.shift(self.force.scaled(shift));
+        g.remark("And the tool.");
         let (turn, shift) = elastic.tool;
         let lever = forward.flange.lever;
         self.turn(self.moment_at(lever).scaled(turn), lever);
@@ -220,6 +228,7 @@ fn joint_turns<'g>(
     torques: &[Sym<'g>],
     before: impl Fn(usize) -> [Sym<'g>; PLAYS],
 ) -> (Vec<Sym<'g>>, Vec<Sym<'g>>) {
+    g.remark("By how much the joints turn or slide.");
     let mut turns: Vec<Sym<'g>> = elastic.joint.iter().zip(torques).map(|(&h, &tau)| h * tau).collect();
     for &([i, j], c) in &elastic.coupling {
         turns[i] = turns[i] + c * torques[j];
@@ -228,6 +237,7 @@ fn joint_turns<'g>(
     let mut all_plays = Vec::new();
     for law in &elastic.laws {
         let i = law.joint;
+        law.remark(g);
         let plays = law.plays(torques[i], before(i));
         for (k, play) in (1..).zip(&plays) {
             play.named(format!("play{}_{k}", i + 1));

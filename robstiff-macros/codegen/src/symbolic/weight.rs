@@ -16,6 +16,7 @@ pub fn sag<'g>(g: &'g Graph, robot: &Description, upright: &[Step<'g>]) -> Optio
     let shares = of_robot.filter_map(|effect| effect.share_of_weight(&parameters(g, effect)));
     let share = shares.reduce(|sum, more| sum + more)?;
     let stands = forward(g, upright);
+    g.remark("How the joints yield to the weights: g is a torque, w a force.");
     let compliances = joint_compliances(g, robot);
     let mut sags = Vec::new();
     // Tip to base: what hangs on a joint is its link and what hangs on the next.
