@@ -20,7 +20,8 @@ constants! {
     t1 t2 t3 t4 t5 t6 t7 t8 t9 t10 t11 t12 t13 t14 t15 t16 t17 t18 t19 t20 t30 t40 t50 t99
     k1 k2 k3 k4 k5 k6 k7 k8 k9 k10 k11 k12
     s1 s1o s1o_2 s14o s2 s2o s23 s41x7 s3 s4 s4o s5 s5o s6 s7
-    r1x r1x_2 r1y r2x r3z r4z r5x r5y r6z
+    r1x r1y r2x r3z r4z r5x r5y r6z l1x l2x l2z l3x l4z l5x l5z
+    sin_base_yaw cos_base_yaw tool_yaw theta1 theta4
     tt_xx tt_xy tt1_xx tt2_xx tt3_xx tt4_yy tt5_xx tr_xx tr1_xx tr4_xy tr5_yz rr_xx rr1_xx rr2_zz
     p_ p_x p1_x p2_y x_ x_x x2_x y_ y_x y2_x z_ z_x z3_x z5x
     before3_1 play3_1 weight1_3 radius1_3 e3 minus_t34 minus_rr2_xz
