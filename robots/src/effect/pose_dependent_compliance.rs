@@ -32,7 +32,7 @@ impl Physics<4> for PoseDependentCompliance {
         noun: "the compliance of {} that varies with its angle",
         explanation: "The teeth of a gear share the load differently as it turns, and a gravity compensator pulls at \
             another angle. The model takes it into account; loads at many angles of the joint show it.",
-        typical: "of a gravity compensator below 0.003 (it shows as preload instead)",
+        typical: "",
         parameters: &[
             relative("cos1", "COS1_", "Relative change of the compliance with cos q"),
             relative("sin1", "SIN1_", "Relative change of the compliance with sin q"),

@@ -48,7 +48,7 @@ impl Dimension {
         }
     }
 
-    /// A list of `N`, the others of which are zero; two of them in their order.
+    /// An example of a list of `N` values, all zero but the last.
     pub(crate) fn example_list<const N: usize>(self) -> String {
         let mut items = ["0"; N];
         items[N - 1] = self.example().trim_start_matches('-');

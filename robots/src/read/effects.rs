@@ -68,7 +68,8 @@ pub(super) fn effects(node: &Node, arm: &Arm<'_>) -> Option<Vec<Effect>> {
     read.into_iter().collect()
 }
 
-/// Whose sum is not one of its kind.
+/// The order of an effect that has one: two of such effects at one joint are not the same
+/// effect given twice, and cannot be merged.
 fn orders(effect: &Effect) -> Option<f64> {
     match effect {
         Effect::TransmissionError { order, .. } => Some(*order),

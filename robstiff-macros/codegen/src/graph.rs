@@ -259,9 +259,10 @@ impl Graph {
         self.deviations.borrow_mut().insert(joint, (sin.id, cos.id));
     }
 
-    /// Sine and cosine of an angle: exact where it is a multiple of 90
-    /// degrees, reduced to one sign and to offsets that are not; deviations
-    /// enter by the rule for sums.
+    /// Sine and cosine of an angle. A constant part that is a multiple of 90
+    /// degrees is exact, any other is left in the angle; of an angle and its
+    /// negative only one is computed. Deviations are added by the rule for
+    /// sines and cosines of sums.
     pub fn sin_cos(&self, angle: &Angle) -> (Sym<'_>, Sym<'_>) {
         let plain = self.sin_cos_of_coordinates(angle);
         angle.deviations().iter().fold(plain, |(s, c), &(joint, sign)| {

@@ -11,8 +11,8 @@ use std::collections::BTreeSet;
 use proc_macro2::{Delimiter, Ident, Spacing, TokenStream, TokenTree};
 use quote::quote;
 
-/// For the block that code is in: a function under every name that the code binds. That they
-/// are unused rustc does not say in what a macro of another crate expands to.
+/// For the block that code is in: a function under every name that the code binds. rustc does
+/// not warn that they are unused, since they come from another crate's macro.
 pub(super) fn hidden(code: &TokenStream) -> TokenStream {
     let mut names = BTreeSet::new();
     collect(code, Place::Other, &mut names);

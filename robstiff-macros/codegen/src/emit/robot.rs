@@ -186,7 +186,7 @@ pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Gene
     let costs = functions.iter().map(|generated| {
         let name = cost_of(&generated.method);
         let doc = format!(" Operations of `{}`.", generated.method.name);
-        // Both types name all their fields here: one that only one of them has does not compile.
+        // Naming every field on both sides makes a field that only one type has a compile error.
         let Cost { trig, mul, add, neg, root } = generated.function.cost();
         let [trig, mul, add, neg, root] = [trig, mul, add, neg, root].map(Literal::usize_unsuffixed);
         quote! {
