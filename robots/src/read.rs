@@ -245,7 +245,7 @@ fn links(node: &Node, joints: Option<usize>) -> Option<Vec<Link>> {
     let wrong = joints.filter(|joints| *joints != items.len());
     if let Some(joints) = wrong {
         node.error(
-            format!("a robot of {} has {}, not {}", count(joints, "joint"), count(joints, "link"), items.len()),
+            format!("a robot of {} has one body for each joint; `links` gives {}", count(joints, "joint"), items.len()),
             "give the body that moves with each joint, `{}` where nothing is known, or leave `links` out",
         );
     }
