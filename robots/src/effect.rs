@@ -3,9 +3,11 @@
 //!
 //! An effect is one file: its parameters with their units and physical ranges,
 //! its formula, and what a person is told of it, in the vocabulary of
-//! [`physics`]. The list [`Effect`] is made from, below, is the registry; a file,
-//! its module and a line there are all that a new effect needs. Reading, writing, checking,
-//! generated code, the generic robot and the command take the rest from it.
+//! [`physics`]. The list [`Effect`] is made from, below, is the registry; a file, its
+//! module and a line there are all that a new effect needs which is made of the elements
+//! and laws that there are: reading, writing, checking, generated code, the generic robot
+//! and `robstiff show` take the rest from it. Tracing has a catalogue of its own of what it
+//! looks for.
 
 pub mod base_compliance;
 pub mod dh_error;

@@ -78,6 +78,11 @@ macro_rules! registry {
             )+
         }
 
+        $(const _: () = assert!(
+            count!($($parameter)+) <= MOST_PARAMETERS,
+            concat!(stringify!($file), " has more numbers than MOST_PARAMETERS"),
+        );)+
+
         /// Every kind of effect, in the order of the registry.
         pub const CATALOGUE: &[&About] = &[$(&about!($file $kind $($parameter)+)),+];
 
