@@ -75,17 +75,21 @@ impl Description {
         corrected(&self.joints, &self.effects)
     }
 
-    /// Whether a link (from 1) is nothing but the stroke of a joint that slides, as
-    /// the effects correct it: it may have no length, and then no direction along
-    /// which to be a beam.
+    /// Whether a link is nothing but the stroke of a joint that slides, as the
+    /// effects correct it: it may have no length, and then no direction along
+    /// which to be a beam. Links count from 1, the body behind joint 1, to one
+    /// less than joints; no other is a stroke.
     pub fn is_stroke(&self, link: usize) -> bool {
-        is_stroke(self.convention, &self.corrected_joints(), link)
+        (1..self.joints.len()).contains(&link) && is_stroke(self.convention, &self.corrected_joints(), link)
     }
 
-    /// Whether a link (from 1) can be a beam: it has a length, as the effects
-    /// correct it, and is more than a stroke.
+    /// Whether a link can be a beam: it has a length, as the effects correct it,
+    /// and is more than a stroke. Links count from 1 to one less than joints; no
+    /// other is a beam.
     pub fn is_beam(&self, link: usize) -> bool {
-        !self.is_stroke(link) && has_length(self.convention, &self.corrected_joints(), link)
+        (1..self.joints.len()).contains(&link)
+            && !self.is_stroke(link)
+            && has_length(self.convention, &self.corrected_joints(), link)
     }
 }
 
@@ -192,4 +196,21 @@ pub struct Link {
     pub mass: f64,
     /// Centre of mass in the link's frame `i` (m).
     pub center_of_mass: [f64; 3],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_is_between_two_joints_is_a_link() {
+        for (convention, rows) in
+            [("standard", "{type: prismatic}, {a: 1 m}, {}"), ("modified", "{}, {type: prismatic}, {a: 1 m}")]
+        {
+            let text = format!("name: Arm\nconvention: {convention}\njoints: [{rows}]\n");
+            let arm = Description::parse("arm.yaml", &text).unwrap_or_else(|problems| panic!("{problems}"));
+            assert_eq!([0, 1, 2, 3, 9].map(|link| arm.is_stroke(link)), [false, true, false, false, false]);
+            assert_eq!([0, 1, 2, 3, 9].map(|link| arm.is_beam(link)), [false, false, true, false, false]);
+        }
+    }
 }
