@@ -26,22 +26,22 @@ pub trait Robot<const N: usize> {
     /// The joints' own compliances, the diagonal of `H_q` (rad/Nm or m/N).
     fn joint_compliance(&self) -> SVector<f64, N>;
 
-    /// Lower and upper limits of the joint coordinates, where they are known.
+    /// Lower and upper limits of the joint coordinates (rad or m), where they are known.
     fn limits(&self) -> [Option<[f64; 2]>; N];
 
     /// What the description adds to the table and to the joints' own compliance.
     fn effects(&self) -> &[Effect];
 
-    /// Frame 0 in the base frame.
+    /// Frame 0 in the base frame (m).
     fn base(&self) -> Matrix4<f64>;
 
-    /// The tool centre point's frame in the flange frame.
+    /// The tool centre point's frame in the flange frame (m).
     fn tool(&self) -> Matrix4<f64>;
 
-    /// The tool centre point's frame in the base frame.
+    /// The tool centre point's frame in the base frame (m).
     fn transform<T: Real>(&self, q: &SVector<T, N>) -> Matrix4<T>;
 
-    /// Frames 1 to N, each fixed to the link behind its joint, in the base
+    /// Frames 1 to N (m), each fixed to the link behind its joint, in the base
     /// frame; the last is the flange frame.
     fn link_frames<T: Real>(&self, q: &SVector<T, N>) -> [Matrix4<T>; N];
 
@@ -101,7 +101,7 @@ pub trait Robot<const N: usize> {
 /// The elastostatics of one pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statics<const N: usize, T: Real = f64> {
-    /// The tool centre point's frame in the base frame.
+    /// The tool centre point's frame in the base frame (m).
     pub transform: Matrix4<T>,
     /// The 6 x N Jacobian of the TCP in the base frame, translation first.
     pub jacobian: SMatrix<T, 6, N>,

@@ -116,14 +116,22 @@ impl Function {
         nodes.iter().zip(self.uses()).filter(|(_, used)| *used > 0).map(|(node, _)| cost(node)).sum()
     }
 
-    /// The values of the outputs, columns entry by entry: the graph interpreted,
-    /// node by node, on a robot that was never loaded.
+    /// The values of the outputs in SI units, columns entry by entry: the graph
+    /// interpreted, node by node, at joint coordinates (rad or m) and under a
+    /// wrench (N, then Nm), on a robot that was never loaded.
+    ///
+    /// # Panics
+    /// If there are fewer coordinates than joints, or fewer than six components
+    /// of a wrench that the function depends on.
     pub fn evaluate(&self, coordinates: &[f64], wrench: &[f64]) -> Vec<f64> {
         self.evaluate_with(coordinates, wrench, &vec![[0.0; PLAYS]; coordinates.len()])
     }
 
     /// The same after the loads that left the play operators of each joint in
-    /// this state.
+    /// this state (Nm).
+    ///
+    /// # Panics
+    /// As [`evaluate`](Self::evaluate), and if there are fewer states than joints.
     pub fn evaluate_with(&self, coordinates: &[f64], wrench: &[f64], plays: &[[f64; PLAYS]]) -> Vec<f64> {
         let nodes = self.graph.nodes();
         let angle = |index: usize| {
