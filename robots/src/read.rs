@@ -281,6 +281,17 @@ mod tests {
         assert_eq!(document.finish(effects).unwrap_or_else(|problems| panic!("{problems}")).len(), 1);
     }
 
+    /// What is in proportion to a compliance may wait for it to be identified; and a joint may
+    /// be identified as rigid.
+    #[test]
+    fn shares_of_no_compliance_are_read() {
+        let text = "name: Arm\nconvention: standard\njoints: [{a: 1 m}]\nlinks: [{mass: 9 kg}]\neffects:\n  \
+                    - {kind: pose_dependent_compliance, at: joint 1, cos1: 0.2}\n  \
+                    - {kind: gravity_sag, at: robot, share: 1}\n";
+        let arm = Description::parse("arm.yaml", text).unwrap_or_else(|problems| panic!("{problems}"));
+        assert_eq!(arm.effects.len(), 2);
+    }
+
     /// The sum of no numbers is a negative zero, which is written as one.
     #[test]
     fn a_rigid_joint_has_no_sign() {
