@@ -147,7 +147,7 @@ fn points_without_a_force_are_in_no_mean() {
     let page = succeed(&[&path[..], &["--tolerance", "50 um"]].concat());
     let told = &json(&told)["deviation"];
     assert!(page.contains("[um], over the 11 of 40 points with a force\n"), "{page}");
-    assert!(page.contains("broken at 3 of the 11 points with a force\n"), "{page}");
+    assert!(page.contains("broken at 3 of the 11 points judged, of 40\n"), "{page}");
     assert_eq!(told["points_with_force"], 11);
     // Under one force the arm is off by nearly as much at each of the eleven.
     let [mean, worst] = ["mean_m", "worst_m"].map(|key| told["distance"][key].as_f64().unwrap());
@@ -167,11 +167,39 @@ fn an_arm_that_lags_out_of_the_cut_breaks_no_tolerance() {
     fs::write(&forces, format!("Fx,Fy,Fz\n{rows}")).unwrap();
     let path = ["path", &robot, &pocket(), "--forces", &forces, "--tolerance", "0.05 mm", "--json", &told];
     let page = run(&path).out;
-    assert!(page.contains("broken at 4 of the 4 points with a force\n"), "{page}");
+    assert!(page.contains("broken at 4 of the 4 points judged, of 40\n"), "{page}");
     let told = &json(&told)["deviation"];
     let stretches = told["tolerance"]["stretches"].as_array().unwrap();
     let lines: Vec<_> = stretches.iter().map(|each| (each["lines"].to_string(), each["holds"].clone())).collect();
     assert_eq!(lines, [("[2,5]".to_owned(), false.into()), ("[6,41]".to_owned(), true.into())]);
+    assert!(stretches[1]["worst_m"].is_null() && told["tolerance"]["judged"] == 4, "{told}");
     // The lag itself stays to be seen.
     assert!(told["points"][6]["error_m"].as_f64().unwrap().abs() > 5e-5, "{told}");
+}
+
+/// A tool that plunges has no wall that could be off.
+#[test]
+fn a_tolerance_is_told_of_the_points_that_have_an_error() {
+    let folder = folder("path-judged");
+    let [path, forces, told] = ["path.csv", "forces.csv", "told.json"].map(|name| inside(&folder, name));
+    let tolerance = |size: &str, sideways: &[&str]| {
+        let down = [".70", ".68", ".66"].map(|z| format!("1.7,0,{z},0,0,-1\n")).concat();
+        fs::write(&path, format!("x,y,z,ux,uy,uz\n{down}{}", sideways.concat())).unwrap();
+        fs::write(&forces, format!("Fx,Fy,Fz\n{}", "0,0,300\n".repeat(3 + sideways.len()))).unwrap();
+        let asked = ["path", "kuka-kr270-r2700", &path, "--forces", &forces, "--tolerance", size, "--json", &told];
+        let page = succeed(&asked);
+        let tolerance = json(&told)["deviation"]["tolerance"].clone();
+        (page, tolerance)
+    };
+    let (page, of_none) = tolerance("1 um", &[]);
+    assert!(page.contains("\ntolerance 1.0 um: no point has an error to judge\n"), "{page}");
+    assert!(of_none["holds"].is_null() && of_none["judged"] == 0, "{of_none}");
+    assert!(of_none["stretches"][0]["worst_m"].is_null(), "{of_none}");
+    let sideways = ["1.7,0.02,.66,0,0,-1\n", "1.7,0.04,.66,0,0,-1\n"];
+    let (page, broken) = tolerance("1 um", &sideways);
+    assert!(page.contains("broken at 3 of the 3 points judged, of 5\n"), "{page}");
+    assert!(broken["holds"] == false && broken["judged"] == 3, "{broken}");
+    let (page, held) = tolerance("5 mm", &sideways);
+    assert!(page.contains("holds at the 3 of 5 points judged\n"), "{page}");
+    assert_eq!(held["holds"], true);
 }

@@ -15,8 +15,9 @@ pub struct Stretch {
     pub s: [f64; 2],
     /// Whether the tolerance holds.
     pub holds: bool,
-    /// The largest error in the cut, either way, with its sign (m).
-    pub worst: f64,
+    /// The largest error in the cut, either way, with its sign (m); `None` where no point
+    /// has one.
+    pub worst: Option<f64>,
 }
 
 /// Errors along a path in three numbers (m).
@@ -52,16 +53,20 @@ fn larger(one: f64, other: f64) -> f64 {
 impl Deviation {
     /// Where the error of the surface is within a tolerance either way (m), and
     /// where it is not, in the order of the path. Where there is no surface, or no
-    /// force that makes one, there is nothing to break.
+    /// force that makes one, there is nothing to break: [`judged`](Self::judged) tells
+    /// whether it holds anywhere because of that alone.
     pub fn stretches(&self, tolerance: f64) -> Vec<Stretch> {
         let mut stretches: Vec<Stretch> = Vec::new();
         for (i, point) in self.points.iter().enumerate() {
-            let error = point.judged().unwrap_or(0.0);
-            let holds = error.abs() <= tolerance;
+            let error = point.judged();
+            let holds = error.is_none_or(|error| error.abs() <= tolerance);
             match stretches.last_mut().filter(|stretch| stretch.holds == holds) {
                 Some(stretch) => {
                     (stretch.points[1], stretch.lines[1], stretch.s[1]) = (i, point.line, point.s);
-                    stretch.worst = larger(stretch.worst, error);
+                    stretch.worst = match (stretch.worst, error) {
+                        (Some(one), Some(other)) => Some(larger(one, other)),
+                        (one, other) => one.or(other),
+                    };
                 }
                 None => stretches.push(Stretch {
                     points: [i; 2],
@@ -81,10 +86,15 @@ impl Deviation {
         self.points.iter().filter(|point| point.in_cut())
     }
 
+    /// The errors that a tolerance is compared with, of the points in the cut that have one.
+    pub fn judged(&self) -> impl Iterator<Item = f64> {
+        self.points.iter().filter_map(DeviationPoint::judged)
+    }
+
     /// The error of the surface over the points in the cut that have one; `None` where
     /// none has, as of a tool that plunges.
     pub fn errors(&self) -> Option<Summary> {
-        Summary::of(self.points.iter().filter_map(DeviationPoint::judged))
+        Summary::of(self.judged())
     }
 
     /// The distance from the path over the points in the cut; `None` where nothing pushes.

@@ -43,7 +43,7 @@ pub fn page(cutting: &Cutting) -> String {
         );
     }
     if let Some((tolerance, stretches)) = &cutting.tolerance {
-        page += &verdict(*tolerance, stretches, in_cut);
+        page += &verdict(*tolerance, stretches, [cutting.deviation.judged().count(), points.len()]);
     }
     let broken =
         cutting.tolerance.as_ref().is_some_and(|(_, stretches)| stretches.iter().any(|stretch| !stretch.holds));
@@ -80,16 +80,20 @@ fn surface(cutting: &Cutting) -> &'static str {
     if cutting.surface == "side" { "wall" } else { "floor" }
 }
 
-fn verdict(tolerance: f64, stretches: &[Stretch], in_cut: usize) -> String {
+/// Whether the tolerance holds, where points are judged, so many of so many.
+fn verdict(tolerance: f64, stretches: &[Stretch], [judged, all]: [usize; 2]) -> String {
     let limit = format!("tolerance {} um", decimals(tolerance * 1e6, 1));
     let broken: Vec<&Stretch> = stretches.iter().filter(|stretch| !stretch.holds).collect();
-    if broken.is_empty() {
-        return format!("\n{limit}: holds all along\n");
+    if judged == 0 {
+        return format!("\n{limit}: no point has an error to judge\n");
     }
-    let points = |of: &Stretch| of.points[1] - of.points[0] + 1;
-    let (bad, all): (usize, usize) =
-        (broken.iter().map(|stretch| points(stretch)).sum(), stretches.iter().map(points).sum());
-    let of = if in_cut == all { count(all, "point") } else { format!("the {} with a force", count(in_cut, "point")) };
+    if broken.is_empty() {
+        let of = if judged == all { "all along".to_owned() } else { format!("at the {judged} of {all} points judged") };
+        return format!("\n{limit}: holds {of}\n");
+    }
+    // Only points that are judged can break it.
+    let bad: usize = broken.iter().map(|stretch| stretch.points[1] - stretch.points[0] + 1).sum();
+    let of = if judged == all { count(all, "point") } else { format!("the {judged} points judged, of {all}") };
     let mut text = format!("\n{limit}: broken at {bad} of {of}\n");
     for stretch in broken.iter().take(MOST_SHOWN) {
         let [from, to] = stretch.s.map(|s| decimals(s * 1e3, 1));
@@ -99,7 +103,7 @@ fn verdict(tolerance: f64, stretches: &[Stretch], in_cut: usize) -> String {
         } else {
             format!("lines {first} to {last}, s = {from} to {to} mm")
         };
-        text += &format!("  {place}: worst {} um\n", micrometres(stretch.worst));
+        text += &format!("  {place}: worst {} um\n", or_none(stretch.worst));
     }
     if broken.len() > MOST_SHOWN {
         text += &format!("  and {} more\n", broken.len() - MOST_SHOWN);
@@ -213,12 +217,14 @@ pub fn document(cutting: &Cutting) -> Value {
         "lines_without_direction": cutting.undirected,
         "tolerance": cutting.tolerance.as_ref().map(|(tolerance, stretches)| json!({
             "tolerance_m": number(*tolerance),
-            "holds": stretches.iter().all(|stretch| stretch.holds),
+            // Where nothing is judged nobody can tell.
+            "holds": cutting.deviation.errors().map(|_| stretches.iter().all(|stretch| stretch.holds)),
+            "judged": cutting.deviation.judged().count(),
             "stretches": stretches.iter().map(|stretch| json!({
                 "lines": stretch.lines,
                 "s_m": numbers(stretch.s),
                 "holds": stretch.holds,
-                "worst_m": number(stretch.worst),
+                "worst_m": stretch.worst.map(number),
             })).collect::<Value>(),
         })),
         "shares": cutting.blame.iter().map(|(name, share)| json!({"element": name, "share": number(*share)})).collect::<Value>(),
