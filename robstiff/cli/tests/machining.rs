@@ -298,3 +298,14 @@ fn a_cut_as_deep_as_nothing_is_refused() {
     let said = fail(1, &["forces", &cut]);
     assert!(said.contains("1000 times as deep as the tool is wide"), "{said}");
 }
+
+/// Nobody looked at the depth that is judged: no feed was stable there.
+#[test]
+fn the_depth_of_the_cut_is_among_those_looked_at() {
+    let asked = ["stability", "kuka-kr270-r2700", &file("roughing.yaml"), "--frequency", "15 Hz", "--greatest"];
+    let said = fail(2, &[&asked[..], &["1 mm"]].concat());
+    assert!(said.contains("--greatest: 1 mm is less than the depth of the cut, 2 mm"), "{said}");
+    let at = ["--at", "0,-90 deg,90 deg,0,60 deg,0"];
+    let page = succeed(&[&asked[..], &["2 mm"], &at].concat());
+    assert!(page.contains("Up to 2 mm, 17 of 72 directions of feed are stable."), "{page}");
+}

@@ -46,7 +46,7 @@ pub struct Arguments {
     /// The axis of the spindle in the TCP's frame, from the spindle to the tip: x, y, z, -x, -y, -z, or a vector "0,0,1"
     #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = axis)]
     tool_axis: Vector3<f64>,
-    /// The greatest depth looked at, e.g. "10 mm"; where left out, ten times the cut's
+    /// The greatest depth looked at, e.g. "10 mm", at least the cut's; where left out, ten times that
     #[arg(long, value_name = "DEPTH", allow_hyphen_values = true, value_parser = positive(Dimension::Length))]
     greatest: Option<f64>,
     /// How many directions of the feed are looked at
@@ -115,6 +115,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "a measured force does not say how it changes with the chip; give the cut with tool and material",
         ));
     };
+    if let Some(greatest) = arguments.greatest.filter(|greatest| *greatest < cut.depth) {
+        let [greatest, depth] = [greatest, cut.depth].map(page::millimetres);
+        return Err(Failure::Usage(format!(
+            "--greatest: {greatest} mm is less than the depth of the cut, {depth} mm, which is the one that is judged"
+        )));
+    }
     let q = input::pose(arguments.at.as_deref(), &robot)?;
     let mut files = Files::default();
     files.protect(&arguments.robot);

@@ -123,6 +123,6 @@ fn depth(feed: &FeedLimit) -> String {
 }
 
 /// A length in m as mm without the unit.
-fn millimetres(length: f64) -> String {
+pub fn millimetres(length: f64) -> String {
     significant(length * 1e3, 3)
 }
