@@ -6,12 +6,10 @@ use std::vec::Vec;
 use nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
 use robstiff_robots::{Diagnostic, Diagnostics, Line};
 
+use super::seeds::spread;
 use super::{Goal, Jump, Orientation, PathPoint, SolvedPath, ToolPath, Unreached, Unsolved, Waypoint};
 use crate::inverse::{Inverse, Target};
 use crate::{JointKind, Robot};
-
-/// Postures at the first point that are tried, where no start says which.
-const MOST_POSTURES: usize = 16;
 
 /// Points that are shown with their line and why they cannot be reached or corrected.
 pub(crate) const MOST_SHOWN: usize = 10;
@@ -36,10 +34,11 @@ impl ToolPath {
     /// before it and within the limits.
     ///
     /// With a `start` (rad or m) the first point is solved nearest to it. Without,
-    /// every posture at the first point is followed along the path, and the one is
-    /// kept that reaches most points, changes its posture least often, and moves
-    /// its joints least at a time; of those that are equal in this the one nearest
-    /// to the middle of the joints' ranges.
+    /// up to 16 postures at the first point are followed along the path, one of each
+    /// branch of the inverse kinematics, and where the turn about the tool's axis is
+    /// free several of a long one. The one is kept that reaches most points, changes
+    /// its posture least often, and moves its joints least at a time; of those that
+    /// are equal in this the one nearest to the middle of the joints' ranges.
     ///
     /// # Errors
     /// The points that cannot be reached, all of them.
@@ -55,10 +54,13 @@ impl ToolPath {
         let middle = middle(robot);
         let seeds = match (start, self.points.first().map(|point| &point.goal)) {
             (Some(start), _) => std::vec![*start],
-            (None, Some(Goal::Tool(target))) => inverse.all(target, &middle).unwrap_or_else(|_| std::vec![middle]),
+            (None, Some(Goal::Tool(target))) => match inverse.all(target, &middle) {
+                Ok(all) => spread(&all),
+                Err(_) => std::vec![middle],
+            },
             (None, _) => std::vec![middle],
         };
-        let followed = seeds.iter().take(MOST_POSTURES).map(|seed| follow(robot, &inverse, &self.points, seed));
+        let followed = seeds.iter().map(|seed| follow(robot, &inverse, &self.points, seed));
         let best = followed.min_by(|one, other| {
             let rank = |of: &Followed<N>| (of.postures.iter().filter(|q| q.is_err()).count(), of.jumps.len());
             // Rounding is no reason to prefer one; the first is the nearest to the middle.

@@ -7,6 +7,7 @@
 
 pub(crate) mod follow;
 pub(crate) mod read;
+mod seeds;
 #[cfg(test)]
 mod tests;
 

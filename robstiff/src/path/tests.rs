@@ -207,3 +207,20 @@ fn mistakes_are_shown_where_they_are() {
     assert_eq!(warned.len(), 2, "{warned:?}");
     assert!(warned[0].contains("write `x [mm]`") && warned[1].contains("`tool` is not used"), "{warned:?}");
 }
+
+/// With a free turn about the tool's axis one branch has more postures than are followed.
+#[test]
+fn a_free_turn_is_no_reason_to_change_the_posture() {
+    let description = catalogued("kuka-kr270-r2700");
+    let robot = Generic::<6>::new(&description).unwrap();
+    let (from, to) = (Vector3::new(-0.37085, -1.05316, 0.79941), Vector3::new(1.03540, -1.00066, 0.44338));
+    let mut text = String::from("x,y,z,ux,uy,uz\n");
+    for k in 0..30 {
+        let at = from.lerp(&to, f64::from(k) / 29.0);
+        text += &format!("{},{},{},0.091319,-0.522372,-0.847814\n", at.x, at.y, at.z);
+    }
+    let path = parse(&text, &description).unwrap();
+    let start = SVector::from([-1.9094, -1.0848, 2.1871, -2.2925, 0.6743, -1.2534]);
+    assert_eq!(path.solve(&robot, Some(&start)).unwrap().jumps, []);
+    assert_eq!(path.solve(&robot, None).unwrap().jumps, []);
+}
