@@ -309,3 +309,19 @@ fn the_depth_of_the_cut_is_among_those_looked_at() {
     let page = succeed(&[&asked[..], &["2 mm"], &at].concat());
     assert!(page.contains("Up to 2 mm, 17 of 72 directions of feed are stable."), "{page}");
 }
+
+/// Where the tool is along the base's x, the first feed is along y.
+#[test]
+fn the_picture_of_feeds_says_where_they_begin() {
+    let folder = folder("machining-picture");
+    let picture = inside(&folder, "limits.svg");
+    for (wrist, along) in [("0", "(0.000, 1.000, 0.000)"), ("60 deg", "(0.866, 0.000, 0.500)")] {
+        let at = format!("0,-90 deg,90 deg,0,{wrist},0");
+        let cut = file("roughing.yaml");
+        succeed(&[
+            "stability", "kuka-kr270-r2700", &cut, "--at", &at, "--frequency", "15 Hz", "--out", &picture,
+        ]);
+        let drawn = fs::read_to_string(&picture).unwrap();
+        assert!(drawn.contains(&format!("0°: along {along} in the base frame")), "{drawn}");
+    }
+}

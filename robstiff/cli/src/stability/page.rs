@@ -102,15 +102,15 @@ fn verdict(predicted: &Predicted, cut: &Cut) -> String {
         verdict += &format!("{beyond} more {are} stable at {given} mm itself, but {they} at less.\n");
     }
     if let Some(best) = best(&predicted.feeds) {
-        let [x, y, z] = [best.feed.x, best.feed.y, best.feed.z].map(|part| decimals(part, 3));
+        let along = direction(&best.feed);
         let angle = decimals(best.angle.to_degrees(), 0);
         verdict += &match best.limits.limiting() {
             Some(limit) => {
                 let short = if limit < cut.depth { format!(", less than {given} mm") } else { String::new() };
-                format!("Best feed: {angle} deg, along ({x}, {y}, {z}), to {} mm{short}.\n", millimetres(limit))
+                format!("Best feed: {angle} deg, along {along}, to {} mm{short}.\n", millimetres(limit))
             }
             None => format!(
-                "Best feed: {angle} deg, along ({x}, {y}, {z}), beyond {} mm.\n",
+                "Best feed: {angle} deg, along {along}, beyond {} mm.\n",
                 millimetres(predicted.greatest)
             ),
         };
@@ -120,6 +120,11 @@ fn verdict(predicted: &Predicted, cut: &Cut) -> String {
 
 fn depth(feed: &FeedLimit) -> String {
     feed.limits.limiting().map_or_else(|| "none".to_owned(), millimetres)
+}
+
+/// A direction in the base frame.
+pub fn direction(unit: &Vector3<f64>) -> String {
+    format!("({})", [unit.x, unit.y, unit.z].map(|part| decimals(part, 3)).join(", "))
 }
 
 /// A length in m as mm without the unit.

@@ -3,7 +3,7 @@
 use robstiff::milling::Cut;
 use robstiff::stability::{FeedLimit, best};
 
-use super::Predicted;
+use super::{Predicted, page};
 use crate::report::svg::{Svg, tick_label, ticks};
 use crate::text::significant;
 
@@ -66,8 +66,10 @@ pub fn svg(predicted: &Predicted, cut: &Cut) -> String {
         svg.arrow("best", CENTER, at(best.angle, out(limiting(best)).max(SHORTEST)));
     }
     svg.text("title", [SIZE / 2.0, 18.0], "middle", "Limiting depth of cut [mm] over the direction of feed");
+    let first = predicted.feeds.first().map(|feed| page::direction(&feed.feed)).unwrap_or_default();
+    let first = format!("0°: along {first} in the base frame; seen from the spindle");
     let legends = [
-        "0°: along the base frame's x; seen from the spindle",
+        first.as_str(),
         "red: mode coupling; white beyond the line: reached only through red",
         "dashed: the cut's depth; arrow: the best feed, to its limit",
         "not regenerative chatter of spindle, tool or workpiece",
