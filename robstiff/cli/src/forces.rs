@@ -47,6 +47,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Forces::Model(cut) => (cut.mean_force(), Some(cut.revolution(count))),
         Forces::Measured { force, speed } => (force.mean(*speed), force.revolution(count, *speed)),
     };
+    let looked_at = looked_at(&file.forces, revolution.as_ref());
     let mut files = Files::default();
     protect(&mut files, &arguments.cut, &file);
     if let Some(path) = &arguments.csv {
@@ -60,10 +61,23 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         files.add(path, table(&file.forces, revolution));
     }
     if let Some(path) = &arguments.json {
-        files.add(path, json::document(&document(&file, &mean, revolution.as_ref())));
+        files.add(path, json::document(&document(&file, &mean, revolution.as_ref(), looked_at.peak())));
     }
     let said = files.write()?;
-    output::print(page(&file, &mean, revolution.as_ref()) + &said)
+    output::print(page(&file, &mean, revolution.is_some(), &looked_at) + &said)
+}
+
+/// The forces among which the least and the greatest are looked for: of a model also those where
+/// teeth begin and end to cut, of a record that tells no revolution all of its samples.
+fn looked_at(forces: &Forces, revolution: Option<&Revolution>) -> Revolution {
+    match (forces, revolution) {
+        (Forces::Model(cut), Some(revolution)) => cut.extremes(revolution.samples.len()),
+        (Forces::Measured { .. }, Some(revolution)) => revolution.clone(),
+        (Forces::Measured { force, .. }, None) => {
+            Revolution { samples: force.samples.iter().map(|sample| (0.0, sample.force)).collect() }
+        }
+        (Forces::Model(_), None) => Revolution { samples: Vec::new() },
+    }
 }
 
 /// What a record lacks that tells no revolution.
@@ -82,7 +96,7 @@ pub fn protect(files: &mut Files, path: &Path, file: &CutFile) {
     file.measured_path.iter().for_each(|path| files.protect(path));
 }
 
-fn page(file: &CutFile, mean: &Vector3<f64>, revolution: Option<&Revolution>) -> String {
+fn page(file: &CutFile, mean: &Vector3<f64>, is_revolution: bool, looked_at: &Revolution) -> String {
     let mut page = String::new();
     if !file.name.is_empty() {
         page += &format!("{}\n", file.name);
@@ -97,25 +111,16 @@ fn page(file: &CutFile, mean: &Vector3<f64>, revolution: Option<&Revolution>) ->
         }
     }
     page += "\nForce on the tool [N]\n";
-    let shown = match (&file.forces, revolution) {
-        (Forces::Model(cut), Some(revolution)) => cut.extremes(revolution.samples.len()),
-        (Forces::Measured { .. }, Some(revolution)) => revolution.clone(),
-        // A record that tells no revolution has its own least and greatest.
-        (Forces::Measured { force, .. }, None) => {
-            Revolution { samples: force.samples.iter().map(|sample| (0.0, sample.force)).collect() }
-        }
-        (Forces::Model(_), None) => Revolution { samples: Vec::new() },
-    };
     let mut rows = Table::new(1, ["along", "mean", "least", "greatest"]);
     for (axis, name) in axes(&file.forces).into_iter().enumerate() {
-        let range = shown.range(axis);
+        let range = looked_at.range(axis);
         let numbers = [mean[axis], range.least, range.greatest].map(|force| decimals(force, 1));
         rows.row([&[name.to_owned()], &numbers[..]].concat());
     }
     page += &rows.to_string();
-    let [mean, peak] = [mean.norm(), shown.peak()].map(|force| decimals(force, 1));
+    let [mean, peak] = [mean.norm(), looked_at.peak()].map(|force| decimals(force, 1));
     page += &format!("size of the mean force {mean} N, greatest force {peak} N");
-    if revolution.is_none() {
+    if !is_revolution {
         page += &format!("\n{}; least and greatest are of its samples", lacks(&file.forces));
     }
     page.push('\n');
@@ -168,7 +173,7 @@ fn table(forces: &Forces, revolution: &Revolution) -> String {
 }
 
 /// Everything in SI units; what does not exist is null.
-fn document(file: &CutFile, mean: &Vector3<f64>, revolution: Option<&Revolution>) -> Value {
+fn document(file: &CutFile, mean: &Vector3<f64>, revolution: Option<&Revolution>, peak: f64) -> Value {
     let model = match &file.forces {
         Forces::Model(cut) => Some(cut),
         Forces::Measured { .. } => None,
@@ -178,7 +183,7 @@ fn document(file: &CutFile, mean: &Vector3<f64>, revolution: Option<&Revolution>
         "source": file.source,
         "axes": axes(&file.forces),
         "mean_N": json::numbers(mean.iter().copied()),
-        "peak_N": revolution.map(Revolution::peak),
+        "peak_N": json::number(peak),
         "torque_Nm": model.map(Cut::mean_torque),
         "power_W": model.and_then(Cut::power),
         "feed_m_per_s": model.and_then(Cut::feed_speed),

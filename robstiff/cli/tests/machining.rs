@@ -325,3 +325,14 @@ fn the_picture_of_feeds_says_where_they_begin() {
         assert!(drawn.contains(&format!("0°: along {along} in the base frame")), "{drawn}");
     }
 }
+
+#[test]
+fn one_greatest_force_is_told_everywhere() {
+    let folder = folder("machining-peak");
+    let told = inside(&folder, "told.json");
+    for samples in ["360", "4"] {
+        let page = succeed(&["forces", &file("roughing.yaml"), "--samples", samples, "--json", &told]);
+        let peak = json(&told)["peak_N"].as_f64().unwrap();
+        assert!(page.contains(&format!("greatest force {peak:.1} N")), "{peak}\n{page}");
+    }
+}
