@@ -65,6 +65,12 @@ fn a_cut_without_units_is_doubted() {
     assert!(ran.err.contains("`depth` has no unit and is taken in m: is it in mm?"), "{}", ran.err);
     assert!(ran.out.contains("2000 mm deep") && ran.out.contains("9000 rpm"), "{}", ran.out);
     assert_eq!(run(&["forces", &file("roughing.yaml")]).err, "");
+    // Of a measured force there is the speed alone.
+    fs::write(folder.join("record.csv"), "t [s],Fx,Fy,Fz\n0,0,0,0\n0.001,100,50,-20\n").unwrap();
+    let cut = inside(&folder, "measured.yaml");
+    fs::write(&cut, "speed: 9000\nmeasured: {file: record.csv, frame: cut, on: tool}\n").unwrap();
+    let ran = run(&["forces", &cut]);
+    assert!(ran.err.contains("`speed` has no unit and is taken in rad/s: is it in rpm?"), "{}", ran.err);
 }
 
 #[test]

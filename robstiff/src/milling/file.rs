@@ -116,13 +116,12 @@ impl CutFile {
     pub fn parse(file: &str, text: &str, folder: &Path) -> Result<Self, ReadError> {
         let document = Document::parse(file, text).map_err(ReadError::Invalid)?;
         let said = said(&document, folder);
-        let bare = bare(&document);
+        let mut doubts: Vec<String> = bare(&document).iter().map(|said| format!("{file}: {said}")).collect();
         let (name, said) = document.finish(said).map_err(ReadError::Invalid)?;
         let record = match said {
             Said::Model(cut, source) => {
                 let forces = Forces::Model(cut);
-                let warnings = bare.iter().map(|said| format!("{file}: {said}")).collect();
-                return Ok(Self { name, source, forces, measured_path: None, warnings });
+                return Ok(Self { name, source, forces, measured_path: None, warnings: doubts });
             }
             Said::Measured(record) => record,
         };
@@ -130,8 +129,9 @@ impl CutFile {
         let text = text_of(&path)?;
         let parsed = MeasuredForce::parse(&path.display().to_string(), &text, record.frame, record.on_workpiece);
         let (force, warnings) = parsed.map_err(ReadError::Invalid)?;
+        doubts.extend(warnings);
         let forces = Forces::Measured { force, speed: record.speed };
-        Ok(Self { name, source: String::new(), forces, measured_path: Some(path), warnings })
+        Ok(Self { name, source: String::new(), forces, measured_path: Some(path), warnings: doubts })
     }
 }
 
