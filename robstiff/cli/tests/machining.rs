@@ -342,3 +342,22 @@ fn one_greatest_force_is_told_everywhere() {
         assert!(page.contains(&format!("greatest force {peak:.1} N")), "{peak}\n{page}");
     }
 }
+
+/// What is said of the second cut names that one.
+#[test]
+fn the_cut_to_compare_with_is_looked_at_as_well() {
+    let folder = folder("machining-against");
+    let (cut, pocket) = (file("roughing.yaml"), file("pocket.csv"));
+    let path = ["path", "rv130hsc", &pocket, "--tool-axis", "x", "--cut", &cut, "--against"];
+    fs::write(folder.join("record.csv"), "Fx,Fy,Fz\n100,50,-20\n").unwrap();
+    let record = inside(&folder, "record.yaml");
+    fs::write(&record, "measured: {file: record.csv, frame: cut, on: tool}\n").unwrap();
+    let said = fail(1, &[&path[..], &[&record, "--peak"]].concat());
+    assert!(said.starts_with(&format!("error: {record}: the record has neither")), "{said}");
+
+    let (down, along_base) = (inside(&folder, "down.csv"), inside(&folder, "base.yaml"));
+    fs::write(&down, "x,y,z,ux,uy,uz\n1.7,0,0.70,0,0,-1\n1.7,0,0.68,0,0,-1\n").unwrap();
+    fs::write(&along_base, "measured: {file: record.csv, frame: base, on: tool}\n").unwrap();
+    let said = fail(1, &["path", "kuka-kr270-r2700", &down, "--cut", &along_base, "--against", &record]);
+    assert!(said.contains(&format!("so {record} has no direction anywhere")), "{said}");
+}

@@ -199,15 +199,10 @@ impl Asked {
             Source::Table(table, frame) => table.load(solved, *frame, self.axis, self.surface)?,
             Source::Cut(file) => {
                 complain_of_feed(file, &self.name, path);
-                self.load(file, solved)?
+                self.load(file, &self.name, solved)?
             }
         };
-        if load.undirected.len() == solved.points.len() {
-            return Err(Failure::new(format!(
-                "{}: no point lies across the tool from the one before, so {} has no direction anywhere",
-                path.file, self.name
-            )));
-        }
+        has_direction(&load, &self.name, path)?;
         let deviation = Deviation::of(robot, solved, &load).map_err(Failure::new)?;
         let tolerance = self.tolerance.map(|tolerance| (tolerance, deviation.stretches(tolerance)));
         let beyond = |i: usize, limit: f64| deviation.points[i].judged().is_some_and(|error| error.abs() > limit);
@@ -219,7 +214,9 @@ impl Asked {
         let blame = shares.into_iter().map(|(element, share)| (element.to_string(), share)).collect();
         let compared = match (&self.source, &self.against) {
             (Source::Cut(file), Some((other, name))) => {
-                let other_load = self.load(other, solved)?;
+                // Its feed may be another than the path's: that is what is compared.
+                let other_load = self.load(other, name, solved)?;
+                has_direction(&other_load, name, path)?;
                 let other_deviation = Deviation::of(robot, solved, &other_load).map_err(Failure::new)?;
                 Some([compared(&self.name, file, &deviation), compared(name, other, &other_deviation)])
             }
@@ -238,7 +235,8 @@ impl Asked {
         })
     }
 
-    fn load<const N: usize>(&self, file: &CutFile, solved: &SolvedPath<N>) -> Result<Load, Failure> {
+    /// What a cut of that name pushes the tool with along the path.
+    fn load<const N: usize>(&self, file: &CutFile, name: &str, solved: &SolvedPath<N>) -> Result<Load, Failure> {
         let load = load_of_cut(&file.forces, solved, self.axis, self.surface);
         if !self.peak {
             return Ok(load);
@@ -249,10 +247,7 @@ impl Asked {
         };
         let Some(revolution) = revolution else {
             let lacks = forces::lacks(&file.forces);
-            return Err(Failure::new(format_args!(
-                "{}: {lacks}, so nobody can tell the peak of a revolution",
-                self.name
-            )));
+            return Err(Failure::new(format_args!("{name}: {lacks}, so nobody can tell the peak of a revolution")));
         };
         Ok(load.with_revolution(revolution.samples.into_iter().map(|(_, force)| force).collect()))
     }
@@ -285,6 +280,17 @@ impl Asked {
         };
         Ok(Corrected { points: compensated.points.into_iter().map(point).collect(), rounds, sensitivity, elements })
     }
+}
+
+/// Refuses forces that have no direction at any point.
+fn has_direction(load: &Load, name: &str, path: &ToolPath) -> Result<(), Failure> {
+    if load.undirected.len() < load.contacts.len() {
+        return Ok(());
+    }
+    Err(Failure::new(format!(
+        "{}: no point lies across the tool from the one before, so {name} has no direction anywhere",
+        path.file
+    )))
 }
 
 /// Says so where the path moves at another feed than the cut, whose force it is.
