@@ -44,18 +44,25 @@ pub enum Keep {
     /// The position and the direction of an axis of the TCP's frame; the turn about
     /// it is free: five axes.
     Axis(Unit<Vector3<f64>>),
+    /// The position alone: fewer than five axes.
+    Position,
 }
 
 impl Keep {
     /// What an arm of `joints` axes can keep, its tool along `axis` of the TCP's frame.
     pub fn of(joints: usize, axis: Unit<Vector3<f64>>) -> Self {
-        if joints < 6 { Self::Axis(axis) } else { Self::Pose }
+        match joints {
+            0..=4 => Self::Position,
+            5 => Self::Axis(axis),
+            _ => Self::Pose,
+        }
     }
 
     fn target(self, pose: &Matrix4<f64>) -> Target {
         let whole = Target::pose(pose);
         match (self, whole.orientation) {
             (Self::Axis(tool), Orientation::Full(rotation)) => Target::axis(whole.position, tool, rotation * tool),
+            (Self::Position, _) => Target { orientation: Orientation::Free, ..whole },
             _ => whole,
         }
     }
@@ -104,7 +111,7 @@ pub enum Uncorrectable {
 impl core::fmt::Display for Uncorrectable {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Unreached(why) => write!(f, "the corrected pose is {why}"),
+            Self::Unreached(why) => write!(f, "the corrected pose cannot be taken: {why}"),
             Self::NotConverged { remaining } => write!(
                 f,
                 "the correction does not converge: after {MOST_ROUNDS} rounds {:.4} mm and {:.4} deg are left",
@@ -224,12 +231,12 @@ fn correct<const N: usize, R: Robot<N>>(
 /// A target moved by a translation (m) and a rotation vector (rad) in the base frame.
 fn moved(target: &Target, (shift, turn): (Vector3<f64>, Vector3<f64>)) -> Target {
     let turn = Rotation3::new(turn);
-    let orientation = match target.orientation {
-        Orientation::Full(rotation) => Orientation::Full(turn * rotation),
+    let orientation = match target.orientation.turned(&turn) {
         Orientation::Axis { tool, direction } => {
             // Rounds must not make the direction longer or shorter.
-            Orientation::Axis { tool, direction: Unit::new_normalize(turn * direction.into_inner()) }
+            Orientation::Axis { tool, direction: Unit::new_normalize(direction.into_inner()) }
         }
+        turned => turned,
     };
     Target { position: target.position + shift, orientation }
 }

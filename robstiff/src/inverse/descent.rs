@@ -126,8 +126,7 @@ fn weighted_error<const N: usize, R: Robot<N>>(
     (error, Remaining { distance: shift.norm(), angle: turn.norm() })
 }
 
-/// The change of the pose per joint coordinate, without the turn about the
-/// tool's axis where that is free.
+/// The change of the pose per joint coordinate, without the turns that are free.
 fn weighted_jacobian<const N: usize, R: Robot<N>>(
     robot: &R,
     target: &Target,
@@ -139,8 +138,10 @@ fn weighted_jacobian<const N: usize, R: Robot<N>>(
     for (i, mut column) in jacobian.column_iter_mut().enumerate() {
         column *= rates[i];
         let mut turn: Vector3<f64> = column.fixed_rows::<3>(3).into_owned();
-        if let Orientation::Axis { direction, .. } = &target.orientation {
-            turn -= direction.as_ref() * direction.dot(&turn);
+        match &target.orientation {
+            Orientation::Full(_) => {}
+            Orientation::Axis { direction, .. } => turn -= direction.as_ref() * direction.dot(&turn),
+            Orientation::Free => turn.fill(0.0),
         }
         column.fixed_rows_mut::<3>(3).copy_from(&(turn * scale));
     }

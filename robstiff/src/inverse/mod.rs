@@ -20,6 +20,7 @@ mod wrist;
 
 use core::f64::consts::TAU;
 use core::fmt;
+use std::format;
 use std::vec::Vec;
 
 use nalgebra::SVector;
@@ -103,7 +104,12 @@ pub enum Unreached {
 impl fmt::Display for Unreached {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let left = |f: &mut fmt::Formatter<'_>, remaining: &Remaining| {
-            write!(f, "{:.3} mm and {:.3} deg", remaining.distance * 1e3, remaining.angle.to_degrees())
+            // What is small has digits, too: a miss of 0.000 mm is none.
+            let [mm, deg] = [remaining.distance * 1e3, remaining.angle.to_degrees()].map(|miss| match miss {
+                0.0005.. | 0.0 => format!("{miss:.3}"),
+                _ => format!("{miss:.1e}"),
+            });
+            write!(f, "{mm} mm and {deg} deg")
         };
         match self {
             Self::OutOfReach { remaining } => {
@@ -218,7 +224,12 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
 
     /// Whether the candidates of the closed form are all there can be.
     fn is_exact(&self, target: &Target) -> bool {
-        self.wrist.is_some() && (N == 5 || matches!(target.orientation, Orientation::Full(_)))
+        let is_exact = match target.orientation {
+            Orientation::Full(_) => true,
+            Orientation::Axis { .. } => N == 5,
+            Orientation::Free => false,
+        };
+        is_exact && self.wrist.is_some()
     }
 
     /// Whether a candidate of the closed form comes so near that it is worth a
@@ -402,6 +413,7 @@ fn check<const N: usize>(target: &Target, seed: &SVector<f64, N>) -> Result<(), 
     let orientation = match &target.orientation {
         Orientation::Full(rotation) => rotation.matrix().iter().all(|entry| entry.is_finite()),
         Orientation::Axis { tool, direction } => tool.iter().chain(direction.iter()).all(|entry| entry.is_finite()),
+        Orientation::Free => true,
     };
     let finite = orientation && target.position.iter().chain(seed.iter()).all(|entry| entry.is_finite());
     if finite { Ok(()) } else { Err(Unreached::NotFinite) }

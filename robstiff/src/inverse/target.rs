@@ -24,6 +24,19 @@ pub enum Orientation {
         /// Its direction in the base frame.
         direction: Unit<Vector3<f64>>,
     },
+    /// Any: all that an arm of fewer than five axes can be asked for.
+    Free,
+}
+
+impl Orientation {
+    /// The same after a turn in the base frame.
+    pub(crate) fn turned(self, turn: &Rotation3<f64>) -> Self {
+        match self {
+            Self::Full(rotation) => Self::Full(turn * rotation),
+            Self::Axis { tool, direction } => Self::Axis { tool, direction: turn * direction },
+            Self::Free => Self::Free,
+        }
+    }
 }
 
 /// How far a pose is from its target.
@@ -52,11 +65,7 @@ impl Target {
     #[must_use]
     pub fn placed(&self, place: &Matrix4<f64>) -> Self {
         let turn = rotation(place);
-        let orientation = match self.orientation {
-            Orientation::Full(rotation) => Orientation::Full(turn * rotation),
-            Orientation::Axis { tool, direction } => Orientation::Axis { tool, direction: turn * direction },
-        };
-        Self { position: turn * self.position + translation(place), orientation }
+        Self { position: turn * self.position + translation(place), orientation: self.orientation.turned(&turn) }
     }
 
     /// How far a pose of the TCP (homogeneous, 4 x 4, m) is from this target.
@@ -72,6 +81,7 @@ impl Target {
         let turn = match &self.orientation {
             Orientation::Full(rotation) => rotation_vector(&(rotation.matrix() * current.transpose())),
             Orientation::Axis { tool, direction } => turn_between(&(current * tool.as_ref()), direction),
+            Orientation::Free => Vector3::zeros(),
         };
         (self.position - translation(pose), turn)
     }

@@ -107,6 +107,8 @@ impl<const N: usize> Wrist<N> {
                     self.about(&free, seed, &mut found);
                 }
             }
+            // Where any turn will do there are too many to go through.
+            Orientation::Free => {}
         }
     }
 

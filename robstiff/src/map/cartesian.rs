@@ -84,11 +84,7 @@ impl<'r, R: Robot<N> + Sync, const N: usize> CartesianSpace<'r, R, N> {
     /// base frame.
     pub fn in_frame(mut self, frame: Isometry3<f64>) -> Self {
         let turn = frame.rotation.to_rotation_matrix();
-        let turned = |orientation| match orientation {
-            Orientation::Full(rotation) => Orientation::Full(turn * rotation),
-            Orientation::Axis { tool, direction } => Orientation::Axis { tool, direction: turn * direction },
-        };
-        self.orientations = self.tool.orientations().into_iter().map(turned).collect();
+        self.orientations = self.tool.orientations().into_iter().map(|one| one.turned(&turn)).collect();
         Self { frame, ..self }
     }
 

@@ -72,6 +72,7 @@ fn orientations_are_read_in_every_form() {
         match target.orientation {
             super::Orientation::Full(rotation) => rotation.matrix() * Vector3::new(1.0, 2.0, 3.0),
             super::Orientation::Axis { direction, .. } => direction.into_inner(),
+            super::Orientation::Free => panic!("a file says how the tool is turned"),
         }
     };
     // A quarter turn about z.
