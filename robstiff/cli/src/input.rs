@@ -12,15 +12,18 @@ use crate::failure::Failure;
 use crate::{output, text};
 
 /// Reads a robot's description, with its file's name: a file, or where there is
-/// none of that name, a robot of the catalogue.
+/// none of that name, a robot of the catalogue. A folder with its measurements may have its name.
 pub fn robot(path: &Path) -> Result<(Description, String), Failure> {
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-    if path.exists() {
+    if path.exists() && !path.is_dir() {
         return Ok((Description::read(path)?, name.into_owned()));
     }
     if let Some(text) = catalogue::find(&name).filter(|_| path.as_os_str() == name.as_ref()) {
         let name = format!("{}.yaml", name.trim_end_matches(".yaml"));
         return Ok((Description::parse(&name, text)?, name));
+    }
+    if path.is_dir() {
+        return Err(Failure::new(format_args!("{} is a folder, a robot's description is a file", path.display())));
     }
     let names: Vec<&str> = catalogue::catalogue().iter().map(|(name, _)| name.trim_end_matches(".yaml")).collect();
     Err(Failure::new(format!(

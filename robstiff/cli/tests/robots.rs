@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{fail, folder, inside, json, keys, names, run, succeed};
+use common::{fail, folder, inside, json, keys, measured, names, robstiff, run, succeed};
 use robstiff_robots::catalogue::catalogue;
 
 #[test]
@@ -213,4 +213,14 @@ fn a_pose_of_many_turns_is_asked_about() {
         ran.err
     );
     assert_eq!(show("0,-90 deg,1.5,0,1,0").err, "");
+}
+
+#[test]
+fn a_folder_does_not_hide_a_robot_of_its_name() {
+    let mut command = robstiff(&["show", "fanuc-r2000ic"]);
+    let shown = command.current_dir(measured().parent().unwrap()).output().unwrap();
+    assert!(shown.status.success(), "{}", String::from_utf8_lossy(&shown.stderr));
+    let folder = measured();
+    let said = fail(1, &["show", folder.to_str().unwrap()]);
+    assert!(said.contains("fanuc-r2000ic is a folder, a robot's description is a file"), "{said}");
 }
