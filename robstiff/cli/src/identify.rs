@@ -35,7 +35,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut files = Files::default();
     files.protect_campaign(&campaign);
     let robot = arguments.out.join("robot.yaml");
-    files.foresee(&arguments.json)?;
+    files.foresee(arguments.json.iter().chain([&robot]))?;
     files.foresee_robot(&robot, &campaign.robot)?;
     let found = identify(&campaign).map_err(Failure::about(&campaign))?;
     files.add(robot, found.description.to_yaml());

@@ -65,16 +65,18 @@ impl Files {
     }
 
     /// Stops, before the work, where one of the files that will come of it could not be
-    /// written, or is one that is read.
+    /// written, is one that is read, or is another of them, each with a text of its own.
     ///
     /// # Errors
     /// Which, and why not.
-    pub fn foresee(&self, paths: impl IntoIterator<Item: AsRef<Path>>) -> Result<(), Failure> {
-        paths.into_iter().try_for_each(|path| {
-            let path = path.as_ref();
-            self.refuse(path, &[])?;
-            Target::of(path).and_then(|target| target.check()).map_err(|error| cannot_write(path, &error))
-        })
+    pub fn foresee<P: AsRef<Path>>(&self, paths: impl IntoIterator<Item = P>) -> Result<(), Failure> {
+        let paths: Vec<P> = paths.into_iter().collect();
+        let paths: Vec<&Path> = paths.iter().map(AsRef::as_ref).collect();
+        for (index, path) in paths.iter().enumerate() {
+            self.refuse(path, &paths[..index])?;
+            Target::of(path).and_then(|target| target.check()).map_err(|error| cannot_write(path, &error))?;
+        }
+        Ok(())
     }
 
     /// The same for a robot's description: an earlier one of the same robot is replaced, what is

@@ -148,3 +148,35 @@ fn an_option_without_effect_is_refused() {
     let said = fail(2, &view);
     assert!(said.contains("--column") && !folder.join("page.html").exists(), "{said}");
 }
+
+#[test]
+fn two_texts_in_one_file_are_refused_before_the_work() {
+    let folder = folder("refused-twice");
+    let campaign = copy(&folder);
+    let out = inside(&folder, "out");
+    for name in ["report.html", "robot.yaml", "correction.json"] {
+        // More draws than anybody waits for.
+        let json = format!("{out}/{name}");
+        let said = fail(2, &["trace", &campaign, "--out", &out, "--json", &json, "--correction", "--draws", "1000000"]);
+        assert!(said.contains("would be written twice"), "{said}");
+    }
+    let robot = format!("{out}/robot.yaml");
+    let said = fail(2, &["identify", &campaign, "--out", &out, "--json", &robot]);
+    assert!(said.contains("robot.yaml would be written twice"), "{said}");
+    let (page, same) = (inside(&folder, "page.html"), format!("{}/./page.html", folder.display()));
+    let said = fail(2, &["view", "rv130hsc", "--out", &page, "--json", &same]);
+    assert!(said.contains("would be written twice") && !folder.join("page.html").exists(), "{said}");
+}
+
+#[test]
+fn a_correction_of_an_earlier_trace_is_told() {
+    let folder = folder("told-stale");
+    let campaign = copy(&folder);
+    let out = folder.join("out");
+    fs::create_dir(&out).unwrap();
+    write(&out, "correction.json", "{}\n");
+    let trace = ["trace", &campaign, "--out", out.to_str().unwrap(), "--draws", "99"];
+    let ran = run(&[&trace[..], &["--json", out.join("trace.json").to_str().unwrap()]].concat());
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    assert!(ran.err.contains("correction.json is of an earlier trace"), "{}", ran.err);
+}

@@ -85,8 +85,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut files = Files::default();
     files.protect_campaign(&campaign);
     let named = |name: &str| arguments.out.as_ref().map(|out| out.join(name));
-    let documents: Vec<PathBuf> = arguments.json.iter().cloned().chain(named("plan.json")).collect();
-    let tables: Vec<PathBuf> = arguments.csv.iter().cloned().chain(named("plan.csv")).collect();
+    let mut documents: Vec<PathBuf> = arguments.json.iter().cloned().chain(named("plan.json")).collect();
+    let mut tables: Vec<PathBuf> = arguments.csv.iter().cloned().chain(named("plan.csv")).collect();
+    // One text may be asked for twice by one name.
+    documents.dedup();
+    tables.dedup();
     files.foresee(documents.iter().chain(&tables))?;
     let spinner = spinner();
     let tracing = trace::Options { seed: arguments.seed, ..trace::Options::default() };

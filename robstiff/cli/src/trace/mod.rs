@@ -66,8 +66,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let campaign = input::campaign(&arguments.campaign)?;
     let mut files = Files::default();
     files.protect_campaign(&campaign);
-    let [robot, told, shown] = ["robot.yaml", "trace.json", "report.html"].map(|name| arguments.out.join(name));
-    files.foresee(arguments.json.iter().chain([&told, &shown]))?;
+    let [robot, told, shown, correcting] =
+        ["robot.yaml", "trace.json", "report.html", "correction.json"].map(|name| arguments.out.join(name));
+    // One text may be asked for twice by one name.
+    let again = arguments.json.iter().filter(|path| **path != told);
+    let correction_too = arguments.correction.then_some(&correcting);
+    files.foresee(again.chain([&robot, &told, &shown]).chain(correction_too))?;
     files.foresee_robot(&robot, &campaign.robot)?;
     let spinner = spinner();
     spinner.set_message("asking the readings themselves");
@@ -104,10 +108,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     files.add(told, document);
     files.add(shown, report);
+    let mut stale = correcting.exists();
     if let Some(Some(found)) = &correction {
-        files.add(arguments.out.join("correction.json"), json::document(&correction::document(found, &traced)));
+        stale = false;
+        files.add(&correcting, json::document(&correction::document(found, &traced)));
     }
     let said = files.write()?;
+    if stale {
+        output::complain(format_args!(
+            "warning: {} is of an earlier trace, and does not belong to the robot that is written beside it now",
+            correcting.display()
+        ));
+    }
     output::print(page + "\n" + &said)
 }
 
