@@ -12,9 +12,11 @@ use robstiff_robots::Description;
 use crate::failure::Failure;
 
 mod growing;
+mod progress;
 mod target;
 
 pub use growing::Growing;
+pub use progress::working;
 use target::{Target, folder_of, present, temporary};
 
 /// Prints to standard output. A reader that has gone away (`| head`) has seen
@@ -31,7 +33,7 @@ pub fn print(text: impl fmt::Display) -> Result<(), Failure> {
 
 /// Prints to standard error; where that is gone, nobody is there to be told.
 pub fn complain(message: impl fmt::Display) {
-    let _ = writeln!(io::stderr(), "{message}");
+    let _ = progress::beside(|| writeln!(io::stderr(), "{message}"));
 }
 
 /// Files to write, all together when everything is computed.

@@ -211,9 +211,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     files.foresee(arguments.csv.iter().chain(&arguments.json))?;
     let variants = arguments.control.variants(&name);
     let silent = arguments.control.lost.map(|Loss([from, length])| from..from + length);
-    let seen = with_robot!(&robot, |arm| {
-        let model = Generic::new(&model).map_err(|error| Failure::new(format!("{name}: {error}")))?;
-        asked.simulate((&arm, &model), &variants, silent.as_ref())
+    let seen = output::working("simulating the control", |_| {
+        with_robot!(&robot, |arm| {
+            let model = Generic::new(&model).map_err(|error| Failure::new(format!("{name}: {error}")))?;
+            asked.simulate((&arm, &model), &variants, silent.as_ref())
+        })
     })?;
     if let Some(path) = &arguments.csv {
         files.add(path, page::table(&seen, &variants));

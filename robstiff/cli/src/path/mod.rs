@@ -86,7 +86,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     files.protect(&arguments.robot);
     files.protect(&arguments.path);
     files.foresee(arguments.out.iter().chain(&arguments.json))?;
-    let solved = with_robot!(&robot, |robot| solve(&robot, &path, start.as_deref(), asked.as_ref()))?;
+    let solved = output::working("solving the path", |_| {
+        with_robot!(&robot, |robot| solve(&robot, &path, start.as_deref(), asked.as_ref()))
+    })?;
     if let Some(out) = &arguments.out {
         files.add(out, table(&robot, &solved));
     }

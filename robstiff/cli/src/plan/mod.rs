@@ -6,13 +6,13 @@ mod page;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
+use robstiff::identify::Error;
 use robstiff::plan::{self, Options, plan};
 use robstiff::trace::{self, trace};
 use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
-use crate::trace::spinner;
 use crate::{input, json};
 
 /// Proposes what to measure next: the poses and loads that best tell apart what a campaign could not
@@ -91,9 +91,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     documents.dedup();
     tables.dedup();
     files.foresee(documents.iter().chain(&tables))?;
-    let spinner = spinner();
     let tracing = trace::Options { seed: arguments.seed, ..trace::Options::default() };
-    let traced = trace(&campaign, &tracing, &|stage| spinner.set_message(stage.to_owned()));
     let options = Options {
         poses: arguments.poses.into(),
         criterion: match arguments.criterion {
@@ -108,10 +106,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         floor: arguments.floor,
         ..Options::default()
     };
-    spinner.set_message("choosing poses");
-    let planned = traced.and_then(|traced| Ok((plan(&campaign, &traced, &options)?, traced)));
-    spinner.finish_and_clear();
-    let (planned, traced) = planned?;
+    let (planned, traced) = output::working("tracing", |spinner| -> Result<_, Error> {
+        let traced = trace(&campaign, &tracing, &|stage| spinner.set_message(stage.to_owned()))?;
+        spinner.set_message("choosing poses");
+        Ok((plan(&campaign, &traced, &options)?, traced))
+    })?;
 
     let document = json::document(&document::document(&planned, &traced, &campaign));
     let table = document::table(&planned, &campaign);

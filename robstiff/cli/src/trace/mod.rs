@@ -11,10 +11,9 @@ mod triage;
 pub mod words;
 
 use std::path::PathBuf;
-use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
 use robstiff::campaign::Data;
+use robstiff::identify::Error;
 use robstiff::plan::next;
 use robstiff::trace::{Correction, Options, trace};
 
@@ -73,22 +72,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let correction_too = arguments.correction.then_some(&correcting);
     files.foresee(again.chain([&robot, &told, &shown]).chain(correction_too))?;
     files.foresee_robot(&robot, &campaign.robot)?;
-    let spinner = spinner();
-    spinner.set_message("asking the readings themselves");
-    let triage = robstiff::triage::triage(&campaign);
-    let traced = trace(&campaign, &options, &|stage| spinner.set_message(stage.to_owned()));
-    spinner.set_message("choosing what to measure next");
-    // A trace stands without proposals, where none can be made.
-    let traced = traced.map(|mut traced| {
+    let (triage, traced, correction) = output::working("asking the readings themselves", |spinner| -> Result<_, Error> {
+        let triage = robstiff::triage::triage(&campaign);
+        let mut traced = trace(&campaign, &options, &|stage| spinner.set_message(stage.to_owned()))?;
+        spinner.set_message("choosing what to measure next");
+        // A trace stands without proposals, where none can be made.
         traced.next = next(&campaign, &traced, PROPOSALS).unwrap_or_default();
-        traced
-    });
-    let correction = match (&traced, &campaign.data) {
-        (Ok(traced), Data::Displacement(_)) if arguments.correction => Some(Correction::of(&campaign, traced)),
-        _ => None,
-    };
-    spinner.finish_and_clear();
-    let traced = traced.map_err(Failure::about(&campaign))?;
+        let correction = match &campaign.data {
+            Data::Displacement(_) if arguments.correction => Some(Correction::of(&campaign, &traced)),
+            _ => None,
+        };
+        Ok((triage, traced, correction))
+    })
+    .map_err(Failure::about(&campaign))?;
 
     let document = document::document(&traced, &triage, &campaign);
     let mut report = content::report(&traced, &triage, &campaign, &options)?;
@@ -121,13 +117,4 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     output::print(page + "\n" + &said)
-}
-
-/// Shows on a terminal that something goes on, and hides elsewhere.
-pub fn spinner() -> ProgressBar {
-    let spinner = ProgressBar::new_spinner();
-    let style = ProgressStyle::with_template("{spinner} {msg} ({elapsed})").expect("the template is one");
-    spinner.set_style(style);
-    spinner.enable_steady_tick(Duration::from_millis(100));
-    spinner
 }
