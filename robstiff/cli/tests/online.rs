@@ -149,7 +149,7 @@ fn what_nobody_would_wait_for_is_refused() {
         assert!(said.contains("points in time") && said.contains(change), "{option} {value}: {said}");
     }
     let (pocket, cut) = (file("pocket.csv"), file("roughing.yaml"));
-    let said = fail(1, &["online", "rv130hsc", &pocket, "--tool-axis", "x", "--cut", &cut, "--step", "1e-9 s"]);
+    let said = fail(2, &["online", "rv130hsc", &pocket, "--tool-axis", "x", "--cut", &cut, "--step", "1e-9 s"]);
     assert!(said.contains("takes 13.28 s") && said.contains("give a longer --step"), "{said}");
 }
 

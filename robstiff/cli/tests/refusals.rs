@@ -180,3 +180,12 @@ fn a_correction_of_an_earlier_trace_is_told() {
     assert_eq!(ran.code, 0, "{}", ran.err);
     assert!(ran.err.contains("correction.json is of an earlier trace"), "{}", ran.err);
 }
+
+/// At a force as along a path.
+#[test]
+fn a_control_step_that_nobody_would_wait_for_is_wrong_usage() {
+    for load in [&["--force", "0, 0, -400 N"][..], &[&file("pocket.csv"), "--tool-axis", "x", "--cut", &file("roughing.yaml")]] {
+        let said = fail(2, &[&["online", "rv130hsc", "--step", "1e-9 s"][..], load].concat());
+        assert!(said.contains("give a longer --step"), "{said}");
+    }
+}

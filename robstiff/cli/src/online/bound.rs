@@ -60,7 +60,7 @@ pub fn along(name: &str, duration: f64, variants: &[Variant]) -> Result<(), Fail
     let most = efforts.max_by(|one, other| one.instants().total_cmp(&other.instants()));
     match most.filter(|effort| effort.instants() > ALONG) {
         None => Ok(()),
-        Some(effort) => Err(Failure::new(format!(
+        Some(effort) => Err(Failure::Usage(format!(
             "{name} takes {} s, {} points in time with a control step of {} s, of which {} are the most: give a longer \
              --step",
             significant(duration, 4),
