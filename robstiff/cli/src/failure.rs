@@ -67,12 +67,6 @@ impl From<ReadError> for Failure {
     }
 }
 
-impl From<robstiff::identify::Error> for Failure {
-    fn from(error: robstiff::identify::Error) -> Self {
-        Self::new(error)
-    }
-}
-
 impl From<robstiff::path::Unsolved> for Failure {
     fn from(unsolved: robstiff::path::Unsolved) -> Self {
         Self::Explained(unsolved.to_string())

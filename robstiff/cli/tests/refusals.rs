@@ -189,3 +189,13 @@ fn a_control_step_that_nobody_would_wait_for_is_wrong_usage() {
         assert!(said.contains("give a longer --step"), "{said}");
     }
 }
+
+#[test]
+fn what_cannot_be_planned_names_its_campaign() {
+    let folder = folder("refused-rows");
+    let campaign = copy(&folder);
+    let loads = fs::read_to_string(folder.join("loads.csv")).unwrap();
+    write(&folder, "loads.csv", &loads.lines().take(2).map(|line| format!("{line}\n")).collect::<String>());
+    let said = fail(1, &["plan", &campaign, "--floor", "90 m"]);
+    assert!(said.starts_with(&format!("error: {campaign}: ")), "{said}");
+}

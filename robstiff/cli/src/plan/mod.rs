@@ -110,7 +110,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let traced = trace(&campaign, &tracing, &|stage| spinner.set_message(stage.to_owned()))?;
         spinner.set_message("choosing poses");
         Ok((plan(&campaign, &traced, &options)?, traced))
-    })?;
+    })
+    .map_err(Failure::about(&campaign))?;
 
     let document = json::document(&document::document(&planned, &traced, &campaign));
     let table = document::table(&planned, &campaign);

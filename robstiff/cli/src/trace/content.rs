@@ -136,10 +136,11 @@ fn errors(trace: &Trace, campaign: &Campaign) -> Result<Vec<PoseError>, Failure>
         Data::Position(data) => &data.poses,
         Data::Clamped(rows) => return Ok(clamped::errors(trace, campaign, rows)),
     };
-    let declared = predict(&campaign.robot, campaign)?;
+    let predict = |robot| predict(robot, campaign).map_err(Failure::about(campaign));
+    let declared = predict(&campaign.robot)?;
     let mut without_effects = trace.description.clone();
     without_effects.effects.truncate(campaign.robot.effects.len());
-    let (with, without) = (predict(&trace.description, campaign)?, predict(&without_effects, campaign)?);
+    let (with, without) = (predict(&trace.description)?, predict(&without_effects)?);
 
     let left_out = story::left_out(trace);
     let mut sums = vec![Sums::default(); poses.len()];
