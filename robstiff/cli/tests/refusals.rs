@@ -133,8 +133,10 @@ fn an_option_without_effect_is_refused() {
     let joints = write(&folder, "joints.csv", "q1,q2,q3,q4,q5\n0,-0.5,0.5,0,1\n0.1,-0.5,0.5,0,1\n");
     let said = fail(2, &["path", "rv130hsc", &joints, "--place", "1 m, 0, 0, 0, 0, 0"]);
     assert!(said.contains("joints.csv gives joint coordinates, which stand in no frame"), "{said}");
+    let said = fail(2, &["path", "rv130hsc", &joints, "--start", "0,0,0,0,0"]);
+    assert!(said.contains("--start: ") && said.contains("which are taken as they are"), "{said}");
     let force = ["--force", "0, 0, -400 N"];
-    for option in [["--feed", "600 mm/min"], ["--toward", "0,1,0"]] {
+    for option in [["--feed", "600 mm/min"], ["--toward", "0,1,0"], ["--spindle-axis", "x"], ["--tool-axis", "x"]] {
         let said = fail(2, &[&["online", "rv130hsc"][..], &force, &option].concat());
         assert!(said.contains(option[0]), "{said}");
     }
@@ -143,7 +145,13 @@ fn an_option_without_effect_is_refused() {
         let said = fail(2, &[&["path", "rv130hsc", &joints, "--forces", &forces][..], option].concat());
         assert!(said.contains(option[0]), "{said}");
     }
+    write(&folder, "record.csv", "t [s],Fx,Fy,Fz\n0,0,0,0\n1,100,50,-20\n2,0,0,0\n");
+    let record = write(&folder, "record.yaml", "measured: {file: record.csv, frame: base, on: tool}\n");
+    let said = fail(2, &["online", "rv130hsc", "--cut", &record, "--frequencies", "5 Hz"]);
+    assert!(said.contains("--frequencies: ") && said.contains("which are played once"), "{said}");
     let page = inside(&folder, "page.html");
+    let said = fail(2, &["view", "rv130hsc", "--at", "0,0,0,0,0", "--column", "feed", "--out", &page]);
+    assert!(said.contains("--column"), "{said}");
     let view = ["view", "rv130hsc", "--campaign", &file("tracker.yaml"), "--column", "feed", "--out", &page];
     let said = fail(2, &view);
     assert!(said.contains("--column") && !folder.join("page.html").exists(), "{said}");

@@ -11,7 +11,7 @@ use robstiff::{Robot, with_robot};
 use robstiff_robots::Description;
 
 use super::reach::Reach;
-use super::{Arguments, Variant, bound};
+use super::{Arguments, FREQUENCIES, Frequencies, Variant, bound};
 use crate::failure::Failure;
 use crate::output::{self, Files};
 use crate::path::cutting::complain_of_feed;
@@ -129,7 +129,7 @@ impl Asked {
             return Ok(Self::Path { path: Box::new(path), source, axis, feed: load.feed, name });
         }
         let q = input::pose(load.at.as_deref(), robot)?;
-        let frequencies = load.frequencies.0.clone();
+        let frequencies = load.frequencies.as_ref().map_or(FREQUENCIES.to_vec(), |Frequencies(given)| given.clone());
         let sine = |wrench, name| Self::Sine { q: q.clone(), wrench, frequencies: frequencies.clone(), name };
         match (cut, load.force) {
             (Some((file, name)), _) => {
@@ -141,6 +141,11 @@ impl Asked {
                 if let Forces::Measured { force, .. } = &file.forces {
                     let sample = |sample: &robstiff::milling::Sample| Some((sample.time?, wrench(sample.force)));
                     if let Some(samples) = force.samples.iter().map(sample).collect() {
+                        if load.frequencies.is_some() {
+                            return Err(Failure::Usage(format!(
+                                "--frequencies: {name} records forces over time, which are played once"
+                            )));
+                        }
                         return Ok(Self::Record { q, samples, name });
                     }
                 }

@@ -21,6 +21,9 @@ use crate::stability::positive;
 use crate::{input, json};
 use loads::Asked;
 
+/// At which frequencies a force comes and goes where nothing else is said (Hz).
+const FREQUENCIES: [f64; 6] = [0.2, 0.5, 1.0, 2.0, 5.0, 10.0];
+
 /// By what share of themselves a controller takes the joints' compliances for too small where
 /// nothing else is said.
 const TOO_STIFF: f64 = 0.1;
@@ -73,17 +76,17 @@ struct LoadArguments {
     /// Where the feed of a cut at a pose goes, in the base frame
     #[arg(long, value_name = "x,y,z", default_value = "1,0,0", allow_hyphen_values = true, value_parser = direction, conflicts_with_all = ["path", "force"])]
     toward: Vector3<f64>,
-    /// Frequencies at which the force at a pose comes and goes
-    #[arg(long, value_name = "FREQUENCIES", default_value = "0.2, 0.5, 1, 2, 5, 10 Hz", allow_hyphen_values = true, value_parser = frequencies, conflicts_with = "path")]
-    frequencies: Frequencies,
+    /// Frequencies at which the force at a pose comes and goes; where left out, "0.2, 0.5, 1, 2, 5, 10 Hz"
+    #[arg(long, value_name = "FREQUENCIES", allow_hyphen_values = true, value_parser = frequencies, conflicts_with = "path")]
+    frequencies: Option<Frequencies>,
     /// The speed along a path that does not say it, e.g. "600 mm/min"
     #[arg(long, value_name = "SPEED", requires = "path", conflicts_with_all = ["force", "at"], allow_hyphen_values = true, value_parser = positive(Dimension::Speed))]
     feed: Option<f64>,
     /// The axis in the TCP's frame that `ux uy uz` point along, and that of the spindle: x, y, z, -x, -y or -z
-    #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = tool_axis)]
+    #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = tool_axis, conflicts_with = "force")]
     tool_axis: Unit<Vector3<f64>>,
     /// From the spindle to the tip, in the TCP's frame; where left out, `--tool-axis`, along a path without its sign
-    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = tool_axis)]
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = tool_axis, conflicts_with = "force")]
     spindle_axis: Option<Unit<Vector3<f64>>>,
 }
 

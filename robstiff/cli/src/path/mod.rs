@@ -69,6 +69,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warning in &path.warnings {
         output::complain(format_args!("warning: {warning}"));
     }
+    if start.is_some() && path.gives_joints() {
+        return Err(Failure::Usage(format!(
+            "--start: {} gives joint coordinates, which are taken as they are",
+            arguments.path.display()
+        )));
+    }
     if let Some(text) = &arguments.place {
         if path.gives_joints() {
             return Err(Failure::Usage(format!(

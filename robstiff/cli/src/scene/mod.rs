@@ -39,7 +39,7 @@ pub struct Arguments {
     #[arg(long, value_name = "Fx,Fy,Fz", allow_hyphen_values = true, value_parser = force)]
     force: Option<Force>,
     /// The column of the path that colours it; the deviation under the force where left out
-    #[arg(long, value_name = "NAME", requires = "path", conflicts_with = "campaign")]
+    #[arg(long, value_name = "NAME", requires = "path", conflicts_with_all = ["campaign", "at"])]
     column: Option<String>,
     /// The page
     #[arg(long, value_name = "PAGE.html")]
