@@ -151,17 +151,28 @@ pub fn coordinates_of(option: &str, given: &str, robot: &Description) -> Result<
     parts.iter().enumerate().map(coordinate).collect()
 }
 
-/// The pose that `--at` gives, or where it does not the [`default_coordinates`]; says which
-/// coordinates the joints' limits leave out.
-pub fn pose(at: Option<&str>, robot: &Description) -> Result<Vec<f64>, Failure> {
-    let q = match at {
-        Some(text) => coordinates(text, robot)?,
-        None => default_coordinates(robot),
-    };
-    for note in outside_limits(&q, robot) {
-        output::complain(format_args!("note: {note}"));
+// No doc comment: clap would take it for that of the command.
+#[derive(clap::Args)]
+pub struct At {
+    /// The pose: joint coordinates in rad (or m), or with their unit as in "0.5, 30 deg, -pi/2"; where left out all at
+    /// zero, but a joint whose limits leave zero out in their middle
+    #[arg(long, value_name = "q1,q2,..", allow_hyphen_values = true)]
+    at: Option<String>,
+}
+
+impl At {
+    /// The pose that `--at` gives, or where it does not the [`default_coordinates`]; says which
+    /// coordinates the joints' limits leave out.
+    pub fn pose(&self, robot: &Description) -> Result<Vec<f64>, Failure> {
+        let q = match &self.at {
+            Some(text) => coordinates(text, robot)?,
+            None => default_coordinates(robot),
+        };
+        for note in outside_limits(&q, robot) {
+            output::complain(format_args!("note: {note}"));
+        }
+        Ok(q)
     }
-    Ok(q)
 }
 
 /// Asks, of numbers given to joints without a unit, whether they are in degrees, if one turns

@@ -224,3 +224,11 @@ fn a_folder_does_not_hide_a_robot_of_its_name() {
     let said = fail(1, &["show", folder.to_str().unwrap()]);
     assert!(said.contains("fanuc-r2000ic is a folder, a robot's description is a file"), "{said}");
 }
+
+#[test]
+fn help_says_where_an_arm_stands_that_nobody_places() {
+    for command in ["show", "view", "stability", "online"] {
+        let help = succeed(&[command, "--help"]).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(help.contains("a joint whose limits leave zero out in their middle"), "{command}: {help}");
+    }
+}

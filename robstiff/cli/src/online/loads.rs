@@ -128,7 +128,7 @@ impl Asked {
             let axis = load.spindle_axis.unwrap_or(Unit::new_unchecked(load.tool_axis.abs()));
             return Ok(Self::Path { path: Box::new(path), source, axis, feed: load.feed, name });
         }
-        let q = input::pose(load.at.as_deref(), robot)?;
+        let q = load.at.pose(robot)?;
         let frequencies = load.frequencies.as_ref().map_or(FREQUENCIES.to_vec(), |Frequencies(given)| given.clone());
         let sine = |wrench, name| Self::Sine { q: q.clone(), wrench, frequencies: frequencies.clone(), name };
         match (cut, load.force) {

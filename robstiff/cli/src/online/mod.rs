@@ -40,7 +40,7 @@ pub struct Arguments {
     #[arg(value_name = "ROBOT.yaml")]
     robot: PathBuf,
     /// The tool path (robstiff/cli/docs/path.md); without it, a pose
-    #[arg(value_name = "PATH.csv")]
+    #[arg(value_name = "PATH.csv", conflicts_with = "at")]
     path: Option<PathBuf>,
     #[command(flatten)]
     load: LoadArguments,
@@ -70,9 +70,8 @@ struct LoadArguments {
     /// A force at a pose, in the base frame, e.g. "0, 0, -400 N"
     #[arg(long, value_name = "Fx,Fy,Fz", allow_hyphen_values = true, value_parser = force, conflicts_with = "path")]
     force: Option<Force>,
-    /// The pose: joint coordinates in rad (or m), or with their unit as in "0.5, 30 deg, -pi/2"; zero where left out
-    #[arg(long, value_name = "q1,q2,..", allow_hyphen_values = true, conflicts_with = "path")]
-    at: Option<String>,
+    #[command(flatten)]
+    at: input::At,
     /// Where the feed of a cut at a pose goes, in the base frame
     #[arg(long, value_name = "x,y,z", default_value = "1,0,0", allow_hyphen_values = true, value_parser = direction, conflicts_with_all = ["path", "force"])]
     toward: Vector3<f64>,

@@ -25,15 +25,14 @@ pub struct Arguments {
     /// The robot's description, or the name of a robot in the catalogue
     #[arg(value_name = "ROBOT.yaml")]
     robot: PathBuf,
-    /// The pose: joint coordinates in rad (or m), or with their unit as in "0.5, 30 deg, -pi/2"; zero where left out
-    #[arg(long, value_name = "q1,q2,..", allow_hyphen_values = true, conflicts_with_all = ["path", "campaign"])]
-    at: Option<String>,
+    #[command(flatten)]
+    at: input::At,
     /// A table of joint coordinates `q1 [deg]` .. and, where there are, forces `Fx [N]` .. and moments `Mx [Nm]` .., row by row
-    #[arg(long, value_name = "SOLVED.csv", conflicts_with = "campaign")]
+    #[arg(long, value_name = "SOLVED.csv", conflicts_with_all = ["campaign", "at"])]
     path: Option<PathBuf>,
     /// The poses of a campaign, with the displacements that it measured and those that the robot predicts, or how far
     /// positions are off
-    #[arg(long, value_name = "CAMPAIGN.yaml", conflicts_with = "force")]
+    #[arg(long, value_name = "CAMPAIGN.yaml", conflicts_with_all = ["force", "at"])]
     campaign: Option<PathBuf>,
     /// The force on the tool in the base frame, e.g. "0, 0, -400 N"; the path's own where left out
     #[arg(long, value_name = "Fx,Fy,Fz", allow_hyphen_values = true, value_parser = force)]
@@ -89,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         Scene::new(&robot, Kind::Path, &rows(table, arguments.force)).coloured_by(column)
     } else {
-        let q = input::pose(arguments.at.as_deref(), &robot)?;
+        let q = arguments.at.pose(&robot)?;
         let row = Row { q, wrench: arguments.force.map(Force::wrench), value: None };
         Scene::new(&robot, Kind::Pose, &[row])
     };

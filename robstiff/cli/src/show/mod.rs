@@ -20,9 +20,8 @@ pub struct Arguments {
     /// The robot's description, or the name of a robot in the catalogue
     #[arg(value_name = "ROBOT.yaml")]
     robot: PathBuf,
-    /// The pose: joint coordinates in rad (or m), or with their unit as in "0.5, 30 deg, -pi/2"; zero where left out
-    #[arg(long, value_name = "q1,q2,..", allow_hyphen_values = true)]
-    at: Option<String>,
+    #[command(flatten)]
+    at: input::At,
     /// Write the same as JSON to FILE
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -31,7 +30,7 @@ pub struct Arguments {
 /// Shows a robot.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, _) = input::robot(&arguments.robot)?;
-    let q = input::pose(arguments.at.as_deref(), &robot)?;
+    let q = arguments.at.pose(&robot)?;
     let shown = Shown::new(&robot, q);
     let mut files = Files::default();
     files.protect(&arguments.robot);

@@ -34,9 +34,8 @@ pub struct Arguments {
     /// The cut (robstiff/cli/docs/forces.md); its depth is the one that is judged
     #[arg(value_name = "CUT.yaml")]
     cut: PathBuf,
-    /// The pose: joint coordinates in rad (or m), or with their unit as in "0.5, 30 deg, -pi/2"; zero where left out
-    #[arg(long, value_name = "q1,q2,..", allow_hyphen_values = true)]
-    at: Option<String>,
+    #[command(flatten)]
+    at: input::At,
     /// The frequency of the arm's first mode as measured in this pose, e.g. "15 Hz"; by the links' masses where left out
     #[arg(long, value_name = "FREQUENCY", allow_hyphen_values = true, value_parser = positive(Dimension::Frequency))]
     frequency: Option<f64>,
@@ -121,7 +120,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "--greatest: {greatest} mm is less than the depth of the cut, {depth} mm, which is the one that is judged"
         )));
     }
-    let q = input::pose(arguments.at.as_deref(), &robot)?;
+    let q = arguments.at.pose(&robot)?;
     let mut files = Files::default();
     files.protect(&arguments.robot);
     forces::protect(&mut files, &arguments.cut, &file);
