@@ -53,6 +53,16 @@ pub fn with_unit(text: &str, dimension: Dimension) -> Result<f64, String> {
     Ok(value)
 }
 
+/// A quantity above zero, with its unit.
+pub fn positive(dimension: Dimension) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |text| above_zero(with_unit(text, dimension)?, dimension)
+}
+
+/// The same of what is read already.
+pub fn above_zero(value: f64, dimension: Dimension) -> Result<f64, String> {
+    if value > 0.0 { Ok(value) } else { Err(format!("{} above zero is expected here", dimension.name())) }
+}
+
 /// A whole number of an option, from and up to some.
 pub fn whole<T: TryFrom<u64>>(from: u64, to: u64) -> impl Fn(&str) -> Result<T, String> + Clone {
     move |text| {
@@ -70,16 +80,26 @@ pub fn seed(text: &str) -> Result<u64, String> {
     whole(0, u64::MAX)(text)
 }
 
-/// Three quantities; the unit of the last is that of those without one.
-pub fn three_with_unit(parts: [&str; 3], dimension: Dimension) -> Result<[f64; 3], String> {
-    let [x, y, last] = parts.map(str::trim);
-    let unit = last.trim_start_matches(|c: char| c.is_ascii_digit() || ".+-eE".contains(c)).trim();
-    let quantity = |part: &str| {
+/// Several quantities; the unit of the last is that of those without one.
+pub fn all_with_unit(parts: &[&str], dimension: Dimension) -> Result<Vec<f64>, String> {
+    let unit = parts.last().map_or("", |last| last.trim_start_matches(|c: char| c == ' ' || is_of_number(c)).trim());
+    let quantity = |part: &&str| {
+        let part = part.trim();
         let is_bare = part.ends_with(|c: char| c.is_ascii_digit() || c == '.');
-        let whole = if is_bare { format!("{part} {unit}") } else { part.to_owned() };
+        let whole = if is_bare && !unit.is_empty() { format!("{part} {unit}") } else { part.to_owned() };
         with_unit(&whole, dimension)
     };
-    Ok([quantity(x)?, quantity(y)?, quantity(last)?])
+    parts.iter().map(quantity).collect()
+}
+
+fn is_of_number(c: char) -> bool {
+    c.is_ascii_digit() || ".+-eE".contains(c)
+}
+
+/// Three of them.
+pub fn three_with_unit(parts: [&str; 3], dimension: Dimension) -> Result<[f64; 3], String> {
+    let all = all_with_unit(&parts, dimension)?;
+    Ok([all[0], all[1], all[2]])
 }
 
 /// What is said of a robot that has nothing that gives way.
@@ -248,6 +268,10 @@ mod tests {
         assert_eq!(force(["0", "0", "0"]), Ok([0.0; 3]));
         assert_eq!(force(["0", "0", "-400"]), Err("`-400` has no unit; write e.g. `-400 N`".to_owned()));
         assert!(force(["1", "2", "3 mm"]).is_err());
+        // With a blank before the unit or without.
+        assert_eq!(force(["150", "-200", "300N"]), Ok([150.0, -200.0, 300.0]));
+        assert_eq!(all_with_unit(&["12", " 4ms"], Dimension::Time), Ok(vec![0.012, 0.004]));
+        assert_eq!(all_with_unit(&["0.2", "5"], Dimension::Frequency), Ok(vec![0.2, 5.0]));
     }
 
     #[test]

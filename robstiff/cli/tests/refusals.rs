@@ -121,6 +121,8 @@ fn one_unit_is_that_of_all_three_components() {
         json(&told)["wrench"].clone()
     };
     assert_eq!(of("0.15, -0.2, 0.3 kN"), of("150 N, -200 N, 300 N"));
+    let pocket = [&file("pocket.csv"), "--tool-axis", "x", "--cut", &file("roughing.yaml")];
+    succeed(&[&["online", "rv130hsc", "--step", "12, 4ms", "--lost", "1, 0.5 s"][..], &pocket].concat());
     let said = fail(2, &["online", "rv130hsc", "--force", "150, -200, 300"]);
     assert!(said.contains("`150` has no unit; write e.g. `150 N`"), "{said}");
     let said = fail(2, &["trace", "campaign.yaml", "--out", "out", "--draws", "-1"]);

@@ -14,10 +14,10 @@ use robstiff_robots::Description;
 use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;
+use crate::input::positive;
 use crate::output::{self, Files};
 use crate::path::tool_axis;
 use crate::scene::{Force, force};
-use crate::stability::positive;
 use crate::{input, json};
 use loads::Asked;
 
@@ -141,23 +141,24 @@ fn frequencies(text: &str) -> Result<Frequencies, String> {
 /// Quantities above zero between commas; those without a unit have that of the
 /// last one.
 fn list(text: &str, dimension: Dimension) -> Result<Vec<f64>, String> {
-    let unit = text.rsplit(',').next().and_then(|last| last.trim().split_once(' ')).map_or("", |(_, unit)| unit);
-    let read = |part: &str| {
-        let bare = part.trim().bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
-        positive(dimension)(&if bare { format!("{} {unit}", part.trim()).trim().to_owned() } else { part.to_owned() })
-    };
-    text.split(',').map(read).collect()
+    let parts: Vec<&str> = text.split(',').collect();
+    let all = input::all_with_unit(&parts, dimension)?;
+    all.into_iter().map(|value| input::above_zero(value, dimension)).collect()
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {
-    let time = crate::input::with_unit(text, Dimension::Time)?;
+    input::with_unit(text, Dimension::Time).and_then(from_zero)
+}
+
+fn from_zero(time: f64) -> Result<f64, String> {
     if time >= 0.0 { Ok(time) } else { Err("a time of 0 or more is expected here".to_owned()) }
 }
 
 fn loss(text: &str) -> Result<Loss, String> {
     let parts: Vec<&str> = text.split(',').collect();
-    let [from, length] = parts[..] else { return Err("two times are expected, e.g. \"2 s, 0.5 s\"".to_owned()) };
-    Ok(Loss([not_negative(from)?, not_negative(length)?]))
+    let [_, _] = parts[..] else { return Err("two times are expected, e.g. \"2 s, 0.5 s\"".to_owned()) };
+    let times = input::all_with_unit(&parts, Dimension::Time)?;
+    Ok(Loss([from_zero(times[0])?, from_zero(times[1])?]))
 }
 
 fn direction(text: &str) -> Result<Vector3<f64>, String> {

@@ -11,8 +11,8 @@ use robstiff::path::{SolvedPath, ToolPath};
 use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;
+use crate::input::positive;
 use crate::output::{self, Files};
-use crate::stability::positive;
 use crate::text::significant;
 use crate::{forces, input};
 

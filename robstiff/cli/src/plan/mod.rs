@@ -12,6 +12,7 @@ use robstiff::trace::{self, trace};
 use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;
+use crate::input::positive;
 use crate::output::{self, Files};
 use crate::{input, json};
 
@@ -40,10 +41,10 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = Criterion::Compound)]
     criterion: Criterion,
     /// The greatest force, e.g. "800 N"; the campaign's where left out
-    #[arg(long, value_name = "FORCE", allow_hyphen_values = true, value_parser = size(Dimension::Force))]
+    #[arg(long, value_name = "FORCE", allow_hyphen_values = true, value_parser = positive(Dimension::Force))]
     force: Option<f64>,
     /// The greatest moment, e.g. "100 Nm"; the campaign's where left out
-    #[arg(long, value_name = "MOMENT", allow_hyphen_values = true, value_parser = size(Dimension::Torque))]
+    #[arg(long, value_name = "MOMENT", allow_hyphen_values = true, value_parser = positive(Dimension::Torque))]
     moment: Option<f64>,
     /// The least height of the tool above the base's origin, e.g. "300 mm"; the campaign's lowest where left out
     #[arg(long, value_name = "HEIGHT", allow_hyphen_values = true, value_parser = height)]
@@ -64,13 +65,6 @@ enum Criterion {
     Ds,
     /// All numbers (D-optimal)
     D,
-}
-
-fn size(dimension: Dimension) -> impl Fn(&str) -> Result<f64, String> + Clone {
-    move |text| {
-        let value = input::with_unit(text, dimension)?;
-        if value > 0.0 { Ok(value) } else { Err(format!("{} above zero is expected here", dimension.name())) }
-    }
 }
 
 fn height(text: &str) -> Result<f64, String> {

@@ -17,6 +17,7 @@ use robstiff_robots::quantity::{self, Dimension};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
+use crate::input::positive;
 use crate::output::{self, Files};
 use crate::path::tool_axis;
 use crate::{forces, input, json};
@@ -57,14 +58,6 @@ pub struct Arguments {
     /// Write the same as JSON to FILE
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-}
-
-/// Reads a quantity above zero, with its unit.
-pub fn positive(dimension: Dimension) -> impl Fn(&str) -> Result<f64, String> + Clone {
-    move |text| {
-        let value = input::with_unit(text, dimension)?;
-        if value > 0.0 { Ok(value) } else { Err(format!("{} above zero is expected here", dimension.name())) }
-    }
 }
 
 fn ratio(text: &str) -> Result<f64, String> {
