@@ -361,3 +361,11 @@ fn the_cut_to_compare_with_is_looked_at_as_well() {
     let said = fail(1, &["path", "kuka-kr270-r2700", &down, "--cut", &along_base, "--against", &record]);
     assert!(said.contains(&format!("so {record} has no direction anywhere")), "{said}");
 }
+
+#[test]
+fn feeds_between_degrees_are_told_as_they_are() {
+    let at = "0,-90 deg,90 deg,0,60 deg,0";
+    let cut = file("roughing.yaml");
+    let page = succeed(&["stability", "kuka-kr270-r2700", &cut, "--at", at, "--frequency", "15 Hz", "--feeds", "7"]);
+    assert!(page.lines().any(|line| line.trim_start().starts_with("102.9 ")), "{page}");
+}

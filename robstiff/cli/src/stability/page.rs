@@ -76,7 +76,7 @@ fn feeds(Predicted { feeds, stiffens, .. }: &Predicted) -> String {
     let header = ["angle [deg]", "feed x", "y", "z", "depth [mm]"];
     let mut table = Table::new(0, header.into_iter().chain(stiffens.then_some("softest [N/um]")));
     for feed in feeds.iter().step_by(feeds.len().div_ceil(ROWS)) {
-        let mut row = vec![decimals(feed.angle.to_degrees(), 0)];
+        let mut row = vec![degrees(feed.angle)];
         row.extend(feed.feed.iter().map(|&part| decimals(part, 3)));
         row.push(depth(feed));
         row.extend(stiffens.then(|| softest(&feed.modes).map_or("rigid".to_owned(), |k| significant(k * 1e-6, 4))));
@@ -103,7 +103,7 @@ fn verdict(predicted: &Predicted, cut: &Cut) -> String {
     }
     if let Some(best) = best(&predicted.feeds) {
         let along = direction(&best.feed);
-        let angle = decimals(best.angle.to_degrees(), 0);
+        let angle = degrees(best.angle);
         verdict += &match best.limits.limiting() {
             Some(limit) => {
                 let short = if limit < cut.depth { format!(", less than {given} mm") } else { String::new() };
@@ -120,6 +120,11 @@ fn verdict(predicted: &Predicted, cut: &Cut) -> String {
 
 fn depth(feed: &FeedLimit) -> String {
     feed.limits.limiting().map_or_else(|| "none".to_owned(), millimetres)
+}
+
+/// An angle in rad as degrees without the unit.
+fn degrees(angle: f64) -> String {
+    significant(angle.to_degrees(), 4)
 }
 
 /// A direction in the base frame.
