@@ -264,7 +264,7 @@ fn a_feed_is_stable_where_every_depth_up_to_the_cuts_is() {
         assert_eq!(stable(&feed), feed["limiting_depth_m"].as_f64().unwrap() > 0.002, "{feed}");
     }
     let at = "0,-90 deg,90 deg,0,60 deg,0";
-    let deep = changed(&folder("machining-deep"), "roughing.yaml", ["depth: 2 mm", "depth: 6 mm"]);
+    let deep = changed(&folder("machining-six"), "roughing.yaml", ["depth: 2 mm", "depth: 6 mm"]);
     let page = succeed(&["stability", "kuka-kr270-r2700", &deep, "--at", at, "--frequency", "15 Hz"]);
     assert!(page.contains("Up to 6 mm no feed is stable.\n"), "{page}");
     assert!(page.contains("to 5.79 mm, less than 6 mm.\n"), "{page}");

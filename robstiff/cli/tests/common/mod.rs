@@ -1,9 +1,11 @@
 //! What the tests of the command share.
 #![allow(dead_code, reason = "every test binary uses its own part")]
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::{Mutex, PoisonError};
 
 use serde_json::Value;
 
@@ -43,8 +45,11 @@ pub fn fail(code: i32, arguments: &[&str]) -> String {
     ran.err
 }
 
-/// An empty folder of a test's own.
+/// An empty folder of a test's own. A name is given once: tests run side by side.
 pub fn folder(name: &str) -> PathBuf {
+    static GIVEN: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
+    let is_new = GIVEN.lock().unwrap_or_else(PoisonError::into_inner).insert(name.to_owned());
+    assert!(is_new, "two tests have the folder {name}");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
