@@ -135,27 +135,51 @@ pub fn directional_stiffness<T: RealField + Copy>(compliance: &Matrix6<T>, direc
 /// The directions in which a force moves the TCP exactly along itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrincipalDirections<T> {
-    /// The displacement per force in each (m/N), the softest first.
+    /// The displacement per force in each (m/N), the softest first; none is below zero.
     pub compliances: Vector3<T>,
     /// The directions in the base frame, perpendicular unit vectors, a column
-    /// each; either sign.
+    /// each. Either sign is right; they have the one of [`upright`].
     pub directions: Matrix3<T>,
+}
+
+impl<T: RealField + Copy> PrincipalDirections<T> {
+    /// Those of a translational compliance, 3 x 3 and symmetric (m/N); `None` where an entry
+    /// is not finite.
+    pub fn of(block: &Matrix3<T>) -> Option<Self> {
+        is_finite(block).then(|| sorted(block))
+    }
+
+    /// The force per displacement in each (N/m); `None` where the robot does not yield that
+    /// way, to [`resolution`].
+    pub fn stiffnesses(&self) -> [Option<T>; 3] {
+        let rigid = self.compliances[0] * resolution();
+        let stiffness = |compliance: T| (compliance > rigid).then(|| compliance.recip());
+        [0, 1, 2].map(|i| stiffness(self.compliances[i]))
+    }
+}
+
+/// A direction, or the opposite one: that of which the largest component is above zero, which
+/// is easier to read.
+pub fn upright<T: RealField + Copy>(direction: Vector3<T>) -> Vector3<T> {
+    let largest = direction.iter().copied().reduce(|one, other| if other.abs() > one.abs() { other } else { one });
+    if largest.is_some_and(|largest| largest < T::zero()) { -direction } else { direction }
 }
 
 /// The eigenvalues and eigenvectors of the translational block; `None` where
 /// an entry is not finite.
 pub fn principal_directions<T: RealField + Copy>(compliance: &Matrix6<T>) -> Option<PrincipalDirections<T>> {
-    let block = translational_compliance(compliance);
-    if !is_finite(&block) {
-        return None;
-    }
-    let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(symmetric(&block));
+    PrincipalDirections::of(&translational_compliance(compliance))
+}
+
+fn sorted<T: RealField + Copy>(block: &Matrix3<T>) -> PrincipalDirections<T> {
+    let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(symmetric(block));
     let mut order = [0, 1, 2];
     order.sort_unstable_by(|&i, &j| eigenvalues[j].partial_cmp(&eigenvalues[i]).unwrap_or(core::cmp::Ordering::Equal));
-    Some(PrincipalDirections {
-        compliances: Vector3::from_fn(|i, _| eigenvalues[order[i]]),
-        directions: Matrix3::from_fn(|row, i| eigenvectors[(row, order[i])]),
-    })
+    PrincipalDirections {
+        // Rounding may leave a rigid direction a little below zero.
+        compliances: Vector3::from_fn(|i, _| eigenvalues[order[i]].max(T::zero())),
+        directions: Matrix3::from_columns(&order.map(|k| upright(eigenvectors.column(k).into_owned()))),
+    }
 }
 
 /// Rank and Moore-Penrose inverse of a symmetric matrix from its eigenvectors

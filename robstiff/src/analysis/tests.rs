@@ -116,3 +116,17 @@ mod of_robots {
         }
     }
 }
+
+#[test]
+fn principal_directions_are_told_in_one_way() {
+    let turned = nalgebra::Rotation3::<f64>::from_euler_angles(0.3, -2.0, 1.1);
+    let block: Matrix3<f64> =
+        turned.matrix() * Matrix3::from_diagonal(&Vector3::new(0.0, 2e-7, 4e-7)) * turned.matrix().transpose();
+    let found = PrincipalDirections::of(&block).unwrap();
+    for column in found.directions.column_iter() {
+        assert!(column[column.iamax()] > 0.0, "{column}");
+    }
+    let [softest, second, stiffest]: [Option<f64>; 3] = found.stiffnesses();
+    assert!((softest.unwrap() * 4e-7 - 1.0).abs() < 1e-9 && (second.unwrap() * 2e-7 - 1.0).abs() < 1e-9);
+    assert!(stiffest.is_none() && found.compliances[2] >= 0.0, "{found:?}");
+}

@@ -37,8 +37,7 @@ pub type Principal = (Matrix3<f64>, Vector3<f64>);
 
 /// The compliance in the softest direction (m/N), and that.
 pub fn softest((directions, compliances): &Principal) -> (f64, Vector3<f64>) {
-    // Rounding may leave a rigid arm a little below zero.
-    (compliances[0].max(0.0), directions.column(0).into_owned())
+    (compliances[0], directions.column(0).into_owned())
 }
 
 /// How far a force of a size (N) moves the TCP (m) at each pose, in the direction in which it

@@ -3,11 +3,11 @@
 use std::vec;
 use std::vec::Vec;
 
-use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix3, Vector3, Vector6};
 
 use super::largest::{Principal, largest, softest};
 use super::{Evaluate, Poses};
-use crate::analysis::principal_directions;
+use crate::analysis::{PrincipalDirections, upright};
 
 /// What a map shows of a pose. The first column is the one that is drawn and
 /// ranked.
@@ -131,7 +131,7 @@ impl Measure {
         };
         for (i, (triangle, (figure, direction))) in triangles.iter().zip(found).enumerate() {
             columns[0][i] = if self.worse_is_larger() { figure } else { figure.recip() };
-            let weak = direction * direction[direction.iamax()].signum();
+            let weak = upright(direction);
             for k in 0..3 {
                 columns[1 + k][i] = weak[k];
             }
@@ -150,8 +150,6 @@ impl Measure {
 fn principal(triangle: &[f64; 21]) -> Principal {
     let [xx, xy, xz, ..] = *triangle;
     let (yy, yz, zz) = (triangle[6], triangle[7], triangle[11]);
-    let mut compliance = Matrix6::zeros();
-    compliance.fixed_view_mut::<3, 3>(0, 0).copy_from_slice(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]);
-    principal_directions(&compliance)
+    PrincipalDirections::of(&Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz))
         .map_or((Matrix3::repeat(f64::NAN), Vector3::repeat(f64::NAN)), |found| (found.directions, found.compliances))
 }

@@ -273,14 +273,7 @@ fn pose<const N: usize>(description: &Description, robot: &Generic<N>, row: usiz
         q: q.iter().copied().collect(),
         points: points(description, robot, &q),
         compliance: [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(entry),
-        // Rounding may leave a rigid direction a little below zero.
-        principal: principal_directions(&compliance).map(|found| {
-            let along = |k: usize| {
-                let unit: Vector3<f64> = found.directions.column(k).into_owned();
-                (unit.transpose() * compliance.fixed_view::<3, 3>(0, 0) * unit)[0].max(0.0) * 1e6
-            };
-            [along(0), along(1), along(2)]
-        }),
+        principal: principal_directions(&compliance).map(|found| (found.compliances * 1e6).into()),
         displacement: None,
         measured: None,
         off: None,

@@ -87,10 +87,7 @@ fn shown<const N: usize>(robot: &impl Robot<N>, coordinates: Vec<f64>) -> Shown 
 fn directions(compliance: &Matrix6<f64>) -> impl Fn(&PrincipalDirections<f64>) -> [Direction; 3] {
     move |principal| {
         std::array::from_fn(|k| {
-            let column: Vector3<f64> = principal.directions.column(k).into_owned();
-            // Either sign is right; the one that mostly points along an axis is easier to read.
-            let sign = column[column.iamax()].signum();
-            direction(compliance, &Unit::new_unchecked(column * sign))
+            direction(compliance, &Unit::new_unchecked(principal.directions.column(k).into_owned()))
         })
     }
 }

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use robstiff::analysis::PrincipalDirections;
 use robstiff::milling::Cut;
 use robstiff::nalgebra::{SymmetricEigen, Vector3};
 use robstiff::stability::{FeedLimit, Limits, best};
@@ -53,20 +54,14 @@ pub fn page(predicted: &Predicted, robot: &Description, cut: &Cut, measured: boo
 }
 
 fn directions(predicted: &Predicted) -> String {
-    let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(*predicted.modes.compliance());
-    let mut order = [0, 1, 2];
-    order.sort_by(|&i, &j| eigenvalues[j].total_cmp(&eigenvalues[i]));
+    // The modes have none that is not finite.
+    let Some(principal) = PrincipalDirections::of(predicted.modes.compliance()) else { return String::new() };
     let mut table = Table::new(1, ["principal direction", "x", "y", "z", "stiffness [N/um]"]);
-    let rigid = eigenvalues.max() * robstiff::analysis::resolution::<f64>();
-    for (name, i) in ["softest", "second", "stiffest"].into_iter().zip(order) {
-        let unit: Vector3<f64> = eigenvectors.column(i).into_owned();
-        let stiffness = match eigenvalues[i] > rigid {
-            true => significant(1e-6 / eigenvalues[i], 4),
-            false => "rigid".to_owned(),
-        };
+    let each = principal.directions.column_iter().zip(principal.stiffnesses());
+    for (name, (unit, stiffness)) in ["softest", "second", "stiffest"].into_iter().zip(each) {
         let mut row = vec![name.to_owned()];
         row.extend(unit.iter().map(|&part| decimals(part, 3)));
-        row.push(stiffness);
+        row.push(stiffness.map_or("rigid".to_owned(), |stiffness| significant(1e-6 * stiffness, 4)));
         table.row(row);
     }
     table.to_string()
