@@ -93,6 +93,18 @@ pub fn probability(p: f64) -> String {
     if p < 0.001 { "< 0.001".to_owned() } else { decimals(p, 3) }
 }
 
+/// The same in a sentence: `p < 0.001`, `p = 0.012`.
+pub fn p_value(p: f64) -> String {
+    let said = probability(p);
+    if said.starts_with('<') { format!("p {said}") } else { format!("p = {said}") }
+}
+
+/// A sentence begins with a capital.
+pub fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// A length in m as micrometres without the unit.
 pub fn micrometres(length: f64) -> String {
     decimals(length * 1e6, 1)
@@ -163,6 +175,12 @@ mod tests {
     #[test]
     fn fields_with_commas_are_quoted() {
         assert_eq!(["p 1", "a,b", "say \"x\""].map(field), ["p 1", "\"a,b\"", "\"say \"\"x\"\"\""]);
+    }
+
+    #[test]
+    fn probabilities_and_beginnings_of_sentences_are_words() {
+        assert_eq!([1e-5, 0.0123, 1.0].map(p_value), ["p < 0.001", "p = 0.012", "p = 1.000"]);
+        assert_eq!(["lost motion", "", "öl"].map(capital), ["Lost motion", "", "Öl"]);
     }
 
     #[test]

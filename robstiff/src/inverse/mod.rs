@@ -36,7 +36,7 @@ pub const TOLERANCE: f64 = 1e-10;
 
 /// Coordinates beyond a limit by less than this are on it (rad or m), as in
 /// descriptions.
-const ON_THE_LIMIT: f64 = 1e-6;
+pub(crate) const ON_THE_LIMIT: f64 = 1e-6;
 
 /// Candidates of a closed form within this (m, rad) need no further step.
 const EXACT: f64 = 1e-12;

@@ -8,15 +8,11 @@ use robstiff_robots::{Diagnostic, Diagnostics, Line};
 
 use super::seeds::spread;
 use super::{Goal, Jump, Orientation, PathPoint, SolvedPath, ToolPath, Unreached, Unsolved, Waypoint};
-use crate::inverse::{Inverse, Target};
+use crate::inverse::{Inverse, ON_THE_LIMIT, Target};
 use crate::{JointKind, Robot};
 
 /// Points that are shown with their line and why they cannot be reached or corrected.
 pub(crate) const MOST_SHOWN: usize = 10;
-
-/// Coordinates beyond a limit by less than this are on it (rad or m), as in
-/// descriptions.
-const ON_THE_LIMIT: f64 = 1e-6;
 
 /// Largest changes of a joint that differ by less are the same (rad or m).
 const SAME_CHANGE: f64 = 1e-6;

@@ -8,7 +8,7 @@ use super::slices::Slices;
 use super::table::{heading, single};
 use crate::report;
 use crate::report::html::{Table, escape, number, text, words};
-use crate::text::count;
+use crate::text::{capital, count};
 
 const SCRIPT: &str = include_str!("page.js");
 
@@ -157,9 +157,4 @@ fn data(mapped: &Mapped, slices: &Slices, [wide, narrow]: [&[heat::Frame]; 2]) -
 
 fn micro(text: &str) -> String {
     text.replace(" um", "\u{a0}µm").replace("[um]", "[µm]").replace("/um", "/µm")
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

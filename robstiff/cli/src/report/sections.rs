@@ -6,7 +6,9 @@ use super::html::{Cell, Table, element, escape, number, text, words};
 use super::terms::Terms;
 use super::{arm, figure, micro, scatter};
 use crate::identify::is_compliance;
-use crate::text::{and, change, count, decimals, plus_minus, probability, quantity, significant};
+use crate::text::{
+    and, capital, change, count, decimals, p_value, plus_minus, probability, quantity, significant,
+};
 
 /// The error of each model.
 pub fn errors(report: &Report) -> String {
@@ -145,11 +147,7 @@ fn effect(effect: &Effect) -> String {
         let numbers: Vec<String> = effect.numbers.iter().map(number_line).collect();
         facts.push(("Found", numbers.join(", ")));
     }
-    let p = match probability(effect.p_value) {
-        small if small.starts_with('<') => small,
-        p => format!("= {p}"),
-    };
-    facts.push(("How sure", format!("p {p}")));
+    facts.push(("How sure", p_value(effect.p_value)));
     if !effect.same_as.is_empty() {
         facts.push(("Or else", format!("{}: these data cannot tell", effect.same_as)));
     }
@@ -159,11 +157,6 @@ fn effect(effect: &Effect) -> String {
     let list: String = facts.iter().map(|(name, said)| text("dt", name) + &text("dd", &micro(said))).collect();
     html += &element("dl", list);
     html + "</article>\n"
-}
-
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map(|first| first.to_uppercase().to_string()).unwrap_or_default() + letters.as_str()
 }
 
 fn number_line(number: &Number) -> String {

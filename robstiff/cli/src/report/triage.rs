@@ -5,7 +5,7 @@ use super::content::{Check, Report, State};
 use super::html::{Cell, Table, element, escape, number, text, words};
 use super::micro;
 use super::svg::Svg;
-use crate::text::{and, count, probability};
+use crate::text::{and, count, p_value, probability};
 
 const WIDTH: f64 = 860.0;
 const LEFT: f64 = 150.0;
@@ -68,10 +68,7 @@ pub fn section(report: &Report) -> String {
 
 /// A check that fails, with room for what it points to.
 fn failing(check: &Check) -> String {
-    let p = check.p_value.map_or_else(String::new, |p| match probability(p) {
-        small if small.starts_with('<') => format!(", p {small}"),
-        p => format!(", p = {p}"),
-    });
+    let p = check.p_value.map_or_else(String::new, |p| format!(", {}", p_value(p)));
     let heading = format!("{} fails: {}{p}", check.name, check.found);
     let said = text("h3", &micro(&heading)) + &text("p", &micro(&check.said));
     format!("<article class=\"effect check\">\n{said}</article>\n")

@@ -9,7 +9,7 @@ use robstiff_robots::{Convention, Description, Joint, JointKind};
 
 use super::pose::{Direction, Shown};
 use crate::effect;
-use crate::text::{Table, decimals, significant};
+use crate::text::{Table, capital, decimals, significant};
 
 const AXES: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
 
@@ -89,12 +89,6 @@ fn chain(page: &mut String, robot: &Description) {
         let _ = writeln!(page, "  with {effect}: {}", numbers.join(", "));
         let _ = writeln!(page, "    {}. {}", capital(&effect::words(effect)), effect.about().explanation);
     }
-}
-
-/// A sentence begins with a capital.
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn limits(joint: &Joint) -> String {

@@ -9,7 +9,7 @@ use robstiff_robots::Joint;
 use super::words::{by_kind, spoken};
 use crate::identify::{at_bound, source_of};
 use crate::report::terms::Terms;
-use crate::text::{Table, and, count, decimals, fine_micrometres, probability, quantity};
+use crate::text::{Table, and, capital, count, decimals, fine_micrometres, p_value, quantity};
 
 /// The finding in one sentence.
 pub fn headline(trace: &Trace, terms: Terms) -> String {
@@ -287,9 +287,7 @@ pub fn told(named: &NamedEffect) -> impl Iterator<Item = &EffectParameter> {
 
 /// A clause as a sentence.
 fn sentence(clause: &str) -> String {
-    let mut letters = clause.chars();
-    let start = letters.next().map(|first| first.to_uppercase().to_string()).unwrap_or_default();
-    format!("{start}{}.", letters.as_str().trim_end_matches('.'))
+    format!("{}.", capital(clause).trim_end_matches('.'))
 }
 
 /// The noise of what is read (m): of one reading, or of the difference of a
@@ -386,11 +384,8 @@ fn of(trace: &Trace, which: impl Fn(&NamedEffect) -> bool) -> Vec<&NamedEffect> 
 
 /// An effect for a terminal.
 fn effect(named: &NamedEffect) -> String {
-    let p = match probability(named.p_value) {
-        small if small.starts_with('<') => small,
-        p => format!("= {p}"),
-    };
-    let mut said = format!("  {}{}, p {p}\n    {}", named.effect.words(), lines(named), named.effect);
+    let p = p_value(named.p_value);
+    let mut said = format!("  {}{}, {p}\n    {}", named.effect.words(), lines(named), named.effect);
     let number =
         |number: &EffectParameter| format!("{} = {}", number.name, quantity(number.value, number.std, number.unit));
     let numbers: Vec<String> = told(named).map(number).collect();
