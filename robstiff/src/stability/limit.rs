@@ -5,7 +5,7 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, Matrix3};
 
 use super::Modes;
-use super::modes::{Margin, largest_real};
+use super::modes::{Margin, largest_real, squared_difference};
 use crate::golden::inner;
 
 /// Each depth that is looked at over the one before, where there is no closed form.
@@ -87,7 +87,7 @@ impl Modes {
             [one, other] => {
                 let (a, b, c, d) = (seen[(0, 0)], seen[(0, 1)], seen[(1, 0)], seen[(1, 1)]);
                 let (apart, change) = (one - other, d - a);
-                let mut roots = quadratic(change * change + 4.0 * b * c, 2.0 * apart * change, apart * apart);
+                let mut roots = quadratic(squared_difference(a, b, c, d), 2.0 * apart * change, apart * apart);
                 roots.extend(quadratic(a * d - b * c, -(one * d + other * a), one * other));
                 roots
             }

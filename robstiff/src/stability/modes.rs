@@ -190,8 +190,12 @@ fn discriminant(matrix: &DMatrix<f64>) -> Option<f64> {
 /// mode coupling without damping, `(a - d)^2 + 4 b c < 0`. The product `b c` of
 /// the couplings must be negative, and larger than what keeps the modes apart.
 pub fn has_complex_pair(matrix: &Matrix2<f64>) -> bool {
-    let apart = matrix[(0, 0)] - matrix[(1, 1)];
-    apart * apart + 4.0 * matrix[(0, 1)] * matrix[(1, 0)] < 0.0
+    squared_difference(matrix[(0, 0)], matrix[(0, 1)], matrix[(1, 0)], matrix[(1, 1)]) < 0.0
+}
+
+/// The square of the difference of the eigenvalues of a 2 x 2 matrix `a b; c d`.
+pub(super) fn squared_difference(a: f64, b: f64, c: f64, d: f64) -> f64 {
+    (a - d) * (a - d) + 4.0 * b * c
 }
 
 /// Whether all the eigenvalues of a matrix with entries up to 1 are real and positive, to
@@ -202,8 +206,7 @@ fn eigenvalues_are_positive(a: &DMatrix<f64>) -> bool {
         1 => a[(0, 0)] > 0.0,
         2 => {
             let (trace, determinant) = (a.trace(), a[(0, 0)] * a[(1, 1)] - a[(0, 1)] * a[(1, 0)]);
-            let apart = a[(0, 0)] - a[(1, 1)];
-            let discriminant = apart * apart + 4.0 * a[(0, 1)] * a[(1, 0)];
+            let discriminant = squared_difference(a[(0, 0)], a[(0, 1)], a[(1, 0)], a[(1, 1)]);
             discriminant >= -ROUNDING && trace > 0.0 && determinant > 0.0
         }
         3 => {

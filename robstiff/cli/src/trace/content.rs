@@ -15,19 +15,24 @@ use crate::report::content::{
 use crate::report::terms::Terms;
 use crate::text::count;
 
-/// Brings together what the report shows.
+/// Brings together what the report shows, with the summary of the trace.
 ///
 /// # Errors
 /// What predicting the campaign says against it, which a campaign that was
 /// traced does not.
-pub fn report(trace: &Trace, triage: &Triage, campaign: &Campaign, options: &Options) -> Result<Report, Failure> {
+pub fn report(
+    (trace, summary): (&Trace, Vec<String>),
+    triage: &Triage,
+    campaign: &Campaign,
+    options: &Options,
+) -> Result<Report, Failure> {
     let terms = Terms::of(campaign);
     Ok(Report {
         robot: trace.robot.clone(),
         description: campaign.robot.description.trim().to_owned(),
         campaign: campaign.name.clone(),
         headline: story::headline(trace, terms),
-        summary: story::summary(trace, campaign),
+        summary,
         verdict: trace.verdict.to_string(),
         settled: matches!(trace.verdict, Verdict::Adequate | Verdict::Explained),
         terms,

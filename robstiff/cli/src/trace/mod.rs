@@ -87,8 +87,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     .map_err(Failure::about(&campaign))?;
 
     let document = document::document(&traced, &triage, &campaign);
-    let mut report = content::report(&traced, &triage, &campaign, &options)?;
-    let mut page = triage::page(&triage) + &story::page(&traced, &campaign);
+    // Once: the campaign is predicted for it.
+    let summary = story::summary(&traced, &campaign);
+    let mut page = triage::page(&triage) + &story::page(&traced, &campaign, &summary);
+    let mut report = content::report((&traced, summary), &triage, &campaign, &options)?;
     if let Some(found) = &correction {
         let said = correction::sentence(found.as_ref());
         page += &format!("\n{said}\n");

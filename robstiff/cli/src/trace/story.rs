@@ -315,8 +315,8 @@ pub fn pose(next: &Proposal, joints: &[Joint]) -> String {
     format!("({})", coordinates.collect::<Vec<_>>().join(", "))
 }
 
-/// The story for a terminal.
-pub fn page(trace: &Trace, campaign: &Campaign) -> String {
+/// The story for a terminal, with its [`summary`].
+pub fn page(trace: &Trace, campaign: &Campaign, summary: &[String]) -> String {
     let terms = Terms::of(campaign);
     let Terms { unseen: [_, unseen], reading, unit, .. } = terms;
     let mut noise =
@@ -338,7 +338,7 @@ pub fn page(trace: &Trace, campaign: &Campaign) -> String {
     }
     let (judged, headline) = (self::unseen(trace, terms), headline(trace, terms));
     page += &format!("{errors}  (unseen: {judged})\n\nVerdict: {}. {headline}.\n", trace.verdict);
-    for said in summary(trace, campaign) {
+    for said in summary {
         page += &format!("{said}\n");
     }
     let groups: [(&str, Vec<&NamedEffect>); 3] = [
