@@ -11,8 +11,8 @@ use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
-use crate::text::{Table, and, change, count, decimals, micrometres, significant, uncertain};
-use crate::trace::words::spoken;
+use crate::text::words::spoken;
+use crate::text::{Table, and, change, count, decimals, is_compliance, micrometres, significant, uncertain};
 use crate::{input, json};
 
 /// The compliances that fit a campaign, with their uncertainty
@@ -146,11 +146,6 @@ fn compliances(estimates: &[Estimate]) -> String {
         ]);
     }
     table.to_string()
-}
-
-/// Whether a number is a compliance, and not a length or an angle.
-pub fn is_compliance(unit: &str) -> bool {
-    unit.contains('/')
 }
 
 fn stiffness_unit(unit: &str) -> &'static str {

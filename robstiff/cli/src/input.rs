@@ -8,8 +8,14 @@ use robstiff::milling::CutFile;
 use robstiff_robots::quantity::{self, Dimension};
 use robstiff_robots::{Description, Joint, JointKind, catalogue};
 
+mod options;
+
 use crate::failure::Failure;
 use crate::{output, text};
+
+pub use options::{
+    Force, above_zero, all_with_unit, axis, axis_name, force, positive, seed, three_with_unit, tool_axis, whole, with_unit,
+};
 
 /// Reads a robot's description, with its file's name: a file, or where there is
 /// none of that name, a robot of the catalogue. A folder with its measurements may have its name.
@@ -31,75 +37,6 @@ pub fn robot(path: &Path) -> Result<(Description, String), Failure> {
         path.display(),
         names.join(", ")
     )))
-}
-
-/// A quantity that an option gives. It carries its unit, since `0.1` is a tenth
-/// of a millimetre to who mills and of a metre to SI; ratios have none, and a
-/// frequency can be in nothing but Hz.
-pub fn with_unit(text: &str, dimension: Dimension) -> Result<f64, String> {
-    let value = quantity::parse(text, dimension).map_err(|error| error.to_string())?;
-    let bare = text.trim().parse::<f64>().is_ok();
-    if bare && value != 0.0 && !matches!(dimension, Dimension::Number | Dimension::Frequency) {
-        let example = match dimension {
-            Dimension::Length => "mm",
-            Dimension::Time => "ms",
-            Dimension::Speed => "mm/min",
-            Dimension::Angle => "deg",
-            _ => dimension.unit(),
-        };
-        let text = text.trim();
-        return Err(format!("`{text}` has no unit; write e.g. `{text} {example}`"));
-    }
-    Ok(value)
-}
-
-/// A quantity above zero, with its unit.
-pub fn positive(dimension: Dimension) -> impl Fn(&str) -> Result<f64, String> + Clone {
-    move |text| above_zero(with_unit(text, dimension)?, dimension)
-}
-
-/// The same of what is read already.
-pub fn above_zero(value: f64, dimension: Dimension) -> Result<f64, String> {
-    if value > 0.0 { Ok(value) } else { Err(format!("{} above zero is expected here", dimension.name())) }
-}
-
-/// A whole number of an option, from and up to some.
-pub fn whole<T: TryFrom<u64>>(from: u64, to: u64) -> impl Fn(&str) -> Result<T, String> + Clone {
-    move |text| {
-        let number = text.trim().parse().ok().filter(|number| (from..=to).contains(number));
-        let of_type = number.and_then(|number| T::try_from(number).ok());
-        of_type.ok_or_else(|| match to {
-            u64::MAX => format!("a whole number from {from} on is expected here"),
-            _ => format!("a whole number from {from} to {to} is expected here"),
-        })
-    }
-}
-
-/// A seed.
-pub fn seed(text: &str) -> Result<u64, String> {
-    whole(0, u64::MAX)(text)
-}
-
-/// Several quantities; the unit of the last is that of those without one.
-pub fn all_with_unit(parts: &[&str], dimension: Dimension) -> Result<Vec<f64>, String> {
-    let unit = parts.last().map_or("", |last| last.trim_start_matches(|c: char| c == ' ' || is_of_number(c)).trim());
-    let quantity = |part: &&str| {
-        let part = part.trim();
-        let is_bare = part.ends_with(|c: char| c.is_ascii_digit() || c == '.');
-        let whole = if is_bare && !unit.is_empty() { format!("{part} {unit}") } else { part.to_owned() };
-        with_unit(&whole, dimension)
-    };
-    parts.iter().map(quantity).collect()
-}
-
-fn is_of_number(c: char) -> bool {
-    c.is_ascii_digit() || ".+-eE".contains(c)
-}
-
-/// Three of them.
-pub fn three_with_unit(parts: [&str; 3], dimension: Dimension) -> Result<[f64; 3], String> {
-    let all = all_with_unit(&parts, dimension)?;
-    Ok([all[0], all[1], all[2]])
 }
 
 /// What is said of a robot that has nothing that gives way.
@@ -239,39 +176,6 @@ mod tests {
     fn coordinates_are_in_rad_or_carry_their_unit() {
         let q = coordinates("0.5, 30 deg, -pi/2,0, 10 mrad", &five_axes()).unwrap();
         assert_eq!(q, [0.5, 30_f64.to_radians(), -core::f64::consts::FRAC_PI_2, 0.0, 0.01]);
-    }
-
-    #[test]
-    fn quantities_of_options_carry_their_unit() {
-        assert_eq!(with_unit("0.1 mm", Dimension::Length), Ok(1e-4));
-        assert_eq!(with_unit("0", Dimension::Length), Ok(0.0));
-        assert_eq!(with_unit("15", Dimension::Frequency), Ok(15.0));
-        assert_eq!(with_unit("0.7", Dimension::Number), Ok(0.7));
-        assert_eq!(with_unit(" 0.1", Dimension::Length), Err("`0.1` has no unit; write e.g. `0.1 mm`".to_owned()));
-        assert_eq!(with_unit("4", Dimension::Time), Err("`4` has no unit; write e.g. `4 ms`".to_owned()));
-    }
-
-    #[test]
-    fn whole_numbers_are_within_their_range() {
-        assert_eq!(whole::<u16>(1, 200)("200"), Ok(200));
-        for wrong in ["0", "201", "-3", "1e2", "1.5", "many"] {
-            assert_eq!(whole::<u16>(1, 200)(wrong), Err("a whole number from 1 to 200 is expected here".to_owned()));
-        }
-        assert_eq!(seed("-1"), Err("a whole number from 0 on is expected here".to_owned()));
-    }
-
-    #[test]
-    fn three_quantities_have_one_unit_or_their_own() {
-        let force = |parts| three_with_unit(parts, Dimension::Force);
-        assert_eq!(force(["0.5", " -1e-1 ", "2 kN"]), Ok([500.0, -100.0, 2000.0]));
-        assert_eq!(force(["300 N", "0", "-1.5 kN"]), Ok([300.0, 0.0, -1500.0]));
-        assert_eq!(force(["0", "0", "0"]), Ok([0.0; 3]));
-        assert_eq!(force(["0", "0", "-400"]), Err("`-400` has no unit; write e.g. `-400 N`".to_owned()));
-        assert!(force(["1", "2", "3 mm"]).is_err());
-        // With a blank before the unit or without.
-        assert_eq!(force(["150", "-200", "300N"]), Ok([150.0, -200.0, 300.0]));
-        assert_eq!(all_with_unit(&["12", " 4ms"], Dimension::Time), Ok(vec![0.012, 0.004]));
-        assert_eq!(all_with_unit(&["0.2", "5"], Dimension::Frequency), Ok(vec![0.2, 5.0]));
     }
 
     #[test]

@@ -17,7 +17,7 @@ mod target;
 
 pub use growing::Growing;
 pub use progress::working;
-use target::{Target, folder_of, present, temporary};
+use target::{Target, folder_of, present, same_file, temporary};
 
 /// Prints to standard output. A reader that has gone away (`| head`) has seen
 /// what it wanted.
@@ -103,6 +103,25 @@ impl Files {
             ))),
             _ => Ok(()),
         }
+    }
+
+    /// Stops where a path is one of the files read, or one of `others`, or a dash.
+    fn refuse(&self, path: &Path, others: &[&Path]) -> Result<(), Failure> {
+        if path == Path::new("-") {
+            return Err(Failure::Usage(
+                "`-` does not stand for standard output, where the page goes; name a file".to_owned(),
+            ));
+        }
+        if others.iter().any(|other| same_file(other, path)) {
+            return Err(Failure::Usage(format!("{} would be written twice", path.display())));
+        }
+        if self.inputs.iter().any(|input| same_file(input, path)) {
+            return Err(Failure::new(format!(
+                "{} is one of the files that were read, and would be overwritten; choose another name or folder",
+                path.display()
+            )));
+        }
+        Ok(())
     }
 
     /// Writes every file under a temporary name in its folder, which is made

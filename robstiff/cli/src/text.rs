@@ -1,5 +1,7 @@
 //! Text for people: numbers, and tables with aligned columns.
 
+pub mod words;
+
 use std::fmt;
 
 pub use robstiff_robots::words::count;
@@ -86,6 +88,11 @@ pub fn quantity(value: f64, std: Option<f64>, unit: &str) -> String {
     let number = plus_minus(value * factor, std.unwrap_or(f64::NAN) * factor);
     let micro = if factor == 1e6 { "u" } else { "" };
     format!("{number} {micro}{shown}").trim_end().to_owned()
+}
+
+/// Whether a number is a compliance, by its unit, and not a length or an angle.
+pub fn is_compliance(unit: &str) -> bool {
+    unit.contains('/')
 }
 
 /// A probability; what the draws of a bootstrap resolve has three decimals.

@@ -13,9 +13,9 @@ use robstiff_robots::Description;
 use super::reach::Reach;
 use super::{Arguments, FREQUENCIES, Frequencies, Variant, bound};
 use crate::failure::Failure;
+use crate::input::Force;
 use crate::output::{self, Files};
 use crate::path::cutting::complain_of_feed;
-use crate::scene::Force;
 use crate::text::significant;
 use crate::{forces, input};
 

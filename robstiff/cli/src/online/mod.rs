@@ -14,10 +14,8 @@ use robstiff_robots::Description;
 use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;
-use crate::input::positive;
+use crate::input::{Force, axis, force, positive, tool_axis};
 use crate::output::{self, Files};
-use crate::path::tool_axis;
-use crate::scene::{Force, force};
 use crate::{input, json};
 use loads::Asked;
 
@@ -73,7 +71,7 @@ struct LoadArguments {
     #[command(flatten)]
     at: input::At,
     /// Where the feed of a cut at a pose goes, in the base frame
-    #[arg(long, value_name = "x,y,z", default_value = "1,0,0", allow_hyphen_values = true, value_parser = direction, conflicts_with_all = ["path", "force"])]
+    #[arg(long, value_name = "x,y,z", default_value = "1,0,0", allow_hyphen_values = true, value_parser = axis, conflicts_with_all = ["path", "force"])]
     toward: Vector3<f64>,
     /// Frequencies at which the force at a pose comes and goes; where left out, "0.2, 0.5, 1, 2, 5, 10 Hz"
     #[arg(long, value_name = "FREQUENCIES", allow_hyphen_values = true, value_parser = frequencies, conflicts_with = "path")]
@@ -159,10 +157,6 @@ fn loss(text: &str) -> Result<Loss, String> {
     let [_, _] = parts[..] else { return Err("two times are expected, e.g. \"2 s, 0.5 s\"".to_owned()) };
     let times = input::all_with_unit(&parts, Dimension::Time)?;
     Ok(Loss([from_zero(times[0])?, from_zero(times[1])?]))
-}
-
-fn direction(text: &str) -> Result<Vector3<f64>, String> {
-    crate::stability::axis(text)
 }
 
 /// What is compared: a control step, what it reads, and what the controller knows.

@@ -4,7 +4,6 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::target::same_file;
 use super::{Draft, Files, Folders, cannot_write};
 use crate::failure::Failure;
 
@@ -50,25 +49,6 @@ impl Files {
             growing.file.sync_all().map_err(|error| cannot_write(&growing.path, &error))?;
         }
         self.grown.push(growing);
-        Ok(())
-    }
-
-    /// Stops where a path is one of the files read, or one of `others`, or a dash.
-    pub(super) fn refuse(&self, path: &Path, others: &[&Path]) -> Result<(), Failure> {
-        if path == Path::new("-") {
-            return Err(Failure::Usage(
-                "`-` does not stand for standard output, where the page goes; name a file".to_owned(),
-            ));
-        }
-        if others.iter().any(|other| same_file(other, path)) {
-            return Err(Failure::Usage(format!("{} would be written twice", path.display())));
-        }
-        if self.inputs.iter().any(|input| same_file(input, path)) {
-            return Err(Failure::new(format!(
-                "{} is one of the files that were read, and would be overwritten; choose another name or folder",
-                path.display()
-            )));
-        }
         Ok(())
     }
 }

@@ -11,7 +11,7 @@ use robstiff::path::{SolvedPath, ToolPath};
 use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;
-use crate::input::positive;
+use crate::input::{positive, tool_axis};
 use crate::output::{self, Files};
 use crate::text::significant;
 use crate::{forces, input};
@@ -44,7 +44,7 @@ pub struct ForceArguments {
     #[arg(long, value_name = "SURFACE", default_value = "side", value_enum, requires = "load")]
     surface: Machined,
     /// From the spindle to the tip, in the TCP's frame; where left out, the axis of `--tool-axis` without its sign
-    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = super::tool_axis, requires = "load")]
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = tool_axis, requires = "load")]
     spindle_axis: Option<Unit<Vector3<f64>>>,
     /// Say where the error of the surface is within this, e.g. "0.1 mm"
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = positive(Dimension::Length))]

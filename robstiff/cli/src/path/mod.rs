@@ -49,7 +49,7 @@ pub struct Arguments {
     #[arg(long, value_name = "x,y,z,roll,pitch,yaw", allow_hyphen_values = true)]
     place: Option<String>,
     /// The axis in the TCP's frame that `ux uy uz` point along: x, y, z, -x, -y or -z
-    #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = tool_axis)]
+    #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = input::tool_axis)]
     tool_axis: Unit<Vector3<f64>>,
     /// Write the same as JSON to FILE
     #[arg(long, value_name = "FILE")]
@@ -102,7 +102,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         files.add(path, json::document(&document(&robot, &solved)));
     }
     let said = files.write()?;
-    let axis = (!path.gives_joints()).then(|| axis_name(&arguments.tool_axis));
+    let axis = (!path.gives_joints()).then(|| input::axis_name(&arguments.tool_axis));
     output::print(page(&robot, &arguments.path.display().to_string(), &solved, axis) + &said)
 }
 
@@ -142,23 +142,6 @@ fn solve<const N: usize>(
     });
     let closed_form = Inverse::new(robot).has_closed_form();
     Ok(Solved { points: points.collect(), jumps: solved.jumps, closed_form, cutting })
-}
-
-/// An axis of the tool's frame by its name.
-pub fn tool_axis(text: &str) -> Result<Unit<Vector3<f64>>, String> {
-    let axis = match text.strip_prefix('-').unwrap_or(text) {
-        "x" => Vector3::x_axis(),
-        "y" => Vector3::y_axis(),
-        "z" => Vector3::z_axis(),
-        _ => return Err("one of x, y, z, -x, -y, -z".to_owned()),
-    };
-    Ok(if text.starts_with('-') { -axis } else { axis })
-}
-
-/// The name that [`tool_axis`] reads.
-fn axis_name(axis: &Vector3<f64>) -> String {
-    let along = axis.iamax();
-    format!("{}{}", if axis[along] < 0.0 { "-" } else { "" }, ["x", "y", "z"][along])
 }
 
 /// A frame from `x,y,z,roll,pitch,yaw`.

@@ -5,9 +5,8 @@ use super::content::{Candidate, Effect, Number, Report, SearchStep};
 use super::html::{Cell, Table, element, escape, number, text, words};
 use super::terms::Terms;
 use super::{arm, figure, micro, scatter};
-use crate::identify::is_compliance;
 use crate::text::{
-    and, capital, change, count, decimals, p_value, plus_minus, probability, quantity, significant,
+    and, capital, change, count, decimals, is_compliance, p_value, plus_minus, probability, quantity, significant,
 };
 
 /// The error of each model.

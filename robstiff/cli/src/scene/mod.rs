@@ -8,9 +8,9 @@ use std::path::PathBuf;
 
 use robstiff::campaign::JointTable;
 use robstiff_robots::Description;
-use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;
+use crate::input::{Force, force};
 use crate::output::{self, Files};
 use crate::text::{count, significant};
 use crate::{effect, input, json};
@@ -46,25 +46,6 @@ pub struct Arguments {
     /// Write what is drawn as JSON to FILE
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-}
-
-/// A force in the base frame (N).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Force(pub [f64; 3]);
-
-impl Force {
-    /// The force with no moment.
-    fn wrench(self) -> [f64; 6] {
-        let [x, y, z] = self.0;
-        [x, y, z, 0.0, 0.0, 0.0]
-    }
-}
-
-/// Reads its three components.
-pub fn force(text: &str) -> Result<Force, String> {
-    let parts: Vec<&str> = text.split(',').collect();
-    let [x, y, z] = parts[..] else { return Err("three components are expected, e.g. \"0, 0, -400 N\"".to_owned()) };
-    input::three_with_unit([x, y, z], Dimension::Force).map(Force)
 }
 
 /// Draws.
@@ -131,16 +112,4 @@ fn summary(robot: &Description, scene: &Scene) -> String {
         said += &format!("{}: {range}{unit}\n", values.name);
     }
     said
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_force_has_three_components() {
-        assert_eq!(force("0, 0, -0.4 kN"), Ok(Force([0.0, 0.0, -400.0])));
-        assert!(force("400 N").unwrap_err().contains("three components"));
-        assert!(force("0,0,4 mm").unwrap_err().contains("`mm` is a length"));
-    }
 }

@@ -17,9 +17,8 @@ use robstiff_robots::quantity::{self, Dimension};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
-use crate::input::positive;
+use crate::input::{axis, positive};
 use crate::output::{self, Files};
-use crate::path::tool_axis;
 use crate::{forces, input, json};
 
 /// The depths of cut at which the arm chatters by mode coupling, by direction of feed
@@ -63,20 +62,6 @@ pub struct Arguments {
 fn ratio(text: &str) -> Result<f64, String> {
     let ratio = quantity::parse(text, Dimension::Number).map_err(|error| error.to_string())?;
     if (0.0..1.0).contains(&ratio) { Ok(ratio) } else { Err("a ratio from 0 to below 1 is expected here".to_owned()) }
-}
-
-/// Reads a direction, of any length, or the name of an axis.
-pub fn axis(text: &str) -> Result<Vector3<f64>, String> {
-    if let Ok(axis) = tool_axis(text) {
-        return Ok(axis.into_inner());
-    }
-    let parts: Vec<&str> = text.split(',').collect();
-    let [x, y, z] = parts[..] else {
-        return Err("one of x, y, z, -x, -y, -z or three numbers are expected here, e.g. `0,0,1`".to_owned());
-    };
-    let number = |part: &str| quantity::parse(part, Dimension::Number).map_err(|error| error.to_string());
-    let axis = Vector3::new(number(x)?, number(y)?, number(z)?);
-    axis.try_normalize(1e-9).ok_or_else(|| "an axis has a length, e.g. `0,0,1`".to_owned())
 }
 
 /// A compliance that changes by less is the same.

@@ -5,7 +5,6 @@ use robstiff::identify::{Estimate, Visibility, predict};
 use robstiff::trace::{EffectParameter, NamedEffect, Options, RowResidual, Step, Tested, Trace, Verdict};
 use robstiff::triage::Triage;
 
-use super::words::spoken;
 use super::{clamped, pictures, story};
 use crate::failure::Failure;
 use crate::identify::source_of;
@@ -14,6 +13,7 @@ use crate::report::content::{
 };
 use crate::report::terms::Terms;
 use crate::text::count;
+use crate::text::words::spoken;
 
 /// Brings together what the report shows, with the summary of the trace.
 ///

@@ -8,7 +8,6 @@ mod document;
 mod pictures;
 mod story;
 mod triage;
-pub mod words;
 
 use std::path::PathBuf;
 

@@ -6,9 +6,9 @@ use robstiff::identify::{EncodersRead, Estimate, Visibility, off_by_one_factor, 
 use robstiff::trace::{EffectParameter, NamedEffect, Proposal, Rival, RowResidual, Trace, Verdict};
 use robstiff_robots::Joint;
 
-use super::words::{by_kind, spoken};
 use crate::identify::{at_bound, source_of};
 use crate::report::terms::Terms;
+use crate::text::words::{by_kind, spoken};
 use crate::text::{Table, and, capital, count, decimals, fine_micrometres, p_value, quantity};
 
 /// The finding in one sentence.
