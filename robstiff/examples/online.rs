@@ -11,7 +11,7 @@
 //! tilts (43 % left).
 
 use robstiff::nalgebra::{SVector, Vector6};
-use robstiff::online::{Controller, Left, Limits, Sensing, Servo, left_of_sine};
+use robstiff::online::{Controller, LeftOfSine, Limits, Sensing, Servo, left_of_sine};
 use robstiff::robots::{Description, catalogue};
 use robstiff::{Effect, Generic};
 
@@ -30,7 +30,7 @@ fn main() {
 
     let q = SVector::from([0.3, -0.4, 0.5, 0.2, 1.2]);
     let wrench = Vector6::new(150.0, -200.0, 300.0, 0.0, 0.0, 0.0);
-    let left = |truth: &Generic<5>, model: &Generic<5>, sensing, step: f64, frequency| -> Left {
+    let left = |truth: &Generic<5>, model: &Generic<5>, sensing, step: f64, frequency| -> LeftOfSine {
         let controller = Controller {
             sensing,
             step,
@@ -44,7 +44,7 @@ fn main() {
 
     println!("left of the deviation [%], by the frequency of the force");
     println!("control step   0.2 Hz   0.5 Hz     1 Hz     2 Hz     5 Hz    10 Hz");
-    let row = |name: &str, left: &dyn Fn(f64) -> Left| {
+    let row = |name: &str, left: &dyn Fn(f64) -> LeftOfSine| {
         let cells =
             [0.2, 0.5, 1.0, 2.0, 5.0, 10.0].map(|frequency| format!("{:9.1}", 100.0 * left(frequency).amplitude));
         println!("{name:<12}{}", cells.concat());

@@ -324,9 +324,7 @@ fn the_picture_of_feeds_says_where_they_begin() {
     for (wrist, along) in [("0", "(0.000, 1.000, 0.000)"), ("60 deg", "(0.866, 0.000, 0.500)")] {
         let at = format!("0,-90 deg,90 deg,0,{wrist},0");
         let cut = file("roughing.yaml");
-        succeed(&[
-            "stability", "kuka-kr270-r2700", &cut, "--at", &at, "--frequency", "15 Hz", "--out", &picture,
-        ]);
+        succeed(&["stability", "kuka-kr270-r2700", &cut, "--at", &at, "--frequency", "15 Hz", "--out", &picture]);
         let drawn = fs::read_to_string(&picture).unwrap();
         assert!(drawn.contains(&format!("0°: along {along} in the base frame")), "{drawn}");
     }

@@ -194,7 +194,9 @@ fn a_correction_of_an_earlier_trace_is_told() {
 /// At a force as along a path.
 #[test]
 fn a_control_step_that_nobody_would_wait_for_is_wrong_usage() {
-    for load in [&["--force", "0, 0, -400 N"][..], &[&file("pocket.csv"), "--tool-axis", "x", "--cut", &file("roughing.yaml")]] {
+    for load in
+        [&["--force", "0, 0, -400 N"][..], &[&file("pocket.csv"), "--tool-axis", "x", "--cut", &file("roughing.yaml")]]
+    {
         let said = fail(2, &[&["online", "rv130hsc", "--step", "1e-9 s"][..], load].concat());
         assert!(said.contains("give a longer --step"), "{said}");
     }

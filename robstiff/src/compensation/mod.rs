@@ -28,7 +28,7 @@ use crate::path::follow::MOST_SHOWN;
 use crate::path::{PathPoint, SolvedPath, ToolPath, lines};
 use crate::{Robot, State};
 
-pub use sensitivity::{Left, Sensitivity, left, sensitivity};
+pub use sensitivity::{LeftIfWrong, Sensitivity, left, sensitivity};
 
 /// The tool under load is where it is wanted within this (m, rad).
 pub const TOLERANCE: f64 = 1e-9;

@@ -10,7 +10,7 @@ use crate::path::SolvedPath;
 /// What a correction leaves of the displacement of the TCP, as fractions of what it
 /// is without correction on the same arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Left {
+pub struct LeftIfWrong {
     /// Of the root of the mean square over the points.
     pub rms: f64,
     /// Of the largest.
@@ -21,9 +21,9 @@ pub struct Left {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensitivity {
     /// All joints and effects at once, softer and stiffer.
-    pub all: [Left; 2],
+    pub all: [LeftIfWrong; 2],
     /// Each joint and then each effect alone, in the order of the description.
-    pub each: Vec<[Left; 2]>,
+    pub each: Vec<[LeftIfWrong; 2]>,
 }
 
 /// What is left on an arm whose joints and effects are softer than the robot's by a
@@ -40,7 +40,7 @@ pub fn left<const N: usize>(
     path: &SolvedPath<N>,
     load: &Load,
     compensated: &Compensated<N>,
-) -> Result<Left, PulledIn> {
+) -> Result<LeftIfWrong, PulledIn> {
     assert_eq!(compensated.points.len(), path.points.len(), "a correction for every point of the path");
     let distances = |stands: Vec<Stand>| Summary::of(stands.iter().map(|stand| stand.off.fixed_rows::<3>(0).norm()));
     let uncorrected = displaced(robot, Some(factors), path.points.iter().map(|point| point.q), path, load)?;
@@ -48,7 +48,7 @@ pub fn left<const N: usize>(
     // An arm that is not pushed anywhere has nothing to correct.
     let part = |with: f64, without: f64| if without > 0.0 { with / without } else { 0.0 };
     let both = distances(corrected).zip(distances(uncorrected));
-    Ok(both.map_or(Left { rms: 0.0, worst: 0.0 }, |(with, without)| Left {
+    Ok(both.map_or(LeftIfWrong { rms: 0.0, worst: 0.0 }, |(with, without)| LeftIfWrong {
         rms: part(with.rms, without.rms),
         worst: part(with.worst, without.worst),
     }))
@@ -70,7 +70,7 @@ pub fn sensitivity<const N: usize>(
     by: f64,
 ) -> Result<Sensitivity, PulledIn> {
     let count = N + robot.effects().len();
-    let both = |wrong: &dyn Fn(usize) -> bool| -> Result<[Left; 2], PulledIn> {
+    let both = |wrong: &dyn Fn(usize) -> bool| -> Result<[LeftIfWrong; 2], PulledIn> {
         let with = |factor: f64| {
             let factors: Vec<f64> = (0..count).map(|k| if wrong(k) { factor } else { 1.0 }).collect();
             left(robot, &factors, path, load, compensated)

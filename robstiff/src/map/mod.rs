@@ -48,7 +48,7 @@ pub use axis::{Axis, people};
 pub use cartesian::{CartesianSpace, Tool};
 pub use evaluate::{Evaluate, Poses};
 pub use measure::{Column, Measure};
-pub use place::{Placement, best_placement};
+pub use place::{WorkpiecePlace, best_placement};
 pub use space::{JointSpace, Space};
 pub use stream::{CHUNK, Chunk, Survey, stream};
 pub use summary::{Extreme, Summary};

@@ -6,7 +6,7 @@ use super::{Axis, Measure};
 
 /// A place for a workpiece.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placement {
+pub struct WorkpiecePlace {
     /// Its corner nearest to the origin of the axes: x, y and z (m).
     pub corner: [f64; 3],
     /// The index of that corner along each axis.
@@ -25,7 +25,7 @@ pub struct Placement {
 /// The sampled points are the cells within the workpiece and just beyond its far
 /// sides, so that it is covered. `None` where no place is large enough and reached
 /// everywhere.
-pub fn best_placement(axes: &[Axis; 3], values: &[f64], size: [f64; 3], measure: &Measure) -> Option<Placement> {
+pub fn best_placement(axes: &[Axis; 3], values: &[f64], size: [f64; 3], measure: &Measure) -> Option<WorkpiecePlace> {
     let lengths = [0, 1, 2].map(|k| axes[k].values.len());
     let mut span = [1; 3];
     for k in 0..3 {
@@ -41,7 +41,7 @@ pub fn best_placement(axes: &[Axis; 3], values: &[f64], size: [f64; 3], measure:
         worst = runs(&worst, lengths[k], strides[k], span[k], measure);
     }
     let fits = |at: [usize; 3]| (0..3).all(|k| at[k] + span[k] <= lengths[k]);
-    let mut best: Option<Placement> = None;
+    let mut best: Option<WorkpiecePlace> = None;
     for (cell, &worst) in worst.iter().enumerate() {
         let at = [cell % lengths[0], cell / lengths[0] % lengths[1], cell / strides[2]];
         if worst.is_nan() || !fits(at) {
@@ -49,7 +49,7 @@ pub fn best_placement(axes: &[Axis; 3], values: &[f64], size: [f64; 3], measure:
         }
         if best.is_none_or(|best| measure.is_worse(best.worst, worst)) {
             let corner = [0, 1, 2].map(|k| axes[k].values[at[k]]);
-            best = Some(Placement { corner, first: at, span, worst });
+            best = Some(WorkpiecePlace { corner, first: at, span, worst });
         }
     }
     best

@@ -127,27 +127,27 @@ fn can_be_meant(node: &Node<'_>, axes: &[Axis], turns: usize) -> bool {
 }
 
 #[derive(Clone, Copy)]
-enum Asked {
+enum Kind {
     Deviation,
     Stiffness,
     Compliance,
 }
 
 fn measure(map: &Map<'_>) -> Option<Measure> {
-    let words = [("deviation", Asked::Deviation), ("stiffness", Asked::Stiffness), ("compliance", Asked::Compliance)];
+    let words = [("deviation", Kind::Deviation), ("stiffness", Kind::Stiffness), ("compliance", Kind::Compliance)];
     let force = map.get("force");
     let asked = match map.get("measure") {
         Some(node) => node.choice(&words)?,
-        None if force.is_some() => Asked::Deviation,
-        None => Asked::Stiffness,
+        None if force.is_some() => Kind::Deviation,
+        None => Kind::Stiffness,
     };
     let moment = map.get("moment");
-    if !matches!(asked, Asked::Deviation) {
+    if !matches!(asked, Kind::Deviation) {
         if let Some(load) = force.or(moment) {
             load.error("a stiffness has no load", "leave it out, or write `measure: deviation`");
             return None;
         }
-        return Some(if matches!(asked, Asked::Stiffness) { Measure::Stiffness } else { Measure::Compliance });
+        return Some(if matches!(asked, Kind::Stiffness) { Measure::Stiffness } else { Measure::Compliance });
     }
     let Some(force) = force else {
         map.node().error("a deviation is that under a force", "e.g. `force: [0, 400 N, -200 N]`, or `force: 500 N`");

@@ -107,7 +107,7 @@ pub struct Instant {
 /// What a correction leaves of the deviation under a sine, as fractions of the
 /// deviation without correction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Left {
+pub struct LeftOfSine {
     /// Of its amplitude at the load's own frequency.
     pub amplitude: f64,
     /// Of its root mean square, noise and steps included.
@@ -207,7 +207,7 @@ pub fn left_of_sine<const N: usize>(
     controller: &Controller,
     (wrench, frequency): (&Vector6<f64>, f64),
     reading: impl FnMut(f64, &Vector6<f64>) -> Option<Vector6<f64>>,
-) -> Left {
+) -> LeftOfSine {
     assert!(frequency > 0.0, "a sine has a frequency above zero");
     let load = |time: f64| wrench * (TAU * frequency * time).sin();
     let effort = Effort::of_sine(controller, frequency);
@@ -221,7 +221,7 @@ pub fn left_of_sine<const N: usize>(
         part(f64::sin).norm().hypot(part(f64::cos).norm())
     };
     let square = |of: fn(&Instant) -> Vector3<f64>| seen.iter().map(|instant| of(instant).norm_squared()).sum::<f64>();
-    Left {
+    LeftOfSine {
         amplitude: amplitude(|seen| seen.corrected) / amplitude(|seen| seen.uncorrected),
         rms: (square(|seen| seen.corrected) / square(|seen| seen.uncorrected)).sqrt(),
     }

@@ -1,6 +1,6 @@
 //! A map's summary as JSON, and for a terminal.
 
-use robstiff::map::{Axis, Column, Extreme, Measure, Placement, Summary, people};
+use robstiff::map::{Axis, Column, Extreme, Measure, Summary, WorkpiecePlace, people};
 use robstiff::nalgebra::Isometry3;
 use robstiff_robots::quantity::Dimension;
 use serde_json::{Map, Value, json};
@@ -37,7 +37,7 @@ pub struct Placed {
     /// Whether each point has its own.
     pub each: bool,
     /// The place, where there is one.
-    pub best: Option<Placement>,
+    pub best: Option<WorkpiecePlace>,
 }
 
 impl Placed {

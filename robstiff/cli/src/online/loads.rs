@@ -5,7 +5,7 @@ use std::ops::Range;
 use robstiff::deviation::{Deviation, ForceTable, Surface, load_of_cut};
 use robstiff::milling::{CutFile, CutFrame, ForceFrame, Forces};
 use robstiff::nalgebra::{Matrix3, SVector, Unit, Vector3, Vector6};
-use robstiff::online::{Instant, Timeline, left_of_sine, simulate_along};
+use robstiff::online::{Instant, LeftOfSine, Timeline, left_of_sine, simulate_along};
 use robstiff::path::ToolPath;
 use robstiff::{Robot, with_robot};
 use robstiff_robots::Description;
@@ -23,7 +23,7 @@ use crate::{forces, input};
 const PARTS: usize = 100;
 
 /// What pushes the tool, read.
-pub enum Asked {
+pub enum LoadRequest {
     /// A wrench that comes and goes.
     Sine { q: Vec<f64>, wrench: Vector6<f64>, frequencies: Vec<f64>, name: String },
     /// A record of forces over time (s; N, Nm).
@@ -38,13 +38,13 @@ pub enum Source {
 }
 
 /// What came of it.
-pub struct Seen {
+pub struct Simulated {
     /// What was simulated.
     pub name: String,
-    pub left: What,
+    pub outcome: Outcome,
 }
 
-pub enum What {
+pub enum Outcome {
     /// By frequency (Hz).
     Sine {
         q: Vec<f64>,
@@ -53,7 +53,7 @@ pub enum What {
         deviation: f64,
         frequencies: Vec<f64>,
         /// For each variant and frequency.
-        left: Vec<Vec<robstiff::online::Left>>,
+        left: Vec<Vec<LeftOfSine>>,
         /// For each variant, up to which frequency less than half and less than all is left.
         useful: Vec<[Reach; 2]>,
     },
@@ -91,7 +91,7 @@ pub struct Course {
     pub since: Vec<f64>,
 }
 
-impl Asked {
+impl LoadRequest {
     /// Reads what is named.
     pub fn read(arguments: &Arguments, robot: &Description, files: &mut Files) -> Result<Self, Failure> {
         let load = &arguments.load;
@@ -168,8 +168,8 @@ impl Asked {
         (robot, model): (&impl Robot<N>, &impl Robot<N>),
         variants: &[Variant],
         silent: Option<&Range<f64>>,
-    ) -> Result<Seen, Failure> {
-        let (name, left) = match self {
+    ) -> Result<Simulated, Failure> {
+        let (name, outcome) = match self {
             Self::Sine { q, wrench, frequencies, name } => {
                 if silent.is_some() {
                     return Err(Failure::Usage(
@@ -188,7 +188,7 @@ impl Asked {
                 (name, along(name, (robot, model), (&timeline, stops), variants, silent)?)
             }
         };
-        Ok(Seen { name: name.clone(), left })
+        Ok(Simulated { name: name.clone(), outcome })
     }
 }
 
@@ -242,7 +242,7 @@ fn along<const N: usize>(
     (timeline, stops): (&Timeline<N>, Vec<Stop>),
     variants: &[Variant],
     silent: Option<&Range<f64>>,
-) -> Result<What, Failure> {
+) -> Result<Outcome, Failure> {
     let duration = timeline.duration();
     if duration == 0.0 {
         return Err(Failure::new(format_args!("{name} takes no time: it has no two points apart")));
@@ -280,7 +280,7 @@ fn along<const N: usize>(
         with.push(Course::of(&seen, &stops, |instant| instant.corrected));
     }
     let without = without.expect("there is at least one variant");
-    Ok(What::Along { stops, in_cut, without, with })
+    Ok(Outcome::Along { stops, in_cut, without, with })
 }
 
 fn by_frequency<const N: usize>(
@@ -289,7 +289,7 @@ fn by_frequency<const N: usize>(
     wrench: &Vector6<f64>,
     frequencies: &[f64],
     variants: &[Variant],
-) -> Result<What, Failure> {
+) -> Result<Outcome, Failure> {
     bound::sines(variants, frequencies)?;
     let deviation = robot.deflection(q, wrench).fixed_rows::<3>(0).norm();
     if !(deviation > 0.0 && deviation.is_finite()) {
@@ -312,7 +312,7 @@ fn by_frequency<const N: usize>(
         [half, Reach::of(1.0, half.found().unwrap_or(first), affordable, of)]
     });
     let (left, useful) = (left.collect(), useful.collect());
-    Ok(What::Sine {
+    Ok(Outcome::Sine {
         q: q.iter().copied().collect(),
         wrench: *wrench,
         deviation,

@@ -17,7 +17,7 @@ use crate::failure::Failure;
 use crate::input::{Force, axis, force, positive, tool_axis};
 use crate::output::{self, Files};
 use crate::{input, json};
-use loads::Asked;
+use loads::LoadRequest;
 
 /// At which frequencies a force comes and goes where nothing else is said (Hz).
 const FREQUENCIES: [f64; 6] = [0.2, 0.5, 1.0, 2.0, 5.0, 10.0];
@@ -202,26 +202,26 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => (stiffer(&robot), "model 10 % too stiff".to_owned()),
     };
     let mut files = Files::default();
-    let asked = Asked::read(arguments, &robot, &mut files)?;
+    let request = LoadRequest::read(arguments, &robot, &mut files)?;
     files.protect(&arguments.robot);
     arguments.model.iter().chain(&arguments.path).for_each(|path| files.protect(path));
     files.foresee(arguments.csv.iter().chain(&arguments.json))?;
     let variants = arguments.control.variants(&name);
     let silent = arguments.control.lost.map(|Loss([from, length])| from..from + length);
-    let seen = output::working("simulating the control", |_| {
+    let simulated = output::working("simulating the control", |_| {
         with_robot!(&robot, |arm| {
             let model = Generic::new(&model).map_err(|error| Failure::new(format!("{name}: {error}")))?;
-            asked.simulate((&arm, &model), &variants, silent.as_ref())
+            request.simulate((&arm, &model), &variants, silent.as_ref())
         })
     })?;
     if let Some(path) = &arguments.csv {
-        files.add(path, page::table(&seen, &variants));
+        files.add(path, page::table(&simulated, &variants));
     }
     if let Some(path) = &arguments.json {
-        files.add(path, json::document(&page::document(&robot, &seen, &variants)));
+        files.add(path, json::document(&page::document(&robot, &simulated, &variants)));
     }
     let said = files.write()?;
-    output::print(page::page(&robot, &seen, &variants, &arguments.control) + &said)
+    output::print(page::page(&robot, &simulated, &variants, &arguments.control) + &said)
 }
 
 /// The same with the own compliance of every joint a tenth smaller.

@@ -1,9 +1,10 @@
 //! What is left, as text, as a table and as JSON.
 
+use robstiff::online::LeftOfSine;
 use robstiff_robots::Description;
 use serde_json::{Value, json};
 
-use super::loads::{Course, Seen, Stop, What};
+use super::loads::{Course, Outcome, Simulated, Stop};
 use super::reach::Reach;
 use super::{ControlArguments, Loss, Variant};
 use crate::json::{number, numbers};
@@ -12,9 +13,9 @@ use crate::text::{Table, decimals, field, micrometres, significant};
 /// How many rows of places a person reads.
 const ROWS: usize = 12;
 
-pub fn page(robot: &Description, seen: &Seen, variants: &[Variant], control: &ControlArguments) -> String {
-    let mut page = match &seen.left {
-        What::Sine { q, wrench, deviation, .. } => {
+pub fn page(robot: &Description, simulated: &Simulated, variants: &[Variant], control: &ControlArguments) -> String {
+    let mut page = match &simulated.outcome {
+        Outcome::Sine { q, wrench, deviation, .. } => {
             let q: Vec<String> =
                 robot.joints.iter().zip(q).map(|(joint, &q)| significant(joint.for_people(q), 4)).collect();
             let force: Vec<String> = wrench.iter().take(3).map(|&part| significant(part, 4)).collect();
@@ -22,14 +23,14 @@ pub fn page(robot: &Description, seen: &Seen, variants: &[Variant], control: &Co
                 "{} at q = ({}) under {}, ({}) N, that comes and goes: {} um without correction\n",
                 robot.name,
                 q.join(", "),
-                seen.name,
+                simulated.name,
                 force.join(", "),
                 micrometres(*deviation)
             )
         }
-        What::Along { stops, .. } => {
+        Outcome::Along { stops, .. } => {
             let duration = stops.last().map_or(0.0, |stop| stop.time);
-            format!("{} on {}: {} s\n", robot.name, seen.name, significant(duration, 4))
+            format!("{} on {}: {} s\n", robot.name, simulated.name, significant(duration, 4))
         }
     };
     let delay =
@@ -49,8 +50,8 @@ pub fn page(robot: &Description, seen: &Seen, variants: &[Variant], control: &Co
             significant(control.hold * 1e3, 4)
         );
     }
-    page + &match &seen.left {
-        What::Sine { frequencies, left, useful, .. } => {
+    page + &match &simulated.outcome {
+        Outcome::Sine { frequencies, left, useful, .. } => {
             let mut table = Table::new(
                 1,
                 std::iter::once(String::new()).chain(frequencies.iter().map(|f| format!("{} Hz", significant(*f, 4)))),
@@ -68,7 +69,7 @@ pub fn page(robot: &Description, seen: &Seen, variants: &[Variant], control: &Co
             page += &format!("How fast a force it keeps up with\n{table}");
             page
         }
-        What::Along { stops, in_cut, without, with } => along(variants, (stops, *in_cut), without, with),
+        Outcome::Along { stops, in_cut, without, with } => along(variants, (stops, *in_cut), without, with),
     }
 }
 
@@ -133,14 +134,14 @@ fn along(variants: &[Variant], (stops, in_cut): (&[Stop], f64), without: &Course
 }
 
 /// The same as a table: a row for each frequency, or each point of the path.
-pub fn table(seen: &Seen, variants: &[Variant]) -> String {
+pub fn table(simulated: &Simulated, variants: &[Variant]) -> String {
     let names = |unit: &str| -> String {
         // A semicolon needs no quotes; a file's name may still need them.
         let column = |variant: &Variant| field(&format!("{} [{unit}]", variant.name.replace(", ", "; ")));
         variants.iter().map(|variant| format!(",{}", column(variant))).collect()
     };
-    match &seen.left {
-        What::Sine { frequencies, left, .. } => {
+    match &simulated.outcome {
+        Outcome::Sine { frequencies, left, .. } => {
             let mut csv = format!("frequency [Hz]{}\n", names("%"));
             for (k, frequency) in frequencies.iter().enumerate() {
                 csv += &frequency.to_string();
@@ -149,7 +150,7 @@ pub fn table(seen: &Seen, variants: &[Variant]) -> String {
             }
             csv
         }
-        What::Along { stops, without, with, .. } => {
+        Outcome::Along { stops, without, with, .. } => {
             let mut csv = format!("t [s],line,s [mm],without [um]{}\n", names("um"));
             for (at, stop) in stops.iter().enumerate() {
                 let (line, s) =
@@ -167,8 +168,8 @@ pub fn table(seen: &Seen, variants: &[Variant]) -> String {
 }
 
 /// Everything in SI units; what does not exist is null.
-pub fn document(robot: &Description, seen: &Seen, variants: &[Variant]) -> Value {
-    let mut document = json!({ "robot": robot.name, "load": seen.name });
+pub fn document(robot: &Description, simulated: &Simulated, variants: &[Variant]) -> Value {
+    let mut document = json!({ "robot": robot.name, "load": simulated.name });
     let entries = document.as_object_mut().expect("it is an object");
     let named = |variant: &Variant, what: Value| {
         let mut entry = json!({
@@ -179,13 +180,13 @@ pub fn document(robot: &Description, seen: &Seen, variants: &[Variant]) -> Value
         entry.as_object_mut().expect("it is an object").append(&mut what.as_object().expect("so is this").clone());
         entry
     };
-    match &seen.left {
-        What::Sine { q, wrench, deviation, frequencies, left, useful } => {
+    match &simulated.outcome {
+        Outcome::Sine { q, wrench, deviation, frequencies, left, useful } => {
             entries.insert("q".to_owned(), numbers(q.iter().copied()));
             entries.insert("wrench".to_owned(), numbers(wrench.iter().copied()));
             entries.insert("deviation_m".to_owned(), number(*deviation));
             entries.insert("frequencies_Hz".to_owned(), numbers(frequencies.iter().copied()));
-            let of = |((variant, left), useful): ((&Variant, &Vec<robstiff::online::Left>), &[Reach; 2])| {
+            let of = |((variant, left), useful): ((&Variant, &Vec<LeftOfSine>), &[Reach; 2])| {
                 let what = json!({
                     "left_rms": numbers(left.iter().map(|left| left.rms)),
                     "left_amplitude": numbers(left.iter().map(|left| left.amplitude)),
@@ -198,7 +199,7 @@ pub fn document(robot: &Description, seen: &Seen, variants: &[Variant]) -> Value
             };
             entries.insert("control".to_owned(), variants.iter().zip(left).zip(useful).map(of).collect());
         }
-        What::Along { stops, in_cut, without, with } => {
+        Outcome::Along { stops, in_cut, without, with } => {
             let course = |course: &Course| {
                 json!({
                     "rms_m": number(course.rms),

@@ -74,7 +74,7 @@ enum Source {
 }
 
 /// What is asked for, read.
-pub struct Asked {
+pub struct CuttingRequest {
     source: Source,
     name: String,
     against: Option<(CutFile, String)>,
@@ -140,7 +140,7 @@ pub struct CorrectedPoint {
 
 impl ForceArguments {
     /// Reads what is named; `None` where there is no force.
-    pub fn read(&self, tool_axis: Unit<Vector3<f64>>, files: &mut Files) -> Result<Option<Asked>, Failure> {
+    pub fn read(&self, tool_axis: Unit<Vector3<f64>>, files: &mut Files) -> Result<Option<CuttingRequest>, Failure> {
         let mut cut = |path: &PathBuf| -> Result<(CutFile, String), Failure> {
             let file = input::cut(path)?;
             forces::protect(files, path, &file);
@@ -183,11 +183,11 @@ impl ForceArguments {
         // The sign of the tool's axis says how the file writes it.
         let axis = self.spindle_axis.unwrap_or(Unit::new_unchecked(tool_axis.abs()));
         let (peak, tolerance, compensate) = (self.peak, self.tolerance, self.compensate);
-        Ok(Some(Asked { source, name, against, peak, surface, axis, tolerance, compensate }))
+        Ok(Some(CuttingRequest { source, name, against, peak, surface, axis, tolerance, compensate }))
     }
 }
 
-impl Asked {
+impl CuttingRequest {
     /// Computes what the forces do.
     pub fn compute<const N: usize>(
         &self,

@@ -1,6 +1,6 @@
 //! What forces do to the tool along a path: told, and written.
 
-use robstiff::compensation::Left;
+use robstiff::compensation::LeftIfWrong;
 use robstiff::deviation::{DeviationPoint, Stretch, Summary};
 use robstiff::path::lines;
 use serde_json::{Value, json};
@@ -119,7 +119,7 @@ fn correction(corrected: &Corrected, before: f64) -> String {
         micrometres(before),
         decimals(worst * 1e6, 3)
     );
-    let per_cent = |left: Left| [left.rms, left.worst].map(|part| decimals(part * 100.0, 1));
+    let per_cent = |left: LeftIfWrong| [left.rms, left.worst].map(|part| decimals(part * 100.0, 1));
     let wrong = decimals(WRONG * 100.0, 0);
     let heads = [
         "true compliance".to_owned(),
@@ -251,8 +251,8 @@ fn point(point: &DeviationPoint) -> Value {
 }
 
 fn corrected(corrected: &Corrected) -> Value {
-    let left = |[softer, stiffer]: &[Left; 2]| {
-        let one = |left: &Left| json!({"rms": number(left.rms), "worst": number(left.worst)});
+    let left = |[softer, stiffer]: &[LeftIfWrong; 2]| {
+        let one = |left: &LeftIfWrong| json!({"rms": number(left.rms), "worst": number(left.worst)});
         json!({"softer": one(softer), "stiffer": one(stiffer)})
     };
     json!({

@@ -19,7 +19,7 @@ use crate::failure::Failure;
 use crate::output::{self, Files};
 use crate::text::{Table, count, decimals};
 use crate::{input, json};
-use cutting::{Asked, Cutting};
+use cutting::{Cutting, CuttingRequest};
 
 /// Jumps that are shown; the others are counted.
 const MOST_JUMPS: usize = 20;
@@ -85,15 +85,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         path = path.placed(&place(text)?);
     }
     let mut files = Files::default();
-    let asked = arguments.cutting.read(arguments.tool_axis, &mut files)?;
-    if asked.is_some() {
+    let request = arguments.cutting.read(arguments.tool_axis, &mut files)?;
+    if request.is_some() {
         input::refuse_if_rigid(&robot)?;
     }
     files.protect(&arguments.robot);
     files.protect(&arguments.path);
     files.foresee(arguments.out.iter().chain(&arguments.json))?;
     let solved = output::working("solving the path", |_| {
-        with_robot!(&robot, |robot| solve(&robot, &path, start.as_deref(), asked.as_ref()))
+        with_robot!(&robot, |robot| solve(&robot, &path, start.as_deref(), request.as_ref()))
     })?;
     if let Some(out) = &arguments.out {
         files.add(out, table(&robot, &solved));
@@ -127,11 +127,11 @@ fn solve<const N: usize>(
     robot: &impl Robot<N>,
     path: &ToolPath,
     start: Option<&[f64]>,
-    asked: Option<&Asked>,
+    request: Option<&CuttingRequest>,
 ) -> Result<Solved, Failure> {
     let start = start.map(SVector::<f64, N>::from_column_slice);
     let solved = path.solve(robot, start.as_ref())?;
-    let cutting = asked.map(|asked| asked.compute(robot, path, &solved)).transpose()?;
+    let cutting = request.map(|request| request.compute(robot, path, &solved)).transpose()?;
     let points = solved.points.into_iter().map(|point| Point {
         line: point.line,
         q: point.q.iter().copied().collect(),

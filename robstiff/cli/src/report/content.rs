@@ -58,7 +58,7 @@ pub struct Report {
     /// The search, step by step.
     pub steps: Vec<SearchStep>,
     /// What is left.
-    pub left: Left,
+    pub left: Unexplained,
     /// What to measure next.
     pub next: Vec<Next>,
     /// What the readers of the files noticed.
@@ -216,7 +216,7 @@ pub struct Candidate {
 
 /// What is left unexplained.
 #[derive(Clone, Debug, Default)]
-pub struct Left {
+pub struct Unexplained {
     /// The fraction of the residual variance that is not noise.
     pub fraction: f64,
     /// On what it depends.

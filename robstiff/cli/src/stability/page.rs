@@ -104,10 +104,7 @@ fn verdict(predicted: &Predicted, cut: &Cut) -> String {
                 let short = if limit < cut.depth { format!(", less than {given} mm") } else { String::new() };
                 format!("Best feed: {angle} deg, along {along}, to {} mm{short}.\n", millimetres(limit))
             }
-            None => format!(
-                "Best feed: {angle} deg, along {along}, beyond {} mm.\n",
-                millimetres(predicted.greatest)
-            ),
+            None => format!("Best feed: {angle} deg, along {along}, beyond {} mm.\n", millimetres(predicted.greatest)),
         };
     }
     verdict

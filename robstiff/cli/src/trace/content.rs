@@ -9,7 +9,7 @@ use super::{clamped, pictures, story};
 use crate::failure::Failure;
 use crate::identify::source_of;
 use crate::report::content::{
-    Candidate, Compliance, Effect, Left, Next, Number, PoseError, Report, Residual, SearchStep, Stage, Structure,
+    Candidate, Compliance, Effect, Next, Number, PoseError, Report, Residual, SearchStep, Stage, Structure, Unexplained,
 };
 use crate::report::terms::Terms;
 use crate::text::count;
@@ -54,7 +54,7 @@ pub fn report(
         arms: pictures::arms(trace, campaign),
         dependences: pictures::dependences(trace, campaign),
         steps: trace.steps.iter().map(step).collect(),
-        left: Left {
+        left: Unexplained {
             fraction: trace.unexplained,
             depends_on: trace.depends_on.clone(),
             tests: trace

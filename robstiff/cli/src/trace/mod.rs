@@ -71,19 +71,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let correction_too = arguments.correction.then_some(&correcting);
     files.foresee(again.chain([&robot, &told, &shown]).chain(correction_too))?;
     files.foresee_robot(&robot, &campaign.robot)?;
-    let (triage, traced, correction) = output::working("asking the readings themselves", |spinner| -> Result<_, Error> {
-        let triage = robstiff::triage::triage(&campaign);
-        let mut traced = trace(&campaign, &options, &|stage| spinner.set_message(stage.to_owned()))?;
-        spinner.set_message("choosing what to measure next");
-        // A trace stands without proposals, where none can be made.
-        traced.next = next(&campaign, &traced, PROPOSALS).unwrap_or_default();
-        let correction = match &campaign.data {
-            Data::Displacement(_) if arguments.correction => Some(Correction::of(&campaign, &traced)),
-            _ => None,
-        };
-        Ok((triage, traced, correction))
-    })
-    .map_err(Failure::about(&campaign))?;
+    let (triage, traced, correction) =
+        output::working("asking the readings themselves", |spinner| -> Result<_, Error> {
+            let triage = robstiff::triage::triage(&campaign);
+            let mut traced = trace(&campaign, &options, &|stage| spinner.set_message(stage.to_owned()))?;
+            spinner.set_message("choosing what to measure next");
+            // A trace stands without proposals, where none can be made.
+            traced.next = next(&campaign, &traced, PROPOSALS).unwrap_or_default();
+            let correction = match &campaign.data {
+                Data::Displacement(_) if arguments.correction => Some(Correction::of(&campaign, &traced)),
+                _ => None,
+            };
+            Ok((triage, traced, correction))
+        })
+        .map_err(Failure::about(&campaign))?;
 
     let document = document::document(&traced, &triage, &campaign);
     // Once: the campaign is predicted for it.
