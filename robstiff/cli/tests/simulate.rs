@@ -128,3 +128,16 @@ fn mistakes_leave_nothing_behind() {
     assert_eq!(run(&["simulate", "kuka-kr270-r2700", &scenario]).code, 2);
     assert_eq!(names(&folder), ["try.yaml"]);
 }
+
+#[test]
+fn a_scatter_is_told_in_round_numbers() {
+    let folder = folder("simulate-scatter");
+    let scenario = inside(&folder, "scenario.yaml");
+    let text =
+        "seed: 1\nscatter: 0.29\nposes: {count: 3}\nforce: {bounds: [500 N, 900 N]}\nnoise: {displacement: 8 um}\n";
+    fs::write(&scenario, text).unwrap();
+    let out = folder.join("out");
+    succeed(&["simulate", "kuka-kr270-r2700", &scenario, "--out", out.to_str().unwrap()]);
+    let truth = fs::read_to_string(out.join("truth.yaml")).unwrap();
+    assert!(truth.contains("off their declared compliance by up to 29 %"), "{truth}");
+}

@@ -82,7 +82,7 @@ pub struct Contact {
 pub struct Load {
     /// Point by point, as many as the path has.
     pub contacts: Vec<Contact>,
-    /// The forces of a revolution (N), evenly spaced; empty where only the mean
+    /// The forces of a revolution (N), at any of its angles; empty where only the mean
     /// counts.
     pub revolution: Vec<Vector3<f64>>,
     /// The lines at which there is no force because the tool plunges or stays in

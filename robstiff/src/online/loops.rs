@@ -39,7 +39,8 @@ impl<const N: usize> Loops<N> {
         self.underway.push_back((at, target));
     }
 
-    /// The positions at a time (s) that is one `part` after the last one that was asked for.
+    /// The positions at a time (s) that is one `part` after the last one that was asked for; the
+    /// first one may be earlier, and is half a part after zero.
     pub fn at(&mut self, time: f64) -> SVector<f64, N> {
         let mut is_usual = self.now > 0.0;
         while let Some(&(at, next)) = self.underway.front().filter(|(at, _)| *at < time) {

@@ -205,7 +205,8 @@ fn truth(declared: &Description, scenario: &Scenario) -> Result<Description, Ref
     truth.source = format!(
         "Simulated truth behind a campaign, seed {}: joints off their declared compliance by up to {} %, {hidden}.",
         scenario.seed,
-        scenario.scatter * 100.0
+        // 0.29 times 100 is 28.999999999999996.
+        (scenario.scatter * 1e8).round() / 1e6
     );
     // What reads a description knows what physics asks of one.
     Description::parse("truth.yaml", &truth.to_yaml())
