@@ -28,7 +28,7 @@ pub static KIND: Kind = Kind {
 };
 
 /// More of the sag than all of it twice over is something else.
-const MOST: f64 = 2.0;
+pub const MOST: f64 = 2.0;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     if scene.description.links.iter().all(|link| link.mass == 0.0) {

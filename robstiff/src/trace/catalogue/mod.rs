@@ -54,6 +54,7 @@ use robstiff_robots::effect::Place as Part;
 pub use self::base_slip::{KIND as BASE_SLIP, LIKELY};
 pub use self::creep::KIND as CREEP;
 pub use self::dh_error::{ENTRIES as DH_ENTRIES, MOST as DH_MOST, UNITS as DH_UNITS};
+pub use self::gravity_sag::MOST as MOST_SAG;
 pub use self::hysteresis::{KIND as HYSTERESIS, is_told as tells_hysteresis, is_told_on as axis_tells_hysteresis};
 pub use self::joint_coupling::share_a_drive;
 pub use self::joint_zero_offset::MOST as ZERO_MOST;
@@ -64,6 +65,7 @@ pub use self::offers::{Candidate, Catalogue, Form, Offers, Variant, catalogue};
 pub use self::outliers::KIND as OUTLIERS;
 pub use self::reflector_slip::KIND as REFLECTOR_SLIP;
 pub use self::stiffness_nonlinearity::{KIND as STIFFNESS_NONLINEARITY, KNEES as HARDENING_KNEES};
+pub use self::transmission_error::{MOST as LARGEST_WAVE, ORDERS as WAVE_ORDERS};
 use super::clamped::{Axes, OnAxes};
 use super::found::{Found, Place};
 use super::point::Point;
@@ -345,9 +347,9 @@ fn two_compliances(scene: &Scene<'_>, offers: &mut Offers<'_>, place: Part, two:
 const MORE_THAN_NONE: [f64; 2] = [0.0, f64::INFINITY];
 
 /// The names of three components: of a point, a shift, a turn.
-const POINT: [&str; 3] = ["x", "y", "z"];
-const SHIFT: [&str; 3] = ["dx", "dy", "dz"];
-const TURN: [&str; 3] = ["rx", "ry", "rz"];
+pub const POINT: [&str; 3] = ["x", "y", "z"];
+pub const SHIFT: [&str; 3] = ["dx", "dy", "dz"];
+pub const TURN: [&str; 3] = ["rx", "ry", "rz"];
 
 /// The mark of components in the tool frame.
 const TOOL_FRAME: &str = "tool_frame";

@@ -25,11 +25,11 @@ pub static KIND: Kind = Kind {
 };
 
 /// The orders tried, one of them.
-const ORDERS: [f64; 3] = [1.0, 2.0, 3.0];
+pub const ORDERS: [f64; 3] = [1.0, 2.0, 3.0];
 
 /// More is no error of a gear (rad), and no gear has near as much; what a same-
 /// pose difference shows at all has to be that large.
-const MOST: f64 = 0.1;
+pub const MOST: f64 = 0.1;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for joint in (1..=scene.joints()).filter(|&joint| scene.turns(joint)) {

@@ -10,9 +10,10 @@ use std::vec::Vec;
 use nalgebra::Vector3;
 
 use super::offers::{Between, Form, Number, Offer, any, kind};
-use super::rig::{LONGEST, Rig, SHIFT, longer};
+use super::rig::{LONGEST, Rig, longer};
 use crate::campaign::{PositionRow, Positions};
 use crate::identify::positions::model::{Enters, Moved};
+use crate::trace::catalogue::SHIFT;
 use crate::trace::found::{EffectParameter, Place};
 
 /// No arm grows by more in a campaign, forty kelvin of aluminium (1).

@@ -20,8 +20,8 @@ use crate::identify::normal::Sign;
 use crate::identify::positions::model::{ANGLE_STEP, COMPLIANCE_STEP, Enters, LENGTH_STEP, Model, SHARE_STEP};
 use crate::identify::setup::coordinate_entry;
 use crate::trace::catalogue::{
-    DH_ENTRIES, DH_MOST, DH_UNITS, EITHER, HARDENING_KNEES, KINDS, Kind, LOST_KNEES, LOST_MOTION,
-    STIFFNESS_NONLINEARITY, WIDEST_GAP, ZERO_MOST, share_a_drive,
+    DH_ENTRIES, DH_MOST, DH_UNITS, EITHER, HARDENING_KNEES, KINDS, Kind, LARGEST_WAVE, LOST_KNEES, LOST_MOTION,
+    MOST_SAG, STIFFNESS_NONLINEARITY, WAVE_ORDERS, WIDEST_GAP, ZERO_MOST, share_a_drive,
 };
 use crate::trace::found::{EffectParameter, Place};
 use crate::{Effect, JointKind};
@@ -29,16 +29,9 @@ use crate::{Effect, JointKind};
 /// Steps of central differences of entries of a table that are angles and lengths.
 const STEPS: [f64; 2] = [ANGLE_STEP, LENGTH_STEP];
 
-/// The orders of a periodic error that are tried, one of them, and the largest (rad).
-const ORDERS: [f64; 3] = [1.0, 2.0, 3.0];
-const LARGEST_WAVE: f64 = 0.1;
-
 /// Knees of gears that are looked for, as fractions of the largest torque.
 const NARROWEST_KNEE: f64 = 1.0 / 256.0;
 const WIDEST_KNEE: f64 = 4.0;
-
-/// More of the sag than all of it twice over is something else.
-const MOST_SAG: f64 = 2.0;
 
 /// A number of an effect.
 #[derive(Clone)]
@@ -315,8 +308,8 @@ fn waves(joint: usize) -> Offer {
     Offer {
         kind: kind(name),
         place: Part::Joint(joint).into(),
-        numbers: ORDERS.iter().flat_map(|&order| [(order, 2, "cos"), (order, 1, "sin")]).map(number).collect(),
-        forms: ORDERS.iter().enumerate().map(form).collect(),
+        numbers: WAVE_ORDERS.iter().flat_map(|&order| [(order, 2, "cos"), (order, 1, "sin")]).map(number).collect(),
+        forms: WAVE_ORDERS.iter().enumerate().map(form).collect(),
         possible: any(),
     }
 }

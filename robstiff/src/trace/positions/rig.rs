@@ -11,6 +11,7 @@ use robstiff_robots::{Description, Placement};
 use super::offers::{Form, Number, Offer, any, kind};
 use crate::campaign::Positions;
 use crate::identify::positions::model::{Enters, LENGTH_STEP, Model, Moved, Seen};
+use crate::trace::catalogue::POINT;
 use crate::trace::found::Place;
 
 /// The step of central differences of where a payload hangs (m), by which a deflection
@@ -25,10 +26,6 @@ pub const LONGEST: f64 = 0.1;
 
 /// More than this is another unit and no scale (1).
 const MOST_SCALE: f64 = 0.01;
-
-/// The numbers of a point on the tool, and of a shift in the base frame.
-pub const POINT: [&str; 3] = ["x", "y", "z"];
-pub const SHIFT: [&str; 3] = ["dx", "dy", "dz"];
 
 /// The point that is read is elsewhere on the tool, along one of its axes or anywhere.
 pub fn reflector() -> Offer {

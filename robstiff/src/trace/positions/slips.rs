@@ -10,9 +10,10 @@ use nalgebra::Vector3;
 use robstiff_robots::effect::Place as Part;
 
 use super::offers::{Form, Number, Offer, any, kind};
-use super::rig::{LONGEST, POINT, Rig, SHIFT};
+use super::rig::{LONGEST, Rig};
 use crate::campaign::Positions;
 use crate::identify::positions::model::{Enters, LaterMoved, Moved, Seen};
+use crate::trace::catalogue::{POINT, SHIFT, TURN};
 use crate::trace::found::{EffectParameter, Place};
 use crate::trace::slip::SLIPPED_AT;
 
@@ -25,8 +26,6 @@ const MOST_TURNED: f64 = 0.05;
 const FEWEST_MOMENTS: usize = 24;
 const MOST_MOMENTS: usize = 200;
 const ROWS_AND_MOMENTS: usize = 100_000;
-
-const TURN: [&str; 3] = ["rx", "ry", "rz"];
 
 /// The kinds of a slip.
 pub const OF_BASE: &str = "base_slip";
