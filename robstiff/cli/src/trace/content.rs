@@ -5,6 +5,7 @@ use robstiff::identify::{Estimate, Visibility, predict};
 use robstiff::trace::{EffectParameter, NamedEffect, Options, RowResidual, Step, Tested, Trace, Verdict};
 use robstiff::triage::Triage;
 
+use super::doubts::doubts;
 use super::{clamped, pictures, story};
 use crate::failure::Failure;
 use crate::identify::source_of;
@@ -46,7 +47,7 @@ pub fn report(
         unseen: story::unseen(trace, terms),
         stages: stages(trace),
         effects: trace.effects.iter().map(|one| named(trace, one)).collect(),
-        doubts: story::doubts(trace),
+        doubts: doubts(trace),
         compliances: compliances(trace),
         errors: errors(trace, campaign)?,
         // Those of clamped axes are no vectors.

@@ -5,6 +5,7 @@ mod clamped;
 mod content;
 mod correction;
 mod document;
+mod doubts;
 mod pictures;
 mod story;
 mod triage;

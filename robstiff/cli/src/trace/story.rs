@@ -3,12 +3,13 @@
 use robstiff::JointKind;
 use robstiff::campaign::Campaign;
 use robstiff::identify::{EncodersRead, Estimate, Visibility, off_by_one_factor, predict};
-use robstiff::trace::{EffectParameter, NamedEffect, Proposal, Rival, RowResidual, Trace, Verdict};
+use robstiff::trace::{EffectParameter, NamedEffect, Proposal, RowResidual, Trace, Verdict};
 use robstiff_robots::Joint;
 
+use super::doubts::doubts;
 use crate::identify::{at_bound, source_of};
 use crate::report::terms::Terms;
-use crate::text::words::{by_kind, spoken};
+use crate::text::words::spoken;
 use crate::text::{Table, and, capital, count, decimals, fine_micrometres, p_value, quantity};
 
 /// The finding in one sentence.
@@ -203,58 +204,6 @@ fn undecided(trace: &Trace) -> Option<String> {
             and(&lines)
         )
     })
-}
-
-/// What else there could be, a sentence each.
-pub fn doubts(trace: &Trace) -> Vec<String> {
-    let mut doubts: Vec<String> = trace.rivals.iter().take(RIVALS).map(|rival| rivalry(trace, rival)).collect();
-    if trace.rivals.len() > RIVALS {
-        doubts.push(format!("{} more such models come close.", trace.rivals.len() - RIVALS));
-    }
-    let held = trace.description.effects.iter().filter(|effect| effect.is_kinematic());
-    let held: Vec<String> = held.map(ToString::to_string).filter(|name| !is_fitted(trace, name)).collect();
-    if !held.is_empty() {
-        doubts.push(format!("The description has these, which were taken as they are: {}.", and(&by_kind(&held))));
-    }
-    if !trace.invisible.is_empty() {
-        doubts.push(format!("These data could not show, if it were there: {}.", and(&by_kind(&trace.invisible))));
-    }
-    doubts
-}
-
-/// Whether the numbers of an effect are from these data.
-fn is_fitted(trace: &Trace, name: &str) -> bool {
-    let of_it = |estimate: &&Estimate| {
-        let number = estimate.name.strip_prefix(name);
-        number.is_some_and(|number| number.is_empty() || number.starts_with(' '))
-    };
-    trace.effects.iter().any(|named| named.effect.to_string() == name)
-        || trace.estimates.iter().filter(of_it).any(|estimate| estimate.visibility == Visibility::Seen)
-}
-
-/// How many rivals are told.
-const RIVALS: usize = 5;
-
-/// A rival by what it has instead of what was named.
-fn rivalry(trace: &Trace, rival: &Rival) -> String {
-    let named: Vec<String> = trace.effects.iter().map(|named| named.effect.to_string()).collect();
-    let without = |names: &[String], others: &[String]| -> Vec<String> {
-        names.iter().filter(|name| !others.contains(name)).map(|name| spoken(name)).collect()
-    };
-    // What is wrong in single visits is in no model.
-    let replaced: Vec<String> = trace
-        .effects
-        .iter()
-        .filter(|one| one.lines.is_empty() && !rival.names.contains(&one.effect.to_string()))
-        .map(|one| spoken(&one.effect.to_string()))
-        .collect();
-    let odds = (0.5 * rival.bic_difference).exp();
-    let behind = if rival.bic_difference < 0.2 {
-        "fits as well".to_owned()
-    } else {
-        format!("comes close, with odds of {} to 1 against it", decimals(odds, usize::from(odds < 10.0)))
-    };
-    format!("A model with {} in place of {} {behind}.", and(&without(&rival.names, &named)), and(&replaced))
 }
 
 /// Whether the description that is written has the effect.
