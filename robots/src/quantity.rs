@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 use std::fmt;
 
 use crate::units::{UNITS, Unit};
+use crate::words::significant;
 
 pub use crate::dimension::Dimension;
 
@@ -47,7 +48,12 @@ fn find(name: &str, dimension: Dimension) -> Result<&'static Unit, QuantityError
             };
             error(format!("`{name}` is {kind}, {} is expected here", dimension.name()), dimension.help())
         }
-        None => error(format!("unknown unit `{name}` for {}", dimension.name()), dimension.help()),
+        None => {
+            let of_this = UNITS.iter().filter(|unit| unit.dimension == dimension);
+            let meant = of_this.map(|unit| unit.name).find(|unit| unit.eq_ignore_ascii_case(&plain));
+            let help = meant.map_or(String::new(), |meant| format!("did you mean `{meant}`? "));
+            error(format!("unknown unit `{name}` for {}", dimension.name()), help + &dimension.help())
+        }
     }
 }
 
@@ -89,7 +95,10 @@ pub fn finite(value: f64) -> Result<f64, QuantityError> {
         );
     }
     if value.abs() > MOST {
-        return error(format!("`{value:e}` in SI units is too large"), format!("at most {MOST:e}; check the unit"));
+        return error(
+            format!("`{}` in SI units is too large", significant(value)),
+            format!("at most {MOST:e}; check the unit"),
+        );
     }
     Ok(if value.abs() < LEAST { 0.0 } else { value })
 }
@@ -104,7 +113,10 @@ pub(crate) fn checked(value: f64, dimension: Dimension) -> Result<f64, QuantityE
     if dimension == Dimension::Angle && value.abs() > MOST_ANGLE {
         let turns = value.abs() / std::f64::consts::TAU;
         return error(
-            format!("{value:e} rad is {turns:.1e} turns, and rounding leaves little of what is beyond them"),
+            format!(
+                "{} rad is {turns:.1e} turns, and rounding leaves little of what is beyond them",
+                significant(value)
+            ),
             format!("at most {MOST_ANGLE:e} rad; check the unit"),
         );
     }
@@ -117,6 +129,12 @@ pub fn number(value: f64) -> String {
     if value == 0.0 || (1e-3..1e6).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
 }
 
+/// The text with the minus of the keyboard in place of the one that is printed, which is
+/// what is copied from a page.
+pub(crate) fn with_plain_minus(text: &str) -> String {
+    text.replace('\u{2212}', "-")
+}
+
 /// Reads `value unit`, or a number in SI, or for an angle a fraction of pi
 /// (`pi/2`, `-3*pi/4`, `2pi`), into SI units.
 ///
@@ -124,6 +142,7 @@ pub fn number(value: f64) -> String {
 /// What is no number, not finite, above 1e30 in SI units, or has a unit that does
 /// not fit; a stiffness of zero where a compliance is expected.
 pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
+    let text = with_plain_minus(text);
     let text = text.trim();
     let not_a_number = || {
         let help = match dimension {
@@ -241,6 +260,8 @@ mod tests {
             ("0.41", Length, 0.41),
             ("+.5 m", Length, 0.5),
             ("180 deg", Angle, PI),
+            ("\u{2212}180\u{a0}deg", Angle, -PI),
+            ("2.5e\u{2212}7 rad/Nm", Compliance, 2.5e-7),
             ("60 arcmin", Angle, PI / 180.0),
             ("50 urad", Angle, 5e-5),
             ("2.97e-7 rad/Nm", Compliance, 2.97e-7),
@@ -303,6 +324,7 @@ mod tests {
             ("3 * pi / 4", 3.0 * PI / 4.0),
             ("2pi", 2.0 * PI),
             ("-0.5 π", -FRAC_PI_2),
+            ("\u{2212}pi/2", -FRAC_PI_2),
         ] {
             assert_eq!(parse(text, Dimension::Angle), Ok(angle), "{text}");
         }
@@ -317,6 +339,15 @@ mod tests {
     fn errors_tell_apart_what_is_wrong() {
         use Dimension::*;
         assert_eq!(message("3 furlong", Length), "unknown unit `furlong` for a length");
+        for (text, dimension, meant) in [
+            ("3 Deg", Angle, "did you mean `deg`? "),
+            ("3 MM", Length, "did you mean `mm`? "),
+            ("3 µM", Length, "did you mean `um`? "),
+            ("3 MM", Angle, "write "),
+        ] {
+            let help = parse(text, dimension).expect_err(text).help;
+            assert!(help.starts_with(meant), "{help}");
+        }
         assert_eq!(message("3 mm", Angle), "`mm` is a length, an angle is expected here");
         assert_eq!(
             message("3 N/um", Compliance),

@@ -149,6 +149,8 @@ fn name(node: &Node) -> Option<String> {
     if !is_type_name(name) {
         let why = if TAKEN.contains(&name) {
             "it becomes a Rust type, and the generated code uses this name itself: write another one"
+        } else if !name.is_ascii() {
+            "it becomes a Rust type, of ASCII letters and digits only: write it in upper camel case without others"
         } else {
             "it becomes a Rust type, so write it in upper camel case"
         };

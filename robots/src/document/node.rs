@@ -170,7 +170,7 @@ impl<'d> Node<'d> {
                 return None;
             }
         };
-        let is_bare = self.is_number() || self.as_text().is_some_and(|text| text.trim().parse::<f64>().is_ok());
+        let is_bare = self.is_number() || self.as_text().is_some_and(is_number);
         let value =
             value.and_then(|value| if is_bare && self.document.wary { in_si(value, dimension) } else { Ok(value) });
         value.map_err(|error| self.error(error.message, error.help)).ok()
@@ -201,7 +201,8 @@ impl<'d> Node<'d> {
         let items = self.sequence()?;
         if items.len() != N {
             let found = items.len();
-            let help = format!("write {N}, e.g. `{}`", dimension.example_list::<N>());
+            let example = || format!("write {N}, e.g. `{}`", dimension.example_list::<N>());
+            let help = decimal_commas(&items, N).unwrap_or_else(example);
             self.error(format!("{N} values are expected here, not {found}"), help);
         }
         let values: Vec<Option<f64>> = items.iter().map(|item| item.quantity(dimension)).collect();
@@ -230,6 +231,30 @@ impl<'d> Node<'d> {
             _ => {}
         }
     }
+}
+
+/// What is right, where a list is longer than its `count` values by as many as there are
+/// decimal commas in it: `[0, 1,5 m]` reads as `[0, 1, "5 m"]`.
+fn decimal_commas(items: &[Node<'_>], count: usize) -> Option<String> {
+    // Who separates values does so with a blank, or there are more such places than values too
+    // many.
+    let meant = |item: &Node<'_>| {
+        let rest = item.rest_of_line();
+        let (whole, rest) = rest.split_once(',')?;
+        let decimals = rest.split([',', ']']).next()?.trim_end();
+        let digits = whole.trim_start_matches(['+', '-', '\u{2212}']);
+        let is_whole = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
+        (is_whole && decimals.starts_with(|first: char| first.is_ascii_digit())).then(|| format!("{whole}.{decimals}"))
+    };
+    let before_the_last = items.split_last().map_or(items, |(_, before)| before);
+    let meant: Vec<String> = before_the_last.iter().filter_map(meant).collect();
+    let fits = !meant.is_empty() && count + meant.len() == items.len();
+    fits.then(|| format!("a decimal point, not a comma: {}", list(meant.iter().map(String::as_str))))
+}
+
+/// Whether a text is a number without a unit.
+fn is_number(text: &str) -> bool {
+    quantity::with_plain_minus(text).trim().parse::<f64>().is_ok()
 }
 
 /// A map in a document: its fields by name. Of a field given twice, which is

@@ -8,7 +8,7 @@
 use super::physics::*;
 use super::{Dimension, Scalar};
 #[cfg(feature = "read")]
-use {super::Place, std::borrow::ToOwned, std::format};
+use {super::Place, crate::words::significant, std::borrow::ToOwned, std::format};
 
 /// Hardening (positive) or softening (negative) of a joint with torque.
 pub struct StiffnessNonlinearity;
@@ -62,8 +62,12 @@ impl Physics<2> for StiffnessNonlinearity {
                 "give it a `compliance`, or `added` above 0".to_owned(),
             ),
             _ => (
-                format!("without load, {place} would have no compliance left: {compliance:e} {added:+e} rad/Nm"),
-                format!("`added` must be above -{compliance:e} rad/Nm"),
+                format!(
+                    "without load, {place} would have no compliance left: {} - {} rad/Nm",
+                    significant(compliance),
+                    significant(-added)
+                ),
+                format!("`added` must be above {} rad/Nm", significant(-compliance)),
             ),
         };
         Some(Complaint { parameter: "added", otherwise: None, message, help })

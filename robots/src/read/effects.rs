@@ -104,8 +104,15 @@ fn effect(node: &Node, arm: &Arm<'_>) -> Option<Effect> {
         _ => 0.0,
     };
     if let Some(complaint) = effect.check(compliance) {
-        let shown = map.get(complaint.parameter).or_else(|| map.get(complaint.otherwise?));
-        shown.as_ref().unwrap_or(node).error(complaint.message, complaint.help);
+        let given = map.get(complaint.parameter);
+        let asks = complaint.otherwise.filter(|_| given.is_none()).and_then(|name| Some((name, map.get(name)?)));
+        match asks {
+            // What was left out has no number that could be wrong.
+            Some((name, asks)) => {
+                asks.error(format!("`{name}` needs `{}`, which is missing", complaint.parameter), complaint.help);
+            }
+            None => given.as_ref().unwrap_or(node).error(complaint.message, complaint.help),
+        }
         return None;
     }
     Some(effect)
