@@ -3,6 +3,7 @@
 
 use robstiff_robots::angle::snapped;
 use robstiff_robots::catalogue::catalogue;
+use robstiff_robots::effect::physics::LEAST_KNEE;
 use robstiff_robots::{Convention, Description, DhEntry, Effect, Joint, JointKind, Link, Part, Place, Placement};
 
 /// Marsaglia's xorshift64.
@@ -38,6 +39,11 @@ impl Random {
 
     fn positive(&mut self) -> f64 {
         self.value().abs() + 1e-12
+    }
+
+    /// As small a torque as the knee of a law may be at.
+    fn knee(&mut self) -> f64 {
+        self.positive().max(LEAST_KNEE)
     }
 
     fn angle(&mut self) -> f64 {
@@ -150,8 +156,8 @@ impl Random {
             }
         }
         if revolute(joint) {
-            effects.push(Effect::StiffnessNonlinearity { joint, added: self.positive(), knee: self.positive() });
-            effects.push(Effect::LostMotion { joint, gap: self.any_angle().abs(), knee: self.positive() });
+            effects.push(Effect::StiffnessNonlinearity { joint, added: self.positive(), knee: self.knee() });
+            effects.push(Effect::LostMotion { joint, gap: self.any_angle().abs(), knee: self.knee() });
             effects.push(self.hysteresis(joint));
             let [cos1, sin1, cos2, sin2] =
                 [0; 4].map(|_| [0.0, self.unit() / 16.0, -self.unit() / 16.0][self.below(3)]);

@@ -8,6 +8,8 @@
 //! That is a [`stiffness_nonlinearity`](super::stiffness_nonlinearity) with
 //! `added = gap / (2 knee)` and so small a knee that only the step is seen.
 
+#[cfg(feature = "read")]
+use super::Place;
 use super::physics::*;
 use super::{Dimension, Scalar};
 
@@ -49,5 +51,10 @@ impl Physics<2> for LostMotion {
     fn turn<S: Scalar>([gap, knee]: [S; 2], joint: &Joint<S>) -> Option<S> {
         let knees = joint.torque * knee.recip();
         Some(gap.times(0.5) * knees * (knees * knees).plus(1.0).sqrt().recip())
+    }
+
+    #[cfg(feature = "read")]
+    fn check([_, knee]: [f64; 2], _: Place, _: f64) -> Option<Complaint> {
+        tiny_knee(knee)
     }
 }

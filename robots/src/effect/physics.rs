@@ -2,7 +2,10 @@
 //! generator interprets it on symbols, the runtime on numbers.
 
 #[cfg(feature = "read")]
-use std::string::String;
+use {
+    crate::words::significant,
+    std::{borrow::ToOwned, format, string::String},
+};
 
 use super::{DhEntry, Place, Scalar};
 use crate::dimension::Dimension;
@@ -221,6 +224,22 @@ pub struct Complaint {
     pub message: String,
     /// What would be right.
     pub help: String,
+}
+
+/// The least torque at a knee (Nm): no gear settles on so little, and in `f32` the square of
+/// a torque over a much smaller one is infinite, and the law lost.
+#[cfg(feature = "read")]
+pub const LEAST_KNEE: f64 = 1e-6;
+
+/// What is wrong with the knee of a law.
+#[cfg(feature = "read")]
+pub(super) fn tiny_knee(knee: f64) -> Option<Complaint> {
+    (knee < LEAST_KNEE).then(|| Complaint {
+        parameter: "knee",
+        otherwise: None,
+        message: format!("a knee of {} Nm is below {LEAST_KNEE:e} Nm: no gear settles on so little", significant(knee)),
+        help: "give the torque at which the law bends, e.g. `knee: 30 Nm`; check the unit".to_owned(),
+    })
 }
 
 /// A kind of effect with `P` parameters: a file of the catalogue implements

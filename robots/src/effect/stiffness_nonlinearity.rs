@@ -54,9 +54,9 @@ impl Physics<2> for StiffnessNonlinearity {
     }
 
     #[cfg(feature = "read")]
-    fn check([added, _]: [f64; 2], place: Place, compliance: f64) -> Option<Complaint> {
+    fn check([added, knee]: [f64; 2], place: Place, compliance: f64) -> Option<Complaint> {
         let (message, help) = match compliance {
-            _ if added > -compliance => return None,
+            _ if added > -compliance => return tiny_knee(knee),
             0.0 => (
                 format!("{place} is rigid, and would have no compliance without load"),
                 "give it a `compliance`, or `added` above 0".to_owned(),
