@@ -36,6 +36,30 @@ use robstiff::{Convention, Effect, JointKind, Real, Robot, Statics};
 ///
 /// Elastostatics of `EveryEffect`, 6 joints, generated from `every-effect.yaml`.
 ///
+/// # Joints
+///
+/// Their coordinates `q` are in rad.
+///
+/// 1. turns, from -185 to 185 deg
+/// 2. turns, limits unknown
+/// 3. turns, limits unknown
+/// 4. turns, limits unknown
+/// 5. turns, limits unknown
+/// 6. turns, limits unknown
+///
+/// # Effects
+///
+/// - `transverse_compliance@joint 1`: the tilt of joint 1 about the axes across its own (bearing, housing)
+/// - `transverse_compliance@joint 3`: the tilt of joint 3 about the axes across its own (bearing, housing)
+/// - `link_compliance@link 2`: the bending and torsion of link 2
+/// - `link_compliance@link 3`: the bending of link 3
+/// - `base_compliance@base`: the compliance of foundation and pedestal
+/// - `tool_compliance@tool`: the compliance of flange, spindle and tool
+/// - `joint_coupling@joints 2,3`: the coupling of joints 2 and 3 (belts, wrist gearing)
+/// - `joint_coupling@joints 5,6`: the coupling of joints 5 and 6 (belts, wrist gearing)
+/// - `stiffness_nonlinearity@joint 2`: the hardening of joint 2 with torque
+/// - `stiffness_nonlinearity@joint 5`: the softening of joint 5 with torque
+///
 /// # Sources
 ///
 /// made up for the tests; base, tool and twists at angles that are nothing special
@@ -914,7 +938,8 @@ impl Robot<6> for EveryEffect {
         ])
     }
 
-    /// Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
+    /// Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm), for
+    /// a small wrench on the unloaded arm.
     ///
     /// It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
     /// rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point, all in the
@@ -1538,7 +1563,8 @@ impl Robot<6> for EveryEffect {
         )
     }
 
-    /// Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm).
+    /// Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench that acts
+    /// there: fx, fy, fz (N), mx, my, mz (Nm), along the axes of the base frame.
     ///
     /// 12 trig, 370 mul, 293 add, 4 root.
     #[inline(always)]

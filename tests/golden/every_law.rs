@@ -46,6 +46,39 @@ use robstiff::{Convention, DhEntry, Effect, JointKind, Real, Robot, State, Stati
 ///
 /// Elastostatics of `EveryLaw`, 7 joints, generated from `every-law.yaml`.
 ///
+/// # Joints
+///
+/// Their coordinates `q` are in rad, of sliding joints in m.
+///
+/// 1. slides, limits unknown
+/// 2. turns, limits unknown
+/// 3. turns, limits unknown
+/// 4. turns, limits unknown
+/// 5. turns, limits unknown
+/// 6. turns, limits unknown
+/// 7. turns, limits unknown
+///
+/// # Effects
+///
+/// - `transverse_compliance@joint 4`: the tilt of joint 4 about the axes across its own (bearing, housing)
+/// - `link_compliance@link 3`: the bending and torsion of link 3
+/// - `joint_coupling@joints 5,6`: the coupling of joints 5 and 6 (belts, wrist gearing)
+/// - `stiffness_nonlinearity@joint 3`: the hardening of joint 3 with torque
+/// - `lost_motion@joint 3`: the backlash of joint 3
+/// - `lost_motion@joint 5`: the backlash of joint 5
+/// - `hysteresis@joint 3`: the hysteresis of joint 3
+/// - `hysteresis@joint 6`: the hysteresis of joint 6
+/// - `pose_dependent_compliance@joint 3`: the compliance of joint 3 that varies with its angle
+/// - `pose_dependent_compliance@joint 6`: the compliance of joint 6 that varies with its angle
+/// - `joint_zero_offset@joint 4`: the zero offset of joint 4
+/// - `dh_error@a3`: the error of a of row 3
+/// - `dh_error@d5`: the error of d of row 5
+/// - `dh_error@alpha4`: the error of alpha of row 4
+/// - `dh_error@theta2`: the error of theta of row 2
+/// - `transmission_error@joint 3`: the periodic angle error of joint 3
+/// - `transmission_error@joint 4`: the periodic angle error of joint 4
+/// - `transmission_error@joint 7`: the periodic angle error of joint 7
+///
 /// # Sources
 ///
 /// made up for the tests; joints 3 and 4 are parallel, so that their angles add up
@@ -908,6 +941,9 @@ impl Robot<7> for EveryLaw {
 
     /// Jacobian of the tool centre point in the base frame, 6 rows: translation (m/rad, of sliding joints m/m), rotation.
     ///
+    /// Columns of the Jacobian are per turn of a joint's output, which a load moves; per unit of `q` they are
+    /// `elements::commanded_rates` times that.
+    ///
     /// 14 trig, 172 mul, 104 add.
     #[inline(always)]
     fn jacobian<T: Real>(&self, q: &SVector<T, 7>) -> SMatrix<T, 6, 7> {
@@ -1112,7 +1148,8 @@ impl Robot<7> for EveryLaw {
         ])
     }
 
-    /// Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
+    /// Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm), for
+    /// a small wrench on the unloaded arm.
     ///
     /// It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
     /// rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point, all in the
@@ -1716,7 +1753,10 @@ impl Robot<7> for EveryLaw {
         )
     }
 
-    /// Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm).
+    /// Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench that acts
+    /// there: fx, fy, fz (N), mx, my, mz (Nm), along the axes of the base frame.
+    ///
+    /// The arm is taken as never loaded before; `deflection_with` takes the state that loads left.
     ///
     /// 14 trig, 341 mul, 257 add, 6 root.
     #[inline(always)]
@@ -2310,6 +2350,9 @@ impl Robot<7> for EveryLaw {
     /// Axes z and levers l of the Jacobian are in the base frame, or behind the turn of joint 1 where that is done
     /// at the end. As in `compliance`, tt, tr and rr are of what lies beyond a joint, at the tool centre point and
     /// in the joint's own axes, r from the joint to the tool centre point.
+    ///
+    /// Columns of the Jacobian are per turn of a joint's output, which a load moves; per unit of `q` they are
+    /// `elements::commanded_rates` times that.
     ///
     /// 16 trig, 570 mul, 492 add.
     #[inline(always)]
@@ -3115,8 +3158,9 @@ impl Robot<7> for EveryLaw {
         }
     }
 
-    /// Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm)
-    /// that follows the loads in the state.
+    /// Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench
+    /// that follows the loads in the state, and joins them: fx, fy, fz (N), mx, my, mz (Nm), along the axes of the
+    /// base frame.
     ///
     /// 14 trig, 341 mul, 257 add, 6 root.
     #[inline(always)]

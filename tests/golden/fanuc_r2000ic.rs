@@ -26,6 +26,17 @@ use robstiff::{Convention, Effect, JointKind, Real, Robot, Statics};
 ///
 /// Elastostatics of `FanucR2000ic`, 6 joints, generated from `fanuc-r2000ic.yaml`.
 ///
+/// # Joints
+///
+/// Their coordinates `q` are in rad.
+///
+/// 1. turns, limits unknown
+/// 2. turns, limits unknown
+/// 3. turns, limits unknown
+/// 4. turns, limits unknown
+/// 5. turns, limits unknown
+/// 6. turns, limits unknown
+///
 /// # Sources
 ///
 /// Geometry, tool and joint stiffness as stated by the authors of the measurements in measured/fanuc-r2000ic (longton2001-pixel/breakthrough-surge-suppression-in-high-speed-robotic-drilling, core/config.py, MIT). Zero positions and signs are those of their DH table: q = (t1, t2, -(t2 + t3), -t4, -t5, -t6) for the controller's angles t. The stiffnesses are theirs too; a fit of the joints alone to their 43 loads gives 8.61e5, 2.72e6, 1.96e6, 2.71e5, 4.25e5, 2.06e5 Nm/rad, so take them as a start, not as the truth. Which variant of the R-2000iC it is, joint limits and masses are not stated and left out.
@@ -475,7 +486,8 @@ impl Robot<6> for FanucR2000ic {
         ])
     }
 
-    /// Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
+    /// Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm), for
+    /// a small wrench on the unloaded arm.
     ///
     /// It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
     /// rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point, all in the
@@ -681,7 +693,8 @@ impl Robot<6> for FanucR2000ic {
         )
     }
 
-    /// Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm).
+    /// Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench that acts
+    /// there: fx, fy, fz (N), mx, my, mz (Nm), along the axes of the base frame.
     ///
     /// 12 trig, 120 mul, 78 add.
     #[inline(always)]

@@ -25,6 +25,16 @@ use robstiff::{Convention, Effect, JointKind, Real, Robot, Statics};
 ///
 /// Elastostatics of `Rv130hsc`, 5 joints, generated from `rv130hsc.yaml`.
 ///
+/// # Joints
+///
+/// Their coordinates `q` are in rad.
+///
+/// 1. turns, limits unknown
+/// 2. turns, limits unknown
+/// 3. turns, limits unknown
+/// 4. turns, limits unknown
+/// 5. turns, limits unknown
+///
 /// # Sources
 ///
 /// Joint compliances: Abele, Weigold, Rothenbuecher, Modeling and Identification of an Industrial Robot for Machining Applications, CIRP Annals 56/1 (2007) 387-390, Table 1, as printed. Axis 4 is printed stiffer than axis 1 and looks like a misprint of 19.2e-7; it is kept as printed. Axes 3 and 5 have a belt after the gear; only the sum of the two is printed. Geometry: a SURROGATE of the right size and layout (the sibling RV130-60 reaches 2.8 m), because no DH table, joint limits or data sheet of this robot could be found. Zero positions are the surrogate's own; positions and Cartesian stiffness computed from it are not those of the real machine. Spindle, tool, joint limits and masses are unknown and left out.
@@ -407,7 +417,8 @@ impl Robot<5> for Rv130hsc {
         ])
     }
 
-    /// Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
+    /// Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm), for
+    /// a small wrench on the unloaded arm.
     ///
     /// It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
     /// rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point, all in the
@@ -555,7 +566,8 @@ impl Robot<5> for Rv130hsc {
         )
     }
 
-    /// Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm).
+    /// Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench that acts
+    /// there: fx, fy, fz (N), mx, my, mz (Nm), along the axes of the base frame.
     ///
     /// 10 trig, 80 mul, 51 add, 1 neg.
     #[inline(always)]

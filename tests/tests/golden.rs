@@ -55,6 +55,28 @@ fn docs_go_with_the_joints() {
     assert!(slide.contains("forces (N). Drives") && both.contains("of sliding joints forces (N). Drives"));
     let turning = code("{a: 1 m}");
     assert!(turning.contains("torques (Nm). Drives") && turning.contains("   rigid\n"), "{turning}");
+    let units = ["`q` are in m.", "`q` are in rad, of sliding joints in m.", "`q` are in rad."];
+    for (code, unit) in [slide, both, turning].iter().zip(units) {
+        assert!(code.contains(unit), "{code}");
+    }
+    let limited = code("{limits: [-170 deg, 90 deg]}, {type: prismatic, limits: [0, 1.5 m]}, {a: 1 m}");
+    for joint in ["1. turns, from -170 to 90 deg", "2. slides, from 0 to 1500 mm", "3. turns, limits unknown"] {
+        assert!(limited.contains(joint), "{limited}");
+    }
+}
+
+/// What a robot's effects make of a method is said there, and only of those that have them.
+#[test]
+fn docs_go_with_the_effects() {
+    let code = |file: &str| source(&description(file), &origin(file));
+    let (rigid, laws) = (code("fanuc-r2000ic.yaml"), code("every-law.yaml"));
+    for caveat in ["never loaded before", "commanded_rates", "# Effects"] {
+        assert!(laws.contains(caveat) && !rigid.contains(caveat), "{caveat}");
+    }
+    let sagging = "name: Sagging\nconvention: standard\njoints: [{a: 1 m, compliance: 1e-7 rad/Nm}]\n\
+                   links: [{mass: 9 kg}]\neffects: [{kind: gravity_sag, at: robot, share: 1}]\n";
+    let sagging = source(&Description::parse("sagging.yaml", sagging).expect("a robot"), &origin("sagging.yaml"));
+    assert!(sagging.contains("sags otherwise") && !laws.contains("sags otherwise"), "{sagging}");
 }
 
 /// Of three numbers of one sort each says which it is.

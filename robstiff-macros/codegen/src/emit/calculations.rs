@@ -3,7 +3,7 @@
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
-use robstiff_robots::{Description, JointKind};
+use robstiff_robots::{Description, Effect, JointKind};
 
 use super::Signature;
 use super::body::Reader;
@@ -14,6 +14,9 @@ use crate::symbolic::{self, Algorithm, columns};
 /// Builds a result from its entries.
 pub(super) type Build = fn(&Description, Reader, &[TokenStream]) -> TokenStream;
 
+/// A paragraph of docs, if the robot asks for it.
+type Caveat = fn(&Description) -> Option<String>;
+
 /// A method that calculates.
 pub(super) struct Calculation {
     /// The method's name.
@@ -21,6 +24,8 @@ pub(super) struct Calculation {
     /// What it gives, with shape, frame and unit; `{}` is that of a displacement per joint
     /// coordinate, `{torques}` what joints carry.
     doc: &'static str,
+    /// What else there is to say of it for a robot with certain effects.
+    caveat: Caveat,
     /// The method's signature.
     pub signature: Signature,
     algorithm: Algorithm,
@@ -35,6 +40,7 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
     Calculation {
         name: "transform",
         doc: "Frame of the tool centre point in the base frame, 4 x 4 homogeneous (m).",
+        caveat: |_| None,
         signature: |n| quote!(fn transform<T: Real>(&self, q: &SVector<T, #n>) -> Matrix4<T>),
         algorithm: symbolic::transform,
         result: |_, _, entries| quote!(Matrix4::new(#(#entries),*)),
@@ -43,6 +49,7 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
     Calculation {
         name: "link_frames",
         doc: "Frames behind the joints in the base frame, 4 x 4 homogeneous (m); the last is the flange.",
+        caveat: |_| None,
         signature: |n| quote!(fn link_frames<T: Real>(&self, q: &SVector<T, #n>) -> [Matrix4<T>; #n]),
         algorithm: symbolic::link_frames,
         result: |_, _, entries| {
@@ -54,6 +61,7 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
     Calculation {
         name: "jacobian",
         doc: "Jacobian of the tool centre point in the base frame, 6 rows: translation ({}), rotation.",
+        caveat: of_outputs,
         signature: |n| quote!(fn jacobian<T: Real>(&self, q: &SVector<T, #n>) -> SMatrix<T, 6, #n>),
         algorithm: symbolic::jacobian,
         result: |_, reader, entries| jacobian(reader, entries),
@@ -61,11 +69,13 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
     },
     Calculation {
         name: "compliance",
-        doc: "Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm).
+        doc: "Cartesian compliance at the tool centre point in the base frame, 6 x 6 (m/N, m/Nm; rad/N, rad/Nm), for
+            a small wrench on the unloaded arm.
 
             It is carried from the tip to the base: tt (displacement per force), tr (displacement per moment) and
             rr (rotation per moment) of what lies beyond a joint, r from the joint to the tool centre point, all in the
             joint's own axes.",
+        caveat: |_| None,
         signature: |n| quote!(fn compliance<T: Real>(&self, q: &SVector<T, #n>) -> Matrix6<T>),
         algorithm: symbolic::compliance,
         result: |_, _, entries| quote!(Matrix6::new(#(#entries),*)),
@@ -73,7 +83,12 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
     },
     Calculation {
         name: "deflection",
-        doc: "Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm).",
+        doc: "Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench that acts
+            there: fx, fy, fz (N), mx, my, mz (Nm), along the axes of the base frame.",
+        caveat: |robot| {
+            let says = "The arm is taken as never loaded before; `deflection_with` takes the state that loads left.";
+            symbolic::remembers(robot).then(|| says.to_owned())
+        },
         signature: |n| quote!(fn deflection<T: Real>(&self, q: &SVector<T, #n>, wrench: &Vector6<T>) -> Vector6<T>),
         algorithm: symbolic::deflection,
         result: |_, _, entries| quote!(Vector6::new(#(#entries),*)),
@@ -83,6 +98,7 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
         name: "joint_torques",
         doc: "What a wrench that acts on the tool centre point puts on the joints, `J^T F`:
             {torques}. Drives hold the arm with the negative.",
+        caveat: |_| None,
         signature: |n| quote!(fn joint_torques<T: Real>(&self, q: &SVector<T, #n>, wrench: &Vector6<T>) -> SVector<T, #n>),
         algorithm: symbolic::joint_torques,
         result: |_, reader, entries| from(reader, "SVector", entries),
@@ -95,6 +111,7 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
             Axes z and levers l of the Jacobian are in the base frame, or behind the turn of joint 1 where that is done
             at the end. As in `compliance`, tt, tr and rr are of what lies beyond a joint, at the tool centre point and
             in the joint's own axes, r from the joint to the tool centre point.",
+        caveat: of_outputs,
         signature: |n| quote!(fn statics<T: Real>(&self, q: &SVector<T, #n>) -> Statics<#n, T>),
         algorithm: symbolic::statics,
         result: |_, reader, entries| {
@@ -111,8 +128,10 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
 /// What is generated besides for robots that [remember](symbolic::remembers) their loads.
 pub(super) const DEFLECTION_WITH: Calculation = Calculation {
     name: "deflection_with",
-    doc: "Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench (N, Nm)
-        that follows the loads in the state.",
+    doc: "Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench
+        that follows the loads in the state, and joins them: fx, fy, fz (N), mx, my, mz (Nm), along the axes of the
+        base frame.",
+    caveat: |_| None,
     signature: |n| {
         quote!(fn deflection_with<T: Real>(
             &self,
@@ -132,6 +151,19 @@ pub(super) const DEFLECTION_WITH: Calculation = Calculation {
     },
     in_columns: None,
 };
+
+/// What a column of the Jacobian is of, where that is not what `q` says.
+fn of_outputs(robot: &Description) -> Option<String> {
+    let has = |is: fn(&Effect) -> bool| robot.effects.iter().any(is);
+    let errs = has(|effect| matches!(effect, Effect::TransmissionError { .. })).then_some(
+        "Columns of the Jacobian are per turn of a joint's output, which a load moves; per unit of `q` they are
+            `elements::commanded_rates` times that.",
+    );
+    let sags = has(|effect| matches!(effect, Effect::GravitySag { .. }))
+        .then_some("That the arm sags otherwise where `q` changes is not in the Jacobian.");
+    let says: Vec<&str> = errs.into_iter().chain(sags).collect();
+    (!says.is_empty()).then(|| says.join("\n"))
+}
 
 /// A Jacobian from its entries, column by column.
 fn jacobian(reader: Reader, entries: &[TokenStream]) -> TokenStream {
@@ -160,7 +192,8 @@ impl Calculation {
             (false, true) => ("m/m", "forces (N)"),
             (false, false) => ("m/rad, of sliding joints m/m", "torques (Nm), of sliding joints forces (N)"),
         };
-        self.doc.replace("{}", per_joint).replace("{torques}", torques)
+        let doc = self.doc.replace("{}", per_joint).replace("{torques}", torques);
+        (self.caveat)(robot).into_iter().fold(doc, |doc, caveat| doc + "\n\n" + &caveat)
     }
 
     fn function(&self, robot: &Description) -> Function {

@@ -4,7 +4,7 @@ use proc_macro2::{Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 use robstiff_robots::description::MOST_JOINTS;
 use robstiff_robots::words::count;
-use robstiff_robots::{Description, Place};
+use robstiff_robots::{Description, JointKind, Place};
 use syn::Ident;
 
 use super::Signature;
@@ -162,6 +162,7 @@ pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Gene
     }
     let joints = count(robot.joints.len(), "joint");
     docs.push(format!(" Elastostatics of `{}`, {joints}, generated from `{file}`.", robot.name));
+    docs.extend(parts(robot));
     if !robot.source.trim().is_empty() {
         docs.push(String::new());
         docs.push(" # Sources".to_owned());
@@ -227,6 +228,34 @@ fn derived(reader: Reader) -> TokenStream {
         },
         Reader::Person => quote!(#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]),
     }
+}
+
+/// The joints and the effects of a robot as docs, with the unit of its coordinates.
+fn parts(robot: &Description) -> Vec<String> {
+    let is_of = |kind: JointKind| robot.joints.iter().all(|joint| joint.kind == kind);
+    let unit = match (is_of(JointKind::Revolute), is_of(JointKind::Prismatic)) {
+        (true, _) => "rad",
+        (false, true) => "m",
+        (false, false) => "rad, of sliding joints in m",
+    };
+    let mut docs = ["", " # Joints", ""].map(str::to_owned).to_vec();
+    docs.extend([format!(" Their coordinates `q` are in {unit}."), String::new()]);
+    docs.extend((1..).zip(&robot.joints).map(|(number, joint)| {
+        let kind = match joint.kind {
+            JointKind::Revolute => "turns",
+            JointKind::Prismatic => "slides",
+        };
+        let limits = match joint.limits.map(|limits| limits.map(|limit| joint.for_people(limit))) {
+            Some([low, high]) => format!("from {low} to {high} {}", joint.people_unit()),
+            None => "limits unknown".to_owned(),
+        };
+        format!(" {number}. {kind}, {limits}")
+    }));
+    if !robot.effects.is_empty() {
+        docs.extend(["", " # Effects", ""].map(str::to_owned));
+        docs.extend(robot.effects.iter().map(|effect| format!(" - `{effect}`: {}", effect.noun())));
+    }
+    docs
 }
 
 /// A paragraph of docs with an empty line after it.
