@@ -9,7 +9,9 @@ use crate::{blocks, columns, trig};
 
 /// A scalar that generated code can compute with: `f32`, `f64`, several of
 /// them side by side ([`Lanes`](crate::Lanes)), with derivatives
-/// ([`Dual`](crate::Dual)), and whatever else brings these few operations.
+/// ([`Dual`](crate::Dual)), and whatever else brings these few operations. For a
+/// scalar of your own add `num-traits` to your dependencies: its `Zero` and `One` are
+/// among them.
 pub trait Real:
     nalgebra::Scalar + Copy + Zero + One + Neg<Output = Self> + ClosedAddAssign + ClosedSubAssign + ClosedMulAssign
 {

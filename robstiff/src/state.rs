@@ -39,7 +39,9 @@ use crate::Real;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<const N: usize, T = f64> {
     /// The play operators of each joint: up to three torques, each within its
-    /// radius of the joint's last one (Nm).
+    /// radius of the joint's last one (Nm). Those that nothing depends on stay as
+    /// they are: of joints without hysteresis, and those of weight 0 behind the last
+    /// that has a weight.
     pub plays: [[T; PLAYS]; N],
 }
 
