@@ -56,7 +56,7 @@ fn wild_of(robot: &Description, rows: &[ClampedRow], kind: JointKind) -> Vec<usi
     let at: Vec<usize> = (0..rows.len()).filter(|&row| robot.joints[rows[row].axis - 1].kind == kind).collect();
     let own: Vec<ClampedRow> = at.iter().map(|&row| rows[row]).collect();
     // What is left may be a curve of a gear.
-    let wild = wild::wild_rows(&own, &torques(&own), false, &wild::Room::new(&own));
+    let wild = wild::wild_rows(&own, &torques(&own), false, &wild::Room::new(rows));
     wild.map_or_else(Vec::new, |(wild, _)| wild.into_iter().map(|row| at[row]).collect())
 }
 
