@@ -51,15 +51,6 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
     if is_readable(&found.description) { Ok(found) } else { Err(Error::NoDescription) }
 }
 
-/// The wild rows of the axes of one kind, by index: radians and metres have no noise in common.
-fn wild_of(robot: &Description, rows: &[ClampedRow], kind: JointKind) -> Vec<usize> {
-    let at: Vec<usize> = (0..rows.len()).filter(|&row| robot.joints[rows[row].axis - 1].kind == kind).collect();
-    let own: Vec<ClampedRow> = at.iter().map(|&row| rows[row]).collect();
-    // What is left may be a curve of a gear.
-    let wild = wild::wild_rows(&own, &torques(&own), false, &wild::Room::new(rows));
-    wild.map_or_else(Vec::new, |(wild, _)| wild.into_iter().map(|row| at[row]).collect())
-}
-
 /// The same of all rows but those `left_out`, by index.
 ///
 /// # Errors
@@ -77,11 +68,12 @@ pub fn slopes(campaign: &Campaign, rows: &[ClampedRow], left_out: &[usize]) -> R
         let of_axis: Vec<&ClampedRow> = kept.iter().copied().filter(here).collect();
         let rounding = rounding.get(i).copied().unwrap_or(0.0);
         let slope = slope(&of_axis, rounding);
-        if goes_against(rows.iter().filter(here), rounding) {
-            let line = of_axis[0].line;
+        let read: Vec<&ClampedRow> = rows.iter().filter(here).collect();
+        if goes_against(&read, rounding) {
             return Err(Error::AgainstTheLoads(format!(
-                "axis {} deflects against its torque (rows from line {line}): check the signs",
-                i + 1
+                "axis {} deflects against its torque (rows from line {}): check the signs",
+                i + 1,
+                read[0].line
             )));
         }
         let clipped = slope.is_some_and(|(value, _)| value < 0.0);
@@ -115,13 +107,22 @@ pub fn slopes(campaign: &Campaign, rows: &[ClampedRow], left_out: &[usize]) -> R
     })
 }
 
+/// The wild rows of the axes of one kind, by index: radians and metres have no noise in common.
+fn wild_of(robot: &Description, rows: &[ClampedRow], kind: JointKind) -> Vec<usize> {
+    let at: Vec<usize> = (0..rows.len()).filter(|&row| robot.joints[rows[row].axis - 1].kind == kind).collect();
+    let own: Vec<ClampedRow> = at.iter().map(|&row| rows[row]).collect();
+    // What is left may be a curve of a gear.
+    let wild = wild::wild_rows(&own, &torques(&own), false, &wild::Room::new(rows));
+    wild.map_or_else(Vec::new, |(wild, _)| wild.into_iter().map(|row| at[row]).collect())
+}
+
 /// Whether an axis deflects against its torque: a sign is wrong in most of its rows, a wild reading
 /// in one. Of an axis that does not move, readings may be a step off on either side; `rounding` is
 /// their variance by that.
-fn goes_against<'r>(rows: impl Iterator<Item = &'r ClampedRow> + Clone, rounding: f64) -> bool {
-    let against = rows.clone().filter(|row| row.torque * row.deflection < 0.0).count();
+fn goes_against(rows: &[&ClampedRow], rounding: f64) -> bool {
+    let against = rows.iter().filter(|row| row.torque * row.deflection < 0.0).count();
     let a_step = (12.0 * rounding).sqrt() * (1.0 + 1e-9);
-    2 * against > rows.clone().count() && rows.into_iter().any(|row| row.deflection.abs() > a_step)
+    2 * against > rows.len() && rows.iter().any(|row| row.deflection.abs() > a_step)
 }
 
 /// The rows less what laws of joints do that the description declares, each axis
