@@ -62,6 +62,15 @@ pub struct Block {
     pub stacked: Vec<usize>,
 }
 
+impl Block {
+    /// Of so many rows of the campaign, whether each is in one of some blocks.
+    pub fn among(blocks: &[Self], rows: usize) -> Vec<bool> {
+        let mut among = vec![false; rows];
+        blocks.iter().flat_map(|block| &block.rows).for_each(|&row| among[row] = true);
+        among
+    }
+}
+
 /// How a campaign's rows are weighed.
 #[derive(Clone, Copy, Debug)]
 pub struct Weights<'a> {

@@ -309,11 +309,7 @@ impl Setting<'_> {
         let lines = slips.flat_map(|one| &self.variant(*one).shape).filter(|number| number.name == SLIPPED_AT);
         let rows = &self.point.data.rows;
         let moments = lines.filter_map(|line| rows.iter().position(|row| row.line as f64 == line.value));
-        let among = |blocks: &[Block]| {
-            let mut among = std::vec![false; rows.len()];
-            blocks.iter().flat_map(|block| &block.rows).for_each(|&row| among[row] = true);
-            among
-        };
+        let among = |blocks: &[Block]| Block::among(blocks, rows.len());
         undecided(moments, &among(&self.problem.blocks), &among(&self.problem.held_out))
     }
 

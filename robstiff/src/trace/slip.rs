@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Matrix3x6, Matrix6, Vector3};
 
 use super::model::{Fitted, Setting};
 use crate::identify::normal::Scaled;
+use crate::identify::problem::Block;
 use crate::identify::samples::{Sample, turn_of};
 use crate::identify::whitening::{mean_share, whiten};
 
@@ -109,8 +110,7 @@ impl Moments {
 pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted, slipping: Slipping) -> Option<Moment> {
     let (problem, fit) = setting.alone(&model.fit);
     let (axes, rows) = (problem.axes, setting.point.samples.rows.len());
-    let mut fitted_to = vec![false; rows];
-    problem.blocks.iter().flat_map(|block| &block.rows).for_each(|&row| fitted_to[row] = true);
+    let fitted_to = Block::among(&problem.blocks, rows);
     let columns = &fit.columns;
     let mut white = problem.white.clone().insert_column(columns.len(), 0.0);
     white.set_column(columns.len(), &problem.white_residuals(columns, &problem.total.solve(columns)?.coefficients));
@@ -219,8 +219,7 @@ impl Scan<'_, '_> {
         let axes = self.setting.problem.axes;
         let residuals = self.setting.residuals(&model.fit) - &self.setting.correction;
         let is_out = |row: usize| !self.fitted_to[row];
-        let mut votes = vec![true; self.fitted_to.len()];
-        self.setting.problem.held_out.iter().flat_map(|block| &block.rows).for_each(|&row| votes[row] = false);
+        let held_out = Block::among(&self.setting.problem.held_out, self.fitted_to.len());
         let row = slip.moment.row;
         let first = (0..row).rev().take_while(|&row| is_out(row)).last().unwrap_or(row);
         let last = (row..self.fitted_to.len()).take_while(|&row| is_out(row)).last().map_or(row, |row| row + 1);
@@ -231,7 +230,8 @@ impl Scan<'_, '_> {
             let moved = self.moves(row) * &by;
             left.norm_squared() - (left - moved).norm_squared()
         };
-        let with = |moment: Moment| (first..last).filter(|&row| votes[row] && moment.has(row)).map(better).sum::<f64>();
+        let with =
+            |moment: Moment| (first..last).filter(|&row| !held_out[row] && moment.has(row)).map(better).sum::<f64>();
         let moments = (first..=last).map(|row| Moment { row, before: slip.moment.before });
         moments.fold(slip.moment, |best, moment| if with(moment) > with(best) { moment } else { best })
     }
