@@ -187,7 +187,7 @@ impl Scene {
         let joints = robot.corrected_joints();
         json!({
             "robot": robot.name,
-            "convention": if robot.convention == Convention::Standard { "standard" } else { "modified" },
+            "convention": robot.convention.word(),
             "base": with_robot!(robot, |arm| placement(&base(&arm))),
             "tool": with_robot!(robot, |arm| placement(&tool(&arm))),
             "joints": joints.iter().map(joint).collect::<Value>(),

@@ -6,7 +6,7 @@ mod pose;
 use std::path::PathBuf;
 
 use robstiff::analysis::Stiffness;
-use robstiff_robots::{Convention, Description, JointKind};
+use robstiff_robots::{Description, JointKind};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
@@ -50,10 +50,7 @@ fn document(robot: &Description, shown: &Shown) -> Value {
         "robot": robot.name,
         "description": robot.description,
         "source": robot.source,
-        "convention": match robot.convention {
-            Convention::Standard => "standard",
-            Convention::Modified => "modified",
-        },
+        "convention": robot.convention.word(),
         "joints": robot.joints.iter().map(joint).collect::<Value>(),
         "effects": robot.effects.iter().map(effect).collect::<Value>(),
         "q": json::numbers(shown.q.iter().copied()),

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use robstiff::analysis::Stiffness;
 use robstiff::nalgebra::{Dim, Matrix, RawStorage};
-use robstiff_robots::{Convention, Description, Joint, JointKind};
+use robstiff_robots::{Description, Joint, JointKind};
 
 use super::pose::{Direction, Shown};
 use crate::effect;
@@ -51,10 +51,7 @@ fn section(page: &mut String, title: &str) {
 }
 
 fn chain(page: &mut String, robot: &Description) {
-    let convention = match robot.convention {
-        Convention::Standard => "standard",
-        Convention::Modified => "modified",
-    };
+    let convention = robot.convention.word();
     section(page, &format!("Chain ({convention} Denavit-Hartenberg; mm and deg)"));
     let head = ["joint", "theta", "d", "a", "alpha", "limits", "compliance", "stiffness", ""];
     let mut table = Table::new(1, head);
