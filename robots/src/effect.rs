@@ -11,6 +11,7 @@
 
 pub mod base_compliance;
 pub mod dh_error;
+pub mod gravity_preload;
 pub mod gravity_sag;
 pub mod hysteresis;
 pub mod joint_coupling;
@@ -92,6 +93,7 @@ registry! {
     dh_error::DhError, Entry(entry: DhEntry), value;
     transmission_error::TransmissionError, Joint(joint: usize), order, sin, cos;
     gravity_sag::GravitySag, Robot(), share;
+    gravity_preload::GravityPreload, Robot(), share;
 }
 
 impl Effect {
@@ -119,6 +121,39 @@ impl Effect {
             Place::Entry(entry) => Some(entry.row()),
             _ => None,
         }
+    }
+
+    /// [`turn`](Self::turn) of a gear that carries a torque before the load, less what that
+    /// alone turns it by (rad): the torque of `joint` is the load's, and its play operators
+    /// count from where they rest under the preload (Nm) of a joint that was never loaded.
+    ///
+    /// # Panics
+    /// For another count of parameters.
+    pub fn turn_beyond<S: Scalar>(&self, parameters: &[S], preload: S, joint: &Joint<S>) -> Option<S> {
+        if self.is_linear() {
+            return self.turn(parameters, joint);
+        }
+        let resting = self.resting(parameters, preload);
+        let of = |torque: S, plays: [S; PLAYS]| self.turn(parameters, &Joint { torque, plays, ..*joint });
+        let plays = core::array::from_fn(|k| resting[k] + joint.plays[k]);
+        Some(of(preload + joint.torque, plays)? - of(preload, resting)?)
+    }
+
+    /// [`plays`](Self::plays) of such a gear, before and after the torque (Nm) of a load
+    /// counted from where they rest under the preload (Nm).
+    ///
+    /// # Panics
+    /// For another count of parameters.
+    pub fn plays_beyond<S: Scalar>(&self, parameters: &[S], preload: S, torque: S, before: [S; PLAYS]) -> [S; PLAYS] {
+        let resting = self.resting(parameters, preload);
+        let before = core::array::from_fn(|k| resting[k] + before[k]);
+        let after = self.plays(parameters, preload + torque, before);
+        core::array::from_fn(|k| after[k] - resting[k])
+    }
+
+    /// The play operators (Nm) of a joint that was never loaded but by its preload (Nm).
+    fn resting<S: Scalar>(&self, parameters: &[S], preload: S) -> [S; PLAYS] {
+        self.plays(parameters, preload, [preload.times(0.0); PLAYS])
     }
 
     /// The slope of [`turn`](Self::turn) against the torque (rad/Nm) at a torque

@@ -29,8 +29,8 @@ pub use deformed::{Deformed, deformed};
 #[cfg(feature = "identify")]
 pub(crate) use deformed::{Part, Rest, at_rest, displacement_at};
 pub use laws::{
-    commanded_rates, deviation, joint_turns, own_weight_torque, plays, share_of_weight, turn, turn_about, turns_under,
-    unloaded_turn,
+    Torque, commanded_rates, deviation, joint_turns, own_weight_torque, plays, share_of_preload, share_of_weight, turn,
+    turn_about, turns_under,
 };
 pub use robstiff_robots::effect::physics::Spring;
 
@@ -237,7 +237,8 @@ impl fmt::Display for Element<'_> {
 
 /// What each joint and then each effect gives to the 6 x 6 compliance at the
 /// TCP in the base frame (m/N, m/Nm, rad/N, rad/Nm by block), in the order of
-/// the description; the sum is [`Robot::compliance`].
+/// the description; of a nonlinear effect the tangent in the unloaded state, of a
+/// kinematic one nothing. The sum is [`Robot::compliance`].
 pub fn contributions<'r, const N: usize, T, R>(
     robot: &'r R,
     q: &SVector<T, N>,
@@ -246,28 +247,7 @@ where
     T: Real,
     R: Robot<N>,
 {
-    let (pose, q) = (Pose::of(robot, q), *q);
-    let (own, effects) = (robot.joint_compliance(), robot.effects());
-    (0..N + effects.len()).map(move |k| {
-        let geometry = pose.geometry();
-        match k.checked_sub(N) {
-            None => (Element::Joint(k + 1), geometry.unit_compliance(Spring::Joint(k + 1)) * T::of(own[k])),
-            Some(k) => {
-                (Element::Effect(&effects[k]), effect_compliance(&geometry, &effects[k], own.as_slice(), q.as_slice()))
-            }
-        }
-    })
-}
-
-/// What an effect adds to the compliance at the TCP in the base frame, 6 x 6
-/// in m/N, m/Nm, rad/N, rad/Nm by block; of a nonlinear effect the tangent in
-/// the unloaded state, of a kinematic one nothing. The joints' own compliances
-/// `own` [rad/Nm or m/N] and coordinates `q` [rad or m] enter the laws of joints.
-///
-/// # Panics
-/// If the effect is at a joint or link that the robot does not have.
-pub fn effect_compliance<T: Real>(geometry: &Geometry<'_, T>, effect: &Effect, own: &[f64], q: &[T]) -> Matrix6<T> {
-    with_law(geometry, effect, |joint| unloaded_turn(effect, T::of(own[joint - 1]), q[joint - 1]))
+    contributions_under(robot, q, &Vector6::zeros())
 }
 
 /// The 6 x 6 compliance at the TCP in the base frame (m/N, m/Nm, rad/N, rad/Nm by
@@ -294,7 +274,8 @@ where
     T: Real,
     R: Robot<N>,
 {
-    let (pose, q, torques) = (Pose::of(robot, q), *q, robot.joint_torques(q, wrench));
+    let (pose, q) = (Pose::of(robot, q), *q);
+    let torques = robot.preload(&q) + robot.joint_torques(&q, wrench);
     let (own, effects) = (robot.joint_compliance(), robot.effects());
     (0..N + effects.len()).map(move |k| {
         let geometry = pose.geometry();

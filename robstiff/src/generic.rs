@@ -9,13 +9,13 @@ use robstiff_robots::angle::{quarter_turns, sin_cos_of_turns};
 use robstiff_robots::words::count;
 use robstiff_robots::{Description, Joint, Placement};
 
-use crate::elements::{Pose, Spring, contributions, deviation, plays, springs, turn};
+use crate::elements::{Pose, Spring, Torque, contributions, deviation, plays, springs, turn};
 use crate::{Convention, Effect, JointKind, Real, Robot, State};
-use sag::Sag;
+use weight::Weight;
 
-mod sag;
 #[cfg(test)]
 mod tests;
+mod weight;
 
 /// A robot with `N` joints, built from a [`Description`] at run time.
 ///
@@ -33,7 +33,7 @@ pub struct Generic<const N: usize> {
     tool: Matrix4<f64>,
     compliance: SVector<f64, N>,
     effects: Vec<Effect>,
-    sag: Option<Sag<N>>,
+    weight: Option<Weight<N>>,
 }
 
 /// One row of the DH table, `before * motion(q) * after`.
@@ -127,7 +127,7 @@ impl<const N: usize> Generic<N> {
             tool: placement(&description.tool),
             compliance: SVector::from_fn(|i, _| description.joints[i].compliance()),
             effects: description.effects.clone(),
-            sag: Sag::of(description),
+            weight: Weight::of(description),
         })
     }
 }
@@ -140,6 +140,20 @@ impl<const N: usize> Generic<N> {
             frame *= self.joints[i].transform(stand[i]);
             frame
         })
+    }
+
+    /// Where the joints stand at their coordinates, but for a sag.
+    fn upright<T: Real>(&self, q: &SVector<T, N>) -> SVector<T, N> {
+        SVector::from_fn(|i, _| {
+            let aside = self.effects.iter().filter(|effect| effect.row() == Some(i + 1));
+            let aside = aside.filter_map(|effect| deviation(effect, q[i]));
+            aside.fold(q[i], |sum, aside| sum + aside)
+        })
+    }
+
+    /// A share of what the arm's own weight puts on the joints.
+    fn carried<T: Real>(&self, weight: &Weight<N>, share: f64, upright: &[Matrix4<T>; N]) -> SVector<T, N> {
+        weight.torques(self.convention, self.joint_kinds(), &self.base, upright) * T::of(share)
     }
 }
 
@@ -204,15 +218,13 @@ impl<const N: usize> Robot<N> for Generic<N> {
     }
 
     fn link_frames<T: Real>(&self, q: &SVector<T, N>) -> [Matrix4<T>; N] {
-        let stand = SVector::from_fn(|i, _| {
-            let aside = self.effects.iter().filter(|effect| effect.row() == Some(i + 1));
-            let aside = aside.filter_map(|effect| deviation(effect, q[i]));
-            aside.fold(q[i], |sum, aside| sum + aside)
-        });
+        let stand = self.upright(q);
         let upright = self.frames_behind(&stand);
-        let Some(sag) = &self.sag else { return upright };
-        let yields = sag.yields(self.convention, self.joint_kinds(), &self.compliance, &self.base, &upright);
-        self.frames_behind(&(stand + SVector::from(yields)))
+        let Some((weight, share)) = self.weight.as_ref().and_then(|weight| Some((weight, weight.sag?))) else {
+            return upright;
+        };
+        let sag = self.carried(weight, share, &upright).component_mul(&self.compliance.map(T::of));
+        self.frames_behind(&(stand + sag))
     }
 
     fn jacobian<T: Real>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, N> {
@@ -239,14 +251,14 @@ impl<const N: usize> Robot<N> for Generic<N> {
         for i in 0..N {
             compliance += geometry.unit_compliance(Spring::Joint(i + 1)) * T::of(self.compliance[i]);
         }
-        let mut beyond = Vector6::zeros();
+        let (mut beyond, preload) = (Vector6::zeros(), self.preload(q));
         for effect in &self.effects {
             for (spring, value) in springs(effect) {
                 compliance += geometry.unit_compliance(spring) * T::of(value);
             }
             let Some(i) = effect.row().map(|joint| joint - 1) else { continue };
             let twist = geometry.joint_twist(i + 1);
-            let torque = twist.dot(wrench);
+            let torque = Torque { preload: preload[i], load: twist.dot(wrench) };
             state.plays[i] = plays(effect, torque, state.plays[i]);
             if let Some(turn) = turn(effect, T::of(self.compliance[i]), q[i], torque, state.plays[i]) {
                 beyond += twist * turn;
@@ -257,6 +269,13 @@ impl<const N: usize> Robot<N> for Generic<N> {
 
     fn joint_torques<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>) -> SVector<T, N> {
         self.jacobian(q).transpose() * wrench
+    }
+
+    fn preload<T: Real>(&self, q: &SVector<T, N>) -> SVector<T, N> {
+        let weight = self.weight.as_ref().and_then(|weight| Some((weight, weight.preload?)));
+        weight.map_or_else(SVector::zeros, |(weight, share)| {
+            self.carried(weight, share, &self.frames_behind(&self.upright(q)))
+        })
     }
 }
 

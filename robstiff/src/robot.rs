@@ -90,6 +90,14 @@ pub trait Robot<const N: usize> {
     /// sliding joints forces in N). Drives hold the arm with the negative.
     fn joint_torques<T: Real>(&self, q: &SVector<T, N>, wrench: &Vector6<T>) -> SVector<T, N>;
 
+    /// What the arm's own weight puts on the gears before any load does (Nm, of sliding
+    /// joints forces in N), and the laws of joints begin at: zero but where the description
+    /// has [`gravity_preload`](robstiff_robots::effect::gravity_preload).
+    fn preload<T: Real>(&self, q: &SVector<T, N>) -> SVector<T, N> {
+        let _ = q;
+        SVector::zeros()
+    }
+
     /// [`transform`](Self::transform), [`jacobian`](Self::jacobian) and
     /// [`compliance`](Self::compliance) of one pose; generated code shares what
     /// they have in common, the sines and cosines above all.

@@ -39,6 +39,7 @@ macro_rules! for_every_arm {
             hanging Hanging "hanging.yaml",
             modified_slider ModifiedSlider "modified-slider.yaml",
             pendulum Pendulum "pendulum.yaml",
+            preloaded Preloaded "preloaded.yaml",
             scara Scara "scara.yaml",
             sliders Sliders "sliders.yaml",
             snake Snake "snake.yaml"

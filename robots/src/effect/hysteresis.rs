@@ -66,6 +66,8 @@ impl Physics<6> for Hysteresis {
         ],
     };
 
+    const LINEAR: bool = true;
+
     fn turn<S: Scalar>([_, first, _, second, _, third]: [S; 6], joint: &Joint<S>) -> Option<S> {
         let [a, b, c] = joint.plays;
         Some(first * a + second * b + third * c)

@@ -251,6 +251,10 @@ pub trait Physics<const P: usize> {
     /// Name, place, parameters, and what a person is told.
     const ABOUT: About;
 
+    /// Whether [`turn`](Self::turn) is linear in the torque and the play operators, so that
+    /// what the gear carries before the load makes no difference to it.
+    const LINEAR: bool = false;
+
     /// The linear elements, one for each parameter, its compliance.
     fn springs(_place: Place) -> [Option<Spring>; P] {
         [None; P]
@@ -283,6 +287,11 @@ pub trait Physics<const P: usize> {
 
     /// The share of the arm's own weight that every joint yields to, unloaded.
     fn share_of_weight<S: Scalar>(_parameters: [S; P]) -> Option<S> {
+        None
+    }
+
+    /// The share of the arm's own weight that gears carry before the load.
+    fn share_of_preload<S: Scalar>(_parameters: [S; P]) -> Option<S> {
         None
     }
 

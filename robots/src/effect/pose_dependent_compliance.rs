@@ -41,6 +41,8 @@ impl Physics<4> for PoseDependentCompliance {
         ],
     };
 
+    const LINEAR: bool = true;
+
     fn turn<S: Scalar>([cos1, sin1, cos2, sin2]: [S; 4], joint: &Joint<S>) -> Option<S> {
         let (s, c) = (joint.harmonic)(1.0);
         // sin 2q = 2 s c and cos 2q = c^2 - s^2.

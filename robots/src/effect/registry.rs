@@ -219,6 +219,27 @@ macro_rules! registry {
                 }
             }
 
+            /// The share of the arm's own weight that gears carry before the load,
+            /// if the effect is of that sort.
+            ///
+            /// # Panics
+            /// For another count of parameters.
+            pub fn share_of_preload<S: Scalar>(&self, parameters: &[S]) -> Option<S> {
+                match self {
+                    $(Self::$kind { .. } => {
+                        $file::$kind::share_of_preload::<S>(registry::exactly::<S, { count!($($parameter)+) }>(parameters))
+                    })+
+                }
+            }
+
+            /// Whether its law is linear in the torque and the play operators: a preload
+            /// makes no difference to what it turns by.
+            pub const fn is_linear(&self) -> bool {
+                match self {
+                    $(Self::$kind { .. } => <$file::$kind as Physics<{ count!($($parameter)+) }>>::LINEAR,)+
+                }
+            }
+
             fn noun_of_numbers(&self) -> &'static str {
                 match *self {
                     $(Self::$kind { $($parameter,)+ .. } => $file::$kind::noun([$($parameter),+]),)+

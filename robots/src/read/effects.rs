@@ -62,6 +62,7 @@ pub(super) fn effects(node: &Node, arm: &Arm<'_>) -> Option<Vec<Effect>> {
             check_links(&items, &read, convention, joints);
         }
         if let Some(links) = arm.links {
+            check_weights(&items, &read, links);
             check_sag(&items, &read, corrected.as_deref(), links);
         }
     }
@@ -292,18 +293,25 @@ fn check_links(items: &[Node], effects: &[Option<Effect>], convention: Conventio
     }
 }
 
-/// That the weights which a sag comes of are known, and that it is small; of
-/// joints that have been corrected, if they could be.
+/// That the weights which a sag or a preload comes of are known.
+fn check_weights(items: &[Node], effects: &[Option<Effect>], links: &[Link]) {
+    if links.iter().any(|link| link.mass != 0.0) {
+        return;
+    }
+    for (item, effect) in items.iter().zip(effects) {
+        let message = match effect {
+            Some(Effect::GravitySag { .. }) => "an arm without masses does not sag",
+            Some(Effect::GravityPreload { .. }) => "an arm without masses does not preload its gears",
+            _ => continue,
+        };
+        item.error(message, "give `links`, with the mass and centre of mass of the body that moves with each joint");
+    }
+}
+
+/// That a sag is small; of joints that have been corrected, if they could be.
 fn check_sag(items: &[Node], effects: &[Option<Effect>], joints: Option<&[Joint]>, links: &[Link]) {
     for (item, effect) in items.iter().zip(effects) {
         let Some(Effect::GravitySag { share }) = effect else { continue };
-        if links.iter().all(|link| link.mass == 0.0) {
-            item.error(
-                "an arm without masses does not sag",
-                "give `links`, with the mass and centre of mass of the body that moves with each joint",
-            );
-            continue;
-        }
         let Some(joints) = joints else { continue };
         let largest = (0..joints.len()).filter(|&joint| joints[joint].kind == JointKind::Revolute);
         let largest = largest.map(|joint| (joint + 1, share * most_sag(joints, links, joint)));

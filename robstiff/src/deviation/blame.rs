@@ -5,7 +5,7 @@ use std::vec::Vec;
 use nalgebra::{SVector, Vector6};
 
 use super::{Deviation, Load};
-use crate::elements::{Element, Pose, Spring, plays, springs, turn};
+use crate::elements::{Element, Pose, Spring, Torque, plays, springs, turn};
 use crate::path::SolvedPath;
 use crate::{Robot, State};
 
@@ -19,7 +19,7 @@ pub fn parts<'r, const N: usize, R: Robot<N>>(
     wrench: &Vector6<f64>,
     state: &mut State<N>,
 ) -> impl Iterator<Item = (Element<'r>, Vector6<f64>)> + use<'r, N, R> {
-    let (pose, own) = (Pose::of(robot, q), robot.joint_compliance());
+    let (pose, own, preload) = (Pose::of(robot, q), robot.joint_compliance(), robot.preload(q));
     let geometry = pose.geometry();
     let joint = |i: usize| geometry.unit_compliance(Spring::Joint(i + 1)) * wrench * own[i];
     let mut found: Vec<_> = (0..N).map(|i| (Element::Joint(i + 1), joint(i))).collect();
@@ -30,7 +30,7 @@ pub fn parts<'r, const N: usize, R: Robot<N>>(
         }
         if let Some(i) = effect.row().map(|joint| joint - 1) {
             let twist = geometry.joint_twist(i + 1);
-            let torque = twist.dot(wrench);
+            let torque = Torque { preload: preload[i], load: twist.dot(wrench) };
             state.plays[i] = plays(effect, torque, state.plays[i]);
             part += twist * turn(effect, own[i], q[i], torque, state.plays[i]).unwrap_or_default();
         }

@@ -16,7 +16,7 @@ use std::vec::Vec;
 use nalgebra::{Isometry3, Matrix4, Matrix6, SVector, Vector3, Vector6};
 
 use super::laws::{plays, turns_under};
-use super::{Pose, Spring, springs};
+use super::{Pose, Spring, Torque, springs};
 use crate::{Robot, State};
 
 /// The arm is closer to its equilibrium by some 1e-3 with each pass, a very soft one
@@ -57,9 +57,11 @@ pub fn deformed<const N: usize>(
     let wrench = |motion: &Isometry3<f64>| load(&moved(&tcp, motion));
     let laws = |torques: &[f64]| turns_under(robot, q, &SVector::from_column_slice(torques), state).as_slice().to_vec();
     let Rest { motion, torques, turns } = at_rest(&parts(robot, q), wrench, laws);
+    let preload = robot.preload(q);
     for effect in robot.effects() {
         if let Some(joint) = effect.row().map(|row| row - 1) {
-            state.plays[joint] = plays(effect, torques[joint], state.plays[joint]);
+            let torque = Torque { preload: preload[joint], load: torques[joint] };
+            state.plays[joint] = plays(effect, torque, state.plays[joint]);
         }
     }
     Deformed { tcp: moved(&tcp, &motion), turns: SVector::from_vec(turns), motion }

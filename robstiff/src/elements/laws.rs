@@ -8,36 +8,56 @@ use robstiff_robots::effect::{MOST_PARAMETERS, Scalar, Tangent, gravity_sag};
 
 use crate::{Effect, JointKind, Real, Robot, State};
 
-/// By how much a joint turns more (rad) under a torque (Nm) than by its own
-/// compliance `own` (rad/Nm), where the effect has a part in the joint's law: at
-/// the coordinate `q` (rad), with its play operators `plays` (Nm) after this
-/// load.
-pub fn turn<T: Real>(effect: &Effect, own: T, q: T, torque: T, plays: [T; PLAYS]) -> Option<T> {
-    let joint =
-        Joint { compliance: Number(own), torque: Number(torque), plays: plays.map(Number), harmonic: &harmonic(q) };
+/// What a load puts on the gear of a joint, which carries something before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Torque<T = f64> {
+    /// What the arm's own weight puts on it, [`Robot::preload`] (Nm).
+    pub preload: T,
+    /// What the load adds (Nm).
+    pub load: T,
+}
+
+impl<T: Real> Torque<T> {
+    /// Of a load on a gear that carries nothing before (Nm).
+    pub fn of(load: T) -> Self {
+        Self { preload: T::zero(), load }
+    }
+
+    /// Both together (Nm).
+    pub fn whole(self) -> T {
+        self.preload + self.load
+    }
+}
+
+/// By how much a joint turns more (rad) under a load than by its own compliance `own`
+/// (rad/Nm), where the effect has a part in the joint's law: at the coordinate `q` (rad),
+/// with its play operators `plays` (Nm) after this load, counted from where they rest
+/// under the preload.
+pub fn turn<T: Real>(effect: &Effect, own: T, q: T, torque: Torque<T>, plays: [T; PLAYS]) -> Option<T> {
+    let joint = Joint {
+        compliance: Number(own),
+        torque: Number(torque.load),
+        plays: plays.map(Number),
+        harmonic: &harmonic(q),
+    };
     let (numbers, count) = numbers(effect);
-    effect.turn(&numbers[..count], &joint).map(|turn| turn.0)
+    effect.turn_beyond(&numbers[..count], Number(torque.preload), &joint).map(|turn| turn.0)
 }
 
-/// The slope of [`turn`] against the torque (rad/Nm) on a joint that was never
-/// loaded.
-pub fn unloaded_turn<T: Real>(effect: &Effect, own: T, q: T) -> Option<T> {
-    turn_about(effect, own, q, T::zero())
-}
-
-/// The slope of [`turn`] against the torque (rad/Nm) at a torque (Nm): how a
-/// joint yields to small changes about it. Its play operators stay where they are,
-/// for a small change turns back within their radii.
+/// The slope of [`turn`] against the torque (rad/Nm) at all that the gear carries (Nm),
+/// [`Torque::whole`]: how a joint yields to small changes about it. Its play operators stay
+/// where they are, for a small change turns back within their radii.
 pub fn turn_about<T: Real>(effect: &Effect, own: T, q: T, torque: T) -> Option<T> {
     let (numbers, count) = numbers(effect);
     effect.slope(&numbers[..count], Number(own), Number(torque), &harmonic(q)).map(|turn| turn.0)
 }
 
-/// The play operators (Nm) of a joint after a torque (Nm) that follows the
-/// state `before`.
-pub fn plays<T: Real>(effect: &Effect, torque: T, before: [T; PLAYS]) -> [T; PLAYS] {
+/// The play operators (Nm) of a joint after a load that follows the state `before`, both
+/// counted from where they rest under the preload.
+pub fn plays<T: Real>(effect: &Effect, torque: Torque<T>, before: [T; PLAYS]) -> [T; PLAYS] {
     let (numbers, count) = numbers(effect);
-    let after = effect.plays(&numbers[..count], Number(torque), before.map(Number));
+    let (preload, load) = (Number(torque.preload), Number(torque.load));
+    let after = effect.plays_beyond(&numbers[..count], preload, load, before.map(Number));
     let in_use = effect.plays_in_use();
     core::array::from_fn(|k| if k < in_use { after[k].0 } else { before[k] })
 }
@@ -62,7 +82,7 @@ pub fn turns_under<const N: usize, R: Robot<N>>(
     torques: &SVector<f64, N>,
     before: &State<N>,
 ) -> SVector<f64, N> {
-    let own = robot.joint_compliance();
+    let (own, preload) = (robot.joint_compliance(), robot.preload(q));
     let mut turns = own.component_mul(torques);
     for effect in robot.effects() {
         if let &Effect::JointCoupling { joints: [a, b], value } = effect {
@@ -70,8 +90,9 @@ pub fn turns_under<const N: usize, R: Robot<N>>(
             turns[b - 1] += value * torques[a - 1];
         }
         let Some(i) = effect.row().map(|joint| joint - 1) else { continue };
-        let after = plays(effect, torques[i], before.plays[i]);
-        turns[i] += turn(effect, own[i], q[i], torques[i], after).unwrap_or_default();
+        let torque = Torque { preload: preload[i], load: torques[i] };
+        let after = plays(effect, torque, before.plays[i]);
+        turns[i] += turn(effect, own[i], q[i], torque, after).unwrap_or_default();
     }
     turns
 }
@@ -88,6 +109,13 @@ pub fn deviation<T: Real>(effect: &Effect, q: T) -> Option<T> {
 pub fn share_of_weight<T: Real>(effect: &Effect) -> Option<T> {
     let (numbers, count) = numbers(effect);
     effect.share_of_weight(&numbers[..count]).map(|share| share.0)
+}
+
+/// The share of the arm's own weight that gears carry before the load, if the effect says
+/// so.
+pub fn share_of_preload<T: Real>(effect: &Effect) -> Option<T> {
+    let (numbers, count) = numbers(effect);
+    effect.share_of_preload(&numbers[..count]).map(|share| share.0)
 }
 
 /// The torque (Nm) of a weight (N) about the z axis of a joint frame (the

@@ -12,7 +12,7 @@ use super::column::Column;
 use super::encoders::Encoders;
 use super::setup::Setup;
 use crate::campaign::{Displacements, Frame};
-use crate::elements::{Geometry, Pose, Spring, turn};
+use crate::elements::{Geometry, Pose, Spring, Torque, turn};
 use crate::{Effect, JointKind, Robot};
 
 /// The rows of a campaign of kind `displacement`, on a robot.
@@ -50,6 +50,8 @@ pub struct Sample {
     pub joint_frames: Arc<[Matrix4<f64>]>,
     /// The columns of the Jacobian, `[d; r]` of the TCP per unit of each joint.
     pub twists: Arc<[Vector6<f64>]>,
+    /// What the arm's own weight puts on the gear of each joint (Nm or N).
+    pub preload: Arc<[f64]>,
     /// Frame n.
     pub flange: Matrix4<f64>,
     /// The tool centre point's frame.
@@ -71,6 +73,42 @@ pub struct Sample {
     /// By how much each joint that has an encoder turns beyond its motor (rad or
     /// m).
     pub turned: Vec<f64>,
+}
+
+/// Where the arm stands: what a pose's rows have in common.
+struct Stand {
+    base: Matrix4<f64>,
+    joint_frames: Arc<[Matrix4<f64>]>,
+    twists: Arc<[Vector6<f64>]>,
+    preload: Arc<[f64]>,
+    flange: Matrix4<f64>,
+    tcp: Matrix4<f64>,
+}
+
+impl Stand {
+    fn at<const N: usize>(robot: &impl Robot<N>, q: &SVector<f64, N>) -> Self {
+        let pose = Pose::of(robot, q);
+        let geometry = pose.geometry();
+        Self {
+            base: geometry.base,
+            joint_frames: geometry.joint_frames.into(),
+            twists: (1..=N).map(|joint| geometry.joint_twist(joint)).collect(),
+            preload: robot.preload(q).as_slice().into(),
+            flange: geometry.flange,
+            tcp: geometry.tcp,
+        }
+    }
+
+    fn of(row: &Sample) -> Self {
+        Self {
+            base: row.base,
+            joint_frames: Arc::clone(&row.joint_frames),
+            twists: Arc::clone(&row.twists),
+            preload: Arc::clone(&row.preload),
+            flange: row.flange,
+            tcp: row.tcp,
+        }
+    }
 }
 
 impl Samples {
@@ -98,17 +136,11 @@ impl Samples {
         for (i, row) in data.rows.iter().enumerate() {
             let q = setup.coordinates(i, &row.q);
             // The arm stands where it stood, as a rule: a pose has many rows.
-            let (base, joint_frames, twists, flange, tcp) = match rows.last().filter(|last| last.q == q) {
-                Some(last) => {
-                    (last.base, Arc::clone(&last.joint_frames), Arc::clone(&last.twists), last.flange, last.tcp)
-                }
-                None => {
-                    let pose = Pose::of(robot, &SVector::<f64, N>::from_column_slice(&q));
-                    let geometry = pose.geometry();
-                    let twists = (1..=N).map(|joint| geometry.joint_twist(joint)).collect();
-                    (geometry.base, geometry.joint_frames.into(), twists, geometry.flange, geometry.tcp)
-                }
+            let stand = match rows.last().filter(|last| last.q == q) {
+                Some(last) => Stand::of(last),
+                None => Stand::at(robot, &SVector::<f64, N>::from_column_slice(&q)),
             };
+            let Stand { base, joint_frames, twists, preload, flange, tcp } = stand;
             let tool = turn_of(&tcp);
             let declared = known.map_or(tool, |declared| turn_of(&declared.rows[i].tcp));
             let reads = if data.measured_frame == Frame::Tool { declared } else { Matrix3::identity() };
@@ -119,6 +151,7 @@ impl Samples {
                 base,
                 joint_frames,
                 twists,
+                preload,
                 flange,
                 tcp,
                 wrench: setup.wrench(data, &tool, &row.wrench),
@@ -206,23 +239,14 @@ impl Samples {
                 self.turned(joint, |at| self.share(spring, &self.rows[at]) * torques[at])
             }
             Column::Knee { joint, .. } | Column::Gap { joint, .. } => {
-                self.of_joint(joint, |torque| column.turn(torque))
+                self.turned(joint, |at| column.turn(self.rows[at].torque(joint)))
             }
             Column::Play { joint, radius, .. } => {
-                let plays = self.plays(&self.torques(joint), radius);
+                let plays = self.plays(joint, radius);
                 self.turned(joint, |at| plays[at])
             }
             Column::Spring(spring) => self.under(&[(spring, 1.0)]),
         }
-    }
-
-    /// What a joint (from 1) adds that turns by an amount that depends on its
-    /// torque, stacked alike.
-    fn of_joint(&self, joint: usize, amount: impl Fn(f64) -> f64) -> DVector<f64> {
-        self.turned(joint, |at| {
-            let row = &self.rows[at];
-            amount(row.twists[joint - 1].dot(&row.wrench))
-        })
     }
 
     /// What a joint (from 1) adds that turns by an amount that depends on the row
@@ -263,26 +287,28 @@ impl Samples {
     pub fn share(&self, spring: Spring, row: &Sample) -> f64 {
         let Spring::Joint(joint) = spring else { return 1.0 };
         let of_joint = self.varying.iter().filter(|effect| effect.row() == Some(joint));
-        let change = |effect: &Effect| turn(effect, 1.0, row.q[joint - 1], 1.0, [0.0; PLAYS]).unwrap_or(0.0);
+        let change =
+            |effect: &Effect| turn(effect, 1.0, row.q[joint - 1], Torque::of(1.0), [0.0; PLAYS]).unwrap_or(0.0);
         1.0 + of_joint.map(change).sum::<f64>()
     }
 
     /// The torque of each row about a joint (from 1), `J_i^T F` (Nm or N).
     pub fn torques(&self, joint: usize) -> Vec<f64> {
-        self.rows.iter().map(|row| row.twists[joint - 1].dot(&row.wrench)).collect()
+        self.rows.iter().map(|row| row.torque(joint).load).collect()
     }
 
-    /// The play operator of a radius on a torque after each row, in the same unit. The
-    /// rows of a visit are one load sequence, which begins on a robot that was never
-    /// loaded.
-    pub fn plays(&self, torques: &[f64], radius: f64) -> Vec<f64> {
+    /// The play operator of a radius on the torque of a joint (from 1) after each row
+    /// (Nm), counted from where it rests under the arm's own weight. The rows of a visit are
+    /// one load sequence, which begins on a robot that was never loaded.
+    pub fn plays(&self, joint: usize, radius: f64) -> Vec<f64> {
         let mut state = std::vec![0.0; self.rows.iter().map(|row| row.visit + 1).max().unwrap_or(0)];
-        let after = |(row, &torque): (&Sample, &f64)| {
-            let before: &mut f64 = &mut state[row.visit];
-            *before = play(torque, radius, *before);
+        let play = Column::Play { joint, operator: 0, radius };
+        let after = |row: &Sample| {
+            let before = &mut state[row.visit];
+            *before = play.after(row.torque(joint), *before);
             *before
         };
-        self.rows.iter().zip(torques).map(after).collect()
+        self.rows.iter().map(after).collect()
     }
 
     /// The visit of each row.
@@ -333,11 +359,6 @@ pub fn is_share(effect: &Effect) -> bool {
     matches!(effect, Effect::PoseDependentCompliance { .. })
 }
 
-/// The play operator of a radius after a torque.
-pub fn play(torque: f64, radius: f64, before: f64) -> f64 {
-    (torque - radius).max((torque + radius).min(before))
-}
-
 /// What a joint (from 1) turns by for a unit of a spring's compliance (rad or m),
 /// given the torque of each joint.
 pub fn turn_of_joint(spring: Spring, joint: usize, torque: impl Fn(usize) -> f64) -> f64 {
@@ -350,6 +371,11 @@ pub fn turn_of_joint(spring: Spring, joint: usize, torque: impl Fn(usize) -> f64
 }
 
 impl Sample {
+    /// What the load puts on a joint (from 1), beside what weighs on it.
+    pub fn torque(&self, joint: usize) -> Torque {
+        Torque { preload: self.preload[joint - 1], load: self.twists[joint - 1].dot(&self.wrench) }
+    }
+
     /// An elastic twist of the TCP as it is read at the marker: `[I, -[p_r -
     /// p]x]`, turned as the row's setup has it.
     pub fn read(&self, twist: &Vector6<f64>) -> Vector6<f64> {

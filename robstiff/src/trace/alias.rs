@@ -264,7 +264,7 @@ fn one_formula(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted, one: Na
     }
     let hardens =
         model.fit.columns.iter().zip(&model.fit.coefficients).any(|(&of, &value)| of == column && value > 0.0);
-    let largest = bench.scene().largest_torque(joint);
+    let largest = bench.scene().largest_carried(joint);
     hardens && largest.is_some_and(|largest| (EITHER[0]..=EITHER[1]).contains(&(knee.value / largest)))
 }
 

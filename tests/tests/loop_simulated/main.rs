@@ -15,5 +15,6 @@ mod nothing;
 mod one_effect;
 mod outside;
 mod plans;
+mod preload;
 mod two_effects;
 mod wild;

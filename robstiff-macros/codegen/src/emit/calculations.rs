@@ -126,7 +126,7 @@ pub(super) const CALCULATIONS: [Calculation; 7] = [
 ];
 
 /// What is generated besides for robots that [remember](symbolic::remembers) their loads.
-pub(super) const DEFLECTION_WITH: Calculation = Calculation {
+const DEFLECTION_WITH: Calculation = Calculation {
     name: "deflection_with",
     doc: "Displacement (m) and rotation (rad) of the tool centre point in the base frame, under a wrench
         that follows the loads in the state, and joins them: fx, fy, fz (N), mx, my, mz (Nm), along the axes of the
@@ -151,6 +151,20 @@ pub(super) const DEFLECTION_WITH: Calculation = Calculation {
     },
     in_columns: None,
 };
+
+/// What is generated besides for robots whose gears [carry](symbolic::preloads) their weight.
+const PRELOAD: Calculation = Calculation {
+    name: "preload",
+    doc: "What the arm's own weight puts on the gears before any load does: {torques}. The laws of joints begin there.",
+    caveat: |_| None,
+    signature: |n| quote!(fn preload<T: Real>(&self, q: &SVector<T, #n>) -> SVector<T, #n>),
+    algorithm: symbolic::preload,
+    result: |_, reader, entries| from(reader, "SVector", entries),
+    in_columns: None,
+};
+
+/// Those of some robots, in the order in which they follow the others.
+pub(super) const OF_SOME: [Calculation; 2] = [DEFLECTION_WITH, PRELOAD];
 
 /// What a column of the Jacobian is of, where that is not what `q` says.
 fn of_outputs(robot: &Description) -> Option<String> {
@@ -179,9 +193,11 @@ fn statics(reader: Reader, transform: &TokenStream, rest: &[TokenStream]) -> Tok
 }
 
 impl Calculation {
-    /// All of a robot; that with a state last, if the robot has one.
+    /// All of a robot; what not every robot has last.
     fn all(robot: &Description) -> impl Iterator<Item = Self> {
-        CALCULATIONS.into_iter().chain(symbolic::remembers(robot).then_some(DEFLECTION_WITH))
+        let remembers = symbolic::remembers(robot).then_some(DEFLECTION_WITH);
+        let preloads = symbolic::preloads(robot).then_some(PRELOAD);
+        CALCULATIONS.into_iter().chain(remembers).chain(preloads)
     }
 
     /// What its docs say for one robot.

@@ -10,7 +10,7 @@ use syn::Ident;
 use super::Signature;
 use super::body::{Body, Reader, body, handing_over};
 use super::bound::hidden;
-use super::calculations::{Build, CALCULATIONS, Calculation, DEFLECTION_WITH, Generated, compliance_entries};
+use super::calculations::{Build, CALCULATIONS, Calculation, Generated, OF_SOME, compliance_entries};
 use super::facts::{FACTS, Fact, number};
 use crate::function::{Cost, Function};
 use crate::graph::NamedNumber;
@@ -77,7 +77,7 @@ pub fn skeleton(name: &str, joints: Option<usize>, origin: &Origin) -> TokenStre
         quote!(impl #name { #(#facts)* })
     });
     let constants = constants_of_any(joints.unwrap_or(MOST_JOINTS));
-    let costs = CALCULATIONS.iter().chain([&DEFLECTION_WITH]).map(|calculation| {
+    let costs = CALCULATIONS.iter().chain(&OF_SOME).map(|calculation| {
         let name = cost_of(calculation);
         quote!(#doc pub const #name: #runtime::Cost = #runtime::Cost { trig: 0, mul: 0, add: 0, neg: 0, root: 0 };)
     });

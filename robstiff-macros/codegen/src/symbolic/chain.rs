@@ -54,11 +54,16 @@ impl Tilt<'_> {
 
 /// The steps of a description, base first, with every joint where it stands.
 pub fn chain<'g>(g: &'g Graph, robot: &Description) -> Vec<Step<'g>> {
-    let aside: Vec<_> = (0..robot.joints.len()).map(|joint| deviation(g, robot, joint)).collect();
+    let aside = deviations(g, robot);
     let upright = steps(g, robot, &aside, Series::Short);
     let Some(sag) = weight::sag(g, robot, &upright) else { return upright };
     let both = |(aside, sag): (&Option<Sym<'g>>, Sym<'g>)| Some(aside.map_or(sag, |aside| aside + sag));
     steps(g, robot, &aside.iter().zip(sag).map(both).collect::<Vec<_>>(), Series::Long)
+}
+
+/// The same without a sag.
+pub fn upright<'g>(g: &'g Graph, robot: &Description) -> Vec<Step<'g>> {
+    steps(g, robot, &deviations(g, robot), Series::Short)
 }
 
 /// The steps with joints that stand aside of their coordinates (rad or m).
@@ -119,6 +124,11 @@ fn steps<'g>(g: &'g Graph, robot: &Description, aside: &[Option<Sym<'g>>], serie
         _ => true,
     });
     steps
+}
+
+/// By how much effects of their own make the joints stand aside, a joint each.
+fn deviations<'g>(g: &'g Graph, robot: &Description) -> Vec<Option<Sym<'g>>> {
+    (0..robot.joints.len()).map(|joint| deviation(g, robot, joint)).collect()
 }
 
 /// By how much effects of its own make a joint (from 0) stand aside of its

@@ -3,6 +3,7 @@
 use robstiff_robots::effect::physics::{self, PLAYS, Spring};
 use robstiff_robots::{Description, Effect, Joint, Place, effect};
 
+use super::weight;
 use crate::angle::Angle;
 use crate::graph::{Graph, Sym};
 
@@ -33,16 +34,25 @@ pub struct Law<'g> {
     pub joint: usize,
     effect: Effect,
     parameters: Vec<Sym<'g>>,
+    /// What the joint's gear carries before the load (Nm).
+    preload: Sym<'g>,
     /// What the unloaded joint's compliance has on top (rad/Nm).
     unloaded: Sym<'g>,
 }
 
 impl<'g> Law<'g> {
-    fn of(g: &'g Graph, effect: Effect, parameters: &[Sym<'g>], own: &[Sym<'g>]) -> Option<Self> {
+    fn of(
+        g: &'g Graph,
+        effect: Effect,
+        parameters: &[Sym<'g>],
+        own: &[Sym<'g>],
+        preload: Option<&[Sym<'g>]>,
+    ) -> Option<Self> {
         let joint = effect.row()? - 1;
         remark(g, &effect);
-        let unloaded = effect.slope(parameters, own[joint], g.number(0.0), &harmonic(g, joint))?;
-        Some(Self { joint, effect, parameters: parameters.to_vec(), unloaded })
+        let preload = preload.map_or(g.number(0.0), |preload| preload[joint]);
+        let unloaded = effect.slope(parameters, own[joint], preload, &harmonic(g, joint))?;
+        Some(Self { joint, effect, parameters: parameters.to_vec(), preload, unloaded })
     }
 
     /// Says in the code that what follows is of it.
@@ -50,16 +60,26 @@ impl<'g> Law<'g> {
         remark(g, &self.effect);
     }
 
-    /// The play operators it uses, after a torque that follows `before`.
+    /// The play operators it uses, after the torque of a load that follows `before`, both
+    /// counted from where they rest under the preload.
     pub fn plays(&self, torque: Sym<'g>, before: [Sym<'g>; PLAYS]) -> Vec<Sym<'g>> {
-        self.effect.plays(&self.parameters, torque, before)[..self.effect.plays_in_use()].to_vec()
+        // Where a gear carries nothing they rest at 0, which symbols do not see.
+        let plays = match self.preload.is_zero() {
+            true => self.effect.plays(&self.parameters, torque, before),
+            false => self.effect.plays_beyond(&self.parameters, self.preload, torque, before),
+        };
+        plays[..self.effect.plays_in_use()].to_vec()
     }
 
     /// By how much the joint turns more than by its own compliance.
     pub fn turn(&self, g: &'g Graph, compliance: Sym<'g>, torque: Sym<'g>, plays: &[Sym<'g>]) -> Sym<'g> {
         let plays = std::array::from_fn(|k| plays.get(k).copied().unwrap_or(g.number(0.0)));
         let joint = effect::physics::Joint { compliance, torque, plays, harmonic: &harmonic(g, self.joint) };
-        self.effect.turn(&self.parameters, &joint).expect("a law")
+        let turn = match self.preload.is_zero() {
+            true => self.effect.turn(&self.parameters, &joint),
+            false => self.effect.turn_beyond(&self.parameters, self.preload, &joint),
+        };
+        turn.expect("a law")
     }
 }
 
@@ -120,6 +140,7 @@ impl<'g> Elastic<'g> {
             coupling: Vec::new(),
             laws: Vec::new(),
         };
+        let preload = weight::preload(g, robot);
         for effect in &robot.effects {
             if effect.is_kinematic() {
                 continue;
@@ -128,7 +149,7 @@ impl<'g> Elastic<'g> {
             for (k, spring) in effect.springs() {
                 elastic.add(spring, parameters[k]);
             }
-            elastic.laws.extend(Law::of(g, *effect, &parameters, &elastic.joint));
+            elastic.laws.extend(Law::of(g, *effect, &parameters, &elastic.joint, preload.as_deref()));
         }
         elastic
     }

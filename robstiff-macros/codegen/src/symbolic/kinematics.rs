@@ -9,6 +9,7 @@ use super::elastic::Elastic;
 use super::forward::{Forward, Frame, Stand, forward};
 use super::vector::Vec3;
 use super::waist::{Start, cheapest};
+use super::weight;
 use crate::graph::{Graph, Sym};
 
 /// The 16 entries of the TCP's frame in the base frame, by rows.
@@ -100,6 +101,11 @@ pub fn joint_torques<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
         let (force, moment) = wrench(g, start);
         Twists::of(g, robot, &start.forward()).torques(g, force, moment)
     })
+}
+
+/// What the arm's own weight puts on the gears before any load does, a joint each.
+pub fn preload<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
+    weight::preload(g, robot).unwrap_or_else(|| vec![g.number(0.0); robot.joints.len()])
 }
 
 /// Displacement and rotation of the TCP under a wrench, `J (H_q (J^T F))` and

@@ -7,7 +7,7 @@
 //! - [`waist`]: the first joint's turn, left for the end where that is cheaper;
 //! - [`kinematics`]: transform, frames, Jacobian, torques and deflection;
 //! - [`beam`]: how a link yields;
-//! - [`weight`]: how the joints yield to the arm's own weight;
+//! - [`weight`]: what the arm's own weight puts on its joints;
 //! - [`compliance`](mod@compliance): the Cartesian compliance, carried from the TCP to the
 //!   base;
 //! - [`columns`]: frames, Jacobian and all together once more, of whole [`mod@column`]s.
@@ -29,9 +29,9 @@ pub use chain::{Step, Tilt, chain};
 pub use compliance::compliance;
 pub use elastic::Elastic;
 pub use forward::{Forward, forward};
-pub use kinematics::{deflection, deflection_with, jacobian, joint_torques, link_frames, plays, transform};
+pub use kinematics::{deflection, deflection_with, jacobian, joint_torques, link_frames, plays, preload, transform};
 
-use robstiff_robots::Description;
+use robstiff_robots::{Description, Effect};
 
 use crate::graph::{Graph, Sym};
 
@@ -46,6 +46,11 @@ pub fn statics<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
 
 /// How the entries of a result are calculated.
 pub type Algorithm = for<'g> fn(&'g Graph, &Description) -> Vec<Sym<'g>>;
+
+/// Whether a robot's gears carry its own weight before any load.
+pub fn preloads(robot: &Description) -> bool {
+    robot.effects.iter().any(|effect| matches!(effect, Effect::GravityPreload { .. }))
+}
 
 /// Whether a robot's deflection depends on the loads before.
 pub fn remembers(robot: &Description) -> bool {

@@ -1,24 +1,43 @@
-//! How the joints yield to the arm's own weight.
+//! What the arm's own weight puts on its joints.
 
 use robstiff_robots::effect::gravity_sag::{GRAVITY, torque};
-use robstiff_robots::{Description, Joint, JointKind, Place};
+use robstiff_robots::{Description, Effect, Joint, JointKind, Place};
 
-use super::chain::Step;
+use super::chain::{Step, upright};
 use super::elastic::{joint_compliances, parameters};
 use super::forward::{Frame, forward};
 use super::vector::Vec3;
+use super::waist::without_waist;
 use crate::graph::{Graph, Sym};
 
 /// By how much each joint yields (rad or m), if the description says that the
 /// arm sags; `upright` is the chain of the arm without its sag.
 pub fn sag<'g>(g: &'g Graph, robot: &Description, upright: &[Step<'g>]) -> Option<Vec<Sym<'g>>> {
+    let share = share(g, robot, Effect::share_of_weight)?;
+    let torques = torques(g, robot, upright);
+    Some(joint_compliances(g, robot).into_iter().zip(torques).map(|(h, torque)| share * h * torque).collect())
+}
+
+/// What the weights put on the gear of each joint before any load does (Nm or N), if
+/// the description says that gears carry them.
+pub fn preload<'g>(g: &'g Graph, robot: &Description) -> Option<Vec<Sym<'g>>> {
+    let share = share(g, robot, Effect::share_of_preload)?;
+    let torques = torques(g, robot, &upright(g, robot));
+    Some((1..).zip(torques).map(|(i, torque)| (share * torque).named(format!("tau0_{i}"))).collect())
+}
+
+fn share<'g>(g: &'g Graph, robot: &Description, of: fn(&Effect, &[Sym<'g>]) -> Option<Sym<'g>>) -> Option<Sym<'g>> {
     let of_robot = robot.effects.iter().filter(|effect| effect.place() == Place::Robot);
-    let shares = of_robot.filter_map(|effect| effect.share_of_weight(&parameters(g, effect)));
-    let share = shares.reduce(|sum, more| sum + more)?;
-    let stands = forward(g, upright);
-    g.remark("How the joints yield to the weights: g is a torque, w a force.");
-    let compliances = joint_compliances(g, robot);
-    let mut sags = Vec::new();
+    of_robot.filter_map(|effect| of(effect, &parameters(g, effect))).reduce(|sum, more| sum + more)
+}
+
+/// The torque of what hangs on each joint (Nm, of sliding joints forces in N).
+fn torques<'g>(g: &'g Graph, robot: &Description, upright: &[Step<'g>]) -> Vec<Sym<'g>> {
+    // A turn about the vertical, which the base's z axis is, lifts nothing.
+    let lifting = without_waist(upright).map_or_else(|| upright.to_vec(), |(steps, _)| steps);
+    let stands = forward(g, &lifting);
+    g.remark("What the weights put on the joints: g is a torque, w a force.");
+    let mut torques = Vec::new();
     // Tip to base: what hangs on a joint is its link and what hangs on the next.
     let (mut weight, mut moment) = (g.number(0.0), [g.number(0.0); 2]);
     for (i, Joint { kind, .. }) in robot.joints.iter().enumerate().rev() {
@@ -32,10 +51,10 @@ pub fn sag<'g>(g: &'g Graph, robot: &Description, upright: &[Step<'g>]) -> Optio
             JointKind::Revolute => "g",
             JointKind::Prismatic => "w",
         };
-        sags.push(share * compliances[i] * torque.named(format!("{what}{}", i + 1)));
+        torques.push(torque.named(format!("{what}{}", i + 1)));
     }
-    sags.reverse();
-    Some(sags)
+    torques.reverse();
+    torques
 }
 
 struct Link<'g> {

@@ -24,7 +24,7 @@ use super::uncertainty::{WITHIN, student};
 use super::whitening::mean_share;
 use super::{Error, Estimate, Identification, element_name, unit_of};
 use crate::campaign::{Campaign, ClampedRow};
-use crate::elements::{plays, turn};
+use crate::elements::{Torque, plays, turn};
 use crate::{Effect, JointKind};
 
 /// Identifies the compliances of the axes that were loaded, beside the laws of
@@ -137,9 +137,11 @@ pub fn without_laws(robot: &Description, rows: &[ClampedRow]) -> Vec<ClampedRow>
             if matches!(effect, Effect::PoseDependentCompliance { .. }) {
                 continue;
             }
-            states[joint] = plays(effect, row.torque, states[joint]);
+            // Where the axis stood, and so what weighed on it, the rows do not tell.
+            let torque = Torque::of(row.torque);
+            states[joint] = plays(effect, torque, states[joint]);
             let own = robot.joints[joint].compliance();
-            less.deflection -= turn(effect, own, 0.0, row.torque, states[joint]).unwrap_or(0.0);
+            less.deflection -= turn(effect, own, 0.0, torque, states[joint]).unwrap_or(0.0);
         }
         less
     };

@@ -10,7 +10,7 @@ use robstiff_robots::effect::gravity_sag::GRAVITY;
 
 use super::registration::Registration;
 use crate::campaign::{PositionRow, Positions};
-use crate::elements::deformed;
+use crate::elements::{Torque, deformed};
 use crate::{Robot, with_robot};
 
 /// A model of absolute positions.
@@ -116,15 +116,17 @@ impl Model {
         data.rows.iter().map(seen).collect()
     }
 
-    /// What the payload loads each joint with, row by row (Nm or N).
-    pub fn torques(&self, data: &Positions) -> Vec<Vec<f64>> {
+    /// What the payload, and the arm's own weight before it, put on the gear of each joint,
+    /// row by row (Nm or N).
+    pub fn torques(&self, data: &Positions) -> Vec<Vec<Torque>> {
         with_robot!(&self.description, |robot| self.torques_on(&robot, data))
     }
 
-    fn torques_on<const N: usize>(&self, robot: &impl Robot<N>, data: &Positions) -> Vec<Vec<f64>> {
+    fn torques_on<const N: usize>(&self, robot: &impl Robot<N>, data: &Positions) -> Vec<Vec<Torque>> {
         let torques = |row: &PositionRow| {
             let q = self.coordinates(row);
-            robot.joint_torques(&q, &self.weight(&robot.transform(&q), row)).iter().copied().collect()
+            let loads = robot.joint_torques(&q, &self.weight(&robot.transform(&q), row));
+            robot.preload(&q).iter().zip(&loads).map(|(&preload, &load)| Torque { preload, load }).collect()
         };
         data.rows.iter().map(torques).collect()
     }

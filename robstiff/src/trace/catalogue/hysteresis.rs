@@ -8,7 +8,8 @@ use std::vec;
 use std::vec::Vec;
 
 use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
-use crate::identify::samples::play;
+use crate::elements::Torque;
+use crate::identify::column::Column;
 use crate::trace::clamped::{Axes, AxisNumber, OnAxes, axes_column};
 
 /// The kind.
@@ -40,7 +41,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         let radii = RADII.map(|fraction| fraction * largest);
         let number = move |radius: f64| {
             Number::elastic("weight", unit, [0.0, f64::INFINITY], move |point| {
-                let plays = point.samples.plays(&point.torques(joint), radius);
+                let plays = point.samples.plays(joint, radius);
                 point.of_joint(joint, |row| plays[row])
             })
         };
@@ -94,9 +95,10 @@ fn on_axes(axes: &Axes) -> Vec<OnAxes> {
         let shape: Vec<_> = OF_RADII[..radii.len()].iter().map(|&name| (name, axes.torque_unit(axis))).collect();
         OnAxes::new(Part::Joint(axis), numbers, &shape, vec![radii.to_vec()], move |radii| {
             let of_radius = |&radius: &f64| {
+                let play = Column::Play { joint: axis, operator: 0, radius };
                 let mut state = 0.0;
                 let after = |&torque: &f64| {
-                    state = play(torque, radius, state);
+                    state = play.after(Torque::of(torque), state);
                     state
                 };
                 axes_column(count, &at, torques.iter().map(after))

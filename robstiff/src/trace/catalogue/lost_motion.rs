@@ -21,7 +21,7 @@ pub static KIND: Kind = Kind {
     on_axes: Some(on_axes),
 };
 
-/// The knees tried, as fractions of the largest torque seen on the joint: lost
+/// The knees tried, as fractions of the largest torque that the gear carries: lost
 /// motion is over below some 3 % of what a gear is made for.
 pub const KNEES: [f64; 3] = [1.0 / 64.0, 1.0 / 32.0, 1.0 / 16.0];
 
@@ -36,7 +36,7 @@ pub const WIDEST: f64 = 0.0175;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for joint in 1..=scene.joints() {
-        let Some(largest) = scene.largest_torque(joint) else { continue };
+        let Some(largest) = scene.largest_carried(joint) else { continue };
         let [gap, torque] = if scene.turns(joint) { ["rad", "Nm"] } else { ["m", "N"] };
         let number = move |knee: f64| {
             Number::elastic("gap", gap, [0.0, WIDEST], move |point| point.samples.column(Column::Gap { joint, knee }))

@@ -206,6 +206,13 @@ impl Scene<'_> {
         (largest > 1e-9 * possible).then_some(largest)
     }
 
+    /// The largest torque that the gear of a joint (from 1) carries under the loads, without
+    /// sign, what weighs on it included; none where no row loads it.
+    pub fn largest_carried(&self, joint: usize) -> Option<f64> {
+        self.largest_torque(joint)?;
+        Some(self.samples.rows.iter().map(|row| row.torque(joint).whole().abs()).fold(0.0, f64::max))
+    }
+
     /// The line of the first row after a slip, or of the last row.
     pub fn line(&self, moment: Moment) -> f64 {
         self.data.rows[moment.row.min(self.data.rows.len() - 1)].line as f64

@@ -23,7 +23,7 @@ pub static KIND: Kind = Kind {
     on_axes: Some(on_axes),
 };
 
-/// The knees tried, as fractions of the largest torque seen on the joint. A
+/// The knees tried, as fractions of the largest torque that the gear carries. A
 /// knee above it bends too little to be told from a joint; a change that is
 /// over before the loads begin is a step at zero torque, which is
 /// `lost_motion` and has the knees below.
@@ -31,7 +31,7 @@ pub const KNEES: [f64; 4] = [1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0, 1.0];
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for joint in 1..=scene.joints() {
-        let Some(largest) = scene.largest_torque(joint) else { continue };
+        let Some(largest) = scene.largest_carried(joint) else { continue };
         let unit = scene.compliance_unit(joint);
         let number = move |knee: f64| {
             Number::elastic("added", unit, [f64::NEG_INFINITY, f64::INFINITY], move |point| {

@@ -7,6 +7,7 @@ use std::vec::Vec;
 use nalgebra::DVector;
 
 use crate::campaign::ClampedRow;
+use crate::elements::Torque;
 use crate::identify::Identification;
 use crate::identify::baseline::Visibility;
 use crate::identify::clamped::regression::rows_of;
@@ -243,8 +244,9 @@ impl OnAxes {
     ) -> Self {
         let (torques, largest) = (axes.loads(axis), axes.largest(axis));
         let (at, count) = (axes.rows_of(axis), axes.rows.len());
-        let column =
-            move |knee: f64| axes_column(count, &at, torques.iter().map(|&torque| curve(axis, knee).turn(torque)));
+        let column = move |knee: f64| {
+            axes_column(count, &at, torques.iter().map(|&torque| curve(axis, knee).turn(Torque::of(torque))))
+        };
         let knees = tried.iter().map(|fraction| vec![fraction * largest]).collect();
         let shape = [("knee", axes.torque_unit(axis))];
         Self::new(Part::Joint(axis), vec![number], &shape, knees, move |shape| vec![column(shape[0])])

@@ -10,7 +10,6 @@ use robstiff_robots::Description;
 
 use crate::campaign::made::{campaign, normal};
 use crate::campaign::{Campaign, ClampedRow, Data};
-use crate::identify::samples::play;
 use crate::identify::uncertainty::WITHIN;
 use crate::samples::five_axis;
 use crate::trace::{Options, Trace, Verdict, trace};
@@ -45,6 +44,11 @@ fn names(trace: &Trace) -> Vec<String> {
 
 pub(super) fn ramp(count: usize) -> Vec<f64> {
     (1..=count).map(|k| 1000.0 * k as f64 / count as f64).collect()
+}
+
+/// The play operator of a radius after a torque.
+fn play(torque: f64, radius: f64, before: f64) -> f64 {
+    before.min(torque + radius).max(torque - radius)
 }
 
 /// What a program rounds is no structure, and axes that never move say nothing.

@@ -29,7 +29,7 @@ use crate::{Effect, JointKind};
 /// Steps of central differences of entries of a table that are angles and lengths.
 const STEPS: [f64; 2] = [ANGLE_STEP, LENGTH_STEP];
 
-/// Knees of gears that are looked for, as fractions of the largest torque.
+/// Knees of gears that are looked for, as fractions of the largest torque that they carry.
 const NARROWEST_KNEE: f64 = 1.0 / 256.0;
 const WIDEST_KNEE: f64 = 4.0;
 
@@ -203,11 +203,11 @@ fn couplings(robot: &Description, data: &Positions) -> Vec<Offer> {
 }
 
 /// Gears that give way other than in proportion to what a payload loads them with, the
-/// knee one of several parts of the largest torque; or not alike at all angles.
+/// knee one of several parts of the largest torque that they carry; or not alike at all angles.
 fn gears(robot: &Description, data: &Positions) -> Vec<Offer> {
     let torques = Model::new(robot, data).torques(data);
-    let largest = |joint: usize| torques.iter().map(|row| row[joint - 1].abs()).fold(0.0, f64::max);
-    let heaviest = torques.iter().flatten().map(|torque| torque.abs()).fold(0.0, f64::max);
+    let largest = |joint: usize| torques.iter().map(|row| row[joint - 1].whole().abs()).fold(0.0, f64::max);
+    let heaviest = torques.iter().flatten().map(|torque| torque.load.abs()).fold(0.0, f64::max);
     let law = |name: &'static str, joint: usize, number: &'static str, range: [f64; 2], knees: &[f64], widest: f64| {
         let revolute = robot.joints[joint - 1].kind == JointKind::Revolute;
         let (turn, torque) = if revolute { ("rad", "Nm") } else { ("m", "N") };
@@ -237,7 +237,8 @@ fn gears(robot: &Description, data: &Positions) -> Vec<Offer> {
         Offer { kind: kind(name), place, numbers, forms, possible }
     };
     // What a payload does not load but by rounding has no law to show.
-    let loaded: Vec<usize> = (1..=robot.joints.len()).filter(|&joint| largest(joint) > 1e-9 * heaviest).collect();
+    let is_loaded = |joint: &usize| torques.iter().any(|row| row[joint - 1].load.abs() > 1e-9 * heaviest);
+    let loaded: Vec<usize> = (1..=robot.joints.len()).filter(is_loaded).collect();
     let hardening = |&joint: &usize| {
         let range = [f64::NEG_INFINITY, f64::INFINITY];
         law(STIFFNESS_NONLINEARITY.name, joint, "added", range, &HARDENING_KNEES, WIDEST_KNEE)

@@ -1,37 +1,44 @@
-//! How the joints yield to the arm's own weight.
+//! What the arm's own weight puts on its joints.
+
+use core::array::from_fn;
 
 use nalgebra::{Matrix4, SVector};
 use robstiff_robots::effect::gravity_sag::GRAVITY;
-use robstiff_robots::{Description, Link};
+use robstiff_robots::{Description, Effect, Link};
 
-use crate::elements::{own_weight_torque, share_of_weight};
+use crate::elements::{own_weight_torque, share_of_preload, share_of_weight};
 use crate::{Convention, JointKind, Real};
 
-/// The masses of an arm that sags.
+/// The masses of an arm to whose description they matter.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sag<const N: usize> {
-    share: f64,
+pub struct Weight<const N: usize> {
     links: [Link; N],
+    /// How much of it the joints yield to, unloaded, if they do.
+    pub sag: Option<f64>,
+    /// How much of it the gears carry, if the description says so.
+    pub preload: Option<f64>,
 }
 
-impl<const N: usize> Sag<N> {
+impl<const N: usize> Weight<N> {
     /// Of a description with an effect of that sort.
     pub fn of(description: &Description) -> Option<Self> {
-        let share = description.effects.iter().filter_map(share_of_weight::<f64>).reduce(|sum, more| sum + more)?;
-        Some(Self { share, links: core::array::from_fn(|i| description.links[i]) })
+        let sum =
+            |of: fn(&Effect) -> Option<f64>| description.effects.iter().filter_map(of).reduce(|sum, more| sum + more);
+        let (sag, preload) = (sum(share_of_weight), sum(share_of_preload));
+        sag.or(preload)?;
+        Some(Self { links: from_fn(|i| description.links[i]), sag, preload })
     }
 
-    /// By how much each joint yields (rad or m): `share h_i g_i`, with the frames
-    /// behind the joints where they stand without the sag.
-    pub fn yields<T: Real>(
+    /// The torque `g_i` of what hangs on each joint (Nm, of sliding joints forces in N),
+    /// with the frames behind the joints where they stand without a sag.
+    pub fn torques<T: Real>(
         &self,
         convention: Convention,
         kinds: [JointKind; N],
-        compliance: &SVector<f64, N>,
         base: &Matrix4<f64>,
         frames: &[Matrix4<T>; N],
-    ) -> [T; N] {
-        core::array::from_fn(|i| {
+    ) -> SVector<T, N> {
+        SVector::from_fn(|i, _| {
             let joint_frame = match (convention, i) {
                 (Convention::Modified, _) => frames[i],
                 (Convention::Standard, 0) => base.map(T::of),
@@ -46,8 +53,7 @@ impl<const N: usize> Sag<N> {
                     *moment += own * (frame[(k, 0)] * x + frame[(k, 1)] * y + frame[(k, 2)] * z + frame[(k, 3)]);
                 }
             }
-            let torque = own_weight_torque(kinds[i], &joint_frame, weight, moment);
-            T::of(self.share * compliance[i]) * torque
+            own_weight_torque(kinds[i], &joint_frame, weight, moment)
         })
     }
 }
