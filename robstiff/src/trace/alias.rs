@@ -202,17 +202,10 @@ pub fn same_as_wild(bench: &Bench<'_>, model: &Fitted, events: &[Event]) -> Vec<
     if events.is_empty() {
         return Vec::new();
     }
-    let out: Vec<usize> = events.iter().flat_map(|event| &event.rows).copied().collect();
-    let (whole, rest) = (bench.leaving_out(&[]), bench.leaving_out(&out));
-    let named = &model.named;
-    let (Ok(setting), Ok(others)) = (whole.at(named), rest.at(named)) else { return Vec::new() };
-    let Ok(Fitted { fit, .. }) = others.fit(named) else { return Vec::new() };
-    // An event of several rows has one shift, and noise in the rest of their readings.
-    let shifts = 3 * events.len();
-    let noise = (setting.problem.total.rows - others.problem.total.rows).saturating_sub(shifts);
-    let rss = fit.rss * (1.0 + noise as f64 / others.problem.freedom(&fit));
-    // Which visit it is, and its shift.
-    let as_wild = setting.bic(named, &Fit { rss, ..fit }, 4 * events.len());
+    let (whole, named) = (bench.leaving_out(&[]), &model.named);
+    let (Ok(setting), Some(as_wild)) = (whole.at(named), bic_as_wild(bench, named, &events)) else {
+        return Vec::new();
+    };
     let mut found: Vec<(f64, String)> = Vec::new();
     for candidate in 0..setting.candidates.len() {
         let Some(rival) = best_with(&setting, named, candidate) else { continue };
@@ -225,6 +218,21 @@ pub fn same_as_wild(bench: &Bench<'_>, model: &Fitted, events: &[Event]) -> Vec<
         }
     }
     best_first(found).collect()
+}
+
+/// The criterion of a model of all rows in which each of some events has a shift of its own.
+/// `None` where it cannot be fitted so.
+pub fn bic_as_wild(bench: &Bench<'_>, named: &[Named], events: &[&Event]) -> Option<f64> {
+    let out: Vec<usize> = events.iter().flat_map(|event| &event.rows).copied().collect();
+    let (whole, rest) = (bench.leaving_out(&[]), bench.leaving_out(&out));
+    let (setting, others) = (whole.at(named).ok()?, rest.at(named).ok()?);
+    let Fitted { fit, .. } = others.fit(named).ok()?;
+    // An event of several rows has one shift, and noise in the rest of their readings.
+    let shifts = 3 * events.len();
+    let noise = (setting.problem.total.rows - others.problem.total.rows).saturating_sub(shifts);
+    let rss = fit.rss * (1.0 + noise as f64 / others.problem.freedom(&fit));
+    // Which visit it is, and its shift.
+    Some(setting.bic(named, &Fit { rss, ..fit }, 4 * events.len()))
 }
 
 /// Names in the order of their criterion.

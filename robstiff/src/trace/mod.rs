@@ -11,7 +11,8 @@
 //!    accounts for it or for what names do, `wander` whether a slip is what goes there and back,
 //!    `along` whether what is left points where a named effect does;
 //! 5. `verdict` takes names back and draws the conclusion;
-//! 6. `alias` says what the data cannot tell apart, and `report` puts all of it together.
+//! 6. where masses are known, `preload` asks whether gears carry the arm's own weight;
+//! 7. `alias` says what the data cannot tell apart, and `report` puts all of it together.
 //!
 //! Positions and clamped axes go the same way on benches of their own (`positions`, `clamped`).
 //!
@@ -38,6 +39,7 @@ pub(crate) mod model;
 mod one_line_tests;
 pub(crate) mod point;
 pub(crate) mod positions;
+mod preload;
 mod report;
 mod search;
 pub(crate) mod selection;
@@ -271,6 +273,18 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
             progress("identifying the joints");
             let prepared = Prepared::new(campaign)?;
             let (bench, outcome) = searched(campaign, &prepared, options, progress).map_err(Error::NotShown)?;
+            if let Some(preloaded) = preload::worth_a_try(campaign, &outcome) {
+                progress("asking whether gears carry the arm's own weight");
+                bench.spare_memory();
+                let prepared = Prepared::new(&preloaded)?;
+                // Its stages are those that were told before.
+                let (other, found) = searched(&preloaded, &prepared, options, &|_| ()).map_err(Error::NotShown)?;
+                if preload::is_better((&other, &found), (&bench, &outcome)) {
+                    let mut trace = report(&preloaded, &prepared, &other, &found, options)?;
+                    preload::tell(&mut trace);
+                    return Ok(trace);
+                }
+            }
             report(campaign, &prepared, &bench, &outcome, options)
         }
         Data::Position(data) => positions::trace(campaign, data, options, progress),

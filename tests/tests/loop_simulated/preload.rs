@@ -65,8 +65,44 @@ fn backlash_is_found_where_some_loads_take_the_preload_off() {
     assert_most("backlash under a declared preload", 4, &traces, |_, trace| names_all(trace, &[backlash]));
 }
 
+/// Where the description knows the masses and does not say that gears carry them, tracing
+/// finds that out with the curve.
+#[test]
+fn the_preload_is_found_with_the_curve() {
+    let traces = traces(&[SAG], &HARDENS.into());
+    assert_most("hardening under a preload that is not declared", 5, &traces, |_, trace| {
+        let preloaded = trace.description.effects.contains(&PRELOAD);
+        trace.verdict == Verdict::Explained && names_all(trace, &[HARDENS, PRELOAD]) && preloaded
+    });
+}
+
+/// Of backlash that few loads reach there is little to see, but it is not told as something
+/// else.
+#[test]
+fn backlash_under_a_preload_that_is_not_declared_is_no_slip() {
+    let traces = traces(&[SAG], &Hidden::LostMotion { joint: 2, gap: 4e-4, knee: 120.0 });
+    assert_most("backlash under a preload that is not declared", 4, &traces, |_, trace| {
+        trace.effects.iter().any(|named| named.effect.kind() == "lost_motion")
+    });
+}
+
 #[test]
 fn weight_alone_is_nothing_missing() {
-    let traces = traces(&[SAG, PRELOAD], &Hidden::TrackerScale(0.0));
-    assert_most("weight alone", 6, &traces, |_, trace| trace.verdict == Verdict::Adequate);
+    for declared in [&[SAG, PRELOAD][..], &[SAG]] {
+        let traces = traces(declared, &Hidden::TrackerScale(0.0));
+        assert_most("weight alone", 6, &traces, |_, trace| trace.verdict == Verdict::Adequate);
+    }
+}
+
+/// A compensator that carries all of the weight leaves the gears nothing: the masses alone
+/// are no reason to tell a preload.
+#[test]
+fn a_gear_that_carries_nothing_has_its_curve_about_the_load() {
+    let of_seed = |seed| {
+        let declared = heavy(&[]);
+        let scenario = plan(&declared, &[HARDENS], seed);
+        (seed, trace_files(&scenario.run(), &declared, ""))
+    };
+    let traces: Vec<(u64, Trace)> = SEEDS.map(of_seed).collect();
+    assert_most("hardening without a preload", 5, &traces, |_, trace| names_all(trace, &[HARDENS]));
 }
