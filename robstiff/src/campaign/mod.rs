@@ -20,6 +20,7 @@ mod positions;
 pub(crate) mod read;
 mod reference;
 mod revisited;
+pub(crate) mod rounded;
 #[cfg(test)]
 mod tests;
 mod times;

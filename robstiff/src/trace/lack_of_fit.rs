@@ -15,7 +15,8 @@
 //! 3. *Growth*: the length of the residual grows with the force (Spearman's
 //!    rank correlation); the noise of a reading does not know the load.
 //! 4. *Agreement*: readings of a pose agree more than noise does
-//!    ([`agreement`](mod@super::agreement)).
+//!    ([`agreement`](mod@super::agreement)). A coarse gauge rounds small readings less than
+//!    large ones, and those that are alike alike: then neither is asked.
 //! 5. *Encoders*: where joints are read behind their gears, what is left of those readings
 //!    against their own noise.
 //!
@@ -115,7 +116,7 @@ pub fn test(
     tests.extend(shares.as_ref().and_then(|shares| size(setting, model, shares, covariance, yardstick)));
     tests.extend(shares.as_ref().and_then(|shares| of_encoders(shares, covariance)));
     tests.extend(growth(setting, model));
-    let agreement = agreement(setting, model, options);
+    let agreement = agreement(setting, model, options).filter(|_| !is_coarse(setting, model));
     if let Some(Agreement { statistic, p_value, .. }) = agreement {
         tests.push(StructureTest { name: AGREE.to_owned(), statistic, p_value });
     }
@@ -144,9 +145,17 @@ pub(super) fn freedom(setting: &Setting<'_>, model: &Fitted) -> f64 {
     setting.problem.freedom(&model.fit)
 }
 
+/// Whether what a model leaves is little against the steps in which readings are read.
+fn is_coarse(setting: &Setting<'_>, model: &Fitted) -> bool {
+    setting.point.data.is_coarse(model.fit.rss / freedom(setting, model))
+}
+
 /// Spearman's rank correlation of squared residuals, each over what the fit
 /// leaves of a unit variance there, with the force.
 fn growth(setting: &Setting<'_>, model: &Fitted) -> Option<StructureTest> {
+    if is_coarse(setting, model) {
+        return None;
+    }
     let (problem, fit) = setting.alone(&model.fit);
     let residuals = problem.white_residuals(&fit.columns, &fit.coefficients);
     let inverse = problem.total.inverse(&fit.columns)?;

@@ -8,12 +8,7 @@
 use std::vec::Vec;
 
 use super::regression::{rows_of, torques};
-use crate::campaign::ClampedRow;
-
-/// A reading nearer than this part of the largest to another, or to a multiple of a step, is
-/// there; and a step that is less than so much of it is nothing to be unsure by.
-const SAME: f64 = 1e-8;
-const FINE: f64 = 1e-6;
+use crate::campaign::{ClampedRow, rounded};
 
 /// Readings in proportion to this part of a step were not rounded to it, but are alike
 /// because their torques are.
@@ -36,19 +31,11 @@ pub fn of_rounding(rows: &[ClampedRow]) -> Vec<f64> {
     (1..=axes).map(of_axis).collect()
 }
 
-/// The step that all readings are multiples of, if they show one: the largest that there is,
-/// by Euclid's algorithm.
+/// The step that readings are multiples of, if they show one and are not alike for another
+/// reason.
 fn step(rows: &[ClampedRow]) -> Option<f64> {
-    let largest = rows.iter().map(|row| row.deflection.abs()).fold(0.0, f64::max);
-    let common = |mut step: f64, row: &ClampedRow| {
-        let mut rest = row.deflection.abs();
-        while rest > SAME * largest {
-            (step, rest) = (rest, (step - rest * (step / rest).round()).abs());
-        }
-        step
-    };
-    let step = rows.iter().fold(0.0, common);
-    (step > FINE * largest && off(rows) > PROPORTIONAL * step).then_some(step)
+    let step = rounded::step(rows.iter().map(|row| row.deflection))?;
+    (off(rows) > PROPORTIONAL * step).then_some(step)
 }
 
 /// How far a reading is at most from being in proportion to the torque on its axis.

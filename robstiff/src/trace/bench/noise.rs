@@ -67,10 +67,15 @@ impl Bench<'_> {
         Ok(true)
     }
 
-    /// What repeated readings differ by, of the rows that are fitted to.
+    /// What repeated readings differ by, of the rows that are fitted to; nothing is known of
+    /// it where a coarse gauge rounds them alike.
     pub fn repeated(&self) -> PureError {
         let Known { covariance, straight } = &*self.noise;
-        repetitions(straight, covariance, |pose| self.prepared.training[pose], |row| self.left_out[row])
+        let pure = repetitions(straight, covariance, |pose| self.prepared.training[pose], |row| self.left_out[row]);
+        match pure.variance() {
+            Some(variance) if self.prepared.data.is_coarse(variance) => PureError::of([].into_iter()),
+            _ => pure,
+        }
     }
 
     /// The readings of poses for which `of_pose` holds that the others of their own pose
