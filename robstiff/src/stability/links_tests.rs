@@ -162,3 +162,20 @@ fn the_greatest_depth_has_no_part_in_what_is_below() {
     }
     assert!(narrow > 5, "{narrow}");
 }
+
+/// Modes that the force does not meet, however stiff, leave two that it does at their depth.
+#[test]
+fn stiff_modes_hide_no_pair_that_meets() {
+    let process = process(&cut(Engagement::SLOT), &CutFrame::new(&-Vector3::z(), &Vector3::x()).unwrap());
+    for apart in [1e-4, 1e-3, 0.05] {
+        let modes = |frequencies: &[f64]| {
+            let shapes = DMatrix::from_fn(3, frequencies.len(), |row, i| if row == i.min(2) { 0.1 } else { 0.0 });
+            let (compliance, massless) = (Matrix3::identity(), Matrix3::zeros());
+            Modes { compliance, frequencies: frequencies.to_vec().into(), shapes, massless, damping: 0.0 }
+        };
+        let pair = [100.0, 100.0 * (1.0 + apart)];
+        let alone = modes(&pair).limits(&process, 0.02).limiting().unwrap();
+        let among = modes(&[pair[0], pair[1], 2e3, 5e3, 1e4]).limits(&process, 0.02).limiting().unwrap();
+        assert!((among / alone - 1.0).abs() < 1e-3, "{apart}: {among} {alone}");
+    }
+}

@@ -35,6 +35,7 @@ mod limit;
 mod links_tests;
 mod mass;
 mod modes;
+mod spectrum;
 #[cfg(test)]
 mod tests;
 

@@ -1,7 +1,8 @@
 //! The modes of an arm at its tool, and whether they are stable in a cut.
 
-use nalgebra::{Complex, DMatrix, DVector, Matrix2, Matrix3, Schur, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, SymmetricEigen};
 
+use super::spectrum::Spectrum;
 use crate::analysis::resolution;
 
 /// The modes of the tool on the arm, without a cut: of one mass at the tool as many as there
@@ -20,14 +21,6 @@ pub struct Modes {
     /// Damping ratio of every mode.
     pub(super) damping: f64,
 }
-
-/// How often the eigenvalue iteration may turn.
-const MOST_ITERATIONS: usize = 10_000;
-
-/// How far below zero the discriminant of a matrix with entries up to 1 may be
-/// for it to be rounding: what counts as meeting of modes is then within 1e-6 of
-/// their squared frequencies.
-const ROUNDING: f64 = 1e-13;
 
 impl Modes {
     /// The modes with a translational compliance (m/N) and a mass at the tool
@@ -134,9 +127,9 @@ impl Modes {
         }
         let stiffness = stiffness / scale;
         if self.damping == 0.0 {
-            let Some(discriminant) = discriminant(&stiffness) else { return Margin::LOST };
-            let distances = [discriminant, stiffness.determinant()];
-            return Margin { is_stable: eigenvalues_are_positive(&stiffness), distances };
+            let Some(spectrum) = Spectrum::of(&stiffness) else { return Margin::LOST };
+            let distances = [spectrum.discriminant(), stiffness.determinant()];
+            return Margin { is_stable: spectrum.are_real && spectrum.least() > 0.0, distances };
         }
         // x'' + 2 zeta Omega x' + A x = 0, with time in units of 1 / sqrt(scale).
         let mut state = DMatrix::zeros(2 * count, 2 * count);
@@ -145,8 +138,8 @@ impl Modes {
         for i in 0..count {
             state[(count + i, count + i)] = -2.0 * self.damping * self.frequencies[i] / scale.sqrt();
         }
-        let Some(eigenvalues) = eigenvalues(state) else { return Margin::LOST };
-        let dying = -eigenvalues.iter().map(|eigenvalue| eigenvalue.re).fold(f64::NEG_INFINITY, f64::max);
+        let Some(spectrum) = Spectrum::of(&-state) else { return Margin::LOST };
+        let dying = spectrum.least();
         Margin { is_stable: dying > 0.0, distances: [dying; 2] }
     }
 }
@@ -166,24 +159,11 @@ impl Margin {
     pub(super) const LOST: Self = Self { is_stable: false, distances: [0.0; 2] };
 }
 
-fn eigenvalues(matrix: DMatrix<f64>) -> Option<DVector<Complex<f64>>> {
-    Some(Schur::try_new(matrix, f64::EPSILON, MOST_ITERATIONS)?.complex_eigenvalues())
-}
-
 /// The largest real eigenvalue of a 3 x 3 matrix.
 pub(super) fn largest_real(matrix: &Matrix3<f64>) -> f64 {
     let eigenvalues = matrix.complex_eigenvalues();
     let real = eigenvalues.iter().filter(|eigenvalue| eigenvalue.im == 0.0).map(|eigenvalue| eigenvalue.re);
     real.fold(f64::NEG_INFINITY, f64::max)
-}
-
-/// The product of the squared differences of a matrix's eigenvalues: zero where two meet,
-/// negative where a pair is complex.
-fn discriminant(matrix: &DMatrix<f64>) -> Option<f64> {
-    let eigenvalues = eigenvalues(matrix.clone())?;
-    let pairs = (0..eigenvalues.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
-    let squared = |(i, j): (usize, usize)| (eigenvalues[i] - eigenvalues[j]).powi(2);
-    Some(pairs.map(squared).product::<Complex<f64>>().re)
 }
 
 /// Whether a 2 x 2 matrix has a pair of complex eigenvalues: the criterion of
@@ -196,30 +176,4 @@ pub fn has_complex_pair(matrix: &Matrix2<f64>) -> bool {
 /// The square of the difference of the eigenvalues of a 2 x 2 matrix `a b; c d`.
 pub(super) fn squared_difference(a: f64, b: f64, c: f64, d: f64) -> f64 {
     (a - d) * (a - d) + 4.0 * b * c
-}
-
-/// Whether all the eigenvalues of a matrix with entries up to 1 are real and positive, to
-/// rounding: of one to three rows by the discriminant and the signs of its characteristic
-/// polynomial.
-fn eigenvalues_are_positive(a: &DMatrix<f64>) -> bool {
-    match a.nrows() {
-        1 => a[(0, 0)] > 0.0,
-        2 => {
-            let (trace, determinant) = (a.trace(), a[(0, 0)] * a[(1, 1)] - a[(0, 1)] * a[(1, 0)]);
-            let discriminant = squared_difference(a[(0, 0)], a[(0, 1)], a[(1, 0)], a[(1, 1)]);
-            discriminant >= -ROUNDING && trace > 0.0 && determinant > 0.0
-        }
-        3 => {
-            let minor = |i: usize, j: usize| a[(i, i)] * a[(j, j)] - a[(i, j)] * a[(j, i)];
-            let (c2, c1) = (a.trace(), minor(0, 1) + minor(0, 2) + minor(1, 2));
-            let c0 = a.determinant();
-            // l^3 - c2 l^2 + c1 l - c0.
-            let discriminant =
-                18.0 * c2 * c1 * c0 - 4.0 * c2.powi(3) * c0 + c2 * c2 * c1 * c1 - 4.0 * c1.powi(3) - 27.0 * c0 * c0;
-            discriminant >= -ROUNDING && c2 > 0.0 && c1 > 0.0 && c0 > 0.0
-        }
-        _ => {
-            eigenvalues(a.clone()).is_some_and(|all| all.iter().all(|one| one.re > 0.0 && one.im * one.im <= ROUNDING))
-        }
-    }
 }

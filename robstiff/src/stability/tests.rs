@@ -1,4 +1,4 @@
-use core::f64::consts::TAU;
+use core::f64::consts::{FRAC_PI_2, TAU};
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, Matrix2, Matrix3, SVector, Unit, Vector3};
@@ -305,6 +305,37 @@ fn equal_stiffnesses_couple_at_once_and_damping_holds_them() {
     // Close to the threshold of flutter with damping: N Kt b / 4 = 2 zeta k.
     let expected = 2.0 * 0.05 * 1e6 / (0.25 * 4.0 * 767e6);
     assert!((damped / expected - 1.0).abs() < 0.05, "{damped} {expected}");
+}
+
+/// Of a displacement along the tool the force does not know: a spring there changes nothing,
+/// whether it is as soft as the others or far stiffer.
+#[test]
+fn springs_that_nearly_agree_meet_at_the_depth_of_the_plane() {
+    let spring = |k: [f64; 3]| {
+        let compliance = Matrix3::from_diagonal(&Vector3::from(k.map(f64::recip)));
+        Modes::new(&compliance, &(Matrix3::identity() * 100.0), 0.0).unwrap()
+    };
+    let down = cut(Engagement::of_width(Direction::Down, 0.008, 0.02).unwrap());
+    for apart in [1e-4, 5e-4, 3e-3, 0.02] {
+        for along in [1.0, 1.0 + 0.5 * apart, 1.0 + apart, 1.0 + 2.0 * apart, 1e3, 1e5] {
+            for angle in [0.0, 0.7, FRAC_PI_2, 2.5] {
+                let process = process(&down, &CutFrame::new(&-Vector3::z(), &in_plane(angle)).unwrap());
+                let two = plane(1e6, 1e6 * (1.0 + apart), 100.0, 0.0).limits(&process, 0.02).limiting();
+                let three = spring([1e6, 1e6 * (1.0 + apart), 1e6 * along]).limits(&process, 0.02).limiting();
+                let (two, three) = (two.unwrap(), three.unwrap());
+                assert!((three / two - 1.0).abs() < 1e-3, "{apart} {along} {angle}: {three} {two}");
+            }
+        }
+    }
+    let process = process(&down, &CutFrame::new(&-Vector3::z(), &Vector3::x()).unwrap());
+    for greatest in [1e-5, 0.02] {
+        assert_eq!(spring([1e6; 3]).limits(&process, greatest).limiting(), Some(0.0));
+        assert_eq!(spring([1e6, 1e6, 1e9]).limits(&process, greatest).limiting(), Some(0.0));
+        assert_eq!(plane(1e6, 1e6, 100.0, 0.0).limits(&process, greatest).limiting(), Some(0.0));
+    }
+    // One spring that pulls along its own direction makes no pair, however alike they are.
+    let pull = in_plane(0.3).as_ref() * in_plane(0.3).transpose() * -1e9;
+    assert_eq!(spring([1e6; 3]).limits(&pull, 0.02).unstable, Vec::<[f64; 2]>::new());
 }
 
 #[test]
