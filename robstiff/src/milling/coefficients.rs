@@ -8,7 +8,9 @@ use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
 
 /// Cutting coefficients (force per chip area, Pa) and edge coefficients
-/// (force per length of the edge, N/m), tangential, radial and axial.
+/// (force per length of the edge, N/m), tangential, radial and axial. Positive axial
+/// ones pull a tool with a right-handed helix out of its holder; with a left-handed one they
+/// push it in.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Coefficients {
     /// Tangential, per chip area (Pa).

@@ -14,7 +14,8 @@ pub struct EndMill {
     pub diameter: f64,
     /// Number of teeth.
     pub teeth: usize,
-    /// Helix angle (rad); positive for a right-handed helix.
+    /// Helix angle (rad); positive for a right-handed helix, which pulls the tool out of
+    /// its holder, negative for a left-handed one, which pushes it in.
     pub helix: f64,
     /// How far each tooth stands out beyond the mean radius (m), in the order
     /// in which they cut, as an indicator shows it; empty without runout.
@@ -26,7 +27,8 @@ pub struct EndMill {
 pub struct Cut {
     /// The tool.
     pub mill: EndMill,
-    /// What the material resists with.
+    /// What the material resists with; axial ones are those of a right-handed helix, and turn
+    /// their sign with a left-handed one.
     pub coefficients: Coefficients,
     /// The angles of the cut.
     pub engagement: Engagement,
@@ -44,8 +46,8 @@ impl Cut {
     ///
     /// Without runout this is `N b c / 8 pi [..] + N b / 2 pi [..]` between the
     /// angles of the engagement, as in Altintas; with it each tooth has its own
-    /// thickness of chip, and what it does not reach the next one cuts. The helix
-    /// does not matter.
+    /// thickness of chip, and what it does not reach the next one cuts. Of the helix
+    /// only its hand matters.
     pub fn mean_force(&self) -> Vector3<f64> {
         mean_force(self, &self.pieces())
     }
@@ -72,6 +74,15 @@ impl Cut {
         revolution.samples.extend(edges(self, &pieces).map(|angle| (angle, force_at(self, &pieces, angle))));
         revolution.samples.sort_by(|(one, _), (other, _)| one.total_cmp(other));
         revolution
+    }
+
+    /// The coefficients of the edges as they are inclined: chips flow along an inclined edge
+    /// and drag it with them (Altintas, oblique cutting, where the axial coefficient has the
+    /// sign of the inclination), so that a left-handed helix turns the axial force round.
+    pub(crate) fn inclined(&self) -> Coefficients {
+        let Coefficients { kac, kae, .. } = self.coefficients;
+        let hand = if self.mill.helix < 0.0 { -1.0 } else { 1.0 };
+        Coefficients { kac: hand * kac, kae: hand * kae, ..self.coefficients }
     }
 
     /// The torque on the spindle averaged over a revolution (Nm).

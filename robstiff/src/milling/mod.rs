@@ -13,14 +13,15 @@
 //! - `feed`: where the tool moves, relative to the workpiece;
 //! - `normal = feed x axis`: to the left of the feed, looked at from the spindle;
 //! - `axis`: from the spindle to the tip of the tool, so that a positive force
-//!   pulls the tool out of its holder, as right-handed helices do.
+//!   pulls the tool out of its holder, as right-handed helices do; left-handed ones
+//!   push it in.
 //!
 //! The spindle turns clockwise looked at from the spindle (`M3`). The angle `phi`
 //! of a tooth counts from the normal, that way; the tooth cuts between the angles
 //! of an [`Engagement`], within 0 and pi. In up (conventional) milling the wall
 //! is left of the tool, at +normal, in down (climb) milling right of it, at
 //! -normal. For spindles that turn the other way, mirror the cut: the normal
-//! component changes its sign.
+//! component changes its sign, and a left-handed helix is a right-handed one.
 //!
 //! # Units
 //! SI: m, rad, N, Pa, N/m, rad/s; the files ([`CutFile`]) take those of the

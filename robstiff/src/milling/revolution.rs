@@ -74,7 +74,8 @@ fn tooth_pieces(mill: &EndMill, tooth: usize, Engagement { entry, exit }: Engage
 }
 
 pub(super) fn mean_force(cut: &Cut, pieces: &[Vec<Piece>]) -> Vector3<f64> {
-    let whole = |piece: &Piece| mean_over(&cut.coefficients, piece, piece.from, piece.to) * (piece.to - piece.from);
+    let coefficients = cut.inclined();
+    let whole = |piece: &Piece| mean_over(&coefficients, piece, piece.from, piece.to) * (piece.to - piece.from);
     pieces.iter().flatten().map(whole).sum::<Vector3<f64>>() * (cut.depth / TAU)
 }
 
@@ -98,7 +99,7 @@ fn lag(cut: &Cut) -> f64 {
 }
 
 pub(super) fn force_at(cut: &Cut, pieces: &[Vec<Piece>], angle: f64) -> Vector3<f64> {
-    let lag = lag(cut);
+    let (lag, coefficients) = (lag(cut), cut.inclined());
     let mut force = Vector3::zeros();
     for (tooth, pieces) in pieces.iter().enumerate() {
         let tip = (angle - TAU * tooth as f64 / cut.mill.teeth as f64).rem_euclid(TAU);
@@ -107,7 +108,7 @@ pub(super) fn force_at(cut: &Cut, pieces: &[Vec<Piece>], angle: f64) -> Vector3<
         for piece in pieces {
             if high - low < STRAIGHT {
                 if (piece.from..piece.to).contains(&tip) {
-                    force += mean_over(&cut.coefficients, piece, tip, tip) * cut.depth;
+                    force += mean_over(&coefficients, piece, tip, tip) * cut.depth;
                 }
                 continue;
             }
@@ -118,7 +119,7 @@ pub(super) fn force_at(cut: &Cut, pieces: &[Vec<Piece>], angle: f64) -> Vector3<
                 let (from, to) = ((low - turned).max(piece.from), (high - turned).min(piece.to));
                 if to > from {
                     let length = cut.depth * (to - from) / (high - low);
-                    force += mean_over(&cut.coefficients, piece, from, to) * length;
+                    force += mean_over(&coefficients, piece, from, to) * length;
                 }
             }
         }

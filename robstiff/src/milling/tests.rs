@@ -43,7 +43,8 @@ fn summed(cut: &Cut, angle: f64, discs: usize) -> (Vector3<f64>, f64) {
             }
             let tangential = (k.ktc * chip + k.kte) * slice;
             force -= ahead * tangential + outward * ((k.krc * chip + k.kre) * slice);
-            force.z += (k.kac * chip + k.kae) * slice;
+            // Along the chip's way up a right-handed edge, down a left-handed one.
+            force.z += (k.kac * chip + k.kae) * slice * if mill.helix < 0.0 { -1.0 } else { 1.0 };
             torque += tangential * radius;
         }
     }
@@ -112,6 +113,22 @@ fn the_mean_is_the_closed_form_of_altintas() {
         };
         let expected = bracket(engagement.exit) - bracket(engagement.entry);
         assert!((cut.mean_force() - expected).norm() < 1e-12 * expected.norm(), "{engagement:?}");
+    }
+}
+
+/// In a mirror across the axis a right-handed cutter that turns clockwise is a left-handed one
+/// that still does, and what pulls it out pushes it in.
+#[test]
+fn a_left_handed_helix_pushes_the_tool_in() {
+    for engagement in engagements() {
+        for runout in [&[][..], &[0.0, 12e-6, -7e-6]] {
+            let [right, left] = [30.0, -30.0].map(|helix| cut(engagement, helix, runout));
+            let (out, into) = (right.mean_force(), left.mean_force());
+            assert!(out.z > 0.0);
+            assert_eq!(into, Vector3::new(out.x, out.y, -out.z));
+            assert!((left.revolution(3000).mean() - into).norm() < 1e-3 * into.norm());
+            assert_eq!(left.mean_torque(), right.mean_torque());
+        }
     }
 }
 

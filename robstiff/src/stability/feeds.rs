@@ -18,7 +18,7 @@ use crate::milling::{Coefficients, Cut, CutFrame, Engagement};
 /// surface. The edge forces do not change with the chip and take no part; neither
 /// does a displacement along the axis, which changes the depth itself.
 pub fn process(cut: &Cut, frame: &CutFrame) -> Matrix3<f64> {
-    let Coefficients { ktc, krc, kac, .. } = cut.coefficients;
+    let Coefficients { ktc, krc, kac, .. } = cut.inclined();
     let Engagement { entry, exit } = cut.engagement;
     let (sine2, cosine2) = ((2.0 * exit).sin() - (2.0 * entry).sin(), (2.0 * exit).cos() - (2.0 * entry).cos());
     let (s, c) = (entry.cos() - exit.cos(), exit.sin() - entry.sin());
