@@ -91,6 +91,19 @@ pub struct Controller {
     pub damping: f64,
 }
 
+impl Controller {
+    /// By how much a correction that changes slowly lags behind the force (s): the delay, half
+    /// the step for which it is held, and what the position loops take.
+    pub fn lag(&self) -> f64 {
+        let loops = match self.servo {
+            Servo::Ideal => 0.0,
+            Servo::FirstOrder { bandwidth } => 1.0 / (TAU * bandwidth),
+            Servo::SecondOrder { frequency, damping } => 2.0 * damping / (TAU * frequency),
+        };
+        self.delay + 0.5 * self.step + loops
+    }
+}
+
 /// The tool at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instant {

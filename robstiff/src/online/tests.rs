@@ -73,6 +73,26 @@ fn what_is_left_is_what_the_transfer_function_says() {
 
 /// With damping far above 1 the slower pole is that of a first order, at
 /// `frequency / (2 damping)`.
+/// Where a force changes slowly, `1 - exp(-i w lag)` is left.
+#[test]
+fn what_is_left_of_a_slow_force_is_its_change_over_the_lag() {
+    let servos = [
+        Servo::Ideal,
+        Servo::FirstOrder { bandwidth: 15.0 },
+        Servo::SecondOrder { frequency: 15.0, damping: 0.7 },
+        Servo::SecondOrder { frequency: 2.0, damping: 1.5 },
+    ];
+    for servo in servos {
+        for delay in [0.0, 0.3] {
+            let controller = Controller { delay, ..controller(servo) };
+            let frequency = 0.01 / controller.lag();
+            let left =
+                left_of_sine((&robot(), &robot()), &pose(), &controller, (&wrench(), frequency), truly).amplitude;
+            assert!((left / (TAU * 0.01) - 1.0).abs() < 0.02, "{servo:?} {delay}: {left}");
+        }
+    }
+}
+
 #[test]
 fn the_effort_is_known_before() {
     let sine = |servo| Effort::of_sine(&controller(servo), 5.0);

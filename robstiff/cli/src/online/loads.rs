@@ -308,8 +308,9 @@ fn by_frequency<const N: usize>(
     let useful = variants.iter().map(|variant| {
         let of = |frequency: f64| left_of(variant, frequency).rms;
         let affordable = |frequency: f64| bound::is_quick(&variant.controller, frequency);
-        let half = Reach::of(0.5, first, affordable, of);
-        [half, Reach::of(1.0, half.found().unwrap_or(first), affordable, of)]
+        let lag = variant.controller.lag();
+        let half = Reach::of(0.5, (first, lag), affordable, of);
+        [half, Reach::of(1.0, (half.found().unwrap_or(first), lag), affordable, of)]
     });
     let (left, useful) = (left.collect(), useful.collect());
     Ok(Outcome::Sine {

@@ -4,8 +4,15 @@ use std::fmt;
 
 use crate::text::significant;
 
-/// Frequencies between which is looked (Hz).
+/// Frequencies between which is looked (Hz), from lower ones on where a correction lags by long.
 const RANGE: [f64; 2] = [0.1, 1000.0];
+
+/// Periods in a lag from which on is looked: far fewer than the half up to which more is left
+/// the faster the force. Beyond that there is less again where whole periods are in a lag.
+const SLOW: f64 = 0.05;
+
+/// So many of them at most.
+const RISING: f64 = 0.25;
 
 /// How near the ends of the last interval are, the higher over the lower.
 const NEAR: f64 = 1.02;
@@ -30,12 +37,25 @@ impl Reach {
         }
     }
 
-    /// Looks for it, by doubling and halving from a first frequency (Hz). `left` is the part that
-    /// is left at a frequency, `affordable` whether anybody would wait for that.
-    pub fn of(part: f64, first: f64, affordable: impl Fn(f64) -> bool, left: impl Fn(f64) -> f64) -> Self {
-        let [lowest, highest] = RANGE;
-        let (mut low, mut high) = (first, first);
-        if left(first) < part {
+    /// Looks for it, by doubling and halving from a first frequency (Hz), or from a lower one at
+    /// which a correction that lags by so long (s) is in time. `left` is the part that is left at a
+    /// frequency, `affordable` whether anybody would wait for that.
+    pub fn of(
+        part: f64,
+        (first, lag): (f64, f64),
+        affordable: impl Fn(f64) -> bool,
+        left: impl Fn(f64) -> f64,
+    ) -> Self {
+        let [lowest, highest] = [RANGE[0].min(SLOW / lag), RANGE[1]];
+        let mut slow = first.min(SLOW / lag);
+        while slow < first && !affordable(slow) {
+            slow = (2.0 * slow).min(first);
+        }
+        if slow * lag > RISING {
+            return Self::Below(slow);
+        }
+        let (mut low, mut high) = (slow, slow);
+        if left(slow) < part {
             loop {
                 if high >= highest {
                     return Self::Above(high);
@@ -84,7 +104,29 @@ mod tests {
 
     /// More is left the faster the force, in proportion up to a corner (Hz).
     fn reach(corner: f64, first: f64, affordable: impl Fn(f64) -> bool) -> Reach {
-        Reach::of(0.5, first, affordable, |frequency| frequency / corner)
+        Reach::of(0.5, (first, 1e-6), affordable, |frequency| frequency / corner)
+    }
+
+    /// What a correction leaves that is late by so much (s) and else right.
+    fn late(lag: f64) -> impl Fn(f64) -> f64 {
+        move |frequency| 2.0 * (std::f64::consts::PI * frequency * lag).sin().abs()
+    }
+
+    #[test]
+    fn a_lag_of_whole_periods_is_no_lag() {
+        // At 1 Hz a second is a period, and nothing is left.
+        for lag in [0.02, 0.3, 1.0, 1.02, 3.0, 20.0] {
+            for first in [0.2, 1.0, 10.0] {
+                // Half is left at an angle of 2 asin(1 / 4), all of it at pi / 3.
+                for (part, periods) in [(0.5, 2.0 * 0.25_f64.asin() / std::f64::consts::TAU), (1.0, 1.0 / 6.0)] {
+                    let found = Reach::of(part, (first, lag), |_| true, late(lag));
+                    let error = found.found().expect("it is found") * lag / periods - 1.0;
+                    assert!(error.abs() < 0.01, "{lag} {first} {part}: {found}");
+                }
+            }
+        }
+        // Where nobody would wait for a slow force, a fast one says nothing.
+        assert_eq!(Reach::of(0.5, (1.0, 3.0), |frequency| frequency >= 1.0, late(3.0)), Reach::Below(1.0));
     }
 
     #[test]
