@@ -53,6 +53,27 @@ fn limits_leave_what_is_beyond_them() {
 }
 
 #[test]
+fn a_limit_that_holds_back_is_told() {
+    let folder = folder_of("held-back");
+    let told = inside(&folder, "told.json");
+    let sine = ["online", "rv130hsc", "--at", "0.3,-0.4,0.5,0.2,1.2", "--force", "150,-200,300 N", "--json", &told];
+    let held = |name: &str, frequency: usize| json(&told)["control"][0][name][frequency].as_f64().unwrap();
+    let page = succeed(&sine);
+    assert!(!page.contains("holds the correction back"), "{page}");
+    assert_eq!(held("held_back_by_most", 0), 0.0);
+    let page = succeed(&[&sine[..], &["--most", "0.05 mrad"]].concat());
+    assert!(page.contains("A limit holds the correction back\n  4 ms, force sensor: --most, at 0.2, 0.5,"), "{page}");
+    assert!((0.3..1.0).contains(&held("held_back_by_most", 0)));
+    let page = succeed(&[&sine[..], &["--fastest", "2e-3 rad/s"]].concat());
+    assert!(page.contains("  4 ms, force sensor: --fastest, at") && page.contains("10 Hz\n"), "{page}");
+    assert_eq!(held("held_back_by_fastest", 0), 0.0);
+    assert!(held("held_back_by_fastest", 5) > 0.3);
+    let told = along("rv130hsc", "held-back", &["--most", "0.01 mrad"]);
+    assert!((0.3..=1.0).contains(&told["control"][0]["held_back_by_most"].as_f64().unwrap()));
+    assert!(told["without"].get("held_back_by_most").is_none());
+}
+
+#[test]
 fn encoders_do_not_see_what_is_behind_them() {
     let folder = folder_of("effects");
     let robot = inside(&folder, "robot.yaml");
@@ -77,6 +98,25 @@ fn a_lost_sensor_costs_what_it_does_not_see() {
     let ran = run(&arguments);
     assert_eq!(ran.code, 0);
     assert!(ran.err.contains("ends after 13.28 s, before --lost begins"), "{}", ran.err);
+}
+
+/// With a delay of a second or more a correction is right again at whole periods; a half of the
+/// force of a sine is gone where `2 sin(pi f T) = 1 / 2`.
+#[test]
+fn a_long_delay_is_not_mistaken_for_none() {
+    let folder = folder_of("long-delay");
+    let told = inside(&folder, "told.json");
+    for delay in [1.0, 3.0] {
+        let given = format!("{delay} s");
+        let sine = ["online", "rv130hsc", "--force", "0, 0, 400 N", "--frequencies", "1 Hz", "--json", &told];
+        succeed(&[&sine[..], &["--delay", &given]].concat());
+        let control = &json(&told)["control"][0];
+        // The position loops and half a step are late by 17 ms more.
+        for (name, periods) in [("half_gone_to_Hz", 0.0804), ("less_left_to_Hz", 0.1667)] {
+            let found = control[name].as_f64().unwrap() * (delay + 0.017) / periods;
+            assert!((found - 1.0).abs() < 0.03, "{delay} {name}: {control}");
+        }
+    }
 }
 
 #[test]

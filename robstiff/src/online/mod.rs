@@ -115,6 +115,30 @@ pub struct Instant {
     pub uncorrected: Vector3<f64>,
     /// The displacement with it (m).
     pub corrected: Vector3<f64>,
+    /// Whether a limit held back the correction of the control step.
+    pub held_back: HeldBack<bool>,
+}
+
+/// What of the [`Limits`] holds a correction back.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct HeldBack<T> {
+    /// That of its size.
+    pub by_size: T,
+    /// That of its speed.
+    pub by_rate: T,
+}
+
+impl HeldBack<f64> {
+    /// In which part of the time each limit holds back; not a number of no time.
+    pub fn share<'i>(instants: impl Iterator<Item = &'i Instant>) -> Self {
+        let (mut size, mut rate, mut all) = (0.0, 0.0, 0.0);
+        for Instant { held_back, .. } in instants {
+            size += f64::from(u8::from(held_back.by_size));
+            rate += f64::from(u8::from(held_back.by_rate));
+            all += 1.0;
+        }
+        Self { by_size: size / all, by_rate: rate / all }
+    }
 }
 
 /// What a correction leaves of the deviation under a sine, as fractions of the
@@ -125,6 +149,8 @@ pub struct LeftOfSine {
     pub amplitude: f64,
     /// Of its root mean square, noise and steps included.
     pub rms: f64,
+    /// In which part of the time a limit holds the correction back.
+    pub held_back: HeldBack<f64>,
 }
 
 /// Simulates for a `duration` (s) at joint coordinates `q`. `truth` is the robot,
@@ -188,7 +214,8 @@ fn simulate_moving<const N: usize>(
             (Some(wrench), Sensing::Encoders) => Some(-joint_turns(truth, &q, &wrench, &state)),
             (None, _) => (silent > controller.limits.hold).then(SVector::zeros),
         };
-        loops.send(start + delay, wanted.step(asked));
+        let (sent, held_back) = wanted.step(asked);
+        loops.send(start + delay, sent);
         for point in 1..=points {
             // In the middle of each part, so that a value that is held is seen as late as it is.
             let time = start + step * (point as f64 - 0.5) / points as f64;
@@ -201,7 +228,7 @@ fn simulate_moving<const N: usize>(
             let uncorrected = truth.deflection_with(&q, &wrench, &mut state).fixed_rows::<3>(0).into_owned();
             let moved = jacobian.map_or_else(Vector3::zeros, |(_, jacobian)| jacobian * corrections);
             let in_cut = wrench != Vector6::zeros();
-            seen.push(Instant { time, in_cut, uncorrected, corrected: uncorrected + moved });
+            seen.push(Instant { time, in_cut, uncorrected, corrected: uncorrected + moved, held_back });
         }
     }
     seen
@@ -237,6 +264,7 @@ pub fn left_of_sine<const N: usize>(
     LeftOfSine {
         amplitude: amplitude(|seen| seen.corrected) / amplitude(|seen| seen.uncorrected),
         rms: (square(|seen| seen.corrected) / square(|seen| seen.uncorrected)).sqrt(),
+        held_back: HeldBack::share(seen.iter().copied()),
     }
 }
 
@@ -254,12 +282,14 @@ impl<const N: usize> Correction<N> {
     }
 
     /// One control step towards what is asked for; nothing holds it.
-    fn step(&mut self, asked: Option<SVector<f64, N>>) -> SVector<f64, N> {
+    fn step(&mut self, asked: Option<SVector<f64, N>>) -> (SVector<f64, N>, HeldBack<bool>) {
+        let mut held_back = HeldBack::default();
         if let Some(asked) = asked {
             let change = asked.map(|x| x.clamp(-self.size, self.size)) - self.now;
             self.now += change.map(|x| x.clamp(-self.step, self.step));
+            held_back = HeldBack { by_size: asked.amax() > self.size, by_rate: change.amax() > self.step };
         }
-        self.now
+        (self.now, held_back)
     }
 }
 

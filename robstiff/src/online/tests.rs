@@ -198,6 +198,12 @@ fn size_and_rate_are_limited_and_a_silent_sensor_is_let_go() {
     assert!(at(0.19).norm() > 1e-5);
     assert_eq!(at(silent_from + 0.9 * limits.hold), at(0.19));
     assert_eq!(at(0.45).norm(), 0.0);
+    // First by the speed, then by the size, and by nothing while the last correction stays.
+    let held_back = |time: f64| seen.iter().find(|seen| seen.time > time).unwrap().held_back;
+    assert!(held_back(0.001).by_rate && held_back(0.001).by_size);
+    assert_eq!(held_back(0.19), HeldBack { by_size: true, by_rate: false });
+    assert_eq!(held_back(silent_from + 0.5 * limits.hold), HeldBack::default());
+    assert_eq!(held_back(0.45), HeldBack::default());
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::ops::Range;
 use robstiff::deviation::{Deviation, ForceTable, Surface, load_of_cut};
 use robstiff::milling::{CutFile, CutFrame, ForceFrame, Forces};
 use robstiff::nalgebra::{Matrix3, SVector, Unit, Vector3, Vector6};
-use robstiff::online::{Instant, LeftOfSine, Timeline, left_of_sine, simulate_along};
+use robstiff::online::{HeldBack, Instant, LeftOfSine, Timeline, left_of_sine, simulate_along};
 use robstiff::path::ToolPath;
 use robstiff::{Robot, with_robot};
 use robstiff_robots::Description;
@@ -65,6 +65,8 @@ pub enum Outcome {
         without: Course,
         /// For each variant.
         with: Vec<Course>,
+        /// For each variant, in which part of the time a limit holds it back.
+        held_back: Vec<HeldBack<f64>>,
     },
 }
 
@@ -265,7 +267,7 @@ fn along<const N: usize>(
         |time: f64, wrench: &Vector6<f64>| (!silent.is_some_and(|silent| silent.contains(&time))).then_some(*wrench);
     let mut without = None;
     let mut in_cut = 0.0;
-    let mut with = Vec::new();
+    let (mut with, mut held_back) = (Vec::new(), Vec::new());
     for variant in variants {
         let seen = if variant.knows {
             simulate_along((robot, robot), timeline, &variant.controller, reading)
@@ -278,9 +280,10 @@ fn along<const N: usize>(
         }
         without.get_or_insert_with(|| Course::of(&seen, &stops, |instant| instant.uncorrected));
         with.push(Course::of(&seen, &stops, |instant| instant.corrected));
+        held_back.push(HeldBack::share(seen.iter()));
     }
     let without = without.expect("there is at least one variant");
-    Ok(Outcome::Along { stops, in_cut, without, with })
+    Ok(Outcome::Along { stops, in_cut, without, with, held_back })
 }
 
 fn by_frequency<const N: usize>(

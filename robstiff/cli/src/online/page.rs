@@ -1,6 +1,6 @@
 //! What is left, as text, as a table and as JSON.
 
-use robstiff::online::LeftOfSine;
+use robstiff::online::{HeldBack, LeftOfSine};
 use robstiff_robots::Description;
 use serde_json::{Value, json};
 
@@ -69,8 +69,32 @@ pub fn page(robot: &Description, simulated: &Simulated, variants: &[Variant], co
             page += &format!("How fast a force it keeps up with\n{table}");
             page
         }
-        Outcome::Along { stops, in_cut, without, with } => along(variants, (stops, *in_cut), without, with),
+        Outcome::Along { stops, in_cut, without, with, .. } => along(variants, (stops, *in_cut), without, with),
+    } + &limits(&simulated.outcome, variants)
+}
+
+/// Which limits hold a correction back, and when; nothing where none does.
+fn limits(outcome: &Outcome, variants: &[Variant]) -> String {
+    let options: [(&str, fn(&HeldBack<f64>) -> f64); 2] =
+        [("--most", |held| held.by_size), ("--fastest", |held| held.by_rate)];
+    let mut lines = String::new();
+    for (k, variant) in variants.iter().enumerate() {
+        for (option, share) in options {
+            let when = match outcome {
+                Outcome::Sine { frequencies, left, .. } => {
+                    let each = frequencies.iter().zip(&left[k]).filter(|(_, left)| share(&left.held_back) > 0.0);
+                    let at: Vec<String> = each.map(|(frequency, _)| significant(*frequency, 4)).collect();
+                    (!at.is_empty()).then(|| format!("at {} Hz", at.join(", ")))
+                }
+                Outcome::Along { held_back, .. } => {
+                    let share = share(&held_back[k]);
+                    (share > 0.0).then(|| format!("{} % of the time", significant(100.0 * share, 2)))
+                }
+            };
+            lines += &when.map_or_else(String::new, |when| format!("  {}: {option}, {when}\n", variant.name));
+        }
     }
+    if lines.is_empty() { lines } else { format!("\nA limit holds the correction back\n{lines}") }
 }
 
 fn along(variants: &[Variant], (stops, in_cut): (&[Stop], f64), without: &Course, with: &[Course]) -> String {
@@ -194,12 +218,14 @@ pub fn document(robot: &Description, simulated: &Simulated, variants: &[Variant]
                     "half_gone_to_Hz": useful[0].found(),
                     "less_left_to": useful[1].to_string(),
                     "less_left_to_Hz": useful[1].found(),
+                    "held_back_by_most": numbers(left.iter().map(|left| left.held_back.by_size)),
+                    "held_back_by_fastest": numbers(left.iter().map(|left| left.held_back.by_rate)),
                 });
                 named(variant, what)
             };
             entries.insert("control".to_owned(), variants.iter().zip(left).zip(useful).map(of).collect());
         }
-        Outcome::Along { stops, in_cut, without, with } => {
+        Outcome::Along { stops, in_cut, without, with, held_back } => {
             let course = |course: &Course| {
                 json!({
                     "rms_m": number(course.rms),
@@ -220,8 +246,13 @@ pub fn document(robot: &Description, simulated: &Simulated, variants: &[Variant]
             entries.insert("with_force".to_owned(), number(*in_cut));
             entries.insert("points".to_owned(), stops.iter().map(stop).collect());
             entries.insert("without".to_owned(), course(without));
-            let of = |(variant, of): (&Variant, &Course)| named(variant, course(of));
-            entries.insert("control".to_owned(), variants.iter().zip(with).map(of).collect());
+            let of = |((variant, of), held_back): ((&Variant, &Course), &HeldBack<f64>)| {
+                let mut what = course(of);
+                what["held_back_by_most"] = number(held_back.by_size);
+                what["held_back_by_fastest"] = number(held_back.by_rate);
+                named(variant, what)
+            };
+            entries.insert("control".to_owned(), variants.iter().zip(with).zip(held_back).map(of).collect());
         }
     }
     document
