@@ -15,8 +15,9 @@ pub static KIND: Kind = Kind {
         true => "a bias of the torque".into(),
         false => format!("a bias of the load cell, constant in the {}", frame_words(found)),
     },
-    explanation: "The load cell reads a force where none acts: it was not tared, or the weight of hook and cable \
-        counts. Tare it unloaded at the pose, or enter the weight.",
+    explanation: "A force acts besides the one that the load cell reads: the cell was not tared, or the weight of hook \
+        and cable is not in the file. Tare it unloaded at the pose, or add the bias that is found to the forces in \
+        the file.",
     offer,
     on_axes: Some(on_axes),
 };

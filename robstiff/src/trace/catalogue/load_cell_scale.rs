@@ -1,5 +1,5 @@
-//! An axis of the load cell reads too much or too little: `(1 + s) f`, by axis
-//! of the base frame or the tool's. What is common to all axes is a scale of
+//! An axis of the load cell reads too little or, where `s` is negative, too much:
+//! `(1 + s) f` acts, by axis of the base frame or the tool's. What is common to all axes is a scale of
 //! all compliances and cannot be seen, so at most two axes are off against the
 //! third.
 
@@ -14,8 +14,8 @@ pub static KIND: Kind = Kind {
     name: "load_cell_scale",
     of_rig: true,
     words: |found| format!("an unequal scale of the load cell's axes, those of the {}", frame_words(found)),
-    explanation: "The axes of the load cell are not calibrated alike. Hang one known weight along each axis, and \
-        correct the forces in the file.",
+    explanation: "The axes of the load cell are not calibrated alike: where the number of an axis is positive, more acts \
+        along it than the cell reads. Hang one known weight along each axis, and correct the forces in the file.",
     offer,
     on_axes: None,
 };
