@@ -5,7 +5,9 @@
 //! Denavit-Hartenberg table with base and tool.
 
 mod chain;
+mod motion;
 mod read;
+mod spelling;
 mod table;
 #[cfg(test)]
 mod tests;

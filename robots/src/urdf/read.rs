@@ -3,7 +3,7 @@
 use core::f64::consts::FRAC_PI_2;
 use core::ops::Range;
 
-use nalgebra::{Isometry3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::{Document, Node};
 
 use super::{Body, Connection, Motion, Tree};
@@ -14,12 +14,8 @@ use crate::suggest::list;
 use crate::words::count;
 use crate::{Diagnostic, Diagnostics, JointKind, Line, ReadError, text};
 
-/// As a limit (rad or m) a way to write that there is none: also in degrees or millimetres
-/// no joint goes so far.
-const NO_LIMIT: f64 = 1e5;
-
 /// A reader with the problems found so far.
-struct Reader<'t> {
+pub(super) struct Reader<'t> {
     file: &'t str,
     text: &'t str,
     problems: Vec<Diagnostic>,
@@ -109,10 +105,16 @@ fn at(file: &str, text: &str, place: &Range<usize>, message: &str, help: &str) -
 }
 
 impl Reader<'_> {
-    fn report(&mut self, place: &Range<usize>, message: &str, help: &str) {
+    pub(super) fn report(&mut self, place: &Range<usize>, message: &str, help: &str) {
         if self.problems.len() < Diagnostics::MOST {
             self.problems.push(at(self.file, self.text, place, message, help));
         }
+    }
+
+    /// What the reader does not refuse, with its line.
+    pub(super) fn warn(&mut self, node: Node<'_, '_>, message: &str) {
+        let line = 1 + self.text[..node.range().start].matches('\n').count();
+        self.warnings.push(format!("{}:{line}: {message}", self.file));
     }
 
     fn tree(&mut self, root: Node<'_, '_>) -> Tree {
@@ -125,9 +127,11 @@ impl Reader<'_> {
             let help = "expand it first: `xacro FILE.xacro > FILE.urdf`";
             self.report(&node.range(), "this is a xacro file, not a URDF file", help);
         }
+        self.spelling(root);
         let elements = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
         let mut links: Vec<Body> = Vec::new();
         for node in elements("link") {
+            self.spelling(node);
             let Some(name) = self.attribute(node, "name") else { continue };
             if links.iter().any(|link| link.name == name) {
                 self.report(&node.range(), &format!("the link `{name}` is there twice"), "give one another name");
@@ -139,6 +143,10 @@ impl Reader<'_> {
         for node in elements("joint") {
             let joint = self.joint(node, &links);
             let Some(joint) = joint else { continue };
+            if joints.iter().any(|other| other.name == joint.name) {
+                let message = format!("the joint `{}` is there twice", joint.name);
+                self.report(&node.range(), &message, "give one another name");
+            }
             if joints.iter().any(|other| other.child == joint.child) {
                 let child = &links[joint.child].name;
                 let message = format!("the link `{child}` hangs on two joints");
@@ -168,6 +176,7 @@ impl Reader<'_> {
     }
 
     fn joint(&mut self, node: Node<'_, '_>, links: &[Body]) -> Option<Connection> {
+        self.spelling(node);
         let name = self.attribute(node, "name");
         let kind = self.attribute(node, "type");
         let parent = self.end(node, "parent", links);
@@ -228,6 +237,7 @@ impl Reader<'_> {
     /// Mass and centre of mass.
     fn inertia(&mut self, node: Node<'_, '_>) -> Option<(f64, Vector3<f64>)> {
         let inertial = element(node, "inertial")?;
+        self.spelling(inertial);
         let mass = element(inertial, "mass")?;
         let [value] = self.numbers(mass, "value", Dimension::Mass)?;
         if value < 0.0 {
@@ -248,45 +258,6 @@ impl Reader<'_> {
         Some(Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_rotation_matrix(&turn)))
     }
 
-    fn axis(&mut self, node: Node<'_, '_>) -> Option<Unit<Vector3<f64>>> {
-        let Some(axis) = element(node, "axis") else { return Some(Vector3::x_axis()) };
-        let direction = Vector3::from(self.numbers(axis, "xyz", Dimension::Number)?);
-        let unit = Unit::try_new(direction, 1e-9);
-        if unit.is_none() {
-            self.report(&axis.range(), "the axis has no direction", "e.g. `<axis xyz=\"0 0 1\"/>`");
-        }
-        unit
-    }
-
-    fn limits(&mut self, node: Node<'_, '_>, kind: Option<&str>) -> Option<[f64; 2]> {
-        let limit = element(node, "limit").filter(|_| matches!(kind, Some("revolute" | "prismatic")))?;
-        let dimension = if kind == Some("prismatic") { Dimension::Length } else { Dimension::Angle };
-        let mut end = |name: &str| {
-            let Some(word) = limit.attribute(name) else { return Some(0.0) };
-            if word.trim().parse::<f64>().is_ok_and(|value| value.abs() >= NO_LIMIT) {
-                let place = limit.attribute_node(name).map_or(limit.range(), |attribute| attribute.range_value());
-                let help = match dimension {
-                    Dimension::Angle => "leave `limit` out, or make it a joint of type `continuous`",
-                    _ => "leave `limit` out where there is none",
-                };
-                self.report(&place, &format!("`{}` is no limit of a joint", word.trim()), help);
-                return None;
-            }
-            self.numbers(limit, name, dimension).map(|[value]| value)
-        };
-        let (low, high) = (end("lower"), end("upper"));
-        let (low, high) = (low?, high?);
-        if low > high {
-            self.report(&limit.range(), "the lower limit is above the upper", "write the smaller one as `lower`");
-            return None;
-        }
-        // Both zero or left out is how generators write that there is none.
-        if low == high && low != 0.0 {
-            self.report(&limit.range(), "a joint between these limits cannot move", "make it a joint of type `fixed`");
-        }
-        (low < high).then_some([low, high])
-    }
-
     /// Roll, pitch and yaw, with those that were rounded made exact.
     fn angles(&mut self, node: Node<'_, '_>) -> Option<[f64; 3]> {
         let mut angles: [f64; 3] = self.numbers(node, "rpy", Dimension::Angle)?;
@@ -301,7 +272,12 @@ impl Reader<'_> {
     }
 
     /// The finite numbers of an attribute, of which none is more than a robot can have in SI.
-    fn numbers<const K: usize>(&mut self, node: Node<'_, '_>, name: &str, dimension: Dimension) -> Option<[f64; K]> {
+    pub(super) fn numbers<const K: usize>(
+        &mut self,
+        node: Node<'_, '_>,
+        name: &str,
+        dimension: Dimension,
+    ) -> Option<[f64; K]> {
         let Some(attribute) = node.attribute_node(name) else {
             let tag = node.tag_name().name();
             let help = format!("write `<{tag} {name}=\"{}\"/>`", vec!["0"; K].join(" "));
@@ -360,8 +336,10 @@ fn is_in_a_ring(joints: &[Connection], joint: &Connection) -> bool {
     false
 }
 
-fn element<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
-    node.children().find(|child| child.has_tag_name(name))
+pub(super) fn element<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
+    // With a prefix it is an extension, whatever its name.
+    let is_own = |child: &Node<'a, 'i>| child.tag_name().namespace() == node.tag_name().namespace();
+    node.children().find(|child| child.has_tag_name(name) && is_own(child))
 }
 
 /// Decimals beyond which powers of ten are no longer exact.

@@ -1,7 +1,7 @@
 use nalgebra::{Matrix4, Rotation3, Vector3};
 use proptest::prelude::*;
 
-use super::{Chain, Tree};
+use super::{Chain, Motion, Tree};
 use crate::{Description, Diagnostics, JointKind, Placement};
 
 const ARM: &str = include_str!("arm.urdf");
@@ -183,6 +183,66 @@ fn mistakes_are_shown_where_they_are() {
     let mimic = ARM.replacen("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"joint_1\"/>", 1);
     let said = Tree::parse("arm.urdf", &mimic).unwrap().chain(None, Some("flange")).unwrap_err().to_string();
     assert!(said.contains("the joint `joint_2` follows another one"), "{said}");
+}
+
+/// What is misspelt, or there twice, would be left out without a word.
+#[test]
+fn words_that_nobody_reads_are_told() {
+    for (from, to, part) in [
+        ("<origin xyz=\"0.32", "<origin XYZ=\"0.32", "`origin` has an unknown attribute `XYZ`\n  --> arm.urdf:39:13"),
+        ("<origin xyz=\"0.32", "<orgin xyz=\"0.32", "`joint` has an unknown element `orgin`\n  --> arm.urdf:39:5"),
+        ("<origin xyz=\"0.1 0 0.1\"", "<origin xzy=\"0.1 0 0.1\"", "did you mean `xyz`?"),
+        ("<axis xyz=\"0 1 0\"/>", "<axes xyz=\"0 1 0\"/>", "did you mean `axis`?"),
+        ("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\" dir=\"1\"/>", "it may have `xyz`"),
+        ("lower=\"-1.134\"", "lowr=\"-1.134\"", "did you mean `lower`?"),
+        ("<mass value=\"280\"", "<Mass value=\"280\"", "did you mean `mass`?"),
+        ("<link name=\"flange\"/>", "<Link name=\"flange\"/>", "`robot` has an unknown element `Link`"),
+        ("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><axis xyz=\"1 0 0\"/>", "`joint` has a second `axis`"),
+        ("<mass value=\"280\"/>", "<mass value=\"280\"/><mass value=\"1\"/>", "`inertial` has a second `mass`"),
+        ("<parent link=\"link_1\"/>", "<parent link=\"link_1\"/><parent link=\"link_2\"/>", "a second `parent`"),
+        ("<joint name=\"joint_2\"", "<joint name=\"joint_1\"", "the joint `joint_1` is there twice"),
+    ] {
+        assert!(ARM.contains(from), "{from}");
+        let said = Tree::parse("arm.urdf", &ARM.replacen(from, to, 1)).unwrap_err().to_string();
+        assert!(said.contains(part), "{to}: {said}");
+    }
+}
+
+/// What URDF has where nothing is written may not be what was meant.
+#[test]
+fn axes_and_limits_that_are_left_out_are_told() {
+    let warned = |from: &str, to: &str| {
+        let tree = Tree::parse("arm.urdf", &ARM.replacen(from, to, 1)).unwrap_or_else(|problems| panic!("{problems}"));
+        tree.warnings[0].clone()
+    };
+    let said = warned("<axis xyz=\"0 1 0\"/>", "");
+    assert_eq!(said, "arm.urdf:37: the joint `joint_2` has no `axis`: it is x, as URDF has it");
+    let said = warned("lower=\"-1.134\" ", "");
+    assert_eq!(said, "arm.urdf:40: the limit of the joint `joint_2` has no `lower`: it is 0, as URDF has it");
+    assert_eq!(Tree::parse("arm.urdf", ARM).unwrap().warnings.len(), 1, "rounded angles");
+}
+
+#[test]
+fn an_axis_may_have_any_length() {
+    let arm = ARM.replacen("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"1e308 0 -1e308\"/>", 1);
+    let Some(Motion::Axis { axis, .. }) = &Tree::parse("arm.urdf", &arm).unwrap().joints[1].motion else { panic!() };
+    assert!((axis.into_inner() - Vector3::new(1.0, 0.0, -1.0).normalize()).norm() < 1e-15, "{axis:?}");
+}
+
+/// Programs put elements of their own into a file.
+#[test]
+fn extensions_and_what_is_not_read_pass() {
+    let joint = "<g:axis g:a=\"1\"/><axis xyz=\"0 1 0\"/><dynamics damping=\"1\"/><calibration rising=\"0\"/><mount><axis dir=\"1\"/></mount>\
+                 <safety_controller k_velocity=\"1\"/><implicitSpringDamper>1</implicitSpringDamper>";
+    let link = "<link name=\"flange\"><visual><origin rpy=\"0 0 0\"/></visual><visual/><collision/><contact/><verbose/></link>\
+                <gazebo reference=\"flange\"/><transmission/><material name=\"grey\"/>";
+    let arm = ARM.replacen("<axis xyz=\"0 1 0\"/>", joint, 1).replacen("<link name=\"flange\"/>", link, 1).replacen(
+        "<robot ",
+        "<robot xmlns:g=\"http://g\" ",
+        1,
+    );
+    let tree = Tree::parse("arm.urdf", &arm).unwrap_or_else(|problems| panic!("{problems}"));
+    assert_eq!(tree.joints[1].motion, Tree::parse("arm.urdf", ARM).unwrap().joints[1].motion);
 }
 
 #[test]
