@@ -235,7 +235,12 @@ fn fraction_of_pi(number: Option<f64>, rest: &str) -> Option<(f64, &str)> {
         return None;
     }
     match rest.trim_start().strip_prefix('/') {
-        Some(divisor) => leading_number(divisor.trim_start()).map(|(divisor, unit)| (factor * PI / divisor, unit)),
+        Some(divisor) => {
+            let (divisor, unit) = leading_number(divisor.trim_start())?;
+            // By what is not finite everything is 0.
+            let angle = if divisor.is_finite() { factor * PI / divisor } else { f64::NAN };
+            Some((angle, unit))
+        }
         None => Some((factor * PI, rest.trim_start())),
     }
 }
@@ -330,6 +335,9 @@ mod tests {
         }
         for text in ["pie", "pi/x", "pi/", "pi*2", "1/2*pi", "p", "3*"] {
             assert_eq!(message(text, Dimension::Angle), format!("`{text}` is not an angle"));
+        }
+        for text in ["pi/1e999", "pi/0"] {
+            assert_eq!(message(text, Dimension::Angle), format!("`{text}` is not finite"));
         }
         assert_eq!(message("pi deg", Dimension::Angle), "a fraction of pi is in rad, not in `deg`");
         assert!(parse("pi*2", Dimension::Angle).unwrap_err().help.contains("`2*pi`"));
