@@ -20,13 +20,16 @@
 //! ```
 
 mod content;
+mod nesting;
 mod node;
 
 pub(crate) use content::Content;
+pub(crate) use nesting::too_deep;
 pub use node::{Map, Node};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Line};
 use content::{Step, extent, locate, source_line};
+use nesting::MOST_NESTED;
 use serde::Deserialize;
 use std::cell::RefCell;
 
@@ -48,6 +51,9 @@ impl Document {
     /// What is not YAML, with its place.
     pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
         let text = without_byte_order_mark(text);
+        if let Some(place) = too_deep(text) {
+            return Err(nested(file, text, place).into());
+        }
         let root = Content::deserialize(serde_yaml::Deserializer::from_str(text));
         let root = root.map_err(|error| syntax_problem(file, text, &error))?;
         let (file, text) = (file.to_owned(), text.to_owned());
@@ -137,6 +143,16 @@ fn place_of_byte(text: &str, message: &str) -> Option<(usize, usize)> {
     let before = text.get(..message.rsplit_once(" at position ")?.1.parse().ok()?)?;
     let line = before.rsplit('\n').next().unwrap_or_default();
     Some((1 + before.matches('\n').count(), 1 + line.chars().count()))
+}
+
+fn nested(file: &str, text: &str, (line, column): (usize, usize)) -> Diagnostic {
+    Diagnostic::new(
+        file,
+        Line { number: line, text: text.lines().nth(line - 1).unwrap_or_default() },
+        (column, 1),
+        format!("this is nested more than {MOST_NESTED} deep"),
+        "close every bracket; a list or a map of a document is in a few others at most",
+    )
 }
 
 fn syntax_problem(file: &str, text: &str, error: &serde_yaml::Error) -> Diagnostic {

@@ -3,6 +3,7 @@
 
 use robstiff_robots::document::{Document, Node};
 use robstiff_robots::quantity::Dimension;
+use robstiff_robots::{Description, Outline};
 
 /// Where a problem with each of the nodes is shown: line, column, width.
 fn places(document: Document, nodes: impl Fn(&Document) -> Vec<Node<'_>>) -> Vec<(usize, usize, usize)> {
@@ -109,4 +110,13 @@ fn hostile_documents_are_refused() {
     let document = Document::parse("x.yaml", &many).unwrap();
     document.root().map(&["a"]);
     assert_eq!(document.finish(Some(())).unwrap_err().iter().count(), 100);
+}
+
+/// The parser takes a minute for as many brackets.
+#[test]
+fn what_is_nested_too_deep_is_refused_at_once() {
+    let text = format!("name: A\njoints: {}\n", "[".repeat(100_000));
+    let told = Document::parse("deep.yaml", &text).unwrap_err().to_string();
+    assert!(told.starts_with("error: this is nested more than 128 deep\n --> deep.yaml:2:137"), "{told}");
+    assert_eq!(Description::outline(&text), Outline::default());
 }

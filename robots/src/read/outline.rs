@@ -1,7 +1,7 @@
 //! A robot's name and number of joints from a file that may be broken.
 
 use crate::description::MOST_JOINTS;
-use crate::document::{Content, without_byte_order_mark};
+use crate::document::{Content, too_deep, without_byte_order_mark};
 use serde::de::{Deserializer, MapAccess, Visitor};
 use std::fmt;
 
@@ -17,6 +17,9 @@ pub struct Outline {
 
 pub(super) fn outline(text: &str) -> Outline {
     let mut outline = Outline::default();
+    if too_deep(text).is_some() {
+        return outline;
+    }
     // Where the syntax breaks, what came before it still counts.
     let _broken = serde_yaml::Deserializer::from_str(without_byte_order_mark(text)).deserialize_map(Top(&mut outline));
     outline
