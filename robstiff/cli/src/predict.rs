@@ -73,7 +73,7 @@ fn page(robot: &str, prediction: &Prediction) -> String {
     )
 }
 
-/// A row for each of the campaign's, in its order: displacements in the base frame,
+/// A row for each of the campaign's, in its file's order: displacements in the base frame,
 /// positions in the frame that they were read in.
 fn table(campaign: &Campaign, prediction: &Prediction) -> String {
     let (poses, visits, letter, unit, factor) = match &campaign.data {
@@ -93,7 +93,9 @@ fn table(campaign: &Campaign, prediction: &Prediction) -> String {
         }
     }
     csv.push('\n');
-    for (row, (pose, visit)) in prediction.rows.iter().zip(read) {
+    let mut rows: Vec<(&PredictedRow, (usize, usize))> = prediction.rows.iter().zip(read).collect();
+    rows.sort_by_key(|(row, _)| row.line);
+    for (row, (pose, visit)) in rows {
         csv += &format!("{},{}", field(&poses[pose]), field(&visits[visit]));
         for value in [row.predicted, row.measured].concat() {
             csv += &format!(",{}", decimals(value * factor, 4));

@@ -9,7 +9,7 @@ use robstiff_robots::quantity::Dimension;
 
 use super::beyond::{DISPLACEMENT, FORCE, MOMENT, ROTATION, Usual, warn_of};
 use super::poses::{AtPose, Columns as PoseColumns, Poses, dimension_of};
-use super::{Displacements, Frame, Observation, alone, reference, revisited, times, unread};
+use super::{Displacements, Frame, Observation, alone, order, reference, revisited, times, unread};
 use crate::JointKind;
 use crate::table::{Numbers, Record, Table};
 
@@ -57,8 +57,9 @@ pub fn read(
     let columns = columns(table, robot)?;
     let (mut poses, mut rows) = (Poses::default(), Vec::new());
     let mut complete = true;
-    let observed = table.records.iter().enumerate();
-    let observed: Vec<_> = observed.map(|(row, record)| (record, observation(table, &columns, row, record))).collect();
+    let order = order::of_reading(table, &columns.at, columns.time.as_deref());
+    let observed = order.into_iter().map(|row| (&table.records[row], row));
+    let observed: Vec<_> = observed.map(|(record, row)| (record, observation(table, &columns, row, record))).collect();
     let is_reference = |row: &Option<Observation>| row.as_ref().is_some_and(reference::is_reference);
     // Where there are no others they are asked about as what nobody read.
     let all = observed.iter().all(|(_, row)| is_reference(row));

@@ -15,6 +15,7 @@ mod joints;
 pub(crate) mod made;
 #[cfg(test)]
 pub(crate) mod made_positions;
+mod order;
 mod poses;
 mod positions;
 pub(crate) mod read;
@@ -137,7 +138,8 @@ pub struct Displacements {
     /// Visit ids in order of appearance; rows refer to them by index. Without
     /// the column, every row is a visit of its own.
     pub visits: Vec<String>,
-    /// The rows, in the file's order.
+    /// The rows, in the order in which they were read: the file's, or that of their times where a
+    /// file has them in another.
     pub rows: Vec<Observation>,
 }
 
@@ -185,7 +187,8 @@ pub struct Positions {
     /// Visit ids in order of appearance; rows refer to them by index. Without
     /// the column, every row is a visit of its own.
     pub visits: Vec<String>,
-    /// The rows, in the file's order.
+    /// The rows, in the order in which they were read: the file's, or that of their times where a
+    /// file has them in another.
     pub rows: Vec<PositionRow>,
 }
 

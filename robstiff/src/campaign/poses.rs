@@ -74,6 +74,11 @@ impl Columns {
         Some(Self { pose: pose?, visit, q: q.into_iter().collect::<Option<_>>()? })
     }
 
+    /// The id of a row's visit, where there is a column of them.
+    pub fn visit_of<'r>(&self, table: &Table<'_>, record: &'r Record) -> Option<&'r str> {
+        Some(table.text(record, self.visit?))
+    }
+
     /// The joint coordinates of a row; every number is checked before any gives it up.
     pub fn coordinates(&self, table: &Table<'_>, record: &Record) -> Option<Vec<f64>> {
         let q: Vec<Option<f64>> = self.q.iter().map(|&column| table.number(record, column)).collect();

@@ -8,7 +8,7 @@ use robstiff_robots::quantity::Dimension;
 
 use super::beyond::{LENGTHS, PAYLOAD, warn_of};
 use super::poses::{AtPose, Columns as PoseColumns, Poses};
-use super::{PositionRow, Positions, revisited, times};
+use super::{PositionRow, Positions, order, revisited, times};
 use crate::table::{Numbers, Record, Table};
 
 /// The columns of the table.
@@ -44,7 +44,8 @@ pub fn read(table: &Table<'_>, robot: &Description, payload_at: [f64; 3], measur
     let columns = columns(table, robot)?;
     let (mut poses, mut rows) = (Poses::default(), Vec::new());
     let mut complete = true;
-    for (number, record) in table.records.iter().enumerate() {
+    for number in order::of_reading(table, &columns.at, columns.time.as_deref()) {
+        let record = &table.records[number];
         let (pose, visit, named) = poses.named(table, &columns.at, record);
         let time = columns.time.as_ref().map(|times| times[number]);
         let Some(row) = row(table, &columns, record, (pose, visit, time)).filter(|_| named) else {

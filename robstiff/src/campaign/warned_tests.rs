@@ -168,3 +168,49 @@ fn a_force_that_stands_alone_is_warned_of() {
     let one_visit: Vec<f64> = (0..12).map(|i| if i % 4 == 0 { 1000.0 } else { 100.0 }).collect();
     assert_eq!(warned(4, &one_visit).len(), 1);
 }
+
+/// The lines of rows of kind `displacement` as they are taken, with their visits, and what is said.
+fn in_order(rows: &[(&str, f64)]) -> (Vec<(usize, usize)>, Vec<String>) {
+    let row = |(k, (visit, time)): (usize, &(&str, f64))| format!("a,{visit},0,0,1,2,3,4,5,0.00{k},{time}\n");
+    let rows: String = rows.iter().enumerate().map(row).collect();
+    let read = Folder::new(CAMPAIGN, &format!("{HEADER},time [s]\n{rows}")).read().expect("nothing is wrong");
+    let Data::Displacement(data) = read.data else { panic!("kind displacement") };
+    let said = read.warnings.iter().map(|said| said.split_once("loads.csv: ").expect("it names the file").1.to_owned());
+    (data.rows.iter().map(|row| (row.line, row.visit)).collect(), said.collect())
+}
+
+/// A table that was sorted since, here by pose or load, has its rows in the order of their times,
+/// each with its line; visits stay together where times are told coarsely.
+#[test]
+fn rows_are_in_the_order_in_which_they_were_read() {
+    let said = |rows: &str| {
+        std::vec![format!(
+            "the time is earlier than the one before in {rows}: the rows are taken in the order of their times"
+        )]
+    };
+    let sorted = [("v", 60.0), ("v", 70.0), ("x", 180.0), ("x", 190.0), ("w", 120.0), ("w", 130.0)];
+    let in_time = [(2, 0), (3, 0), (6, 1), (7, 1), (4, 2), (5, 2)];
+    assert_eq!(in_order(&sorted), (in_time.to_vec(), said("1 row, first on line 6")));
+    let coarse = [("x", 120.0), ("x", 180.0), ("w", 60.0), ("w", 120.0)];
+    assert_eq!(in_order(&coarse).0, [(4, 0), (5, 0), (2, 1), (3, 1)]);
+    // Nothing is to be said, or sorted, of rows in order, whose visits may take turns.
+    let turns = [("v", 60.0), ("w", 60.0), ("v", 70.0), ("w", 80.0)];
+    assert_eq!(in_order(&turns), (std::vec![(2, 0), (3, 1), (4, 0), (5, 1)], Vec::new()));
+    // Positions as well.
+    let campaign = CAMPAIGN.replace("displacement", "position");
+    let table = "pose,q1 [deg],q2,px,py,pz,time [s]\na,9,0,1,2,3,200\nb,8,0,1,2,4,100\n";
+    let read = Folder::new(&campaign, table).read().expect("nothing is wrong");
+    let Data::Position(data) = read.data else { panic!("kind position") };
+    assert_eq!(data.rows.iter().map(|row| (row.line, row.pose)).collect::<Vec<_>>(), [(3, 0), (2, 1)]);
+    assert_eq!((data.poses.join(" "), data.visits.join(" ")), ("b a".to_owned(), "line 3 line 2".to_owned()));
+}
+
+/// The rows of a visit are in load order: a time that says otherwise is asked about.
+#[test]
+fn times_that_go_back_within_a_visit_are_warned_of() {
+    let (rows, said) = in_order(&[("w", 120.0), ("w", 110.0), ("v", 60.0)]);
+    assert_eq!(rows, [(2, 0), (3, 0), (4, 1)]);
+    let expected = "the time is earlier than that of a row of the same visit before in 1 row, first on line 3: the rows \
+                    are taken in the order of the file; if they were read in that of the times, sort them by time";
+    assert_eq!(said, [expected]);
+}

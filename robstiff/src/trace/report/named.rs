@@ -137,12 +137,13 @@ pub fn isolated(
     let already = slipped.is_some();
     if let Some(known) = slipped {
         let moment = known.effect.value(SLIPPED_AT) as usize;
-        let lines = |slip: &Event| slip.rows.iter().map(line).collect::<Vec<usize>>();
+        // By their places among the rows, for the next one read may be on any line.
+        let moment = prepared.data.rows.iter().position(|row| row.line == moment).unwrap_or(usize::MAX);
         for slip in slips {
-            let lines = lines(slip);
-            let (first, last) = (lines.iter().min(), lines.iter().max());
-            match first.zip(last) {
-                Some((&first, &last)) if (first..=last + 1).contains(&moment) => known.lines.extend(lines),
+            match slip.rows.iter().min().zip(slip.rows.iter().max()) {
+                Some((&first, &last)) if (first..=last + 1).contains(&moment) => {
+                    known.lines.extend(slip.rows.iter().map(line));
+                }
                 _ => outliers.push(slip),
             }
         }
@@ -151,7 +152,7 @@ pub fn isolated(
             |(name, value): (&'static str, &f64)| EffectParameter { name, value: *value, std: None, unit: "m" };
         let mut parameters: Vec<EffectParameter> =
             ["dx", "dy", "dz"].into_iter().zip(shift.iter()).map(number).collect();
-        let first = slip.rows.iter().map(line).min().unwrap_or_default();
+        let first = slip.rows.iter().min().map(line).unwrap_or_default();
         parameters.push(EffectParameter { name: SLIPPED_AT, value: first as f64, std: None, unit: "1" });
         let effect = Found::new(&BASE_SLIP, Part::Base.into(), parameters);
         let lines = slip.rows.iter().map(line).collect();
