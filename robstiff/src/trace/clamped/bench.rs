@@ -5,7 +5,7 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::axes::{Axes, OnAxes, OnAxesForm};
+use super::axes::{Axes, OnAxes, OnAxesForm, SLIPPED_AXIS};
 use crate::identify::clamped::regression::problem;
 use crate::identify::covariance::NOISELESS;
 use crate::identify::normal::{Fit, Sign};
@@ -14,8 +14,13 @@ use crate::probability::schwarz;
 use crate::trace::Options;
 use crate::trace::bootstrap::ScoreTest;
 use crate::trace::catalogue::{Candidate, KINDS, Kind, LOAD_CELL_BIAS, Variant};
+use crate::trace::found::Place;
 use crate::trace::model::{Fitted, Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
+use robstiff_robots::effect::Place as Part;
+
+/// Names of one axis beyond this are borrowed ones; those that all axes share are of each.
+const MOST_EFFECTS: usize = 4;
 
 /// How many of the best proposals are put to the tests in one step.
 const PROPOSALS: usize = 3;
@@ -97,6 +102,30 @@ impl Bench {
         &self.offers[one.candidate].1.forms[one.variant]
     }
 
+    /// The axis whose rows an effect moves; none where all axes share it.
+    pub fn axis_of(&self, candidate: usize) -> Option<usize> {
+        let (_, one) = &self.offers[candidate];
+        match one.place {
+            Place::Part(Part::Joint(axis)) => Some(axis),
+            _ => one.forms[0].told.iter().find(|number| number.name == SLIPPED_AXIS).map(|axis| axis.value as usize),
+        }
+    }
+
+    /// Whether an effect may be named beside others: as many as [`MOST_EFFECTS`] of an axis.
+    pub fn has_room(&self, named: &[Named], candidate: usize) -> bool {
+        let axis = self.axis_of(candidate);
+        let beside = |one: &&Named| {
+            let other = self.axis_of(one.candidate);
+            other == axis || other.is_none()
+        };
+        named.iter().all(|one| one.candidate != candidate) && named.iter().filter(beside).count() < MOST_EFFECTS
+    }
+
+    /// The effects that may be named beside others.
+    pub fn offered(&self, named: &[Named]) -> impl Iterator<Item = usize> {
+        (0..self.candidates.len()).filter(move |&candidate| self.has_room(named, candidate))
+    }
+
     /// Fits a model; `None` where physics does not allow it.
     pub fn fit(&self, named: &[Named]) -> Option<Fitted> {
         let columns = self.columns(named);
@@ -158,7 +187,11 @@ impl Bench {
 
     /// The best model with one effect more, by candidate, the best first.
     pub fn extended(&self, named: &[Named]) -> Vec<Fitted> {
-        let free = |candidate: &usize| named.iter().all(|one| one.candidate != *candidate);
+        self.extended_by(named, |_| true)
+    }
+
+    /// The same with some of the candidates alone.
+    pub fn extended_by(&self, named: &[Named], some: impl Fn(usize) -> bool) -> Vec<Fitted> {
         let best = |candidate: usize| {
             let with = |variant: usize| {
                 let mut named = named.to_vec();
@@ -169,7 +202,7 @@ impl Bench {
             let fits = (0..self.candidates[candidate].variants.len()).filter_map(with);
             fits.min_by(|a, b| a.bic.total_cmp(&b.bic))
         };
-        let mut found: Vec<Fitted> = (0..self.candidates.len()).filter(free).filter_map(best).collect();
+        let mut found: Vec<Fitted> = self.offered(named).filter(|&k| some(k)).filter_map(best).collect();
         found.sort_by(|a, b| a.bic.total_cmp(&b.bic));
         found
     }

@@ -12,6 +12,7 @@
 //! Nothing here shows where links bend, how joints are coupled or where the tool
 //! is: nothing of that moves. A load cell's scale is a scale of all compliances.
 
+mod apart;
 mod axes;
 mod bench;
 mod one_off;

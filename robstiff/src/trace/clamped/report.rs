@@ -7,6 +7,7 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 use robstiff_robots::effect::Place as Part;
 
+use super::apart::Apart;
 use super::axes::AxisNumber;
 use super::bench::Bench;
 use super::one_off::one_off;
@@ -32,11 +33,13 @@ use crate::trace::{Misfit, NamedEffect, PoseError, Rival, RowResidual, Trace, Ve
 pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched) -> Result<Trace, Error> {
     let (bench, model) = (&found.bench, &found.selection.model);
     let wild = &found.wild.0;
+    let apart = Apart::of(bench, model).filter(|apart| found.too_little.is_none() && apart.worse < WITHIN_REACH);
     let (verdict, why) = match &found.too_little {
         Some(why) => (Verdict::Insufficient, why.clone()),
         None => {
             let besides = Besides { isolated: usize::from(!wild.is_empty()), ..Besides::default() };
-            verdict::judge(&found.selection, &found.left, &besides)
+            let judged = verdict::judge(&found.selection, &found.left, &besides);
+            if apart.is_some() && judged.0 == Verdict::Explained { (Verdict::Partial, told_apart()) } else { judged }
         }
     };
     let structure = found.left.structure || found.selection.unnamed;
@@ -66,7 +69,8 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
     let spread_written = spread(bench, written);
     let spread = if fewer.is_some() { spread(bench, model) } else { spread_written.clone() };
     let values = values(campaign, bench, written);
-    let effects = if tells { effects(found, &spread, structure, after.holdout_rms) } else { Vec::new() };
+    let effects =
+        if tells { effects(found, &spread, structure, after.holdout_rms, apart.as_ref()) } else { Vec::new() };
     let description = match tells {
         true => {
             let own = written.named.iter().map(|&one| of_model(bench, written, one));
@@ -116,6 +120,10 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         differences: true,
         pose_errors: fitted_axes.iter().map(error).collect(),
     })
+}
+
+fn told_apart() -> String {
+    String::from("what all axes share and what each has of its own account for the readings alike")
 }
 
 /// The model without effects that a description has a word for but takes at no such numbers,
@@ -192,7 +200,13 @@ fn values(campaign: &Campaign, bench: &Bench, model: &Fitted) -> Vec<f64> {
 
 /// The effects that were found, that without which the criterion is worst first, with what the
 /// data cannot tell them from; and behind them the wild rows.
-fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: f64) -> Vec<NamedEffect> {
+fn effects(
+    found: &Searched,
+    spread: &DMatrix<f64>,
+    partial: bool,
+    holdout_rms: f64,
+    apart: Option<&Apart>,
+) -> Vec<NamedEffect> {
     let (bench, model) = (&found.bench, &found.selection.model);
     let replaced = bench.replaced(&model.named);
     let all = with_spread(bench, model, spread);
@@ -209,7 +223,7 @@ fn effects(found: &Searched, spread: &DMatrix<f64>, partial: bool, holdout_rms: 
             p_value: found.selection.p_values[k],
             holdout_rms: bench.fit(&so_far).map_or(holdout_rms, |so_far| bench.left_out_rms(&so_far.fit)),
             in_part: Vec::new(),
-            same_as: same_as(bench, model, k, &replaced),
+            same_as: same_as(bench, model, k, &replaced, apart.filter(|apart| apart.shared == k)),
             partial,
         }
     });
@@ -247,7 +261,13 @@ fn with_spread(bench: &Bench, model: &Fitted, spread: &DMatrix<f64>) -> Vec<Foun
 
 /// Full names of what an effect of a model may as well be; `replaced` are the models with another
 /// one in the place of each.
-fn same_as(bench: &Bench, model: &Fitted, k: usize, replaced: &[(usize, Fitted)]) -> Vec<String> {
+fn same_as(
+    bench: &Bench,
+    model: &Fitted,
+    k: usize,
+    replaced: &[(usize, Fitted)],
+    apart: Option<&Apart>,
+) -> Vec<String> {
     let candidate = &bench.candidates[model.named[k].candidate];
     let near = replaced.iter().filter(|(of, other)| *of == k && other.bic < model.bic + WITHIN_REACH);
     let in_its_place = |(_, other): &(usize, Fitted)| {
@@ -255,6 +275,7 @@ fn same_as(bench: &Bench, model: &Fitted, k: usize, replaced: &[(usize, Fitted)]
         Some(bench.candidates[new.candidate].name())
     };
     let names = near.filter_map(in_its_place).chain(dead_zone(bench, model, k));
+    let names = names.chain(apart.into_iter().flat_map(|apart| apart.names.iter().cloned()));
     let mut same_as: Vec<String> = Vec::new();
     for name in names.chain(as_good_as_slip(bench, model, k)).chain(wild_row(bench, model, k)) {
         // Slips of several axes have one name.

@@ -4,6 +4,7 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
+use super::apart::Apart;
 use super::axes::Axes;
 use super::bench::Bench;
 use super::one_off::one_off;
@@ -12,14 +13,11 @@ use super::structure::structure;
 use crate::identify::clamped::wild::Room;
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::{Fitted, Named};
-use crate::trace::selection::{BETTER, Selection};
+use crate::trace::selection::{BETTER, Selection, WITHIN_REACH};
 use crate::trace::settle::{dropped_step, without_insignificant};
 use crate::trace::step::{Against, Step};
 use crate::trace::verdict::FEWEST_POSES;
 use crate::trace::{Options, Progress};
-
-/// Names beyond this are borrowed ones, where there are so few axes.
-const MOST_EFFECTS: usize = 4;
 
 /// How many of the best are extended where none of them passes alone.
 const EXTENDED: usize = 8;
@@ -52,6 +50,9 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
     }
     let mut course = Course::new(bench, base);
     course.run(options, progress)?;
+    if course.set_apart() {
+        course.run(options, progress)?;
+    }
     let (mut p_values, missing) = course.settle(options)?;
     if missing {
         // Once, for the same may be named and dropped time and again.
@@ -96,7 +97,7 @@ impl Course {
                 return Ok(());
             }
             self.look_again()?;
-            if self.at.model.named.len() >= MOST_EFFECTS {
+            if self.at.bench.offered(&self.at.model.named).next().is_none() {
                 return Ok(());
             }
             progress(&format!("searching for effect {}", self.at.model.named.len() + 1));
@@ -135,11 +136,23 @@ impl Course {
                 self.steps.push(step);
                 return Ok(());
             }
-            let candidates = &self.at.bench.candidates;
-            let names: Vec<String> = self.at.model.named.iter().map(|one| candidates[one.candidate].name()).collect();
-            step.came_to(&names);
+            step.came_to(&self.at.names());
             self.steps.push(step);
         }
+    }
+
+    /// Turns to effects of each axis where they say what all share better; whether they do.
+    fn set_apart(&mut self) -> bool {
+        // What cannot be told stays the fewer.
+        let found = Apart::of(&self.at.bench, &self.at.model).filter(|apart| apart.worse < -WITHIN_REACH);
+        let Some(Apart { found, .. }) = found else { return false };
+        (self.at.bench, self.at.model) = found;
+        (self.strict, self.unnamed) = (false, false);
+        let names: Vec<String> = self.at.names();
+        let mut step = Step::bare(names.clone());
+        step.came_to(&names);
+        self.steps.push(step);
+        true
     }
 
     /// Drops the effects that rows which are left out by now, or effects named since, had made
@@ -193,14 +206,22 @@ impl Course {
     }
 
     /// The first of the best models with one effect more that passes; where none does, with
-    /// two.
+    /// two. What says a little of many axes may stand before each of these, and not pass: then
+    /// axes are asked one by one.
     fn accepted(&self, single: &[Fitted], options: &Options) -> Option<Fitted> {
-        self.at.bench.accepted(single, &self.at.model, options).or_else(|| {
-            let extended = single.iter().take(EXTENDED).flat_map(|one| self.at.bench.extended(&one.named));
+        let (bench, model) = (&self.at.bench, &self.at.model);
+        let pairs = || {
+            let extended = single.iter().take(EXTENDED).flat_map(|one| bench.extended(&one.named));
             let mut pairs: Vec<Fitted> = extended.collect();
             pairs.sort_by(|a, b| a.bic.total_cmp(&b.bic));
-            self.at.bench.accepted(&pairs, &self.at.model, options)
-        })
+            bench.accepted(&pairs, model, options)
+        };
+        let of_axis = |one: &Named| model.named.contains(one) || bench.axis_of(one.candidate).is_some();
+        let of_axes = || {
+            let own: Vec<Fitted> = single.iter().filter(|one| one.named.iter().all(of_axis)).cloned().collect();
+            bench.accepted(&own, model, options)
+        };
+        bench.accepted(single, model, options).or_else(pairs).or_else(of_axes)
     }
 
     /// Leaves the row out that alone says what is missing better than a model of this

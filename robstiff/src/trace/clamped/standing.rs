@@ -109,6 +109,11 @@ impl Standing {
         wild::wild_rows(&self.bench.axes.rows, &columns, strict, &self.room_in(room))
     }
 
+    /// The names of the model's effects.
+    pub fn names(&self) -> Vec<String> {
+        self.model.named.iter().map(|one| self.bench.candidates[one.candidate].name()).collect()
+    }
+
     /// How many more rows may be left out.
     pub fn room_in(&self, room: &Room) -> Room {
         room.beside(self.bench.axes.left_out().map(|row| row.axis))

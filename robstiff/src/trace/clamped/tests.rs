@@ -33,12 +33,12 @@ pub(super) fn measured(robot: &Description, torques: &[f64], seed: u64, more: im
     campaign(robot.clone(), Data::Clamped(rows))
 }
 
-fn traced(campaign: &Campaign) -> Trace {
+pub(super) fn traced(campaign: &Campaign) -> Trace {
     let options = Options { draws: 499, ..Options::default() };
     trace(campaign, &options, &|_| {}).expect("every axis is loaded")
 }
 
-fn names(trace: &Trace) -> Vec<String> {
+pub(super) fn names(trace: &Trace) -> Vec<String> {
     trace.effects.iter().map(|named| named.effect.to_string()).collect()
 }
 
@@ -47,7 +47,7 @@ pub(super) fn ramp(count: usize) -> Vec<f64> {
 }
 
 /// The play operator of a radius after a torque.
-fn play(torque: f64, radius: f64, before: f64) -> f64 {
+pub(super) fn play(torque: f64, radius: f64, before: f64) -> f64 {
     before.min(torque + radius).max(torque - radius)
 }
 
@@ -261,7 +261,7 @@ fn axes_that_turn_and_axes_that_slide_are_traced_apart() {
 }
 
 /// The torques of a loop up, down and to the other side.
-fn both_ways() -> Vec<f64> {
+pub(super) fn both_ways() -> Vec<f64> {
     let up = ramp(7);
     let loop_of =
         |sign: f64| -> Vec<f64> { up.iter().chain(up.iter().rev().skip(1)).map(|torque| sign * torque).collect() };
