@@ -115,11 +115,11 @@ fn slips(rows: &[ClampedRow], raw: &DMatrix<f64>, wild: &[usize], axis: usize) -
         }
         let at = rows_of(&own, axis);
         let step = |from: usize| DVector::from_fn(own.len(), |row, _| f64::from(u8::from(at[from..].contains(&row))));
-        let steps = (1..at.len()).map(step);
+        let steps = (0..at.len()).map(step);
         let columns: Vec<DVector<f64>> = raw.column_iter().map(|column| column.into_owned()).chain(steps).collect();
         let total = problem(&own, DMatrix::from_columns(&columns)).equations.total;
         let with = |k: usize| total.solve(&[&base[..], &[base.len() + k]].concat()).map(|fit| fit.rss);
-        (0..at.len() - 1).filter_map(with).min_by(f64::total_cmp)
+        (0..at.len()).filter_map(with).min_by(f64::total_cmp)
     };
     let Some((without, with)) = left_by(wild, false).zip(left_by(&there, true)) else { return false };
     let (count, more) = (rows.len() as f64, 2.0 * (here.len() - 1) as f64);

@@ -26,7 +26,8 @@ pub static KIND: Kind = Kind {
         }
     },
     explanation: "Robot, tool, clamp, gauge or tracker moved on its mount between two readings, or yielded there for \
-        good. Tighten it, and read the unloaded arm anew after the slip.",
+        good. Tighten it, and read the unloaded arm anew after the slip. Before the first row of a clamped axis, its \
+        unloaded reading may be off.",
     offer,
     on_axes: Some(on_axes),
 };
@@ -69,11 +70,13 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
 }
 
 /// What moves while an axis is loaded shifts the rows that are left of it: the next is read from
-/// an unloaded reading of its own. One row alone is a wild one.
+/// an unloaded reading of its own. One row alone is a wild one. All rows of an axis are shifted
+/// where its own unloaded reading is off, besides which it may slip.
 fn on_axes(axes: &Axes) -> Vec<OnAxes> {
     let of_axis = |axis: usize| {
         let moments = 1..axes.rows_of(axis).len().saturating_sub(1);
-        OnAxes::one_of(moments.map(|from| OnAxes::slip(axes, axis, from, MOST)).collect())
+        let off = (!moments.is_empty()).then(|| OnAxes::slip(axes, axis, 0, MOST));
+        off.into_iter().chain(OnAxes::one_of(moments.map(|from| OnAxes::slip(axes, axis, from, MOST)).collect()))
     };
-    axes.loaded().filter_map(of_axis).collect()
+    axes.loaded().flat_map(of_axis).collect()
 }

@@ -54,8 +54,12 @@ fn grown(bench: &Bench, model: Fitted) -> Standing {
         let of_axis = |candidate: usize| at.bench.axis_of(candidate).is_some();
         let best = at.bench.extended_by(&at.model.named, of_axis).into_iter().next();
         let Some(best) = best.filter(|best| best.bic < at.model.bic - BETTER) else { break };
+        let before = at.model.bic;
         (at.bench, at.model) = at.bench.at_best(&best.named).unwrap_or((at.bench, best));
         at.without_slips();
+        if at.model.bic >= before {
+            break;
+        }
     }
     loop {
         let rest = (0..at.model.named.len()).filter_map(|k| at.bench.fit(&all_but(&at.model.named, k)));

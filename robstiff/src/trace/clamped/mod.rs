@@ -16,6 +16,8 @@ mod apart;
 mod axes;
 mod bench;
 mod one_off;
+#[cfg(test)]
+mod reading_tests;
 mod report;
 mod search;
 mod slips;

@@ -39,7 +39,11 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         None => {
             let besides = Besides { isolated: usize::from(!wild.is_empty()), ..Besides::default() };
             let judged = verdict::judge(&found.selection, &found.left, &besides);
-            if apart.is_some() && judged.0 == Verdict::Explained { (Verdict::Partial, told_apart()) } else { judged }
+            match (judged.0, apart.is_some().then(told_apart).or_else(|| off(bench, model))) {
+                (Verdict::Adequate, Some(why)) => (Verdict::Unexplained, why),
+                (Verdict::Explained, Some(why)) => (Verdict::Partial, why),
+                _ => judged,
+            }
         }
     };
     let structure = found.left.structure || found.selection.unnamed;
@@ -120,6 +124,21 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         differences: true,
         pose_errors: fitted_axes.iter().map(error).collect(),
     })
+}
+
+/// What is left in readings as they are, over the noise that rows have to themselves, is more than
+/// an unloaded reading as noisy as others lets it be.
+const SEVERAL: f64 = 4.0;
+
+/// What is off where more is left than noise: all rows of an axis are, which share one
+/// unloaded reading.
+fn off(bench: &Bench, model: &Fitted) -> Option<String> {
+    let left = bench.residuals(&model.fit);
+    let noise = (model.fit.rss / bench.problem.freedom(&model.fit)).sqrt();
+    let of_axis = |axis: &usize| rms(&left.select_rows(&bench.axes.rows_of(*axis)));
+    let axis = bench.axes.loaded().max_by(|a, b| of_axis(a).total_cmp(&of_axis(b)))?;
+    let is_noise = bench.leaves_nothing(&model.fit) || of_axis(&axis) <= SEVERAL * noise;
+    (!is_noise).then(|| format!("what is left of axis {axis} is several times the noise: its unloaded reading is off"))
 }
 
 fn told_apart() -> String {

@@ -13,6 +13,7 @@ use crate::trace::catalogue::{HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY, a
 use crate::trace::found::Place;
 use crate::trace::model::{Fitted, Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
+use crate::trace::slip::SLIPPED_AT;
 
 /// So many steps of the torque, up to the largest, may be the end of a dead zone.
 const RADII: u8 = 60;
@@ -23,6 +24,15 @@ pub struct Instead {
     pub name: String,
     /// With its numbers out of grids where they fit best.
     pub found: (Bench, Fitted),
+}
+
+/// Whether an effect shifts an axis from its first row on, as lost motion does that is loaded one
+/// way: the gear is asked first.
+pub fn shifts_all(bench: &Bench, one: Named) -> bool {
+    let whole = bench.axes.whole();
+    let first = |axis: usize| whole.rows[whole.rows_of(axis)[0]].line as f64;
+    let line = bench.form(one).told.iter().find(|number| number.name == SLIPPED_AT);
+    axis_of_slip(bench, one).zip(line).is_some_and(|(axis, line)| first(axis) == line.value)
 }
 
 /// The models in which the gear of the axis does what a slip of some effects had said, which

@@ -5,10 +5,11 @@ use std::vec::Vec;
 
 use super::axes::Axes;
 use super::bench::Bench;
-use super::slips::instead_of_slip;
+use super::slips::{instead_of_slip, shifts_all};
 use crate::identify::clamped::wild::{self, Room};
 use crate::probability::schwarz;
 use crate::trace::model::{Fitted, Named};
+use crate::trace::selection::WITHIN_REACH;
 
 /// A model with its rows.
 pub struct Standing {
@@ -66,10 +67,16 @@ impl Standing {
 
     /// Takes a slip back that the gear of its axis says better.
     pub fn without_slips(&mut self) {
-        let best = |slip: usize| instead_of_slip(&self.bench, &self.model.named, slip).into_iter().next();
-        let found = (0..self.model.named.len()).filter_map(best).map(|instead| instead.found);
-        let better = found.min_by(|a, b| a.1.bic.total_cmp(&b.1.bic)).filter(|(_, found)| found.bic < self.model.bic);
-        if let Some(better) = better {
+        let best = |slip: usize| {
+            let found = instead_of_slip(&self.bench, &self.model.named, slip).into_iter().next()?.found;
+            // Not so of a gear that is named as well, beside which the shift is more.
+            let in_its_place = found.1.named.len() == self.model.named.len();
+            let first = in_its_place && shifts_all(&self.bench, self.model.named[slip]);
+            let as_good = if first { WITHIN_REACH } else { 0.0 };
+            (found.1.bic < self.model.bic + as_good).then_some(found)
+        };
+        let found = (0..self.model.named.len()).filter_map(best);
+        if let Some(better) = found.min_by(|a, b| a.1.bic.total_cmp(&b.1.bic)) {
             (self.bench, self.model) = better;
         }
     }

@@ -24,7 +24,7 @@ use crate::trace::model::Fitted;
 const WAVES: u8 = 4;
 
 /// Whether what is left depends on the torque, by any smooth curve, or on the
-/// order of rows, by a straight line or a step, of any axis.
+/// order of rows, by a straight line or a step, of any axis, or is the same in all its rows.
 pub fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit {
     let none = LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() };
     if bench.leaves_nothing(&model.fit) {
@@ -59,6 +59,7 @@ pub fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit 
             depends(&|t| (waves * t).sin());
             depends(&|t| (waves * t).cos());
         }
+        add(format!("unloaded reading of axis {axis}"), vec![(vec![1.0; rows.len()], 1)]);
         let order = |of: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..rows.len()).map(of).collect() };
         // A drift, or a slip before some row, which is a number as well. One row alone is a wild one.
         let drift = (order(&|k| k as f64), 1);

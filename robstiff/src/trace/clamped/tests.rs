@@ -15,7 +15,7 @@ use crate::samples::five_axis;
 use crate::trace::{Options, Trace, Verdict, trace};
 
 /// One sigma of a reading (rad).
-const NOISE: f64 = 1e-6;
+pub(super) const NOISE: f64 = 1e-6;
 
 /// The same torques (Nm) on every axis; `more` is what an axis turns by besides its
 /// compliance (rad).

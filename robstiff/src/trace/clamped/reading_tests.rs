@@ -1,0 +1,49 @@
+//! What readings of clamped axes are off by, all of an axis or some.
+
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use super::tests::{NOISE, both_ways, measured, names, play, traced};
+use crate::campaign::{Campaign, ClampedRow, Data};
+use crate::samples::five_axis;
+use crate::trace::Verdict;
+
+fn rows_of(campaign: &mut Campaign) -> &mut Vec<ClampedRow> {
+    let Data::Clamped(rows) = &mut campaign.data else { unreachable!("made of clamped axes") };
+    rows
+}
+
+/// The rows of an axis share it: it is no slip in their midst, no bias of the torque and no
+/// matter of single rows.
+#[test]
+fn an_unloaded_reading_that_is_off_shifts_all_rows_of_its_axis() {
+    for seed in 0..4 {
+        let mut campaign = measured(&five_axis(), &both_ways(), 800 + seed, |_, _| 0.0);
+        let first = 2 * both_ways().len() + 2;
+        let of_axis = rows_of(&mut campaign).iter_mut().filter(|row| row.axis == 3);
+        of_axis.for_each(|row| row.deflection += 30.0 * NOISE);
+        let trace = traced(&campaign);
+        assert_eq!((trace.verdict, names(&trace)), (Verdict::Explained, ["base_slip@base".into()].into()), "{seed}");
+        let slip = &trace.effects[0].effect;
+        assert_eq!((slip.value("axis"), slip.value("line")), (3.0, first as f64), "{seed}");
+        assert!((slip.value("shift") / (30.0 * NOISE) - 1.0).abs() < 0.1, "{seed}: {}", slip.value("shift"));
+        assert!(trace.after.rms < 2.0 * NOISE, "{seed}: {}", trace.after.rms);
+    }
+}
+
+/// Beside what is off from the beginning an axis may slip.
+#[test]
+fn unloaded_readings_of_all_axes_may_be_off() {
+    for seed in 0..4 {
+        let mut campaign = measured(&five_axis(), &both_ways(), 810 + seed, |_, _| 0.0);
+        for row in rows_of(&mut campaign) {
+            row.deflection += [40.0, -25.0, 60.0, 15.0, -50.0][row.axis - 1] * NOISE;
+        }
+        let slipped = rows_of(&mut campaign).iter_mut().filter(|row| row.axis == 1).skip(9);
+        slipped.for_each(|row| row.deflection += 40.0 * NOISE);
+        let trace = traced(&campaign);
+        let mut axes: Vec<f64> = trace.effects.iter().map(|named| named.effect.value("axis")).collect();
+        axes.sort_by(f64::total_cmp);
+        assert_eq!((trace.verdict, axes), (Verdict::Explained, [1.0, 1.0, 2.0, 3.0, 4.0, 5.0].into()), "{seed}");
+    }
+}
