@@ -15,6 +15,7 @@
 mod apart;
 mod axes;
 mod bench;
+mod curves;
 mod one_off;
 #[cfg(test)]
 mod reading_tests;

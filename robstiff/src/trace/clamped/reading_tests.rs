@@ -47,3 +47,17 @@ fn unloaded_readings_of_all_axes_may_be_off() {
         assert_eq!((trace.verdict, axes), (Verdict::Explained, [1.0, 1.0, 2.0, 3.0, 4.0, 5.0].into()), "{seed}");
     }
 }
+
+/// Of few rows an axis those of the largest torques may be wild, or its gear lost motion.
+#[test]
+fn wild_rows_list_the_curve_that_they_may_be() {
+    let torques = [500.0, 1000.0, 500.0, 0.0, -500.0, -1000.0, -500.0, 0.0];
+    for seed in 0..4 {
+        let lost = |axis, torque: f64| if axis == 2 { 1e-4 * torque / torque.hypot(15.0) } else { 0.0 };
+        let trace = traced(&measured(&five_axis(), &torques, 820 + seed, lost));
+        let lost = String::from("lost_motion@joint 2");
+        let told =
+            |named: &crate::trace::NamedEffect| named.effect.to_string() == lost || named.same_as.contains(&lost);
+        assert!(trace.effects.iter().any(told), "{seed}: {:?}", names(&trace));
+    }
+}

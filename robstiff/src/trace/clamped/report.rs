@@ -10,6 +10,7 @@ use robstiff_robots::effect::Place as Part;
 use super::apart::Apart;
 use super::axes::AxisNumber;
 use super::bench::Bench;
+use super::curves::instead_of_rows;
 use super::one_off::one_off;
 use super::search::Found as Searched;
 use super::slips::as_good_as_slip;
@@ -254,7 +255,9 @@ fn effects(
         let effect = Found::outliers(lines.len());
         let slip = slip_before_last(bench, &lines);
         // Of several rows it is one.
-        let (same_as, in_part) = if lines.len() > 1 { (Vec::new(), slip) } else { (slip, Vec::new()) };
+        let (mut same_as, mut in_part) = if lines.len() > 1 { (Vec::new(), slip) } else { (slip, Vec::new()) };
+        let (curves, all) = instead_of_rows(bench, model, &lines);
+        if all { &mut same_as } else { &mut in_part }.extend(curves);
         named.push(NamedEffect { effect, lines, p_value: *p_value, holdout_rms, same_as, in_part, partial });
     }
     named

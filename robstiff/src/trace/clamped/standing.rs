@@ -126,13 +126,16 @@ impl Standing {
         room.beside(self.bench.axes.left_out().map(|row| row.axis))
     }
 
-    /// Schwarz's criterion over all rows: of one that is left out, which it is and how far off.
     fn weight(&self) -> f64 {
-        let used = self.bench.axes.rows.len();
-        let all = (used + self.wild.0.len()) as f64;
-        let numbers = (self.bench.parameters(&self.model.named) + 2 * self.wild.0.len()) as f64;
-        schwarz(self.model.fit.rss, all, numbers)
+        weight(&self.bench, &self.model)
     }
+}
+
+/// Schwarz's criterion over all rows: of one that is left out, which it is and how far off.
+pub fn weight(bench: &Bench, model: &Fitted) -> f64 {
+    let wild = bench.axes.left_out().count();
+    let numbers = bench.parameters(&model.named) + 2 * wild;
+    schwarz(model.fit.rss, (bench.axes.rows.len() + wild) as f64, numbers as f64)
 }
 
 /// The same model on other rows.
