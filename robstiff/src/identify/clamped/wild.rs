@@ -67,6 +67,11 @@ impl Room {
         left
     }
 
+    /// Whether one more row of an axis may be wild.
+    pub fn is_left(&self, axis: usize) -> bool {
+        self.all > 0 && self.of_axis[axis - 1] > 0
+    }
+
     /// An axis of which more of some rows are wild than may be.
     fn exceeded(&self, rows: &[ClampedRow], wild: &[usize]) -> Option<usize> {
         let count = |axis: usize| wild.iter().filter(|&&row| rows[row].axis == axis).count();

@@ -61,3 +61,31 @@ fn wild_rows_list_the_curve_that_they_may_be() {
         assert!(trace.effects.iter().any(told), "{seed}: {:?}", names(&trace));
     }
 }
+
+/// What most of them have in common is no accident of single rows.
+#[test]
+fn rows_of_another_axis_are_not_explained() {
+    for seed in 0..4 {
+        let mut campaign = measured(&five_axis(), &both_ways(), 830 + seed, |_, _| 0.0);
+        rows_of(&mut campaign).iter_mut().filter(|row| row.axis == 5).for_each(|row| row.axis = 4);
+        let verdict = traced(&campaign).verdict;
+        assert!([Verdict::Partial, Verdict::Unexplained].contains(&verdict), "{seed}: {verdict}");
+    }
+}
+
+/// A compliance that grows in the course of the rows is none of the catalogue.
+#[test]
+fn an_axis_that_grows_softer_is_structure() {
+    for seed in 0..4 {
+        let count = core::cell::Cell::new(0.0);
+        let softer = |axis: usize, torque: f64| {
+            if axis != 2 {
+                return 0.0;
+            }
+            count.set(count.get() + 1.0);
+            2e-3 * count.get() * five_axis().joints[1].compliance() * torque
+        };
+        let verdict = traced(&measured(&five_axis(), &both_ways(), 840 + seed, softer)).verdict;
+        assert!([Verdict::Partial, Verdict::Unexplained].contains(&verdict), "{seed}: {verdict}");
+    }
+}

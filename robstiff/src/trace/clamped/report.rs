@@ -40,7 +40,7 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         None => {
             let besides = Besides { isolated: usize::from(!wild.is_empty()), ..Besides::default() };
             let judged = verdict::judge(&found.selection, &found.left, &besides);
-            match (judged.0, apart.is_some().then(told_apart).or_else(|| off(bench, model))) {
+            match (judged.0, apart.is_some().then(told_apart).or_else(|| off(bench, model)).or_else(|| many(bench))) {
                 (Verdict::Adequate, Some(why)) => (Verdict::Unexplained, why),
                 (Verdict::Explained, Some(why)) => (Verdict::Partial, why),
                 _ => judged,
@@ -140,6 +140,21 @@ fn off(bench: &Bench, model: &Fitted) -> Option<String> {
     let axis = bench.axes.loaded().max_by(|a, b| of_axis(a).total_cmp(&of_axis(b)))?;
     let is_noise = bench.leaves_nothing(&model.fit) || of_axis(&axis) <= SEVERAL * noise;
     (!is_noise).then(|| format!("what is left of axis {axis} is several times the noise: its unloaded reading is off"))
+}
+
+/// Of an axis more than this share of the rows, and more than two, are wild for a reason.
+const MANY: f64 = 0.15;
+const TWO: usize = 2;
+
+/// Which axis has too many wild rows for single accidents.
+fn many(bench: &Bench) -> Option<String> {
+    let whole = bench.axes.whole();
+    bench.axes.loaded().find_map(|axis| {
+        let wild = bench.axes.left_out().filter(|row| row.axis == axis).count();
+        let rows = whole.rows_of(axis).len();
+        let many = wild > TWO && wild as f64 > MANY * rows as f64;
+        many.then(|| format!("{wild} of {rows} rows of axis {axis} are wild: they have something in common"))
+    })
 }
 
 fn told_apart() -> String {

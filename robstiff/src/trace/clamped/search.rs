@@ -10,6 +10,7 @@ use super::bench::Bench;
 use super::one_off::one_off;
 use super::standing::{Standing, no_axis, refitted};
 use super::structure::structure;
+use crate::campaign::ClampedRow;
 use crate::identify::clamped::wild::Room;
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::{Fitted, Named};
@@ -229,10 +230,10 @@ impl Course {
     fn without_one(&mut self, bic: f64, options: &Options) -> Option<usize> {
         let off = one_off(&self.at.bench, &self.at.model)?;
         // Not so of what is no number.
-        if !(off.p <= options.alpha && off.bic < bic && self.at.room_in(&self.room).all > 0) {
+        let ClampedRow { axis, line, .. } = self.at.bench.axes.rows[off.row];
+        if !(off.p <= options.alpha && off.bic < bic && self.at.room_in(&self.room).is_left(axis)) {
             return None;
         }
-        let line = self.at.bench.axes.rows[off.row].line;
         let without = refitted(self.at.bench.axes.without(&[off.row]), &self.at.bench, &self.at.model)?;
         (self.at.bench, self.at.model) = without;
         self.at.wild.0.push(line);

@@ -66,6 +66,11 @@ pub fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit 
         let slip = |from: usize| (order(&|k| f64::from(u8::from(k >= from))), 2);
         let slips = (2..rows.len().saturating_sub(1)).map(slip);
         add(format!("row order of axis {axis}"), slips.chain([drift]).collect());
+        // Or the compliance is another from some row on, or in the course of the rows.
+        let loaded = |of: &dyn Fn(usize) -> f64| order(&|k| torques[k] / largest * of(k));
+        let another = |from: usize| (loaded(&|k| f64::from(u8::from(k >= from))), 2);
+        let others = (2..rows.len().saturating_sub(1)).map(another);
+        add(format!("compliance of axis {axis} by row order"), others.chain([(loaded(&|k| k as f64), 1)]).collect());
     }
     let problem = problem(&axes.rows, DMatrix::from_columns(&raw));
     let null: Vec<usize> = (0..first).collect();
