@@ -270,6 +270,12 @@ impl ScoreTest {
         self.groups.iter().map(best).collect()
     }
 
+    /// A statistic of a variant where the variance is no less than some.
+    pub fn against(&self, statistic: f64, variant: &Variant, least: f64) -> f64 {
+        let price = price(variant);
+        (statistic + price) * self.variance / self.variance.max(least) - price
+    }
+
     /// The distribution of the largest statistic under the null model.
     pub fn reference(&self, draws: usize, seed: u64) -> Reference {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);

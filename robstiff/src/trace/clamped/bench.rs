@@ -157,6 +157,19 @@ impl Bench {
         ScoreTest::among(&self.problem, &self.candidates, &self.signs, self.base, &self.columns(named))
     }
 
+    /// What each candidate gains by a test, and the variant that does: no less than rounding is
+    /// the noise of the axis that it moves, which is the same in rows of one torque and looks
+    /// like a curve.
+    pub fn statistics(&self, test: &ScoreTest) -> Vec<Option<(f64, usize)>> {
+        let largest = self.axes.rounding.iter().copied().fold(0.0, f64::max);
+        let against = |(candidate, found): (usize, Option<(f64, usize)>)| {
+            let (statistic, variant) = found?;
+            let least = self.axis_of(candidate).map_or(largest, |axis| self.axes.rounding[axis - 1]);
+            Some((test.against(statistic, &self.candidates[candidate].variants[variant], least), variant))
+        };
+        test.statistics().into_iter().enumerate().map(against).collect()
+    }
+
     /// The root mean square of each row's residual by the fit without it (rad).
     pub fn left_out_rms(&self, fit: &Fit) -> f64 {
         let signs: Vec<Sign> = fit.columns.iter().map(|&column| self.signs[column]).collect();
@@ -223,7 +236,7 @@ impl Bench {
         let (one, rest) = (named[k], all_but(named, k));
         let p_value = || {
             let test = self.test(&rest)?;
-            let (statistic, _) = test.statistics()[one.candidate]?;
+            let (statistic, _) = self.statistics(&test)[one.candidate]?;
             Some(test.reference(options.draws, options.seed).p_value(statistic))
         };
         p_value().unwrap_or(1.0)

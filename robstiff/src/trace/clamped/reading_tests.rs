@@ -3,7 +3,7 @@
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use super::tests::{NOISE, both_ways, measured, names, play, traced};
+use super::tests::{NOISE, both_ways, measured, names, traced};
 use crate::campaign::{Campaign, ClampedRow, Data};
 use crate::samples::five_axis;
 use crate::trace::Verdict;
@@ -87,5 +87,17 @@ fn an_axis_that_grows_softer_is_structure() {
         };
         let verdict = traced(&measured(&five_axis(), &both_ways(), 840 + seed, softer)).verdict;
         assert!([Verdict::Partial, Verdict::Unexplained].contains(&verdict), "{seed}: {verdict}");
+    }
+}
+
+/// Rows of one torque are rounded alike: that is a curve of the torque, but no gear's.
+#[test]
+fn rounded_readings_have_no_structure() {
+    for seed in 0..6 {
+        let mut campaign = measured(&five_axis(), &both_ways(), 850 + seed, |_, _| 0.0);
+        let step = 10.0 * NOISE;
+        rows_of(&mut campaign).iter_mut().for_each(|row| row.deflection = (row.deflection / step).round() * step);
+        let trace = traced(&campaign);
+        assert_eq!((trace.verdict, names(&trace)), (Verdict::Adequate, Vec::new()), "{seed}: {}", trace.why);
     }
 }

@@ -192,7 +192,7 @@ impl Course {
         let (bench, model) = (&self.at.bench, &self.at.model);
         let test = bench.test(&model.named)?;
         let reference = test.reference(options.draws, options.seed);
-        let statistics = test.statistics();
+        let statistics = bench.statistics(&test);
         let single = bench.extended(&model.named);
         let step = Step::against(&bench.candidates, &model.named, |candidate| {
             let with = single.iter().find(|fit| fit.named.iter().any(|one| one.candidate == candidate));

@@ -46,7 +46,7 @@ pub fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit 
             };
             let variants = forms.into_iter().map(variant).collect();
             candidates.push(Candidate { kind: KINDS[0], place: Place::Rig, variants, check: None });
-            names.push(name);
+            names.push((name, axes.rounding[axis - 1]));
         };
         let mut depends = |law: &dyn Fn(f64) -> f64| {
             let values = torques.iter().map(|torque| law(torque / largest)).collect();
@@ -79,8 +79,13 @@ pub fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit 
     let mut found: Vec<(f64, f64, String)> = test
         .statistics()
         .into_iter()
-        .zip(names)
-        .filter_map(|(statistic, name)| Some((statistic?.0, reference.p_value(statistic?.0), name)))
+        .zip(candidates.iter().zip(names))
+        .filter_map(|(found, (candidate, (name, rounding)))| {
+            let (statistic, variant) = found?;
+            // Rows of one torque are rounded alike, which is a curve of it.
+            let statistic = test.against(statistic, &candidate.variants[variant], rounding);
+            Some((statistic, reference.p_value(statistic), name))
+        })
         .collect();
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     let Some(&(statistic, p_value, _)) = found.first() else { return none };
