@@ -135,13 +135,12 @@ enum Kind {
 
 fn measure(map: &Map<'_>) -> Option<Measure> {
     let words = [("deviation", Kind::Deviation), ("stiffness", Kind::Stiffness), ("compliance", Kind::Compliance)];
-    let force = map.get("force");
+    let (force, moment) = (map.get("force"), map.get("moment"));
     let asked = match map.get("measure") {
         Some(node) => node.choice(&words)?,
-        None if force.is_some() => Kind::Deviation,
+        None if force.is_some() || moment.is_some() => Kind::Deviation,
         None => Kind::Stiffness,
     };
-    let moment = map.get("moment");
     if !matches!(asked, Kind::Deviation) {
         if let Some(load) = force.or(moment) {
             load.error("a stiffness has no load", "leave it out, or write `measure: deviation`");
@@ -149,18 +148,19 @@ fn measure(map: &Map<'_>) -> Option<Measure> {
         }
         return Some(if matches!(asked, Kind::Stiffness) { Measure::Stiffness } else { Measure::Compliance });
     }
-    let Some(force) = force else {
+    if force.is_none() && moment.is_none() {
         map.node().error("a deviation is that under a force", "e.g. `force: [0, 400 N, -200 N]`, or `force: 500 N`");
         return None;
-    };
-    if !force.is_sequence() {
+    }
+    if let Some(force) = force.as_ref().filter(|force| !force.is_sequence()) {
         if let Some(moment) = moment {
             moment.error("a force of any direction comes without a moment", "give the force as `[x, y, z]`");
         }
         return force.positive(Dimension::Force).map(Measure::AnyDirection);
     }
-    let moment = moment.map_or(Some([0.0; 3]), |node| node.quantities::<3>(Dimension::Torque));
-    let ([fx, fy, fz], [mx, my, mz]) = (force.quantities::<3>(Dimension::Force)?, moment?);
+    let of = |load: Option<Node<'_>>, dimension| load.map_or(Some([0.0; 3]), |node| node.quantities::<3>(dimension));
+    let (force, moment) = (of(force, Dimension::Force), of(moment, Dimension::Torque));
+    let ([fx, fy, fz], [mx, my, mz]) = (force?, moment?);
     Some(Measure::Deviation(Vector6::new(fx, fy, fz, mx, my, mz)))
 }
 

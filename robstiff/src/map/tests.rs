@@ -1,3 +1,4 @@
+use std::format;
 use std::vec::Vec;
 
 use nalgebra::{SVector, Vector3, Vector6};
@@ -237,6 +238,23 @@ fn a_plane_may_lie_anywhere() {
         let (position, axis) = (pose.fixed_view::<3, 1>(0, 3), pose.fixed_view::<3, 1>(0, 2));
         assert!((position - Vector3::from(expected)).amax() < 1e-9, "{cell}: {pose}");
         assert!((axis + Vector3::from(normal)).amax() < 1e-9, "{cell}: {pose}");
+    }
+}
+
+#[test]
+fn a_moment_alone_is_a_load() {
+    let read = |load: &str| {
+        let text = format!("{load}joints: [0 deg, {{from: -80 deg, to: 60 deg, count: 3}}, 0 deg, 0 deg, 60 deg]\n");
+        Task::parse("reach.yaml", &text, &description("rv130hsc.yaml")).map(|task| task.measure)
+    };
+    let moment = Measure::Deviation(Vector6::new(0.0, 0.0, 0.0, 10.0, 0.0, 20.0));
+    assert_eq!(read("moment: [10 Nm, 0, 20 Nm]\n").unwrap(), moment);
+    assert_eq!(read("measure: deviation\nmoment: [10 Nm, 0, 20 Nm]\n").unwrap(), moment);
+    assert_eq!(read("").unwrap(), Measure::Stiffness);
+    for load in
+        ["force: 500 N\nmoment: [10 Nm, 0, 0]\n", "measure: deviation\n", "measure: stiffness\nmoment: [1 Nm, 0, 0]\n"]
+    {
+        assert!(read(load).is_err(), "{load}");
     }
 }
 
