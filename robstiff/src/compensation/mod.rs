@@ -223,7 +223,11 @@ fn correct<const N: usize, R: Robot<N>>(
             return Ok(CompensatedPoint { line: point.line, q, pose, correction, wrench, remaining, rounds: round });
         }
         commanded = moved(&commanded, wanted.apart(&actual));
-        q = inverse.nearest(&commanded, &q).map_err(Uncorrectable::Unreached)?;
+        // What the arm misses by less than the tool may be off is not out of its reach.
+        q = match inverse.nearest(&commanded, &q) {
+            Ok(q) => q,
+            Err(why) => inverse.near(&commanded, &q, TOLERANCE).ok_or(Uncorrectable::Unreached(why))?,
+        };
     }
     Err(Uncorrectable::NotConverged { remaining })
 }

@@ -117,6 +117,13 @@ impl<'r, R: Robot<N>, const N: usize> Inverse<'r, R, N> {
         self.search(target, seed, outside, 1).map(|found| found[0])
     }
 
+    /// Where a descent from the seed comes to rest within a tolerance (m, rad) of the target,
+    /// which it need not reach: an arm of few joints can get only that near.
+    pub(crate) fn near(&self, target: &Target, seed: &SVector<f64, N>, tolerance: f64) -> Option<SVector<f64, N>> {
+        let End { q, remaining } = self.descend(target, seed, &self.limits);
+        (remaining.distance < tolerance && remaining.angle < tolerance).then_some(q)
+    }
+
     /// All solutions within the limits that were found, the nearest to the seed
     /// first, each in the turn nearest to the seed.
     ///
