@@ -15,9 +15,9 @@ pub static KIND: Kind = Kind {
         true => "a bias of the torque".into(),
         false => format!("a bias of the load cell, constant in the {}", frame_words(found)),
     },
-    explanation: "A force acts besides the one that the load cell reads: the cell was not tared, or the weight of hook \
-        and cable is not in the file. Tare it unloaded at the pose, or add the bias that is found to the forces in \
-        the file.",
+    explanation: "What acts is more than the file says, by the same at every load: the load cell was not tared, or the \
+        weight of hook and cable is not in the file. Add these numbers, with their signs, to the loads in the file, or \
+        tare it unloaded at the pose and measure anew.",
     offer,
     on_axes: Some(on_axes),
 };

@@ -21,8 +21,8 @@ pub static KIND: Kind = Kind {
         format!("a turn of the load cell{across}, constant in the {}", frame_words(found))
     },
     explanation: "The load cell is mounted at another angle than the file says, its frame is named wrongly, or weights \
-        hang on a base that is not level: the forces in the file, turned by the vector that is found, are those \
-        that act. Pull along a known line, a plumb line for one, and compare.",
+        hang on a base that is not level. Pull along a known line, a plumb line for one, and compare; forces and moments \
+        in the file turned by this rotation vector are what acts.",
     offer,
     on_axes: None,
 };

@@ -14,8 +14,9 @@ pub static KIND: Kind = Kind {
     name: "load_cell_scale",
     of_rig: true,
     words: |found| format!("an unequal scale of the load cell's axes, those of the {}", frame_words(found)),
-    explanation: "The axes of the load cell are not calibrated alike: where the number of an axis is positive, more acts \
-        along it than the cell reads. Hang one known weight along each axis, and correct the forces in the file.",
+    explanation: "The axes of the load cell are not calibrated alike: along each, 1 plus its number times what the file \
+        says acts. Multiply the forces in the file by that, or hang one known weight along each axis, calibrate and \
+        measure anew.",
     offer,
     on_axes: None,
 };
