@@ -10,7 +10,7 @@ use std::vec::Vec;
 
 use super::bench::Bench;
 use super::standing::Standing;
-use crate::trace::model::{Fitted, Named, all_but};
+use crate::trace::model::{Fitted, all_but};
 use crate::trace::selection::BETTER;
 
 /// A model in which axes have of their own what another says by what they share.
