@@ -72,7 +72,9 @@ pub fn summary(trace: &Trace, campaign: &Campaign) -> Vec<String> {
         sentences.push("The description keeps its declared values.".to_owned());
     }
     sentences.extend(fitted_again(trace));
-    let clipped = trace.estimates.iter().filter(|estimate| estimate.at_bound);
+    // Of values that are not taken, none is written.
+    let is_taken = trace.verdict != Verdict::Insufficient;
+    let clipped = trace.estimates.iter().filter(|estimate| is_taken && estimate.at_bound);
     let declared = || trace.description.effects.iter().map(ToString::to_string);
     let effects = || trace.effects.iter().map(|named| named.effect.to_string()).chain(declared());
     sentences.extend(clipped.map(|estimate| sentence(&at_bound(&estimate.name, effects()))));
