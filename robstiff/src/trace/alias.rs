@@ -192,20 +192,57 @@ fn is_possible(setting: &Setting<'_>, columns: &[usize]) -> bool {
     fit.columns.iter().zip(fit.coefficients.iter()).all(is_within)
 }
 
+/// Rows that are left out as wild, held against the same model with them in the fit.
+struct Wild<'c> {
+    /// With them.
+    whole: Bench<'c>,
+    setting: Rc<Setting<'c>>,
+    /// The criterion of that model with a shift for each event.
+    as_wild: f64,
+}
+
+impl<'c> Wild<'c> {
+    /// None without such rows among those that are fitted to, or where a model cannot be fitted.
+    fn of(bench: &Bench<'c>, named: &[Named], events: &[Event]) -> Option<Self> {
+        let is_fitted_to = |event: &&Event| event.rows.iter().all(|&row| bench.is_fitted_to(row));
+        let events: Vec<&Event> = events.iter().filter(is_fitted_to).collect();
+        if events.is_empty() {
+            return None;
+        }
+        let out: Vec<usize> = events.iter().flat_map(|event| &event.rows).copied().collect();
+        let (whole, rest) = (bench.leaving_out(&[]), bench.leaving_out(&out));
+        let (setting, others) = (whole.at(named).ok()?, rest.at(named).ok()?);
+        let Fitted { fit, .. } = others.fit(named).ok()?;
+        // An event of several rows has one shift, and noise in the rest of their readings.
+        let shifts = 3 * events.len();
+        let noise = (setting.problem.total.rows - others.problem.total.rows).saturating_sub(shifts);
+        let rss = fit.rss * (1.0 + noise as f64 / others.problem.freedom(&fit));
+        // Which visit it is, and its shift.
+        let as_wild = setting.bic(named, &Fit { rss, ..fit }, 4 * events.len());
+        Some(Self { whole, setting, as_wild })
+    }
+}
+
+/// The same with the rows in the fit that are left out as wild, where it fits about as well
+/// without a shift for them: what stands out from the noise need not stand out from structure.
+pub fn with_wild_rows<'c>(bench: &Bench<'c>, model: &Fitted) -> Option<(Bench<'c>, Fitted)> {
+    // What poses held out have is in no fit that could say so.
+    if !bench.events.iter().flat_map(|event| &event.rows).all(|&row| bench.is_fitted_to(row)) {
+        return None;
+    }
+    let Wild { mut whole, setting, as_wild } = Wild::of(bench, &model.named, &bench.events)?;
+    let with = setting.fit(&model.named).ok()?;
+    whole.events = Rc::new([]);
+    (with.bic - as_wild < WITHIN_REACH).then_some((whole, with))
+}
+
 /// The names of what may as well have made the rows that are left out as wild: effects
 /// that with these rows in the fit leave as little as a shift of each event does. They
 /// need not have passed the tests by which effects are named, for these ask for poses
 /// that agree, and a part that few poses load has few.
 pub fn same_as_wild(bench: &Bench<'_>, model: &Fitted, events: &[Event]) -> Vec<String> {
-    let is_fitted_to = |event: &&Event| event.rows.iter().all(|&row| bench.is_fitted_to(row));
-    let events: Vec<&Event> = events.iter().filter(is_fitted_to).collect();
-    if events.is_empty() {
-        return Vec::new();
-    }
-    let (whole, named) = (bench.leaving_out(&[]), &model.named);
-    let (Ok(setting), Some(as_wild)) = (whole.at(named), bic_as_wild(bench, named, &events)) else {
-        return Vec::new();
-    };
+    let named = &model.named;
+    let Some(Wild { whole, setting, as_wild }) = Wild::of(bench, named, events) else { return Vec::new() };
     let mut found: Vec<(f64, String)> = Vec::new();
     for candidate in 0..setting.candidates.len() {
         let Some(rival) = best_with(&setting, named, candidate) else { continue };
@@ -220,19 +257,13 @@ pub fn same_as_wild(bench: &Bench<'_>, model: &Fitted, events: &[Event]) -> Vec<
     best_first(found).collect()
 }
 
-/// The criterion of a model of all rows in which each of some events has a shift of its own.
+/// The criterion of a model of all rows in which each of its events has a shift of its own;
 /// `None` where it cannot be fitted so.
-pub fn bic_as_wild(bench: &Bench<'_>, named: &[Named], events: &[&Event]) -> Option<f64> {
-    let out: Vec<usize> = events.iter().flat_map(|event| &event.rows).copied().collect();
-    let (whole, rest) = (bench.leaving_out(&[]), bench.leaving_out(&out));
-    let (setting, others) = (whole.at(named).ok()?, rest.at(named).ok()?);
-    let Fitted { fit, .. } = others.fit(named).ok()?;
-    // An event of several rows has one shift, and noise in the rest of their readings.
-    let shifts = 3 * events.len();
-    let noise = (setting.problem.total.rows - others.problem.total.rows).saturating_sub(shifts);
-    let rss = fit.rss * (1.0 + noise as f64 / others.problem.freedom(&fit));
-    // Which visit it is, and its shift.
-    Some(setting.bic(named, &Fit { rss, ..fit }, 4 * events.len()))
+pub fn bic_as_wild(bench: &Bench<'_>, model: &Fitted, events: &[Event]) -> Option<f64> {
+    match events {
+        [] => Some(model.bic),
+        _ => Wild::of(bench, &model.named, events).map(|wild| wild.as_wild),
+    }
 }
 
 /// Names in the order of their criterion.

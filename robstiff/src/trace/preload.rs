@@ -17,7 +17,6 @@ use super::alias::bic_as_wild;
 use super::bench::Bench;
 use super::catalogue::{GRAVITY_PRELOAD, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY};
 use super::found::{EffectParameter, Found};
-use super::isolated::Event;
 use super::search::Outcome;
 use super::selection::WITHIN_REACH;
 use super::{NamedEffect, Trace, Verdict};
@@ -58,8 +57,7 @@ pub fn is_better(preloaded: (&Bench<'_>, &Outcome), plain: (&Bench<'_>, &Outcome
         (true, false) => false,
         _ => {
             let bic = |(bench, outcome): (&Bench<'_>, &Outcome)| {
-                let events: Vec<&Event> = outcome.events.iter().collect();
-                bic_as_wild(bench, &outcome.selection.model.named, &events)
+                bic_as_wild(bench, &outcome.selection.model, &outcome.events)
             };
             matches!((bic(preloaded), bic(plain)), (Some(with), Some(without)) if with < without - WITHIN_REACH)
         }

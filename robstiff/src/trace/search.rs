@@ -8,6 +8,7 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
+use super::alias::with_wild_rows;
 use super::bench::Bench;
 use super::beyond::{self, Beyond};
 use super::isolated::Event;
@@ -118,6 +119,11 @@ pub fn search<'c>(
     let may_lag =
         !left.structure && verdict::may_lag(bench, &selection.model) && beyond::lag_is_near(bench, &selection.model);
     left.structure |= may_lag;
+    if left.structure
+        && let Some((whole, model)) = with_wild_rows(bench, &selection.model)
+    {
+        (*bench, selection.model) = (whole, model);
+    }
     let events = bench.events.to_vec();
     let besides =
         verdict::Besides { isolated: events.len(), taken_back: &taken_back, looks_like: &looks_like, may_lag };

@@ -1,6 +1,6 @@
 //! The effects of a model, and what is wrong in single visits, as they are told.
 
-use std::string::String;
+use std::string::{String, ToString};
 use std::vec::Vec;
 
 use nalgebra::DMatrix;
@@ -117,17 +117,18 @@ pub fn isolated(
     may_be: &[String],
 ) -> Vec<NamedEffect> {
     let line = |row: &usize| prepared.data.rows[*row].line;
-    // First as what is said of single visits.
-    let besides = |first: &[&str]| {
-        let others = may_be.iter().filter(|name| !first.contains(&name.as_str())).cloned();
+    // First as what is said of single visits; a slip is among the candidates itself.
+    let besides = |own: &Found, first: &[&str]| {
+        let own = own.to_string();
+        let others = may_be.iter().filter(|name| !first.contains(&name.as_str()) && **name != own).cloned();
         first.iter().copied().map(String::from).chain(others).collect()
     };
     let one = |effect: Found, lines: Vec<usize>, events: &[&Event], first: &[&str]| NamedEffect {
+        same_as: besides(&effect, first),
         effect,
         lines,
         p_value: events.iter().map(|event| event.p_value).fold(0.0, f64::max),
         holdout_rms,
-        same_as: besides(first),
         in_part: Vec::new(),
         partial: outcome.structure(),
     };
