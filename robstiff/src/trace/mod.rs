@@ -162,7 +162,7 @@ pub struct Trace {
     pub depends_on: Vec<String>,
     /// What it looks like that the catalogue has no name for, each as a noun for a sentence.
     pub looks_like: Vec<String>,
-    /// Other models of as many effects that fit about as well, the best first.
+    /// Other models that fit about as well, the best first.
     pub rivals: Vec<Rival>,
     /// Full names of what these data could not show if it were there.
     pub invisible: Vec<String>,

@@ -39,6 +39,8 @@ pub struct Bench<'c> {
     pub(super) rig: Rc<Rig>,
     /// What numbers out of grids may be between those of the grid, by the form.
     pub(super) betweens: Vec<(Named, Between)>,
+    /// Candidates that are not proposed for now.
+    pub(super) barred: Vec<usize>,
     /// Whether the numbers of a form are possible together, of each candidate.
     possible: Vec<Possible>,
     /// All columns at the model: where the robot stands, then all numbers.
@@ -99,6 +101,7 @@ impl<'c> Bench<'c> {
             rows,
             rig,
             betweens: Vec::new(),
+            barred: Vec::new(),
             possible: Vec::new(),
             problem,
             signs,
@@ -182,6 +185,12 @@ impl<'c> Bench<'c> {
         &self.candidates[one.candidate].variants[one.variant]
     }
 
+    /// The numbers of a named effect.
+    pub fn numbers_of(&self, one: Named) -> impl Iterator<Item = &Number> {
+        let own = STANDS + self.prepared.own.len();
+        self.variant(one).columns.iter().map(move |column| &self.numbers[column - own])
+    }
+
     /// Fits a model in its own form. `None` where the rows do not tell its numbers
     /// from each other, or they are not physical.
     pub fn solve(&self, named: &[Named], from: &State) -> Option<Model> {
@@ -216,9 +225,13 @@ impl<'c> Bench<'c> {
 
     /// Schwarz's criterion of a fit.
     fn bic(&self, problem: &Problem, named: &[Named], fit: &Fit) -> f64 {
+        schwarz(fit.rss, problem.total.rows as f64, self.parameters(named) as f64)
+    }
+
+    /// How many numbers a model has.
+    pub fn parameters(&self, named: &[Named]) -> usize {
         let of_effects: usize = named.iter().map(|&one| self.variant(one).parameters).sum();
-        let parameters = STANDS + self.prepared.seen().len() + of_effects;
-        schwarz(fit.rss, problem.total.rows as f64, parameters as f64)
+        STANDS + self.prepared.seen().len() + of_effects
     }
 
     /// The columns of a model.
@@ -244,7 +257,8 @@ impl<'c> Bench<'c> {
     /// Every model with one effect more, each candidate in its best form, the best
     /// first.
     pub fn extended(&self, named: &[Named]) -> Vec<Proposed> {
-        let free = |candidate: &usize| named.iter().all(|one| one.candidate != *candidate);
+        let is_named = |candidate: &usize| named.iter().any(|one| one.candidate == *candidate);
+        let free = |candidate: &usize| !self.barred.contains(candidate) && !is_named(candidate);
         let best = |candidate| self.with(named, candidate);
         let mut found: Vec<Proposed> = (0..self.candidates.len()).filter(free).filter_map(best).collect();
         found.sort_by(|a, b| a.bic.total_cmp(&b.bic));

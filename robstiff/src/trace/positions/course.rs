@@ -19,6 +19,9 @@ use crate::trace::{Options, Progress};
 /// Numbers of a table that can be told from each other, and a few effects besides.
 const MOST_EFFECTS: usize = 24;
 
+/// The numbers of a wild row: which one it is, and where it is instead.
+const WILD: usize = 4;
+
 /// A search on its way.
 pub struct Course {
     /// The model.
@@ -49,6 +52,14 @@ impl Course {
             left: LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() },
             taken_back: Vec::new(),
         }
+    }
+
+    /// Schwarz's criterion on all rows, by which courses compare that leave others out: a row
+    /// that is wild is fitted exactly, and costs which row it is, and where it is instead.
+    pub fn bic_of_all(&self, bench: &Bench<'_>) -> f64 {
+        let (solved, wild) = (&self.model.solved, self.wild.rows.len());
+        let numbers = bench.parameters(&self.model.named) + WILD * wild;
+        schwarz(solved.fit.rss, (solved.problem.total.rows + 3 * wild) as f64, numbers as f64)
     }
 
     /// Adds effects for as long as something is missing.
@@ -186,8 +197,7 @@ fn wild_at(bench: &mut Bench<'_>, model: &Model, strict: bool, kept: Kept) -> (W
     }
     bench.turn_to(model);
     let readings = whole.total.rows as f64;
-    // Which row it is, and where it is instead.
-    let numbers = (STANDS + chosen.len() + 4 * wild.rows.len()) as f64;
+    let numbers = (STANDS + chosen.len() + WILD * wild.rows.len()) as f64;
     let bic = schwarz(wild.rss, readings, numbers);
     // A slip that only the first or the last row has is that row: with as many numbers.
     let fewer = bic - readings.ln();

@@ -10,7 +10,8 @@
 //! ([`bootstrap`](super::bootstrap)); a `search` names what is significant, predicts
 //! poses left out better, and is physical; moments of slips, knees of gears and time
 //! constants, which the catalogue has in steps, are then looked for `between` them; rows that do not belong are
-//! left out (`wild`); what remains is tested for `structure`; names are held against what
+//! left out (`wild`); faults of the rig are held against the lengths that they can stand in for
+//! (`stand_ins`); what remains is tested for `structure`; names are held against what
 //! has none (`beyond`, `nameless`; of slips, `wander`). Effects enter the forward model itself, and are fitted
 //! in it.
 
@@ -32,6 +33,9 @@ mod search;
 mod slip_tests;
 mod slips;
 mod smooth;
+#[cfg(test)]
+mod stand_in_tests;
+mod stand_ins;
 mod structure;
 #[cfg(test)]
 mod tests;

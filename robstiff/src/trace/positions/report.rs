@@ -94,7 +94,7 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
         unexplained: left.fraction,
         depends_on: if structure { left.depends_on } else { Vec::new() },
         looks_like: found.looks_like.clone(),
-        rivals: rivals(bench, model, &replaced),
+        rivals: rivals(found, &replaced),
         invisible: invisible(campaign, bench),
         next: Vec::new(),
         estimates_before: estimated(&bench.prepared, &values_before, &spread_before),
@@ -279,7 +279,7 @@ fn same_as(bench: &Bench<'_>, model: &Model, k: usize, value: f64, replaced: &[(
     let twin = bench.twin(one).filter(|_| bench.may_be_its_twin(one, value));
     let name = |candidate: usize| bench.candidates[candidate].name();
     let mut names: Vec<String> = near.map(name).collect();
-    for other in twin.map(name).into_iter().chain(parts(bench, &all_but(&model.named, k), one)) {
+    for other in twin.into_iter().chain(parts(bench, &all_but(&model.named, k), one)).map(name) {
         if !names.contains(&other) {
             names.push(other);
         }
@@ -308,9 +308,9 @@ fn spread_of(bench: &Bench<'_>, model: &Model) -> DMatrix<f64> {
     if told { spread } else { plain() }
 }
 
-/// Full names of what an effect of several numbers says as well, beside the rest of the
+/// The candidates that an effect of several numbers says as well, beside the rest of the
 /// model: it may be one of these, or some together.
-fn parts(bench: &Bench<'_>, rest: &[Named], one: Named) -> Vec<String> {
+pub fn parts(bench: &Bench<'_>, rest: &[Named], one: Named) -> Vec<usize> {
     let whole = bench.variant(one);
     if whole.columns.len() == 1 {
         return Vec::new();
@@ -325,8 +325,7 @@ fn parts(bench: &Bench<'_>, rest: &[Named], one: Named) -> Vec<String> {
         let seen = |form: &&Variant| form.columns.iter().all(|&column| bench.is_seen(column));
         forms.iter().filter(seen).any(|form| test.distance(form, whole) < SAME)
     };
-    let found = (0..bench.candidates.len()).filter(other).filter(within);
-    found.map(|candidate| bench.candidates[candidate].name()).collect()
+    (0..bench.candidates.len()).filter(other).filter(within).collect()
 }
 
 /// What is left of a column with less than this beside others says nothing else.
@@ -345,8 +344,9 @@ fn new_in<'a>(named: &'a [Named], other: &'a [Named]) -> impl Iterator<Item = us
     named.iter().filter(is_new).map(|one| one.candidate)
 }
 
-/// Other models of as many effects that are about as good.
-fn rivals(bench: &Bench<'_>, model: &Model, replaced: &[(usize, Proposed)]) -> Vec<Rival> {
+/// Other models that are about as good: of as many effects, or come to from elsewhere.
+fn rivals(found: &Searched<'_>, replaced: &[(usize, Proposed)]) -> Vec<Rival> {
+    let (bench, model) = (&found.bench, &found.model);
     let within = replaced.iter().filter(|(_, other)| other.bic < model.bic + WITHIN_REACH);
     let mut rivals: Vec<Rival> = Vec::new();
     for (_, other) in within {
@@ -355,6 +355,9 @@ fn rivals(bench: &Bench<'_>, model: &Model, replaced: &[(usize, Proposed)]) -> V
             rivals.push(Rival { names, bic_difference: other.bic - model.bic });
         }
     }
+    let from_elsewhere = found.rival.iter().filter(|rival| rivals.iter().all(|other| other.names != rival.names));
+    let from_elsewhere: Vec<Rival> = from_elsewhere.cloned().collect();
+    rivals.extend(from_elsewhere);
     rivals.sort_by(|a, b| a.bic_difference.total_cmp(&b.bic_difference));
     rivals
 }

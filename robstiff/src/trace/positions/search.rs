@@ -12,6 +12,7 @@ use std::vec::Vec;
 use super::bench::{Bench, Model};
 use super::beyond;
 use super::course::{Course, Kept};
+use super::stand_ins::instead_of_stand_ins;
 use super::structure::structure;
 use super::wander::instead_of_slips;
 use crate::campaign::Campaign;
@@ -21,7 +22,7 @@ use crate::trace::model::Fitted;
 use crate::trace::selection::Selection;
 use crate::trace::verdict::FEWEST_POSES;
 use crate::trace::wander::AGAIN;
-use crate::trace::{Options, Progress};
+use crate::trace::{Options, Progress, Rival};
 
 /// What was found.
 pub struct Searched<'c> {
@@ -41,6 +42,8 @@ pub struct Searched<'c> {
     pub taken_back: Vec<String>,
     /// What is left looks like these, each as a noun for a sentence.
     pub looks_like: Vec<String>,
+    /// Another model that is about as good, come to from elsewhere.
+    pub rival: Option<Rival>,
     /// Why the data cannot tell, if so.
     pub too_little: Option<String>,
 }
@@ -62,21 +65,24 @@ pub fn search<'c>(
         .ok_or_else(|| String::from("these positions do not tell the description's own numbers from each other"))?;
     bench.turn_to(&base);
     let too_little = too_little(&base);
-    let (mut course, mut looks_like) = (Course::new(base.clone()), Vec::<String>::new());
+    let (mut course, mut looks_like, mut rival) = (Course::new(base.clone()), Vec::<String>::new(), None);
     if too_little.is_none() {
         course = ended(course, &mut bench, noise, options, progress);
-        progress("looking for what has no name in the catalogue");
-        // Its stages are those that were told before.
+        // The stages of what goes on are those that were told before.
         let goes_on = |course: Course, wide: &mut Bench<'c>| ended(course, wide, noise, options, &|_| ());
+        progress("holding faults of the rig against lengths");
+        (course, rival) = instead_of_stand_ins(&mut bench, course, options, goes_on);
+        progress("looking for what has no name in the catalogue");
         let mut instead = instead_of_slips(&mut bench, &course);
         if instead.is_none()
             && let Some(beyond) = beyond::search(campaign, &mut bench, &course, goes_on)
         {
             (bench, course, looks_like) = (beyond.bench, beyond.course, beyond.looks_like);
+            rival = None;
             instead = instead_of_slips(&mut bench, &course);
         }
         if let Some((without, wanders)) = instead {
-            course = without;
+            (course, rival) = (without, None);
             looks_like.retain(|words| !words.starts_with(AGAIN));
             looks_like.push(wanders);
         }
@@ -88,7 +94,7 @@ pub fn search<'c>(
     let Course { model, wild, p_values, steps, unnamed, left, taken_back } = course;
     let fitted = Fitted { named: model.named.clone(), fit: model.solved.fit.clone(), bic: model.bic, physical: true };
     let selection = Selection { model: fitted, p_values, steps, unnamed };
-    Ok(Searched { bench, base, model, selection, left, wild, taken_back, looks_like, too_little })
+    Ok(Searched { bench, base, model, selection, left, wild, taken_back, looks_like, rival, too_little })
 }
 
 /// A course at its end, from where it is; `noise` is the one that is declared (m).
