@@ -11,7 +11,7 @@ use nalgebra::DVector;
 
 use super::bench::{Bench, Model, TIE};
 use super::offers::Between;
-use super::slips::line;
+use super::slips::{first_moment, line};
 use crate::identify::positions::regression::STANDS;
 use crate::trace::catalogue::{EITHER, Variant};
 use crate::trace::found::Found;
@@ -68,10 +68,11 @@ impl Bench<'_> {
         let (rows, tried) = (&self.prepared.data.rows, self.variant(slip).shape[0].value);
         let count = rows.len();
         let Some(mut at) = rows.iter().position(|row| row.line as f64 == tried) else { return model };
+        let first = first_moment(self.candidates[slip.candidate].kind.name);
         let (mut best, mut step) = (model, self.rig.apart() / 2);
         while step > 0 {
             for next in [at.saturating_sub(step), at + step] {
-                if !(1..count).contains(&next) {
+                if !(first..count).contains(&next) {
                     continue;
                 }
                 self.move_slip(slip, next);

@@ -26,6 +26,10 @@ const CONSTANTS: [f64; 4] = [1.0 / 16.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0];
 const SHORTEST: f64 = 1.0 / 64.0;
 const SLOWEST: f64 = 1.0;
 
+/// So many rows are read, one after another, before what settles is through with the most of it:
+/// what has settled sooner is a constant, and a few rows beside it that may be wild.
+const ROWS_SETTLING: usize = 4;
+
 /// What the numbers of a motion do along a course.
 type Along = Rc<dyn Fn(&[f64]) -> Vec<Enters>>;
 
@@ -67,15 +71,16 @@ impl Motion {
     /// Adds that it settles, `1 - exp(-time / constant)`.
     fn settles(&self, time: &Rc<[f64]>, numbers: &mut Vec<Number>, forms: &mut Vec<Form>) {
         let took = farthest(time);
+        let shortest = shortest(time);
         let time = Rc::clone(time);
         let settled = Rc::new(move |constant: f64| -> Vec<f64> {
             time.iter().map(|time| -(-time / constant).exp_m1()).collect()
         });
-        for constant in CONSTANTS.map(|part| part * took) {
+        for constant in CONSTANTS.map(|part| part * took).into_iter().filter(|constant| *constant >= shortest) {
             let (first, own) = (numbers.len(), self.numbers(&settled(constant), 0));
             let (along, settled) = (Rc::clone(&self.along), Rc::clone(&settled));
             let enters = Rc::new(move |constant| along(&settled(constant)));
-            let between = Between { range: [SHORTEST * took, SLOWEST * took], whole: took, enters };
+            let between = Between { range: [shortest, SLOWEST * took], whole: took, enters };
             let shape = vec![EffectParameter { name: "constant", value: constant, std: None, unit: "s" }];
             forms.push(Form { shape, between: Some(between), ..Form::of(first..first + own.len()) });
             numbers.extend(own);
@@ -111,6 +116,16 @@ fn above_least(data: &Positions, of: fn(&PositionRow) -> Option<f64>) -> Option<
     (farthest(&since) > 0.0).then_some(since)
 }
 
+/// The shortest time constant that rows tell from a constant.
+fn shortest(time: &[f64]) -> f64 {
+    let mut moments = time.to_vec();
+    moments.sort_by(f64::total_cmp);
+    // Rows of one moment are one.
+    moments.dedup();
+    let settling = moments.get(ROWS_SETTLING).copied().unwrap_or(f64::INFINITY);
+    settling.max(SHORTEST * farthest(time))
+}
+
 /// How far a course goes.
 fn farthest(course: &[f64]) -> f64 {
     course.iter().copied().fold(0.0, f64::max)
@@ -125,4 +140,24 @@ fn shifted(by_row: &[f64]) -> [Enters; 3] {
             later: Box::new(move |_| Vector3::ith(k, last)),
         }))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Something that has settled by the second row is a constant, whatever part of the
+    /// campaign that took.
+    #[test]
+    fn what_settles_takes_several_rows() {
+        let even: Vec<f64> = (0..60).map(|row| 30.0 * f64::from(row)).collect();
+        assert_eq!(shortest(&even), 120.0);
+        // Payloads of a visit may be read at one moment.
+        let loaded: Vec<f64> = (0..60).map(|row| 30.0 * f64::from(row / 3)).collect();
+        assert_eq!(shortest(&loaded), 120.0);
+        // Where rows are many, so is what a part of the campaign has.
+        let many: Vec<f64> = (0..641).map(f64::from).collect();
+        assert_eq!(shortest(&many), 10.0);
+        assert_eq!(shortest(&[0.0, 1.0, 2.0]), f64::INFINITY);
+    }
 }

@@ -27,6 +27,11 @@ const FEWEST_MOMENTS: usize = 24;
 const MOST_MOMENTS: usize = 200;
 const ROWS_AND_MOMENTS: usize = 100_000;
 
+/// A reflector sits elsewhere from this row on, or from a later one: one that slipped before is
+/// one that is elsewhere, and a few rows beside it that may be wild. Where the robot stands is
+/// fitted, so a base that slipped then is nothing but such rows.
+const FIRST_OF_REFLECTOR: usize = 4;
+
 /// The kinds of a slip.
 pub const OF_BASE: &str = "base_slip";
 pub const OF_REFLECTOR: &str = "reflector_slip";
@@ -34,6 +39,11 @@ pub const OF_REFLECTOR: &str = "reflector_slip";
 /// How a slip says when it was.
 pub fn line(data: &Positions, moment: usize) -> EffectParameter {
     EffectParameter { name: SLIPPED_AT, value: data.rows[moment].line as f64, std: None, unit: "1" }
+}
+
+/// The first row that a slip of a kind may be before.
+pub fn first_moment(kind: &str) -> usize {
+    if kind == OF_REFLECTOR { FIRST_OF_REFLECTOR } else { 1 }
 }
 
 impl Rig {
@@ -74,7 +84,7 @@ impl Rig {
     fn slip(&self, data: &Positions, of: &'static str, place: Place, names: &[[&'static str; 3]]) -> Option<Offer> {
         let units = [("m", LONGEST), ("rad", MOST_TURNED)];
         let (mut numbers, mut forms) = (Vec::new(), Vec::new());
-        for moment in (1..self.seen.len()).step_by(self.apart()) {
+        for moment in (first_moment(of)..self.seen.len()).step_by(self.apart()) {
             let first = numbers.len();
             let named = names.iter().zip(units).flat_map(|(names, unit)| names.map(|name| (name, unit)));
             numbers.extend(named.zip(self.slipped(of, moment)).map(|((name, (unit, most)), enters)| Number {

@@ -1,4 +1,5 @@
-//! Faults of the rig that stand in for lengths, and lengths for them.
+//! Faults of the rig that stand in for lengths, and lengths for them; and for constants what
+//! moved at the very beginning.
 
 use std::string::String;
 use std::vec;
@@ -9,8 +10,8 @@ use robstiff_robots::effect::DhEntry;
 
 use super::tests::{names, six_axis, traced};
 use crate::Effect;
-use crate::campaign::PositionRow;
 use crate::campaign::made_positions::Plan;
+use crate::campaign::{Campaign, Data, PositionRow};
 use crate::trace::{Trace, Verdict};
 
 /// Upper arm and forearm longer by as much: of `d4` the sign is the other.
@@ -52,5 +53,26 @@ fn what_the_rig_does_is_not_told_as_lengths() {
         let plan = Plan { hidden, ..plan };
         let all = ["dh_error@a2", "reflector_offset@rig", "tracker_scale@rig"];
         is_explained_by(&traced(&plan.run_with(scaled(2e-4))), &all);
+    }
+}
+
+/// A reflector that is elsewhere, but in the first row, is no slip before the second: the first
+/// row is wild.
+#[test]
+fn a_reflector_elsewhere_beside_a_wild_row_is_no_slip() {
+    let first = |campaign: &Campaign| {
+        let Data::Position(data) = &campaign.data else { unreachable!("made of positions") };
+        data.rows[0].position
+    };
+    for seed in 1..4 {
+        let plan = Plan::new(six_axis(), seed);
+        let where_described = first(&plan.run());
+        let mut campaign = Plan { marker: [6e-4, -5e-4, 4e-4], ..plan }.run();
+        let Data::Position(data) = &mut campaign.data else { unreachable!("made of positions") };
+        data.rows[0].position = where_described;
+        let trace = traced(&campaign);
+        let is_slip = |name: &String| name.starts_with("reflector_slip");
+        assert!(names(&trace).contains(&"reflector_offset@rig".into()), "{:?}", names(&trace));
+        assert!(!names(&trace).iter().any(is_slip), "{:?}", names(&trace));
     }
 }
