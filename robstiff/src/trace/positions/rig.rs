@@ -24,8 +24,9 @@ const FARTHEST: f64 = 0.5;
 /// No slip or drift is longer (m).
 pub const LONGEST: f64 = 0.1;
 
-/// More than this is another unit and no scale (1).
-const MOST_SCALE: f64 = 0.01;
+/// More than this is another unit and no scale: a tracker reads to some millionths, and an arm
+/// forty kelvin warmer than its table, of aluminium, is longer by this much (1).
+const MOST_SCALE: f64 = 1e-3;
 
 /// The point that is read is elsewhere on the tool, along one of its axes or anywhere.
 pub fn reflector() -> Offer {
