@@ -42,7 +42,7 @@ pub fn instead_of_stand_ins<'c>(
         return (course, None);
     };
     let by = other.bic_of_all(&wide) - course.bic_of_all(bench);
-    let takes = by < -BETTER;
+    let takes = by < -BETTER || (by < WITHIN_REACH && is_likelier(&wide, &other, &course));
     let loser = if takes { names(bench, &course) } else { names(&wide, &other) };
     let bic_difference = if takes { -by } else { by };
     let rival = (bic_difference < WITHIN_REACH).then_some(Rival { names: loser, bic_difference });
@@ -96,6 +96,22 @@ fn stands_in(bench: &Bench<'_>, one: Named) -> bool {
     let name = bench.candidates[one.candidate].kind.name;
     let grows = || bench.numbers_of(one).any(|number| number.name == "expansion");
     name == SCALE || OF_TOOL.contains(&name) || (name == DRIFT && grows())
+}
+
+/// Whether a model says by lengths of the arm alone, with no more numbers, what another says by
+/// a scale beside lengths. A table is as exact as an arm was built, to some tenths of a
+/// millimetre, a tracker's scale to some millionths, hundredths of that much; and where one
+/// length is off, another one is no wonder. So where the positions do not tell, it is the length.
+fn is_likelier(bench: &Bench<'_>, other: &Course, course: &Course) -> bool {
+    let kind = |one: &Named| bench.candidates[one.candidate].kind.name;
+    let has_scale = |course: &Course| course.model.named.iter().any(|one| kind(one) == SCALE);
+    let is_length = |one: &Named| kind(one) == "dh_error" && bench.numbers_of(*one).all(|number| number.unit == "m");
+    let has_length = |course: &Course| course.model.named.iter().any(is_length);
+    has_scale(course)
+        && !has_scale(other)
+        && has_length(course)
+        && has_length(other)
+        && bench.parameters(&other.model.named) <= bench.parameters(&course.model.named)
 }
 
 /// The full names of a course's effects.
