@@ -15,6 +15,30 @@ const MOST_LENGTH: f64 = 50.0;
 /// [rad/Nm or m/N].
 const MOST_COMPLIANCE: f64 = 1.0;
 
+/// More than an effect turns anything (rad): eleven degrees.
+const MOST_ANGLE_OF_EFFECT: f64 = 0.2;
+
+/// Longer than an effect moves anything (m).
+const MOST_LENGTH_OF_EFFECT: f64 = 0.5;
+
+/// The number of an effect that was written without a unit, if it is as small in SI as what
+/// a robot does beside what it should.
+pub(crate) fn of_effect(value: f64, dimension: Dimension) -> Result<f64, QuantityError> {
+    let (most, usual) = match dimension {
+        Dimension::Angle => (MOST_ANGLE_OF_EFFECT, "deg"),
+        Dimension::Length => (MOST_LENGTH_OF_EFFECT, "mm"),
+        _ => return Ok(value),
+    };
+    if value.abs() <= most {
+        return Ok(value);
+    }
+    let si = dimension.unit();
+    Err(QuantityError {
+        message: format!("{value} {si} is much for an effect, more than {most} {si}"),
+        help: format!("in {usual}? write `{value} {usual}`, or the unit if it is `{value} {si}`"),
+    })
+}
+
 /// The number that was written without a unit, if a robot can have it in SI.
 pub(crate) fn in_si(value: f64, dimension: Dimension) -> Result<f64, QuantityError> {
     let most = match dimension {

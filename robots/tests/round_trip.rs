@@ -170,6 +170,10 @@ impl Random {
         let entry = [DhEntry::A, DhEntry::Alpha, DhEntry::D, DhEntry::Theta][self.below(4)](joint);
         effects.push(Effect::DhError { entry, value: self.any_angle() });
         effects.retain(|_| self.below(2) == 0);
+        // An error of theta is the zero offset of a joint that turns.
+        if effects.iter().any(|effect| matches!(effect, Effect::JointZeroOffset { .. })) {
+            effects.retain(|effect| !matches!(effect, Effect::DhError { entry: DhEntry::Theta(_), .. }));
+        }
         effects
     }
 

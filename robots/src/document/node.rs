@@ -170,10 +170,13 @@ impl<'d> Node<'d> {
                 return None;
             }
         };
-        let is_bare = self.is_number() || self.as_text().is_some_and(is_number);
-        let value =
-            value.and_then(|value| if is_bare && self.document.wary { in_si(value, dimension) } else { Ok(value) });
+        let value = value.and_then(|value| if self.is_suspect() { in_si(value, dimension) } else { Ok(value) });
         value.map_err(|error| self.error(error.message, error.help)).ok()
+    }
+
+    /// Whether it is a number without a unit that may be in another one than SI.
+    pub(crate) fn is_suspect(&self) -> bool {
+        self.document.wary && (self.is_number() || self.as_text().is_some_and(is_number))
     }
 
     /// A [`quantity`](Self::quantity) that is zero or positive.

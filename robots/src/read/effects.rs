@@ -1,5 +1,6 @@
 //! The effects of a description, and what physics asks of them.
 
+use crate::bare::of_effect;
 use crate::description::{Joint, Link, corrected, has_length, is_stroke};
 use crate::document::{Map, Node};
 use crate::effect::gravity_sag::GRAVITY;
@@ -42,11 +43,14 @@ pub(super) fn effects(node: &Node, arm: &Arm<'_>) -> Option<Vec<Effect>> {
     let read: Vec<Option<Effect>> = items.iter().map(|item| effect(item, arm)).collect();
     for (index, effect) in read.iter().enumerate() {
         let Some(effect) = effect else { continue };
-        let same = |other: &&Option<Effect>| other.is_some_and(|other| other.to_string() == effect.to_string());
+        let same = |other: &&Option<Effect>| other.is_some_and(|other| is_same(&other, effect));
         if let Some(first) = read[..index].iter().position(|other| same(&other)) {
             let (message, help) = match read[first] {
                 Some(other) if orders(&other) != orders(effect) => {
                     (format!("`{effect}` has a second order, and a description takes one a joint"), "keep the larger")
+                }
+                Some(other) if other.kind() != effect.kind() => {
+                    (format!("`{effect}` is the same number as `{other}`"), "merge the two")
                 }
                 _ => (format!("the effect `{effect}` is given twice"), "merge the two"),
             };
@@ -67,6 +71,17 @@ pub(super) fn effects(node: &Node, arm: &Arm<'_>) -> Option<Vec<Effect>> {
         }
     }
     read.into_iter().collect()
+}
+
+/// Whether two effects are one: of the same name, or an error of theta beside the zero offset
+/// of the joint that turns there.
+fn is_same(one: &Effect, other: &Effect) -> bool {
+    let zero = |effect: &Effect| match *effect {
+        Effect::JointZeroOffset { joint, .. } => Some(joint),
+        Effect::DhError { entry: DhEntry::Theta(row), .. } => Some(row),
+        _ => None,
+    };
+    one.to_string() == other.to_string() || zero(one).is_some_and(|joint| zero(other) == Some(joint))
 }
 
 /// The order of an effect that has one: two of such effects at one joint are not the same
@@ -133,22 +148,22 @@ fn number(map: &Map, parameter: &Parameter, place: Option<Place>) -> Option<f64>
         (Quantity::Of(dimension), _) => dimension,
         (Quantity::Entry, place) => parameter.quantity.at(place?),
     };
-    match parameter.range {
-        Range::Any => node.quantity(dimension),
+    let value = match parameter.range {
+        Range::Any | Range::Whole(_) => node.quantity(dimension),
         Range::NotNegative => node.nonnegative(dimension),
         Range::Positive => node.positive(dimension),
-        Range::Whole(most) => {
-            let value = node.quantity(dimension)?;
-            if !parameter.range.contains(value) {
-                node.error(
-                    format!("`{}` is a whole number from 1 to {most}", parameter.name),
-                    format!("e.g. `{}: {}`", parameter.name, parameter.example),
-                );
-                return None;
-            }
-            Some(value)
-        }
+    }?;
+    if let Range::Whole(most) = parameter.range
+        && !parameter.range.contains(value)
+    {
+        node.error(
+            format!("`{}` is a whole number from 1 to {most}", parameter.name),
+            format!("e.g. `{}: {}`", parameter.name, parameter.example),
+        );
+        return None;
     }
+    let value = if node.is_suspect() { of_effect(value, dimension) } else { Ok(value) };
+    value.map_err(|error| node.error(error.message, error.help)).ok()
 }
 
 fn kind(node: &Node) -> Option<&'static About> {
