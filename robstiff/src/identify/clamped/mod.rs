@@ -33,8 +33,8 @@ use crate::{Effect, JointKind};
 /// their proportion.
 ///
 /// # Errors
-/// An axis whose deflection goes against its torque; rows that load no axis; declared
-/// effects that do not go with the compliances found.
+/// An axis whose deflection goes against its torque; rows that load no axis, or one only once;
+/// declared effects that do not go with the compliances found.
 pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identification, Error> {
     if rows.iter().all(|row| row.deflection == 0.0) {
         return Err(Error::NotShown(String::from(
@@ -48,6 +48,7 @@ pub fn identify(campaign: &Campaign, rows: &[ClampedRow]) -> Result<Identificati
         .collect();
     left_out.sort_unstable();
     let found = slopes(campaign, rows, &left_out)?;
+    enough(rows)?;
     if is_readable(&found.description) { Ok(found) } else { Err(Error::NoDescription) }
 }
 
@@ -105,6 +106,16 @@ pub fn slopes(campaign: &Campaign, rows: &[ClampedRow], left_out: &[usize]) -> R
         rms_declared: None,
         rms: None,
     })
+}
+
+/// Refuses an axis that is read only once: its slope would have no uncertainty.
+fn enough(rows: &[ClampedRow]) -> Result<(), Error> {
+    let once = |row: &&ClampedRow| rows.iter().filter(|other| other.axis == row.axis).count() == 1;
+    let Some(row) = rows.iter().find(|row| row.torque != 0.0 && once(row)) else { return Ok(()) };
+    Err(Error::NotShown(format!(
+        "one row (line {}) cannot tell how sure the compliance of axis {} is: load every axis at least twice",
+        row.line, row.axis
+    )))
 }
 
 /// The wild rows of the axes of one kind, by index: radians and metres have no noise in common.

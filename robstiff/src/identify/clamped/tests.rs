@@ -56,6 +56,14 @@ fn intervals_hold_what_they_say() {
 }
 
 #[test]
+fn an_axis_that_is_read_once_is_refused() {
+    let read = |rows: &[ClampedRow]| identify(&campaign(five_axis(), Data::Clamped(Vec::new())), rows).map(|_| ());
+    let told = read(&[row(100.0, 3e-5)]).expect_err("one row").to_string();
+    assert!(told.contains("one row (line 2) cannot tell how sure the compliance of axis 1 is"), "{told}");
+    assert_eq!(read(&[row(100.0, 3e-5), row(0.0, 0.0)]), Ok(()));
+}
+
+#[test]
 fn declared_laws_are_not_counted_twice() {
     let mut robot = five_axis();
     let (gap, knee) = (4e-4, 20.0);
