@@ -102,11 +102,13 @@ pub fn coordinates_of(option: &str, given: &str, robot: &Description) -> Result<
         };
         quantity::parse(part, dimension).map_err(|error| Failure::Usage(format!("{option}, q{}: {error}", index + 1)))
     };
+    // Of what is no number nothing is asked.
+    let coordinates: Vec<f64> = parts.iter().enumerate().map(coordinate).collect::<Result<_, _>>()?;
     let bare = parts.iter().map(|part| part.trim().parse::<f64>().ok());
     if let Some(asked) = are_degrees(bare, robot) {
         output::complain(format_args!("warning: {option}: {asked}"));
     }
-    parts.iter().enumerate().map(coordinate).collect()
+    Ok(coordinates)
 }
 
 // No doc comment: clap would take it for that of the command.

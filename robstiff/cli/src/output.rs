@@ -23,7 +23,7 @@ use target::{Target, folder_of, present, same_file, temporary};
 /// what it wanted.
 pub fn print(text: impl fmt::Display) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    match write!(out, "{text}").and_then(|()| out.flush()) {
+    match write!(out, "{}", harmless(&text.to_string())).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::new(format!("cannot write to standard output: {error}")))
         }
@@ -33,7 +33,13 @@ pub fn print(text: impl fmt::Display) -> Result<(), Failure> {
 
 /// Prints to standard error; where that is gone, nobody is there to be told.
 pub fn complain(message: impl fmt::Display) {
+    let message = harmless(&message.to_string());
     let _ = progress::beside(|| writeln!(io::stderr(), "{message}"));
+}
+
+/// What a terminal may be given: text of files could hold what moves its cursor.
+fn harmless(text: &str) -> String {
+    text.replace(|character: char| character.is_control() && !matches!(character, '\n' | '\t'), "\u{fffd}")
 }
 
 /// Files to write, all together when everything is computed.

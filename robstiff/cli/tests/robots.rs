@@ -86,6 +86,19 @@ fn what_is_wrong_with_a_robot_is_said_where_it_is() {
 fn wrong_coordinates_are_wrong_usage() {
     assert!(fail(2, &["show", "rv130hsc", "--at", "0,0"]).contains("has 5 joints"));
     assert!(fail(2, &["show", "rv130hsc", "--at", "0,0,0,0,5 kg"]).contains("q5"));
+    let said = fail(2, &["show", "rv130hsc", "--at", "1e400,0,0,0,0"]);
+    assert!(said.contains("`1e400` is not finite") && !said.contains("degrees"), "{said}");
+}
+
+/// What could move the cursor, or colour the rest of the terminal.
+#[test]
+fn control_characters_of_a_description_are_not_printed() {
+    let folder = folder("control");
+    let text = catalogue().iter().find(|(name, _)| *name == "rv130hsc.yaml").unwrap().1;
+    let text = text.lines().filter(|line| !line.starts_with("description:")).collect::<Vec<_>>().join("\n");
+    fs::write(folder.join("arm.yaml"), format!("description: \"red \\e[31m arm\"\n{text}\n")).unwrap();
+    let page = succeed(&["show", &inside(&folder, "arm.yaml")]);
+    assert!(page.contains("red \u{fffd}[31m arm") && !page.contains('\u{1b}'), "{page}");
 }
 
 #[test]
