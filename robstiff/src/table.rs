@@ -345,6 +345,21 @@ impl<'t> Table<'t> {
         self.warnings.borrow_mut().push(format!("{}: {message}", self.file));
     }
 
+    /// The column that was looked for in vain and that has this name up to its case.
+    fn meant_by(&self, name: &str) -> Option<String> {
+        self.absent.borrow().iter().find(|meant| meant.eq_ignore_ascii_case(name)).cloned()
+    }
+
+    /// Warns of columns that are called as one that was looked for, up to their case.
+    #[cfg(feature = "identify")]
+    pub fn warn_of_misspelt(&self) {
+        for Header { name, .. } in &self.header {
+            if let Some(meant) = self.meant_by(name) {
+                self.warn(&format!("the column `{name}` is not used: write `{meant}` if it is that"));
+            }
+        }
+    }
+
     /// What was warned of so far.
     #[cfg(feature = "identify")]
     pub fn noticed(&self) -> Vec<String> {
@@ -365,15 +380,14 @@ impl<'t> Table<'t> {
     /// # Panics
     /// If there is neither a value nor a problem.
     pub fn finish<T>(self, value: Option<T>) -> Result<(T, Vec<String>), Diagnostics> {
-        if let Some(problems) = Diagnostics::new(self.problems.into_inner()) {
+        if let Some(problems) = Diagnostics::new(self.problems.take()) {
             return Err(problems);
         }
-        let (asked_for, absent) = (self.asked_for.into_inner(), self.absent.into_inner());
-        let unknown = self.header.iter().enumerate().filter(|(i, _)| !asked_for.contains(i));
-        let mut warnings = self.warnings.into_inner();
-        warnings.extend(unknown.map(|(_, Header { name, .. })| {
-            let meant = absent.iter().find(|meant| meant.eq_ignore_ascii_case(name));
-            let ask = meant.map(|meant| format!(": write `{meant}` if it is that")).unwrap_or_default();
+        let asked_for = self.asked_for.borrow();
+        let unused = self.header.iter().enumerate().filter(|(i, _)| !asked_for.contains(i));
+        let mut warnings = self.warnings.take();
+        warnings.extend(unused.map(|(_, Header { name, .. })| {
+            let ask = self.meant_by(name).map(|meant| format!(": write `{meant}` if it is that")).unwrap_or_default();
             format!("{}: the column `{name}` is not used{ask}", self.file)
         }));
         Ok((value.expect("a value was given up without a problem being reported"), warnings))

@@ -9,6 +9,7 @@ use std::vec::Vec;
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, ReadError};
 
+use super::beyond::{FORCE, MOMENT};
 use super::poses::{check_range, dimension_of};
 use crate::table::{Table, text_of};
 
@@ -38,8 +39,8 @@ pub struct Column {
 }
 
 impl JointTable {
-    /// Reads columns `q1` .. `qn`, where they are there `Fx Fy Fz` and `Mx My Mz`,
-    /// and the one of any other name that is asked for. Columns beyond these are left alone.
+    /// Reads columns `q1` .. `qn`, where they are there `Fx Fy Fz`, all three, and of `Mx My Mz`
+    /// those that are, and the one of any other name that is asked for. Columns beyond these are left alone.
     ///
     /// # Errors
     /// A file that cannot be read, and every problem in it at its place.
@@ -48,6 +49,7 @@ impl JointTable {
         let table = Table::parse(&name, &text).map_err(ReadError::Invalid)?;
         let mut warnings = beyond(&table, &name, robot);
         let read = rows(&table, robot, column);
+        table.warn_of_misspelt();
         warnings.extend(table.noticed());
         let read = read.map(|read| JointTable { warnings, ..read });
         table.finish(read).map(|(read, _)| read).map_err(ReadError::Invalid)
@@ -73,12 +75,14 @@ fn rows(table: &Table<'_>, robot: &Description, column: Option<&str>) -> Option<
     let q = joints.map(|(k, joint)| table.require(&format!("q{k}"), dimension_of(joint.kind)));
     // Collected before it is judged, so that every column is looked for.
     let q: Vec<_> = q.collect();
-    let forces = ["Fx", "Fy", "Fz"].map(|name| table.numbers(name, Dimension::Force));
+    // One that is missing may be misspelt, and is not zero.
+    let names = ["Fx", "Fy", "Fz"];
+    let is_forced = names.map(|name| table.position(name)).iter().any(Option::is_some);
+    let forces = names.map(|name| if is_forced { table.require(name, Dimension::Force) } else { None });
     let moments = ["Mx", "My", "Mz"].map(|name| table.numbers(name, Dimension::Torque));
     let wrench: Vec<_> = forces.into_iter().chain(moments).collect();
     let column = column.map(|name| table.raw(name));
     let q: Vec<_> = q.into_iter().collect::<Option<_>>()?;
-    // One component without the others is a force along an axis.
     let forced = wrench.iter().any(Option::is_some);
     let rows: Vec<_> = table
         .records
@@ -111,6 +115,11 @@ fn rows(table: &Table<'_>, robot: &Description, column: Option<&str>) -> Option<
         }
     };
     let (coordinates, wrenches): (Vec<_>, Vec<_>) = rows.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
+    for (k, column) in wrench.iter().enumerate().filter_map(|(k, column)| Some((k, (*column)?))) {
+        let read = table.records.iter().zip(&wrenches).map(|(record, wrench)| (record.line, wrench[k]));
+        let beyond = if k < 3 { FORCE } else { MOMENT };
+        beyond.warn(table, column, read);
+    }
     for (index, (joint, &column)) in robot.joints.iter().zip(&q).enumerate() {
         let read = table.records.iter().zip(&coordinates);
         check_range(table, joint, index, column, read.map(|(record, q)| (record.line, q[index])));

@@ -75,6 +75,27 @@ fn coordinates_that_joints_do_not_reach_are_warned_of() {
     );
 }
 
+/// Of a path, a force that is misspelt is none, but not zero.
+#[test]
+fn forces_of_a_path_are_all_there() {
+    let read = |header: &str, row: &str| {
+        let folder = Folder::new(CAMPAIGN, &format!("q1,q2,{header}\n0,0,{row}\n"));
+        let robot = Description::parse("robot.yaml", ROBOT).expect("a robot");
+        let read = JointTable::read(&folder.0.join("loads.csv"), &robot, None);
+        let read = read.map_err(|problems| format!("{problems}"))?;
+        let said = read.warnings.iter().filter_map(|warning| warning.split_once("loads.csv: "));
+        Ok((read.wrenches, said.map(|(_, said)| said.to_owned()).collect::<Vec<_>>().join("; ")))
+    };
+    let told: String = read("Fx,fy,Fz", "1,2,3").expect_err("a misspelt column");
+    assert!(told.contains("the column `Fy` is missing") && told.contains("write `Fy` in place of `fy`"), "{told}");
+    assert!(read("Fz", "3").is_err_and(|told| told.contains("the column `Fx` is missing")));
+    let (wrenches, told) = read("Fx,Fy,Fz,mx", "1,2,3,4").expect("forces");
+    assert_eq!(wrenches, Some(std::vec![[1.0, 2.0, 3.0, 0.0, 0.0, 0.0]]));
+    assert_eq!(told, "the column `mx` is not used: write `Mx` if it is that");
+    let (_, told) = read("Fx [kN],Fy,Fz,other", "450,2,3,4").expect("forces");
+    assert_eq!(told, "Fx is more than 100 kN in 1 row, first on line 2");
+}
+
 /// Loads and displacements that no robot comes to are read, and told with their lines.
 #[test]
 fn numbers_beyond_all_robots_are_warned_of() {
