@@ -288,10 +288,11 @@ impl<'t> Table<'t> {
         numbers.iter().all(Option::is_some).then(|| numbers.map(Option::unwrap_or_default))
     }
 
-    /// The id of a row in a column; a blank one is reported, and is no id.
+    /// The id of a row in a column; a blank one, or the `nan` that programs write for one, is
+    /// reported, and is no id.
     #[cfg(feature = "identify")]
     pub fn id<'r>(&self, record: &'r Record, index: usize) -> &'r str {
-        let id = self.text(record, index);
+        let id = Some(self.text(record, index)).filter(|id| !id.eq_ignore_ascii_case("nan")).unwrap_or_default();
         if id.is_empty() {
             let name = &self.header[index].name;
             let help = format!("give every row the id of its {name}, e.g. `1`");

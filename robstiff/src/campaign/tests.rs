@@ -87,6 +87,8 @@ fn every_problem_of_a_table_has_its_place() {
     assert_eq!(found("a,v,0,0,1,2,3,4,5\n"), ["2:1 this row has 9 fields, the header has 10"]);
     let blank = found("a,v,0,0,1,2,3,4,5,6\n ,v,9,0,1,2,3,4,5,6\nb, ,9,0,1,2,3,4,5,6\n,w,8,0,1,2,3,4,5,6\n");
     assert_eq!(blank, ["3:1 the pose has no id", "4:3 the visit has no id", "5:1 the pose has no id"]);
+    let missing = found("a,v,0,0,1,2,3,4,5,6\nnan,v,9,0,1,2,3,4,5,6\nb,NaN,9,0,1,2,3,4,5,6\n");
+    assert_eq!(missing, ["3:1 the pose has no id", "4:3 the visit has no id"]);
     assert_eq!(found(""), ["1:1 there are no rows"]);
     let open = found("a,v,0,0,1,2,3,4,5,6\n\"b,v,0,0,1,2,3,4,5,6\nc,w,0,0,1,2,3,4,x,6\n");
     assert_eq!(open, ["3:1 the quote is not closed on its line"]);
