@@ -68,7 +68,7 @@ fn a_limit_that_holds_back_is_told() {
     assert!(page.contains("  4 ms, force sensor: --fastest, at") && page.contains("10 Hz\n"), "{page}");
     assert_eq!(held("held_back_by_fastest", 0), 0.0);
     assert!(held("held_back_by_fastest", 5) > 0.3);
-    let told = along("rv130hsc", "held-back", &["--most", "0.01 mrad"]);
+    let told = along("rv130hsc", "held-back-along", &["--most", "0.01 mrad"]);
     assert!((0.3..=1.0).contains(&told["control"][0]["held_back_by_most"].as_f64().unwrap()));
     assert!(told["without"].get("held_back_by_most").is_none());
 }

@@ -73,10 +73,12 @@ pub fn page(robot: &Description, simulated: &Simulated, variants: &[Variant], co
     } + &limits(&simulated.outcome, variants)
 }
 
+/// A part of the time out of those of both limits.
+type Share = fn(&HeldBack<f64>) -> f64;
+
 /// Which limits hold a correction back, and when; nothing where none does.
 fn limits(outcome: &Outcome, variants: &[Variant]) -> String {
-    let options: [(&str, fn(&HeldBack<f64>) -> f64); 2] =
-        [("--most", |held| held.by_size), ("--fastest", |held| held.by_rate)];
+    let options: [(&str, Share); 2] = [("--most", |held| held.by_size), ("--fastest", |held| held.by_rate)];
     let mut lines = String::new();
     for (k, variant) in variants.iter().enumerate() {
         for (option, share) in options {
