@@ -105,6 +105,25 @@ fn positions_are_simulated_and_traced() {
     assert!((number["value"].as_f64().unwrap().to_degrees() - 0.1).abs() < 0.005, "{number}");
 }
 
+/// Displacements do not say where the tool is, but what is declared of that and is true no longer
+/// shows in them.
+#[test]
+fn a_declared_zero_that_is_true_no_longer_is_replaced() {
+    let folder = folder("simulate-stale");
+    let text = SCENARIO.split("hidden:").next().unwrap().replace("[0.5, 1]", "[0.2, 0.6, 1]");
+    let (scenario, out) = (scenario(&folder, &text), inside(&folder, "out"));
+    succeed(&["simulate", "kuka-kr270-r2700", &scenario, "--out", &out]);
+    let robot = format!("{out}/robot.yaml");
+    let declared = "effects: [{kind: joint_zero_offset, at: joint 3, value: 30 mrad}]\n";
+    fs::write(&robot, fs::read_to_string(&robot).unwrap() + declared).unwrap();
+    let traced = inside(&folder, "traced");
+    let page = succeed(&["trace", &format!("{out}/campaign.yaml"), "--out", &traced, "--draws", "499"]);
+    assert!(page.contains("declared of it is replaced: joint_zero_offset@joint 3 was 1.719 deg."), "{page}");
+    let written = fs::read_to_string(format!("{traced}/robot.yaml")).unwrap();
+    let value = written.split("at: joint 3, value: ").nth(1).expect("it is written").split(' ').next().unwrap();
+    assert!(value.parse::<f64>().unwrap().abs() < 4e-3, "{written}");
+}
+
 #[test]
 fn one_seed_gives_one_campaign_and_none_is_overwritten_unasked() {
     let folder = folder("simulate-twice");

@@ -5,10 +5,10 @@ use std::string::String;
 use std::vec::Vec;
 
 use robstiff_robots::Description;
-use robstiff_robots::effect::physics::Parameter;
+use robstiff_robots::effect::physics::{Parameter, Range};
 use robstiff_robots::effect::{CATALOGUE, DhEntry, Place as Part};
 
-use super::catalogue::{Kind, OUTLIERS};
+use super::catalogue::{Kind, OUTLIERS, is_offered_as_change};
 use crate::identify::readable::is_readable;
 use crate::{Effect, JointKind};
 
@@ -136,11 +136,22 @@ impl Found {
         }
     }
 
+    /// The same with its whole numbers, where it is a change to what a description declares.
+    pub(super) fn in_whole(mut self, robot: &Description) -> Self {
+        let Some(change) = self.effect_on(robot).filter(|_| !self.is_of_rig()) else { return self };
+        let Some((_, whole)) = changed(robot, &change) else { return self };
+        for (parameter, value) in whole.parameters() {
+            let own = self.parameters.iter_mut().find(|number| spelt(number.name) == parameter.name);
+            own.into_iter().for_each(|number| number.value = value);
+        }
+        self
+    }
+
     /// Writes the effect into a description; whether that takes it.
     pub(super) fn write_into(&self, description: &mut Description) -> bool {
         let Some(effect) = self.effect_on(description).filter(|_| !self.is_of_rig()) else { return false };
         let mut with = description.clone();
-        with.effects.push(effect);
+        add(&mut with, effect);
         // What a fit allows may still be beyond what a description takes, such
         // as a periodic error too large for the code that is generated.
         let taken = is_readable(&with);
@@ -149,6 +160,32 @@ impl Found {
         }
         taken
     }
+}
+
+/// Adds an effect to a description, as a change where that declares it already; its index there.
+pub(super) fn add(description: &mut Description, effect: Effect) -> usize {
+    let (at, effect) = changed(description, &effect).unwrap_or((description.effects.len(), effect));
+    match description.effects.get_mut(at) {
+        Some(declared) => *declared = effect,
+        None => description.effects.push(effect),
+    }
+    at
+}
+
+/// What a change makes of the effect that a description declares at its place, with the index of
+/// that. Of a periodic error the order stays: a change of another is none of it.
+fn changed(description: &Description, change: &Effect) -> Option<(usize, Effect)> {
+    let same = |effect: &Effect| {
+        is_offered_as_change(effect) && effect.kind() == change.kind() && effect.place() == change.place()
+    };
+    let at = description.effects.iter().position(same)?;
+    let sum = |((parameter, declared), by): ((&Parameter, f64), f64)| match parameter.range {
+        Range::Whole(_) => (declared == by).then_some(declared),
+        _ => Some(declared + by),
+    };
+    let declared = &description.effects[at];
+    let numbers: Option<Vec<f64>> = declared.parameters().zip(change.numbers()).map(sum).collect();
+    Some((at, Effect::of_kind(declared.kind(), declared.place(), &numbers?)?))
 }
 
 /// A number's name as descriptions spell it: there the only one of an effect

@@ -118,15 +118,21 @@ pub fn search<'c>(
     }
     let may_lag =
         !left.structure && verdict::may_lag(bench, &selection.model) && beyond::lag_is_near(bench, &selection.model);
-    left.structure |= may_lag;
+    let beside_declared = !left.structure && verdict::lags_beside_declared(bench, &selection.model);
+    left.structure |= may_lag || beside_declared;
     if left.structure
         && let Some((whole, model)) = with_wild_rows(bench, &selection.model)
     {
         (*bench, selection.model) = (whole, model);
     }
     let events = bench.events.to_vec();
-    let besides =
-        verdict::Besides { isolated: events.len(), taken_back: &taken_back, looks_like: &looks_like, may_lag };
+    let besides = verdict::Besides {
+        isolated: events.len(),
+        taken_back: &taken_back,
+        looks_like: &looks_like,
+        may_lag,
+        beside_declared,
+    };
     let (verdict, mut why) = verdict::judge(&selection, &left, &besides);
     if left.structure
         && let Some(repeated) = yardstick::noisier_than_declared(prepared, bench)

@@ -111,6 +111,14 @@ pub fn may_lag(bench: &Bench<'_>, model: &Fitted) -> bool {
     candidates().filter(sticks).any(|one| candidates().any(|other| makes_up_a_lag(other, one.place)))
 }
 
+/// Whether a model has a hysteresis beside one that the description declares, of which weights
+/// are fitted again and radii are not: what a wrong radius leaves has no other name.
+pub fn lags_beside_declared(bench: &Bench<'_>, model: &Fitted) -> bool {
+    let mut named = model.named.iter().map(|one| bench.candidates()[one.candidate].kind);
+    let declared = |kind: &str| bench.robot().effects.iter().any(|effect| effect.kind() == kind);
+    declared(HYSTERESIS.name) && named.any(|kind| *kind == HYSTERESIS)
+}
+
 /// Whether an effect makes up a lag of the joint at a place, beside its hysteresis.
 pub fn makes_up_a_lag(other: &Candidate, place: Place) -> bool {
     let curve = [STIFFNESS_NONLINEARITY.name, LOST_MOTION.name].contains(&other.kind.name);
@@ -131,11 +139,13 @@ pub struct Besides<'a> {
     pub looks_like: &'a [String],
     /// Whether the model [may be](may_lag) a lag taken to pieces.
     pub may_lag: bool,
+    /// Whether a hysteresis is named [beside](lags_beside_declared) one that is declared.
+    pub beside_declared: bool,
 }
 
 /// The verdict on a model that stands, and why.
 pub fn judge(selection: &Selection, left: &LackOfFit, besides: &Besides<'_>) -> (Verdict, String) {
-    let &Besides { isolated, taken_back, looks_like, may_lag } = besides;
+    let &Besides { isolated, taken_back, looks_like, may_lag, beside_declared } = besides;
     let named = selection.model.named.len() + isolated;
     let structure = left.structure || selection.unnamed;
     let strongest = left.tests.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value));
@@ -169,6 +179,10 @@ pub fn judge(selection: &Selection, left: &LackOfFit, besides: &Besides<'_>) -> 
             format!("what fitted was taken back for what it leaves ({taken_back}): {because}")
         }
         Verdict::Unexplained => format!("structure is left that no effect of the catalogue accounts for: {because}"),
+        _ if beside_declared => String::from(
+            "the radii of the hysteresis that the description declares are taken as they are, and where they are off, \
+             another joint looks as if it had one",
+        ),
         _ if may_lag => String::from("hysteresis with a curve or creep besides is also how a joint looks that lags"),
         _ => format!("structure is left beyond the named effects: {because}"),
     };

@@ -10,7 +10,7 @@ use robstiff_robots::Description;
 
 use super::NamedEffect;
 use super::bench::Bench;
-use super::found::{EffectParameter, Found};
+use super::found::{EffectParameter, Found, add};
 use super::model::{Fitted, Named, Setting};
 use super::report::named::in_order;
 use crate::campaign::Campaign;
@@ -44,9 +44,11 @@ pub fn within_description(
         let mut places: Vec<Vec<usize>> = (0..description.effects.len()).map(own).collect();
         for &one in &model.named {
             let found = plain(setting, &model, one);
-            if let Some(effect) = found.effect().filter(|_| !found.is_of_rig()) {
-                description.effects.push(effect);
-                places.push(setting.variant(one).columns.iter().filter_map(place).collect());
+            if let Some(effect) = found.effect_on(&description).filter(|_| !found.is_of_rig()) {
+                let columns = setting.variant(one).columns.iter().filter_map(place);
+                let at = add(&mut description, effect);
+                places.resize(description.effects.len(), Vec::new());
+                places[at].extend(columns);
             }
         }
         (description, places)

@@ -164,6 +164,39 @@ noise: {displacement: 4 um}
     assert!((predicted / found.after.rms - 1.0).abs() < 1e-2, "{predicted} and {}", found.after.rms);
 }
 
+/// What a description declares of the kinematics and is true no longer is found as a change, and
+/// told and written as a whole.
+#[test]
+fn what_is_declared_of_the_kinematics_is_told_as_it_is_now() {
+    for (effect, number) in [
+        ("{kind: joint_zero_offset, at: joint 3, value: 0.03 rad}", "offset"),
+        ("{kind: dh_error, at: alpha3, value: 0.03 rad}", "value"),
+    ] {
+        let mut campaign = measured(&robot(""), 3, PLAN);
+        campaign.robot = robot(effect);
+        let found = traced(&campaign);
+        let declared = campaign.robot.effects[0];
+        assert_eq!((found.verdict, names(&found)), (Verdict::Explained, [declared.to_string()].to_vec()), "{effect}");
+        let told = &found.effects[0].effect;
+        let std = told.parameters[0].std.expect("it is fitted");
+        assert!(told.value(number).abs() < 4.0 * std && std < 0.01, "{effect}: {told:?}");
+        let written = &found.description.effects;
+        assert!(written.len() == 1 && written[0].to_string() == declared.to_string(), "{written:?}");
+        assert!((written[0].numbers()[0] - told.value(number)).abs() < 1e-9, "{written:?}");
+    }
+}
+
+/// A hysteresis beside a declared one, whose radii may be off, is not the whole truth.
+#[test]
+fn a_hysteresis_beside_a_declared_one_may_be_its_radii() {
+    let true_one = "{kind: hysteresis, at: joint 3, weight1: 1.2e-7 rad/Nm, radius1: 150 Nm}";
+    let mut campaign = measured(&robot(true_one), 3, PLAN);
+    campaign.robot = robot("{kind: hysteresis, at: joint 2, weight1: 1e-9 rad/Nm, radius1: 150 Nm}");
+    let found = traced(&campaign);
+    assert!(names(&found).contains(&"hysteresis@joint 3".to_string()), "{:?}", names(&found));
+    assert!(found.verdict == Verdict::Partial && found.why.contains("radii"), "{}", found.why);
+}
+
 /// Noise that takes a declared coupling or softening beyond what a description says
 /// leaves one that can be read back, and it does what is told of it.
 #[test]

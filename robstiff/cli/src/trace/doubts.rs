@@ -14,6 +14,13 @@ pub fn doubts(trace: &Trace) -> Vec<String> {
     }
     let held = trace.description.effects.iter().filter(|effect| effect.is_kinematic());
     let held: Vec<String> = held.map(ToString::to_string).filter(|name| !is_fitted(trace, name)).collect();
+    // Of displacements, changes of most are looked for; what is left has none that shows.
+    let (held, unchanged): (Vec<String>, Vec<String>) =
+        held.into_iter().partition(|name| !trace.differences || name.starts_with("gravity_sag"));
+    if !unchanged.is_empty() {
+        let names = and(&by_kind(&unchanged));
+        doubts.push(format!("The description has these, of which no change shows, and they were kept: {names}."));
+    }
     if !held.is_empty() {
         doubts.push(format!("The description has these, which were taken as they are: {}.", and(&by_kind(&held))));
     }

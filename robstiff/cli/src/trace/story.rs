@@ -72,6 +72,7 @@ pub fn summary(trace: &Trace, campaign: &Campaign) -> Vec<String> {
         sentences.push("The description keeps its declared values.".to_owned());
     }
     sentences.extend(fitted_again(trace));
+    sentences.extend(changed(trace, campaign));
     // Of values that are not taken, none is written.
     let is_taken = trace.verdict != Verdict::Insufficient;
     let clipped = trace.estimates.iter().filter(|estimate| is_taken && estimate.at_bound);
@@ -147,6 +148,27 @@ fn fitted_again(trace: &Trace) -> Option<String> {
         _ => "; the rest has not changed",
     };
     Some(format!("The effects that the description declares were fitted again: {}{of_others}.", moved.join("; ")))
+}
+
+/// Of the named effects, what the description declares of them: what is told and written is the
+/// whole number, not the change.
+fn changed(trace: &Trace, campaign: &Campaign) -> Option<String> {
+    let declared = |name: &str| campaign.robot.effects.iter().find(|effect| effect.to_string() == name);
+    let was = |named: &NamedEffect| {
+        let name = named.effect.to_string();
+        let numbers = declared(&name)?.parameters().filter_map(|(parameter, value)| {
+            let spelt = |own: &&EffectParameter| own.name == parameter.name || own.name == "offset";
+            let own = told(named).find(spelt).filter(|own| own.std.is_some())?;
+            let of = if own.name == parameter.name && own.name != "value" { own.name } else { "" };
+            Some(format!("{of} {}", quantity(value, None, own.unit)).trim().to_owned())
+        });
+        Some(format!("{name} was {}", and(&numbers.collect::<Vec<_>>())))
+    };
+    let changed: Vec<String> = trace.effects.iter().filter_map(was).collect();
+    (!changed.is_empty()).then(|| {
+        let (these, was) = (if changed.len() == 1 { "it" } else { "these" }, changed.join("; "));
+        format!("What the description declared of {these} is replaced: {was}.")
+    })
 }
 
 /// A number that is off what is declared by more standard deviations has changed.

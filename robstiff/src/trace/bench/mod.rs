@@ -16,6 +16,7 @@ use std::vec;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use robstiff_robots::Description;
 
 pub use self::noise::Known;
 use self::solve::State;
@@ -123,6 +124,11 @@ impl<'c> Bench<'c> {
         let mut bench = Self { wide: true, ..self.copy() };
         bench.set_up_again(Candidate::is_nameless, |kept, nameless| [kept, nameless].concat())?;
         Ok(bench)
+    }
+
+    /// The robot as declared.
+    pub fn robot(&self) -> &Description {
+        &self.campaign.robot
     }
 
     /// The same without what has no name.

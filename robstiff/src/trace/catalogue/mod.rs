@@ -63,7 +63,7 @@ pub use self::joint_zero_offset::MOST as ZERO_MOST;
 pub use self::load_cell_bias::KIND as LOAD_CELL_BIAS;
 pub use self::lost_motion::{EITHER, KIND as LOST_MOTION, KNEES as LOST_KNEES, WIDEST as WIDEST_GAP};
 pub use self::nameless::{LAG, NAMELESS};
-pub use self::offers::{Candidate, Catalogue, Form, Offers, Variant, catalogue};
+pub use self::offers::{Candidate, Catalogue, Form, Offers, Variant, catalogue, is_offered_as_change};
 pub use self::outliers::KIND as OUTLIERS;
 pub use self::reflector_slip::KIND as REFLECTOR_SLIP;
 pub use self::stiffness_nonlinearity::{KIND as STIFFNESS_NONLINEARITY, KNEES as HARDENING_KNEES};

@@ -183,7 +183,8 @@ impl Form {
 }
 
 impl Offers<'_> {
-    /// A candidate, unless the description declares it.
+    /// A candidate, unless the description declares it and fits it again: what it declares of the
+    /// kinematics is offered as a change.
     pub fn add(&mut self, place: impl Into<Place>, numbers: Vec<Number>, forms: Vec<Form>) {
         self.add_checked(place, numbers, forms, None);
     }
@@ -197,8 +198,20 @@ impl Offers<'_> {
         check: Option<Check>,
     ) {
         let place = place.into();
-        let same = |effect: &Effect| effect.kind() == self.kind.name && place == Place::Part(effect.place());
-        if self.declared.iter().any(same) {
+        let same = |effect: &&Effect| effect.kind() == self.kind.name && place == Place::Part(effect.place());
+        let declared = self.declared.iter().find(same);
+        if declared.is_some_and(|effect| !is_offered_as_change(effect)) {
+            return;
+        }
+        // A description takes one order of a joint: the one that it has.
+        let is_possible = |form: &Form| match declared {
+            Some(&Effect::TransmissionError { order, .. }) => {
+                form.shape.iter().all(|number| number.name != "order" || number.value == order)
+            }
+            _ => true,
+        };
+        let forms: Vec<Form> = forms.into_iter().filter(is_possible).collect();
+        if forms.is_empty() {
             return;
         }
         let start = self.first + self.catalogue.numbers.len();
@@ -222,6 +235,12 @@ impl Offers<'_> {
     pub fn invisible(&mut self, place: impl Into<Place>) {
         self.catalogue.invisible.push(std::format!("{}@{}", self.kind.name, place.into()));
     }
+}
+
+/// Whether a candidate may change a declared effect, whose numbers no column of the description
+/// fits: errors of the kinematics add up.
+pub fn is_offered_as_change(effect: &Effect) -> bool {
+    matches!(effect, Effect::JointZeroOffset { .. } | Effect::DhError { .. } | Effect::TransmissionError { .. })
 }
 
 /// What may be missing from a scene's description; its columns follow `first`

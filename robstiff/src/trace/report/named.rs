@@ -40,7 +40,7 @@ pub fn effects(
         let same_as = same_as(bench, model, k, outcome.structure(), options);
         let in_part = in_part(bench, model, k);
         NamedEffect {
-            effect: Found::new(candidate.kind, candidate.place, parameters),
+            effect: Found::new(candidate.kind, candidate.place, parameters).in_whole(bench.robot()),
             lines: Vec::new(),
             p_value: outcome.selection.p_values[k],
             holdout_rms,
