@@ -73,8 +73,8 @@ fn page(robot: &str, prediction: &Prediction) -> String {
     )
 }
 
-/// A row for each of the campaign's, in its file's order: displacements in the base frame,
-/// positions in the frame that they were read in.
+/// A row for each of the campaign's, in its file's order and with its line there: displacements in
+/// the base frame, positions in the frame that they were read in.
 fn table(campaign: &Campaign, prediction: &Prediction) -> String {
     let (poses, visits, letter, unit, factor) = match &campaign.data {
         Data::Displacement(data) => (&data.poses, &data.visits, 'd', "um", 1e6),
@@ -92,7 +92,7 @@ fn table(campaign: &Campaign, prediction: &Prediction) -> String {
             write!(csv, ",{kind}_{letter}{axis} [{unit}]").expect("a string takes any text");
         }
     }
-    csv.push('\n');
+    csv.push_str(",line\n");
     let mut rows: Vec<(&PredictedRow, (usize, usize))> = prediction.rows.iter().zip(read).collect();
     rows.sort_by_key(|(row, _)| row.line);
     for (row, (pose, visit)) in rows {
@@ -103,7 +103,7 @@ fn table(campaign: &Campaign, prediction: &Prediction) -> String {
         for axis in 0..3 {
             csv += &format!(",{}", decimals((row.measured[axis] - row.predicted[axis]) * 1e6, 4));
         }
-        csv.push('\n');
+        csv += &format!(",{}\n", row.line);
     }
     csv
 }

@@ -146,13 +146,12 @@ fn predicts_every_row() {
 
     let table = fs::read_to_string(table).unwrap();
     let mut lines = table.lines();
-    assert!(lines.next().unwrap().starts_with("pose,visit,predicted_dx [um],"));
-    let residuals: Vec<[f64; 3]> = lines
-        .map(|line| {
-            let numbers: Vec<f64> = line.split(',').skip(8).map(|field| field.parse().unwrap()).collect();
-            numbers.try_into().unwrap()
-        })
-        .collect();
+    let head = lines.next().unwrap();
+    assert!(head.starts_with("pose,visit,predicted_dx [um],") && head.ends_with(",residual_dz [um],line"), "{head}");
+    let numbers = lines.map(|line| line.split(',').skip(8).map(|field| field.parse().unwrap()).collect::<Vec<f64>>());
+    let rows: Vec<[f64; 4]> = numbers.map(|numbers| numbers.try_into().unwrap()).collect();
+    assert!(rows.iter().zip(2..).all(|(row, line)| row[3] == f64::from(line)), "{rows:?}");
+    let residuals: Vec<[f64; 3]> = rows.iter().map(|&[x, y, z, _]| [x, y, z]).collect();
     let squares: f64 = residuals.concat().iter().map(|residual| residual * residual).sum();
     assert!(((squares / (3.0 * 43.0)).sqrt() / rms - 1.0).abs() < 1e-6);
 }
