@@ -268,6 +268,7 @@ mod tests {
             ("\u{2212}180\u{a0}deg", Angle, -PI),
             ("2.5e\u{2212}7 rad/Nm", Compliance, 2.5e-7),
             ("60 arcmin", Angle, PI / 180.0),
+            ("3600 arcsec", Angle, PI / 180.0),
             ("50 urad", Angle, 5e-5),
             ("2.97e-7 rad/Nm", Compliance, 2.97e-7),
             ("0.5 urad/Nm", Compliance, 5e-7),
@@ -295,8 +296,11 @@ mod tests {
         }
         let from_arcmin = parse("1000 Nm/arcmin", Dimension::Compliance).unwrap();
         assert!((from_arcmin * 1000.0 * 10_800.0 / PI - 1.0).abs() < 1e-15);
-        let from_rpm = parse("30 rpm", Dimension::RotationalSpeed).unwrap();
-        assert!((from_rpm / PI - 1.0).abs() < 1e-15);
+        let from_deg = parse("1000 Nm/deg", Dimension::Compliance).unwrap();
+        assert!((from_deg * 1000.0 * 180.0 / PI - 1.0).abs() < 1e-15);
+        for text in ["30 rpm", "180 deg/s"] {
+            assert!((parse(text, Dimension::RotationalSpeed).unwrap() / PI - 1.0).abs() < 1e-15, "{text}");
+        }
     }
 
     #[test]
