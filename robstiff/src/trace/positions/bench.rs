@@ -358,6 +358,11 @@ impl<'c> Bench<'c> {
         kept.into_iter().skip(STANDS).map(|column| column - STANDS).collect()
     }
 
+    /// The columns of some numbers, at the model.
+    pub fn columns_of(&self, numbers: &[usize]) -> DMatrix<f64> {
+        self.problem.white.select_columns(&numbers.iter().map(|number| STANDS + number).collect::<Vec<_>>())
+    }
+
     /// The root mean square error on each pose fitted to, by the fit without it (m).
     pub fn left_out_rms(&self, solved: &Solved) -> f64 {
         let problem = &solved.problem;

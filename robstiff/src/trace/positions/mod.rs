@@ -23,6 +23,9 @@ mod beyond_tests;
 mod course;
 mod drift;
 mod frames;
+mod left_at_zero;
+#[cfg(test)]
+mod left_at_zero_tests;
 mod nameless;
 mod offers;
 mod proposals;
@@ -33,6 +36,7 @@ mod search;
 mod slip_tests;
 mod slips;
 mod smooth;
+mod spread;
 #[cfg(test)]
 mod stand_in_tests;
 mod stand_ins;

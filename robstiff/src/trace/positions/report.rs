@@ -8,14 +8,13 @@ use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::bench::{Bench, Model, Proposed};
 use super::search::Searched;
+use super::spread::{spread_as_declared, spread_of};
 use super::unseen::{undecided, unseen, unseen_rms};
 use super::written::{described, own_effects, without_untold};
 use crate::campaign::{Campaign, PositionRow};
-use crate::identify::normal::Sign;
 use crate::identify::positions::regression::STANDS;
-use crate::identify::positions::{estimated, of_numbers, residuals};
+use crate::identify::positions::{estimated, residuals};
 use crate::identify::problem::rms;
-use crate::identify::uncertainty::covariance;
 use crate::identify::{Error, NoiseSource};
 use crate::trace::catalogue::{KINDS, Variant};
 use crate::trace::found::{EffectParameter, Found};
@@ -61,7 +60,7 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
     let Errors { declared, identified, after, left: [left_before, left_after] } =
         errors(campaign, found, (written, tells), &undecided);
     let values = bench.prepared.values(&written.solved.state);
-    let (spread_before, spread) = (spread_of(bench, base), spread_of(bench, model));
+    let (spread_before, spread) = (spread_as_declared(base), spread_of(bench, model));
     let spread_written = if fewer.is_some() { spread_of(bench, written) } else { spread.clone() };
     let replaced = if tells { bench.replaced(&model.named) } else { Vec::new() };
     let effects =
@@ -285,27 +284,6 @@ fn same_as(bench: &Bench<'_>, model: &Model, k: usize, value: f64, replaced: &[(
         }
     }
     names
-}
-
-/// The covariance of a model's numbers, and of those out of grids behind them, where
-/// the rows tell these.
-fn spread_of(bench: &Bench<'_>, model: &Model) -> DMatrix<f64> {
-    let solved = &model.solved;
-    let plain = || of_numbers(&covariance(&solved.problem, &solved.fit, &solved.signs, None));
-    let shapes: Vec<DVector<f64>> = bench.shape_columns(model).into_iter().map(|(_, column)| column).collect();
-    if shapes.is_empty() {
-        return plain();
-    }
-    let problem = bench.with_columns(model, &DMatrix::from_columns(&shapes));
-    // Where they leave least their columns have nothing to add.
-    let mut fit = solved.fit.clone();
-    let (own, all) = (fit.columns.len(), fit.columns.len() + shapes.len());
-    fit.columns.extend(own..all);
-    fit.coefficients = fit.coefficients.resize_vertically(all, 0.0);
-    let signs: Vec<Sign> = solved.signs.iter().copied().chain(shapes.iter().map(|_| Sign::Free)).collect();
-    let spread = of_numbers(&covariance(&problem, &fit, &signs, None));
-    let told = (own..all).all(|k| spread[(k - STANDS, k - STANDS)] > 0.0);
-    if told { spread } else { plain() }
 }
 
 /// The candidates that an effect of several numbers says as well, beside the rest of the
