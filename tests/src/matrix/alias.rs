@@ -58,6 +58,7 @@ fn full_names(joints: usize) -> Vec<String> {
         "load_cell_scale",
         "lever_arm",
         "tracker_misalignment",
+        "reflector_offset",
         "thermal_drift",
         "creep",
     ];
@@ -161,6 +162,7 @@ fn forms(name: &str, arm: &Description) -> Vec<Vec<Hidden>> {
             [Mount::Ground, Mount::Tool].map(|mount| axes(&|scale| Hidden::LoadCellScale { scale, mount }, 1e-3)).into()
         }
         "lever_arm" => vec![axes(&Hidden::LeverArm, 1e-3)],
+        "reflector_offset" => vec![axes(&Hidden::ReflectorOffset, 1e-3)],
         "tracker_misalignment" => vec![axes(&Hidden::TrackerMisalignment, 1e-3)],
         "thermal_drift" => [Follows::Time, Follows::Temperature, Follows::Settling(3600.0)]
             .map(|follows| axes(&|rate| Hidden::ThermalDrift { rate, follows }, 1e-6))

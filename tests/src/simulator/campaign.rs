@@ -220,7 +220,7 @@ impl Scenario {
             let [displacement, rotation] = &mut creep;
             let (displacement, rotation) = (grown((moved[0], displacement)), grown((moved[1], rotation)));
             let tool = posed.tool();
-            let at = Vector3::from(posed.tcp()) + tool * Vector3::from(self.marker);
+            let at = Vector3::from(posed.tcp()) + tool * self.read_at();
             let displacement = self.at_marker(&tool, displacement, &rotation);
             let grown = |(turn, creep): (f64, &mut Option<Creep>)| grown((Vector3::new(turn, 0.0, 0.0), creep)).x;
             let mut joints = settled.joints.into_iter().zip(&mut of_joints).map(grown);

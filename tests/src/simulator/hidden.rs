@@ -96,6 +96,8 @@ pub enum Hidden {
     },
     /// The load does not act at the TCP but here (m), in the tool frame.
     LeverArm([f64; 3]),
+    /// What is read is not where the file says but so far from there (m), in the tool frame.
+    ReflectorOffset([f64; 3]),
     /// The measuring frame is turned: what is read is the displacement, turned
     /// by this rotation vector (rad).
     TrackerMisalignment([f64; 3]),
@@ -204,6 +206,7 @@ impl Hidden {
             Self::LoadCellBias { .. } => "load_cell_bias",
             Self::LoadCellScale { .. } => "load_cell_scale",
             Self::LeverArm(_) => "lever_arm",
+            Self::ReflectorOffset(_) => "reflector_offset",
             Self::TrackerMisalignment(_) => "tracker_misalignment",
             Self::TrackerScale(_) => "tracker_scale",
             Self::Expansion { .. } | Self::ThermalDrift { .. } => "thermal_drift",
@@ -262,7 +265,7 @@ impl Hidden {
             Self::LoadCellMisalignment { turn, .. } | Self::TrackerMisalignment(turn) => axes("r", turn),
             Self::LoadCellBias { force, .. } => axes("F", force),
             Self::LoadCellScale { scale, .. } => axes("s", scale),
-            Self::LeverArm(at) => axes("", at),
+            Self::LeverArm(at) | Self::ReflectorOffset(at) => axes("", at),
             Self::TrackerScale(scale) => named(&[("scale", *scale)]),
             Self::Expansion { rate, .. } => named(&[("expansion", *rate)]),
             Self::ThermalDrift { rate, .. } => axes("d", rate),
@@ -301,6 +304,7 @@ impl Hidden {
             | Self::LoadCellBias { force: three, .. }
             | Self::LoadCellScale { scale: three, .. }
             | Self::LeverArm(three)
+            | Self::ReflectorOffset(three)
             | Self::TrackerMisalignment(three)
             | Self::ThermalDrift { rate: three, .. }
             | Self::ReflectorSlip { shift: three, .. } => three.iter_mut().collect(),

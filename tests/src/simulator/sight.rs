@@ -13,6 +13,15 @@ impl Scenario {
         Arm::new(description, &[]).hiding(&Hidden::LeverArm(self.hook))
     }
 
+    /// Where the marker is (m), in the tool frame.
+    pub(super) fn read_at(&self) -> Vector3<f64> {
+        let off = self.hidden.iter().map(|hidden| match hidden {
+            Hidden::ReflectorOffset(off) => Vector3::from(*off),
+            _ => Vector3::zeros(),
+        });
+        Vector3::from(self.marker) + off.sum::<Vector3<f64>>()
+    }
+
     /// The displacement of the marker (m), given that of the TCP and the rotation
     /// vector of a tool that had these axes.
     pub(super) fn at_marker(
@@ -21,7 +30,7 @@ impl Scenario {
         displacement: Vector3<f64>,
         rotation: &Vector3<f64>,
     ) -> Vector3<f64> {
-        let marker = tool * Vector3::from(self.marker);
+        let marker = tool * self.read_at();
         displacement + exp(rotation) * marker - marker
     }
 
