@@ -155,7 +155,7 @@ impl Samples {
                 flange,
                 tcp,
                 wrench: setup.wrench(data, &tool, &row.wrench),
-                marker: tool * Vector3::from(data.measured_at),
+                marker: tool * (Vector3::from(data.measured_at) + setup.marker),
                 displacement: reads * Vector3::from(row.displacement),
                 rotation: reads * Vector3::from(row.rotation.unwrap_or_default()),
                 seen: setup.seen(data, &declared, &tool),

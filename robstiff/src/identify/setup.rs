@@ -1,6 +1,6 @@
 //! What may be off between a campaign's file and what happened: the robot's
-//! kinematics, the load cell, where the load acts, the tracker. Each number is
-//! zero where the file and the description are right.
+//! kinematics, the load cell, where the load acts, the tracker, where it looks.
+//! Each number is zero where the file and the description are right.
 
 use std::sync::Arc;
 use std::vec;
@@ -26,6 +26,8 @@ pub struct Setup {
     pub in_tool: LoadCell,
     /// Where the wrench acts less where the file says, in the tool frame (m).
     pub lever: Vector3<f64>,
+    /// The point that is read less the one that the file says, in the tool frame (m).
+    pub marker: Vector3<f64>,
     /// The turn of what is read, in the frame of the readings (rad).
     pub tracker: Vector3<f64>,
     /// What a step of the displacement grows by in a decade of the time since
@@ -71,6 +73,7 @@ impl Setup {
             in_base: LoadCell::default(),
             in_tool: LoadCell::default(),
             lever: Vector3::zeros(),
+            marker: Vector3::zeros(),
             tracker: Vector3::zeros(),
             creep: [0.0, 1.0],
             sag: None,

@@ -11,8 +11,10 @@
 //!    accounts for it or for what names do, `wander` whether a slip is what goes there and back,
 //!    `along` whether what is left points where a named effect does;
 //! 5. `verdict` takes names back and draws the conclusion;
-//! 6. where masses are known, `preload` asks whether gears carry the arm's own weight;
-//! 7. `alias` says what the data cannot tell apart, and `report` puts all of it together.
+//! 6. where something is missing, `elsewhere` asks whether it is that what is read is not where
+//!    the file says;
+//! 7. where masses are known, `preload` asks whether gears carry the arm's own weight;
+//! 8. `alias` says what the data cannot tell apart, and `report` puts all of it together.
 //!
 //! Positions and clamped axes go the same way on benches of their own (`positions`, `clamped`).
 //!
@@ -29,6 +31,9 @@ pub(crate) mod bootstrap;
 pub(crate) mod catalogue;
 pub(crate) mod clamped;
 pub(crate) mod correction;
+mod elsewhere;
+#[cfg(test)]
+mod elsewhere_tests;
 pub(crate) mod features;
 mod found;
 pub(crate) mod held_out;
@@ -272,13 +277,15 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
         Data::Displacement(_) => {
             progress("identifying the joints");
             let prepared = Prepared::new(campaign)?;
-            let (bench, outcome) = searched(campaign, &prepared, options, progress).map_err(Error::NotShown)?;
+            let (bench, outcome) =
+                elsewhere::searched(campaign, &prepared, options, progress).map_err(Error::NotShown)?;
             if let Some(preloaded) = preload::worth_a_try(campaign, &outcome) {
                 progress("asking whether gears carry the arm's own weight");
                 bench.spare_memory();
                 let prepared = Prepared::new(&preloaded)?;
                 // Its stages are those that were told before.
-                let (other, found) = searched(&preloaded, &prepared, options, &|_| ()).map_err(Error::NotShown)?;
+                let (other, found) =
+                    elsewhere::searched(&preloaded, &prepared, options, &|_| ()).map_err(Error::NotShown)?;
                 if preload::is_better((&other, &found), (&bench, &outcome)) {
                     let mut trace = report(&preloaded, &prepared, &other, &found, options)?;
                     preload::tell(&mut trace);
@@ -292,17 +299,17 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
     }
 }
 
-/// What a campaign of displacements shows: the bench that it was found on, and what was.
+/// What a campaign of displacements shows among the candidates of a fresh bench: the bench that
+/// it was found on, and what was.
 ///
 /// # Errors
 /// Why not even the description's own numbers can be fitted.
 fn searched<'c>(
-    campaign: &'c Campaign,
-    prepared: &'c Prepared<'c>,
+    mut bench: Bench<'c>,
+    prepared: &Prepared<'c>,
     options: &Options,
     progress: &Progress<'_>,
 ) -> Result<(Bench<'c>, Outcome), String> {
-    let mut bench = Bench::new(campaign, prepared)?;
     let setting = bench.at(&[])?;
     let base = setting.fit(&[])?;
     if let Some(why) = too_little(&setting).or_else(|| against_the_loads(prepared, &setting, &base)) {
@@ -314,7 +321,7 @@ fn searched<'c>(
     if outcome.structure() && prepared.left_out.contains(&true) {
         // Rows that the others of their pose contradict look like structure.
         bench.spare_memory();
-        let mut closer = Bench::new(campaign, prepared)?;
+        let mut closer = bench.anew()?;
         closer.by_own_pose = true;
         closer.fit_doubted()?;
         let base = closer.fit(&[])?;

@@ -192,6 +192,16 @@ impl<'c> Point<'c> {
         })
     }
 
+    /// The change of the readings with where on the tool the point that is read sits,
+    /// along an axis of the tool frame: what the tool turns by makes a lever of it.
+    pub fn of_marker(&self, axis: usize) -> DVector<f64> {
+        self.samples.stacked_by(|at, row| {
+            let turn = (self.readings[at] * row.wrench).fixed_rows::<3>(3).into_owned();
+            let along = row.seen * turn_of(&row.tcp).column(axis);
+            stack(&turn.cross(&along), &Vector3::zeros())
+        })
+    }
+
     /// What the elastic effects do to a row, six.
     pub fn elastic_of(&self, row: usize) -> Vector6<f64> {
         let axes = self.samples.axes;

@@ -8,7 +8,7 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use super::alias::with_wild_rows;
+use super::alias::{Rival, with_wild_rows};
 use super::bench::Bench;
 use super::beyond::{self, Beyond};
 use super::isolated::Event;
@@ -34,6 +34,8 @@ pub struct Outcome {
     pub events: Vec<Event>,
     /// What is left looks like these, each as a noun for a sentence.
     pub looks_like: Vec<String>,
+    /// Another model that is about as good, come to from elsewhere.
+    pub rival: Option<Rival>,
     /// The conclusion.
     pub verdict: Verdict,
     /// Why.
@@ -44,7 +46,7 @@ impl Outcome {
     /// A model that nothing was looked for beyond.
     pub fn nothing(model: Fitted, verdict: Verdict, why: String) -> Self {
         let selection = Selection { model, p_values: Vec::new(), steps: Vec::new(), unnamed: false };
-        Self { selection, left: None, events: Vec::new(), looks_like: Vec::new(), verdict, why }
+        Self { selection, left: None, events: Vec::new(), looks_like: Vec::new(), rival: None, verdict, why }
     }
 
     /// The same, with the steps that came before.
@@ -145,7 +147,7 @@ pub fn search<'c>(
     if may_share_unloaded(prepared, &left, options) {
         why.push_str("; rows that share an unloaded reading agree, too: a column `visit` says which do");
     }
-    Ok(Outcome { selection, left: Some(left), events, looks_like, verdict, why })
+    Ok(Outcome { selection, left: Some(left), events, looks_like, rival: None, verdict, why })
 }
 
 /// Whether what readings of a pose agree on may be their unloaded reading: of each row the

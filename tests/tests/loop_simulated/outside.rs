@@ -3,7 +3,7 @@
 //! without a name, or is said to be more than its names.
 
 use nalgebra::{Rotation3, Vector3};
-use robstiff::trace::{Trace, Verdict};
+use robstiff::trace::{EffectParameter, Trace, Verdict};
 use robstiff_robots::{Description, Placement};
 use robstiff_tests::simulator::{Arm, Hidden, Outside, Row, Scenario, Simulated, five_axis, six_axis};
 
@@ -114,7 +114,6 @@ fn with_fault(arm: &Description, fault: fn(&mut Simulated)) -> Vec<(u64, Trace)>
     (300..306).map(trace).collect()
 }
 
-/// Named alone, the rest being noise.
 /// The last joint passes the tool so closely that a force hardly turns it. Fitted without the
 /// lever, which turns it well, the joint is far too soft, and the lever's slope is that of such
 /// a joint.
@@ -133,6 +132,31 @@ fn a_lever_about_an_axis_that_the_load_hardly_turns() {
     });
 }
 
+/// The file has the reflector on another nest. A shift of the tool's end with a lever arm back
+/// does nearly the same; that takes three names and more, and this one.
+#[test]
+fn a_reflector_on_another_nest() {
+    const OFF: [f64; 3] = [0.06, -0.05, 0.08];
+    for arm in [five_axis(), six_axis()] {
+        let traced = |seed| {
+            let plan = Scenario { marker: [0.1, 0.0, 0.0], ..plan(&arm, &[], seed) };
+            (seed, trace_files(&plan.hiding(Hidden::ReflectorOffset(OFF)).run(), &arm, ""))
+        };
+        let traces: Vec<(u64, Trace)> = (300..306).map(traced).collect();
+        assert_most(&format!("a reflector elsewhere on {}", arm.name), 5, &traces, |_, trace| {
+            let [named] = &trace.effects[..] else { return false };
+            let is_near = |(number, off): (&EffectParameter, f64)| {
+                (number.value - off).abs() < 4.0 * number.std.expect("a length has one")
+            };
+            named.effect.to_string() == "reflector_offset@rig"
+                && trace.verdict == Verdict::Explained
+                && named.effect.parameters.iter().zip(OFF).all(is_near)
+                && trace.description.effects.is_empty()
+        });
+    }
+}
+
+/// Named alone, the rest being noise.
 fn is_named(name: &str, arm: &Description, fault: fn(&mut Simulated)) {
     is_named_beside(name, &[], arm, fault);
 }

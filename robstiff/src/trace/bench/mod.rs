@@ -60,6 +60,8 @@ pub struct Bench<'c> {
     pub by_own_pose: bool,
     /// Whether the candidates have those without a name among them, behind all others.
     wide: bool,
+    /// Whether they have a reflector among them that is elsewhere.
+    elsewhere: bool,
     /// Where slips that all later rows keep may have begun.
     moments: Moments,
     settings: Solved<Setting<'c>>,
@@ -87,8 +89,17 @@ impl<'c> Bench<'c> {
     /// # Errors
     /// Why not even the description's own model can be fitted.
     pub fn new(campaign: &'c Campaign, prepared: &'c Prepared<'c>) -> Result<Self, String> {
+        Self::of(campaign, prepared, false)
+    }
+
+    /// The same where the reflector may be [elsewhere](mod@super::elsewhere), if so.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn of(campaign: &'c Campaign, prepared: &'c Prepared<'c>, elsewhere: bool) -> Result<Self, String> {
         let rows = prepared.samples.rows.len();
         let mut bench = Self {
+            elsewhere,
             left_out: prepared.left_out.clone(),
             events: prepared.covariance.beyond_doubt().into_iter().map(Event::from).collect(),
             ..Self::bare(campaign, prepared)
@@ -103,13 +114,20 @@ impl<'c> Bench<'c> {
         Ok(bench)
     }
 
+    /// One with the same candidates, fresh.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn anew(&self) -> Result<Self, String> {
+        Self::of(self.campaign, self.prepared, self.elsewhere)
+    }
+
     /// One that judges alike, fresh, in whose catalogue is also what has no name.
     ///
     /// # Errors
     /// As for [`new`](Self::new).
     pub fn widened(&self) -> Result<Self, String> {
-        let mut bench =
-            Self { strict: self.strict, by_own_pose: self.by_own_pose, ..Self::new(self.campaign, self.prepared)? };
+        let mut bench = Self { strict: self.strict, by_own_pose: self.by_own_pose, ..self.anew()? };
         bench.wide = true;
         bench.fit_to(&self.base);
         bench.set_up()?;
@@ -165,6 +183,7 @@ impl<'c> Bench<'c> {
             strict: false,
             by_own_pose: false,
             wide: false,
+            elsewhere: false,
             moments: Moments::default(),
             settings: RefCell::default(),
             stored: Rc::default(),
@@ -182,6 +201,7 @@ impl<'c> Bench<'c> {
             samples: &self.prepared.samples,
             compliance: self.prepared.values[..self.prepared.samples.joints()].to_vec(),
             moments: &self.moments,
+            elsewhere: self.elsewhere,
         }
     }
 

@@ -256,6 +256,11 @@ impl<'c> Bench<'c> {
         Some((there - back) / (2.0 * LOG_STEP))
     }
 
+    /// How many numbers a model's effects take, those out of a grid among them.
+    pub fn parameters(&self, named: &[Named]) -> usize {
+        named.iter().map(|&one| self.variant(one).parameters).sum()
+    }
+
     fn variant(&self, one: Named) -> &Variant {
         &self.candidates[one.candidate].variants[one.variant]
     }

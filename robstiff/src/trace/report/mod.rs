@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 
 use self::named::{effects, isolated};
 use self::spread::spread_of;
-use super::alias::{rivals, same_as_wild};
+use super::alias::{Rival, rivals, same_as_wild};
 use super::bench::Bench;
 use super::model::{Fitted, Setting};
 use super::slip::Slipping;
@@ -92,7 +92,7 @@ pub fn report(
         unexplained: left.map_or(0.0, |left| left.fraction),
         depends_on: left.map_or_else(Vec::new, |left| left.depends_on.clone()),
         looks_like: outcome.looks_like.clone(),
-        rivals: if tells { rivals(bench, &outcome.selection.model) } else { Vec::new() },
+        rivals: if tells { rivals_of(bench, outcome) } else { Vec::new() },
         invisible: invisible(bench, &effects),
         next: Vec::new(),
         description,
@@ -129,6 +129,16 @@ fn declared(prepared: &Prepared<'_>, problem: &Equations, but: &[usize]) -> Misf
     let unseen = rows(&problem.held_out).into_iter().filter(|row| !but.contains(row));
     let holdout_rms = if problem.held_out.is_empty() { fitted_to } else { declared_rms(prepared, unseen) };
     Misfit { rms: fitted_to, holdout_rms }
+}
+
+/// Models that the data cannot tell from the one that is told, the best first.
+fn rivals_of(bench: &Bench<'_>, outcome: &Outcome) -> Vec<Rival> {
+    let mut rivals = rivals(bench, &outcome.selection.model);
+    let from_elsewhere = outcome.rival.iter().filter(|rival| rivals.iter().all(|other| other.names != rival.names));
+    let from_elsewhere: Vec<Rival> = from_elsewhere.cloned().collect();
+    rivals.extend(from_elsewhere);
+    rivals.sort_by(|a, b| a.bic_difference.total_cmp(&b.bic_difference));
+    rivals
 }
 
 /// Full names of what could not be seen. What a named effect may as well be has shown, if it
