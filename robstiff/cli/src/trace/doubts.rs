@@ -45,22 +45,31 @@ const RIVALS: usize = 5;
 
 /// A rival by what it has instead of what was named.
 fn rivalry(trace: &Trace, rival: &Rival) -> String {
-    let named: Vec<String> = trace.effects.iter().map(|named| named.effect.to_string()).collect();
-    let without = |names: &[String], others: &[String]| -> Vec<String> {
-        names.iter().filter(|name| !others.contains(name)).map(|name| spoken(name)).collect()
-    };
     // What is wrong in single visits is in no model.
-    let replaced: Vec<String> = trace
-        .effects
-        .iter()
-        .filter(|one| one.lines.is_empty() && !rival.names.contains(&one.effect.to_string()))
-        .map(|one| spoken(&one.effect.to_string()))
-        .collect();
+    let of_model = trace.effects.iter().filter(|one| one.lines.is_empty());
+    let named: Vec<String> = of_model.map(|one| one.effect.to_string()).collect();
     let odds = (0.5 * rival.bic_difference).exp();
     let behind = if rival.bic_difference < 0.2 {
         "fits as well".to_owned()
     } else {
         format!("comes close, with odds of {} to 1 against it", decimals(odds, usize::from(odds < 10.0)))
     };
-    format!("A model with {} in place of {} {behind}.", and(&without(&rival.names, &named)), and(&replaced))
+    format!(
+        "A model with {} in place of {} {behind}.",
+        and(&without(&rival.names, &named)),
+        and(&without(&named, &rival.names))
+    )
+}
+
+/// Some names less others, in words; slips of several axes have one name, and count each.
+fn without(names: &[String], others: &[String]) -> Vec<String> {
+    let mut others = others.to_vec();
+    let left = names.iter().filter(|name| match others.iter().position(|other| other == *name) {
+        Some(same) => {
+            others.swap_remove(same);
+            false
+        }
+        None => true,
+    });
+    left.map(|name| spoken(name)).collect()
 }

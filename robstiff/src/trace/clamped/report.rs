@@ -207,14 +207,16 @@ fn estimates(
     identified.estimates.iter().enumerate().map(of_model).collect()
 }
 
-/// Other models of as many effects that are about as good, the best first.
+/// Other models of as many effects that are about as good, the best first, but those whose names
+/// are the same: slips of several axes have one.
 fn rivals(bench: &Bench, model: &Fitted) -> Vec<Rival> {
+    let names =
+        |of: &Fitted| -> Vec<String> { of.named.iter().map(|one| bench.candidates[one.candidate].name()).collect() };
+    let own = names(model);
     let within = bench.replaced(&model.named).into_iter().filter(|(_, other)| other.bic < model.bic + WITHIN_REACH);
     let mut rivals: Vec<Rival> = within
-        .map(|(_, other)| Rival {
-            names: other.named.iter().map(|one| bench.candidates[one.candidate].name()).collect(),
-            bic_difference: other.bic - model.bic,
-        })
+        .map(|(_, other)| Rival { names: names(&other), bic_difference: other.bic - model.bic })
+        .filter(|rival| rival.names != own)
         .collect();
     rivals.sort_by(|a, b| a.bic_difference.total_cmp(&b.bic_difference));
     rivals
