@@ -9,9 +9,16 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::bench::Bench;
+use super::slips::shifts_all;
 use super::standing::Standing;
+use crate::trace::catalogue::LOAD_CELL_BIAS;
 use crate::trace::model::{Fitted, all_but};
-use crate::trace::selection::BETTER;
+use crate::trace::selection::{BETTER, WITHIN_REACH};
+
+/// How much better than unloaded readings that are off, each by its own, a bias of the torque
+/// has to be. Only the softest axes show a small one, and two or three shifts are in proportion
+/// to two or three compliances by chance; a bias that all axes show is far beyond this.
+const OF_BIAS: f64 = 2.0 * WITHIN_REACH;
 
 /// A model in which axes have of their own what another says by what they share.
 pub struct Apart {
@@ -22,7 +29,9 @@ pub struct Apart {
     /// The model, with its numbers out of grids where they fit best.
     pub found: (Bench, Fitted),
     /// By how much its criterion is above that of the other, each grown.
-    pub worse: f64,
+    worse: f64,
+    /// Below what that takes the place of the other, and below what these data do not tell.
+    limits: [f64; 2],
 }
 
 impl Apart {
@@ -36,14 +45,42 @@ impl Apart {
         }
         let with = grown(bench, model.clone()).model.bic.min(model.bic);
         let without = |&shared: &usize| {
-            let Standing { bench, model: other, .. } = grown(bench, bench.fit(&all_but(&model.named, shared))?);
+            let rest = all_but(&model.named, shared);
+            // A bias loads gears as well, and what they do with it goes with it.
+            let own = bench.with_numbers(&bench.fit(&rest)?);
+            let Standing { bench: own, model: other, .. } = grown(&own, own.fit(&rest)?);
             let new = other.named.iter().filter(|new| model.named.iter().all(|old| old.candidate != new.candidate));
             let names: Vec<String> = new.map(|new| bench.candidates[new.candidate].name()).collect();
             let worse = other.bic - with;
-            (names.len() > 1).then_some(Self { shared, names, found: (bench, other), worse })
+            let limits = limits(bench, model, shared);
+            // One for one is a replacement, and done as such; but of what is more likely.
+            let several = names.len() > 1 || limits[0] > 0.0;
+            several.then_some(Self { shared, names, found: (own, other), worse, limits })
         };
-        all.iter().filter_map(without).min_by(|a, b| a.worse.total_cmp(&b.worse))
+        let beyond = |one: &Self| one.worse - one.limits[0];
+        all.iter().filter_map(without).min_by(|a, b| beyond(a).total_cmp(&beyond(b)))
     }
+
+    /// Whether it takes the place of the other.
+    pub fn is_better(&self) -> bool {
+        self.worse < self.limits[0]
+    }
+
+    /// Whether these data do not tell it from the other.
+    pub fn is_as_good(&self) -> bool {
+        !self.names.is_empty() && self.worse < self.limits[1]
+    }
+}
+
+/// The limits for one of the effects of a model that all axes share: what cannot be told stays
+/// the fewer. But a bias of the torque is seen in what unloaded readings are off by and hardly
+/// elsewhere, and where that of another axis is known to be off, no bias is needed for more.
+fn limits(bench: &Bench, model: &Fitted, shared: usize) -> [f64; 2] {
+    if bench.candidates[model.named[shared].candidate].kind != &LOAD_CELL_BIAS {
+        return [-WITHIN_REACH, WITHIN_REACH];
+    }
+    let off = model.named.iter().any(|&one| shifts_all(bench, one));
+    [if off { WITHIN_REACH } else { BETTER }, OF_BIAS]
 }
 
 /// A model with effects of axes more, the best one by one, and without those that others have

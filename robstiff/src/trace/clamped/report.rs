@@ -34,7 +34,7 @@ use crate::trace::{Misfit, NamedEffect, PoseError, Rival, RowResidual, Trace, Ve
 pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched) -> Result<Trace, Error> {
     let (bench, model) = (&found.bench, &found.selection.model);
     let wild = &found.wild.0;
-    let apart = Apart::of(bench, model).filter(|apart| found.too_little.is_none() && apart.worse < WITHIN_REACH);
+    let apart = Apart::of(bench, model).filter(|apart| found.too_little.is_none() && apart.is_as_good());
     let (verdict, why) = match &found.too_little {
         Some(why) => (Verdict::Insufficient, why.clone()),
         None => {

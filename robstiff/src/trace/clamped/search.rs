@@ -14,7 +14,7 @@ use crate::campaign::ClampedRow;
 use crate::identify::clamped::wild::Room;
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::{Fitted, Named};
-use crate::trace::selection::{BETTER, Selection, WITHIN_REACH};
+use crate::trace::selection::{BETTER, Selection};
 use crate::trace::settle::{dropped_step, without_insignificant};
 use crate::trace::step::{Against, Step};
 use crate::trace::verdict::FEWEST_POSES;
@@ -144,8 +144,7 @@ impl Course {
 
     /// Turns to effects of each axis where they say what all share better; whether they do.
     fn set_apart(&mut self) -> bool {
-        // What cannot be told stays the fewer.
-        let found = Apart::of(&self.at.bench, &self.at.model).filter(|apart| apart.worse < -WITHIN_REACH);
+        let found = Apart::of(&self.at.bench, &self.at.model).filter(Apart::is_better);
         let Some(Apart { found, .. }) = found else { return false };
         (self.at.bench, self.at.model) = found;
         (self.strict, self.unnamed) = (false, false);
