@@ -49,7 +49,30 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
         let left = LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() };
         return Ok(Found { bench, selection, left, wild: (Vec::new(), 1.0), too_little: Some(why) });
     }
-    let mut course = Course::new(bench, base);
+    let room = Room::new(&bench.axes.whole().rows);
+    found(Course::new(bench, base, room), options, progress)
+}
+
+/// What a search finds from its beginning on.
+fn found(course: Course, options: &Options, progress: &Progress<'_>) -> Result<Found, String> {
+    let room = course.room.clone();
+    let first = ended(course, options, progress)?;
+    if !first.leaves_something() {
+        return Ok(first);
+    }
+    // What is left beside one number of all axes speaks for what each has of its own.
+    let apart = Apart::of(&first.bench, &first.selection.model).filter(Apart::is_as_good);
+    let Some(Apart { found: (bench, model), .. }) = apart else { return Ok(first) };
+    let mut course = Course::new(bench, model, room);
+    course.at.wild.clone_from(&first.wild);
+    course.steps.clone_from(&first.selection.steps);
+    course.told_apart();
+    let other = ended(course, options, progress)?;
+    Ok(if other.leaves_something() { first } else { other })
+}
+
+/// What a search finds that goes on from what it has.
+fn ended(mut course: Course, options: &Options, progress: &Progress<'_>) -> Result<Found, String> {
     course.run(options, progress)?;
     if course.set_apart() {
         course.run(options, progress)?;
@@ -68,6 +91,13 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
     Ok(Found { bench, selection, left, wild, too_little: None })
 }
 
+impl Found {
+    /// Whether something is missing that has no name.
+    fn leaves_something(&self) -> bool {
+        self.left.structure || self.selection.unnamed
+    }
+}
+
 /// A search on its way.
 struct Course {
     at: Standing,
@@ -80,15 +110,9 @@ struct Course {
 }
 
 impl Course {
-    /// One that begins with a model.
-    fn new(bench: Bench, model: Fitted) -> Self {
-        Self {
-            room: Room::new(&bench.axes.whole().rows),
-            at: Standing::new(bench, model),
-            strict: false,
-            steps: Vec::new(),
-            unnamed: false,
-        }
+    /// One that begins with a model, and may leave so many rows out.
+    fn new(bench: Bench, model: Fitted, room: Room) -> Self {
+        Self { room, at: Standing::new(bench, model), strict: false, steps: Vec::new(), unnamed: false }
     }
 
     /// Adds effects for as long as something is missing.
@@ -148,11 +172,16 @@ impl Course {
         let Some(Apart { found, .. }) = found else { return false };
         (self.at.bench, self.at.model) = found;
         (self.strict, self.unnamed) = (false, false);
+        self.told_apart();
+        true
+    }
+
+    /// Says what it has turned to.
+    fn told_apart(&mut self) {
         let names: Vec<String> = self.at.names();
         let mut step = Step::bare(names.clone());
         step.came_to(&names);
         self.steps.push(step);
-        true
     }
 
     /// Drops the effects that rows which are left out by now, or effects named since, had made
@@ -295,7 +324,7 @@ mod tests {
         for model in besides {
             let line = whole.axes.rows[40].line;
             let (bench, model) = refitted(whole.axes.without(&[40]), &whole, &model).expect("physically possible");
-            let mut course = Course::new(bench, model);
+            let mut course = Course::new(bench, model, Room::new(rows));
             course.at.wild = (std::vec![line], 1e-6);
             let (p_values, _) = course.settle(&Options::default()).expect("the axes show their compliances");
             assert_eq!(course.at.model.named.iter().map(name).collect::<Vec<_>>(), ["lost_motion@joint 2"]);
@@ -306,7 +335,7 @@ mod tests {
         }
         // What is dropped may have said a little of what no one says then.
         let alone = whole.extended(&[]).into_iter().rfind(|model| model.named != truth).expect("it has others");
-        let mut course = Course::new(Bench::new(whole.axes.clone(), None), alone);
+        let mut course = Course::new(Bench::new(whole.axes.clone(), None), alone, Room::new(rows));
         let (p_values, missing) = course.settle(&Options::default()).expect("the axes show their compliances");
         assert_eq!((p_values.len(), course.steps.len(), missing, course.unnamed), (0, 1, true, true));
         // The search goes on from there.
