@@ -57,6 +57,11 @@ impl Room {
         }
     }
 
+    /// None, of any axis.
+    pub fn none() -> Self {
+        Self { all: 0, of_axis: Vec::new() }
+    }
+
     /// What is left of it beside rows that are wild, each told by its axis.
     pub fn beside(&self, wild: impl IntoIterator<Item = usize>) -> Self {
         let mut left = self.clone();

@@ -20,6 +20,7 @@ mod one_off;
 #[cfg(test)]
 mod reading_tests;
 mod report;
+mod scatter;
 mod search;
 mod slips;
 mod spread;

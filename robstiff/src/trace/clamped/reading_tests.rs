@@ -3,7 +3,11 @@
 use std::string::{String, ToString};
 use std::vec::Vec;
 
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
 use super::tests::{NOISE, both_ways, measured, names, traced};
+use crate::campaign::made::normal;
 use crate::campaign::{Campaign, ClampedRow, Data};
 use crate::samples::five_axis;
 use crate::trace::Verdict;
@@ -82,5 +86,17 @@ fn rounded_readings_have_no_structure() {
         rows_of(&mut campaign).iter_mut().for_each(|row| row.deflection = (row.deflection / step).round() * step);
         let trace = traced(&campaign);
         assert_eq!((trace.verdict, names(&trace)), (Verdict::Adequate, Vec::new()), "{seed}: {}", trace.why);
+    }
+}
+
+/// Rows of large torques are then the furthest off, and none of them is wild.
+#[test]
+fn noise_that_grows_with_the_torque_makes_no_row_wild() {
+    for seed in 0..12 {
+        let mut random = ChaCha8Rng::seed_from_u64(870 + seed);
+        let mut campaign = measured(&five_axis(), &both_ways(), 870 + seed, |_, _| 0.0);
+        rows_of(&mut campaign).iter_mut().for_each(|row| row.deflection *= 1.0 + 0.02 * normal(&mut random));
+        let names = names(&traced(&campaign));
+        assert!(!names.contains(&"outliers@rig".to_string()), "{seed}: {names:?}");
     }
 }
