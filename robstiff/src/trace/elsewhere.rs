@@ -8,7 +8,7 @@
 //! through once more with it, and it is told if that leaves less: no structure where the
 //! other leaves some, else what is better by the criterion of Schwarz, with odds of 20 to 1, and
 //! has fewer numbers or predicts poses that are left out no worse, or as good with fewer names.
-//! The other is then a rival of it, where the criterion does not tell them apart.
+//! Where the criterion does not tell them apart, the other is a rival of the one that is told.
 
 use std::format;
 use std::string::String;
@@ -53,8 +53,11 @@ pub fn searched<'c>(
     let names_it = |(bench, found): &(Bench<'_>, Outcome)| {
         found.selection.model.named.iter().any(|one| bench.candidates()[one.candidate].kind.name == KIND)
     };
-    let better = again.filter(names_it).filter(|(other, found)| is_better((other, found), (&bench, &outcome)));
-    let Some((other, mut found)) = better else { return Ok((bench, outcome)) };
+    let Some((other, mut found)) = again.filter(names_it) else { return Ok((bench, outcome)) };
+    if !is_better((&other, &found), (&bench, &outcome)) {
+        outcome.rival = rival((&other, &found), (&bench, &outcome));
+        return Ok((bench, outcome));
+    }
     found.rival = rival((&bench, &outcome), (&other, &found));
     let mut step = Step::bare(names(&bench, &outcome));
     step.outcome = format!("anew with a reflector that may be elsewhere: named {}", names(&other, &found).join(", "));
