@@ -15,6 +15,7 @@ use super::bench::{Bench, Model, Proposed};
 use super::course::Course;
 use super::nameless::{OF, again, is_nameless, middle, offers, reach};
 use super::proposals::refitted;
+use super::weight::{SAG, WEIGHT};
 use crate::campaign::Campaign;
 use crate::identify::positions::regression::STANDS;
 use crate::trace::beyond::AKAIKE;
@@ -82,7 +83,10 @@ fn among_more<'c>(
         return None;
     }
     let (nameless, named) = told(campaign, &wide, &found.model);
-    let loses = !names_lost(&wide, course, &named).is_empty();
+    // Weight in place of a sag is the sag, told by what is not its name.
+    let hangs = |one: &Named| wide.candidates[one.candidate].kind == &WEIGHT;
+    let is_lost = |name: &String| name != SAG || !nameless.iter().any(hangs);
+    let loses = names_lost(&wide, course, &named).iter().any(is_lost);
     if !(unsaid || loses && is_better(&wide, &found.model, &model)) {
         return None;
     }
@@ -125,7 +129,7 @@ fn told(campaign: &Campaign, wide: &Bench<'_>, model: &Model) -> (Vec<Named>, Ve
     let value = |one: Named| model.solved.state.values[wide.variant(one).columns[0] - STANDS].abs();
     let counts_from = |zero: Named, one: Named| {
         let shape = &wide.variant(one).shape;
-        let of = shape.iter().find(|mark| mark.name == OF).map_or(0, |mark| mark.value as usize);
+        let Some(of) = shape.iter().find(|mark| mark.name == OF).map(|mark| mark.value as usize) else { return false };
         wide.candidates[one.candidate].place == wide.candidates[zero.candidate].place
             && middle(data, of).is_some()
             && value(zero) <= value(one) * reach(robot, data, of)

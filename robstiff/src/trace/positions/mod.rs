@@ -12,7 +12,7 @@
 //! constants, which the catalogue has in steps, are then looked for `between` them; rows that do not belong are
 //! left out (`wild`); faults of the rig are held against the lengths that they can stand in for
 //! (`stand_ins`); what remains is tested for `structure`; names are held against what
-//! has none (`beyond`, `nameless`; of slips, `wander`). Effects enter the forward model itself, and are fitted
+//! has none (`beyond`, `nameless`, `weight`; of slips, `wander`). Effects enter the forward model itself, and are fitted
 //! in it.
 
 pub mod bench;
@@ -47,6 +47,9 @@ mod unseen;
 mod wander;
 #[cfg(test)]
 mod wander_tests;
+mod weight;
+#[cfg(test)]
+mod weight_tests;
 mod written;
 
 use self::bench::Bench;

@@ -1,6 +1,7 @@
 //! What arms are known to have that positions show and the catalogue has no name for: an
-//! encoder with a scale of its own, a joint that another one takes along; a slip after another,
-//! as of a base or a reflector that somebody put back.
+//! encoder with a scale of its own, a joint that another one takes along, [weight](super::weight)
+//! that the description does not know; a slip after another, as of a base or a reflector that
+//! somebody put back.
 //!
 //! No description has a word for any of it, so none is ever named; it is what names are held
 //! [against](super::beyond).
@@ -16,6 +17,7 @@ use robstiff_robots::effect::Place as Part;
 use super::offers::{Form, Number, Offer, any};
 use super::rig::Rig;
 use super::slips::{OF_BASE, OF_REFLECTOR};
+use super::weight::{self, WEIGHT};
 use crate::JointKind;
 use crate::campaign::Positions;
 use crate::identify::positions::model::{ANGLE_STEP, Enters, Follower, Model};
@@ -66,7 +68,7 @@ const MOST: f64 = 0.1;
 
 /// Whether a candidate has no name.
 pub fn is_nameless(candidate: &Candidate) -> bool {
-    candidate.kind == &FOLLOWER || again(candidate).is_some()
+    [&FOLLOWER, &WEIGHT].contains(&candidate.kind) || again(candidate).is_some()
 }
 
 /// Everything that has no name; second slips where `slipped` is whether one of a kind may have
@@ -77,7 +79,7 @@ pub fn offers(robot: &Description, data: &Positions, rig: &Rig, slipped: impl Fn
     let base = slipped(OF_BASE).then(base).flatten();
     let reflector = slipped(OF_REFLECTOR).then(reflector).flatten();
     let followers = (1..=robot.joints.len()).filter_map(|joint| follower(robot, data, joint));
-    base.into_iter().chain(reflector).chain(followers).collect()
+    base.into_iter().chain(reflector).chain(followers).chain(weight::offers(robot, data, rig)).collect()
 }
 
 /// A joint that follows, one or another or itself; counted from where that is zero, or from

@@ -10,6 +10,7 @@ use super::bench::{Bench, Model, Proposed};
 use super::search::Searched;
 use super::spread::{spread_as_declared, spread_of};
 use super::unseen::{undecided, unseen, unseen_rms};
+use super::weight::{self, SAG};
 use super::written::{described, own_effects, without_untold};
 use crate::campaign::{Campaign, PositionRow};
 use crate::identify::positions::regression::STANDS;
@@ -63,8 +64,12 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
     let (spread_before, spread) = (spread_as_declared(base), spread_of(bench, model));
     let spread_written = if fewer.is_some() { spread_of(bench, written) } else { spread.clone() };
     let replaced = if tells { bench.replaced(&model.named) } else { Vec::new() };
-    let effects =
-        if tells { effects(found, &replaced, &spread, &undecided, (structure, after.holdout_rms)) } else { Vec::new() };
+    let effects = if tells {
+        effects(campaign, found, &replaced, &spread, &undecided, (structure, after.holdout_rms))
+    } else {
+        Vec::new()
+    };
+    why.extend(weight::how_to_tell(&effects));
     let description = match tells {
         true => described(campaign, bench, &values, &own_effects(bench, written, &effects))?,
         false => campaign.robot.clone(),
@@ -199,6 +204,7 @@ const NOISIEST: f64 = 0.01;
 /// The named effects, the one without which most is left first: each with the error on
 /// unseen poses (m) that it and those before it leave; wild readings come last.
 fn effects(
+    campaign: &Campaign,
     found: &Searched<'_>,
     replaced: &[(usize, Proposed)],
     spread: &DMatrix<f64>,
@@ -213,6 +219,7 @@ fn effects(
         let at = chosen.len() + shaped.iter().position(|other| *other == one)?;
         spread.get((at, at)).map(|variance| variance.sqrt())
     };
+    let weight = weight::in_place(bench, &campaign.robot, model);
     let mut named: Vec<(f64, Named, NamedEffect)> = Vec::new();
     for (k, &one) in model.named.iter().enumerate() {
         let (form, candidate) = (bench.variant(one), &bench.candidates[one.candidate]);
@@ -228,7 +235,11 @@ fn effects(
         let rest = all_but(&model.named, k);
         let without = bench.solve(&rest, &model.solved.state).map_or(f64::INFINITY, |rest| rest.solved.fit.rss);
         let value = parameters.first().map_or(0.0, |number| number.value);
-        let same_as = same_as(bench, model, k, value, replaced);
+        let mut same_as = same_as(bench, model, k, value, replaced);
+        let is_sag = candidate.name() == SAG || same_as.iter().any(|name| name == SAG);
+        if !is_sag && weight[k].is_some_and(|rss| alike(bench, model, rss)) {
+            same_as.push(SAG.to_string());
+        }
         named.push((
             without,
             one,
