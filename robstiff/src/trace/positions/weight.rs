@@ -53,10 +53,10 @@ pub fn offers(robot: &Description, data: &Positions, rig: &Rig) -> Vec<Offer> {
 /// What may hang on a joint, by the index of its link.
 fn on(robot: &Description, rig: &Rig, joints: &Rc<[Frames]>, link: usize) -> Offer {
     let own = robot.joints[link].compliance();
-    let number = |(name, unit, range, moment): (_, _, _, &dyn Fn(&Frames, usize) -> Vector3<f64>)| Number {
+    let anywhere = |name, moment: &dyn Fn(&Frames, usize) -> Vector3<f64>| Number {
         name,
-        unit,
-        range,
+        unit: "rad",
+        range: [-MOST_TURNED, MOST_TURNED],
         enters: turned(robot, rig, joints, link, moment),
     };
     let across = |at: usize| {
@@ -65,8 +65,7 @@ fn on(robot: &Description, rig: &Rig, joints: &Rc<[Frames]>, link: usize) -> Off
             [x, frames.axes[link].0.cross(&x)][at] / own
         }
     };
-    let most = [-MOST_TURNED, MOST_TURNED];
-    let mut numbers = vec![number(("x", "rad", most, &across(0))), number(("y", "rad", most, &across(1)))];
+    let mut numbers = vec![anywhere("x", &across(0)), anywhere("y", &across(1))];
     let mut forms = vec![Form::of(0..2)];
     if let Some(declared) = robot.links.get(link).filter(|link| link.mass > 0.0) {
         let center = Point3::from(declared.center_of_mass);
@@ -74,7 +73,8 @@ fn on(robot: &Description, rig: &Rig, joints: &Rc<[Frames]>, link: usize) -> Off
         let whole = move |frames: &Frames, joint: usize| {
             (frames.links[link].transform_point(&center).coords - frames.axes[joint].1) * weight
         };
-        numbers.push(number(("share", "1", [-1.0, MOST_SAG], &whole)));
+        let enters = turned(robot, rig, joints, link, whole);
+        numbers.push(Number { name: "share", unit: "1", range: [-1.0, MOST_SAG], enters });
         forms.push(Form::of([2]));
     }
     Offer { kind: &WEIGHT, place: Part::Joint(link + 1).into(), numbers, forms, possible: any() }
