@@ -118,6 +118,12 @@ impl Axes {
         self.torques(axis).into_iter().map(|torque| torque * self.compliance[axis - 1]).collect()
     }
 
+    /// Whether an axis is loaded to both sides.
+    pub fn is_loaded_both_ways(&self, axis: usize) -> bool {
+        let torques = self.torques(axis);
+        torques.iter().any(|&torque| torque > 0.0) && torques.iter().any(|&torque| torque < 0.0)
+    }
+
     /// The largest torque on an axis (Nm), without sign.
     pub fn largest(&self, axis: usize) -> f64 {
         self.torques(axis).into_iter().map(f64::abs).fold(0.0, f64::max)

@@ -79,8 +79,12 @@ impl Bench {
                     false => Sign::Free,
                 }));
                 let plain = Variant::new((first..columns.len()).collect(), form.shape.clone());
-                // The row that it begins at is one more number out of a grid.
-                let parameters = plain.parameters + usize::from(!form.told.is_empty());
+                // The row that it begins at is one more number out of a grid, where rows are
+                // searched. The first row is as dear where lost motion shifts an axis as well.
+                let slips = form.told.iter().find(|number| number.name == SLIPPED_AXIS);
+                let is_dear =
+                    slips.is_some_and(|axis| one.forms.len() > 1 || !axes.is_loaded_both_ways(axis.value as usize));
+                let parameters = plain.parameters + usize::from(is_dear);
                 Variant { within: form.within, likely: form.likely, parameters, ..plain }
             };
             let variants = one.forms.iter().map(variant).collect();

@@ -100,3 +100,21 @@ fn noise_that_grows_with_the_torque_makes_no_row_wild() {
         assert!(!names.contains(&"outliers@rig".to_string()), "{seed}: {names:?}");
     }
 }
+
+/// Two or three of them are in proportion to compliances by chance: that is no bias of the torque.
+#[test]
+fn unloaded_readings_that_are_all_off_are_no_bias() {
+    for seed in 0..6 {
+        let mut random = ChaCha8Rng::seed_from_u64(860 + seed);
+        let mut campaign = measured(&five_axis(), &both_ways(), 860 + seed, |_, _| 0.0);
+        for axis in 1..=5 {
+            let off = 15.0 * NOISE * normal(&mut random);
+            rows_of(&mut campaign).iter_mut().filter(|row| row.axis == axis).for_each(|row| row.deflection += off);
+        }
+        let trace = traced(&campaign);
+        let names = names(&trace);
+        assert!(names.iter().all(|name| name == "base_slip@base"), "{seed}: {} {names:?}", trace.verdict);
+        // One axis's slip in the place of another's has the same names.
+        assert!(trace.rivals.iter().all(|rival| rival.names != names), "{seed}");
+    }
+}
