@@ -13,7 +13,7 @@ use super::bench::Bench;
 use super::curves::instead_of_rows;
 use super::one_off::one_off;
 use super::search::Found as Searched;
-use super::slips::as_good_as_slip;
+use super::slips::{as_good_as_slip, shifts_all};
 use super::spread::spread;
 use crate::campaign::{Campaign, ClampedRow};
 use crate::identify::baseline::{declared, with_values};
@@ -76,6 +76,10 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
     let values = values(campaign, bench, written);
     let effects =
         if tells { effects(found, &spread, structure, after.holdout_rms, apart.as_ref()) } else { Vec::new() };
+    let (verdict, why) = match one_more_is_off(bench, model, &effects) {
+        Some(why) if verdict == Verdict::Explained => (Verdict::Partial, why),
+        _ => (verdict, why),
+    };
     let description = match tells {
         true => {
             let own = written.named.iter().map(|&one| of_model(bench, written, one));
@@ -154,6 +158,19 @@ fn many(bench: &Bench) -> Option<String> {
         let rows = whole.rows_of(axis).len();
         let many = wild > TWO && wild as f64 > MANY * rows as f64;
         many.then(|| format!("{wild} of {rows} rows of axis {axis} are wild: they have something in common"))
+    })
+}
+
+/// How many unloaded readings are off before one more is the likeliest of what looks like it.
+const SEVERAL_OFF: usize = 2;
+
+/// Which effect one more unloaded reading that is off may look like, where several are.
+fn one_more_is_off(bench: &Bench, model: &Fitted, effects: &[NamedEffect]) -> Option<String> {
+    let off = model.named.iter().filter(|&&one| shifts_all(bench, one)).count();
+    let slip = format!("{}@{}", BASE_SLIP.name, Part::Base);
+    let other = effects.iter().find(|named| named.effect.to_string() != slip && named.same_as.contains(&slip))?;
+    (off >= SEVERAL_OFF).then(|| {
+        format!("the unloaded readings of several axes are off, and {} may be one more of them", other.effect.words())
     })
 }
 
