@@ -51,7 +51,7 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
         return Ok(Found { bench, selection, left, wild: (Vec::new(), 1.0), too_little: Some(why) });
     }
     let room = Room::new(&bench.axes.whole().rows);
-    let found = found(Course::new(bench, base, room), options, progress)?;
+    let found = from_start(Course::new(bench, base, room), options, progress)?;
     let (model, wild) = (&found.selection.model, &found.wild.0);
     if wild.is_empty() || found.leaves_something() || !may_be_noise(&found.bench, model, wild) {
         return Ok(found);
@@ -60,13 +60,13 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
     progress("searching again with all rows, for noise that grows with the torque");
     let whole = Bench::new(found.bench.axes.whole(), None);
     let base = whole.fit(&[]).ok_or_else(no_axis)?;
-    self::found(Course::new(whole, base, Room::none()), options, progress)
+    from_start(Course::new(whole, base, Room::none()), options, progress)
 }
 
 /// What a search finds from its beginning on.
-fn found(course: Course, options: &Options, progress: &Progress<'_>) -> Result<Found, String> {
+fn from_start(course: Course, options: &Options, progress: &Progress<'_>) -> Result<Found, String> {
     let room = course.room.clone();
-    let first = ended(course, options, progress)?;
+    let first = to_end(course, options, progress)?;
     if !first.leaves_something() {
         return Ok(first);
     }
@@ -77,12 +77,12 @@ fn found(course: Course, options: &Options, progress: &Progress<'_>) -> Result<F
     course.at.wild.clone_from(&first.wild);
     course.steps.clone_from(&first.selection.steps);
     course.told_apart();
-    let other = ended(course, options, progress)?;
+    let other = to_end(course, options, progress)?;
     Ok(if other.leaves_something() { first } else { other })
 }
 
 /// What a search finds that goes on from what it has.
-fn ended(mut course: Course, options: &Options, progress: &Progress<'_>) -> Result<Found, String> {
+fn to_end(mut course: Course, options: &Options, progress: &Progress<'_>) -> Result<Found, String> {
     course.run(options, progress)?;
     if course.set_apart() {
         course.run(options, progress)?;
