@@ -167,7 +167,7 @@ const SEVERAL_OFF: usize = 2;
 /// Which effect one more unloaded reading that is off may look like, where several are.
 fn one_more_is_off(bench: &Bench, model: &Fitted, effects: &[NamedEffect]) -> Option<String> {
     let off = model.named.iter().filter(|&&one| shifts_all(bench, one)).count();
-    let slip = format!("{}@{}", BASE_SLIP.name, Part::Base);
+    let slip = slip();
     let other = effects.iter().find(|named| named.effect.to_string() != slip && named.same_as.contains(&slip))?;
     (off >= SEVERAL_OFF).then(|| {
         format!("the unloaded readings of several axes are off, and {} may be one more of them", other.effect.words())
@@ -342,12 +342,17 @@ fn same_as(
     same_as
 }
 
+/// The full name of a slip, of whichever axis.
+fn slip() -> String {
+    format!("{}@{}", BASE_SLIP.name, Place::from(Part::Base))
+}
+
 /// The name of a slip, where the last row of an axis is wild, which may be the first after one.
 fn slip_before_last(bench: &Bench, lines: &[usize]) -> Vec<String> {
     let whole = bench.axes.whole();
     let last = |axis: usize| whole.rows_of(axis).last().map(|&row| whole.rows[row].line);
     let is_last = whole.loaded().filter_map(last).any(|line| lines.contains(&line));
-    is_last.then(|| format!("{}@{}", BASE_SLIP.name, Place::from(Part::Base))).into_iter().collect()
+    is_last.then(slip).into_iter().collect()
 }
 
 /// The hysteresis that a softening of the axis may as well be, where its loads never go back.

@@ -6,6 +6,7 @@ use std::vec::Vec;
 use super::bench::Bench;
 use crate::campaign::ClampedRow;
 use crate::identify::clamped::wild::gains;
+use crate::trace::lack_of_fit::correlation;
 use crate::trace::model::Fitted;
 
 /// So many standard deviations the correlation has to be above none: without growth it is once
@@ -29,22 +30,11 @@ fn grows(bench: &Bench, model: &Fitted) -> bool {
     let Some(all) = gains(&bench.axes.rows, &bench.problem, &model.fit) else { return false };
     let of_axis = |axis: usize| {
         let rows = bench.axes.rows_of(axis);
-        let off = rows.iter().map(|&row| all[row].sqrt());
-        let torques = rows.iter().map(|&row| bench.axes.rows[row].torque.abs());
-        let sum = correlation(off.zip(torques).collect())? * ((rows.len() - 1) as f64).sqrt();
-        sum.is_finite().then_some(sum)
+        let off: Vec<f64> = rows.iter().map(|&row| all[row].sqrt()).collect();
+        let torques: Vec<f64> = rows.iter().map(|&row| bench.axes.rows[row].torque.abs()).collect();
+        let sum = correlation(&off, &torques) * (rows.len() as f64 - 1.0).sqrt();
+        (rows.len() > 2 && sum.is_finite()).then_some(sum)
     };
     let axes: Vec<f64> = bench.axes.loaded().filter_map(of_axis).collect();
     axes.iter().sum::<f64>() > GROWS * (axes.len() as f64).sqrt()
-}
-
-/// The correlation of pairs; none of fewer than three.
-fn correlation(pairs: Vec<(f64, f64)>) -> Option<f64> {
-    let count = pairs.len() as f64;
-    let (x, y) = pairs.iter().fold((0.0, 0.0), |sum, pair| (sum.0 + pair.0 / count, sum.1 + pair.1 / count));
-    let [xy, xx, yy] = pairs.iter().fold([0.0; 3], |[xy, xx, yy], pair| {
-        let (dx, dy) = (pair.0 - x, pair.1 - y);
-        [xy + dx * dy, xx + dx * dx, yy + dy * dy]
-    });
-    (pairs.len() > 2).then(|| xy / (xx * yy).sqrt())
 }
