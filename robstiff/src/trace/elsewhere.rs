@@ -12,9 +12,8 @@
 
 use std::format;
 use std::string::String;
-use std::vec::Vec;
 
-use super::alias::{Rival, bic_as_wild};
+use super::alias::Rival;
 use super::bench::Bench;
 use super::model::{LeftOut, Named};
 use super::search::Outcome;
@@ -59,8 +58,8 @@ pub fn searched<'c>(
         return Ok((bench, outcome));
     }
     found.rival = rival((&bench, &outcome), (&other, &found));
-    let mut step = Step::bare(names(&bench, &outcome));
-    step.outcome = format!("anew with a reflector that may be elsewhere: named {}", names(&other, &found).join(", "));
+    let mut step = Step::bare(outcome.names(&bench));
+    step.outcome = format!("anew with a reflector that may be elsewhere: named {}", found.names(&other).join(", "));
     outcome.selection.steps.push(step);
     Ok((other, found.after(outcome)))
 }
@@ -83,7 +82,7 @@ fn is_better(with: FoundOn<'_, '_>, without: FoundOn<'_, '_>) -> bool {
         (true, false) => false,
         // Where nothing was worth a name, one that leaves structure is there for want of better.
         (true, true) if other == 0 => false,
-        _ => match (bic(with), bic(without)) {
+        _ => match (with.1.bic_of_all(with.0), without.1.bic_of_all(without.0)) {
             // One fault of the rig is likelier than several of the robot that do the very same.
             (Some(new), Some(old)) if own < other && new < old + TIE => true,
             (Some(new), Some(old)) => {
@@ -100,14 +99,9 @@ const TIE: f64 = 1e-2;
 /// What was found as a rival of what is told instead; `None` where structure tells them apart,
 /// or the criterion.
 fn rival(of: FoundOn<'_, '_>, told: FoundOn<'_, '_>) -> Option<Rival> {
-    let bic_difference = (bic(of)? - bic(told)?).max(0.0);
+    let bic_difference = (of.1.bic_of_all(of.0)? - told.1.bic_of_all(told.0)?).max(0.0);
     let is_near = of.1.structure() == told.1.structure() && bic_difference < WITHIN_REACH;
-    is_near.then(|| Rival { names: names(of.0, of.1), bic_difference })
-}
-
-/// The criterion, of all rows.
-fn bic((bench, outcome): FoundOn<'_, '_>) -> Option<f64> {
-    bic_as_wild(bench, &outcome.selection.model, &outcome.events)
+    is_near.then(|| Rival { names: of.1.names(of.0), bic_difference })
 }
 
 /// Whether a model has fewer numbers than another.
@@ -128,9 +122,4 @@ fn predicts(with: FoundOn<'_, '_>, without: FoundOn<'_, '_>) -> bool {
 fn left_out(bench: &Bench<'_>, outcome: &Outcome) -> Option<LeftOut> {
     let model = &outcome.selection.model;
     Some(bench.at(&model.named).ok()?.left_out(&model.fit))
-}
-
-/// The full names of what was found.
-fn names(bench: &Bench<'_>, outcome: &Outcome) -> Vec<String> {
-    bench.names(&outcome.selection.model.named)
 }

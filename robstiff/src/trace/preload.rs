@@ -13,7 +13,6 @@ use std::vec::Vec;
 
 use robstiff_robots::Place as Part;
 
-use super::alias::bic_as_wild;
 use super::bench::Bench;
 use super::catalogue::{GRAVITY_PRELOAD, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY};
 use super::found::{EffectParameter, Found};
@@ -49,18 +48,15 @@ pub fn worth_a_try(campaign: &Campaign, outcome: &Outcome) -> Option<Campaign> {
 
 /// Whether what was found with gears that carry the weight accounts better for the data.
 pub fn is_better(preloaded: (&Bench<'_>, &Outcome), plain: (&Bench<'_>, &Outcome)) -> bool {
-    let candidates = |(bench, outcome): (&Bench<'_>, &Outcome)| bench.names(&outcome.selection.model.named);
-    let has_curve = candidates(preloaded).iter().any(|name| name.split('@').next().is_some_and(is_curve));
+    let has_curve = preloaded.1.names(preloaded.0).iter().any(|name| name.split('@').next().is_some_and(is_curve));
     match (preloaded.1.structure(), plain.1.structure()) {
         _ if !has_curve => false,
         (false, true) => true,
         (true, false) => false,
-        _ => {
-            let bic = |(bench, outcome): (&Bench<'_>, &Outcome)| {
-                bic_as_wild(bench, &outcome.selection.model, &outcome.events)
-            };
-            matches!((bic(preloaded), bic(plain)), (Some(with), Some(without)) if with < without - WITHIN_REACH)
-        }
+        _ => matches!(
+            (preloaded.1.bic_of_all(preloaded.0), plain.1.bic_of_all(plain.0)),
+            (Some(with), Some(without)) if with < without - WITHIN_REACH
+        ),
     }
 }
 

@@ -8,7 +8,7 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use super::alias::{Rival, with_wild_rows};
+use super::alias::{Rival, bic_as_wild, with_wild_rows};
 use super::bench::Bench;
 use super::beyond::{self, Beyond};
 use super::isolated::Event;
@@ -68,6 +68,16 @@ impl Outcome {
             (self.verdict, self.why) = judged;
         }
         Ok(())
+    }
+
+    /// The full names of the model's effects.
+    pub fn names(&self, bench: &Bench<'_>) -> Vec<String> {
+        bench.names(&self.selection.model.named)
+    }
+
+    /// The criterion of Schwarz, of all rows: what is wrong in single visits counts as wild.
+    pub fn bic_of_all(&self, bench: &Bench<'_>) -> Option<f64> {
+        bic_as_wild(bench, &self.selection.model, &self.events)
     }
 
     /// Whether structure is left.
