@@ -198,20 +198,8 @@ impl Offers<'_> {
         check: Option<Check>,
     ) {
         let place = place.into();
-        let same = |effect: &&Effect| effect.kind() == self.kind.name && place == Place::Part(effect.place());
-        let declared = self.declared.iter().find(same);
-        if declared.is_some_and(|effect| !is_offered_as_change(effect)) {
-            return;
-        }
-        // A description takes one order of a joint: the one that it has.
-        let is_possible = |form: &Form| match declared {
-            Some(&Effect::TransmissionError { order, .. }) => {
-                form.shape.iter().all(|number| number.name != "order" || number.value == order)
-            }
-            _ => true,
-        };
-        let forms: Vec<Form> = forms.into_iter().filter(is_possible).collect();
-        if forms.is_empty() {
+        let same = |effect: &Effect| effect.kind() == self.kind.name && place == Place::Part(effect.place());
+        if self.declared.iter().any(|effect| same(effect) && !is_offered_as_change(effect)) {
             return;
         }
         let start = self.first + self.catalogue.numbers.len();

@@ -6,6 +6,7 @@ use std::format;
 use std::vec::Vec;
 
 use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
+use crate::Effect;
 use crate::identify::setup::Wave;
 
 /// The kind.
@@ -33,6 +34,16 @@ pub const MOST: f64 = 0.1;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for joint in (1..=scene.joints()).filter(|&joint| scene.turns(joint)) {
+        // A description takes one order of a joint: the one that it has.
+        let declared = scene.description.effects.iter().find_map(|effect| match *effect {
+            Effect::TransmissionError { joint: own, order, .. } if own == joint => Some(order),
+            _ => None,
+        });
+        let orders: Vec<f64> =
+            ORDERS.into_iter().filter(|&order| declared.is_none_or(|declared| declared == order)).collect();
+        if orders.is_empty() {
+            continue;
+        }
         let number = |(order, name): (f64, &'static str)| {
             let of_cos = name == "cos";
             let wave = move |amplitude: f64| {
@@ -53,8 +64,8 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
             )
         };
         let numbers: Vec<Number> =
-            ORDERS.iter().flat_map(|&order| [(order, "cos"), (order, "sin")]).map(number).collect();
+            orders.iter().flat_map(|&order| [(order, "cos"), (order, "sin")]).map(number).collect();
         let form = |(k, &order): (usize, &f64)| Form::of([2 * k, 2 * k + 1]).with("order", order, "1");
-        offers.add(Part::Joint(joint), numbers, ORDERS.iter().enumerate().map(form).collect());
+        offers.add(Part::Joint(joint), numbers, orders.iter().enumerate().map(form).collect());
     }
 }

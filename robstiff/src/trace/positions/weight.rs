@@ -45,13 +45,13 @@ const MOST_TURNED: f64 = 2e-3;
 /// What may hang on each joint that turns and yields: so much more of the mass that the
 /// description says its link has, where that is, or anything anywhere on the link.
 pub fn offers(robot: &Description, data: &Positions, rig: &Rig) -> Vec<Offer> {
-    let joints: Rc<[Frames]> = frames(robot, &data.rows).into();
+    let joints = frames(robot, &data.rows);
     let hangs = |&link: &usize| robot.joints[link].kind == JointKind::Revolute && robot.joints[link].compliance() > 0.0;
     (0..robot.joints.len()).filter(hangs).map(|link| on(robot, rig, &joints, link)).collect()
 }
 
 /// What may hang on a joint, by the index of its link.
-fn on(robot: &Description, rig: &Rig, joints: &Rc<[Frames]>, link: usize) -> Offer {
+fn on(robot: &Description, rig: &Rig, joints: &[Frames], link: usize) -> Offer {
     let own = robot.joints[link].compliance();
     let anywhere = |name, moment: &dyn Fn(&Frames, usize) -> Vector3<f64>| Number {
         name,
