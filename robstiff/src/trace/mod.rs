@@ -72,6 +72,7 @@ use std::vec::Vec;
 use robstiff_robots::Description;
 
 pub use alias::Rival;
+pub use catalogue::is_offered_as_change;
 pub use correction::Correction;
 pub use found::{EffectParameter, Found, Place};
 pub use lack_of_fit::StructureTest;

@@ -1,7 +1,8 @@
 //! What a tracing leaves open.
 
 use robstiff::identify::{Estimate, Visibility};
-use robstiff::trace::{Rival, Trace};
+use robstiff::trace::{Rival, Trace, is_offered_as_change};
+use robstiff_robots::Effect;
 
 use crate::text::words::{by_kind, spoken};
 use crate::text::{and, decimals};
@@ -13,10 +14,13 @@ pub fn doubts(trace: &Trace) -> Vec<String> {
         doubts.push(format!("{} more such models come close.", trace.rivals.len() - RIVALS));
     }
     let held = trace.description.effects.iter().filter(|effect| effect.is_kinematic());
-    let held: Vec<String> = held.map(ToString::to_string).filter(|name| !is_fitted(trace, name)).collect();
+    let held = held.filter(|effect| !is_fitted(trace, &effect.to_string()));
     // Of displacements, changes of most are looked for; what is left has none that shows.
-    let (held, unchanged): (Vec<String>, Vec<String>) =
-        held.into_iter().partition(|name| !trace.differences || name.starts_with("gravity_sag"));
+    let of_displacements = trace.differences && trace.components == 3;
+    let (unchanged, held): (Vec<&Effect>, Vec<&Effect>) =
+        held.partition(|effect| of_displacements && is_offered_as_change(effect));
+    let [unchanged, held] =
+        [unchanged, held].map(|effects| effects.iter().map(ToString::to_string).collect::<Vec<_>>());
     if !unchanged.is_empty() {
         let names = and(&by_kind(&unchanged));
         doubts.push(format!("The description has these, of which no change shows, and they were kept: {names}."));

@@ -7,6 +7,7 @@ use robstiff::trace::{EffectParameter, NamedEffect, Proposal, RowResidual, Trace
 use robstiff_robots::Joint;
 
 use super::doubts::doubts;
+use crate::effect::parameters;
 use crate::identify::{at_bound, source_of};
 use crate::report::terms::Terms;
 use crate::text::words::spoken;
@@ -156,11 +157,11 @@ fn changed(trace: &Trace, campaign: &Campaign) -> Option<String> {
     let declared = |name: &str| campaign.robot.effects.iter().find(|effect| effect.to_string() == name);
     let was = |named: &NamedEffect| {
         let name = named.effect.to_string();
-        let numbers = declared(&name)?.parameters().filter_map(|(parameter, value)| {
-            let spelt = |own: &&EffectParameter| own.name == parameter.name || own.name == "offset";
-            let own = told(named).find(spelt).filter(|own| own.std.is_some())?;
-            let of = if own.name == parameter.name && own.name != "value" { own.name } else { "" };
-            Some(format!("{of} {}", quantity(value, None, own.unit)).trim().to_owned())
+        // An order does not change.
+        let numbers = parameters(declared(&name)?).into_iter().filter(|&(_, _, unit)| unit != "1");
+        let numbers = numbers.map(|(parameter, value, unit)| {
+            let of = if parameter == "value" { String::new() } else { format!("{parameter} ") };
+            of + &quantity(value, None, unit)
         });
         Some(format!("{name} was {}", and(&numbers.collect::<Vec<_>>())))
     };
