@@ -129,7 +129,7 @@ pub(crate) fn has_length(convention: Convention, joints: &[Joint], link: usize) 
 
 /// Coordinates beyond a limit by less than this are on it (rad or m): a limit in
 /// degrees is rounded.
-const ON_THE_LIMIT: f64 = 1e-6;
+pub const ON_THE_LIMIT: f64 = 1e-6;
 
 impl Joint {
     /// The joint's compliance, the sum of its parts [rad/Nm or m/N].

@@ -3,6 +3,7 @@
 
 mod header;
 mod lines;
+mod problems;
 
 use core::cell::RefCell;
 use std::borrow::ToOwned;
@@ -13,11 +14,10 @@ use std::vec::Vec;
 
 use robstiff_robots::quantity::{Dimension, QuantityError, finite, scale};
 use robstiff_robots::words::count;
-use robstiff_robots::{Diagnostic, Diagnostics, Line, ReadError};
+use robstiff_robots::{Diagnostic, Diagnostics, ReadError};
 
 use header::Header;
 pub use lines::Lines;
-use lines::extent;
 
 /// A table, and the problems found in it so far.
 pub struct Table<'t> {
@@ -313,24 +313,6 @@ impl<'t> Table<'t> {
         &record.fields[column.index]
     }
 
-    /// Reports a problem with a field (by its index) of a line.
-    pub fn report(&self, line: usize, field: usize, message: &str, help: &str) {
-        if self.problems.borrow().len() < Diagnostics::MOST {
-            let problem = self.problem(line, field, message, help);
-            self.problems.borrow_mut().push(problem);
-        }
-    }
-
-    /// Reports a problem with the header as a whole.
-    pub fn report_header(&self, message: &str, help: &str) {
-        self.report(self.header_line, usize::MAX, message, help);
-    }
-
-    /// Reports a problem with a row in a column of numbers.
-    pub fn report_number(&self, record: &Record, column: Numbers, message: &str, help: &str) {
-        self.report(record.line, column.index, message, help);
-    }
-
     /// The name of a column, without its unit.
     pub fn name_of(&self, column: Numbers) -> &str {
         &self.header[column.index].name
@@ -339,59 +321,6 @@ impl<'t> Table<'t> {
     /// Whether the header gives a column its unit.
     pub fn has_unit(&self, column: Numbers) -> bool {
         self.header[column.index].unit.is_some()
-    }
-
-    /// Warns of something that is no problem for the reader.
-    pub fn warn(&self, message: &str) {
-        self.warnings.borrow_mut().push(format!("{}: {message}", self.file));
-    }
-
-    /// The column that was looked for in vain and that has this name up to its case.
-    fn meant_by(&self, name: &str) -> Option<String> {
-        self.absent.borrow().iter().find(|meant| meant.eq_ignore_ascii_case(name)).cloned()
-    }
-
-    /// Warns of columns that are called as one that was looked for, up to their case.
-    #[cfg(feature = "identify")]
-    pub fn warn_of_misspelt(&self) {
-        for Header { name, .. } in &self.header {
-            if let Some(meant) = self.meant_by(name) {
-                self.warn(&format!("the column `{name}` is not used: write `{meant}` if it is that"));
-            }
-        }
-    }
-
-    /// What was warned of so far.
-    #[cfg(feature = "identify")]
-    pub fn noticed(&self) -> Vec<String> {
-        self.warnings.borrow().clone()
-    }
-
-    fn problem(&self, line: usize, field: usize, message: &str, help: &str) -> Diagnostic {
-        let source_line = self.lines.line(line);
-        let line = Line { number: line, text: source_line };
-        Diagnostic::new(self.file, line, extent(source_line, field), message, help)
-    }
-
-    /// What was read with the warnings, if no problem was found on the way.
-    ///
-    /// # Errors
-    /// All the problems found.
-    ///
-    /// # Panics
-    /// If there is neither a value nor a problem.
-    pub fn finish<T>(self, value: Option<T>) -> Result<(T, Vec<String>), Diagnostics> {
-        if let Some(problems) = Diagnostics::new(self.problems.take()) {
-            return Err(problems);
-        }
-        let asked_for = self.asked_for.borrow();
-        let unused = self.header.iter().enumerate().filter(|(i, _)| !asked_for.contains(i));
-        let mut warnings = self.warnings.take();
-        warnings.extend(unused.map(|(_, Header { name, .. })| {
-            let ask = self.meant_by(name).map(|meant| format!(": write `{meant}` if it is that")).unwrap_or_default();
-            format!("{}: the column `{name}` is not used{ask}", self.file)
-        }));
-        Ok((value.expect("a value was given up without a problem being reported"), warnings))
     }
 }
 

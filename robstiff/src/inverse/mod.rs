@@ -23,6 +23,7 @@ use core::f64::consts::TAU;
 use std::vec::Vec;
 
 use nalgebra::SVector;
+use robstiff_robots::description::ON_THE_LIMIT;
 
 use crate::{JointKind, Robot};
 use descent::{Bounds, End, descend};
@@ -33,10 +34,6 @@ use wrist::Wrist;
 
 /// A solution is within this of its target (m, rad).
 pub const TOLERANCE: f64 = 1e-10;
-
-/// Coordinates beyond a limit by less than this are on it (rad or m), as in
-/// descriptions.
-pub(crate) const ON_THE_LIMIT: f64 = 1e-6;
 
 /// Candidates of a closed form within this (m, rad) need no further step.
 const EXACT: f64 = 1e-12;

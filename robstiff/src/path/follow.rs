@@ -4,11 +4,12 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
+use robstiff_robots::description::ON_THE_LIMIT;
 use robstiff_robots::{Diagnostic, Diagnostics, Line};
 
 use super::seeds::spread;
 use super::{Goal, Jump, Orientation, PathPoint, SolvedPath, ToolPath, Unreached, Unsolved, Waypoint};
-use crate::inverse::{Inverse, ON_THE_LIMIT, Target};
+use crate::inverse::{Inverse, Target};
 use crate::{JointKind, Robot};
 
 /// Points that are shown with their line and why they cannot be reached or corrected.
