@@ -132,16 +132,19 @@ fn effects(joints: Vec<Joint>) -> impl Strategy<Value = Vec<Effect>> {
     prop::sample::subsequence(all, 0..=count).prop_flat_map(|chosen| chosen)
 }
 
-/// Masses of which the arm sags by at most some mrad, wherever it stands.
+/// Masses of which the arm sags by at most some mrad, wherever it stands; now and then its
+/// gears carry them, too.
 fn sagging(robot: Description) -> impl Strategy<Value = Description> {
     let count = robot.joints.len();
     let link = (0.0..300.0_f64, prop::array::uniform3(length()));
     let link = link.prop_map(|(mass, center_of_mass)| Link { mass, center_of_mass });
-    (prop::collection::vec(link, count), Just(robot)).prop_map(|(links, robot)| {
+    let preload = prop::option::of((0.0..1.5_f64).prop_map(|share| Effect::GravityPreload { share }));
+    (prop::collection::vec(link, count), preload, Just(robot)).prop_map(|(links, preload, robot)| {
         let softest = robot.joints.iter().map(Joint::compliance).fold(0.0, f64::max);
         let weight: f64 = links.iter().map(|link| 9.81 * link.mass).sum();
         let share = 1e-2 / (softest * weight * (Sizes::of(&robot, &[4.0; 8]).reach + 3.0)).max(1e-3);
-        let effects = [robot.effects.clone(), vec![Effect::GravitySag { share }]].concat();
+        let own = robot.effects.iter().cloned();
+        let effects = own.chain(preload).chain([Effect::GravitySag { share }]).collect();
         Description { links, effects, ..robot }
     })
 }

@@ -9,7 +9,7 @@ use std::ops::{Add, Neg};
 use robstiff_robots::angle::{quarter_turns, snapped};
 
 /// `sum of factor * q_joint + offset`, with joints from 0 in ascending order,
-/// and the deviations of joints that stand aside of their coordinates.
+/// and the deviations, by index, of joints that stand aside of their coordinates.
 #[derive(Clone, Debug, Default)]
 pub struct Angle {
     terms: Vec<(usize, i32)>,
@@ -75,14 +75,14 @@ impl Angle {
         Self { terms: vec![(joint, factor)], ..Self::default() }
     }
 
-    /// With the angle by which a joint (from 0) stands aside of its coordinate,
-    /// which the graph knows.
-    pub fn with_deviation(mut self, joint: usize) -> Self {
-        self.deviations.push((joint, 1));
+    /// With an angle by which a joint stands aside of its coordinate, by its
+    /// [index](crate::graph::Graph::add_deviation) in the graph.
+    pub fn with_deviation(mut self, index: usize) -> Self {
+        self.deviations.push((index, 1));
         self
     }
 
-    /// The joints (from 0) whose deviations are in it, with their signs.
+    /// The deviations that are in it, by their indices in the graph, with their signs.
     pub fn deviations(&self) -> &[(usize, i32)] {
         &self.deviations
     }

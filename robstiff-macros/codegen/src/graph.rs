@@ -177,7 +177,8 @@ pub struct Graph {
     known: RefCell<HashMap<Op, Id>>,
     named_numbers: RefCell<Vec<NamedNumber>>,
     angles: RefCell<Vec<Angle>>,
-    deviations: RefCell<BTreeMap<usize, (Id, Id)>>,
+    /// Sine and cosine each.
+    deviations: RefCell<Vec<(Id, Id)>>,
     hints: RefCell<BTreeMap<Id, String>>,
     remarks: RefCell<Vec<(Id, String)>>,
     block_turns: RefCell<Vec<BlockTurn>>,
@@ -252,11 +253,13 @@ impl Graph {
         self.intern(Op::Play(joint, index), None)
     }
 
-    /// States sine and cosine of the angle by which a joint (from 0) stands
-    /// aside of its coordinate, for angles that
-    /// [contain](Angle::with_deviation) it.
-    pub fn set_deviation(&self, joint: usize, (sin, cos): (Sym<'_>, Sym<'_>)) {
-        self.deviations.borrow_mut().insert(joint, (sin.id, cos.id));
+    /// Notes sine and cosine of an angle by which a joint stands aside of its coordinate:
+    /// the index of it, for angles that [contain](Angle::with_deviation) it. One joint has
+    /// two where its arm hangs in one chain and not in another.
+    pub fn add_deviation(&self, (sin, cos): (Sym<'_>, Sym<'_>)) -> usize {
+        let mut deviations = self.deviations.borrow_mut();
+        deviations.push((sin.id, cos.id));
+        deviations.len() - 1
     }
 
     /// Sine and cosine of an angle. A constant part that is a multiple of 90
@@ -265,8 +268,8 @@ impl Graph {
     /// sines and cosines of sums.
     pub fn sin_cos(&self, angle: &Angle) -> (Sym<'_>, Sym<'_>) {
         let plain = self.sin_cos_of_coordinates(angle);
-        angle.deviations().iter().fold(plain, |(s, c), &(joint, sign)| {
-            let (sin, cos) = self.deviations.borrow()[&joint];
+        angle.deviations().iter().fold(plain, |(s, c), &(index, sign)| {
+            let (sin, cos) = self.deviations.borrow()[index];
             let (sin, cos) = (Sym { graph: self, id: sin }, Sym { graph: self, id: cos });
             let sin = if sign < 0 { -sin } else { sin };
             (s * cos + c * sin, c * cos - s * sin)

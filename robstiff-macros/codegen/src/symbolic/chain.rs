@@ -88,8 +88,8 @@ fn steps<'g>(g: &'g Graph, robot: &Description, aside: &[Option<Sym<'g>>], serie
             (JointKind::Revolute, None) => (theta(Angle::of_joint(i, joint.theta)), d),
             (JointKind::Revolute, Some(aside)) => {
                 g.remark(format!("Sine and cosine of the angle e{number} by which joint {number} stands aside."));
-                g.set_deviation(i, series.sin_cos(g, aside.named(format!("e{number}"))));
-                (theta(Angle::of_joint(i, joint.theta)).with_deviation(i), d)
+                let deviation = g.add_deviation(series.sin_cos(g, aside.named(format!("e{number}"))));
+                (theta(Angle::of_joint(i, joint.theta)).with_deviation(deviation), d)
             }
             (JointKind::Prismatic, None) => (theta(Angle::constant(joint.theta)), g.coordinate(i) + d),
             (JointKind::Prismatic, Some(aside)) => (theta(Angle::constant(joint.theta)), g.coordinate(i) + aside + d),
