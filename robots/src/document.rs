@@ -165,8 +165,10 @@ fn syntax_problem(file: &str, text: &str, error: &serde_yaml::Error) -> Diagnost
     let (line, column) = place.or(outdented.map(|line| (line, 1))).unwrap_or((1, 1));
     // The place is shown on its own; a second place in the message is of use.
     let message = told.replacen(&format!(" at line {line} column {column}"), "", 1);
+    let at = source_line(text, line).chars().nth(column - 1);
     let message = match outdented {
         Some(_) => "this line is indented less than the first",
+        None if at == Some('\t') => "a tab cannot stand here",
         None => message.split(" at position ").next().unwrap_or_default(),
     };
     Diagnostic::new(

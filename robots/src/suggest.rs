@@ -11,15 +11,17 @@ pub(crate) fn closest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c s
         .map(|(_, candidate)| candidate)
 }
 
-/// A name that a field has elsewhere, the field that stands for it here, and how to write that.
-const CALLED: [(&str, &str, &str); 4] = [
+/// A name that a field or a word has elsewhere, what stands for it here, and how to write that.
+const CALLED: [(&str, &str, &str); 6] = [
     ("stiffness", "compliance", "`compliance: 3e6 Nm/rad`, which is inverted"),
     ("h", "value", "`value`, which reports call `h`"),
     ("offset", "value", "`value`, which reports call `offset`"),
     ("offset", "theta", "`theta` of a joint that turns, `d` of one that slides"),
+    ("climb", "down", "`down`, which is climb milling"),
+    ("conventional", "up", "`up`, which is conventional milling"),
 ];
 
-/// How a field is written that other tables call by this name.
+/// How a field or a word is written that others call by this name.
 pub(crate) fn called(word: &str, fields: &[&str]) -> Option<String> {
     let (.., help) = CALLED.iter().find(|(other, field, _)| *other == word && fields.contains(field))?;
     Some(format!("write {help}"))

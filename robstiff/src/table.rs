@@ -152,7 +152,9 @@ impl<'t> Table<'t> {
             return self.report(line, field, NOT_CLOSED, CLOSE);
         }
         let (expected, found) = (self.header.len(), row.len());
-        if found == expected {
+        if found == 1 && expected > 1 && row.iter().all(|field| field.trim().is_empty()) {
+            // An empty line, but for blanks that nobody sees.
+        } else if found == expected {
             self.records.push(Record { line, fields: row.iter().map(ToOwned::to_owned).collect() });
         } else {
             let message = format!("this row has {}, the header has {expected}", count(found, "field"));
@@ -250,9 +252,10 @@ impl<'t> Table<'t> {
     /// A number of a row in SI; what is not a finite number, or beyond all sums, is reported.
     pub fn number(&self, record: &Record, column: Numbers) -> Option<f64> {
         let text = &record.fields[column.index];
-        let number = text.parse::<f64>().map(|number| number * column.scale);
+        let number = text.parse::<f64>().map(|number| (number.is_finite(), number * column.scale));
         let problem = match number {
-            Ok(number) if number.is_finite() => {
+            Ok((true, number)) if number.is_infinite() => format!("`{text}` in SI units is too large"),
+            Ok((true, number)) => {
                 let report = |error: QuantityError| self.report(record.line, column.index, &error.message, &error.help);
                 return finite(number).map_err(report).ok();
             }

@@ -134,7 +134,8 @@ impl<'d> Node<'d> {
         };
         let found = words.iter().find(|(name, _)| name == text).map(|(_, value)| *value);
         if found.is_none() {
-            let help = closest(text, names()).map_or(help.clone(), |meant| format!("did you mean `{meant}`? {help}"));
+            let close = || closest(text, names()).map(|meant| format!("did you mean `{meant}`? {help}"));
+            let help = called(text, &names().collect::<Vec<_>>()).or_else(close).unwrap_or_else(|| help.clone());
             self.error(format!("unknown word `{text}`"), help);
         }
         found

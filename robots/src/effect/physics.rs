@@ -300,6 +300,11 @@ pub trait Physics<const P: usize> {
         Self::ABOUT.noun
     }
 
+    /// What it is, what causes it and what one does about it, where that depends on the numbers.
+    fn explanation(_numbers: [f64; P]) -> &'static str {
+        Self::ABOUT.explanation
+    }
+
     /// What physics asks of the numbers beyond their ranges, on a joint with
     /// this compliance of its own (rad/Nm).
     #[cfg(feature = "read")]

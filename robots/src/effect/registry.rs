@@ -246,6 +246,13 @@ macro_rules! registry {
                 }
             }
 
+            /// What it is, what causes it, and what one does about it.
+            pub fn explanation(&self) -> &'static str {
+                match *self {
+                    $(Self::$kind { $($parameter,)+ .. } => $file::$kind::explanation([$($parameter),+]),)+
+                }
+            }
+
             /// What physics asks of the numbers beyond their ranges.
             #[cfg(feature = "read")]
             pub(crate) fn check(&self, compliance: f64) -> Option<physics::Complaint> {

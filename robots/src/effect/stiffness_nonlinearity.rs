@@ -10,6 +10,10 @@ use super::{Dimension, Scalar};
 #[cfg(feature = "read")]
 use {super::Place, crate::words::significant, std::borrow::ToOwned, std::format};
 
+const SOFTENS: &str = "Something between motor and arm gives way as the torque grows, a bolted joint that opens or a \
+    bearing that loses its preload, so the joint is stiffer under small torques than under large ones. Small loads, \
+    such as those of a test by hand, do not show it.";
+
 /// Hardening (positive) or softening (negative) of a joint with torque.
 pub struct StiffnessNonlinearity;
 
@@ -51,6 +55,10 @@ impl Physics<2> for StiffnessNonlinearity {
 
     fn noun([added, _]: [f64; 2]) -> &'static str {
         if added < 0.0 { "the softening of {} with torque" } else { Self::ABOUT.noun }
+    }
+
+    fn explanation([added, _]: [f64; 2]) -> &'static str {
+        if added < 0.0 { SOFTENS } else { Self::ABOUT.explanation }
     }
 
     #[cfg(feature = "read")]

@@ -280,7 +280,10 @@ impl Reader<'_> {
     ) -> Option<[f64; K]> {
         let Some(attribute) = node.attribute_node(name) else {
             let tag = node.tag_name().name();
-            let help = format!("write `<{tag} {name}=\"{}\"/>`", vec!["0"; K].join(" "));
+            // No axis points nowhere.
+            let last = if tag == "axis" { "1" } else { "0" };
+            let numbers = [vec!["0"; K - 1], vec![last]].concat().join(" ");
+            let help = format!("write `<{tag} {name}=\"{numbers}\"/>`");
             self.report(&node.range(), &format!("`{tag}` has no `{name}`"), &help);
             return None;
         };

@@ -79,7 +79,9 @@ impl Command {
 /// 0 on success, 1 on a failure that was explained, 2 on wrong usage, which
 /// clap also answers with.
 fn main() -> ExitCode {
-    match Arguments::parse().command.run() {
+    let arguments = Arguments::parse();
+    output::goes_when_interrupted();
+    match arguments.command.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             output::complain(&failure);

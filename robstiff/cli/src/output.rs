@@ -14,10 +14,12 @@ use crate::failure::Failure;
 mod growing;
 mod progress;
 mod target;
+mod unfinished;
 
 pub use growing::Growing;
 pub use progress::working;
 use target::{Target, folder_of, present, same_file, temporary};
+pub use unfinished::goes_when_interrupted;
 
 /// Prints to standard output. A reader that has gone away (`| head`) has seen
 /// what it wanted.
@@ -154,9 +156,14 @@ impl Files {
         let drafts: Vec<(&Path, &Draft)> = paths.into_iter().zip(grown.chain(&drafts)).collect();
         // A device may be full: that shows before any file is in its place.
         let (streams, files): (Vec<_>, Vec<_>) = drafts.iter().partition(|(_, draft)| draft.is_stream());
-        for (path, draft) in streams.into_iter().chain(files) {
+        for (path, draft) in streams {
             draft.publish().map_err(|error| cannot_write(path, &error))?;
         }
+        let all_or_none = unfinished::held();
+        for (path, draft) in files {
+            draft.publish().map_err(|error| cannot_write(path, &error))?;
+        }
+        drop(all_or_none);
         Ok(drafts.iter().map(|(path, _)| format!("wrote {}\n", path.display())).collect())
     }
 }
@@ -177,8 +184,12 @@ impl Folders {
         let missing: Vec<&Path> = missing.collect();
         // The outermost first.
         for folder in missing.into_iter().rev() {
+            let mut unfinished = unfinished::held();
             match fs::create_dir(folder) {
-                Ok(()) => self.0.push(folder.to_owned()),
+                Ok(()) => {
+                    unfinished.push(folder.to_owned());
+                    self.0.push(folder.to_owned());
+                }
                 Err(_) if folder.is_dir() => {}
                 Err(error) => return Err(error),
             }
@@ -192,6 +203,7 @@ impl Drop for Folders {
         for folder in self.0.iter().rev() {
             // Only what is empty can be removed this way.
             let _ = fs::remove_dir(folder);
+            unfinished::finished(folder);
         }
     }
 }
@@ -251,7 +263,8 @@ impl Drop for Draft {
     fn drop(&mut self) {
         if let Self::Beside { temporary, .. } = self {
             // Gone where it was published.
-            let _ = fs::remove_file(temporary);
+            let _ = fs::remove_file(&temporary);
+            unfinished::finished(temporary);
         }
     }
 }

@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{fail, folder, inside, json, names, run, succeed};
+use common::{fail, folder, inside, json, names, robstiff, run, succeed};
 
 const JOINTS: &str = "force: [0, 400 N, -200 N]\njoints:\n  - 0\n  - {from: -80 deg, to: 60 deg, count: 7}\n  \
                       - {from: -60 deg, to: 90 deg, count: 6}\n  - 0\n  - {from: 30 deg, to: 60 deg, count: 2}\n";
@@ -149,6 +149,36 @@ fn what_cannot_be_written_is_told_before_the_map_is_made() {
     }
     assert!(begun.elapsed().as_secs() < 2, "{:?}", begun.elapsed());
     assert_eq!(names(&folder), ["map.yaml"]);
+}
+
+/// Half a map is of no use, and may be as large as a whole one.
+#[test]
+#[cfg(unix)]
+fn an_interrupt_leaves_nothing_half_written() {
+    use std::thread::sleep;
+    use std::time::Duration;
+
+    for (signal, name) in [("-INT", "map-interrupted"), ("-TERM", "map-ended")] {
+        let folder = folder(name);
+        let map = inside(&folder, "map.yaml");
+        let axis = "{from: 0, to: 1, count: 60}, ".repeat(5);
+        fs::write(&map, format!("joints: [{axis}]\n")).unwrap();
+        let files = ["--csv", &inside(&folder, "made/m.csv"), "--parquet", &inside(&folder, "made/m.parquet")];
+        let mut command = robstiff(&[&["map", "rv130hsc", &map], &files[..]].concat()).spawn().unwrap();
+        let grows = || fs::read_dir(folder.join("made")).is_ok_and(|files| files.count() == 2);
+        for _ in 0..1000 {
+            if grows() {
+                break;
+            }
+            sleep(Duration::from_millis(10));
+        }
+        assert!(grows() && command.try_wait().unwrap().is_none(), "it is at work");
+        assert!(
+            std::process::Command::new("kill").args([signal, &command.id().to_string()]).status().unwrap().success()
+        );
+        assert_eq!(command.wait().unwrap().code(), Some(130));
+        assert_eq!(names(&folder), ["map.yaml"]);
+    }
 }
 
 #[test]

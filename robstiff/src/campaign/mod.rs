@@ -46,7 +46,8 @@ pub struct Campaign {
     pub name: String,
     /// The campaign file.
     pub path: PathBuf,
-    /// The robot's description file, as resolved from the campaign's folder.
+    /// The robot's description file, as resolved from the campaign's folder, or its name in the
+    /// catalogue.
     pub robot_path: PathBuf,
     /// The file with the observations, likewise.
     pub observations_path: PathBuf,

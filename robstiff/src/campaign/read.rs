@@ -2,13 +2,13 @@
 
 use std::borrow::ToOwned;
 use std::format;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::string::{String, ToString};
 use std::vec::Vec;
 
 use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
-use robstiff_robots::{Description, ReadError};
+use robstiff_robots::{Description, ReadError, catalogue};
 
 use super::beyond::{told_angle, told_length};
 use super::{Campaign, Data, Frame, Holdout, Noise, clamped, displacements, positions};
@@ -62,8 +62,7 @@ impl Campaign {
         let plan = plan(&document, folder);
         let plan = document.finish(plan).map_err(ReadError::Invalid)?;
 
-        let robot_path = folder.join(&plan.robot);
-        let robot = Description::read(&robot_path)?;
+        let (robot, robot_path) = robot(folder, &plan.robot)?;
         let observations_path = folder.join(&plan.observations);
         let (table_name, text) = (observations_path.display().to_string(), text_of(&observations_path)?);
         let table = Table::parse(&table_name, &text).map_err(ReadError::Invalid)?;
@@ -153,12 +152,22 @@ fn unused(map: &Map<'_>, kind: Kind) -> Vec<(&'static str, usize)> {
     }
 }
 
+/// The robot of a campaign and its path: a file, or where there is none of that name, a robot
+/// of the catalogue.
+fn robot(folder: &Path, name: &str) -> Result<(Description, PathBuf), ReadError> {
+    let path = folder.join(name);
+    match catalogue::find(name).filter(|_| !path.is_file()) {
+        Some(text) => Ok((Description::parse(name, text).map_err(ReadError::Invalid)?, PathBuf::from(name))),
+        None => Ok((Description::read(&path)?, path)),
+    }
+}
+
 /// A file that the campaign names, by its path from the campaign's folder.
 fn file(map: &Map<'_>, field: &str, example: &str, folder: &Path) -> Option<String> {
     let node = map.require(field, example)?;
     let name = node.text()?;
     let path = folder.join(name);
-    if !path.is_file() {
+    if !path.is_file() && !(field == "robot" && catalogue::find(name).is_some()) {
         node.error(
             format!("there is no file {}", path.display()),
             "write the path from the folder of this campaign file".to_string(),

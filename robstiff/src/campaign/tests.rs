@@ -81,9 +81,11 @@ fn every_problem_of_a_table_has_its_place() {
     let found = |rows: &str| problems(CAMPAIGN, &format!("{HEADER}\n{rows}"));
     assert_eq!(found("a,v,0,0,1,2,3,4,x,6\n"), ["2:17 `x` is not a number"]);
     assert_eq!(found("a,v,0,0,1,2,3,4,NaN,inf\n"), ["2:17 `NaN` is not finite", "2:21 `inf` is not finite"]);
-    assert_eq!(found("a,v,0,0,1,1e307,3,4,5,6\n"), ["2:11 `1e307` is not finite"]);
+    assert_eq!(found("a,v,0,0,1,1e307,3,4,5,6\n"), ["2:11 `1e307` in SI units is too large"]);
     assert_eq!(found("a,v,0,0,1,2,1e31,4,5,6\n"), ["2:13 `1e31` in SI units is too large"]);
     assert_eq!(found("a,v,0,0,1,2,3,4,,6\n"), ["2:17 a number is missing"]);
+    // A line of blanks is an empty line.
+    assert_eq!(found("  \n\t\na,v,0,0,1,2,3,4,x,6\n"), ["4:17 `x` is not a number"]);
     assert_eq!(found("a,v,0,0,1,2,3,4,5\n"), ["2:1 this row has 9 fields, the header has 10"]);
     let blank = found("a,v,0,0,1,2,3,4,5,6\n ,v,9,0,1,2,3,4,5,6\nb, ,9,0,1,2,3,4,5,6\n,w,8,0,1,2,3,4,5,6\n");
     assert_eq!(blank, ["3:1 the pose has no id", "4:3 the visit has no id", "5:1 the pose has no id"]);
@@ -303,6 +305,8 @@ fn every_problem_of_a_campaign_file_has_its_place() {
     assert_eq!(found("kind: displacement", "kind: place").len(), 1);
     assert!(found("robot.yaml", "nobody.yaml")[0].starts_with("2:8 there is no file"));
     assert!(found("kind:", "colour: red\nkind:")[0].contains("unknown field `colour`"));
+    // The catalogue's is there without a file; it has five joints, and the table two.
+    assert!(found("robot.yaml", "rv130hsc")[0].contains("q3"));
 }
 
 #[test]

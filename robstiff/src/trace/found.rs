@@ -104,6 +104,9 @@ impl Found {
 
     /// What causes it and what one does about it, in full sentences.
     pub fn explanation(&self) -> &'static str {
+        if let Some(effect) = self.effect() {
+            return effect.explanation();
+        }
         let about = CATALOGUE.iter().find(|about| about.kind == self.kind.name);
         about.map_or(self.kind.explanation, |about| about.explanation)
     }

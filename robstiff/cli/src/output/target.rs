@@ -5,6 +5,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process;
 
+use super::unfinished;
+
 /// Links that are followed from one to the next, as many as Linux does.
 const MOST_LINKS: usize = 40;
 
@@ -60,7 +62,9 @@ impl Target {
         match self {
             Self::File { path, .. } => {
                 let (trial, _) = temporary(present(folder_of(path))?)?;
-                fs::remove_file(trial)
+                let removed = fs::remove_file(&trial);
+                unfinished::finished(&trial);
+                removed
             }
             // A pipe may wait for its reader.
             Self::Stream(_) => Ok(()),
@@ -72,11 +76,16 @@ impl Target {
 /// long as names can be.
 pub fn temporary(folder: &Path) -> io::Result<(PathBuf, File)> {
     let mut count = 0;
+    let mut unfinished = unfinished::held();
     loop {
         let path = folder.join(format!(".robstiff-{}-{count}.tmp", process::id()));
         match OpenOptions::new().write(true).create_new(true).open(&path) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => count += 1,
-            opened => return opened.map(|file| (path, file)),
+            Err(error) => return Err(error),
+            Ok(file) => {
+                unfinished.push(path.clone());
+                return Ok((path, file));
+            }
         }
     }
 }

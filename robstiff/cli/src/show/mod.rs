@@ -96,7 +96,7 @@ fn effect(effect: &robstiff_robots::Effect) -> Value {
     let parameters = effect::parameters(effect).into_iter();
     json!({
         "kind": effect.kind(), "at": effect.place().to_string(), "what": effect::words(effect),
-        "explanation": effect.about().explanation,
+        "explanation": effect.explanation(),
         "parameters": parameters.map(|(name, value, unit)| json!({"name": name, "value": value, "unit": unit}))
             .collect::<Value>(),
     })

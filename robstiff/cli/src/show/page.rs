@@ -84,7 +84,7 @@ fn chain(page: &mut String, robot: &Description) {
             .map(|(name, value, unit)| format!("{name} {} {unit}", significant(value, 4)).trim_end().to_owned())
             .collect();
         let _ = writeln!(page, "  with {effect}: {}", numbers.join(", "));
-        let _ = writeln!(page, "    {}. {}", capital(&effect::words(effect)), effect.about().explanation);
+        let _ = writeln!(page, "    {}. {}", capital(&effect::words(effect)), effect.explanation());
     }
 }
 

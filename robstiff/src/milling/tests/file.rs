@@ -65,6 +65,7 @@ fn mistakes_are_shown_where_they_are() {
         ("feed: 0.1 mm/tooth\nspeed: 9000 rpm", "feed_speed: 1 m/min", "cut.yaml:6:13", "without the spindle's"),
         ("helix: 30 deg", "runout: [0, 1 um]", "cut.yaml:1:43", "has 3 values, not 2"),
         ("milling: down", "milling: slot", "cut.yaml:4:8", "as wide as the tool"),
+        ("milling: down", "milling: climb", "cut.yaml:3:10", "write `down`, which is climb milling"),
         ("milling: down", "engagement: [3]", "cut.yaml:3:13", "write 2, e.g. `[0, 90 deg]`"),
         ("milling: down", "engagement: [3, 1]", "cut.yaml:3:13", "lower first"),
         ("speed: 9000 rpm", "measured: {file: no.csv, frame: cut, on: tool}", "cut.yaml:7:18", "there is no file"),
