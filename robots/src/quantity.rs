@@ -183,12 +183,21 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
     }
     let unit = find(unit, dimension)?;
     if !unit.inverse {
-        return checked(value * unit.times / unit.per, dimension);
+        return checked(in_si(value, unit), dimension);
     }
     if value == 0.0 {
         return error("a stiffness of zero has no compliance".into(), "a rigid joint has no `compliance` at all");
     }
     finite(unit.per / (value * unit.times))
+}
+
+/// A number in a unit, as the number nearest to what is written: `-572.3 mm` is -0.5723, which a
+/// quotient of two numbers is not always.
+fn in_si(value: f64, unit: &Unit) -> f64 {
+    let power = unit.per.log10().round() as i32;
+    let is_shifted = unit.times == 1.0 && power > 0 && 10_f64.powi(power) == unit.per;
+    let shifted = is_shifted.then(|| format!("{value}e-{power}").parse().ok()).flatten();
+    shifted.unwrap_or(value * unit.times / unit.per)
 }
 
 /// Whether what follows a number is no unit, but a part of a number or of a formula.
@@ -262,6 +271,8 @@ mod tests {
             ("3 um", Length, 3e-6),
             ("3 µm", Length, 3e-6),
             ("-1.5e3mm", Length, -1.5),
+            ("-572.3 mm", Length, -0.5723),
+            ("6.9 mm", Length, 0.0069),
             ("0.41", Length, 0.41),
             ("+.5 m", Length, 0.5),
             ("180 deg", Angle, PI),

@@ -206,8 +206,7 @@ fn numbers(trace: &Trace, hidden: &[Hidden]) -> [usize; 2] {
             continue;
         }
         for (name, truth) in hidden.parameters() {
-            let spelt = |told: &str| told == name || (told == "offset" && name == "value");
-            let told = named.effect.parameters.iter().find(|number| spelt(number.name));
+            let told = named.effect.parameters.iter().find(|number| number.name == name);
             let Some((value, std)) = told.and_then(|number| Some((number.value, number.std?))) else { continue };
             count[0] += 1;
             count[1] += usize::from((value - truth).abs() <= 1.96 * std);

@@ -259,7 +259,7 @@ impl Hidden {
             Self::PoseDependentCompliance { cos, sin, .. } => {
                 named(&[("cos1", cos[0]), ("sin1", sin[0]), ("cos2", cos[1]), ("sin2", sin[1])])
             }
-            Self::JointZeroOffset { offset, .. } => named(&[("value", *offset)]),
+            Self::JointZeroOffset { offset, .. } => named(&[("offset", *offset)]),
             Self::DhError { by, .. } => named(&[("value", *by)]),
             Self::TransmissionError { sin, cos, .. } => named(&[("sin", *sin), ("cos", *cos)]),
             Self::LoadCellMisalignment { turn, .. } | Self::TrackerMisalignment(turn) => axes("r", turn),
