@@ -1,7 +1,7 @@
 //! What is left, as text, as a table and as JSON.
 
 use robstiff::online::{HeldBack, LeftOfSine};
-use robstiff_robots::Description;
+use robstiff_robots::{Description, Joint};
 use serde_json::{Value, json};
 
 use super::loads::{Course, Outcome, Simulated, Stop};
@@ -16,8 +16,10 @@ const ROWS: usize = 12;
 pub fn page(robot: &Description, simulated: &Simulated, variants: &[Variant], control: &ControlArguments) -> String {
     let mut page = match &simulated.outcome {
         Outcome::Sine { q, wrench, deviation, .. } => {
-            let q: Vec<String> =
-                robot.joints.iter().zip(q).map(|(joint, &q)| significant(joint.for_people(q), 4)).collect();
+            let coordinate = |(joint, &q): (&Joint, &f64)| {
+                format!("{} {}", significant(joint.for_people(q), 4), joint.people_unit())
+            };
+            let q: Vec<String> = robot.joints.iter().zip(q).map(coordinate).collect();
             let force: Vec<String> = wrench.iter().take(3).map(|&part| significant(part, 4)).collect();
             format!(
                 "{} at q = ({}) under {}, ({}) N, that comes and goes: {} um without correction\n",

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use robstiff::analysis::Stiffness;
 use robstiff::nalgebra::{Dim, Matrix, RawStorage};
+use robstiff_robots::words::count;
 use robstiff_robots::{Description, Joint, JointKind};
 
 use super::pose::{Direction, Shown};
@@ -142,7 +143,8 @@ fn stiffness(page: &mut String, robot: &Description, shown: &Shown, rows: Table)
         Some(Stiffness::Deficient { rank, pseudo_inverse }) => {
             section(page, &format!("Stiffness K_x: the compliance has rank {rank} of 6 and no inverse"));
             let why = if robot.effects.is_empty() && elastic(robot) < 6 {
-                format!("{} elastic joints yield in {} directions at most", elastic(robot), elastic(robot))
+                let [joints, directions] = ["elastic joint", "direction"].map(|noun| count(elastic(robot), noun));
+                format!("with {joints} it yields in {directions} at most")
             } else {
                 "in this pose there is a wrench that no elastic element yields to".to_owned()
             };
