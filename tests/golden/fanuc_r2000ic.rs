@@ -82,11 +82,11 @@ impl FanucR2000ic {
     /// DH angle theta of row 6 (rad).
     pub const THETA6: f64 = 0.0;
     /// TCP in the flange frame, along X (m).
-    pub const TOOL_X: f64 = 0.006900000000000001;
+    pub const TOOL_X: f64 = 0.0069;
     /// TCP in the flange frame, along Y (m).
-    pub const TOOL_Y: f64 = 0.24530000000000002;
+    pub const TOOL_Y: f64 = 0.2453;
     /// TCP in the flange frame, along Z (m).
-    pub const TOOL_Z: f64 = 0.31930000000000003;
+    pub const TOOL_Z: f64 = 0.3193;
     /// Compliance of joint 1 (rad/Nm).
     pub const H1: f64 = 1.0706638115631692e-6;
     /// Compliance of joint 2 (rad/Nm).
@@ -223,9 +223,9 @@ impl Robot<6> for FanucR2000ic {
     #[inline]
     fn tool(&self) -> Matrix4<f64> {
         Matrix4::new(
-            1.0, 0.0, 0.0, 0.006900000000000001,
-            0.0, 1.0, 0.0, 0.24530000000000002,
-            0.0, 0.0, 1.0, 0.31930000000000003,
+            1.0, 0.0, 0.0, 0.0069,
+            0.0, 1.0, 0.0, 0.2453,
+            0.0, 0.0, 1.0, 0.3193,
             0.0, 0.0, 0.0, 1.0,
         )
     }
