@@ -83,22 +83,23 @@ pub fn to_take_back(bench: &Bench<'_>, model: &Fitted, left: &LackOfFit) -> Vec<
     }
     let Ok(setting) = bench.at(&model.named) else { return Vec::new() };
     let share = |k: usize| {
-        let rest = all_but(&model.named, k);
+        let without = bench.fit(&all_but(&model.named, k)).ok()?.fit.rss;
         // Both over the same degrees of freedom but for a few.
-        let without = bench.fit(&rest).map_or(f64::INFINITY, |fitted| fitted.fit.rss);
         let noise = model.fit.rss * (1.0 - left.fraction);
-        (without - model.fit.rss) / (without - noise)
+        Some((without - model.fit.rss) / (without - noise))
     };
-    let falls = |(k, Along { ratio, is_significant }): (usize, Along)| {
-        let share = share(k);
-        if share >= NEARLY_ALL {
-            return None;
-        }
-        let worth = share / ratio.powi(2);
-        (worth < WORTH || (is_significant && ratio >= AS_MUCH)).then_some((worth, k))
-    };
+    let falls = |(k, along): (usize, Along)| Some((worth_of_fallen(share(k), along)?, k));
     let falling = along(&setting, model).into_iter().enumerate().filter_map(falls);
     falling.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, k)| k).into_iter().collect()
+}
+
+/// What a name is worth that falls, by the share of what is missing without it that it accounts
+/// for, none where it cannot be left out; `None` where it stays.
+fn worth_of_fallen(share: Option<f64>, Along { ratio, is_significant }: Along) -> Option<f64> {
+    // What no model can do without is no name for want of better.
+    let share = share.filter(|share| *share < NEARLY_ALL)?;
+    let worth = share / ratio.powi(2);
+    (worth < WORTH || (is_significant && ratio >= AS_MUCH)).then_some(worth)
 }
 
 /// Whether a model takes a lag to pieces: a joint that comes to rest with a time
@@ -214,5 +215,21 @@ struct Shown(f64);
 impl fmt::Display for Shown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.0 < 1e-3 { f.write_str("< 0.001") } else { write!(f, "= {:.3}", self.0) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever lies along it: there is nothing to compare it with.
+    #[test]
+    fn what_cannot_be_left_out_is_not_taken_back() {
+        let along = Along { ratio: 1.2, is_significant: true };
+        assert_eq!(worth_of_fallen(None, along), None);
+        assert_eq!(worth_of_fallen(Some(0.99), along), None);
+        assert!(worth_of_fallen(Some(0.5), along).is_some());
+        // A worth that nothing leaves is none to fall by.
+        assert_eq!(worth_of_fallen(Some(f64::NAN), along), None);
     }
 }
