@@ -108,6 +108,18 @@ impl Effect {
         self.about().kinematic
     }
 
+    /// Whether another is one with it, whatever their numbers: of the same name, or an error of
+    /// theta beside the zero offset of the joint that turns there.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let zero = |effect: &Self| match *effect {
+            Self::JointZeroOffset { joint, .. } => Some(joint),
+            Self::DhError { entry: DhEntry::Theta(row), .. } => Some(row),
+            _ => None,
+        };
+        let of_one_name = self.kind() == other.kind() && self.place() == other.place();
+        of_one_name || zero(self).is_some_and(|joint| zero(other) == Some(joint))
+    }
+
     /// What the kind's numbers are, with this effect's, in order.
     pub fn parameters(&self) -> impl Iterator<Item = (&'static Parameter, f64)> + use<> {
         self.about().parameters.iter().zip(self.numbers())

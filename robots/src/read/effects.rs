@@ -43,7 +43,7 @@ pub(super) fn effects(node: &Node, arm: &Arm<'_>) -> Option<Vec<Effect>> {
     let read: Vec<Option<Effect>> = items.iter().map(|item| effect(item, arm)).collect();
     for (index, effect) in read.iter().enumerate() {
         let Some(effect) = effect else { continue };
-        let same = |other: &&Option<Effect>| other.is_some_and(|other| is_same(&other, effect));
+        let same = |other: &&Option<Effect>| other.is_some_and(|other| other.is_same(effect));
         if let Some(first) = read[..index].iter().position(|other| same(&other)) {
             let (message, help) = match read[first] {
                 Some(other) if orders(&other) != orders(effect) => {
@@ -71,17 +71,6 @@ pub(super) fn effects(node: &Node, arm: &Arm<'_>) -> Option<Vec<Effect>> {
         }
     }
     read.into_iter().collect()
-}
-
-/// Whether two effects are one: of the same name, or an error of theta beside the zero offset
-/// of the joint that turns there.
-fn is_same(one: &Effect, other: &Effect) -> bool {
-    let zero = |effect: &Effect| match *effect {
-        Effect::JointZeroOffset { joint, .. } => Some(joint),
-        Effect::DhError { entry: DhEntry::Theta(row), .. } => Some(row),
-        _ => None,
-    };
-    one.to_string() == other.to_string() || zero(one).is_some_and(|joint| zero(other) == Some(joint))
 }
 
 /// The order of an effect that has one: two of such effects at one joint are not the same

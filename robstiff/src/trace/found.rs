@@ -178,9 +178,8 @@ pub(super) fn add(description: &mut Description, effect: Effect) -> usize {
 /// What a change makes of the effect that a description declares at its place, with the index of
 /// that. Of a periodic error the order stays: a change of another is none of it.
 fn changed(description: &Description, change: &Effect) -> Option<(usize, Effect)> {
-    let same = |effect: &Effect| {
-        is_offered_as_change(effect) && effect.kind() == change.kind() && effect.place() == change.place()
-    };
+    // An error of theta that is declared is changed by what is told as the zero of its joint.
+    let same = |effect: &Effect| is_offered_as_change(effect) && effect.is_same(change);
     let at = description.effects.iter().position(same)?;
     let sum = |((parameter, declared), by): ((&Parameter, f64), f64)| match parameter.range {
         Range::Whole(_) => (declared == by).then_some(declared),

@@ -186,6 +186,23 @@ fn what_is_declared_of_the_kinematics_is_told_as_it_is_now() {
     }
 }
 
+/// An error of theta is the zero of its joint: as which it is found, and it is written where the
+/// description has it.
+#[test]
+fn a_declared_error_of_theta_is_told_as_it_is_now() {
+    let mut campaign = measured(&robot(""), 3, PLAN);
+    campaign.robot = robot("{kind: dh_error, at: theta3, value: 0.03 rad}");
+    let found = traced(&campaign);
+    assert_eq!((found.verdict, names(&found)), (Verdict::Explained, ["joint_zero_offset@joint 3".into()].to_vec()));
+    let told = &found.effects[0].effect;
+    let std = told.parameters[0].std.expect("it is fitted");
+    assert!(told.value("offset").abs() < 4.0 * std && std < 0.01, "{told:?}");
+    let written = &found.description.effects;
+    assert!(written.len() == 1 && written[0].to_string() == "dh_error@theta3", "{written:?}");
+    assert!((written[0].numbers()[0] - told.value("offset")).abs() < 1e-9, "{written:?}");
+    assert!(found.description.source.contains("with joint_zero_offset@joint 3"), "{}", found.description.source);
+}
+
 /// A hysteresis beside a declared one, whose radii may be off, is not the whole truth.
 #[test]
 fn a_hysteresis_beside_a_declared_one_may_be_its_radii() {

@@ -4,6 +4,7 @@ use robstiff::identify::{Estimate, Visibility};
 use robstiff::trace::{Rival, Trace, is_offered_as_change};
 use robstiff_robots::Effect;
 
+use super::story::declared;
 use crate::text::words::{by_kind, spoken};
 use crate::text::{and, decimals};
 
@@ -14,7 +15,7 @@ pub fn doubts(trace: &Trace) -> Vec<String> {
         doubts.push(format!("{} more such models come close.", trace.rivals.len() - RIVALS));
     }
     let held = trace.description.effects.iter().filter(|effect| effect.is_kinematic());
-    let held = held.filter(|effect| !is_fitted(trace, &effect.to_string()));
+    let held = held.filter(|effect| !is_fitted(trace, effect));
     // Of displacements, changes of most are looked for; what is left has none that shows.
     let of_displacements = trace.differences && trace.components == 3;
     let (unchanged, held): (Vec<&Effect>, Vec<&Effect>) =
@@ -35,12 +36,13 @@ pub fn doubts(trace: &Trace) -> Vec<String> {
 }
 
 /// Whether the numbers of an effect are from these data.
-fn is_fitted(trace: &Trace, name: &str) -> bool {
+fn is_fitted(trace: &Trace, effect: &Effect) -> bool {
+    let name = effect.to_string();
     let of_it = |estimate: &&Estimate| {
-        let number = estimate.name.strip_prefix(name);
+        let number = estimate.name.strip_prefix(&name);
         number.is_some_and(|number| number.is_empty() || number.starts_with(' '))
     };
-    trace.effects.iter().any(|named| named.effect.to_string() == name)
+    trace.effects.iter().any(|named| declared(&trace.description, named) == Some(effect))
         || trace.estimates.iter().filter(of_it).any(|estimate| estimate.visibility == Visibility::Seen)
 }
 

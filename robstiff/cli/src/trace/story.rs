@@ -4,7 +4,7 @@ use robstiff::JointKind;
 use robstiff::campaign::Campaign;
 use robstiff::identify::{EncodersRead, Estimate, Visibility, off_by_one_factor, predict};
 use robstiff::trace::{EffectParameter, NamedEffect, Proposal, RowResidual, Trace, Verdict};
-use robstiff_robots::Joint;
+use robstiff_robots::{Description, Effect, Joint};
 
 use super::doubts::doubts;
 use crate::effect::parameters;
@@ -154,16 +154,15 @@ fn fitted_again(trace: &Trace) -> Option<String> {
 /// Of the named effects, what the description declares of them: what is told and written is the
 /// whole number, not the change.
 fn changed(trace: &Trace, campaign: &Campaign) -> Option<String> {
-    let declared = |name: &str| campaign.robot.effects.iter().find(|effect| effect.to_string() == name);
     let was = |named: &NamedEffect| {
-        let name = named.effect.to_string();
+        let declared = declared(&campaign.robot, named)?;
         // An order does not change.
-        let numbers = parameters(declared(&name)?).into_iter().filter(|&(_, _, unit)| unit != "1");
+        let numbers = parameters(declared).into_iter().filter(|&(_, _, unit)| unit != "1");
         let numbers = numbers.map(|(parameter, value, unit)| {
             let of = if parameter == "value" { String::new() } else { format!("{parameter} ") };
             of + &quantity(value, None, unit)
         });
-        Some(format!("{name} was {}", and(&numbers.collect::<Vec<_>>())))
+        Some(format!("{declared} was {}", and(&numbers.collect::<Vec<_>>())))
     };
     let changed: Vec<String> = trace.effects.iter().filter_map(was).collect();
     (!changed.is_empty()).then(|| {
@@ -233,11 +232,13 @@ fn undecided(trace: &Trace) -> Option<String> {
 
 /// Whether the description that is written has the effect.
 pub fn is_written(trace: &Trace, named: &NamedEffect) -> bool {
-    let written = named.effect.effect_on(&trace.description).filter(|_| !named.effect.is_of_rig());
-    written.is_some_and(|written| {
-        let same = |effect: &robstiff::Effect| effect.kind() == written.kind() && effect.place() == written.place();
-        trace.description.effects.iter().any(same)
-    })
+    declared(&trace.description, named).is_some()
+}
+
+/// The effect of a description that a named one is, or is a change to.
+pub fn declared<'d>(robot: &'d Description, named: &NamedEffect) -> Option<&'d Effect> {
+    let own = named.effect.effect_on(robot).filter(|_| !named.effect.is_of_rig())?;
+    robot.effects.iter().find(|effect| effect.is_same(&own))
 }
 
 /// The lines of the table that an effect is about, as ` (lines 3 and 7)`.

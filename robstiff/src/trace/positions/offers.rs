@@ -23,7 +23,7 @@ use crate::trace::catalogue::{
     DH_ENTRIES, DH_MOST, DH_UNITS, EITHER, HARDENING_KNEES, KINDS, Kind, LARGEST_WAVE, LOST_KNEES, LOST_MOTION,
     MOST_SAG, STIFFNESS_NONLINEARITY, WAVE_ORDERS, WIDEST_GAP, ZERO_MOST, share_a_drive,
 };
-use crate::trace::found::{EffectParameter, Place};
+use crate::trace::found::{EffectParameter, Found, Place};
 use crate::{Effect, JointKind};
 
 /// Steps of central differences of entries of a table that are angles and lengths.
@@ -140,7 +140,8 @@ pub fn offers(campaign: &Campaign, data: &Positions, rig: &Rig) -> Vec<Offer> {
     all.extend(joints.filter(turns).map(waves));
     all.extend(robot.links.iter().any(|link| link.mass > 0.0).then(sag));
     let declared = |offer: &Offer| {
-        robot.effects.iter().any(|effect| effect.kind() == offer.kind.name && offer.place == effect.place().into())
+        let own = Found::new(offer.kind, offer.place, vec![]).effect_on(robot);
+        own.is_some_and(|own| robot.effects.iter().any(|effect| effect.is_same(&own)))
     };
     all.retain(|offer| !declared(offer));
     all

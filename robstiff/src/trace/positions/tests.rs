@@ -339,3 +339,16 @@ fn a_zero_of_a_joint_that_slides_is_written() {
     let predicted = crate::identify::predict(&trace.description, &campaign).expect("the same robot").rms;
     assert!((predicted / trace.after.rms - 1.0).abs() < 1e-3, "{predicted} and {}", trace.after.rms);
 }
+
+/// An error of theta that is declared is the zero of its joint, which is nothing more to look for.
+#[test]
+fn a_declared_error_of_theta_is_no_other_zero() {
+    let mut robot = six_axis();
+    robot.effects.push(Effect::DhError { entry: DhEntry::Theta(3), value: 2e-3 });
+    let campaign = Plan::new(robot, 1).run();
+    let Data::Position(data) = &campaign.data else { unreachable!("made of positions") };
+    let bench = super::bench::Bench::new(&campaign, data).expect("they tell where the robot stands");
+    let zeros = bench.candidates.iter().filter(|one| one.kind.name == "joint_zero_offset").map(|one| one.name());
+    let zeros: Vec<String> = zeros.collect();
+    assert!(zeros.len() == 5 && !zeros.contains(&"joint_zero_offset@joint 3".to_string()), "{zeros:?}");
+}
