@@ -1,12 +1,52 @@
 //! That the effects of a description leave its joints' compliance positive.
 
-use crate::description::Joint;
+use crate::description::{Description, Joint};
 use crate::document::Node;
 use crate::effect::{Effect, Place};
 
 /// `H_q`, scaled to a diagonal of ones, that is as near to singular as this counts as
 /// singular: on which side of it such a matrix is, rounding decides.
 const ROUNDING: f64 = 1e-12;
+
+impl Description {
+    /// Whether a load can do no negative work on the robot: the joints' compliance matrix `H_q`
+    /// with all couplings in it is positive definite, its diagonal what the effects of each joint
+    /// leave of its compliance at the least.
+    pub fn is_stable(&self) -> bool {
+        let mut least: Vec<f64> = self.joints.iter().map(Joint::compliance).collect();
+        for effect in &self.effects {
+            if let Place::Joint(joint) = effect.place() {
+                least[joint - 1] += effect.least(self.joints[joint - 1].compliance());
+            }
+        }
+        let mut scaled = uncoupled(least.len());
+        let fits = |effect: &Effect| match effect {
+            Effect::JointCoupling { joints, value } => couple(&mut scaled, *joints, *value, bound(&least, *joints)),
+            _ => true,
+        };
+        self.effects.iter().all(fits) && is_positive_definite(&mut scaled)
+    }
+}
+
+/// `H_q` of joints that are not coupled, scaled to a diagonal of ones, so that no product
+/// underflows.
+fn uncoupled(count: usize) -> Vec<Vec<f64>> {
+    (0..count).map(|i| (0..count).map(|j| f64::from(u8::from(i == j))).collect()).collect()
+}
+
+/// What a coupling of two joints must stay below (rad/Nm), by what is left of their compliances.
+fn bound(least: &[f64], [i, j]: [usize; 2]) -> f64 {
+    least[i - 1].max(0.0).sqrt() * least[j - 1].max(0.0).sqrt()
+}
+
+/// Puts a coupling into a scaled `H_q`; whether it is below its bound.
+fn couple(scaled: &mut [Vec<f64>], [i, j]: [usize; 2], value: f64, bound: f64) -> bool {
+    let fits = value.abs() < bound * (1.0 - ROUNDING);
+    if fits {
+        scaled[j - 1][i - 1] = value / bound;
+    }
+    fits
+}
 
 /// What is left of each joint's compliance where all its effects together take
 /// away the most; each by itself has been checked.
@@ -33,18 +73,14 @@ fn least_compliances(items: &[Node], effects: &[Option<Effect>], joints: &[Joint
 /// is the joints' least compliance over all torques.
 pub(super) fn check_couplings(items: &[Node], effects: &[Option<Effect>], joints: &[Joint]) {
     let least = least_compliances(items, effects, joints);
-    // H_q scaled to a diagonal of ones, so that no product underflows.
-    let count = joints.len();
-    let mut scaled: Vec<Vec<f64>> =
-        (0..count).map(|i| (0..count).map(|j| f64::from(u8::from(i == j))).collect()).collect();
+    let mut scaled = uncoupled(joints.len());
     let mut last = None;
     let mut all_fit = true;
     for (item, effect) in items.iter().zip(effects) {
         let Some(Effect::JointCoupling { joints: pair, value }) = effect else { continue };
         let [i, j] = *pair;
-        let bound = least[i - 1].max(0.0).sqrt() * least[j - 1].max(0.0).sqrt();
-        if value.abs() < bound * (1.0 - ROUNDING) {
-            scaled[j - 1][i - 1] = value / bound;
+        let bound = bound(&least, *pair);
+        if couple(&mut scaled, *pair, *value, bound) {
             last = Some(item);
             continue;
         }

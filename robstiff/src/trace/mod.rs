@@ -55,6 +55,7 @@ mod slides_tests;
 pub(crate) mod slip;
 pub(crate) mod step;
 #[cfg(test)]
+mod stable;
 mod tests;
 pub(crate) mod verdict;
 pub(crate) mod wander;

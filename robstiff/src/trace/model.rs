@@ -173,7 +173,7 @@ impl Setting<'_> {
     /// # Errors
     /// Why the model is no physical one: collinear columns, a named number
     /// that comes out at zero, a joint's compliance that is driven below zero,
-    /// a coupling or a softening beyond what leaves `H_q` positive definite.
+    /// couplings, each or together, or a softening beyond what leaves `H_q` positive definite.
     pub fn fit(&self, named: &[Named]) -> Result<Fitted, String> {
         let columns = self.columns(named);
         let signs: Vec<Sign> = columns.iter().map(|&column| self.signs[column]).collect();
@@ -212,7 +212,7 @@ impl Setting<'_> {
     }
 
     /// How far each coefficient of a fit may be off by noise, at most.
-    fn widths(&self, fit: &Fit) -> Option<Vec<f64>> {
+    pub(super) fn widths(&self, fit: &Fit) -> Option<Vec<f64>> {
         let total = &self.problem.total;
         let inverse = total.inverse(&fit.columns)?;
         let freedom = (total.rows - fit.columns.len()).max(1) as f64;
@@ -265,6 +265,7 @@ impl Setting<'_> {
             return Ok(());
         }
         // A clipped joint is only held against the model where noise does not
+        self.check_couplings(fit, named)?;
         // explain it, and where that takes much of what an effect explains.
         let clipped = (0..self.base_of(fit))
             .filter(|&k| self.signs[fit.columns[k]] == Sign::Nonnegative && fit.coefficients[k] == 0.0);

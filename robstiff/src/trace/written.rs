@@ -152,7 +152,7 @@ pub fn values(prepared: &Prepared<'_>, setting: &Setting<'_>, model: &Fitted) ->
 }
 
 /// An effect of a model with its numbers alone.
-fn plain(setting: &Setting<'_>, model: &Fitted, one: Named) -> Found {
+pub fn plain(setting: &Setting<'_>, model: &Fitted, one: Named) -> Found {
     let variant = setting.variant(one);
     let number = |(k, column): (usize, &usize)| {
         let number = &setting.numbers[column - setting.own.len()];

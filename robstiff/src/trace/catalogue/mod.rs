@@ -58,7 +58,7 @@ pub use self::dh_error::{ENTRIES as DH_ENTRIES, MOST as DH_MOST, UNITS as DH_UNI
 pub use self::gravity_preload::KIND as GRAVITY_PRELOAD;
 pub use self::gravity_sag::MOST as MOST_SAG;
 pub use self::hysteresis::{KIND as HYSTERESIS, is_told as tells_hysteresis, is_told_on as axis_tells_hysteresis};
-pub use self::joint_coupling::share_a_drive;
+pub use self::joint_coupling::{KIND as JOINT_COUPLING, share_a_drive};
 pub use self::joint_zero_offset::MOST as ZERO_MOST;
 pub use self::load_cell_bias::KIND as LOAD_CELL_BIAS;
 pub use self::lost_motion::{EITHER, KIND as LOST_MOTION, KNEES as LOST_KNEES, WIDEST as WIDEST_GAP};

@@ -203,7 +203,7 @@ impl<'c> Bench<'c> {
     }
 
     /// Whether the numbers of effects are possible, by the coefficients of a fit.
-    fn is_physical(&self, named: &[Named], coefficients: &DVector<f64>) -> bool {
+    pub(super) fn is_physical(&self, named: &[Named], coefficients: &DVector<f64>) -> bool {
         let own = STANDS + self.prepared.own.len();
         let seen = self.prepared.seen();
         // Joints come first among a description's own numbers.
@@ -212,7 +212,7 @@ impl<'c> Bench<'c> {
             None => self.prepared.own[joint - 1].value,
         };
         let mut of_effects = coefficients.iter().skip(STANDS + seen.len()).copied();
-        named.iter().all(|&one| {
+        let possible = named.iter().all(|&one| {
             let columns = &self.variant(one).columns;
             let values: Vec<f64> = of_effects.by_ref().take(columns.len()).collect();
             let within = |(&column, &value): (&usize, &f64)| {
@@ -220,7 +220,8 @@ impl<'c> Bench<'c> {
                 least < value && value < most
             };
             columns.iter().zip(&values).all(within) && (self.possible[one.candidate])(&values, &compliance)
-        })
+        });
+        possible && self.is_stable(named, coefficients)
     }
 
     /// Schwarz's criterion of a fit.

@@ -37,6 +37,7 @@ mod slip_tests;
 mod slips;
 mod smooth;
 mod spread;
+mod stable;
 #[cfg(test)]
 mod stand_in_tests;
 mod stand_ins;

@@ -20,8 +20,8 @@ use crate::identify::normal::Sign;
 use crate::identify::positions::model::{ANGLE_STEP, COMPLIANCE_STEP, Enters, LENGTH_STEP, Model, SHARE_STEP};
 use crate::identify::setup::coordinate_entry;
 use crate::trace::catalogue::{
-    DH_ENTRIES, DH_MOST, DH_UNITS, EITHER, HARDENING_KNEES, KINDS, Kind, LARGEST_WAVE, LOST_KNEES, LOST_MOTION,
-    MOST_SAG, STIFFNESS_NONLINEARITY, WAVE_ORDERS, WIDEST_GAP, ZERO_MOST, share_a_drive,
+    DH_ENTRIES, DH_MOST, DH_UNITS, EITHER, HARDENING_KNEES, JOINT_COUPLING, KINDS, Kind, LARGEST_WAVE, LOST_KNEES,
+    LOST_MOTION, MOST_SAG, STIFFNESS_NONLINEARITY, WAVE_ORDERS, WIDEST_GAP, ZERO_MOST, share_a_drive,
 };
 use crate::trace::found::{EffectParameter, Found, Place};
 use crate::{Effect, JointKind};
@@ -195,11 +195,8 @@ fn couplings(robot: &Description, data: &Positions) -> Vec<Offer> {
     let pairs = turning.iter().flat_map(|&j| turning.iter().map(move |&i| [i, j]));
     let pairs = pairs.filter(|&[i, j]| share_a_drive(i, j, &turning, &axis));
     let any = [f64::NEG_INFINITY, f64::INFINITY];
-    let coupling = |pair @ [i, j]: [usize; 2]| Offer {
-        // What leaves both joints stable.
-        possible: Rc::new(move |value, of| value[0] * value[0] < of(i) * of(j)),
-        ..one("joint_coupling", Part::Joints(pair), ("value", "rad/Nm"), any, COMPLIANCE_STEP)
-    };
+    // Which are possible, they are together.
+    let coupling = |pair| one(JOINT_COUPLING.name, Part::Joints(pair), ("value", "rad/Nm"), any, COMPLIANCE_STEP);
     pairs.map(coupling).collect()
 }
 

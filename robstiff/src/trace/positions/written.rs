@@ -29,11 +29,16 @@ pub fn without_untold(campaign: &Campaign, bench: &Bench<'_>, model: &Model) -> 
 
 /// An effect of a model with its numbers alone.
 fn of_model(bench: &Bench<'_>, model: &Model, one: Named) -> Found {
+    of_numbers(bench, one, |number| model.solved.state.values[number])
+}
+
+/// An effect with numbers that are given by their index among all.
+pub fn of_numbers(bench: &Bench<'_>, one: Named, value: impl Fn(usize) -> f64) -> Found {
     let (form, candidate) = (bench.variant(one), &bench.candidates[one.candidate]);
     let number = |column: &usize| {
         let number = column - STANDS;
         let about = &bench.numbers[number - bench.prepared.own.len()];
-        EffectParameter { name: about.name, value: model.solved.state.values[number], std: None, unit: about.unit }
+        EffectParameter { name: about.name, value: value(number), std: None, unit: about.unit }
     };
     let parameters = form.columns.iter().map(number).chain(form.shape.iter().cloned()).collect();
     Found::new(candidate.kind, candidate.place, parameters)
