@@ -284,17 +284,9 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
             if let Some(preloaded) = preload::worth_a_try(campaign, &outcome) {
                 progress("asking whether gears carry the arm's own weight");
                 bench.spare_memory();
-                let prepared = Prepared::new(&preloaded)?;
-                // Its stages are those that were told before.
-                let (other, found) =
-                    elsewhere::searched(&preloaded, &prepared, options, &|_| ()).map_err(Error::NotShown)?;
-                if preload::is_better((&other, &found), (&bench, &outcome)) {
-                    let mut trace = report(&preloaded, &prepared, &other, &found, options)?;
-                    preload::tell(&mut trace);
-                    return Ok(trace);
-                }
-            }
-            report(campaign, &prepared, &bench, &outcome, options)
+                preload::better(&preloaded, (&bench, &outcome), options)
+            });
+            better.map_or_else(|| report(campaign, &prepared, &bench, &outcome, options), Ok)
         }
         Data::Position(data) => positions::trace(campaign, data, options, progress),
         Data::Clamped(rows) => clamped::trace(campaign, rows, options, progress),
@@ -323,12 +315,8 @@ fn searched<'c>(
     if outcome.structure() && prepared.left_out.contains(&true) {
         // Rows that the others of their pose contradict look like structure.
         bench.spare_memory();
-        let mut closer = bench.anew()?;
-        closer.by_own_pose = true;
-        closer.fit_doubted()?;
-        let base = closer.fit(&[])?;
-        let again = search(&mut closer, prepared, base, options, progress)?;
-        if !again.structure() {
+        let again = closer(&bench, prepared, options, progress).ok();
+        if let Some((closer, again)) = again.filter(|(_, again)| !again.structure()) {
             (bench, outcome) = (closer, again.after(outcome));
         }
     }
@@ -338,6 +326,7 @@ fn searched<'c>(
         if let Some(model) = bench.tried(&outcome.selection.model.named, Bench::look_again) {
             let again = search(&mut bench, prepared, model, options, progress)?;
             outcome = again.after(outcome);
+        let before = bench.copy();
         }
     }
     if let Some(model) = bench.tried(&outcome.selection.model.named, Bench::hold_lost) {
@@ -353,6 +342,24 @@ fn searched<'c>(
 /// something else, or of the wrong sign.
 fn against_the_loads(prepared: &Prepared<'_>, setting: &Setting<'_>, base: &Fitted) -> Option<String> {
     let numbers = base.fit.columns.iter().zip(base.fit.coefficients.iter());
+/// What a campaign shows where rows are wild, too, that the others of their own pose contradict.
+///
+/// # Errors
+/// Why the description's own numbers cannot be fitted without such rows.
+fn closer<'c>(
+    bench: &Bench<'c>,
+    prepared: &Prepared<'c>,
+    options: &Options,
+    progress: &Progress<'_>,
+) -> Result<(Bench<'c>, Outcome), String> {
+    let mut closer = bench.anew()?;
+    closer.by_own_pose = true;
+    closer.fit_doubted()?;
+    let base = closer.fit(&[])?;
+    let outcome = search(&mut closer, prepared, base, options, progress)?;
+    Ok((closer, outcome))
+}
+
     let mut joints = numbers.filter(|&(&column, _)| column < setting.point.samples.joints()).peekable();
     joints.peek()?;
     joints

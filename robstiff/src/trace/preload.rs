@@ -16,11 +16,13 @@ use robstiff_robots::Place as Part;
 use super::bench::Bench;
 use super::catalogue::{GRAVITY_PRELOAD, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY};
 use super::found::{EffectParameter, Found};
+use super::report::report;
 use super::search::Outcome;
 use super::selection::WITHIN_REACH;
-use super::{NamedEffect, Trace, Verdict};
+use super::{NamedEffect, Options, Trace, Verdict, elsewhere};
 use crate::Effect;
 use crate::campaign::Campaign;
+use crate::identify::prepare::Prepared;
 
 /// How much of the weight gears carry that carry it.
 const WHOLE: f64 = 1.0;
@@ -46,8 +48,22 @@ pub fn worth_a_try(campaign: &Campaign, outcome: &Outcome) -> Option<Campaign> {
     Some(preloaded)
 }
 
+/// The trace of the same campaign on such an arm, where that accounts better for the data; none
+/// where no search can be made of it.
+pub fn better(preloaded: &Campaign, plain: (&Bench<'_>, &Outcome), options: &Options) -> Option<Trace> {
+    let prepared = Prepared::new(preloaded).ok()?;
+    // Its stages are those that were told before.
+    let (bench, outcome) = elsewhere::searched(preloaded, &prepared, options, &|_| ()).ok()?;
+    if !is_better((&bench, &outcome), plain) {
+        return None;
+    }
+    let mut trace = report(preloaded, &prepared, &bench, &outcome, options).ok()?;
+    tell(&mut trace);
+    Some(trace)
+}
+
 /// Whether what was found with gears that carry the weight accounts better for the data.
-pub fn is_better(preloaded: (&Bench<'_>, &Outcome), plain: (&Bench<'_>, &Outcome)) -> bool {
+fn is_better(preloaded: (&Bench<'_>, &Outcome), plain: (&Bench<'_>, &Outcome)) -> bool {
     let has_curve = preloaded.1.names(preloaded.0).iter().any(|name| name.split('@').next().is_some_and(is_curve));
     match (preloaded.1.structure(), plain.1.structure()) {
         _ if !has_curve => false,
@@ -62,7 +78,7 @@ pub fn is_better(preloaded: (&Bench<'_>, &Outcome), plain: (&Bench<'_>, &Outcome
 
 /// Tells that gears carry the weight, behind the first curve that says so. Alone it does
 /// nothing, and is as sure as the curves.
-pub fn tell(trace: &mut Trace) {
+fn tell(trace: &mut Trace) {
     let curves = trace.effects.iter().filter(|named| is_curve(named.effect.kind()));
     let p_value = curves.map(|named| named.p_value).fold(0.0, f64::max);
     let Some(first) = trace.effects.iter().position(|named| is_curve(named.effect.kind())) else { return };

@@ -274,7 +274,7 @@ impl<'c> Bench<'c> {
     }
 
     /// The same, with nothing known of models.
-    pub(super) fn copy(&self) -> Self {
+    pub fn copy(&self) -> Self {
         Self {
             own: Rc::clone(&self.own),
             base: Rc::clone(&self.base),
