@@ -6,11 +6,16 @@ use std::vec::Vec;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::tests::{NOISE, both_ways, measured, names, traced};
+use super::axes::Axes;
+use super::bench::Bench;
+use super::slips::as_good_as_slip;
+use super::tests::{NOISE, both_ways, measured, names, ramp, traced};
 use crate::campaign::made::normal;
 use crate::campaign::{Campaign, ClampedRow, Data};
+use crate::identify::clamped::slopes;
 use crate::samples::five_axis;
 use crate::trace::Verdict;
+use crate::trace::model::Named;
 
 fn rows_of(campaign: &mut Campaign) -> &mut Vec<ClampedRow> {
     let Data::Clamped(rows) = &mut campaign.data else { unreachable!("made of clamped axes") };
@@ -117,4 +122,38 @@ fn unloaded_readings_that_are_all_off_are_no_bias() {
         // One axis's slip in the place of another's has the same names.
         assert!(trace.rivals.iter().all(|rival| rival.names != names), "{seed}");
     }
+}
+
+/// The weight of a play is no less than zero: an axis that hardens at a kink, with a slip beside
+/// it, does not lag.
+#[test]
+fn what_hardens_beside_a_slip_is_no_dead_zone() {
+    let hard = |axis, torque: f64| if axis == 2 { -1.5e-7 * (torque - 400.0_f64).max(0.0) } else { 0.0 };
+    let soft = |axis, torque| -hard(axis, torque);
+    assert!(may_lag_with_a_slip(&soft) && !may_lag_with_a_slip(&hard));
+}
+
+/// Whether hysteresis of axis 2 is as good as a curve of its gear with a slip.
+fn may_lag_with_a_slip(more: &dyn Fn(usize, f64) -> f64) -> bool {
+    let campaign = measured(&five_axis(), &ramp(14), 850, more);
+    let Data::Clamped(rows) = &campaign.data else { unreachable!("made of clamped axes") };
+    let identified = slopes(&campaign, rows, &[]).expect("every axis is loaded");
+    let bench = Bench::new(Axes::new(&campaign.robot, rows, &identified), None);
+    let forms = |name: &str| -> Vec<Named> {
+        let of_name = (0..bench.candidates.len()).filter(|&candidate| bench.candidates[candidate].name() == name);
+        let forms = |candidate: usize| {
+            (0..bench.candidates[candidate].variants.len()).map(move |variant| Named { candidate, variant })
+        };
+        of_name.flat_map(forms).collect()
+    };
+    let of_axis = |one: &&Named| bench.form(**one).told.iter().any(|told| told.name == "axis" && told.value == 2.0);
+    let slips = forms("base_slip@base");
+    let pairs = slips.iter().filter(of_axis).flat_map(|&slip| {
+        forms("stiffness_nonlinearity@joint 2")
+            .into_iter()
+            .map(move |curve| if slip < curve { [slip, curve] } else { [curve, slip] })
+    });
+    let best = pairs.filter_map(|named| bench.fit(&named)).min_by(|a, b| a.bic.total_cmp(&b.bic)).expect("possible");
+    let slip = best.named.iter().position(|one| slips.contains(one)).expect("it is one of the two");
+    as_good_as_slip(&bench, &best, slip).contains(&"hysteresis@joint 2".to_string())
 }

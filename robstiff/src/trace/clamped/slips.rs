@@ -9,6 +9,7 @@ use robstiff_robots::effect::Place as Part;
 use super::axes::{SLIPPED_AXIS, axes_column};
 use super::bench::Bench;
 use crate::identify::clamped::regression::problem;
+use crate::identify::normal::Sign;
 use crate::trace::catalogue::{HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY, axis_tells_hysteresis};
 use crate::trace::found::Place;
 use crate::trace::model::{Fitted, Named, all_but};
@@ -77,13 +78,18 @@ fn dead_zone(bench: &Bench, model: &Fitted, slip: usize) -> Option<(String, f64)
     rest.retain(|one| bench.candidates[one.candidate].place != place);
     let base: Vec<usize> = bench.columns(&rest);
     let raw = bench.raw.select_columns(&base);
+    // The weight of a play is no less than zero, as compliances are: what hardens has no dead zone.
+    let weight = base.len();
+    let own = base.iter().map(|&column| bench.signs[column]);
+    let signs: Vec<Sign> = own.chain([Sign::Nonnegative]).collect();
     let (rows, torques, largest) = (axes.rows_of(axis), axes.loads(axis), axes.largest(axis));
     let left = |radius: f64| {
         let turns = torques.iter().map(|torque| torque - torque.clamp(-radius, radius));
-        let mut with = raw.clone().insert_column(base.len(), 0.0);
-        with.set_column(base.len(), &axes_column(axes.rows.len(), &rows, turns));
+        let mut with = raw.clone().insert_column(weight, 0.0);
+        with.set_column(weight, &axes_column(axes.rows.len(), &rows, turns));
         let all: Vec<usize> = (0..with.ncols()).collect();
-        problem(&axes.rows, with).total.solve(&all).map(|fit| fit.rss)
+        let fit = problem(&axes.rows, with).total.solve_signed(&all, &signs)?;
+        (fit.coefficients[weight] > 0.0).then_some(fit.rss)
     };
     let radii = (1..RADII).map(|k| largest * f64::from(k) / f64::from(RADII));
     let rss = radii.filter_map(left).min_by(f64::total_cmp)?;
