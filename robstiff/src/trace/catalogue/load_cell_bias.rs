@@ -48,7 +48,9 @@ fn on_axes(axes: &Axes) -> Vec<OnAxes> {
     let aside: Vec<(Vec<usize>, f64)> =
         axes.loaded().map(|axis| (axes.rows_of(axis), axes.compliance[axis - 1])).collect();
     let count = axes.rows.len();
-    let numbers = [AxisNumber { name: TORQUE, unit: "Nm", range: [-most, most] }].into();
+    // All axes of a campaign turn, or all slide.
+    let unit = axes.loaded().next().map_or("Nm", |axis| axes.torque_unit(axis));
+    let numbers = [AxisNumber { name: TORQUE, unit, range: [-most, most] }].into();
     let bias = OnAxes::new(Place::Rig, numbers, &[], [Vec::new()].into(), move |_| {
         let of = |(rows, turn): &(Vec<usize>, f64)| axes_column(count, rows, rows.iter().map(|_| *turn));
         [aside.iter().map(of).sum()].into()

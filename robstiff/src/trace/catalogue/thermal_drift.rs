@@ -29,8 +29,9 @@ pub static KIND: Kind = Kind {
     on_axes: Some(on_axes),
 };
 
-/// More than this over a campaign is a mishap (m).
+/// More than this over a campaign is a mishap (m); of an axis that turns (rad).
 const MOST: f64 = 5e-3;
+const MOST_TURN: f64 = 5e-3;
 
 /// Numbers within so many standard deviations of zero are none.
 const NONE: f64 = 2.0;
@@ -268,7 +269,6 @@ fn wiggle(clock: &[f64], warmth: &[f64], span: f64) -> Option<Vec<f64>> {
 /// From row to row since the unloaded reading of an axis, on all alike.
 fn on_axes(axes: &Axes) -> Vec<OnAxes> {
     let count = axes.rows.len();
-    let numbers = [AxisNumber { name: "rate", unit: "rad/row", range: [-MOST, MOST] }].into();
     let since: DVector<f64> = axes
         .loaded()
         .map(|axis| {
@@ -276,6 +276,11 @@ fn on_axes(axes: &Axes) -> Vec<OnAxes> {
             axes_column(count, &rows, rows.iter().map(|row| (row - rows[0] + 1) as f64))
         })
         .sum();
+    // All axes of a campaign turn, or all slide.
+    let turns = axes.loaded().all(|axis| axes.turn_unit(axis) == "rad");
+    let (unit, over_all) = if turns { ("rad/row", MOST_TURN) } else { ("m/row", MOST) };
+    let most = over_all / since.max().max(1.0);
+    let numbers = [AxisNumber { name: "rate", unit, range: [-most, most] }].into();
     [OnAxes::new(Place::Rig, numbers, &[], [Vec::new()].into(), move |_| [since.clone()].into())].into()
 }
 

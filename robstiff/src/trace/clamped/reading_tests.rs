@@ -157,3 +157,26 @@ fn may_lag_with_a_slip(more: &dyn Fn(usize, f64) -> f64) -> bool {
     let slip = best.named.iter().position(|one| slips.contains(one)).expect("it is one of the two");
     as_good_as_slip(&bench, &best, slip).contains(&"hysteresis@joint 2".to_string())
 }
+
+/// Of axes that slide numbers are in N and m; a drift is bounded over all rows of an axis.
+#[test]
+fn numbers_of_axes_that_slide_are_in_their_units() {
+    let mut robot = five_axis();
+    robot.joints.iter_mut().for_each(|joint| joint.kind = crate::JointKind::Prismatic);
+    let count = both_ways().len();
+    let row = core::cell::Cell::new(0);
+    let drifts = |_, _: f64| {
+        row.set(row.get() % count + 1);
+        4e-6 * f64::from(u32::try_from(row.get()).expect("few rows"))
+    };
+    let biased = |axis: usize, _: f64| 60.0 * robot.joints[axis - 1].compliance();
+    let cases: [(&dyn Fn(usize, f64) -> f64, &str, &str, &str, f64); 2] =
+        [(&drifts, "thermal_drift@rig", "rate", "m/row", 4e-6), (&biased, "load_cell_bias@rig", "torque", "N", 60.0)];
+    for (more, name, of, unit, truth) in cases {
+        let trace = traced(&measured(&robot, &both_ways(), 860, more));
+        assert_eq!(names(&trace), [name], "{}", trace.why);
+        let number = trace.effects[0].effect.parameters.iter().find(|number| number.name == of).expect("its own");
+        assert_eq!(number.unit, unit);
+        assert!((number.value / truth - 1.0).abs() < 0.1, "{number:?}");
+    }
+}
