@@ -142,7 +142,7 @@ pub struct PoseError {
     pub identified: f64,
     /// With the effects.
     pub after: f64,
-    /// What the effects add to the displacement.
+    /// What the effects add that are written into the robot.
     pub contribution: f64,
     /// Whether the pose was held out.
     pub held_out: bool,

@@ -69,7 +69,7 @@ pub fn errors(report: &Report) -> String {
         let largest = poses.iter().map(|pose| pose.contribution).fold(0.0, f64::max);
         let marks = ticks(0.0, largest, 3);
         let frame = Frame { x: LEFT, y: top + upper + gap, width: frame.width, height: lower, range: ends(&marks) };
-        frame.grid(&mut svg, &marks, &format!("what the named effects add [{printed}]"));
+        frame.grid(&mut svg, &marks, &format!("what the effects written into the robot add [{printed}]"));
         for (k, pose) in poses.iter().enumerate() {
             let x = LEFT + (k as f64 + 0.5) * step;
             let (y, width) = (frame.up(pose.contribution), (step * 0.55).min(12.0));

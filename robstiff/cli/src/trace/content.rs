@@ -4,6 +4,7 @@ use robstiff::campaign::{Campaign, Data};
 use robstiff::identify::{Estimate, Visibility, predict};
 use robstiff::trace::{EffectParameter, NamedEffect, Options, RowResidual, Step, Tested, Trace, Verdict};
 use robstiff::triage::Triage;
+use robstiff_robots::Description;
 
 use super::doubts::doubts;
 use super::{clamped, pictures, story};
@@ -144,9 +145,7 @@ fn errors(trace: &Trace, campaign: &Campaign) -> Result<Vec<PoseError>, Failure>
     };
     let predict = |robot| predict(robot, campaign).map_err(Failure::about(campaign));
     let declared = predict(&campaign.robot)?;
-    let mut without_effects = trace.description.clone();
-    without_effects.effects.truncate(campaign.robot.effects.len());
-    let (with, without) = (predict(&trace.description)?, predict(&without_effects)?);
+    let (with, without) = (predict(&trace.description)?, predict(&without_effects(trace, &campaign.robot))?);
 
     let left_out = story::left_out(trace);
     let mut sums = vec![Sums::default(); poses.len()];
@@ -170,6 +169,19 @@ fn errors(trace: &Trace, campaign: &Campaign) -> Result<Vec<PoseError>, Failure>
         wild: sum.wild,
     };
     Ok(poses.iter().zip(&sums).map(error).collect())
+}
+
+/// The description that is written without the effects that were named: of those that a robot
+/// declares, which are changed in their place, what it declares.
+pub(super) fn without_effects(trace: &Trace, robot: &Description) -> Description {
+    let mut without = trace.description.clone();
+    without.effects.truncate(robot.effects.len());
+    for (effect, declared) in without.effects.iter_mut().zip(&robot.effects) {
+        if trace.effects.iter().any(|named| story::declared(robot, named) == Some(declared)) {
+            *effect = *declared;
+        }
+    }
+    without
 }
 
 /// Squares of one axis, summed over the rows of a pose (m^2), how many these are, and whether one
@@ -228,4 +240,90 @@ fn origins(trace: &Trace, campaign: &Campaign, options: &Options) -> Vec<(String
     origins.push(("Tests", tests));
     origins.push(("Program", format!("robstiff {}", env!("CARGO_PKG_VERSION"))));
     origins.into_iter().map(|(name, text)| (name.to_owned(), text)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use robstiff::campaign::{ClampedRow, Noise};
+    use robstiff::simulate::{Scenario, simulate};
+    use robstiff_robots::catalogue;
+
+    use super::*;
+
+    fn robot(effect: &str) -> Description {
+        let text = catalogue::find("kuka-kr270-r2700").expect("in the catalogue");
+        Description::parse("robot.yaml", &format!("{text}{effect}")).expect("of the catalogue")
+    }
+
+    fn traced(robot: Description, data: Data) -> (Trace, Campaign) {
+        let nowhere = || std::path::PathBuf::new();
+        let campaign = Campaign {
+            name: "x".to_owned(),
+            path: nowhere(),
+            robot_path: nowhere(),
+            observations_path: nowhere(),
+            robot,
+            data,
+            noise: Noise::default(),
+            holdout: None,
+            warnings: Vec::new(),
+        };
+        let options = Options { draws: 499, ..Options::default() };
+        let trace = robstiff::trace::trace(&campaign, &options, &|_| {}).expect("joints are seen");
+        (trace, campaign)
+    }
+
+    const PLAN: &str = "\
+name: x
+seed: 3
+poses: {count: 30, floor: 100 mm, column: 600 mm}
+visits: 2
+ramp: [0.35, 0.7, 1]
+force: {bounds: [500 N, 1300 N]}
+noise: {displacement: 8 um, stated: no}
+";
+
+    /// What is declared and is true no longer is changed in its place, and the change is what
+    /// is added.
+    #[test]
+    fn a_change_of_what_is_declared_adds_something() {
+        let measured = robot("");
+        let scenario = Scenario::parse("try.yaml", PLAN, &measured).unwrap_or_else(|problems| panic!("{problems}"));
+        let data = simulate(&measured, &scenario).expect("it can be measured").data;
+        let stale = robot("effects: [{kind: dh_error, at: theta3, value: 0.03 rad}]\n");
+        let (trace, campaign) = traced(stale, data);
+        assert_eq!(trace.effects.len(), 1, "{}", trace.why);
+        assert!(story::is_written(&trace, &trace.effects[0]));
+        let without = without_effects(&trace, &campaign.robot);
+        assert_eq!(without.effects, campaign.robot.effects);
+        assert_ne!(without.effects, trace.description.effects);
+        let errors = errors(&trace, &campaign).expect("it was traced");
+        assert!(errors.iter().all(|pose| pose.contribution > 1.0));
+    }
+
+    /// Of clamped axes as of poses: all that the curve of a gear does, not what the joints alone
+    /// could not take up of it.
+    #[test]
+    fn of_clamped_axes_the_whole_curve_is_added() {
+        let robot = robot("");
+        let curve = |torque: f64| 2e-7 * torque / (torque / 300.0).hypot(1.0);
+        let torques: Vec<f64> = (-10..=10).filter(|k| *k != 0).map(|k| 100.0 * f64::from(k)).collect();
+        let mut rows: Vec<ClampedRow> = Vec::new();
+        for axis in 1..=robot.joints.len() {
+            for (k, &torque) in torques.iter().enumerate() {
+                // Rounded as a drawn reading would be off.
+                let noise = [3e-7, -4e-7, 1e-7, 5e-7, -5e-7, -2e-7, 2e-7][(3 * k + axis) % 7];
+                let more = if axis == 2 { curve(torque) } else { 0.0 };
+                let deflection = robot.joints[axis - 1].compliance() * torque + more + noise;
+                rows.push(ClampedRow { line: rows.len() + 2, axis, torque, deflection });
+            }
+        }
+        let (trace, campaign) = traced(robot, Data::Clamped(rows));
+        assert_eq!(trace.effects[0].effect.to_string(), "stiffness_nonlinearity@joint 2", "{}", trace.why);
+        let errors = errors(&trace, &campaign).expect("it was traced");
+        let whole = (torques.iter().map(|&torque| curve(torque).powi(2)).sum::<f64>() / torques.len() as f64).sqrt();
+        let told = errors.iter().find(|axis| axis.id == "axis 2").expect("it was loaded").contribution;
+        assert!((told / (1e6 * whole) - 1.0).abs() < 0.2, "{told} of {}", 1e6 * whole);
+        assert!(errors.iter().filter(|axis| axis.id != "axis 2").all(|axis| axis.contribution < 1e-6));
+    }
 }
