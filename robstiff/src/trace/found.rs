@@ -1,6 +1,7 @@
 //! What was found, in the contract's names, and how it goes into a description.
 
 use core::fmt;
+use std::format;
 use std::string::String;
 use std::vec::Vec;
 
@@ -196,6 +197,14 @@ fn spelt(name: &'static str) -> &'static str {
     match name {
         "h" | "offset" => "value",
         name => name,
+    }
+}
+
+/// A number's full name, by that of its effect: the only one of an effect goes by the name of that.
+pub(crate) fn full_name(effect: &str, number: &'static str) -> String {
+    match spelt(number) {
+        "value" => String::from(effect),
+        number => format!("{effect} {number}"),
     }
 }
 

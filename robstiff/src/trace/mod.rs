@@ -35,7 +35,7 @@ mod elsewhere;
 #[cfg(test)]
 mod elsewhere_tests;
 pub(crate) mod features;
-mod found;
+pub(crate) mod found;
 pub(crate) mod held_out;
 pub(crate) mod isolated;
 pub(crate) mod lack_of_fit;

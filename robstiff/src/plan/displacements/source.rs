@@ -12,6 +12,7 @@ use crate::identify::{Error, element_name, unit_of};
 use crate::plan::rivals::{Group, Number, Rival, Rivals, computed, pairs};
 use crate::trace::bench::Bench;
 use crate::trace::catalogue::{Candidate, Catalogue};
+use crate::trace::found::full_name;
 use crate::trace::model::{Fitted, Named};
 use crate::trace::selection::best_with;
 use crate::trace::{Place, Trace};
@@ -142,11 +143,7 @@ impl Source<'_> {
         let (name, unit) = match (self.kept(column), column.checked_sub(self.prepared.own.len())) {
             (Kept::Of(kind, at, _), Some(k)) => {
                 let number = &self.everything.numbers[k];
-                let name = match number.name {
-                    "h" => format!("{kind}@{at}"),
-                    of => format!("{kind}@{at} {of}"),
-                };
-                (name, number.unit)
+                (full_name(&format!("{kind}@{at}"), number.name), number.unit)
             }
             _ => {
                 let number = &self.prepared.own[column];

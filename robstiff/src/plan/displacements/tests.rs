@@ -9,7 +9,9 @@ use nalgebra::Vector3;
 use super::Adapter;
 use crate::campaign::Frame;
 use crate::campaign::made::{Plan, displacements};
+use crate::elements::Spring;
 use crate::identify::Visibility;
+use crate::identify::column::Column;
 use crate::identify::prepare::Prepared;
 use crate::plan::plan;
 use crate::plan::regressors::{Regressors, Visit};
@@ -76,4 +78,18 @@ fn a_joint_that_only_an_effect_turns_is_known_by_its_own_name() {
         let ratio = number.now / std.expect("it is seen");
         assert!((0.3..3.0).contains(&ratio) && number.after < number.now, "{name}: {ratio} {number:?}");
     }
+}
+
+/// The one number of an effect goes by the effect's name, as in descriptions and in plans of
+/// positions.
+#[test]
+fn the_only_number_of_an_effect_goes_by_its_name() {
+    let hidden = std::vec![(Column::Spring(Spring::Coupling([2, 3])), 1e-7)];
+    let campaign = Plan { hidden, ..Plan::new(4) }.run();
+    let traced = trace(&campaign, &Options { draws: 199, ..Options::default() }, &|_| {}).expect("displacements");
+    let named: Vec<String> = traced.effects.iter().map(|named| named.effect.to_string()).collect();
+    assert_eq!(named, ["joint_coupling@joints 2,3"]);
+    let planned = plan(&campaign, &traced, &crate::plan::Options { poses: 2, starts: 1, ..Default::default() });
+    let numbers = planned.expect("displacements").numbers;
+    assert!(numbers.iter().any(|number| number.name == named[0]), "{numbers:?}");
 }

@@ -1,7 +1,6 @@
 //! Which numbers of the regression of positions planning looks at, and which effects
 //! rival: what the adapter of positions takes from a trace.
 
-use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
@@ -11,6 +10,7 @@ use crate::identify::positions::regression::STANDS;
 use crate::plan::rivals::{Group, Number, Rival, Rivals, computed, pairs};
 use crate::trace::Trace;
 use crate::trace::catalogue::OUTLIERS;
+use crate::trace::found::full_name;
 use crate::trace::model::Named;
 use crate::trace::positions::bench::{Bench, Model};
 
@@ -123,9 +123,5 @@ fn told(bench: &Bench<'_>, number: usize, column: usize, state: &State) -> Numbe
     let candidate = bench.candidates.iter().find(|candidate| has(&candidate.variants));
     let effect = candidate.map(|candidate| candidate.name()).unwrap_or_default();
     let number = &bench.numbers[of_effect];
-    let name = match number.name {
-        "h" | "value" | "offset" => effect,
-        name => format!("{effect} {name}"),
-    };
-    Number { column, name, unit: number.unit, value }
+    Number { column, name: full_name(&effect, number.name), unit: number.unit, value }
 }
