@@ -42,6 +42,8 @@ pub(crate) mod lack_of_fit;
 pub(crate) mod model;
 #[cfg(test)]
 mod one_line_tests;
+#[cfg(test)]
+mod physics_tests;
 pub(crate) mod point;
 pub(crate) mod positions;
 mod preload;

@@ -240,6 +240,10 @@ impl Setting<'_> {
             if !(least < value && value < most) {
                 return Err(format!("its {} would be {value:.2e} {}", number.name, number.unit));
             }
+            let whole = number.share_of.filter(|_| !candidate.is_nameless());
+            if let Some(rigid) = whole.filter(|&of| joint(of) <= 0.0) {
+                return Err(format!("joint {rigid} would have no compliance that it is a share of"));
+            }
             numbers.push((number.name, value));
             places.push(at);
         }
