@@ -56,7 +56,7 @@ pub fn report(
     };
     let undecided = setting.undecided(&model.named);
     let after = misfit(of_written, written, &undecided);
-    let mut effects = effects(bench, &setting, model, outcome, &spread, &undecided, options);
+    let mut effects = effects(bench, &setting, model, outcome, &spread, (&undecided, after.holdout_rms), options);
     let slipped = effects.iter_mut().find(|named| Slipping::has(named.effect.kind()));
     let may_be = same_as_wild(bench, &outcome.selection.model, &outcome.events);
     let isolated = isolated(prepared, outcome, after.holdout_rms, slipped, &may_be);

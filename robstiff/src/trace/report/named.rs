@@ -25,7 +25,7 @@ pub fn effects(
     fine: &Fitted,
     outcome: &Outcome,
     spread: &DMatrix<f64>,
-    but: &[usize],
+    (but, whole): (&[usize], f64),
     options: &Options,
 ) -> Vec<NamedEffect> {
     let model = &outcome.selection.model;
@@ -34,7 +34,8 @@ pub fn effects(
         so_far.push(model.named[k]);
         so_far.sort_unstable();
         let unseen = |setting: &Setting<'_>| Some(setting.holdout_rms(&setting.fit(&so_far).ok()?.fit, but));
-        let holdout_rms = bench.at(&so_far).ok().and_then(|setting| unseen(&setting)).unwrap_or(f64::NAN);
+        // Some effects make up for others, and are not possible without these.
+        let holdout_rms = bench.at(&so_far).ok().and_then(|setting| unseen(&setting)).unwrap_or(whole);
         let parameters = parameters(setting, fine, spread, k);
         let candidate = &setting.candidates[model.named[k].candidate];
         let same_as = same_as(bench, model, k, outcome.structure(), options);
