@@ -55,9 +55,9 @@ mod sizes;
 #[cfg(test)]
 mod slides_tests;
 pub(crate) mod slip;
+mod stable;
 pub(crate) mod step;
 #[cfg(test)]
-mod stable;
 mod tests;
 pub(crate) mod verdict;
 pub(crate) mod wander;
@@ -283,7 +283,8 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
             let prepared = Prepared::new(campaign)?;
             let (bench, outcome) =
                 elsewhere::searched(campaign, &prepared, options, progress).map_err(Error::NotShown)?;
-            if let Some(preloaded) = preload::worth_a_try(campaign, &outcome) {
+            let preloaded = preload::worth_a_try(campaign, &outcome);
+            let better = preloaded.and_then(|preloaded| {
                 progress("asking whether gears carry the arm's own weight");
                 bench.spare_memory();
                 preload::better(&preloaded, (&bench, &outcome), options)
@@ -325,10 +326,12 @@ fn searched<'c>(
     if !outcome.structure() {
         // With structure accounted for, rows need stand out from noise alone.
         bench.strict = true;
-        if let Some(model) = bench.tried(&outcome.selection.model.named, Bench::look_again) {
-            let again = search(&mut bench, prepared, model, options, progress)?;
-            outcome = again.after(outcome);
         let before = bench.copy();
+        if let Some(model) = bench.tried(&outcome.selection.model.named, Bench::look_again) {
+            match search(&mut bench, prepared, model, options, progress) {
+                Ok(again) => outcome = again.after(outcome),
+                Err(_) => bench = before,
+            }
         }
     }
     if let Some(model) = bench.tried(&outcome.selection.model.named, Bench::hold_lost) {
@@ -339,11 +342,6 @@ fn searched<'c>(
     Ok((bench, outcome))
 }
 
-/// That the readings do not follow the loads, if so: every joint they show
-/// would be less than rigid. Whatever is found then, is found in readings of
-/// something else, or of the wrong sign.
-fn against_the_loads(prepared: &Prepared<'_>, setting: &Setting<'_>, base: &Fitted) -> Option<String> {
-    let numbers = base.fit.columns.iter().zip(base.fit.coefficients.iter());
 /// What a campaign shows where rows are wild, too, that the others of their own pose contradict.
 ///
 /// # Errors
@@ -362,6 +360,11 @@ fn closer<'c>(
     Ok((closer, outcome))
 }
 
+/// That the readings do not follow the loads, if so: every joint they show
+/// would be less than rigid. Whatever is found then, is found in readings of
+/// something else, or of the wrong sign.
+fn against_the_loads(prepared: &Prepared<'_>, setting: &Setting<'_>, base: &Fitted) -> Option<String> {
+    let numbers = base.fit.columns.iter().zip(base.fit.coefficients.iter());
     let mut joints = numbers.filter(|&(&column, _)| column < setting.point.samples.joints()).peekable();
     joints.peek()?;
     joints

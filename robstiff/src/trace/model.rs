@@ -215,7 +215,7 @@ impl Setting<'_> {
     pub(super) fn widths(&self, fit: &Fit) -> Option<Vec<f64>> {
         let total = &self.problem.total;
         let inverse = total.inverse(&fit.columns)?;
-        let freedom = (total.rows - fit.columns.len()).max(1) as f64;
+        let freedom = self.problem.freedom(fit);
         Some((0..fit.columns.len()).map(|k| BELOW_ZERO * (inverse[(k, k)] * fit.rss / freedom).sqrt()).collect())
     }
 
@@ -265,11 +265,11 @@ impl Setting<'_> {
         for &one in named {
             self.check_effect(fit, one)?;
         }
+        self.check_couplings(fit, named)?;
         if named.is_empty() {
             return Ok(());
         }
         // A clipped joint is only held against the model where noise does not
-        self.check_couplings(fit, named)?;
         // explain it, and where that takes much of what an effect explains.
         let clipped = (0..self.base_of(fit))
             .filter(|&k| self.signs[fit.columns[k]] == Sign::Nonnegative && fit.coefficients[k] == 0.0);
@@ -278,11 +278,10 @@ impl Setting<'_> {
             let (Some(free), Some(inverse)) = (total.solve(&fit.columns), total.inverse(&fit.columns)) else {
                 continue;
             };
-            let freedom = (total.rows - fit.columns.len()).max(1) as f64;
-            let std = (inverse[(k, k)] * free.rss / freedom).sqrt();
+            let std = (inverse[(k, k)] * free.rss / self.problem.freedom(&free)).sqrt();
             let taken = fit.rss - free.rss;
             if free.coefficients[k] < -BELOW_ZERO * std && taken > LITTLE * self.least_explained(fit, named) {
-                return Err(format!("joint {} would have a negative compliance", fit.columns[k] + 1));
+                return Err(self.below_zero(fit.columns[k]));
             }
         }
         Ok(())

@@ -1,6 +1,9 @@
-//! That the couplings of a model are possible together: each may be weak enough for its two
-//! joints, and the joints' compliance matrix `H_q` still not be positive definite.
+//! What physics says against a model as a whole, and in which words.
+//!
+//! Each coupling may be weak enough for its two joints, and the joints' compliance matrix `H_q`
+//! with all of them still not be positive definite.
 
+use std::format;
 use std::string::String;
 use std::vec::Vec;
 
@@ -8,6 +11,7 @@ use super::catalogue::JOINT_COUPLING;
 use super::model::{Fitted, Named, Setting};
 use super::written::plain;
 use crate::identify::baseline::{declared, with_values};
+use crate::identify::element_name;
 use crate::identify::normal::Fit;
 
 impl Setting<'_> {
@@ -32,6 +36,16 @@ impl Setting<'_> {
         match nearer.is_some_and(|nearer| self.is_stable(&nearer, named)) {
             true => Ok(()),
             false => Err(String::from("the couplings would be too strong together")),
+        }
+    }
+
+    /// That a number of the description would be below zero, by its column.
+    pub(super) fn below_zero(&self, column: usize) -> String {
+        let number = &declared(self.point.description)[column];
+        let name = element_name(self.point.description, number);
+        match number.effect {
+            None => format!("{name} would have a negative compliance"),
+            Some(_) => format!("{name} would be negative"),
         }
     }
 
