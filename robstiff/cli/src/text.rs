@@ -59,7 +59,12 @@ pub fn uncertain(value: f64, std: f64) -> String {
     let exponent = value.abs().max(std).log10().floor();
     let scale = 10_f64.powf(-exponent);
     let suffix = if exponent == 0.0 { String::new() } else { format!("e{exponent}") };
-    let decimals = (1.0 - (std * scale).log10().floor()).clamp(0.0, 4.0) as usize;
+    let decimals = 1.0 - (std * scale).log10().floor();
+    if decimals > 5.0 {
+        // Of which as many as are written would be zero.
+        return format!("({} ± {})", significant(value, 5), significant(std, 2));
+    }
+    let decimals = decimals.clamp(0.0, 4.0) as usize;
     format!("({:.decimals$} ± {:.decimals$}){suffix}", value * scale, std * scale)
 }
 
@@ -68,7 +73,11 @@ pub fn plus_minus(value: f64, std: f64) -> String {
     if !(value.is_finite() && std.is_finite() && std > 0.0) {
         return significant(value, 4);
     }
-    let decimals = (1.0 - std.log10().floor()).clamp(0.0, 6.0) as usize;
+    let decimals = 1.0 - std.log10().floor();
+    if decimals > 7.0 {
+        return format!("{} ± {}", significant(value, 7), significant(std, 2));
+    }
+    let decimals = decimals.clamp(0.0, 6.0) as usize;
     format!("{value:.decimals$} ± {std:.decimals$}")
 }
 
@@ -218,6 +227,11 @@ mod tests {
         assert_eq!(plus_minus(0.6314, 0.032), "0.631 ± 0.032");
         assert_eq!(plus_minus(4.9, 4.1), "4.9 ± 4.1");
         assert_eq!(plus_minus(0.3, f64::NAN), "0.3");
+        // Digits that would all be zeros tell nothing.
+        assert_eq!(uncertain(2.5e-7, 1e-13), "(2.5e-7 ± 1e-13)");
+        assert_eq!(uncertain(2.5e-7, 3.2e-11), "(2.5000 ± 0.0003)e-7");
+        assert_eq!(plus_minus(0.3, 1.2e-9), "0.3 ± 1.2e-9");
+        assert_eq!(plus_minus(0.3, 2e-6), "0.300000 ± 0.000002");
     }
 
     #[test]
