@@ -112,9 +112,15 @@ fn numbers(text: &str, between: char) -> Option<[i64; 3]> {
 /// A year, month and day of the calendar as a day; years begin in March, so that the day
 /// of a leap year is the last.
 fn day_of([year, month, day]: [i64; 3]) -> Option<i64> {
-    let (months, year) = ((month + 9) % 12, if month < 3 { year - 1 } else { year });
-    let is_date = year >= 1900 && (1..=12).contains(&month) && (1..=31).contains(&day);
-    is_date.then_some(365 * year + year / 4 - year / 100 + year / 400 + (153 * months + 2) / 5 + day)
+    let (months, since) = ((month + 9) % 12, if month < 3 { year - 1 } else { year });
+    let is_leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    let length = match month {
+        2 => 28 + i64::from(is_leap),
+        4 | 6 | 9 | 11 => 30,
+        _ => 31,
+    };
+    let is_date = year >= 1900 && (1..=12).contains(&month) && (1..=length).contains(&day);
+    is_date.then_some(365 * since + since / 4 - since / 100 + since / 400 + (153 * months + 2) / 5 + day)
 }
 
 #[cfg(test)]
@@ -130,6 +136,11 @@ mod tests {
             assert_eq!(days(from, to), 1);
         }
         assert_eq!([day_of([26, 11, 25]), day_of([2026, 13, 1]), day_of([2026, 1, 0])], [None; 3]);
+        // The last days of months, and none after them.
+        for date in [[2026, 2, 29], [2026, 2, 30], [2100, 2, 29], [2026, 4, 31], [2026, 12, 32]] {
+            assert_eq!(day_of(date), None, "{date:?}");
+        }
+        assert!([[2000, 2, 29], [2026, 4, 30], [2026, 12, 31]].into_iter().all(|date| day_of(date).is_some()));
     }
 
     #[test]
