@@ -30,6 +30,8 @@ pub(crate) mod second_order;
 pub(crate) mod setup;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod told_tests;
 pub(crate) mod uncertainty;
 pub(crate) mod whitening;
 

@@ -123,10 +123,16 @@ impl<'c> Prepared<'c> {
         let wild = prepared.covariance.beyond_doubt();
         wild.iter().flat_map(|outlier| &outlier.rows).for_each(|&row| prepared.left_out[row] = true);
         if !weighed && prepared.samples.axes > 3 {
+            prepared.visibility = prepared.shown();
             prepared.settle_weight()?;
         }
         prepared.look()?;
         Ok(prepared)
+    }
+
+    /// What the data see of the numbers by the geometry of poses and loads.
+    fn shown(&self) -> Vec<Visibility> {
+        visibility(&self.problem().total, self.own.len())
     }
 
     /// The columns that are fitted: those of the numbers that are seen.
@@ -228,8 +234,7 @@ impl<'c> Prepared<'c> {
     /// Finds out which numbers are seen, first by the geometry, then against
     /// the noise; and their values.
     fn look(&mut self) -> Result<(), Error> {
-        let problem = self.problem();
-        self.visibility = visibility(&problem.total, self.own.len());
+        self.visibility = self.shown();
         let fitted = loop {
             let problem = self.problem();
             let fitted = fit(self, &problem)?;

@@ -1,0 +1,27 @@
+//! What is told of numbers that the readings hardly show, of rows whose load is wrong, and of
+//! campaigns in which all of the readings are off.
+
+use std::vec;
+
+use super::{Estimate, Visibility, identify};
+use crate::Effect;
+use crate::campaign::made::Plan;
+
+/// Whether a number keeps its declared value, and it is said that it does not show.
+fn is_kept(estimate: &Estimate) -> bool {
+    let Estimate { value, declared, std, at_bound, .. } = *estimate;
+    estimate.visibility == Visibility::Unseen && value == declared && std.is_none() && !at_bound
+}
+
+/// Rotations whose weight only a fit tells: of a curve that no load asks for there is no fit.
+#[test]
+fn a_declared_number_that_nothing_shows_refuses_no_campaign() {
+    let mut plan = Plan { visits: 1, ramp: vec![1.0], rotation_noise: Some([5e-5; 3]), ..Plan::new(2) };
+    // What forces at the tool do not turn.
+    plan.robot.joints[4].a = 0.0;
+    let mut campaign = plan.run();
+    campaign.robot.effects.push(Effect::StiffnessNonlinearity { joint: 5, added: 1e-8, knee: 50.0 });
+    let found = identify(&campaign).expect("three joints are seen");
+    assert!(found.estimates[..3].iter().all(|joint| joint.visibility == Visibility::Seen), "{:?}", found.estimates);
+    assert!(found.estimates[4..].iter().all(is_kept), "{:?}", found.estimates);
+}
