@@ -2,6 +2,7 @@
 //! all poses, with compliances that are not negative.
 
 use nalgebra::{DMatrix, DVector};
+use std::string::String;
 use std::vec::Vec;
 
 use super::baseline::with_values;
@@ -11,7 +12,7 @@ use super::problem::rms;
 use super::readable::readable;
 use super::uncertainty::{correlation, covariance, of_held};
 use super::{Error, Identification, estimates};
-use crate::campaign::Campaign;
+use crate::campaign::{Campaign, Data, Observation};
 
 /// Identifies the numbers of a description.
 ///
@@ -19,6 +20,7 @@ use crate::campaign::Campaign;
 /// A campaign that sees none of them, has too few rows to say how sure they are, or asks
 /// for numbers that no description takes.
 pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
+    nothing_was_read(campaign)?;
     let mut prepared = Prepared::new(campaign)?;
     let mut problem = prepared.problem();
     enough(&prepared, &problem)?;
@@ -65,6 +67,21 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
         rms_declared: Some(declared_rms(&prepared, kept.iter().copied())),
         rms: Some(rms(&residuals, prepared.samples.axes, kept)),
     })
+}
+
+/// Refuses displacements that are all zero: by them the arm is rigid, and no sign is wrong.
+fn nothing_was_read(campaign: &Campaign) -> Result<(), Error> {
+    let Data::Displacement(data) = &campaign.data else { return Ok(()) };
+    let is_zero = |row: &Observation| {
+        let rotation = row.rotation.unwrap_or_default();
+        row.encoders.is_none() && row.displacement.iter().chain(&rotation).all(|&reading| reading == 0.0)
+    };
+    if data.rows.iter().all(is_zero) {
+        return Err(Error::NotShown(String::from(
+            "every displacement is zero: nothing was read of how the arm gives way",
+        )));
+    }
+    Ok(())
 }
 
 /// What a fit of the description's numbers leaves of the readings, stacked;

@@ -3,14 +3,24 @@
 
 use std::vec;
 
-use super::{Estimate, Visibility, identify};
+use super::{Error, Estimate, Visibility, identify};
 use crate::Effect;
+use crate::campaign::Data;
 use crate::campaign::made::Plan;
 
 /// Whether a number keeps its declared value, and it is said that it does not show.
 fn is_kept(estimate: &Estimate) -> bool {
     let Estimate { value, declared, std, at_bound, .. } = *estimate;
     estimate.visibility == Visibility::Unseen && value == declared && std.is_none() && !at_bound
+}
+
+#[test]
+fn displacements_that_are_all_zero_are_said_to_be() {
+    let mut campaign = Plan::new(1).run();
+    let Data::Displacement(data) = &mut campaign.data else { unreachable!("displacements were planned") };
+    data.rows.iter_mut().for_each(|row| row.displacement = [0.0; 3]);
+    let why = identify(&campaign).expect_err("nothing was read");
+    assert!(matches!(&why, Error::NotShown(why) if why.contains("every displacement is zero")), "{why}");
 }
 
 /// Rotations whose weight only a fit tells: of a curve that no load asks for there is no fit.
