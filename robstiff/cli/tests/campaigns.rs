@@ -101,6 +101,19 @@ fn readings_against_the_loads_are_said_to_be() {
     assert!(page.contains("keeps its declared values") && !page.contains("written as rigid"), "{page}");
 }
 
+/// Lengths in another unit than their header says make no description.
+#[test]
+fn readings_in_another_unit_are_refused() {
+    let folder = folder("unit");
+    let (campaign, out) = (copy(&folder), inside(&folder, "out"));
+    let loads = folder.join("loads.csv");
+    let text = fs::read_to_string(&loads).unwrap().replace("[m]", "[mm]");
+    fs::write(&loads, text).unwrap();
+    let said = fail(1, &["identify", &campaign, "--out", &out]);
+    assert!(said.contains("000 times as stiff as declared: "), "{said}");
+    assert!(said.contains("a displacement in mm taken for um") && !Path::new(&out).exists(), "{said}");
+}
+
 /// Why a campaign shows no compliance, with its file.
 #[test]
 fn what_hides_every_compliance_is_told() {

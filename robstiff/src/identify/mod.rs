@@ -72,6 +72,9 @@ pub enum Error {
     /// By the readings, the robot would be less than rigid: they, or the loads, have a
     /// wrong sign, unit or frame.
     AgainstTheLoads(String),
+    /// All joints are off from what is declared by one factor between units: of loads, of readings
+    /// or of the description.
+    OtherUnit(String),
     /// No description takes the numbers found beside the effects that it declares.
     NoDescription,
     /// An error is not finite: the numbers are too large.
@@ -87,6 +90,7 @@ impl fmt::Display for Error {
             | Self::OtherCampaign(why)
             | Self::NotShown(why)
             | Self::AgainstTheLoads(why)
+            | Self::OtherUnit(why)
             | Self::NoPlan(why) => why,
             Self::NoDescription => {
                 "the description's own effects leave a joint without compliance, or couple joints too strongly, with \
@@ -204,20 +208,24 @@ impl Estimate {
 ///
 /// # Errors
 /// What [`Campaign::check`] finds; a campaign that shows none of them, or deflections and
-/// readings against their loads.
+/// readings against their loads, or in another unit.
 pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     campaign.check().map_err(Error::Invalid)?;
     let found = match &campaign.data {
         Data::Displacement(_) => displacement::identify(campaign),
         Data::Position(data) => positions::identify(campaign, data),
-        Data::Clamped(rows) => return clamped::identify(campaign, rows),
+        Data::Clamped(rows) => clamped::identify(campaign, rows),
     }?;
     let joints = &found.estimates[..campaign.robot.joints.len()];
     let mut seen = joints.iter().filter(|joint| joint.visibility == Visibility::Seen).peekable();
-    if seen.peek().is_some() && seen.all(|joint| joint.at_bound) {
+    let is_clamped = matches!(campaign.data, Data::Clamped(_));
+    if !is_clamped && seen.peek().is_some() && seen.all(|joint| joint.at_bound) {
         return Err(less_than_rigid());
     }
-    Ok(found)
+    match scale::other_unit(campaign, &found.estimates) {
+        Some(why) => Err(Error::OtherUnit(why)),
+        None => Ok(found),
+    }
 }
 
 /// That by the readings every joint would be less than rigid.

@@ -15,10 +15,41 @@ const FARTHEST: f64 = 30.0;
 /// is sure to.
 const ALIKE: f64 = 3.0;
 
+/// Factors between units that are taken for each other, thousands and degrees in a radian, and
+/// within how many times of one the joints' factor is near it.
+const OF_UNITS: [(f64, f64); 4] = [(1e3, ALIKE), (1e6, ALIKE), (1e9, ALIKE), (180.0 / core::f64::consts::PI, 1.5)];
+
 /// What looks like a unit that was taken for another, in a sentence: that all joints which
 /// the data see, two at least, come out off from their declared compliances by about one
 /// factor, beyond 30 either way. `estimates` are of the campaign's robot, its joints first.
 pub fn off_by_one_factor(campaign: &Campaign, estimates: &[Estimate]) -> Option<String> {
+    let factor = common_factor(campaign, estimates)?;
+    let (times, likely) = (times(factor), likely(campaign, factor));
+    Some(format!("All joints come out about {times} as declared: {likely} looks like that."))
+}
+
+/// The same of a factor that lies between units, as one that is no robot's: why nothing can be
+/// made of such data, and what would be right.
+pub(crate) fn other_unit(campaign: &Campaign, estimates: &[Estimate]) -> Option<String> {
+    let factor = common_factor(campaign, estimates)?;
+    let off = factor.max(factor.recip());
+    let is_near = |(unit, within): &(f64, f64)| (unit / within..=unit * within).contains(&off);
+    OF_UNITS.iter().any(is_near).then(|| {
+        let header = match &campaign.data {
+            Data::Displacement(_) => "`Fx [N]` or `dx [um]`",
+            Data::Clamped(_) => "`torque [Nm]` or `deflection [urad]`",
+            Data::Position(_) => "`payload [kg]` or `px [mm]`",
+        };
+        let (times, likely) = (times(factor), likely(campaign, factor));
+        format!(
+            "all joints come out about {times} as declared: {likely} looks like that; the header of the table has to \
+             say what unit its numbers are in, as {header} does; where the description is what is off, declare no compliances"
+        )
+    })
+}
+
+/// By what factor all joints are off, as [`off_by_one_factor`] tells it.
+fn common_factor(campaign: &Campaign, estimates: &[Estimate]) -> Option<f64> {
     let joints = estimates.iter().take(campaign.robot.joints.len());
     let seen = joints.filter(|joint| joint.visibility == Visibility::Seen && joint.declared > 0.0);
     // With two standard deviations of each.
@@ -28,26 +59,43 @@ pub fn off_by_one_factor(campaign: &Campaign, estimates: &[Estimate]) -> Option<
     let (median, _) = factors.get(factors.len() / 2).copied().filter(|_| factors.len() > 1)?;
     let is_alike =
         |&(factor, unsure): &(f64, f64)| factor + unsure >= median / ALIKE && factor - unsure <= median * ALIKE;
-    if median <= 0.0 || (FARTHEST.recip()..FARTHEST).contains(&median) || !factors.iter().all(is_alike) {
-        return None;
-    }
-    let is_softer = median > 1.0;
-    let [large, small] = if is_softer { ["k", ""] } else { ["", "k"] };
-    let [fine, coarse] = if is_softer { ["u", "m"] } else { ["m", "u"] };
-    let likely = match &campaign.data {
-        Data::Displacement(_) => {
-            format!("a force in {large}N taken for {small}N, or a displacement in {fine}m taken for {coarse}m,")
-        }
-        Data::Clamped(_) => {
-            format!("a torque in {large}Nm taken for {small}Nm, or a deflection in {fine}rad taken for {coarse}rad,")
-        }
-        Data::Position(_) => String::from("a payload or a position in another unit"),
+    let is_one = median > 0.0 && !(FARTHEST.recip()..FARTHEST).contains(&median) && factors.iter().all(is_alike);
+    is_one.then_some(median)
+}
+
+/// How many times as compliant or stiff that is.
+fn times(factor: f64) -> String {
+    let which = if factor > 1.0 { "compliant" } else { "stiff" };
+    format!("{} times as {which}", one_digit(factor.max(factor.recip())))
+}
+
+/// What such a factor may come from.
+fn likely(campaign: &Campaign, factor: f64) -> String {
+    let (off, is_softer) = (factor.max(factor.recip()), factor > 1.0);
+    let taken = |[fine, coarse]: [&str; 2]| {
+        let [was, read] = if is_softer { [fine, coarse] } else { [coarse, fine] };
+        format!("in {was} taken for {read}")
     };
-    Some(format!(
-        "All joints come out about {} times as {} as declared: {likely} looks like that.",
-        one_digit(median.max(median.recip())),
-        if is_softer { "compliant" } else { "stiff" }
-    ))
+    let thousands = (off.log10() / 3.0).round();
+    if off < 100.0 {
+        return match &campaign.data {
+            Data::Clamped(_) => format!("a deflection {},", taken(["deg", "rad"])),
+            _ => String::from("a compliance declared in another unit, as deg for rad,"),
+        };
+    }
+    let [large, fine] = match thousands as i32 {
+        ..=1 => [["k", ""], ["u", "m"]],
+        2 => [["M", ""], ["u", ""]],
+        _ => [["G", ""], ["n", ""]],
+    };
+    let of = |prefixes: [&str; 2], unit: &str| {
+        taken(prefixes.map(|prefix| format!("{prefix}{unit}")).each_ref().map(|unit| unit.as_str()))
+    };
+    match &campaign.data {
+        Data::Displacement(_) => format!("a force {}, or a displacement {},", of(large, "N"), of(fine, "m")),
+        Data::Clamped(_) => format!("a torque {}, or a deflection {},", of(large, "Nm"), of(fine, "rad")),
+        Data::Position(_) => String::from("a payload or a position in another unit"),
+    }
 }
 
 /// A number above 1 to its first digit.
@@ -60,7 +108,7 @@ fn one_digit(value: f64) -> String {
 mod tests {
     use super::*;
     use crate::campaign::made::Plan;
-    use crate::identify::identify;
+    use crate::identify::displacement::identify;
 
     /// What is told of a campaign whose forces are as many times what they were.
     fn told(times: f64, of_one_joint: f64) -> Option<String> {

@@ -256,7 +256,7 @@ fn displacements_in_another_unit_have_no_second_order() {
             row.displacement = row.displacement.map(|d| unit * d);
             row.rotation = row.rotation.map(|rotation| rotation.map(|r| unit * r));
         }
-        let found = identify(&campaign).expect("all joints are seen");
+        let found = displacement::identify(&campaign).expect("all joints are seen");
         for (estimate, joint) in found.estimates.iter().zip(&truth.joints) {
             let off = (estimate.value / unit / joint.compliance() - 1.0).abs();
             assert!(off < 1e-6, "{unit:e}: {} off by {off}", estimate.name);

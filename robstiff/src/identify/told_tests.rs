@@ -1,17 +1,46 @@
 //! What is told of numbers that the readings hardly show, of rows whose load is wrong, and of
 //! campaigns in which all of the readings are off.
 
+use std::string::ToString;
 use std::vec;
 
-use super::{Error, Estimate, Visibility, identify};
+use super::{Error, Estimate, Visibility, identify, off_by_one_factor};
 use crate::Effect;
-use crate::campaign::Data;
 use crate::campaign::made::Plan;
+use crate::campaign::{Campaign, Data};
 
 /// Whether a number keeps its declared value, and it is said that it does not show.
 fn is_kept(estimate: &Estimate) -> bool {
     let Estimate { value, declared, std, at_bound, .. } = *estimate;
     estimate.visibility == Visibility::Unseen && value == declared && std.is_none() && !at_bound
+}
+
+/// A campaign with other forces, or displacements.
+fn scaled(force: f64, displacement: f64) -> Campaign {
+    Plan::new(1).run_with(|_, row| {
+        row.wrench = row.wrench.map(|load| force * load);
+        row.displacement = row.displacement.map(|read| displacement * read);
+    })
+}
+
+/// No robot is a thousand times as compliant as it is said to be.
+#[test]
+fn a_unit_that_was_taken_for_another_is_refused() {
+    for (force, told) in [
+        (1e-3, "1000 times as compliant as declared: a force in kN taken for N, or a displacement in um taken for mm,"),
+        (1e3, "1000 times as stiff as declared: a force in N taken for kN, or a displacement in mm taken for um,"),
+        (
+            1e-6,
+            "1000000 times as compliant as declared: a force in MN taken for N, or a displacement in um taken for m,",
+        ),
+    ] {
+        let why = identify(&scaled(force, 1.0)).expect_err("in another unit");
+        assert!(matches!(&why, Error::OtherUnit(why) if why.contains(told)), "{why}");
+        assert!(why.to_string().contains("as `Fx [N]` or `dx [um]` does"), "{why}");
+    }
+    // What lies between no units is told, and no more.
+    let campaign = scaled(5e-3, 1.0);
+    assert!(off_by_one_factor(&campaign, &identify(&campaign).expect("no unit").estimates).is_some());
 }
 
 #[test]
