@@ -7,10 +7,11 @@ use std::vec::Vec;
 
 use super::baseline::with_values;
 use super::normal::Fit;
-use super::prepare::{Prepared, enough, fit};
-use super::problem::rms;
+use super::prepare::{Prepared, SCATTERS, enough, fit};
+use super::problem::{Problem, rms};
 use super::readable::readable;
 use super::uncertainty::{correlation, covariance, of_held};
+use super::untold::untold;
 use super::{Error, Identification, estimates};
 use crate::campaign::{Campaign, Data, Observation};
 
@@ -33,20 +34,7 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
         problem = prepared.problem();
         fitted = fit(&prepared, &problem)?;
     }
-    let signs: Vec<_> = fitted.columns.iter().map(|&i| prepared.own[i].sign).collect();
-    let described = |fit: &Fit| {
-        let description = with_values(&campaign.robot, &prepared.with(fit));
-        let own = |effect: usize| {
-            let is_own = |k: &usize| prepared.own[fit.columns[*k]].effect == Some(effect);
-            (0..fit.columns.len()).filter(is_own).collect()
-        };
-        let places = (0..description.effects.len()).map(own).collect();
-        (description, places)
-    };
-    let fitted = readable(&problem.total, &fitted, &signs, described).ok_or(Error::NoDescription)?;
-    let declared = prepared.declared_noise;
-    let covariance = covariance(&problem, &fitted, &signs, declared)
-        + of_held(&problem, &fitted, &signs, &prepared.held(&fitted), declared);
+    let (fitted, covariance) = told(campaign, &mut prepared, &mut problem, fitted)?;
     let values = prepared.with(&fitted);
     let estimates =
         estimates(&campaign.robot, (&prepared.own, &prepared.visibility), &values, &fitted.columns, &covariance);
@@ -82,6 +70,43 @@ fn nothing_was_read(campaign: &Campaign) -> Result<(), Error> {
         )));
     }
     Ok(())
+}
+
+/// The fit that is told, of numbers that a description takes, with its covariance. What it tells
+/// no more of than was declared is held at that, and the rest fitted beside it.
+fn told(
+    campaign: &Campaign,
+    prepared: &mut Prepared<'_>,
+    problem: &mut Problem,
+    mut fitted: Fit,
+) -> Result<(Fit, DMatrix<f64>), Error> {
+    let noise = prepared.declared_noise;
+    loop {
+        let signs: Vec<_> = fitted.columns.iter().map(|&i| prepared.own[i].sign).collect();
+        let described = |fit: &Fit| {
+            let description = with_values(&campaign.robot, &prepared.with(fit));
+            let own = |effect: usize| {
+                let is_own = |k: &usize| prepared.own[fit.columns[*k]].effect == Some(effect);
+                (0..fit.columns.len()).filter(is_own).collect()
+            };
+            let places = (0..description.effects.len()).map(own).collect();
+            (description, places)
+        };
+        fitted = readable(&problem.total, &fitted, &signs, described).ok_or(Error::NoDescription)?;
+        let covariance = covariance(problem, &fitted, &signs, noise)
+            + of_held(problem, &fitted, &signs, &prepared.held(&fitted), noise);
+        let declared: Vec<_> = fitted.columns.iter().map(|&i| Some(prepared.own[i].value)).collect();
+        // Readings against the loads are refused as such, not held as if they told nothing.
+        let against = prepared.is_against_the_loads(&fitted);
+        let untold = untold(problem, &fitted, &signs, &declared, &covariance, noise).filter(|_| !against);
+        let Some(place) = untold else { return Ok((fitted, covariance)) };
+        prepared.hold(fitted.columns[place]);
+        if prepared.seen().is_empty() {
+            return Err(Error::NotShown(String::from(SCATTERS)));
+        }
+        *problem = prepared.problem();
+        fitted = fit(prepared, problem)?;
+    }
 }
 
 /// What a fit of the description's numbers leaves of the readings, stacked;

@@ -33,6 +33,7 @@ mod tests;
 #[cfg(test)]
 mod told_tests;
 pub(crate) mod uncertainty;
+pub(crate) mod untold;
 pub(crate) mod whitening;
 
 use core::fmt;

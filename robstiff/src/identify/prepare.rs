@@ -60,8 +60,8 @@ const WEIGHT_PASSES: usize = 4;
 /// A joint whose declared compliance is not even one standard deviation, and
 /// whose identified one not two, moves the readings less than the noise does:
 /// its estimate would be a number made of noise.
-const DECLARED_STANDS_OUT: f64 = 1.0;
-const IDENTIFIED_STANDS_OUT: f64 = 2.0;
+pub const DECLARED_STANDS_OUT: f64 = 1.0;
+pub const IDENTIFIED_STANDS_OUT: f64 = 2.0;
 
 /// What a maker's compliance is taken to be off by, where a fit holds it: the seed paper's
 /// identified ones stayed within it.
@@ -73,6 +73,9 @@ const BELOW_ZERO: f64 = 5.0;
 /// With fewer readings for each number than this, scatter says nothing of the instrument,
 /// nor of how sure a number is.
 const READINGS_A_NUMBER: usize = 2;
+
+/// What is said of readings whose noise hides every number.
+pub const SCATTERS: &str = "the readings scatter by more than the loads do to any joint";
 
 impl<'c> Prepared<'c> {
     /// Evaluates the robot on the campaign and fits the description's own
@@ -144,21 +147,36 @@ impl<'c> Prepared<'c> {
     /// be off by: those lost in the noise, or not told from others, at their declared value
     /// ([`DECLARED_IS_OFF_BY`]), and those clipped at zero, from it. Others are no surer
     /// than that lets them be.
-    pub fn held(&self, fit: &super::normal::Fit) -> Vec<(usize, f64)> {
+    pub fn held(&self, fit: &Fit) -> Vec<(usize, f64)> {
         let spread = |column: usize| {
             let number = &self.own[column];
             match fit.columns.iter().position(|&fitted| fitted == column) {
                 Some(k) => is_at_bound(number.sign, number.value, fit.coefficients[k]).then_some(number.value),
-                None if self.visibility[column] != Visibility::Seen => Some(DECLARED_IS_OFF_BY * number.value.abs()),
-                None => None,
+                None => Some(DECLARED_IS_OFF_BY * number.value.abs()),
             }
         };
         let held = |column| spread(column).filter(|&spread| spread > 0.0).map(|spread| (column, spread));
         (0..self.own.len()).filter_map(held).collect()
     }
 
+    /// Holds one of the description's numbers as declared from now on.
+    pub fn hold(&mut self, column: usize) {
+        self.visibility[column] = Visibility::Unseen;
+        self.values[column] = self.own[column].value;
+        self.correction = beyond_linear(&self.samples, &self.values[..self.samples.joints()]);
+    }
+
+    /// Whether by a fit every joint that is fitted would be less than rigid.
+    pub fn is_against_the_loads(&self, fit: &Fit) -> bool {
+        let numbers = fit.columns.iter().zip(fit.coefficients.iter());
+        let mut joints = numbers.filter(|(column, _)| **column < self.samples.joints()).peekable();
+        let is_clipped =
+            |(&column, &value): (&usize, &f64)| is_at_bound(self.own[column].sign, self.own[column].value, value);
+        joints.peek().is_some() && joints.all(is_clipped)
+    }
+
     /// The description's numbers with those of a fit.
-    pub fn with(&self, fit: &super::normal::Fit) -> Vec<f64> {
+    pub fn with(&self, fit: &Fit) -> Vec<f64> {
         let mut values = self.values.clone();
         for (&column, &value) in fit.columns.iter().zip(fit.coefficients.iter()) {
             values[column] = value;
@@ -342,7 +360,7 @@ fn nothing_shows(prepared: &Prepared<'_>, problem: &Problem) -> Error {
             format!("the noise of {} that the campaign declares hides all that the loads do", told_length(noise))
         }
         None if (is_seen && too_few) || (!is_seen && is_confounded) => return cannot_tell(prepared),
-        None if is_seen => String::from("the readings scatter by more than the loads do to any joint"),
+        None if is_seen => String::from(SCATTERS),
         None => String::from("these poses and loads show none of the robot's compliances"),
     })
 }

@@ -9,7 +9,7 @@ use super::{Estimate, Visibility};
 use crate::campaign::{Campaign, Data};
 
 /// No joints are all off from what is declared by more than this factor.
-const FARTHEST: f64 = 30.0;
+pub const FARTHEST: f64 = 30.0;
 
 /// A factor that is in common is each joint's own within this one, or within what its value
 /// is sure to.

@@ -1,18 +1,77 @@
 //! What is told of numbers that the readings hardly show, of rows whose load is wrong, and of
 //! campaigns in which all of the readings are off.
 
+use std::format;
 use std::string::ToString;
 use std::vec;
 
+use robstiff_robots::{Description, catalogue};
+
 use super::{Error, Estimate, Visibility, identify, off_by_one_factor};
 use crate::Effect;
-use crate::campaign::made::Plan;
-use crate::campaign::{Campaign, Data};
+use crate::campaign::made::{Plan, campaign};
+use crate::campaign::{Campaign, Data, Noise};
+use crate::simulate::{Scenario, simulate};
+
+/// What a robot of the catalogue with a tool gives whose middle is next to the last axis, which
+/// forces on it hardly turn.
+fn measured(robot: &str, scenario: &str) -> Campaign {
+    let text = catalogue::find(robot).expect("in the catalogue");
+    let mut robot = Description::parse("robot.yaml", text).expect("of the catalogue");
+    robot.tool.xyz = [5e-3, 0.0, 0.2];
+    let scenario = Scenario::parse("try.yaml", scenario, &robot).expect("a scenario");
+    let simulated = simulate(&robot, &scenario).expect("it can be measured");
+    let noise = Noise { displacement: Some(8e-6), rotation: None };
+    Campaign { noise, ..campaign(robot, simulated.data) }
+}
 
 /// Whether a number keeps its declared value, and it is said that it does not show.
 fn is_kept(estimate: &Estimate) -> bool {
     let Estimate { value, declared, std, at_bound, .. } = *estimate;
     estimate.visibility == Visibility::Unseen && value == declared && std.is_none() && !at_bound
+}
+
+/// A bearing that tilts is in the readings of all poses, and a joint that forces hardly turn would
+/// need thousands of times its compliance to make up for it.
+#[test]
+fn what_the_description_lacks_makes_no_compliance() {
+    let (mut kept, seeds) = (0, 1..=8);
+    for seed in seeds {
+        let scenario = format!(
+            "name: tilt\nseed: {seed}\nposes: {{count: 40, floor: 100 mm, column: 600 mm}}\nvisits: 2\n\
+             ramp: [0.35, 0.7, 1]\nforce: {{bounds: [500 N, 1.3 kN]}}\nnoise: {{displacement: 8 um}}\nscatter: 0.2\n\
+             hidden:\n  effects:\n    - {{kind: transverse_compliance, at: joint 3, value: 6e-7 rad/Nm}}\n"
+        );
+        let found = identify(&measured("kuka-kr270-r2700", &scenario)).expect("joints are seen");
+        let last = &found.estimates[5];
+        assert!(is_kept(last), "{seed}: {last:?}");
+        kept += 1;
+        // The tilt is in all rows of its poses, and no load is wrong.
+        assert!(found.left_out.is_empty(), "{seed}: {:?}", found.left_out);
+        assert!(found.estimates[..3].iter().all(|joint| joint.std.is_some()), "{seed}: {:?}", found.estimates);
+    }
+    assert_eq!(kept, 8);
+}
+
+/// Of a joint that a payload hardly turns zero fits no better than what is declared.
+#[test]
+fn a_joint_is_rigid_only_where_the_declared_compliance_does_not_fit() {
+    for seed in 1..=8 {
+        let scenario = format!(
+            "kind: position\nseed: {seed}\nposes: {{count: 30, floor: 200 mm}}\npayloads: [0 kg, 150 kg]\n\
+             measured: {{at: [40 mm, 0 mm, 110 mm]}}\nnoise: {{displacement: 20 um, repeatability: 20 um}}\nscatter: 0.3\n"
+        );
+        let found = identify(&measured("kuka-kr270-r2700", &scenario)).expect("joints are seen");
+        let clipped = found.estimates.iter().find(|joint| joint.at_bound);
+        assert!(clipped.is_none() && is_kept(&found.estimates[5]), "{seed}: {:?}", found.estimates);
+    }
+    // Rigid as far as such a campaign can say, and declared as a joint that it would see.
+    let mut plan = Plan::new(3);
+    let right = plan.robot.clone();
+    plan.robot.joints[3].compliance.iter_mut().for_each(|part| part.value *= 1e-6);
+    let found = identify(&Campaign { robot: right, ..plan.run() }).expect("joints are seen");
+    let joint = &found.estimates[3];
+    assert!(joint.visibility == Visibility::Seen && joint.value < 0.02 * joint.declared, "{joint:?}");
 }
 
 /// A campaign with other forces, or displacements.

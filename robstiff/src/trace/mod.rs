@@ -89,7 +89,7 @@ use self::search::{Outcome, search};
 use crate::campaign::{Campaign, Data};
 use crate::identify::encoders::EncodersRead;
 use crate::identify::prepare::Prepared;
-use crate::identify::{AGAINST_THE_LOADS, Error, Estimate, NoiseSource, is_at_bound};
+use crate::identify::{AGAINST_THE_LOADS, Error, Estimate, NoiseSource};
 
 /// How to trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -309,7 +309,7 @@ fn searched<'c>(
 ) -> Result<(Bench<'c>, Outcome), String> {
     let setting = bench.at(&[])?;
     let base = setting.fit(&[])?;
-    if let Some(why) = too_little(&setting).or_else(|| against_the_loads(prepared, &setting, &base)) {
+    if let Some(why) = too_little(&setting).or_else(|| against_the_loads(prepared, &base)) {
         return Ok((bench, Outcome::nothing(base, Verdict::Insufficient, why)));
     }
     drop(setting);
@@ -363,13 +363,8 @@ fn closer<'c>(
 /// That the readings do not follow the loads, if so: every joint they show
 /// would be less than rigid. Whatever is found then, is found in readings of
 /// something else, or of the wrong sign.
-fn against_the_loads(prepared: &Prepared<'_>, setting: &Setting<'_>, base: &Fitted) -> Option<String> {
-    let numbers = base.fit.columns.iter().zip(base.fit.coefficients.iter());
-    let mut joints = numbers.filter(|&(&column, _)| column < setting.point.samples.joints()).peekable();
-    joints.peek()?;
-    joints
-        .all(|(&column, &value)| is_at_bound(prepared.own[column].sign, prepared.own[column].value, value))
-        .then(|| String::from(AGAINST_THE_LOADS))
+fn against_the_loads(prepared: &Prepared<'_>, base: &Fitted) -> Option<String> {
+    prepared.is_against_the_loads(&base.fit).then(|| String::from(AGAINST_THE_LOADS))
 }
 
 /// Why a campaign cannot tell what is missing, if so.

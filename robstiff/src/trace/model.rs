@@ -41,8 +41,7 @@ pub struct Setting<'c> {
     pub base: Vec<usize>,
     /// The columns of the description's numbers.
     pub own: Rc<[Column]>,
-    /// The compliances of all joints, held ones included, from the fit of the
-    /// description's own numbers.
+    /// The compliances of all joints as declared, which those have that are held.
     pub joint_values: Vec<f64>,
     /// What the readings may have besides that no column says, a model's effects
     /// being what they are, stacked: columns behind all others. No model is fitted

@@ -142,7 +142,8 @@ pub fn in_told_order(effects: impl Iterator<Item = Found>, told: &[NamedEffect])
 
 /// The description's own numbers in a model.
 pub fn values(prepared: &Prepared<'_>, setting: &Setting<'_>, model: &Fitted) -> Vec<f64> {
-    let mut values = prepared.values.clone();
+    // What is not fitted is held as declared.
+    let mut values: Vec<f64> = prepared.own.iter().map(|number| number.value).collect();
     for (&column, &value) in model.fit.columns.iter().zip(model.fit.coefficients.iter()) {
         if column < setting.own.len() {
             values[column] = value;

@@ -80,6 +80,16 @@ pub fn summary(trace: &Trace, campaign: &Campaign) -> Vec<String> {
     let declared = || trace.description.effects.iter().map(ToString::to_string);
     let effects = || trace.effects.iter().map(|named| named.effect.to_string()).chain(declared());
     sentences.extend(clipped.map(|estimate| sentence(&at_bound(&estimate.name, effects()))));
+    // What the joints alone seemed to show, and do not beside the effects.
+    let was_seen = |(now, before): &(&Estimate, &Estimate)| {
+        now.visibility == Visibility::Unseen && before.visibility == Visibility::Seen
+    };
+    let kept = trace.estimates.iter().zip(&trace.estimates_before).filter(|both| is_taken && was_seen(both));
+    sentences.extend(
+        kept.map(|(now, _)| {
+            sentence(&format!("{} does not show in these data and keeps its declared value", now.name))
+        }),
+    );
     if !trace.depends_on.is_empty() && matches!(trace.verdict, Verdict::Partial | Verdict::Unexplained) {
         sentences.push(format!("What is left depends on {}.", and(&trace.depends_on)));
     }

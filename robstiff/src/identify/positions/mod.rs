@@ -30,7 +30,7 @@ use robstiff_robots::Description;
 use self::model::{Enters, Model, State};
 use self::own::{Own, compliances, kinematic, with_values};
 use self::registration::Registration;
-use self::regression::{Regression, Rows, STANDS};
+use self::regression::{Regression, Rows, STANDS, Solved};
 use self::wild::wild_rows;
 use self::within::within_visits;
 use super::baseline::{Visibility, visibility};
@@ -41,7 +41,8 @@ use super::predict::{PredictedRow, Prediction};
 use super::problem::rms;
 use super::readable::is_readable;
 use super::uncertainty::{correlation, covariance};
-use super::{Error, Estimate, Identification, NoiseSource};
+use super::untold::untold;
+use super::{Error, Estimate, Identification, NoiseSource, is_at_bound};
 use crate::campaign::{Campaign, Positions};
 
 /// Positions are all but linear in compliances: a step is off by some 1e-3 of itself. As
@@ -117,6 +118,13 @@ impl<'c> Prepared<'c> {
         let declared = Model::new(&campaign.robot, self.data);
         self.registration = standing(&declared, self.data, |row| self.rows.has(row, self.data))?;
         Ok(())
+    }
+
+    /// Holds an own number as declared from now on.
+    fn hold(&mut self, number: usize) {
+        self.visibility[number] = Visibility::Unseen;
+        let own = &self.own[number];
+        own.add_to(&mut self.start.description, own.value);
     }
 
     /// The own numbers that the positions show, by index.
@@ -267,14 +275,7 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
         wild = found;
         prepared.leave_out(&wild, campaign)?;
     }
-    let start = prepared.state(prepared.own.len());
-    let (state, spread) = match by_payloads(&regression, &start, &seen, &prepared.rows)? {
-        Some(found) => found,
-        None => {
-            let solved = regression.solve(&seen, &start, &prepared.rows).ok_or_else(confounded)?;
-            (solved.state, of_numbers(&covariance(&solved.problem, &solved.fit, &solved.signs, None)))
-        }
-    };
+    let (regression, seen, state, spread) = told(&mut prepared)?;
     let values = prepared.values(&state);
     let (rows, left) = (data.rows.len(), residuals(&regression, &state));
     let noise = match campaign.noise.displacement {
@@ -308,14 +309,46 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
     })
 }
 
-/// The own numbers by what payloads of one visit differ by, with their covariance; `None`
-/// where that does not tell them from each other.
+/// The numbers that are told, by index, their regression, values and covariance. What positions
+/// tell no more of than was declared is held at that, and the rest fitted beside it.
+fn told<'c>(prepared: &mut Prepared<'c>) -> Result<(Regression<'c>, Vec<usize>, State, DMatrix<f64>), Error> {
+    loop {
+        let (regression, seen) = (prepared.regression([]), prepared.seen());
+        let start = prepared.state(prepared.own.len());
+        let solved = match by_payloads(&regression, &start, &seen, &prepared.rows)? {
+            Some(solved) => solved,
+            None => regression.solve(&seen, &start, &prepared.rows).ok_or_else(confounded)?,
+        };
+        let Solved { state, problem, fit, signs } = solved;
+        let spread = covariance(&problem, &fit, &signs, None);
+        let stands = fit.columns.len() - seen.len();
+        let mut declared = std::vec![None; stands];
+        declared.extend(seen.iter().map(|&k| Some(prepared.own[k].value)));
+        // Positions against the payloads are refused as such, not held as if they told nothing.
+        let is_clipped = |&k: &usize| is_at_bound(prepared.own[k].sign, prepared.own[k].value, state.values[k]);
+        let against = seen.iter().all(is_clipped);
+        let place = untold(&problem, &fit, &signs, &declared, &spread, None).filter(|_| !against);
+        let Some(place) = place else {
+            let numbers = spread.view((stands, stands), (seen.len(), seen.len())).into_owned();
+            return Ok((regression, seen, state, numbers));
+        };
+        if seen.len() == 1 {
+            return Err(Error::NotShown(String::from(
+                "the positions scatter by more than the payloads do to any joint",
+            )));
+        }
+        prepared.hold(seen[place - stands]);
+    }
+}
+
+/// The own numbers by what payloads of one visit differ by; `None` where that does not tell
+/// them from each other.
 fn by_payloads(
     regression: &Regression<'_>,
     start: &State,
     seen: &[usize],
     rows: &Rows,
-) -> Result<Option<(State, DMatrix<f64>)>, Error> {
+) -> Result<Option<Solved>, Error> {
     let data = regression.data;
     let (signs, columns) = (&regression.signs_of(seen)[STANDS..], Vec::from_iter(0..seen.len()));
     let mut state = start.clone();
@@ -328,7 +361,7 @@ fn by_payloads(
         if pass == PASSES {
             let model = state.model(&regression.start, &regression.numbers);
             state.registration = standing(&model, data, |row| rows.has(row, data))?;
-            return Ok(Some((state, covariance(&within, &fit, signs, None))));
+            return Ok(Some(Solved { state, problem: within, fit, signs: signs.to_vec() }));
         }
         pass += 1;
     }

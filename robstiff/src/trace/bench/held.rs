@@ -12,7 +12,10 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::Bench;
-use crate::trace::model::Named;
+use crate::identify::normal::{Fit, Sign};
+use crate::identify::uncertainty::covariance;
+use crate::identify::untold::untold;
+use crate::trace::model::{Named, Setting};
 
 impl Bench<'_> {
     /// Fits also the numbers whose [loss in the noise](crate::identify::prepare::Prepared::doubted)
@@ -32,7 +35,8 @@ impl Bench<'_> {
         Ok(true)
     }
 
-    /// Holds those of them that are lost in what a model leaves; whether there are any.
+    /// Holds those of them that are lost in what a model leaves, and any of the description's
+    /// numbers that it does [not tell](untold) from what was declared; whether there are any.
     ///
     /// # Errors
     /// Why the model cannot be fitted.
@@ -42,7 +46,10 @@ impl Bench<'_> {
             let setting = self.at(named)?;
             let fitted = setting.fit(named)?;
             let is_doubted = |column: usize| self.prepared.doubted.contains(&column);
-            let lost = self.prepared.lost(&setting.problem.total, &fitted.fit, is_doubted);
+            let mut lost = self.prepared.lost(&setting.problem.total, &fitted.fit, is_doubted);
+            if lost.is_empty() {
+                lost.extend(self.untold(&setting, &fitted.fit));
+            }
             if lost.is_empty() {
                 return Ok(changed);
             }
@@ -50,6 +57,17 @@ impl Bench<'_> {
             self.fit_to(&base);
             changed = true;
         }
+    }
+
+    /// The column of the description's number that a fit does not tell from what was declared.
+    fn untold(&self, setting: &Setting<'_>, fit: &Fit) -> Option<usize> {
+        let signs: Vec<Sign> = fit.columns.iter().map(|&column| setting.signs[column]).collect();
+        let declared = |&column: &usize| self.prepared.own.get(column).map(|number| number.value);
+        let declared: Vec<Option<f64>> = fit.columns.iter().map(declared).collect();
+        let (problem, alone) = setting.alone(fit);
+        let noise = self.prepared.declared_noise;
+        let spread = covariance(&problem, &alone, &signs, noise);
+        untold(&problem, &alone, &signs, &declared, &spread, noise).map(|place| fit.columns[place])
     }
 
     /// Fits these of the description's numbers, and no others.
@@ -66,6 +84,8 @@ mod tests {
 
     use crate::campaign::made::Plan;
     use crate::campaign::{Campaign, Data};
+    use crate::elements::Spring;
+    use crate::identify::column::Column;
     use crate::identify::prepare::Prepared;
     use crate::identify::{Visibility, identify};
     use crate::trace::Verdict;
@@ -116,5 +136,18 @@ mod tests {
             }
         }
         assert!(held > 0);
+    }
+
+    /// Once a tilt is named that a joint made up for which forces hardly turn, zero fits that joint
+    /// no better than what is declared.
+    #[test]
+    fn a_joint_that_is_not_told_from_rigid_is_held() {
+        for seed in 1..=3 {
+            let mut plan = Plan { hidden: vec![(Column::Spring(Spring::Transverse(4)), 6e-6)], ..Plan::new(seed) };
+            plan.robot.joints[4].a = 1e-3;
+            let last = &traced(&plan.run()).estimates[4];
+            assert!(!last.at_bound && last.visibility == Visibility::Unseen, "{seed}: {last:?}");
+            assert!(last.value == last.declared && last.std.is_none(), "{seed}: {last:?}");
+        }
     }
 }

@@ -279,7 +279,7 @@ impl<'c> Bench<'c> {
             signs: Rc::clone(&self.signs),
             base: base.clone(),
             own: Rc::clone(&self.own),
-            joint_values: self.prepared.values[..self.prepared.samples.joints()].to_vec(),
+            joint_values: self.prepared.own[..self.prepared.samples.joints()].iter().map(|own| own.value).collect(),
             tangents: tangents.clone(),
             correction: self.prepared.correction.clone(),
         })

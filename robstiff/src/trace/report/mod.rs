@@ -22,7 +22,7 @@ use crate::identify::displacement::{declared_residuals, declared_rms};
 use crate::identify::encoders::EncodersRead;
 use crate::identify::prepare::Prepared;
 use crate::identify::problem::{Block, Equations, rms};
-use crate::identify::{Error, Estimate, NoiseSource, estimates};
+use crate::identify::{Error, Estimate, NoiseSource, Visibility, estimates};
 
 /// A tracing in full: errors before and after, the effects with their
 /// uncertainty, and the description that says it all.
@@ -182,9 +182,16 @@ fn numbers(
     model: &Fitted,
     spread: &DMatrix<f64>,
 ) -> Vec<Estimate> {
+    let mut visibility = prepared.visibility.clone();
+    for (column, visibility) in visibility.iter_mut().enumerate() {
+        // Held, for the model does not tell it from what was declared.
+        if *visibility == Visibility::Seen && !model.fit.columns.contains(&column) {
+            *visibility = Visibility::Unseen;
+        }
+    }
     estimates(
         &campaign.robot,
-        (&prepared.own, &prepared.visibility),
+        (&prepared.own, &visibility),
         &values(prepared, setting, model),
         &model.fit.columns,
         spread,
