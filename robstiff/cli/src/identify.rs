@@ -106,6 +106,13 @@ fn noise(covariance: &Covariance, data: &Displacements, left_out: &[usize]) -> S
             if outlier.rows.iter().all(|row| left_out.contains(&data.rows[*row].line)) { ", left out" } else { "" };
         said += &format!("does not belong{out}: {}\n", outlier.told(data));
     }
+    let is_told = |line: &usize| {
+        covariance.outliers.iter().flat_map(|outlier| &outlier.rows).any(|&row| data.rows[row].line == *line)
+    };
+    for line in left_out.iter().filter(|line| !is_told(line)) {
+        said +=
+            &format!("does not belong, left out: line {line}: the other poses contradict its load or its reading\n");
+    }
     said
 }
 

@@ -114,6 +114,32 @@ fn readings_in_another_unit_are_refused() {
     assert!(said.contains("a displacement in mm taken for um") && !Path::new(&out).exists(), "{said}");
 }
 
+/// A force that is a thousand times too large leaves the others as they are.
+#[test]
+fn a_row_with_a_wrong_force_is_named() {
+    let folder = folder("wrong-force");
+    let (campaign, out) = (copy(&folder), inside(&folder, "out"));
+    let right = succeed(&["identify", &campaign, "--out", &out]);
+    let loads = folder.join("loads.csv");
+    let text = fs::read_to_string(&loads).unwrap();
+    let column = text.lines().next().unwrap().split(',').position(|name| name.starts_with("Fz")).unwrap();
+    let wrong = (1..).zip(text.lines()).map(|(line, row)| {
+        let field = |(i, field): (usize, &str)| match line == 20 && i == column {
+            true => (1000.0 * field.parse::<f64>().unwrap()).to_string(),
+            false => field.to_owned(),
+        };
+        row.split(',').enumerate().map(field).collect::<Vec<_>>().join(",")
+    });
+    fs::write(&loads, wrong.collect::<Vec<_>>().join("\n")).unwrap();
+    // That it is far larger than all others is warned of.
+    let said = run(&["identify", &campaign, "--out", &out]);
+    let page = said.out;
+    assert!(said.code == 0 && said.err.contains("line 20: a force of 470 kN"), "{}", said.err);
+    let named = "does not belong, left out: line 20: the other poses contradict its load or its reading";
+    assert!(page.contains(named) && !right.contains("does not belong"), "{page}");
+    assert!(!page.contains("at its bound"), "{page}");
+}
+
 /// Why a campaign shows no compliance, with its file.
 #[test]
 fn what_hides_every_compliance_is_told() {

@@ -22,7 +22,7 @@ use crate::campaign::{Campaign, Data, Observation};
 /// for numbers that no description takes.
 pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     nothing_was_read(campaign)?;
-    let mut prepared = Prepared::new(campaign)?;
+    let mut prepared = Prepared::without_wild(campaign)?;
     let mut problem = prepared.problem();
     enough(&prepared, &problem)?;
     let mut fitted = fit(&prepared, &problem)?;

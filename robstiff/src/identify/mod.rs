@@ -35,6 +35,7 @@ mod told_tests;
 pub(crate) mod uncertainty;
 pub(crate) mod untold;
 pub(crate) mod whitening;
+pub(crate) mod wild;
 
 use core::fmt;
 use std::format;

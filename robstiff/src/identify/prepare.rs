@@ -17,6 +17,7 @@ use super::normal::{Fit, Normal, Sign};
 use super::problem::{Problem, Weights, raw};
 use super::samples::Samples;
 use super::second_order::{beyond_linear, straightened};
+use super::wild::leave_out;
 use super::{Error, NoiseSource, is_at_bound, less_than_rigid};
 use crate::campaign::{Campaign, Data, Displacements, told_length};
 use crate::words::count;
@@ -84,20 +85,38 @@ impl<'c> Prepared<'c> {
     /// # Errors
     /// A campaign of another kind, or one that sees none of the numbers.
     pub fn new(campaign: &'c Campaign) -> Result<Self, Error> {
+        Self::of(campaign, false)
+    }
+
+    /// The same without the rows that the rest of the campaign contradicts, their load above
+    /// all: tracing looks for these with its effects, and nothing else does.
+    ///
+    /// # Errors
+    /// Likewise.
+    pub fn without_wild(campaign: &'c Campaign) -> Result<Self, Error> {
+        Self::of(campaign, true)
+    }
+
+    fn of(campaign: &'c Campaign, without_wild: bool) -> Result<Self, Error> {
         let Data::Displacement(data) = &campaign.data else {
             return Err(Error::OtherCampaign(String::from("this needs a campaign of kind `displacement`")));
         };
-        let prepared = Self::by(&campaign.robot, campaign, data)?;
+        let prepared = Self::by(&campaign.robot, campaign, data, without_wild)?;
         if !prepared.own.iter().any(|number| number.column.is_law()) {
             return Ok(prepared);
         }
         // Laws that are no longer as declared would pass for noise.
-        Self::by(&with_values(&campaign.robot, &prepared.values), campaign, data)
+        Self::by(&with_values(&campaign.robot, &prepared.values), campaign, data, without_wild)
     }
 
     /// The same, with how noisy the readings are found out when what is not linear in
     /// the load is taken from them by the description `known`.
-    fn by(known: &Description, campaign: &'c Campaign, data: &'c Displacements) -> Result<Self, Error> {
+    fn by(
+        known: &Description,
+        campaign: &'c Campaign,
+        data: &'c Displacements,
+        without_wild: bool,
+    ) -> Result<Self, Error> {
         let description = &campaign.robot;
         let samples = Samples::of_description(description, data);
         let training = training(samples.poses, campaign.holdout);
@@ -123,14 +142,27 @@ impl<'c> Prepared<'c> {
             samples: Rc::new(samples),
             training,
         };
-        let wild = prepared.covariance.beyond_doubt();
-        wild.iter().flat_map(|outlier| &outlier.rows).for_each(|&row| prepared.left_out[row] = true);
-        if !weighed && prepared.samples.axes > 3 {
+        let settle = |prepared: &mut Self| {
             prepared.visibility = prepared.shown();
-            prepared.settle_weight()?;
+            if !weighed && prepared.samples.axes > 3 { prepared.settle_weight() } else { Ok(()) }
+        };
+        if without_wild {
+            let before = prepared.covariance.clone();
+            settle(&mut prepared)?;
+            if !leave_out(&mut prepared, noise) {
+                prepared.covariance = before;
+            }
         }
+        prepared.leave_out_beyond_doubt();
+        settle(&mut prepared)?;
         prepared.look()?;
         Ok(prepared)
+    }
+
+    /// Leaves out the readings that the others of their pose contradict.
+    fn leave_out_beyond_doubt(&mut self) {
+        let wild = self.covariance.beyond_doubt();
+        wild.iter().flat_map(|outlier| &outlier.rows).for_each(|&row| self.left_out[row] = true);
     }
 
     /// What the data see of the numbers by the geometry of poses and loads.

@@ -4,13 +4,16 @@
 use std::format;
 use std::string::ToString;
 use std::vec;
+use std::vec::Vec;
 
 use robstiff_robots::{Description, catalogue};
 
-use super::{Error, Estimate, Visibility, identify, off_by_one_factor};
+use super::column::Column;
+use super::{Error, Estimate, Identification, Visibility, identify, off_by_one_factor};
 use crate::Effect;
 use crate::campaign::made::{Plan, campaign};
-use crate::campaign::{Campaign, Data, Noise};
+use crate::campaign::{Campaign, Data, Noise, Observation};
+use crate::elements::Spring;
 use crate::simulate::{Scenario, simulate};
 
 /// What a robot of the catalogue with a tool gives whose middle is next to the last axis, which
@@ -72,6 +75,61 @@ fn a_joint_is_rigid_only_where_the_declared_compliance_does_not_fit() {
     let found = identify(&Campaign { robot: right, ..plan.run() }).expect("joints are seen");
     let joint = &found.estimates[3];
     assert!(joint.visibility == Visibility::Seen && joint.value < 0.02 * joint.declared, "{joint:?}");
+}
+
+/// The identification of a campaign of which one row's force is not what the file says.
+fn with_wrong_force(plan: &Plan, row: usize, wrong: impl Fn(&mut Observation)) -> (usize, Identification) {
+    let mut campaign = plan.run();
+    let Data::Displacement(data) = &mut campaign.data else { unreachable!("displacements were planned") };
+    wrong(&mut data.rows[row]);
+    let line = data.rows[row].line;
+    (line, identify(&campaign).expect("all joints are seen"))
+}
+
+/// Of a wrong force no other reading of its pose can say that it is, for what a pose's readings
+/// are free in is the response to it.
+#[test]
+fn a_row_with_a_wrong_force_is_left_out() {
+    let tilted = vec![(Column::Spring(Spring::Transverse(3)), 1e-7)];
+    let plans = [
+        Plan::new(1),
+        Plan { hidden: tilted, ..Plan::new(2) },
+        Plan { visits: 1, ramp: vec![1.0], ..Plan::new(3) },
+        Plan { rotation_noise: Some([5e-5; 3]), ..Plan::new(4) },
+    ];
+    for (k, plan) in plans.iter().enumerate() {
+        let right = identify(&plan.run()).expect("all joints are seen");
+        assert!(right.left_out.is_empty(), "{k}: {:?}", right.left_out);
+        for row in [1, 7, 22] {
+            let largest =
+                |row: &Observation| (0..3).max_by(|&a, &b| row.wrench[a].abs().total_cmp(&row.wrench[b].abs()));
+            let times = |times: f64| {
+                move |row: &mut Observation| {
+                    let axis = largest(row).expect("three axes");
+                    row.wrench[axis] *= times;
+                }
+            };
+            for wrong in [1e3, 10.0, -1.0] {
+                let (line, found) = with_wrong_force(plan, row, times(wrong));
+                assert_eq!(found.left_out, [line], "{k}: row {row} times {wrong}");
+                for (right, found) in right.estimates.iter().zip(&found.estimates) {
+                    let off = (right.value - found.value).abs();
+                    assert!(right.std.is_some_and(|std| off < std), "{k}: row {row} times {wrong}: {found:?}");
+                }
+            }
+        }
+    }
+}
+
+/// Several hide each other.
+#[test]
+fn rows_with_wrong_forces_are_left_out_together() {
+    let mut campaign = Plan::new(5).run();
+    let Data::Displacement(data) = &mut campaign.data else { unreachable!("displacements were planned") };
+    let rows = [3, 60, 150, 333];
+    rows.iter().for_each(|&row| data.rows[row].wrench[row % 3] *= 1e3);
+    let lines: Vec<usize> = rows.iter().map(|&row| data.rows[row].line).collect();
+    assert_eq!(identify(&campaign).expect("all joints are seen").left_out, lines);
 }
 
 /// A campaign with other forces, or displacements.

@@ -132,7 +132,18 @@ impl Covariance {
     /// `declared` only the ratio of displacement to rotation is used, where there
     /// is no other: how noisy the readings are, they say themselves.
     pub(crate) fn estimate(samples: &Samples, frame: Frame, declared: Noise, of_pose: impl Fn(usize) -> bool) -> Self {
-        Self::estimated(samples, frame, declared, of_pose).0
+        Self::estimate_without(samples, frame, declared, of_pose, &[])
+    }
+
+    /// The same without rows that are known not to belong.
+    pub(crate) fn estimate_without(
+        samples: &Samples,
+        frame: Frame,
+        declared: Noise,
+        of_pose: impl Fn(usize) -> bool,
+        without: &[usize],
+    ) -> Self {
+        Self::estimated(samples, frame, declared, of_pose, without).0
     }
 
     /// The same with the tails of what is left, where the readings say something of them: the
@@ -143,7 +154,7 @@ impl Covariance {
         declared: Noise,
         of_pose: impl Fn(usize) -> bool,
     ) -> (Self, Option<Tails>) {
-        let (covariance, estimated) = Self::estimated(samples, frame, declared, of_pose);
+        let (covariance, estimated) = Self::estimated(samples, frame, declared, of_pose, &[]);
         (covariance, estimated.and_then(|estimated| estimated.tails()))
     }
 
@@ -152,11 +163,13 @@ impl Covariance {
         frame: Frame,
         declared: Noise,
         of_pose: impl Fn(usize) -> bool,
+        without: &[usize],
     ) -> (Self, Option<Estimated>) {
         let mut covariance = Self::assumed(samples, frame, declared);
         covariance.asked = samples.rows.iter().filter(|row| of_pose(row.pose)).count();
         let readings = covariance.measured(samples);
         let mut left_out = std::vec![false; samples.rows.len()];
+        without.iter().for_each(|&row| left_out[row] = true);
         let at = |level, left_out: &[bool]| {
             let chunks = contrasts(samples, &readings, level, &of_pose, |row| left_out[row]);
             Estimated::at(level, chunks, samples.axes)
