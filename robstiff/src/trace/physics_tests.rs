@@ -1,11 +1,17 @@
 //! What is no physical model, and what is said of it.
 
+use std::string::String;
 use std::vec;
 use std::vec::Vec;
 
+use nalgebra::DMatrix;
+
 use super::bench::Bench;
 use super::model::Named;
+use super::report::named::{effects, unseen_rms};
+use super::search::Outcome;
 use super::tests::TILT_3;
+use super::{Options, Verdict};
 use crate::Effect;
 use crate::campaign::made::Plan;
 use crate::identify::prepare::Prepared;
@@ -52,4 +58,25 @@ fn what_would_be_negative_is_told_by_its_name() {
     let told: Vec<_> = alone.filter_map(|one| setting.fit(&[one]).err()).collect();
     assert!(told.iter().any(|why| why == "transverse_compliance@joint 3 would be negative"), "{told:?}");
     assert!(!told.iter().any(|why| why.starts_with("joint 6 ")), "{told:?}");
+}
+
+/// Two effects that make up for each other, of which neither is possible alone.
+#[test]
+fn an_effect_that_is_not_possible_alone_is_told_with_the_error_of_all() {
+    let campaign = Plan::new(1).run();
+    let prepared = Prepared::new(&campaign).expect("displacements");
+    let bench = Bench::new(&campaign, &prepared).expect("every joint is seen");
+    let setting = bench.at(&[]).expect("no effects");
+    let is_part = |one: &Named| {
+        ["transverse_compliance", "link_compliance"].contains(&bench.candidates()[one.candidate].kind.name)
+    };
+    let parts = (0..bench.candidates().len()).map(|candidate| Named { candidate, variant: 0 }).filter(is_part);
+    let both: Vec<Named> = parts.filter(|&one| unseen_rms(&bench, &[one], &[]).is_none()).take(2).collect();
+    let model = setting.fit_loosely(&both).expect("the poses tell them apart");
+    let spread = DMatrix::zeros(model.fit.columns.len(), model.fit.columns.len());
+    let mut outcome = Outcome::nothing(model.clone(), Verdict::Partial, String::new());
+    outcome.selection.p_values = vec![0.0; 2];
+    let options = Options { draws: 99, ..Options::default() };
+    let told = effects(&bench, &setting, &model, &outcome, &spread, (&[], 1.5e-5), &options);
+    assert_eq!(told.iter().map(|named| named.holdout_rms).collect::<Vec<f64>>(), [1.5e-5; 2]);
 }

@@ -170,13 +170,13 @@ fn numbers_of_axes_that_slide_are_in_their_units() {
         4e-6 * f64::from(u32::try_from(row.get()).expect("few rows"))
     };
     let biased = |axis: usize, _: f64| 60.0 * robot.joints[axis - 1].compliance();
-    let cases: [(&dyn Fn(usize, f64) -> f64, &str, &str, &str, f64); 2] =
-        [(&drifts, "thermal_drift@rig", "rate", "m/row", 4e-6), (&biased, "load_cell_bias@rig", "torque", "N", 60.0)];
-    for (more, name, of, unit, truth) in cases {
+    let told = |more: &dyn Fn(usize, f64) -> f64, [name, of, unit]: [&str; 3], truth: f64| {
         let trace = traced(&measured(&robot, &both_ways(), 860, more));
         assert_eq!(names(&trace), [name], "{}", trace.why);
         let number = trace.effects[0].effect.parameters.iter().find(|number| number.name == of).expect("its own");
         assert_eq!(number.unit, unit);
         assert!((number.value / truth - 1.0).abs() < 0.1, "{number:?}");
-    }
+    };
+    told(&drifts, ["thermal_drift@rig", "rate", "m/row"], 4e-6);
+    told(&biased, ["load_cell_bias@rig", "torque", "N"], 60.0);
 }

@@ -17,8 +17,9 @@ use crate::trace::model::{Fitted, Named, Setting, all_but};
 use crate::trace::slip::SLIPPED_AT;
 use crate::trace::{NamedEffect, Options, Outcome};
 
-/// The named effects, the one whose removal costs most first: each with the error on
-/// unseen poses, but for some rows, that it and those before it leave.
+/// The named effects, the one whose removal costs most first: each with the error on unseen
+/// poses, but for some rows, that it and those before it leave; that of all of them where these
+/// are not possible alone.
 pub fn effects(
     bench: &Bench<'_>,
     setting: &Setting<'_>,
@@ -33,9 +34,7 @@ pub fn effects(
     let named = by_cost(bench, model).into_iter().map(|k| {
         so_far.push(model.named[k]);
         so_far.sort_unstable();
-        let unseen = |setting: &Setting<'_>| Some(setting.holdout_rms(&setting.fit(&so_far).ok()?.fit, but));
-        // Some effects make up for others, and are not possible without these.
-        let holdout_rms = bench.at(&so_far).ok().and_then(|setting| unseen(&setting)).unwrap_or(whole);
+        let holdout_rms = unseen_rms(bench, &so_far, but).unwrap_or(whole);
         let parameters = parameters(setting, fine, spread, k);
         let candidate = &setting.candidates[model.named[k].candidate];
         let same_as = same_as(bench, model, k, outcome.structure(), options);
@@ -51,6 +50,13 @@ pub fn effects(
         }
     });
     named.collect()
+}
+
+/// The error on unseen poses, but for some rows, of a model with some effects; none where they are
+/// not possible without others, for which they make up.
+pub fn unseen_rms(bench: &Bench<'_>, named: &[Named], but: &[usize]) -> Option<f64> {
+    let setting = bench.at(named).ok()?;
+    Some(setting.holdout_rms(&setting.fit(named).ok()?.fit, but))
 }
 
 /// The places of a model's effects, that without which the criterion is worst first.
