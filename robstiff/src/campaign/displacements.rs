@@ -88,9 +88,12 @@ pub fn read(
             check_under_load(table, (name, index, robot.joints[index].kind), column, &rows, angles);
         }
     }
-    let [mut poses, visits] = poses.names();
+    let [mut poses, mut visits] = poses.names();
     if let Some(said) = revisited::unite(&mut poses, &mut rows) {
         table.warn(&said);
+    }
+    if complete {
+        leave_out_copies(table, &mut rows, &mut visits);
     }
     let mut data = Displacements { wrench_frame, wrench_at, measured_frame, measured_at, poses, visits, rows };
     data.count_from_the_beginning();
@@ -125,8 +128,6 @@ fn check_sizes(table: &Table<'_>, columns: &Columns, rows: &[Observation]) {
 
 /// Warns of what looks as if nobody had read it.
 fn check_read(table: &Table<'_>, columns: &Columns, rows: &[Observation]) {
-    let copies = unread::copies(rows).into_iter();
-    warn_of(table, "all numbers are those of an earlier row", copies, ": are these copies?");
     let moved = unread::still(rows, |row| Some(row.displacement));
     let turned = unread::still(rows, |row| row.rotation);
     let of_displacement = columns.displacement.into_iter().zip(moved);
@@ -134,6 +135,18 @@ fn check_read(table: &Table<'_>, columns: &Columns, rows: &[Observation]) {
     for (column, _) in of_displacement.chain(of_rotation).filter(|(_, is_still)| *is_still) {
         let name = table.name_of(column);
         table.warn(&format!("{name} is 0 in every row: was it read? each says that nothing moves that way"));
+    }
+}
+
+/// Leaves out rows that were copied, and asks about those that may have been.
+fn leave_out_copies(table: &Table<'_>, rows: &mut Vec<Observation>, visits: &mut Vec<String>) {
+    let copies = unread::copies(rows);
+    let lines: Vec<usize> = copies.iter().map(|&row| rows[row].line).collect();
+    let what = "all numbers are those of an earlier row";
+    if !unread::are_copies(&copies, rows) {
+        warn_of(table, what, lines.into_iter(), ": are these copies?");
+    } else if warn_of(table, what, lines.into_iter(), ": copies, which are left out") {
+        unread::take_away(&copies, rows, visits);
     }
 }
 

@@ -157,11 +157,36 @@ fn what_nobody_read_is_warned_of() {
     let copied = |i: usize| format!("a,v{i},0,0,100,50,20,{}e-5,0.00001,-0.00001\n", i % 9);
     assert_eq!(
         warned(HEADER, &copied),
-        ["all numbers are those of an earlier row in 1 row, first on line 11: are these copies?"]
+        ["all numbers are those of an earlier row in 1 row, first on line 11: copies, which are left out"]
     );
     let timed = |i: usize| format!("a,v{i},{i},0,0,100,50,20,{}e-5,0.00001,-0.00001\n", i % 9);
     assert_eq!(warned("pose,visit,time,q1,q2,Fx,Fy,Fz,dx,dy,dz", &timed), Vec::<String>::new());
     assert_eq!(warned(HEADER, &|i| format!("a,v{i},0,0,0,0,0,0,0,0\n")), Vec::<String>::new());
+}
+
+/// A copied block repeats its readings, their noise and all: it is left out, with the visits that
+/// it makes; where times are told, whatever the gauge. Readings of a coarse one may be alike.
+#[test]
+fn copies_are_left_out() {
+    let read = |header: &str, row: &dyn Fn(usize) -> String| {
+        let rows: String = (0..12).map(|i| row(i % 9)).collect();
+        let read = Folder::new(CAMPAIGN, &format!("{header}\n{rows}")).read().expect("nothing is wrong");
+        let Data::Displacement(data) = read.data else { panic!("kind displacement") };
+        assert!(data.rows.iter().all(|row| row.visit < data.visits.len()));
+        let said = read.warnings.iter().find_map(|said| said.split_once("3 rows, first on line 11: ")?.1.into());
+        (data.rows.len(), data.visits.len(), said.map(str::to_owned).expect("they are told"))
+    };
+    let left_out = (9, 9, "copies, which are left out".to_owned());
+    let fine = |i: usize| format!("a,0,0,100,50,20,{i}.017,0.1,-0.0001\n");
+    let without_visit = HEADER.replace("visit,", "");
+    assert_eq!(read(&without_visit, &fine), left_out);
+    let coarse = |i: usize| format!("a,0,0,100,50,20,{i}0,0.1,-0.0001\n");
+    assert_eq!(read(&without_visit, &coarse), (12, 12, "are these copies?".to_owned()));
+    let timed = |i: usize| format!("{},{}", 60 * i, coarse(i));
+    assert_eq!(read(&format!("time,{without_visit}"), &timed), left_out);
+    // A time for all readings of a visit tells none from another.
+    let told_once = |i: usize| format!("60,{}", coarse(i));
+    assert_eq!(read(&format!("time,{without_visit}"), &told_once).0, 12);
 }
 
 /// One row with ten times its force is told, with its line; levels of load are not.
