@@ -120,6 +120,7 @@ fn noise(covariance: &Covariance, data: &Displacements, left_out: &[usize]) -> S
 pub fn source_of(source: NoiseSource) -> &'static str {
     match source {
         NoiseSource::Declared => "as declared",
+        NoiseSource::Rounded => "as declared, which is below the step of the readings, and what rounding to it adds",
         NoiseSource::Repetitions => "from repeated readings",
         NoiseSource::Poses => "from what loads at one pose leave when each pose has its own response",
         NoiseSource::Residuals => "from what the model leaves, so at most that",

@@ -110,6 +110,9 @@ impl core::error::Error for Error {}
 pub enum NoiseSource {
     /// The campaign declares it.
     Declared,
+    /// The campaign declares less than the step that readings are in: with what their rounding
+    /// adds.
+    Rounded,
     /// From what repeated readings differ by.
     Repetitions,
     /// From what is left when every pose has a free response to its loads.
@@ -117,6 +120,13 @@ pub enum NoiseSource {
     /// From what the model leaves: an upper bound, since it counts what the
     /// model lacks as noise.
     Residuals,
+}
+
+impl NoiseSource {
+    /// Where noise that is declared is known from.
+    pub(crate) fn of_declared(campaign: &Campaign) -> Self {
+        if campaign.step_beyond_noise().is_some() { Self::Rounded } else { Self::Declared }
+    }
 }
 
 /// A description from measurements.

@@ -46,9 +46,12 @@ pub struct Prepared<'c> {
     pub values: Vec<f64>,
     /// The rows less what is not linear in the load: the second order and declared laws.
     pub straight: Rc<Samples>,
-    /// The declared noise of one displacement reading (m), unless the readings themselves say
-    /// that it is [far less](Covariance::is_far_below).
+    /// The declared noise of one displacement reading (m), with [what rounding
+    /// adds](Campaign::noise_of_reading), unless the readings themselves say that it is [far
+    /// less](Covariance::is_far_below).
     pub declared_noise: Option<f64>,
+    /// Where that is known from.
+    declared_by: NoiseSource,
     /// How noisy the readings are, and how they hang together.
     pub covariance: Covariance,
     /// The second order of the joints' displacement (m).
@@ -136,7 +139,10 @@ impl<'c> Prepared<'c> {
             doubted: Vec::new(),
             own,
             straight: Rc::new(straight),
-            declared_noise: noise.displacement.filter(|&declared| !covariance.is_far_below(declared)),
+            declared_noise: campaign
+                .noise_of_reading()
+                .filter(|_| noise.displacement.is_some_and(|declared| !covariance.is_far_below(declared))),
+            declared_by: NoiseSource::of_declared(campaign),
             covariance,
             left_out: std::vec![false; samples.rows.len()],
             samples: Rc::new(samples),
@@ -251,7 +257,7 @@ impl<'c> Prepared<'c> {
     /// (m^2), and where it is from.
     pub fn noise(&self, residual_variance: f64) -> (f64, NoiseSource) {
         match (self.declared_noise, self.covariance.reading(), self.covariance.basis) {
-            (Some(declared), ..) => (declared, NoiseSource::Declared),
+            (Some(declared), ..) => (declared, self.declared_by),
             (None, Some(reading), Basis::Contrasts(Level::Repeated)) => (reading, NoiseSource::Repetitions),
             (None, Some(reading), Basis::Contrasts(_)) => (reading, NoiseSource::Poses),
             _ => (residual_variance.sqrt(), NoiseSource::Residuals),

@@ -42,6 +42,7 @@ mod tests {
 
     use crate::campaign::made::Plan;
     use crate::campaign::{Campaign, Data, Noise};
+    use crate::identify::NoiseSource;
     use crate::samples::five_axis;
     use crate::trace::Verdict;
     use crate::trace::tests::{SIGMA, TILT_3, campaign, names, traced};
@@ -88,6 +89,31 @@ mod tests {
             data.rows.iter_mut().enumerate().for_each(|(k, row)| row.line = k + 2);
             let found = traced(&campaign);
             assert_eq!((names(&found), found.verdict), (Vec::new(), Verdict::Adequate), "seed {seed}: {}", found.why);
+        }
+    }
+
+    /// Readings in steps of ten micrometres of a gauge whose noise is declared below that: what
+    /// the rounding adds is no structure, and takes back no effect.
+    #[test]
+    fn what_steps_add_to_the_declared_noise_is_no_structure() {
+        for (seed, noise) in (0..4).flat_map(|seed| [2e-6, 4.6e-6].map(|noise| (seed, noise))) {
+            for hidden in [&[][..], &[TILT_3]] {
+                let plan = Plan { robot: five_axis(), poses: 24, noise: [noise; 3], ..Plan::new(40 + seed) };
+                let mut campaign = Plan { hidden: hidden.to_vec(), ..plan }.run();
+                let Data::Displacement(data) = &mut campaign.data else { unreachable!("displacements") };
+                for row in &mut data.rows {
+                    row.displacement = row.displacement.map(|reading| (reading / SIGMA).round() * SIGMA);
+                }
+                campaign.noise.displacement = Some(noise);
+                let found = traced(&campaign);
+                let (named, verdict) = match hidden {
+                    [] => (Vec::new(), Verdict::Adequate),
+                    _ => (std::vec!["transverse_compliance@joint 3".into()], Verdict::Explained),
+                };
+                assert_eq!((names(&found), found.verdict), (named, verdict), "{noise}, seed {seed}: {}", found.why);
+                assert_eq!(found.noise_source, NoiseSource::Rounded);
+                assert!((found.noise - noise.hypot(SIGMA / 12_f64.sqrt())).abs() < 1e-9, "{}", found.noise);
+            }
         }
     }
 }

@@ -51,10 +51,14 @@ pub(super) fn replicates(evidence: &Evidence<'_>) -> Verdict {
     };
     let declared = evidence.campaign.noise.displacement;
     let too_large = declared.is_some_and(|declared| evidence.covariance.is_far_below(declared));
-    let tail = declared.and_then(|declared| pure.tail_beside(declared));
+    let tail = evidence.campaign.noise_of_reading().and_then(|noise| pure.tail_beside(noise));
     let p_value = tail.map(|tail| if too_large { 1.0 - tail } else { tail });
     let noise = micrometres(variance.sqrt());
-    let declared = declared.map(|declared| format!(", {} are declared", micrometres(declared))).unwrap_or_default();
+    let step =
+        evidence.campaign.step_beyond_noise().map(|step| format!(" and steps of {} add to it", micrometres(step)));
+    let step = step.unwrap_or_default();
+    let declared =
+        declared.map(|declared| format!(", {} are declared{step}", micrometres(declared))).unwrap_or_default();
     let fails = if too_large {
         "the noise is far less than declared, which is in another unit or of another instrument; what the readings say \
          of it counts"

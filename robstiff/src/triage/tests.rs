@@ -240,6 +240,20 @@ fn noise_that_is_declared_too_small_is_found() {
     assert_eq!(names(&triage(&campaign)), Vec::<&str>::new());
 }
 
+/// What rounding to the steps of a gauge adds is not missing in what was declared.
+#[test]
+fn noise_is_not_declared_too_small_for_steps() {
+    for seed in 10..14 {
+        let mut campaign = Plan { noise: [3e-6; 3], ..plan(seed) }.run();
+        let Data::Displacement(data) = &mut campaign.data else { unreachable!("displacements") };
+        for row in &mut data.rows {
+            row.displacement = row.displacement.map(|reading| (reading / 1e-5).round() * 1e-5);
+        }
+        campaign.noise.displacement = Some(3e-6);
+        assert_eq!(names(&triage(&campaign)), Vec::<&str>::new(), "seed {seed}");
+    }
+}
+
 #[test]
 fn noise_that_is_declared_far_too_large_is_found() {
     let mut campaign = plan(10).run();

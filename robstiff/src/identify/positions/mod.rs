@@ -278,8 +278,8 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
     let (regression, seen, state, spread) = told(&mut prepared)?;
     let values = prepared.values(&state);
     let (rows, left) = (data.rows.len(), residuals(&regression, &state));
-    let noise = match campaign.noise.displacement {
-        Some(noise) => (noise, NoiseSource::Declared),
+    let noise = match campaign.noise_of_reading() {
+        Some(noise) => (noise, NoiseSource::of_declared(campaign)),
         None => {
             // By what the robot misses a pose is in it, whatever compliances are found by.
             let fitted: Vec<usize> = (0..rows).filter(|&row| prepared.rows.has(row, data)).collect();

@@ -76,8 +76,8 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
     };
     let kept_back = data.poses.iter().zip(bench.rows.training.iter()).filter(|(_, training)| !**training);
     let freedom = model.solved.problem.freedom(&model.solved.fit);
-    let (noise, noise_source) = match campaign.noise.displacement {
-        Some(noise) => (noise, NoiseSource::Declared),
+    let (noise, noise_source) = match campaign.noise_of_reading() {
+        Some(noise) => (noise, NoiseSource::of_declared(campaign)),
         None => ((model.solved.fit.rss / freedom).sqrt(), NoiseSource::Residuals),
     };
     let values_before = bench.prepared.values(&base.solved.state);

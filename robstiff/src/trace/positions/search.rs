@@ -58,7 +58,7 @@ pub fn search<'c>(
     options: &Options,
     progress: &Progress<'_>,
 ) -> Result<Searched<'c>, String> {
-    let noise = campaign.noise.displacement;
+    let noise = campaign.noise_of_reading();
     let start = bench.prepared.state(bench.regression.numbers.len());
     let base = bench
         .solve(&[], &start)
