@@ -127,6 +127,11 @@ impl NoiseSource {
     pub(crate) fn of_declared(campaign: &Campaign) -> Self {
         if campaign.step_beyond_noise().is_some() { Self::Rounded } else { Self::Declared }
     }
+
+    /// Whether the campaign says it.
+    pub(crate) fn is_declared(self) -> bool {
+        matches!(self, Self::Declared | Self::Rounded)
+    }
 }
 
 /// A description from measurements.

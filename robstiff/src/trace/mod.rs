@@ -10,7 +10,8 @@
 //! 4. `lack_of_fit` asks whether structure is left, `beyond` whether something without a name
 //!    accounts for it or for what names do, `wander` whether a slip is what goes there and back,
 //!    `along` whether what is left points where a named effect does;
-//! 5. `verdict` takes names back and draws the conclusion;
+//! 5. `verdict` takes names back and draws the conclusion, unless the readings do not even follow
+//!    the loads (`follows`);
 //! 6. where something is missing, `elsewhere` asks whether it is that what is read is not where
 //!    the file says;
 //! 7. where masses are known, `preload` asks whether gears carry the arm's own weight;
@@ -35,6 +36,9 @@ mod elsewhere;
 #[cfg(test)]
 mod elsewhere_tests;
 pub(crate) mod features;
+mod follows;
+#[cfg(test)]
+mod follows_tests;
 pub(crate) mod found;
 pub(crate) mod held_out;
 pub(crate) mod isolated;
@@ -333,6 +337,10 @@ fn searched<'c>(
                 Err(_) => bench = before,
             }
         }
+    }
+    if let Some(why) = follows::hardly(prepared, &bench, &outcome) {
+        let base = bench.fit(&[])?;
+        return Ok((bench, Outcome::nothing(base, Verdict::Insufficient, why).after(outcome)));
     }
     if let Some(model) = bench.tried(&outcome.selection.model.named, Bench::hold_lost) {
         outcome.selection.model = model;
