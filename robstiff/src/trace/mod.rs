@@ -59,6 +59,8 @@ mod sizes;
 #[cfg(test)]
 mod slides_tests;
 pub(crate) mod slip;
+#[cfg(test)]
+mod slips_tests;
 mod stable;
 pub(crate) mod step;
 #[cfg(test)]
@@ -337,6 +339,8 @@ fn searched<'c>(
                 Err(_) => bench = before,
             }
         }
+        // The same rows may be wild in another way.
+        outcome.events = bench.events.to_vec();
     }
     if let Some(why) = follows::hardly(prepared, &bench, &outcome) {
         let base = bench.fit(&[])?;

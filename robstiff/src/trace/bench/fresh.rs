@@ -32,10 +32,12 @@ impl<'c> Bench<'c> {
     /// As for [`new`](Self::new).
     pub fn of(campaign: &'c Campaign, prepared: &'c Prepared<'c>, elsewhere: bool) -> Result<Self, String> {
         let rows = prepared.samples.rows.len();
+        let contradicted = prepared.covariance.beyond_doubt();
+        let on = (&*prepared.samples, prepared.data.measured_frame);
         let mut bench = Self {
             elsewhere,
             left_out: prepared.left_out.clone(),
-            events: prepared.covariance.beyond_doubt().into_iter().map(Event::from).collect(),
+            events: contradicted.into_iter().map(|one| Event::contradicted(one, on)).collect(),
             ..Self::bare(campaign, prepared)
         };
         let evenly = |count: usize, before: bool| {

@@ -10,6 +10,7 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 use super::Bench;
+use crate::identify::covariance::Outlier;
 use crate::identify::normal::Normal;
 use crate::trace::bootstrap::tells_apart;
 use crate::trace::catalogue::{Candidate, Catalogue, LIKELY, Number, Variant, catalogue};
@@ -182,10 +183,16 @@ impl<'c> Bench<'c> {
         for fitted_to in [true, false] {
             let of_pose = |pose: usize| judged(pose) && training[pose] == fitted_to;
             if (0..training.len()).any(of_pose) {
+                let samples = &*self.prepared.samples;
                 let rows: Vec<usize> = wild.iter().flat_map(|event| event.rows.iter().copied()).collect();
+                // What is off from the rows after a slip are those before it.
+                let slipped = wild.iter().filter(|event| event.slip.is_some());
+                let slipped: Vec<usize> = slipped.map(|event| samples.rows[event.rows[0]].visit).collect();
                 let contradicted = self.contradicted(&fitted.named, of_pose)?.into_iter();
-                let others = contradicted.filter(|one| !one.rows.iter().any(|row| rows.contains(row)));
-                wild.extend(others.map(Event::from));
+                let is_known =
+                    |one: &Outlier| slipped.contains(&one.visit) || one.rows.iter().any(|row| rows.contains(row));
+                let on = (samples, self.prepared.data.measured_frame);
+                wild.extend(contradicted.filter(|one| !is_known(one)).map(|one| Event::contradicted(one, on)));
             }
         }
         Ok(wild)

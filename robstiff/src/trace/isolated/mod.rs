@@ -29,14 +29,16 @@ mod by_pose;
 use std::vec;
 use std::vec::Vec;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use self::by_pose::ByPose;
 use super::model::{Fitted, Setting};
+use crate::campaign::Frame;
 use crate::identify::covariance::Outlier;
 use crate::identify::covariance::heavy::{freedom_of_tails, scale_of_tails};
 use crate::identify::covariance::outliers::{FEW, STANDS_OUT, STRICT, by_median};
+use crate::identify::samples::{Samples, turn_of};
 use crate::probability::{as_normal, told};
 
 /// Something wrong in one visit.
@@ -52,10 +54,19 @@ pub struct Event {
     pub slip: Option<Vector3<f64>>,
 }
 
-/// What the other readings of its own pose contradict.
-impl From<Outlier> for Event {
-    fn from(Outlier { rows, p_value, .. }: Outlier) -> Self {
-        Self { rows, p_value, slip: None }
+impl Event {
+    /// What the other readings of its own pose contradict; of displacements measured in `frame`.
+    pub fn contradicted(
+        Outlier { rows, visit, whole_visit, shift, p_value, .. }: Outlier,
+        on: (&Samples, Frame),
+    ) -> Self {
+        let (samples, frame) = on;
+        let first = rows.iter().copied().min().unwrap_or_default();
+        let turn = if frame == Frame::Tool { turn_of(&samples.rows[first].tcp) } else { Matrix3::identity() };
+        // Where rows before it were set aside first, it is but the rest that is off alike.
+        let is_rest = whole_visit && samples.rows[..first].iter().any(|row| row.visit == visit);
+        let slip = is_rest.then(|| turn * Vector3::new(shift[0], shift[1], shift[2]));
+        Self { rows, p_value, slip }
     }
 }
 
@@ -242,9 +253,22 @@ fn search(visits: &mut [Visit], strict: bool, tells: f64, known: &Known) -> Vec<
         }
         let worst = (0..visits.len()).filter_map(|k| {
             let own = |pattern: &[f64]| Some(known.by_pose.as_ref()?.noise(visits, k, pattern, &scale));
-            worst(&visits[k], &scale, &own, strict, threshold).map(|(statistic, event)| (statistic, k, event))
+            let judge = Judge { scale: &scale, own: &own, strict, threshold };
+            judge.worst(&visits[k]).map(|(statistic, event)| (statistic, k, event))
         });
-        let Some((statistic, k, event)) = worst.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+        let Some((statistic, k, event)) = worst.max_by(|a, b| a.0.total_cmp(&b.0)) else {
+            let several = |k: &usize| found.iter().filter(|event| visits[*k].rows.contains(&event.rows[0])).count() > 1;
+            for k in (0..visits.len()).filter(several).collect::<Vec<usize>>() {
+                let own = |pattern: &[f64]| Some(known.by_pose.as_ref()?.noise(visits, k, pattern, &scale));
+                let judge = Judge { scale: &scale, own: &own, strict, threshold };
+                let Some((statistic, slip)) = judge.one_slip(&visits[k]) else { continue };
+                let visit = &mut visits[k];
+                found.retain(|event| !visit.rows.contains(&event.rows[0]));
+                visit.used = visit.rows.iter().map(|row| !slip.rows.contains(row)).collect();
+                found.push(Event { p_value: told(hypotheses as f64 * table.sf(statistic)), ..slip });
+            }
+            break;
+        };
         let visit = &mut visits[k];
         for (i, row) in visit.rows.iter().enumerate() {
             visit.used[i] &= !event.rows.contains(row);
@@ -290,25 +314,58 @@ fn scale(visits: &[Visit], strict: bool, tells: f64, tails: Option<f64>) -> Scal
     Scale { variance, freedom, thirds }
 }
 
-/// The worst of a visit, if it stands out from all rows and from the noise of its own
-/// pose, where that is known; with what it explains over the variance of a reading, as if
-/// that were known.
-fn worst(
-    visit: &Visit,
-    scale: &Scale,
-    own: &dyn Fn(&[f64]) -> Option<by_pose::Noise>,
+/// What stands out from all rows, and from the noise of its own pose where that is known; with
+/// what it explains over the variance of a reading, as if that were known.
+struct Judge<'a> {
+    scale: &'a Scale,
+    /// The noise of the pose, if what a pattern says is wrong there.
+    own: &'a dyn Fn(&[f64]) -> Option<by_pose::Noise>,
     strict: bool,
     threshold: f64,
-) -> Option<(f64, Event)> {
-    let used: Vec<usize> = (0..visit.rows.len()).filter(|&i| visit.used[i]).collect();
-    let event = |pattern: Vec<f64>, is_slip: bool| {
-        let explained = visit.explained(&pattern, strict)?;
-        let rows = || used.iter().copied().filter(|&i| pattern[i] != 0.0);
+}
+
+impl Judge<'_> {
+    /// The worst of a visit.
+    fn worst(&self, visit: &Visit) -> Option<(f64, Event)> {
+        let used: Vec<usize> = (0..visit.rows.len()).filter(|&i| visit.used[i]).collect();
+        let single = used.iter().filter_map(|&i| self.event(visit, &visit.single(i), false));
+        let single = single.max_by(|a, b| a.0.total_cmp(&b.0));
+        // The last row alone is a single one, all rows the unloaded reading.
+        let from = used.iter().take(used.len().saturating_sub(1));
+        let several = from.filter_map(|&i| self.event(visit, &visit.from(i), i > 0));
+        let several = several.max_by(|a, b| a.0.total_cmp(&b.0));
+        match (single, several) {
+            (Some(single), Some(several)) if several.0 > single.0 + TIE => Some(several),
+            (Some(single), _) => Some(single),
+            (None, several) => several,
+        }
+    }
+
+    /// One slip in place of all that was found in a visit, if nothing stands out from it. The
+    /// rows before a slip are off as far from those after it as these from them, and may have
+    /// been taken out first.
+    fn one_slip(&self, visit: &Visit) -> Option<(f64, Event)> {
+        let mut whole = visit.clone();
+        whole.used.fill(true);
+        let slips = (1..whole.rows.len().saturating_sub(1)).filter_map(|i| self.event(&whole, &whole.from(i), true));
+        let best = slips.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let shift = best.1.slip?;
+        for (row, left) in whole.rows.iter().zip(&mut whole.residuals) {
+            *left -= if best.1.rows.contains(row) { shift } else { Vector3::zeros() };
+        }
+        self.worst(&whole).is_none().then_some(best)
+    }
+
+    /// What a pattern says is wrong with a visit.
+    fn event(&self, visit: &Visit, pattern: &[f64], is_slip: bool) -> Option<(f64, Event)> {
+        let &Self { scale, own, strict, threshold } = self;
+        let explained = visit.explained(pattern, strict)?;
+        let rows = || (0..visit.rows.len()).filter(|&i| visit.used[i] && pattern[i] != 0.0);
         let times = rows().map(|i| scale.thirds[visit.thirds[i]]).fold(1.0, f64::max);
         let over = explained.by_axis.component_div(&scale.variance) / times;
         let mut statistic = over.map(|square| as_normal(square, scale.freedom)).sum();
         if statistic > threshold
-            && let Some(noise) = own(&pattern)
+            && let Some(noise) = own(pattern)
         {
             let freedom = noise.freedom.min(scale.freedom);
             statistic = over.map(|square| as_normal(square / noise.times, freedom)).sum().min(statistic);
@@ -321,16 +378,5 @@ fn worst(
         let rows = rows().map(|i| visit.rows[i]).collect();
         let event = Event { rows, p_value: 1.0, slip: is_slip.then_some(explained.shift) };
         (over.sum() > enough && statistic > threshold).then_some((statistic, event))
-    };
-    let single = used.iter().filter_map(|&i| event(visit.single(i), false));
-    let single = single.max_by(|a, b| a.0.total_cmp(&b.0));
-    // The last row alone is a single one, all rows the unloaded reading.
-    let from = used.iter().enumerate().filter(|(k, _)| k + 2 <= used.len());
-    let several = from.filter_map(|(k, &i)| event(visit.from(i), k > 0));
-    let several = several.max_by(|a, b| a.0.total_cmp(&b.0));
-    match (single, several) {
-        (Some(single), Some(several)) if several.0 > single.0 + TIE => Some(several),
-        (Some(single), _) => Some(single),
-        (None, several) => several,
     }
 }

@@ -113,9 +113,14 @@ pub fn in_order(numbers: Vec<EffectParameter>, shapes: Vec<EffectParameter>) -> 
     }
 }
 
-/// The names of what is wrong in single visits, which some effects may as well be. A
-/// robot slips once: several slips are several wild visits, and a slip in the visit that
-/// one was found at the end of, or within, is that one.
+/// A mount that yields more often than this in one campaign is not what is wrong: something
+/// gives way within visits, whatever it is.
+const MOST_SLIPS: usize = 3;
+
+/// The names of what is wrong in single visits, which some effects may as well be. Rows at the
+/// end of a visit that are all off alike are what a slip of the base within the visit leaves, of
+/// which the next unloaded reading knows nothing; a slip in the visit that one was found at the
+/// end of, or within, is that one.
 pub fn isolated(
     prepared: &Prepared<'_>,
     outcome: &Outcome,
@@ -139,23 +144,28 @@ pub fn isolated(
         in_part: Vec::new(),
         partial: outcome.structure(),
     };
-    let (slips, wild): (Vec<&Event>, Vec<&Event>) = outcome.events.iter().partition(|event| event.slip.is_some());
+    let (mut slips, mut outliers): (Vec<&Event>, Vec<&Event>) =
+        outcome.events.iter().partition(|event| event.slip.is_some());
     let mut found = Vec::new();
-    let mut outliers = wild;
     let already = slipped.is_some();
     if let Some(known) = slipped {
         let moment = known.effect.value(SLIPPED_AT) as usize;
         // By their places among the rows, for the next one read may be on any line.
         let moment = prepared.data.rows.iter().position(|row| row.line == moment).unwrap_or(usize::MAX);
-        for slip in slips {
-            match slip.rows.iter().min().zip(slip.rows.iter().max()) {
-                Some((&first, &last)) if (first..=last + 1).contains(&moment) => {
-                    known.lines.extend(slip.rows.iter().map(line));
-                }
-                _ => outliers.push(slip),
-            }
-        }
-    } else if let [slip @ Event { slip: Some(shift), .. }] = slips[..] {
+        let is_that = |slip: &&Event| match slip.rows.iter().min().zip(slip.rows.iter().max()) {
+            Some((&first, &last)) => (first..=last + 1).contains(&moment),
+            None => false,
+        };
+        known.lines.extend(slips.iter().filter(|slip| is_that(slip)).flat_map(|slip| slip.rows.iter().map(line)));
+        slips.retain(|slip| !is_that(slip));
+    }
+    let too_many = slips.len() > MOST_SLIPS;
+    if too_many {
+        outliers.append(&mut slips);
+    }
+    slips.sort_by_key(|slip| slip.rows.iter().min().copied());
+    for slip in slips {
+        let shift = slip.slip.unwrap_or_default();
         let number =
             |(name, value): (&'static str, &f64)| EffectParameter { name, value: *value, std: None, unit: "m" };
         let mut parameters: Vec<EffectParameter> =
@@ -166,15 +176,13 @@ pub fn isolated(
         let lines = slip.rows.iter().map(line).collect();
         // At one pose a shift in the base frame is one in the tool frame.
         found.push(one(effect, lines, &[slip], &["outliers@rig", "reflector_slip@rig"]));
-    } else {
-        outliers.extend(slips);
     }
     if !outliers.is_empty() {
         let mut lines: Vec<usize> = outliers.iter().flat_map(|event| event.rows.iter().map(line)).collect();
         lines.sort_unstable();
         // One visit alone may as well have been where the robot slipped, or the reflector.
-        let slips: &[&str] =
-            if outliers.len() == 1 && !already { &["base_slip@base", "reflector_slip@rig"] } else { &[] };
+        let may_have_slipped = (outliers.len() == 1 && !already) || too_many;
+        let slips: &[&str] = if may_have_slipped { &["base_slip@base", "reflector_slip@rig"] } else { &[] };
         found.push(one(Found::outliers(lines.len()), lines, &outliers, slips));
     }
     found
