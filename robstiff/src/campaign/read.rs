@@ -167,7 +167,8 @@ fn file(map: &Map<'_>, field: &str, example: &str, folder: &Path) -> Option<Stri
     let node = map.require(field, example)?;
     let name = node.text()?;
     let path = folder.join(name);
-    if !path.is_file() && !(field == "robot" && catalogue::find(name).is_some()) {
+    let is_of_catalogue = field == "robot" && catalogue::find(name).is_some();
+    if !path.is_file() && !is_of_catalogue {
         node.error(
             format!("there is no file {}", path.display()),
             "write the path from the folder of this campaign file".to_string(),

@@ -156,6 +156,9 @@ noise: {displacement: 4 um}
     let found = traced(&campaign);
     assert_eq!(names(&found).len(), 2, "{:?}", names(&found));
     assert!(names(&found).contains(&wave.to_string()));
+    // It fits, and is no error of a gear.
+    assert_eq!(found.verdict, crate::trace::Verdict::Partial);
+    assert!(found.why.contains("no gear errs by as much as"), "{}", found.why);
     let told = found.effects.iter().find(|named| named.effect.to_string() == zero.to_string()).expect("named");
     let written = &found.description.effects;
     assert!(written.len() == 1 && written[0].to_string() == zero.to_string(), "{written:?}");

@@ -67,7 +67,7 @@ pub use self::offers::{Candidate, Catalogue, Form, Offers, Variant, catalogue, i
 pub use self::outliers::KIND as OUTLIERS;
 pub use self::reflector_slip::KIND as REFLECTOR_SLIP;
 pub use self::stiffness_nonlinearity::{KIND as STIFFNESS_NONLINEARITY, KNEES as HARDENING_KNEES};
-pub use self::transmission_error::{MOST as LARGEST_WAVE, ORDERS as WAVE_ORDERS};
+pub use self::transmission_error::{KIND as TRANSMISSION_ERROR, MOST as LARGEST_WAVE, ORDERS as WAVE_ORDERS};
 use super::clamped::{Axes, OnAxes};
 use super::found::{Found, Place};
 use super::point::Point;

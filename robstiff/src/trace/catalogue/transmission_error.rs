@@ -5,8 +5,6 @@
 use std::format;
 use std::vec::Vec;
 
-use robstiff_robots::effect::physics::MOST_DEVIATION;
-
 use super::{Form, Kind, Number, Offers, Part, Scene, place_words};
 use crate::Effect;
 use crate::identify::setup::Wave;
@@ -30,9 +28,9 @@ pub static KIND: Kind = Kind {
 /// The orders tried, one of them.
 pub const ORDERS: [f64; 3] = [1.0, 2.0, 3.0];
 
-/// More is no error of a gear (rad), and no description takes it. A column of angles in a wrong
-/// unit, or scaled, looks like more of it.
-pub const MOST: f64 = MOST_DEVIATION;
+/// More is no error of a gear (rad), and no gear has near as much; what a same-
+/// pose difference shows at all has to be that large.
+pub const MOST: f64 = 0.1;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for joint in (1..=scene.joints()).filter(|&joint| scene.turns(joint)) {

@@ -3,16 +3,20 @@
 pub mod named;
 mod spread;
 
+use std::format;
 use std::rc::Rc;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
+use robstiff_robots::effect::physics::MOST_DEVIATION;
 
 use self::named::{effects, isolated};
 use self::spread::spread_of;
 use super::alias::{Rival, rivals, same_as_wild};
 use super::bench::Bench;
+use super::catalogue::TRANSMISSION_ERROR;
+use super::found::Found;
 use super::model::{Fitted, Setting};
 use super::slip::Slipping;
 use super::written::{described, own_effects, values, within_description, without_untold};
@@ -75,6 +79,10 @@ pub fn report(
     let (residuals, pose_errors) = residuals(prepared, &all, &all.residuals(&base.fit), &left_after);
     let (noise, noise_source) = noise(prepared, bench, model.fit.rss / setting.problem.freedom(&model.fit));
     let left = outcome.left.as_ref();
+    let (verdict, why) = match more_than_a_gear_errs(&effects) {
+        Some(why) if outcome.verdict == Verdict::Explained => (Verdict::Partial, why),
+        _ => (outcome.verdict, outcome.why.clone()),
+    };
     Ok(Trace {
         encoders: EncodersRead::of(prepared.data, &prepared.samples, &bench.noise.covariance),
         robot: campaign.robot.name.clone(),
@@ -87,8 +95,8 @@ pub fn report(
         declared,
         identified: misfit(&all, &base, &undecided),
         after,
-        verdict: outcome.verdict,
-        why: outcome.why.clone(),
+        verdict,
+        why,
         unexplained: left.map_or(0.0, |left| left.fraction),
         depends_on: left.map_or_else(Vec::new, |left| left.depends_on.clone()),
         looks_like: outcome.looks_like.clone(),
@@ -106,6 +114,20 @@ pub fn report(
         differences: true,
         pose_errors,
     })
+}
+
+/// What is the matter where an angle is off in waves by more than any gear errs and any
+/// description takes: the column says something else, whatever fits.
+fn more_than_a_gear_errs(effects: &[NamedEffect]) -> Option<String> {
+    let wave = |effect: &Found| effect.value("sin").hypot(effect.value("cos"));
+    let mut waves = effects.iter().map(|named| &named.effect).filter(|effect| effect.kind() == TRANSMISSION_ERROR.name);
+    let effect = waves.find(|effect| wave(effect) > MOST_DEVIATION)?;
+    Some(format!(
+        "no gear errs by as much as {:.0} mrad: the column of the angle of {} may be in another unit, scaled, or that \
+         of another joint",
+        1e3 * wave(effect),
+        effect.place()
+    ))
 }
 
 /// Numbers are told where they fit best, not where a grid has them: a model that was found
