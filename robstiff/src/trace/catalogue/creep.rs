@@ -25,9 +25,8 @@ const ONSETS: [f64; 4] = [1.0 / 20.0, 1.0 / 6.0, 1.0 / 2.0, 2.0];
 /// third of the grid's width.
 const LIKELY: f64 = 1.2;
 
-/// Beyond this share a decade it is no creep (1): arms creep by 1 to 3 % a decade. Friction of
-/// what loads the arm, a cable over a pulley, looks like more of it.
-const MOST: f64 = 0.06;
+/// Beyond this share a decade it is no creep (1).
+const MOST: f64 = 0.4;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     let (_, pace) = scene.data.clock();
