@@ -210,12 +210,20 @@ impl Setting<'_> {
         schwarz(fit.rss, self.problem.total.rows as f64, parameters as f64)
     }
 
-    /// How far each coefficient of a fit may be off by noise, at most.
-    pub(super) fn widths(&self, fit: &Fit) -> Option<Vec<f64>> {
-        let total = &self.problem.total;
-        let inverse = total.inverse(&fit.columns)?;
+    /// A fit as near to what is possible as noise lets it be, which can take numbers beyond:
+    /// joints softer, and all other numbers nearer to zero.
+    pub(super) fn nearer(&self, fit: &Fit) -> Option<Fit> {
+        let inverse = self.problem.total.inverse(&fit.columns)?;
         let freedom = self.problem.freedom(fit);
-        Some((0..fit.columns.len()).map(|k| BELOW_ZERO * (inverse[(k, k)] * fit.rss / freedom).sqrt()).collect())
+        let mut nearer = fit.clone();
+        for (k, value) in nearer.coefficients.iter_mut().enumerate() {
+            let width = BELOW_ZERO * (inverse[(k, k)] * fit.rss / freedom).sqrt();
+            *value = match fit.columns[k] < self.joint_values.len() {
+                true => *value + width,
+                false => *value - value.clamp(-width, width),
+            };
+        }
+        Some(nearer)
     }
 
     /// How many of the description's own numbers a fit has; one with nonlinear
@@ -248,16 +256,10 @@ impl Setting<'_> {
         }
         let Some(check) = &candidate.check else { return Ok(()) };
         let Err(why) = check(&numbers, &joint) else { return Ok(()) };
-        // Noise can take a number that is near what is possible beyond it.
-        let width = self.widths(fit).ok_or(why)?;
-        let nearer =
-            |(&at, &(name, value)): (&usize, &(&'static str, f64))| (name, value - value.clamp(-width[at], width[at]));
-        let nearer: Vec<_> = places.iter().zip(&numbers).map(nearer).collect();
-        let softer = |joint: usize| {
-            let fitted = fit.columns.iter().position(|&column| column == joint - 1);
-            self.joint_value(fit, joint) + fitted.map_or(0.0, |k| width[k])
-        };
-        check(&nearer, &softer)
+        let nearer = self.nearer(fit).ok_or(why)?;
+        let of_nearer = places.iter().zip(&mut numbers);
+        of_nearer.for_each(|(&at, (_, value))| *value = nearer.coefficients[at]);
+        check(&numbers, &|joint| self.joint_value(&nearer, joint))
     }
 
     fn check(&self, fit: &Fit, named: &[Named]) -> Result<(), String> {

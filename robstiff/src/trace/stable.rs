@@ -24,19 +24,8 @@ impl Setting<'_> {
         if !named.iter().any(is_coupling) || self.is_stable(fit, named) {
             return Ok(());
         }
-        // Noise can take numbers that are near what is possible beyond it.
-        let nearer = self.widths(fit).map(|widths| {
-            let mut nearer = fit.clone();
-            for ((value, &column), width) in nearer.coefficients.iter_mut().zip(&fit.columns).zip(widths) {
-                *value =
-                    if column < self.joint_values.len() { *value + width } else { *value - value.clamp(-width, width) };
-            }
-            nearer
-        });
-        match nearer.is_some_and(|nearer| self.is_stable(&nearer, named)) {
-            true => Ok(()),
-            false => Err(String::from("the couplings would be too strong together")),
-        }
+        let is_possible = self.nearer(fit).is_some_and(|nearer| self.is_stable(&nearer, named));
+        is_possible.then_some(()).ok_or_else(|| String::from("the couplings would be too strong together"))
     }
 
     /// That a number of the description would be below zero, by its column.
