@@ -81,6 +81,13 @@ const READINGS_A_NUMBER: usize = 2;
 /// What is said of readings whose noise hides every number.
 pub const SCATTERS: &str = "the readings scatter by more than the loads do to any joint";
 
+/// The declared noise of a reading, with what rounding adds, unless the readings themselves say
+/// that it is far less.
+pub fn believed_noise(campaign: &Campaign, covariance: &Covariance) -> Option<f64> {
+    let declared = campaign.noise.displacement.filter(|&declared| !covariance.is_far_below(declared));
+    declared.and(campaign.noise_of_reading())
+}
+
 impl<'c> Prepared<'c> {
     /// Evaluates the robot on the campaign and fits the description's own
     /// numbers.
@@ -139,9 +146,7 @@ impl<'c> Prepared<'c> {
             doubted: Vec::new(),
             own,
             straight: Rc::new(straight),
-            declared_noise: campaign
-                .noise_of_reading()
-                .filter(|_| noise.displacement.is_some_and(|declared| !covariance.is_far_below(declared))),
+            declared_noise: believed_noise(campaign, &covariance),
             declared_by: NoiseSource::of_declared(campaign),
             covariance,
             left_out: std::vec![false; samples.rows.len()],
@@ -155,7 +160,7 @@ impl<'c> Prepared<'c> {
         if without_wild {
             let before = prepared.covariance.clone();
             settle(&mut prepared)?;
-            if !leave_out(&mut prepared, noise) {
+            if !leave_out(&mut prepared, campaign) {
                 prepared.covariance = before;
             }
         }

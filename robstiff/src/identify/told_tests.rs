@@ -132,6 +132,24 @@ fn rows_with_wrong_forces_are_left_out_together() {
     assert_eq!(identify(&campaign).expect("all joints are seen").left_out, lines);
 }
 
+/// What rounding adds to the declared noise stays with the rows that are left.
+#[test]
+fn a_wrong_force_takes_no_rounding_from_the_noise() {
+    let mut campaign = Plan::new(6).run();
+    campaign.noise.displacement = Some(2e-6);
+    let rows = |campaign: &mut Campaign, change: &dyn Fn(&mut [Observation])| match &mut campaign.data {
+        Data::Displacement(data) => change(&mut data.rows),
+        _ => unreachable!("displacements were planned"),
+    };
+    let rounded = |row: &mut Observation| row.displacement = row.displacement.map(|x| (x * 1e5).round() / 1e5);
+    rows(&mut campaign, &|rows| rows.iter_mut().for_each(rounded));
+    let right = identify(&campaign).expect("all joints are seen").noise.expect("it is declared");
+    rows(&mut campaign, &|rows| rows[7].wrench[0] *= 1e3);
+    let found = identify(&campaign).expect("all joints are seen");
+    assert_eq!((found.left_out.len(), found.noise), (1, Some(right)));
+    assert!(right.0 > 2e-6, "{right:?}");
+}
+
 /// A campaign with other forces, or displacements.
 fn scaled(force: f64, displacement: f64) -> Campaign {
     Plan::new(1).run_with(|_, row| {

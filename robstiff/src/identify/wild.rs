@@ -24,10 +24,10 @@ use super::column::Column;
 use super::covariance::outliers::{FEW, STRICT};
 use super::covariance::{Covariance, NOISELESS, Outlier};
 use super::normal::Fit;
-use super::prepare::Prepared;
+use super::prepare::{Prepared, believed_noise};
 use super::problem::{Block, Problem, Weights, raw};
 use super::whitening::mean_share;
-use crate::campaign::Noise;
+use crate::campaign::Campaign;
 use crate::probability::{fisher_tail, told};
 
 /// What a wild row must explain over the variance of the others: beyond fourteen standard
@@ -45,11 +45,11 @@ const HIDDEN: usize = 20;
 /// What a row alone decides leaves this share of its readings' variance or less.
 const ALONE: f64 = 1e-9;
 
-/// Leaves out of a fit the rows that the rest of the campaign contradicts, `declared` being its
-/// noise. A load that is wrong makes the other readings of its pose look wild, so where others
-/// do, what is wild among these is asked again without it. Whether there are any that the other
-/// readings of their pose did not contradict.
-pub fn leave_out(prepared: &mut Prepared<'_>, declared: Noise) -> bool {
+/// Leaves out of a fit the rows that the rest of the campaign contradicts. A load that is wrong
+/// makes the other readings of its pose look wild, so where others do, what is wild among these is
+/// asked again without it. Whether there are any that the other readings of their pose did not
+/// contradict.
+pub fn leave_out(prepared: &mut Prepared<'_>, campaign: &Campaign) -> bool {
     let wild = wild_rows(prepared);
     let known = prepared.covariance.beyond_doubt();
     let is_known = |row: &usize| known.iter().any(|outlier| outlier.rows.contains(row));
@@ -58,13 +58,13 @@ pub fn leave_out(prepared: &mut Prepared<'_>, declared: Noise) -> bool {
         return false;
     }
     let (training, frame) = (|pose: usize| prepared.training[pose], prepared.data.measured_frame);
-    let mut covariance = Covariance::estimate_without(&prepared.straight, frame, declared, training, &wild);
+    let mut covariance = Covariance::estimate_without(&prepared.straight, frame, campaign.noise, training, &wild);
     if covariance.encoders.is_none() {
         covariance.encoders = prepared.covariance.encoders.clone();
     }
     covariance.outliers.extend(prepared.covariance.outliers.iter().filter(|outlier| is_wild(outlier)).cloned());
     covariance.outliers.sort_by_key(|outlier| outlier.rows[0]);
-    prepared.declared_noise = declared.displacement.filter(|&noise| !covariance.is_far_below(noise));
+    prepared.declared_noise = believed_noise(campaign, &covariance);
     prepared.covariance = covariance;
     wild.iter().for_each(|&row| prepared.left_out[row] = true);
     true
