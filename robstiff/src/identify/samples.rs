@@ -154,7 +154,7 @@ impl Samples {
                 preload,
                 flange,
                 tcp,
-                wrench: setup.wrench(data, &tool, &row.wrench),
+                wrench: setup.wrench(data, &tool, &row.wrench) * setup.of_load(i),
                 marker: tool * (Vector3::from(data.measured_at) + setup.marker),
                 displacement: reads * Vector3::from(row.displacement),
                 rotation: reads * Vector3::from(row.rotation.unwrap_or_default()),

@@ -36,6 +36,9 @@ pub struct Setup {
     /// How far the joints stand aside under the robot's own weight, by row of
     /// the campaign and joint (rad or m), and how much of it is so.
     pub sag: Option<(f64, Arc<Vec<Vec<f64>>>)>,
+    /// By how much of itself the load of each row of the campaign is another, each with how much
+    /// of it is so.
+    pub loads: Vec<(f64, Arc<[f64]>)>,
 }
 
 /// A periodic error of a joint's coordinate: `cos cos(k q) + sin sin(k q)`
@@ -77,6 +80,7 @@ impl Setup {
             tracker: Vector3::zeros(),
             creep: [0.0, 1.0],
             sag: None,
+            loads: Vec::new(),
         }
     }
 
@@ -124,6 +128,11 @@ impl Setup {
         wrench.fixed_rows_mut::<3>(0).copy_from(&force);
         wrench.fixed_rows_mut::<3>(3).copy_from(&(moment + lever.cross(&force)));
         wrench
+    }
+
+    /// What acts in a row of the campaign of a unit that the file gives.
+    pub fn of_load(&self, row: usize) -> f64 {
+        1.0 + self.loads.iter().map(|(share, factors)| share * factors[row]).sum::<f64>()
     }
 
     /// How a vector in the base frame is seen among the readings, which were

@@ -14,7 +14,7 @@ use std::vec::Vec;
 
 use super::Options;
 use super::bench::Bench;
-use super::catalogue::{HYSTERESIS, LAG};
+use super::catalogue::{CREEP, HYSTERESIS, LAG, LOST_MOTION, STIFFNESS_NONLINEARITY};
 use super::found::Found;
 use super::lack_of_fit::LackOfFit;
 use super::model::{Fitted, Named};
@@ -67,7 +67,9 @@ pub fn instead<'c>(
     bench.spare_memory();
     let wide = bench.widened_as_it_is()?;
     let setting = wide.at(&model.named)?;
-    let sets = (1..1_u32 << model.named.len()).filter(|set| set.count_ones() <= MOST_REPLACED);
+    let laws = laws_of_gears(bench, model);
+    let is_tried = |set: &u32| set.count_ones() <= MOST_REPLACED || *set == laws;
+    let sets = (1..1_u32 << model.named.len()).filter(is_tried);
     let without = |set: u32| -> Vec<Named> {
         let rest = model.named.iter().enumerate().filter(|(k, _)| set >> k & 1 == 0);
         rest.map(|(_, one)| *one).collect()
@@ -100,8 +102,19 @@ pub fn instead<'c>(
     without_nameless(wide, &found).map(Some)
 }
 
-/// How many effects one thing without a name may be told as.
+/// How many effects one thing without a name may be told as, but for laws of gears.
 const MOST_REPLACED: u32 = 3;
+
+/// Which effects of a model are curves and lags of gears, a bit each: a load that is not what is
+/// read of it is told as one of every gear.
+fn laws_of_gears(bench: &Bench<'_>, model: &Fitted) -> u32 {
+    let is_law = |one: &Named| {
+        let kind = bench.candidates()[one.candidate].kind;
+        [&STIFFNESS_NONLINEARITY, &LOST_MOTION, &HYSTERESIS, &CREEP].contains(&kind)
+    };
+    let of = |(k, one): (usize, &Named)| u32::from(is_law(one)) << k;
+    model.named.iter().enumerate().map(of).sum()
+}
 
 /// What a number may save at most, in residual variances, for a model with fewer to fit as well
 /// as noise allows (Akaike, IEEE Trans. Autom. Control 19, 1974).

@@ -28,6 +28,8 @@ pub(crate) mod alias;
 pub(crate) mod along;
 pub(crate) mod bench;
 pub(crate) mod beyond;
+#[cfg(test)]
+mod beyond_tests;
 pub(crate) mod bootstrap;
 pub(crate) mod catalogue;
 pub(crate) mod clamped;

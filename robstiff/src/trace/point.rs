@@ -119,9 +119,10 @@ impl<'c> Point<'c> {
                 let [there, back] = [STEP, -STEP].map(|step| {
                     let mut setup = self.setup.clone();
                     setup.table[joint][entry] += step;
-                    // Time and sag are each row's own.
+                    // Time, sag and what a load is off by are each row's own.
                     setup.creep = [0.0, 1.0];
                     setup.sag = None;
+                    setup.loads.clear();
                     let samples = one_a_pose.with_setup(self.description, &data, &setup);
                     let per_file = |row: &Sample| {
                         let compliance = compliance(&samples, row, springs);
@@ -153,7 +154,7 @@ impl<'c> Point<'c> {
     /// The change of the readings with an entry `[theta, d, a, alpha]` of the
     /// row of a joint (from 1), times a factor of each of the campaign's rows.
     pub fn slope(&self, joint: usize, entry: usize, factor: impl Fn(usize) -> f64) -> DVector<f64> {
-        let wrench = |at: usize| Vector6::from(self.data.rows[at].wrench);
+        let wrench = |at: usize| Vector6::from(self.data.rows[at].wrench) * self.setup.of_load(at);
         self.samples.stacked_with(
             |at, row| self.slopes[row.pose][joint - 1][entry] * wrench(at) * factor(at),
             |at, k| {
@@ -170,7 +171,7 @@ impl<'c> Point<'c> {
         let change = |at: usize| {
             let tool = turn_of(&self.samples.rows[at].tcp);
             let wrench = |setup: &Setup| setup.wrench(self.data, &tool, &self.data.rows[at].wrench);
-            (wrench(&there) - wrench(&back)) / (2.0 * step)
+            (wrench(&there) - wrench(&back)) * (self.setup.of_load(at) / (2.0 * step))
         };
         self.samples.stacked_with(
             |at, _| self.readings[at] * change(at),
@@ -206,6 +207,13 @@ impl<'c> Point<'c> {
     pub fn elastic_of(&self, row: usize) -> Vector6<f64> {
         let axes = self.samples.axes;
         Vector6::from_fn(|k, _| if k < axes { self.elastic[row * axes + k] } else { 0.0 })
+    }
+
+    /// The change of the readings where the load of each row is by so much of itself another.
+    pub fn of_loads(&self, factors: &[f64]) -> DVector<f64> {
+        let share = |at: usize| factors[at] / self.setup.of_load(at);
+        let by_encoder = |at: usize, k: usize| self.elastic[self.samples.encoders_of(at).start + k] * share(at);
+        self.samples.stacked_with(|at, _| self.elastic_of(at) * share(at), by_encoder)
     }
 
     /// The displacement of a joint (from 1) by an amount that depends on the

@@ -81,7 +81,7 @@ impl<'c> Adapter<'c> {
         let elastic = elastic.map(|(&column, &value)| (source.kept(column), value)).collect();
         let problem = setting.on(&columns);
         // How far the joints sag is a row's own.
-        let setup = Setup { sag: None, ..setting.point.setup.clone() };
+        let setup = Setup { sag: None, loads: Vec::new(), ..setting.point.setup.clone() };
         let adapter = Self {
             campaign,
             anchors: anchors(prepared),

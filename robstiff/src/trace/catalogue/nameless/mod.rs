@@ -1,5 +1,6 @@
-//! What arms are known to have and the catalogue has no name for: what comes to rest with
-//! time, gives way with warmth or with another joint's angle, is loose in its seat.
+//! What arms and rigs are known to have and the catalogue has no name for: what comes to rest
+//! with time, gives way with warmth or with another joint's angle, is loose in its seat; a load
+//! that is not what is read of it.
 //!
 //! No description has a word for any of it, so none is ever named. It is what names are
 //! held against where structure is left: a search for what is missing names the effect most
@@ -7,16 +8,38 @@
 //! The list is no catalogue either; on what is in neither, names are still taken back by
 //! what they leave (see [`verdict`](crate::trace::verdict)).
 
+mod bent_cell;
 mod foreign_angle;
+mod friction;
 mod growth;
 mod lag;
 mod loose_tool;
 mod soft_base;
 mod warmth;
 
+use std::sync::Arc;
+
 pub use self::lag::KIND as LAG;
-use super::Kind;
+use super::{Kind, Number};
+use crate::identify::setup::Setup;
 
 /// Every kind without a name, in the order of precedence among exact aliases.
-pub static NAMELESS: [&Kind; 6] =
-    [&growth::KIND, &loose_tool::KIND, &soft_base::KIND, &lag::KIND, &warmth::KIND, &foreign_angle::KIND];
+pub static NAMELESS: [&Kind; 8] = [
+    &bent_cell::KIND,
+    &friction::KIND,
+    &growth::KIND,
+    &loose_tool::KIND,
+    &soft_base::KIND,
+    &lag::KIND,
+    &warmth::KIND,
+    &foreign_angle::KIND,
+];
+
+/// By how much of itself the load of each row is another, times this number, between `-most` and
+/// `most` (1).
+fn of_loads(name: &'static str, most: f64, factors: impl Iterator<Item = f64>) -> Number {
+    let factors: Arc<[f64]> = factors.collect();
+    let own = Arc::clone(&factors);
+    let enters = move |setup: &mut Setup, share: f64| setup.loads.push((share, Arc::clone(&own)));
+    Number::of_setup(name, "1", most, enters, move |point, _| point.of_loads(&factors))
+}
