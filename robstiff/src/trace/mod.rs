@@ -14,8 +14,10 @@
 //!    the loads (`follows`);
 //! 6. where something is missing, `elsewhere` asks whether it is that what is read is not where
 //!    the file says;
-//! 7. where masses are known, `preload` asks whether gears carry the arm's own weight;
-//! 8. `alias` says what the data cannot tell apart, and `report` puts all of it together.
+//! 7. `misread` asks whether the files say something else than what was measured, and if so nothing
+//!    is told of the arm;
+//! 8. where masses are known, `preload` asks whether gears carry the arm's own weight;
+//! 9. `alias` says what the data cannot tell apart, and `report` puts all of it together.
 //!
 //! Positions and clamped axes go the same way on benches of their own (`positions`, `clamped`).
 //!
@@ -45,6 +47,7 @@ pub(crate) mod found;
 pub(crate) mod held_out;
 pub(crate) mod isolated;
 pub(crate) mod lack_of_fit;
+mod misread;
 pub(crate) mod model;
 #[cfg(test)]
 mod one_line_tests;
@@ -291,6 +294,7 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
             let prepared = Prepared::new(campaign)?;
             let (bench, outcome) =
                 elsewhere::searched(campaign, &prepared, options, progress).map_err(Error::NotShown)?;
+            let outcome = misread::unless(&bench, outcome).map_err(Error::NotShown)?;
             let preloaded = preload::worth_a_try(campaign, &outcome);
             let better = preloaded.and_then(|preloaded| {
                 progress("asking whether gears carry the arm's own weight");
