@@ -8,8 +8,9 @@ use std::vec::Vec;
 
 use robstiff_robots::{Convention, Description};
 
+use super::axes::Axes;
 use crate::JointKind;
-use crate::campaign::{Displacements, Frame, Observation};
+use crate::campaign::{Displacements, Frame, Observation, PositionRow, Positions};
 
 /// One mistake.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +27,8 @@ pub enum Mistake {
     Counted(usize, Counted),
     /// The coordinates of two joints, from 0, are exchanged.
     Exchanged([usize; 2]),
+    /// Positions are read along axes of the other hand, which no stand of the robot makes up for.
+    OtherHand,
     /// The table of the description is of the other convention.
     Convention,
 }
@@ -35,11 +38,8 @@ pub enum Mistake {
 pub enum Vector {
     Force,
     Displacement,
+    Position,
 }
-
-/// For each axis, which component of the file is along it, and its sign.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axes([(usize, f64); 3]);
 
 /// A unit by what it is taken for, and how many of that it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +71,7 @@ const OF_FORCES: [Unit; 6] = [
     Unit { name: "a unit 1000 times that of the header", factor: 1e3 },
     Unit { name: "a unit a thousandth of that of the header", factor: 1e-3 },
 ];
-const OF_DISPLACEMENTS: [Unit; 5] = [
+const OF_LENGTHS: [Unit; 5] = [
     Unit { name: "inches where the header has mm, or mils where it has um", factor: 25.4 },
     Unit { name: "a unit 10 times that of the header", factor: 10.0 },
     Unit { name: "a unit a tenth of that of the header", factor: 0.1 },
@@ -86,11 +86,10 @@ const OF_ANGLES: [Unit; 3] = [
     Unit { name: "deg where the header has rad", factor: PI / 180.0 },
 ];
 
-/// Every mistake that a campaign's file or its robot's description may have been written with.
-pub fn mistakes(robot: &Description) -> Vec<Mistake> {
-    let turns = |joint: usize| robot.joints[joint].kind == JointKind::Revolute;
-    let joints = robot.joints.len();
-    let mut all: Vec<Mistake> = Vec::new();
+/// Every mistake that a campaign of displacements or its robot's description may have been
+/// written with.
+pub fn of_displacements(robot: &Description) -> Vec<Mistake> {
+    let mut all = of_robot(robot);
     for vector in [Vector::Displacement, Vector::Force] {
         all.extend(Axes::others().map(|axes| Mistake::Axes(vector, axes)));
         all.push(Mistake::Frame(vector));
@@ -98,8 +97,24 @@ pub fn mistakes(robot: &Description) -> Vec<Mistake> {
     all.extend(Axes::others().map(Mistake::AllAxes));
     for axis in 0..3 {
         all.extend(OF_FORCES.map(|unit| Mistake::Unit(Vector::Force, axis, unit)));
-        all.extend(OF_DISPLACEMENTS.map(|unit| Mistake::Unit(Vector::Displacement, axis, unit)));
+        all.extend(OF_LENGTHS.map(|unit| Mistake::Unit(Vector::Displacement, axis, unit)));
     }
+    all
+}
+
+/// The same of a campaign of positions, whose frame may be turned in any way.
+pub fn of_positions(robot: &Description) -> Vec<Mistake> {
+    let mut all = of_robot(robot);
+    all.push(Mistake::OtherHand);
+    all.extend((0..3).flat_map(|axis| OF_LENGTHS.map(|unit| Mistake::Unit(Vector::Position, axis, unit))));
+    all
+}
+
+/// What may be the matter with the coordinates of joints, and with the robot's own description.
+fn of_robot(robot: &Description) -> Vec<Mistake> {
+    let turns = |joint: usize| robot.joints[joint].kind == JointKind::Revolute;
+    let joints = robot.joints.len();
+    let mut all = Vec::from([Mistake::Convention]);
     for joint in 0..joints {
         all.push(Mistake::Counted(joint, Counted::Backwards));
         if turns(joint) {
@@ -113,26 +128,37 @@ pub fn mistakes(robot: &Description) -> Vec<Mistake> {
         let alike = (joint + 1..joints).filter(|&other| turns(other) == turns(joint));
         all.extend(alike.map(|other| Mistake::Exchanged([joint, other])));
     }
-    all.push(Mistake::Convention);
     all
 }
 
 impl Mistake {
-    /// The robot and its campaign as they are where this mistake was made.
+    /// The robot and its displacements as they are where this mistake was made.
     pub fn undone(&self, robot: &Description, data: &Displacements) -> (Description, Displacements) {
-        let (mut robot, mut data) = (robot.clone(), data.clone());
+        let mut data = data.clone();
         match self {
-            Self::Convention => {
-                robot.convention = match robot.convention {
-                    Convention::Standard => Convention::Modified,
-                    Convention::Modified => Convention::Standard,
-                };
-            }
             Self::Frame(Vector::Force) => data.wrench_frame = other(data.wrench_frame),
             Self::Frame(Vector::Displacement) => data.measured_frame = other(data.measured_frame),
             _ => data.rows.iter_mut().for_each(|row| self.undo_in(row)),
         }
-        (robot, data)
+        (self.undone_of(robot), data)
+    }
+
+    /// The robot and its positions, likewise.
+    pub fn undone_in_positions(&self, robot: &Description, data: &Positions) -> (Description, Positions) {
+        let mut data = data.clone();
+        data.rows.iter_mut().for_each(|row| self.undo_in_position(row));
+        (self.undone_of(robot), data)
+    }
+
+    fn undone_of(&self, robot: &Description) -> Description {
+        let mut robot = robot.clone();
+        if *self == Self::Convention {
+            robot.convention = match robot.convention {
+                Convention::Standard => Convention::Modified,
+                Convention::Modified => Convention::Standard,
+            };
+        }
+        robot
     }
 
     fn undo_in(&self, row: &mut Observation) {
@@ -147,9 +173,27 @@ impl Mistake {
             }
             Self::Unit(Vector::Force, axis, unit) => row.wrench[axis] *= unit.factor,
             Self::Unit(Vector::Displacement, axis, unit) => row.displacement[axis] *= unit.factor,
-            Self::Counted(joint, counted) => coordinates(row).for_each(|q| counted.undo(joint, q)),
-            Self::Exchanged([one, other]) => coordinates(row).for_each(|q| q.swap(one, other)),
-            Self::Frame(_) | Self::Convention => {}
+            // As they were commanded, and as they were read under the load.
+            _ => {
+                let coordinates = core::iter::once(&mut row.q).chain(&mut row.encoders).chain(&mut row.motors);
+                coordinates.for_each(|q| self.undo_in_coordinates(q));
+            }
+        }
+    }
+
+    fn undo_in_position(&self, row: &mut PositionRow) {
+        match *self {
+            Self::OtherHand => row.position[0] = -row.position[0],
+            Self::Unit(Vector::Position, axis, unit) => row.position[axis] *= unit.factor,
+            _ => self.undo_in_coordinates(&mut row.q),
+        }
+    }
+
+    fn undo_in_coordinates(&self, q: &mut [f64]) {
+        match *self {
+            Self::Counted(joint, counted) => counted.undo(joint, q),
+            Self::Exchanged([one, other]) => q.swap(one, other),
+            _ => {}
         }
     }
 }
@@ -159,11 +203,6 @@ fn other(frame: Frame) -> Frame {
         Frame::Base => Frame::Tool,
         Frame::Tool => Frame::Base,
     }
-}
-
-/// The coordinates of a row as they were commanded, and as they were read under the load.
-fn coordinates(row: &mut Observation) -> impl Iterator<Item = &mut Vec<f64>> {
-    core::iter::once(&mut row.q).chain(&mut row.encoders).chain(&mut row.motors)
 }
 
 impl Counted {
@@ -177,70 +216,13 @@ impl Counted {
     }
 }
 
-impl Axes {
-    /// Every one but that in which each component is along its own axis.
-    fn others() -> impl Iterator<Item = Self> {
-        const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]];
-        let signs = |of: usize| [0, 1, 2].map(|axis| if of >> axis & 1 == 0 { 1.0 } else { -1.0 });
-        let all = ORDERS
-            .into_iter()
-            .flat_map(move |order| (0..8).map(move |of| Self([0, 1, 2].map(|axis| (order[axis], signs(of)[axis])))));
-        all.skip(1)
-    }
-
-    /// Whether right-handed axes stay so.
-    fn is_right_handed(&self) -> bool {
-        let [x, y, z] = self.0;
-        let is_even = (x.0 + 1) % 3 == y.0;
-        (x.1 * y.1 * z.1 > 0.0) == is_even
-    }
-
-    fn apply(&self, vector: &mut [f64]) {
-        let read = [vector[0], vector[1], vector[2]];
-        vector.iter_mut().zip(self.0).for_each(|(component, (of, sign))| *component = sign * read[of]);
-    }
-
-    /// The same of a moment or a rotation, which counts the other way in a mirror.
-    fn apply_to_turn(&self, vector: &mut [f64]) {
-        self.apply(vector);
-        if !self.is_right_handed() {
-            vector.iter_mut().for_each(|component| *component = -*component);
-        }
-    }
-
-    /// What stands in the columns of a vector.
-    fn words(&self, column: fn(usize) -> String) -> String {
-        let moved: Vec<usize> = (0..3).filter(|&axis| self.0[axis].0 != axis).collect();
-        let reversed: Vec<usize> = (0..3).filter(|&axis| self.0[axis].1 < 0.0).collect();
-        match (&moved[..], &reversed[..]) {
-            ([], reversed) => format!("{} with the other sign", listed(reversed.iter().map(|&k| column(k)))),
-            (&[one, other], []) => format!("{} and {} exchanged", column(one), column(other)),
-            _ => {
-                let stands = |place: usize| {
-                    let in_it = |&axis: &usize| self.0[axis].0 == place;
-                    let axis = (0..3).find(in_it).unwrap_or(place);
-                    format!("{}{}", if self.0[axis].1 < 0.0 { "-" } else { "" }, column(axis))
-                };
-                format!("{} where {} should be", listed([0, 1, 2].map(stands)), listed([0, 1, 2].map(column)))
-            }
-        }
-    }
-}
-
-fn listed(names: impl IntoIterator<Item = String>) -> String {
-    let mut names: Vec<String> = names.into_iter().collect();
-    match names.pop() {
-        Some(last) if !names.is_empty() => format!("{} and {last}", names.join(", ")),
-        last => last.unwrap_or_default(),
-    }
-}
-
 impl Vector {
     /// The name of the column of a component.
     fn column(self) -> fn(usize) -> String {
         match self {
             Self::Force => |axis| format!("F{}", ["x", "y", "z"][axis]),
             Self::Displacement => |axis| format!("d{}", ["x", "y", "z"][axis]),
+            Self::Position => |axis| format!("p{}", ["x", "y", "z"][axis]),
         }
     }
 
@@ -248,6 +230,7 @@ impl Vector {
         match self {
             Self::Force => "forces",
             Self::Displacement => "displacements",
+            Self::Position => "positions",
         }
     }
 }
@@ -283,6 +266,9 @@ impl fmt::Display for Mistake {
                 }
             }
             Self::Exchanged([one, other]) => format!("q{} and q{} exchanged", one + 1, other + 1),
+            Self::OtherHand => {
+                String::from("px, py and pz of the other hand, one with the other sign or two exchanged")
+            }
             Self::Convention => String::from("the DH table in the other convention than the description says"),
         };
         f.write_str(&words)

@@ -6,9 +6,11 @@
 //! joints alone, each with a compliance that is not negative, leave far less of the readings than
 //! the best model did. Mistakes are made one at a time here; of two, none is found.
 //!
-//! Which mistakes there are, [`mistakes`](self::mistakes::mistakes) says.
+//! Which mistakes there are, [`mistakes`] says.
 
+mod axes;
 mod mistakes;
+mod positions;
 #[cfg(test)]
 mod tests;
 
@@ -19,7 +21,8 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 use robstiff_robots::Description;
 
-use self::mistakes::{Mistake, mistakes};
+use self::mistakes::{Mistake, of_displacements};
+pub use self::positions::in_positions;
 use super::bench::Bench;
 use super::catalogue::TRANSMISSION_ERROR;
 use super::model::Named;
@@ -59,12 +62,11 @@ pub fn unless(bench: &Bench<'_>, outcome: Outcome) -> Result<Outcome, String> {
     let enough = if names_wave(bench, &outcome) { ALIKE } else { FAR_LESS };
     let likely = rows.likely(bench.robot(), enough);
     let Some((left, _)) = likely.first() else { return Ok(outcome) };
-    let words: Vec<String> = likely.iter().take(MOST_TOLD).map(|(_, mistake)| mistake.to_string()).collect();
-    let more = if likely.len() > MOST_TOLD { ", or one of some more" } else { "" };
+    let words = words(&likely);
     let why = format!(
-        "the files may say something else than what was measured: {}{more}; with that undone the joints alone leave \
-         {}, and as the files are {} stay unaccounted for",
-        words.join(", or "),
+        "the files may say something else than what was measured: {}; with that undone the joints alone leave {}, and \
+         as the files are {} stay unaccounted for",
+        joined(&words),
         micrometres(left.rms()),
         micrometres(rows.left.rms())
     );
@@ -84,12 +86,12 @@ fn names_wave(bench: &Bench<'_>, outcome: &Outcome) -> bool {
     outcome.selection.model.named.iter().any(is_wave)
 }
 
-/// What a model leaves of displacements.
+/// What a model leaves of what is read.
 #[derive(Clone, Copy)]
 struct Left {
     /// The sum of squares that is left (m^2).
     squares: f64,
-    /// That of what was read (m^2).
+    /// That of what was read, of positions from their middle (m^2).
     read: f64,
     /// How many rows there are.
     rows: usize,
@@ -132,21 +134,37 @@ impl Rows {
         Ok((read > 0.0).then_some(Self { data, left }))
     }
 
-    /// The mistakes that leave no more than a part of the share that the model leaves where they
-    /// are undone, each with what it leaves, the least share first; those only that leave about as
-    /// little as it.
+    /// The mistakes that leave no more than a part of the share that the model leaves.
     fn likely(&self, robot: &Description, part: f64) -> Vec<(Left, Mistake)> {
-        let left = |mistake: Mistake| {
+        let left = |mistake: &Mistake| {
             let (robot, data) = mistake.undone(robot, &self.data);
-            Some((left_by_joints(&robot, &data)?, mistake))
+            left_by_joints(&robot, &data)
         };
-        let mut tried: Vec<(Left, Mistake)> = mistakes(robot).into_iter().filter_map(left).collect();
-        tried.sort_by(|a, b| a.0.share().total_cmp(&b.0.share()));
-        let least = tried.first().map_or(f64::INFINITY, |(left, _)| left.share());
-        let most = (part * self.left.share()).min(ALIKE * least);
-        tried.retain(|(left, _)| left.share() <= most);
-        tried
+        likely(of_displacements(robot), left, part * self.left.share())
     }
+}
+
+/// The mistakes that leave at most a share where they are undone, each with what it leaves, the
+/// least share first; those only that leave about as little as it.
+fn likely(all: Vec<Mistake>, left: impl Fn(&Mistake) -> Option<Left>, most: f64) -> Vec<(Left, Mistake)> {
+    let mut tried: Vec<(Left, Mistake)> =
+        all.into_iter().filter_map(|mistake| Some((left(&mistake)?, mistake))).collect();
+    tried.sort_by(|a, b| a.0.share().total_cmp(&b.0.share()));
+    let least = tried.first().map_or(f64::INFINITY, |(left, _)| left.share());
+    tried.retain(|(left, _)| left.share() <= most.min(ALIKE * least));
+    tried
+}
+
+/// Mistakes as the files have them, as many as are told.
+fn words(likely: &[(Left, Mistake)]) -> Vec<String> {
+    let told = likely.iter().take(MOST_TOLD).map(|(_, mistake)| mistake.to_string());
+    let more = (likely.len() > MOST_TOLD).then(|| String::from("one of some more mistakes that do alike"));
+    told.chain(more).collect()
+}
+
+/// Mistakes of which one was made, in a sentence.
+fn joined(words: &[String]) -> String {
+    words.join(", or ")
 }
 
 /// What the description's own numbers leave of the displacements, fitted to all rows alike; `None`

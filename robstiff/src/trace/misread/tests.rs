@@ -7,11 +7,13 @@ use std::vec::Vec;
 
 use robstiff_robots::Convention;
 
-use super::mistakes::mistakes;
+use super::mistakes::of_displacements;
 use crate::campaign::made::Plan;
-use crate::campaign::{Campaign, Data, Displacements, Frame, Observation};
+use crate::campaign::made_positions::Plan as PositionPlan;
+use crate::campaign::{Campaign, Data, Displacements, Frame, Observation, PositionRow};
 use crate::elements::Spring;
 use crate::identify::column::Column;
+use crate::samples::five_axis;
 use crate::trace::tests::{names, traced};
 use crate::trace::{Trace, Verdict};
 
@@ -111,7 +113,7 @@ fn files_that_are_right_are_believed() {
 fn every_mistake_is_another() {
     let campaign = with(1, |_| {});
     let Data::Displacement(data) = &campaign.data else { unreachable!("displacements") };
-    let undone: Vec<_> = mistakes(&campaign.robot)
+    let undone: Vec<_> = of_displacements(&campaign.robot)
         .iter()
         .map(|mistake| {
             let (robot, data) = mistake.undone(&campaign.robot, data);
@@ -124,4 +126,20 @@ fn every_mistake_is_another() {
             assert_ne!(words, other);
         }
     }
+}
+
+/// Positions with a mistake on their rows.
+#[test]
+fn mistakes_in_positions_are_told() {
+    let told = |mistake: &dyn Fn(&mut PositionRow), words: &str| {
+        let mut campaign = PositionPlan::new(five_axis(), 1).run();
+        let Data::Position(data) = &mut campaign.data else { unreachable!("positions") };
+        data.rows.iter_mut().for_each(mistake);
+        tells(&traced(&campaign), words);
+    };
+    told(&|row| row.q[3] *= -1.0, "q4 counted the other way");
+    told(&|row| row.q[1] /= 0.9, "q2 in gon where the header has deg");
+    told(&|row| row.q.swap(1, 2), "q2 and q3 exchanged");
+    told(&|row| row.position.swap(0, 1), "px, py and pz of the other hand, one with the other sign or two exchanged");
+    told(&|row| row.position[2] *= 10.0, "pz in a unit a tenth of that of the header");
 }

@@ -20,6 +20,7 @@ use crate::identify::{Error, NoiseSource};
 use crate::trace::catalogue::{KINDS, Variant};
 use crate::trace::found::{EffectParameter, Found};
 use crate::trace::held_out;
+use crate::trace::misread;
 use crate::trace::model::{Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
 use crate::trace::verdict::{self, Besides};
@@ -33,17 +34,19 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
     let (bench, model, base) = (&found.bench, &found.model, &found.base);
     let data = bench.prepared.data;
     let mut left = found.left.clone();
-    let (mut verdict, mut why) = match found.too_little.clone().or_else(|| no_noise(bench, model)) {
-        Some(why) => (Verdict::Insufficient, why),
+    let nothing = found.too_little.clone().map(|why| (why, Vec::new()));
+    let (mut verdict, mut why, looks_like) = match nothing.or_else(|| no_noise(campaign, bench, model)) {
+        Some((why, mistakes)) => (Verdict::Insufficient, why, mistakes),
         None => {
-            let isolated = usize::from(!found.wild.rows.is_empty());
+            let looks_like = found.looks_like.clone();
             let besides = Besides {
-                isolated,
+                isolated: usize::from(!found.wild.rows.is_empty()),
                 taken_back: &found.taken_back,
-                looks_like: &found.looks_like,
+                looks_like: &looks_like,
                 ..Besides::default()
             };
-            verdict::judge(&found.selection, &left, &besides)
+            let (verdict, why) = verdict::judge(&found.selection, &left, &besides);
+            (verdict, why, looks_like)
         }
     };
     let tells = verdict != Verdict::Insufficient;
@@ -97,7 +100,7 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
         why,
         unexplained: left.fraction,
         depends_on: if structure { left.depends_on } else { Vec::new() },
-        looks_like: found.looks_like.clone(),
+        looks_like,
         rivals: rivals(found, &replaced),
         invisible: invisible(campaign, bench),
         next: Vec::new(),
@@ -180,22 +183,28 @@ fn pose_errors(bench: &Bench<'_>, left: [&DVector<f64>; 2]) -> Vec<PoseError> {
     data.poses.iter().enumerate().map(error).collect()
 }
 
-/// Why what a model leaves is no noise, if so: nothing reads as badly as that.
-fn no_noise(bench: &Bench<'_>, model: &Model) -> Option<String> {
+/// Why what a model leaves is no noise, if so: nothing reads as badly as that. With it, what
+/// mistakes the files may have been written with, where one accounts for it.
+fn no_noise(campaign: &Campaign, bench: &Bench<'_>, model: &Model) -> Option<(String, Vec<String>)> {
     let rows = &bench.prepared.data.rows;
     let all = |of: &dyn Fn(&PositionRow) -> f64| (rows.iter().map(of).sum::<f64>() / rows.len() as f64).sqrt();
     let middle = rows.iter().map(|row| Vector3::from(row.position)).sum::<Vector3<f64>>() / rows.len() as f64;
     let apart = all(&|row| (Vector3::from(row.position) - middle).norm_squared());
     let left = (model.solved.fit.rss * 3.0 / model.solved.problem.total.rows as f64).sqrt();
-    (left > NOISIEST * apart).then(|| {
-        format!(
-            "the model leaves {:.0} mm of positions that are {:.0} mm from their middle, which is no noise: angles or \
-             lengths in another unit, axes of another hand, a reflector that is not where the campaign says, or a \
-             tracker that moved in between",
-            left * 1e3,
-            apart * 1e3
-        )
-    })
+    if left <= NOISIEST * apart {
+        return None;
+    }
+    let (mistakes, may_be) = misread::in_positions(&campaign.robot, bench.prepared.data, left).unwrap_or_else(|| {
+        let may_be = "angles or lengths in another unit, axes of another hand, a reflector that is not where the \
+                      campaign says, or a tracker that moved in between";
+        (Vec::new(), may_be.into())
+    });
+    let why = format!(
+        "the model leaves {:.0} mm of positions that are {:.0} mm from their middle, which is no noise: {may_be}",
+        left * 1e3,
+        apart * 1e3
+    );
+    Some((why, mistakes))
 }
 
 /// Of how far positions are from their middle, more than this is no noise.
