@@ -1,9 +1,11 @@
-//! Probabilities as they are told, and tails of distributions.
+//! Probabilities as they are told, tails of distributions, and normal variates.
 //!
 //! A tail is the probability of a statistic as large as this or larger. It is `None`
 //! where a degree of freedom is missing, or where the statistic is no number: readings
 //! beyond all measure come to that.
 
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, StudentsT};
 
 /// Nothing is rarer than what is so large; the square of it is still a number.
@@ -47,6 +49,14 @@ fn number(statistic: f64) -> Option<f64> {
 /// readings told becomes as if it had been known.
 pub fn as_normal(square: f64, freedom: f64) -> f64 {
     ((8.0 * freedom + 1.0) / (8.0 * freedom + 3.0)).powi(2) * freedom * (square / freedom).ln_1p()
+}
+
+/// A standard normal variate (Box and Muller, Annals of Mathematical Statistics 29, 1958,
+/// 610-611), of two uniform ones.
+pub fn normal(random: &mut ChaCha8Rng) -> f64 {
+    // The logarithm needs a number above zero.
+    let radius = (-2.0 * (1.0 - random.random::<f64>()).ln()).sqrt();
+    radius * (core::f64::consts::TAU * random.random::<f64>()).cos()
 }
 
 #[cfg(test)]

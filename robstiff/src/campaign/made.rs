@@ -16,6 +16,7 @@ use crate::identify::baseline::declared;
 use crate::identify::column::Column;
 use crate::identify::samples::Samples;
 use crate::identify::second_order::beyond_linear;
+use crate::probability::normal;
 use crate::samples::five_axis;
 
 /// What is measured, and how well.
@@ -169,12 +170,6 @@ pub fn campaign(robot: Description, data: Data) -> Campaign {
         holdout: None,
         warnings: Vec::<String>::new(),
     }
-}
-
-/// A standard normal variate (Box and Muller).
-pub fn normal(random: &mut ChaCha8Rng) -> f64 {
-    let radius = (-2.0 * (1.0 - random.random::<f64>()).ln()).sqrt();
-    radius * (core::f64::consts::TAU * random.random::<f64>()).cos()
 }
 
 /// The displacements of a campaign made here.

@@ -10,11 +10,12 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
 
-use super::made::{campaign, normal};
+use super::made::campaign;
 use super::{Campaign, Data, PositionRow, Positions};
 use crate::Effect;
 use crate::identify::positions::model::Model;
 use crate::identify::positions::registration::Registration;
+use crate::probability::normal;
 
 /// What is measured, and how well.
 #[derive(Clone)]

@@ -8,11 +8,12 @@ use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
 use robstiff_robots::quantity::finite;
 
-use super::draw::{PACE, Stream, names, normal, stream};
+use super::draw::{PACE, Stream, names, stream};
 use super::{Pull, Scenario, UnderForces};
 use crate::campaign::{Displacements, Frame, Observation};
 use crate::elements::deformed;
 use crate::identify::samples::{Samples, turn_of};
+use crate::probability::normal;
 use crate::{Robot, State};
 
 /// The displacements of a scenario at some poses, with noise.

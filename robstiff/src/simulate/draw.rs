@@ -91,10 +91,3 @@ fn position<const N: usize>(robot: &impl Robot<N>, q: &[f64]) -> [f64; 3] {
 pub fn names(count: usize) -> Vec<String> {
     (1..=count).map(|number| number.to_string()).collect()
 }
-
-/// A standard normal variate (Box and Muller).
-pub fn normal(random: &mut ChaCha8Rng) -> f64 {
-    // The logarithm needs a number above zero.
-    let radius = (-2.0 * (1.0 - random.random::<f64>()).ln()).sqrt();
-    radius * (core::f64::consts::TAU * random.random::<f64>()).cos()
-}

@@ -7,11 +7,12 @@ use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
 use robstiff_robots::quantity::finite;
 
-use super::draw::{PACE, Stream, names, normal, stream};
+use super::draw::{PACE, Stream, names, stream};
 use super::{Scenario, UnderPayloads};
 use crate::campaign::{PositionRow, Positions};
 use crate::identify::positions::model::Model;
 use crate::identify::positions::registration::Registration;
+use crate::probability::normal;
 
 /// How far the tracker stands from the robot, along each axis, on average (m).
 const DISTANCE: f64 = 3.0;

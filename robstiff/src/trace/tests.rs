@@ -14,11 +14,12 @@ use super::selection::select;
 use super::settle::settled;
 use super::*;
 use crate::campaign::Data;
-use crate::campaign::made::{Plan, normal};
+use crate::campaign::made::Plan;
 use crate::elements::Spring;
 use crate::identify::column::Column;
 use crate::identify::samples::Samples;
 use crate::identify::{Visibility, predict};
+use crate::probability::normal;
 use crate::samples::five_axis;
 
 pub(super) const SIGMA: f64 = 1e-5;

@@ -11,6 +11,7 @@ use robstiff_robots::catalogue;
 
 use super::*;
 use crate::campaign::made;
+use crate::probability::normal;
 use crate::simulate::{Scenario, simulate};
 use crate::triage::triage;
 
@@ -265,8 +266,7 @@ noise: {displacement: 8 um, stated: no}
     let mut campaign = measured(&robot(""), 1, plan);
     // Each pose yields besides as nothing in the catalogue does.
     let mut random = ChaCha8Rng::seed_from_u64(1);
-    let softer: Vec<Matrix3<f64>> =
-        (0..24).map(|_| Matrix3::from_fn(|_, _| 14e-9 * made::normal(&mut random))).collect();
+    let softer: Vec<Matrix3<f64>> = (0..24).map(|_| Matrix3::from_fn(|_, _| 14e-9 * normal(&mut random))).collect();
     if let Data::Displacement(data) = &mut campaign.data {
         for row in &mut data.rows {
             let more = softer[row.pose] * Vector3::from_column_slice(&row.wrench[..3]);

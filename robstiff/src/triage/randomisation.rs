@@ -118,7 +118,7 @@ pub fn flip(witnesses: &[Witness]) -> Option<Flipped> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::made::normal;
+    use crate::probability::normal;
 
     fn witness(pose: usize, visit: usize, score: f64) -> Witness {
         Witness { pose, visits: std::vec![visit], scores: std::vec![score] }

@@ -11,11 +11,12 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
-use crate::campaign::made::{Plan, campaign, normal};
+use crate::campaign::made::{Plan, campaign};
 use crate::campaign::{ClampedRow, Data, Observation};
 use crate::elements::Spring;
 use crate::identify::column::Column;
 use crate::identify::samples::Samples;
+use crate::probability::normal;
 use crate::samples::five_axis;
 
 /// Ramps both ways in visits of their own, with a look at the unloaded arm.

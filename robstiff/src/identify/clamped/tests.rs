@@ -8,7 +8,8 @@ use rand_chacha::ChaCha8Rng;
 
 use super::*;
 use crate::campaign::Data;
-use crate::campaign::made::{campaign, normal};
+use crate::campaign::made::campaign;
+use crate::probability::normal;
 use crate::samples::five_axis;
 
 fn row(torque: f64, deflection: f64) -> ClampedRow {

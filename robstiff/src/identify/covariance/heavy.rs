@@ -62,7 +62,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::campaign::made::normal;
+    use crate::probability::normal;
 
     /// Squares of Student's variates, of normal ones where `freedom` is 0.
     fn squares(count: usize, freedom: usize, seed: u64) -> Vec<f64> {

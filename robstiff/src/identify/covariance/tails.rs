@@ -3,11 +3,12 @@
 
 use std::vec::Vec;
 
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use statrs::function::gamma::ln_gamma;
 
 use super::contrasts::Chunk;
+use crate::probability::normal;
 
 /// The tails of the noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,10 +133,4 @@ fn log_student(x: f64, freedom: f64) -> f64 {
         - 0.5 * (freedom * core::f64::consts::PI).ln()
         - scale.ln()
         - 0.5 * (freedom + 1.0) * (x / scale).powi(2).mul_add(freedom.recip(), 1.0).ln()
-}
-
-/// A standard normal variate (Box and Muller).
-fn normal(random: &mut ChaCha8Rng) -> f64 {
-    let radius = (-2.0 * (1.0 - random.random::<f64>()).ln()).sqrt();
-    radius * (core::f64::consts::TAU * random.random::<f64>()).cos()
 }

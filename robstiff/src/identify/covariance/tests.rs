@@ -9,11 +9,12 @@ use rand_chacha::ChaCha8Rng;
 
 use super::*;
 use crate::campaign::Campaign;
-use crate::campaign::made::{Plan, displacements, normal};
+use crate::campaign::made::{Plan, displacements};
 use crate::elements::Spring;
 use crate::identify::column::Column;
 use crate::identify::identify;
 use crate::identify::second_order::straightened;
+use crate::probability::normal;
 
 fn estimate(plan: &Plan) -> Covariance {
     of(&plan.run())

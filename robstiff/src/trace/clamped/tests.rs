@@ -8,9 +8,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
 
-use crate::campaign::made::{campaign, normal};
+use crate::campaign::made::campaign;
 use crate::campaign::{Campaign, ClampedRow, Data};
 use crate::identify::uncertainty::WITHIN;
+use crate::probability::normal;
 use crate::samples::five_axis;
 use crate::trace::{Options, Trace, Verdict, trace};
 

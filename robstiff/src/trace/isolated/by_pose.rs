@@ -142,7 +142,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::campaign::made::normal;
+    use crate::probability::normal;
 
     const ONE: Scale = Scale { variance: Vector3::new(1.0, 1.0, 1.0), freedom: 1e6, thirds: [1.0; 3] };
 

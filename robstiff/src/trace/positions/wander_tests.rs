@@ -11,8 +11,8 @@ use rand_chacha::ChaCha8Rng;
 
 use super::tests::{names, six_axis, traced};
 use crate::campaign::PositionRow;
-use crate::campaign::made::normal;
 use crate::campaign::made_positions::Plan;
+use crate::probability::normal;
 use crate::trace::Verdict;
 
 /// Moves each reading by a course, along a line.

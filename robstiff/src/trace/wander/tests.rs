@@ -10,9 +10,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use super::WORDS;
-use crate::campaign::made::{Plan, normal};
+use crate::campaign::made::Plan;
 use crate::campaign::{Holdout, Observation};
 use crate::identify::holdout::training;
+use crate::probability::normal;
 use crate::trace::tests::{names, traced};
 use crate::trace::{Trace, Verdict};
 
