@@ -19,6 +19,7 @@ mod held_tests;
 pub(crate) mod holdout;
 pub(crate) mod noise;
 pub(crate) mod normal;
+pub(crate) mod one_by_one;
 pub(crate) mod positions;
 pub(crate) mod predict;
 pub(crate) mod prepare;

@@ -9,9 +9,8 @@
 //! the others then have. Of those the median counts, for the model may lack something. What it
 //! lacks grows with the load, and the other rows of the visit and the pose have it, too: a row must
 //! be off by many times the share of its displacement that they are off by. Several wild rows hide
-//! each other, so the row without which least is left is taken away time and again, up to the last
-//! that stood out (Rosner, Technometrics 25, 1983, 165-172), and each is judged once more by the
-//! fit without all of them.
+//! each other, so the row without which least is left is taken away [one by one](super::one_by_one),
+//! and each is judged once more by the fit without all of them.
 
 use std::rc::Rc;
 use std::vec::Vec;
@@ -24,6 +23,7 @@ use super::column::Column;
 use super::covariance::outliers::{FEW, STRICT};
 use super::covariance::{Covariance, NOISELESS, Outlier};
 use super::normal::Fit;
+use super::one_by_one::up_to_the_last;
 use super::prepare::{Prepared, believed_noise};
 use super::problem::{Block, Problem, Weights, raw};
 use super::whitening::mean_share;
@@ -79,21 +79,21 @@ fn wild_rows(prepared: &Prepared<'_>) -> Vec<usize> {
     let Some(mut fitted) = look.without(&left_out) else { return Vec::new() };
     let rows = fitted.rows.len();
     let most = (FEW * rows as f64).floor() as usize;
-    let (mut taken, mut found) = (Vec::new(), 0);
-    while taken.len() <= most && taken.len() < found + HIDDEN {
-        let Some(&worst) = fitted.rows.iter().max_by(|a, b| a.gain.total_cmp(&b.gain)) else { break };
-        left_out[worst.row] = true;
-        let Some(others) = look.without(&left_out) else { break };
-        taken.push(worst.row);
-        if others.contradict(&worst, &look, rows) {
-            found = taken.len();
+    let mut behind = 0;
+    let found = up_to_the_last(most + 1, || {
+        if behind == HIDDEN {
+            return None;
         }
-        fitted = others;
-    }
-    if found == 0 || found > most {
-        return Vec::new();
-    }
-    taken.drain(found..).for_each(|row| left_out[row] = false);
+        let &worst = fitted.rows.iter().max_by(|a, b| a.gain.total_cmp(&b.gain))?;
+        left_out[worst.row] = true;
+        fitted = look.without(&left_out)?;
+        let stood_out = fitted.contradict(&worst, &look, rows);
+        behind = if stood_out { 0 } else { behind + 1 };
+        Some((worst.row, stood_out.then_some(())))
+    });
+    let Some((mut taken, ())) = found.filter(|(taken, ())| taken.len() <= most) else { return Vec::new() };
+    left_out.clone_from(&prepared.left_out);
+    taken.iter().for_each(|&row| left_out[row] = true);
     let Some(others) = look.without(&left_out) else { return Vec::new() };
     taken.retain(|&row| others.contradict(&Row { row, gain: look.beyond(row, &others) }, &look, rows));
     let pose = |row: usize| prepared.samples.rows[row].pose;

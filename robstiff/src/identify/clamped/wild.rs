@@ -2,10 +2,9 @@
 //!
 //! A row is held against what the fit leaves of the others, by its externally
 //! studentised residual. Several wild rows hide each other in that, so the row that
-//! stands out most is taken away time and again, as many times as there may be wild
-//! ones, and all are wild up to the last that was significant (Rosner,
-//! Technometrics 25, 1983, 165-172). Which stands out most a median tells, which
-//! wild rows do not move.
+//! stands out most is taken away [one by one](crate::identify::one_by_one), as many times
+//! as there may be wild ones. Which stands out most a median tells, which wild rows do
+//! not move.
 //!
 //! Wild rows are few, of every axis. Where many rows of one stand out, or one slip says
 //! the same of them with fewer numbers, something is missing that they all have: none of
@@ -21,6 +20,7 @@ use super::rounding::of_rounding;
 use crate::campaign::ClampedRow;
 use crate::identify::covariance::outliers::{FEW, STANDS_OUT, STRICT, by_median};
 use crate::identify::normal::Fit;
+use crate::identify::one_by_one::up_to_the_last;
 use crate::identify::problem::Problem;
 use crate::identify::whitening::mean_share;
 use crate::probability::{student_tail, told};
@@ -140,19 +140,14 @@ fn slips(rows: &[ClampedRow], raw: &DMatrix<f64>, wild: &[usize], axis: usize) -
 fn stand_out(rows: &[ClampedRow], raw: &DMatrix<f64>, strict: bool, most: usize) -> Option<(Vec<usize>, f64)> {
     let (mut rows, mut raw) = (rows.to_vec(), raw.clone());
     let mut at: Vec<usize> = (0..rows.len()).collect();
-    let mut taken: Vec<usize> = Vec::new();
-    let mut found = None;
     let rounding = of_rounding(&rows);
-    for _ in 0..most {
-        let Some(worst) = worst(&rows, &raw, &rounding) else { break };
-        taken.push(at.remove(worst.row));
+    up_to_the_last(most, || {
+        let worst = worst(&rows, &raw, &rounding)?;
         rows.remove(worst.row);
-        raw = raw.remove_row(worst.row);
-        if worst.p <= STRICT && (strict || worst.over > STANDS_OUT) {
-            found = Some((taken.clone(), worst.p));
-        }
-    }
-    found
+        raw = core::mem::take(&mut raw).remove_row(worst.row);
+        let stands_out = worst.p <= STRICT && (strict || worst.over > STANDS_OUT);
+        Some((at.remove(worst.row), stands_out.then_some(worst.p)))
+    })
 }
 
 /// By how much the sum of squares falls without each row: by a number of its own,

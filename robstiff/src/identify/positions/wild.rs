@@ -3,8 +3,7 @@
 //! A row is held against what the fit leaves of the others: by how much the sum of
 //! squares falls without it, which is Fisher's F with three degrees of freedom over
 //! the rest's. Several wild rows hide each other in that, so the row that stands out
-//! most is taken away time and again, and all are wild up to the last that was
-//! significant (Rosner, Technometrics 25, 1983, 165-172).
+//! most is taken away [one by one](crate::identify::one_by_one).
 
 use std::vec::Vec;
 
@@ -12,6 +11,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use crate::identify::covariance::outliers::{FEW, STANDS_OUT, STRICT};
 use crate::identify::normal::Normal;
+use crate::identify::one_by_one::up_to_the_last;
 use crate::identify::problem::Problem;
 use crate::probability::{fisher_tail, told};
 
@@ -36,29 +36,25 @@ pub fn wild_rows(problem: &Problem, strict: bool) -> Option<Wild> {
     let mut rows: Vec<usize> = problem.blocks.iter().flat_map(|block| block.rows.iter().copied()).collect();
     let most = (FEW * rows.len() as f64).floor() as usize;
     let mut total = problem.total.clone();
-    let (mut taken, mut found) = (Vec::new(), None);
-    for _ in 0..most {
-        let (Some(fit), Some(inverse)) = (total.solve(&columns), total.inverse(&columns)) else { break };
+    let found = up_to_the_last(most, || {
+        let (fit, inverse) = (total.solve(&columns)?, total.inverse(&columns)?);
         let gains: Vec<f64> = rows.iter().map(|&row| gain(problem, row, &fit.coefficients, &inverse)).collect();
-        let Some(worst) = (0..rows.len()).max_by(|&a, &b| gains[a].total_cmp(&gains[b])) else { break };
+        let worst = (0..rows.len()).max_by(|&a, &b| gains[a].total_cmp(&gains[b]))?;
         let mut sorted = gains.clone();
         sorted.sort_by(f64::total_cmp);
         let variance = sorted[sorted.len() / 2] / MEDIAN;
         let freedom = total.rows as f64 - columns.len() as f64 - 3.0;
         let others = (fit.rss - gains[worst]).max(freedom * variance);
         let tail = fisher_tail(gains[worst] / 3.0 / (others / freedom), [3.0, freedom]);
-        let Some(p) = tail.filter(|_| others > 0.0).map(|tail| told(rows.len() as f64 * tail)) else { break };
+        let p = tail.filter(|_| others > 0.0).map(|tail| told(rows.len() as f64 * tail))?;
         let over = gains[worst] / variance;
         let row = rows.remove(worst);
         let (x, y) = of_row(problem, row);
         total = total.without(&Normal::small(&x, &y));
-        taken.push(row);
-        if p <= STRICT && (strict || over > STANDS_OUT) {
-            let rss = total.solve(&columns).map_or(f64::INFINITY, |fit| fit.rss);
-            found = Some(Wild { rows: taken.clone(), p, rss });
-        }
-    }
-    found
+        let stands_out = p <= STRICT && (strict || over > STANDS_OUT);
+        Some((row, stands_out.then(|| (p, total.solve(&columns).map_or(f64::INFINITY, |fit| fit.rss)))))
+    });
+    found.map(|(rows, (p, rss))| Wild { rows, p, rss })
 }
 
 fn of_row(problem: &Problem, row: usize) -> (DMatrix<f64>, DVector<f64>) {

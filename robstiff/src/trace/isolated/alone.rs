@@ -4,9 +4,8 @@
 //! moves the fit: it leaves less of that row than there is, and more of all others, which raises
 //! even their median. So a row is held against what the fit *without it* leaves of the others,
 //! by its externally studentised residual, corrected for the number of rows. Several hide each
-//! other in that, so the row whose loss makes the fit better by most is taken away time and
-//! again, once more than there may be wild ones, and all are wild up to the last that was
-//! significant (Rosner, Technometrics 25, 1983, 165-172).
+//! other in that, so the row whose loss makes the fit better by most is taken away
+//! [one by one](crate::identify::one_by_one), once more than there may be wild ones.
 
 use std::vec;
 use std::vec::Vec;
@@ -18,6 +17,7 @@ use crate::identify::covariance::NOISELESS;
 use crate::identify::covariance::heavy::{freedom_of_tails, scale_of_tails};
 use crate::identify::covariance::outliers::{FEW, STANDS_OUT, STRICT, by_median};
 use crate::identify::normal::{Fit, Normal, Sign};
+use crate::identify::one_by_one::up_to_the_last;
 use crate::identify::problem::Problem;
 use crate::probability::{as_normal, chi_square_tail, told};
 use crate::trace::model::{Fitted, Setting};
@@ -64,19 +64,14 @@ impl Alone {
     fn wild(mut self) -> Vec<Event> {
         let rows = self.parts.len();
         let most = (FEW * rows as f64).floor() as usize;
-        let mut taken: Vec<usize> = Vec::new();
-        let mut found: Option<(usize, f64)> = None;
-        for _ in 0..=most {
-            let Some((at, without)) = self.worst() else { break };
+        let found = up_to_the_last(most + 1, || {
+            let (at, without) = self.worst()?;
             let (row, _) = self.parts.remove(at);
-            taken.push(row);
             let p_value = self.judge(row, &without).map(|p| told(rows as f64 * p));
-            if let Some(p_value) = p_value.filter(|p| *p <= STRICT) {
-                found = Some((taken.len(), p_value));
-            }
-        }
-        let Some((count, p_value)) = found.filter(|(count, _)| *count <= most) else { return Vec::new() };
-        taken[..count].iter().map(|&row| Event { rows: vec![row], p_value, slip: None }).collect()
+            Some((row, p_value.filter(|p| *p <= STRICT)))
+        });
+        let Some((wild, p_value)) = found.filter(|(wild, _)| wild.len() <= most) else { return Vec::new() };
+        wild.into_iter().map(|row| Event { rows: vec![row], p_value, slip: None }).collect()
     }
 
     /// The place of the row without which the least is left, with the fit to the others.
