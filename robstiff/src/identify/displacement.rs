@@ -39,8 +39,7 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     let estimates =
         estimates(&campaign.robot, (&prepared.own, &prepared.visibility), &values, &fitted.columns, &covariance);
     let residuals = residuals(&prepared, &fitted);
-    let freedom = problem.total.rows.saturating_sub(fitted.columns.len()).max(1) as f64;
-    let (noise, noise_source) = prepared.noise(fitted.rss / freedom);
+    let (noise, noise_source) = prepared.noise(problem.variance(&fitted));
     let rows = prepared.samples.rows.len();
     let (left_out, kept): (Vec<usize>, Vec<usize>) = (0..rows).partition(|&row| prepared.left_out[row]);
     Ok(Identification {

@@ -13,8 +13,8 @@ use super::column::Column;
 use super::covariance::contrasts::Level;
 use super::covariance::{Basis, Covariance};
 use super::holdout::training;
-use super::normal::{Fit, Normal, Sign};
-use super::problem::{Problem, Weights, raw};
+use super::normal::{Fit, Sign};
+use super::problem::{Equations, Problem, Weights, raw};
 use super::samples::Samples;
 use super::second_order::{beyond_linear, straightened};
 use super::wild::leave_out;
@@ -299,7 +299,7 @@ impl<'c> Prepared<'c> {
         let fitted = loop {
             let problem = self.problem();
             let fitted = fit(self, &problem)?;
-            let lost = self.lost(&problem.total, &fitted, |_| true);
+            let lost = self.lost(&problem, &fitted, |_| true);
             if lost.is_empty() {
                 break fitted;
             }
@@ -319,10 +319,9 @@ impl<'c> Prepared<'c> {
     /// the noise the most, if any is: one at a time, for of two that look alike either may be
     /// seen without the other. All columns where none stands out, for then the readings say
     /// nothing of any.
-    pub fn lost(&self, total: &Normal, fitted: &Fit, may: impl Fn(usize) -> bool) -> Vec<usize> {
-        let Some(inverse) = total.inverse(&fitted.columns) else { return Vec::new() };
-        let freedom = total.rows.saturating_sub(fitted.columns.len()).max(1) as f64;
-        let (noise, _) = self.noise(fitted.rss / freedom);
+    pub fn lost(&self, problem: &Equations, fitted: &Fit, may: impl Fn(usize) -> bool) -> Vec<usize> {
+        let Some(inverse) = problem.total.inverse(&fitted.columns) else { return Vec::new() };
+        let (noise, _) = self.noise(problem.variance(fitted));
         let own = fitted.columns.iter().enumerate().filter(|&(_, &column)| column < self.own.len() && may(column));
         let lost = own.filter_map(|(k, &column)| {
             let std = inverse[(k, k)].sqrt() * noise;
@@ -378,7 +377,7 @@ fn is_less_than_rigid(prepared: &Prepared<'_>, problem: &Problem) -> bool {
     let columns: Vec<usize> = (0..shown.len()).filter(|&column| shown[column] == Visibility::Seen).collect();
     let solved = problem.total.solve(&columns).zip(problem.total.inverse(&columns));
     let Some((free, inverse)) = solved.filter(|_| !columns.is_empty()) else { return false };
-    let (noise, _) = prepared.noise(free.rss / problem.freedom(&free));
+    let (noise, _) = prepared.noise(problem.variance(&free));
     let over_std = |k: usize| free.coefficients[k] / (inverse[(k, k)].sqrt() * noise);
     let mut all = (0..columns.len()).map(over_std);
     all.clone().all(|value| value < IDENTIFIED_STANDS_OUT) && all.any(|value| value < -BELOW_ZERO)

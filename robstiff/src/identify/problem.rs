@@ -189,9 +189,14 @@ impl Equations {
         Problem { equations, white }
     }
 
-    /// The residual degrees of freedom of a fit.
+    /// The degrees of freedom that a fit leaves, at least one.
     pub fn freedom(&self, fit: &Fit) -> f64 {
         self.total.rows.saturating_sub(fit.columns.len()).max(1) as f64
+    }
+
+    /// The variance of a whitened reading by what a fit leaves (m^2, of clamped axes rad^2).
+    pub fn variance(&self, fit: &Fit) -> f64 {
+        fit.rss / self.freedom(fit)
     }
 }
 

@@ -130,7 +130,7 @@ fn free(fit: &Fit, signs: &[Sign]) -> Vec<usize> {
 /// with: by what a fit leaves, and by the noise that is declared.
 fn of_reading(problem: &Problem, fit: &Fit, noise: Option<f64>) -> (f64, f64) {
     let freedom = problem.freedom(fit);
-    let Some(noise) = noise else { return (fit.rss / freedom, freedom) };
+    let Some(noise) = noise else { return (problem.variance(fit), freedom) };
     let (declared, all) = (noise * noise, freedom + DECLARED);
     (((fit.rss + DECLARED * declared) / all).max(declared), all)
 }

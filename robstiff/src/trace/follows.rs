@@ -24,7 +24,7 @@ const HARDLY: f64 = 0.75;
 /// known from elsewhere, and what has structure may be accounted for one day.
 pub fn hardly(prepared: &Prepared<'_>, bench: &Bench<'_>, outcome: &Outcome) -> Option<String> {
     let model = &outcome.selection.model;
-    let left = model.fit.rss / bench.at(&model.named).ok()?.problem.freedom(&model.fit);
+    let left = bench.at(&model.named).ok()?.problem.variance(&model.fit);
     let by_readings = matches!(bench.noise.covariance.basis, Basis::Contrasts(_));
     if prepared.noise(left).1.is_declared() || !outcome.looks_like.is_empty() || (outcome.structure() && !by_readings) {
         return None;

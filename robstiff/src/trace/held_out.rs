@@ -80,7 +80,7 @@ pub fn predicted(
     let together = beyond(&total, &Normal::sum(held_out.iter().cloned())?)?;
     let readings: usize = held_out.iter().map(|block| block.rows).sum();
     let freedom = problem.freedom(fit);
-    let statistic = together / readings as f64 / (fit.rss / freedom);
+    let statistic = together / readings as f64 / problem.variance(fit);
     let by_normal = fisher_tail(statistic, [readings as f64, freedom])?;
 
     // Of each pose fitted to by the fit without it, `r^T (I - H)^-1 r`, a reading.

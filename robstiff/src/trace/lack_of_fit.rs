@@ -131,23 +131,17 @@ pub fn test(
     let structure = tests.iter().any(|test| test.p_value <= level);
     let fraction =
         if structure { fraction(setting, model, yardstick, resemblance.as_ref(), options.alpha) } else { 0.0 };
-    let beyond_noise = agreement.filter(|found| found.p_value <= level).map_or(0.0, |found| {
-        let variance = model.fit.rss / freedom(setting, model);
-        1.0 - found.noise / variance
-    });
+    let beyond_noise = agreement
+        .filter(|found| found.p_value <= level)
+        .map_or(0.0, |found| 1.0 - found.noise / setting.problem.variance(&model.fit));
     let fraction = fraction.max(beyond_noise);
     let depends_on = resemblance.filter(|_| structure).map_or_else(Vec::new, |found| found.significant(options.alpha));
     LackOfFit { tests, structure, fraction, depends_on }
 }
 
-/// The residual degrees of freedom.
-pub(super) fn freedom(setting: &Setting<'_>, model: &Fitted) -> f64 {
-    setting.problem.freedom(&model.fit)
-}
-
 /// Whether what a model leaves is little against the steps in which readings are read.
 fn is_coarse(setting: &Setting<'_>, model: &Fitted) -> bool {
-    setting.point.data.is_coarse(model.fit.rss / freedom(setting, model))
+    setting.point.data.is_coarse(setting.problem.variance(&model.fit))
 }
 
 /// Spearman's rank correlation of squared residuals, each over what the fit
@@ -235,7 +229,7 @@ fn fraction(
     found: Option<&Resemblance>,
     alpha: f64,
 ) -> f64 {
-    let variance = model.fit.rss / freedom(setting, model);
+    let variance = setting.problem.variance(&model.fit);
     let noise = match yardstick {
         Yardstick::Declared(noise) => Some(noise),
         Yardstick::Repeated(pure) => pure.variance(),

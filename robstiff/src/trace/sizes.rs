@@ -2,7 +2,7 @@
 
 use std::borrow::ToOwned;
 
-use super::lack_of_fit::{StructureTest, freedom};
+use super::lack_of_fit::StructureTest;
 use super::model::{Fitted, Setting};
 use super::yardstick::Yardstick;
 use crate::identify::covariance::Covariance;
@@ -17,7 +17,7 @@ pub(super) struct Shares {
 
 impl Shares {
     pub(super) fn of(setting: &Setting<'_>, model: &Fitted) -> Option<Self> {
-        let whole = (model.fit.rss, freedom(setting, model));
+        let whole = (model.fit.rss, setting.problem.freedom(&model.fit));
         let samples = &setting.point.samples;
         if samples.encoders.is_empty() {
             return Some(Self { tool: whole, encoders: None });

@@ -131,7 +131,7 @@ pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted, slipping: Slipping)
         fitted_to,
         white,
         inverse: problem.total.inverse(columns)?,
-        variance: model.fit.rss / problem.freedom(&model.fit),
+        variance: problem.variance(&model.fit),
         visits,
     };
     let after = scan.best(&mut (1..rows).rev(), false);

@@ -53,7 +53,7 @@ pub fn within_description(
         }
         (description, places)
     };
-    let variance = model.fit.rss / setting.problem.freedom(&model.fit);
+    let variance = setting.problem.variance(&model.fit);
     let held = readable(&setting.problem.total, &model.fit, &signs, described);
     match held.filter(|held| held.rss - model.fit.rss <= BY_NOISE * variance) {
         Some(fit) => Fitted { fit, ..model.clone() },

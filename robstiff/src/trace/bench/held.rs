@@ -46,7 +46,7 @@ impl Bench<'_> {
             let setting = self.at(named)?;
             let fitted = setting.fit(named)?;
             let is_doubted = |column: usize| self.prepared.doubted.contains(&column);
-            let mut lost = self.prepared.lost(&setting.problem.total, &fitted.fit, is_doubted);
+            let mut lost = self.prepared.lost(&setting.problem, &fitted.fit, is_doubted);
             if lost.is_empty() {
                 lost.extend(self.untold(&setting, &fitted.fit));
             }

@@ -133,7 +133,7 @@ impl<'c> Bench<'c> {
                 *theta += share * (next - *theta);
             };
             nonlinear.iter().zip(&mut theta).for_each(step);
-            let noise = fit.rss / problem.freedom(&fit);
+            let noise = problem.variance(&fit);
             if moves.norm_squared() <= SETTLED * SETTLED * noise {
                 return Ok(State { setup, fit, tangents, readings, base });
             }

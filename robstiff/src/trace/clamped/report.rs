@@ -104,7 +104,7 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         rows: whole.axes.rows.len(),
         poses: fitted_axes.len(),
         held_out: Vec::new(),
-        noise: (model.fit.rss / bench.problem.freedom(&model.fit)).sqrt(),
+        noise: bench.problem.variance(&model.fit).sqrt(),
         noise_source: NoiseSource::Residuals,
         declared,
         identified: before,
@@ -139,7 +139,7 @@ const SEVERAL: f64 = 4.0;
 /// unloaded reading.
 fn off(bench: &Bench, model: &Fitted) -> Option<String> {
     let left = bench.residuals(&model.fit);
-    let noise = (model.fit.rss / bench.problem.freedom(&model.fit)).sqrt();
+    let noise = bench.problem.variance(&model.fit).sqrt();
     let of_axis = |axis: &usize| rms(&left.select_rows(&bench.axes.rows_of(*axis)));
     let axis = bench.axes.loaded().max_by(|a, b| of_axis(a).total_cmp(&of_axis(b)))?;
     let is_noise = bench.leaves_nothing(&model.fit) || of_axis(&axis) <= SEVERAL * noise;

@@ -116,7 +116,7 @@ fn is_better(wide: &Bench<'_>, other: &Model, model: &Model) -> bool {
     let (fit, solved) = (&model.solved.fit, &other.solved.fit);
     // What is told by many numbers can be like it without being it.
     let saved = fit.columns.len().saturating_sub(solved.columns.len()) as f64;
-    let price = AKAIKE * fit.rss / model.solved.problem.freedom(fit);
+    let price = AKAIKE * model.solved.problem.variance(fit);
     other.bic < model.bic - WITHIN_REACH && solved.rss < fit.rss + price * saved
 }
 

@@ -88,7 +88,7 @@ impl LeftAtZero {
             DMatrix::from_fn(fit.columns.len(), columns.len(), |i, k| problem.total.gram[(fit.columns[i], columns[k])]);
         let gram = problem.total.gram_of(&columns) - cross.tr_mul(&shifts);
         let moment = problem.total.moment_of(&columns) - cross.tr_mul(&fit.coefficients);
-        let variance = fit.rss / problem.freedom(fit);
+        let variance = problem.variance(fit);
         // Where nothing at all is left of the readings, they are at zero.
         let told = (variance > 0.0 && !columns.is_empty()).then(|| (gram / variance, moment / variance));
         let moments = told.and_then(|(gram, moment)| self.second_moments(&gram, &moment, problem.total.rows as f64));

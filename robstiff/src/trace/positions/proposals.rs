@@ -96,7 +96,7 @@ pub fn sideways(bench: &Bench<'_>, model: Model, reference: &Reference, options:
 /// The effect of a model that gains least, with the p-value of that much by the
 /// distribution of the largest statistic at another step.
 fn weakest(bench: &Bench<'_>, model: &Model, reference: &Reference) -> Option<(usize, f64)> {
-    let variance = model.solved.fit.rss / model.solved.problem.freedom(&model.solved.fit);
+    let variance = model.solved.problem.variance(&model.solved.fit);
     let p = |k: usize| {
         let rest = all_but(&model.named, k);
         let without = bench.solve(&rest, &model.solved.state).map_or(f64::INFINITY, |rest| rest.solved.fit.rss);

@@ -78,10 +78,9 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
         false => campaign.robot.clone(),
     };
     let kept_back = data.poses.iter().zip(bench.rows.training.iter()).filter(|(_, training)| !**training);
-    let freedom = model.solved.problem.freedom(&model.solved.fit);
     let (noise, noise_source) = match campaign.noise_of_reading() {
         Some(noise) => (noise, NoiseSource::of_declared(campaign)),
-        None => ((model.solved.fit.rss / freedom).sqrt(), NoiseSource::Residuals),
+        None => (model.solved.problem.variance(&model.solved.fit).sqrt(), NoiseSource::Residuals),
     };
     let values_before = bench.prepared.values(&base.solved.state);
     Ok(Trace {

@@ -77,7 +77,7 @@ pub fn report(
         false => (campaign.robot.clone(), declared, declared_residuals(prepared)),
     };
     let (residuals, pose_errors) = residuals(prepared, &all, &all.residuals(&base.fit), &left_after);
-    let (noise, noise_source) = noise(prepared, bench, model.fit.rss / setting.problem.freedom(&model.fit));
+    let (noise, noise_source) = noise(prepared, bench, setting.problem.variance(&model.fit));
     let left = outcome.left.as_ref();
     let (verdict, why) = match more_than_a_gear_errs(&effects) {
         Some(why) if outcome.verdict == Verdict::Explained => (Verdict::Partial, why),
