@@ -101,6 +101,7 @@ use crate::campaign::{Campaign, Data};
 use crate::identify::encoders::EncodersRead;
 use crate::identify::prepare::Prepared;
 use crate::identify::{AGAINST_THE_LOADS, Error, Estimate, NoiseSource};
+use crate::words::count;
 
 /// How to trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -387,12 +388,7 @@ fn against_the_loads(prepared: &Prepared<'_>, base: &Fitted) -> Option<String> {
 
 /// Why a campaign cannot tell what is missing, if so.
 fn too_little(setting: &Setting<'_>) -> Option<String> {
-    let (poses, numbers) = (setting.problem.blocks.len(), setting.base.len());
-    if poses < verdict::FEWEST_POSES {
-        let given = if poses == 1 { String::from("1 pose is") } else { format!("{poses} poses are") };
-        return Some(format!("{given} too few to judge by, at least {} are needed", verdict::FEWEST_POSES));
-    }
-    let readings = setting.problem.total.rows;
-    let plural = if numbers == 1 { "" } else { "s" };
-    (readings < 2 * numbers).then(|| format!("{readings} readings are too few for {numbers} compliance{plural}"))
+    let (readings, numbers) = (setting.problem.total.rows, setting.base.len());
+    let of_readings = || format!("{readings} readings are too few for {}", count(numbers, "compliance"));
+    verdict::too_few(setting.problem.blocks.len()).or_else(|| (readings < 2 * numbers).then(of_readings))
 }

@@ -13,6 +13,7 @@ use super::found::Place;
 use super::lack_of_fit::{LackOfFit, StructureTest};
 use super::model::{Fitted, Named, all_but};
 use super::selection::Selection;
+use crate::words::count;
 
 /// What a tracing came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +45,13 @@ impl fmt::Display for Verdict {
 /// With fewer poses there are too few sign patterns (`2^(P - 1)`) to reject
 /// anything at the usual levels with a margin.
 pub const FEWEST_POSES: usize = 10;
+
+/// Why so many poses are too few, if they are.
+pub fn too_few(poses: usize) -> Option<String> {
+    let are = if poses == 1 { "is" } else { "are" };
+    let given = count(poses, "pose");
+    (poses < FEWEST_POSES).then(|| format!("{given} {are} too few to judge by, at least {FEWEST_POSES} are needed"))
+}
 
 /// What a name has to be worth, where structure is left with it: the share of what is
 /// missing without it that it accounts for, over the square of how much of what is left

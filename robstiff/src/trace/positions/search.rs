@@ -20,7 +20,7 @@ use crate::identify::positions::wild::Wild;
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::Fitted;
 use crate::trace::selection::Selection;
-use crate::trace::verdict::FEWEST_POSES;
+use crate::trace::verdict::too_few;
 use crate::trace::wander::AGAIN;
 use crate::trace::{Options, Progress, Rival};
 
@@ -119,11 +119,7 @@ fn ended(
 
 /// Why positions cannot tell what is missing, if so.
 fn too_little(model: &Model) -> Option<String> {
-    let (poses, readings) = (model.solved.problem.blocks.len(), model.solved.problem.total.rows);
-    let numbers = model.solved.fit.columns.len();
-    if poses < FEWEST_POSES {
-        let given = if poses == 1 { String::from("1 pose is") } else { format!("{poses} poses are") };
-        return Some(format!("{given} too few to judge by, at least {FEWEST_POSES} are needed"));
-    }
-    (readings < 2 * numbers).then(|| format!("{readings} coordinates are too few for {numbers} numbers"))
+    let (readings, numbers) = (model.solved.problem.total.rows, model.solved.fit.columns.len());
+    let of_readings = || format!("{readings} coordinates are too few for {numbers} numbers");
+    too_few(model.solved.problem.blocks.len()).or_else(|| (readings < 2 * numbers).then(of_readings))
 }
