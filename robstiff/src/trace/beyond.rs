@@ -7,7 +7,6 @@
 //! them was named for want of better. Where no structure is left, one thing without a name is
 //! tried in place of one to three that have one, for effects together can be much like another.
 
-use std::format;
 use std::string::String;
 use std::vec;
 use std::vec::Vec;
@@ -137,8 +136,7 @@ fn without_nameless<'c>(wide: Bench<'c>, found: &Selection) -> Result<Beyond<'c>
     let named: Vec<Named> = named.iter().map(|&k| model[k]).collect();
     let bench = wide.narrowed();
     let model = bench.fit_or_loosely(&named)?;
-    let mut step = Step::bare(bench.names(&named));
-    step.outcome = format!("beside what has no name in the catalogue: {}", nameless.join(", "));
+    let step = Step::beside_nameless(bench.names(&named), &nameless);
     let selection = Selection { model, p_values, steps: vec![step], unnamed: false };
     Ok(Beyond { bench, selection, nameless })
 }

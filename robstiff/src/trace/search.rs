@@ -188,9 +188,7 @@ fn leave_to_what_has_no_name(
     let with_p = selection.model.named.iter().zip(&selection.p_values);
     let p_values = with_p.filter(|(one, _)| stays(one)).map(|(_, p)| *p).collect();
     let lost: Vec<Named> = selection.model.named.iter().copied().filter(|one| !stays(one)).collect();
-    let mut step = Step::bare(bench.names(&without.named));
-    step.outcome = format!("beside what has no name in the catalogue: {nameless}");
-    selection.steps.push(step);
+    selection.steps.push(Step::beside_nameless(bench.names(&without.named), &[nameless]));
     (selection.model, selection.p_values) = (without.clone(), p_values);
     bench.names(&lost)
 }

@@ -148,7 +148,7 @@ fn grow(
         let Some(tests) = bench.tests(&model.named, options) else { break };
         let mut step = table(&setting, model, &tests, options);
         if tests.smallest_p() > options.alpha {
-            step.outcome = String::from("nothing is missing significantly");
+            step.nothing_is_missing();
             steps.push(step);
             break;
         }
@@ -161,7 +161,7 @@ fn grow(
         }
         let Some(proposed) = accepted else {
             unnamed = true;
-            step.outcome = String::from("something is missing, but no effect passes every test");
+            step.none_passes();
             steps.push(step);
             break;
         };

@@ -1,5 +1,6 @@
 //! The steps of a search, as they are told.
 
+use core::borrow::Borrow;
 use std::format;
 use std::string::String;
 use std::vec::Vec;
@@ -78,6 +79,22 @@ impl Step {
     /// A model that nothing can be tested against.
     pub fn bare(named: Vec<String>) -> Self {
         Self { named, candidates: Vec::new(), outcome: String::new() }
+    }
+
+    /// A model beside what has no name, each a noun for a sentence.
+    pub fn beside_nameless(named: Vec<String>, nameless: &[impl Borrow<str>]) -> Self {
+        let outcome = format!("beside what has no name in the catalogue: {}", nameless.join(", "));
+        Self { outcome, ..Self::bare(named) }
+    }
+
+    /// Says that the search is at its end.
+    pub fn nothing_is_missing(&mut self) {
+        self.outcome = String::from("nothing is missing significantly");
+    }
+
+    /// Says that what is missing has no name that stands up.
+    pub fn none_passes(&mut self) {
+        self.outcome = String::from("something is missing, but no effect passes every test");
     }
 
     /// Says that these effects were dropped on the way to the model.

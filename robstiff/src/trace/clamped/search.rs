@@ -138,7 +138,7 @@ impl Course {
             progress(&format!("searching for effect {}", self.at.model.named.len() + 1));
             let Some((mut step, single, missing)) = self.tested(options) else { return Ok(()) };
             if !missing {
-                step.outcome = "nothing is missing significantly".to_string();
+                step.nothing_is_missing();
                 self.steps.push(step);
                 if self.strict {
                     return Ok(());
@@ -159,7 +159,7 @@ impl Course {
             }
             let Some(better) = accepted else {
                 self.unnamed = true;
-                step.outcome = "something is missing, but no effect passes every test".to_string();
+                step.none_passes();
                 self.steps.push(step);
                 return Ok(());
             };

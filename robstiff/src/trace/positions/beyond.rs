@@ -7,7 +7,6 @@
 //! ones. Where no structure had been left, that model must also take a name's place, and be
 //! better by the criterion and not for being simpler alone.
 
-use std::format;
 use std::string::String;
 use std::vec::Vec;
 
@@ -176,10 +175,9 @@ fn without_nameless<'c>(
     };
     bench.turn_to(&model);
     let lost = names_lost(&bench, before, named);
-    let mut step = Step::bare(named.iter().map(|one| bench.candidates[one.candidate].name()).collect());
-    step.outcome = format!("beside what has no name in the catalogue: {}", looks_like.join(", "));
+    let names = named.iter().map(|one| bench.candidates[one.candidate].name()).collect();
     let mut steps = before.steps.clone();
-    steps.push(step);
+    steps.push(Step::beside_nameless(names, &looks_like));
     let p_values = named.iter().map(p_value).collect();
     Some(Beyond { bench, course: Course { model, p_values, steps, taken_back: lost, ..found }, looks_like })
 }

@@ -82,14 +82,14 @@ impl Course {
                 continue;
             }
             if !missing {
-                step.outcome = "nothing is missing significantly".to_string();
+                step.nothing_is_missing();
                 self.steps.push(step);
                 break;
             }
             tried.push(model.named.clone());
             let Some(mut better) = better else {
                 self.unnamed = true;
-                step.outcome = "something is missing, but no effect passes every test".to_string();
+                step.none_passes();
                 self.steps.push(step);
                 break;
             };

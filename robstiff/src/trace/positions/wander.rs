@@ -49,9 +49,7 @@ pub fn instead_of_slips(bench: &mut Bench<'_>, course: &Course) -> Option<(Cours
     let taken_back = course.taken_back.iter().cloned().chain(taken_back).collect();
     let with_p = course.model.named.iter().zip(&course.p_values).filter(|(one, _)| stays(one));
     let p_values = with_p.map(|(_, p)| *p).collect();
-    let mut step = Step::bare(names);
-    step.outcome = std::format!("beside what has no name in the catalogue: {WORDS}");
-    let steps = course.steps.iter().cloned().chain([step]).collect();
+    let steps = course.steps.iter().cloned().chain([Step::beside_nameless(names, &[WORDS])]).collect();
     bench.turn_to(&model);
     let (wild, left, unnamed) = (course.wild.clone(), course.left.clone(), course.unnamed);
     Some((Course { model, wild, p_values, steps, unnamed, left, taken_back }, WORDS.to_string()))
