@@ -61,8 +61,8 @@ pub(super) fn draws(options: &super::Options) -> usize {
 /// The name of the test of agreement.
 pub(super) const AGREE: &str = "readings of a pose agree";
 
-/// What the tests say.
-#[derive(Clone, Debug)]
+/// What the tests say; by default, of what leaves nothing, there are none.
+#[derive(Clone, Debug, Default)]
 pub struct LackOfFit {
     /// Every test that could be done.
     pub tests: Vec<StructureTest>,

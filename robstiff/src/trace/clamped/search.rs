@@ -47,7 +47,7 @@ pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<
     let base = bench.fit(&[]).ok_or_else(no_axis)?;
     if let Some(why) = too_little(&bench) {
         let selection = Selection { model: base, p_values: Vec::new(), steps: Vec::new(), unnamed: false };
-        let left = LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() };
+        let left = LackOfFit::default();
         return Ok(Found { bench, selection, left, wild: (Vec::new(), 1.0), too_little: Some(why) });
     }
     let room = Room::new(&bench.axes.whole().rows);

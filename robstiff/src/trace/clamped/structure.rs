@@ -26,7 +26,7 @@ const WAVES: u8 = 4;
 /// Whether what is left depends on the torque, by any smooth curve, or on the
 /// order of rows, by a straight line or a step, of any axis, or is the same in all its rows.
 pub fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit {
-    let none = LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() };
+    let none = LackOfFit::default();
     if bench.leaves_nothing(&model.fit) {
         return none;
     }

@@ -49,7 +49,7 @@ impl Course {
             p_values: Vec::new(),
             steps: Vec::new(),
             unnamed: false,
-            left: LackOfFit { tests: Vec::new(), structure: false, fraction: 0.0, depends_on: Vec::new() },
+            left: LackOfFit::default(),
             taken_back: Vec::new(),
         }
     }

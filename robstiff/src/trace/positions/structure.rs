@@ -35,10 +35,10 @@ struct Size {
 
 /// Tests what a model leaves; `noise` is the one that is declared (m).
 pub fn structure(bench: &Bench<'_>, model: &Model, noise: Option<f64>, options: &Options) -> LackOfFit {
-    let mut tests = Vec::new();
     if model.leaves_nothing() {
-        return LackOfFit { tests, structure: false, fraction: 0.0, depends_on: Vec::new() };
+        return LackOfFit::default();
     }
+    let mut tests = Vec::new();
     let size = noise.and_then(|noise| against_declared(bench, model, noise)).or_else(|| against_repeated(bench, model));
     if let Some(Size { name, p_value, ratio, .. }) = size {
         tests.push(StructureTest { name: name.to_string(), statistic: ratio, p_value });
