@@ -12,8 +12,9 @@ use std::vec::Vec;
 use nalgebra::DMatrix;
 
 use super::contrasts::{Chunk, Level, contrasts};
+use super::estimated::{bartlett, beyond_noise};
 use super::reml::{BEYOND, count, profile, share, sums};
-use super::{EQUAL_AXES, FEWEST, NESTED, bartlett, beyond_noise};
+use super::{EQUAL_AXES, FEWEST, NESTED};
 use crate::identify::samples::Samples;
 use crate::identify::whitening::ByVisit;
 

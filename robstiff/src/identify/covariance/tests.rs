@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, Vector3};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
+use super::estimated::beyond_noise;
 use super::*;
 use crate::campaign::Campaign;
 use crate::campaign::made::{Plan, displacements};
