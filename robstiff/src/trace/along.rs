@@ -17,8 +17,8 @@ use std::vec::Vec;
 use nalgebra::{DVector, Vector6};
 
 use super::catalogue::Variant;
-use super::lack_of_fit::rows_looked_at;
 use super::model::{Fitted, Setting};
+use super::resemblance::rows_looked_at;
 
 /// The place in the catalogue, in order of what lies along each effect, that is compared
 /// with: what is left of anything lies along some directions more than along others, and

@@ -7,9 +7,10 @@
 //! 2. what is wrong in single visits is left out (`isolated`);
 //! 3. `selection` searches for the effects that the data ask for, admitted by the family-wise
 //!    `bootstrap` test and by poses left out in turn;
-//! 4. `lack_of_fit` asks whether structure is left, `beyond` whether something without a name
-//!    accounts for it or for what names do, `wander` whether a slip is what goes there and back,
-//!    `along` whether what is left points where a named effect does;
+//! 4. `lack_of_fit` asks whether structure is left (`sizes`, `resemblance`, `agreement`),
+//!    `beyond` whether something without a name accounts for it or for what names do, `wander`
+//!    whether a slip is what goes there and back, `along` whether what is left points where a
+//!    named effect does;
 //! 5. `verdict` takes names back and draws the conclusion, unless the readings do not even follow
 //!    the loads (`follows`);
 //! 6. where something is missing, `elsewhere` asks whether it is that what is read is not where
@@ -57,6 +58,7 @@ pub(crate) mod point;
 pub(crate) mod positions;
 mod preload;
 mod report;
+mod resemblance;
 mod search;
 pub(crate) mod selection;
 mod settle;

@@ -19,7 +19,7 @@ use crate::trace::Options;
 use crate::trace::bootstrap::ScoreTest;
 use crate::trace::catalogue::{Candidate, KINDS, Variant};
 use crate::trace::found::Place;
-use crate::trace::lack_of_fit::{LackOfFit, StructureTest};
+use crate::trace::lack_of_fit::{LackOfFit, StructureTest, draws};
 
 /// With fewer degrees of freedom a variance says too little to judge a model by.
 const FEWEST_REPEATED: f64 = 10.0;
@@ -144,7 +144,7 @@ fn resemblance(bench: &Bench<'_>, model: &Model, options: &Options) -> Vec<(f64,
     let problem = bench.with_columns(model, &DMatrix::from_columns(&columns));
     let null: Vec<usize> = (0..first).collect();
     let Some(test) = ScoreTest::among(&problem, &candidates, &signs, first, &null) else { return Vec::new() };
-    let reference = test.reference(options.draws.max(super::super::lack_of_fit::resolving(options)), options.seed);
+    let reference = test.reference(draws(options), options.seed);
     let named = test.statistics().into_iter().zip(all);
     let mut found: Vec<(f64, f64, Vec<String>)> = named
         .filter_map(|(statistic, smooth)| Some((statistic?.0, reference.p_value(statistic?.0), smooth.of)))
