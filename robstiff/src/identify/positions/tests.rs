@@ -1,14 +1,17 @@
 //! What absolute positions say of a description, with nothing missing from it.
 
+use std::rc::Rc;
 use std::vec;
 
 use robstiff_robots::{Description, catalogue};
 
-use super::super::{Error, identify as identified, predict as predicted};
+use super::super::{Error, Visibility, identify as identified, predict as predicted};
+use super::model::Enters;
 use super::*;
 use crate::Effect;
 use crate::campaign::Data;
 use crate::campaign::made_positions::Plan;
+use crate::identify::normal::Sign;
 use crate::samples::{five_axis, odd};
 
 fn six_axis() -> Description {
