@@ -7,7 +7,8 @@ use std::vec::Vec;
 
 use super::baseline::with_values;
 use super::normal::Fit;
-use super::prepare::{Prepared, SCATTERS, enough, fit};
+use super::not_shown::{SCATTERS, enough};
+use super::prepare::{Prepared, fit};
 use super::problem::{Problem, rms};
 use super::readable::readable;
 use super::uncertainty::{correlation, covariance, of_held};

@@ -4,7 +4,7 @@
 //! The way of the data: `samples` brings rows to the base frame and turns
 //! parameters into columns, with what `encoders` read, `covariance` asks the readings how noisy they are
 //! and `whitening` accounts for it, `problem` holds the regression in blocks of poses, `normal`
-//! solves it, `prepare` finds what the data can see, and `displacement` or
+//! solves it, `prepare` finds what the data can see (`not_shown` why nothing), and `displacement` or
 //! `clamped` puts the result together. Absolute `positions` have a regression of
 //! their own.
 
@@ -19,6 +19,7 @@ mod held_tests;
 pub(crate) mod holdout;
 pub(crate) mod noise;
 pub(crate) mod normal;
+mod not_shown;
 pub(crate) mod one_by_one;
 pub(crate) mod positions;
 pub(crate) mod predict;
