@@ -8,7 +8,8 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use robstiff_robots::effect::Scalar;
 
-use crate::graph::{Op, Sym};
+use crate::graph::Sym;
+use crate::op::Op;
 
 impl<'g> Sym<'g> {
     fn at(self, id: usize) -> Self {
@@ -222,7 +223,8 @@ impl<'g> Neg for Sym<'g> {
 
 #[cfg(test)]
 mod tests {
-    use crate::graph::{Graph, Op};
+    use crate::graph::Graph;
+    use crate::op::Op;
 
     #[test]
     fn zeros_and_ones_vanish() {

@@ -6,7 +6,8 @@ use std::fmt;
 
 use robstiff_robots::effect::physics::PLAYS;
 
-use crate::graph::{CYCLED, Graph, Id, Node, Op, Sym};
+use crate::graph::{Graph, Node, Sym};
+use crate::op::{CYCLED, Id, Op};
 
 /// The expressions of one function and which of them are its results.
 #[derive(Debug)]

@@ -4,7 +4,7 @@
 //!
 //! 1. [`symbolic`]: the textbook's mathematics, run on symbols instead of
 //!    numbers, builds
-//! 2. a [`graph`] in which every expression exists once, simplified as it is
+//! 2. a [`graph`] in which every expression ([`op`]) exists once, simplified as it is
 //!    written down (`fold`, [`angle`]);
 //! 3. a [`function`] is a graph with outputs: dead nodes are dropped, the cost
 //!    counted, and it can be interpreted, which is how the generator is tested;
@@ -17,6 +17,7 @@ pub mod emit;
 mod fold;
 pub mod function;
 pub mod graph;
+pub mod op;
 pub mod symbolic;
 
 #[cfg(feature = "text")]

@@ -12,7 +12,7 @@ use super::operation::{Binding, arithmetic, call, column, sum};
 use super::turns::{Lane, Turn, Turns};
 use crate::angle::Angle;
 use crate::function::Function;
-use crate::graph::{Id, Op};
+use crate::op::{Id, Op};
 
 /// The lines before a function's result, and the result's entries.
 pub(super) struct Body {

@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 
 use super::turns::Turns;
 use crate::function::Function;
-use crate::graph::{Id, Op};
+use crate::op::{Id, Op};
 
 /// A sum of a product and of the rest, each with its sign: `x.mul_add(y, rest)`.
 pub(super) struct FusedSum {

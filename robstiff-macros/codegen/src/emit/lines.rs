@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::fuse::Fusion;
 use super::turns::Turns;
 use crate::function::Function;
-use crate::graph::{Id, Op};
+use crate::op::{Id, Op};
 
 /// The components of a wrench.
 const WRENCH: [&str; 6] = ["fx", "fy", "fz", "mx", "my", "mz"];

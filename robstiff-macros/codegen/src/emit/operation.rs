@@ -6,7 +6,7 @@ use quote::{format_ident, quote};
 use super::body::Reader;
 use super::facts::number;
 use crate::angle::Angle;
-use crate::graph::{Id, Op};
+use crate::op::{Id, Op};
 
 /// How tightly an expression binds.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]

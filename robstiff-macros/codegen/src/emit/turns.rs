@@ -9,7 +9,8 @@
 use std::collections::BTreeMap;
 
 use crate::function::Function;
-use crate::graph::{BlockTurn, Id, Node, Op};
+use crate::graph::{BlockTurn, Node};
+use crate::op::{Id, Op};
 
 /// The turns of a function that are written as one operation.
 pub(super) struct Turns(Vec<Turn>);

@@ -4,7 +4,8 @@
 //! to be computed, nothing is, as with single numbers.
 
 use super::vector::Vec3;
-use crate::graph::{CYCLED, Graph, Id, Op, Sym};
+use crate::graph::{Graph, Sym};
+use crate::op::{CYCLED, Id, Op};
 
 /// A node that is four numbers.
 #[derive(Clone, Copy)]

@@ -17,7 +17,8 @@ use super::elastic::Elastic;
 use super::turning::Turning;
 use super::vector::{AXES, Matrix3, Symmetric3, Vec3};
 use crate::angle::Angle;
-use crate::graph::{BlockTurn, Graph, Id, Sym};
+use crate::graph::{BlockTurn, Graph, Sym};
+use crate::op::Id;
 
 /// The 36 entries of `H_x` at the TCP in the base frame, by rows.
 pub fn compliance<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {

@@ -10,7 +10,7 @@ use robstiff::map::{Evaluate, Poses};
 use robstiff::nalgebra::{SVector, Vector6};
 use robstiff::{Lanes, Real};
 use robstiff_codegen::Function;
-use robstiff_codegen::graph::Op;
+use robstiff_codegen::op::Op;
 use robstiff_codegen::symbolic::{compliance, deflection};
 use robstiff_robots::Description;
 
