@@ -9,6 +9,8 @@ mod beyond;
 mod check;
 mod clamped;
 mod clock;
+#[cfg(test)]
+mod clock_tests;
 mod displacements;
 mod joints;
 #[cfg(test)]

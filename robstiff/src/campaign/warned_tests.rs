@@ -1,4 +1,5 @@
-//! What is read, but not without a word: rows that are left out, numbers that nothing real has.
+//! What is read, but not without a word: rows that are left out, numbers that nothing real has,
+//! fields that are not used.
 
 use std::borrow::ToOwned;
 use std::format;
@@ -259,4 +260,36 @@ fn times_that_go_back_within_a_visit_are_warned_of() {
     let expected = "the time is earlier than that of a row of the same visit before in 1 row, first on line 3: the rows \
                     are taken in the order of the file; if they were read in that of the times, sort them by time";
     assert_eq!(said, [expected]);
+}
+
+/// Clamped axes have no poses to hold out, and no tool.
+#[test]
+fn what_clamped_axes_do_not_use_is_warned_of() {
+    let plan = CAMPAIGN.replace("displacement", "clamped") + "noise: {rotation: 1e-6}\nholdout: {fraction: 0.25}\n";
+    let folder = Folder::new(&plan, "axis,torque,deflection\n1,100,1e-4\n");
+    let (campaign, file) = (folder.read().unwrap(), folder.0.join("campaign.yaml"));
+    let said =
+        |field: &str, line| format!("{}: `{field}` on line {line} is not used with `kind: clamped`", file.display());
+    assert_eq!(campaign.warnings, [said("noise", 5), said("holdout", 6)]);
+}
+
+/// Payloads pull downwards and a tracker reads points in its own frame, so neither has
+/// a frame to say; and a fit wants more poses than it leaves.
+#[test]
+fn what_positions_do_not_use_is_warned_of() {
+    let plan = CAMPAIGN.replace("displacement", "position")
+        + "wrench: {frame: base}\nmeasured: {frame: tool}\nnoise: {displacement: 1e-5, rotation: 1e-5}\n\
+           holdout: {fraction: 0.7}\n";
+    let table = "pose,q1,q2,px,py,pz\na,0,0,1,2,3\nb,1,0,1,2,3\nc,1,1,1,2,3\n";
+    let folder = Folder::new(&plan, table);
+    let file = format!("{}: ", folder.0.join("campaign.yaml").display());
+    let said: Vec<_> = folder.read().unwrap().warnings.iter().map(|warning| warning.replace(&file, "")).collect();
+    assert_eq!(
+        said,
+        [
+            "`frame` on line 6 is not used with `kind: position`",
+            "`rotation` on line 7 is not used with `kind: position`",
+            "`holdout` keeps 2 of 3 poses from the fit",
+        ]
+    );
 }

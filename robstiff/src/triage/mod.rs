@@ -19,6 +19,8 @@ pub mod clamped;
 mod encoders;
 mod energy;
 pub mod evidence;
+#[cfg(test)]
+mod level_tests;
 mod loop_area;
 mod noise;
 mod positions;
