@@ -7,7 +7,7 @@
 //!   stands for it; *alone* where there are no more names than that.
 //! - A name is *wrong* where it stands for nothing hidden.
 //! - *Whole truth*: the verdict is `explained`, so the names are said to be all
-//!   there is.
+//!   there is, or `adequate`, so nothing is said to be missing.
 //!
 //! [`would_do`]: crate::matrix::alias::would_do
 
@@ -80,7 +80,7 @@ pub struct Judgement {
     pub own: bool,
     /// Names that stand for nothing hidden.
     pub wrong: Vec<String>,
-    /// The names are said to be all there is.
+    /// The names, or that there are none, are said to be all there is.
     pub whole_truth: bool,
 }
 
@@ -100,7 +100,7 @@ pub fn judge(told: &Told, hidden: &[String], would_do: impl Fn(&str, usize) -> b
         alone: right && told.names.len() == hidden.len(),
         own: told.names.len() == hidden.len() && told.names.iter().all(|name| hidden.contains(&name.name)),
         wrong: wrong.map(|(name, _)| name.name.clone()).collect(),
-        whole_truth: told.verdict == Verdict::Explained,
+        whole_truth: matches!(told.verdict, Verdict::Explained | Verdict::Adequate),
     }
 }
 

@@ -66,6 +66,11 @@ impl Group {
         matches!(self, Self::Outside(_) | Self::Beside)
     }
 
+    /// How many times the noise of a reading something of this group has to leave to show.
+    pub fn enough(self) -> f64 {
+        if matches!(self, Self::Outside(_)) { IS_OUTSIDE } else { MATTERS }
+    }
+
     /// How many of a matrix of 464 campaigns are of this group.
     pub fn share(self) -> usize {
         match self {
@@ -113,13 +118,15 @@ pub enum Expected {
     Nothing,
     /// That it names what is hidden.
     Names,
-    /// That it names nothing, for what is hidden cannot be seen, or is
-    /// something that the joints can do.
+    /// That it names nothing wrong, if anything at all: what is hidden cannot be
+    /// seen, or is something that the joints can do.
     Unseen,
-    /// That it does not name anything as the whole truth.
+    /// That it tells neither names as the whole truth nor that nothing is missing,
+    /// for something is hidden that has no name and shows.
     NoWholeTruth,
-    /// Nothing but that it names nothing wrong: at its largest it is neither
-    /// large enough to matter nor small enough not to be seen.
+    /// Nothing: of what is hidden something is, at its largest, neither large enough to
+    /// matter nor, where it is alone, small enough not to be seen. Names that are wrong
+    /// are counted as such all the same, and so is what misleads.
     Doubtful,
 }
 
@@ -186,7 +193,7 @@ impl Case {
             Group::Outside(_) => (1, Expected::NoWholeTruth),
             Group::Beside => (2, Expected::NoWholeTruth),
         };
-        let enough = if matches!(self.group, Group::Outside(_)) { IS_OUTSIDE } else { MATTERS };
+        let enough = self.group.enough();
         let mut largest: Option<Ready> = None;
         for _ in 0..TRIES {
             let kinds = match self.group {
@@ -234,6 +241,14 @@ impl Case {
             }
         }
         largest.expect("there was a try")
+    }
+}
+
+impl Ready {
+    /// Whether something is hidden that shows: a description that is told to lack nothing
+    /// leaves it unexplained.
+    pub fn hides_what_shows(&self) -> bool {
+        self.left.iter().any(|left| *left >= self.case.group.enough())
     }
 }
 

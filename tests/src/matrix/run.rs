@@ -53,7 +53,7 @@ impl Record {
             Expected::Names => Some(self.judgement.right),
             // An alias is right, too.
             Expected::Unseen => Some(verdict.is_some() && self.judgement.wrong.is_empty()),
-            Expected::NoWholeTruth => Some(verdict.is_some() && !self.judgement.whole_truth),
+            Expected::NoWholeTruth => Some(verdict.is_some() && !self.misleads()),
             Expected::Doubtful => None,
         }
     }
@@ -65,10 +65,14 @@ impl Record {
         *expected == Expected::Names || (case.group == Group::Beside && *expected == Expected::NoWholeTruth)
     }
 
-    /// Whether names that are not the truth are said to be the whole truth.
+    /// Whether what is not the truth is said to be the whole of it: names that are not, or
+    /// that nothing is missing although something is hidden that shows.
     pub fn misleads(&self) -> bool {
         let names_all = self.judgement.alone && !self.ready.case.group.hides_what_is_outside();
-        self.judgement.whole_truth && !names_all
+        let is_adequate = self.told.as_ref().is_some_and(|told| told.verdict == Verdict::Adequate);
+        // Of what does not show no one can say that it is missing.
+        let lacks_nothing = is_adequate && !self.ready.hides_what_shows();
+        self.judgement.whole_truth && !names_all && !lacks_nothing
     }
 }
 
@@ -164,4 +168,52 @@ fn read(simulated: &Simulated, declared: &Description) -> Campaign {
     let campaign = Campaign::read(folder.join("campaign.yaml")).unwrap_or_else(|problem| panic!("{problem}"));
     fs::remove_dir_all(&folder).expect("the folder that was just made");
     campaign
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::judge_tracing::Name;
+
+    /// What a tracing of a case would be taken for that comes to a verdict and to names.
+    fn came(ready: &Ready, verdict: Verdict, names: &[&str]) -> Record {
+        let name = |name: &&str| Name { name: (*name).into(), same_as: Vec::new(), parameters: Vec::new() };
+        let told = Told { verdict, names: names.iter().map(name).collect(), joints: Vec::new() };
+        let outside = ready.case.group.hides_what_is_outside();
+        let hidden: Vec<String> = ready.scenario.hidden.iter().filter(|_| !outside).map(Hidden::name).collect();
+        Record {
+            ready: ready.clone(),
+            judgement: judge(&told, &hidden, |_, _| false),
+            told: Some(told),
+            looks_like: Vec::new(),
+            unseen: 1.0,
+            elsewhere: 1.0,
+            numbers: Vec::new(),
+            joints: Vec::new(),
+            seconds: 0.0,
+        }
+    }
+
+    #[test]
+    fn nothing_missing_misleads_where_something_shows() {
+        use Verdict::{Adequate, Explained, Insufficient, Partial, Unexplained};
+        let nothing = Case::new(Group::Nothing, 0, 7).ready();
+        assert!(!came(&nothing, Adequate, &[]).misleads() && came(&nothing, Explained, &["sag@robot"]).misleads());
+        let mut one = Case::new(Group::One("transverse_compliance"), 0, 7).ready();
+        let name = one.scenario.hidden[0].name();
+        assert_eq!(one.expected, Expected::Names);
+        assert!(came(&one, Adequate, &[]).misleads() && !came(&one, Explained, &[&name]).misleads());
+        assert!(!came(&one, Unexplained, &[]).misleads() && !came(&one, Partial, &["sag@robot"]).misleads());
+        (one.left, one.expected) = (vec![0.1], Expected::Unseen);
+        let unseen = came(&one, Adequate, &[]);
+        assert!(!unseen.misleads() && unseen.is_as_expected() == Some(true));
+        let outside = Case::new(Group::Outside("cable"), 2, 7).ready();
+        assert_eq!(outside.expected, Expected::NoWholeTruth);
+        for (verdict, is_right) in
+            [(Adequate, false), (Explained, false), (Partial, true), (Unexplained, true), (Insufficient, true)]
+        {
+            let came = came(&outside, verdict, &[]);
+            assert_eq!((came.is_as_expected(), came.misleads()), (Some(is_right), !is_right), "{verdict}");
+        }
+    }
 }

@@ -28,10 +28,11 @@ pub fn markdown(records: &[Record]) -> String {
     add("**all outside**", records.iter().filter(outside).collect());
     add("**all**", records.iter().collect());
     text + "\n\
-        As expected: named, or nothing named where nothing can be seen, or no whole truth told of what is outside the catalogue; \
+        As expected: named, or nothing named where nothing can be seen, or no whole truth told, neither names nor that nothing is missing, of what is outside the catalogue; \
         of the runs of which something is expected. Named, alone: of the runs whose effects matter, up to aliases; \
         beside something outside the catalogue, the effect. \
-        A wrong name, misled (names that are not the truth, told as the whole of it): of all runs. \
+        A wrong name, misled (names that are not the truth told as the whole of it, or nothing told to be missing where \
+        something hidden shows): of all runs. \
         Brackets: 95 % (Clopper, Pearson). Verdicts: adequate, explained, partial, unexplained, insufficient. \
         Unseen: rms over runs of the error after on poses the fit has not seen, over that of noise alone. \
         Elsewhere: share of runs in which the description's own error on other poses would add no more than 3 % to noise.\n"
