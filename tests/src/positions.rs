@@ -40,8 +40,8 @@ pub struct Came {
     /// Whether all that is hidden is named, up to what is listed as alike, and nothing
     /// else, and that is the whole truth.
     pub right: bool,
-    /// Whether names are told as the whole truth.
-    pub explained: bool,
+    /// Whether names are told as the whole truth, or that nothing is missing.
+    pub whole_truth: bool,
     /// Numbers of effects that were named as hidden, and those of them whose 95 %
     /// interval holds the truth.
     pub numbers: [usize; 2],
@@ -186,7 +186,8 @@ pub fn run(drawn: &Drawn) -> Came {
         trace.verdict,
         names(told.into_iter().map(|name| name.name).collect())
     );
-    Came { told, right, explained: trace.verdict == Verdict::Explained, numbers }
+    let whole_truth = matches!(trace.verdict, Verdict::Explained | Verdict::Adequate);
+    Came { told, right, whole_truth, numbers }
 }
 
 /// Of the numbers, but those of slips and drifts, that were named as they are hidden, how many there are, and

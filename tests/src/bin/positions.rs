@@ -43,7 +43,7 @@ fn main() {
         let seeds = (0..arguments.count).map(|run| arguments.seed * 1_000_000 + group * 100_000 + run);
         let drawn: Vec<Drawn> = seeds.map(|seed| draw(effects, outside, seed)).filter(|drawn| drawn.matters).collect();
         let came = all(&drawn, arguments.jobs.max(1));
-        let is_right = |came: &&Came| if outside { !came.explained } else { came.right };
+        let is_right = |came: &&Came| if outside { !came.whole_truth } else { came.right };
         let right = came.iter().filter(is_right).count();
         for came in came.iter().filter(|came| arguments.wrong && !is_right(came)) {
             eprintln!("{}", came.told);
