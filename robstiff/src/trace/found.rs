@@ -10,6 +10,7 @@ use robstiff_robots::effect::physics::{Parameter, Range};
 use robstiff_robots::effect::{CATALOGUE, DhEntry, Place as Part};
 
 use super::catalogue::{Kind, OUTLIERS, is_offered_as_change};
+use super::slip::Slipping;
 use crate::identify::readable::is_readable;
 use crate::{Effect, JointKind};
 
@@ -85,6 +86,11 @@ impl Found {
     /// The kind, e.g. `transverse_compliance`.
     pub fn kind(&self) -> &'static str {
         self.kind.name
+    }
+
+    /// What slips, if anything does.
+    pub(super) fn slipping(&self) -> Option<Slipping> {
+        Slipping::of(self.kind)
     }
 
     /// Where it is.

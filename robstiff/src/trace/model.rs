@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::catalogue::{Candidate, Number, Variant};
 use super::point::Point;
-use super::slip::{SLIPPED_AT, Slipping, undecided};
+use super::slip::{SLIPPED_AT, undecided};
 use crate::identify::column::Column;
 use crate::identify::covariance::Whitener;
 use crate::identify::normal::{Fit, Sign};
@@ -310,7 +310,7 @@ impl Setting<'_> {
     /// The rows held out of which the fit does not say on which side of a slip they are that
     /// a model names.
     pub fn undecided(&self, named: &[Named]) -> Vec<usize> {
-        let slips = named.iter().filter(|one| Slipping::has(self.candidates[one.candidate].kind.name));
+        let slips = named.iter().filter(|one| self.candidates[one.candidate].slipping().is_some());
         let lines = slips.flat_map(|one| &self.variant(*one).shape).filter(|number| number.name == SLIPPED_AT);
         let rows = &self.point.data.rows;
         let moments = lines.filter_map(|line| rows.iter().position(|row| row.line as f64 == line.value));

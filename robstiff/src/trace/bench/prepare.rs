@@ -140,7 +140,7 @@ impl<'c> Bench<'c> {
             self.left_out = left_out;
             likely.iter().for_each(|(slipping, moments)| self.moments.replace_first(*slipping, moments));
             self.set_up_again(
-                |candidate| Slipping::has(candidate.kind.name),
+                |candidate| candidate.slipping().is_some(),
                 |kept, slips| {
                     let moved = |candidate: &Candidate| {
                         let same = slips.iter().find(|slip| slip.name() == candidate.name());

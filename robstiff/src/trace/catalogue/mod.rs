@@ -126,9 +126,9 @@ impl Slipping {
         }
     }
 
-    /// Whether a kind is one of a slip.
-    pub fn has(kind: &str) -> bool {
-        Self::ALL.iter().any(|slipping| slipping.kind().name == kind)
+    /// What slips by effects of a kind, if anything does.
+    pub fn of(kind: &Kind) -> Option<Self> {
+        Self::ALL.into_iter().find(|slipping| slipping.kind() == kind)
     }
 }
 

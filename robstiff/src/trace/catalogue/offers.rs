@@ -11,6 +11,7 @@ use super::{Check, KINDS, Kind, MORE_THAN_NONE, NAMELESS, Number, Refine, Scene,
 use crate::Effect;
 use crate::trace::found::{EffectParameter, Place};
 use crate::trace::point::Point;
+use crate::trace::slip::Slipping;
 
 /// One way a candidate can be there.
 #[derive(Clone)]
@@ -68,6 +69,11 @@ pub struct Candidate {
 }
 
 impl Candidate {
+    /// What slips by it, if anything does.
+    pub fn slipping(&self) -> Option<Slipping> {
+        Slipping::of(self.kind)
+    }
+
     /// The full name, `kind@at`.
     pub fn name(&self) -> String {
         std::format!("{}@{}", self.kind.name, self.place)

@@ -43,10 +43,10 @@ impl Bench<'_> {
         let forms = self.candidates[candidate].variants.iter().enumerate().filter(|(_, form)| has(form));
         let (variant, _) = forms.min_by(|(_, a), (_, b)| off(a).total_cmp(&off(b)))?;
         let named = Named { candidate, variant };
-        if Slipping::has(found.kind()) {
+        if let Some(slipping) = found.slipping() {
             let line = of(SLIPPED_AT)?;
             let moment = self.prepared.data.rows.iter().position(|row| row.line as f64 == line)?;
-            self.move_slip(named, moment);
+            self.move_slip((named, slipping), moment);
         }
         if self.between(named).is_some() {
             let value = of(self.variant(named).shape[0].name)?;
@@ -58,17 +58,17 @@ impl Bench<'_> {
     /// The model with slips that it names at the moments between those tried which leave
     /// least.
     pub fn at_its_moments(&mut self, model: Model) -> Model {
-        let is_slip = |one: &Named| Slipping::has(self.candidates[one.candidate].kind.name);
-        let slips: Vec<Named> = model.named.iter().copied().filter(is_slip).collect();
+        let slip = |&one: &Named| Some((one, self.candidates[one.candidate].slipping()?));
+        let slips: Vec<(Named, Slipping)> = model.named.iter().filter_map(slip).collect();
         slips.into_iter().fold(model, |model, slip| self.at_its_moment(model, slip))
     }
 
     /// The same of one slip, by halving ever smaller steps.
-    fn at_its_moment(&mut self, model: Model, slip: Named) -> Model {
-        let (rows, tried) = (&self.prepared.data.rows, self.variant(slip).shape[0].value);
+    fn at_its_moment(&mut self, model: Model, slip: (Named, Slipping)) -> Model {
+        let (rows, tried) = (&self.prepared.data.rows, self.variant(slip.0).shape[0].value);
         let count = rows.len();
         let Some(mut at) = rows.iter().position(|row| row.line as f64 == tried) else { return model };
-        let first = first_moment(self.candidates[slip.candidate].kind.name);
+        let first = first_moment(slip.1);
         let (mut best, mut step) = (model, self.rig.apart() / 2);
         while step > 0 {
             for next in [at.saturating_sub(step), at + step] {
@@ -87,9 +87,9 @@ impl Bench<'_> {
     }
 
     /// Moves a slip to another moment, in all its forms.
-    fn move_slip(&mut self, slip: Named, moment: usize) {
+    fn move_slip(&mut self, (slip, slipping): (Named, Slipping), moment: usize) {
         let (own, first) = (self.prepared.own.len(), self.variant(slip).columns[0]);
-        let slipped = self.rig.slipped(self.candidates[slip.candidate].kind.name, moment);
+        let slipped = self.rig.slipped(slipping, moment);
         for (number, enters) in (first - STANDS..).zip(slipped) {
             self.numbers[number - own].enters = enters.clone();
             self.regression.numbers[number] = enters;

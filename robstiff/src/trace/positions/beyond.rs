@@ -21,6 +21,7 @@ use crate::trace::beyond::AKAIKE;
 use crate::trace::found::Found;
 use crate::trace::model::{Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
+use crate::trace::slip::Slipping;
 use crate::trace::step::Step;
 
 /// A course that came to something nameless, told without it.
@@ -60,9 +61,10 @@ fn among_more<'c>(
     unsaid: bool,
     goes_on: impl FnOnce(Course, &mut Bench<'c>) -> Course,
 ) -> Option<Beyond<'c>> {
-    let slipped = |kind: &str| {
-        let mut named = course.model.named.iter().map(|one| bench.candidates[one.candidate].kind.name);
-        named.any(|name| name == kind) || course.taken_back.iter().any(|name| name.starts_with(kind))
+    let slipped = |slipping: Slipping| {
+        let mut named = course.model.named.iter().map(|one| &bench.candidates[one.candidate]);
+        named.any(|candidate| candidate.slipping() == Some(slipping))
+            || course.taken_back.iter().any(|name| name.starts_with(slipping.kind().name))
     };
     let nameless = offers(&campaign.robot, bench.prepared.data, &bench.rig, slipped);
     let (mut wide, model) = bench.widened(&course.model, nameless);
@@ -75,8 +77,9 @@ fn among_more<'c>(
     let mut kinds = found.model.named.iter().map(|one| &wide.candidates[one.candidate]);
     let has_nameless = kinds.clone().any(is_nameless);
     // One slip has a name.
-    let first =
-        |second: &'static str| found.model.named.iter().any(|one| wide.candidates[one.candidate].kind.name == second);
+    let first = |slipping: Slipping| {
+        found.model.named.iter().any(|one| wide.candidates[one.candidate].slipping() == Some(slipping))
+    };
     let is_told = kinds.all(|candidate| again(candidate).is_none_or(first));
     if !has_nameless || !is_told || found.left.structure || found.unnamed {
         return None;

@@ -16,14 +16,13 @@ use robstiff_robots::effect::Place as Part;
 
 use super::offers::{Form, Number, Offer, any};
 use super::rig::Rig;
-use super::slips::{OF_BASE, OF_REFLECTOR};
 use super::weight::{self, WEIGHT};
 use crate::JointKind;
 use crate::campaign::Positions;
 use crate::identify::positions::model::{ANGLE_STEP, Enters, Follower, Model};
 use crate::trace::catalogue::{Candidate, Kind, place_words};
 use crate::trace::found::EffectParameter;
-use crate::trace::slip::SLIPPED_AT;
+use crate::trace::slip::{SLIPPED_AT, Slipping};
 use crate::trace::wander::AGAIN;
 
 /// A joint that goes by so much of its own coordinate, or of another's, farther than it reads.
@@ -53,9 +52,9 @@ pub static REFLECTOR_AGAIN: Kind = Kind {
     ..FOLLOWER
 };
 
-/// The name of a first slip of the kind that a candidate is a second of, if it is one.
-pub fn again(candidate: &Candidate) -> Option<&'static str> {
-    let seconds = [(&BASE_AGAIN, OF_BASE), (&REFLECTOR_AGAIN, OF_REFLECTOR)];
+/// What slips a second time by a candidate, if anything does.
+pub fn again(candidate: &Candidate) -> Option<Slipping> {
+    let seconds = [(&BASE_AGAIN, Slipping::Base), (&REFLECTOR_AGAIN, Slipping::Reflector)];
     seconds.into_iter().find(|(second, _)| candidate.kind == *second).map(|(_, first)| first)
 }
 
@@ -71,13 +70,13 @@ pub fn is_nameless(candidate: &Candidate) -> bool {
     [&FOLLOWER, &WEIGHT].contains(&candidate.kind) || again(candidate).is_some()
 }
 
-/// Everything that has no name; second slips where `slipped` is whether one of a kind may have
-/// been first.
-pub fn offers(robot: &Description, data: &Positions, rig: &Rig, slipped: impl Fn(&str) -> bool) -> Vec<Offer> {
+/// Everything that has no name; second slips where `slipped` is whether there may have been
+/// a first one.
+pub fn offers(robot: &Description, data: &Positions, rig: &Rig, slipped: impl Fn(Slipping) -> bool) -> Vec<Offer> {
     let base = || rig.slip_of_base(data).map(|first| Offer { kind: &BASE_AGAIN, ..first });
     let reflector = || rig.slip_of_reflector(data).map(|first| Offer { kind: &REFLECTOR_AGAIN, ..first });
-    let base = slipped(OF_BASE).then(base).flatten();
-    let reflector = slipped(OF_REFLECTOR).then(reflector).flatten();
+    let base = slipped(Slipping::Base).then(base).flatten();
+    let reflector = slipped(Slipping::Reflector).then(reflector).flatten();
     let followers = (1..=robot.joints.len()).filter_map(|joint| follower(robot, data, joint));
     base.into_iter().chain(reflector).chain(followers).chain(weight::offers(robot, data, rig)).collect()
 }

@@ -9,13 +9,13 @@ use std::vec::Vec;
 use nalgebra::Vector3;
 use robstiff_robots::effect::Place as Part;
 
-use super::offers::{Form, Number, Offer, any, kind};
+use super::offers::{Form, Number, Offer, any};
 use super::rig::{LONGEST, Rig};
 use crate::campaign::Positions;
 use crate::identify::positions::model::{Enters, LaterMoved, Moved, Seen};
 use crate::trace::catalogue::{POINT, SHIFT, TURN};
 use crate::trace::found::{EffectParameter, Place};
-use crate::trace::slip::SLIPPED_AT;
+use crate::trace::slip::{SLIPPED_AT, Slipping};
 
 /// A slip does not turn more (rad).
 const MOST_TURNED: f64 = 0.05;
@@ -32,18 +32,17 @@ const ROWS_AND_MOMENTS: usize = 100_000;
 /// fitted, so a base that slipped then is nothing but such rows.
 const FIRST_OF_REFLECTOR: usize = 4;
 
-/// The kinds of a slip.
-pub const OF_BASE: &str = "base_slip";
-pub const OF_REFLECTOR: &str = "reflector_slip";
-
 /// How a slip says when it was.
 pub fn line(data: &Positions, moment: usize) -> EffectParameter {
     EffectParameter { name: SLIPPED_AT, value: data.rows[moment].line as f64, std: None, unit: "1" }
 }
 
-/// The first row that a slip of a kind may be before.
-pub fn first_moment(kind: &str) -> usize {
-    if kind == OF_REFLECTOR { FIRST_OF_REFLECTOR } else { 1 }
+/// The first row that a slip may be before.
+pub fn first_moment(slipping: Slipping) -> usize {
+    match slipping {
+        Slipping::Base => 1,
+        Slipping::Reflector => FIRST_OF_REFLECTOR,
+    }
 }
 
 impl Rig {
@@ -53,15 +52,15 @@ impl Rig {
         rows.div_ceil((ROWS_AND_MOMENTS / rows).clamp(FEWEST_MOMENTS, MOST_MOMENTS))
     }
 
-    /// What the numbers of a slip, by its kind, do to the rows from one on.
-    pub fn slipped(&self, kind: &str, moment: usize) -> Vec<Enters> {
+    /// What the numbers of a slip do to the rows from one on.
+    pub fn slipped(&self, slipping: Slipping, moment: usize) -> Vec<Enters> {
         let from_then_on = |later: LaterMoved| {
             let of = |(row, seen)| if row < moment { Vector3::zeros() } else { later(seen) };
             let rows = self.seen.iter().enumerate().map(of).collect();
             Enters::Reading(Rc::new(Moved { rows, later }))
         };
         let axes = || (0..3).map(|k| Vector3::<f64>::ith(k, 1.0));
-        if kind == OF_REFLECTOR {
+        if slipping == Slipping::Reflector {
             return axes().map(|axis| from_then_on(Box::new(move |seen| seen.tool * axis))).collect();
         }
         let middle = self.seen.iter().map(|seen| seen.point).sum::<Vector3<f64>>() / self.seen.len().max(1) as f64;
@@ -72,16 +71,16 @@ impl Rig {
 
     /// The robot shifted at a moment, and may have turned as well.
     pub fn slip_of_base(&self, data: &Positions) -> Option<Offer> {
-        self.slip(data, OF_BASE, Part::Base.into(), &[SHIFT, TURN])
+        self.slip(data, Slipping::Base, Part::Base.into(), &[SHIFT, TURN])
     }
 
     /// The reflector shifted on the tool at a moment.
     pub fn slip_of_reflector(&self, data: &Positions) -> Option<Offer> {
-        self.slip(data, OF_REFLECTOR, Place::Rig, &[POINT])
+        self.slip(data, Slipping::Reflector, Place::Rig, &[POINT])
     }
 
     /// A slip with shifts, and turns if it has names for them.
-    fn slip(&self, data: &Positions, of: &'static str, place: Place, names: &[[&'static str; 3]]) -> Option<Offer> {
+    fn slip(&self, data: &Positions, of: Slipping, place: Place, names: &[[&'static str; 3]]) -> Option<Offer> {
         let units = [("m", LONGEST), ("rad", MOST_TURNED)];
         let (mut numbers, mut forms) = (Vec::new(), Vec::new());
         for moment in (first_moment(of)..self.seen.len()).step_by(self.apart()) {
@@ -97,6 +96,6 @@ impl Rig {
                 forms.push(Form { shape: vec![line(data, moment)], ..Form::of(first..first + count) });
             }
         }
-        (!forms.is_empty()).then_some(Offer { kind: kind(of), place, numbers, forms, possible: any() })
+        (!forms.is_empty()).then_some(Offer { kind: of.kind(), place, numbers, forms, possible: any() })
     }
 }

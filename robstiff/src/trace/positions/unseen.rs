@@ -7,7 +7,7 @@ use crate::identify::positions::regression::Solved;
 use crate::identify::positions::residuals;
 use crate::identify::problem::rms;
 use crate::trace::lack_of_fit::StructureTest;
-use crate::trace::slip::{self, SLIPPED_AT, Slipping};
+use crate::trace::slip::{self, SLIPPED_AT};
 use crate::trace::{Options, held_out};
 
 /// The rows of poses held out that no row fitted to is between them and the moment of a slip
@@ -15,7 +15,7 @@ use crate::trace::{Options, held_out};
 pub fn undecided(bench: &Bench<'_>, model: &Model) -> Vec<usize> {
     let rows = &bench.prepared.data.rows;
     let moment = |line: f64| rows.iter().position(|row| row.line as f64 == line);
-    let slips = model.named.iter().filter(|one| Slipping::has(bench.candidates[one.candidate].kind.name));
+    let slips = model.named.iter().filter(|one| bench.candidates[one.candidate].slipping().is_some());
     let lines = slips.flat_map(|one| &bench.variant(*one).shape).filter(|number| number.name == SLIPPED_AT);
     let fitted_to: Vec<bool> = (0..rows.len()).map(|row| bench.rows.has(row, bench.prepared.data)).collect();
     let held_out: Vec<bool> = rows.iter().map(|row| !bench.rows.training[row.pose]).collect();

@@ -17,7 +17,7 @@ use crate::trace::wander::{self, Beside, OF_READING, WORDS};
 /// it looks like; `None` where there are none of these.
 pub fn instead_of_slips(bench: &mut Bench<'_>, course: &Course) -> Option<(Course, String)> {
     let name = |one: &Named| bench.candidates[one.candidate].kind.name;
-    let is_slip = |one: &Named| Slipping::has(name(one));
+    let is_slip = |one: &Named| bench.candidates[one.candidate].slipping().is_some();
     let (mut model, mut best) = (course.model.clone(), course.model.bic);
     if model.leaves_nothing() {
         return None;
@@ -75,11 +75,11 @@ fn beside_a_course(bench: &Bench<'_>, model: &Model) -> Option<f64> {
 /// Schwarz's criterion of a model with a second slip like one that it names: that has its own
 /// words.
 fn slipped_again(bench: &Bench<'_>, model: &Model) -> Option<f64> {
-    let kinds = model.named.iter().map(|one| bench.candidates[one.candidate].kind.name);
+    let slips = model.named.iter().filter_map(|one| bench.candidates[one.candidate].slipping());
     let moments = || (1..bench.prepared.data.rows.len()).step_by(bench.rig.apart());
     let turn = model.solved.state.registration.turn;
-    let of_one = |(kind, moment): (&str, usize)| {
-        let moved = bench.rig.slipped(kind, moment).into_iter().filter_map(|enters| match enters {
+    let of_one = |(slipping, moment): (Slipping, usize)| {
+        let moved = bench.rig.slipped(slipping, moment).into_iter().filter_map(|enters| match enters {
             Enters::Reading(moved) => Some(moved),
             Enters::Model(..) => None,
         });
@@ -92,6 +92,6 @@ fn slipped_again(bench: &Bench<'_>, model: &Model) -> Option<f64> {
         let first = |count: usize| beside.with(&DMatrix::identity(columns.len(), count), 1);
         [3, columns.len()].into_iter().filter_map(first).min_by(f64::total_cmp)
     };
-    let all = kinds.filter(|kind| Slipping::has(kind)).flat_map(|kind| moments().map(move |moment| (kind, moment)));
+    let all = slips.flat_map(|slipping| moments().map(move |moment| (slipping, moment)));
     all.filter_map(of_one).min_by(f64::total_cmp)
 }

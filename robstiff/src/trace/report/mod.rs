@@ -18,7 +18,6 @@ use super::bench::Bench;
 use super::catalogue::TRANSMISSION_ERROR;
 use super::found::Found;
 use super::model::{Fitted, Setting};
-use super::slip::Slipping;
 use super::written::{described, own_effects, values, within_description, without_untold};
 use super::{Misfit, NamedEffect, Options, Outcome, PoseError, RowResidual, Trace, Verdict};
 use crate::campaign::Campaign;
@@ -61,7 +60,7 @@ pub fn report(
     let undecided = setting.undecided(&model.named);
     let after = misfit(of_written, written, &undecided);
     let mut effects = effects(bench, &setting, model, outcome, &spread, (&undecided, after.holdout_rms), options);
-    let slipped = effects.iter_mut().find(|named| Slipping::has(named.effect.kind()));
+    let slipped = effects.iter_mut().find(|named| named.effect.slipping().is_some());
     let may_be = same_as_wild(bench, &outcome.selection.model, &outcome.events);
     let isolated = isolated(prepared, outcome, after.holdout_rms, slipped, &may_be);
     effects.extend(isolated);

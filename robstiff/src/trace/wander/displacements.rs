@@ -10,7 +10,6 @@ use crate::identify::problem::Problem;
 use crate::trace::bench::Bench;
 use crate::trace::model::{Fitted, Named, Setting, all_but};
 use crate::trace::selection::WITHIN_REACH;
-use crate::trace::slip::Slipping;
 
 /// Moments at which a second slip is looked for.
 const MOMENTS: usize = 64;
@@ -19,13 +18,14 @@ const MOMENTS: usize = 64;
 /// or by slipping once more, and what it looks like; `None` where they are said best as they are.
 pub fn instead_of_slips(bench: &Bench<'_>, model: &Fitted) -> Option<(Fitted, &'static str)> {
     let name = |one: &Named| bench.candidates()[one.candidate].kind.name;
-    model.named.iter().find(|one| Slipping::has(name(one)))?;
+    let is_slip = |one: &Named| bench.candidates()[one.candidate].slipping().is_some();
+    model.named.iter().find(|one| is_slip(one))?;
     let slipped_again = |model: &Fitted| Asked::new(&*bench.at(&model.named).ok()?, model).slipped_again();
     let (mut model, mut best, whole) = (model.clone(), model.bic, model.named.len());
     loop {
         // Beside such a course a drift may be part of it.
         let first = model.named.len() == whole;
-        let may_go = |one: &Named| Slipping::has(name(one)) || (!first && name(one) == OF_READING);
+        let may_go = |one: &Named| is_slip(one) || (!first && name(one) == OF_READING);
         let enough = if first { best } else { best + WITHIN_REACH };
         let without = |k: usize| {
             let rest = all_but(&model.named, k);
