@@ -277,14 +277,14 @@ fn best_first(mut found: Vec<(f64, String)>) -> impl Iterator<Item = String> {
 fn dead_zone(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted, one: Named) -> Option<String> {
     let (own, scene) = (&setting.candidates[one.candidate], bench.scene());
     let Place::Part(Part::Joint(joint)) = own.place else { return None };
-    if own.kind.name != STIFFNESS_NONLINEARITY.name || tells_hysteresis(&scene, joint) {
+    if own.kind != &STIFFNESS_NONLINEARITY || tells_hysteresis(&scene, joint) {
         return None;
     }
     let softens = |column: &usize| {
         let at = model.fit.columns.iter().position(|of| of == column);
         at.is_some_and(|at| model.fit.coefficients[at] < 0.0)
     };
-    let known = |effect: &Effect| effect.kind() == HYSTERESIS.name && own.place == Place::Part(effect.place());
+    let known = |effect: &Effect| HYSTERESIS.is_of(effect) && own.place == Place::Part(effect.place());
     (setting.variant(one).columns.iter().any(softens) && !scene.description.effects.iter().any(known))
         .then(|| std::format!("{}@{}", HYSTERESIS.name, own.place))
 }
@@ -293,12 +293,12 @@ fn dead_zone(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted, one: Name
 /// do, and the knee that a model found may be either's.
 fn one_formula(bench: &Bench<'_>, setting: &Setting<'_>, model: &Fitted, one: Named, candidate: usize) -> bool {
     let (own, other) = (&setting.candidates[one.candidate], &setting.candidates[candidate]);
-    let names = [own.kind.name, other.kind.name];
-    let both = [LOST_MOTION.name, STIFFNESS_NONLINEARITY.name];
+    let kinds = [own.kind, other.kind];
+    let both = [&LOST_MOTION, &STIFFNESS_NONLINEARITY];
     let Place::Part(Part::Joint(joint)) = own.place else { return false };
     let variant = setting.variant(one);
     let (Some(knee), &[column]) = (variant.shape.first(), &variant.columns[..]) else { return false };
-    if own.place != other.place || own.kind.name == other.kind.name || !names.iter().all(|name| both.contains(name)) {
+    if own.place != other.place || own.kind == other.kind || !kinds.iter().all(|kind| both.contains(kind)) {
         return false;
     }
     let hardens =

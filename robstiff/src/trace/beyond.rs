@@ -146,12 +146,12 @@ fn without_nameless<'c>(wide: Bench<'c>, found: &Selection) -> Result<Beyond<'c>
 pub fn lag_is_near(bench: &Bench<'_>, model: &Fitted) -> bool {
     let Ok(wide) = bench.widened_as_it_is() else { return true };
     let candidates = wide.candidates();
-    let sticks = |one: &&Named| candidates[one.candidate].kind.name == HYSTERESIS.name;
+    let sticks = |one: &&Named| candidates[one.candidate].kind == &HYSTERESIS;
     model.named.iter().filter(sticks).any(|hysteresis| {
         let place = candidates[hysteresis.candidate].place;
         let is_of_lag = |one: &Named| one == hysteresis || makes_up_a_lag(&candidates[one.candidate], place);
         let rest: Vec<Named> = model.named.iter().copied().filter(|one| !is_of_lag(one)).collect();
-        let lag = candidates.iter().position(|other| other.kind.name == LAG.name && other.place == place);
+        let lag = candidates.iter().position(|other| other.kind == &LAG && other.place == place);
         let with = lag.and_then(|lag| best_with(&*wide.at(&rest).ok()?, &rest, lag));
         with.is_none_or(|with| {
             let polished = wide.polished(&with.named).fit(&with.named);

@@ -15,6 +15,7 @@ use std::string::String;
 
 use super::alias::Rival;
 use super::bench::Bench;
+use super::catalogue::{DH_ERROR, JOINT_ZERO_OFFSET, Kind, LEVER_ARM, REFLECTOR_OFFSET, TOOL_COMPLIANCE};
 use super::model::{LeftOut, Named};
 use super::search::Outcome;
 use super::selection::WITHIN_REACH;
@@ -24,11 +25,8 @@ use crate::campaign::Campaign;
 use crate::identify::prepare::Prepared;
 use crate::identify::problem::rms;
 
-/// The kind that is asked about.
-const KIND: &str = "reflector_offset";
-
 /// What moves the tool's end, or the load on it, as a reflector elsewhere seems to.
-const TOLD_AS: [&str; 4] = ["lever_arm", "tool_compliance", "joint_zero_offset", "dh_error"];
+static TOLD_AS: [&Kind; 4] = [&LEVER_ARM, &TOOL_COMPLIANCE, &JOINT_ZERO_OFFSET, &DH_ERROR];
 
 /// What a campaign of displacements shows: the bench that it was found on, and what was.
 ///
@@ -50,7 +48,7 @@ pub fn searched<'c>(
     let other = Bench::of(campaign, prepared, true).ok();
     let again = other.and_then(|other| super::searched(other, prepared, options, &|_| ()).ok());
     let names_it = |(bench, found): &(Bench<'_>, Outcome)| {
-        found.selection.model.named.iter().any(|one| bench.candidates()[one.candidate].kind.name == KIND)
+        found.selection.model.named.iter().any(|one| bench.candidates()[one.candidate].kind == &REFLECTOR_OFFSET)
     };
     let Some((other, mut found)) = again.filter(names_it) else { return Ok((bench, outcome)) };
     if !is_better((&other, &found), (&bench, &outcome)) {
@@ -67,7 +65,7 @@ pub fn searched<'c>(
 /// Whether what was found may be a reflector elsewhere: something without a name, or what it is
 /// told as where it has none.
 fn may_be_it(bench: &Bench<'_>, outcome: &Outcome) -> bool {
-    let kind = |one: &Named| bench.candidates()[one.candidate].kind.name;
+    let kind = |one: &Named| bench.candidates()[one.candidate].kind;
     outcome.structure() || outcome.selection.model.named.iter().any(|one| TOLD_AS.contains(&kind(one)))
 }
 

@@ -88,6 +88,11 @@ impl Found {
         self.kind.name
     }
 
+    /// Whether it is of a kind.
+    pub(super) fn is(&self, kind: &Kind) -> bool {
+        self.kind == kind
+    }
+
     /// What slips, if anything does.
     pub(super) fn slipping(&self) -> Option<Slipping> {
         Slipping::of(self.kind)

@@ -5,6 +5,7 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix3x6, Matrix6, Vector3};
 
+use super::catalogue::{BASE_SLIP, Kind, REFLECTOR_SLIP};
 use super::model::{Fitted, Setting};
 use crate::identify::normal::Scaled;
 use crate::identify::problem::Block;
@@ -38,6 +39,19 @@ pub enum Slipping {
 impl Slipping {
     /// All there are.
     pub const ALL: [Self; 2] = [Self::Base, Self::Reflector];
+
+    /// The kind of such slips.
+    pub fn kind(self) -> &'static Kind {
+        match self {
+            Self::Base => &BASE_SLIP,
+            Self::Reflector => &REFLECTOR_SLIP,
+        }
+    }
+
+    /// What slips by effects of a kind, if anything does.
+    pub fn of(kind: &Kind) -> Option<Self> {
+        Self::ALL.into_iter().find(|slipping| slipping.kind() == kind)
+    }
 
     /// How many of the numbers of [`moves`](Self::moves) a slip may have, the first ones.
     fn numbers(self) -> &'static [usize] {

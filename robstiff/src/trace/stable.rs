@@ -20,7 +20,7 @@ impl Setting<'_> {
     /// # Errors
     /// That the couplings are too strong together.
     pub(super) fn check_couplings(&self, fit: &Fit, named: &[Named]) -> Result<(), String> {
-        let is_coupling = |one: &Named| *self.candidates[one.candidate].kind == JOINT_COUPLING;
+        let is_coupling = |one: &Named| self.candidates[one.candidate].kind == &JOINT_COUPLING;
         if !named.iter().any(is_coupling) || self.is_stable(fit, named) {
             return Ok(());
         }

@@ -85,7 +85,7 @@ pub fn to_take_back(bench: &Bench<'_>, model: &Fitted, left: &LackOfFit) -> Vec<
     // A gear with hysteresis is softer at small torques, on the way back: what
     // changes with the load order is no function of the torque.
     let of_order = left.depends_on.iter().any(|column| column == LOAD_ORDER);
-    let nonlinear = |named: &Named| bench.candidates()[named.candidate].kind.name == STIFFNESS_NONLINEARITY.name;
+    let nonlinear = |named: &Named| bench.candidates()[named.candidate].kind == &STIFFNESS_NONLINEARITY;
     if of_order && model.named.iter().any(nonlinear) {
         return (0..model.named.len()).filter(|&k| nonlinear(&model.named[k])).collect();
     }
@@ -116,7 +116,7 @@ fn worth_of_fallen(share: Option<f64>, Along { ratio, is_significant }: Along) -
 /// gear can have both; no test of residuals tells, for next to nothing is left.
 pub fn may_lag(bench: &Bench<'_>, model: &Fitted) -> bool {
     let candidates = || model.named.iter().map(|one| &bench.candidates()[one.candidate]);
-    let sticks = |one: &&Candidate| one.kind.name == HYSTERESIS.name;
+    let sticks = |one: &&Candidate| one.kind == &HYSTERESIS;
     candidates().filter(sticks).any(|one| candidates().any(|other| makes_up_a_lag(other, one.place)))
 }
 
@@ -124,14 +124,13 @@ pub fn may_lag(bench: &Bench<'_>, model: &Fitted) -> bool {
 /// are fitted again and radii are not: what a wrong radius leaves has no other name.
 pub fn lags_beside_declared(bench: &Bench<'_>, model: &Fitted) -> bool {
     let mut named = model.named.iter().map(|one| bench.candidates()[one.candidate].kind);
-    let declared = |kind: &str| bench.robot().effects.iter().any(|effect| effect.kind() == kind);
-    declared(HYSTERESIS.name) && named.any(|kind| *kind == HYSTERESIS)
+    bench.robot().effects.iter().any(|effect| HYSTERESIS.is_of(effect)) && named.any(|kind| kind == &HYSTERESIS)
 }
 
 /// Whether an effect makes up a lag of the joint at a place, beside its hysteresis.
 pub fn makes_up_a_lag(other: &Candidate, place: Place) -> bool {
-    let curve = [STIFFNESS_NONLINEARITY.name, LOST_MOTION.name].contains(&other.kind.name);
-    other.kind.name == CREEP.name || (curve && other.place == place)
+    let curve = [&STIFFNESS_NONLINEARITY, &LOST_MOTION].contains(&other.kind);
+    other.kind == &CREEP || (curve && other.place == place)
 }
 
 /// A test with such a probability found nothing: structure is known otherwise.

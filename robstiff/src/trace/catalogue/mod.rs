@@ -52,27 +52,35 @@ use nalgebra::{DVector, Matrix3};
 use robstiff_robots::Description;
 use robstiff_robots::effect::Place as Part;
 
+pub use self::base_compliance::KIND as BASE_COMPLIANCE;
 pub use self::base_slip::{KIND as BASE_SLIP, LIKELY};
 pub use self::creep::KIND as CREEP;
-pub use self::dh_error::{ENTRIES as DH_ENTRIES, MOST as DH_MOST, UNITS as DH_UNITS};
+pub use self::dh_error::{ENTRIES as DH_ENTRIES, KIND as DH_ERROR, MOST as DH_MOST, UNITS as DH_UNITS};
 pub use self::gravity_preload::KIND as GRAVITY_PRELOAD;
-pub use self::gravity_sag::MOST as MOST_SAG;
+pub use self::gravity_sag::{KIND as GRAVITY_SAG, MOST as MOST_SAG};
 pub use self::hysteresis::{KIND as HYSTERESIS, is_told as tells_hysteresis, is_told_on as axis_tells_hysteresis};
 pub use self::joint_coupling::{KIND as JOINT_COUPLING, share_a_drive};
-pub use self::joint_zero_offset::MOST as ZERO_MOST;
+pub use self::joint_zero_offset::{KIND as JOINT_ZERO_OFFSET, MOST as ZERO_MOST};
+pub use self::lever_arm::KIND as LEVER_ARM;
+pub use self::link_compliance::KIND as LINK_COMPLIANCE;
 pub use self::load_cell_bias::KIND as LOAD_CELL_BIAS;
 pub use self::lost_motion::{EITHER, KIND as LOST_MOTION, KNEES as LOST_KNEES, WIDEST as WIDEST_GAP};
 pub use self::nameless::{LAG, NAMELESS};
 pub use self::offers::{Candidate, Catalogue, Form, Offers, Variant, catalogue, is_offered_as_change};
 pub use self::outliers::KIND as OUTLIERS;
+pub use self::pose_dependent_compliance::KIND as POSE_DEPENDENT_COMPLIANCE;
+pub use self::reflector_offset::KIND as REFLECTOR_OFFSET;
 pub use self::reflector_slip::KIND as REFLECTOR_SLIP;
 pub use self::stiffness_nonlinearity::{KIND as STIFFNESS_NONLINEARITY, KNEES as HARDENING_KNEES};
+pub use self::thermal_drift::KIND as THERMAL_DRIFT;
+pub use self::tool_compliance::KIND as TOOL_COMPLIANCE;
+pub use self::tracker_scale::KIND as TRACKER_SCALE;
 pub use self::transmission_error::{KIND as TRANSMISSION_ERROR, MOST as LARGEST_WAVE, ORDERS as WAVE_ORDERS};
+pub use self::transverse_compliance::KIND as TRANSVERSE_COMPLIANCE;
 use super::clamped::{Axes, OnAxes};
 use super::found::{Found, Place};
 use super::point::Point;
-use super::slip::{Moment, Moments, Slipping};
-use crate::JointKind;
+use super::slip::{Moment, Moments};
 use crate::campaign::Displacements;
 use crate::elements::Spring;
 use crate::identify::column::Column;
@@ -80,6 +88,7 @@ use crate::identify::normal::Sign;
 use crate::identify::samples::{Samples, turn_of};
 use crate::identify::setup::Setup;
 use crate::identify::unit_of;
+use crate::{Effect, JointKind};
 
 /// A kind of effect.
 pub struct Kind {
@@ -100,6 +109,11 @@ pub struct Kind {
 }
 
 impl Kind {
+    /// Whether an effect that a description has is of this kind.
+    pub fn is_of(&self, effect: &Effect) -> bool {
+        effect.kind() == self.name
+    }
+
     /// Where it can be on an arm with so many joints, of any campaign; errors of the
     /// table, whose places are its entries, at none.
     pub fn places(&self, joints: usize) -> Vec<Place> {
@@ -114,21 +128,6 @@ impl Kind {
             _ if self.of_rig => vec![Place::Rig],
             _ => each(Part::Joint, joints),
         }
-    }
-}
-
-impl Slipping {
-    /// The kind of such slips.
-    pub fn kind(self) -> &'static Kind {
-        match self {
-            Self::Base => &BASE_SLIP,
-            Self::Reflector => &REFLECTOR_SLIP,
-        }
-    }
-
-    /// What slips by effects of a kind, if anything does.
-    pub fn of(kind: &Kind) -> Option<Self> {
-        Self::ALL.into_iter().find(|slipping| slipping.kind() == kind)
     }
 }
 

@@ -204,7 +204,7 @@ impl Offers<'_> {
         check: Option<Check>,
     ) {
         let place = place.into();
-        let same = |effect: &Effect| effect.kind() == self.kind.name && place == Place::Part(effect.place());
+        let same = |effect: &Effect| self.kind.is_of(effect) && place == Place::Part(effect.place());
         if self.declared.iter().any(|effect| same(effect) && !is_offered_as_change(effect)) {
             return;
         }

@@ -14,6 +14,7 @@ use crate::identify::clamped::regression::rows_of;
 use crate::identify::clamped::rounding::of_rounding;
 use crate::identify::clamped::without_laws;
 use crate::identify::column::Column;
+use crate::trace::catalogue::Kind;
 use crate::trace::found::{EffectParameter, Place};
 use crate::trace::slip::SLIPPED_AT;
 use crate::{Effect, JointKind};
@@ -89,8 +90,8 @@ impl Axes {
     }
 
     /// Whether the description has an effect of a kind at a place.
-    pub fn declares(&self, kind: &str, place: Place) -> bool {
-        self.declared.iter().any(|effect| effect.kind() == kind && place == effect.place().into())
+    pub fn declares(&self, kind: &Kind, place: Place) -> bool {
+        self.declared.iter().any(|effect| kind.is_of(effect) && place == effect.place().into())
     }
 
     /// The axes (from 1) that are loaded.

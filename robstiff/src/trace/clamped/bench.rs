@@ -61,7 +61,7 @@ impl Bench {
             offers.into_iter().map(|one| (*kind, one)).collect::<Vec<_>>()
         };
         let mut offers: Vec<(&'static Kind, OnAxes)> = KINDS.iter().flat_map(of).collect();
-        offers.retain(|(kind, one)| !axes.declares(kind.name, one.place));
+        offers.retain(|(kind, one)| !axes.declares(kind, one.place));
         for ((_, one), (_, old)) in offers.iter_mut().zip(before.into_iter().flatten()) {
             one.forms.iter_mut().zip(&old.forms).for_each(|(form, old)| form.shape.clone_from(&old.shape));
         }

@@ -360,7 +360,7 @@ fn dead_zone(bench: &Bench, model: &Fitted, k: usize) -> Option<String> {
     let candidate = &bench.candidates[model.named[k].candidate];
     let Place::Part(Part::Joint(axis)) = candidate.place else { return None };
     let added = of_model(bench, model, model.named[k]).parameters.first().map(|number| number.value);
-    let softens = candidate.kind.name == STIFFNESS_NONLINEARITY.name && added.is_some_and(|added| added < 0.0);
+    let softens = candidate.kind == &STIFFNESS_NONLINEARITY && added.is_some_and(|added| added < 0.0);
     (softens && !axis_tells_hysteresis(&bench.axes, axis)).then(|| format!("{}@{}", HYSTERESIS.name, candidate.place))
 }
 

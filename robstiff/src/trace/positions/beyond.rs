@@ -18,6 +18,7 @@ use super::weight::{SAG, WEIGHT};
 use crate::campaign::Campaign;
 use crate::identify::positions::regression::STANDS;
 use crate::trace::beyond::AKAIKE;
+use crate::trace::catalogue::JOINT_ZERO_OFFSET;
 use crate::trace::found::Found;
 use crate::trace::model::{Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
@@ -137,7 +138,7 @@ fn told(campaign: &Campaign, wide: &Bench<'_>, model: &Model) -> (Vec<Named>, Ve
             && value(zero) <= value(one) * reach(robot, data, of)
     };
     named.retain(|&zero| {
-        let is_zero = wide.candidates[zero.candidate].kind.name == "joint_zero_offset";
+        let is_zero = wide.candidates[zero.candidate].kind == &JOINT_ZERO_OFFSET;
         !(is_zero && nameless.iter().any(|&one| counts_from(zero, one)))
     });
     (nameless, named)

@@ -9,11 +9,11 @@ use std::vec::Vec;
 
 use nalgebra::Vector3;
 
-use super::offers::{Between, Form, Number, Offer, any, kind};
+use super::offers::{Between, Form, Number, Offer, any};
 use super::rig::{LONGEST, Rig, longer};
 use crate::campaign::{PositionRow, Positions};
 use crate::identify::positions::model::{Enters, Moved};
-use crate::trace::catalogue::SHIFT;
+use crate::trace::catalogue::{SHIFT, THERMAL_DRIFT};
 use crate::trace::found::{EffectParameter, Place};
 
 /// No arm grows by more in a campaign, forty kelvin of aluminium (1).
@@ -103,7 +103,7 @@ impl Rig {
         if let Some(time) = time.map(Rc::<[f64]>::from) {
             motions.iter().for_each(|motion| motion.settles(&time, &mut numbers, &mut forms));
         }
-        let (kind, place) = (kind("thermal_drift"), Place::Rig);
+        let (kind, place) = (&THERMAL_DRIFT, Place::Rig);
         (!forms.is_empty()).then_some(Offer { kind, place, numbers, forms, possible: any() })
     }
 }

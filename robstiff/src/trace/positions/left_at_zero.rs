@@ -30,9 +30,10 @@ use crate::identify::normal::{Fit, Scaled, Sign};
 use crate::identify::positions::regression::STANDS;
 use crate::identify::problem::Problem;
 use crate::identify::uncertainty::shifts;
+use crate::trace::catalogue::{DH_ERROR, JOINT_ZERO_OFFSET, Kind};
 
 /// Kinds whose numbers are the table's: an arm as built has all of them a little off.
-const OF_TABLE: [&str; 2] = ["joint_zero_offset", "dh_error"];
+static OF_TABLE: [&Kind; 2] = [&JOINT_ZERO_OFFSET, &DH_ERROR];
 
 /// Steps of expectation and maximisation; each takes the share of numbers that are off nearer.
 const STEPS: usize = 50;
@@ -58,7 +59,7 @@ impl LeftAtZero {
         let seen = bench.prepared.seen().into_iter();
         let declared = seen.filter(|&number| is_of_table(&bench.prepared.own[number].name));
         let of = |candidate: usize| bench.candidates[candidate].variants.iter().flat_map(|form| &form.columns);
-        let is_table = |candidate: &usize| OF_TABLE.contains(&bench.candidates[*candidate].kind.name);
+        let is_table = |candidate: &usize| OF_TABLE.contains(&bench.candidates[*candidate].kind);
         let is_named = |candidate: usize| model.named.iter().any(|one| one.candidate == candidate);
         let (named, rest): (Vec<usize>, Vec<usize>) =
             (0..bench.candidates.len()).filter(is_table).partition(|&candidate| is_named(candidate));
@@ -163,7 +164,7 @@ impl Alone {
 
 /// Whether a number of a description, by its name, is the table's.
 fn is_of_table(name: &str) -> bool {
-    OF_TABLE.iter().any(|kind| name.split('@').next() == Some(kind))
+    OF_TABLE.iter().any(|kind| name.split('@').next() == Some(kind.name))
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {

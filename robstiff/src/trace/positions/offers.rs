@@ -20,8 +20,10 @@ use crate::identify::normal::Sign;
 use crate::identify::positions::model::{ANGLE_STEP, COMPLIANCE_STEP, Enters, LENGTH_STEP, Model, SHARE_STEP};
 use crate::identify::setup::coordinate_entry;
 use crate::trace::catalogue::{
-    DH_ENTRIES, DH_MOST, DH_UNITS, EITHER, HARDENING_KNEES, JOINT_COUPLING, KINDS, Kind, LARGEST_WAVE, LOST_KNEES,
-    LOST_MOTION, MOST_SAG, STIFFNESS_NONLINEARITY, WAVE_ORDERS, WIDEST_GAP, ZERO_MOST, share_a_drive,
+    BASE_COMPLIANCE, DH_ENTRIES, DH_ERROR, DH_MOST, DH_UNITS, EITHER, GRAVITY_SAG, HARDENING_KNEES, JOINT_COUPLING,
+    JOINT_ZERO_OFFSET, Kind, LARGEST_WAVE, LINK_COMPLIANCE, LOST_KNEES, LOST_MOTION, MOST_SAG,
+    POSE_DEPENDENT_COMPLIANCE, STIFFNESS_NONLINEARITY, TOOL_COMPLIANCE, TRANSMISSION_ERROR, TRANSVERSE_COMPLIANCE,
+    WAVE_ORDERS, WIDEST_GAP, ZERO_MOST, share_a_drive,
 };
 use crate::trace::found::{EffectParameter, Found, Place};
 use crate::{Effect, JointKind};
@@ -121,15 +123,13 @@ pub fn offers(campaign: &Campaign, data: &Positions, rig: &Rig) -> Vec<Offer> {
     all.extend(rig.slip_of_reflector(data));
     all.extend(rig.slip_of_base(data));
     if loaded {
-        all.push(springs("tool_compliance", Part::Tool, &[("rotation", "rad/Nm"), ("translation", "m/N")]));
-        all.push(springs("base_compliance", Part::Base, &[("tilt", "rad/Nm"), ("translation", "m/N")]));
-        all.extend(
-            joints.clone().map(|joint| springs("transverse_compliance", Part::Joint(joint), &[("h", "rad/Nm")])),
-        );
+        all.push(springs(&TOOL_COMPLIANCE, Part::Tool, &[("rotation", "rad/Nm"), ("translation", "m/N")]));
+        all.push(springs(&BASE_COMPLIANCE, Part::Base, &[("tilt", "rad/Nm"), ("translation", "m/N")]));
+        all.extend(joints.clone().map(|joint| springs(&TRANSVERSE_COMPLIANCE, Part::Joint(joint), &[("h", "rad/Nm")])));
         let links = (1..robot.joints.len()).filter(|&link| !robot.is_stroke(link));
         all.extend(
             links.map(|link| {
-                springs("link_compliance", Part::Link(link), &[("bending", "rad/Nm"), ("torsion", "rad/Nm")])
+                springs(&LINK_COMPLIANCE, Part::Link(link), &[("bending", "rad/Nm"), ("torsion", "rad/Nm")])
             }),
         );
         all.extend(couplings(robot, data));
@@ -147,39 +147,35 @@ pub fn offers(campaign: &Campaign, data: &Positions, rig: &Rig) -> Vec<Offer> {
     all
 }
 
-/// A kind by its name.
-pub fn kind(name: &str) -> &'static Kind {
-    KINDS.into_iter().find(|kind| kind.name == name).expect("a name of the catalogue")
-}
-
 /// How a number of an effect enters the description, the others being zero but those
 /// given.
-fn of_effect(name: &'static str, part: Part, at: usize, others: Vec<f64>, step: f64) -> Enters {
+fn of_effect(kind: &'static Kind, part: Part, at: usize, others: Vec<f64>, step: f64) -> Enters {
     let enters = move |model: &mut Model, by: f64| {
         let mut numbers = others.clone();
         numbers[at] = by;
-        let effect = Effect::of_kind(name, part, &numbers).expect("an effect of the catalogue with all its numbers");
+        let effect =
+            Effect::of_kind(kind.name, part, &numbers).expect("an effect of the catalogue with all its numbers");
         model.description.effects.push(effect);
     };
     Enters::Model(Rc::new(enters), step)
 }
 
 /// An effect with one number in the description.
-fn one(name: &'static str, part: Part, number: (&'static str, &'static str), range: [f64; 2], step: f64) -> Offer {
-    let enters = of_effect(name, part, 0, vec![0.0], step);
+fn one(kind: &'static Kind, part: Part, number: (&'static str, &'static str), range: [f64; 2], step: f64) -> Offer {
+    let enters = of_effect(kind, part, 0, vec![0.0], step);
     let numbers = vec![Number { name: number.0, unit: number.1, range, enters }];
-    Offer { kind: kind(name), place: part.into(), numbers, forms: vec![Form::of([0])], possible: any() }
+    Offer { kind, place: part.into(), numbers, forms: vec![Form::of([0])], possible: any() }
 }
 
 /// An elastic part with one or two compliances, of which one or both can be there.
-fn springs(name: &'static str, part: Part, numbers: &[(&'static str, &'static str)]) -> Offer {
+fn springs(kind: &'static Kind, part: Part, numbers: &[(&'static str, &'static str)]) -> Offer {
     let of = |(at, &(number, unit)): (usize, &(&'static str, &'static str))| {
-        let enters = of_effect(name, part, at, vec![0.0; numbers.len()], COMPLIANCE_STEP);
+        let enters = of_effect(kind, part, at, vec![0.0; numbers.len()], COMPLIANCE_STEP);
         Number { name: number, unit, range: [0.0, f64::INFINITY], enters }
     };
     let forms: &[&[usize]] = if numbers.len() == 1 { &[&[0]] } else { &[&[0], &[1], &[0, 1]] };
     Offer {
-        kind: kind(name),
+        kind,
         place: part.into(),
         numbers: numbers.iter().enumerate().map(of).collect(),
         forms: forms.iter().map(|numbers| Form::of(numbers.iter().copied())).collect(),
@@ -196,7 +192,7 @@ fn couplings(robot: &Description, data: &Positions) -> Vec<Offer> {
     let pairs = pairs.filter(|&[i, j]| share_a_drive(i, j, &turning, &axis));
     let any = [f64::NEG_INFINITY, f64::INFINITY];
     // Which are possible, they are together.
-    let coupling = |pair| one(JOINT_COUPLING.name, Part::Joints(pair), ("value", "rad/Nm"), any, COMPLIANCE_STEP);
+    let coupling = |pair| one(&JOINT_COUPLING, Part::Joints(pair), ("value", "rad/Nm"), any, COMPLIANCE_STEP);
     pairs.map(coupling).collect()
 }
 
@@ -206,7 +202,7 @@ fn gears(robot: &Description, data: &Positions) -> Vec<Offer> {
     let torques = Model::new(robot, data).torques(data);
     let largest = |joint: usize| torques.iter().map(|row| row[joint - 1].whole().abs()).fold(0.0, f64::max);
     let heaviest = torques.iter().flatten().map(|torque| torque.load.abs()).fold(0.0, f64::max);
-    let law = |name: &'static str, joint: usize, number: &'static str, range: [f64; 2], knees: &[f64], widest: f64| {
+    let law = |kind: &'static Kind, joint: usize, number: &'static str, range: [f64; 2], knees: &[f64], widest: f64| {
         let revolute = robot.joints[joint - 1].kind == JointKind::Revolute;
         let (turn, torque) = if revolute { ("rad", "Nm") } else { ("m", "N") };
         let (unit, step) = match number {
@@ -216,7 +212,7 @@ fn gears(robot: &Description, data: &Positions) -> Vec<Offer> {
         };
         let largest = largest(joint);
         let knees: Vec<f64> = knees.iter().map(|part| part * largest).collect();
-        let enters = move |knee| of_effect(name, Part::Joint(joint), 0, vec![0.0, knee], step);
+        let enters = move |knee| of_effect(kind, Part::Joint(joint), 0, vec![0.0, knee], step);
         let number = |&knee: &f64| Number { name: number, unit, range, enters: enters(knee) };
         let range_of_knee = [NARROWEST_KNEE * largest, widest * largest];
         let between = Between { range: range_of_knee, whole: largest, enters: Rc::new(move |knee| vec![enters(knee)]) };
@@ -228,20 +224,20 @@ fn gears(robot: &Description, data: &Positions) -> Vec<Offer> {
         let place = Part::Joint(joint).into();
         let (numbers, forms) = (knees.iter().map(number).collect(), knees.iter().enumerate().map(form).collect());
         // The unloaded joint keeps some compliance.
-        let possible: Possible = match name == STIFFNESS_NONLINEARITY.name {
+        let possible: Possible = match kind == &STIFFNESS_NONLINEARITY {
             true => Rc::new(move |added, of| added[0] > -of(joint)),
             false => any(),
         };
-        Offer { kind: kind(name), place, numbers, forms, possible }
+        Offer { kind, place, numbers, forms, possible }
     };
     // What a payload does not load but by rounding has no law to show.
     let is_loaded = |joint: &usize| torques.iter().any(|row| row[joint - 1].load.abs() > 1e-9 * heaviest);
     let loaded: Vec<usize> = (1..=robot.joints.len()).filter(is_loaded).collect();
     let hardening = |&joint: &usize| {
         let range = [f64::NEG_INFINITY, f64::INFINITY];
-        law(STIFFNESS_NONLINEARITY.name, joint, "added", range, &HARDENING_KNEES, WIDEST_KNEE)
+        law(&STIFFNESS_NONLINEARITY, joint, "added", range, &HARDENING_KNEES, WIDEST_KNEE)
     };
-    let lost = |&joint: &usize| law(LOST_MOTION.name, joint, "gap", [0.0, WIDEST_GAP], &LOST_KNEES, EITHER[1]);
+    let lost = |&joint: &usize| law(&LOST_MOTION, joint, "gap", [0.0, WIDEST_GAP], &LOST_KNEES, EITHER[1]);
     let varies = |&&joint: &&usize| robot.joints[joint - 1].kind == JointKind::Revolute;
     let varying = loaded.iter().filter(varies).map(|&joint| varying(joint));
     loaded.iter().map(hardening).chain(loaded.iter().map(lost)).chain(varying).collect()
@@ -249,15 +245,14 @@ fn gears(robot: &Description, data: &Positions) -> Vec<Offer> {
 
 /// A compliance that varies with the joint's own angle, once or twice a turn or both.
 fn varying(joint: usize) -> Offer {
-    let name = "pose_dependent_compliance";
     let number = |(at, number): (usize, &'static str)| Number {
         name: number,
         unit: "1",
         range: [-1.0, 1.0],
-        enters: of_effect(name, Part::Joint(joint), at, vec![0.0; 4], SHARE_STEP),
+        enters: of_effect(&POSE_DEPENDENT_COMPLIANCE, Part::Joint(joint), at, vec![0.0; 4], SHARE_STEP),
     };
     Offer {
-        kind: kind(name),
+        kind: &POSE_DEPENDENT_COMPLIANCE,
         place: Part::Joint(joint).into(),
         numbers: ["cos1", "sin1", "cos2", "sin2"].into_iter().enumerate().map(number).collect(),
         forms: [0..2, 2..4, 0..4].map(Form::of).into(),
@@ -271,7 +266,7 @@ fn varying(joint: usize) -> Offer {
 fn zero(robot: &Description, joint: usize) -> Offer {
     let entry = coordinate_entry(robot.joints[joint - 1].kind);
     let (most, unit) = (ZERO_MOST[entry], ["rad", "m"][entry]);
-    let mut offer = one("joint_zero_offset", Part::Joint(joint), ("offset", unit), [-most, most], STEPS[entry]);
+    let mut offer = one(&JOINT_ZERO_OFFSET, Part::Joint(joint), ("offset", unit), [-most, most], STEPS[entry]);
     if robot.joints[joint - 1].kind == JointKind::Prismatic {
         let slides = move |model: &mut Model, by: f64| model.description.joints[joint - 1].d += by;
         offer.numbers[0].enters = Enters::Model(Rc::new(slides), LENGTH_STEP);
@@ -286,26 +281,25 @@ fn table(robot: &Description, row: usize) -> Vec<Offer> {
     let error = |entry: usize| {
         let (most, unit) = (DH_MOST[entry], DH_UNITS[entry]);
         let step = STEPS[usize::from(unit == "m")];
-        one("dh_error", Part::Entry(DH_ENTRIES[entry](row)), ("value", unit), [-most, most], step)
+        one(&DH_ERROR, Part::Entry(DH_ENTRIES[entry](row)), ("value", unit), [-most, most], step)
     };
     (0..4).filter(|&entry| entry != coordinate).map(error).collect()
 }
 
 /// A periodic error of a joint, of one of several orders.
 fn waves(joint: usize) -> Offer {
-    let name = "transmission_error";
     let number = |(order, at, name_of): (f64, usize, &'static str)| Number {
         name: name_of,
         unit: "rad",
         range: [-LARGEST_WAVE, LARGEST_WAVE],
-        enters: of_effect(name, Part::Joint(joint), at, vec![order, 0.0, 0.0], ANGLE_STEP),
+        enters: of_effect(&TRANSMISSION_ERROR, Part::Joint(joint), at, vec![order, 0.0, 0.0], ANGLE_STEP),
     };
     let form = |(k, &value): (usize, &f64)| Form {
         shape: vec![EffectParameter { name: "order", value, std: None, unit: "1" }],
         ..Form::of([2 * k, 2 * k + 1])
     };
     Offer {
-        kind: kind(name),
+        kind: &TRANSMISSION_ERROR,
         place: Part::Joint(joint).into(),
         numbers: WAVE_ORDERS.iter().flat_map(|&order| [(order, 2, "cos"), (order, 1, "sin")]).map(number).collect(),
         forms: WAVE_ORDERS.iter().enumerate().map(form).collect(),
@@ -314,5 +308,5 @@ fn waves(joint: usize) -> Offer {
 }
 
 fn sag() -> Offer {
-    one("gravity_sag", Part::Robot, ("share", "1"), [0.0, MOST_SAG], SHARE_STEP)
+    one(&GRAVITY_SAG, Part::Robot, ("share", "1"), [0.0, MOST_SAG], SHARE_STEP)
 }

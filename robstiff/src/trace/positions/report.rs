@@ -17,7 +17,7 @@ use crate::identify::positions::regression::STANDS;
 use crate::identify::positions::{estimated, residuals};
 use crate::identify::problem::rms;
 use crate::identify::{Error, NoiseSource};
-use crate::trace::catalogue::{KINDS, Variant};
+use crate::trace::catalogue::{KINDS, Kind, Variant};
 use crate::trace::found::{EffectParameter, Found};
 use crate::trace::held_out;
 use crate::trace::misread;
@@ -367,8 +367,8 @@ fn invisible(campaign: &Campaign, bench: &Bench<'_>) -> Vec<String> {
         .map(|candidate| bench.candidates[candidate].name())
         .collect();
     let joints = campaign.robot.joints.len();
-    let offered = |name: &str| bench.candidates.iter().any(|candidate| candidate.kind.name == name);
-    for kind in KINDS.iter().filter(|kind| !kind.of_rig && !offered(kind.name)) {
+    let offered = |kind: &Kind| bench.candidates.iter().any(|candidate| candidate.kind == kind);
+    for kind in KINDS.into_iter().filter(|kind| !kind.of_rig && !offered(kind)) {
         names.extend(kind.places(joints).into_iter().map(|place| format!("{}@{place}", kind.name)));
     }
     names.retain(|name| campaign.robot.effects.iter().all(|effect| effect.to_string() != *name));

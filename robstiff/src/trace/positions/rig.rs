@@ -8,10 +8,10 @@ use std::vec::Vec;
 use nalgebra::Vector3;
 use robstiff_robots::{Description, Placement};
 
-use super::offers::{Form, Number, Offer, any, kind};
+use super::offers::{Form, Number, Offer, any};
 use crate::campaign::Positions;
 use crate::identify::positions::model::{Enters, LENGTH_STEP, Model, Moved, Seen};
-use crate::trace::catalogue::POINT;
+use crate::trace::catalogue::{Kind, LEVER_ARM, POINT, REFLECTOR_OFFSET, TRACKER_SCALE};
 use crate::trace::found::Place;
 
 /// The step of central differences of where a payload hangs (m), by which a deflection
@@ -30,16 +30,16 @@ const MOST_SCALE: f64 = 1e-3;
 
 /// The point that is read is elsewhere on the tool, along one of its axes or anywhere.
 pub fn reflector() -> Offer {
-    elsewhere("reflector_offset", LENGTH_STEP, |model, k, by| model.marker[k] += by)
+    elsewhere(&REFLECTOR_OFFSET, LENGTH_STEP, |model, k, by| model.marker[k] += by)
 }
 
 /// The payload hangs elsewhere on the tool, likewise.
 pub fn lever_arm() -> Offer {
-    elsewhere("lever_arm", LEVER_STEP, |model, k, by| model.hook[k] += by)
+    elsewhere(&LEVER_ARM, LEVER_STEP, |model, k, by| model.hook[k] += by)
 }
 
 /// A point of the tool is elsewhere; `moves` moves it along an axis.
-fn elsewhere(name: &str, step: f64, moves: fn(&mut Model, usize, f64)) -> Offer {
+fn elsewhere(kind: &'static Kind, step: f64, moves: fn(&mut Model, usize, f64)) -> Offer {
     let number = |k: usize| Number {
         name: POINT[k],
         unit: "m",
@@ -47,7 +47,7 @@ fn elsewhere(name: &str, step: f64, moves: fn(&mut Model, usize, f64)) -> Offer 
         enters: Enters::Model(Rc::new(move |model: &mut Model, by| moves(model, k, by)), step),
     };
     Offer {
-        kind: kind(name),
+        kind,
         place: Place::Rig,
         numbers: (0..3).map(number).collect(),
         forms: [0..1, 1..2, 2..3, 0..3].map(Form::of).into(),
@@ -87,7 +87,7 @@ impl Rig {
         let lengths: Vec<Vector3<f64>> = self.seen.iter().map(|seen| seen.point).collect();
         let enters = longer(&lengths, &vec![1.0; lengths.len()]);
         Offer {
-            kind: kind("tracker_scale"),
+            kind: &TRACKER_SCALE,
             place: Place::Rig,
             numbers: vec![Number { name: "scale", unit: "1", range: [-MOST_SCALE, MOST_SCALE], enters }],
             forms: vec![Form::of([0])],

@@ -12,7 +12,7 @@ impl Bench<'_> {
     /// Whether a load can do no negative work on the robot of a model in which a coupling is
     /// named, by the coefficients of its fit.
     pub(super) fn is_stable(&self, named: &[Named], coefficients: &DVector<f64>) -> bool {
-        if !named.iter().any(|one| *self.candidates[one.candidate].kind == JOINT_COUPLING) {
+        if !named.iter().any(|one| self.candidates[one.candidate].kind == &JOINT_COUPLING) {
             return true;
         }
         let mut with = self.prepared.start.description.clone();

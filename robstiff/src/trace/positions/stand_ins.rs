@@ -14,15 +14,14 @@ use std::vec::Vec;
 use super::bench::Bench;
 use super::course::Course;
 use super::report::parts;
+use crate::trace::catalogue::{DH_ERROR, Kind, REFLECTOR_OFFSET, REFLECTOR_SLIP, THERMAL_DRIFT, TRACKER_SCALE};
 use crate::trace::model::Named;
 use crate::trace::selection::{BETTER, WITHIN_REACH};
 use crate::trace::step::Step;
 use crate::trace::{Options, Rival};
 
 /// What moves all readings alike, or by as much along the arm or the tool.
-const SCALE: &str = "tracker_scale";
-const OF_TOOL: [&str; 2] = ["reflector_offset", "reflector_slip"];
-const DRIFT: &str = "thermal_drift";
+static STAND_INS: [&Kind; 4] = [&TRACKER_SCALE, &REFLECTOR_OFFSET, &REFLECTOR_SLIP, &THERMAL_DRIFT];
 
 /// A course held against one without what stands in for lengths: the better of them, and the
 /// other where that is about as good. `goes_on` is the search from a model on.
@@ -67,8 +66,7 @@ fn anew<'c>(
     goes_on: impl FnOnce(Course, &mut Bench<'c>) -> Course,
 ) -> Option<(Bench<'c>, Course)> {
     let (mut wide, model) = bench.widened(&course.model, []);
-    let may = |name: &str| name == SCALE || name == DRIFT || OF_TOOL.contains(&name);
-    let barred = (0..wide.candidates.len()).filter(|&candidate| may(wide.candidates[candidate].kind.name));
+    let barred = (0..wide.candidates.len()).filter(|&one| STAND_INS.contains(&wide.candidates[one].kind));
     let mut barred: Vec<usize> = barred.collect();
     // Some numbers of the last row are a reflector elsewhere under other names: which of the
     // two is named is not asked here.
@@ -84,7 +82,7 @@ fn anew<'c>(
 
 /// The candidates that say no more than a reflector that is elsewhere.
 fn parts_of_reflector(bench: &Bench<'_>) -> Vec<usize> {
-    let Some(candidate) = bench.candidates.iter().position(|one| one.kind.name == OF_TOOL[0]) else {
+    let Some(candidate) = bench.candidates.iter().position(|one| one.kind == &REFLECTOR_OFFSET) else {
         return Vec::new();
     };
     let anywhere = bench.candidates[candidate].variants.len() - 1;
@@ -93,9 +91,9 @@ fn parts_of_reflector(bench: &Bench<'_>) -> Vec<usize> {
 
 /// Whether an effect of a model can stand in for lengths; a drift where the arm grows.
 fn stands_in(bench: &Bench<'_>, one: Named) -> bool {
-    let name = bench.candidates[one.candidate].kind.name;
+    let kind = bench.candidates[one.candidate].kind;
     let grows = || bench.numbers_of(one).any(|number| number.name == "expansion");
-    name == SCALE || OF_TOOL.contains(&name) || (name == DRIFT && grows())
+    STAND_INS.contains(&kind) && (kind != &THERMAL_DRIFT || grows())
 }
 
 /// Whether a model says by lengths of the arm alone, with no more numbers, what another says by
@@ -103,9 +101,9 @@ fn stands_in(bench: &Bench<'_>, one: Named) -> bool {
 /// millimetre, a tracker's scale to some millionths, hundredths of that much; and where one
 /// length is off, another one is no wonder. So where the positions do not tell, it is the length.
 fn is_likelier(bench: &Bench<'_>, other: &Course, course: &Course) -> bool {
-    let kind = |one: &Named| bench.candidates[one.candidate].kind.name;
-    let has_scale = |course: &Course| course.model.named.iter().any(|one| kind(one) == SCALE);
-    let is_length = |one: &Named| kind(one) == "dh_error" && bench.numbers_of(*one).all(|number| number.unit == "m");
+    let kind = |one: &Named| bench.candidates[one.candidate].kind;
+    let has_scale = |course: &Course| course.model.named.iter().any(|one| kind(one) == &TRACKER_SCALE);
+    let is_length = |one: &Named| kind(one) == &DH_ERROR && bench.numbers_of(*one).all(|number| number.unit == "m");
     let has_length = |course: &Course| course.model.named.iter().any(is_length);
     has_scale(course)
         && !has_scale(other)

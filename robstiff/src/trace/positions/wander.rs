@@ -8,15 +8,16 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use super::bench::{Bench, Model};
 use super::course::Course;
 use crate::identify::positions::model::Enters;
+use crate::trace::catalogue::THERMAL_DRIFT;
 use crate::trace::model::{Named, all_but};
 use crate::trace::slip::Slipping;
 use crate::trace::step::Step;
-use crate::trace::wander::{self, Beside, OF_READING, WORDS};
+use crate::trace::wander::{self, Beside, WORDS};
 
 /// A course without the slips that what is read says better by going there and back, and what
 /// it looks like; `None` where there are none of these.
 pub fn instead_of_slips(bench: &mut Bench<'_>, course: &Course) -> Option<(Course, String)> {
-    let name = |one: &Named| bench.candidates[one.candidate].kind.name;
+    let drifts = |one: &Named| bench.candidates[one.candidate].kind == &THERMAL_DRIFT;
     let is_slip = |one: &Named| bench.candidates[one.candidate].slipping().is_some();
     let (mut model, mut best) = (course.model.clone(), course.model.bic);
     if model.leaves_nothing() {
@@ -25,7 +26,7 @@ pub fn instead_of_slips(bench: &mut Bench<'_>, course: &Course) -> Option<(Cours
     loop {
         // Beside such a course a drift may be part of it.
         let first = model.named.len() == course.model.named.len();
-        let may_go = |one: &Named| is_slip(one) || (!first && name(one) == OF_READING);
+        let may_go = |one: &Named| is_slip(one) || (!first && drifts(one));
         let without = |k: usize| {
             let smaller = bench.solve(&all_but(&model.named, k), &model.solved.state)?;
             Some((beside_a_course(bench, &smaller)?, smaller))

@@ -119,7 +119,7 @@ pub fn report(
 /// description takes: the column says something else, whatever fits.
 fn more_than_a_gear_errs(effects: &[NamedEffect]) -> Option<String> {
     let wave = |effect: &Found| effect.value("sin").hypot(effect.value("cos"));
-    let mut waves = effects.iter().map(|named| &named.effect).filter(|effect| effect.kind() == TRANSMISSION_ERROR.name);
+    let mut waves = effects.iter().map(|named| &named.effect).filter(|effect| effect.is(&TRANSMISSION_ERROR));
     let effect = waves.find(|effect| wave(effect) > MOST_DEVIATION)?;
     Some(format!(
         "no gear errs by as much as {:.0} mrad: the column of the angle of {} may be in another unit, scaled, or that \

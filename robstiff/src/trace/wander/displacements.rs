@@ -4,10 +4,11 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::{AGAIN, Beside, OF_READING, WORDS, beside_a_course};
+use super::{AGAIN, Beside, WORDS, beside_a_course};
 use crate::identify::normal::{Fit, Normal, Sign};
 use crate::identify::problem::Problem;
 use crate::trace::bench::Bench;
+use crate::trace::catalogue::THERMAL_DRIFT;
 use crate::trace::model::{Fitted, Named, Setting, all_but};
 use crate::trace::selection::WITHIN_REACH;
 
@@ -17,7 +18,7 @@ const MOMENTS: usize = 64;
 /// What stays of a model with slips where what is read says them better by going there and back,
 /// or by slipping once more, and what it looks like; `None` where they are said best as they are.
 pub fn instead_of_slips(bench: &Bench<'_>, model: &Fitted) -> Option<(Fitted, &'static str)> {
-    let name = |one: &Named| bench.candidates()[one.candidate].kind.name;
+    let drifts = |one: &Named| bench.candidates()[one.candidate].kind == &THERMAL_DRIFT;
     let is_slip = |one: &Named| bench.candidates()[one.candidate].slipping().is_some();
     model.named.iter().find(|one| is_slip(one))?;
     let slipped_again = |model: &Fitted| Asked::new(&*bench.at(&model.named).ok()?, model).slipped_again();
@@ -25,7 +26,7 @@ pub fn instead_of_slips(bench: &Bench<'_>, model: &Fitted) -> Option<(Fitted, &'
     loop {
         // Beside such a course a drift may be part of it.
         let first = model.named.len() == whole;
-        let may_go = |one: &Named| is_slip(one) || (!first && name(one) == OF_READING);
+        let may_go = |one: &Named| is_slip(one) || (!first && drifts(one));
         let enough = if first { best } else { best + WITHIN_REACH };
         let without = |k: usize| {
             let rest = all_but(&model.named, k);

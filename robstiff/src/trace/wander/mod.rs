@@ -30,9 +30,6 @@ pub const WORDS: &str = "a drift of what is read that goes there and back";
 /// How the words for a second slip begin; all that is said of one of displacements.
 pub const AGAIN: &str = "another slip";
 
-/// The kind of what drifts and has a name.
-pub const OF_READING: &str = "thermal_drift";
-
 /// How often a wave comes in a campaign, and in how many steps half a turn of its phase is
 /// looked for.
 const PERIODS: [f64; 8] = [0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0];
