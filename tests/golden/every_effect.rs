@@ -2,12 +2,12 @@
 //
 // standard DH, theta and alpha in degrees, d and a in metres:
 //   joint      theta          d          a      alpha   compliance
-//       1      10+q1       0.75       0.35        -90   2.4e-7 rad/Nm
-//       2     -90+q2          0       1.25          0   3.3e-7 rad/Nm
-//       3       0+q3       0.02      0.055        -88   2.7e-7 rad/Nm
-//       4       5+q4        1.1          0         90   3.9e-6 rad/Nm
-//       5       0+q5       0.08          0        -90   2.7e-6 rad/Nm
-//       6     180+q6       0.23          0          0   5.1e-6 rad/Nm
+//       1    q1 + 10       0.75       0.35        -90   2.4e-7 rad/Nm
+//       2    q2 - 90          0       1.25          0   3.3e-7 rad/Nm
+//       3         q3       0.02      0.055        -88   2.7e-7 rad/Nm
+//       4     q4 + 5        1.1          0         90   3.9e-6 rad/Nm
+//       5         q5       0.08          0        -90   2.7e-6 rad/Nm
+//       6   q6 + 180       0.23          0          0   5.1e-6 rad/Nm
 // with transverse_compliance@joint 1, the tilt of joint 1 about the axes across its own (bearing, housing)
 // with transverse_compliance@joint 3, the tilt of joint 3 about the axes across its own (bearing, housing)
 // with link_compliance@link 2, the bending and torsion of link 2

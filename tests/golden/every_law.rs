@@ -2,13 +2,13 @@
 //
 // modified DH, theta and alpha in degrees, d and a in metres:
 //   joint      theta          d          a      alpha   compliance
-//       1          0     0.2+q1          0         90   1.6666666666666667e-8 m/N
-//       2      15+q2       0.65          0        -90   2.4e-7 rad/Nm
-//       3     -90+q3          0       0.33        -90   3.3e-7 rad/Nm
-//       4       0+q4          0       1.15          0   2.7e-7 rad/Nm
-//       5       0+q5       1.22      0.115        -90   3.9e-6 rad/Nm
-//       6       0+q6          0          0         90   2.7e-6 rad/Nm
-//       7     180+q7      0.215          0        -90   5.1e-6 rad/Nm
+//       1          0   q1 + 0.2          0         90   1.6666666666666667e-8 m/N
+//       2    q2 + 15       0.65          0        -90   2.4e-7 rad/Nm
+//       3    q3 - 90          0       0.33        -90   3.3e-7 rad/Nm
+//       4         q4          0       1.15          0   2.7e-7 rad/Nm
+//       5         q5       1.22      0.115        -90   3.9e-6 rad/Nm
+//       6         q6          0          0         90   2.7e-6 rad/Nm
+//       7   q7 + 180      0.215          0        -90   5.1e-6 rad/Nm
 // with transverse_compliance@joint 4, the tilt of joint 4 about the axes across its own (bearing, housing)
 // with link_compliance@link 3, the bending and torsion of link 3
 // with joint_coupling@joints 5,6, the coupling of joints 5 and 6 (belts, wrist gearing)

@@ -2,11 +2,11 @@
 //
 // standard DH, theta and alpha in degrees, d and a in metres:
 //   joint      theta          d          a      alpha   compliance
-//       1       0+q1      0.865       0.41        -90   2.97e-7 rad/Nm
-//       2     -90+q2          0          1          0   2.97e-7 rad/Nm
-//       3       0+q3          0       0.25        -90   3.12e-7 rad/Nm
-//       4       0+q4        1.1          0         90   1.92e-7 rad/Nm
-//       5       0+q5          0        0.3          0   7.8e-6 rad/Nm
+//       1         q1      0.865       0.41        -90   2.97e-7 rad/Nm
+//       2    q2 - 90          0          1          0   2.97e-7 rad/Nm
+//       3         q3          0       0.25        -90   3.12e-7 rad/Nm
+//       4         q4        1.1          0         90   1.92e-7 rad/Nm
+//       5         q5          0        0.3          0   7.8e-6 rad/Nm
 //
 // Operations of one call:
 //   transform      10 trig, 45 mul, 26 add, 1 neg

@@ -55,6 +55,10 @@ fn docs_go_with_the_joints() {
     assert!(slide.contains("forces (N). Drives") && both.contains("of sliding joints forces (N). Drives"));
     let turning = code("{a: 1 m}");
     assert!(turning.contains("torques (Nm). Drives") && turning.contains("   rigid\n"), "{turning}");
+    let offset = code("{type: prismatic, d: 100 mm}, {type: prismatic, d: -0.2}, {theta: -90 deg}");
+    for entry in ["   q1 + 0.1   ", "   q2 - 0.2   ", "   q3 - 90   "] {
+        assert!(offset.contains(entry), "{offset}");
+    }
     let units = ["`q` are in m.", "`q` are in rad, of sliding joints in m.", "`q` are in rad."];
     for (code, unit) in [slide, both, turning].iter().zip(units) {
         assert!(code.contains(unit), "{code}");

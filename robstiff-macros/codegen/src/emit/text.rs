@@ -35,8 +35,8 @@ fn header(robot: &Description, origin: &Origin, functions: &[Generated]) -> Stri
     out += "//   joint      theta          d          a      alpha   compliance\n";
     for (number, joint) in (1..).zip(&robot.joints) {
         let (theta, d) = match joint.kind {
-            JointKind::Revolute => (format!("{}+q{number}", degrees(joint.theta)), joint.d.to_string()),
-            JointKind::Prismatic => (degrees(joint.theta), format!("{}+q{number}", joint.d)),
+            JointKind::Revolute => (with_coordinate(number, &degrees(joint.theta)), joint.d.to_string()),
+            JointKind::Prismatic => (degrees(joint.theta), with_coordinate(number, &joint.d.to_string())),
         };
         let h = match joint.compliance() {
             0.0 => "rigid".to_owned(),
@@ -53,6 +53,15 @@ fn header(robot: &Description, origin: &Origin, functions: &[Generated]) -> Stri
         out += &format!("//   {:<14} {}\n", generated.method.name, generated.function.cost());
     }
     out + "\n"
+}
+
+/// `q2 - 90`: an entry of the table to which the coordinate of its joint adds.
+fn with_coordinate(number: usize, entry: &str) -> String {
+    match (entry, entry.strip_prefix('-')) {
+        ("0", _) => format!("q{number}"),
+        (_, Some(magnitude)) => format!("q{number} - {magnitude}"),
+        (_, None) => format!("q{number} + {entry}"),
+    }
 }
 
 fn degrees(angle: f64) -> String {
