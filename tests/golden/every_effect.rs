@@ -376,74 +376,76 @@ impl Robot<6> for EveryEffect {
         let tool_z = T::of(Self::TOOL_Z);
         let sin_tool_pitch = T::of(Self::SIN_TOOL_PITCH);
         let cos_tool_pitch = T::of(Self::COS_TOOL_PITCH);
+        let neg_sin_base_pitch = T::of(-Self::SIN_BASE_PITCH);
+        let neg_sin_base_pitch_a1 = T::of(-(Self::SIN_BASE_PITCH * Self::A1));
+
+        // Constants without a short name.
         let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
         let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
-        let k3 = T::of(-Self::SIN_BASE_PITCH);
-        let k4 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
-        let k5 = T::of(
-            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
+        let k3 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k4 = T::of(
+            Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW,
         );
-        let k6 = T::of(
+        let k5 = T::of(
             Self::COS_BASE_ROLL * Self::COS_BASE_YAW
                 + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
-        let k7 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
-        let k8 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
-        let k9 = T::of(Self::A1 * -Self::SIN_BASE_PITCH);
-        let k10 = T::of(
+        let k6 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
+        let k7 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
+        let k8 = T::of(
             Self::A1
-                * (Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+                * (Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k11 = T::of(
+        let k9 = T::of(
             Self::A1
                 * (Self::COS_BASE_ROLL * Self::COS_BASE_YAW
                     + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k12 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k13 = T::of(
+        let k10 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
+        let k11 = T::of(
             Self::D1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k14 = T::of(
+        let k12 = T::of(
             Self::D1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                     - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
-        let k15 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k16 = T::of(
-            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
+        let k13 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k14 = T::of(
+            -(Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k17 = T::of(
+        let k15 = T::of(
             Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
-        let k18 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k19 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+        let k16 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k17 = T::of(
+            -(Self::A2
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW)),
         );
+        let k18 = T::of(
+            Self::A2
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
+        );
+        let k19 = T::of(-(Self::A2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL)));
         let k20 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
+            -(Self::A3
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW)),
         );
-        let k21 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k22 = T::of(
-            Self::A3
-                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
-        );
-        let k23 = T::of(
+        let k21 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k24 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k22 = T::of(-(Self::A3 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL)));
         let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s6o, c6o), (s1o, c1o),
         ] = T::sin_cos_all([
             q[1] + q[2],
@@ -456,29 +458,29 @@ impl Robot<6> for EveryEffect {
         ]);
 
         // Axes and origins, from the base to the tip.
-        let t1 = base_x + (k7 * c1o + k10 * s1o + k13);
-        let t2 = base_y + (k8 * c1o + k11 * s1o + k14);
-        let t3 = base_z + (k9 * c1o + k12 * s1o + k15);
-        let t4 = k1 * c1o + k5 * s1o;
-        let t5 = k2 * c1o + k6 * s1o;
-        let t6 = k3 * c1o + k4 * s1o;
-        let t7 = k5 * c1o - k1 * s1o;
-        let t8 = k6 * c1o - k2 * s1o;
-        let t9 = k4 * c1o - k3 * s1o;
+        let t1 = base_x + (k6 * c1o + k8 * s1o + k11);
+        let t2 = base_y + (k7 * c1o + k9 * s1o + k12);
+        let t3 = base_z + (neg_sin_base_pitch_a1 * c1o + k10 * s1o + k13);
+        let t4 = k1 * c1o + k4 * s1o;
+        let t5 = k2 * c1o + k5 * s1o;
+        let t6 = neg_sin_base_pitch * c1o + k3 * s1o;
+        let t7 = k4 * c1o - k1 * s1o;
+        let t8 = k5 * c1o - k2 * s1o;
+        let t9 = k3 * c1o - neg_sin_base_pitch * s1o;
         let t10 = a2 * s2;
         let t11 = a3 * s23;
-        let t12 = t4 * t11 - k22 * c23 + d3 * t7;
-        let t13 = t5 * t11 - k23 * c23 + d3 * t8;
-        let t14 = t6 * t11 - k24 * c23 + d3 * t9;
-        let t15 = t1 + (t4 * t10 - k19 * c2) + t12;
-        let t16 = t2 + (t5 * t10 - k20 * c2) + t13;
-        let t17 = t3 + (t6 * t10 - k21 * c2) + t14;
-        let t18 = t4 * s23 - k16 * c23;
-        let t19 = t5 * s23 - k17 * c23;
-        let t20 = t6 * s23 - k18 * c23;
-        let t21 = k16 * s23 + t4 * c23;
-        let t22 = k17 * s23 + t5 * c23;
-        let t23 = k18 * s23 + t6 * c23;
+        let t12 = t4 * t11 - k20 * c23 + d3 * t7;
+        let t13 = t5 * t11 - k21 * c23 + d3 * t8;
+        let t14 = t6 * t11 - k22 * c23 + d3 * t9;
+        let t15 = t1 + (t4 * t10 - k17 * c2) + t12;
+        let t16 = t2 + (t5 * t10 - k18 * c2) + t13;
+        let t17 = t3 + (t6 * t10 - k19 * c2) + t14;
+        let t18 = t4 * s23 - k14 * c23;
+        let t19 = t5 * s23 - k15 * c23;
+        let t20 = t6 * s23 - k16 * c23;
+        let t21 = k14 * s23 + t4 * c23;
+        let t22 = k15 * s23 + t5 * c23;
+        let t23 = k16 * s23 + t6 * c23;
         let t24 = cos_alpha3 * t21 + sin_alpha3 * t7;
         let t25 = cos_alpha3 * t22 + sin_alpha3 * t8;
         let t26 = cos_alpha3 * t23 + sin_alpha3 * t9;
@@ -550,74 +552,76 @@ impl Robot<6> for EveryEffect {
         let d4 = T::of(Self::D4);
         let d5 = T::of(Self::D5);
         let d6 = T::of(Self::D6);
+        let neg_sin_base_pitch = T::of(-Self::SIN_BASE_PITCH);
+        let neg_sin_base_pitch_a1 = T::of(-(Self::SIN_BASE_PITCH * Self::A1));
+        let y1_y = T::of(
+            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
+        );
+
+        // Constants without a short name.
         let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
         let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
-        let k3 = T::of(-Self::SIN_BASE_PITCH);
-        let k4 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
-        let k5 = T::of(
-            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
+        let k3 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k4 = T::of(
+            Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW,
         );
-        let k6 = T::of(
+        let k5 = T::of(
             Self::COS_BASE_ROLL * Self::COS_BASE_YAW
                 + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
-        let k7 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
-        let k8 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
-        let k9 = T::of(Self::A1 * -Self::SIN_BASE_PITCH);
-        let k10 = T::of(
+        let k6 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
+        let k7 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
+        let k8 = T::of(
             Self::A1
-                * (Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+                * (Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k11 = T::of(
+        let k9 = T::of(
             Self::A1
                 * (Self::COS_BASE_ROLL * Self::COS_BASE_YAW
                     + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k12 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k13 = T::of(
+        let k10 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
+        let k11 = T::of(
             Self::D1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k14 = T::of(
+        let k12 = T::of(
             Self::D1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                     - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
-        let k15 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k13 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k14 = T::of(
+            -(Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
+        );
+        let k15 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let k16 = T::of(
-            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
+            -(Self::A2
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW)),
         );
         let k17 = T::of(
-            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
-        );
-        let k18 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k19 = T::of(
             Self::A2
-                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
+        );
+        let k18 = T::of(-(Self::A2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL)));
+        let k19 = T::of(
+            -(Self::A3
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW)),
         );
         let k20 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
-        );
-        let k21 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k22 = T::of(
-            Self::A3
-                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
-        );
-        let k23 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k24 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k21 = T::of(-(Self::A3 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL)));
         let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_all([
             q[1] + q[2],
             q[1],
@@ -628,38 +632,38 @@ impl Robot<6> for EveryEffect {
         ]);
 
         // Axes and origins, from the base to the tip.
-        let p1_x = base_x + (k7 * c1o + k10 * s1o + k13);
-        let p1_y = base_y + (k8 * c1o + k11 * s1o + k14);
-        let p1_z = base_z + (k9 * c1o + k12 * s1o + k15);
-        let x1_x = k1 * c1o + k5 * s1o;
-        let x1_y = k2 * c1o + k6 * s1o;
-        let x1_z = k3 * c1o + k4 * s1o;
-        let z1_x = k5 * c1o - k1 * s1o;
-        let z1_y = k6 * c1o - k2 * s1o;
-        let z1_z = k4 * c1o - k3 * s1o;
+        let p1_x = base_x + (k6 * c1o + k8 * s1o + k11);
+        let p1_y = base_y + (k7 * c1o + k9 * s1o + k12);
+        let p1_z = base_z + (neg_sin_base_pitch_a1 * c1o + k10 * s1o + k13);
+        let x1_x = k1 * c1o + k4 * s1o;
+        let x1_y = k2 * c1o + k5 * s1o;
+        let x1_z = neg_sin_base_pitch * c1o + k3 * s1o;
+        let z1_x = k4 * c1o - k1 * s1o;
+        let z1_y = k5 * c1o - k2 * s1o;
+        let z1_z = k3 * c1o - neg_sin_base_pitch * s1o;
         let t1 = a2 * s2;
-        let p2_x = p1_x + (x1_x * t1 - k19 * c2);
-        let p2_y = p1_y + (x1_y * t1 - k20 * c2);
-        let p2_z = p1_z + (x1_z * t1 - k21 * c2);
-        let x2_x = x1_x * s2 - k16 * c2;
-        let x2_y = x1_y * s2 - k17 * c2;
-        let x2_z = x1_z * s2 - k18 * c2;
-        let y2_x = k16 * s2 + x1_x * c2;
-        let y2_y = k17 * s2 + x1_y * c2;
-        let y2_z = k18 * s2 + x1_z * c2;
+        let p2_x = p1_x + (x1_x * t1 - k16 * c2);
+        let p2_y = p1_y + (x1_y * t1 - k17 * c2);
+        let p2_z = p1_z + (x1_z * t1 - k18 * c2);
+        let x2_x = x1_x * s2 - k14 * c2;
+        let x2_y = x1_y * s2 - y1_y * c2;
+        let x2_z = x1_z * s2 - k15 * c2;
+        let y2_x = k14 * s2 + x1_x * c2;
+        let y2_y = y1_y * s2 + x1_y * c2;
+        let y2_z = k15 * s2 + x1_z * c2;
         let t2 = a3 * s23;
-        let t3 = x1_x * t2 - k22 * c23 + d3 * z1_x;
-        let t4 = x1_y * t2 - k23 * c23 + d3 * z1_y;
-        let t5 = x1_z * t2 - k24 * c23 + d3 * z1_z;
+        let t3 = x1_x * t2 - k19 * c23 + d3 * z1_x;
+        let t4 = x1_y * t2 - k20 * c23 + d3 * z1_y;
+        let t5 = x1_z * t2 - k21 * c23 + d3 * z1_z;
         let p3_x = p2_x + t3;
         let p3_y = p2_y + t4;
         let p3_z = p2_z + t5;
-        let x3_x = x1_x * s23 - k16 * c23;
-        let x3_y = x1_y * s23 - k17 * c23;
-        let x3_z = x1_z * s23 - k18 * c23;
-        let t6 = k16 * s23 + x1_x * c23;
-        let t7 = k17 * s23 + x1_y * c23;
-        let t8 = k18 * s23 + x1_z * c23;
+        let x3_x = x1_x * s23 - k14 * c23;
+        let x3_y = x1_y * s23 - y1_y * c23;
+        let x3_z = x1_z * s23 - k15 * c23;
+        let t6 = k14 * s23 + x1_x * c23;
+        let t7 = y1_y * s23 + x1_y * c23;
+        let t8 = k15 * s23 + x1_z * c23;
         let y3_x = cos_alpha3 * t6 + sin_alpha3 * z1_x;
         let y3_y = cos_alpha3 * t7 + sin_alpha3 * z1_y;
         let y3_z = cos_alpha3 * t8 + sin_alpha3 * z1_z;
@@ -701,9 +705,9 @@ impl Robot<6> for EveryEffect {
         let y6_z = x5_z * s6 - y5_z * c6;
         [
             Matrix4::new(
-                x1_x, k16, z1_x, p1_x,
-                x1_y, k17, z1_y, p1_y,
-                x1_z, k18, z1_z, p1_z,
+                x1_x, k14, z1_x, p1_x,
+                x1_y, y1_y, z1_y, p1_y,
+                x1_z, k15, z1_z, p1_z,
                 T::zero(), T::zero(), T::zero(), T::one(),
             ),
             Matrix4::new(
@@ -755,83 +759,85 @@ impl Robot<6> for EveryEffect {
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
-        let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
-        let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
-        let k3 = T::of(-Self::SIN_BASE_PITCH);
-        let k4 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
-        let k5 = T::of(
-            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
-        );
-        let k6 = T::of(
-            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
-        );
-        let k7 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
-        let k8 = T::of(
+        let neg_sin_base_pitch = T::of(-Self::SIN_BASE_PITCH);
+        let z1z = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let z1x = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW,
         );
-        let k9 = T::of(
+        let z1y = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                 - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
-        let k10 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
-        let k11 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
-        let k12 = T::of(Self::A1 * -Self::SIN_BASE_PITCH);
-        let k13 = T::of(
-            Self::A1
-                * (Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+        let neg_sin_base_pitch_a1 = T::of(-(Self::SIN_BASE_PITCH * Self::A1));
+
+        // Constants without a short name.
+        let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
+        let k3 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k4 = T::of(
+            Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW,
         );
-        let k14 = T::of(
+        let k5 = T::of(
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
+        );
+        let k6 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
+        let k7 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
+        let k8 = T::of(
+            Self::A1
+                * (Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW),
+        );
+        let k9 = T::of(
             Self::A1
                 * (Self::COS_BASE_ROLL * Self::COS_BASE_YAW
                     + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k15 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k16 = T::of(
+        let k10 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
+        let k11 = T::of(
             Self::D1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k17 = T::of(
+        let k12 = T::of(
             Self::D1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                     - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
-        let k18 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k19 = T::of(
-            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
+        let k13 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k14 = T::of(
+            -(Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k20 = T::of(
+        let k15 = T::of(
             Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
-        let k21 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k22 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+        let k16 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k17 = T::of(
+            -(Self::A2
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW)),
         );
-        let k23 = T::of(
+        let k18 = T::of(
             Self::A2
                 * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k24 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k25 = T::of(
-            Self::A3
-                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+        let k19 = T::of(-(Self::A2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL)));
+        let k20 = T::of(
+            -(Self::A3
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW)),
         );
-        let k26 = T::of(
+        let k21 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k22 = T::of(-(Self::A3 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL)));
         let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_all([
             q[1] + q[2],
             q[1],
@@ -842,23 +848,23 @@ impl Robot<6> for EveryEffect {
         ]);
 
         // Axes and origins, from the base to the tip.
-        let t1 = k1 * c1o + k5 * s1o;
-        let t2 = k2 * c1o + k6 * s1o;
-        let t3 = k3 * c1o + k4 * s1o;
-        let z2x = k5 * c1o - k1 * s1o;
-        let z2y = k6 * c1o - k2 * s1o;
-        let z2z = k4 * c1o - k3 * s1o;
+        let t1 = k1 * c1o + k4 * s1o;
+        let t2 = k2 * c1o + k5 * s1o;
+        let t3 = neg_sin_base_pitch * c1o + k3 * s1o;
+        let z2x = k4 * c1o - k1 * s1o;
+        let z2y = k5 * c1o - k2 * s1o;
+        let z2z = k3 * c1o - neg_sin_base_pitch * s1o;
         let t4 = a2 * s2;
         let t5 = a3 * s23;
-        let t6 = t1 * t5 - k25 * c23 + d3 * z2x;
-        let t7 = t2 * t5 - k26 * c23 + d3 * z2y;
-        let t8 = t3 * t5 - k27 * c23 + d3 * z2z;
-        let t9 = t1 * s23 - k19 * c23;
-        let t10 = t2 * s23 - k20 * c23;
-        let t11 = t3 * s23 - k21 * c23;
-        let t12 = k19 * s23 + t1 * c23;
-        let t13 = k20 * s23 + t2 * c23;
-        let t14 = k21 * s23 + t3 * c23;
+        let t6 = t1 * t5 - k20 * c23 + d3 * z2x;
+        let t7 = t2 * t5 - k21 * c23 + d3 * z2y;
+        let t8 = t3 * t5 - k22 * c23 + d3 * z2z;
+        let t9 = t1 * s23 - k14 * c23;
+        let t10 = t2 * s23 - k15 * c23;
+        let t11 = t3 * s23 - k16 * c23;
+        let t12 = k14 * s23 + t1 * c23;
+        let t13 = k15 * s23 + t2 * c23;
+        let t14 = k16 * s23 + t3 * c23;
         let t15 = cos_alpha3 * t12 + sin_alpha3 * z2x;
         let t16 = cos_alpha3 * t13 + sin_alpha3 * z2y;
         let t17 = cos_alpha3 * t14 + sin_alpha3 * z2z;
@@ -902,17 +908,17 @@ impl Robot<6> for EveryEffect {
         let l3x = t6 + l4x;
         let l3y = t7 + l4y;
         let l3z = t8 + l4z;
-        let l2x = t1 * t4 - k22 * c2 + l3x;
-        let l2y = t2 * t4 - k23 * c2 + l3y;
-        let l2z = t3 * t4 - k24 * c2 + l3z;
-        let l1x = k10 * c1o + k13 * s1o + k16 + l2x;
-        let l1y = k11 * c1o + k14 * s1o + k17 + l2y;
-        let l1z = k12 * c1o + k15 * s1o + k18 + l2z;
+        let l2x = t1 * t4 - k17 * c2 + l3x;
+        let l2y = t2 * t4 - k18 * c2 + l3y;
+        let l2z = t3 * t4 - k19 * c2 + l3z;
+        let l1x = k6 * c1o + k8 * s1o + k11 + l2x;
+        let l1y = k7 * c1o + k9 * s1o + k12 + l2y;
+        let l1z = neg_sin_base_pitch_a1 * c1o + k10 * s1o + k13 + l2z;
 
         // What the joints move: z is an axis, l leads from it to the TCP.
-        let j1x = k9 * l1z - k7 * l1y;
-        let j1y = k7 * l1x - k8 * l1z;
-        let j1z = k8 * l1y - k9 * l1x;
+        let j1x = z1y * l1z - z1z * l1y;
+        let j1y = z1z * l1x - z1x * l1z;
+        let j1z = z1x * l1y - z1y * l1x;
         let j2x = z2y * l2z - z2z * l2y;
         let j2y = z2z * l2x - z2x * l2z;
         let j2z = z2x * l2y - z2y * l2x;
@@ -929,7 +935,7 @@ impl Robot<6> for EveryEffect {
         let j6y = z6z * l6x - z6x * l6z;
         let j6z = z6x * l6y - z6y * l6x;
         SMatrix::from([
-            [j1x, j1y, j1z, k8, k9, k7],
+            [j1x, j1y, j1z, z1x, z1y, z1z],
             [j2x, j2y, j2z, z2x, z2y, z2z],
             [j3x, j3y, j3z, z2x, z2y, z2z],
             [j4x, j4y, j4z, z4x, z4y, z4z],
@@ -973,215 +979,205 @@ impl Robot<6> for EveryEffect {
         let cos_alpha3 = T::of(Self::COS_ALPHA3);
         let d4 = T::of(Self::D4);
         let d5 = T::of(Self::D5);
-        let k1 = T::of(
-            Self::TOOL_X * Self::COS_TOOL_YAW - Self::TOOL_Y * -Self::SIN_TOOL_YAW,
+        let r6x = T::of(
+            Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW,
         );
-        let k2 = T::of(
-            Self::TOOL_X * -Self::SIN_TOOL_YAW + Self::TOOL_Y * Self::COS_TOOL_YAW,
+        let r6y = T::of(
+            Self::TOOL_Y * Self::COS_TOOL_YAW - Self::TOOL_X * Self::SIN_TOOL_YAW,
         );
-        let k3 = T::of(Self::TOOL_ROTATION * Self::TOOL_Z);
-        let k4 = T::of(
+        let tool_rotation_tool_z = T::of(Self::TOOL_ROTATION * Self::TOOL_Z);
+        let tr6_zx = T::of(
             Self::TOOL_ROTATION
-                * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                    + Self::TOOL_Y * Self::COS_TOOL_YAW),
+                * (Self::TOOL_Y * Self::COS_TOOL_YAW - Self::TOOL_X * Self::SIN_TOOL_YAW),
         );
-        let k5 = T::of(
-            -(Self::TOOL_ROTATION
-                * (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)),
-        );
-        let k6 = T::of(
-            -(Self::TOOL_X * -Self::SIN_TOOL_YAW + Self::TOOL_Y * Self::COS_TOOL_YAW),
-        );
-        let k7 = T::of(
-            Self::TOOL_ROTATION * Self::TOOL_Z
-                * (Self::TOOL_Y * -Self::SIN_TOOL_YAW
-                    - Self::TOOL_X * Self::COS_TOOL_YAW),
-        );
-        let k8 = T::of(
-            (Self::TOOL_X * -Self::SIN_TOOL_YAW + Self::TOOL_Y * Self::COS_TOOL_YAW)
-                * -(Self::TOOL_ROTATION * Self::TOOL_Z),
-        );
-        let k9 = T::of(
+        let tt6_zz = T::of(
             Self::TOOL_TRANSLATION
-                + ((Self::TOOL_X * -Self::SIN_TOOL_YAW
-                    + Self::TOOL_Y * Self::COS_TOOL_YAW)
+                + ((Self::TOOL_X * Self::COS_TOOL_YAW
+                    + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                     * (Self::TOOL_ROTATION
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                    + -(Self::TOOL_ROTATION
                         * (Self::TOOL_X * Self::COS_TOOL_YAW
-                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW))
-                        * (Self::TOOL_Y * -Self::SIN_TOOL_YAW
-                            - Self::TOOL_X * Self::COS_TOOL_YAW)),
+                            + Self::TOOL_Y * Self::SIN_TOOL_YAW))
+                    + (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW)
+                        * (Self::TOOL_ROTATION
+                            * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                - Self::TOOL_X * Self::SIN_TOOL_YAW))),
         );
-        let k10 = T::of(Self::D6 + Self::TOOL_Z);
-        let k11 = T::of(
+        let d6_plus_tool_z = T::of(Self::D6 + Self::TOOL_Z);
+        let tt6_xx = T::of(
             Self::TOOL_TRANSLATION
                 + (Self::TOOL_Z * (Self::TOOL_ROTATION * Self::TOOL_Z)
-                    + -(Self::TOOL_ROTATION
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                        * -(Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                + -(Self::TOOL_X * -Self::SIN_TOOL_YAW
-                    + Self::TOOL_Y * Self::COS_TOOL_YAW)
-                    * -(Self::H6
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW)),
+                    - Self::TOOL_ROTATION
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW)
+                        * (Self::TOOL_X * Self::SIN_TOOL_YAW
+                            - Self::TOOL_Y * Self::COS_TOOL_YAW))
+                - (Self::TOOL_X * Self::SIN_TOOL_YAW - Self::TOOL_Y * Self::COS_TOOL_YAW)
+                    * (Self::H6
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW)),
         );
-        let k12 = T::of(
-            (Self::TOOL_X * Self::COS_TOOL_YAW - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                * -(Self::TOOL_ROTATION
-                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                + (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                    * -(Self::H6
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW)),
-        );
-        let k13 = T::of(
+        let tt6_yy = T::of(
             Self::TOOL_TRANSLATION
-                + (-(Self::TOOL_ROTATION * Self::TOOL_Z) * -Self::TOOL_Z
+                + (Self::TOOL_Z * (Self::TOOL_ROTATION * Self::TOOL_Z)
                     + (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                         * (Self::TOOL_ROTATION
                             * (Self::TOOL_X * Self::COS_TOOL_YAW
-                                - Self::TOOL_Y * -Self::SIN_TOOL_YAW)))
-                + (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                                + Self::TOOL_Y * Self::SIN_TOOL_YAW)))
+                + (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                     * (Self::H6
                         * (Self::TOOL_X * Self::COS_TOOL_YAW
-                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)),
+                            + Self::TOOL_Y * Self::SIN_TOOL_YAW)),
         );
-        let k14 = T::of(Self::H6 + Self::TOOL_ROTATION);
-        let k15 = T::of(
-            -(Self::TOOL_ROTATION
-                * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                    + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                + -(Self::H6
-                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                        + Self::TOOL_Y * Self::COS_TOOL_YAW)),
-        );
-        let k16 = T::of(
+        let h6_plus_tool_rotation = T::of(Self::H6 + Self::TOOL_ROTATION);
+        let tr6_yz = T::of(
             Self::TOOL_ROTATION
-                * (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                * (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                 + Self::H6
                     * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW),
+                        + Self::TOOL_Y * Self::SIN_TOOL_YAW),
         );
-        let k17 = T::of(
+        let h5_plus_added5 = T::of(Self::H5 + Self::ADDED5);
+        let rr5_zz = T::of(Self::TOOL_ROTATION + (Self::H5 + Self::ADDED5));
+        let a3_inv_2 = T::of(Self::A3 * 0.5);
+        let d3_inv_2 = T::of(Self::D3 * 0.5);
+        let a2_bending2_inv_12 = T::of(Self::A2 * (Self::BENDING2 * (1.0 / 12.0)));
+        let a2_a2_bending2_inv_12 = T::of(
+            Self::A2 * Self::A2 * (Self::BENDING2 * (1.0 / 12.0)),
+        );
+        let a2_inv_2 = T::of(Self::A2 * 0.5);
+        let h2_plus_added2 = T::of(Self::H2 + Self::ADDED2);
+        let sin_base_yaw = T::of(Self::SIN_BASE_YAW);
+        let cos_base_yaw = T::of(Self::COS_BASE_YAW);
+
+        // Constants without a short name.
+        let k1 = T::of(
+            -(Self::TOOL_ROTATION
+                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                    + Self::TOOL_Y * Self::SIN_TOOL_YAW)),
+        );
+        let k2 = T::of(
+            Self::TOOL_X * Self::SIN_TOOL_YAW - Self::TOOL_Y * Self::COS_TOOL_YAW,
+        );
+        let k3 = T::of(
+            -((Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                * (Self::TOOL_ROTATION * Self::TOOL_Z)),
+        );
+        let k4 = T::of(
+            -((Self::TOOL_Y * Self::COS_TOOL_YAW - Self::TOOL_X * Self::SIN_TOOL_YAW)
+                * (Self::TOOL_ROTATION * Self::TOOL_Z)),
+        );
+        let k5 = T::of(
+            -((Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                * (Self::TOOL_ROTATION
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW))
+                + (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                    * (Self::H6
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW))),
+        );
+        let k6 = T::of(
+            -(Self::TOOL_ROTATION
+                * (Self::TOOL_Y * Self::COS_TOOL_YAW - Self::TOOL_X * Self::SIN_TOOL_YAW)
+                + Self::H6
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW)),
+        );
+        let k7 = T::of(
             Self::TOOL_TRANSLATION
                 + (Self::TOOL_Z * (Self::TOOL_ROTATION * Self::TOOL_Z)
-                    + -(Self::TOOL_ROTATION
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                        * -(Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                + -(Self::TOOL_X * -Self::SIN_TOOL_YAW
-                    + Self::TOOL_Y * Self::COS_TOOL_YAW)
-                    * -(Self::H6
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                    - Self::TOOL_ROTATION
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW)
+                        * (Self::TOOL_X * Self::SIN_TOOL_YAW
+                            - Self::TOOL_Y * Self::COS_TOOL_YAW))
+                - (Self::TOOL_X * Self::SIN_TOOL_YAW - Self::TOOL_Y * Self::COS_TOOL_YAW)
+                    * (Self::H6
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW))
                 - (Self::TOOL_TRANSLATION
-                    + (-(Self::TOOL_ROTATION * Self::TOOL_Z) * -Self::TOOL_Z
+                    + (Self::TOOL_Z * (Self::TOOL_ROTATION * Self::TOOL_Z)
                         + (Self::TOOL_X * Self::COS_TOOL_YAW
-                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                            + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                             * (Self::TOOL_ROTATION
                                 * (Self::TOOL_X * Self::COS_TOOL_YAW
-                                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)))
+                                    + Self::TOOL_Y * Self::SIN_TOOL_YAW)))
                     + (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                         * (Self::H6
                             * (Self::TOOL_X * Self::COS_TOOL_YAW
-                                - Self::TOOL_Y * -Self::SIN_TOOL_YAW))),
+                                + Self::TOOL_Y * Self::SIN_TOOL_YAW))),
+        );
+        let k8 = T::of(
+            -((Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                * (Self::TOOL_ROTATION
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW))
+                + (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                    * (Self::H6
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW))
+                + ((Self::TOOL_X * Self::COS_TOOL_YAW
+                    + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                    * (Self::TOOL_ROTATION
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW))
+                    + (Self::TOOL_X * Self::COS_TOOL_YAW
+                        + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                        * (Self::H6
+                            * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                - Self::TOOL_X * Self::SIN_TOOL_YAW)))),
+        );
+        let k9 = T::of(-((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)));
+        let k10 = T::of(
+            (Self::D6 + Self::TOOL_Z)
+                * ((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)),
+        );
+        let k11 = T::of(
+            -(Self::TOOL_ROTATION * Self::TOOL_Z
+                + (Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)),
+        );
+        let k12 = T::of(-(Self::COUPLING5_6 * (Self::D6 + Self::TOOL_Z)));
+        let k13 = T::of(Self::TOOL_ROTATION - (Self::H6 + Self::TOOL_ROTATION));
+        let k14 = T::of(
+            Self::BENDING3
+                - Self::A3
+                    * (Self::A3
+                        * (Self::BENDING3
+                            * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
+        );
+        let k15 = T::of(
+            -(Self::D3
+                * (Self::A3
+                    * (Self::BENDING3
+                        * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3))))),
+        );
+        let k16 = T::of(
+            Self::BENDING3
+                - Self::D3
+                    * (Self::D3
+                        * (Self::BENDING3
+                            * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
+        );
+        let k17 = T::of(
+            (Self::A3 * Self::A3 + Self::D3 * Self::D3) * (Self::BENDING3 * (1.0 / 12.0)),
         );
         let k18 = T::of(
-            (Self::TOOL_X * Self::COS_TOOL_YAW - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                * -(Self::TOOL_ROTATION
-                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                + (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                    * -(Self::H6
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                + ((Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                    * -(Self::TOOL_ROTATION
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                    + (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                        * -(Self::H6
-                            * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                                + Self::TOOL_Y * Self::COS_TOOL_YAW))),
+            (Self::A3 * Self::A3 + Self::D3 * Self::D3) * (Self::BENDING3 * (1.0 / 12.0))
+                - Self::A3 * (Self::A3 * (Self::BENDING3 * (1.0 / 12.0))),
         );
-        let k19 = T::of(Self::H5 + Self::ADDED5);
-        let k20 = T::of(-((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)));
+        let k19 = T::of(-(Self::D3 * (Self::A3 * (Self::BENDING3 * (1.0 / 12.0)))));
+        let k20 = T::of(
+            (Self::A3 * Self::A3 + Self::D3 * Self::D3) * (Self::BENDING3 * (1.0 / 12.0))
+                - Self::D3 * (Self::D3 * (Self::BENDING3 * (1.0 / 12.0))),
+        );
         let k21 = T::of(
-            -(Self::D6 + Self::TOOL_Z)
-                * -((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)),
-        );
-        let k22 = T::of(Self::TOOL_ROTATION + (Self::H5 + Self::ADDED5));
-        let k23 = T::of(
-            -(Self::TOOL_ROTATION * Self::TOOL_Z)
-                + -((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)),
-        );
-        let k24 = T::of(Self::COUPLING5_6 * -(Self::D6 + Self::TOOL_Z));
-        let k25 = T::of(Self::TOOL_ROTATION - (Self::H6 + Self::TOOL_ROTATION));
-        let k26 = T::of(
-            Self::BENDING3
-                + Self::A3
-                    * (Self::A3
-                        * (-Self::BENDING3
-                            * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
-        );
-        let k27 = T::of(
-            Self::D3
-                * (Self::A3
-                    * (-Self::BENDING3
-                        * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
-        );
-        let k28 = T::of(
-            Self::BENDING3
-                + Self::D3
-                    * (Self::D3
-                        * (-Self::BENDING3
-                            * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
-        );
-        let k29 = T::of(
-            (Self::A3 * Self::A3 + Self::D3 * Self::D3)
-                * (Self::BENDING3 * 0.08333333333333333),
-        );
-        let k30 = T::of(
-            (Self::A3 * Self::A3 + Self::D3 * Self::D3)
-                * (Self::BENDING3 * 0.08333333333333333)
-                - Self::A3 * (Self::A3 * (Self::BENDING3 * 0.08333333333333333)),
-        );
-        let k31 = T::of(
-            -(Self::D3 * (Self::A3 * (Self::BENDING3 * 0.08333333333333333))),
-        );
-        let k32 = T::of(
-            (Self::A3 * Self::A3 + Self::D3 * Self::D3)
-                * (Self::BENDING3 * 0.08333333333333333)
-                - Self::D3 * (Self::D3 * (Self::BENDING3 * 0.08333333333333333)),
-        );
-        let k33 = T::of(Self::A3 * 0.5);
-        let k34 = T::of(Self::D3 * 0.5);
-        let k35 = T::of(
             Self::A2
                 * ((Self::TORSION2 - Self::BENDING2) * (1.0 / (Self::A2 * Self::A2))),
         );
-        let k36 = T::of(Self::A2 * (Self::BENDING2 * 0.08333333333333333));
-        let k37 = T::of(Self::A2 * Self::A2 * (Self::BENDING2 * 0.08333333333333333));
-        let k38 = T::of(Self::A2 * 0.5);
-        let k39 = T::of(Self::H2 + Self::ADDED2);
-        let k40 = T::of(Self::COUPLING2_3 + Self::COUPLING2_3);
-        let sin_base_yaw = T::of(Self::SIN_BASE_YAW);
-        let cos_base_yaw = T::of(Self::COS_BASE_YAW);
+        let k22 = T::of(Self::COUPLING2_3 + Self::COUPLING2_3);
         let [(s6o, c6o), (s5, c5), (s4o, c4o), (s3, c3), (s23, c23), (s1o, c1o)] = T::sin_cos_all([
             q[5] + T::of(Self::TOOL_YAW + Self::THETA6),
             q[4],
@@ -1192,43 +1188,43 @@ impl Robot<6> for EveryEffect {
         ]);
 
         // From joint 6 to the TCP.
-        let t1 = k1 * c6o;
-        let r5x = t1 - k2 * s6o;
-        let t2 = k1 * s6o;
-        let t3 = t2 + k2 * c6o;
-        let t4 = k17 * s6o + k18 * c6o;
+        let t1 = r6x * c6o;
+        let r5x = t1 - r6y * s6o;
+        let t2 = r6x * s6o;
+        let t3 = t2 + r6y * c6o;
+        let t4 = k7 * s6o + k8 * c6o;
         let t5 = s6o * t4;
-        let tt5_zz = k13 + t5;
-        let t6 = k15 * s6o + k16 * c6o;
-        let tr5_yx = k4 * c6o - k5 * s6o;
-        let t7 = k6 * c6o - t2;
-        let t8 = t1 + k6 * s6o;
+        let tt5_zz = tt6_yy + t5;
+        let t6 = k6 * s6o + tr6_yz * c6o;
+        let tr5_yx = tr6_zx * c6o - k1 * s6o;
+        let t7 = k2 * c6o - t2;
+        let t8 = t1 + k2 * s6o;
         let r5z = d5 - t3;
 
         // From joint 5 to the TCP.
-        let t9 = k19 * r5x;
+        let t9 = h5_plus_added5 * r5x;
         let r4y = t3 - d5;
-        let t10 = k7 * c6o - k8 * s6o + k20 * r5x;
-        let tt5_yy = k9 + r5x * t9;
-        let tr5_yz = t9 - (k4 * s6o + k5 * c6o);
+        let t10 = k3 * c6o - k4 * s6o + k9 * r5x;
+        let tt5_yy = tt6_zz + r5x * t9;
+        let tr5_yz = t9 - (tr6_zx * s6o + k1 * c6o);
 
         // With the coupling of joints 5 and 6.
-        let t11 = k24 * t7;
+        let t11 = k12 * t7;
         let t12 = coupling5_6 * t7;
         let tr5_yy = coupling5_6 * r5x;
         let t13 = coupling5_6 * t8;
-        let tt5_xx = k11 - t5 + k21 + (t11 + t11);
+        let tt5_xx = tt6_xx - t5 + k10 + (t11 + t11);
         let tt5_xy = t10 + r5x * t12;
-        let tt5_xz = k12 - c6o * t4 - k24 * t8;
-        let t14 = k7 * s6o + k8 * c6o + t8 * tr5_yy;
-        let tr5_xy = k15 * c6o - k16 * s6o + k24;
-        let tr5_xz = k23 + t12;
-        let r4x = r5x * c5 - k10 * s5;
+        let tt5_xz = k5 - c6o * t4 - k12 * t8;
+        let t14 = k3 * s6o + k4 * c6o + t8 * tr5_yy;
+        let tr5_xy = k6 * c6o - tr6_yz * s6o + k12;
+        let tr5_xz = k11 + t12;
+        let r4x = r5x * c5 - d6_plus_tool_z * s5;
         let t15 = s5 * (tt5_xx - tt5_yy) + c5 * (tt5_xy + tt5_xy);
         let t16 = s5 * t15;
         let tt4_xz = c5 * t15 - tt5_xy;
         let tt4_zz = tt5_yy + t16;
-        let t17 = k25 * s5;
+        let t17 = k13 * s5;
         let t18 = s5 * t17;
         let rr4_xz = c5 * t17;
         let rr4_xx = tool_rotation - t18;
@@ -1240,10 +1236,10 @@ impl Robot<6> for EveryEffect {
         let tr4_zx = t22 - tr5_xy;
         let tr4_zz = tr5_yy + t21;
         let t23 = tr5_xz * s5 + tr5_yz * c5;
-        let t24 = k3 * c5 + t6 * s5;
+        let t24 = tool_rotation_tool_z * c5 + t6 * s5;
         let tt4_yz = t14 * c5 - tt5_xz * s5;
         let tr4_xy = tr5_yz * s5 - tr5_xz * c5;
-        let r4z = d4 + (r5x * s5 + k10 * c5);
+        let r4z = d4 + (r5x * s5 + d6_plus_tool_z * c5);
 
         // From joint 4 to the TCP.
         let t25 = h4 * r4y;
@@ -1251,9 +1247,9 @@ impl Robot<6> for EveryEffect {
         let tt4_xx = tt5_xx - t16 - r5z * t25;
         let t27 = tt5_xz * c5 + t14 * s5 + r4x * t25;
         let tt4_yy = tt5_zz + r4x * t26;
-        let rr4_zz = h4 + (k14 + t18);
+        let rr4_zz = h4 + (h6_plus_tool_rotation + t18);
         let tr4_xz = t22 - tr5_yx - t25;
-        let tr4_yz = t6 * c5 - k3 * s5 + t26;
+        let tr4_yz = t6 * c5 - tool_rotation_tool_z * s5 + t26;
         let t28 = r4x * s4o + r4y * c4o;
         let t29 = s4o * (tt4_xx - tt4_yy) - c4o * (t27 + t27);
         let t30 = s4o * t29;
@@ -1261,10 +1257,10 @@ impl Robot<6> for EveryEffect {
         let t32 = tt4_yy + t30;
         let t33 = tt4_xz * c4o - tt4_yz * s4o;
         let t34 = tt4_xz * s4o + tt4_yz * c4o;
-        let t35 = s4o * (rr4_xx - k22) + c4o * (rr4_xy + rr4_xy);
+        let t35 = s4o * (rr4_xx - rr5_zz) + c4o * (rr4_xy + rr4_xy);
         let t36 = s4o * t35;
         let t37 = c4o * t35 - rr4_xy;
-        let t38 = k22 + t36;
+        let t38 = rr5_zz + t36;
         let t39 = rr4_xz * c4o + t19 * s4o;
         let t40 = rr4_xz * s4o - t19 * c4o;
         let t41 = s4o * (t13 - t21) + c4o * (tr4_xy - t24);
@@ -1294,27 +1290,27 @@ impl Robot<6> for EveryEffect {
         let r3z = d3 + (sin_alpha3 * t28 + cos_alpha3 * r4z);
 
         // With link 3.
-        let t60 = r3x - k33;
-        let t61 = r3z - k34;
-        let t62 = k27 * r3y;
-        let t63 = k27 * t60 - k26 * t61;
-        let t64 = k26 * r3y;
+        let t60 = r3x - a3_inv_2;
+        let t61 = r3z - d3_inv_2;
+        let t62 = k15 * r3y;
+        let t63 = k15 * t60 - k14 * t61;
+        let t64 = k14 * r3y;
         let t65 = bending3 * t61;
         let t66 = bending3 * t60;
-        let t67 = k28 * r3y;
-        let t68 = k28 * t60 - k27 * t61;
-        let t69 = k34 - r3z;
-        let t70 = k33 - r3x;
+        let t67 = k16 * r3y;
+        let t68 = k16 * t60 - k15 * t61;
+        let t69 = d3_inv_2 - r3z;
+        let t70 = a3_inv_2 - r3x;
         let t71 = t52 - t51;
         let t72 = t62 * t69 + t60 * t67;
-        let t73 = k30 + (t61 * t65 - t67 * t71);
-        let t74 = k31 + (t65 * t70 - r3y * t62);
-        let t75 = k29 + (t63 * t69 + t60 * t68);
-        let t76 = k32 + (r3y * t64 - t66 * t70);
+        let t73 = k18 + (t61 * t65 - t67 * t71);
+        let t74 = k19 + (t65 * t70 - r3y * t62);
+        let t75 = k17 + (t63 * t69 + t60 * t68);
+        let t76 = k20 + (r3y * t64 - t66 * t70);
         let t77 = cos_alpha3 * t31 - sin_alpha3 * t33 - t72;
         let t78 = sin_alpha3 * t31 + cos_alpha3 * t33 + t74;
         let t79 = cos_alpha3 * t53 - t34 + r3y * t63;
-        let rr3_xz = sin_alpha3 * t37 + cos_alpha3 * t39 + k27;
+        let rr3_xz = sin_alpha3 * t37 + cos_alpha3 * t39 + k15;
         let tr3_zz = tr4_zz + t58 + t62;
 
         // From joint 3 to the TCP.
@@ -1331,9 +1327,9 @@ impl Robot<6> for EveryEffect {
         let tt3_yy = t32 - t54 + t75 + (t85 + r3x * t84);
         let tt3_yz = t79 - r3y * t80;
         let tt3_zz = tt4_zz + t54 + t76 + t86;
-        let rr3_xx = transverse3 + (rr4_xx - t36 + k26);
+        let rr3_xx = transverse3 + (rr4_xx - t36 + k14);
         let rr3_yy = transverse3 + (bending3 + (t38 - t56));
-        let rr3_zz = h3 + (rr4_zz + t56 + k28);
+        let rr3_zz = h3 + (rr4_zz + t56 + k16);
         let tr3_xy = cos_alpha3 * t44 - sin_alpha3 * t47 + t65 + t80;
         let tr3_xz = sin_alpha3 * t44 + cos_alpha3 * t47 - t67 - t83;
         let tr3_yx = cos_alpha3 * t45 - sin_alpha3 * t49 + t63 - t80;
@@ -1346,14 +1342,14 @@ impl Robot<6> for EveryEffect {
         let r2y = r3y - t88;
 
         // With link 2.
-        let t89 = k35 * c3;
-        let t90 = k36 * c3;
+        let t89 = k21 * c3;
+        let t90 = a2_bending2_inv_12 * c3;
         let t91 = bending2 + t87 * t89;
         let t92 = t88 * t89;
-        let t93 = bending2 + t88 * (k35 * s3);
-        let t94 = k38 * c3;
+        let t93 = bending2 + t88 * (k21 * s3);
+        let t94 = a2_inv_2 * c3;
         let t95 = r2x - t94;
-        let t96 = r2y + k38 * s3;
+        let t96 = r2y + a2_inv_2 * s3;
         let t97 = r3z * t92;
         let t98 = r3z * t91;
         let t99 = t91 * t96 + t92 * t95;
@@ -1365,11 +1361,12 @@ impl Robot<6> for EveryEffect {
         let t105 = r3z * t100 + t96 * t102;
         let t106 = r3z * t98 + t95 * t103;
         let t107 = t88 * t90 + (r3z * t97 - t95 * t102);
-        let t108 = tt3_xx + (k37 - t87 * t90 + t105);
+        let t108 = tt3_xx + (a2_a2_bending2_inv_12 - t87 * t90 + t105);
         let tt2_xz = tt3_xz + (t100 * t104 - t96 * t97);
-        let t109 = tt3_yy + (k37 - t88 * (k36 * s3) + t106);
+        let t109 = tt3_yy
+            + (a2_a2_bending2_inv_12 - t88 * (a2_bending2_inv_12 * s3) + t106);
         let tt2_yz = tt3_yz + (t97 * t104 - t96 * t98);
-        let tt2_zz = tt3_zz + (k37 + (t96 * t99 - t101 * t104));
+        let tt2_zz = tt3_zz + (a2_a2_bending2_inv_12 + (t96 * t99 - t101 * t104));
         let rr2_xx = rr3_xx + t91;
         let rr2_xy = rr3_xy - t92;
         let rr2_yy = rr3_yy + t93;
@@ -1381,8 +1378,8 @@ impl Robot<6> for EveryEffect {
         let tr2_zy = tr3_zy - t101;
 
         // From joint 2 to the TCP.
-        let t111 = k39 * r2y;
-        let t112 = k39 * r2x;
+        let t111 = h2_plus_added2 * r2y;
+        let t112 = h2_plus_added2 * r2x;
         let t113 = t88 - r3y;
 
         // With the coupling of joints 2 and 3.
@@ -1396,7 +1393,7 @@ impl Robot<6> for EveryEffect {
         let tt2_xx = t108 - t111 * t113 + t116;
         let tt2_xy = tt3_xy + t107 - r2x * t111 + t117;
         let tt2_yy = t109 + r2x * t112 + t120;
-        let rr2_zz = bending2 + rr3_zz + k39 + k40;
+        let rr2_zz = bending2 + rr3_zz + h2_plus_added2 + k22;
         let tr2_xz = tr3_xz - t102 - t111 + (t114 + t115);
         let tr2_yz = tr3_yz + t103 + t112 + (t118 + t119);
         let t121 = s23 * (tt2_xy + tt2_xy) - c23 * (tt2_xx - tt2_yy);
@@ -1597,110 +1594,113 @@ impl Robot<6> for EveryEffect {
         let coupling2_3 = T::of(Self::COUPLING2_3);
         let coupling5_6 = T::of(Self::COUPLING5_6);
         let added2 = T::of(Self::ADDED2);
-        let k1 = T::of(1.0 / Self::KNEE2);
         let added5 = T::of(Self::ADDED5);
-        let k2 = T::of(1.0 / Self::KNEE5);
-        let k3 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
-        let k4 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
-        let k5 = T::of(-Self::SIN_BASE_PITCH);
-        let k6 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
-        let k7 = T::of(
-            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
-        );
-        let k8 = T::of(
-            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
-        );
-        let k9 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
-        let k10 = T::of(
+        let neg_sin_base_pitch = T::of(-Self::SIN_BASE_PITCH);
+        let z1z = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let z1x = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW,
         );
-        let k11 = T::of(
+        let z1y = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                 - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
-        let k12 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
-        let k13 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
-        let k14 = T::of(Self::A1 * -Self::SIN_BASE_PITCH);
-        let k15 = T::of(
-            Self::A1
-                * (Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+        let neg_sin_base_pitch_a1 = T::of(-(Self::SIN_BASE_PITCH * Self::A1));
+        let inv_2 = T::of(0.5);
+        let bending2_inv_12 = T::of(Self::BENDING2 * (1.0 / 12.0));
+        let a2_a2_bending2_inv_12 = T::of(
+            Self::A2 * Self::A2 * (Self::BENDING2 * (1.0 / 12.0)),
         );
-        let k16 = T::of(
+        let bending3_inv_12 = T::of(Self::BENDING3 * (1.0 / 12.0));
+
+        // Constants without a short name.
+        let k1 = T::of(1.0 / Self::KNEE2);
+        let k2 = T::of(1.0 / Self::KNEE5);
+        let k3 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k4 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
+        let k5 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k6 = T::of(
+            Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW,
+        );
+        let k7 = T::of(
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
+        );
+        let k8 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
+        let k9 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
+        let k10 = T::of(
+            Self::A1
+                * (Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW),
+        );
+        let k11 = T::of(
             Self::A1
                 * (Self::COS_BASE_ROLL * Self::COS_BASE_YAW
                     + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k17 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k18 = T::of(
+        let k12 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
+        let k13 = T::of(
             Self::D1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k19 = T::of(
+        let k14 = T::of(
             Self::D1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                     - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
-        let k20 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k21 = T::of(
-            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
+        let k15 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k16 = T::of(
+            -(Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k22 = T::of(
+        let k17 = T::of(
             Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
-        let k23 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k24 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+        let k18 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k19 = T::of(
+            -(Self::A2
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW)),
         );
+        let k20 = T::of(
+            Self::A2
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
+        );
+        let k21 = T::of(-(Self::A2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL)));
+        let k22 = T::of(
+            -(Self::A3
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW)),
+        );
+        let k23 = T::of(
+            Self::A3
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
+        );
+        let k24 = T::of(-(Self::A3 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL)));
         let k25 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
-        );
-        let k26 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k27 = T::of(
-            Self::A3
-                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
-        );
-        let k28 = T::of(
-            Self::A3
-                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
-        );
-        let k29 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k30 = T::of(
             Self::H1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k31 = T::of(
+        let k26 = T::of(
             Self::H1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                     - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
-        let k32 = T::of(Self::H1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k33 = T::of(0.5);
-        let k34 = T::of(
+        let k27 = T::of(Self::H1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k28 = T::of(
             (Self::TORSION2 - Self::BENDING2) * (1.0 / (Self::A2 * Self::A2)),
         );
-        let k35 = T::of(Self::BENDING2 * 0.08333333333333333);
-        let k36 = T::of(Self::A2 * Self::A2 * (Self::BENDING2 * 0.08333333333333333));
-        let k37 = T::of(
-            -Self::BENDING3 * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)),
+        let k29 = T::of(
+            -(Self::BENDING3 * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3))),
         );
-        let k38 = T::of(Self::BENDING3 * 0.08333333333333333);
-        let k39 = T::of(
-            (Self::A3 * Self::A3 + Self::D3 * Self::D3)
-                * (Self::BENDING3 * 0.08333333333333333),
+        let k30 = T::of(
+            (Self::A3 * Self::A3 + Self::D3 * Self::D3) * (Self::BENDING3 * (1.0 / 12.0)),
         );
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
         let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_all([
@@ -1713,26 +1713,26 @@ impl Robot<6> for EveryEffect {
         ]);
 
         // Axes and origins, from the base to the tip.
-        let t1 = k3 * c1o + k7 * s1o;
-        let t2 = k4 * c1o + k8 * s1o;
-        let t3 = k5 * c1o + k6 * s1o;
-        let z2x = k7 * c1o - k3 * s1o;
-        let z2y = k8 * c1o - k4 * s1o;
-        let z2z = k6 * c1o - k5 * s1o;
+        let t1 = k3 * c1o + k6 * s1o;
+        let t2 = k4 * c1o + k7 * s1o;
+        let t3 = neg_sin_base_pitch * c1o + k5 * s1o;
+        let z2x = k6 * c1o - k3 * s1o;
+        let z2y = k7 * c1o - k4 * s1o;
+        let z2z = k5 * c1o - neg_sin_base_pitch * s1o;
         let t4 = a2 * s2;
-        let t5 = t1 * t4 - k24 * c2;
-        let t6 = t2 * t4 - k25 * c2;
-        let t7 = t3 * t4 - k26 * c2;
+        let t5 = t1 * t4 - k19 * c2;
+        let t6 = t2 * t4 - k20 * c2;
+        let t7 = t3 * t4 - k21 * c2;
         let t8 = a3 * s23;
-        let t9 = t1 * t8 - k27 * c23 + d3 * z2x;
-        let t10 = t2 * t8 - k28 * c23 + d3 * z2y;
-        let t11 = t3 * t8 - k29 * c23 + d3 * z2z;
-        let t12 = t1 * s23 - k21 * c23;
-        let t13 = t2 * s23 - k22 * c23;
-        let t14 = t3 * s23 - k23 * c23;
-        let t15 = k21 * s23 + t1 * c23;
-        let t16 = k22 * s23 + t2 * c23;
-        let t17 = k23 * s23 + t3 * c23;
+        let t9 = t1 * t8 - k22 * c23 + d3 * z2x;
+        let t10 = t2 * t8 - k23 * c23 + d3 * z2y;
+        let t11 = t3 * t8 - k24 * c23 + d3 * z2z;
+        let t12 = t1 * s23 - k16 * c23;
+        let t13 = t2 * s23 - k17 * c23;
+        let t14 = t3 * s23 - k18 * c23;
+        let t15 = k16 * s23 + t1 * c23;
+        let t16 = k17 * s23 + t2 * c23;
+        let t17 = k18 * s23 + t3 * c23;
         let t18 = cos_alpha3 * t15 + sin_alpha3 * z2x;
         let t19 = cos_alpha3 * t16 + sin_alpha3 * z2y;
         let t20 = cos_alpha3 * t17 + sin_alpha3 * z2z;
@@ -1779,14 +1779,14 @@ impl Robot<6> for EveryEffect {
         let l2x = t5 + l3x;
         let l2y = t6 + l3y;
         let l2z = t7 + l3z;
-        let l1x = k12 * c1o + k15 * s1o + k18 + l2x;
-        let l1y = k13 * c1o + k16 * s1o + k19 + l2y;
-        let l1z = k14 * c1o + k17 * s1o + k20 + l2z;
+        let l1x = k8 * c1o + k10 * s1o + k13 + l2x;
+        let l1y = k9 * c1o + k11 * s1o + k14 + l2y;
+        let l1z = neg_sin_base_pitch_a1 * c1o + k12 * s1o + k15 + l2z;
 
         // What the joints move: z is an axis, l leads from it to the TCP.
-        let j1x = k11 * l1z - k9 * l1y;
-        let j1y = k9 * l1x - k10 * l1z;
-        let j1z = k10 * l1y - k11 * l1x;
+        let j1x = z1y * l1z - z1z * l1y;
+        let j1y = z1z * l1x - z1x * l1z;
+        let j1z = z1x * l1y - z1y * l1x;
         let j2x = z2y * l2z - z2z * l2y;
         let j2y = z2z * l2x - z2x * l2z;
         let j2z = z2x * l2y - z2y * l2x;
@@ -1804,7 +1804,7 @@ impl Robot<6> for EveryEffect {
         let j6z = z6x * l6y - z6y * l6x;
 
         // What the wrench puts on the joints.
-        let t38 = k10 * mx + k11 * my + k9 * mz;
+        let t38 = z1x * mx + z1y * my + z1z * mz;
         let tau1 = fx * j1x + fy * j1y + fz * j1z + t38;
         let t39 = fx * j2x + fy * j2y + fz * j2z;
         let t40 = z2x * mx + z2y * my + z2z * mz;
@@ -1838,9 +1838,9 @@ impl Robot<6> for EveryEffect {
         let t49 = j1x * dq1 + j2x * dq2 + j3x * dq3;
         let t50 = j1y * dq1 + j2y * dq2 + j3y * dq3;
         let t51 = j1z * dq1 + j2z * dq2 + j3z * dq3;
-        let t52 = k30 * tau1 + z2x * dq2 + z2x * dq3;
-        let t53 = k31 * tau1 + z2y * dq2 + z2y * dq3;
-        let t54 = k32 * tau1 + z2z * dq2 + z2z * dq3;
+        let t52 = k25 * tau1 + z2x * dq2 + z2x * dq3;
+        let t53 = k26 * tau1 + z2y * dq2 + z2y * dq3;
+        let t54 = k27 * tau1 + z2z * dq2 + z2z * dq3;
         let t55 = t49 + j4x * dq4 + j5x * dq5;
         let t56 = t50 + j4y * dq4 + j5y * dq5;
         let t57 = t51 + j4z * dq4 + j5z * dq5;
@@ -1852,10 +1852,10 @@ impl Robot<6> for EveryEffect {
         let t61 = mx + (l1y * fz - l1z * fy);
         let t62 = my + (l1z * fx - l1x * fz);
         let t63 = mz + (l1x * fy - l1y * fx);
-        let t64 = k10 * t61 + k11 * t62 + k9 * t63;
-        let t65 = t61 - k10 * t64;
-        let t66 = t62 - k11 * t64;
-        let t67 = t63 - k9 * t64;
+        let t64 = z1x * t61 + z1y * t62 + z1z * t63;
+        let t65 = t61 - z1x * t64;
+        let t66 = t62 - z1y * t64;
+        let t67 = t63 - z1z * t64;
         let t68 = transverse1 * t65;
         let t69 = transverse1 * t66;
         let t70 = transverse1 * t67;
@@ -1879,14 +1879,14 @@ impl Robot<6> for EveryEffect {
         let t86 = t57 + j6z * dq6 + t73 + t83;
 
         // And link 2.
-        let t87 = l2x - k33 * t5;
-        let t88 = l2y - k33 * t6;
-        let t89 = l2z - k33 * t7;
+        let t87 = l2x - inv_2 * t5;
+        let t88 = l2y - inv_2 * t6;
+        let t89 = l2z - inv_2 * t7;
         let t90 = mx + (fz * t88 - fy * t89);
         let t91 = my + (fx * t89 - fz * t87);
         let t92 = mz + (fy * t87 - fx * t88);
         let t93 = t5 * t90 + t6 * t91 + t7 * t92;
-        let t94 = k34 * t93;
+        let t94 = k28 * t93;
         let t95 = bending2 * t90 + t5 * t94;
         let t96 = bending2 * t91 + t6 * t94;
         let t97 = bending2 * t92 + t7 * t94;
@@ -1897,20 +1897,20 @@ impl Robot<6> for EveryEffect {
         let t102 = t59 + z6y * dq6 + t69 + t79 + t96;
         let t103 = t60 + z6z * dq6 + t70 + t80 + t97;
         let t104 = t5 * fx + t6 * fy + t7 * fz;
-        let t105 = k35 * t104;
-        let t106 = t98 + k36 * fx - t5 * t105;
-        let t107 = t99 + k36 * fy - t6 * t105;
-        let t108 = t100 + k36 * fz - t7 * t105;
+        let t105 = bending2_inv_12 * t104;
+        let t106 = t98 + a2_a2_bending2_inv_12 * fx - t5 * t105;
+        let t107 = t99 + a2_a2_bending2_inv_12 * fy - t6 * t105;
+        let t108 = t100 + a2_a2_bending2_inv_12 * fz - t7 * t105;
 
         // And link 3.
-        let t109 = l3x - k33 * t9;
-        let t110 = l3y - k33 * t10;
-        let t111 = l3z - k33 * t11;
+        let t109 = l3x - inv_2 * t9;
+        let t110 = l3y - inv_2 * t10;
+        let t111 = l3z - inv_2 * t11;
         let t112 = mx + (fz * t110 - fy * t111);
         let t113 = my + (fx * t111 - fz * t109);
         let t114 = mz + (fy * t109 - fx * t110);
         let t115 = t9 * t112 + t10 * t113 + t11 * t114;
-        let t116 = k37 * t115;
+        let t116 = k29 * t115;
         let t117 = bending3 * t112 + t9 * t116;
         let t118 = bending3 * t113 + t10 * t116;
         let t119 = bending3 * t114 + t11 * t116;
@@ -1918,10 +1918,10 @@ impl Robot<6> for EveryEffect {
         let t121 = t107 + (t109 * t119 - t111 * t117);
         let t122 = t108 + (t110 * t117 - t109 * t118);
         let t123 = t9 * fx + t10 * fy + t11 * fz;
-        let t124 = k38 * t123;
-        let t125 = t120 + k39 * fx - t9 * t124;
-        let t126 = t121 + k39 * fy - t10 * t124;
-        let t127 = t122 + k39 * fz - t11 * t124;
+        let t124 = bending3_inv_12 * t123;
+        let t125 = t120 + k30 * fx - t9 * t124;
+        let t126 = t121 + k30 * fy - t10 * t124;
+        let t127 = t122 + k30 * fz - t11 * t124;
 
         // And the base.
         let t128 = base_tilt * t65;
@@ -1969,83 +1969,85 @@ impl Robot<6> for EveryEffect {
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
-        let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
-        let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
-        let k3 = T::of(-Self::SIN_BASE_PITCH);
-        let k4 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
-        let k5 = T::of(
-            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
-        );
-        let k6 = T::of(
-            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
-        );
-        let k7 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
-        let k8 = T::of(
+        let neg_sin_base_pitch = T::of(-Self::SIN_BASE_PITCH);
+        let z1z = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let z1x = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW,
         );
-        let k9 = T::of(
+        let z1y = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                 - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
-        let k10 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
-        let k11 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
-        let k12 = T::of(Self::A1 * -Self::SIN_BASE_PITCH);
-        let k13 = T::of(
-            Self::A1
-                * (Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+        let neg_sin_base_pitch_a1 = T::of(-(Self::SIN_BASE_PITCH * Self::A1));
+
+        // Constants without a short name.
+        let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
+        let k3 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k4 = T::of(
+            Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW,
         );
-        let k14 = T::of(
+        let k5 = T::of(
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
+        );
+        let k6 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
+        let k7 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
+        let k8 = T::of(
+            Self::A1
+                * (Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW),
+        );
+        let k9 = T::of(
             Self::A1
                 * (Self::COS_BASE_ROLL * Self::COS_BASE_YAW
                     + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k15 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k16 = T::of(
+        let k10 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
+        let k11 = T::of(
             Self::D1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k17 = T::of(
+        let k12 = T::of(
             Self::D1
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                     - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
-        let k18 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k19 = T::of(
-            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
+        let k13 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k14 = T::of(
+            -(Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k20 = T::of(
+        let k15 = T::of(
             Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
-        let k21 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k22 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+        let k16 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k17 = T::of(
+            -(Self::A2
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW)),
         );
-        let k23 = T::of(
+        let k18 = T::of(
             Self::A2
                 * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k24 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k25 = T::of(
-            Self::A3
-                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+        let k19 = T::of(-(Self::A2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL)));
+        let k20 = T::of(
+            -(Self::A3
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW)),
         );
-        let k26 = T::of(
+        let k21 = T::of(
             Self::A3
                 * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k22 = T::of(-(Self::A3 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL)));
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
         let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_all([
             q[1] + q[2],
@@ -2057,23 +2059,23 @@ impl Robot<6> for EveryEffect {
         ]);
 
         // Axes and origins, from the base to the tip.
-        let t1 = k1 * c1o + k5 * s1o;
-        let t2 = k2 * c1o + k6 * s1o;
-        let t3 = k3 * c1o + k4 * s1o;
-        let z2x = k5 * c1o - k1 * s1o;
-        let z2y = k6 * c1o - k2 * s1o;
-        let z2z = k4 * c1o - k3 * s1o;
+        let t1 = k1 * c1o + k4 * s1o;
+        let t2 = k2 * c1o + k5 * s1o;
+        let t3 = neg_sin_base_pitch * c1o + k3 * s1o;
+        let z2x = k4 * c1o - k1 * s1o;
+        let z2y = k5 * c1o - k2 * s1o;
+        let z2z = k3 * c1o - neg_sin_base_pitch * s1o;
         let t4 = a2 * s2;
         let t5 = a3 * s23;
-        let t6 = t1 * t5 - k25 * c23 + d3 * z2x;
-        let t7 = t2 * t5 - k26 * c23 + d3 * z2y;
-        let t8 = t3 * t5 - k27 * c23 + d3 * z2z;
-        let t9 = t1 * s23 - k19 * c23;
-        let t10 = t2 * s23 - k20 * c23;
-        let t11 = t3 * s23 - k21 * c23;
-        let t12 = k19 * s23 + t1 * c23;
-        let t13 = k20 * s23 + t2 * c23;
-        let t14 = k21 * s23 + t3 * c23;
+        let t6 = t1 * t5 - k20 * c23 + d3 * z2x;
+        let t7 = t2 * t5 - k21 * c23 + d3 * z2y;
+        let t8 = t3 * t5 - k22 * c23 + d3 * z2z;
+        let t9 = t1 * s23 - k14 * c23;
+        let t10 = t2 * s23 - k15 * c23;
+        let t11 = t3 * s23 - k16 * c23;
+        let t12 = k14 * s23 + t1 * c23;
+        let t13 = k15 * s23 + t2 * c23;
+        let t14 = k16 * s23 + t3 * c23;
         let t15 = cos_alpha3 * t12 + sin_alpha3 * z2x;
         let t16 = cos_alpha3 * t13 + sin_alpha3 * z2y;
         let t17 = cos_alpha3 * t14 + sin_alpha3 * z2z;
@@ -2117,17 +2119,17 @@ impl Robot<6> for EveryEffect {
         let l3x = t6 + l4x;
         let l3y = t7 + l4y;
         let l3z = t8 + l4z;
-        let l2x = t1 * t4 - k22 * c2 + l3x;
-        let l2y = t2 * t4 - k23 * c2 + l3y;
-        let l2z = t3 * t4 - k24 * c2 + l3z;
-        let l1x = k10 * c1o + k13 * s1o + k16 + l2x;
-        let l1y = k11 * c1o + k14 * s1o + k17 + l2y;
-        let l1z = k12 * c1o + k15 * s1o + k18 + l2z;
+        let l2x = t1 * t4 - k17 * c2 + l3x;
+        let l2y = t2 * t4 - k18 * c2 + l3y;
+        let l2z = t3 * t4 - k19 * c2 + l3z;
+        let l1x = k6 * c1o + k8 * s1o + k11 + l2x;
+        let l1y = k7 * c1o + k9 * s1o + k12 + l2y;
+        let l1z = neg_sin_base_pitch_a1 * c1o + k10 * s1o + k13 + l2z;
 
         // What the joints move: z is an axis, l leads from it to the TCP.
-        let j1x = k9 * l1z - k7 * l1y;
-        let j1y = k7 * l1x - k8 * l1z;
-        let j1z = k8 * l1y - k9 * l1x;
+        let j1x = z1y * l1z - z1z * l1y;
+        let j1y = z1z * l1x - z1x * l1z;
+        let j1z = z1x * l1y - z1y * l1x;
         let j2x = z2y * l2z - z2z * l2y;
         let j2y = z2z * l2x - z2x * l2z;
         let j2z = z2x * l2y - z2y * l2x;
@@ -2145,7 +2147,7 @@ impl Robot<6> for EveryEffect {
         let j6z = z6x * l6y - z6y * l6x;
 
         // What the wrench puts on the joints.
-        let t35 = k8 * mx + k9 * my + k7 * mz;
+        let t35 = z1x * mx + z1y * my + z1z * mz;
         let tau1 = fx * j1x + fy * j1y + fz * j1z + t35;
         let t36 = fx * j2x + fy * j2y + fz * j2z;
         let t37 = mx * z2x + my * z2y + mz * z2z;
@@ -2194,83 +2196,17 @@ impl Robot<6> for EveryEffect {
         let cos_tool_pitch = T::of(Self::COS_TOOL_PITCH);
         let sin_base_yaw = T::of(Self::SIN_BASE_YAW);
         let cos_base_yaw = T::of(Self::COS_BASE_YAW);
-        let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
-        let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
-        let k3 = T::of(-Self::SIN_BASE_PITCH);
-        let k4 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
-        let k5 = T::of(
-            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
-        );
-        let k6 = T::of(
-            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
-        );
-        let k7 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
-        let k8 = T::of(
+        let neg_sin_base_pitch = T::of(-Self::SIN_BASE_PITCH);
+        let z1z = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let z1x = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW,
         );
-        let k9 = T::of(
+        let z1y = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                 - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
-        let k10 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
-        let k11 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
-        let k12 = T::of(Self::A1 * -Self::SIN_BASE_PITCH);
-        let k13 = T::of(
-            Self::A1
-                * (Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
-        );
-        let k14 = T::of(
-            Self::A1
-                * (Self::COS_BASE_ROLL * Self::COS_BASE_YAW
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
-        );
-        let k15 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k16 = T::of(
-            Self::D1
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
-        );
-        let k17 = T::of(
-            Self::D1
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
-                    - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
-        );
-        let k18 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k19 = T::of(
-            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
-        );
-        let k20 = T::of(
-            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
-        );
-        let k21 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k22 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
-        );
-        let k23 = T::of(
-            Self::A2
-                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
-        );
-        let k24 = T::of(Self::A2 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k25 = T::of(
-            Self::A3
-                * (Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
-        );
-        let k26 = T::of(
-            Self::A3
-                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
-                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
-        );
-        let k27 = T::of(Self::A3 * -(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let neg_sin_base_pitch_a1 = T::of(-(Self::SIN_BASE_PITCH * Self::A1));
         let h1 = T::of(Self::H1);
         let h3 = T::of(Self::H3);
         let h4 = T::of(Self::H4);
@@ -2283,213 +2219,269 @@ impl Robot<6> for EveryEffect {
         let tool_rotation = T::of(Self::TOOL_ROTATION);
         let coupling2_3 = T::of(Self::COUPLING2_3);
         let coupling5_6 = T::of(Self::COUPLING5_6);
-        let k28 = T::of(
-            Self::TOOL_X * Self::COS_TOOL_YAW - Self::TOOL_Y * -Self::SIN_TOOL_YAW,
+        let r6x = T::of(
+            Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW,
         );
-        let k29 = T::of(
-            Self::TOOL_X * -Self::SIN_TOOL_YAW + Self::TOOL_Y * Self::COS_TOOL_YAW,
+        let r6y = T::of(
+            Self::TOOL_Y * Self::COS_TOOL_YAW - Self::TOOL_X * Self::SIN_TOOL_YAW,
         );
-        let k30 = T::of(Self::TOOL_Z * Self::TOOL_ROTATION);
-        let k31 = T::of(
+        let tool_z_tool_rotation = T::of(Self::TOOL_Z * Self::TOOL_ROTATION);
+        let tr6_zx = T::of(
             Self::TOOL_ROTATION
-                * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                    + Self::TOOL_Y * Self::COS_TOOL_YAW),
+                * (Self::TOOL_Y * Self::COS_TOOL_YAW - Self::TOOL_X * Self::SIN_TOOL_YAW),
         );
-        let k32 = T::of(
-            -(Self::TOOL_ROTATION
-                * (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)),
-        );
-        let k33 = T::of(
-            -(Self::TOOL_X * -Self::SIN_TOOL_YAW + Self::TOOL_Y * Self::COS_TOOL_YAW),
-        );
-        let k34 = T::of(
-            Self::TOOL_Z * Self::TOOL_ROTATION
-                * (Self::TOOL_Y * -Self::SIN_TOOL_YAW
-                    - Self::TOOL_X * Self::COS_TOOL_YAW),
-        );
-        let k35 = T::of(
-            (Self::TOOL_X * -Self::SIN_TOOL_YAW + Self::TOOL_Y * Self::COS_TOOL_YAW)
-                * -(Self::TOOL_Z * Self::TOOL_ROTATION),
-        );
-        let k36 = T::of(
+        let tt6_zz = T::of(
             Self::TOOL_TRANSLATION
-                + ((Self::TOOL_X * -Self::SIN_TOOL_YAW
-                    + Self::TOOL_Y * Self::COS_TOOL_YAW)
+                + ((Self::TOOL_X * Self::COS_TOOL_YAW
+                    + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                     * (Self::TOOL_ROTATION
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                    + -(Self::TOOL_ROTATION
                         * (Self::TOOL_X * Self::COS_TOOL_YAW
-                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW))
-                        * (Self::TOOL_Y * -Self::SIN_TOOL_YAW
-                            - Self::TOOL_X * Self::COS_TOOL_YAW)),
+                            + Self::TOOL_Y * Self::SIN_TOOL_YAW))
+                    + (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW)
+                        * (Self::TOOL_ROTATION
+                            * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                - Self::TOOL_X * Self::SIN_TOOL_YAW))),
         );
-        let k37 = T::of(Self::D6 + Self::TOOL_Z);
-        let k38 = T::of(
+        let d6_plus_tool_z = T::of(Self::D6 + Self::TOOL_Z);
+        let tt6_xx = T::of(
             Self::TOOL_TRANSLATION
                 + (Self::TOOL_Z * (Self::TOOL_Z * Self::TOOL_ROTATION)
-                    + -(Self::TOOL_ROTATION
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                        * -(Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                + -(Self::TOOL_X * -Self::SIN_TOOL_YAW
-                    + Self::TOOL_Y * Self::COS_TOOL_YAW)
-                    * -(Self::H6
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW)),
+                    - Self::TOOL_ROTATION
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW)
+                        * (Self::TOOL_X * Self::SIN_TOOL_YAW
+                            - Self::TOOL_Y * Self::COS_TOOL_YAW))
+                - (Self::TOOL_X * Self::SIN_TOOL_YAW - Self::TOOL_Y * Self::COS_TOOL_YAW)
+                    * (Self::H6
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW)),
         );
-        let k39 = T::of(
-            (Self::TOOL_X * Self::COS_TOOL_YAW - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                * -(Self::TOOL_ROTATION
-                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                + (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                    * -(Self::H6
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW)),
-        );
-        let k40 = T::of(
+        let tt6_yy = T::of(
             Self::TOOL_TRANSLATION
-                + (-(Self::TOOL_Z * Self::TOOL_ROTATION) * -Self::TOOL_Z
+                + (Self::TOOL_Z * (Self::TOOL_Z * Self::TOOL_ROTATION)
                     + (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                         * (Self::TOOL_ROTATION
                             * (Self::TOOL_X * Self::COS_TOOL_YAW
-                                - Self::TOOL_Y * -Self::SIN_TOOL_YAW)))
-                + (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                                + Self::TOOL_Y * Self::SIN_TOOL_YAW)))
+                + (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                     * (Self::H6
                         * (Self::TOOL_X * Self::COS_TOOL_YAW
-                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)),
+                            + Self::TOOL_Y * Self::SIN_TOOL_YAW)),
         );
-        let k41 = T::of(Self::H6 + Self::TOOL_ROTATION);
-        let k42 = T::of(
-            -(Self::TOOL_ROTATION
-                * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                    + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                + -(Self::H6
-                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                        + Self::TOOL_Y * Self::COS_TOOL_YAW)),
-        );
-        let k43 = T::of(
+        let h6_plus_tool_rotation = T::of(Self::H6 + Self::TOOL_ROTATION);
+        let tr6_yz = T::of(
             Self::TOOL_ROTATION
-                * (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                * (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                 + Self::H6
                     * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW),
+                        + Self::TOOL_Y * Self::SIN_TOOL_YAW),
         );
-        let k44 = T::of(
+        let h5_plus_added5 = T::of(Self::H5 + Self::ADDED5);
+        let rr5_zz = T::of(Self::TOOL_ROTATION + (Self::H5 + Self::ADDED5));
+        let a3_inv_2 = T::of(Self::A3 * 0.5);
+        let d3_inv_2 = T::of(Self::D3 * 0.5);
+        let a2_bending2_inv_12 = T::of(Self::A2 * (Self::BENDING2 * (1.0 / 12.0)));
+        let a2_a2_bending2_inv_12 = T::of(
+            Self::A2 * Self::A2 * (Self::BENDING2 * (1.0 / 12.0)),
+        );
+        let a2_inv_2 = T::of(Self::A2 * 0.5);
+        let h2_plus_added2 = T::of(Self::H2 + Self::ADDED2);
+
+        // Constants without a short name.
+        let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
+        let k3 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k4 = T::of(
+            Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW,
+        );
+        let k5 = T::of(
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
+        );
+        let k6 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::COS_BASE_YAW));
+        let k7 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_YAW));
+        let k8 = T::of(
+            Self::A1
+                * (Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW),
+        );
+        let k9 = T::of(
+            Self::A1
+                * (Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
+        );
+        let k10 = T::of(Self::A1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
+        let k11 = T::of(
+            Self::D1
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
+        );
+        let k12 = T::of(
+            Self::D1
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
+        );
+        let k13 = T::of(Self::D1 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k14 = T::of(
+            -(Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
+        );
+        let k15 = T::of(
+            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
+        );
+        let k16 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k17 = T::of(
+            -(Self::A2
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW)),
+        );
+        let k18 = T::of(
+            Self::A2
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
+        );
+        let k19 = T::of(-(Self::A2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL)));
+        let k20 = T::of(
+            -(Self::A3
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW)),
+        );
+        let k21 = T::of(
+            Self::A3
+                * (Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                    - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
+        );
+        let k22 = T::of(-(Self::A3 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL)));
+        let k23 = T::of(
+            -(Self::TOOL_ROTATION
+                * (Self::TOOL_X * Self::COS_TOOL_YAW
+                    + Self::TOOL_Y * Self::SIN_TOOL_YAW)),
+        );
+        let k24 = T::of(
+            Self::TOOL_X * Self::SIN_TOOL_YAW - Self::TOOL_Y * Self::COS_TOOL_YAW,
+        );
+        let k25 = T::of(
+            -((Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                * (Self::TOOL_Z * Self::TOOL_ROTATION)),
+        );
+        let k26 = T::of(
+            -((Self::TOOL_Y * Self::COS_TOOL_YAW - Self::TOOL_X * Self::SIN_TOOL_YAW)
+                * (Self::TOOL_Z * Self::TOOL_ROTATION)),
+        );
+        let k27 = T::of(
+            -((Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                * (Self::TOOL_ROTATION
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW))
+                + (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                    * (Self::H6
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW))),
+        );
+        let k28 = T::of(
+            -(Self::TOOL_ROTATION
+                * (Self::TOOL_Y * Self::COS_TOOL_YAW - Self::TOOL_X * Self::SIN_TOOL_YAW)
+                + Self::H6
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW)),
+        );
+        let k29 = T::of(
             Self::TOOL_TRANSLATION
                 + (Self::TOOL_Z * (Self::TOOL_Z * Self::TOOL_ROTATION)
-                    + -(Self::TOOL_ROTATION
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                        * -(Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                + -(Self::TOOL_X * -Self::SIN_TOOL_YAW
-                    + Self::TOOL_Y * Self::COS_TOOL_YAW)
-                    * -(Self::H6
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                    - Self::TOOL_ROTATION
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW)
+                        * (Self::TOOL_X * Self::SIN_TOOL_YAW
+                            - Self::TOOL_Y * Self::COS_TOOL_YAW))
+                - (Self::TOOL_X * Self::SIN_TOOL_YAW - Self::TOOL_Y * Self::COS_TOOL_YAW)
+                    * (Self::H6
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW))
                 - (Self::TOOL_TRANSLATION
-                    + (-(Self::TOOL_Z * Self::TOOL_ROTATION) * -Self::TOOL_Z
+                    + (Self::TOOL_Z * (Self::TOOL_Z * Self::TOOL_ROTATION)
                         + (Self::TOOL_X * Self::COS_TOOL_YAW
-                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                            + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                             * (Self::TOOL_ROTATION
                                 * (Self::TOOL_X * Self::COS_TOOL_YAW
-                                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)))
+                                    + Self::TOOL_Y * Self::SIN_TOOL_YAW)))
                     + (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                         * (Self::H6
                             * (Self::TOOL_X * Self::COS_TOOL_YAW
-                                - Self::TOOL_Y * -Self::SIN_TOOL_YAW))),
+                                + Self::TOOL_Y * Self::SIN_TOOL_YAW))),
         );
-        let k45 = T::of(
-            (Self::TOOL_X * Self::COS_TOOL_YAW - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                * -(Self::TOOL_ROTATION
-                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                + (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                    * -(Self::H6
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+        let k30 = T::of(
+            -((Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                * (Self::TOOL_ROTATION
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW))
+                + (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                    * (Self::H6
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW))
                 + ((Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                    * -(Self::TOOL_ROTATION
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                    + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                    * (Self::TOOL_ROTATION
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW))
                     + (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                        * -(Self::H6
-                            * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                                + Self::TOOL_Y * Self::COS_TOOL_YAW))),
+                        + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                        * (Self::H6
+                            * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                - Self::TOOL_X * Self::SIN_TOOL_YAW)))),
         );
-        let k46 = T::of(Self::H5 + Self::ADDED5);
-        let k47 = T::of(-((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)));
-        let k48 = T::of(
-            -(Self::D6 + Self::TOOL_Z)
-                * -((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)),
+        let k31 = T::of(-((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)));
+        let k32 = T::of(
+            (Self::D6 + Self::TOOL_Z)
+                * ((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)),
         );
-        let k49 = T::of(Self::TOOL_ROTATION + (Self::H5 + Self::ADDED5));
-        let k50 = T::of(
-            -(Self::TOOL_Z * Self::TOOL_ROTATION)
-                + -((Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)),
+        let k33 = T::of(
+            -(Self::TOOL_Z * Self::TOOL_ROTATION
+                + (Self::D6 + Self::TOOL_Z) * (Self::H5 + Self::ADDED5)),
         );
-        let k51 = T::of(Self::COUPLING5_6 * -(Self::D6 + Self::TOOL_Z));
-        let k52 = T::of(Self::TOOL_ROTATION - (Self::H6 + Self::TOOL_ROTATION));
-        let k53 = T::of(
+        let k34 = T::of(-(Self::COUPLING5_6 * (Self::D6 + Self::TOOL_Z)));
+        let k35 = T::of(Self::TOOL_ROTATION - (Self::H6 + Self::TOOL_ROTATION));
+        let k36 = T::of(
             Self::BENDING3
-                + Self::A3
+                - Self::A3
                     * (Self::A3
-                        * (-Self::BENDING3
+                        * (Self::BENDING3
                             * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
         );
-        let k54 = T::of(
-            Self::D3
+        let k37 = T::of(
+            -(Self::D3
                 * (Self::A3
-                    * (-Self::BENDING3
-                        * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
+                    * (Self::BENDING3
+                        * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3))))),
         );
-        let k55 = T::of(
+        let k38 = T::of(
             Self::BENDING3
-                + Self::D3
+                - Self::D3
                     * (Self::D3
-                        * (-Self::BENDING3
+                        * (Self::BENDING3
                             * (1.0 / (Self::A3 * Self::A3 + Self::D3 * Self::D3)))),
         );
-        let k56 = T::of(
-            (Self::A3 * Self::A3 + Self::D3 * Self::D3)
-                * (Self::BENDING3 * 0.08333333333333333),
+        let k39 = T::of(
+            (Self::A3 * Self::A3 + Self::D3 * Self::D3) * (Self::BENDING3 * (1.0 / 12.0)),
         );
-        let k57 = T::of(
-            (Self::A3 * Self::A3 + Self::D3 * Self::D3)
-                * (Self::BENDING3 * 0.08333333333333333)
-                - Self::A3 * (Self::A3 * (Self::BENDING3 * 0.08333333333333333)),
+        let k40 = T::of(
+            (Self::A3 * Self::A3 + Self::D3 * Self::D3) * (Self::BENDING3 * (1.0 / 12.0))
+                - Self::A3 * (Self::A3 * (Self::BENDING3 * (1.0 / 12.0))),
         );
-        let k58 = T::of(
-            -(Self::D3 * (Self::A3 * (Self::BENDING3 * 0.08333333333333333))),
+        let k41 = T::of(-(Self::D3 * (Self::A3 * (Self::BENDING3 * (1.0 / 12.0)))));
+        let k42 = T::of(
+            (Self::A3 * Self::A3 + Self::D3 * Self::D3) * (Self::BENDING3 * (1.0 / 12.0))
+                - Self::D3 * (Self::D3 * (Self::BENDING3 * (1.0 / 12.0))),
         );
-        let k59 = T::of(
-            (Self::A3 * Self::A3 + Self::D3 * Self::D3)
-                * (Self::BENDING3 * 0.08333333333333333)
-                - Self::D3 * (Self::D3 * (Self::BENDING3 * 0.08333333333333333)),
-        );
-        let k60 = T::of(Self::A3 * 0.5);
-        let k61 = T::of(Self::D3 * 0.5);
-        let k62 = T::of(
+        let k43 = T::of(
             Self::A2
                 * ((Self::TORSION2 - Self::BENDING2) * (1.0 / (Self::A2 * Self::A2))),
         );
-        let k63 = T::of(Self::A2 * (Self::BENDING2 * 0.08333333333333333));
-        let k64 = T::of(Self::A2 * Self::A2 * (Self::BENDING2 * 0.08333333333333333));
-        let k65 = T::of(Self::A2 * 0.5);
-        let k66 = T::of(Self::H2 + Self::ADDED2);
-        let k67 = T::of(Self::COUPLING2_3 + Self::COUPLING2_3);
+        let k44 = T::of(Self::COUPLING2_3 + Self::COUPLING2_3);
         let [(s23, c23), (s2, c2), (s3, c3), (s4o, c4o), (s5, c5), (s6, c6), (s6o, c6o),
         (s1o, c1o)] = T::sin_cos_all([
             q[1] + q[2],
@@ -2503,29 +2495,29 @@ impl Robot<6> for EveryEffect {
         ]);
 
         // Axes and origins, from the base to the tip.
-        let t1 = k10 * c1o + k13 * s1o + k16;
-        let t2 = k11 * c1o + k14 * s1o + k17;
-        let t3 = k12 * c1o + k15 * s1o + k18;
-        let t4 = k1 * c1o + k5 * s1o;
-        let t5 = k2 * c1o + k6 * s1o;
-        let t6 = k3 * c1o + k4 * s1o;
-        let z2x = k5 * c1o - k1 * s1o;
-        let z2y = k6 * c1o - k2 * s1o;
-        let z2z = k4 * c1o - k3 * s1o;
+        let t1 = k6 * c1o + k8 * s1o + k11;
+        let t2 = k7 * c1o + k9 * s1o + k12;
+        let t3 = neg_sin_base_pitch_a1 * c1o + k10 * s1o + k13;
+        let t4 = k1 * c1o + k4 * s1o;
+        let t5 = k2 * c1o + k5 * s1o;
+        let t6 = neg_sin_base_pitch * c1o + k3 * s1o;
+        let z2x = k4 * c1o - k1 * s1o;
+        let z2y = k5 * c1o - k2 * s1o;
+        let z2z = k3 * c1o - neg_sin_base_pitch * s1o;
         let t7 = a2 * s2;
-        let t8 = t4 * t7 - k22 * c2;
-        let t9 = t5 * t7 - k23 * c2;
-        let t10 = t6 * t7 - k24 * c2;
+        let t8 = t4 * t7 - k17 * c2;
+        let t9 = t5 * t7 - k18 * c2;
+        let t10 = t6 * t7 - k19 * c2;
         let t11 = a3 * s23;
-        let t12 = t4 * t11 - k25 * c23 + d3 * z2x;
-        let t13 = t5 * t11 - k26 * c23 + d3 * z2y;
-        let t14 = t6 * t11 - k27 * c23 + d3 * z2z;
-        let t15 = t4 * s23 - k19 * c23;
-        let t16 = t5 * s23 - k20 * c23;
-        let t17 = t6 * s23 - k21 * c23;
-        let t18 = k19 * s23 + t4 * c23;
-        let t19 = k20 * s23 + t5 * c23;
-        let t20 = k21 * s23 + t6 * c23;
+        let t12 = t4 * t11 - k20 * c23 + d3 * z2x;
+        let t13 = t5 * t11 - k21 * c23 + d3 * z2y;
+        let t14 = t6 * t11 - k22 * c23 + d3 * z2z;
+        let t15 = t4 * s23 - k14 * c23;
+        let t16 = t5 * s23 - k15 * c23;
+        let t17 = t6 * s23 - k16 * c23;
+        let t18 = k14 * s23 + t4 * c23;
+        let t19 = k15 * s23 + t5 * c23;
+        let t20 = k16 * s23 + t6 * c23;
         let t21 = cos_alpha3 * t18 + sin_alpha3 * z2x;
         let t22 = cos_alpha3 * t19 + sin_alpha3 * z2y;
         let t23 = cos_alpha3 * t20 + sin_alpha3 * z2z;
@@ -2607,9 +2599,9 @@ impl Robot<6> for EveryEffect {
         let l1z = t3 + l2z;
 
         // What the joints move: z is an axis, l leads from it to the TCP.
-        let j1x = k9 * l1z - k7 * l1y;
-        let j1y = k7 * l1x - k8 * l1z;
-        let j1z = k8 * l1y - k9 * l1x;
+        let j1x = z1y * l1z - z1z * l1y;
+        let j1y = z1z * l1x - z1x * l1z;
+        let j1z = z1x * l1y - z1y * l1x;
         let j2x = z2y * l2z - z2z * l2y;
         let j2y = z2z * l2x - z2x * l2z;
         let j2z = z2x * l2y - z2y * l2x;
@@ -2627,43 +2619,43 @@ impl Robot<6> for EveryEffect {
         let j6z = z6x * l6y - z6y * l6x;
 
         // From joint 6 to the TCP.
-        let t59 = k28 * c6o;
-        let r5x = t59 - k29 * s6o;
-        let t60 = k28 * s6o;
-        let t61 = t60 + k29 * c6o;
-        let t62 = k44 * s6o + k45 * c6o;
+        let t59 = r6x * c6o;
+        let r5x = t59 - r6y * s6o;
+        let t60 = r6x * s6o;
+        let t61 = t60 + r6y * c6o;
+        let t62 = k29 * s6o + k30 * c6o;
         let t63 = s6o * t62;
-        let tt5_zz = k40 + t63;
-        let t64 = k42 * s6o + k43 * c6o;
-        let tr5_yx = k31 * c6o - k32 * s6o;
-        let t65 = k33 * c6o - t60;
-        let t66 = t59 + k33 * s6o;
+        let tt5_zz = tt6_yy + t63;
+        let t64 = k28 * s6o + tr6_yz * c6o;
+        let tr5_yx = tr6_zx * c6o - k23 * s6o;
+        let t65 = k24 * c6o - t60;
+        let t66 = t59 + k24 * s6o;
         let r5z = d5 - t61;
 
         // From joint 5 to the TCP.
-        let t67 = k46 * r5x;
+        let t67 = h5_plus_added5 * r5x;
         let r4y = t61 - d5;
-        let t68 = k34 * c6o - k35 * s6o + k47 * r5x;
-        let tt5_yy = k36 + r5x * t67;
-        let tr5_yz = t67 - (k31 * s6o + k32 * c6o);
+        let t68 = k25 * c6o - k26 * s6o + k31 * r5x;
+        let tt5_yy = tt6_zz + r5x * t67;
+        let tr5_yz = t67 - (tr6_zx * s6o + k23 * c6o);
 
         // With the coupling of joints 5 and 6.
-        let t69 = k51 * t65;
+        let t69 = k34 * t65;
         let t70 = coupling5_6 * t65;
         let tr5_yy = coupling5_6 * r5x;
         let t71 = coupling5_6 * t66;
-        let tt5_xx = k38 - t63 + k48 + (t69 + t69);
+        let tt5_xx = tt6_xx - t63 + k32 + (t69 + t69);
         let tt5_xy = t68 + r5x * t70;
-        let tt5_xz = k39 - c6o * t62 - k51 * t66;
-        let t72 = k34 * s6o + k35 * c6o + t66 * tr5_yy;
-        let tr5_xy = k42 * c6o - k43 * s6o + k51;
-        let tr5_xz = k50 + t70;
-        let r4x = c5 * r5x - k37 * s5;
+        let tt5_xz = k27 - c6o * t62 - k34 * t66;
+        let t72 = k25 * s6o + k26 * c6o + t66 * tr5_yy;
+        let tr5_xy = k28 * c6o - tr6_yz * s6o + k34;
+        let tr5_xz = k33 + t70;
+        let r4x = c5 * r5x - d6_plus_tool_z * s5;
         let t73 = s5 * (tt5_xx - tt5_yy) + c5 * (tt5_xy + tt5_xy);
         let t74 = s5 * t73;
         let tt4_xz = c5 * t73 - tt5_xy;
         let tt4_zz = tt5_yy + t74;
-        let t75 = k52 * s5;
+        let t75 = k35 * s5;
         let t76 = s5 * t75;
         let rr4_xz = c5 * t75;
         let rr4_xx = tool_rotation - t76;
@@ -2675,10 +2667,10 @@ impl Robot<6> for EveryEffect {
         let tr4_zx = t80 - tr5_xy;
         let tr4_zz = tr5_yy + t79;
         let t81 = s5 * tr5_xz + c5 * tr5_yz;
-        let t82 = k30 * c5 + s5 * t64;
+        let t82 = tool_z_tool_rotation * c5 + s5 * t64;
         let tt4_yz = c5 * t72 - s5 * tt5_xz;
         let tr4_xy = s5 * tr5_yz - c5 * tr5_xz;
-        let r4z = d4 + (s5 * r5x + k37 * c5);
+        let r4z = d4 + (s5 * r5x + d6_plus_tool_z * c5);
 
         // From joint 4 to the TCP.
         let t83 = h4 * r4y;
@@ -2686,9 +2678,9 @@ impl Robot<6> for EveryEffect {
         let tt4_xx = tt5_xx - t74 - r5z * t83;
         let t85 = c5 * tt5_xz + s5 * t72 + r4x * t83;
         let tt4_yy = tt5_zz + r4x * t84;
-        let rr4_zz = h4 + (k41 + t76);
+        let rr4_zz = h4 + (h6_plus_tool_rotation + t76);
         let tr4_xz = t80 - tr5_yx - t83;
-        let tr4_yz = c5 * t64 - k30 * s5 + t84;
+        let tr4_yz = c5 * t64 - tool_z_tool_rotation * s5 + t84;
         let t86 = s4o * r4x + c4o * r4y;
         let t87 = s4o * (tt4_xx - tt4_yy) - c4o * (t85 + t85);
         let t88 = s4o * t87;
@@ -2696,10 +2688,10 @@ impl Robot<6> for EveryEffect {
         let t90 = tt4_yy + t88;
         let t91 = c4o * tt4_xz - s4o * tt4_yz;
         let t92 = s4o * tt4_xz + c4o * tt4_yz;
-        let t93 = s4o * (rr4_xx - k49) + c4o * (rr4_xy + rr4_xy);
+        let t93 = s4o * (rr4_xx - rr5_zz) + c4o * (rr4_xy + rr4_xy);
         let t94 = s4o * t93;
         let t95 = c4o * t93 - rr4_xy;
-        let t96 = k49 + t94;
+        let t96 = rr5_zz + t94;
         let t97 = c4o * rr4_xz + s4o * t77;
         let t98 = s4o * rr4_xz - c4o * t77;
         let t99 = s4o * (t71 - t79) + c4o * (tr4_xy - t82);
@@ -2729,27 +2721,27 @@ impl Robot<6> for EveryEffect {
         let r3z = d3 + (sin_alpha3 * t86 + cos_alpha3 * r4z);
 
         // With link 3.
-        let t118 = r3x - k60;
-        let t119 = r3z - k61;
-        let t120 = k54 * r3y;
-        let t121 = k54 * t118 - k53 * t119;
-        let t122 = k53 * r3y;
+        let t118 = r3x - a3_inv_2;
+        let t119 = r3z - d3_inv_2;
+        let t120 = k37 * r3y;
+        let t121 = k37 * t118 - k36 * t119;
+        let t122 = k36 * r3y;
         let t123 = bending3 * t119;
         let t124 = bending3 * t118;
-        let t125 = k55 * r3y;
-        let t126 = k55 * t118 - k54 * t119;
-        let t127 = k61 - r3z;
-        let t128 = k60 - r3x;
+        let t125 = k38 * r3y;
+        let t126 = k38 * t118 - k37 * t119;
+        let t127 = d3_inv_2 - r3z;
+        let t128 = a3_inv_2 - r3x;
         let t129 = t110 - t109;
         let t130 = t120 * t127 + t118 * t125;
-        let t131 = k57 + (t119 * t123 - t125 * t129);
-        let t132 = k58 + (t123 * t128 - r3y * t120);
-        let t133 = k56 + (t121 * t127 + t118 * t126);
-        let t134 = k59 + (r3y * t122 - t124 * t128);
+        let t131 = k40 + (t119 * t123 - t125 * t129);
+        let t132 = k41 + (t123 * t128 - r3y * t120);
+        let t133 = k39 + (t121 * t127 + t118 * t126);
+        let t134 = k42 + (r3y * t122 - t124 * t128);
         let t135 = cos_alpha3 * t89 - sin_alpha3 * t91 - t130;
         let t136 = sin_alpha3 * t89 + cos_alpha3 * t91 + t132;
         let t137 = cos_alpha3 * t111 - t92 + r3y * t121;
-        let rr3_xz = sin_alpha3 * t95 + cos_alpha3 * t97 + k54;
+        let rr3_xz = sin_alpha3 * t95 + cos_alpha3 * t97 + k37;
         let tr3_zz = tr4_zz + t116 + t120;
 
         // From joint 3 to the TCP.
@@ -2766,9 +2758,9 @@ impl Robot<6> for EveryEffect {
         let tt3_yy = t90 - t112 + t133 + (t143 + r3x * t142);
         let tt3_yz = t137 - r3y * t138;
         let tt3_zz = tt4_zz + t112 + t134 + t144;
-        let rr3_xx = transverse3 + (rr4_xx - t94 + k53);
+        let rr3_xx = transverse3 + (rr4_xx - t94 + k36);
         let rr3_yy = transverse3 + (bending3 + (t96 - t114));
-        let rr3_zz = h3 + (rr4_zz + t114 + k55);
+        let rr3_zz = h3 + (rr4_zz + t114 + k38);
         let tr3_xy = cos_alpha3 * t102 - sin_alpha3 * t105 + t123 + t138;
         let tr3_xz = sin_alpha3 * t102 + cos_alpha3 * t105 - t125 - t141;
         let tr3_yx = cos_alpha3 * t103 - sin_alpha3 * t107 + t121 - t138;
@@ -2781,14 +2773,14 @@ impl Robot<6> for EveryEffect {
         let r2y = r3y - t146;
 
         // With link 2.
-        let t147 = k62 * c3;
-        let t148 = k63 * c3;
+        let t147 = k43 * c3;
+        let t148 = a2_bending2_inv_12 * c3;
         let t149 = bending2 + t145 * t147;
         let t150 = t146 * t147;
-        let t151 = bending2 + t146 * (k62 * s3);
-        let t152 = k65 * c3;
+        let t151 = bending2 + t146 * (k43 * s3);
+        let t152 = a2_inv_2 * c3;
         let t153 = r2x - t152;
-        let t154 = r2y + k65 * s3;
+        let t154 = r2y + a2_inv_2 * s3;
         let t155 = r3z * t150;
         let t156 = r3z * t149;
         let t157 = t149 * t154 + t150 * t153;
@@ -2800,11 +2792,12 @@ impl Robot<6> for EveryEffect {
         let t163 = r3z * t158 + t154 * t160;
         let t164 = r3z * t156 + t153 * t161;
         let t165 = t146 * t148 + (r3z * t155 - t153 * t160);
-        let t166 = tt3_xx + (k64 - t145 * t148 + t163);
+        let t166 = tt3_xx + (a2_a2_bending2_inv_12 - t145 * t148 + t163);
         let tt2_xz = tt3_xz + (t158 * t162 - t154 * t155);
-        let t167 = tt3_yy + (k64 - t146 * (k63 * s3) + t164);
+        let t167 = tt3_yy
+            + (a2_a2_bending2_inv_12 - t146 * (a2_bending2_inv_12 * s3) + t164);
         let tt2_yz = tt3_yz + (t155 * t162 - t154 * t156);
-        let tt2_zz = tt3_zz + (k64 + (t154 * t157 - t159 * t162));
+        let tt2_zz = tt3_zz + (a2_a2_bending2_inv_12 + (t154 * t157 - t159 * t162));
         let rr2_xx = rr3_xx + t149;
         let rr2_xy = rr3_xy - t150;
         let rr2_yy = rr3_yy + t151;
@@ -2816,8 +2809,8 @@ impl Robot<6> for EveryEffect {
         let tr2_zy = tr3_zy - t159;
 
         // From joint 2 to the TCP.
-        let t169 = k66 * r2y;
-        let t170 = k66 * r2x;
+        let t169 = h2_plus_added2 * r2y;
+        let t170 = h2_plus_added2 * r2x;
         let t171 = t146 - r3y;
 
         // With the coupling of joints 2 and 3.
@@ -2831,7 +2824,7 @@ impl Robot<6> for EveryEffect {
         let tt2_xx = t166 - t169 * t171 + t174;
         let tt2_xy = tt3_xy + t165 - r2x * t169 + t175;
         let tt2_yy = t167 + r2x * t170 + t178;
-        let rr2_zz = bending2 + rr3_zz + k66 + k67;
+        let rr2_zz = bending2 + rr3_zz + h2_plus_added2 + k44;
         let tr2_xz = tr3_xz - t160 - t169 + (t172 + t173);
         let tr2_yz = tr3_yz + t161 + t170 + (t176 + t177);
         let t179 = s23 * (tt2_xy + tt2_xy) - c23 * (tt2_xx - tt2_yy);
@@ -2996,7 +2989,7 @@ impl Robot<6> for EveryEffect {
                 T::zero(), T::zero(), T::zero(), T::one(),
             ),
             jacobian: SMatrix::from([
-                [j1x, j1y, j1z, k8, k9, k7],
+                [j1x, j1y, j1z, z1x, z1y, z1z],
                 [j2x, j2y, j2z, z2x, z2y, z2z],
                 [j3x, j3y, j3z, z2x, z2y, z2z],
                 [j4x, j4y, j4z, z4x, z4y, z4z],

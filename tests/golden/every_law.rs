@@ -524,10 +524,10 @@ impl Robot<7> for EveryLaw {
         let base_z = T::of(Self::BASE_Z);
         let d1 = T::of(Self::D1);
         let a3 = T::of(Self::A3);
-        let k1 = T::of(0.008333333333333333);
-        let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.5);
-        let k4 = T::of(0.16666666666666666);
+        let inv_120 = T::of(1.0 / 120.0);
+        let inv_24 = T::of(1.0 / 24.0);
+        let inv_2 = T::of(0.5);
+        let inv_6 = T::of(1.0 / 6.0);
         let a4 = T::of(Self::A4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
@@ -539,47 +539,49 @@ impl Robot<7> for EveryLaw {
         let tool_z = T::of(Self::TOOL_Z);
         let sin_tool_pitch = T::of(Self::SIN_TOOL_PITCH);
         let cos_tool_pitch = T::of(Self::COS_TOOL_PITCH);
-        let k5 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
-        let k6 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
-        let k7 = T::of(-Self::SIN_BASE_PITCH);
-        let k8 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
-        let k9 = T::of(
-            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
+        let neg_sin_base_pitch = T::of(-Self::SIN_BASE_PITCH);
+
+        // Constants without a short name.
+        let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
+        let k3 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k4 = T::of(
+            Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW,
         );
-        let k10 = T::of(
+        let k5 = T::of(
             Self::COS_BASE_ROLL * Self::COS_BASE_YAW
                 + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
-        let k11 = T::of(
-            -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+        let k6 = T::of(
+            Self::COS_BASE_ROLL * Self::SIN_BASE_YAW
+                - Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
-        let k12 = T::of(
+        let k7 = T::of(
             -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
                 + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k13 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k14 = T::of(
-            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
+        let k8 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
+        let k9 = T::of(
+            -(Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k15 = T::of(
+        let k10 = T::of(
             Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
-        let k16 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k17 = T::of(
+        let k11 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k12 = T::of(
             Self::D2
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k18 = T::of(
+        let k13 = T::of(
             Self::D2
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                     - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
-        let k19 = T::of(Self::D2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k14 = T::of(Self::D2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7), (s7o, c7o)] = T::sin_cos_all([
             q[1] + T::of(Self::THETA2),
@@ -605,37 +607,37 @@ impl Robot<7> for EveryLaw {
 
         // Sine and cosine of the angle e3 by which joint 3 stands aside.
         let t2 = e3 * e3;
-        let t3 = T::one() - t2 * (k3 - k2 * t2);
-        let t4 = e3 - e3 * t2 * (k4 - k1 * t2);
+        let t3 = T::one() - t2 * (inv_2 - inv_24 * t2);
+        let t4 = e3 - e3 * t2 * (inv_6 - inv_120 * t2);
 
         // Sine and cosine of the angle e4 by which joint 4 stands aside.
         let t5 = e4 * e4;
-        let t6 = T::one() - t5 * (k3 - k2 * t5);
-        let t7 = e4 - e4 * t5 * (k4 - k1 * t5);
+        let t6 = T::one() - t5 * (inv_2 - inv_24 * t5);
+        let t7 = e4 - e4 * t5 * (inv_6 - inv_120 * t5);
 
         // Sine and cosine of the angle e7 by which joint 7 stands aside.
         let t8 = e7 * e7;
-        let t9 = T::one() - t8 * (k3 - k2 * t8);
-        let t10 = e7 - e7 * t8 * (k4 - k1 * t8);
+        let t9 = T::one() - t8 * (inv_2 - inv_24 * t8);
+        let t10 = e7 - e7 * t8 * (inv_6 - inv_120 * t8);
 
         // Axes and origins, from the base to the tip.
-        let t11 = k5 * c2o + k9 * s2o;
-        let t12 = k6 * c2o + k10 * s2o;
-        let t13 = k7 * c2o + k8 * s2o;
-        let t14 = k9 * c2o - k5 * s2o;
-        let t15 = k10 * c2o - k6 * s2o;
-        let t16 = k8 * c2o - k7 * s2o;
-        let t17 = base_x + k11 * t1 + k17 + a3 * t11;
-        let t18 = base_y + k12 * t1 + k18 + a3 * t12;
-        let t19 = base_z + k13 * t1 + k19 + a3 * t13;
+        let t11 = k1 * c2o + k4 * s2o;
+        let t12 = k2 * c2o + k5 * s2o;
+        let t13 = neg_sin_base_pitch * c2o + k3 * s2o;
+        let t14 = k4 * c2o - k1 * s2o;
+        let t15 = k5 * c2o - k2 * s2o;
+        let t16 = k3 * c2o - neg_sin_base_pitch * s2o;
+        let t17 = base_x + k6 * t1 + k12 + a3 * t11;
+        let t18 = base_y + k7 * t1 + k13 + a3 * t12;
+        let t19 = base_z + k8 * t1 + k14 + a3 * t13;
         let t20 = s3 * t4 - c3 * t3;
         let t21 = s3 * t3 + c3 * t4;
-        let t22 = t11 * t21 + k14 * t20;
-        let t23 = t12 * t21 + k15 * t20;
-        let t24 = t13 * t21 + k16 * t20;
-        let t25 = k14 * t21 - t11 * t20;
-        let t26 = k15 * t21 - t12 * t20;
-        let t27 = k16 * t21 - t13 * t20;
+        let t22 = t11 * t21 + k9 * t20;
+        let t23 = t12 * t21 + k10 * t20;
+        let t24 = t13 * t21 + k11 * t20;
+        let t25 = k9 * t21 - t11 * t20;
+        let t26 = k10 * t21 - t12 * t20;
+        let t27 = k11 * t21 - t13 * t20;
         let t28 = cos_alpha4 * t25 + sin_alpha4 * t14;
         let t29 = cos_alpha4 * t26 + sin_alpha4 * t15;
         let t30 = cos_alpha4 * t27 + sin_alpha4 * t16;
@@ -711,66 +713,68 @@ impl Robot<7> for EveryLaw {
         let base_z = T::of(Self::BASE_Z);
         let d1 = T::of(Self::D1);
         let a3 = T::of(Self::A3);
-        let k1 = T::of(0.008333333333333333);
-        let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.5);
-        let k4 = T::of(0.16666666666666666);
+        let inv_120 = T::of(1.0 / 120.0);
+        let inv_24 = T::of(1.0 / 24.0);
+        let inv_2 = T::of(0.5);
+        let inv_6 = T::of(1.0 / 6.0);
         let a4 = T::of(Self::A4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
         let d7 = T::of(Self::D7);
-        let k5 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
-        let k6 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
-        let k7 = T::of(-Self::SIN_BASE_PITCH);
-        let k8 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
-        let k9 = T::of(
-            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
-        );
-        let k10 = T::of(
-            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
-        );
-        let k11 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
-        let k12 = T::of(
+        let x1_x = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let x1_y = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
+        let neg_sin_base_pitch = T::of(-Self::SIN_BASE_PITCH);
+        let y1_z = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let y1_x = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW,
         );
-        let k13 = T::of(
+        let y1_y = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                 - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
-        let k14 = T::of(
-            -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+        let z1_x = T::of(
+            Self::COS_BASE_ROLL * Self::SIN_BASE_YAW
+                - Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
-        let k15 = T::of(
+
+        // Constants without a short name.
+        let k1 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k2 = T::of(
+            Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW,
+        );
+        let k3 = T::of(
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
+        );
+        let k4 = T::of(
             -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
                 + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k16 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k17 = T::of(
-            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
+        let k5 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
+        let k6 = T::of(
+            -(Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k18 = T::of(
+        let k7 = T::of(
             Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
-        let k19 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k20 = T::of(
+        let k8 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k9 = T::of(
             Self::D2
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k21 = T::of(
+        let k10 = T::of(
             Self::D2
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                     - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
-        let k22 = T::of(Self::D2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k11 = T::of(Self::D2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7)] = T::sin_cos_all([
             q[1] + T::of(Self::THETA2),
@@ -795,43 +799,43 @@ impl Robot<7> for EveryLaw {
 
         // Sine and cosine of the angle e3 by which joint 3 stands aside.
         let t2 = e3 * e3;
-        let t3 = T::one() - t2 * (k3 - k2 * t2);
-        let t4 = e3 - e3 * t2 * (k4 - k1 * t2);
+        let t3 = T::one() - t2 * (inv_2 - inv_24 * t2);
+        let t4 = e3 - e3 * t2 * (inv_6 - inv_120 * t2);
 
         // Sine and cosine of the angle e4 by which joint 4 stands aside.
         let t5 = e4 * e4;
-        let t6 = T::one() - t5 * (k3 - k2 * t5);
-        let t7 = e4 - e4 * t5 * (k4 - k1 * t5);
+        let t6 = T::one() - t5 * (inv_2 - inv_24 * t5);
+        let t7 = e4 - e4 * t5 * (inv_6 - inv_120 * t5);
 
         // Sine and cosine of the angle e7 by which joint 7 stands aside.
         let t8 = e7 * e7;
-        let t9 = T::one() - t8 * (k3 - k2 * t8);
-        let t10 = e7 - e7 * t8 * (k4 - k1 * t8);
+        let t9 = T::one() - t8 * (inv_2 - inv_24 * t8);
+        let t10 = e7 - e7 * t8 * (inv_6 - inv_120 * t8);
 
         // Axes and origins, from the base to the tip.
-        let p1_x = base_x + k14 * t1;
-        let p1_y = base_y + k15 * t1;
-        let p1_z = base_z + k16 * t1;
-        let p2_x = p1_x + k20;
-        let p2_y = p1_y + k21;
-        let p2_z = p1_z + k22;
-        let x2_x = k5 * c2o + k9 * s2o;
-        let x2_y = k6 * c2o + k10 * s2o;
-        let x2_z = k7 * c2o + k8 * s2o;
-        let y2_x = k9 * c2o - k5 * s2o;
-        let y2_y = k10 * c2o - k6 * s2o;
-        let y2_z = k8 * c2o - k7 * s2o;
+        let p1_x = base_x + z1_x * t1;
+        let p1_y = base_y + k4 * t1;
+        let p1_z = base_z + k5 * t1;
+        let p2_x = p1_x + k9;
+        let p2_y = p1_y + k10;
+        let p2_z = p1_z + k11;
+        let x2_x = x1_x * c2o + k2 * s2o;
+        let x2_y = x1_y * c2o + k3 * s2o;
+        let x2_z = neg_sin_base_pitch * c2o + k1 * s2o;
+        let y2_x = k2 * c2o - x1_x * s2o;
+        let y2_y = k3 * c2o - x1_y * s2o;
+        let y2_z = k1 * c2o - neg_sin_base_pitch * s2o;
         let p3_x = p2_x + a3 * x2_x;
         let p3_y = p2_y + a3 * x2_y;
         let p3_z = p2_z + a3 * x2_z;
         let t11 = s3 * t4 - c3 * t3;
         let t12 = s3 * t3 + c3 * t4;
-        let x3_x = x2_x * t12 + k17 * t11;
-        let x3_y = x2_y * t12 + k18 * t11;
-        let x3_z = x2_z * t12 + k19 * t11;
-        let y3_x = k17 * t12 - x2_x * t11;
-        let y3_y = k18 * t12 - x2_y * t11;
-        let y3_z = k19 * t12 - x2_z * t11;
+        let x3_x = x2_x * t12 + k6 * t11;
+        let x3_y = x2_y * t12 + k7 * t11;
+        let x3_z = x2_z * t12 + k8 * t11;
+        let y3_x = k6 * t12 - x2_x * t11;
+        let y3_y = k7 * t12 - x2_y * t11;
+        let y3_z = k8 * t12 - x2_z * t11;
         let t13 = cos_alpha4 * y3_x + sin_alpha4 * y2_x;
         let t14 = cos_alpha4 * y3_y + sin_alpha4 * y2_y;
         let t15 = cos_alpha4 * y3_z + sin_alpha4 * y2_z;
@@ -895,15 +899,15 @@ impl Robot<7> for EveryLaw {
         let y7_z = y5_z * t34 + x6_z * t33;
         [
             Matrix4::new(
-                k5, k12, k14, p1_x,
-                k6, k13, k15, p1_y,
-                k7, k11, k16, p1_z,
+                x1_x, y1_x, z1_x, p1_x,
+                x1_y, y1_y, k4, p1_y,
+                neg_sin_base_pitch, y1_z, k5, p1_z,
                 T::zero(), T::zero(), T::zero(), T::one(),
             ),
             Matrix4::new(
-                x2_x, y2_x, k12, p2_x,
-                x2_y, y2_y, k13, p2_y,
-                x2_z, y2_z, k11, p2_z,
+                x2_x, y2_x, y1_x, p2_x,
+                x2_y, y2_y, y1_y, p2_y,
+                x2_z, y2_z, y1_z, p2_z,
                 T::zero(), T::zero(), T::zero(), T::one(),
             ),
             Matrix4::new(
@@ -952,10 +956,10 @@ impl Robot<7> for EveryLaw {
         let cos_error4 = T::of(Self::COS_ERROR4);
         let sin_error7 = T::of(Self::SIN_ERROR7);
         let a3 = T::of(Self::A3);
-        let k1 = T::of(0.008333333333333333);
-        let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.5);
-        let k4 = T::of(0.16666666666666666);
+        let inv_120 = T::of(1.0 / 120.0);
+        let inv_24 = T::of(1.0 / 24.0);
+        let inv_2 = T::of(0.5);
+        let inv_6 = T::of(1.0 / 6.0);
         let a4 = T::of(Self::A4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
@@ -965,45 +969,47 @@ impl Robot<7> for EveryLaw {
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
-        let k5 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
-        let k6 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
-        let k7 = T::of(-Self::SIN_BASE_PITCH);
-        let k8 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
-        let k9 = T::of(
-            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
-        );
-        let k10 = T::of(
-            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
-        );
-        let k11 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
-        let k12 = T::of(
+        let neg_sin_base_pitch = T::of(-Self::SIN_BASE_PITCH);
+        let z2z = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let z2x = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW,
         );
-        let k13 = T::of(
+        let z2y = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                 - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
-        let k14 = T::of(
-            -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+        let z1x = T::of(
+            Self::COS_BASE_ROLL * Self::SIN_BASE_YAW
+                - Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
-        let k15 = T::of(
+
+        // Constants without a short name.
+        let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
+        let k3 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k4 = T::of(
+            Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW,
+        );
+        let k5 = T::of(
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
+        );
+        let k6 = T::of(
             -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
                 + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k16 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k17 = T::of(
-            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
+        let k7 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
+        let k8 = T::of(
+            -(Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k18 = T::of(
+        let k9 = T::of(
             Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
-        let k19 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k10 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7)] = T::sin_cos_all([
             q[1] + T::of(Self::THETA2),
@@ -1027,34 +1033,34 @@ impl Robot<7> for EveryLaw {
 
         // Sine and cosine of the angle e3 by which joint 3 stands aside.
         let t1 = e3 * e3;
-        let t2 = T::one() - t1 * (k3 - k2 * t1);
-        let t3 = e3 - e3 * t1 * (k4 - k1 * t1);
+        let t2 = T::one() - t1 * (inv_2 - inv_24 * t1);
+        let t3 = e3 - e3 * t1 * (inv_6 - inv_120 * t1);
 
         // Sine and cosine of the angle e4 by which joint 4 stands aside.
         let t4 = e4 * e4;
-        let t5 = T::one() - t4 * (k3 - k2 * t4);
-        let t6 = e4 - e4 * t4 * (k4 - k1 * t4);
+        let t5 = T::one() - t4 * (inv_2 - inv_24 * t4);
+        let t6 = e4 - e4 * t4 * (inv_6 - inv_120 * t4);
 
         // Sine and cosine of the angle e7 by which joint 7 stands aside.
         let t7 = e7 * e7;
-        let t8 = T::one() - t7 * (k3 - k2 * t7);
-        let t9 = e7 - e7 * t7 * (k4 - k1 * t7);
+        let t8 = T::one() - t7 * (inv_2 - inv_24 * t7);
+        let t9 = e7 - e7 * t7 * (inv_6 - inv_120 * t7);
 
         // Axes and origins, from the base to the tip.
-        let t10 = k5 * c2o + k9 * s2o;
-        let t11 = k6 * c2o + k10 * s2o;
-        let t12 = k7 * c2o + k8 * s2o;
-        let z3x = k9 * c2o - k5 * s2o;
-        let z3y = k10 * c2o - k6 * s2o;
-        let z3z = k8 * c2o - k7 * s2o;
+        let t10 = k1 * c2o + k4 * s2o;
+        let t11 = k2 * c2o + k5 * s2o;
+        let t12 = neg_sin_base_pitch * c2o + k3 * s2o;
+        let z3x = k4 * c2o - k1 * s2o;
+        let z3y = k5 * c2o - k2 * s2o;
+        let z3z = k3 * c2o - neg_sin_base_pitch * s2o;
         let t13 = s3 * t3 - c3 * t2;
         let t14 = s3 * t2 + c3 * t3;
-        let t15 = t10 * t14 + k17 * t13;
-        let t16 = t11 * t14 + k18 * t13;
-        let t17 = t12 * t14 + k19 * t13;
-        let t18 = k17 * t14 - t10 * t13;
-        let t19 = k18 * t14 - t11 * t13;
-        let t20 = k19 * t14 - t12 * t13;
+        let t15 = t10 * t14 + k8 * t13;
+        let t16 = t11 * t14 + k9 * t13;
+        let t17 = t12 * t14 + k10 * t13;
+        let t18 = k8 * t14 - t10 * t13;
+        let t19 = k9 * t14 - t11 * t13;
+        let t20 = k10 * t14 - t12 * t13;
         let t21 = cos_alpha4 * t18 + sin_alpha4 * z3x;
         let t22 = cos_alpha4 * t19 + sin_alpha4 * z3y;
         let t23 = cos_alpha4 * t20 + sin_alpha4 * z3z;
@@ -1119,9 +1125,9 @@ impl Robot<7> for EveryLaw {
         let l2z = a3 * t12 + l3z;
 
         // What the joints move: z is an axis, l leads from it to the TCP.
-        let j2x = k13 * l2z - k11 * l2y;
-        let j2y = k11 * l2x - k12 * l2z;
-        let j2z = k12 * l2y - k13 * l2x;
+        let j2x = z2y * l2z - z2z * l2y;
+        let j2y = z2z * l2x - z2x * l2z;
+        let j2z = z2x * l2y - z2y * l2x;
         let j3x = z3y * l3z - z3z * l3y;
         let j3y = z3z * l3x - z3x * l3z;
         let j3z = z3x * l3y - z3y * l3x;
@@ -1138,8 +1144,8 @@ impl Robot<7> for EveryLaw {
         let j7y = z7z * l7x - z7x * l7z;
         let j7z = z7x * l7y - z7y * l7x;
         SMatrix::from([
-            [k14, k15, k16, T::zero(), T::zero(), T::zero()],
-            [j2x, j2y, j2z, k12, k13, k11],
+            [z1x, k6, k7, T::zero(), T::zero(), T::zero()],
+            [j2x, j2y, j2z, z2x, z2y, z2z],
             [j3x, j3y, j3z, z3x, z3y, z3z],
             [j4x, j4y, j4z, z4x, z4y, z4z],
             [j5x, j5y, j5z, z5x, z5y, z5z],
@@ -1167,7 +1173,7 @@ impl Robot<7> for EveryLaw {
         let transverse4 = T::of(Self::TRANSVERSE4);
         let bending3 = T::of(Self::BENDING3);
         let coupling5_6 = T::of(Self::COUPLING5_6);
-        let k1 = T::of(0.5);
+        let inv_2 = T::of(0.5);
         let cos1_3 = T::of(Self::COS1_3);
         let sin1_3 = T::of(Self::SIN1_3);
         let cos2_3 = T::of(Self::COS2_3);
@@ -1182,167 +1188,164 @@ impl Robot<7> for EveryLaw {
         let sin_base_roll = T::of(Self::SIN_BASE_ROLL);
         let cos_base_roll = T::of(Self::COS_BASE_ROLL);
         let a3 = T::of(Self::A3);
-        let k2 = T::of(0.008333333333333333);
-        let k3 = T::of(0.041666666666666664);
-        let k4 = T::of(0.16666666666666666);
+        let inv_120 = T::of(1.0 / 120.0);
+        let inv_24 = T::of(1.0 / 24.0);
+        let inv_6 = T::of(1.0 / 6.0);
         let a4 = T::of(Self::A4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
         let d5 = T::of(Self::D5);
         let a5 = T::of(Self::A5);
-        let k5 = T::of(
+        let r7x = T::of(
             Self::COS_TOOL_YAW
-                * (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                * (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                 - Self::SIN_TOOL_YAW
-                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                        + Self::TOOL_Y * Self::COS_TOOL_YAW),
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW),
         );
-        let k6 = T::of(
+        let r7y = T::of(
             Self::SIN_TOOL_YAW
-                * (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                * (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                 + Self::COS_TOOL_YAW
-                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                        + Self::TOOL_Y * Self::COS_TOOL_YAW),
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW),
         );
-        let k7 = T::of(
-            -(Self::H7
-                * (Self::SIN_TOOL_YAW
-                    * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                    + Self::COS_TOOL_YAW
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))),
-        );
-        let k8 = T::of(
+        let tr7_yz = T::of(
             Self::H7
                 * (Self::COS_TOOL_YAW
                     * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                     - Self::SIN_TOOL_YAW
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW)),
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW)),
         );
-        let k9 = T::of(
-            -(Self::H7
-                * (Self::SIN_TOOL_YAW
-                    * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                    + Self::COS_TOOL_YAW
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW)))
-                * -(Self::SIN_TOOL_YAW
-                    * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                    + Self::COS_TOOL_YAW
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW)),
-        );
-        let k10 = T::of(
-            (Self::COS_TOOL_YAW
-                * (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                - Self::SIN_TOOL_YAW
-                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                * -(Self::H7
+        let tt7_xx = T::of(
+            (Self::SIN_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                + Self::COS_TOOL_YAW
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW))
+                * (Self::H7
                     * (Self::SIN_TOOL_YAW
                         * (Self::TOOL_X * Self::COS_TOOL_YAW
-                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                            + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                         + Self::COS_TOOL_YAW
-                            * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                                + Self::TOOL_Y * Self::COS_TOOL_YAW))),
+                            * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                - Self::TOOL_X * Self::SIN_TOOL_YAW))),
         );
-        let k11 = T::of(
+        let tt7_yy = T::of(
             (Self::COS_TOOL_YAW
-                * (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                * (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                 - Self::SIN_TOOL_YAW
-                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW))
                 * (Self::H7
                     * (Self::COS_TOOL_YAW
                         * (Self::TOOL_X * Self::COS_TOOL_YAW
-                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                            + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                         - Self::SIN_TOOL_YAW
-                            * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                                + Self::TOOL_Y * Self::COS_TOOL_YAW))),
+                            * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                - Self::TOOL_X * Self::SIN_TOOL_YAW))),
         );
-        let k12 = T::of(Self::D7 + Self::TOOL_Z);
-        let k13 = T::of(
+        let d7_plus_tool_z = T::of(Self::D7 + Self::TOOL_Z);
+        let neg_d7_plus_tool_z = T::of(-(Self::D7 + Self::TOOL_Z));
+        let neg_h7 = T::of(-Self::H7);
+        let neg_coupling5_6 = T::of(-Self::COUPLING5_6);
+        let a4_bending3_inv_12 = T::of(Self::A4 * (Self::BENDING3 * (1.0 / 12.0)));
+        let a4_a4_bending3_inv_12 = T::of(
+            Self::A4 * Self::A4 * (Self::BENDING3 * (1.0 / 12.0)),
+        );
+        let inv_2_a4 = T::of(0.5 * Self::A4);
+        let sin_base_yaw = T::of(Self::SIN_BASE_YAW);
+        let cos_base_yaw = T::of(Self::COS_BASE_YAW);
+
+        // Constants without a short name.
+        let k1 = T::of(
             -(Self::H7
                 * (Self::SIN_TOOL_YAW
                     * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                     + Self::COS_TOOL_YAW
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW)))
-                * -(Self::SIN_TOOL_YAW
-                    * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                    + Self::COS_TOOL_YAW
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW))),
+        );
+        let k2 = T::of(
+            -((Self::COS_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                - Self::SIN_TOOL_YAW
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW))
+                * (Self::H7
+                    * (Self::SIN_TOOL_YAW
+                        * (Self::TOOL_X * Self::COS_TOOL_YAW
+                            + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                        + Self::COS_TOOL_YAW
+                            * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                - Self::TOOL_X * Self::SIN_TOOL_YAW)))),
+        );
+        let k3 = T::of(
+            (Self::SIN_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                + Self::COS_TOOL_YAW
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW))
+                * (Self::H7
+                    * (Self::SIN_TOOL_YAW
+                        * (Self::TOOL_X * Self::COS_TOOL_YAW
+                            + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                        + Self::COS_TOOL_YAW
+                            * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                - Self::TOOL_X * Self::SIN_TOOL_YAW)))
                 - (Self::COS_TOOL_YAW
                     * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                     - Self::SIN_TOOL_YAW
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW))
                     * (Self::H7
                         * (Self::COS_TOOL_YAW
                             * (Self::TOOL_X * Self::COS_TOOL_YAW
-                                - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                                + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                             - Self::SIN_TOOL_YAW
-                                * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                                    + Self::TOOL_Y * Self::COS_TOOL_YAW))),
+                                * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                    - Self::TOOL_X * Self::SIN_TOOL_YAW))),
         );
-        let k14 = T::of(
-            (Self::COS_TOOL_YAW
-                * (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+        let k4 = T::of(
+            -((Self::COS_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                 - Self::SIN_TOOL_YAW
-                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                * -(Self::H7
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW))
+                * (Self::H7
                     * (Self::SIN_TOOL_YAW
                         * (Self::TOOL_X * Self::COS_TOOL_YAW
-                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                            + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                         + Self::COS_TOOL_YAW
-                            * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                                + Self::TOOL_Y * Self::COS_TOOL_YAW)))
+                            * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                - Self::TOOL_X * Self::SIN_TOOL_YAW)))
                 + (Self::COS_TOOL_YAW
                     * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                     - Self::SIN_TOOL_YAW
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                    * -(Self::H7
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW))
+                    * (Self::H7
                         * (Self::SIN_TOOL_YAW
                             * (Self::TOOL_X * Self::COS_TOOL_YAW
-                                - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                                + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                             + Self::COS_TOOL_YAW
-                                * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                                    + Self::TOOL_Y * Self::COS_TOOL_YAW))),
+                                * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                    - Self::TOOL_X * Self::SIN_TOOL_YAW)))),
         );
-        let k15 = T::of(-(Self::D7 + Self::TOOL_Z));
-        let k16 = T::of((Self::D7 + Self::TOOL_Z) * -(Self::D7 + Self::TOOL_Z));
-        let k17 = T::of(-Self::H7);
-        let k18 = T::of(Self::H5 + 1.0 / Self::GAP_KNEE5 * (0.5 * Self::GAP5));
-        let k19 = T::of(-Self::COUPLING5_6);
-        let k20 = T::of(
+        let k5 = T::of(-((Self::D7 + Self::TOOL_Z) * (Self::D7 + Self::TOOL_Z)));
+        let k6 = T::of(Self::H5 + 1.0 / Self::GAP_KNEE5 * (0.5 * Self::GAP5));
+        let k7 = T::of(
             Self::A4
                 * ((Self::TORSION3 - Self::BENDING3) * (1.0 / (Self::A4 * Self::A4))),
         );
-        let k21 = T::of(Self::A4 * (Self::BENDING3 * 0.08333333333333333));
-        let k22 = T::of(Self::A4 * Self::A4 * (Self::BENDING3 * 0.08333333333333333));
-        let k23 = T::of(0.5 * Self::A4);
-        let k24 = T::of(
+        let k8 = T::of(
             1.0 / Self::GAP_KNEE3 * (Self::GAP3 * 0.5) + (Self::H3 + Self::ADDED3),
         );
-        let sin_base_yaw = T::of(Self::SIN_BASE_YAW);
-        let cos_base_yaw = T::of(Self::COS_BASE_YAW);
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7)] = T::sin_cos_all([
             q[1] + T::of(Self::THETA2),
@@ -1374,51 +1377,51 @@ impl Robot<7> for EveryLaw {
 
         // Sine and cosine of the angle e3 by which joint 3 stands aside.
         let t5 = e3 * e3;
-        let t6 = T::one() - t5 * (k1 - k3 * t5);
-        let t7 = e3 * t5 * (k4 - k2 * t5);
+        let t6 = T::one() - t5 * (inv_2 - inv_24 * t5);
+        let t7 = e3 * t5 * (inv_6 - inv_120 * t5);
         let t8 = e3 - t7;
 
         // Sine and cosine of the angle e4 by which joint 4 stands aside.
         let t9 = e4 * e4;
-        let t10 = T::one() - t9 * (k1 - k3 * t9);
-        let t11 = e4 * t9 * (k4 - k2 * t9);
+        let t10 = T::one() - t9 * (inv_2 - inv_24 * t9);
+        let t11 = e4 * t9 * (inv_6 - inv_120 * t9);
         let t12 = e4 - t11;
 
         // Sine and cosine of the angle e7 by which joint 7 stands aside.
         let t13 = e7 * e7;
-        let t14 = T::one() - t13 * (k1 - k3 * t13);
-        let t15 = e7 - e7 * t13 * (k4 - k2 * t13);
+        let t14 = T::one() - t13 * (inv_2 - inv_24 * t13);
+        let t15 = e7 - e7 * t13 * (inv_6 - inv_120 * t13);
 
         // From joint 7 to the TCP.
         let t16 = t14 * s7 + t15 * c7;
         let t17 = t15 * s7 - t14 * c7;
-        let r6x = k5 * t17 + k6 * t16;
-        let t18 = k5 * t16;
-        let t19 = k6 * t17;
+        let r6x = r7x * t17 + r7y * t16;
+        let t18 = r7x * t16;
+        let t19 = r7y * t17;
         let r5y = t19 - t18;
-        let t20 = k14 * t17 - k13 * t16;
+        let t20 = k4 * t17 - k3 * t16;
         let t21 = t16 * t20;
-        let tt6_zz = k11 - t21;
-        let tr6_xy = k7 * t17 + k8 * t16;
+        let tt6_zz = tt7_yy - t21;
+        let tr6_xy = k1 * t17 + tr7_yz * t16;
         let r6z = t18 - t19;
-        let tt6_xz = k10 - t17 * t20;
-        let tr6_zy = k7 * t16 - k8 * t17;
+        let tt6_xz = k2 - t17 * t20;
+        let tr6_zy = k1 * t16 - tr7_yz * t17;
 
         // From joint 6 to the TCP.
         let rr6_zz = h6 + h6_sin2_6 * (t4 + t4);
-        let t22 = k12 * rr6_zz;
+        let t22 = d7_plus_tool_z * rr6_zz;
         let tr6_yz = r6x * rr6_zz;
         let t23 = r6x * t22;
         let tt6_yy = r6x * tr6_yz;
-        let tt6_xx = k9 + t21 - k16 * rr6_zz;
+        let tt6_xx = tt7_xx + t21 - k5 * rr6_zz;
         let t24 = c6 * r6x;
-        let r5x = t24 - k12 * s6;
+        let r5x = t24 - d7_plus_tool_z * s6;
         let t25 = s6 * r6x;
-        let r5z = t25 + k12 * c6;
+        let r5z = t25 + d7_plus_tool_z * c6;
         let t26 = s6 * (tt6_xx - tt6_yy) - c6 * (t23 + t23);
         let t27 = s6 * t26;
         let tt5_zz = tt6_yy + t27;
-        let t28 = k17 * s6;
+        let t28 = neg_h7 * s6;
         let t29 = s6 * t28;
         let rr5_xz = c6 * t28;
         let t30 = c6 * tr6_xy;
@@ -1426,15 +1429,15 @@ impl Robot<7> for EveryLaw {
         let t32 = c6 * t30;
         let tr5_zx = t32 - tr6_xy;
         let tr5_yx = s6 * tr6_zy;
-        let t33 = k15 * c6 - t25;
-        let t34 = t24 + k15 * s6;
+        let t33 = neg_d7_plus_tool_z * c6 - t25;
+        let t34 = t24 + neg_d7_plus_tool_z * s6;
         let tr5_zy = s6 * t22 - c6 * tr6_yz;
 
         // From joint 5 to the TCP.
-        let t35 = k18 * r5y;
-        let t36 = k18 * r5x;
+        let t35 = k6 * r5y;
+        let t36 = k6 * r5x;
         let tt5_yy = tt6_zz + r5x * t36;
-        let rr5_zz = h7 + t29 + k18;
+        let rr5_zz = h7 + t29 + k6;
         let tr5_yz = t36 - c6 * tr6_zy;
 
         // With the coupling of joints 5 and 6.
@@ -1461,8 +1464,8 @@ impl Robot<7> for EveryLaw {
         let t48 = s5 * (rr6_zz + t29);
         let t49 = s5 * t48;
         let rr4_xz = c5 * t48;
-        let rr4_xy = rr5_xz * c5 - k19 * s5;
-        let t50 = rr5_xz * s5 + k19 * c5;
+        let rr4_xy = rr5_xz * c5 - neg_coupling5_6 * s5;
+        let t50 = rr5_xz * s5 + neg_coupling5_6 * c5;
         let t51 = s5 * (t40 - t31) + c5 * (tr5_yx + tr5_xy);
         let t52 = s5 * t51;
         let t53 = c5 * t51;
@@ -1501,13 +1504,13 @@ impl Robot<7> for EveryLaw {
         let t69 = r4y + t67;
 
         // With link 3.
-        let t70 = k20 * t65;
-        let t71 = k21 * t65;
+        let t70 = k7 * t65;
+        let t71 = a4_bending3_inv_12 * t65;
         let t72 = bending3 + t66 * t70;
         let t73 = t67 * t70;
-        let t74 = bending3 + t67 * (k20 * t63);
-        let t75 = k23 * t65;
-        let t76 = k23 * t63;
+        let t74 = bending3 + t67 * (k7 * t63);
+        let t75 = inv_2_a4 * t65;
+        let t76 = inv_2_a4 * t63;
         let t77 = t68 - t75;
         let t78 = t69 - t76;
         let t79 = t45 * t73;
@@ -1521,12 +1524,13 @@ impl Robot<7> for EveryLaw {
         let t87 = t45 * t82 - t84 * (t76 - t69);
         let t88 = t45 * t80 + t77 * t85;
         let t89 = t67 * t71 + (t45 * t79 + t77 * t84);
-        let t90 = tt4_xx + (k22 - t66 * t71 + t87);
+        let t90 = tt4_xx + (a4_a4_bending3_inv_12 - t66 * t71 + t87);
         let t91 = tt4_xy - t89;
         let t92 = tt4_xz - (t78 * t79 + t82 * t86);
-        let t93 = tt4_yy + (k22 - t67 * (k21 * t63) + t88);
+        let t93 = tt4_yy
+            + (a4_a4_bending3_inv_12 - t67 * (a4_bending3_inv_12 * t63) + t88);
         let t94 = tt4_yz + (t78 * t80 + t79 * t86);
-        let t95 = tt4_zz + (k22 + (t78 * t81 + t83 * t86));
+        let t95 = tt4_zz + (a4_a4_bending3_inv_12 + (t78 * t81 + t83 * t86));
         let t96 = rr4_xx + t72;
         let t97 = rr4_xy + t73;
         let t98 = rr4_yy + t74;
@@ -1593,7 +1597,7 @@ impl Robot<7> for EveryLaw {
         let tr3_xy = cos_alpha4 * t127 - sin_alpha4 * t130;
 
         // From joint 3 to the TCP.
-        let t143 = h3 * (t2 + sin2_3 * (t3 + t3)) + k24;
+        let t143 = h3 * (t2 + sin2_3 * (t3 + t3)) + k8;
         let t144 = r3y * t143;
         let t145 = r3x * t143;
         let tt3_xx = t90 - t112 + r3y * t144;
@@ -1766,10 +1770,10 @@ impl Robot<7> for EveryLaw {
         let cos_error4 = T::of(Self::COS_ERROR4);
         let sin_error7 = T::of(Self::SIN_ERROR7);
         let a3 = T::of(Self::A3);
-        let k1 = T::of(0.008333333333333333);
-        let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.5);
-        let k4 = T::of(0.16666666666666666);
+        let inv_120 = T::of(1.0 / 120.0);
+        let inv_24 = T::of(1.0 / 24.0);
+        let inv_2 = T::of(0.5);
+        let inv_6 = T::of(1.0 / 6.0);
         let a4 = T::of(Self::A4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
@@ -1789,11 +1793,6 @@ impl Robot<7> for EveryLaw {
         let bending3 = T::of(Self::BENDING3);
         let coupling5_6 = T::of(Self::COUPLING5_6);
         let added3 = T::of(Self::ADDED3);
-        let k5 = T::of(1.0 / Self::KNEE3);
-        let k6 = T::of(1.0 / Self::GAP_KNEE3);
-        let k7 = T::of(1.0 / Self::GAP_KNEE3 * (0.5 * Self::GAP3));
-        let k8 = T::of(1.0 / Self::GAP_KNEE5);
-        let k9 = T::of(1.0 / Self::GAP_KNEE5 * (0.5 * Self::GAP5));
         let radius1_3 = T::of(Self::RADIUS1_3);
         let weight1_3 = T::of(Self::WEIGHT1_3);
         let radius2_3 = T::of(Self::RADIUS2_3);
@@ -1807,73 +1806,82 @@ impl Robot<7> for EveryLaw {
         let cos2_3 = T::of(Self::COS2_3);
         let sin2_3 = T::of(Self::SIN2_3);
         let h6_sin2_6 = T::of(Self::H6 * Self::SIN2_6);
-        let k10 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
-        let k11 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
-        let k12 = T::of(-Self::SIN_BASE_PITCH);
-        let k13 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
-        let k14 = T::of(
-            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
-        );
-        let k15 = T::of(
-            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
-        );
-        let k16 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
-        let k17 = T::of(
+        let neg_sin_base_pitch = T::of(-Self::SIN_BASE_PITCH);
+        let z2z = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let z2x = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW,
         );
-        let k18 = T::of(
+        let z2y = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                 - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
-        let k19 = T::of(
-            -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+        let z1x = T::of(
+            Self::COS_BASE_ROLL * Self::SIN_BASE_YAW
+                - Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
-        let k20 = T::of(
+        let inv_2_a4 = T::of(0.5 * Self::A4);
+        let bending3_inv_12 = T::of(Self::BENDING3 * (1.0 / 12.0));
+        let a4_a4_bending3_inv_12 = T::of(
+            Self::A4 * Self::A4 * (Self::BENDING3 * (1.0 / 12.0)),
+        );
+
+        // Constants without a short name.
+        let k1 = T::of(1.0 / Self::KNEE3);
+        let k2 = T::of(1.0 / Self::GAP_KNEE3);
+        let k3 = T::of(1.0 / Self::GAP_KNEE3 * (0.5 * Self::GAP3));
+        let k4 = T::of(1.0 / Self::GAP_KNEE5);
+        let k5 = T::of(1.0 / Self::GAP_KNEE5 * (0.5 * Self::GAP5));
+        let k6 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k7 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
+        let k8 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k9 = T::of(
+            Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW,
+        );
+        let k10 = T::of(
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
+        );
+        let k11 = T::of(
             -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
                 + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k21 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k22 = T::of(
-            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
+        let k12 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
+        let k13 = T::of(
+            -(Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k23 = T::of(
+        let k14 = T::of(
             Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
-        let k24 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k25 = T::of(
+        let k15 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k16 = T::of(
             Self::H1
-                * -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+                * (Self::COS_BASE_ROLL * Self::SIN_BASE_YAW
+                    - Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
-        let k26 = T::of(
-            Self::H1
-                * -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
+        let k17 = T::of(
+            -(Self::H1
+                * (Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW))),
         );
-        let k27 = T::of(Self::H1 * -(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k28 = T::of(
+        let k18 = T::of(-(Self::H1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL)));
+        let k19 = T::of(
             Self::H2
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k29 = T::of(
+        let k20 = T::of(
             Self::H2
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                     - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
-        let k30 = T::of(Self::H2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k31 = T::of(0.5 * Self::A4);
-        let k32 = T::of(
+        let k21 = T::of(Self::H2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k22 = T::of(
             (Self::TORSION3 - Self::BENDING3) * (1.0 / (Self::A4 * Self::A4)),
         );
-        let k33 = T::of(Self::BENDING3 * 0.08333333333333333);
-        let k34 = T::of(Self::A4 * Self::A4 * (Self::BENDING3 * 0.08333333333333333));
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7)] = T::sin_cos_all([
@@ -1898,18 +1906,18 @@ impl Robot<7> for EveryLaw {
 
         // Sine and cosine of the angle e3 by which joint 3 stands aside.
         let t1 = e3 * e3;
-        let t2 = T::one() - t1 * (k3 - k2 * t1);
-        let t3 = e3 - e3 * t1 * (k4 - k1 * t1);
+        let t2 = T::one() - t1 * (inv_2 - inv_24 * t1);
+        let t3 = e3 - e3 * t1 * (inv_6 - inv_120 * t1);
 
         // Sine and cosine of the angle e4 by which joint 4 stands aside.
         let t4 = e4 * e4;
-        let t5 = T::one() - t4 * (k3 - k2 * t4);
-        let t6 = e4 - e4 * t4 * (k4 - k1 * t4);
+        let t5 = T::one() - t4 * (inv_2 - inv_24 * t4);
+        let t6 = e4 - e4 * t4 * (inv_6 - inv_120 * t4);
 
         // Sine and cosine of the angle e7 by which joint 7 stands aside.
         let t7 = e7 * e7;
-        let t8 = T::one() - t7 * (k3 - k2 * t7);
-        let t9 = e7 - e7 * t7 * (k4 - k1 * t7);
+        let t8 = T::one() - t7 * (inv_2 - inv_24 * t7);
+        let t9 = e7 - e7 * t7 * (inv_6 - inv_120 * t7);
 
         // Of the compliance of joint 3 that varies with its angle.
         let t10 = cos2_3 * ((c3 - s3) * (s3 + c3));
@@ -1920,20 +1928,20 @@ impl Robot<7> for EveryLaw {
         let t13 = s6 * c6;
 
         // Axes and origins, from the base to the tip.
-        let t14 = k10 * c2o + k14 * s2o;
-        let t15 = k11 * c2o + k15 * s2o;
-        let t16 = k12 * c2o + k13 * s2o;
-        let z3x = k14 * c2o - k10 * s2o;
-        let z3y = k15 * c2o - k11 * s2o;
-        let z3z = k13 * c2o - k12 * s2o;
+        let t14 = k6 * c2o + k9 * s2o;
+        let t15 = k7 * c2o + k10 * s2o;
+        let t16 = neg_sin_base_pitch * c2o + k8 * s2o;
+        let z3x = k9 * c2o - k6 * s2o;
+        let z3y = k10 * c2o - k7 * s2o;
+        let z3z = k8 * c2o - neg_sin_base_pitch * s2o;
         let t17 = s3 * t3 - c3 * t2;
         let t18 = s3 * t2 + c3 * t3;
-        let t19 = t14 * t18 + k22 * t17;
-        let t20 = t15 * t18 + k23 * t17;
-        let t21 = t16 * t18 + k24 * t17;
-        let t22 = k22 * t18 - t14 * t17;
-        let t23 = k23 * t18 - t15 * t17;
-        let t24 = k24 * t18 - t16 * t17;
+        let t19 = t14 * t18 + k13 * t17;
+        let t20 = t15 * t18 + k14 * t17;
+        let t21 = t16 * t18 + k15 * t17;
+        let t22 = k13 * t18 - t14 * t17;
+        let t23 = k14 * t18 - t15 * t17;
+        let t24 = k15 * t18 - t16 * t17;
         let t25 = cos_alpha4 * t22 + sin_alpha4 * z3x;
         let t26 = cos_alpha4 * t23 + sin_alpha4 * z3y;
         let t27 = cos_alpha4 * t24 + sin_alpha4 * z3z;
@@ -2001,9 +2009,9 @@ impl Robot<7> for EveryLaw {
         let l2z = a3 * t16 + l3z;
 
         // What the joints move: z is an axis, l leads from it to the TCP.
-        let j2x = k18 * l2z - k16 * l2y;
-        let j2y = k16 * l2x - k17 * l2z;
-        let j2z = k17 * l2y - k18 * l2x;
+        let j2x = z2y * l2z - z2z * l2y;
+        let j2y = z2z * l2x - z2x * l2z;
+        let j2z = z2x * l2y - z2y * l2x;
         let j3x = z3y * l3z - z3z * l3y;
         let j3y = z3z * l3x - z3x * l3z;
         let j3z = z3x * l3y - z3y * l3x;
@@ -2021,8 +2029,8 @@ impl Robot<7> for EveryLaw {
         let j7z = z7x * l7y - z7y * l7x;
 
         // What the wrench puts on the joints.
-        let tau1 = k19 * fx + k20 * fy + k21 * fz;
-        let t61 = k17 * mx + k18 * my + k16 * mz;
+        let tau1 = z1x * fx + k11 * fy + k12 * fz;
+        let t61 = z2x * mx + z2y * my + z2z * mz;
         let tau2 = fx * j2x + fy * j2y + fz * j2z + t61;
         let t62 = z3x * mx + z3y * my + z3z * mz;
         let tau3 = fx * j3x + fy * j3y + fz * j3z + t62;
@@ -2041,16 +2049,16 @@ impl Robot<7> for EveryLaw {
         let dq7 = h7 * tau7;
 
         // Of the hardening of joint 3 with torque.
-        let t67 = k5 * tau3;
+        let t67 = k1 * tau3;
         let t68 = added3 * tau3 * (T::one() + t67 * t67).sqrt().recip();
 
         // Of the backlash of joint 3.
-        let t69 = k6 * tau3;
-        let t70 = k7 * tau3 * (T::one() + t69 * t69).sqrt().recip();
+        let t69 = k2 * tau3;
+        let t70 = k3 * tau3 * (T::one() + t69 * t69).sqrt().recip();
 
         // Of the backlash of joint 5.
-        let t71 = k8 * tau5;
-        let t72 = k9 * tau5 * (T::one() + t71 * t71).sqrt().recip();
+        let t71 = k4 * tau5;
+        let t72 = k5 * tau5 * (T::one() + t71 * t71).sqrt().recip();
         let dq5 = h5 * tau5 + coupling5_6 * tau6 + t72;
 
         // Of the hysteresis of joint 3.
@@ -2071,12 +2079,12 @@ impl Robot<7> for EveryLaw {
         let dq6 = t74 + h6_sin2_6 * (t13 + t13) * tau6;
 
         // What these turns make at the TCP.
-        let t76 = k25 * tau1 + j2x * dq2 + j3x * dq3;
-        let t77 = k26 * tau1 + j2y * dq2 + j3y * dq3;
-        let t78 = k27 * tau1 + j2z * dq2 + j3z * dq3;
-        let t79 = k28 * tau2 + z3x * dq3 + z4x * dq4;
-        let t80 = k29 * tau2 + z3y * dq3 + z4y * dq4;
-        let t81 = k30 * tau2 + z3z * dq3 + z4z * dq4;
+        let t76 = k16 * tau1 + j2x * dq2 + j3x * dq3;
+        let t77 = k17 * tau1 + j2y * dq2 + j3y * dq3;
+        let t78 = k18 * tau1 + j2z * dq2 + j3z * dq3;
+        let t79 = k19 * tau2 + z3x * dq3 + z4x * dq4;
+        let t80 = k20 * tau2 + z3y * dq3 + z4y * dq4;
+        let t81 = k21 * tau2 + z3z * dq3 + z4z * dq4;
         let t82 = t76 + j4x * dq4 + j5x * dq5;
         let t83 = t77 + j4y * dq4 + j5y * dq5;
         let t84 = t78 + j4z * dq4 + j5z * dq5;
@@ -2100,14 +2108,14 @@ impl Robot<7> for EveryLaw {
         let t100 = t90 + (l4y * t95 - l4x * t96);
 
         // And link 3.
-        let t101 = l3x - k31 * t19;
-        let t102 = l3y - k31 * t20;
-        let t103 = l3z - k31 * t21;
+        let t101 = l3x - inv_2_a4 * t19;
+        let t102 = l3y - inv_2_a4 * t20;
+        let t103 = l3z - inv_2_a4 * t21;
         let t104 = mx + (fz * t102 - fy * t103);
         let t105 = my + (fx * t103 - fz * t101);
         let t106 = mz + (fy * t101 - fx * t102);
         let t107 = t34 * t104 + t35 * t105 + t36 * t106;
-        let t108 = k32 * t107;
+        let t108 = k22 * t107;
         let t109 = bending3 * t104 + t34 * t108;
         let t110 = bending3 * t105 + t35 * t108;
         let t111 = bending3 * t106 + t36 * t108;
@@ -2115,11 +2123,11 @@ impl Robot<7> for EveryLaw {
         let t113 = t99 + (t101 * t111 - t103 * t109);
         let t114 = t100 + (t102 * t109 - t101 * t110);
         let t115 = t34 * fx + t35 * fy + t36 * fz;
-        let t116 = k33 * t115;
+        let t116 = bending3_inv_12 * t115;
         Vector6::new(
-            t112 + k34 * fx - t34 * t116,
-            t113 + k34 * fy - t35 * t116,
-            t114 + k34 * fz - t36 * t116,
+            t112 + a4_a4_bending3_inv_12 * fx - t34 * t116,
+            t113 + a4_a4_bending3_inv_12 * fy - t35 * t116,
+            t114 + a4_a4_bending3_inv_12 * fz - t36 * t116,
             t85 + z7x * dq7 + t95 + t109,
             t86 + z7y * dq7 + t96 + t110,
             t87 + z7z * dq7 + t97 + t111,
@@ -2141,10 +2149,10 @@ impl Robot<7> for EveryLaw {
         let cos_error4 = T::of(Self::COS_ERROR4);
         let sin_error7 = T::of(Self::SIN_ERROR7);
         let a3 = T::of(Self::A3);
-        let k1 = T::of(0.008333333333333333);
-        let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.5);
-        let k4 = T::of(0.16666666666666666);
+        let inv_120 = T::of(1.0 / 120.0);
+        let inv_24 = T::of(1.0 / 24.0);
+        let inv_2 = T::of(0.5);
+        let inv_6 = T::of(1.0 / 6.0);
         let a4 = T::of(Self::A4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
@@ -2154,45 +2162,47 @@ impl Robot<7> for EveryLaw {
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
-        let k5 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
-        let k6 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
-        let k7 = T::of(-Self::SIN_BASE_PITCH);
-        let k8 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
-        let k9 = T::of(
-            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
-        );
-        let k10 = T::of(
-            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
-        );
-        let k11 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
-        let k12 = T::of(
+        let neg_sin_base_pitch = T::of(-Self::SIN_BASE_PITCH);
+        let z2z = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let z2x = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW,
         );
-        let k13 = T::of(
+        let z2y = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                 - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
-        let k14 = T::of(
-            -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+        let z1x = T::of(
+            Self::COS_BASE_ROLL * Self::SIN_BASE_YAW
+                - Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
-        let k15 = T::of(
+
+        // Constants without a short name.
+        let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
+        let k3 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k4 = T::of(
+            Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW,
+        );
+        let k5 = T::of(
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
+        );
+        let k6 = T::of(
             -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
                 + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k16 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k17 = T::of(
-            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
+        let k7 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
+        let k8 = T::of(
+            -(Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k18 = T::of(
+        let k9 = T::of(
             Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
-        let k19 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k10 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
         (s7, c7)] = T::sin_cos_all([
@@ -2217,34 +2227,34 @@ impl Robot<7> for EveryLaw {
 
         // Sine and cosine of the angle e3 by which joint 3 stands aside.
         let t1 = e3 * e3;
-        let t2 = T::one() - t1 * (k3 - k2 * t1);
-        let t3 = e3 - e3 * t1 * (k4 - k1 * t1);
+        let t2 = T::one() - t1 * (inv_2 - inv_24 * t1);
+        let t3 = e3 - e3 * t1 * (inv_6 - inv_120 * t1);
 
         // Sine and cosine of the angle e4 by which joint 4 stands aside.
         let t4 = e4 * e4;
-        let t5 = T::one() - t4 * (k3 - k2 * t4);
-        let t6 = e4 - e4 * t4 * (k4 - k1 * t4);
+        let t5 = T::one() - t4 * (inv_2 - inv_24 * t4);
+        let t6 = e4 - e4 * t4 * (inv_6 - inv_120 * t4);
 
         // Sine and cosine of the angle e7 by which joint 7 stands aside.
         let t7 = e7 * e7;
-        let t8 = T::one() - t7 * (k3 - k2 * t7);
-        let t9 = e7 - e7 * t7 * (k4 - k1 * t7);
+        let t8 = T::one() - t7 * (inv_2 - inv_24 * t7);
+        let t9 = e7 - e7 * t7 * (inv_6 - inv_120 * t7);
 
         // Axes and origins, from the base to the tip.
-        let t10 = k5 * c2o + k9 * s2o;
-        let t11 = k6 * c2o + k10 * s2o;
-        let t12 = k7 * c2o + k8 * s2o;
-        let z3x = k9 * c2o - k5 * s2o;
-        let z3y = k10 * c2o - k6 * s2o;
-        let z3z = k8 * c2o - k7 * s2o;
+        let t10 = k1 * c2o + k4 * s2o;
+        let t11 = k2 * c2o + k5 * s2o;
+        let t12 = neg_sin_base_pitch * c2o + k3 * s2o;
+        let z3x = k4 * c2o - k1 * s2o;
+        let z3y = k5 * c2o - k2 * s2o;
+        let z3z = k3 * c2o - neg_sin_base_pitch * s2o;
         let t13 = s3 * t3 - c3 * t2;
         let t14 = s3 * t2 + c3 * t3;
-        let t15 = t10 * t14 + k17 * t13;
-        let t16 = t11 * t14 + k18 * t13;
-        let t17 = t12 * t14 + k19 * t13;
-        let t18 = k17 * t14 - t10 * t13;
-        let t19 = k18 * t14 - t11 * t13;
-        let t20 = k19 * t14 - t12 * t13;
+        let t15 = t10 * t14 + k8 * t13;
+        let t16 = t11 * t14 + k9 * t13;
+        let t17 = t12 * t14 + k10 * t13;
+        let t18 = k8 * t14 - t10 * t13;
+        let t19 = k9 * t14 - t11 * t13;
+        let t20 = k10 * t14 - t12 * t13;
         let t21 = cos_alpha4 * t18 + sin_alpha4 * z3x;
         let t22 = cos_alpha4 * t19 + sin_alpha4 * z3y;
         let t23 = cos_alpha4 * t20 + sin_alpha4 * z3z;
@@ -2309,9 +2319,9 @@ impl Robot<7> for EveryLaw {
         let l2z = a3 * t12 + l3z;
 
         // What the joints move: z is an axis, l leads from it to the TCP.
-        let j2x = k13 * l2z - k11 * l2y;
-        let j2y = k11 * l2x - k12 * l2z;
-        let j2z = k12 * l2y - k13 * l2x;
+        let j2x = z2y * l2z - z2z * l2y;
+        let j2y = z2z * l2x - z2x * l2z;
+        let j2z = z2x * l2y - z2y * l2x;
         let j3x = z3y * l3z - z3z * l3y;
         let j3y = z3z * l3x - z3x * l3z;
         let j3z = z3x * l3y - z3y * l3x;
@@ -2329,8 +2339,8 @@ impl Robot<7> for EveryLaw {
         let j7z = z7x * l7y - z7y * l7x;
 
         // What the wrench puts on the joints.
-        let tau1 = k14 * fx + k15 * fy + k16 * fz;
-        let t54 = k12 * mx + k13 * my + k11 * mz;
+        let tau1 = z1x * fx + k6 * fy + k7 * fz;
+        let t54 = z2x * mx + z2y * my + z2z * mz;
         let tau2 = fx * j2x + fy * j2y + fz * j2z + t54;
         let t55 = mx * z3x + my * z3y + mz * z3z;
         let tau3 = fx * j3x + fy * j3y + fz * j3z + t55;
@@ -2370,10 +2380,10 @@ impl Robot<7> for EveryLaw {
         let cos_base_roll = T::of(Self::COS_BASE_ROLL);
         let d1 = T::of(Self::D1);
         let a3 = T::of(Self::A3);
-        let k1 = T::of(0.008333333333333333);
-        let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.5);
-        let k4 = T::of(0.16666666666666666);
+        let inv_120 = T::of(1.0 / 120.0);
+        let inv_24 = T::of(1.0 / 24.0);
+        let inv_2 = T::of(0.5);
+        let inv_6 = T::of(1.0 / 6.0);
         let a4 = T::of(Self::A4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
@@ -2387,56 +2397,20 @@ impl Robot<7> for EveryLaw {
         let cos_tool_pitch = T::of(Self::COS_TOOL_PITCH);
         let sin_base_yaw = T::of(Self::SIN_BASE_YAW);
         let cos_base_yaw = T::of(Self::COS_BASE_YAW);
-        let k5 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
-        let k6 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
-        let k7 = T::of(-Self::SIN_BASE_PITCH);
-        let k8 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
-        let k9 = T::of(
-            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
-        );
-        let k10 = T::of(
-            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
-        );
-        let k11 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
-        let k12 = T::of(
+        let neg_sin_base_pitch = T::of(-Self::SIN_BASE_PITCH);
+        let z2z = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let z2x = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW,
         );
-        let k13 = T::of(
+        let z2y = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                 - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
-        let k14 = T::of(
-            -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+        let z1x = T::of(
+            Self::COS_BASE_ROLL * Self::SIN_BASE_YAW
+                - Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
-        let k15 = T::of(
-            -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
-        );
-        let k16 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k17 = T::of(
-            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
-        );
-        let k18 = T::of(
-            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
-        );
-        let k19 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k20 = T::of(
-            Self::D2
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
-        );
-        let k21 = T::of(
-            Self::D2
-                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
-                    - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
-        );
-        let k22 = T::of(Self::D2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let h1 = T::of(Self::H1);
         let h2 = T::of(Self::H2);
         let h3 = T::of(Self::H3);
@@ -2451,155 +2425,188 @@ impl Robot<7> for EveryLaw {
         let cos2_3 = T::of(Self::COS2_3);
         let sin2_3 = T::of(Self::SIN2_3);
         let h6_sin2_6 = T::of(Self::H6 * Self::SIN2_6);
-        let k23 = T::of(
+        let r7x = T::of(
             Self::COS_TOOL_YAW
-                * (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                * (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                 - Self::SIN_TOOL_YAW
-                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                        + Self::TOOL_Y * Self::COS_TOOL_YAW),
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW),
         );
-        let k24 = T::of(
+        let r7y = T::of(
             Self::SIN_TOOL_YAW
-                * (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                * (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                 + Self::COS_TOOL_YAW
-                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                        + Self::TOOL_Y * Self::COS_TOOL_YAW),
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW),
         );
-        let k25 = T::of(
-            -(Self::H7
-                * (Self::SIN_TOOL_YAW
-                    * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                    + Self::COS_TOOL_YAW
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))),
-        );
-        let k26 = T::of(
+        let tr7_yz = T::of(
             Self::H7
                 * (Self::COS_TOOL_YAW
                     * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                     - Self::SIN_TOOL_YAW
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW)),
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW)),
         );
-        let k27 = T::of(
-            -(Self::H7
-                * (Self::SIN_TOOL_YAW
-                    * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                    + Self::COS_TOOL_YAW
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW)))
-                * -(Self::SIN_TOOL_YAW
-                    * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                    + Self::COS_TOOL_YAW
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW)),
-        );
-        let k28 = T::of(
-            (Self::COS_TOOL_YAW
-                * (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                - Self::SIN_TOOL_YAW
-                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                * -(Self::H7
+        let tt7_xx = T::of(
+            (Self::SIN_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                + Self::COS_TOOL_YAW
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW))
+                * (Self::H7
                     * (Self::SIN_TOOL_YAW
                         * (Self::TOOL_X * Self::COS_TOOL_YAW
-                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                            + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                         + Self::COS_TOOL_YAW
-                            * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                                + Self::TOOL_Y * Self::COS_TOOL_YAW))),
+                            * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                - Self::TOOL_X * Self::SIN_TOOL_YAW))),
         );
-        let k29 = T::of(
+        let tt7_yy = T::of(
             (Self::COS_TOOL_YAW
-                * (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                * (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                 - Self::SIN_TOOL_YAW
-                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW))
                 * (Self::H7
                     * (Self::COS_TOOL_YAW
                         * (Self::TOOL_X * Self::COS_TOOL_YAW
-                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                            + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                         - Self::SIN_TOOL_YAW
-                            * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                                + Self::TOOL_Y * Self::COS_TOOL_YAW))),
+                            * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                - Self::TOOL_X * Self::SIN_TOOL_YAW))),
         );
-        let k30 = T::of(Self::D7 + Self::TOOL_Z);
-        let k31 = T::of(
+        let d7_plus_tool_z = T::of(Self::D7 + Self::TOOL_Z);
+        let neg_d7_plus_tool_z = T::of(-(Self::D7 + Self::TOOL_Z));
+        let neg_h7 = T::of(-Self::H7);
+        let neg_coupling5_6 = T::of(-Self::COUPLING5_6);
+        let a4_bending3_inv_12 = T::of(Self::A4 * (Self::BENDING3 * (1.0 / 12.0)));
+        let a4_a4_bending3_inv_12 = T::of(
+            Self::A4 * Self::A4 * (Self::BENDING3 * (1.0 / 12.0)),
+        );
+        let inv_2_a4 = T::of(0.5 * Self::A4);
+
+        // Constants without a short name.
+        let k1 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k2 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
+        let k3 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k4 = T::of(
+            Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW,
+        );
+        let k5 = T::of(
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
+        );
+        let k6 = T::of(
+            -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
+        );
+        let k7 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
+        let k8 = T::of(
+            -(Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
+        );
+        let k9 = T::of(
+            Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
+                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
+        );
+        let k10 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k11 = T::of(
+            Self::D2
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
+        );
+        let k12 = T::of(
+            Self::D2
+                * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
+                    - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
+        );
+        let k13 = T::of(Self::D2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k14 = T::of(
             -(Self::H7
                 * (Self::SIN_TOOL_YAW
                     * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                     + Self::COS_TOOL_YAW
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW)))
-                * -(Self::SIN_TOOL_YAW
-                    * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
-                    + Self::COS_TOOL_YAW
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW))),
+        );
+        let k15 = T::of(
+            -((Self::COS_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                - Self::SIN_TOOL_YAW
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW))
+                * (Self::H7
+                    * (Self::SIN_TOOL_YAW
+                        * (Self::TOOL_X * Self::COS_TOOL_YAW
+                            + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                        + Self::COS_TOOL_YAW
+                            * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                - Self::TOOL_X * Self::SIN_TOOL_YAW)))),
+        );
+        let k16 = T::of(
+            (Self::SIN_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                + Self::COS_TOOL_YAW
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW))
+                * (Self::H7
+                    * (Self::SIN_TOOL_YAW
+                        * (Self::TOOL_X * Self::COS_TOOL_YAW
+                            + Self::TOOL_Y * Self::SIN_TOOL_YAW)
+                        + Self::COS_TOOL_YAW
+                            * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                - Self::TOOL_X * Self::SIN_TOOL_YAW)))
                 - (Self::COS_TOOL_YAW
                     * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                     - Self::SIN_TOOL_YAW
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW))
                     * (Self::H7
                         * (Self::COS_TOOL_YAW
                             * (Self::TOOL_X * Self::COS_TOOL_YAW
-                                - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                                + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                             - Self::SIN_TOOL_YAW
-                                * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                                    + Self::TOOL_Y * Self::COS_TOOL_YAW))),
+                                * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                    - Self::TOOL_X * Self::SIN_TOOL_YAW))),
         );
-        let k32 = T::of(
-            (Self::COS_TOOL_YAW
-                * (Self::TOOL_X * Self::COS_TOOL_YAW
-                    - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+        let k17 = T::of(
+            -((Self::COS_TOOL_YAW
+                * (Self::TOOL_X * Self::COS_TOOL_YAW + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                 - Self::SIN_TOOL_YAW
-                    * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                        + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                * -(Self::H7
+                    * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                        - Self::TOOL_X * Self::SIN_TOOL_YAW))
+                * (Self::H7
                     * (Self::SIN_TOOL_YAW
                         * (Self::TOOL_X * Self::COS_TOOL_YAW
-                            - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                            + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                         + Self::COS_TOOL_YAW
-                            * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                                + Self::TOOL_Y * Self::COS_TOOL_YAW)))
+                            * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                - Self::TOOL_X * Self::SIN_TOOL_YAW)))
                 + (Self::COS_TOOL_YAW
                     * (Self::TOOL_X * Self::COS_TOOL_YAW
-                        - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                        + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                     - Self::SIN_TOOL_YAW
-                        * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                            + Self::TOOL_Y * Self::COS_TOOL_YAW))
-                    * -(Self::H7
+                        * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                            - Self::TOOL_X * Self::SIN_TOOL_YAW))
+                    * (Self::H7
                         * (Self::SIN_TOOL_YAW
                             * (Self::TOOL_X * Self::COS_TOOL_YAW
-                                - Self::TOOL_Y * -Self::SIN_TOOL_YAW)
+                                + Self::TOOL_Y * Self::SIN_TOOL_YAW)
                             + Self::COS_TOOL_YAW
-                                * (Self::TOOL_X * -Self::SIN_TOOL_YAW
-                                    + Self::TOOL_Y * Self::COS_TOOL_YAW))),
+                                * (Self::TOOL_Y * Self::COS_TOOL_YAW
+                                    - Self::TOOL_X * Self::SIN_TOOL_YAW)))),
         );
-        let k33 = T::of(-(Self::D7 + Self::TOOL_Z));
-        let k34 = T::of((Self::D7 + Self::TOOL_Z) * -(Self::D7 + Self::TOOL_Z));
-        let k35 = T::of(-Self::H7);
-        let k36 = T::of(Self::H5 + 1.0 / Self::GAP_KNEE5 * (0.5 * Self::GAP5));
-        let k37 = T::of(-Self::COUPLING5_6);
-        let k38 = T::of(
+        let k18 = T::of(-((Self::D7 + Self::TOOL_Z) * (Self::D7 + Self::TOOL_Z)));
+        let k19 = T::of(Self::H5 + 1.0 / Self::GAP_KNEE5 * (0.5 * Self::GAP5));
+        let k20 = T::of(
             Self::A4
                 * ((Self::TORSION3 - Self::BENDING3) * (1.0 / (Self::A4 * Self::A4))),
         );
-        let k39 = T::of(Self::A4 * (Self::BENDING3 * 0.08333333333333333));
-        let k40 = T::of(Self::A4 * Self::A4 * (Self::BENDING3 * 0.08333333333333333));
-        let k41 = T::of(0.5 * Self::A4);
-        let k42 = T::of(
+        let k21 = T::of(
             1.0 / Self::GAP_KNEE3 * (0.5 * Self::GAP3) + (Self::H3 + Self::ADDED3),
         );
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
@@ -2627,28 +2634,28 @@ impl Robot<7> for EveryLaw {
 
         // Sine and cosine of the angle e3 by which joint 3 stands aside.
         let t2 = e3 * e3;
-        let t3 = T::one() - t2 * (k3 - k2 * t2);
-        let t4 = e3 * t2 * (k4 - k1 * t2);
+        let t3 = T::one() - t2 * (inv_2 - inv_24 * t2);
+        let t4 = e3 * t2 * (inv_6 - inv_120 * t2);
         let t5 = e3 - t4;
 
         // Sine and cosine of the angle e4 by which joint 4 stands aside.
         let t6 = e4 * e4;
-        let t7 = T::one() - t6 * (k3 - k2 * t6);
-        let t8 = e4 * t6 * (k4 - k1 * t6);
+        let t7 = T::one() - t6 * (inv_2 - inv_24 * t6);
+        let t8 = e4 * t6 * (inv_6 - inv_120 * t6);
         let t9 = e4 - t8;
 
         // Sine and cosine of the angle e7 by which joint 7 stands aside.
         let t10 = e7 * e7;
-        let t11 = T::one() - t10 * (k3 - k2 * t10);
-        let t12 = e7 - e7 * t10 * (k4 - k1 * t10);
+        let t11 = T::one() - t10 * (inv_2 - inv_24 * t10);
+        let t12 = e7 - e7 * t10 * (inv_6 - inv_120 * t10);
 
         // Axes and origins, from the base to the tip.
-        let t13 = k5 * c2o + k9 * s2o;
-        let t14 = k6 * c2o + k10 * s2o;
-        let t15 = k7 * c2o + k8 * s2o;
-        let z3x = k9 * c2o - k5 * s2o;
-        let z3y = k10 * c2o - k6 * s2o;
-        let z3z = k8 * c2o - k7 * s2o;
+        let t13 = k1 * c2o + k4 * s2o;
+        let t14 = k2 * c2o + k5 * s2o;
+        let t15 = neg_sin_base_pitch * c2o + k3 * s2o;
+        let z3x = k4 * c2o - k1 * s2o;
+        let z3y = k5 * c2o - k2 * s2o;
+        let z3z = k3 * c2o - neg_sin_base_pitch * s2o;
         let t16 = a3 * t13;
         let t17 = a3 * t14;
         let t18 = a3 * t15;
@@ -2656,12 +2663,12 @@ impl Robot<7> for EveryLaw {
         let t20 = s3 * t5 - t19;
         let t21 = s3 * t3;
         let t22 = t21 + c3 * t5;
-        let t23 = t13 * t22 + k17 * t20;
-        let t24 = t14 * t22 + k18 * t20;
-        let t25 = t15 * t22 + k19 * t20;
-        let t26 = k17 * t22 - t13 * t20;
-        let t27 = k18 * t22 - t14 * t20;
-        let t28 = k19 * t22 - t15 * t20;
+        let t23 = t13 * t22 + k8 * t20;
+        let t24 = t14 * t22 + k9 * t20;
+        let t25 = t15 * t22 + k10 * t20;
+        let t26 = k8 * t22 - t13 * t20;
+        let t27 = k9 * t22 - t14 * t20;
+        let t28 = k10 * t22 - t15 * t20;
         let t29 = cos_alpha4 * t26 + sin_alpha4 * z3x;
         let t30 = cos_alpha4 * t27 + sin_alpha4 * z3y;
         let t31 = cos_alpha4 * t28 + sin_alpha4 * z3z;
@@ -2677,9 +2684,9 @@ impl Robot<7> for EveryLaw {
         let t38 = a4 * t23;
         let t39 = a4 * t24;
         let t40 = a4 * t25;
-        let t41 = base_x + k14 * t1 + k20 + t16 + t38;
-        let t42 = base_y + k15 * t1 + k21 + t17 + t39;
-        let t43 = base_z + k16 * t1 + k22 + t18 + t40;
+        let t41 = base_x + z1x * t1 + k11 + t16 + t38;
+        let t42 = base_y + k6 * t1 + k12 + t17 + t39;
+        let t43 = base_z + k7 * t1 + k13 + t18 + t40;
         let t44 = t7 * s4o;
         let t45 = t44 + t9 * c4o;
         let t46 = t7 * c4o;
@@ -2760,9 +2767,9 @@ impl Robot<7> for EveryLaw {
         let l2z = t18 + l3z;
 
         // What the joints move: z is an axis, l leads from it to the TCP.
-        let j2x = k13 * l2z - k11 * l2y;
-        let j2y = k11 * l2x - k12 * l2z;
-        let j2z = k12 * l2y - k13 * l2x;
+        let j2x = z2y * l2z - z2z * l2y;
+        let j2y = z2z * l2x - z2x * l2z;
+        let j2z = z2x * l2y - z2y * l2x;
         let j3x = z3y * l3z - z3z * l3y;
         let j3y = z3z * l3x - z3x * l3z;
         let j3z = z3x * l3y - z3y * l3x;
@@ -2788,33 +2795,33 @@ impl Robot<7> for EveryLaw {
         let t87 = s6 * c6;
 
         // From joint 7 to the TCP.
-        let r6x = k23 * t76 + k24 * t75;
-        let t88 = k23 * t75;
-        let t89 = k24 * t76;
+        let r6x = r7x * t76 + r7y * t75;
+        let t88 = r7x * t75;
+        let t89 = r7y * t76;
         let r5y = t89 - t88;
-        let t90 = k32 * t76 - k31 * t75;
+        let t90 = k17 * t76 - k16 * t75;
         let t91 = t75 * t90;
-        let tt6_zz = k29 - t91;
-        let tr6_xy = k25 * t76 + k26 * t75;
+        let tt6_zz = tt7_yy - t91;
+        let tr6_xy = k14 * t76 + tr7_yz * t75;
         let r6z = t88 - t89;
-        let tt6_xz = k28 - t76 * t90;
-        let tr6_zy = k25 * t75 - k26 * t76;
+        let tt6_xz = k15 - t76 * t90;
+        let tr6_zy = k14 * t75 - tr7_yz * t76;
 
         // From joint 6 to the TCP.
         let rr6_zz = h6 + h6_sin2_6 * (t87 + t87);
-        let t92 = k30 * rr6_zz;
+        let t92 = d7_plus_tool_z * rr6_zz;
         let tr6_yz = r6x * rr6_zz;
         let t93 = r6x * t92;
         let tt6_yy = r6x * tr6_yz;
-        let tt6_xx = k27 + t91 - k34 * rr6_zz;
+        let tt6_xx = tt7_xx + t91 - k18 * rr6_zz;
         let t94 = c6 * r6x;
-        let r5x = t94 - k30 * s6;
+        let r5x = t94 - d7_plus_tool_z * s6;
         let t95 = s6 * r6x;
-        let r5z = t95 + k30 * c6;
+        let r5z = t95 + d7_plus_tool_z * c6;
         let t96 = s6 * (tt6_xx - tt6_yy) - c6 * (t93 + t93);
         let t97 = s6 * t96;
         let tt5_zz = tt6_yy + t97;
-        let t98 = k35 * s6;
+        let t98 = neg_h7 * s6;
         let t99 = s6 * t98;
         let rr5_xz = c6 * t98;
         let t100 = c6 * tr6_xy;
@@ -2822,15 +2829,15 @@ impl Robot<7> for EveryLaw {
         let t102 = c6 * t100;
         let tr5_zx = t102 - tr6_xy;
         let tr5_yx = s6 * tr6_zy;
-        let t103 = k33 * c6 - t95;
-        let t104 = t94 + k33 * s6;
+        let t103 = neg_d7_plus_tool_z * c6 - t95;
+        let t104 = t94 + neg_d7_plus_tool_z * s6;
         let tr5_zy = s6 * t92 - c6 * tr6_yz;
 
         // From joint 5 to the TCP.
-        let t105 = k36 * r5y;
-        let t106 = k36 * r5x;
+        let t105 = k19 * r5y;
+        let t106 = k19 * r5x;
         let tt5_yy = tt6_zz + r5x * t106;
-        let rr5_zz = h7 + t99 + k36;
+        let rr5_zz = h7 + t99 + k19;
         let tr5_yz = t106 - c6 * tr6_zy;
 
         // With the coupling of joints 5 and 6.
@@ -2857,8 +2864,8 @@ impl Robot<7> for EveryLaw {
         let t118 = s5 * (rr6_zz + t99);
         let t119 = s5 * t118;
         let rr4_xz = c5 * t118;
-        let rr4_xy = c5 * rr5_xz - k37 * s5;
-        let t120 = s5 * rr5_xz + k37 * c5;
+        let rr4_xy = c5 * rr5_xz - neg_coupling5_6 * s5;
+        let t120 = s5 * rr5_xz + neg_coupling5_6 * c5;
         let t121 = s5 * (t110 - t101) + c5 * (tr5_yx + tr5_xy);
         let t122 = s5 * t121;
         let t123 = c5 * t121;
@@ -2895,13 +2902,13 @@ impl Robot<7> for EveryLaw {
         let t137 = r4y + t135;
 
         // With link 3.
-        let t138 = k38 * t133;
-        let t139 = k39 * t133;
+        let t138 = k20 * t133;
+        let t139 = a4_bending3_inv_12 * t133;
         let t140 = bending3 + t134 * t138;
         let t141 = t135 * t138;
-        let t142 = bending3 + t135 * (k38 * t132);
-        let t143 = k41 * t133;
-        let t144 = k41 * t132;
+        let t142 = bending3 + t135 * (k20 * t132);
+        let t143 = inv_2_a4 * t133;
+        let t144 = inv_2_a4 * t132;
         let t145 = t136 - t143;
         let t146 = t137 - t144;
         let t147 = t115 * t141;
@@ -2915,12 +2922,13 @@ impl Robot<7> for EveryLaw {
         let t155 = t115 * t150 - t152 * (t144 - t137);
         let t156 = t115 * t148 + t145 * t153;
         let t157 = t135 * t139 + (t115 * t147 + t145 * t152);
-        let t158 = tt4_xx + (k40 - t134 * t139 + t155);
+        let t158 = tt4_xx + (a4_a4_bending3_inv_12 - t134 * t139 + t155);
         let t159 = tt4_xy - t157;
         let t160 = tt4_xz - (t146 * t147 + t150 * t154);
-        let t161 = tt4_yy + (k40 - t135 * (k39 * t132) + t156);
+        let t161 = tt4_yy
+            + (a4_a4_bending3_inv_12 - t135 * (a4_bending3_inv_12 * t132) + t156);
         let t162 = tt4_yz + (t146 * t148 + t147 * t154);
-        let t163 = tt4_zz + (k40 + (t146 * t149 + t151 * t154));
+        let t163 = tt4_zz + (a4_a4_bending3_inv_12 + (t146 * t149 + t151 * t154));
         let t164 = rr4_xx + t140;
         let t165 = rr4_xy + t141;
         let t166 = rr4_yy + t142;
@@ -2985,7 +2993,7 @@ impl Robot<7> for EveryLaw {
         let tr3_xy = cos_alpha4 * t193 - sin_alpha4 * t196;
 
         // From joint 3 to the TCP.
-        let t209 = h3 * (t85 + sin2_3 * (t86 + t86)) + k42;
+        let t209 = h3 * (t85 + sin2_3 * (t86 + t86)) + k21;
         let t210 = r3y * t209;
         let t211 = r3x * t209;
         let tt3_xx = t158 - t178 + r3y * t210;
@@ -3139,8 +3147,8 @@ impl Robot<7> for EveryLaw {
                 T::zero(), T::zero(), T::zero(), T::one(),
             ),
             jacobian: SMatrix::from([
-                [k14, k15, k16, T::zero(), T::zero(), T::zero()],
-                [j2x, j2y, j2z, k12, k13, k11],
+                [z1x, k6, k7, T::zero(), T::zero(), T::zero()],
+                [j2x, j2y, j2z, z2x, z2y, z2z],
                 [j3x, j3y, j3z, z3x, z3y, z3z],
                 [j4x, j4y, j4z, z4x, z4y, z4z],
                 [j5x, j5y, j5z, z5x, z5y, z5z],
@@ -3175,10 +3183,10 @@ impl Robot<7> for EveryLaw {
         let cos_error4 = T::of(Self::COS_ERROR4);
         let sin_error7 = T::of(Self::SIN_ERROR7);
         let a3 = T::of(Self::A3);
-        let k1 = T::of(0.008333333333333333);
-        let k2 = T::of(0.041666666666666664);
-        let k3 = T::of(0.5);
-        let k4 = T::of(0.16666666666666666);
+        let inv_120 = T::of(1.0 / 120.0);
+        let inv_24 = T::of(1.0 / 24.0);
+        let inv_2 = T::of(0.5);
+        let inv_6 = T::of(1.0 / 6.0);
         let a4 = T::of(Self::A4);
         let sin_alpha4 = T::of(Self::SIN_ALPHA4);
         let cos_alpha4 = T::of(Self::COS_ALPHA4);
@@ -3198,11 +3206,6 @@ impl Robot<7> for EveryLaw {
         let bending3 = T::of(Self::BENDING3);
         let coupling5_6 = T::of(Self::COUPLING5_6);
         let added3 = T::of(Self::ADDED3);
-        let k5 = T::of(1.0 / Self::KNEE3);
-        let k6 = T::of(1.0 / Self::GAP_KNEE3);
-        let k7 = T::of(1.0 / Self::GAP_KNEE3 * (0.5 * Self::GAP3));
-        let k8 = T::of(1.0 / Self::GAP_KNEE5);
-        let k9 = T::of(1.0 / Self::GAP_KNEE5 * (0.5 * Self::GAP5));
         let radius1_3 = T::of(Self::RADIUS1_3);
         let weight1_3 = T::of(Self::WEIGHT1_3);
         let radius2_3 = T::of(Self::RADIUS2_3);
@@ -3216,73 +3219,82 @@ impl Robot<7> for EveryLaw {
         let cos2_3 = T::of(Self::COS2_3);
         let sin2_3 = T::of(Self::SIN2_3);
         let h6_sin2_6 = T::of(Self::H6 * Self::SIN2_6);
-        let k10 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
-        let k11 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
-        let k12 = T::of(-Self::SIN_BASE_PITCH);
-        let k13 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
-        let k14 = T::of(
-            Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
-        );
-        let k15 = T::of(
-            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
-        );
-        let k16 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
-        let k17 = T::of(
+        let neg_sin_base_pitch = T::of(-Self::SIN_BASE_PITCH);
+        let z2z = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL);
+        let z2x = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW,
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW,
         );
-        let k18 = T::of(
+        let z2y = T::of(
             Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                 - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW,
         );
-        let k19 = T::of(
-            -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+        let z1x = T::of(
+            Self::COS_BASE_ROLL * Self::SIN_BASE_YAW
+                - Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
         );
-        let k20 = T::of(
+        let inv_2_a4 = T::of(0.5 * Self::A4);
+        let bending3_inv_12 = T::of(Self::BENDING3 * (1.0 / 12.0));
+        let a4_a4_bending3_inv_12 = T::of(
+            Self::A4 * Self::A4 * (Self::BENDING3 * (1.0 / 12.0)),
+        );
+
+        // Constants without a short name.
+        let k1 = T::of(1.0 / Self::KNEE3);
+        let k2 = T::of(1.0 / Self::GAP_KNEE3);
+        let k3 = T::of(1.0 / Self::GAP_KNEE3 * (0.5 * Self::GAP3));
+        let k4 = T::of(1.0 / Self::GAP_KNEE5);
+        let k5 = T::of(1.0 / Self::GAP_KNEE5 * (0.5 * Self::GAP5));
+        let k6 = T::of(Self::COS_BASE_PITCH * Self::COS_BASE_YAW);
+        let k7 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_YAW);
+        let k8 = T::of(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL);
+        let k9 = T::of(
+            Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                - Self::COS_BASE_ROLL * Self::SIN_BASE_YAW,
+        );
+        let k10 = T::of(
+            Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
+        );
+        let k11 = T::of(
             -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
                 + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
-        let k21 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k22 = T::of(
-            Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW
-                - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW),
+        let k12 = T::of(-(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
+        let k13 = T::of(
+            -(Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
+                + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k23 = T::of(
+        let k14 = T::of(
             Self::SIN_BASE_ROLL * Self::COS_BASE_YAW
                 - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW),
         );
-        let k24 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k25 = T::of(
+        let k15 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k16 = T::of(
             Self::H1
-                * -(Self::COS_BASE_ROLL * -Self::SIN_BASE_YAW
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
+                * (Self::COS_BASE_ROLL * Self::SIN_BASE_YAW
+                    - Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)),
         );
-        let k26 = T::of(
-            Self::H1
-                * -(Self::COS_BASE_ROLL * Self::COS_BASE_YAW
-                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
+        let k17 = T::of(
+            -(Self::H1
+                * (Self::COS_BASE_ROLL * Self::COS_BASE_YAW
+                    + Self::SIN_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW))),
         );
-        let k27 = T::of(Self::H1 * -(Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL));
-        let k28 = T::of(
+        let k18 = T::of(-(Self::H1 * (Self::COS_BASE_PITCH * Self::SIN_BASE_ROLL)));
+        let k19 = T::of(
             Self::H2
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::COS_BASE_YAW)
-                    - Self::SIN_BASE_ROLL * -Self::SIN_BASE_YAW),
+                    + Self::SIN_BASE_ROLL * Self::SIN_BASE_YAW),
         );
-        let k29 = T::of(
+        let k20 = T::of(
             Self::H2
                 * (Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)
                     - Self::SIN_BASE_ROLL * Self::COS_BASE_YAW),
         );
-        let k30 = T::of(Self::H2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
-        let k31 = T::of(0.5 * Self::A4);
-        let k32 = T::of(
+        let k21 = T::of(Self::H2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
+        let k22 = T::of(
             (Self::TORSION3 - Self::BENDING3) * (1.0 / (Self::A4 * Self::A4)),
         );
-        let k33 = T::of(Self::BENDING3 * 0.08333333333333333);
-        let k34 = T::of(Self::A4 * Self::A4 * (Self::BENDING3 * 0.08333333333333333));
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
         let before3_1 = state.plays[2][0];
         let before3_2 = state.plays[2][1];
@@ -3311,18 +3323,18 @@ impl Robot<7> for EveryLaw {
 
         // Sine and cosine of the angle e3 by which joint 3 stands aside.
         let t1 = e3 * e3;
-        let t2 = T::one() - t1 * (k3 - k2 * t1);
-        let t3 = e3 - e3 * t1 * (k4 - k1 * t1);
+        let t2 = T::one() - t1 * (inv_2 - inv_24 * t1);
+        let t3 = e3 - e3 * t1 * (inv_6 - inv_120 * t1);
 
         // Sine and cosine of the angle e4 by which joint 4 stands aside.
         let t4 = e4 * e4;
-        let t5 = T::one() - t4 * (k3 - k2 * t4);
-        let t6 = e4 - e4 * t4 * (k4 - k1 * t4);
+        let t5 = T::one() - t4 * (inv_2 - inv_24 * t4);
+        let t6 = e4 - e4 * t4 * (inv_6 - inv_120 * t4);
 
         // Sine and cosine of the angle e7 by which joint 7 stands aside.
         let t7 = e7 * e7;
-        let t8 = T::one() - t7 * (k3 - k2 * t7);
-        let t9 = e7 - e7 * t7 * (k4 - k1 * t7);
+        let t8 = T::one() - t7 * (inv_2 - inv_24 * t7);
+        let t9 = e7 - e7 * t7 * (inv_6 - inv_120 * t7);
 
         // Of the compliance of joint 3 that varies with its angle.
         let t10 = cos2_3 * ((c3 - s3) * (s3 + c3));
@@ -3333,20 +3345,20 @@ impl Robot<7> for EveryLaw {
         let t13 = s6 * c6;
 
         // Axes and origins, from the base to the tip.
-        let t14 = k10 * c2o + k14 * s2o;
-        let t15 = k11 * c2o + k15 * s2o;
-        let t16 = k12 * c2o + k13 * s2o;
-        let z3x = k14 * c2o - k10 * s2o;
-        let z3y = k15 * c2o - k11 * s2o;
-        let z3z = k13 * c2o - k12 * s2o;
+        let t14 = k6 * c2o + k9 * s2o;
+        let t15 = k7 * c2o + k10 * s2o;
+        let t16 = neg_sin_base_pitch * c2o + k8 * s2o;
+        let z3x = k9 * c2o - k6 * s2o;
+        let z3y = k10 * c2o - k7 * s2o;
+        let z3z = k8 * c2o - neg_sin_base_pitch * s2o;
         let t17 = s3 * t3 - c3 * t2;
         let t18 = s3 * t2 + c3 * t3;
-        let t19 = t14 * t18 + k22 * t17;
-        let t20 = t15 * t18 + k23 * t17;
-        let t21 = t16 * t18 + k24 * t17;
-        let t22 = k22 * t18 - t14 * t17;
-        let t23 = k23 * t18 - t15 * t17;
-        let t24 = k24 * t18 - t16 * t17;
+        let t19 = t14 * t18 + k13 * t17;
+        let t20 = t15 * t18 + k14 * t17;
+        let t21 = t16 * t18 + k15 * t17;
+        let t22 = k13 * t18 - t14 * t17;
+        let t23 = k14 * t18 - t15 * t17;
+        let t24 = k15 * t18 - t16 * t17;
         let t25 = cos_alpha4 * t22 + sin_alpha4 * z3x;
         let t26 = cos_alpha4 * t23 + sin_alpha4 * z3y;
         let t27 = cos_alpha4 * t24 + sin_alpha4 * z3z;
@@ -3414,9 +3426,9 @@ impl Robot<7> for EveryLaw {
         let l2z = a3 * t16 + l3z;
 
         // What the joints move: z is an axis, l leads from it to the TCP.
-        let j2x = k18 * l2z - k16 * l2y;
-        let j2y = k16 * l2x - k17 * l2z;
-        let j2z = k17 * l2y - k18 * l2x;
+        let j2x = z2y * l2z - z2z * l2y;
+        let j2y = z2z * l2x - z2x * l2z;
+        let j2z = z2x * l2y - z2y * l2x;
         let j3x = z3y * l3z - z3z * l3y;
         let j3y = z3z * l3x - z3x * l3z;
         let j3z = z3x * l3y - z3y * l3x;
@@ -3434,8 +3446,8 @@ impl Robot<7> for EveryLaw {
         let j7z = z7x * l7y - z7y * l7x;
 
         // What the wrench puts on the joints.
-        let tau1 = k19 * fx + k20 * fy + k21 * fz;
-        let t61 = k17 * mx + k18 * my + k16 * mz;
+        let tau1 = z1x * fx + k11 * fy + k12 * fz;
+        let t61 = z2x * mx + z2y * my + z2z * mz;
         let tau2 = fx * j2x + fy * j2y + fz * j2z + t61;
         let t62 = z3x * mx + z3y * my + z3z * mz;
         let tau3 = fx * j3x + fy * j3y + fz * j3z + t62;
@@ -3454,16 +3466,16 @@ impl Robot<7> for EveryLaw {
         let dq7 = h7 * tau7;
 
         // Of the hardening of joint 3 with torque.
-        let t67 = k5 * tau3;
+        let t67 = k1 * tau3;
         let t68 = added3 * tau3 * (T::one() + t67 * t67).sqrt().recip();
 
         // Of the backlash of joint 3.
-        let t69 = k6 * tau3;
-        let t70 = k7 * tau3 * (T::one() + t69 * t69).sqrt().recip();
+        let t69 = k2 * tau3;
+        let t70 = k3 * tau3 * (T::one() + t69 * t69).sqrt().recip();
 
         // Of the backlash of joint 5.
-        let t71 = k8 * tau5;
-        let t72 = k9 * tau5 * (T::one() + t71 * t71).sqrt().recip();
+        let t71 = k4 * tau5;
+        let t72 = k5 * tau5 * (T::one() + t71 * t71).sqrt().recip();
         let dq5 = h5 * tau5 + coupling5_6 * tau6 + t72;
 
         // Of the hysteresis of joint 3.
@@ -3484,12 +3496,12 @@ impl Robot<7> for EveryLaw {
         let dq6 = t74 + h6_sin2_6 * (t13 + t13) * tau6;
 
         // What these turns make at the TCP.
-        let t76 = k25 * tau1 + j2x * dq2 + j3x * dq3;
-        let t77 = k26 * tau1 + j2y * dq2 + j3y * dq3;
-        let t78 = k27 * tau1 + j2z * dq2 + j3z * dq3;
-        let t79 = k28 * tau2 + z3x * dq3 + z4x * dq4;
-        let t80 = k29 * tau2 + z3y * dq3 + z4y * dq4;
-        let t81 = k30 * tau2 + z3z * dq3 + z4z * dq4;
+        let t76 = k16 * tau1 + j2x * dq2 + j3x * dq3;
+        let t77 = k17 * tau1 + j2y * dq2 + j3y * dq3;
+        let t78 = k18 * tau1 + j2z * dq2 + j3z * dq3;
+        let t79 = k19 * tau2 + z3x * dq3 + z4x * dq4;
+        let t80 = k20 * tau2 + z3y * dq3 + z4y * dq4;
+        let t81 = k21 * tau2 + z3z * dq3 + z4z * dq4;
         let t82 = t76 + j4x * dq4 + j5x * dq5;
         let t83 = t77 + j4y * dq4 + j5y * dq5;
         let t84 = t78 + j4z * dq4 + j5z * dq5;
@@ -3513,14 +3525,14 @@ impl Robot<7> for EveryLaw {
         let t100 = t90 + (l4y * t95 - l4x * t96);
 
         // And link 3.
-        let t101 = l3x - k31 * t19;
-        let t102 = l3y - k31 * t20;
-        let t103 = l3z - k31 * t21;
+        let t101 = l3x - inv_2_a4 * t19;
+        let t102 = l3y - inv_2_a4 * t20;
+        let t103 = l3z - inv_2_a4 * t21;
         let t104 = mx + (fz * t102 - fy * t103);
         let t105 = my + (fx * t103 - fz * t101);
         let t106 = mz + (fy * t101 - fx * t102);
         let t107 = t34 * t104 + t35 * t105 + t36 * t106;
-        let t108 = k32 * t107;
+        let t108 = k22 * t107;
         let t109 = bending3 * t104 + t34 * t108;
         let t110 = bending3 * t105 + t35 * t108;
         let t111 = bending3 * t106 + t36 * t108;
@@ -3528,15 +3540,15 @@ impl Robot<7> for EveryLaw {
         let t113 = t99 + (t101 * t111 - t103 * t109);
         let t114 = t100 + (t102 * t109 - t101 * t110);
         let t115 = t34 * fx + t35 * fy + t36 * fz;
-        let t116 = k33 * t115;
+        let t116 = bending3_inv_12 * t115;
         state.plays[2][0] = play3_1;
         state.plays[2][1] = play3_2;
         state.plays[2][2] = play3_3;
         state.plays[5][0] = play6_1;
         Vector6::new(
-            t112 + k34 * fx - t34 * t116,
-            t113 + k34 * fy - t35 * t116,
-            t114 + k34 * fz - t36 * t116,
+            t112 + a4_a4_bending3_inv_12 * fx - t34 * t116,
+            t113 + a4_a4_bending3_inv_12 * fy - t35 * t116,
+            t114 + a4_a4_bending3_inv_12 * fz - t36 * t116,
             t85 + z7x * dq7 + t95 + t109,
             t86 + z7y * dq7 + t96 + t110,
             t87 + z7z * dq7 + t97 + t111,

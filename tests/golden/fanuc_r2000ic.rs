@@ -508,25 +508,27 @@ impl Robot<6> for FanucR2000ic {
         let a4 = T::of(Self::A4);
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
-        let k1 = T::of(-(Self::H6 * Self::TOOL_Y));
+        let neg_h6_tool_y = T::of(-(Self::H6 * Self::TOOL_Y));
         let h6_tool_x = T::of(Self::H6 * Self::TOOL_X);
-        let k2 = T::of(-Self::TOOL_Y * -(Self::H6 * Self::TOOL_Y));
-        let k3 = T::of(Self::TOOL_X * -(Self::H6 * Self::TOOL_Y));
+        let tool_y_h6_tool_y = T::of(Self::TOOL_Y * (Self::H6 * Self::TOOL_Y));
+        let neg_tool_x_h6_tool_y = T::of(-(Self::TOOL_X * (Self::H6 * Self::TOOL_Y)));
         let tool_x_h6_tool_x = T::of(Self::TOOL_X * (Self::H6 * Self::TOOL_X));
-        let k4 = T::of(Self::D6 + Self::TOOL_Z);
-        let k5 = T::of(
-            -Self::TOOL_Y * -(Self::H6 * Self::TOOL_Y)
+        let d6_plus_tool_z = T::of(Self::D6 + Self::TOOL_Z);
+        let neg_h5_d6_plus_tool_z = T::of(-(Self::H5 * (Self::D6 + Self::TOOL_Z)));
+        let neg_h6 = T::of(-Self::H6);
+
+        // Constants without a short name.
+        let k1 = T::of(
+            Self::TOOL_Y * (Self::H6 * Self::TOOL_Y)
                 - Self::TOOL_X * (Self::H6 * Self::TOOL_X),
         );
-        let k6 = T::of(
-            Self::TOOL_X * -(Self::H6 * Self::TOOL_Y)
-                + Self::TOOL_X * -(Self::H6 * Self::TOOL_Y),
+        let k2 = T::of(
+            -(Self::TOOL_X * (Self::H6 * Self::TOOL_Y)
+                + Self::TOOL_X * (Self::H6 * Self::TOOL_Y)),
         );
-        let k7 = T::of(-(Self::H5 * (Self::D6 + Self::TOOL_Z)));
-        let k8 = T::of(
-            -(Self::D6 + Self::TOOL_Z) * -(Self::H5 * (Self::D6 + Self::TOOL_Z)),
+        let k3 = T::of(
+            (Self::D6 + Self::TOOL_Z) * (Self::H5 * (Self::D6 + Self::TOOL_Z)),
         );
-        let k9 = T::of(-Self::H6);
         let [(s6, c6), (s5, c5), (s4, c4), (s3, c3), (s23, c23), (s1, c1)] = T::sin_cos_all([
             q[5],
             q[4],
@@ -539,35 +541,35 @@ impl Robot<6> for FanucR2000ic {
         // From joint 6 to the TCP.
         let r5x = tool_x * c6 - tool_y * s6;
         let r4y = tool_x * s6 + tool_y * c6;
-        let t1 = k5 * s6 + k6 * c6;
+        let t1 = k1 * s6 + k2 * c6;
         let t2 = s6 * t1;
         let tt5_zz = tool_x_h6_tool_x + t2;
-        let tr5_xy = k1 * c6 - h6_tool_x * s6;
-        let t3 = k1 * s6 + h6_tool_x * c6;
-        let tt5_xz = k3 - c6 * t1;
+        let tr5_xy = neg_h6_tool_y * c6 - h6_tool_x * s6;
+        let t3 = neg_h6_tool_y * s6 + h6_tool_x * c6;
+        let tt5_xz = neg_tool_x_h6_tool_y - c6 * t1;
 
         // From joint 5 to the TCP.
         let tr5_yz = h5 * r5x;
-        let tt5_xy = k7 * r5x;
+        let tt5_xy = neg_h5_d6_plus_tool_z * r5x;
         let tt5_yy = r5x * tr5_yz;
-        let tt5_xx = k2 - t2 + k8;
-        let r4x = r5x * c5 - k4 * s5;
-        let r4z = r5x * s5 + k4 * c5;
+        let tt5_xx = tool_y_h6_tool_y - t2 + k3;
+        let r4x = r5x * c5 - d6_plus_tool_z * s5;
+        let r4z = r5x * s5 + d6_plus_tool_z * c5;
         let t4 = s5 * (tt5_xx - tt5_yy) + c5 * (tt5_xy + tt5_xy);
         let t5 = s5 * t4;
         let tt4_xz = c5 * t4 - tt5_xy;
         let tt4_zz = tt5_yy + t5;
         let t6 = tt5_xz * s5;
-        let t7 = k9 * s5;
+        let t7 = neg_h6 * s5;
         let t8 = s5 * t7;
         let rr4_xz = c5 * t7;
         let t9 = tr5_xy * c5;
         let tr4_zz = s5 * t9;
         let t10 = c5 * t9;
         let tr4_zx = t10 - tr5_xy;
-        let t11 = k7 * s5 + tr5_yz * c5;
+        let t11 = neg_h5_d6_plus_tool_z * s5 + tr5_yz * c5;
         let t12 = t3 * s5;
-        let tr4_xy = tr5_yz * s5 - k7 * c5;
+        let tr4_xy = tr5_yz * s5 - neg_h5_d6_plus_tool_z * c5;
 
         // From joint 4 to the TCP.
         let t13 = h4 * r4y;
@@ -911,25 +913,27 @@ impl Robot<6> for FanucR2000ic {
         let h4 = T::of(Self::H4);
         let h5 = T::of(Self::H5);
         let h6 = T::of(Self::H6);
-        let k1 = T::of(-(Self::TOOL_Y * Self::H6));
+        let neg_tool_y_h6 = T::of(-(Self::TOOL_Y * Self::H6));
         let tool_x_h6 = T::of(Self::TOOL_X * Self::H6);
-        let k2 = T::of(-Self::TOOL_Y * -(Self::TOOL_Y * Self::H6));
-        let k3 = T::of(Self::TOOL_X * -(Self::TOOL_Y * Self::H6));
+        let tool_y_tool_y_h6 = T::of(Self::TOOL_Y * (Self::TOOL_Y * Self::H6));
+        let neg_tool_x_tool_y_h6 = T::of(-(Self::TOOL_X * (Self::TOOL_Y * Self::H6)));
         let tool_x_tool_x_h6 = T::of(Self::TOOL_X * (Self::TOOL_X * Self::H6));
-        let k4 = T::of(Self::D6 + Self::TOOL_Z);
-        let k5 = T::of(
-            -Self::TOOL_Y * -(Self::TOOL_Y * Self::H6)
+        let d6_plus_tool_z = T::of(Self::D6 + Self::TOOL_Z);
+        let neg_h5_d6_plus_tool_z = T::of(-(Self::H5 * (Self::D6 + Self::TOOL_Z)));
+        let neg_h6 = T::of(-Self::H6);
+
+        // Constants without a short name.
+        let k1 = T::of(
+            Self::TOOL_Y * (Self::TOOL_Y * Self::H6)
                 - Self::TOOL_X * (Self::TOOL_X * Self::H6),
         );
-        let k6 = T::of(
-            Self::TOOL_X * -(Self::TOOL_Y * Self::H6)
-                + Self::TOOL_X * -(Self::TOOL_Y * Self::H6),
+        let k2 = T::of(
+            -(Self::TOOL_X * (Self::TOOL_Y * Self::H6)
+                + Self::TOOL_X * (Self::TOOL_Y * Self::H6)),
         );
-        let k7 = T::of(-(Self::H5 * (Self::D6 + Self::TOOL_Z)));
-        let k8 = T::of(
-            -(Self::D6 + Self::TOOL_Z) * -(Self::H5 * (Self::D6 + Self::TOOL_Z)),
+        let k3 = T::of(
+            (Self::D6 + Self::TOOL_Z) * (Self::H5 * (Self::D6 + Self::TOOL_Z)),
         );
-        let k9 = T::of(-Self::H6);
         let [(s23, c23), (s2, c2), (s3, c3), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_all([
             q[1] + q[2],
             q[1],
@@ -1012,35 +1016,35 @@ impl Robot<6> for FanucR2000ic {
         let j6z = z_x * l6y - z_y * l6x;
 
         // From joint 6 to the TCP.
-        let t25 = k5 * s6 + k6 * c6;
+        let t25 = k1 * s6 + k2 * c6;
         let t26 = s6 * t25;
         let tt5_zz = tool_x_tool_x_h6 + t26;
-        let tr5_xy = k1 * c6 - tool_x_h6 * s6;
-        let t27 = k1 * s6 + tool_x_h6 * c6;
-        let tt5_xz = k3 - c6 * t25;
+        let tr5_xy = neg_tool_y_h6 * c6 - tool_x_h6 * s6;
+        let t27 = neg_tool_y_h6 * s6 + tool_x_h6 * c6;
+        let tt5_xz = neg_tool_x_tool_y_h6 - c6 * t25;
 
         // From joint 5 to the TCP.
         let tr5_yz = h5 * r5x;
-        let tt5_xy = k7 * r5x;
+        let tt5_xy = neg_h5_d6_plus_tool_z * r5x;
         let tt5_yy = r5x * tr5_yz;
-        let tt5_xx = k2 - t26 + k8;
-        let r4x = c5 * r5x - k4 * s5;
-        let r4z = s5 * r5x + k4 * c5;
+        let tt5_xx = tool_y_tool_y_h6 - t26 + k3;
+        let r4x = c5 * r5x - d6_plus_tool_z * s5;
+        let r4z = s5 * r5x + d6_plus_tool_z * c5;
         let t28 = s5 * (tt5_xx - tt5_yy) + c5 * (tt5_xy + tt5_xy);
         let t29 = s5 * t28;
         let tt4_xz = c5 * t28 - tt5_xy;
         let tt4_zz = tt5_yy + t29;
         let t30 = s5 * tt5_xz;
-        let t31 = k9 * s5;
+        let t31 = neg_h6 * s5;
         let t32 = s5 * t31;
         let rr4_xz = c5 * t31;
         let t33 = c5 * tr5_xy;
         let tr4_zz = s5 * t33;
         let t34 = c5 * t33;
         let tr4_zx = t34 - tr5_xy;
-        let t35 = k7 * s5 + c5 * tr5_yz;
+        let t35 = neg_h5_d6_plus_tool_z * s5 + c5 * tr5_yz;
         let t36 = s5 * t27;
-        let tr4_xy = s5 * tr5_yz - k7 * c5;
+        let tr4_xy = s5 * tr5_yz - neg_h5_d6_plus_tool_z * c5;
 
         // From joint 4 to the TCP.
         let t37 = h4 * r4y;

@@ -438,7 +438,7 @@ impl Robot<5> for Rv130hsc {
         let a5 = T::of(Self::A5);
         let h5_a5 = T::of(Self::H5 * Self::A5);
         let h4_a5 = T::of(Self::H4 * Self::A5);
-        let k1 = T::of(-Self::H5);
+        let neg_h5 = T::of(-Self::H5);
         let [(s5, c5), (s4, c4), (s3, c3), (s23, c23), (s1, c1)] = T::sin_cos_all([
             q[4],
             q[3],
@@ -468,7 +468,7 @@ impl Robot<5> for Rv130hsc {
         let t5 = c4 * t3;
         let tt3_zz = tt4_yy + t4;
         let tt3_yz = t1 * s4;
-        let t6 = k1 * s4;
+        let t6 = neg_h5 * s4;
         let t7 = s4 * t6;
         let t8 = c4 * t6;
         let t9 = tr4_xy * c4;
@@ -737,7 +737,7 @@ impl Robot<5> for Rv130hsc {
         let h5 = T::of(Self::H5);
         let a5_h5 = T::of(Self::A5 * Self::H5);
         let a5_h4 = T::of(Self::A5 * Self::H4);
-        let k1 = T::of(-Self::H5);
+        let neg_h5 = T::of(-Self::H5);
         let [(s23, c23), (s2, c2), (s3, c3), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_all([
             q[1] + q[2],
             q[1],
@@ -810,7 +810,7 @@ impl Robot<5> for Rv130hsc {
         let t19 = c4 * t17;
         let tt3_zz = tt4_yy + t18;
         let tt3_yz = s4 * t16;
-        let t20 = k1 * s4;
+        let t20 = neg_h5 * s4;
         let t21 = s4 * t20;
         let t22 = c4 * t20;
         let t23 = c4 * tr4_xy;

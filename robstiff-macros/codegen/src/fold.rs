@@ -28,10 +28,11 @@ impl<'g> Sym<'g> {
         Some(apply(self.constant()?, other.constant()?))
     }
 
-    /// The operand, if this is a negation of something that is no constant.
-    fn negated(self) -> Option<Self> {
+    /// The operand, if this is a negation. Of a constant it is one beside another constant only:
+    /// beside anything else the compiler computes it with its sign, which then costs nothing.
+    fn negated(self, beside: Self) -> Option<Self> {
         match self.op() {
-            Op::Neg(a) if self.constant().is_none() => Some(self.at(a)),
+            Op::Neg(a) if self.constant().is_none() || beside.constant().is_some() => Some(self.at(a)),
             _ => None,
         }
     }
@@ -138,7 +139,7 @@ impl<'g> Add for Sym<'g> {
         if other.is_zero() {
             return self;
         }
-        match (self.negated(), other.negated()) {
+        match (self.negated(other), other.negated(self)) {
             (Some(a), Some(b)) => return -(a + b),
             (Some(a), None) => return other - a,
             (None, Some(b)) => return self - b,
@@ -162,7 +163,7 @@ impl<'g> Sub for Sym<'g> {
         if self.is_zero() {
             return -other;
         }
-        match (self.negated(), other.negated()) {
+        match (self.negated(other), other.negated(self)) {
             (Some(a), Some(b)) => return b - a,
             (Some(a), None) => return -(a + other),
             (None, Some(b)) => return self + b,
@@ -188,7 +189,7 @@ impl<'g> Mul for Sym<'g> {
             (None, Some(_)) => return other * self,
             _ => {}
         }
-        match (self.negated(), other.negated()) {
+        match (self.negated(other), other.negated(self)) {
             (Some(a), Some(b)) => return a * b,
             (Some(a), None) => return -(a * other),
             (None, Some(b)) => return -(self * b),
@@ -256,6 +257,19 @@ mod tests {
         let (x, y) = (g.coordinate(0), g.coordinate(1));
         let before = (x * y + x).id();
         assert_eq!((x + y * x).id(), before);
+    }
+
+    /// A person reads them, too; beside what is no constant a sign stays where it costs nothing.
+    #[test]
+    fn signs_of_constants_cancel() {
+        let g = Graph::new();
+        let (x, a, h) = (g.coordinate(0), g.named_number("A1", 0.41, ""), g.named_number("H1", 3e-7, ""));
+        assert_eq!((-a) * (-h), a * h);
+        assert_eq!((-a) * h, -(a * h));
+        assert_eq!((-a) + h, h - a);
+        assert_eq!((-a) - h, -(a + h));
+        assert_eq!(h - (-a), h + a);
+        assert!(matches!(((-a) * x).op(), Op::Mul(..)), "no negative of a product");
     }
 
     #[test]

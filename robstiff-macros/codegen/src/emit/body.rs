@@ -7,7 +7,7 @@ use quote::{format_ident, quote};
 
 use super::facts::number;
 use super::fuse::{FusedSum, Fusion};
-use super::lines::Lines;
+use super::lines::{Lines, inverse_of};
 use super::operation::{Binding, arithmetic, call, column, sum};
 use super::turns::{Lane, Turn, Turns};
 use crate::angle::Angle;
@@ -86,7 +86,13 @@ impl<'f> Writer<'f> {
         let nodes = graph.nodes();
         let mut out = TokenStream::new();
         let (constants, others): (Vec<_>, Vec<_>) = self.lines.all().partition(|(id, _)| nodes[*id].constant.is_some());
-        for (id, name) in constants {
+        let (named, numbered): (Vec<_>, Vec<_>) =
+            constants.into_iter().partition(|(id, _)| !self.lines.is_numbered(*id));
+        let mut first_numbered = numbered.first().map(|(id, _)| *id);
+        for (id, name) in named.into_iter().chain(numbered) {
+            if self.reader == Reader::Person && first_numbered.take_if(|first| *first == id).is_some() {
+                out.extend(quote!(__remark!("Constants without a short name.");));
+            }
             let (name, mut value) = (format_ident!("{name}"), self.constant(id, Binding::Sum));
             if self.reader == Reader::Compiler && self.is_sum(id) {
                 // Elsewhere Clippy asks for a `mul_add` that would be computed at run time.
@@ -290,7 +296,14 @@ impl<'f> Writer<'f> {
         let (expression, binding) = arithmetic.unwrap_or_else(|| match op {
             Op::Number(bits) => {
                 let value = f64::from_bits(bits);
-                (number(value, self.reader), if value < 0.0 { Binding::Sign } else { Binding::Unit })
+                match inverse_of(value).filter(|_| self.reader == Reader::Person) {
+                    // 0.5 and 0.125 say themselves what they are.
+                    Some(inverse) if value.to_string().len() > 6 => {
+                        let inverse = Literal::f64_unsuffixed(inverse.into());
+                        (quote!(1.0 / #inverse), Binding::Product)
+                    }
+                    _ => (number(value, self.reader), if value < 0.0 { Binding::Sign } else { Binding::Unit }),
+                }
             }
             Op::NamedNumber(index) => {
                 let name = format_ident!("{}", graph.named_numbers()[index].name);

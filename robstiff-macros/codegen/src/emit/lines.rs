@@ -14,6 +14,8 @@ const WRENCH: [&str; 6] = ["fx", "fy", "fz", "mx", "my", "mz"];
 /// at all.
 pub(super) struct Lines {
     names: BTreeMap<Id, String>,
+    /// Whose name is a number.
+    numbered: BTreeSet<Id>,
     angles: Vec<String>,
 }
 
@@ -43,7 +45,7 @@ impl Lines {
         // Hints first, so that a number never takes the name of a thing.
         for &id in &needed {
             let wish = match graph.nodes()[id].constant {
-                Some(_) => constant_name(function, id),
+                Some(_) => constant_name(function, id).or_else(|| graph.hints().get(&id).cloned()),
                 None => graph.hints().get(&id).cloned(),
             };
             if let Some(name) = wish {
@@ -52,6 +54,7 @@ impl Lines {
                 names.insert(id, name);
             }
         }
+        let numbered_ones = needed.iter().copied().filter(|id| !names.contains_key(id)).collect();
         let (mut constants, mut temporaries) = (1.., 1..);
         for &id in &needed {
             names.entry(id).or_insert_with(|| {
@@ -63,12 +66,17 @@ impl Lines {
                 names.find(|name| taken.insert(name.clone())).expect("endless")
             });
         }
-        Self { names, angles }
+        Self { names, numbered: numbered_ones, angles }
     }
 
     /// The name of a node's line, if it has one.
     pub fn name(&self, id: Id) -> Option<&str> {
         self.names.get(&id).map(String::as_str)
+    }
+
+    /// Whether a node's line is named by no more than a number: `t1`, `k1`.
+    pub fn is_numbered(&self, id: Id) -> bool {
+        self.numbered.contains(&id)
     }
 
     /// The nodes with a line, in order of evaluation, and its name.
@@ -158,15 +166,32 @@ fn needs_constant(op: Op, constant: Option<f64>) -> bool {
     }
 }
 
-/// `a2` for a named number, `h5_a5` for a product of them.
+/// The longest name that is made of others'.
+const LONGEST_NAME: usize = 24;
+
+/// `a2` for a named number; from the names of its parts `h5_a5` for a product, `neg_h5` for a
+/// negative, `d6_plus_tool_z` for a sum, `inv_6` for one by a whole number.
 fn constant_name(function: &Function, id: Id) -> Option<String> {
     let graph = function.graph();
-    match graph.nodes()[id].op {
-        Op::NamedNumber(index) => Some(graph.named_numbers()[index].name.to_lowercase()),
-        Op::Mul(a, b) => {
-            let name = format!("{}_{}", constant_name(function, a)?, constant_name(function, b)?);
-            (name.len() <= 16).then_some(name)
-        }
-        _ => None,
-    }
+    let of = |id| constant_name(function, id);
+    let name = match graph.nodes()[id].op {
+        Op::NamedNumber(index) => return Some(graph.named_numbers()[index].name.to_lowercase()),
+        Op::Number(bits) => match f64::from_bits(bits) {
+            value if value < 0.0 => format!("neg_inv_{}", inverse_of(-value)?),
+            value => format!("inv_{}", inverse_of(value)?),
+        },
+        Op::Mul(a, b) => format!("{}_{}", of(a)?, of(b)?),
+        Op::Neg(a) => format!("neg_{}", of(a)?),
+        Op::Add(a, b) => format!("{}_plus_{}", of(a)?, of(b)?),
+        Op::Sub(a, b) => format!("{}_minus_{}", of(a)?, of(b)?),
+        _ => return None,
+    };
+    (name.len() <= LONGEST_NAME).then_some(name)
+}
+
+/// The whole number that a value is one by: 6 for 0.1666..
+pub(super) fn inverse_of(value: f64) -> Option<u32> {
+    let inverse = value.recip().round();
+    let is_it = (2.0..1e6).contains(&inverse) && inverse.recip() == value;
+    is_it.then_some(inverse as u32)
 }
