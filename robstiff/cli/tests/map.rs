@@ -104,8 +104,18 @@ fn a_workpiece_is_placed_where_it_is_in_reach() {
         }
     }
     assert!((worst[1] as f32 - least).abs() < 1e-5 * least, "{worst:?} {least}");
-    let page = succeed(&[&arguments[..], &["1800 x 800 x 0 mm"]].concat());
-    assert!(page.contains("has no place that is reached everywhere"), "{page}");
+    // The map is written and told; that there is no place is an error, also to scripts.
+    fs::remove_file(at("m.json")).unwrap();
+    let ran = run(&[&arguments[..], &["1800 x 800 x 0 mm"]].concat());
+    assert_eq!(ran.code, 1, "{}", ran.out);
+    assert!(ran.out.contains("worst") && !ran.out.contains("workpiece"), "{}", ran.out);
+    let said = "map.yaml: a workpiece of 1800 x 800 x 0 mm has no place that is reached everywhere, the tool turned as \
+                is best at each point; what would help";
+    assert!(ran.err.starts_with("error: ") && ran.err.contains(said), "{}", ran.err);
+    assert!(json(&at("m.json"))["placements"][1]["corner_mm"].is_null());
+    // Nothing need be computed for this.
+    let said = fail(1, &[&arguments[..], &["1900 x 800 x 0 mm"]].concat());
+    assert!(said.contains("a workpiece of 1900 x 800 x 0 mm is larger than the map, 1800 x 800 x 0 mm"), "{said}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::table::{Counter, heading};
 use crate::json;
-use crate::text::{Table, count, significant};
+use crate::text::{Table, capital, count, significant};
 
 /// What a map came to, with all that is needed to say it.
 pub struct Mapped {
@@ -41,6 +41,11 @@ pub struct Placed {
 }
 
 impl Placed {
+    /// What is said where there is no place.
+    fn nowhere(&self) -> String {
+        format!("a workpiece of {} mm has no place that is reached everywhere{}", lengths(self.size, " x "), self.how())
+    }
+
     fn how(&self) -> String {
         match (self.turn, self.each) {
             (Some(turn), _) => {
@@ -50,6 +55,11 @@ impl Placed {
             (None, false) => String::new(),
         }
     }
+}
+
+/// Lengths in mm, for people.
+pub fn lengths(lengths: [f64; 3], between: &str) -> String {
+    lengths.map(|length| significant(people(Dimension::Length, length), 6)).join(between)
 }
 
 impl Mapped {
@@ -175,20 +185,12 @@ impl Mapped {
 
     /// Sentences on where a workpiece is best put.
     pub fn placed(&self) -> Vec<String> {
-        let mm = |lengths: [f64; 3]| lengths.map(|length| significant(people(Dimension::Length, length), 6));
         let sentence = |placed: &Placed| {
-            let size = mm(placed.size).join(" x ");
-            let Some(best) = placed.best else {
-                let spans =
-                    [0, 1, 2].map(|k| self.axes[k].values[self.axes[k].values.len() - 1] - self.axes[k].values[0]);
-                if placed.size.iter().zip(spans).any(|(size, span)| *size > span + 1e-9) {
-                    return format!("A workpiece of {size} mm is larger than the map, {} mm.", mm(spans).join(" x "));
-                }
-                return format!("A workpiece of {size} mm has no place that is reached everywhere{}.", placed.how());
-            };
+            let Some(best) = placed.best else { return capital(&format!("{}.", placed.nowhere())) };
             format!(
-                "A workpiece of {size} mm is best put with its lower corner at ({}) mm{}: the worst of {} in it is {} {}.",
-                mm(best.corner).join(", "),
+                "A workpiece of {} mm is best put with its lower corner at ({}) mm{}: the worst of {} in it is {} {}.",
+                lengths(placed.size, " x "),
+                lengths(best.corner, ", "),
                 placed.how(),
                 count(best.span.iter().product(), "point"),
                 self.figure(best.worst),
@@ -196,6 +198,12 @@ impl Mapped {
             )
         };
         self.placements.iter().map(sentence).collect()
+    }
+
+    /// What is said where a place was asked for, and there is none with any turn of the tool.
+    pub fn unplaced(&self) -> Option<String> {
+        // The last has at each point the turn that reaches it.
+        self.placements.last().filter(|placed| placed.best.is_none()).map(Placed::nowhere)
     }
 
     /// The page for a terminal.
@@ -229,7 +237,8 @@ impl Mapped {
             let [x, y, z] = [1, 2, 3].map(|k| crate::text::decimals(worst.values[k], 3));
             page += &format!("the weakest direction there is ({x}, {y}, {z}) in the base frame\n");
         }
-        for sentence in self.placed() {
+        // That there is no place at all is an error's to say.
+        for sentence in self.placed().iter().filter(|_| self.unplaced().is_none()) {
             page += &format!("\n{sentence}\n");
         }
         page + "\n"

@@ -111,7 +111,26 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         files.add(path, json::document(&mapped.json()));
     }
     let said = files.write()?;
-    output::print(mapped.page() + &said)
+    output::print(mapped.page() + &said)?;
+    // The map stands, and shows where it has holes.
+    mapped.unplaced().map_or(Ok(()), |said| {
+        let map = arguments.map.display();
+        Err(Failure::new(format_args!("{map}: {said}; what would help is a smaller one, a wider map or more turns")))
+    })
+}
+
+/// Stops, before what may take minutes, where a workpiece (m) is larger than the map.
+fn refuse_if_larger(size: [f64; 3], axes: &[Axis; 3], map: &Path) -> Result<(), Failure> {
+    let spans = [0, 1, 2].map(|k| axes[k].values[axes[k].values.len() - 1] - axes[k].values[0]);
+    if size.iter().zip(spans).all(|(size, span)| size * (1.0 - 1e-9) <= span) {
+        return Ok(());
+    }
+    Err(Failure::new(format_args!(
+        "{}: a workpiece of {} mm is larger than the map, {} mm; make the map wider, or the workpiece smaller",
+        map.display(),
+        document::lengths(size, " x "),
+        document::lengths(spans, " x ")
+    )))
 }
 
 fn task(path: &Path, robot: &Description) -> Result<Task, Failure> {
@@ -160,6 +179,9 @@ fn map<const N: usize>(
         }
         Over::Positions(positions) => {
             let Positions { frame, axes, tool } = positions.as_ref();
+            if let Some(size) = arguments.place {
+                refuse_if_larger(size, axes, &arguments.map)?;
+            }
             let generic = Generic::<N>::new(robot).expect("this arm has the same count");
             let space = CartesianSpace::new(&generic, axes.clone(), tool.clone()).in_frame(*frame);
             let mut mapped = write(&Survey::new(&tape, &space, &task.measure), arguments, files)?;
