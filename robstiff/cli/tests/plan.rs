@@ -26,6 +26,7 @@ fn proposes_poses_for_the_fanuc() {
     assert!(page.contains("10 poses to measure next, after 43"), "{page}");
     assert!(page.contains(&PAIR.join(" / ")), "{page}");
     assert!(page.contains("joints without limits in the description stay in the campaign's range"), "{page}");
+    assert!(page.contains("so its values differ and its standard deviations are mostly larger"), "{page}");
     assert_eq!(names(Path::new(&out)), ["plan.csv", "plan.json"]);
     let plan = json(&copy);
     assert_eq!(plan, json(&inside(Path::new(&out), "plan.json")));

@@ -10,7 +10,7 @@
 //!
 //! Everything expected is to first order, with the noise that the trace found
 //! and each rival in turn taken for the truth at the size that fits best, the knees
-//! of gears as they were found. The measurements are visits like the campaign's own,
+//! of gears held at the best of a grid. The measurements are visits like the campaign's own,
 //! with its sequence of loads, of displacements with one unloaded reading for each.
 
 pub mod advice;
@@ -149,11 +149,13 @@ pub enum Outlook {
 pub struct Number {
     /// `joint 3`, or an effect's number.
     pub name: String,
-    /// Its value.
+    /// Its value: of displacements in the linear fit that the plan is made with, knees held at
+    /// the best of a grid, so not quite what a trace says, which fits each in its own form.
     pub value: f64,
     /// Its unit.
     pub unit: &'static str,
-    /// One standard deviation with the campaign as it is, from the noise alone.
+    /// One standard deviation with the campaign as it is, from the noise alone; that of a trace is
+    /// of what each pose leaves, and mostly larger.
     pub now: f64,
     /// The same with all proposals measured.
     pub after: f64,

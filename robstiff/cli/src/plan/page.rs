@@ -18,7 +18,7 @@ pub fn page(plan: &Plan, trace: &Trace, campaign: &Campaign) -> String {
     );
     page += &proposals(plan, campaign);
     page += &pairs(plan);
-    page += &numbers(plan);
+    page += &numbers(plan, campaign);
     page += "\nTaken for granted:\n";
     for said in &plan.assumptions {
         page += &format!("- {said}\n");
@@ -90,7 +90,22 @@ fn sentences(pair: &Pair) -> String {
     said
 }
 
-fn numbers(plan: &Plan) -> String {
+/// What the numbers are, and why those of `trace` are others.
+fn as_against_trace(campaign: &Campaign) -> &'static str {
+    match &campaign.data {
+        Data::Position(_) => {
+            "The standard deviations are as the noise alone makes them; trace has in its own what each pose leaves and \
+             what numbers of the table without a name may do, so they are mostly larger."
+        }
+        Data::Displacement(_) | Data::Clamped(_) => {
+            "The values are those of the linear fit that a plan is made with, knees held at the best of a grid; trace \
+             fits every number in its own form, knees too, and takes standard deviations from what each pose leaves, \
+             so its values differ and its standard deviations are mostly larger."
+        }
+    }
+}
+
+fn numbers(plan: &Plan, campaign: &Campaign) -> String {
     let mut table = Table::new(1, ["number", "value", "sigma now", "after", "factor"]);
     for number in &plan.numbers {
         table.row([
@@ -101,5 +116,5 @@ fn numbers(plan: &Plan) -> String {
             decimals(number.now / number.after, 2),
         ]);
     }
-    format!("\nExpected standard deviations, from the noise alone\n{table}")
+    format!("\nExpected standard deviations, from the noise alone\n{table}{}\n", as_against_trace(campaign))
 }
