@@ -151,7 +151,16 @@ fn bare(document: &Document) -> Vec<String> {
     let bare = |&(map, field, _, _): &(Option<&Map<'_>>, &str, &str, &str)| {
         map.and_then(|map| map.get(field)).is_some_and(|node| node.is_number())
     };
-    fields.into_iter().filter(bare).map(|(_, field, si, unit)| taken_in(field, si, unit)).collect()
+    let mut asked: Vec<String> =
+        fields.into_iter().filter(bare).map(|(_, field, si, unit)| taken_in(field, si, unit)).collect();
+    // Zero is the same in every unit.
+    let stands_out =
+        |item: &Node<'_>| item.is_number() && item.quantity(Dimension::Length).is_some_and(|out| out != 0.0);
+    let runout = tool.and_then(|tool| tool.get("runout")).filter(Node::is_sequence);
+    if runout.and_then(|node| node.sequence()).is_some_and(|items| items.iter().any(stands_out)) {
+        asked.push(taken_in("runout", "m", "um"));
+    }
+    asked
 }
 
 /// Asks whether a field without a unit is in another than that of SI.

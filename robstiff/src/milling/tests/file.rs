@@ -76,6 +76,17 @@ fn mistakes_are_shown_where_they_are() {
     }
 }
 
+/// Zero is the same in every unit.
+#[test]
+fn runout_without_a_unit_is_asked_about() {
+    let warned =
+        |runout: &str| read(&POCKET.replace("helix: 30 deg", &format!("runout: [{runout}]"))).unwrap().warnings;
+    assert_eq!(warned("0, 12, 5 um"), ["cut.yaml: `runout` has no unit and is taken in m: is it in um?"]);
+    for stated in ["0, 12 um, 5 um", "0, 0, 0"] {
+        assert!(warned(stated).is_empty(), "{stated}");
+    }
+}
+
 #[test]
 fn records_are_averaged() {
     let header = "angle [deg],Fx [N],Fy [kN],Fz\n";
