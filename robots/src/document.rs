@@ -64,7 +64,8 @@ impl Document {
 
     /// The document, in which a number without a unit must be one that a robot
     /// can have in SI: in degrees or millimetres it is refused.
-    pub(crate) fn wary(self) -> Self {
+    #[must_use]
+    pub fn wary(self) -> Self {
         Self { wary: true, ..self }
     }
 

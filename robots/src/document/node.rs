@@ -175,8 +175,9 @@ impl<'d> Node<'d> {
         value.map_err(|error| self.error(error.message, error.help)).ok()
     }
 
-    /// Whether it is a number without a unit that may be in another one than SI.
-    pub(crate) fn is_suspect(&self) -> bool {
+    /// Whether it is a number without a unit that may be in another one than SI, in a
+    /// [wary](Document::wary) document.
+    pub fn is_suspect(&self) -> bool {
         self.document.wary && (self.is_number() || self.as_text().is_some_and(is_number))
     }
 

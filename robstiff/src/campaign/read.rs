@@ -206,7 +206,7 @@ fn noise(map: &Map<'_>) -> Option<Noise> {
 }
 
 /// No instrument for deflections is so noisy (m, rad).
-const NOISIEST: f64 = 0.01;
+pub const NOISIEST: f64 = 0.01;
 
 /// What is said of declared noise that no instrument has, with its line: mostly of micrometres
 /// that no unit is written with.

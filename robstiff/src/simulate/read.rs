@@ -15,7 +15,7 @@ use robstiff_robots::{Description, Diagnostics, Joint, ReadError};
 
 use self::measured::{Measured, measured};
 use super::{Measures, Poses, Scenario};
-use crate::campaign::read::holdout;
+use crate::campaign::read::{NOISIEST, holdout};
 use crate::table::text_of;
 use crate::{Effect, JointKind};
 
@@ -51,7 +51,7 @@ impl Scenario {
     /// # Errors
     /// All that is wrong with the text, each problem with its place.
     pub fn parse(file: &str, text: &str, robot: &Description) -> Result<Self, Diagnostics> {
-        let document = Document::parse(file, text)?;
+        let document = Document::parse(file, text)?.wary();
         let scenario = scenario(&document, robot);
         document.finish(scenario)
     }
@@ -142,6 +142,21 @@ fn computable(node: &Node<'_>, value: f64) -> Option<f64> {
 
 fn sigma(node: &Node<'_>, dimension: Dimension) -> Option<f64> {
     computable(node, node.nonnegative(dimension)?)
+}
+
+/// One sigma of what an instrument reads (m, rad). Without a unit it must be one that an
+/// instrument can have in SI; with it, it may be any.
+fn noise(node: &Node<'_>, dimension: Dimension) -> Option<f64> {
+    let sigma = sigma(node, dimension)?;
+    if node.is_suspect() && sigma > NOISIEST {
+        let (si, usual) = (dimension.unit(), if dimension == Dimension::Angle { "urad" } else { "um" });
+        node.error(
+            format!("{sigma} {si} is more noise than any instrument has"),
+            format!("in {usual}? write `{sigma} {usual}`, or the unit if it is `{sigma} {si}`"),
+        );
+        return None;
+    }
+    Some(sigma)
 }
 
 fn poses(node: &Node<'_>, joints: &[Joint]) -> Option<Poses> {

@@ -212,8 +212,18 @@ fn mistakes_are_shown_where_they_are() {
         ("visits: 2", "visits: 20000", "4:9", "1800000 rows, more than the 1000000"),
         ("[500 N, 1.3 kN]", "[0 N, 1e20 N]", "6:17", "beyond anything that is measured"),
         ("8 um", "1e20 um", "7:23", "beyond anything that is measured"),
-        ("8 um", "[1 um, 1e20 um, 1 um]", "7:23", "beyond anything that is measured"),
+        ("8 um", "[1 um, 1e20 um, 1 um]", "7:30", "beyond anything that is measured"),
         ("8 um", "8 um, encoders: 1e20 rad", "7:39", "at most 1e6 rad"),
+        ("8 um", "8", "7:23", "8 m is more noise than any instrument has"),
+        ("8 um", "[8 um, 8, 8 um]", "7:30", "in um? write `8 um`, or the unit if it is `8 m`"),
+        ("8 um", "8 um, encoders: 5", "7:39", "in urad? write `5 urad`"),
+        ("floor: 100 mm", "floor: 100", "3:27", "in mm? write `100 mm`"),
+        (
+            "{count: 30,",
+            "{count: 30, within: [[-90, 1], [0, 1], [0, 1], [0, 1], [0, 1], [0, 1]],",
+            "3:30",
+            "write `-90 deg`, or the unit",
+        ),
         ("{count: 30, floor: 100 mm, column: 600 mm}", "{list: [[0, 0, 0]]}", "3:16", "for 6 joints"),
         (
             "{count: 30,",
@@ -225,6 +235,8 @@ fn mistakes_are_shown_where_they_are() {
         let text = problem(&SCENARIO.replace(from, to));
         assert!(text.contains(&std::format!("try.yaml:{place}")) && text.contains(part), "{text}");
     }
+    // With its unit noise may be any.
+    assert_eq!(read(&SCENARIO.replace("8 um", "8 m")).noise, [8.0; 3]);
     let mut limitless = robot();
     limitless.joints[1].limits = None;
     let text = Scenario::parse("try.yaml", SCENARIO, &limitless).expect_err("no limits").to_string();

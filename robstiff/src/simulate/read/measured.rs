@@ -8,7 +8,7 @@ use robstiff_robots::document::{Map, Node};
 use robstiff_robots::quantity::Dimension;
 
 use super::super::{Measures, Pull, UnderForces, UnderPayloads};
-use super::{computable, dimension, for_each_joint, sigma};
+use super::{computable, dimension, for_each_joint, noise, sigma};
 use crate::campaign::Frame;
 use crate::campaign::read::place;
 
@@ -30,15 +30,14 @@ pub fn measured(map: &Map<'_>, joints: &[Joint]) -> Option<Measured> {
         true => &["displacement", "repeatability", "stated"],
         false => &["displacement", "rotation", "encoders", "stated"],
     };
-    let noise = map.require("noise", "noise: {displacement: 8 um}").and_then(|node| node.map(fields));
-    let displacement = noise.as_ref().and_then(displacement_noise);
+    let of_noise = map.require("noise", "noise: {displacement: 8 um}").and_then(|node| node.map(fields));
+    let displacement = of_noise.as_ref().and_then(displacement_noise);
     let measures = match tracked {
-        true => under_payloads(map, noise.as_ref()).map(Measures::Positions),
-        false => {
-            under_forces(map, noise.as_ref(), joints, places.map(|place| Some(place?.0))).map(Measures::Displacements)
-        }
+        true => under_payloads(map, of_noise.as_ref()).map(Measures::Positions),
+        false => under_forces(map, of_noise.as_ref(), joints, places.map(|place| Some(place?.0)))
+            .map(Measures::Displacements),
     };
-    let stated = noise?.get("stated").map_or(Some(true), |node| node.choice(&[("yes", true), ("no", false)]));
+    let stated = of_noise?.get("stated").map_or(Some(true), |node| node.choice(&[("yes", true), ("no", false)]));
     let [wrench, measured] = places;
     Some(Measured {
         measures: measures?,
@@ -49,17 +48,17 @@ pub fn measured(map: &Map<'_>, joints: &[Joint]) -> Option<Measured> {
     })
 }
 
-fn under_payloads(map: &Map<'_>, noise: Option<&Map<'_>>) -> Option<UnderPayloads> {
+fn under_payloads(map: &Map<'_>, of_noise: Option<&Map<'_>>) -> Option<UnderPayloads> {
     let others = ["ramp", "force", "moment", "unloaded"];
     let fits = none_of(map, &others, "positions are read under payloads", "e.g. `payloads: [0 kg, 150 kg]`");
     let payloads = map.get("payloads").map_or(Some(std::vec![0.0]), |node| payloads(&node));
-    let repeatability = noise?.get("repeatability").map_or(Some(0.0), |node| sigma(&node, Dimension::Length));
+    let repeatability = of_noise?.get("repeatability").map_or(Some(0.0), |node| noise(&node, Dimension::Length));
     fits.then_some(UnderPayloads { payloads: payloads?, repeatability: repeatability? })
 }
 
 fn under_forces(
     map: &Map<'_>,
-    noise: Option<&Map<'_>>,
+    of_noise: Option<&Map<'_>>,
     joints: &[Joint],
     frames: [Option<Frame>; 2],
 ) -> Option<UnderForces> {
@@ -73,9 +72,9 @@ fn under_forces(
         .map_or(Some(None), |node| pull(&node, Dimension::Torque, "bounds: [50 Nm, 200 Nm]").map(Some));
     let unloaded = [("shared", true), ("separate", false)];
     let shares_unloaded = map.get("unloaded").map_or(Some(true), |node| node.choice(&unloaded));
-    let noise = noise?;
-    let rotation = noise.get("rotation").map_or(Some(None), |node| sigma(&node, Dimension::Angle).map(Some));
-    let encoders = noise.get("encoders").map_or(Some(None), |node| encoder_noise(&node, joints).map(Some));
+    let of_noise = of_noise?;
+    let rotation = of_noise.get("rotation").map_or(Some(None), |node| noise(&node, Dimension::Angle).map(Some));
+    let encoders = of_noise.get("encoders").map_or(Some(None), |node| encoder_noise(&node, joints).map(Some));
     let [wrench, measured] = frames;
     fits.then_some(UnderForces {
         ramp: ramp?,
@@ -150,18 +149,15 @@ fn pull(node: &Node<'_>, dimension: Dimension, example: &str) -> Option<Pull> {
     Some(Pull { bounds: bounds?, directions: directions? })
 }
 
-fn displacement_noise(noise: &Map<'_>) -> Option<[f64; 3]> {
-    let node = noise.require("displacement", "displacement: 8 um")?;
+fn displacement_noise(of_noise: &Map<'_>) -> Option<[f64; 3]> {
+    let node = of_noise.require("displacement", "displacement: 8 um")?;
     if !node.is_sequence() {
-        return sigma(&node, Dimension::Length).map(|sigma| [sigma; 3]);
+        return noise(&node, Dimension::Length).map(|sigma| [sigma; 3]);
     }
-    let sigmas = node.quantities::<3>(Dimension::Length)?;
-    if sigmas.iter().any(|sigma| *sigma < 0.0) {
-        node.error("a length cannot be negative", "one sigma for each of x, y and z");
-        return None;
-    }
-    sigmas.iter().try_for_each(|sigma| computable(&node, *sigma).map(|_| ()))?;
-    Some(sigmas)
+    // Says what is wrong with the list itself.
+    node.quantities::<3>(Dimension::Length)?;
+    let sigmas: Vec<Option<f64>> = node.sequence()?.iter().map(|item| noise(item, Dimension::Length)).collect();
+    sigmas.into_iter().collect::<Option<Vec<f64>>>()?.try_into().ok()
 }
 
 /// One sigma for all joints, where all are of one kind, or one for each.
@@ -169,7 +165,7 @@ fn encoder_noise(node: &Node<'_>, joints: &[Joint]) -> Option<Vec<f64>> {
     if node.is_sequence() {
         let items = for_each_joint(node, joints)?;
         let sigmas: Vec<Option<f64>> =
-            items.iter().zip(joints).map(|(item, joint)| sigma(item, dimension(joint))).collect();
+            items.iter().zip(joints).map(|(item, joint)| noise(item, dimension(joint))).collect();
         return sigmas.into_iter().collect();
     }
     let kind = dimension(joints.first()?);
@@ -177,6 +173,6 @@ fn encoder_noise(node: &Node<'_>, joints: &[Joint]) -> Option<Vec<f64>> {
         node.error("some joints turn, some slide", "give one sigma for each joint, e.g. `[20 urad, 5 um, ..]`");
         return None;
     }
-    let sigma = sigma(node, kind)?;
+    let sigma = noise(node, kind)?;
     Some(joints.iter().map(|_| sigma).collect())
 }
