@@ -255,11 +255,13 @@ fn limits(map: &Map<'_>, joints: &[Joint]) -> Option<Vec<[f64; 2]>> {
 fn hidden(node: &Node<'_>, robot: &Description) -> Option<Vec<Effect>> {
     let list = node.map(&["effects"])?.require("effects", "effects: [{kind: transverse_compliance, ..}]")?;
     let effects = robot.read_effects(&list)?;
-    let same = |one: &Effect, other: &Effect| one.kind() == other.kind() && one.place() == other.place();
     for (item, effect) in list.sequence()?.iter().zip(&effects) {
-        if robot.effects.iter().any(|declared| same(declared, effect)) {
+        if let Some(declared) = robot.effects.iter().find(|declared| declared.is_same(effect)) {
+            // An error of theta is a zero offset by another name.
+            let of_the_same = declared.to_string() != effect.to_string();
+            let which = if of_the_same { format!(", which is the same as `{effect}`") } else { String::new() };
             item.error(
-                format!("the description declares `{effect}` already"),
+                format!("the description declares `{declared}` already{which}"),
                 "hide what it lacks; what it says wrong about its joints is `scatter`",
             );
         }

@@ -2,7 +2,7 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use nalgebra::{SVector, Vector3, Vector6};
-use robstiff_robots::{Description, catalogue};
+use robstiff_robots::{Description, DhEntry, Effect, catalogue};
 
 use super::{Part, Scenario, Simulated, simulate};
 use crate::campaign::{Data, Displacements};
@@ -249,6 +249,12 @@ fn mistakes_are_shown_where_they_are() {
     declares.effects = read(SCENARIO).hidden;
     let text = Scenario::parse("try.yaml", SCENARIO, &declares).expect_err("declared").to_string();
     assert!(text.contains("declares `transverse_compliance@joint 3` already"), "{text}");
+    declares.effects = std::vec![Effect::DhError { entry: DhEntry::Theta(3), value: 1e-3 }];
+    let offset = "{kind: joint_zero_offset, at: joint 3, value: 1 mrad}";
+    let text = SCENARIO.replace("{kind: transverse_compliance, at: joint 3, value: 6e-7 rad/Nm}", offset);
+    let text = Scenario::parse("try.yaml", &text, &declares).expect_err("one number").to_string();
+    let said = "declares `dh_error@theta3` already, which is the same as `joint_zero_offset@joint 3`";
+    assert!(text.contains(said), "{text}");
 }
 
 #[test]
