@@ -1,5 +1,9 @@
 //! The robots that come with the crate.
 
+use std::path::{Path, PathBuf};
+
+use crate::{Description, ReadError};
+
 /// The descriptions by file name, e.g. `rv130hsc.yaml`, with their text.
 pub const fn catalogue() -> &'static [(&'static str, &'static str)] {
     macro_rules! robots {
@@ -23,10 +27,30 @@ pub fn find(file_name: &str) -> Option<&'static str> {
     catalogue().iter().find(|(file, _)| file.strip_suffix(".yaml") == Some(stem)).map(|(_, text)| *text)
 }
 
+/// Reads the description at a path from a folder or, where no file is there, the one of this name
+/// in the catalogue; with its path, which of the catalogue is the file's name alone. A folder with
+/// measurements may have a robot's name.
+///
+/// # Errors
+/// A file that cannot be read, also where there is none and the catalogue has none of its name;
+/// all that is wrong with it.
+pub fn read(folder: &Path, name: &Path) -> Result<(Description, PathBuf), ReadError> {
+    let path = folder.join(name);
+    // A pipe is no regular file, and can be read.
+    let is_there = path.exists() && !path.is_dir();
+    match name.to_str().and_then(|name| Some((name, find(name)?))).filter(|_| !is_there) {
+        Some((name, text)) => {
+            let file = format!("{}.yaml", name.trim_end_matches(".yaml"));
+            let robot = Description::parse(&file, text).map_err(ReadError::Invalid)?;
+            Ok((robot, file.into()))
+        }
+        None => Ok((Description::read(&path)?, path)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Description;
 
     #[test]
     fn every_robot_reads_and_says_where_it_comes_from() {
@@ -52,6 +76,26 @@ mod tests {
     fn finds_a_robot_with_and_without_the_ending() {
         assert!(find("rv130hsc").is_some() && find("rv130hsc") == find("rv130hsc.yaml"));
         assert_eq!(find("rv130"), None);
+    }
+
+    #[test]
+    fn a_file_counts_before_a_name_and_a_folder_does_not() {
+        let folder = std::env::temp_dir().join(format!("robstiff-catalogue-{}", std::process::id()));
+        std::fs::create_dir_all(folder.join("rv130hsc")).unwrap();
+        let read = |name: &str| read(&folder, Path::new(name));
+        for name in ["rv130hsc", "rv130hsc.yaml"] {
+            let (robot, path) = read(name).unwrap();
+            assert_eq!((robot.name.as_str(), path), ("Rv130hsc", PathBuf::from("rv130hsc.yaml")));
+        }
+        let own = folder.join("rv130hsc.yaml");
+        std::fs::write(&own, "name: Own\nconvention: standard\njoints: [{a: 1 m}]\n").unwrap();
+        let (robot, path) = read("rv130hsc.yaml").unwrap();
+        assert_eq!((robot.name.as_str(), path), ("Own", own));
+        // Only a name by itself is one of the catalogue.
+        for name in ["rv130", "robots/rv130hsc"] {
+            assert!(matches!(read(name), Err(ReadError::Io { .. })), "{name}");
+        }
+        std::fs::remove_dir_all(&folder).unwrap();
     }
 
     #[test]

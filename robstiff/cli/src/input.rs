@@ -21,23 +21,21 @@ pub use options::{
 /// Reads a robot's description, with its file's name: a file, or where there is
 /// none of that name, a robot of the catalogue. A folder with its measurements may have its name.
 pub fn robot(path: &Path) -> Result<(Description, String), Failure> {
-    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-    if path.exists() && !path.is_dir() {
-        return Ok((Description::read(path)?, name.into_owned()));
-    }
-    if let Some(text) = catalogue::find(&name).filter(|_| path.as_os_str() == name.as_ref()) {
-        let name = format!("{}.yaml", name.trim_end_matches(".yaml"));
-        return Ok((Description::parse(&name, text)?, name));
-    }
-    if path.is_dir() {
+    let is_of_catalogue = path.to_str().and_then(catalogue::find).is_some();
+    if path.is_dir() && !is_of_catalogue {
         return Err(Failure::new(format_args!("{} is a folder, a robot's description is a file", path.display())));
     }
-    let names: Vec<&str> = catalogue::catalogue().iter().map(|(name, _)| name.trim_end_matches(".yaml")).collect();
-    Err(Failure::new(format!(
-        "there is no file {}, and no robot of that name in the catalogue: {}",
-        path.display(),
-        names.join(", ")
-    )))
+    if !path.exists() && !is_of_catalogue && path != Path::new("-") {
+        let names: Vec<&str> = catalogue::catalogue().iter().map(|(name, _)| name.trim_end_matches(".yaml")).collect();
+        return Err(Failure::new(format!(
+            "there is no file {}, and no robot of that name in the catalogue: {}",
+            path.display(),
+            names.join(", ")
+        )));
+    }
+    let (robot, file) = catalogue::read(Path::new(""), path)?;
+    let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();
+    Ok((robot, name.into_owned()))
 }
 
 /// What is said of a robot that has nothing that gives way.

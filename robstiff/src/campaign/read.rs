@@ -2,13 +2,13 @@
 
 use std::borrow::ToOwned;
 use std::format;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
 use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
-use robstiff_robots::{Description, ReadError, catalogue};
+use robstiff_robots::{ReadError, catalogue};
 
 use super::beyond::{told_angle, told_length};
 use super::{Campaign, Data, Frame, Holdout, Noise, clamped, displacements, positions};
@@ -62,7 +62,7 @@ impl Campaign {
         let plan = plan(&document, folder);
         let plan = document.finish(plan).map_err(ReadError::Invalid)?;
 
-        let (robot, robot_path) = robot(folder, &plan.robot)?;
+        let (robot, robot_path) = catalogue::read(folder, Path::new(&plan.robot))?;
         let observations_path = folder.join(&plan.observations);
         let (table_name, text) = (observations_path.display().to_string(), text_of(&observations_path)?);
         let table = Table::parse(&table_name, &text).map_err(ReadError::Invalid)?;
@@ -149,16 +149,6 @@ fn unused(map: &Map<'_>, kind: Kind) -> Vec<(&'static str, usize)> {
             };
             OF_DISPLACEMENTS.into_iter().filter_map(inner).collect()
         }
-    }
-}
-
-/// The robot of a campaign and its path: a file, or where there is none of that name, a robot
-/// of the catalogue.
-fn robot(folder: &Path, name: &str) -> Result<(Description, PathBuf), ReadError> {
-    let path = folder.join(name);
-    match catalogue::find(name).filter(|_| !path.is_file()) {
-        Some(text) => Ok((Description::parse(name, text).map_err(ReadError::Invalid)?, PathBuf::from(name))),
-        None => Ok((Description::read(&path)?, path)),
     }
 }
 
