@@ -27,10 +27,25 @@ fn nothing_is_planned_after_clamped_axes() {
     let campaign = write(&folder, "campaign.yaml", &text);
     let said = fail(1, &["plan", &campaign]);
     assert!(said.contains("campaign.yaml: planning needs a campaign of kind"), "{said}");
+    assert!(said.contains("what clamped axes leave open `trace` tells"), "{said}");
+    let said = fail(1, &["predict", "rv130hsc", &campaign]);
+    assert!(said.contains("is what `trace` tells as declared"), "{said}");
     // Axes of which nothing was read are not rigid.
     write(&folder, "axes.csv", "axis,torque [Nm],deflection [urad]\n1,100,0\n1,200,0\n");
     let said = fail(1, &["identify", &campaign, "--out", &inside(&folder, "out")]);
     assert!(said.contains("every deflection is zero") && !folder.join("out").exists(), "{said}");
+}
+
+#[test]
+fn a_dash_is_no_file() {
+    for arguments in [&["show", "-"][..], &["predict", "rv130hsc", "-"], &["map", "rv130hsc", "-"]] {
+        let said = fail(1, arguments);
+        assert_eq!(said, "error: `-` does not stand for standard input; name a file\n", "{arguments:?}");
+    }
+    let said = fail(2, &["show", "rv130hsc", "--json", "-"]);
+    assert!(said.contains("`-` does not stand for standard output, where the page goes; name a file"), "{said}");
+    let said = fail(2, &["emit", "rv130hsc", "--out", "-"]);
+    assert!(said.contains("without `--out` the code goes to standard output; leave it out"), "{said}");
 }
 
 #[test]

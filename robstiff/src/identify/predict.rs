@@ -68,9 +68,10 @@ pub fn predict(description: &Description, campaign: &Campaign) -> Result<Predict
     match &campaign.data {
         Data::Displacement(data) => displacements(description, data),
         Data::Position(data) => positions::predict(description, data),
-        Data::Clamped(_) => {
-            Err(Error::OtherCampaign(String::from("predicting needs a campaign of kind `displacement` or `position`")))
-        }
+        Data::Clamped(_) => Err(Error::OtherCampaign(String::from(
+            "predicting needs a campaign of kind `displacement` or `position`; the error of a description on clamped \
+                 axes is what `trace` tells as declared, with it as the campaign's robot",
+        ))),
     }
 }
 

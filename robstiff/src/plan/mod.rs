@@ -173,9 +173,10 @@ pub const TOLD_APART: f64 = 3.0;
 pub fn can_follow(campaign: &Campaign) -> Result<(), Error> {
     match &campaign.data {
         Data::Displacement(_) | Data::Position(_) => Ok(()),
-        Data::Clamped(_) => {
-            Err(Error::OtherCampaign(String::from("planning needs a campaign of kind `displacement` or `position`")))
-        }
+        Data::Clamped(_) => Err(Error::OtherCampaign(String::from(
+            "planning needs a campaign of kind `displacement` or `position`; what clamped axes leave open `trace` \
+                 tells, and torques both ways, in steps up and down again, tell most of a gear",
+        ))),
     }
 }
 
