@@ -36,6 +36,9 @@ pub enum ReadError {
 impl fmt::Display for ReadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Io { path, .. } if path.as_os_str() == "-" => {
+                f.write_str("error: `-` does not stand for standard input; name a file")
+            }
             Self::Io { path, error } => write!(f, "error: cannot read {}: {error}", path.display()),
             Self::Invalid(problems) => problems.fmt(f),
         }

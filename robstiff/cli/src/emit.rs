@@ -1,6 +1,6 @@
 //! `robstiff emit`: the generated code as a person would read it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use quote::quote;
 use robstiff_codegen::Origin;
@@ -28,6 +28,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, file) = input::robot(&arguments.robot)?;
     let origin = Origin { file, runtime: quote!(::robstiff), visibility: quote!(pub) };
     let source = robstiff_codegen::source(&robot, &origin);
+    if arguments.out.as_deref() == Some(Path::new("-")) {
+        return Err(Failure::Usage("without `--out` the code goes to standard output; leave it out".to_owned()));
+    }
 
     let mut files = Files::default();
     files.protect(&arguments.robot);
