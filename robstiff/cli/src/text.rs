@@ -133,6 +133,18 @@ pub fn fine_micrometres(length: f64) -> String {
     if small { significant(length * 1e6, 2) } else { micrometres(length) }
 }
 
+/// What an error (m) does, in micrometres without the unit: `falls`, `from 17.4 to 12.1`; what is
+/// told by the same number stays, whatever its further digits do.
+pub fn course(before: f64, after: f64) -> [String; 2] {
+    let told = [before, after].map(fine_micrometres);
+    let [from, to] = &told;
+    if from == to {
+        return ["stays".to_owned(), format!("at {to}")];
+    }
+    let does = if after < before { "falls" } else { "rises" };
+    [does.to_owned(), format!("from {from} to {to}")]
+}
+
 /// Items as a sentence lists them: `a, b and c`.
 pub fn and(items: &[String]) -> String {
     match items {
@@ -191,6 +203,15 @@ mod tests {
     #[test]
     fn fields_with_commas_are_quoted() {
         assert_eq!(["p 1", "a,b", "say \"x\""].map(field), ["p 1", "\"a,b\"", "\"say \"\"x\"\"\""]);
+    }
+
+    #[test]
+    fn an_error_that_is_told_by_one_number_stays() {
+        let told = |before: f64, after: f64| course(before * 1e-6, after * 1e-6).join(" ");
+        assert_eq!(told(233.9, 79.81), "falls from 233.9 to 79.8");
+        assert_eq!(told(17.44, 17.36), "stays at 17.4");
+        assert_eq!(told(17.36, 17.44), "stays at 17.4");
+        assert_eq!(told(0.5, 0.71), "rises from 0.5 to 0.71");
     }
 
     #[test]

@@ -11,12 +11,12 @@ use crate::effect::parameters;
 use crate::identify::{at_bound, source_of};
 use crate::report::terms::Terms;
 use crate::text::words::spoken;
-use crate::text::{Table, and, capital, count, decimals, fine_micrometres, p_value, quantity};
+use crate::text::{Table, and, capital, count, course, decimals, fine_micrometres, p_value, quantity};
 
 /// The finding in one sentence.
 pub fn headline(trace: &Trace, terms: Terms) -> String {
     let Terms { unseen: [_, unseen], unit, .. } = terms;
-    let (before, after) = (fine_micrometres(trace.identified.holdout_rms), fine_micrometres(trace.after.holdout_rms));
+    let after = fine_micrometres(trace.after.holdout_rms);
     let words = |of_rig: bool| -> Vec<String> {
         let those = trace.effects.iter().filter(|named| named.effect.is_of_rig() == of_rig);
         those.map(|named| named.effect.words()).collect()
@@ -40,10 +40,10 @@ pub fn headline(trace: &Trace, terms: Terms) -> String {
             format!("Nothing is missing: {what} unseen {unseen} to {after} {unit}")
         }
         Verdict::Explained | Verdict::Partial => format!(
-            "{}; with {} the error on unseen {unseen} {} from {before} to {after} {unit}{}{}",
+            "{}; with {} the error on unseen {unseen} {} {unit}{}{}",
             shown(),
             if trace.effects.len() == 1 { "it" } else { "them" },
-            if trace.after.holdout_rms < trace.identified.holdout_rms { "falls" } else { "goes" },
+            course(trace.identified.holdout_rms, trace.after.holdout_rms).join(" "),
             match left_out(trace).len() {
                 0 => String::new(),
                 rows => format!(" (the latter without {})", count(rows, "wild row")),
@@ -211,19 +211,19 @@ fn on_the_same_rows(trace: &Trace, Terms { unit, .. }: Terms) -> Option<String> 
         let rows = trace.residuals.iter().filter(|row| all || !lines.contains(&row.line));
         let components = rows.flat_map(|row| of(row).into_iter().take(trace.components));
         let squares: Vec<f64> = components.map(|component| component * component).collect();
-        fine_micrometres((squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt())
+        (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
     };
     let (before, after) = (|row: &RowResidual| row.before, |row: &RowResidual| row.after);
+    let [does, from_to] = course(rms(before, false), rms(after, false));
+    let [does_with_all, from_to_with_all] = course(rms(before, true), rms(after, true));
+    // A verb serves both.
+    let again = if does_with_all == does { String::new() } else { format!("{does_with_all} ") };
     Some(format!(
-        "The error with the effects leaves out line{} {}, that before does not. On the same rows it falls from {} to {} \
-         {unit} without {}, and from {} to {} {unit} with all rows.",
+        "The error with the effects leaves out line{} {}, that before does not. On the same rows it {does} {from_to} \
+         {unit} without {}, and {again}{from_to_with_all} {unit} with all rows.",
         if lines.len() == 1 { "" } else { "s" },
         and(&lines.iter().map(usize::to_string).collect::<Vec<_>>()),
-        rms(before, false),
-        rms(after, false),
-        if lines.len() == 1 { "it" } else { "them" },
-        rms(before, true),
-        rms(after, true)
+        if lines.len() == 1 { "it" } else { "them" }
     ))
 }
 
