@@ -23,6 +23,25 @@
 //! x86-64 with the feature `std` the widest vectors that the machine has (AVX2
 //! with FMA, AVX-512) are found at run time. Nothing is allocated.
 //!
+//! With the feature `rayon`, `batch::parallel` has the same on all cores, for robots that are [`Sync`], as
+//! generated ones and those read at run time are; code that is generic over the robot asks for it:
+//!
+//! ```
+//! # #[cfg(feature = "rayon")] {
+//! use robstiff::nalgebra::{Matrix6, SVector};
+//! use robstiff::{Robot, batch};
+//!
+//! fn softness<const N: usize>(robot: &(impl Robot<N> + Sync), poses: &[SVector<f64, N>]) -> Vec<Matrix6<f64>> {
+//!     let mut compliances = vec![Matrix6::zeros(); poses.len()]; // m/N, rad/Nm, in the base frame
+//!     batch::parallel::compliance(robot, poses, &mut compliances);
+//!     compliances
+//! }
+//!
+//! robstiff::robot!("rv130hsc.yaml");
+//! assert!(softness(&Rv130hsc, &[SVector::from([0.0, -0.5, 0.5, 0.0, 1.2])])[0][(0, 0)] > 0.0);
+//! # }
+//! ```
+//!
 //! Results are those of the single pose but for rounding, 1e-13 of the largest entry
 //! for `f64` coordinates of a few turns. A single pose adds up the angles of parallel
 //! joints, which costs large ones their last places; a batch adds up by the sines of
