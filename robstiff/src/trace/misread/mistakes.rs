@@ -254,7 +254,8 @@ impl fmt::Display for Mistake {
                 match counted {
                     Counted::Backwards => format!("{q} counted the other way"),
                     Counted::From(quarters) => {
-                        format!("{q} less by {:.0} deg than the description counts", 90.0 * quarters)
+                        let which = if quarters < 0.0 { "more" } else { "less" };
+                        format!("{q} {which} by {:.0} deg than the description counts", 90.0 * quarters.abs())
                     }
                     Counted::OnJointBefore(sign) => {
                         let which = if sign < 0.0 { "more" } else { "less" };
