@@ -37,7 +37,7 @@ pub const KINDS: [&str; 23] = [
 ];
 
 /// Those outside it.
-pub const OUTSIDE: [&str; 9] = [
+pub const OUTSIDE: [&str; 11] = [
     "viscous_joint",
     "cable",
     "link_growth",
@@ -47,6 +47,8 @@ pub const OUTSIDE: [&str; 9] = [
     "loose_taper",
     "hardening_bearing",
     "warming_joint",
+    "bent_cell",
+    "load_friction",
 ];
 
 /// What was drawn.
@@ -176,6 +178,8 @@ fn outside(kind: &str, arm: &Description, random: &mut ChaCha8Rng) -> (Hidden, f
         "loose_taper" => (Outside::LooseTaper { gap: 2e-4, knee: 15.0 }, 20.0),
         "hardening_bearing" => (Outside::HardeningBearing { joint, compliance: 3e-7, knee: 150.0 }, 30.0),
         "warming_joint" => (Outside::WarmingJoint { joint, per_kelvin: 0.02 }, 10.0),
+        "bent_cell" => (Outside::BentCell { bend: 0.05 }, 6.0),
+        "load_friction" => (Outside::LoadFriction { share: 0.02 }, 10.0),
         _ => panic!("there is no kind `{kind}`"),
     };
     (Hidden::Outside(outside), most)
@@ -206,5 +210,5 @@ pub fn takes_hours(kind: &str) -> bool {
 /// Whether it needs the loads of a visit to follow each other without the arm
 /// being unloaded between.
 pub fn needs_ramps(kind: &str) -> bool {
-    ["hysteresis", "creep", "viscous_joint"].contains(&kind)
+    ["hysteresis", "creep", "viscous_joint", "load_friction"].contains(&kind)
 }

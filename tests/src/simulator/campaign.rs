@@ -2,13 +2,14 @@
 
 use std::ops::Range;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::{Description, Effect, JointKind};
 
 use super::encoders::{Encoders, MOST_JOINTS, Turns};
+use super::frame::in_frame;
 use super::gear::Moment;
 use super::hidden::Hidden;
 use super::noise::{Stream, direction, normal, tail, wild};
@@ -257,7 +258,8 @@ impl Scenario {
             }
             let read =
                 |exact: [f64; 3], first: usize| std::array::from_fn(|axis| exact[axis] + reading.noise[first + axis]);
-            let cell = rig.cell(&acting, &loaded.tool);
+            let grew = count == 0 || share.abs() >= self.ramp[count - 1].abs();
+            let cell = rig.cell(&acting, grew, &loaded.tool);
             rows.push(Row {
                 pose: visit.pose,
                 visit: if self.shares_unloaded { visit.visit } else { visit.visit * loads + count },
@@ -336,13 +338,6 @@ struct Reading {
     wild: (f64, Vector3<f64>),
     /// Of the encoders behind the gears (rad or m).
     angles: Turns,
-}
-
-/// A wrench seen from a frame with these axes.
-fn in_frame(axes: &Matrix3<f64>, wrench: &[f64; 6]) -> [f64; 6] {
-    let turned = |first: usize| axes.tr_mul(&Vector3::from_column_slice(&wrench[first..first + 3]));
-    let (force, moment) = (turned(0), turned(3));
-    [force.x, force.y, force.z, moment.x, moment.y, moment.z]
 }
 
 /// The arm with every part of every joint's compliance changed by a random

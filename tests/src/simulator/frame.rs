@@ -111,6 +111,13 @@ pub(super) fn work_on(vector: &Vector3<f64>, moment: &Vector3<f64>) -> Vector3<f
     moment - once * second + vector.cross(&once) * third
 }
 
+/// A wrench seen from a frame with these axes.
+pub(super) fn in_frame(axes: &Matrix3<f64>, wrench: &[f64; 6]) -> [f64; 6] {
+    let turned = |first: usize| axes.tr_mul(&Vector3::from_column_slice(&wrench[first..first + 3]));
+    let (force, moment) = (turned(0), turned(3));
+    [force.x, force.y, force.z, moment.x, moment.y, moment.z]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

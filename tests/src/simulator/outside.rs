@@ -89,6 +89,17 @@ pub enum Outside {
         /// (1/K)
         per_kelvin: f64,
     },
+    /// A load cell whose line is bent: of a force `f` that acts it reads `f (1 - bend |f| / 1 kN)`.
+    BentCell {
+        /// What it reads too little of 1 kN, as a share.
+        bend: f64,
+    },
+    /// Friction in the pulley between the load cell and the tool: the cell reads `f (1 + share)`
+    /// while the load grows, `f (1 - share)` while it falls.
+    LoadFriction {
+        /// What holds back, as a share.
+        share: f64,
+    },
 }
 
 impl Outside {
@@ -104,6 +115,8 @@ impl Outside {
             Self::LooseTaper { .. } => "loose_taper",
             Self::HardeningBearing { .. } => "hardening_bearing",
             Self::WarmingJoint { .. } => "warming_joint",
+            Self::BentCell { .. } => "bent_cell",
+            Self::LoadFriction { .. } => "load_friction",
         }
     }
 
@@ -117,6 +130,7 @@ impl Outside {
             Self::Cable { link, .. } | Self::LinkGrowth { link, .. } => format!("link {link}"),
             Self::SoftFoundation { .. } => "base".into(),
             Self::LooseFlange { .. } | Self::LooseTaper { .. } => "tool".into(),
+            Self::BentCell { .. } | Self::LoadFriction { .. } => "rig".into(),
         }
     }
 
@@ -130,6 +144,8 @@ impl Outside {
             Self::LinkGrowth { per_kelvin, .. } | Self::WarmingJoint { per_kelvin, .. } => vec![per_kelvin],
             Self::CrossDependence { cos, sin, .. } => vec![cos, sin],
             Self::LooseFlange { gap, .. } | Self::LooseTaper { gap, .. } => vec![gap],
+            Self::BentCell { bend } => vec![bend],
+            Self::LoadFriction { share } => vec![share],
         }
     }
 }
