@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use robstiff::campaign::{Campaign, Data, Displacements, Positions};
 use robstiff::identify::{
-    Basis, Covariance, Estimate, Identification, NoiseSource, Visibility, identify, off_by_one_factor,
+    Basis, Covariance, Estimate, Identification, NoiseSource, Visibility, identify, misread, off_by_one_factor,
 };
 use robstiff_robots::Description;
 use serde_json::{Value, json};
@@ -53,7 +53,7 @@ fn page(campaign: &Campaign, found: &Identification) -> String {
     };
     page += &compliances(&found.estimates);
     page += &unseen(found);
-    if let Some(said) = off_by_one_factor(campaign, &found.estimates) {
+    for said in warnings(campaign, found) {
         page += &format!("\n{said}\n");
     }
     page += &compound(&found.description);
@@ -81,6 +81,11 @@ fn page(campaign: &Campaign, found: &Identification) -> String {
         page += &format!("line{s} {} {do_not} left out\n", and(&lines));
     }
     page
+}
+
+/// What looks wrong with the files, a sentence each.
+fn warnings(campaign: &Campaign, found: &Identification) -> Vec<String> {
+    off_by_one_factor(campaign, &found.estimates).into_iter().chain(misread(campaign, found)).collect()
 }
 
 /// Whether some visit has one payload and another.
@@ -226,7 +231,7 @@ fn document(campaign: &Campaign, found: &Identification) -> Value {
         "identified": {"rms_um": found.rms.map(|rms| json::number(rms * 1e6))},
         "compliances": numbers(&found.estimates),
         "correlation": json::matrix(&found.correlation),
-        "warnings": off_by_one_factor(campaign, &found.estimates).into_iter().collect::<Value>(),
+        "warnings": warnings(campaign, found),
     })
 }
 

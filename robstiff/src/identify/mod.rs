@@ -17,6 +17,7 @@ pub(crate) mod encoders;
 #[cfg(test)]
 mod held_tests;
 pub(crate) mod holdout;
+pub(crate) mod misread;
 pub(crate) mod noise;
 pub(crate) mod normal;
 mod not_shown;
@@ -51,6 +52,7 @@ pub use baseline::Visibility;
 pub use clamped::without_laws;
 pub use covariance::{Basis, Covariance};
 pub use encoders::EncodersRead;
+pub use misread::misread;
 pub use positions::Prepared as PreparedPositions;
 pub use predict::{PredictedRow, Prediction, predict};
 pub use scale::off_by_one_factor;

@@ -49,6 +49,8 @@ pub(crate) mod held_out;
 pub(crate) mod isolated;
 pub(crate) mod lack_of_fit;
 mod misread;
+#[cfg(test)]
+mod misread_tests;
 pub(crate) mod model;
 #[cfg(test)]
 mod one_line_tests;

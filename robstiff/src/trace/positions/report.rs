@@ -13,6 +13,7 @@ use super::unseen::{undecided, unseen, unseen_rms};
 use super::weight::{self, SAG};
 use super::written::{described, own_effects, without_untold};
 use crate::campaign::{Campaign, PositionRow};
+use crate::identify::misread::{NOISIEST, in_positions};
 use crate::identify::positions::regression::STANDS;
 use crate::identify::positions::{estimated, residuals};
 use crate::identify::problem::rms;
@@ -20,7 +21,6 @@ use crate::identify::{Error, NoiseSource};
 use crate::trace::catalogue::{KINDS, Kind, Variant};
 use crate::trace::found::{EffectParameter, Found};
 use crate::trace::held_out;
-use crate::trace::misread;
 use crate::trace::model::{Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
 use crate::trace::verdict::{self, Besides};
@@ -193,21 +193,25 @@ fn no_noise(campaign: &Campaign, bench: &Bench<'_>, model: &Model) -> Option<(St
     if left <= NOISIEST * apart {
         return None;
     }
-    let (mistakes, may_be) = misread::in_positions(&campaign.robot, bench.prepared.data, left).unwrap_or_else(|| {
-        let may_be = "angles or lengths in another unit, axes of another hand, a reflector that is not where the \
-                      campaign says, or a tracker that moved in between";
-        (Vec::new(), may_be.into())
-    });
+    let misread = in_positions(&campaign.robot, bench.prepared.data, left / 3_f64.sqrt());
+    let may_be = misread.as_ref().map_or_else(
+        || {
+            let unknown = "angles or lengths in another unit, axes of another hand, a reflector that is not where the \
+                           campaign says, or a tracker that moved in between";
+            String::from(unknown)
+        },
+        |misread| {
+            let left = 1e3 * 3_f64.sqrt() * misread.left;
+            format!("{}, for with that undone {left:.1} mm are left", misread.mistakes.join(", or "))
+        },
+    );
     let why = format!(
         "the model leaves {:.0} mm of positions that are {:.0} mm from their middle, which is no noise: {may_be}",
         left * 1e3,
         apart * 1e3
     );
-    Some((why, mistakes))
+    Some((why, misread.map_or_else(Vec::new, |misread| misread.mistakes)))
 }
-
-/// Of how far positions are from their middle, more than this is no noise.
-const NOISIEST: f64 = 0.01;
 
 /// The named effects, the one without which most is left first: each with the error on
 /// unseen poses (m) that it and those before it leave; wild readings come last.

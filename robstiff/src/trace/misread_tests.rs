@@ -7,15 +7,16 @@ use std::vec::Vec;
 
 use robstiff_robots::Convention;
 
-use super::mistakes::of_displacements;
+use super::tests::{names, traced};
+use super::{Trace, Verdict};
 use crate::campaign::made::Plan;
 use crate::campaign::made_positions::Plan as PositionPlan;
 use crate::campaign::{Campaign, Data, Displacements, Frame, Observation, PositionRow};
 use crate::elements::Spring;
 use crate::identify::column::Column;
+use crate::identify::misread::of_displacements;
+use crate::identify::{identify, misread};
 use crate::samples::five_axis;
-use crate::trace::tests::{names, traced};
-use crate::trace::{Trace, Verdict};
 
 /// A campaign on whose rows a mistake is made.
 fn with(seed: u64, mistake: impl Fn(&mut Observation)) -> Campaign {
@@ -89,6 +90,21 @@ fn other_frames_and_another_convention_are_told() {
     rows(&mut campaign).wrench_frame = Frame::Base;
     campaign.robot.convention = Convention::Modified;
     tells(&traced(&campaign), "the DH table in the other convention than the description says");
+}
+
+/// A fit to such files is worth nothing, and identification says so.
+#[test]
+fn identification_tells_of_mistakes() {
+    let told = |campaign: &Campaign| misread(campaign, &identify(campaign).expect("joints are seen"));
+    assert_eq!(told(&with(1, |_| {})), None);
+    let exchanged = told(&with(1, |row| row.displacement.swap(0, 1))).expect("it is told");
+    let said = "The files may say something else than what was measured: dx and dy exchanged; with that undone ";
+    assert!(exchanged.starts_with(said), "{exchanged}");
+    let mut positions = PositionPlan { payloads: vec![0.0, 100.0], ..PositionPlan::new(five_axis(), 1) }.run();
+    assert_eq!(told(&positions), None);
+    let Data::Position(data) = &mut positions.data else { unreachable!("positions") };
+    data.rows.iter_mut().for_each(|row| row.q[3] *= -1.0);
+    assert!(told(&positions).is_some_and(|said| said.contains("q4 counted the other way")));
 }
 
 /// What an arm lacks, in the catalogue or not, is no mistake.

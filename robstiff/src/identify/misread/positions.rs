@@ -1,35 +1,34 @@
 //! Mistakes in files of absolute positions: what they leave where they are undone is what the
 //! description as declared leaves, wherever the robot stands.
 
-use std::string::String;
-use std::vec::Vec;
-
 use nalgebra::Vector3;
 use robstiff_robots::Description;
 
 use super::mistakes::of_positions;
-use super::{FAR_LESS, Left, ROWS, joined, likely, words};
+use super::{FAR_LESS, Left, Misread, ROWS};
 use crate::campaign::Positions;
 use crate::identify::positions::model::Model;
 use crate::identify::positions::registration::Registration;
 
-/// What positions look like of which a model leaves so much a reading (m), each mistake as the
-/// files have it; and all of them in a sentence, with what it leaves where it is undone.
-pub fn in_positions(robot: &Description, data: &Positions, left: f64) -> Option<(Vec<String>, String)> {
+/// Of how far positions are from their middle, more than this is no noise, nor anything that an
+/// arm is off by.
+pub const NOISIEST: f64 = 0.01;
+
+/// What the files of positions may have been written with of which a model leaves so much (m, the
+/// root mean square of one axis), more than any arm is off by.
+pub fn in_positions(robot: &Description, data: &Positions, left: f64) -> Option<Misread> {
     let mut some = data.clone();
-    let step = data.rows.len().div_ceil(ROWS);
-    some.rows = data.rows.iter().step_by(step.max(1)).cloned().collect();
-    let filed = Left { squares: left * left * some.rows.len() as f64, ..spread(&some) };
+    let step = data.rows.len().div_ceil(ROWS).max(1);
+    some.rows = data.rows.iter().step_by(step).cloned().collect();
+    let filed = Left { squares: 3.0 * left * left * some.rows.len() as f64, ..spread(&some) };
+    if filed.share() <= NOISIEST * NOISIEST {
+        return None;
+    }
     let undone = |mistake: &super::Mistake| {
         let (robot, data) = mistake.undone_in_positions(robot, &some);
         left_by(&robot, &data)
     };
-    let likely = likely(of_positions(robot), undone, FAR_LESS * filed.share());
-    let (least, _) = likely.first()?;
-    let words = words(&likely);
-    let millimetres = 1e3 * (least.squares / least.rows as f64).sqrt();
-    let sentence = std::format!("{}, for with that undone it leaves {millimetres:.1} mm", joined(&words));
-    Some((words, sentence))
+    Misread::likely(of_positions(robot), undone, FAR_LESS * filed.share())
 }
 
 /// How far positions are apart, nothing of which is accounted for.
