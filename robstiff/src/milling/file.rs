@@ -116,7 +116,9 @@ impl CutFile {
     pub fn parse(file: &str, text: &str, folder: &Path) -> Result<Self, ReadError> {
         let document = Document::parse(file, text).map_err(ReadError::Invalid)?;
         let said = said(&document, folder);
-        let mut doubts: Vec<String> = bare(&document).iter().map(|said| format!("{file}: {said}")).collect();
+        // In a document of its own, so that what is wrong is reported once.
+        let bare = Document::parse(file, text).map(|document| bare(&document)).map_err(ReadError::Invalid)?;
+        let mut doubts: Vec<String> = bare.iter().map(|said| format!("{file}: {said}")).collect();
         let (name, said) = document.finish(said).map_err(ReadError::Invalid)?;
         let record = match said {
             Said::Model(cut, source) => {
@@ -137,9 +139,8 @@ impl CutFile {
 
 /// What has no unit: in SI a depth of 2 is 2 m.
 fn bare(document: &Document) -> Vec<String> {
-    let root = document.root();
-    let Some(map) = root.is_map().then(|| root.any_map("")).flatten() else { return Vec::new() };
-    let tool = map.get("tool").filter(Node::is_map).and_then(|node| node.any_map(""));
+    let Some(map) = map_of(document.root()) else { return Vec::new() };
+    let tool = map.get("tool").and_then(map_of);
     let fields = [
         (tool.as_ref(), "diameter", "m", "mm"),
         (Some(&map), "width", "m", "mm"),
@@ -154,13 +155,25 @@ fn bare(document: &Document) -> Vec<String> {
     let mut asked: Vec<String> =
         fields.into_iter().filter(bare).map(|(_, field, si, unit)| taken_in(field, si, unit)).collect();
     // Zero is the same in every unit.
-    let stands_out =
-        |item: &Node<'_>| item.is_number() && item.quantity(Dimension::Length).is_some_and(|out| out != 0.0);
+    let any = |nodes: &[Node<'_>]| {
+        nodes.iter().any(|node| node.is_number() && node.quantity(Dimension::Number).is_some_and(|value| value != 0.0))
+    };
     let runout = tool.and_then(|tool| tool.get("runout")).filter(Node::is_sequence);
-    if runout.and_then(|node| node.sequence()).is_some_and(|items| items.iter().any(stands_out)) {
+    if runout.and_then(|node| node.sequence()).is_some_and(|items| any(&items)) {
         asked.push(taken_in("runout", "m", "um"));
     }
+    let own = map.get("coefficients").and_then(map_of);
+    let along: Vec<Map<'_>> = own.iter().flat_map(Map::fields).filter_map(|(_, node)| map_of(node)).collect();
+    for (field, si, unit) in [("cutting", "Pa", "N/mm2"), ("edge", "N/m", "N/mm")] {
+        if any(&along.iter().filter_map(|map| map.get(field)).collect::<Vec<_>>()) {
+            asked.push(taken_in(field, si, unit));
+        }
+    }
     asked
+}
+
+fn map_of(node: Node<'_>) -> Option<Map<'_>> {
+    node.is_map().then(|| node.any_map("")).flatten()
 }
 
 /// Asks whether a field without a unit is in another than that of SI.

@@ -85,6 +85,22 @@ fn runout_without_a_unit_is_asked_about() {
     for stated in ["0, 12 um, 5 um", "0, 0, 0"] {
         assert!(warned(stated).is_empty(), "{stated}");
     }
+    let error = read(&POCKET.replace("helix: 30 deg", "runout: [0, .inf, 0]")).unwrap_err().to_string();
+    assert_eq!(error.matches("error: ").count(), 1, "{error}");
+}
+
+/// In Pa those of a material push with next to nothing.
+#[test]
+fn coefficients_without_a_unit_are_asked_about() {
+    let warned = |edge: &str| {
+        let one = format!("{{cutting: 631, edge: {edge}}}");
+        let own = format!("coefficients: {{tangential: {one}, radial: {one}, axial: {one}}}");
+        read(&POCKET.replace("material: al6082-t6", &own)).unwrap().warnings
+    };
+    let cutting = "cut.yaml: `cutting` has no unit and is taken in Pa: is it in N/mm2?";
+    assert_eq!(warned("13 N/mm"), [cutting]);
+    assert_eq!(warned("0"), [cutting]);
+    assert_eq!(warned("13"), [cutting, "cut.yaml: `edge` has no unit and is taken in N/m: is it in N/mm?"]);
 }
 
 #[test]
