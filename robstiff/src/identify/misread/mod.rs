@@ -22,7 +22,7 @@ use self::mistakes::Mistake;
 #[cfg(test)]
 pub use self::mistakes::of_displacements;
 pub use self::positions::{NOISIEST, in_positions};
-use super::Identification;
+use super::{Identification, NoiseSource};
 use crate::campaign::{Campaign, Data};
 use crate::words::micrometres;
 
@@ -39,8 +39,8 @@ const MOST_TOLD: usize = 3;
 /// Rows that are looked at: more say no more of a mistake.
 const ROWS: usize = 1000;
 
-/// A fit that leaves no more than so many times the noise of a displacement or a position is not
-/// one to files that say something else.
+/// A fit that leaves no more than so many times the noise, where that is known otherwise, is not one
+/// to files that say something else.
 const NOISE: f64 = 3.0;
 
 /// What files may have been written with.
@@ -55,7 +55,8 @@ pub struct Misread {
 /// was measured: that with one mistake undone far less is left than `found` leaves.
 pub fn misread(campaign: &Campaign, found: &Identification) -> Option<String> {
     let rms = found.rms?;
-    if found.noise.is_some_and(|(noise, _)| rms <= NOISE * noise) {
+    let is_known = |source: NoiseSource| source != NoiseSource::Residuals;
+    if found.noise.is_some_and(|(noise, source)| is_known(source) && rms <= NOISE * noise) {
         return None;
     }
     let misread = match &campaign.data {
