@@ -30,12 +30,16 @@ pub fn unless(bench: &Bench<'_>, outcome: Outcome) -> Result<Outcome, String> {
     // A wave can make one angle of another, and takes numbers for it.
     let part = if names_wave(bench, &outcome) { ALIKE } else { FAR_LESS };
     let Some(misread) = in_displacements(bench.robot(), data, is_kept, left, part) else { return Ok(outcome) };
-    let why = std::format!(
+    let mut why = std::format!(
         "the files may say something else than what was measured: {} by the joints alone, and as the files are {} by the \
          best model",
         misread.said(),
         micrometres(left)
     );
+    if outcome.verdict == Verdict::Insufficient {
+        // That readings do not follow the loads is true as well.
+        why = std::format!("{}; {why}", outcome.why);
+    }
     let mut found = Outcome::nothing(bench.fit(&[])?, Verdict::Insufficient, why);
     found.looks_like = misread.mistakes;
     Ok(found.after(outcome))

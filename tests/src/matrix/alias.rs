@@ -158,8 +158,11 @@ fn forms(name: &str, arm: &Description) -> Vec<Vec<Hidden>> {
         "load_cell_bias" => {
             [Mount::Ground, Mount::Tool].map(|mount| axes(&|force| Hidden::LoadCellBias { force, mount }, 1.0)).into()
         }
+        // Of one axis against another: what is common to all is what the joints could do.
         "load_cell_scale" => {
-            [Mount::Ground, Mount::Tool].map(|mount| axes(&|scale| Hidden::LoadCellScale { scale, mount }, 1e-3)).into()
+            let unequal = [[1e-3, -1e-3, 0.0], [0.0, 1e-3, -1e-3]];
+            let forms = |mount| unequal.map(|scale| Hidden::LoadCellScale { scale, mount }).into();
+            [Mount::Ground, Mount::Tool].map(forms).into()
         }
         "lever_arm" => vec![axes(&Hidden::LeverArm, 1e-3)],
         "reflector_offset" => vec![axes(&Hidden::ReflectorOffset, 1e-3)],
