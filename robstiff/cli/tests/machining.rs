@@ -226,12 +226,6 @@ fn the_three_ways_to_a_deflection_agree() {
     assert!((value / viewed - 1.0).abs() < 1e-5, "{text} {viewed}");
 }
 
-#[test]
-fn a_workpiece_larger_than_the_map_is_told() {
-    let said = succeed(&["map", "kuka-kr270-r2700", &file("table.yaml"), "--place", "4000 x 300 x 0 mm"]);
-    assert!(said.contains("A workpiece of 4000 x 300 x 0 mm is larger than the map, 1200 x 1200 x 0 mm."), "{said}");
-}
-
 fn stability(folder: &Path, backlash: Option<(&str, &str)>) -> serde_json::Value {
     stability_of(folder, &file("roughing.yaml"), backlash)
 }
