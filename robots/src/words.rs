@@ -5,6 +5,15 @@ pub fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
+/// Items as a sentence lists them: `a, b and c`.
+pub fn and(items: &[String]) -> String {
+    match items {
+        [] => String::new(),
+        [one] => one.clone(),
+        [start @ .., last] => format!("{} and {last}", start.join(", ")),
+    }
+}
+
 /// A number that is above another, with the decimals that show it.
 pub(crate) fn above(number: f64, other: f64) -> String {
     let rounded = (0..12).map(|decimals| format!("{number:.decimals$}"));

@@ -3,7 +3,7 @@
 use std::format;
 use std::string::String;
 
-pub use robstiff_robots::words::count;
+pub use robstiff_robots::words::{and, count};
 
 /// A share in percent.
 pub fn percent(share: f64) -> String {

@@ -4,7 +4,7 @@ pub mod words;
 
 use std::fmt;
 
-pub use robstiff_robots::words::count;
+pub use robstiff_robots::words::{and, count};
 
 /// A number with so many significant digits, as short as it can be said.
 pub fn significant(value: f64, digits: usize) -> String {
@@ -143,15 +143,6 @@ pub fn course(before: f64, after: f64) -> [String; 2] {
     }
     let does = if after < before { "falls" } else { "rises" };
     [does.to_owned(), format!("from {from} to {to}")]
-}
-
-/// Items as a sentence lists them: `a, b and c`.
-pub fn and(items: &[String]) -> String {
-    match items {
-        [] => String::new(),
-        [one] => one.clone(),
-        [start @ .., last] => format!("{} and {last}", start.join(", ")),
-    }
 }
 
 /// A text as a field of a CSV file.

@@ -4,6 +4,8 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
+use crate::words::and;
+
 /// For each axis, which component of the file is along it, and its sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axes([(usize, f64); 3]);
@@ -44,7 +46,10 @@ impl Axes {
         let moved: Vec<usize> = (0..3).filter(|&axis| self.0[axis].0 != axis).collect();
         let reversed: Vec<usize> = (0..3).filter(|&axis| self.0[axis].1 < 0.0).collect();
         match (&moved[..], &reversed[..]) {
-            ([], reversed) => format!("{} with the other sign", listed(reversed.iter().map(|&k| column(k)))),
+            ([], reversed) => {
+                let columns: Vec<String> = reversed.iter().map(|&axis| column(axis)).collect();
+                format!("{} with the other sign", and(&columns))
+            }
             (&[one, other], []) => format!("{} and {} exchanged", column(one), column(other)),
             _ => {
                 let stands = |place: usize| {
@@ -52,16 +57,8 @@ impl Axes {
                     let axis = (0..3).find(in_it).unwrap_or(place);
                     format!("{}{}", if self.0[axis].1 < 0.0 { "-" } else { "" }, column(axis))
                 };
-                format!("{} where {} should be", listed([0, 1, 2].map(stands)), listed([0, 1, 2].map(column)))
+                format!("{} where {} should be", and(&[0, 1, 2].map(stands)), and(&[0, 1, 2].map(column)))
             }
         }
-    }
-}
-
-fn listed(names: impl IntoIterator<Item = String>) -> String {
-    let mut names: Vec<String> = names.into_iter().collect();
-    match names.pop() {
-        Some(last) if !names.is_empty() => format!("{} and {last}", names.join(", ")),
-        last => last.unwrap_or_default(),
     }
 }

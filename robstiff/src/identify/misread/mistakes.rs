@@ -62,17 +62,14 @@ pub enum Counted {
     In(Unit),
 }
 
-/// Units that one component of a vector may be in where the others are in that of their header.
-const OF_FORCES: [Unit; 6] = [
+/// Units that one component of a vector may be in where the others are in that of their header:
+/// of forces, of lengths, and of either.
+const OF_FORCES: [Unit; 2] = [
     Unit { name: "kgf where the header has N", factor: 9.80665 },
     Unit { name: "lbf where the header has N", factor: 4.448_221_615_260_5 },
-    Unit { name: "a unit 10 times that of the header", factor: 10.0 },
-    Unit { name: "a unit a tenth of that of the header", factor: 0.1 },
-    Unit { name: "a unit 1000 times that of the header", factor: 1e3 },
-    Unit { name: "a unit a thousandth of that of the header", factor: 1e-3 },
 ];
-const OF_LENGTHS: [Unit; 5] = [
-    Unit { name: "inches where the header has mm, or mils where it has um", factor: 25.4 },
+const OF_LENGTHS: [Unit; 1] = [Unit { name: "inches where the header has mm, or mils where it has um", factor: 25.4 }];
+const OF_EITHER: [Unit; 4] = [
     Unit { name: "a unit 10 times that of the header", factor: 10.0 },
     Unit { name: "a unit a tenth of that of the header", factor: 0.1 },
     Unit { name: "a unit 1000 times that of the header", factor: 1e3 },
@@ -95,10 +92,8 @@ pub fn of_displacements(robot: &Description) -> Vec<Mistake> {
         all.push(Mistake::Frame(vector));
     }
     all.extend(Axes::others().map(Mistake::AllAxes));
-    for axis in 0..3 {
-        all.extend(OF_FORCES.map(|unit| Mistake::Unit(Vector::Force, axis, unit)));
-        all.extend(OF_LENGTHS.map(|unit| Mistake::Unit(Vector::Displacement, axis, unit)));
-    }
+    all.extend(of_units(Vector::Force, &OF_FORCES));
+    all.extend(of_units(Vector::Displacement, &OF_LENGTHS));
     all
 }
 
@@ -106,8 +101,14 @@ pub fn of_displacements(robot: &Description) -> Vec<Mistake> {
 pub fn of_positions(robot: &Description) -> Vec<Mistake> {
     let mut all = of_robot(robot);
     all.push(Mistake::OtherHand);
-    all.extend((0..3).flat_map(|axis| OF_LENGTHS.map(|unit| Mistake::Unit(Vector::Position, axis, unit))));
+    all.extend(of_units(Vector::Position, &OF_LENGTHS));
     all
+}
+
+/// One component of a vector in one of its own units, or of those of either.
+fn of_units(vector: Vector, own: &'static [Unit]) -> impl Iterator<Item = Mistake> {
+    let units = own.iter().chain(&OF_EITHER);
+    units.flat_map(move |&unit| (0..3).map(move |axis| Mistake::Unit(vector, axis, unit)))
 }
 
 /// What may be the matter with the coordinates of joints, and with the robot's own description.
