@@ -91,6 +91,44 @@ fn what_depends_on_the_order_of_loads_is_named() {
     assert_named("creep@rig", 9400, |axes| axes.hidden = vec![Hidden::Creep { share: 0.05, onset: 20.0 }]);
 }
 
+/// What five of six axes do has their names, not that of what all would share.
+#[test]
+fn lag_of_all_axes_but_one_is_no_creep() {
+    let right = (0..RUNS).filter(|&run| {
+        let (mut axes, declared) = axes(2 * run + 1, 10_100);
+        let lag = |joint: usize| Hidden::Hysteresis {
+            joint,
+            operators: vec![(if joint > 3 { 40.0 } else { 200.0 }, 0.3 * axes.truth.joints[joint - 1].compliance())],
+        };
+        axes.hidden = (1..=5).map(lag).collect();
+        let trace = traced(&axes, &declared);
+        let told = Told::of(&trace);
+        let mut names: Vec<&str> = told.names.iter().map(|one| one.name.as_str()).collect();
+        println!("{run}: {} {names:?}", trace.verdict);
+        names.sort_unstable();
+        let each = (1..=5).map(|joint| format!("hysteresis@joint {joint}"));
+        trace.verdict == Verdict::Explained && each.eq(names)
+    });
+    let (count, least) = (right.count(), fewest(RUNS as usize, 0.9, 1e-3));
+    assert!(count >= least, "{count} of {RUNS}, not {least}");
+}
+
+/// Where the unloaded readings of several axes are off, that of one more is as likely as a bias
+/// or a curve that stands in for it.
+#[test]
+fn unloaded_readings_of_several_axes_are_off() {
+    for run in 0..RUNS {
+        let (mut axes, declared) = axes(2 * run + 1, 10_200);
+        axes.slips = (0..5).map(|axis| (20 * axis, [4e-5, -3e-5, 2e-5, -1.5e-5, 1e-5][axis])).collect();
+        let trace = traced(&axes, &declared);
+        let names: Vec<String> = trace.effects.iter().map(|named| named.effect.to_string()).collect();
+        println!("{run}: {} {names:?}", trace.verdict);
+        let slips = names.iter().filter(|name| *name == "base_slip@base").count();
+        assert!(slips >= 2, "{names:?}");
+        assert!(trace.verdict != Verdict::Explained || slips == names.len(), "{names:?}");
+    }
+}
+
 #[test]
 fn faults_of_the_rig_are_named_and_not_written() {
     let named = [

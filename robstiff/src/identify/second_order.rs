@@ -44,7 +44,8 @@ struct Beyond {
     moved: Vector6<f64>,
     /// Of each joint's turn (rad or m).
     turns: Vec<f64>,
-    /// Its share of the linear displacement.
+    /// Its share of the linear displacement of the marker, both in m: with rotations, in rad,
+    /// it would be another one in other units.
     share: f64,
 }
 
@@ -57,7 +58,8 @@ fn of_row(row: &Sample, compliance: &[f64]) -> Beyond {
     let [shift, turn]: [Vector3<f64>; 2] = [0, 3].map(|from| linear.fixed_rows::<3>(from).into_owned());
     let linear = stack(&(shift + turn.cross(&row.marker)), &turn);
     let moved = displacement_at(&motion, &row.marker) - linear;
-    let share = if moved == Vector6::zeros() { 0.0 } else { moved.norm() / linear.norm() };
+    let length = |of: &Vector6<f64>| of.fixed_rows::<3>(0).norm();
+    let share = if length(&moved) == 0.0 { 0.0 } else { length(&moved) / length(&linear) };
     Beyond { moved, turns: turns.iter().zip(first).map(|(turn, first)| turn - first).collect(), share }
 }
 

@@ -31,6 +31,12 @@ pub fn in_positions(robot: &Description, data: &Positions, left: f64) -> Option<
     Misread::likely(of_positions(robot), undone, FAR_LESS * filed.share())
 }
 
+/// How far positions are from their middle (m), the root mean square.
+pub fn apart(data: &Positions) -> f64 {
+    let all = spread(data);
+    (all.squares / all.rows as f64).sqrt()
+}
+
 /// How far positions are apart, nothing of which is accounted for.
 fn spread(data: &Positions) -> Left {
     let rows = data.rows.len();

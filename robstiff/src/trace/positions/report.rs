@@ -13,7 +13,7 @@ use super::unseen::{undecided, unseen, unseen_rms};
 use super::weight::{self, SAG};
 use super::written::{described, own_effects, without_untold};
 use crate::campaign::{Campaign, PositionRow};
-use crate::identify::misread::{NOISIEST, in_positions};
+use crate::identify::misread::{NOISIEST, apart, in_positions};
 use crate::identify::positions::regression::STANDS;
 use crate::identify::positions::{estimated, residuals};
 use crate::identify::problem::rms;
@@ -185,10 +185,7 @@ fn pose_errors(bench: &Bench<'_>, left: [&DVector<f64>; 2]) -> Vec<PoseError> {
 /// Why what a model leaves is no noise, if so: nothing reads as badly as that. With it, what
 /// mistakes the files may have been written with, where one accounts for it.
 fn no_noise(campaign: &Campaign, bench: &Bench<'_>, model: &Model) -> Option<(String, Vec<String>)> {
-    let rows = &bench.prepared.data.rows;
-    let all = |of: &dyn Fn(&PositionRow) -> f64| (rows.iter().map(of).sum::<f64>() / rows.len() as f64).sqrt();
-    let middle = rows.iter().map(|row| Vector3::from(row.position)).sum::<Vector3<f64>>() / rows.len() as f64;
-    let apart = all(&|row| (Vector3::from(row.position) - middle).norm_squared());
+    let apart = apart(bench.prepared.data);
     let left = (model.solved.fit.rss * 3.0 / model.solved.problem.total.rows as f64).sqrt();
     if left <= NOISIEST * apart {
         return None;
