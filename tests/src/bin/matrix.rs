@@ -15,7 +15,7 @@ use robstiff_tests::matrix::{Case, Group, POSES, Record, groups, run_keeping, ta
 #[command(name = "matrix")]
 struct Arguments {
     /// How many campaigns, shared out among the groups
-    #[arg(long, default_value_t = 480)]
+    #[arg(long, default_value_t = 496)]
     count: usize,
     /// Seed of all of them
     #[arg(long, default_value_t = 1)]

@@ -71,7 +71,7 @@ impl Group {
         if matches!(self, Self::Outside(_)) { IS_OUTSIDE } else { MATTERS }
     }
 
-    /// How many of a matrix of 480 campaigns are of this group.
+    /// How many of a matrix of 496 campaigns are of this group.
     pub fn share(self) -> usize {
         match self {
             Self::Nothing => 80,
@@ -347,7 +347,7 @@ mod tests {
                 assert!(plan(one) != plan(other) && one.seed != other.seed);
             }
         }
-        assert_eq!(groups().iter().map(|group| group.share()).sum::<usize>(), 480);
+        assert_eq!(groups().iter().map(|group| group.share()).sum::<usize>(), 496);
     }
 
     #[test]

@@ -37,7 +37,7 @@ pub const KINDS: [&str; 23] = [
 ];
 
 /// Those outside it.
-pub const OUTSIDE: [&str; 11] = [
+pub const OUTSIDE: [&str; 13] = [
     "viscous_joint",
     "cable",
     "link_growth",
@@ -47,6 +47,8 @@ pub const OUTSIDE: [&str; 11] = [
     "loose_taper",
     "hardening_bearing",
     "warming_joint",
+    "one_sided_joint",
+    "gain_of_angle",
     "bent_cell",
     "load_friction",
 ];
@@ -178,6 +180,8 @@ fn outside(kind: &str, arm: &Description, random: &mut ChaCha8Rng) -> (Hidden, f
         "loose_taper" => (Outside::LooseTaper { gap: 2e-4, knee: 15.0 }, 20.0),
         "hardening_bearing" => (Outside::HardeningBearing { joint, compliance: 3e-7, knee: 150.0 }, 30.0),
         "warming_joint" => (Outside::WarmingJoint { joint, per_kelvin: 0.02 }, 10.0),
+        "one_sided_joint" => (Outside::OneSided { joint, added: 0.2 * h }, 4.0),
+        "gain_of_angle" => (Outside::GainOfAngle { joint: 1, gain: 0.05 }, 3.0),
         "bent_cell" => (Outside::BentCell { bend: 0.05 }, 6.0),
         "load_friction" => (Outside::LoadFriction { share: 0.02 }, 10.0),
         _ => panic!("there is no kind `{kind}`"),

@@ -72,6 +72,8 @@ impl Arm {
                 Outside::ViscousJoint { joint, .. }
                 | Outside::HardeningBearing { joint, .. }
                 | Outside::WarmingJoint { joint, .. }
+                | Outside::OneSided { joint, .. }
+                | Outside::GainOfAngle { joint, .. }
                 | Outside::Cable { link: joint, .. }
                 | Outside::LinkGrowth { link: joint, .. },
             ) => (1..=joints).contains(joint),
@@ -338,12 +340,7 @@ impl Arm {
                     let plays = operators.iter().map(|&(radius, weight)| Gear::Play { weight, radius });
                     law.gears.extend(plays.map(|play| (joint - 1, play)));
                 }
-                &Hidden::Outside(Outside::ViscousJoint { joint, compliance, constant }) => {
-                    law.gears.push((joint - 1, Gear::Lag { compliance, constant }));
-                }
-                &Hidden::Outside(Outside::WarmingJoint { joint, per_kelvin }) => {
-                    law.gears.push((joint - 1, Gear::Warming { per_kelvin: per_kelvin * plain[joint - 1] }));
-                }
+                Hidden::Outside(outside) => law.gears.extend(outside.gear(&plain)),
                 _ => {}
             }
         }

@@ -259,7 +259,7 @@ impl Scenario {
             let read =
                 |exact: [f64; 3], first: usize| std::array::from_fn(|axis| exact[axis] + reading.noise[first + axis]);
             let grew = count == 0 || share.abs() >= self.ramp[count - 1].abs();
-            let cell = rig.cell(&acting, grew, &loaded.tool);
+            let cell = rig.cell(&acting, grew, (&visit.q, &loaded.tool));
             rows.push(Row {
                 pose: visit.pose,
                 visit: if self.shares_unloaded { visit.visit } else { visit.visit * loads + count },

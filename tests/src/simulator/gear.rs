@@ -18,6 +18,8 @@ pub(super) enum Gear {
     Lag { compliance: f64, constant: f64 },
     /// The controller's, which holds the motor like a spring of this compliance.
     Droop { compliance: f64 },
+    /// `added` more under a torque above zero than below.
+    OneSided { added: f64 },
     /// Compliance per kelvin above the temperature of the beginning.
     Warming { per_kelvin: f64 },
 }
@@ -78,6 +80,7 @@ impl JointLaw {
                 Gear::Play { weight, .. } => weight * gear.state(torque, kept, moment),
                 Gear::Lag { .. } => gear.state(torque, kept, moment),
                 Gear::Droop { compliance } => compliance * torque,
+                Gear::OneSided { added } => added * torque.max(0.0),
                 Gear::Warming { per_kelvin } => per_kelvin * moment.warmer * torque,
             };
         }
@@ -110,6 +113,7 @@ impl JointLaw {
             Gear::Softening { added, knee } => added * knee * knee * (1_f64.hypot(torques[joint] / knee) - 1.0),
             Gear::LostMotion { gap, knee } => 0.5 * gap * (torques[joint].hypot(knee) - knee),
             Gear::Droop { compliance } => 0.5 * compliance * torques[joint] * torques[joint],
+            Gear::OneSided { added } => 0.5 * added * torques[joint].max(0.0).powi(2),
             Gear::Play { .. } | Gear::Lag { .. } | Gear::Warming { .. } => 0.0,
         };
         straight + coupled + self.gears.iter().map(of_gear).sum::<f64>()
@@ -126,7 +130,11 @@ impl Gear {
                 let end = compliance * torque;
                 end + (kept - end) * (-moment.held / constant).exp()
             }
-            Self::Softening { .. } | Self::LostMotion { .. } | Self::Droop { .. } | Self::Warming { .. } => kept,
+            Self::Softening { .. }
+            | Self::LostMotion { .. }
+            | Self::Droop { .. }
+            | Self::OneSided { .. }
+            | Self::Warming { .. } => kept,
         }
     }
 }
@@ -151,6 +159,13 @@ mod tests {
             out[0]
         };
         path.iter().map(step).collect()
+    }
+
+    #[test]
+    fn flanks_that_differ_give_way_otherwise_one_way() {
+        let gear = Gear::OneSided { added: 0.5 };
+        assert_eq!(along(gear, &[64.0, -64.0, 128.0], 0.0), [32.0, 0.0, 64.0]);
+        assert_eq!([64.0, -64.0].map(|torque| law(gear).complementary_energy(&[torque])), [1024.0, 0.0]);
     }
 
     #[test]

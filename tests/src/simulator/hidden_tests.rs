@@ -276,6 +276,8 @@ fn all() -> Vec<Hidden> {
         Outside::LooseTaper { gap: 2e-4, knee: 50.0 },
         Outside::HardeningBearing { joint: 2, compliance: 2e-7, knee: 300.0 },
         Outside::WarmingJoint { joint: 2, per_kelvin: 0.05 },
+        Outside::OneSided { joint: 2, added: 1e-7 },
+        Outside::GainOfAngle { joint: 1, gain: 0.1 },
         Outside::BentCell { bend: 0.1 },
         Outside::LoadFriction { share: 0.05 },
     ];

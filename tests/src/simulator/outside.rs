@@ -1,6 +1,8 @@
 //! Things that robots and rigs do and no catalogue of effects has: tracing
 //! must not give them another's name as the whole truth.
 
+use super::gear::Gear;
+
 /// Something outside the catalogue. Joints and links are counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outside {
@@ -89,6 +91,20 @@ pub enum Outside {
         /// (1/K)
         per_kelvin: f64,
     },
+    /// Flanks of a gear that differ: the joint turns by `added max(tau, 0)` besides.
+    OneSided {
+        /// The joint.
+        joint: usize,
+        /// (rad/Nm)
+        added: f64,
+    },
+    /// A rope that is led round the arm: the cell reads `f (1 + gain q)` of a force `f` that acts.
+    GainOfAngle {
+        /// The joint whose coordinate `q` is.
+        joint: usize,
+        /// (1/rad)
+        gain: f64,
+    },
     /// A load cell whose line is bent: of a force `f` that acts it reads `f (1 - bend |f| / 1 kN)`.
     BentCell {
         /// What it reads too little of 1 kN, as a share.
@@ -115,6 +131,8 @@ impl Outside {
             Self::LooseTaper { .. } => "loose_taper",
             Self::HardeningBearing { .. } => "hardening_bearing",
             Self::WarmingJoint { .. } => "warming_joint",
+            Self::OneSided { .. } => "one_sided_joint",
+            Self::GainOfAngle { .. } => "gain_of_angle",
             Self::BentCell { .. } => "bent_cell",
             Self::LoadFriction { .. } => "load_friction",
         }
@@ -125,13 +143,28 @@ impl Outside {
         match self {
             Self::ViscousJoint { joint, .. }
             | Self::HardeningBearing { joint, .. }
-            | Self::WarmingJoint { joint, .. } => format!("joint {joint}"),
+            | Self::WarmingJoint { joint, .. }
+            | Self::OneSided { joint, .. } => format!("joint {joint}"),
+            Self::GainOfAngle { joint, .. } => format!("rig by {joint}"),
             Self::CrossDependence { joint, of, .. } => format!("joint {joint} by {of}"),
             Self::Cable { link, .. } | Self::LinkGrowth { link, .. } => format!("link {link}"),
             Self::SoftFoundation { .. } => "base".into(),
             Self::LooseFlange { .. } | Self::LooseTaper { .. } => "tool".into(),
             Self::BentCell { .. } | Self::LoadFriction { .. } => "rig".into(),
         }
+    }
+
+    /// Of which joint, from 0, it is a gear, where joints are so compliant.
+    pub(super) fn gear(&self, compliances: &[f64]) -> Option<(usize, Gear)> {
+        let (joint, gear) = match *self {
+            Self::ViscousJoint { joint, compliance, constant } => (joint, Gear::Lag { compliance, constant }),
+            Self::WarmingJoint { joint, per_kelvin } => {
+                (joint, Gear::Warming { per_kelvin: per_kelvin * compliances[joint - 1] })
+            }
+            Self::OneSided { joint, added } => (joint, Gear::OneSided { added }),
+            _ => return None,
+        };
+        Some((joint - 1, gear))
     }
 
     /// The numbers it is proportional to.
@@ -144,6 +177,8 @@ impl Outside {
             Self::LinkGrowth { per_kelvin, .. } | Self::WarmingJoint { per_kelvin, .. } => vec![per_kelvin],
             Self::CrossDependence { cos, sin, .. } => vec![cos, sin],
             Self::LooseFlange { gap, .. } | Self::LooseTaper { gap, .. } => vec![gap],
+            Self::OneSided { added, .. } => vec![added],
+            Self::GainOfAngle { gain, .. } => vec![gain],
             Self::BentCell { bend } => vec![bend],
             Self::LoadFriction { share } => vec![share],
         }

@@ -136,23 +136,25 @@ impl<'a> Rig<'a> {
         }
     }
 
-    /// What the load cell reads of a force of a size (N), as a share, along its axes.
-    fn of_load(&self, size: f64, grew: bool) -> f64 {
+    /// What the load cell reads of a force of a size (N) at joint coordinates, as a share, along
+    /// its axes.
+    fn of_load(&self, size: f64, grew: bool, q: &[f64]) -> f64 {
         let way = if grew { 1.0 } else { -1.0 };
         let of = |hidden: &Hidden| match hidden {
             Hidden::Outside(Outside::BentCell { bend }) => 1.0 - bend * size / 1000.0,
             Hidden::Outside(Outside::LoadFriction { share }) => 1.0 + way * share,
+            Hidden::Outside(Outside::GainOfAngle { joint, gain }) => 1.0 + gain * q[joint - 1],
             _ => 1.0,
         };
         self.hidden.iter().map(of).product()
     }
 
     /// What the load cell says of a wrench, in the base frame, that grew to what
-    /// it is or fell, on an arm whose tool has these axes.
-    pub fn cell(&self, wrench: &[f64; 6], grew: bool, tool: &Matrix3<f64>) -> [f64; 6] {
+    /// it is or fell, on an arm at joint coordinates at which its tool has these axes.
+    pub fn cell(&self, wrench: &[f64; 6], grew: bool, (q, tool): (&[f64], &Matrix3<f64>)) -> [f64; 6] {
         let mut force = Vector3::from_column_slice(&wrench[..3]);
         let mut moment = Vector3::from_column_slice(&wrench[3..]);
-        let of_load = self.of_load(force.norm(), grew);
+        let of_load = self.of_load(force.norm(), grew, q);
         (force, moment) = (force * of_load, moment * of_load);
         for hidden in self.hidden {
             let (Hidden::LoadCellMisalignment { mount, .. }

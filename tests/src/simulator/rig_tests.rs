@@ -1,7 +1,7 @@
 //! What the rig does to readings, each fault against what it is to first
 //! order, written out here.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector6};
 
 use super::hidden_tests::{assert_near, force, rigid, rows, small, vector};
 use super::{Arm, Follows, Hidden, Mount, Outside, Row, Scenario, six_axis};
@@ -119,6 +119,15 @@ fn slips_are_there_from_their_moment_on() {
         assert_near(vector(other.displacement), posed.tool() * vector(shift) * after, 1e-15);
     }
     assert!(slip.rows[0].displacement == [0.0; 3] && slip.rows.last().unwrap().displacement != [0.0; 3]);
+}
+
+#[test]
+fn a_cell_reads_otherwise_at_other_angles() {
+    let gain = Hidden::Outside(Outside::GainOfAngle { joint: 2, gain: 0.1 });
+    for row in &small(six_axis(), gain).run().rows {
+        let (read, acting) = (Vector6::from(row.wrench), Vector6::from(row.acting));
+        assert!((read - acting * (1.0 + 0.1 * row.q[1])).norm() < 1e-12 * acting.norm());
+    }
 }
 
 #[test]

@@ -105,6 +105,39 @@ fn a_compliance_that_follows_another_joint_is_not_told_as_two_effects_of_that() 
     });
 }
 
+/// Loads of one sign and of the other: a drift or slip of the base, or a bias, does much the same.
+#[test]
+fn a_joint_softer_one_way_is_no_drift() {
+    looks_like(
+        |arm| Outside::OneSided { joint: 3, added: 0.35 * arm.joints[2].compliance() },
+        "a compliance of joint 3 that is another one each way",
+    );
+}
+
+/// What of the load goes with the angle of joint 1 does to that joint what a compliance that
+/// varies with its angle does, and to the others, too.
+#[test]
+fn a_load_read_otherwise_at_other_angles_is_no_compliance() {
+    looks_like(
+        |_| Outside::GainOfAngle { joint: 1, gain: 0.06 },
+        "a load that is read otherwise at other angles of joint 1",
+    );
+}
+
+/// Asserts that what is outside the catalogue is told, without a name, on both arms.
+fn looks_like(outside: impl Fn(&Description) -> Outside, words: &str) {
+    for arm in [five_axis(), six_axis()] {
+        let trace = |seed| {
+            let simulated = plan(&arm, &[], seed).hiding(Hidden::Outside(outside(&arm))).run();
+            (seed, trace_files(&simulated, &arm, ""))
+        };
+        let traces: Vec<(u64, Trace)> = (300..306).map(trace).collect();
+        assert_most(&format!("{words} on {}", arm.name), 5, &traces, |_, trace| {
+            trace.verdict == Verdict::Unexplained && trace.effects.is_empty() && trace.looks_like == [words]
+        });
+    }
+}
+
 fn with_fault(arm: &Description, fault: fn(&mut Simulated)) -> Vec<(u64, Trace)> {
     let trace = |seed| {
         let mut simulated = plan(arm, &[], seed).run();

@@ -1,6 +1,6 @@
 //! What arms and rigs are known to have and the catalogue has no name for: what comes to rest
-//! with time, gives way with warmth or with another joint's angle, is loose in its seat; a load
-//! that is not what is read of it.
+//! with time, gives way with warmth, with another joint's angle or one way more than the other, is
+//! loose in its seat; a load that is not what is read of it.
 //!
 //! No description has a word for any of it, so none is ever named. It is what names are
 //! held against where structure is left: a search for what is missing names the effect most
@@ -11,9 +11,11 @@
 mod bent_cell;
 mod foreign_angle;
 mod friction;
+mod gain_of_angle;
 mod growth;
 mod lag;
 mod loose_tool;
+mod one_sided;
 mod soft_base;
 mod warmth;
 
@@ -24,13 +26,15 @@ use super::{Kind, Number};
 use crate::identify::setup::Setup;
 
 /// Every kind without a name, in the order of precedence among exact aliases.
-pub static NAMELESS: [&Kind; 8] = [
+pub static NAMELESS: [&Kind; 10] = [
     &bent_cell::KIND,
     &friction::KIND,
     &growth::KIND,
     &loose_tool::KIND,
     &soft_base::KIND,
     &lag::KIND,
+    &one_sided::KIND,
+    &gain_of_angle::KIND,
     &warmth::KIND,
     &foreign_angle::KIND,
 ];
