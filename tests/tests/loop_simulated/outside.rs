@@ -110,7 +110,7 @@ fn a_compliance_that_follows_another_joint_is_not_told_as_two_effects_of_that() 
 fn a_joint_softer_one_way_is_no_drift() {
     looks_like(
         |arm| Outside::OneSided { joint: 3, added: 0.35 * arm.joints[2].compliance() },
-        "a compliance of joint 3 that is another one each way",
+        "a compliance of joint 3 that depends on which way it is loaded",
     );
 }
 
@@ -120,7 +120,7 @@ fn a_joint_softer_one_way_is_no_drift() {
 fn a_load_read_otherwise_at_other_angles_is_no_compliance() {
     looks_like(
         |_| Outside::GainOfAngle { joint: 1, gain: 0.06 },
-        "a load that is read otherwise at other angles of joint 1",
+        "a load whose reading changes with the angle of joint 1",
     );
 }
 

@@ -15,7 +15,7 @@ use crate::trace::found::EffectParameter;
 pub static KIND: Kind = Kind {
     name: "gain_of_angle",
     of_rig: true,
-    words: |found| format!("a load that is read otherwise at other angles of joint {}", found.value(JOINT)),
+    words: |found| format!("a load whose reading changes with the angle of joint {}", found.value(JOINT)),
     explanation: "",
     offer,
     on_axes: None,

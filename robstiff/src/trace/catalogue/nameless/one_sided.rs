@@ -10,7 +10,7 @@ use super::super::{Form, Kind, Number, Offers, Part, Scene, place_words};
 pub static KIND: Kind = Kind {
     name: "one_sided_compliance",
     of_rig: false,
-    words: |found| format!("a compliance of {} that is another one each way", place_words(found)),
+    words: |found| format!("a compliance of {} that depends on which way it is loaded", place_words(found)),
     explanation: "",
     offer,
     on_axes: None,
