@@ -75,6 +75,20 @@ impl Plan {
     /// frame, before noise comes to it.
     pub fn run_with(&self, mut disturb: impl FnMut(usize, &mut Observation)) -> Campaign {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+        let mut data = self.loaded(&mut random);
+        let (samples, exact) = self.exact(&data);
+        let axes = samples.axes;
+        for (i, row) in data.rows.iter_mut().enumerate() {
+            row.displacement = core::array::from_fn(|k| exact[axes * i + k]);
+            row.rotation = row.rotation.map(|_| core::array::from_fn(|k| exact[axes * i + 3 + k]));
+            disturb(i, row);
+        }
+        self.read(&mut data, &samples, &mut random);
+        campaign(self.robot.clone(), Data::Displacement(data))
+    }
+
+    /// The rows with their poses and loads.
+    fn loaded(&self, random: &mut ChaCha8Rng) -> Displacements {
         let mut data = Displacements {
             wrench_frame: Frame::Base,
             wrench_at: self.at[0],
@@ -94,7 +108,7 @@ impl Plan {
             force = if self.there_and_back && of_pose % 2 == 1 {
                 force.map(|component: f64| -component)
             } else {
-                let drawn = Vector3::from_fn(|_, _| normal(&mut random));
+                let drawn = Vector3::from_fn(|_, _| normal(random));
                 let direction = self.line.unwrap_or(drawn).normalize();
                 (direction * random.random_range(500.0..1300.0)).into()
             };
@@ -115,6 +129,11 @@ impl Plan {
                 });
             }
         }
+        data
+    }
+
+    /// What the rows are exactly, in the base frame, stacked (m, rad).
+    fn exact(&self, data: &Displacements) -> (Samples, DVector<f64>) {
         let mut acting = data.clone();
         for row in &mut acting.rows {
             let [x, y, z, mx, my, mz] = row.wrench;
@@ -122,24 +141,25 @@ impl Plan {
             row.wrench = [x, y, z, mx, my, mz];
         }
         let samples = Samples::of_description(&self.robot, &acting);
-        let axes = samples.axes;
-        let mut exact = DVector::zeros(axes * data.rows.len());
+        let mut exact = DVector::zeros(samples.axes * data.rows.len());
         let own = declared(&self.robot).into_iter().map(|number| (number.column, number.value));
         for (column, value) in own.chain(self.hidden.iter().copied()) {
             exact.axpy(value, &samples.column(column), 1.0);
         }
         let joints: Vec<f64> = self.robot.joints.iter().map(robstiff_robots::Joint::compliance).collect();
         exact += beyond_linear(&samples, &joints);
+        (samples, exact)
+    }
+
+    /// Turns exact rows into the frame they are read in, and adds noise.
+    fn read(&self, data: &mut Displacements, samples: &Samples, random: &mut ChaCha8Rng) {
         let mut unloaded = [[0.0; 3]; 2];
         for (i, row) in data.rows.iter_mut().enumerate() {
-            row.displacement = core::array::from_fn(|k| exact[axes * i + k]);
-            row.rotation = row.rotation.map(|_| core::array::from_fn(|k| exact[axes * i + 3 + k]));
-            disturb(i, row);
             let tool: Matrix3<f64> = samples.rows[i].tcp.fixed_view::<3, 3>(0, 0).into_owned();
             let turn = if self.measured_frame == Frame::Tool { tool.transpose() } else { Matrix3::identity() };
             let mut reading = || {
                 let turns = self.rotation_noise.unwrap_or_default();
-                [self.noise, turns].map(|sigma| sigma.map(|sigma| sigma * normal(&mut random)))
+                [self.noise, turns].map(|sigma| sigma.map(|sigma| sigma * normal(random)))
             };
             if i % self.ramp.len() == 0 || !self.shares_unloaded {
                 unloaded = reading();
@@ -153,7 +173,6 @@ impl Plan {
             row.rotation = row.rotation.map(|rotation| noisy(rotation, 1));
         }
         data.measured_frame = self.measured_frame;
-        campaign(self.robot.clone(), Data::Displacement(data))
     }
 }
 

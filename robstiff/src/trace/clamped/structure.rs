@@ -8,7 +8,7 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::axes::axes_column;
+use super::axes::{Axes, axes_column};
 use super::bench::Bench;
 use crate::identify::clamped::regression::problem;
 use crate::identify::normal::Sign;
@@ -23,6 +23,49 @@ use crate::trace::model::Fitted;
 /// looked for.
 const WAVES: u8 = 4;
 
+/// What is left of an axis may follow this.
+struct Curve {
+    /// What it would depend on.
+    depends_on: String,
+    /// Over the rows of the axis, each with the number of its parameters.
+    forms: Vec<(Vec<f64>, usize)>,
+}
+
+/// The curves that are looked for on an axis.
+fn curves(axes: &Axes, axis: usize) -> Vec<Curve> {
+    let (torques, largest) = (axes.torques(axis), axes.largest(axis));
+    let over_rows = |of: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..torques.len()).map(of).collect() };
+    let of_torque = |law: &dyn Fn(f64) -> f64| {
+        let forms = vec![(over_rows(&|k| law(torques[k] / largest)), 1)];
+        Curve { depends_on: format!("torque of axis {axis}"), forms }
+    };
+    let bent = [|t: f64| t * t.abs(), |t: f64| t * t * t, f64::abs, |t: f64| t / t.hypot(0.1)];
+    let mut curves: Vec<Curve> = bent.iter().map(|law| of_torque(law)).collect();
+    for waves in (1..=WAVES).map(|waves| f64::from(waves) * PI) {
+        curves.push(of_torque(&|t| (waves * t).sin()));
+        curves.push(of_torque(&|t| (waves * t).cos()));
+    }
+    curves.push(Curve {
+        depends_on: format!("unloaded reading of axis {axis}"),
+        forms: vec![(vec![1.0; torques.len()], 1)],
+    });
+    // A drift, or a slip before some row, which is a number as well. One row alone is a wild one.
+    let rows = || 2..torques.len().saturating_sub(1);
+    let since = |from: usize| move |k: usize| f64::from(u8::from(k >= from));
+    let slips = rows().map(|from| (over_rows(&since(from)), 2));
+    let drift = (over_rows(&|k| k as f64), 1);
+    curves.push(Curve { depends_on: format!("row order of axis {axis}"), forms: slips.chain([drift]).collect() });
+    // Or the compliance is another from some row on, or in the course of the rows.
+    let load = |k: usize| torques[k] / largest;
+    let another = rows().map(|from| (over_rows(&|k| load(k) * since(from)(k)), 2));
+    let in_course = (over_rows(&|k| load(k) * k as f64), 1);
+    curves.push(Curve {
+        depends_on: format!("compliance of axis {axis} by row order"),
+        forms: another.chain([in_course]).collect(),
+    });
+    curves
+}
+
 /// Whether what is left depends on the torque, by any smooth curve, or on the
 /// order of rows, by a straight line or a step, of any axis, or is the same in all its rows.
 pub fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit {
@@ -36,9 +79,8 @@ pub fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit 
     let (first, axes) = (raw.len(), &bench.axes);
     let (mut candidates, mut names) = (Vec::new(), Vec::new());
     for axis in axes.loaded() {
-        let (rows, torques, largest) = (axes.rows_of(axis), axes.torques(axis), axes.largest(axis));
-        // Each with the number of its parameters.
-        let mut add = |name: String, forms: Vec<(Vec<f64>, usize)>| {
+        let rows = axes.rows_of(axis);
+        for Curve { depends_on, forms } in curves(axes, axis) {
             let variant = |(values, parameters): (Vec<f64>, usize)| {
                 raw.push(axes_column(axes.rows.len(), &rows, values));
                 signs.push(Sign::Free);
@@ -46,31 +88,8 @@ pub fn structure(bench: &Bench, model: &Fitted, options: &Options) -> LackOfFit 
             };
             let variants = forms.into_iter().map(variant).collect();
             candidates.push(Candidate { kind: KINDS[0], place: Place::Rig, variants, check: None });
-            names.push((name, axes.rounding[axis - 1]));
-        };
-        let mut depends = |law: &dyn Fn(f64) -> f64| {
-            let values = torques.iter().map(|torque| law(torque / largest)).collect();
-            add(format!("torque of axis {axis}"), vec![(values, 1)]);
-        };
-        for law in [|t: f64| t * t.abs(), |t: f64| t * t * t, f64::abs, |t: f64| t / t.hypot(0.1)] {
-            depends(&law);
+            names.push((depends_on, axes.rounding[axis - 1]));
         }
-        for waves in (1..=WAVES).map(|waves| f64::from(waves) * PI) {
-            depends(&|t| (waves * t).sin());
-            depends(&|t| (waves * t).cos());
-        }
-        add(format!("unloaded reading of axis {axis}"), vec![(vec![1.0; rows.len()], 1)]);
-        let order = |of: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..rows.len()).map(of).collect() };
-        // A drift, or a slip before some row, which is a number as well. One row alone is a wild one.
-        let drift = (order(&|k| k as f64), 1);
-        let slip = |from: usize| (order(&|k| f64::from(u8::from(k >= from))), 2);
-        let slips = (2..rows.len().saturating_sub(1)).map(slip);
-        add(format!("row order of axis {axis}"), slips.chain([drift]).collect());
-        // Or the compliance is another from some row on, or in the course of the rows.
-        let loaded = |of: &dyn Fn(usize) -> f64| order(&|k| torques[k] / largest * of(k));
-        let another = |from: usize| (loaded(&|k| f64::from(u8::from(k >= from))), 2);
-        let others = (2..rows.len().saturating_sub(1)).map(another);
-        add(format!("compliance of axis {axis} by row order"), others.chain([(loaded(&|k| k as f64), 1)]).collect());
     }
     let problem = problem(&axes.rows, DMatrix::from_columns(&raw));
     let null: Vec<usize> = (0..first).collect();
