@@ -1,10 +1,12 @@
 //! What is no physical model, and what is said of it.
 
+use std::format;
 use std::string::String;
 use std::vec;
 use std::vec::Vec;
 
 use nalgebra::DMatrix;
+use robstiff_robots::{Description, catalogue};
 
 use super::bench::Bench;
 use super::model::Named;
@@ -42,6 +44,20 @@ fn a_joint_without_compliance_has_none_that_varies() {
     };
     assert!(of(3e-7).is_ok());
     assert!(of(0.0).is_err_and(|why| why.starts_with("joint 3 ")));
+}
+
+/// A force through its axis does not turn it, whatever its gear does.
+#[test]
+fn a_joint_without_load_shows_nothing_of_its_gear() {
+    let text = catalogue::find("kuka-kr270-r2700").expect("in the catalogue");
+    let robot = Description::parse("kuka-kr270-r2700.yaml", text).expect("a description");
+    let campaign = Plan { robot, ..Plan::new(1) }.run();
+    let prepared = Prepared::new(&campaign).expect("displacements");
+    let bench = Bench::new(&campaign, &prepared).expect("the others are seen");
+    for kind in ["stiffness_nonlinearity", "lost_motion", "hysteresis", "pose_dependent_compliance"] {
+        let of = |joint: usize| bench.invisible.contains(&format!("{kind}@joint {joint}"));
+        assert!(of(6) && !of(2), "{kind}");
+    }
 }
 
 /// The columns behind those of the joints are of the effects that are declared.

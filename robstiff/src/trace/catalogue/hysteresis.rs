@@ -32,7 +32,10 @@ const OF_RADII: [&str; 3] = ["radius1", "radius2", "radius3"];
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for joint in 1..=scene.joints() {
-        let Some(largest) = scene.largest_torque(joint) else { continue };
+        let Some(largest) = scene.largest_torque(joint) else {
+            offers.invisible(Part::Joint(joint));
+            continue;
+        };
         if !is_told(scene, joint) {
             offers.invisible(Part::Joint(joint));
             continue;

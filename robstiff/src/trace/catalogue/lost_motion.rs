@@ -36,7 +36,10 @@ pub const WIDEST: f64 = 0.0175;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for joint in 1..=scene.joints() {
-        let Some(largest) = scene.largest_carried(joint) else { continue };
+        let Some(largest) = scene.largest_carried(joint) else {
+            offers.invisible(Part::Joint(joint));
+            continue;
+        };
         let [gap, torque] = if scene.turns(joint) { ["rad", "Nm"] } else { ["m", "N"] };
         let number = move |knee: f64| {
             Number::elastic("gap", gap, [0.0, WIDEST], move |point| point.samples.column(Column::Gap { joint, knee }))

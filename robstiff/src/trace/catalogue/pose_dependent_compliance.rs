@@ -29,6 +29,7 @@ fn wave(k: usize, q: f64) -> f64 {
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for joint in (1..=scene.joints()).filter(|&joint| scene.turns(joint)) {
         if scene.largest_torque(joint).is_none() {
+            offers.invisible(Part::Joint(joint));
             continue;
         }
         let number = |k: usize| {

@@ -31,7 +31,10 @@ pub const KNEES: [f64; 4] = [1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0, 1.0];
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     for joint in 1..=scene.joints() {
-        let Some(largest) = scene.largest_carried(joint) else { continue };
+        let Some(largest) = scene.largest_carried(joint) else {
+            offers.invisible(Part::Joint(joint));
+            continue;
+        };
         let unit = scene.compliance_unit(joint);
         let number = move |knee: f64| {
             Number::elastic("added", unit, [f64::NEG_INFINITY, f64::INFINITY], move |point| {
