@@ -32,6 +32,7 @@ mod lost_motion;
 mod nameless;
 mod offers;
 mod outliers;
+mod places;
 mod pose_dependent_compliance;
 mod reflector_offset;
 mod reflector_slip;
@@ -49,8 +50,8 @@ use std::vec;
 use std::vec::Vec;
 
 use nalgebra::{DVector, Matrix3};
-use robstiff_robots::Description;
 use robstiff_robots::effect::Place as Part;
+use robstiff_robots::{Description, JointKind};
 
 pub use self::base_compliance::KIND as BASE_COMPLIANCE;
 pub use self::base_slip::{KIND as BASE_SLIP, LIKELY};
@@ -59,7 +60,7 @@ pub use self::dh_error::{ENTRIES as DH_ENTRIES, KIND as DH_ERROR, MOST as DH_MOS
 pub use self::gravity_preload::KIND as GRAVITY_PRELOAD;
 pub use self::gravity_sag::{KIND as GRAVITY_SAG, MOST as MOST_SAG};
 pub use self::hysteresis::{KIND as HYSTERESIS, is_told as tells_hysteresis, is_told_on as axis_tells_hysteresis};
-pub use self::joint_coupling::{KIND as JOINT_COUPLING, share_a_drive};
+pub use self::joint_coupling::{KIND as JOINT_COUPLING, drives};
 pub use self::joint_zero_offset::{KIND as JOINT_ZERO_OFFSET, MOST as ZERO_MOST};
 pub use self::lever_arm::KIND as LEVER_ARM;
 pub use self::link_compliance::KIND as LINK_COMPLIANCE;
@@ -81,6 +82,7 @@ use super::clamped::{Axes, OnAxes};
 use super::found::{Found, Place};
 use super::point::Point;
 use super::slip::{Moment, Moments};
+use crate::Effect;
 use crate::campaign::Displacements;
 use crate::elements::Spring;
 use crate::identify::column::Column;
@@ -88,7 +90,6 @@ use crate::identify::normal::Sign;
 use crate::identify::samples::{Samples, turn_of};
 use crate::identify::setup::Setup;
 use crate::identify::unit_of;
-use crate::{Effect, JointKind};
 
 /// A kind of effect.
 pub struct Kind {
@@ -112,22 +113,6 @@ impl Kind {
     /// Whether an effect that a description has is of this kind.
     pub fn is_of(&self, effect: &Effect) -> bool {
         effect.kind() == self.name
-    }
-
-    /// Where it can be on an arm with so many joints, of any campaign; errors of the
-    /// table, whose places are its entries, at none.
-    pub fn places(&self, joints: usize) -> Vec<Place> {
-        let each = |of: fn(usize) -> Part, last: usize| (1..=last).map(|k| of(k).into()).collect();
-        match self.name {
-            "link_compliance" => each(Part::Link, joints.saturating_sub(1)),
-            "base_compliance" | "base_slip" => vec![Part::Base.into()],
-            "tool_compliance" => vec![Part::Tool.into()],
-            "joint_coupling" => (2..=joints).map(|j| Part::Joints([j - 1, j]).into()).collect(),
-            "gravity_sag" => vec![Part::Robot.into()],
-            "dh_error" => Vec::new(),
-            _ if self.of_rig => vec![Place::Rig],
-            _ => each(Part::Joint, joints),
-        }
     }
 }
 

@@ -13,7 +13,6 @@ use std::vec::Vec;
 use robstiff_robots::Description;
 use robstiff_robots::effect::Place as Part;
 
-use super::frames::frames;
 use super::rig::{Rig, lever_arm, reflector};
 use crate::campaign::{Campaign, Positions};
 use crate::identify::normal::Sign;
@@ -23,7 +22,7 @@ use crate::trace::catalogue::{
     BASE_COMPLIANCE, DH_ENTRIES, DH_ERROR, DH_MOST, DH_UNITS, EITHER, GRAVITY_SAG, HARDENING_KNEES, JOINT_COUPLING,
     JOINT_ZERO_OFFSET, Kind, LARGEST_WAVE, LINK_COMPLIANCE, LOST_KNEES, LOST_MOTION, MOST_SAG,
     POSE_DEPENDENT_COMPLIANCE, STIFFNESS_NONLINEARITY, TOOL_COMPLIANCE, TRANSMISSION_ERROR, TRANSVERSE_COMPLIANCE,
-    WAVE_ORDERS, WIDEST_GAP, ZERO_MOST, share_a_drive,
+    WAVE_ORDERS, WIDEST_GAP, ZERO_MOST, drives,
 };
 use crate::trace::found::{EffectParameter, Found, Place};
 use crate::{Effect, JointKind};
@@ -132,7 +131,7 @@ pub fn offers(campaign: &Campaign, data: &Positions, rig: &Rig) -> Vec<Offer> {
                 springs(&LINK_COMPLIANCE, Part::Link(link), &[("bending", "rad/Nm"), ("torsion", "rad/Nm")])
             }),
         );
-        all.extend(couplings(robot, data));
+        all.extend(couplings(robot));
         all.extend(gears(robot, data));
     }
     all.extend(joints.clone().map(|joint| zero(robot, joint)));
@@ -183,17 +182,11 @@ fn springs(kind: &'static Kind, part: Part, numbers: &[(&'static str, &'static s
     }
 }
 
-fn couplings(robot: &Description, data: &Positions) -> Vec<Offer> {
-    let axes = frames(robot, &data.rows[..1]).remove(0).axes;
-    let axis = |joint: usize| axes[joint - 1].0;
-    let turns = |joint: &usize| robot.joints[joint - 1].kind == JointKind::Revolute;
-    let turning: Vec<usize> = (1..=robot.joints.len()).filter(turns).collect();
-    let pairs = turning.iter().flat_map(|&j| turning.iter().map(move |&i| [i, j]));
-    let pairs = pairs.filter(|&[i, j]| share_a_drive(i, j, &turning, &axis));
+fn couplings(robot: &Description) -> Vec<Offer> {
     let any = [f64::NEG_INFINITY, f64::INFINITY];
     // Which are possible, they are together.
     let coupling = |pair| one(&JOINT_COUPLING, Part::Joints(pair), ("value", "rad/Nm"), any, COMPLIANCE_STEP);
-    pairs.map(coupling).collect()
+    drives(robot).into_iter().map(coupling).collect()
 }
 
 /// Gears that give way other than in proportion to what a payload loads them with, the

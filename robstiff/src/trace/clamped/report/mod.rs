@@ -151,11 +151,10 @@ fn values(campaign: &Campaign, bench: &Bench, model: &Fitted) -> Vec<f64> {
 /// and what needs more rows of it.
 fn invisible(campaign: &Campaign, bench: &Bench) -> Vec<String> {
     let offered: Vec<String> = bench.candidates.iter().map(Candidate::name).collect();
-    let joints = campaign.robot.joints.len();
     let declared = |name: &String| campaign.robot.effects.iter().any(|effect| effect.to_string() == *name);
     let mut names = Vec::new();
     for kind in KINDS.iter().filter(|kind| **kind != &OUTLIERS) {
-        names.extend(kind.places(joints).into_iter().map(|place| format!("{}@{place}", kind.name)));
+        names.extend(kind.places(&campaign.robot).into_iter().map(|place| format!("{}@{place}", kind.name)));
     }
     names.retain(|name| !offered.contains(name) && !declared(name));
     names

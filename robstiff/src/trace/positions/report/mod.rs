@@ -174,10 +174,9 @@ fn invisible(campaign: &Campaign, bench: &Bench<'_>) -> Vec<String> {
         .filter(|&candidate| !bench.shows(candidate))
         .map(|candidate| bench.candidates[candidate].name())
         .collect();
-    let joints = campaign.robot.joints.len();
     let offered = |kind: &Kind| bench.candidates.iter().any(|candidate| candidate.kind == kind);
     for kind in KINDS.into_iter().filter(|kind| !kind.of_rig && !offered(kind)) {
-        names.extend(kind.places(joints).into_iter().map(|place| format!("{}@{place}", kind.name)));
+        names.extend(kind.places(&campaign.robot).into_iter().map(|place| format!("{}@{place}", kind.name)));
     }
     names.retain(|name| campaign.robot.effects.iter().all(|effect| effect.to_string() != *name));
     names
