@@ -125,7 +125,7 @@ pub fn select(
 /// Adds effects to a model for as long as one passes every test; whether something is missing
 /// for which none does. The order counts: each effect is sought on the rows and with the weights
 /// that go with those before it, and is in its own form before the next one is sought.
-fn grow(
+pub fn grow(
     bench: &mut Bench<'_>,
     model: &mut Fitted,
     steps: &mut Vec<Step>,
@@ -134,7 +134,7 @@ fn grow(
 ) -> Result<bool, String> {
     let mut beam = std::vec![model.clone()];
     let mut unnamed = false;
-    while model.named.len() < MOST_EFFECTS {
+    loop {
         progress(&std::format!("searching for effect {}", model.named.len() + 1));
         // Without rows that look wild physics may not allow what was accepted.
         if let Some(better) = bench.tried(&model.named, Bench::look_again) {
@@ -149,6 +149,12 @@ fn grow(
         let mut step = table(&setting, model, &tests, options);
         if tests.smallest_p() > options.alpha {
             step.nothing_is_missing();
+            steps.push(step);
+            break;
+        }
+        if model.named.len() >= MOST_EFFECTS {
+            unnamed = true;
+            step.too_many(MOST_EFFECTS);
             steps.push(step);
             break;
         }

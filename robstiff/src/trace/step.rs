@@ -97,6 +97,11 @@ impl Step {
         self.outcome = String::from("something is missing, but no effect passes every test");
     }
 
+    /// Says that what is missing would need more effects than a model may have.
+    pub fn too_many(&mut self, most: usize) {
+        self.outcome = format!("something is missing beside {most} effects, more than are looked for");
+    }
+
     /// Says that these effects were dropped on the way to the model.
     pub fn dropped(&mut self, names: &[String]) {
         self.outcome = format!("no longer significant: {}", names.join(", "));

@@ -10,7 +10,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use super::bench::Known;
-use super::selection::select;
+use super::model::Named;
+use super::selection::{grow, select};
 use super::settle::settled;
 use super::*;
 use crate::campaign::Data;
@@ -108,6 +109,25 @@ fn what_is_not_significant_does_not_stay_named() {
         assert!(settled.p_values.len() == 1 && settled.p_values[0] < 0.001, "{:?}", settled.p_values);
         assert_eq!(settled.dropped.len(), 1);
     }
+}
+
+/// A model of as many effects as are looked for is tested like any other.
+#[test]
+fn what_is_missing_beside_six_effects_is_told() {
+    let campaign = campaign(&five_axis(), 24, &[TILT_3], 3);
+    let prepared = Prepared::new(&campaign).expect("a campaign of displacements");
+    let mut bench = Bench::new(&campaign, &prepared).expect("it shows the joints");
+    let is_of_a_gear = |candidate: &usize| {
+        let name = bench.candidates()[*candidate].name();
+        name.starts_with("pose_dependent_compliance") || name.starts_with("stiffness_nonlinearity")
+    };
+    let of_gears = (0..bench.candidates().len()).filter(is_of_a_gear);
+    let six: Vec<Named> = of_gears.map(|candidate| Named { candidate, variant: 0 }).take(6).collect();
+    let mut model = bench.fit_or_loosely(&six).expect("other than the tilt");
+    let mut steps = Vec::new();
+    let unnamed = grow(&mut bench, &mut model, &mut steps, &Options { draws: 199, ..Options::default() }, &|_| {});
+    let last = steps.last().expect("it was tested");
+    assert!(unnamed.expect("it shows the joints") && last.outcome.starts_with("something is missing beside 6 effects"));
 }
 
 /// Whatever they were like when the model was come to.

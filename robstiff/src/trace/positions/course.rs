@@ -66,7 +66,7 @@ impl Course {
     pub fn run(mut self, bench: &mut Bench<'_>, strict: bool, options: &Options, progress: &Progress<'_>) -> Self {
         let mut tried: Vec<Vec<Named>> = Vec::new();
         let mut kept = Kept::WhereAnEffectSaysIt;
-        while self.model.named.len() < MOST_EFFECTS && !tried.contains(&self.model.named) {
+        loop {
             let stay = self.leave_wild_out(bench, strict, kept);
             let model = &self.model;
             if model.leaves_nothing() {
@@ -74,6 +74,16 @@ impl Course {
             }
             progress(&format!("searching for effect {}", model.named.len() + 1));
             let Some((mut step, singles, reference, missing)) = tested(bench, model, options) else { break };
+            if missing && (model.named.len() >= MOST_EFFECTS || tried.contains(&model.named)) {
+                self.unnamed = true;
+                if model.named.len() >= MOST_EFFECTS {
+                    step.too_many(MOST_EFFECTS)
+                } else {
+                    step.none_passes()
+                }
+                self.steps.push(step);
+                break;
+            }
             let better = if missing { extended(bench, model, &singles, options) } else { None };
             if better.is_none() && stay {
                 step.outcome = "no effect passes in whose favour wild rows had stayed".to_string();
