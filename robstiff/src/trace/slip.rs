@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Matrix3x6, Matrix6, Vector3};
 
 use super::catalogue::{BASE_SLIP, Kind, REFLECTOR_SLIP};
 use super::model::{Fitted, Setting};
+use crate::identify::covariance::alone;
 use crate::identify::normal::Scaled;
 use crate::identify::problem::Block;
 use crate::identify::samples::{Sample, turn_of};
@@ -136,7 +137,8 @@ pub fn likeliest_slip(setting: &Setting<'_>, model: &Fitted, slipping: Slipping)
     // their scale cancels for a shift of the base; for others, or in a measuring frame
     // that turns with the tool, this is a first look only, like the moment it gives:
     // the tests have the whole.
-    let visits = setting.point.samples.visits();
+    let not_fitted: Vec<bool> = fitted_to.iter().map(|fitted| !fitted).collect();
+    let visits = alone(&setting.point.samples.visits(), &not_fitted);
     let shared = problem.shared;
     whiten(&mut white, &visits, axes, shared);
     let scan = Scan {

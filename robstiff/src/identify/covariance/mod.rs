@@ -33,8 +33,8 @@ pub use encoders::EncoderNoise;
 pub use outliers::Outlier;
 pub use reml::Share;
 pub use tails::Tails;
-pub use whitener::Whitener;
-use whitener::{alone, turn};
+use whitener::turn;
+pub use whitener::{Whitener, alone};
 
 /// Level at which more is freed at a pose.
 pub const NESTED: f64 = 0.01;

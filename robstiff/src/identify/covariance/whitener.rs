@@ -50,7 +50,7 @@ impl Whitener {
 }
 
 /// The visits of rows, each row left out a visit of its own.
-pub(super) fn alone(visits: &[usize], left_out: &[bool]) -> Vec<usize> {
+pub fn alone(visits: &[usize], left_out: &[bool]) -> Vec<usize> {
     let mut visits = visits.to_vec();
     let next = visits.iter().max().map_or(0, |last| last + 1);
     let alone = visits.iter_mut().zip(left_out).filter(|(_, out)| **out);
