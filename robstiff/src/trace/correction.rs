@@ -22,7 +22,7 @@ use super::Trace;
 use crate::campaign::{Campaign, Data};
 use crate::elements::Pose;
 use crate::identify::normal::Normal;
-use crate::identify::samples::Samples;
+use crate::identify::samples::{Sample, Samples};
 use crate::{JointKind, Robot};
 
 /// A correction with what it is good for.
@@ -76,6 +76,7 @@ impl Correction {
         let rows = Rows::new(&samples, &kept, &largest_torques, trace);
         let held_out: Vec<bool> = data.poses.iter().map(|id| trace.held_out.contains(id)).collect();
         let (made, judged) = rows.judged(&held_out);
+        let made_from = || kept.iter().map(|&row| &samples.rows[row]).filter(|row| !held_out[row.pose]);
         let gains: Vec<f64> = judged.iter().map(|pose| pose.without - pose.with).collect();
         if gains.len() < 2 || !wins(&gains) {
             return None;
@@ -83,10 +84,10 @@ impl Correction {
         let components: usize = judged.iter().map(|pose| pose.components).sum();
         let rms = |of: fn(&Judged) -> f64| (judged.iter().map(of).sum::<f64>() / components.max(1) as f64).sqrt();
         let range = (0..samples.joints()).map(|joint| {
-            let q = || kept.iter().map(|&row| samples.rows[row].q[joint]);
+            let q = || made_from().map(|row| row.q[joint]);
             [q().fold(f64::INFINITY, f64::min), q().fold(f64::NEG_INFINITY, f64::max)]
         });
-        let force = |&row: &usize| samples.rows[row].wrench.fixed_rows::<3>(0).norm();
+        let force = |row: &Sample| row.wrench.fixed_rows::<3>(0).norm();
         Some(Self {
             features: names(&samples.joint_kinds),
             weights: made.weights.iter().copied().collect(),
@@ -94,7 +95,7 @@ impl Correction {
             unseen: [rms(|pose| pose.without), rms(|pose| pose.with)],
             judged_on: gains.len(),
             range: range.collect(),
-            largest_force: kept.iter().map(force).fold(0.0, f64::max),
+            largest_force: made_from().map(force).fold(0.0, f64::max),
             largest_torques,
         })
     }
