@@ -7,6 +7,7 @@ use std::rc::Rc;
 use std::vec::Vec;
 
 use nalgebra::Vector3;
+use robstiff_robots::Convention;
 
 use super::super::thermal_drift::{CONSTANTS, Course, courses};
 use super::super::{Form, Kind, Number, Offers, Part, Scene};
@@ -39,7 +40,17 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
         for course in &courses {
             offer_course(scene, course, &along, &mut numbers, &mut forms);
         }
-        offers.add(Part::Link(index + 1), numbers, forms);
+        offers.add(place(scene.description.convention, index), numbers, forms);
+    }
+}
+
+/// What has the lengths of a row of the table, from 0: in the modified convention the link
+/// before its joint, of the first joint the base.
+fn place(convention: Convention, row: usize) -> Part {
+    match (convention, row) {
+        (Convention::Standard, _) => Part::Link(row + 1),
+        (Convention::Modified, 0) => Part::Base,
+        (Convention::Modified, _) => Part::Link(row),
     }
 }
 
@@ -110,4 +121,16 @@ fn number(name: &'static str, unit: &'static str, values: Rc<[f64]>, along: &Rc<
     let most = MOST / largest.max(f64::MIN_POSITIVE);
     let along = Rc::clone(along);
     Number::of_reading(name, unit, [-most, most], move |point| point.of_reading(|row| along[row] * values[row]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As a description counts its links.
+    #[test]
+    fn lengths_are_of_the_link_that_has_them() {
+        assert_eq!([0, 2].map(|row| place(Convention::Standard, row)), [Part::Link(1), Part::Link(3)]);
+        assert_eq!([0, 2].map(|row| place(Convention::Modified, row)), [Part::Base, Part::Link(2)]);
+    }
 }
