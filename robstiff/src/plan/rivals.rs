@@ -3,6 +3,7 @@
 use std::string::{String, ToString};
 use std::vec::Vec;
 
+use crate::trace::catalogue::GRAVITY_PRELOAD;
 use crate::trace::selection::WITHIN_REACH;
 use crate::trace::{NamedEffect, Trace, Verdict};
 
@@ -130,9 +131,11 @@ pub fn groups(trace: &Trace) -> Vec<Group> {
 /// The candidates that fit about as well as the best, in the last step that has
 /// the effects named as its model.
 fn within_reach(trace: &Trace) -> Vec<String> {
-    // What is wrong in single visits is in no step.
+    // What is wrong in single visits is in no step, nor is what effects of several joints are
+    // together (a preload).
     let was_searched = |named: &&NamedEffect| {
-        named.lines.is_empty() || trace.steps.iter().any(|step| step.named.contains(&named.effect.to_string()))
+        named.effect.kind() != GRAVITY_PRELOAD.name && named.lines.is_empty()
+            || trace.steps.iter().any(|step| step.named.contains(&named.effect.to_string()))
     };
     let mut named: Vec<String> =
         trace.effects.iter().filter(was_searched).map(|named| named.effect.to_string()).collect();

@@ -5,12 +5,14 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use robstiff_robots::effect::Place as Part;
 
 use super::criterion::{Criterion, Judge};
 use super::exchange::Search;
 use super::regressors::Visit;
 use super::rivals::{Contest, Number, Rival, Rivals, groups};
 use crate::campaign::made::Plan;
+use crate::trace::catalogue::GRAVITY_PRELOAD;
 use crate::trace::{Found, NamedEffect, Options, Step, Tested, Trace, Verdict, trace};
 
 const NUMBERS: usize = 5;
@@ -110,7 +112,7 @@ fn aliases_have_no_angle() {
     assert!(judge(&columns).separable(&gram).is_empty() && judge(&columns).angle(&gram, 0) < 1e-4);
 }
 
-/// A wild row beside structure does not hide what is within reach of each other.
+/// A wild row beside structure, or a preload, which no step has, does not hide what is within reach of each other.
 #[test]
 fn candidates_within_reach_are_told_apart_beside_wild_rows() {
     let campaign = Plan { poses: 12, ..Plan::new(1) }.run();
@@ -129,14 +131,17 @@ fn candidates_within_reach_are_told_apart_beside_wild_rows() {
     let names = |trace: &Trace| groups(trace).pop().map(|group| (group.named, group.names));
     let within_reach = Some((None, vec!["a@x".to_string(), "b@y".to_string()]));
     assert_eq!(names(&trace), within_reach);
-    trace.effects.push(NamedEffect {
-        effect: Found::outliers(1),
-        lines: vec![7],
+    let named = |effect: Found, lines: Vec<usize>| NamedEffect {
+        effect,
+        lines,
         p_value: 1e-6,
         holdout_rms: 1e-5,
         same_as: Vec::new(),
         in_part: Vec::new(),
         partial: true,
-    });
+    };
+    trace.effects.push(named(Found::outliers(1), vec![7]));
+    assert_eq!(names(&trace), within_reach);
+    trace.effects = vec![named(Found::new(&GRAVITY_PRELOAD, Part::Robot.into(), Vec::new()), Vec::new())];
     assert_eq!(names(&trace), within_reach);
 }

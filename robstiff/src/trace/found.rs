@@ -73,7 +73,7 @@ impl fmt::Display for Place {
 
 impl Found {
     /// An effect of a kind.
-    pub(super) fn new(kind: &'static Kind, place: Place, parameters: Vec<EffectParameter>) -> Self {
+    pub(crate) fn new(kind: &'static Kind, place: Place, parameters: Vec<EffectParameter>) -> Self {
         Self { kind, place, parameters }
     }
 
