@@ -161,7 +161,7 @@ pub struct LeftOfSine {
 /// counts, and the wrench it gives is that which turns the gears.
 ///
 /// # Panics
-/// If the step is not above zero or the delay negative.
+/// If the step is not above zero, or the delay or a limit of size or rate is negative or not a number.
 pub fn simulate<const N: usize>(
     (truth, model): (&impl Robot<N>, &impl Robot<N>),
     q: &SVector<f64, N>,
@@ -198,6 +198,8 @@ fn simulate_moving<const N: usize>(
 ) -> Vec<Instant> {
     let delay = controller.delay;
     assert!(step > 0.0 && delay >= 0.0, "a control step takes time, and no correction is early");
+    let Limits { size, rate, .. } = controller.limits;
+    assert!(size >= 0.0 && rate >= 0.0, "a limit is not negative");
     let (mut wanted, mut silent) = (Correction::new(controller), 0.0);
     let mut loops = Loops::new(controller.servo, step / points as f64);
     let mut seen = Vec::new();

@@ -207,6 +207,13 @@ fn size_and_rate_are_limited_and_a_silent_sensor_is_let_go() {
 }
 
 #[test]
+#[should_panic(expected = "a limit is not negative")]
+fn a_limit_is_not_negative() {
+    let wrong = Controller { limits: Limits { size: -1e-3, rate: 0.01, hold: 0.05 }, ..controller(Servo::Ideal) };
+    simulate((&robot(), &robot()), &pose(), &wrong, 0.1, |_| wrench(), truly);
+}
+
+#[test]
 fn a_delay_longer_than_the_cut_corrects_nothing() {
     for sensing in [Sensing::Force, Sensing::Encoders] {
         let late = Controller { sensing, delay: 0.5, ..controller(Servo::Ideal) };
