@@ -242,6 +242,7 @@ fn visits(setting: &Setting<'_>, model: &Fitted) -> Vec<Visit> {
 fn search(visits: &mut [Visit], strict: bool, tells: f64, known: &Known) -> Vec<Event> {
     let rows: usize = visits.iter().map(|visit| visit.rows.len()).sum();
     let most = (FEW * rows as f64).floor() as usize;
+    let too_many = |found: &[Event]| found.iter().map(|event| event.rows.len()).sum::<usize>() > most;
     let hypotheses = 2 * rows;
     let table = ChiSquared::new(3.0).expect("three degrees of freedom");
     let threshold = table.inverse_cdf(1.0 - STRICT / hypotheses as f64);
@@ -267,7 +268,7 @@ fn search(visits: &mut [Visit], strict: bool, tells: f64, known: &Known) -> Vec<
                 visit.used = visit.rows.iter().map(|row| !slip.rows.contains(row)).collect();
                 found.push(Event { p_value: told(hypotheses as f64 * table.sf(statistic)), ..slip });
             }
-            break;
+            return if too_many(&found) { Vec::new() } else { found };
         };
         let visit = &mut visits[k];
         for (i, row) in visit.rows.iter().enumerate() {
@@ -275,11 +276,10 @@ fn search(visits: &mut [Visit], strict: bool, tells: f64, known: &Known) -> Vec<
         }
         let p_value = told(hypotheses as f64 * table.sf(statistic));
         found.push(Event { p_value, ..event });
-        if found.iter().map(|event| event.rows.len()).sum::<usize>() > most {
+        if too_many(&found) {
             return Vec::new();
         }
     }
-    found
 }
 
 /// The variance of a reading, by axis.
