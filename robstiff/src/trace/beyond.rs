@@ -86,7 +86,7 @@ pub fn instead<'c>(
     });
     // Better by the criterion, and not for being simpler alone: what is told by many numbers can
     // be like it without being it.
-    let saved = |other: &Fitted| model.fit.columns.len().saturating_sub(other.fit.columns.len()) as f64;
+    let saved = |other: &Fitted| wide.parameters(&model.named).saturating_sub(wide.parameters(&other.named)) as f64;
     let price = AKAIKE * setting.problem.variance(&model.fit);
     let is_better = |(_, other): &(Bench<'c>, Fitted)| {
         other.bic < model.bic - WITHIN_REACH && other.fit.rss < model.fit.rss + price * saved(other)

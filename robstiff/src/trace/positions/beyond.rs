@@ -118,7 +118,7 @@ fn is_better(wide: &Bench<'_>, other: &Model, model: &Model) -> bool {
     let Some(model) = wide.solve(&model.named, &model.solved.state) else { return true };
     let (fit, solved) = (&model.solved.fit, &other.solved.fit);
     // What is told by many numbers can be like it without being it.
-    let saved = fit.columns.len().saturating_sub(solved.columns.len()) as f64;
+    let saved = wide.parameters(&model.named).saturating_sub(wide.parameters(&other.named)) as f64;
     let price = AKAIKE * model.solved.problem.variance(fit);
     other.bic < model.bic - WITHIN_REACH && solved.rss < fit.rss + price * saved
 }
