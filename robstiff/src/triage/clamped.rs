@@ -170,7 +170,9 @@ fn reversal(axes: &[Axis]) -> Verdict {
 fn order(axes: &[Axis]) -> Verdict {
     let trend = |axis: &Axis| {
         let middle = mean(&axis.places);
-        axis.further(|i| (axis.places[i] - middle) / axis.places.len() as f64)
+        // Rows of other axes may stand between.
+        let from_first_to_last = axis.places.last()? - axis.places.first()? + 1.0;
+        axis.further(|i| (axis.places[i] - middle) / from_first_to_last)
     };
     let Some((found, p_value, witnesses)) = strongest(axes.iter().filter_map(trend).collect()) else {
         return Err(String::from("four torques or more on an axis, not in rising order"));
