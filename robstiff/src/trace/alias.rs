@@ -352,6 +352,5 @@ pub fn rivals(bench: &Bench<'_>, model: &Fitted) -> Vec<Rival> {
         }
     }
     found.sort_by(|a, b| a.bic_difference.total_cmp(&b.bic_difference));
-    found.dedup_by(|a, b| a.names == b.names);
     found
 }
