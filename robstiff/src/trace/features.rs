@@ -117,7 +117,7 @@ pub fn features(samples: &Samples, data: &Displacements, rows: &[usize]) -> Vec<
     found
 }
 
-/// How far each row is through its visit, 0 to 1: loading and unloading.
+/// How far each row is through its visit, from 0 to below 1: loading and unloading.
 fn places_in_visit(samples: &Samples) -> Vec<f64> {
     let visits = samples.rows.iter().map(|row| row.visit).max().map_or(0, |last| last + 1);
     let (mut sizes, mut places) = (std::vec![0_usize; visits], Vec::new());

@@ -45,7 +45,8 @@ type Slopes<T> = Vec<Vec<[T; 4]>>;
 type Turned = OMatrix<f64, Dyn, Const<6>>;
 
 /// Steps of central differences (rad, m), some tenths of a millimetre at the tool. Their error
-/// is of the third order, some 1e-8 of the slope, and rounding, 1e-16 m over such a step, less.
+/// goes with the square of the step, some 1e-8 of the slope, and rounding, 1e-16 m over such a
+/// step, is less.
 const STEP: f64 = 1e-4;
 
 impl<'c> Point<'c> {

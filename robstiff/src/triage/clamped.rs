@@ -9,7 +9,7 @@ use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Raw, Verdict};
+use super::{Raw, Unjudged};
 use crate::campaign::{Campaign, ClampedRow};
 use crate::probability::{fisher_tail, student_tail};
 use crate::words::percent;
@@ -18,7 +18,7 @@ use crate::words::percent;
 const MATTERS: f64 = 0.01;
 
 /// The checks that make sense of clamped axes.
-pub(super) fn checks(campaign: &Campaign, rows: &[ClampedRow]) -> Vec<(&'static str, &'static str, Verdict)> {
+pub(super) fn checks(campaign: &Campaign, rows: &[ClampedRow]) -> Vec<(&'static str, &'static str, Unjudged)> {
     let axes: Vec<Axis> = (1..=campaign.robot.joints.len()).filter_map(|axis| Axis::new(axis, rows)).collect();
     std::vec![
         ("proportionality", "does the deflection grow in proportion to the torque?", proportionality(&axes)),
@@ -123,7 +123,7 @@ fn strongest(found: Vec<Further>) -> Option<(Further, f64, usize)> {
     Some((further, (p * axes as f64).min(1.0), axes))
 }
 
-fn proportionality(axes: &[Axis]) -> Verdict {
+fn proportionality(axes: &[Axis]) -> Unjudged {
     let curved = |axis: &Axis| {
         let largest = axis.largest();
         axis.further(|i| axis.torques[i] * axis.torques[i].abs() / (largest * largest))
@@ -145,7 +145,7 @@ fn proportionality(axes: &[Axis]) -> Verdict {
     ))
 }
 
-fn reversal(axes: &[Axis]) -> Verdict {
+fn reversal(axes: &[Axis]) -> Unjudged {
     let both = |axis: &&Axis| axis.torques.iter().any(|t| *t > 0.0) && axis.torques.iter().any(|t| *t < 0.0);
     let even = |axis: &Axis| {
         let largest = axis.largest();
@@ -167,7 +167,7 @@ fn reversal(axes: &[Axis]) -> Verdict {
     ))
 }
 
-fn order(axes: &[Axis]) -> Verdict {
+fn order(axes: &[Axis]) -> Unjudged {
     let trend = |axis: &Axis| {
         let middle = mean(&axis.places);
         // Rows of other axes may stand between.
@@ -190,7 +190,7 @@ fn order(axes: &[Axis]) -> Verdict {
 }
 
 /// The slope of every axis beside its offset, one-sided (Student's t, times the number of axes).
-fn energy(axes: &[Axis]) -> Verdict {
+fn energy(axes: &[Axis]) -> Unjudged {
     let slope = |axis: &Axis| {
         let torques = DVector::from_column_slice(&axis.torques).add_scalar(-mean(&axis.torques));
         let deflections = axis.deflections.add_scalar(-axis.deflections.mean());

@@ -11,14 +11,14 @@ use nalgebra::Vector3;
 
 use super::evidence::{Evidence, Line};
 use super::randomisation::{Witness, flip};
-use super::{Raw, Verdict};
+use super::{Raw, Unjudged};
 use crate::campaign::Observation;
 use crate::words::percent;
 
 /// What encoders resolve of it at best.
 const MATTERS: f64 = 0.02;
 
-pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
+pub(super) fn check(evidence: &Evidence<'_>) -> Unjudged {
     let all =
         |of: fn(&Observation) -> Option<&[f64]>| evidence.data.rows.iter().all(|row| of(row).is_some()).then_some(of);
     let output = all(|row| row.encoders.as_deref());

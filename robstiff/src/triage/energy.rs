@@ -9,11 +9,11 @@ use nalgebra::Vector6;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::evidence::Evidence;
-use super::{Raw, Verdict};
+use super::{Raw, Unjudged};
 use crate::probability::student_tail;
 use crate::words::count;
 
-pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
+pub(super) fn check(evidence: &Evidence<'_>) -> Unjudged {
     let Some(wrenches) = &evidence.wrenches else {
         return Err(String::from("read the displacement where the force acts, or the rotation as well"));
     };

@@ -8,12 +8,12 @@ use std::vec::Vec;
 
 use super::evidence::{Evidence, Line};
 use super::randomisation::{Witness, flip};
-use super::{Raw, Verdict};
+use super::{Raw, Unjudged};
 use crate::words::{micrometres, percent};
 
 const MATTERS: f64 = 0.005;
 
-pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
+pub(super) fn check(evidence: &Evidence<'_>) -> Unjudged {
     let (mut witnesses, mut sum, mut strokes, mut rows) = (Vec::new(), 0.0, 0.0, 0_usize);
     for line in &evidence.lines {
         let mut visits = line.visits.clone();

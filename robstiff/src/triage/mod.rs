@@ -98,10 +98,10 @@ pub struct Finding {
 }
 
 /// A check by its name, its question, and how it is answered.
-type Registered = (&'static str, &'static str, fn(&Evidence<'_>) -> Verdict);
+type Registered = (&'static str, &'static str, fn(&Evidence<'_>) -> Unjudged);
 
-/// What a check says: the finding without a judgement, and its two sentences.
-type Verdict = Result<Raw, String>;
+/// What a check says before all are counted; an error, what measurement would let it be asked.
+type Unjudged = Result<Raw, String>;
 
 /// A finding before all checks are counted.
 pub(crate) struct Raw {

@@ -5,7 +5,7 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::evidence::Evidence;
-use super::{Raw, Verdict};
+use super::{Raw, Unjudged};
 use crate::identify::covariance::WILD;
 use crate::identify::covariance::contrasts::Level;
 use crate::probability::chi_square_tail;
@@ -15,7 +15,7 @@ const SEVERAL: &str = "several loads along one line within a visit, more than th
 
 /// The likelihood ratio of a shared reading noisier than a loaded one, against
 /// one as noisy; at the edge, half a chi-square.
-pub(super) fn offset(evidence: &Evidence<'_>) -> Verdict {
+pub(super) fn offset(evidence: &Evidence<'_>) -> Unjudged {
     let Some(share) = evidence.covariance.share else { return Err(String::from(SEVERAL)) };
     let p_value = chi_square_tail(share.beyond_one, 1.0).map_or(1.0, |tail| 0.5 * tail);
     let p_value = if share.value > 1.0 { p_value } else { 1.0 };
@@ -44,7 +44,7 @@ pub(super) fn offset(evidence: &Evidence<'_>) -> Verdict {
 }
 
 /// The variance of repeated loads against the declared noise (chi-square).
-pub(super) fn replicates(evidence: &Evidence<'_>) -> Verdict {
+pub(super) fn replicates(evidence: &Evidence<'_>) -> Unjudged {
     let pure = evidence.covariance.pure_error(&evidence.samples, Level::Repeated, |_| true, |_| false);
     let Some(variance) = pure.variance() else {
         return Err(String::from("the same load at the same pose again, a dozen times in all"));
@@ -79,7 +79,7 @@ pub(super) fn replicates(evidence: &Evidence<'_>) -> Verdict {
 }
 
 /// Kurtosis against that of simulated normal noise.
-pub(super) fn tails(evidence: &Evidence<'_>) -> Verdict {
+pub(super) fn tails(evidence: &Evidence<'_>) -> Unjudged {
     let Some(tails) = evidence.tails else { return Err(String::from(SEVERAL)) };
     let student =
         tails.freedom.map(|freedom| format!(" as Student's with {freedom} degrees of freedom")).unwrap_or_default();
@@ -100,7 +100,7 @@ pub(super) fn tails(evidence: &Evidence<'_>) -> Verdict {
 }
 
 /// Wild readings, by externally studentised shifts (Bonferroni).
-pub(super) fn outliers(evidence: &Evidence<'_>) -> Verdict {
+pub(super) fn outliers(evidence: &Evidence<'_>) -> Unjudged {
     if evidence.covariance.freedom == 0 {
         return Err(String::from(SEVERAL));
     }

@@ -7,19 +7,19 @@ use std::vec::Vec;
 
 use nalgebra::Vector3;
 
-use super::{Raw, Verdict};
+use super::{Raw, Unjudged};
 use crate::campaign::Positions;
 use crate::words::{count, micrometres};
 
 /// The check that makes sense of positions.
-pub(super) fn checks(data: &Positions) -> Vec<(&'static str, &'static str, Verdict)> {
+pub(super) fn checks(data: &Positions) -> Vec<(&'static str, &'static str, Unjudged)> {
     std::vec![("repeatability", "does the robot come back to where it was?", repeatability(data))]
 }
 
 /// What visits of one pose under one payload differ by, in the frame that positions
 /// are read in. It has the noise in it and how well the robot comes back, which
 /// nobody declares, so that it is told and not judged.
-fn repeatability(data: &Positions) -> Verdict {
+fn repeatability(data: &Positions) -> Unjudged {
     let mut visits: Vec<Visit> = Vec::new();
     for row in &data.rows {
         let same = |visit: &&mut Visit| visit.id == row.visit && visit.payload == row.payload;

@@ -8,13 +8,13 @@ use std::vec::Vec;
 
 use super::evidence::Evidence;
 use super::randomisation::{Witness, flip};
-use super::{Raw, Verdict};
+use super::{Raw, Unjudged};
 use crate::words::percent;
 
 /// What measurement errors of the force and of the second order may make of it.
 const MATTERS: f64 = 0.01;
 
-pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
+pub(super) fn check(evidence: &Evidence<'_>) -> Unjudged {
     let shared = evidence.covariance.shared;
     let (mut score, mut information) = (0.0, 0.0);
     let mut witnesses = Vec::new();

@@ -15,7 +15,7 @@ use nalgebra::{Vector3, Vector6};
 
 use super::evidence::{Evidence, Line};
 use super::randomisation::{Witness, flip};
-use super::{Raw, Verdict};
+use super::{Raw, Unjudged};
 use crate::probability::fisher_tail;
 use crate::words::percent;
 
@@ -33,7 +33,7 @@ struct Response {
     weights: Vec<f64>,
 }
 
-pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
+pub(super) fn check(evidence: &Evidence<'_>) -> Unjudged {
     let Some(wrenches) = &evidence.wrenches else {
         return Err(String::from("read the displacement where the force acts, or the rotation as well"));
     };

@@ -13,7 +13,7 @@ use nalgebra::DMatrix;
 
 use super::evidence::Evidence;
 use super::randomisation::{Witness, flip};
-use super::{Raw, Verdict};
+use super::{Raw, Unjudged};
 use crate::identify::covariance::contrasts::{Chunk, Level, contrasts};
 use crate::identify::samples::Samples;
 use crate::words::micrometres;
@@ -24,19 +24,19 @@ const MATTERS: f64 = 0.2;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-pub(super) fn time(evidence: &Evidence<'_>) -> Verdict {
+pub(super) fn time(evidence: &Evidence<'_>) -> Unjudged {
     let needs = "a column `time`, and several loads at each pose";
     let said = "readings drift (warming up, a sensor that creeps), or the base slipped";
     depends(evidence, |row| evidence.data.rows[row].time, "time", needs, said)
 }
 
-pub(super) fn temperature(evidence: &Evidence<'_>) -> Verdict {
+pub(super) fn temperature(evidence: &Evidence<'_>) -> Unjudged {
     let needs = "a column `temperature`, and several loads at each pose";
     let said = "the arm or what carries the sensor expands";
     depends(evidence, |row| evidence.data.rows[row].temperature, "temperature", needs, said)
 }
 
-pub(super) fn order(evidence: &Evidence<'_>) -> Verdict {
+pub(super) fn order(evidence: &Evidence<'_>) -> Unjudged {
     let needs = "several loads at each pose";
     let said = "readings drift, or the base or the sensor settles";
     depends(evidence, |row| Some(row as f64), "the order of rows", needs, said)
@@ -48,7 +48,7 @@ fn depends(
     name: &str,
     needs: &str,
     points: &str,
-) -> Verdict {
+) -> Unjudged {
     let samples = &evidence.samples;
     let column: Option<Vec<f64>> = (0..samples.rows.len()).map(of_row).collect();
     let Some(column) = column.filter(|column| range(column) > 0.0) else { return Err(String::from(needs)) };

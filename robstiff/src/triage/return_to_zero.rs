@@ -7,7 +7,7 @@ use std::vec::Vec;
 
 use super::evidence::Evidence;
 use super::randomisation::{Witness, flip};
-use super::{Raw, Verdict};
+use super::{Raw, Unjudged};
 use crate::words::micrometres;
 
 /// What matters, against the noise of a reading.
@@ -15,7 +15,7 @@ const MATTERS: f64 = 0.1;
 
 const WHERE: [&str; 4] = ["along the last load", "along x of the base", "along y of the base", "along z of the base"];
 
-pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
+pub(super) fn check(evidence: &Evidence<'_>) -> Unjudged {
     let mut witnesses = Vec::new();
     let (mut sums, mut strokes) = ([0.0; 4], 0.0);
     for &row in &evidence.unloaded {

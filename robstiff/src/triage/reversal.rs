@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 
 use super::evidence::Evidence;
 use super::randomisation::{Witness, flip};
-use super::{Raw, Verdict};
+use super::{Raw, Unjudged};
 use crate::words::percent;
 
 const MATTERS: f64 = 0.01;
@@ -18,7 +18,7 @@ const MATTERS: f64 = 0.01;
 const AXES: [&str; 6] =
     ["x of the base", "y of the base", "z of the base", "x of the tool", "y of the tool", "z of the tool"];
 
-pub(super) fn check(evidence: &Evidence<'_>) -> Verdict {
+pub(super) fn check(evidence: &Evidence<'_>) -> Unjudged {
     let shared = evidence.covariance.shared;
     let (mut witnesses, mut even, mut whole) = (Vec::new(), [(0.0, 0.0); 6], (0.0, 0.0));
     for line in &evidence.lines {

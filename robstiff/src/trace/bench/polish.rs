@@ -16,9 +16,8 @@ use crate::trace::catalogue::{Number, Refine, Variant};
 use crate::trace::model::{Fitted, Named, Setting};
 use crate::trace::point::Point;
 
-/// Times that numbers out of grids are looked at in turn, how far from the
-/// grid's value (grids double) and how finely, in logarithms; and the step of
-/// differences.
+/// Times that numbers out of grids are looked at in turn, by what factor from the
+/// grid's value (grids double); how finely, and the step of differences, in logarithms.
 const SWEEPS: usize = 2;
 const REACH: f64 = 2.5;
 const FINE: f64 = 0.02;

@@ -32,7 +32,7 @@ pub struct Found {
     pub selection: Selection,
     /// What it leaves.
     pub left: LackOfFit,
-    /// The lines of rows that are wild, with the probability of the likeliest.
+    /// The lines of rows that are wild, with the largest of their p-values.
     pub wild: (Vec<usize>, f64),
     /// Why the data cannot tell, if so.
     pub too_little: Option<String>,

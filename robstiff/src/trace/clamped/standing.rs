@@ -17,7 +17,7 @@ pub struct Standing {
     pub bench: Bench,
     /// The model.
     pub model: Fitted,
-    /// The lines of rows that are left out, with the probability of the likeliest.
+    /// The lines of rows that are left out, with the largest of their p-values.
     pub wild: (Vec<usize>, f64),
     /// Whether rows that are left out stay so.
     pub kept: bool,
@@ -110,7 +110,7 @@ impl Standing {
         Ok(self.wild.0.len() > before)
     }
 
-    /// The rows that are wild beside the model, with the probability of the likeliest.
+    /// The rows that are wild beside the model, with the largest of their p-values.
     pub fn wild_rows(&self, strict: bool, room: &Room) -> Option<(Vec<usize>, f64)> {
         let columns = self.bench.raw.select_columns(&self.model.fit.columns);
         wild::wild_rows(&self.bench.axes.rows, &columns, strict, &self.room_in(room))
