@@ -9,7 +9,7 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 use super::Bench;
-use crate::golden::inner;
+use crate::golden::least;
 use crate::identify::covariance::Whitener;
 use crate::identify::normal::{Normal, Sign};
 use crate::trace::catalogue::{Number, Refine, Variant};
@@ -74,48 +74,35 @@ impl<'c> Bench<'c> {
     /// what they are then; as it is where a model has none.
     pub fn polished(&self, named: &[Named]) -> Self {
         let mut bench = self.copy();
-        let rss = |bench: &Self| bench.state(named).map_or(f64::INFINITY, |state| state.fit.rss);
         for _ in 0..SWEEPS {
-            for &one in named {
+            for &one in named.iter().filter(|&&one| self.variant(one).refine.is_some()) {
                 for k in 0..self.variant(one).shape.len() {
-                    if self.variant(one).refine.is_none() {
-                        continue;
-                    }
-                    let at = bench.variant(one).shape[k].value;
-                    let with = |value: f64| bench.with_shape(one, k, value);
-                    let [least, most] = self.variant(one).within;
-                    let (mut low, mut high) = ((at / REACH).max(least).ln(), (at * REACH).min(most).ln());
-                    let tried = bench.at_hand(named, one, k);
-                    let unlikely = bench.unlikely(named, one);
-                    let left_by = |log: f64| {
-                        let left = match &tried {
-                            Some(tried) => tried.rss(log.exp()),
-                            None => rss(&with(log.exp())),
-                        };
-                        left + unlikely(log)
-                    };
-                    let [mut left, mut right] = inner(low, high);
-                    let (mut of_left, mut of_right) = (left_by(left), left_by(right));
-                    while high - low > FINE {
-                        if of_left < of_right {
-                            (high, right, of_right) = (right, left, of_left);
-                            left = inner(low, high)[0];
-                            of_left = left_by(left);
-                        } else {
-                            (low, left, of_left) = (left, right, of_right);
-                            right = inner(low, high)[1];
-                            of_right = left_by(right);
-                        }
-                    }
-                    let middle = 0.5 * (low + high);
-                    let better = with(middle.exp());
-                    if rss(&better) + unlikely(middle) < rss(&bench) + unlikely(at.ln()) {
-                        bench = better;
-                    }
+                    bench = bench.polished_in(named, one, k);
                 }
             }
         }
         bench
+    }
+
+    /// With one number out of a grid where it fits best, the others as they are.
+    fn polished_in(self, named: &[Named], one: Named, k: usize) -> Self {
+        let rss = |bench: &Self| bench.state(named).map_or(f64::INFINITY, |state| state.fit.rss);
+        let with = |log: f64| self.with_shape(one, k, log.exp());
+        let Variant { shape, within: [lowest, highest], .. } = self.variant(one);
+        let at = shape[k].value;
+        let (low, high) = ((at / REACH).max(*lowest).ln(), (at * REACH).min(*highest).ln());
+        let tried = self.at_hand(named, one, k);
+        let unlikely = self.unlikely(named, one);
+        let best = least(low, high, FINE, |log| {
+            let left = match &tried {
+                Some(tried) => tried.rss(log.exp()),
+                None => rss(&with(log)),
+            };
+            left + unlikely(log)
+        });
+        let better = with(best);
+        let is_better = rss(&better) + unlikely(best) < rss(&self) + unlikely(at.ln());
+        if is_better { better } else { self }
     }
 
     /// The same with forms that have a number out of a grid for each of their

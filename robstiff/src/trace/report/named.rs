@@ -10,7 +10,7 @@ use super::spread::share_of;
 use crate::identify::prepare::Prepared;
 use crate::trace::alias::{in_part, same_as};
 use crate::trace::bench::Bench;
-use crate::trace::catalogue::BASE_SLIP;
+use crate::trace::catalogue::{BASE_SLIP, SHIFT};
 use crate::trace::found::{EffectParameter, Found};
 use crate::trace::isolated::Event;
 use crate::trace::model::{Fitted, Named, Setting, all_but};
@@ -120,7 +120,7 @@ const MOST_SLIPS: usize = 3;
 /// The names of what is wrong in single visits, which some effects may as well be. Rows at the
 /// end of a visit that are all off alike are what a slip of the base within the visit leaves, of
 /// which the next unloaded reading knows nothing; a slip in the visit that one was found at the
-/// end of, or within, is that one.
+/// end of, or within, is that one (`slipped`).
 pub fn isolated(
     prepared: &Prepared<'_>,
     outcome: &Outcome,
@@ -128,62 +128,67 @@ pub fn isolated(
     slipped: Option<&mut NamedEffect>,
     may_be: &[String],
 ) -> Vec<NamedEffect> {
-    let line = |row: &usize| prepared.data.rows[*row].line;
+    let lines = |event: &Event| event.rows.iter().map(|&row| prepared.data.rows[row].line).collect::<Vec<usize>>();
     // First as what is said of single visits; a slip is among the candidates itself.
     let besides = |own: &Found, first: &[&str]| {
         let own = own.to_string();
         let others = may_be.iter().filter(|name| !first.contains(&name.as_str()) && **name != own).cloned();
         first.iter().copied().map(String::from).chain(others).collect()
     };
-    let one = |effect: Found, lines: Vec<usize>, events: &[&Event], first: &[&str]| NamedEffect {
-        same_as: besides(&effect, first),
-        effect,
-        lines,
-        p_value: events.iter().map(|event| event.p_value).fold(0.0, f64::max),
-        holdout_rms,
-        in_part: Vec::new(),
-        partial: outcome.structure(),
+    let one = |effect: Found, events: &[&Event], first: &[&str]| {
+        let mut lines: Vec<usize> = events.iter().flat_map(|event| lines(event)).collect();
+        lines.sort_unstable();
+        NamedEffect {
+            same_as: besides(&effect, first),
+            effect,
+            lines,
+            p_value: events.iter().map(|event| event.p_value).fold(0.0, f64::max),
+            holdout_rms,
+            in_part: Vec::new(),
+            partial: outcome.structure(),
+        }
     };
     let (mut slips, mut outliers): (Vec<&Event>, Vec<&Event>) =
         outcome.events.iter().partition(|event| event.slip.is_some());
-    let mut found = Vec::new();
     let already = slipped.is_some();
     if let Some(known) = slipped {
         let moment = known.effect.value(SLIPPED_AT) as usize;
         // By their places among the rows, for the next one read may be on any line.
         let moment = prepared.data.rows.iter().position(|row| row.line == moment).unwrap_or(usize::MAX);
-        let is_that = |slip: &&Event| match slip.rows.iter().min().zip(slip.rows.iter().max()) {
-            Some((&first, &last)) => (first..=last + 1).contains(&moment),
-            None => false,
-        };
-        known.lines.extend(slips.iter().filter(|slip| is_that(slip)).flat_map(|slip| slip.rows.iter().map(line)));
-        slips.retain(|slip| !is_that(slip));
+        let (same, others): (Vec<_>, Vec<_>) = slips.into_iter().partition(|slip| slipped_at(slip, moment));
+        known.lines.extend(same.into_iter().flat_map(lines));
+        slips = others;
     }
     let too_many = slips.len() > MOST_SLIPS;
     if too_many {
         outliers.append(&mut slips);
     }
     slips.sort_by_key(|slip| slip.rows.iter().min().copied());
-    for slip in slips {
-        let shift = slip.slip.unwrap_or_default();
-        let number =
-            |(name, value): (&'static str, &f64)| EffectParameter { name, value: *value, std: None, unit: "m" };
-        let mut parameters: Vec<EffectParameter> =
-            ["dx", "dy", "dz"].into_iter().zip(shift.iter()).map(number).collect();
-        let first = slip.rows.iter().min().map(line).unwrap_or_default();
-        parameters.push(EffectParameter { name: SLIPPED_AT, value: first as f64, std: None, unit: "1" });
-        let effect = Found::new(&BASE_SLIP, Part::Base.into(), parameters);
-        let lines = slip.rows.iter().map(line).collect();
-        // At one pose a shift in the base frame is one in the tool frame.
-        found.push(one(effect, lines, &[slip], &["outliers@rig", "reflector_slip@rig"]));
-    }
+    // At one pose a shift in the base frame is one in the tool frame.
+    let slip = |slip: &Event| one(slip_of(slip, prepared), &[slip], &["outliers@rig", "reflector_slip@rig"]);
+    let mut found: Vec<NamedEffect> = slips.into_iter().map(slip).collect();
     if !outliers.is_empty() {
-        let mut lines: Vec<usize> = outliers.iter().flat_map(|event| event.rows.iter().map(line)).collect();
-        lines.sort_unstable();
         // One visit alone may as well have been where the robot slipped, or the reflector.
         let may_have_slipped = (outliers.len() == 1 && !already) || too_many;
         let slips: &[&str] = if may_have_slipped { &["base_slip@base", "reflector_slip@rig"] } else { &[] };
-        found.push(one(Found::outliers(lines.len()), lines, &outliers, slips));
+        let rows = outliers.iter().map(|event| event.rows.len()).sum();
+        found.push(one(Found::outliers(rows), &outliers, slips));
     }
     found
+}
+
+/// Whether a row is one of those that a slip in a visit has shifted, or the next.
+fn slipped_at(slip: &Event, row: usize) -> bool {
+    let ends = slip.rows.iter().min().zip(slip.rows.iter().max());
+    ends.is_some_and(|(&first, &last)| (first..=last + 1).contains(&row))
+}
+
+/// The slip in a visit, with its shift and the first line that has it.
+fn slip_of(event: &Event, prepared: &Prepared<'_>) -> Found {
+    let shift = event.slip.unwrap_or_default();
+    let number = |(name, &value): (&'static str, &f64)| EffectParameter { name, value, std: None, unit: "m" };
+    let mut parameters: Vec<EffectParameter> = SHIFT.into_iter().zip(shift.iter()).map(number).collect();
+    let first = event.rows.iter().min().map_or(0, |&row| prepared.data.rows[row].line);
+    parameters.push(EffectParameter { name: SLIPPED_AT, value: first as f64, std: None, unit: "1" });
+    Found::new(&BASE_SLIP, Part::Base.into(), parameters)
 }
