@@ -36,13 +36,15 @@ macro_rules! for_every_arm {
             staubli_rx160 StaubliRx160 "staubli-rx160.yaml",
             every_effect EveryEffect "every-effect.yaml",
             every_law EveryLaw "every-law.yaml",
+            flexible_on_a_wall FlexibleOnAWall "flexible-on-a-wall.yaml",
             hanging Hanging "hanging.yaml",
             modified_slider ModifiedSlider "modified-slider.yaml",
             pendulum Pendulum "pendulum.yaml",
             preloaded Preloaded "preloaded.yaml",
             scara Scara "scara.yaml",
             sliders Sliders "sliders.yaml",
-            snake Snake "snake.yaml"
+            snake Snake "snake.yaml",
+            turned_tool TurnedTool "turned-tool.yaml"
         }
     };
     ($check:ident) => {

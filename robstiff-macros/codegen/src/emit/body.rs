@@ -60,7 +60,7 @@ pub(super) fn handing_over(function: &Function) -> TokenStream {
 struct Writer<'f> {
     function: &'f Function,
     reader: Reader,
-    /// The operations that outputs depend on.
+    /// The operations that outputs depend on, and what else goes into turns.
     live: Vec<Op>,
     lines: Lines,
     fusion: Fusion,
@@ -70,7 +70,9 @@ struct Writer<'f> {
 impl<'f> Writer<'f> {
     fn of(function: &'f Function, reader: Reader, turns: Turns, fusion: Fusion) -> Self {
         let nodes = function.graph().nodes();
-        let live = nodes.iter().zip(function.uses()).filter(|(_, used)| *used > 0).map(|(node, _)| node.op).collect();
+        let (uses, besides) = (function.uses(), turns.besides(function));
+        let is_live = |id: &usize| uses[*id] > 0 || besides.contains(id);
+        let live = (0..nodes.len()).filter(is_live).map(|id| nodes[id].op).collect();
         Self { function, reader, live, lines: Lines::of(function, &turns, &fusion), fusion, turns }
     }
 

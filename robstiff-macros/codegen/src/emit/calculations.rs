@@ -245,6 +245,12 @@ impl Generated {
         Calculation::all(robot).map(|method| Self::of(method, robot)).collect()
     }
 
+    /// The functions that are written for a reader.
+    pub fn written(&self, reader: Reader) -> impl Iterator<Item = &Function> {
+        let in_columns = self.in_columns.as_ref().filter(|_| reader == Reader::Compiler);
+        [&self.function].into_iter().chain(in_columns.map(|(function, _)| function))
+    }
+
     fn of(method: Calculation, robot: &Description) -> Self {
         let function = method.function(robot);
         let in_columns = method.in_columns.map(|(algorithm, result)| (Function::of(|g| algorithm(g, robot)), result));

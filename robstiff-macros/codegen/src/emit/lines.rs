@@ -29,6 +29,9 @@ impl Lines {
     pub fn of(function: &Function, turns: &Turns, fusion: &Fusion) -> Self {
         let mut needed = needed(function);
         needed.extend(turns.results());
+        let nodes = function.graph().nodes();
+        let besides = turns.besides(function).into_iter();
+        needed.extend(besides.filter(|&id| needs_constant(nodes[id].op, nodes[id].constant)));
         // Products that sums take up are not there any more.
         needed.retain(|&id| fusion.is_used(id));
         let graph = function.graph();

@@ -170,7 +170,9 @@ pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Gene
         docs.extend(lines(&robot.source));
     }
     let mut numbers: Vec<NamedNumber> = Vec::new();
-    for named in functions.iter().flat_map(|generated| generated.function.graph().named_numbers().to_vec()) {
+    // In columns, numbers may have names that they have nowhere else.
+    let written = functions.iter().flat_map(|generated| generated.written(reader));
+    for named in written.flat_map(|function| function.graph().named_numbers().to_vec()) {
         if !numbers.contains(&named) {
             numbers.push(named);
         }

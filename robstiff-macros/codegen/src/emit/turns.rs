@@ -6,7 +6,7 @@
 //! those turns stay products and sums, and so do all in source for people.
 //! Gain: `benches/README.md`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::function::Function;
 use crate::graph::{BlockTurn, Node};
@@ -51,6 +51,22 @@ impl Turns {
     /// The turn that a node is a result of.
     pub fn with(&self, id: Id) -> Option<&Turn> {
         self.0.iter().find(|turn| turn.results.contains_key(&id))
+    }
+
+    /// What no output depends on and goes into a turn all the same, which takes whole blocks; with
+    /// the constants that this is made of.
+    pub fn besides(&self, function: &Function) -> BTreeSet<Id> {
+        let (nodes, uses) = (function.graph().nodes(), function.uses());
+        let mut besides = BTreeSet::new();
+        let mut left: Vec<Id> = self.0.iter().flat_map(Turn::operands).collect();
+        while let Some(id) = left.pop() {
+            if nodes[id].constant.is_some() {
+                besides.insert(id);
+            } else if uses[id] == 0 && besides.insert(id) {
+                left.extend(nodes[id].op.operands());
+            }
+        }
+        besides
     }
 
     /// The results of all turns.
