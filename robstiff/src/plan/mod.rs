@@ -183,7 +183,8 @@ pub fn can_follow(campaign: &Campaign) -> Result<(), Error> {
 /// Plans the measurements after a campaign that was traced.
 ///
 /// # Errors
-/// A campaign of another kind; no pose that could be proposed.
+/// A campaign of another kind, or one that shows none of the robot's compliances; no pose that
+/// could be proposed.
 pub fn plan(campaign: &Campaign, trace: &Trace, options: &Options) -> Result<Plan, Error> {
     plan_between(campaign, trace, &groups(trace), options)
 }

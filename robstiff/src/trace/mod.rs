@@ -163,7 +163,7 @@ pub struct Trace {
     /// Lines of poses held out that are not judged by: the fit does not say on which side of
     /// the moment of a slip they are.
     pub undecided: Vec<usize>,
-    /// The noise of one reading (m).
+    /// The noise of one reading, in the unit of [`Misfit`].
     pub noise: f64,
     /// Where the noise is known from.
     pub noise_source: NoiseSource,
@@ -216,7 +216,7 @@ pub struct Trace {
     pub pose_errors: Vec<PoseError>,
 }
 
-/// How far off a model is (m).
+/// How far off a model is (m; of clamped axes that turn, rad).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Misfit {
     /// On the rows fitted to.
@@ -236,7 +236,7 @@ pub struct NamedEffect {
     pub lines: Vec<usize>,
     /// The family-wise p-value of the model without it.
     pub p_value: f64,
-    /// The error on unseen poses (m) with it and those before it.
+    /// The error on unseen poses with it and those before it, in the unit of [`Misfit`].
     pub holdout_rms: f64,
     /// Full names of what these data cannot tell it from.
     pub same_as: Vec<String>,
@@ -251,7 +251,8 @@ pub struct NamedEffect {
 pub struct Proposal {
     /// Joint coordinates (rad or m).
     pub q: Vec<f64>,
-    /// The force (N); of a payload, its weight.
+    /// The force (N) in the base frame, acting where the campaign's loads do; of a payload, its
+    /// weight.
     pub force: [f64; 3],
     /// The payload (kg), where positions are read.
     pub payload: Option<f64>,
@@ -259,7 +260,7 @@ pub struct Proposal {
     pub separates: [String; 2],
 }
 
-/// What is left of a row, in the base frame (m).
+/// What is left of a row, in the base frame (m; of clamped axes that turn, the angle in rad).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowResidual {
     /// The line of the CSV file, from 1.
@@ -272,7 +273,7 @@ pub struct RowResidual {
     pub after: [f64; 3],
 }
 
-/// The rms of one pose (m).
+/// The rms of one pose, or of one clamped axis, in the unit of [`Misfit`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseError {
     /// The pose's id.
@@ -289,7 +290,8 @@ pub struct PoseError {
 ///
 /// # Errors
 /// What [`Options::check`] and [`Campaign::check`] find; a campaign that shows none of the
-/// robot's compliances, or whose description could not be read back with what was found.
+/// robot's compliances, or whose description could not be read back with what was found; clamped
+/// axes of which some turn and some slide, or one deflects against its torque.
 pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) -> Result<Trace, Error> {
     options.check().map_err(Error::Invalid)?;
     campaign.check().map_err(Error::Invalid)?;

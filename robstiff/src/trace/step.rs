@@ -31,8 +31,8 @@ pub struct Tested {
     pub p_value: f64,
     /// The criterion of the model with it; lower is better.
     pub bic: Option<f64>,
-    /// The error with it on poses left out of the fit (m), each in turn; those
-    /// held out have no part in it.
+    /// The error with it on poses left out of the fit (m; of clamped axes that turn, rad), each
+    /// in turn; those held out have no part in it.
     pub left_out_rms: Option<f64>,
     /// Why it was not taken; empty for the one that was.
     pub reason: String,
