@@ -39,49 +39,61 @@ const BEYOND_DOUBT: f64 = 100.0;
 pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, structure: bool, options: &Options) -> Vec<String> {
     let (one, rest) = (model.named[k], all_but(&model.named, k));
     let Some(alone) = Alone::of(bench, model, &rest) else { return Vec::new() };
-    let own = &alone.own.setting;
-    let exact = |candidate: usize| {
-        let beside = alone.beside(candidate)?;
-        let rival = best_with(&beside.setting, &rest, candidate)?;
-        let [from, to] = [one, variant_of(&rival, candidate)].map(|named| beside.setting.variant(named));
-        Some(beside.left.distance(from, to) < EXACT)
-    };
     let without = Without::of(bench, &rest, options);
-    let of_model = own.deviances(&model.fit);
-    let near = |rival: &Fitted, candidate: usize| {
-        let Some(Without { setting, tests, unseen }) = &without else { return false };
-        let is_significant = tests.p_value(candidate) <= options.alpha;
-        let predicts = || setting.left_out(&rival.fit).deviance < *unseen;
-        let is_near = |rival: &Fitted, at: &Setting<'_>| {
-            let behind = rival.bic - model.bic;
-            behind < WITHIN_REACH
-                || (is_significant
-                    && (structure || behind < BEYOND_DOUBT)
-                    && witnesses(&of_model, &at.deviances(&rival.fit)) < WITNESSES)
-        };
-        // In its own form it may fit better than its tangent does.
-        let refit = || {
-            let at = bench.at(&rival.named).ok()?;
-            at.fit(&rival.named).ok().map(|rival| is_near(&rival, &at))
-        };
-        let may_fit = is_significant && bench.is_nonlinear(&rival.named) && rival.bic < model.bic + CURVATURE;
-        (is_near(rival, setting) || (may_fit && refit().unwrap_or(false))) && predicts()
-    };
+    let own = &alone.own.setting;
+    let contest = Contest { bench, model, of_model: own.deviances(&model.fit), structure, alpha: options.alpha };
     let mut found: Vec<(f64, String)> = Vec::new();
     for candidate in (0..own.candidates.len()).filter(|&candidate| candidate != one.candidate) {
-        let rival = without.as_ref().and_then(|without| best_with(&without.setting, &rest, candidate));
-        let Some(bic) = rival.as_ref().map(|rival| rival.bic).or_else(|| Some(best_with(own, &rest, candidate)?.bic))
-        else {
-            continue;
-        };
-        if exact(candidate).unwrap_or(false)
+        let rival = without.as_ref().and_then(|without| Some((without, without.with(&rest, candidate)?)));
+        let bic = rival.as_ref().map(|(_, rival)| rival.bic);
+        let Some(bic) = bic.or_else(|| Some(best_with(own, &rest, candidate)?.bic)) else { continue };
+        let is_alike = alone.is_exact(one, &rest, candidate)
             || one_formula(bench, own, model, one, candidate)
-            || rival.is_some_and(|rival| near(&rival, candidate))
-        {
+            || rival.is_some_and(|(without, rival)| contest.is_open(without, &rival, candidate));
+        if is_alike {
             found.push((bic, own.candidates[candidate].name()));
         }
     }
     best_first(found).chain(dead_zone(bench, own, model, one)).collect()
+}
+
+/// A model against rivals that have another effect in the place of one of its own.
+struct Contest<'b, 'c> {
+    bench: &'b Bench<'c>,
+    model: &'b Fitted,
+    /// What the model leaves of each pose.
+    of_model: Vec<f64>,
+    /// Whether it leaves structure.
+    structure: bool,
+    /// The level of the tests.
+    alpha: f64,
+}
+
+impl Contest<'_, '_> {
+    /// Whether a rival with a candidate, fitted where the effect is missing, predicts poses left out
+    /// better than no effect, and fits about as well as the model.
+    fn is_open(&self, without: &Without<'_>, rival: &Fitted, candidate: usize) -> bool {
+        let is_significant = without.tests.p_value(candidate) <= self.alpha;
+        // In its own form it may fit better than its tangent does.
+        let in_its_own_form = || {
+            let at = self.bench.at(&rival.named).ok()?;
+            let rival = at.fit(&rival.named).ok()?;
+            Some(self.fits_as_well(&rival, &at, is_significant))
+        };
+        let may_fit = is_significant && self.bench.is_nonlinear(&rival.named) && rival.bic < self.model.bic + CURVATURE;
+        (self.fits_as_well(rival, &without.setting, is_significant) || (may_fit && in_its_own_form().unwrap_or(false)))
+            && without.setting.left_out(&rival.fit).deviance < without.unseen
+    }
+
+    /// Whether a rival, at the setting it was fitted at, is as good by the criterion, or nearly so
+    /// where it is significant and too few poses witness against it.
+    fn fits_as_well(&self, rival: &Fitted, at: &Setting<'_>, is_significant: bool) -> bool {
+        let behind = rival.bic - self.model.bic;
+        behind < WITHIN_REACH
+            || (is_significant
+                && (self.structure || behind < BEYOND_DOUBT)
+                && witnesses(&self.of_model, &at.deviances(&rival.fit)) < WITNESSES)
+    }
 }
 
 /// What the others of a model leave of all columns, at a solution.
@@ -121,6 +133,17 @@ impl<'c> Alone<'c> {
         let is_linear = columns().all(|column| setting.numbers[column - setting.own.len()].enters.is_none());
         if is_linear { Some(&self.own) } else { self.others.as_ref() }
     }
+
+    /// Whether a candidate is, beside the others, the same as an effect but for rounding.
+    fn is_exact(&self, one: Named, others: &[Named], candidate: usize) -> bool {
+        let distance = || {
+            let Beside { setting, left } = self.beside(candidate)?;
+            let rival = best_with(setting, others, candidate)?;
+            let [from, to] = [one, variant_of(&rival, candidate)].map(|named| setting.variant(named));
+            Some(left.distance(from, to))
+        };
+        distance().is_some_and(|distance| distance < EXACT)
+    }
 }
 
 /// The model without an effect, as it fits best.
@@ -138,6 +161,11 @@ impl<'c> Without<'c> {
         let tests = bench.tests(rest, options)?;
         let unseen = setting.left_out(&setting.fit(rest).ok()?.fit).deviance;
         Some(Self { setting, tests, unseen })
+    }
+
+    /// The best model with a candidate in the place of the effect.
+    fn with(&self, rest: &[Named], candidate: usize) -> Option<Fitted> {
+        best_with(&self.setting, rest, candidate)
     }
 }
 
