@@ -25,21 +25,22 @@
 
 pub mod alone;
 mod by_pose;
+mod search;
 
 use std::vec;
 use std::vec::Vec;
 
 use nalgebra::{Matrix3, Vector3};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use self::by_pose::ByPose;
+use self::search::search;
 use super::model::{Fitted, Setting};
 use crate::campaign::Frame;
 use crate::identify::covariance::Outlier;
 use crate::identify::covariance::heavy::{freedom_of_tails, scale_of_tails};
-use crate::identify::covariance::outliers::{FEW, STANDS_OUT, STRICT, by_median};
+use crate::identify::covariance::outliers::{STANDS_OUT, by_median};
 use crate::identify::samples::{Samples, turn_of};
-use crate::probability::{as_normal, told};
+use crate::probability::as_normal;
 
 /// Something wrong in one visit.
 #[derive(Clone, Debug)]
@@ -235,51 +236,6 @@ fn visits(setting: &Setting<'_>, model: &Fitted) -> Vec<Visit> {
         visit.loads = visit.rows.iter().map(|row| wrench(row).dot(&largest) / size).collect();
     }
     visits
-}
-
-/// Takes what is wrong out of visits, the worst first; nothing is found where that
-/// would be more than a few.
-fn search(visits: &mut [Visit], strict: bool, tells: f64, known: &Known) -> Vec<Event> {
-    let rows: usize = visits.iter().map(|visit| visit.rows.len()).sum();
-    let most = (FEW * rows as f64).floor() as usize;
-    let too_many = |found: &[Event]| found.iter().map(|event| event.rows.len()).sum::<usize>() > most;
-    let hypotheses = 2 * rows;
-    let table = ChiSquared::new(3.0).expect("three degrees of freedom");
-    let threshold = table.inverse_cdf(1.0 - STRICT / hypotheses as f64);
-    let mut found: Vec<Event> = Vec::new();
-    loop {
-        let scale = scale(visits, strict, tells, known.tails);
-        if scale.variance.iter().any(|variance| *variance <= 0.0) {
-            return found;
-        }
-        let worst = (0..visits.len()).filter_map(|k| {
-            let own = |pattern: &[f64]| Some(known.by_pose.as_ref()?.noise(visits, k, pattern, &scale));
-            let judge = Judge { scale: &scale, own: &own, strict, threshold };
-            judge.worst(&visits[k]).map(|(statistic, event)| (statistic, k, event))
-        });
-        let Some((statistic, k, event)) = worst.max_by(|a, b| a.0.total_cmp(&b.0)) else {
-            let several = |k: &usize| found.iter().filter(|event| visits[*k].rows.contains(&event.rows[0])).count() > 1;
-            for k in (0..visits.len()).filter(several).collect::<Vec<usize>>() {
-                let own = |pattern: &[f64]| Some(known.by_pose.as_ref()?.noise(visits, k, pattern, &scale));
-                let judge = Judge { scale: &scale, own: &own, strict, threshold };
-                let Some((statistic, slip)) = judge.one_slip(&visits[k]) else { continue };
-                let visit = &mut visits[k];
-                found.retain(|event| !visit.rows.contains(&event.rows[0]));
-                visit.used = visit.rows.iter().map(|row| !slip.rows.contains(row)).collect();
-                found.push(Event { p_value: told(hypotheses as f64 * table.sf(statistic)), ..slip });
-            }
-            return if too_many(&found) { Vec::new() } else { found };
-        };
-        let visit = &mut visits[k];
-        for (i, row) in visit.rows.iter().enumerate() {
-            visit.used[i] &= !event.rows.contains(row);
-        }
-        let p_value = told(hypotheses as f64 * table.sf(statistic));
-        found.push(Event { p_value, ..event });
-        if too_many(&found) {
-            return Vec::new();
-        }
-    }
 }
 
 /// The variance of a reading, by axis.
