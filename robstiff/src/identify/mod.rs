@@ -55,7 +55,7 @@ pub use encoders::EncodersRead;
 pub use misread::misread;
 pub use positions::Prepared as PreparedPositions;
 pub use predict::{PredictedRow, Prediction, predict};
-pub use scale::off_by_one_factor;
+pub use scale::{ALL_JOINTS, off_by_one_factor};
 
 use self::baseline::Declared;
 use self::column::Column;
@@ -246,6 +246,15 @@ pub fn identify(campaign: &Campaign) -> Result<Identification, Error> {
     match scale::other_unit(campaign, &found.estimates) {
         Some(why) => Err(Error::OtherUnit(why)),
         None => Ok(found),
+    }
+}
+
+/// Why nothing can be made of a campaign that [`identify`] refuses for a unit that was taken for
+/// another.
+pub(crate) fn in_other_unit(campaign: &Campaign) -> Option<String> {
+    match identify(campaign) {
+        Err(Error::OtherUnit(why)) => Some(why),
+        _ => None,
     }
 }
 

@@ -19,6 +19,12 @@ const ALIKE: f64 = 3.0;
 /// within how many times of one the joints' factor is near it.
 const OF_UNITS: [(f64, f64); 4] = [(1e3, ALIKE), (1e6, ALIKE), (1e9, ALIKE), (180.0 / core::f64::consts::PI, 1.5)];
 
+/// How it begins what is said of a factor that no robot has.
+pub const ALL_JOINTS: &str = "all joints come out about";
+
+/// How it begins what would be right.
+pub(crate) const HEADER: &str = "the header of the table has to say what unit its numbers are in, as";
+
 /// What looks like a unit that was taken for another, in a sentence: that all joints which
 /// the data see, two at least, come out off from their declared compliances by about one
 /// factor, beyond 30 either way. `estimates` are of the campaign's robot, its joints first.
@@ -42,8 +48,8 @@ pub(crate) fn other_unit(campaign: &Campaign, estimates: &[Estimate]) -> Option<
         };
         let (times, likely) = (times(factor), likely(campaign, factor));
         format!(
-            "all joints come out about {times} as declared: {likely} looks like that; the header of the table has to \
-             say what unit its numbers are in, as {header} does; where the description is what is off, declare no compliances"
+            "{ALL_JOINTS} {times} as declared: {likely} looks like that; {HEADER} {header} does; where the \
+             description is what is off, declare no compliances"
         )
     })
 }

@@ -9,9 +9,25 @@ use super::model::Named;
 use super::search::Outcome;
 use super::too_little;
 use super::verdict::Verdict;
+use crate::campaign::Campaign;
 use crate::identify::misread::{ALIKE, FAR_LESS, in_displacements};
+use crate::identify::prepare::Prepared;
 use crate::identify::problem::rms;
 use crate::words::micrometres;
+
+/// What is told of a campaign of displacements in another unit than its files say, which
+/// identification refuses: nothing of the arm, and why. `None` where that is not so.
+pub fn in_other_unit<'c>(
+    campaign: &'c Campaign,
+    prepared: &'c Prepared<'c>,
+) -> Option<Result<(Bench<'c>, Outcome), String>> {
+    let why = crate::identify::in_other_unit(campaign)?;
+    let found = Bench::new(campaign, prepared).and_then(|bench| {
+        let base = bench.fit(&[])?;
+        Ok((bench, Outcome::nothing(base, Verdict::Insufficient, why)))
+    });
+    Some(found)
+}
 
 /// What was found, unless the files say something else than what was measured: then nothing that
 /// could be told of the arm, and why.

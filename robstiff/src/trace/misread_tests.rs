@@ -159,3 +159,21 @@ fn mistakes_in_positions_are_told() {
     told(&|row| row.position.swap(0, 1), "px, py and pz of the other hand, one with the other sign or two exchanged");
     told(&|row| row.position[2] *= 10.0, "pz in a unit a tenth of that of the header");
 }
+
+/// Numbers that identification refuses for their unit tell tracing nothing of the arm, either.
+#[test]
+fn numbers_in_another_unit_are_told_as_identification_does() {
+    let refused = |campaign: &Campaign, unit: &str| {
+        let why = identify(campaign).expect_err("it refuses another unit").to_string();
+        let found = traced(campaign);
+        assert_eq!((names(&found), found.verdict, found.why.as_str()), (vec![], Verdict::Insufficient, why.as_str()));
+        assert!(why.contains(unit) && found.description == campaign.robot, "{why}");
+        assert_eq!(found.after, found.declared);
+    };
+    let displacements = with(1, |row| row.displacement = row.displacement.map(|length| 1e3 * length));
+    refused(&displacements, "a displacement in um taken for mm");
+    let mut positions = PositionPlan::new(five_axis(), 1).run();
+    let Data::Position(data) = &mut positions.data else { unreachable!("positions") };
+    data.rows.iter_mut().for_each(|row| row.position = row.position.map(|length| 1e3 * length));
+    refused(&positions, "positions in mm taken for m");
+}

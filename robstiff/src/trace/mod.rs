@@ -22,6 +22,9 @@
 //!
 //! Positions and clamped axes go the same way on benches of their own (`positions`, `clamped`).
 //!
+//! Of numbers that are all in another unit than the files say, as `identify` refuses them, nothing
+//! is searched for.
+//!
 //! Levels: an effect is named, and structure is found, at a family-wise
 //! [`Options::alpha`] of 1 % each, so a robot that lacks nothing is called
 //! adequate in about 98 of 100 campaigns.
@@ -299,8 +302,9 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
         Data::Displacement(_) => {
             progress("identifying the joints");
             let prepared = Prepared::new(campaign)?;
-            let (bench, outcome) =
-                elsewhere::searched(campaign, &prepared, options, progress).map_err(Error::NotShown)?;
+            let in_other_unit = misread::in_other_unit(campaign, &prepared);
+            let searched = in_other_unit.unwrap_or_else(|| elsewhere::searched(campaign, &prepared, options, progress));
+            let (bench, outcome) = searched.map_err(Error::NotShown)?;
             let outcome = misread::unless(&bench, outcome).map_err(Error::NotShown)?;
             let preloaded = preload::worth_a_try(campaign, &outcome);
             let better = preloaded.and_then(|preloaded| {

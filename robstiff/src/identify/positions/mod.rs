@@ -17,6 +17,7 @@ pub mod registration;
 pub mod regression;
 #[cfg(test)]
 mod tests;
+mod unit;
 pub mod wild;
 mod within;
 
@@ -53,9 +54,12 @@ const PASSES: usize = 3;
 /// declared.
 ///
 /// # Errors
-/// Positions that show none, or not where the robot stands; compliances that no
-/// description takes beside its own effects.
+/// Positions that show none, or not where the robot stands, or are in another unit; compliances
+/// that no description takes beside its own effects.
 pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification, Error> {
+    if let Some(why) = unit::other_unit(&campaign.robot, data) {
+        return Err(Error::OtherUnit(why));
+    }
     let mut prepared = Prepared::new(campaign, data)?;
     let seen = prepared.seen();
     if seen.is_empty() {

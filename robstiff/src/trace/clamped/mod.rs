@@ -34,8 +34,8 @@ use std::string::String;
 
 use super::{Options, Progress, Trace};
 use crate::campaign::{Campaign, ClampedRow};
-use crate::identify::Error;
 use crate::identify::clamped::slopes;
+use crate::identify::{Error, in_other_unit};
 
 /// Traces a campaign of clamped axes. Lengths of the result are angles (rad), its
 /// poses the axes.
@@ -60,6 +60,6 @@ pub fn trace(
     // It refuses what no search should be begun with.
     let identified = slopes(campaign, rows, &[])?;
     let axes = Axes::new(&campaign.robot, rows, &identified);
-    let found = search::search(axes, options, progress).map_err(Error::NotShown)?;
+    let found = search::search(axes, in_other_unit(campaign), options, progress).map_err(Error::NotShown)?;
     report::report(campaign, &identified, &found)
 }

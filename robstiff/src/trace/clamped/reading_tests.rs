@@ -12,6 +12,7 @@ use super::slips::as_good_as_slip;
 use super::tests::{NOISE, both_ways, measured, names, ramp, traced};
 use crate::campaign::{Campaign, ClampedRow, Data};
 use crate::identify::clamped::slopes;
+use crate::identify::identify;
 use crate::probability::normal;
 use crate::samples::five_axis;
 use crate::trace::Verdict;
@@ -179,4 +180,15 @@ fn numbers_of_axes_that_slide_are_in_their_units() {
     };
     told(&drifts, ["thermal_drift@rig", "rate", "m/row"], 4e-6);
     told(&biased, ["load_cell_bias@rig", "torque", "N"], 60.0);
+}
+
+/// Nothing is told of axes whose torques are in another unit than identification takes them for.
+#[test]
+fn torques_in_another_unit_tell_nothing() {
+    let mut campaign = measured(&five_axis(), &ramp(14), 1, |_, _| 0.0);
+    rows_of(&mut campaign).iter_mut().for_each(|row| row.torque *= 1e3);
+    let why = identify(&campaign).expect_err("it refuses another unit").to_string();
+    let found = traced(&campaign);
+    assert_eq!((names(&found), found.verdict, found.why.as_str()), (Vec::new(), Verdict::Insufficient, why.as_str()));
+    assert!(why.contains("a torque in Nm taken for kNm") && found.description == campaign.robot, "{why}");
 }

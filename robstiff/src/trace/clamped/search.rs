@@ -38,14 +38,19 @@ pub struct Found {
     pub too_little: Option<String>,
 }
 
-/// Searches for effects.
+/// Searches for effects, unless the numbers are in another unit and `other_unit` says so.
 ///
 /// # Errors
 /// Why not even the axes' compliances can be fitted.
-pub fn search(axes: Axes, options: &Options, progress: &Progress<'_>) -> Result<Found, String> {
+pub fn search(
+    axes: Axes,
+    other_unit: Option<String>,
+    options: &Options,
+    progress: &Progress<'_>,
+) -> Result<Found, String> {
     let bench = Bench::new(axes, None);
     let base = bench.fit(&[]).ok_or_else(no_axis)?;
-    if let Some(why) = too_little(&bench) {
+    if let Some(why) = other_unit.or_else(|| too_little(&bench)) {
         let selection = Selection { model: base, p_values: Vec::new(), steps: Vec::new(), unnamed: false };
         let left = LackOfFit::default();
         return Ok(Found { bench, selection, left, wild: (Vec::new(), 1.0), too_little: Some(why) });

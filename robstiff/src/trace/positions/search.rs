@@ -16,6 +16,7 @@ use super::stand_ins::instead_of_stand_ins;
 use super::structure::structure;
 use super::wander::instead_of_slips;
 use crate::campaign::Campaign;
+use crate::identify::in_other_unit;
 use crate::identify::positions::wild::Wild;
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::Fitted;
@@ -64,7 +65,7 @@ pub fn search<'c>(
         .solve(&[], &start)
         .ok_or_else(|| String::from("these positions do not tell the description's own numbers from each other"))?;
     bench.turn_to(&base);
-    let too_little = too_little(&base);
+    let too_little = in_other_unit(campaign).or_else(|| too_little(&base));
     let (mut course, mut looks_like, mut rival) = (Course::new(base.clone()), Vec::<String>::new(), None);
     if too_little.is_none() {
         course = ended(course, &mut bench, noise, options, progress);
