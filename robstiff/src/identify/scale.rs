@@ -1,6 +1,7 @@
 //! A factor that all joints have in common: no robot is a thousand times as compliant as
 //! its maker says, but a force in another unit makes it so, and fits as well.
 
+use core::f64::consts::PI;
 use std::format;
 use std::string::String;
 use std::vec::Vec;
@@ -15,9 +16,24 @@ pub const FARTHEST: f64 = 30.0;
 /// is sure to.
 const ALIKE: f64 = 3.0;
 
-/// Factors between units that are taken for each other, thousands and degrees in a radian, and
-/// within how many times of one the joints' factor is near it.
-const OF_UNITS: [(f64, f64); 4] = [(1e3, ALIKE), (1e6, ALIKE), (1e9, ALIKE), (180.0 / core::f64::consts::PI, 1.5)];
+/// Factors between units of one prefix and another, thousands, and within how many times of one the
+/// joints' factor is near it.
+const THOUSANDS: [f64; 3] = [1e3, 1e6, 1e9];
+
+/// Pairs of units of angles that are taken for each other, the finer first, and how many of it the
+/// other is. Others are less than [`FARTHEST`] of each other, or thousands.
+const ANGLES: [([&str; 2], f64); 6] = [
+    (["deg", "rad"], 180.0 / PI),
+    (["arcmin", "rad"], 60.0 * 180.0 / PI),
+    (["arcsec", "rad"], 3600.0 * 180.0 / PI),
+    (["urad", "deg"], 1e6 * PI / 180.0),
+    (["urad", "arcmin"], 1e6 * PI / 180.0 / 60.0),
+    (["arcsec", "mrad"], 3.6 * 180.0 / PI),
+];
+
+/// The factor of joints is near that of a pair of angles within this one: pairs are closer to each
+/// other than thousands are.
+const NEAR: f64 = 1.5;
 
 /// How it begins what is said of a factor that no robot has.
 pub const ALL_JOINTS: &str = "all joints come out about";
@@ -38,9 +54,7 @@ pub fn off_by_one_factor(campaign: &Campaign, estimates: &[Estimate]) -> Option<
 /// made of such data, and what would be right.
 pub(crate) fn other_unit(campaign: &Campaign, estimates: &[Estimate]) -> Option<String> {
     let factor = common_factor(campaign, estimates)?;
-    let off = factor.max(factor.recip());
-    let is_near = |(unit, within): &(f64, f64)| (unit / within..=unit * within).contains(&off);
-    OF_UNITS.iter().any(is_near).then(|| {
+    (is_of_thousands(factor) || of_angles(campaign, factor).is_some()).then(|| {
         let header = match &campaign.data {
             Data::Displacement(_) => "`Fx [N]` or `dx [um]`",
             Data::Clamped(_) => "`torque [Nm]` or `deflection [urad]`",
@@ -75,6 +89,25 @@ fn times(factor: f64) -> String {
     format!("{} times as {which}", one_digit(factor.max(factor.recip())))
 }
 
+/// Whether a factor is one of prefixes.
+fn is_of_thousands(factor: f64) -> bool {
+    let off = factor.max(factor.recip());
+    THOUSANDS.iter().any(|unit| (unit / ALIKE..=unit * ALIKE).contains(&off))
+}
+
+/// The pair of units of angles that a factor is of; in campaigns that read none, of what a
+/// description declares its compliances in.
+fn of_angles(campaign: &Campaign, factor: f64) -> Option<[&'static str; 2]> {
+    let off = factor.max(factor.recip());
+    let is_read = matches!(campaign.data, Data::Clamped(_));
+    let of_descriptions = |units: [&str; 2]| matches!(units, ["deg" | "arcmin", "rad"]);
+    let near = ANGLES
+        .into_iter()
+        .filter(|&(units, unit)| (unit / NEAR..=unit * NEAR).contains(&off) && (is_read || of_descriptions(units)));
+    let apart = |unit: f64| (off / unit).ln().abs();
+    near.min_by(|a, b| apart(a.1).total_cmp(&apart(b.1))).map(|(units, _)| units)
+}
+
 /// What such a factor may come from.
 fn likely(campaign: &Campaign, factor: f64) -> String {
     let (off, is_softer) = (factor.max(factor.recip()), factor > 1.0);
@@ -82,13 +115,19 @@ fn likely(campaign: &Campaign, factor: f64) -> String {
         let [was, read] = if is_softer { [fine, coarse] } else { [coarse, fine] };
         format!("in {was} taken for {read}")
     };
-    let thousands = (off.log10() / 3.0).round();
+    let of_angles = of_angles(campaign, factor).map(|units| match &campaign.data {
+        Data::Clamped(_) => format!("a deflection {},", taken(units)),
+        _ => format!("a compliance declared in another unit, as {} for {},", units[0], units[1]),
+    });
     if off < 100.0 {
-        return match &campaign.data {
-            Data::Clamped(_) => format!("a deflection {},", taken(["deg", "rad"])),
-            _ => String::from("a compliance declared in another unit, as deg for rad,"),
-        };
+        return of_angles.unwrap_or_else(|| String::from("a compliance declared in another unit, as deg for rad,"));
     }
+    if !is_of_thousands(factor)
+        && let Some(said) = of_angles
+    {
+        return said;
+    }
+    let thousands = (off.log10() / 3.0).round();
     let [large, fine] = match thousands as i32 {
         ..=1 => [["k", ""], ["u", "m"]],
         2 => [["M", ""], ["u", ""]],
@@ -97,10 +136,15 @@ fn likely(campaign: &Campaign, factor: f64) -> String {
     let of = |prefixes: [&str; 2], unit: &str| {
         taken(prefixes.map(|prefix| format!("{prefix}{unit}")).each_ref().map(|unit| unit.as_str()))
     };
-    match &campaign.data {
+    let of_thousands = match &campaign.data {
         Data::Displacement(_) => format!("a force {}, or a displacement {},", of(large, "N"), of(fine, "m")),
         Data::Clamped(_) => format!("a torque {}, or a deflection {},", of(large, "Nm"), of(fine, "rad")),
-        Data::Position(_) => String::from("a payload or a position in another unit"),
+        Data::Position(_) => String::from("a payload or a position in another unit,"),
+    };
+    // Some pairs of angles are near thousands.
+    match of_angles {
+        Some(of_angles) => format!("{of_thousands} or {of_angles}"),
+        None => of_thousands,
     }
 }
 
@@ -136,6 +180,47 @@ mod tests {
         let stiffer = "All joints come out about 1000 times as stiff as declared: a force in N taken for kN, or a \
                        displacement in mm taken for um, looks like that.";
         assert_eq!(told(1e3, declared).as_deref(), Some(stiffer));
+    }
+
+    /// Degrees, minutes and seconds are no thousands of each other. What a description declares its
+    /// compliances in is asked for where no angle is read.
+    #[test]
+    fn units_of_angles_are_told() {
+        let robot = crate::samples::five_axis();
+        let row = |(k, axis): (usize, usize)| {
+            let torque = 100.0 * (k % 4 + 1) as f64;
+            let deflection = robot.joints[axis - 1].compliance() * torque;
+            crate::campaign::ClampedRow { line: k + 2, axis, torque, deflection }
+        };
+        let rows: Vec<_> = (1..=5).flat_map(|axis| [axis; 4]).enumerate().map(row).collect();
+        let refused = |times: f64| {
+            let mut rows = rows.clone();
+            rows.iter_mut().for_each(|row| row.deflection *= times);
+            let campaign = crate::campaign::made::campaign(robot.clone(), Data::Clamped(rows));
+            let found = crate::identify::clamped::slopes(&campaign, clamped(&campaign), &[]).expect("all are loaded");
+            other_unit(&campaign, &found.estimates)
+        };
+        for (times, said) in [
+            (1e6 * PI / 180.0, "a deflection in urad taken for deg, looks"),
+            (180.0 / PI / 1e6, "a deflection in deg taken for urad, looks"),
+            (180.0 / PI, "a deflection in deg taken for rad, looks"),
+            (648_000.0 / PI, "a deflection in arcsec taken for rad, looks"),
+            (290.9, "a deflection in urad taken for arcmin, looks"),
+        ] {
+            assert!(refused(times).is_some_and(|why| why.contains(said)), "{times}: {:?}", refused(times));
+        }
+        // No units are that far apart, nor is an arm.
+        for times in [25.0, 100.0, 70_000.0] {
+            assert_eq!(refused(times), None);
+        }
+        let arcmin = Plan::new(1).run_with(|_, row| row.displacement = row.displacement.map(|read| 3437.7 * read));
+        let refused = crate::identify::identify(&arcmin).map(|_| ()).map_err(|why| std::format!("{why}"));
+        assert!(refused.is_err_and(|why| why.contains("a compliance declared in another unit, as arcmin for rad")));
+    }
+
+    fn clamped(campaign: &Campaign) -> &[crate::campaign::ClampedRow] {
+        let Data::Clamped(rows) = &campaign.data else { unreachable!("made of clamped axes") };
+        rows
     }
 
     /// One joint that the data hardly show does not hide the unit of the others.
