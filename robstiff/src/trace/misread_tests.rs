@@ -1,6 +1,6 @@
 //! What tracing makes of files that say something else than what was measured.
 
-use core::f64::consts::FRAC_PI_2;
+use core::f64::consts::{FRAC_PI_2, PI};
 use std::string::ToString;
 use std::vec;
 use std::vec::Vec;
@@ -46,6 +46,27 @@ fn exchanged_and_reversed_columns_are_told() {
     tells(&traced(&with(4, |row| row.wrench[1] *= -1.0)), "Fy with the other sign");
     tells(&traced(&with(5, |row| row.displacement.rotate_left(1))), "dy, dz and dx where dx, dy and dz should be");
     tells(&traced(&with(6, |row| row.q.swap(1, 2))), "q2 and q3 exchanged");
+}
+
+/// Angles in another unit, all of them, of positions and of displacements.
+#[test]
+fn angles_that_are_all_in_another_unit_are_told() {
+    let told = |factor: f64, words: &str| {
+        let all = |q: &mut Vec<f64>| q.iter_mut().for_each(|q| *q *= factor);
+        let displacements = with(1, |row| all(&mut row.q));
+        tells(&traced(&displacements), words);
+        let mut positions = PositionPlan { payloads: vec![0.0, 100.0], ..PositionPlan::new(five_axis(), 1) }.run();
+        let Data::Position(data) = &mut positions.data else { unreachable!("positions") };
+        data.rows.iter_mut().for_each(|row| all(&mut row.q));
+        tells(&traced(&positions), words);
+        for campaign in [displacements, positions] {
+            let said = misread(&campaign, &identify(&campaign).expect("joints are seen")).unwrap_or_default();
+            assert!(said.contains(words), "{said}");
+        }
+    };
+    told(PI / 180.0, "all angles in rad where the header has deg");
+    told(180.0 / PI, "all angles in deg where the header has rad");
+    told(1.0 / 0.9, "all angles in gon where the header has deg");
 }
 
 /// A left-handed frame, and one that is turned, which is joint 1 counted from elsewhere.

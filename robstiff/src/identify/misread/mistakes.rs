@@ -25,6 +25,8 @@ pub enum Mistake {
     Unit(Vector, usize, Unit),
     /// The coordinate of a joint, from 0, is another.
     Counted(usize, Counted),
+    /// The angles of all joints that turn are in another unit, lengths of others are not.
+    AllAngles(Unit),
     /// The coordinates of two joints, from 0, are exchanged.
     Exchanged([usize; 2]),
     /// Positions are read along axes of the other hand, which no stand of the robot makes up for.
@@ -116,6 +118,10 @@ fn of_robot(robot: &Description) -> Vec<Mistake> {
     let turns = |joint: usize| robot.joints[joint].kind == JointKind::Revolute;
     let joints = robot.joints.len();
     let mut all = Vec::from([Mistake::Convention]);
+    // Of one that turns, all are that one.
+    if (0..joints).filter(|&joint| turns(joint)).count() > 1 {
+        all.extend(OF_ANGLES.map(Mistake::AllAngles));
+    }
     for joint in 0..joints {
         all.push(Mistake::Counted(joint, Counted::Backwards));
         if turns(joint) {
@@ -139,7 +145,7 @@ impl Mistake {
         match self {
             Self::Frame(Vector::Force) => data.wrench_frame = other(data.wrench_frame),
             Self::Frame(Vector::Displacement) => data.measured_frame = other(data.measured_frame),
-            _ => data.rows.iter_mut().for_each(|row| self.undo_in(row)),
+            _ => data.rows.iter_mut().for_each(|row| self.undo_in(row, robot)),
         }
         (self.undone_of(robot), data)
     }
@@ -147,7 +153,7 @@ impl Mistake {
     /// The robot and its positions, likewise.
     pub fn undone_in_positions(&self, robot: &Description, data: &Positions) -> (Description, Positions) {
         let mut data = data.clone();
-        data.rows.iter_mut().for_each(|row| self.undo_in_position(row));
+        data.rows.iter_mut().for_each(|row| self.undo_in_position(row, robot));
         (self.undone_of(robot), data)
     }
 
@@ -162,7 +168,7 @@ impl Mistake {
         robot
     }
 
-    fn undo_in(&self, row: &mut Observation) {
+    fn undo_in(&self, row: &mut Observation, robot: &Description) {
         match *self {
             Self::Axes(Vector::Force, axes) => axes.apply(&mut row.wrench[..3]),
             Self::Axes(Vector::Displacement, axes) => axes.apply(&mut row.displacement),
@@ -177,21 +183,25 @@ impl Mistake {
             // As they were commanded, and as they were read under the load.
             _ => {
                 let coordinates = core::iter::once(&mut row.q).chain(&mut row.encoders).chain(&mut row.motors);
-                coordinates.for_each(|q| self.undo_in_coordinates(q));
+                coordinates.for_each(|q| self.undo_in_coordinates(q, robot));
             }
         }
     }
 
-    fn undo_in_position(&self, row: &mut PositionRow) {
+    fn undo_in_position(&self, row: &mut PositionRow, robot: &Description) {
         match *self {
             Self::OtherHand => row.position[0] = -row.position[0],
             Self::Unit(Vector::Position, axis, unit) => row.position[axis] *= unit.factor,
-            _ => self.undo_in_coordinates(&mut row.q),
+            _ => self.undo_in_coordinates(&mut row.q, robot),
         }
     }
 
-    fn undo_in_coordinates(&self, q: &mut [f64]) {
+    fn undo_in_coordinates(&self, q: &mut [f64], robot: &Description) {
         match *self {
+            Self::AllAngles(unit) => {
+                let angles = q.iter_mut().zip(&robot.joints).filter(|(_, joint)| joint.kind == JointKind::Revolute);
+                angles.for_each(|(q, _)| *q *= unit.factor);
+            }
             Self::Counted(joint, counted) => counted.undo(joint, q),
             Self::Exchanged([one, other]) => q.swap(one, other),
             _ => {}
@@ -267,6 +277,7 @@ impl fmt::Display for Mistake {
                     Counted::In(Unit { name, .. }) => format!("{q} in {name}"),
                 }
             }
+            Self::AllAngles(Unit { name, .. }) => format!("all angles in {name}"),
             Self::Exchanged([one, other]) => format!("q{} and q{} exchanged", one + 1, other + 1),
             Self::OtherHand => {
                 String::from("px, py and pz of the other hand, one with the other sign or two exchanged")
