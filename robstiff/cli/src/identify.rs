@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use robstiff::campaign::{Campaign, Data, Displacements, Positions};
 use robstiff::identify::{
-    Basis, Covariance, Estimate, Identification, NoiseSource, Visibility, identify, misread, off_by_one_factor,
+    Basis, Covariance, Estimate, Identification, NoiseSource, Visibility, identify, misread, noise_not_used,
+    off_by_one_factor,
 };
 use robstiff_robots::Description;
 use serde_json::{Value, json};
@@ -85,7 +86,8 @@ fn page(campaign: &Campaign, found: &Identification) -> String {
 
 /// What looks wrong with the files, a sentence each.
 fn warnings(campaign: &Campaign, found: &Identification) -> Vec<String> {
-    off_by_one_factor(campaign, &found.estimates).into_iter().chain(misread(campaign, found)).collect()
+    let noise = found.noise.and_then(|noise| noise_not_used(campaign, noise));
+    off_by_one_factor(campaign, &found.estimates).into_iter().chain(misread(campaign, found)).chain(noise).collect()
 }
 
 /// Whether some visit has one payload and another.

@@ -160,3 +160,29 @@ fn a_scatter_is_told_in_round_numbers() {
     let truth = fs::read_to_string(out.join("truth.yaml")).unwrap();
     assert!(truth.contains("off their declared compliance by up to 29 %"), "{truth}");
 }
+
+/// Declared noise far above what the readings show is not used, and not in silence.
+#[test]
+fn declared_noise_that_is_not_used_is_warned_of() {
+    let folder = folder("simulate-noise");
+    let (scenario, out) = (scenario(&folder, SCENARIO), inside(&folder, "out"));
+    succeed(&["simulate", "kuka-kr270-r2700", &scenario, "--out", &out]);
+    let campaign = format!("{out}/campaign.yaml");
+    let (found, traced) = (inside(&folder, "found"), inside(&folder, "traced"));
+    let told = inside(&folder, "told.json");
+    let said = "The declared noise of 80.0 um is not used: the readings show ";
+    let warned = |is_said: bool| {
+        let identified = succeed(&["identify", &campaign, "--out", &found, "--json", &told]);
+        let page = succeed(&["trace", &campaign, "--out", &traced, "--draws", "499"]);
+        assert!(identified.contains(said) == is_said && page.contains(said) == is_said, "{identified}\n{page}");
+        for document in [json(&told), json(&format!("{traced}/trace.json"))] {
+            let warnings = document["warnings"].as_array().unwrap();
+            assert_eq!(warnings.iter().any(|one| one.as_str().unwrap().starts_with(said)), is_said, "{warnings:?}");
+        }
+    };
+    warned(false);
+    let text = fs::read_to_string(&campaign).unwrap();
+    assert!(text.contains("displacement: 8 um"), "{text}");
+    fs::write(&campaign, text.replace("displacement: 8 um", "displacement: 80 um")).unwrap();
+    warned(true);
+}

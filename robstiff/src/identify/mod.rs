@@ -55,6 +55,7 @@ pub use encoders::EncodersRead;
 pub use misread::misread;
 pub use positions::Prepared as PreparedPositions;
 pub use predict::{PredictedRow, Prediction, predict};
+pub use prepare::noise_not_used;
 pub use scale::{ALL_JOINTS, off_by_one_factor};
 
 use self::baseline::Declared;

@@ -1,5 +1,6 @@
 //! From a campaign to a regression: noise, weights, and what the data can see.
 
+use std::format;
 use std::rc::Rc;
 use std::string::String;
 use std::vec::Vec;
@@ -20,6 +21,7 @@ use super::second_order::{beyond_linear, straightened};
 use super::wild::leave_out;
 use super::{Error, NoiseSource, is_at_bound};
 use crate::campaign::{Campaign, Data, Displacements};
+use crate::words::micrometres;
 
 /// A campaign made ready for regressions.
 pub struct Prepared<'c> {
@@ -75,6 +77,20 @@ const DECLARED_IS_OFF_BY: f64 = 0.25;
 pub fn believed_noise(campaign: &Campaign, covariance: &Covariance) -> Option<f64> {
     let declared = campaign.noise.displacement.filter(|&declared| !covariance.is_far_below(declared));
     declared.and(campaign.noise_of_reading())
+}
+
+/// That the noise which a campaign of displacements declares is not used, in a sentence, where the
+/// noise that is told (m) is known from elsewhere: the readings show far less.
+pub fn noise_not_used(campaign: &Campaign, (noise, source): (f64, NoiseSource)) -> Option<String> {
+    let declared = campaign.noise.displacement?;
+    let is_used = source.is_declared() || !matches!(campaign.data, Data::Displacement(_));
+    (!is_used).then(|| {
+        format!(
+            "The declared noise of {} is not used: the readings show {}.",
+            micrometres(declared),
+            micrometres(noise)
+        )
+    })
 }
 
 impl<'c> Prepared<'c> {

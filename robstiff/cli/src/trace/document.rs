@@ -2,12 +2,12 @@
 
 use robstiff::JointKind;
 use robstiff::campaign::Campaign;
-use robstiff::identify::{EncodersRead, off_by_one_factor};
+use robstiff::identify::EncodersRead;
 use robstiff::trace::{Misfit, NamedEffect, Proposal, Rival, Trace};
 use robstiff::triage::Triage;
 use serde_json::{Value, json};
 
-use super::triage;
+use super::{triage, warned};
 use crate::identify;
 use crate::json::{number, numbers};
 use crate::report::terms::Terms;
@@ -31,7 +31,7 @@ pub fn document(trace: &Trace, triage: &Triage, campaign: &Campaign) -> Value {
             "depends_on": trace.depends_on,
             "looks_like": trace.looks_like,
         },
-        "warnings": off_by_one_factor(campaign, &trace.estimates_before).into_iter().collect::<Value>(),
+        "warnings": warned::warnings(trace, campaign),
         "numbers": identify::numbers(&trace.estimates),
         "rivals": trace.rivals.iter().map(rival).collect::<Value>(),
         "invisible": trace.invisible,

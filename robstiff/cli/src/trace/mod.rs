@@ -9,6 +9,7 @@ mod doubts;
 mod pictures;
 mod story;
 mod triage;
+mod warned;
 
 use std::path::PathBuf;
 

@@ -2,11 +2,12 @@
 
 use robstiff::JointKind;
 use robstiff::campaign::Campaign;
-use robstiff::identify::{ALL_JOINTS, EncodersRead, Estimate, Visibility, off_by_one_factor, predict};
+use robstiff::identify::{EncodersRead, Estimate, Visibility, predict};
 use robstiff::trace::{EffectParameter, NamedEffect, Proposal, RowResidual, Trace, Verdict};
 use robstiff_robots::{Description, Effect, Joint};
 
 use super::doubts::doubts;
+use super::warned;
 use crate::effect::parameters;
 use crate::identify::{at_bound, source_of};
 use crate::report::terms::Terms;
@@ -63,9 +64,7 @@ pub fn headline(trace: &Trace, terms: Terms) -> String {
 /// What follows the finding, a sentence each.
 pub fn summary(trace: &Trace, campaign: &Campaign) -> Vec<String> {
     let mut sentences = vec![sentence(&trace.why)];
-    // Of the joints alone: what an effect changes in them is no unit.
-    let other_unit = off_by_one_factor(campaign, &trace.estimates_before);
-    sentences.extend(other_unit.filter(|_| !trace.why.contains(ALL_JOINTS)));
+    sentences.extend(warned::besides(trace, campaign));
     sentences.extend(trace.encoders.iter().flat_map(|read| encoders(read, trace)));
     sentences.extend(on_the_same_rows(trace, Terms::of(campaign)));
     sentences.extend(alone(trace, campaign));
