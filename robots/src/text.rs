@@ -19,19 +19,27 @@ pub fn read(path: &Path) -> Result<String, ReadError> {
 /// # Errors
 /// Where they are not UTF-8.
 pub fn decoded(file: &str, bytes: Vec<u8>) -> Result<String, Diagnostics> {
-    String::from_utf8(bytes).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        foreign(file, &error.into_bytes(), valid).into()
-    })
+    match String::from_utf8(bytes) {
+        // Of a text in UTF-16 without a mark every other byte is a zero, which is UTF-8, too.
+        Ok(text) if text.contains('\0') && utf_16(text.as_bytes()).is_some() => {
+            Err(foreign(file, text.as_bytes(), text.len()).into())
+        }
+        Ok(text) => Ok(text),
+        Err(error) => {
+            let valid = error.utf8_error().valid_up_to();
+            Err(foreign(file, &error.into_bytes(), valid).into())
+        }
+    }
 }
 
 /// What is said of bytes of which only the first ones are UTF-8.
 fn foreign(file: &str, bytes: &[u8], valid: usize) -> Diagnostic {
     let help = "save the file as UTF-8";
-    if let Some(text) = utf_16(bytes) {
+    if let Some((text, is_marked)) = utf_16(bytes) {
         let first = text.lines().next().unwrap_or_default();
         let (line, place) = (Line { number: 1, text: first }, (1, first.chars().count()));
-        return Diagnostic::new(file, line, place, "this file is in UTF-16", help);
+        let message = if is_marked { "this file is in UTF-16" } else { "this file looks like UTF-16" };
+        return Diagnostic::new(file, line, place, message, help);
     }
     let (before, after) = bytes.split_at(valid);
     let number = 1 + before.iter().filter(|byte| **byte == b'\n').count();
@@ -43,15 +51,21 @@ fn foreign(file: &str, bytes: &[u8], valid: usize) -> Diagnostic {
     Diagnostic::new(file, Line { number, text: &text }, (column, 1), message, help)
 }
 
-/// The text, where a byte order mark says that it is in UTF-16.
-fn utf_16(bytes: &[u8]) -> Option<String> {
-    let unit: fn([u8; 2]) -> u16 = match bytes {
-        [0xff, 0xfe, ..] => u16::from_le_bytes,
-        [0xfe, 0xff, ..] => u16::from_be_bytes,
+/// The text, where a byte order mark says that it is in UTF-16, or zeros in every other place
+/// let one guess it; whether there is a mark is the second.
+fn utf_16(bytes: &[u8]) -> Option<(String, bool)> {
+    // Most characters of what people write for a program are ASCII.
+    let mostly_zero =
+        |from: usize| 4 * bytes.iter().skip(from).step_by(2).filter(|byte| **byte == 0).count() > bytes.len();
+    let (unit, mark): (fn([u8; 2]) -> u16, usize) = match bytes {
+        [0xff, 0xfe, ..] => (u16::from_le_bytes, 2),
+        [0xfe, 0xff, ..] => (u16::from_be_bytes, 2),
+        _ if mostly_zero(1) && !mostly_zero(0) => (u16::from_le_bytes, 0),
+        _ if mostly_zero(0) && !mostly_zero(1) => (u16::from_be_bytes, 0),
         _ => return None,
     };
-    let units: Vec<u16> = bytes[2..].chunks_exact(2).map(|pair| unit([pair[0], pair[1]])).collect();
-    Some(String::from_utf16_lossy(&units))
+    let units: Vec<u16> = bytes[mark..].chunks_exact(2).map(|pair| unit([pair[0], pair[1]])).collect();
+    Some((String::from_utf16_lossy(&units), mark > 0))
 }
 
 #[cfg(test)]
@@ -78,6 +92,16 @@ mod tests {
                 "error: this file is in UTF-16\n --> arm.yaml:1:1\n  |\n1 | name: Ä\n  | ^^^^^^^\n  |\n  = help: save the file \
                  as UTF-8"
             );
+        }
+        // Without the mark it is a guess; a byte beyond ASCII makes no difference.
+        for (swap, name) in [(false, "Arm"), (true, "Arm"), (false, "Ä"), (true, "Ä")] {
+            let bytes: Vec<u8> = format!("name: {name}\n")
+                .encode_utf16()
+                .flat_map(|unit| if swap { unit.to_be_bytes() } else { unit.to_le_bytes() })
+                .collect();
+            let told = decoded("arm.yaml", bytes).unwrap_err().to_string();
+            let shown = format!("error: this file looks like UTF-16\n --> arm.yaml:1:1\n  |\n1 | name: {name}\n");
+            assert!(told.starts_with(&shown) && told.ends_with("save the file as UTF-8"), "{told}");
         }
         assert_eq!(decoded("arm.yaml", "name: Ä".into()).as_deref(), Ok("name: Ä"));
     }
