@@ -96,8 +96,8 @@ fn known(known: &Number) -> Value {
     })
 }
 
-/// A row for each load, with the columns that the campaign has for it, in its own
-/// frame; only the readings are missing.
+/// A row for each load in the campaign's own frame, in the units of the header; only the
+/// readings are missing.
 pub fn table(plan: &Plan, campaign: &Campaign) -> String {
     let joints = &campaign.robot.joints;
     let columns = columns_of_loads(plan, campaign);
