@@ -1,6 +1,6 @@
 //! The figures of a report. What belongs to which model shows by its shape, so
 //! that no colour is needed: a dash is the model as declared, a ring the joints
-//! identified again, a disc the final model.
+//! identified again, a disc the last model: with the effects, or else these joints.
 
 use super::content::{PoseError, Report, Residual};
 use super::svg::{Svg, tick_label, ticks};
@@ -21,8 +21,11 @@ pub fn errors(report: &Report) -> String {
     let (gap, lower) = if with_effects { (44.0, 80.0) } else { (0.0, 0.0) };
     let mut svg = Svg::new(WIDTH, top + upper + gap + lower + 40.0, &format!("Error of each {place} before and after"));
 
+    // Data that cannot tell leave the description as declared, and so what is after.
+    let last = |pose: &PoseError| if with_effects { pose.after } else { pose.identified };
+
     // A declared model may be far worse than the rest: it is cut, not the others squeezed.
-    let compared = poses.iter().flat_map(|pose| [pose.identified, pose.after]).fold(report.noise_um, f64::max);
+    let compared = poses.iter().flat_map(|pose| [pose.identified, last(pose)]).fold(report.noise_um, f64::max);
     let declared = poses.iter().map(|pose| pose.declared).fold(0.0, f64::max);
     let ceiling = if declared > 2.5 * compared { 1.15 * compared } else { declared.max(compared) };
     let marks = ticks(0.0, ceiling, 5);
@@ -42,7 +45,7 @@ pub fn errors(report: &Report) -> String {
     let radius = (step * 0.28).clamp(2.0, 4.5);
     for (k, pose) in poses.iter().enumerate() {
         let x = LEFT + (k as f64 + 0.5) * step;
-        let title = pose_title(pose, terms);
+        let title = pose_title(pose, terms, with_effects);
         if with_effects {
             svg.line("stem", [x, frame.up(pose.identified)], [x, frame.up(pose.after)]);
         }
@@ -56,9 +59,9 @@ pub fn errors(report: &Report) -> String {
         if with_effects {
             svg.circle("before", [x, frame.up(pose.identified)], radius, &title);
         }
-        svg.circle("after", [x, frame.up(pose.after)], radius, &title);
+        svg.circle("after", [x, frame.up(last(pose))], radius, &title);
         if pose.wild {
-            svg.text("small", [x + radius + 4.0, frame.up(pose.after) + 4.0], "start", "wild");
+            svg.text("small", [x + radius + 4.0, frame.up(last(pose)) + 4.0], "start", "wild");
         }
     }
     let beyond = poses.iter().any(|pose| pose.declared > frame.range[1]);
@@ -82,7 +85,7 @@ pub fn errors(report: &Report) -> String {
     svg.html()
 }
 
-fn pose_title(pose: &PoseError, terms: Terms) -> String {
+fn pose_title(pose: &PoseError, terms: Terms, with_effects: bool) -> String {
     let [declared, identified, after] = [pose.declared, pose.identified, pose.after].map(|um| decimals(um, 1));
     let kept = match (pose.held_out, pose.wild) {
         (true, false) => ", held out",
@@ -91,7 +94,8 @@ fn pose_title(pose: &PoseError, terms: Terms) -> String {
         (false, false) => "",
     };
     let (name, unit) = (terms.named(&pose.id), terms.printed);
-    format!("{name}{kept}: declared {declared} {unit}, identified {identified} {unit}, after {after} {unit}")
+    let last = if with_effects { format!(", after {after} {unit}") } else { String::new() };
+    format!("{name}{kept}: declared {declared} {unit}, identified {identified} {unit}{last}")
 }
 
 fn legend(svg: &mut Svg, beyond: bool, with_effects: bool) {
@@ -133,7 +137,8 @@ pub fn residuals(report: &Report) -> String {
     let (side, with_effects) = (360.0, !report.effects.is_empty());
     let top = 58.0;
     let mut svg = Svg::new(WIDTH, top + side + 40.0, "Residual vectors before and after in two projections");
-    let components = report.residuals.iter().flat_map(|one| [one.before, one.after].concat());
+    let last = |one: &Residual| if with_effects { one.after } else { one.before };
+    let components = report.residuals.iter().flat_map(|one| [one.before, last(one)].concat());
     let largest = components.map(f64::abs).fold(2.0 * report.noise_um, f64::max);
     let marks = ticks(-largest, largest, 6);
     let radius = if report.residuals.len() > 200 { 1.8 } else { 2.8 };
@@ -151,8 +156,8 @@ pub fn residuals(report: &Report) -> String {
         for Residual { before, .. } in report.residuals.iter().filter(|_| with_effects) {
             svg.circle("before", tip(*before), radius, "");
         }
-        for Residual { after, .. } in &report.residuals {
-            svg.circle("after", tip(*after), radius, "");
+        for residual in &report.residuals {
+            svg.circle("after", tip(last(residual)), radius, "");
         }
         let two_sigma = frame.right(2.0 * report.noise_um) - frame.right(0.0);
         let center = [frame.right(0.0), frame.up(0.0)];

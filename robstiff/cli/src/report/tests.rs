@@ -93,6 +93,48 @@ fn no_number_becomes_nan() {
     assert!(!page.contains("NaN") && !page.contains("inf\""), "{page}");
 }
 
+/// Without effects the last model of the pictures is that of the table, the joints identified
+/// again; what is written may be as declared, where the data cannot tell.
+#[test]
+fn without_effects_pictures_show_what_their_legend_says() {
+    let page = |after: f64| {
+        let residuals = vec![Residual { before: [3.0; 3], after: [after; 3] }];
+        let arms = vec![Arm { id: "a".into(), points: vec![[0.0; 3], [1.0; 3]], before: [3.0; 3], after: [after; 3] }];
+        let dependences = vec![Dependence {
+            name: "q1".into(),
+            unit: "deg".into(),
+            axis: 0,
+            share: [0.5, 0.1],
+            points: vec![[0.0, 3.0, after]],
+        }];
+        let errors = ["a", "b"].map(|id| PoseError {
+            id: id.to_owned(),
+            declared: 90.0,
+            identified: 56.2,
+            after,
+            contribution: 0.0,
+            held_out: false,
+            wild: false,
+        });
+        html(&Report { errors: errors.to_vec(), residuals, arms, dependences, noise_um: 1.0, ..Report::default() })
+    };
+    let shown = page(90.0);
+    assert!(shown.contains("declared 90.0 µm, identified 56.2 µm<") && shown.contains("joints identified again"));
+    assert_eq!(shown, page(56.2));
+}
+
+#[test]
+fn readings_that_no_check_could_be_made_on_are_not_praised() {
+    let [holds, violated, not_asked] = <[Check; 3]>::try_from(hostile().checks).expect("one of each state");
+    let said = |checks: &[&Check]| {
+        html(&Report { checks: checks.iter().map(|&check| check.clone()).collect(), ..Report::default() })
+    };
+    let none = said(&[&not_asked, &not_asked]);
+    assert!(none.contains("No check of the readings by themselves could be made") && !none.contains("nothing wrong"));
+    assert!(said(&[&holds, &not_asked]).contains("show nothing wrong, as far as 1 of 2 checks could be made on them."));
+    assert!(said(&[&holds]).contains("show nothing wrong.") && !said(&[&violated]).contains("nothing wrong"));
+}
+
 #[test]
 fn nothing_is_loaded_from_elsewhere() {
     for page in [html(&hostile()), html(&Report::default())] {

@@ -32,7 +32,9 @@ pub fn section(report: &Report) -> String {
     let of = |state: State| report.checks.iter().filter(move |check| check.state == state).collect::<Vec<&Check>>();
     let (fails, holds, not_asked) = (of(State::Violated), of(State::Holds), of(State::NotAsked));
     let mut html = element("h2", "Before any model");
-    if fails.is_empty() {
+    if fails.is_empty() && holds.is_empty() {
+        html += &text("p", "No check of the readings by themselves could be made.");
+    } else if fails.is_empty() {
         // One check of many says little.
         let made = match not_asked.len() {
             0 => String::new(),
