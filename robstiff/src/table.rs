@@ -228,9 +228,14 @@ impl<'t> Table<'t> {
 
     /// The index of a column. One whose unit is in round brackets is reported.
     pub fn position(&self, name: &str) -> Option<usize> {
-        let index = self.header.iter().position(|header| header.name == name);
+        let index = self.index_of(name);
         match (index, self.in_round_brackets(name)) {
             (Some(index), _) => self.asked_for.borrow_mut().push(index),
+    /// The index of a column, which is not asked for with this.
+    pub fn index_of(&self, name: &str) -> Option<usize> {
+        self.header.iter().position(|header| header.name == name)
+    }
+
             (None, Some((field, unit))) => {
                 let help = format!("write `{name} [{unit}]`");
                 self.report(self.header_line, field, "the unit is in round brackets", &help);

@@ -186,7 +186,7 @@ fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
             (0..robot.joints.len()).map(|i| table.require(&name(i), dimension_of(robot.joints[i].kind))).collect();
         found.into_iter().collect::<Option<Vec<_>>>().map(Some).ok_or(())
     };
-    let at = PoseColumns::find(table, &robot.joints);
+    let at = PoseColumns::find(table, robot);
     let time = times::read(table);
     let temperature = table.numbers("temperature", Dimension::Temperature);
     let force = all(["Fx", "Fy", "Fz"], Dimension::Force);

@@ -7,8 +7,9 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
-use robstiff_robots::Joint;
 use robstiff_robots::quantity::Dimension;
+use robstiff_robots::words::count;
+use robstiff_robots::{Description, Joint};
 
 use super::beyond::{Usual, warn_of};
 use crate::JointKind;
@@ -65,13 +66,23 @@ pub struct Poses {
 
 impl Columns {
     /// Finds them; `None` with every missing one reported.
-    pub fn find(table: &Table<'_>, joints: &[Joint]) -> Option<Self> {
+    pub fn find(table: &Table<'_>, robot: &Description) -> Option<Self> {
         let pose = table.require_name("pose");
         let visit = table.position("visit");
         let coordinate = |(i, joint): (usize, &Joint)| table.require(&format!("q{}", i + 1), dimension_of(joint.kind));
         // Collected twice so that every missing column is reported, not the first.
-        let q: Vec<Option<Numbers>> = joints.iter().enumerate().map(coordinate).collect();
-        Some(Self { pose: pose?, visit, q: q.into_iter().collect::<Option<_>>()? })
+        let q: Vec<Option<Numbers>> = robot.joints.iter().enumerate().map(coordinate).collect();
+        let q: Vec<Numbers> = q.into_iter().collect::<Option<_>>()?;
+        // Another robot's loads can be fitted to this one, and what comes of it looks like a result.
+        let beyond = format!("q{}", q.len() + 1);
+        if let Some(index) = table.index_of(&beyond) {
+            let joints = count(q.len(), "joint");
+            let message = format!("the column `{beyond}` is of a joint too many: {} has {joints}", robot.name);
+            let help = "is the campaign's `robot:` the right one? If so, give a column of something else another name";
+            table.report_name(index, &message, help);
+            return None;
+        }
+        Some(Self { pose: pose?, visit, q })
     }
 
     /// The id of a row's visit, where there is a column of them.

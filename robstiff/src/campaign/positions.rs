@@ -83,7 +83,7 @@ fn check_sizes(table: &Table<'_>, columns: &Columns, rows: &[PositionRow]) {
 }
 
 fn columns(table: &Table<'_>, robot: &Description) -> Option<Columns> {
-    let at = PoseColumns::find(table, &robot.joints);
+    let at = PoseColumns::find(table, robot);
     let time = times::read(table);
     let temperature = table.numbers("temperature", Dimension::Temperature);
     let position = ["px", "py", "pz"].map(|name| table.require(name, Dimension::Length));

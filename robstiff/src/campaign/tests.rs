@@ -225,6 +225,20 @@ fn every_problem_of_a_campaign_file_has_its_place() {
     assert!(found("robot.yaml", "rv130hsc")[0].contains("q3"));
 }
 
+/// Loads of a robot with one joint more can be fitted, too; what comes of that is no robot.
+#[test]
+fn a_column_of_a_joint_too_many_is_another_robots() {
+    let of_loads = format!("{HEADER},q3 [deg]\na,v,0,0,1,2,3,4,5,6,90\n");
+    let told = problems(CAMPAIGN, &of_loads);
+    assert_eq!(told, ["1:57 the column `q3` is of a joint too many: Two has 2 joints"]);
+    let campaign = CAMPAIGN.replace("displacement", "position");
+    let told = problems(&campaign, "pose,q1,q2,q3,px,py,pz\na,0,0,0,1,2,3\n");
+    assert_eq!(told, ["1:12 the column `q3` is of a joint too many: Two has 2 joints"]);
+    // Of what is no joint's next to the last, nothing is known.
+    let warned = Folder::new(CAMPAIGN, &of_loads.replace("q3 [deg]", "q4")).read().unwrap().warnings;
+    assert!(warned.iter().any(|warning| warning.ends_with("the column `q4` is not used")), "{warned:?}");
+}
+
 #[test]
 fn positions_are_read_with_their_payload() {
     let campaign = CAMPAIGN.replace("displacement", "position") + "measured: {at: [0, 20 mm, 0]}\n";
