@@ -33,6 +33,8 @@ mod units;
 #[cfg(feature = "urdf")]
 pub mod urdf;
 #[cfg(feature = "read")]
+mod warned;
+#[cfg(feature = "read")]
 pub mod words;
 #[cfg(feature = "read")]
 mod write;

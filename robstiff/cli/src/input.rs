@@ -18,7 +18,7 @@ pub use options::{
     with_unit,
 };
 
-/// Reads a robot's description, with its file's name: a file, or where there is
+/// Reads a robot's description, and says what is doubtful in it, with its file's name: a file, or where there is
 /// none of that name, a robot of the catalogue. A folder with its measurements may have its name.
 pub fn robot(path: &Path) -> Result<(Description, String), Failure> {
     let is_of_catalogue = path.to_str().and_then(catalogue::find).is_some();
@@ -32,6 +32,9 @@ pub fn robot(path: &Path) -> Result<(Description, String), Failure> {
             path.display(),
             names.join(", ")
         )));
+    }
+    for warning in robot.warnings() {
+        output::complain(format_args!("warning: {}: {warning}", file.display()));
     }
     let (robot, file) = catalogue::read(Path::new(""), path)?;
     let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();

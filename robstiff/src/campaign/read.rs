@@ -89,7 +89,9 @@ impl Campaign {
         let poses = data.poses().len();
         let kept = plan.holdout.map(|holdout| holdout.count(poses)).filter(|kept| 2 * kept > poses);
         let kept = kept.map(|kept| format!("{}: `holdout` keeps {kept} of {poses} poses from the fit", path.display()));
-        let warnings = far.chain(noisy).chain(unused).chain(kept).chain(of_table).collect();
+        let of_robot = robot.warnings();
+        let of_robot = of_robot.iter().map(|said| format!("{}: {said}", robot_path.display()));
+        let warnings = of_robot.chain(far).chain(noisy).chain(unused).chain(kept).chain(of_table).collect();
         Ok(Self {
             name: plan.name,
             path: path.to_owned(),

@@ -240,6 +240,15 @@ fn a_column_of_a_joint_too_many_is_another_robots() {
 }
 
 #[test]
+fn what_is_doubtful_in_the_robot_is_told() {
+    let folder = Folder::new(CAMPAIGN, &format!("{HEADER}\na,v,0,0,1,2,3,4,5,6\n"));
+    std::fs::write(folder.0.join("robot.yaml"), ROBOT.replace("1e-6", "2.5e6 rad/Nm")).unwrap();
+    let warnings = folder.read().unwrap().warnings;
+    let said = "robot.yaml: joint 1 is as soft as 2.5e6 rad/Nm: is `Nm/rad` meant?";
+    assert!(warnings.iter().any(|warning| warning.ends_with(said)), "{warnings:?}");
+}
+
+#[test]
 fn positions_are_read_with_their_payload() {
     let campaign = CAMPAIGN.replace("displacement", "position") + "measured: {at: [0, 20 mm, 0]}\n";
     let header = "pose,visit,q1 [deg],q2,px [mm],py,pz,payload [kg]";
