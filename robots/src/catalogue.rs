@@ -21,6 +21,12 @@ pub const fn catalogue() -> &'static [(&'static str, &'static str)] {
     ]
 }
 
+/// The names of the robots, as [`find`] takes them, for the list of what would be right.
+pub fn names() -> String {
+    let names: Vec<&str> = catalogue().iter().map(|(file, _)| file.trim_end_matches(".yaml")).collect();
+    names.join(", ")
+}
+
 /// The text of a description by its file name, `.yaml` or not.
 pub fn find(file_name: &str) -> Option<&'static str> {
     let stem = file_name.strip_suffix(".yaml").unwrap_or(file_name);

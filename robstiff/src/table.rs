@@ -97,8 +97,7 @@ impl<'t> Table<'t> {
             return Err(table.problem(table.header_line, field, NOT_CLOSED, CLOSE).into());
         }
         if header.get(0).is_some_and(|name| name.starts_with('#')) {
-            let help = "the first line must be the header, which names the columns: `pose,q1 [deg],Fx [N]`";
-            return Err(table.problem(table.header_line, usize::MAX, "a comment line?", help).into());
+            return Err(table.problem(table.header_line, usize::MAX, "a comment line?", HEADER).into());
         }
         for (separator, message) in
             [(';', "the columns are separated by semicolons"), ('\t', "the columns are separated by tabs")]
@@ -107,6 +106,12 @@ impl<'t> Table<'t> {
                 let help = "the separator is a comma, and the decimal sign a point: `pose,q1 [deg],Fx [N]`";
                 return Err(table.problem(table.header_line, field, message, help).into());
             }
+        }
+        // An id or two may be no numbers; no column is called as one.
+        if 2 * header.iter().filter(|name| name.parse::<f64>().is_ok()).count() > header.len() {
+            return Err(table
+                .problem(table.header_line, usize::MAX, "numbers, and no header above them", HEADER)
+                .into());
         }
         table.header = header.iter().map(Header::parse).collect();
         table.check_header();
@@ -226,16 +231,16 @@ impl<'t> Table<'t> {
         }
     }
 
-    /// The index of a column. One whose unit is in round brackets is reported.
-    pub fn position(&self, name: &str) -> Option<usize> {
-        let index = self.index_of(name);
-        match (index, self.in_round_brackets(name)) {
-            (Some(index), _) => self.asked_for.borrow_mut().push(index),
     /// The index of a column, which is not asked for with this.
     pub fn index_of(&self, name: &str) -> Option<usize> {
         self.header.iter().position(|header| header.name == name)
     }
 
+    /// The index of a column. One whose unit is in round brackets is reported.
+    pub fn position(&self, name: &str) -> Option<usize> {
+        let index = self.index_of(name);
+        match (index, self.in_round_brackets(name)) {
+            (Some(index), _) => self.asked_for.borrow_mut().push(index),
             (None, Some((field, unit))) => {
                 let help = format!("write `{name} [{unit}]`");
                 self.report(self.header_line, field, "the unit is in round brackets", &help);
@@ -331,6 +336,9 @@ impl<'t> Table<'t> {
         self.header[column.index].unit.is_some()
     }
 }
+
+/// What is right where the first line is something else.
+const HEADER: &str = "the first line must be the header, which names the columns: `pose,q1 [deg],Fx [N]`";
 
 /// What is said of a quote that takes in the end of its line, and what is right.
 const NOT_CLOSED: &str = "the quote is not closed on its line";

@@ -26,17 +26,16 @@ pub fn robot(path: &Path) -> Result<(Description, String), Failure> {
         return Err(Failure::new(format_args!("{} is a folder, a robot's description is a file", path.display())));
     }
     if !path.exists() && !is_of_catalogue && path != Path::new("-") {
-        let names: Vec<&str> = catalogue::catalogue().iter().map(|(name, _)| name.trim_end_matches(".yaml")).collect();
         return Err(Failure::new(format!(
             "there is no file {}, and no robot of that name in the catalogue: {}",
             path.display(),
-            names.join(", ")
+            catalogue::names()
         )));
     }
+    let (robot, file) = catalogue::read(Path::new(""), path)?;
     for warning in robot.warnings() {
         output::complain(format_args!("warning: {}: {warning}", file.display()));
     }
-    let (robot, file) = catalogue::read(Path::new(""), path)?;
     let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();
     Ok((robot, name.into_owned()))
 }
@@ -89,8 +88,10 @@ pub fn coordinates_of(option: &str, given: &str, robot: &Description) -> Result<
     let parts: Vec<&str> = given.split(',').collect();
     let count = robot.joints.len();
     if parts.len() != count {
+        let are_numbers = |part: &&str| part.split_whitespace().filter(|word| word.parse::<f64>().is_ok()).count() > 1;
+        let ask = if parts.iter().any(are_numbers) { "; commas separate them: `0.5, 30 deg, -pi/2`" } else { "" };
         return Err(Failure::Usage(format!(
-            "{option} gives {}, {} has {}",
+            "{option} gives {}, {} has {}{ask}",
             text::count(parts.len(), "joint coordinate"),
             robot.name,
             text::count(count, "joint")
@@ -186,6 +187,7 @@ mod tests {
     fn wrong_coordinates_are_wrong_usage() {
         for (text, part) in [
             ("0,0,0", "gives 3 joint coordinates, Rv130hsc has 5"),
+            ("10 deg 20 deg", "has 5 joints; commas separate them: `0.5, 30 deg, -pi/2`"),
             ("0,0,x,0,0", "q3: `x` is not an angle"),
             ("0,0,0,0,5 mm", "q5"),
         ] {

@@ -117,7 +117,7 @@ impl Files {
     fn refuse(&self, path: &Path, others: &[&Path]) -> Result<(), Failure> {
         if path == Path::new("-") {
             return Err(Failure::Usage(
-                "`-` does not stand for standard output, where the page goes; name a file".to_owned(),
+                "`-` does not stand for standard output, where the text for people goes; name a file".to_owned(),
             ));
         }
         if others.iter().any(|other| same_file(other, path)) {

@@ -360,4 +360,6 @@ fn feeds_between_degrees_are_told_as_they_are() {
     let cut = file("roughing.yaml");
     let page = succeed(&["stability", "kuka-kr270-r2700", &cut, "--at", at, "--frequency", "15 Hz", "--feeds", "7"]);
     assert!(page.lines().any(|line| line.trim_start().starts_with("102.9 ")), "{page}");
+    let said = fail(2, &["stability", "kuka-kr270-r2700", &cut, "--at", at, "--frequency", "15 Hz", "--feeds", "1"]);
+    assert!(said.contains("a whole number from 4 to 3600 is expected here"), "{said}");
 }

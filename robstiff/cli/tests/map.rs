@@ -199,6 +199,9 @@ fn a_map_that_no_pose_reaches_is_refused() {
     fs::write(&map, far).unwrap();
     let said = fail(1, &["map", "rv130hsc", &map, "--csv", &out]);
     assert!(said.contains("no pose reaches any of it") && said.contains("is it in the robot's base frame"), "{said}");
+    fs::write(&map, far.replace("9 m, to: 10 m", "-1000, to: 2200")).unwrap();
+    let said = fail(1, &["map", "rv130hsc", &map, "--csv", &out]);
+    assert!(said.contains("`x` is up to 2200 m away, farther than any arm reaches: in mm? write `2200 mm`"), "{said}");
     assert_eq!(names(&folder), ["map.yaml"]);
 }
 

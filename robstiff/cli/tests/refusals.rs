@@ -43,7 +43,8 @@ fn a_dash_is_no_file() {
         assert_eq!(said, "error: `-` does not stand for standard input; name a file\n", "{arguments:?}");
     }
     let said = fail(2, &["show", "rv130hsc", "--json", "-"]);
-    assert!(said.contains("`-` does not stand for standard output, where the page goes; name a file"), "{said}");
+    let expected = "`-` does not stand for standard output, where the text for people goes; name a file";
+    assert!(said.contains(expected), "{said}");
     let said = fail(2, &["emit", "rv130hsc", "--out", "-"]);
     assert!(said.contains("without `--out` the code goes to standard output; leave it out"), "{said}");
 }

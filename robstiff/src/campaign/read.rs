@@ -161,10 +161,18 @@ fn file(map: &Map<'_>, field: &str, example: &str, folder: &Path) -> Option<Stri
     let path = folder.join(name);
     let is_of_catalogue = field == "robot" && catalogue::find(name).is_some();
     if !path.is_file() && !is_of_catalogue {
-        node.error(
-            format!("there is no file {}", path.display()),
-            "write the path from the folder of this campaign file".to_string(),
-        );
+        let shown = path.display();
+        let message = match (path.is_dir(), path.exists()) {
+            (true, _) => format!("{shown} is a folder, and no file"),
+            // A pipe or a device, which is read once and may never end.
+            (false, true) => format!("{shown} is no regular file"),
+            (false, false) => format!("there is no file {shown}"),
+        };
+        let mut help = "write the path from the folder of this campaign file".to_string();
+        if field == "robot" {
+            help += &format!(", or a robot of the catalogue: {}", catalogue::names());
+        }
+        node.error(message, help);
         return None;
     }
     Some(name.to_owned())

@@ -220,6 +220,9 @@ fn every_problem_of_a_campaign_file_has_its_place() {
     assert_eq!(found("kind:", "noise: {displacement: -8 um}\nkind:").len(), 1);
     assert_eq!(found("kind: displacement", "kind: place").len(), 1);
     assert!(found("robot.yaml", "nobody.yaml")[0].starts_with("2:8 there is no file"));
+    assert!(found("loads.csv", ".")[0].ends_with("is a folder, and no file"));
+    #[cfg(unix)]
+    assert_eq!(found("loads.csv", "/dev/null"), ["3:15 /dev/null is no regular file"]);
     assert!(found("kind:", "colour: red\nkind:")[0].contains("unknown field `colour`"));
     // The catalogue's is there without a file; it has five joints, and the table two.
     assert!(found("robot.yaml", "rv130hsc")[0].contains("q3"));

@@ -221,11 +221,11 @@ impl Mapped {
         }
         let (Some(best), Some(worst)) = (best, worst) else {
             let over = self.axes.iter().any(|axis| axis.dimension == Dimension::Length);
-            page += if over && unreachable == cells {
-                "is it in the robot's base frame, and does `axis` of the tool point along `direction`?\n"
-            } else {
-                ""
-            };
+            if over && unreachable == cells {
+                page += &self.axes.iter().find_map(in_millimetres).unwrap_or_else(|| {
+                    "is it in the robot's base frame, and does `axis` of the tool point along `direction`?\n".to_owned()
+                });
+            }
             return page + "\n";
         };
         let mut table = Table::new(1, [String::new(), heading(&self.columns[0]), "where".to_owned()]);
@@ -243,4 +243,16 @@ impl Mapped {
         }
         page + "\n"
     }
+}
+
+/// Nothing that an arm reaches is farther from its base (m).
+const FARTHEST: f64 = 100.0;
+
+/// Asks of positions farther than any arm reaches whether they are in millimetres.
+fn in_millimetres(axis: &Axis) -> Option<String> {
+    let far = axis.values.iter().copied().filter(|_| axis.dimension == Dimension::Length);
+    let far = far
+        .filter(|value| value.abs() > FARTHEST)
+        .reduce(|one, other| if other.abs() > one.abs() { other } else { one })?;
+    Some(format!("`{}` is up to {far} m away, farther than any arm reaches: in mm? write `{far} mm`\n", axis.name))
 }

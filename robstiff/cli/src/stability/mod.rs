@@ -17,7 +17,7 @@ use robstiff_robots::quantity::{self, Dimension};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
-use crate::input::{axis, positive};
+use crate::input::{axis, positive, whole};
 use crate::output::{self, Files};
 use crate::{forces, input, json};
 
@@ -49,7 +49,7 @@ pub struct Arguments {
     #[arg(long, value_name = "DEPTH", allow_hyphen_values = true, value_parser = positive(Dimension::Length))]
     greatest: Option<f64>,
     /// How many directions of the feed are looked at
-    #[arg(long, value_name = "COUNT", default_value_t = 72, value_parser = clap::value_parser!(u16).range(4..=3600))]
+    #[arg(long, value_name = "COUNT", default_value_t = 72, value_parser = whole::<u16>(4, 3600))]
     feeds: u16,
     /// Draw the depths over the feed to FILE
     #[arg(long, value_name = "FILE.svg")]
