@@ -305,7 +305,7 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
             let in_other_unit = misread::in_other_unit(campaign, &prepared);
             let searched = in_other_unit.unwrap_or_else(|| elsewhere::searched(campaign, &prepared, options, progress));
             let (bench, outcome) = searched.map_err(Error::NotShown)?;
-            let outcome = misread::unless(&bench, outcome).map_err(Error::NotShown)?;
+            let outcome = misread::unless(&bench, outcome, options).map_err(Error::NotShown)?;
             let preloaded = preload::worth_a_try(campaign, &outcome);
             let better = preloaded.and_then(|preloaded| {
                 progress("asking whether gears carry the arm's own weight");

@@ -40,7 +40,7 @@ pub fn worth_a_try(campaign: &Campaign, outcome: &Outcome) -> Option<Campaign> {
     let says = |effect: &Effect| is_curve(effect.kind()) || matches!(effect, Effect::GravityPreload { .. });
     let is_missing = outcome.structure() || !outcome.selection.model.named.is_empty() || !outcome.events.is_empty();
     let is_known = robot.links.iter().any(|link| link.mass > 0.0) && !robot.effects.iter().any(says);
-    if outcome.verdict == Verdict::Insufficient || !is_missing || !is_known {
+    if outcome.verdict == Verdict::Insufficient || outcome.misread || !is_missing || !is_known {
         return None;
     }
     let mut preloaded = campaign.clone();

@@ -34,6 +34,8 @@ pub struct Outcome {
     pub events: Vec<Event>,
     /// What is left looks like these, each as a noun for a sentence.
     pub looks_like: Vec<String>,
+    /// Whether these are what the files may have been written with.
+    pub misread: bool,
     /// Another model that is about as good, come to from elsewhere.
     pub rival: Option<Rival>,
     /// The conclusion.
@@ -46,7 +48,8 @@ impl Outcome {
     /// A model that nothing was looked for beyond.
     pub fn nothing(model: Fitted, verdict: Verdict, why: String) -> Self {
         let selection = Selection { model, p_values: Vec::new(), steps: Vec::new(), unnamed: false };
-        Self { selection, left: None, events: Vec::new(), looks_like: Vec::new(), rival: None, verdict, why }
+        let (events, looks_like) = (Vec::new(), Vec::new());
+        Self { selection, left: None, events, looks_like, misread: false, rival: None, verdict, why }
     }
 
     /// The same, with the steps that came before.
@@ -157,7 +160,7 @@ pub fn search<'c>(
     if may_share_unloaded(prepared, &left, options) {
         why.push_str("; rows that share an unloaded reading agree, too: a column `visit` says which do");
     }
-    Ok(Outcome { selection, left: Some(left), events, looks_like, rival: None, verdict, why })
+    Ok(Outcome { selection, left: Some(left), events, looks_like, misread: false, rival: None, verdict, why })
 }
 
 /// Whether what readings of a pose agree on may be their unloaded reading: of each row the
@@ -169,7 +172,15 @@ fn may_share_unloaded(prepared: &Prepared<'_>, left: &LackOfFit, options: &Optio
 }
 
 /// What a model leaves.
-fn left_by(bench: &Bench<'_>, prepared: &Prepared<'_>, model: &Fitted, options: &Options) -> Result<LackOfFit, String> {
+///
+/// # Errors
+/// Why the model cannot be fitted.
+pub fn left_by(
+    bench: &Bench<'_>,
+    prepared: &Prepared<'_>,
+    model: &Fitted,
+    options: &Options,
+) -> Result<LackOfFit, String> {
     let yardstick = Yardstick::of(prepared, bench);
     bench.spare_memory();
     let setting = bench.at(&model.named)?;
