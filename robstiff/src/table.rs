@@ -231,14 +231,9 @@ impl<'t> Table<'t> {
         }
     }
 
-    /// The index of a column, which is not asked for with this.
-    pub fn index_of(&self, name: &str) -> Option<usize> {
-        self.header.iter().position(|header| header.name == name)
-    }
-
     /// The index of a column. One whose unit is in round brackets is reported.
     pub fn position(&self, name: &str) -> Option<usize> {
-        let index = self.index_of(name);
+        let index = self.header.iter().position(|header| header.name == name);
         match (index, self.in_round_brackets(name)) {
             (Some(index), _) => self.asked_for.borrow_mut().push(index),
             (None, Some((field, unit))) => {

@@ -24,12 +24,6 @@ impl Table<'_> {
         self.report(self.header_line, usize::MAX, message, help);
     }
 
-    /// Reports a problem with a column (by its index), at its name.
-    #[cfg(feature = "identify")]
-    pub fn report_name(&self, column: usize, message: &str, help: &str) {
-        self.report(self.header_line, column, message, help);
-    }
-
     /// Reports a problem with a row in a column of numbers.
     pub fn report_number(&self, record: &Record, column: Numbers, message: &str, help: &str) {
         self.report(record.line, column.index, message, help);
