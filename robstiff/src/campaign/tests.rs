@@ -235,10 +235,11 @@ fn a_column_of_a_joint_too_many_may_be_another_robots() {
     let warned = |loads: &str| Folder::new(CAMPAIGN, loads).read().unwrap().warnings;
     let asked = "the column `q3` is not used, Two has 2 joints: is the campaign's `robot:` the right one?";
     let said = warned(&loads);
-    assert!(matches!(&said[..], [said] if said.ends_with(asked)), "{said:?}");
+    let of_column: Vec<&String> = said.iter().filter(|said| said.contains("`q3`")).collect();
+    assert!(matches!(of_column[..], [said] if said.ends_with(asked)), "{said:?}");
     // Of what is no joint's next to the last, nothing is known.
     let said = warned(&loads.replace("q3 [deg]", "q4"));
-    assert!(matches!(&said[..], [said] if said.ends_with("the column `q4` is not used")), "{said:?}");
+    assert!(said.iter().any(|said| said.ends_with("the column `q4` is not used")), "{said:?}");
 }
 
 #[test]
