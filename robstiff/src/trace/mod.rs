@@ -57,6 +57,7 @@ mod misread_tests;
 pub(crate) mod model;
 #[cfg(test)]
 mod one_line_tests;
+mod order;
 #[cfg(test)]
 mod physics_tests;
 pub(crate) mod point;

@@ -74,9 +74,10 @@ impl Course {
             }
             progress(&format!("searching for effect {}", model.named.len() + 1));
             let Some((mut step, singles, reference, missing)) = tested(bench, model, options) else { break };
-            if missing && (model.named.len() >= MOST_EFFECTS || tried.contains(&model.named)) {
+            let is_full = model.named.len() >= MOST_EFFECTS;
+            if missing && (is_full || tried.contains(&model.named)) {
                 self.unnamed = true;
-                if model.named.len() >= MOST_EFFECTS {
+                if is_full {
                     step.too_many(MOST_EFFECTS)
                 } else {
                     step.none_passes()

@@ -13,7 +13,8 @@ use crate::trace::bench::Bench;
 use crate::trace::catalogue::{BASE_SLIP, SHIFT};
 use crate::trace::found::{EffectParameter, Found};
 use crate::trace::isolated::Event;
-use crate::trace::model::{Fitted, Named, Setting, all_but};
+use crate::trace::model::{Fitted, Named, Setting};
+use crate::trace::order::costliest_first;
 use crate::trace::slip::SLIPPED_AT;
 use crate::trace::{NamedEffect, Options, Outcome};
 
@@ -31,7 +32,8 @@ pub fn effects(
 ) -> Vec<NamedEffect> {
     let model = &outcome.selection.model;
     let mut so_far = Vec::new();
-    let named = by_cost(bench, model).into_iter().map(|k| {
+    let by_cost = costliest_first(&model.named, |rest| Some(bench.fit(rest).ok()?.bic));
+    let named = by_cost.into_iter().map(|k| {
         so_far.push(model.named[k]);
         so_far.sort_unstable();
         let holdout_rms = unseen_rms(bench, &so_far, but).unwrap_or(whole);
@@ -57,17 +59,6 @@ pub fn effects(
 pub fn unseen_rms(bench: &Bench<'_>, named: &[Named], but: &[usize]) -> Option<f64> {
     let setting = bench.at(named).ok()?;
     Some(setting.holdout_rms(&setting.fit(named).ok()?.fit, but))
-}
-
-/// The places of a model's effects, that without which the criterion is worst first.
-fn by_cost(bench: &Bench<'_>, model: &Fitted) -> Vec<usize> {
-    let without = |k: usize| {
-        let rest = all_but(&model.named, k);
-        bench.fit(&rest).map_or(f64::INFINITY, |without| without.bic)
-    };
-    let mut costs: Vec<(f64, usize)> = (0..model.named.len()).map(|k| (without(k), k)).collect();
-    costs.sort_by(|a, b| b.0.total_cmp(&a.0));
-    costs.into_iter().map(|(_, k)| k).collect()
 }
 
 /// The numbers of one of a model's effects, with their standard deviations; where they fit

@@ -18,6 +18,7 @@ use crate::trace::clamped::search::Found as Searched;
 use crate::trace::clamped::slips::as_good_as_slip;
 use crate::trace::found::{EffectParameter, Found, Place};
 use crate::trace::model::{Fitted, Named, all_but};
+use crate::trace::order::costliest_first;
 use crate::trace::selection::WITHIN_REACH;
 
 /// The effects that were found, that without which the criterion is worst first, with what the
@@ -34,7 +35,8 @@ pub fn effects(
     let replaced = bench.replaced(&model.named);
     let all = with_spread(bench, model, spread);
     let mut so_far = Vec::new();
-    let named = by_cost(bench, model).into_iter().map(|k| {
+    let by_cost = costliest_first(&model.named, |rest| Some(bench.fit(rest)?.bic));
+    let named = by_cost.into_iter().map(|k| {
         so_far.push(model.named[k]);
         so_far.sort_unstable();
         NamedEffect {
@@ -48,14 +50,6 @@ pub fn effects(
         }
     });
     named.chain(wild_rows(found, partial, holdout_rms)).collect()
-}
-
-/// The places of a model's effects, that without which the criterion is worst first.
-fn by_cost(bench: &Bench, model: &Fitted) -> Vec<usize> {
-    let without = |k: usize| bench.fit(&all_but(&model.named, k)).map_or(f64::INFINITY, |without| without.bic);
-    let mut costs: Vec<(f64, usize)> = (0..model.named.len()).map(|k| (without(k), k)).collect();
-    costs.sort_by(|a, b| b.0.total_cmp(&a.0));
-    costs.into_iter().map(|(_, k)| k).collect()
 }
 
 /// The wild rows, if there are any, with what else they may be.

@@ -11,6 +11,7 @@ use crate::trace::NamedEffect;
 use crate::trace::catalogue::Variant;
 use crate::trace::found::{EffectParameter, Found};
 use crate::trace::model::{Named, all_but};
+use crate::trace::order::costliest_first;
 use crate::trace::positions::bench::{Bench, Model, Proposed};
 use crate::trace::positions::search::Searched;
 use crate::trace::positions::unseen::unseen_rms;
@@ -31,7 +32,8 @@ pub fn effects(
     let (bench, model) = (&found.bench, &found.model);
     let weight = weight::in_place(bench, &campaign.robot, model);
     let mut so_far = Vec::new();
-    let named = by_cost(bench, model).into_iter().map(|k| {
+    let by_cost = costliest_first(&model.named, |rest| Some(bench.solve(rest, &model.solved.state)?.solved.fit.rss));
+    let named = by_cost.into_iter().map(|k| {
         so_far.push(model.named[k]);
         so_far.sort_unstable();
         let smaller = bench.solve(&so_far, &model.solved.state);
@@ -49,17 +51,6 @@ pub fn effects(
         }
     });
     named.chain(wild_rows(found, partial, holdout_rms)).collect()
-}
-
-/// The places of a model's effects, the one without which most is left first.
-fn by_cost(bench: &Bench<'_>, model: &Model) -> Vec<usize> {
-    let without = |k: usize| {
-        let rest = all_but(&model.named, k);
-        bench.solve(&rest, &model.solved.state).map_or(f64::INFINITY, |rest| rest.solved.fit.rss)
-    };
-    let mut costs: Vec<(f64, usize)> = (0..model.named.len()).map(|k| (without(k), k)).collect();
-    costs.sort_by(|a, b| b.0.total_cmp(&a.0));
-    costs.into_iter().map(|(_, k)| k).collect()
 }
 
 /// The numbers of effect `k` of a model, with their standard deviations.
