@@ -21,7 +21,7 @@ pub use self::displacements::in_displacements;
 use self::mistakes::Mistake;
 #[cfg(test)]
 pub use self::mistakes::of_displacements;
-pub use self::positions::{NOISIEST, apart, in_positions};
+pub use self::positions::{NOISIEST, apart, from_middle, in_positions};
 use super::{Identification, NoiseSource};
 use crate::campaign::{Campaign, Data};
 use crate::words::micrometres;

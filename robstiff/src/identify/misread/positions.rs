@@ -33,17 +33,25 @@ pub fn in_positions(robot: &Description, data: &Positions, left: f64) -> Option<
 
 /// How far positions are from their middle (m), the root mean square.
 pub fn apart(data: &Positions) -> f64 {
-    let all = spread(data);
-    (all.squares / all.rows as f64).sqrt()
+    from_middle(data.rows.iter().map(|row| Vector3::from(row.position)))
+}
+
+/// How far points are from their middle (m), the root mean square.
+pub fn from_middle(points: impl ExactSizeIterator<Item = Vector3<f64>> + Clone) -> f64 {
+    let count = points.len() as f64;
+    (squares(points) / count).sqrt()
+}
+
+/// The sum of the squares of how far points are from their middle (m^2).
+fn squares(points: impl ExactSizeIterator<Item = Vector3<f64>> + Clone) -> f64 {
+    let middle = points.clone().sum::<Vector3<f64>>() / points.len() as f64;
+    points.map(|point| (point - middle).norm_squared()).sum()
 }
 
 /// How far positions are apart, nothing of which is accounted for.
 fn spread(data: &Positions) -> Left {
-    let rows = data.rows.len();
-    let read = || data.rows.iter().map(|row| Vector3::from(row.position));
-    let middle = read().sum::<Vector3<f64>>() / rows as f64;
-    let squares = read().map(|position| (position - middle).norm_squared()).sum();
-    Left { squares, read: squares, rows }
+    let squares = squares(data.rows.iter().map(|row| Vector3::from(row.position)));
+    Left { squares, read: squares, rows: data.rows.len() }
 }
 
 /// What a description leaves as it is; `None` where it puts all points on a line.

@@ -4,11 +4,11 @@
 use std::format;
 use std::string::String;
 
-use nalgebra::Vector3;
 use robstiff_robots::Description;
 
 use super::model::Model;
 use crate::campaign::Positions;
+use crate::identify::misread::{apart, from_middle};
 use crate::identify::scale::HEADER;
 
 /// Pairs of units of length that are taken for each other, and how many of the one the other is.
@@ -27,9 +27,8 @@ const CLOSE: f64 = 0.01;
 /// Why nothing can be made of positions that are as many times as far apart as the description
 /// puts them as one unit of length is of another, and what would be right.
 pub fn other_unit(robot: &Description, data: &Positions) -> Option<String> {
-    let points = Model::new(robot, data).points(data);
-    let described = apart(points.iter().copied());
-    let read = apart(data.rows.iter().map(|row| Vector3::from(row.position)));
+    let described = from_middle(Model::new(robot, data).points(data).into_iter());
+    let read = apart(data);
     if described < CLOSE {
         return None;
     }
@@ -44,13 +43,6 @@ pub fn other_unit(robot: &Description, data: &Positions) -> Option<String> {
         "the positions are about {factor:.0} times as {which} as the description puts them: positions in {was} taken for \
          {taken} look like that; {HEADER} `px [mm]` does"
     ))
-}
-
-/// How far points are from their middle, the root mean square.
-fn apart(points: impl ExactSizeIterator<Item = Vector3<f64>> + Clone) -> f64 {
-    let count = points.len() as f64;
-    let middle = points.clone().sum::<Vector3<f64>>() / count;
-    (points.map(|point| (point - middle).norm_squared()).sum::<f64>() / count).sqrt()
 }
 
 #[cfg(test)]
