@@ -73,7 +73,8 @@ impl<'f> Writer<'f> {
         let (uses, besides) = (function.uses(), turns.besides(function));
         let is_live = |id: &usize| uses[*id] > 0 || besides.contains(id);
         let live = (0..nodes.len()).filter(is_live).map(|id| nodes[id].op).collect();
-        Self { function, reader, live, lines: Lines::of(function, &turns, &fusion), fusion, turns }
+        let lines = Lines::of(function, &turns, &besides, &fusion);
+        Self { function, reader, live, lines, fusion, turns }
     }
 
     /// For the compiler: with products and sums fused.

@@ -26,12 +26,13 @@ const OPERANDS_PER_LINE: usize = 6;
 impl Lines {
     /// Decides on the lines, and chooses their names: hints of the algorithms, names of
     /// named numbers, and numbers for the rest; never one name twice.
-    pub fn of(function: &Function, turns: &Turns, fusion: &Fusion) -> Self {
+    ///
+    /// `besides` are [those](Turns::besides) that only turns need.
+    pub fn of(function: &Function, turns: &Turns, besides: &BTreeSet<Id>, fusion: &Fusion) -> Self {
         let mut needed = needed(function);
         needed.extend(turns.results());
         let nodes = function.graph().nodes();
-        let besides = turns.besides(function).into_iter();
-        needed.extend(besides.filter(|&id| needs_constant(nodes[id].op, nodes[id].constant)));
+        needed.extend(besides.iter().filter(|&&id| needs_constant(nodes[id].op, nodes[id].constant)));
         // Products that sums take up are not there any more.
         needed.retain(|&id| fusion.is_used(id));
         let graph = function.graph();
