@@ -76,7 +76,7 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
         let Some(fitted) = regression.solve(&seen, &prepared.state(prepared.own.len()), &prepared.rows) else { break };
         let (whole, _) = regression.at(&fitted.state, &seen, &every);
         // The table may be off: rows must stand out from that, too.
-        let mut found = wild_rows(&whole, false).map_or_else(Vec::new, |wild| wild.rows);
+        let mut found = wild_rows(&whole, false).unwrap_or_default().rows;
         found.sort_unstable();
         if found == wild {
             break;

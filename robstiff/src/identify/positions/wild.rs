@@ -18,7 +18,7 @@ use crate::probability::{fisher_tail, told};
 /// The median of chi-square with three degrees of freedom.
 const MEDIAN: f64 = 2.366;
 
-/// Rows that are wild.
+/// Single rows that are wild; by default, none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wild {
     /// The rows, by index, the one that stands out most first.
@@ -29,14 +29,26 @@ pub struct Wild {
     pub rss: f64,
 }
 
+/// More rows than [a few](FEW) stand out: what is wrong is no matter of single rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Many {
+    /// As many as were asked for, by index, the one that stands out most first.
+    pub rows: Vec<usize>,
+    /// The probability of the last, over all rows.
+    pub p: f64,
+}
+
 /// The rows of a regression that are wild. Unless `strict`, structure may be left,
 /// and they must stand out from that as well.
-pub fn wild_rows(problem: &Problem, strict: bool) -> Option<Wild> {
+///
+/// # Errors
+/// Too many of them.
+pub fn wild_rows(problem: &Problem, strict: bool) -> Result<Wild, Many> {
     let columns: Vec<usize> = (0..problem.white.ncols()).collect();
     let mut rows: Vec<usize> = problem.blocks.iter().flat_map(|block| block.rows.iter().copied()).collect();
     let most = (FEW * rows.len() as f64).floor() as usize;
     let mut total = problem.total.clone();
-    let found = up_to_the_last(most, || {
+    let found = up_to_the_last(most + 1, || {
         let (fit, inverse) = (total.solve(&columns)?, total.inverse(&columns)?);
         let gains: Vec<f64> = rows.iter().map(|&row| gain(problem, row, &fit.coefficients, &inverse)).collect();
         let worst = (0..rows.len()).max_by(|&a, &b| gains[a].total_cmp(&gains[b]))?;
@@ -54,7 +66,11 @@ pub fn wild_rows(problem: &Problem, strict: bool) -> Option<Wild> {
         let stands_out = p <= STRICT && (strict || over > STANDS_OUT);
         Some((row, stands_out.then(|| (p, total.solve(&columns).map_or(f64::INFINITY, |fit| fit.rss)))))
     });
-    found.map(|(rows, (p, rss))| Wild { rows, p, rss })
+    match found {
+        Some((rows, (p, _))) if rows.len() > most => Err(Many { rows, p }),
+        Some((rows, (p, rss))) => Ok(Wild { rows, p, rss }),
+        None => Ok(Wild::default()),
+    }
 }
 
 fn of_row(problem: &Problem, row: usize) -> (DMatrix<f64>, DVector<f64>) {

@@ -5,10 +5,11 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use super::bench::{Bench, Model};
+use super::crowd::single_rows;
 use super::proposals::{extended, sideways, tested, without_borrowed, without_superfluous};
 use super::structure::structure;
 use crate::identify::positions::regression::STANDS;
-use crate::identify::positions::wild::{Wild, wild_rows};
+use crate::identify::positions::wild::Wild;
 use crate::probability::schwarz;
 use crate::trace::lack_of_fit::LackOfFit;
 use crate::trace::model::Named;
@@ -202,7 +203,8 @@ pub enum Kept {
 fn wild_at(bench: &mut Bench<'_>, model: &Model, strict: bool, kept: Kept) -> (Wild, bool) {
     let chosen = bench.chosen(&model.named);
     let (whole, _) = bench.regression.at(&model.solved.state, &chosen, &bench.rows);
-    let wild = wild_rows(&whole, strict).unwrap_or_default();
+    let payload = |row: usize| bench.prepared.data.rows[row].payload;
+    let wild = single_rows(&whole, payload, strict).unwrap_or_default();
     if wild.rows.is_empty() || kept == Kept::Never {
         return (wild, false);
     }

@@ -21,6 +21,9 @@ mod beyond;
 #[cfg(test)]
 mod beyond_tests;
 mod course;
+mod crowd;
+#[cfg(test)]
+mod crowd_tests;
 mod drift;
 mod frames;
 mod left_at_zero;

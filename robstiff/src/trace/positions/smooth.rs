@@ -19,6 +19,9 @@ const HARMONICS: u8 = 6;
 /// Payloads are of about this size (1/kg).
 const HUNDRED_KILOGRAMS: f64 = 0.01;
 
+/// The column of a campaign that says what the tool carries.
+pub const PAYLOAD: &str = "payload";
+
 /// So many moments are asked whether all readings are others from then on.
 const MOMENTS: usize = 24;
 
@@ -102,7 +105,7 @@ impl Seen<'_> {
         let about_itself = |by: &dyn Fn(usize) -> f64| std::vec![self.stacked(|row| self.aside(k, 0, row) * by(row))];
         let with = |j: usize| if j == k { std::vec![joint(k)] } else { std::vec![joint(k), joint(j)] };
         let square = |row: usize| (self.data.rows[row].payload * HUNDRED_KILOGRAMS).powi(2);
-        let mut all = std::vec![Smooth { of: std::vec!["payload".to_string()], columns: about_itself(&square) }];
+        let mut all = std::vec![Smooth { of: std::vec![PAYLOAD.to_string()], columns: about_itself(&square) }];
         let moving = || self.phases.iter().enumerate().filter_map(|(j, phases)| Some((j, phases.as_ref()?)));
         for (j, along) in moving() {
             let middle = along.iter().sum::<f64>() / along.len() as f64;

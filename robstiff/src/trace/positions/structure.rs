@@ -12,7 +12,8 @@ use std::vec::Vec;
 use nalgebra::{DMatrix, Vector3};
 
 use super::bench::{Bench, Model};
-use super::smooth::everything;
+use super::crowd::{Crowd, single_rows};
+use super::smooth::{PAYLOAD, everything};
 use crate::identify::normal::Sign;
 use crate::probability::{chi_square_tail, fisher_tail, told};
 use crate::trace::Options;
@@ -51,7 +52,9 @@ pub fn structure(bench: &Bench<'_>, model: &Model, noise: Option<f64>, options: 
     // Poses held out are asked at the same level.
     let held_out = usize::from(!model.solved.problem.held_out.is_empty());
     let level = options.alpha / (tests.len() + held_out).max(1) as f64;
-    let structure = tests.iter().any(|test| test.p_value <= level);
+    let mut structure = tests.iter().any(|test| test.p_value <= level);
+    let crowd = crowd_left(bench, model);
+    structure |= crowd.is_some();
     let freedom = model.solved.problem.freedom(&model.solved.fit);
     let of_size = size.filter(|size| size.p_value <= level).map_or(0.0, |size| size.beyond);
     let of_largest = found.first().filter(|(_, p, _)| *p <= level).map_or(0.0, |(statistic, ..)| statistic / freedom);
@@ -63,7 +66,21 @@ pub fn structure(bench: &Bench<'_>, model: &Model, noise: Option<f64>, options: 
             }
         }
     }
+    if let Some(Crowd { test, of_payload }) = crowd {
+        tests.push(test);
+        if of_payload && !depends_on.iter().any(|column| column == PAYLOAD) {
+            depends_on.push(PAYLOAD.to_string());
+        }
+    }
     LackOfFit { tests, structure, fraction: of_size.max(of_largest).clamp(0.0, 1.0), depends_on }
+}
+
+/// What stands out at a model, where it is [no single rows](super::crowd).
+fn crowd_left(bench: &Bench<'_>, model: &Model) -> Option<Crowd> {
+    let mut all = bench.rows.clone();
+    all.left_out.fill(false);
+    let (whole, _) = bench.regression.at(&model.solved.state, &bench.chosen(&model.named), &all);
+    single_rows(&whole, |row| bench.prepared.data.rows[row].payload, true).err()
 }
 
 /// What is left against the noise that is declared, by chi-square. In that noise is by
