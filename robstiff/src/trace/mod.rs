@@ -58,6 +58,9 @@ pub(crate) mod model;
 #[cfg(test)]
 mod one_line_tests;
 mod order;
+mod overlooked;
+#[cfg(test)]
+mod overlooked_tests;
 #[cfg(test)]
 mod physics_tests;
 pub(crate) mod point;
@@ -307,6 +310,8 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
             let searched = in_other_unit.unwrap_or_else(|| elsewhere::searched(campaign, &prepared, options, progress));
             let (bench, outcome) = searched.map_err(Error::NotShown)?;
             let outcome = misread::unless(&bench, outcome, options).map_err(Error::NotShown)?;
+            let found = overlooked::instead((bench, outcome), &prepared, options);
+            let (bench, outcome) = found.map_err(Error::NotShown)?;
             let preloaded = preload::worth_a_try(campaign, &outcome);
             let better = preloaded.and_then(|preloaded| {
                 progress("asking whether gears carry the arm's own weight");
@@ -338,7 +343,21 @@ fn searched<'c>(
     }
     drop(setting);
     let base = if bench.fit_doubted()? { bench.fit(&[])? } else { base };
-    let mut outcome = search(&mut bench, prepared, base, options, progress)?;
+    searched_from(bench, prepared, base, options, progress)
+}
+
+/// The same from a model on.
+///
+/// # Errors
+/// Why not even the description's own numbers can be fitted.
+fn searched_from<'c>(
+    mut bench: Bench<'c>,
+    prepared: &Prepared<'c>,
+    start: Fitted,
+    options: &Options,
+    progress: &Progress<'_>,
+) -> Result<(Bench<'c>, Outcome), String> {
+    let mut outcome = search(&mut bench, prepared, start, options, progress)?;
     if outcome.structure() && prepared.left_out.contains(&true) {
         // Rows that the others of their pose contradict look like structure.
         bench.spare_memory();

@@ -12,6 +12,7 @@
 //! missing without what that drops, the search goes on from there, once. Poses
 //! held out take no part: they judge what was found.
 
+use std::rc::Rc;
 use std::string::String;
 use std::vec::Vec;
 
@@ -273,7 +274,11 @@ fn passes(bench: &Bench<'_>, smaller: &Fitted, proposed: &Fitted, against_smalle
 pub fn p_values(bench: &Bench<'_>, named: &[Named], options: &Options) -> Vec<f64> {
     let one = |k: usize| {
         let (one, rest) = (named[k], all_but(named, k));
-        bench.tests(&rest, options).map_or(1.0, |tests| tests.p_value(one.candidate))
+        let tests = match bench.by_own_form {
+            true => bench.at(named).ok().and_then(|setting| Tests::against(&setting, &rest, options)).map(Rc::new),
+            false => bench.tests(&rest, options),
+        };
+        tests.map_or(1.0, |tests| tests.p_value(one.candidate))
     };
     (0..named.len()).map(one).collect()
 }

@@ -80,6 +80,24 @@ impl<'c> Bench<'c> {
         Ok(bench)
     }
 
+    /// One that fits the same numbers to the same rows, with the same weights, where the reflector
+    /// may be [elsewhere](mod@crate::trace::elsewhere), too.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn with_reflector(&self) -> Result<Self, String> {
+        let mut bench = Self {
+            strict: self.strict,
+            by_own_pose: self.by_own_pose,
+            left_out: self.left_out.clone(),
+            noise: Rc::clone(&self.noise),
+            ..Self::of(self.campaign, self.prepared, true)?
+        };
+        bench.fit_to(&self.base);
+        bench.set_up()?;
+        Ok(bench)
+    }
+
     /// The same without what has no name.
     #[must_use]
     pub fn narrowed(mut self) -> Self {
@@ -113,6 +131,7 @@ impl<'c> Bench<'c> {
             noise: Rc::new(Known::of(prepared)),
             strict: false,
             by_own_pose: false,
+            by_own_form: false,
             wide: false,
             elsewhere: false,
             moments: Moments::default(),

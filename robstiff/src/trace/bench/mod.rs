@@ -21,7 +21,7 @@ use robstiff_robots::Description;
 pub use self::noise::Known;
 use self::solve::State;
 use super::Options;
-use super::catalogue::{Candidate, Number, Scene};
+use super::catalogue::{Candidate, Kind, Number, Scene};
 use super::isolated::Event;
 use super::model::{Fitted, Named, Setting, Stored};
 use super::point::Point;
@@ -58,6 +58,8 @@ pub struct Bench<'c> {
     /// Whether rows of poses fitted to are wild, too, where the others of their own pose
     /// contradict them, as those of poses held out always are.
     pub by_own_pose: bool,
+    /// Whether effects are tested where the model that has them stands, and not the one without.
+    pub by_own_form: bool,
     /// Whether the candidates have those without a name among them, behind all others.
     wide: bool,
     /// Whether they have a reflector among them that is elsewhere.
@@ -120,6 +122,11 @@ impl<'c> Bench<'c> {
     /// The candidates.
     pub fn candidates(&self) -> &[Candidate] {
         &self.candidates
+    }
+
+    /// Whether effects of a kind are among the candidates.
+    pub fn has(&self, kind: &Kind) -> bool {
+        self.candidates.iter().any(|candidate| candidate.kind == kind)
     }
 
     /// The full names of a model's effects.
