@@ -20,7 +20,7 @@ use super::model::{LeftOut, Named};
 use super::search::Outcome;
 use super::selection::WITHIN_REACH;
 use super::step::Step;
-use super::{Options, Progress, Verdict};
+use super::{Options, Progress, Verdict, displacements};
 use crate::campaign::Campaign;
 use crate::identify::prepare::Prepared;
 use crate::identify::problem::rms;
@@ -38,7 +38,7 @@ pub fn searched<'c>(
     options: &Options,
     progress: &Progress<'_>,
 ) -> Result<(Bench<'c>, Outcome), String> {
-    let (bench, mut outcome) = super::searched(Bench::new(campaign, prepared)?, prepared, options, progress)?;
+    let (bench, mut outcome) = displacements::searched(Bench::new(campaign, prepared)?, prepared, options, progress)?;
     if outcome.verdict == Verdict::Insufficient || !may_be_it(&bench, &outcome) {
         return Ok((bench, outcome));
     }
@@ -46,7 +46,7 @@ pub fn searched<'c>(
     bench.spare_memory();
     // Its stages are those that were told before.
     let other = Bench::of(campaign, prepared, true).ok();
-    let again = other.and_then(|other| super::searched(other, prepared, options, &|_| ()).ok());
+    let again = other.and_then(|other| displacements::searched(other, prepared, options, &|_| ()).ok());
     let names_it = |(bench, found): &(Bench<'_>, Outcome)| {
         found.selection.model.named.iter().any(|one| bench.candidates()[one.candidate].kind == &REFLECTOR_OFFSET)
     };

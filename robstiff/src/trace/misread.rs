@@ -4,13 +4,14 @@
 use std::string::String;
 use std::vec::Vec;
 
+use super::Options;
 use super::bench::Bench;
 use super::catalogue::TRANSMISSION_ERROR;
+use super::displacements::too_little;
 use super::model::{Fitted, Named};
 use super::search::{Outcome, left_by};
 use super::step::Step;
 use super::verdict::{self, Besides, Verdict};
-use super::{Options, too_little};
 use crate::campaign::Campaign;
 use crate::identify::misread::{ALIKE, FAR_LESS, Misread, in_displacements};
 use crate::identify::prepare::Prepared;

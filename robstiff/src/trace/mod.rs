@@ -40,6 +40,7 @@ pub(crate) mod bootstrap;
 pub(crate) mod catalogue;
 pub(crate) mod clamped;
 pub(crate) mod correction;
+mod displacements;
 mod elsewhere;
 #[cfg(test)]
 mod elsewhere_tests;
@@ -104,15 +105,9 @@ pub use lack_of_fit::StructureTest;
 pub use step::{Step, Tested};
 pub use verdict::Verdict;
 
-use self::bench::Bench;
-use self::model::{Fitted, Setting};
-use self::report::report;
-use self::search::{Outcome, search};
 use crate::campaign::{Campaign, Data};
 use crate::identify::encoders::EncodersRead;
-use crate::identify::prepare::Prepared;
-use crate::identify::{AGAINST_THE_LOADS, Error, Estimate, NoiseSource};
-use crate::words::count;
+use crate::identify::{Error, Estimate, NoiseSource};
 
 /// How to trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -303,122 +298,8 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
     options.check().map_err(Error::Invalid)?;
     campaign.check().map_err(Error::Invalid)?;
     match &campaign.data {
-        Data::Displacement(_) => {
-            progress("identifying the joints");
-            let prepared = Prepared::new(campaign)?;
-            let in_other_unit = misread::in_other_unit(campaign, &prepared);
-            let searched = in_other_unit.unwrap_or_else(|| elsewhere::searched(campaign, &prepared, options, progress));
-            let (bench, outcome) = searched.map_err(Error::NotShown)?;
-            let outcome = misread::unless(&bench, outcome, options).map_err(Error::NotShown)?;
-            let found = overlooked::instead((bench, outcome), &prepared, options);
-            let (bench, outcome) = found.map_err(Error::NotShown)?;
-            let preloaded = preload::worth_a_try(campaign, &outcome);
-            let better = preloaded.and_then(|preloaded| {
-                progress("asking whether gears carry the arm's own weight");
-                bench.spare_memory();
-                preload::better(&preloaded, (&bench, &outcome), options)
-            });
-            better.map_or_else(|| report(campaign, &prepared, &bench, &outcome, options), Ok)
-        }
+        Data::Displacement(_) => displacements::trace(campaign, options, progress),
         Data::Position(data) => positions::trace(campaign, data, options, progress),
         Data::Clamped(rows) => clamped::trace(campaign, rows, options, progress),
     }
-}
-
-/// What a campaign of displacements shows among the candidates of a fresh bench: the bench that
-/// it was found on, and what was.
-///
-/// # Errors
-/// Why not even the description's own numbers can be fitted.
-fn searched<'c>(
-    mut bench: Bench<'c>,
-    prepared: &Prepared<'c>,
-    options: &Options,
-    progress: &Progress<'_>,
-) -> Result<(Bench<'c>, Outcome), String> {
-    let setting = bench.at(&[])?;
-    let base = setting.fit(&[])?;
-    if let Some(why) = too_little(&setting).or_else(|| against_the_loads(prepared, &base)) {
-        return Ok((bench, Outcome::nothing(base, Verdict::Insufficient, why)));
-    }
-    drop(setting);
-    let base = if bench.fit_doubted()? { bench.fit(&[])? } else { base };
-    searched_from(bench, prepared, base, options, progress)
-}
-
-/// The same from a model on.
-///
-/// # Errors
-/// Why not even the description's own numbers can be fitted.
-fn searched_from<'c>(
-    mut bench: Bench<'c>,
-    prepared: &Prepared<'c>,
-    start: Fitted,
-    options: &Options,
-    progress: &Progress<'_>,
-) -> Result<(Bench<'c>, Outcome), String> {
-    let mut outcome = search(&mut bench, prepared, start, options, progress)?;
-    if outcome.structure() && prepared.left_out.contains(&true) {
-        // Rows that the others of their pose contradict look like structure.
-        bench.spare_memory();
-        let again = closer(&bench, prepared, options, progress).ok();
-        if let Some((closer, again)) = again.filter(|(_, again)| !again.structure()) {
-            (bench, outcome) = (closer, again.after(outcome));
-        }
-    }
-    if !outcome.structure() {
-        // With structure accounted for, rows need stand out from noise alone.
-        bench.strict = true;
-        let before = bench.copy();
-        if let Some(model) = bench.tried(&outcome.selection.model.named, Bench::look_again) {
-            match search(&mut bench, prepared, model, options, progress) {
-                Ok(again) => outcome = again.after(outcome),
-                Err(_) => bench = before,
-            }
-        }
-        // The same rows may be wild in another way.
-        outcome.events = bench.events.to_vec();
-    }
-    if let Some(why) = follows::hardly(prepared, &bench, &outcome) {
-        let base = bench.fit(&[])?;
-        return Ok((bench, Outcome::nothing(base, Verdict::Insufficient, why).after(outcome)));
-    }
-    if let Some(model) = bench.tried(&outcome.selection.model.named, Bench::hold_lost) {
-        outcome.selection.model = model;
-    }
-    outcome.judge_by_held_out(&bench, options)?;
-    progress("asking what could be mistaken for what");
-    Ok((bench, outcome))
-}
-
-/// What a campaign shows where rows are wild, too, that the others of their own pose contradict.
-///
-/// # Errors
-/// Why the description's own numbers cannot be fitted without such rows.
-fn closer<'c>(
-    bench: &Bench<'c>,
-    prepared: &Prepared<'c>,
-    options: &Options,
-    progress: &Progress<'_>,
-) -> Result<(Bench<'c>, Outcome), String> {
-    let mut closer = bench.anew()?;
-    closer.by_own_pose = true;
-    closer.fit_doubted()?;
-    let base = closer.fit(&[])?;
-    let outcome = search(&mut closer, prepared, base, options, progress)?;
-    Ok((closer, outcome))
-}
-
-/// That the readings do not follow the loads, if so: every joint they show
-/// would be less than rigid. Whatever is found then, is found in readings of
-/// something else, or of the wrong sign.
-fn against_the_loads(prepared: &Prepared<'_>, base: &Fitted) -> Option<String> {
-    prepared.is_against_the_loads(&base.fit).then(|| String::from(AGAINST_THE_LOADS))
-}
-
-/// Why a campaign cannot tell what is missing, if so.
-fn too_little(setting: &Setting<'_>) -> Option<String> {
-    let (readings, numbers) = (setting.problem.total.rows, setting.base.len());
-    let of_readings = || format!("{readings} readings are too few for {}", count(numbers, "compliance"));
-    verdict::too_few(setting.problem.blocks.len()).or_else(|| (readings < 2 * numbers).then(of_readings))
 }

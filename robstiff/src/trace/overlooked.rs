@@ -17,14 +17,15 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
+use super::Options;
 use super::bench::Bench;
 use super::catalogue::{Candidate, REFLECTOR_OFFSET};
+use super::displacements::searched_from;
 use super::model::{Fitted, Named, all_but};
 use super::search::Outcome;
 use super::selection::{best_with, p_values};
 use super::step::Step;
 use super::verdict::Verdict;
-use super::{Options, searched_from};
 use crate::identify::covariance::outliers::STRICT;
 use crate::identify::prepare::Prepared;
 use crate::probability::{fisher_tail, told};

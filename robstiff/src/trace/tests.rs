@@ -9,8 +9,8 @@ use nalgebra::DVector;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::bench::Known;
-use super::model::Named;
+use super::bench::{Bench, Known};
+use super::model::{Fitted, Named};
 use super::selection::{grow, select};
 use super::settle::settled;
 use super::*;
@@ -18,6 +18,7 @@ use crate::campaign::Data;
 use crate::campaign::made::Plan;
 use crate::elements::Spring;
 use crate::identify::column::Column;
+use crate::identify::prepare::Prepared;
 use crate::identify::samples::Samples;
 use crate::identify::{Visibility, predict};
 use crate::probability::normal;

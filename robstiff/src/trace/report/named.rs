@@ -15,8 +15,9 @@ use crate::trace::found::{EffectParameter, Found};
 use crate::trace::isolated::Event;
 use crate::trace::model::{Fitted, Named, Setting};
 use crate::trace::order::costliest_first;
+use crate::trace::search::Outcome;
 use crate::trace::slip::SLIPPED_AT;
-use crate::trace::{NamedEffect, Options, Outcome};
+use crate::trace::{NamedEffect, Options};
 
 /// The named effects, the one whose removal costs most first: each with the error on unseen
 /// poses, but for some rows, that it and those before it leave; that of all of them where these
