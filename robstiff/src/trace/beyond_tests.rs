@@ -1,5 +1,6 @@
 //! What tracing makes of loads that are not what is read of them.
 
+use std::format;
 use std::vec;
 use std::vec::Vec;
 
@@ -37,6 +38,21 @@ fn friction_in_a_pulley_is_no_creep() {
     };
     let told = (0..6).filter(|&seed| looks_like(&held_back(seed), "friction between the load cell and the tool"));
     assert_eq!(told.count(), 6);
+}
+
+/// The drives of a wrist couple its joints, by name; what turns one joint under the torque of another
+/// without one has none.
+#[test]
+fn a_coupling_without_a_drive_has_no_name() {
+    let coupled = |pair, seed| {
+        let hidden = vec![(Column::Spring(Spring::Coupling(pair)), 2e-7)];
+        Plan { hidden, ..Plan::new(seed) }.run()
+    };
+    for (seed, [i, j]) in (0..).zip([[1, 2], [1, 5], [3, 4]]) {
+        assert!(looks_like(&coupled([i, j], seed), &format!("a coupling of joints {i} and {j}, which share no drive")));
+    }
+    let named = traced(&coupled([4, 5], 3));
+    assert_eq!((names(&named), named.verdict), (vec!["joint_coupling@joints 4,5".into()], Verdict::Explained));
 }
 
 /// Of one gear alone it is that gear's.

@@ -24,7 +24,12 @@ pub static KIND: Kind = Kind {
 };
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
-    for [i, j] in drives(scene.description) {
+    offer_of(drives(scene.description), scene, offers);
+}
+
+/// Offers couplings of pairs of joints.
+pub fn offer_of(pairs: Vec<[usize; 2]>, scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    for [i, j] in pairs {
         let number = Number::compliance(scene, "value", [f64::NEG_INFINITY, f64::INFINITY], Spring::Coupling([i, j]));
         let check = move |numbers: &[(&str, f64)], joint: &dyn Fn(usize) -> f64| {
             let bound = (joint(i) * joint(j)).sqrt();
@@ -45,6 +50,16 @@ const BEFORE_WRIST: usize = 3;
 /// which one could turn the other, and would only be names for something else.
 /// Joints that slide do not count: a belt goes along a slide, and a wrist on a rail is one.
 pub fn drives(robot: &Description) -> Vec<[usize; 2]> {
+    pairs(robot, true)
+}
+
+/// The pairs of joints that turn and have no such part in common.
+pub fn without_drive(robot: &Description) -> Vec<[usize; 2]> {
+    pairs(robot, false)
+}
+
+/// The pairs of joints that turn, with a drive in common or without.
+fn pairs(robot: &Description, with_drive: bool) -> Vec<[usize; 2]> {
     let axes = axes_at_zero(robot);
     let turning: Vec<usize> =
         (1..=robot.joints.len()).filter(|&joint| robot.joints[joint - 1].kind == JointKind::Revolute).collect();
@@ -54,7 +69,7 @@ pub fn drives(robot: &Description) -> Vec<[usize; 2]> {
         (second == first + 1 && parallel) || first >= BEFORE_WRIST
     };
     let behind = |second: usize| (0..second).map(move |first| (first, second));
-    let pairs = (0..turning.len()).flat_map(behind).filter(|&(first, second)| share(first, second));
+    let pairs = (0..turning.len()).flat_map(behind).filter(|&(first, second)| share(first, second) == with_drive);
     pairs.map(|(first, second)| [turning[first], turning[second]]).collect()
 }
 

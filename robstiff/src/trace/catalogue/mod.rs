@@ -60,13 +60,13 @@ pub use self::dh_error::{ENTRIES as DH_ENTRIES, KIND as DH_ERROR, MOST as DH_MOS
 pub use self::gravity_preload::KIND as GRAVITY_PRELOAD;
 pub use self::gravity_sag::{KIND as GRAVITY_SAG, MOST as MOST_SAG};
 pub use self::hysteresis::{KIND as HYSTERESIS, is_told as tells_hysteresis, is_told_on as axis_tells_hysteresis};
-pub use self::joint_coupling::{KIND as JOINT_COUPLING, drives};
+pub use self::joint_coupling::{KIND as JOINT_COUPLING, drives, without_drive};
 pub use self::joint_zero_offset::{KIND as JOINT_ZERO_OFFSET, MOST as ZERO_MOST};
 pub use self::lever_arm::KIND as LEVER_ARM;
 pub use self::link_compliance::KIND as LINK_COMPLIANCE;
 pub use self::load_cell_bias::KIND as LOAD_CELL_BIAS;
 pub use self::lost_motion::{EITHER, KIND as LOST_MOTION, KNEES as LOST_KNEES, WIDEST as WIDEST_GAP};
-pub use self::nameless::{LAG, NAMELESS};
+pub use self::nameless::{LAG, NAMELESS, STRAY_COUPLING};
 pub use self::offers::{Candidate, Catalogue, Form, Offers, Variant, catalogue, is_offered_as_change};
 pub use self::outliers::KIND as OUTLIERS;
 pub use self::pose_dependent_compliance::KIND as POSE_DEPENDENT_COMPLIANCE;

@@ -43,6 +43,19 @@ fn a_joint_that_goes_farther_than_it_reads_has_no_name() {
     }
 }
 
+/// Under payload the torque of one joint turns another, through no drive that they share.
+#[test]
+fn a_coupling_without_a_drive_has_no_name() {
+    for (seed, joints) in (0..).zip([[1, 5], [2, 4]]) {
+        let hidden = vec![Effect::JointCoupling { joints, value: 3e-7 }];
+        let plan = Plan { hidden, payloads: vec![0.0, 120.0], noise: 1e-5, ..Plan::new(six_axis(), seed) };
+        let trace = traced(&plan.run());
+        assert_eq!((trace.verdict, names(&trace)), (Verdict::Unexplained, vec![]), "{joints:?}: {}", trace.why);
+        let [i, j] = joints;
+        assert_eq!(trace.looks_like, [std::format!("a coupling of joints {i} and {j}, which share no drive")]);
+    }
+}
+
 /// What else is there keeps its name beside it.
 #[test]
 fn a_true_name_stays_beside_what_has_none() {

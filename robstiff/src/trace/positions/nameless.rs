@@ -1,6 +1,6 @@
 //! What arms are known to have that positions show and the catalogue has no name for: an
 //! encoder with a scale of its own, a joint that another one takes along, [weight](super::weight)
-//! that the description does not know; a slip after another, as of a base or a reflector that
+//! that the description does not know, a coupling of joints that share no drive; a slip after another, as of a base or a reflector that
 //! somebody put back.
 //!
 //! No description has a word for any of it, so none is ever named; it is what names are held
@@ -14,13 +14,13 @@ use std::vec::Vec;
 use robstiff_robots::Description;
 use robstiff_robots::effect::Place as Part;
 
-use super::offers::{Form, Number, Offer, any};
+use super::offers::{Form, Number, Offer, any, stray_couplings};
 use super::rig::Rig;
 use super::weight::{self, WEIGHT};
 use crate::JointKind;
 use crate::campaign::Positions;
 use crate::identify::positions::model::{ANGLE_STEP, Enters, Follower, Model};
-use crate::trace::catalogue::{Candidate, Kind, place_words};
+use crate::trace::catalogue::{Candidate, Kind, STRAY_COUPLING, place_words};
 use crate::trace::found::EffectParameter;
 use crate::trace::slip::{SLIPPED_AT, Slipping};
 use crate::trace::wander::AGAIN;
@@ -67,7 +67,7 @@ const MOST: f64 = 0.1;
 
 /// Whether a candidate has no name.
 pub fn is_nameless(candidate: &Candidate) -> bool {
-    [&FOLLOWER, &WEIGHT].contains(&candidate.kind) || again(candidate).is_some()
+    [&FOLLOWER, &WEIGHT, &STRAY_COUPLING].contains(&candidate.kind) || again(candidate).is_some()
 }
 
 /// Everything that has no name; second slips where `slipped` is whether there may have been
@@ -78,7 +78,8 @@ pub fn offers(robot: &Description, data: &Positions, rig: &Rig, slipped: impl Fn
     let base = slipped(Slipping::Base).then(base).flatten();
     let reflector = slipped(Slipping::Reflector).then(reflector).flatten();
     let followers = (1..=robot.joints.len()).filter_map(|joint| follower(robot, data, joint));
-    base.into_iter().chain(reflector).chain(followers).chain(weight::offers(robot, data, rig)).collect()
+    let stray = stray_couplings(robot, data);
+    base.into_iter().chain(reflector).chain(followers).chain(weight::offers(robot, data, rig)).chain(stray).collect()
 }
 
 /// A joint that follows, one or another or itself; counted from where that is zero, or from

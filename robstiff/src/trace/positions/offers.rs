@@ -21,8 +21,8 @@ use crate::identify::setup::coordinate_entry;
 use crate::trace::catalogue::{
     BASE_COMPLIANCE, DH_ENTRIES, DH_ERROR, DH_MOST, DH_UNITS, EITHER, GRAVITY_SAG, HARDENING_KNEES, JOINT_COUPLING,
     JOINT_ZERO_OFFSET, Kind, LARGEST_WAVE, LINK_COMPLIANCE, LOST_KNEES, LOST_MOTION, MOST_SAG,
-    POSE_DEPENDENT_COMPLIANCE, STIFFNESS_NONLINEARITY, TOOL_COMPLIANCE, TRANSMISSION_ERROR, TRANSVERSE_COMPLIANCE,
-    WAVE_ORDERS, WIDEST_GAP, ZERO_MOST, drives,
+    POSE_DEPENDENT_COMPLIANCE, STIFFNESS_NONLINEARITY, STRAY_COUPLING, TOOL_COMPLIANCE, TRANSMISSION_ERROR,
+    TRANSVERSE_COMPLIANCE, WAVE_ORDERS, WIDEST_GAP, ZERO_MOST, drives, without_drive,
 };
 use crate::trace::found::{EffectParameter, Found, Place};
 use crate::{Effect, JointKind};
@@ -183,10 +183,24 @@ fn springs(kind: &'static Kind, part: Part, numbers: &[(&'static str, &'static s
 }
 
 fn couplings(robot: &Description) -> Vec<Offer> {
+    drives(robot).into_iter().map(|pair| coupling(&JOINT_COUPLING, pair)).collect()
+}
+
+/// A coupling of two joints. Which are possible, they are together.
+fn coupling(kind: &'static Kind, pair: [usize; 2]) -> Offer {
+    let part = Part::Joints(pair);
     let any = [f64::NEG_INFINITY, f64::INFINITY];
-    // Which are possible, they are together.
-    let coupling = |pair| one(&JOINT_COUPLING, Part::Joints(pair), ("value", "rad/Nm"), any, COMPLIANCE_STEP);
-    drives(robot).into_iter().map(coupling).collect()
+    Offer { kind, ..one(&JOINT_COUPLING, part, ("value", "rad/Nm"), any, COMPLIANCE_STEP) }
+}
+
+/// Couplings of joints that share no drive, which have no name.
+pub fn stray_couplings(robot: &Description, data: &Positions) -> Vec<Offer> {
+    let loaded = data.rows.iter().any(|row| row.payload > 0.0);
+    let pairs = if loaded { without_drive(robot) } else { vec![] };
+    let declared = |pair: &[usize; 2]| {
+        robot.effects.iter().any(|effect| JOINT_COUPLING.is_of(effect) && effect.place() == Part::Joints(*pair))
+    };
+    pairs.into_iter().filter(|pair| !declared(pair)).map(|pair| coupling(&STRAY_COUPLING, pair)).collect()
 }
 
 /// Gears that give way other than in proportion to what a payload loads them with, the

@@ -1,6 +1,6 @@
 //! What arms and rigs are known to have and the catalogue has no name for: what comes to rest
-//! with time, gives way with warmth, with another joint's angle or one way more than the other, is
-//! loose in its seat; a load that is not what is read of it.
+//! with time, gives way with warmth, with another joint's angle or torque or one way more than the
+//! other, is loose in its seat; a load that is not what is read of it.
 //!
 //! No description has a word for any of it, so none is ever named. It is what names are
 //! held against where structure is left: a search for what is missing names the effect most
@@ -17,16 +17,18 @@ mod lag;
 mod loose_tool;
 mod one_sided;
 mod soft_base;
+mod stray_coupling;
 mod warmth;
 
 use std::sync::Arc;
 
 pub use self::lag::KIND as LAG;
+pub use self::stray_coupling::KIND as STRAY_COUPLING;
 use super::{Kind, Number};
 use crate::identify::setup::Setup;
 
 /// Every kind without a name, in the order of precedence among exact aliases.
-pub static NAMELESS: [&Kind; 10] = [
+pub static NAMELESS: [&Kind; 11] = [
     &bent_cell::KIND,
     &friction::KIND,
     &growth::KIND,
@@ -37,6 +39,7 @@ pub static NAMELESS: [&Kind; 10] = [
     &gain_of_angle::KIND,
     &warmth::KIND,
     &foreign_angle::KIND,
+    &stray_coupling::KIND,
 ];
 
 /// By how much of itself the load of each row is another, times this number, between `-most` and
