@@ -258,6 +258,7 @@ fn number(estimate: &Estimate, all: &[Estimate]) -> Value {
         Visibility::Unseen => ("unseen", &[]),
         Visibility::Confounded(others) => ("confounded", others),
     };
+    let others = others.iter().map(|&other| &all[other].name);
     json!({
         "name": estimate.name,
         "declared": json::number(estimate.declared),
@@ -266,7 +267,7 @@ fn number(estimate: &Estimate, all: &[Estimate]) -> Value {
         "unit": estimate.unit,
         "visibility": seen,
         "at_bound": estimate.at_bound,
-        "confounded_with": others.iter().map(|&other| all[other].name.as_str()).collect::<Value>(),
+        "confounded_with": others.chain(&estimate.confounded_with).map(String::as_str).collect::<Value>(),
         "deviation": estimate.deviation().map(json::number),
         "noteworthy": estimate.is_noteworthy(),
     })

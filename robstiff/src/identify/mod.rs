@@ -185,6 +185,10 @@ pub struct Estimate {
     /// Whether it is zero only because a compliance is not negative: the data
     /// see it, but do not follow the load on it.
     pub at_bound: bool,
+    /// Full names of effects that would change it by more than its standard deviation without the
+    /// data telling, beside one that is named; `std` then allows for every share of them. Found by
+    /// [`trace`](crate::trace::trace) only: [`identify`] knows no effects but the description's.
+    pub confounded_with: Vec<String>,
 }
 
 /// What is said of readings by which every joint that they show would be less than
@@ -210,7 +214,7 @@ impl Estimate {
         let std = fitted.filter(|variance| !at_bound && *variance > 0.0).map(f64::sqrt);
         // An effect may have brought it to light.
         let visibility = if fitted.is_some() { Visibility::Seen } else { visibility.clone() };
-        Self { name, declared, value, std, unit, visibility, at_bound }
+        Self { name, declared, value, std, unit, visibility, at_bound, confounded_with: Vec::new() }
     }
 
     /// The relative deviation from the declared value; `None` where nothing

@@ -18,7 +18,8 @@
 //! 7. `misread` asks whether the files say something else than what was measured, and if so nothing
 //!    is told of the arm;
 //! 8. where masses are known, `preload` asks whether gears carry the arm's own weight;
-//! 9. `alias` says what the data cannot tell apart, and `report` puts all of it together.
+//! 9. `alias` says what the data cannot tell apart, `confounded` which numbers depend on it, and
+//!    `report` puts all of it together.
 //!
 //! Positions and clamped axes go the same way on benches of their own (`positions`, `clamped`).
 //!
@@ -39,6 +40,9 @@ mod beyond_tests;
 pub(crate) mod bootstrap;
 pub(crate) mod catalogue;
 pub(crate) mod clamped;
+mod confounded;
+#[cfg(test)]
+mod confounded_tests;
 pub(crate) mod correction;
 mod displacements;
 mod elsewhere;

@@ -4,7 +4,7 @@ use robstiff::identify::{Estimate, Visibility};
 use robstiff::trace::{Rival, Trace, is_offered_as_change};
 use robstiff_robots::Effect;
 
-use super::story::declared;
+use super::story::{declared, name_of};
 use crate::text::words::{by_kind, spoken};
 use crate::text::{and, decimals};
 
@@ -14,6 +14,7 @@ pub fn doubts(trace: &Trace) -> Vec<String> {
     if trace.rivals.len() > RIVALS {
         doubts.push(format!("{} more such models come close.", trace.rivals.len() - RIVALS));
     }
+    doubts.extend(confounded(trace));
     let held = trace.description.effects.iter().filter(|effect| effect.is_kinematic());
     let held = held.filter(|effect| !is_fitted(trace, effect));
     // Of displacements, changes of most are looked for; what is left has none that shows.
@@ -33,6 +34,27 @@ pub fn doubts(trace: &Trace) -> Vec<String> {
         doubts.push(format!("These data could not show, if it were there: {}.", and(&by_kind(&trace.invisible))));
     }
     doubts
+}
+
+/// Which of the description's numbers may have some of an effect in them, a sentence for each effect.
+fn confounded(trace: &Trace) -> impl Iterator<Item = String> {
+    let mut effects: Vec<&String> = Vec::new();
+    for name in trace.estimates.iter().flat_map(|estimate| &estimate.confounded_with) {
+        if !effects.contains(&name) {
+            effects.push(name);
+        }
+    }
+    effects.into_iter().map(|effect| {
+        let confounded = trace.estimates.iter().filter(|estimate| estimate.confounded_with.contains(effect));
+        let numbers: Vec<String> = confounded.map(|estimate| name_of(trace, estimate)).collect();
+        let (its, deviation) =
+            if numbers.len() == 1 { ("its", "deviation allows") } else { ("their", "deviations allow") };
+        format!(
+            "These data do not tell {} from {}, of which any share fits as well: {its} standard {deviation} for that.",
+            and(&numbers),
+            spoken(effect)
+        )
+    })
 }
 
 /// Whether the numbers of an effect are from these data.

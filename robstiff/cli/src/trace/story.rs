@@ -185,7 +185,7 @@ fn changed(trace: &Trace, campaign: &Campaign) -> Option<String> {
 const MOVED: f64 = 3.0;
 
 /// A number of an effect that the description declares, in words.
-fn name_of(trace: &Trace, estimate: &Estimate) -> String {
+pub fn name_of(trace: &Trace, estimate: &Estimate) -> String {
     let effects = trace.description.effects.iter().map(ToString::to_string);
     let mut of_effects = effects.filter_map(|name| match estimate.name.strip_prefix(&name)? {
         "" => Some(spoken(&name)),

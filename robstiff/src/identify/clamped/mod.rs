@@ -89,6 +89,7 @@ pub fn slopes(campaign: &Campaign, rows: &[ClampedRow], left_out: &[usize]) -> R
             unit: unit_of(&campaign.robot, number.column),
             visibility: if slope.is_some() { Visibility::Seen } else { Visibility::Unseen },
             at_bound: clipped && number.value > 0.0,
+            confounded_with: Vec::new(),
         });
     }
     if estimates.iter().all(|estimate| estimate.visibility != Visibility::Seen) {

@@ -20,6 +20,7 @@ mod between;
 mod beyond;
 #[cfg(test)]
 mod beyond_tests;
+mod confounded;
 mod course;
 mod crowd;
 #[cfg(test)]

@@ -16,6 +16,7 @@ use self::spread::spread_of;
 use super::alias::{Rival, rivals, same_as_wild};
 use super::bench::Bench;
 use super::catalogue::TRANSMISSION_ERROR;
+use super::confounded::{aliases, tell};
 use super::found::Found;
 use super::model::{Fitted, Setting};
 use super::search::Outcome;
@@ -58,9 +59,11 @@ pub fn report(
     } else {
         numbers(campaign, prepared, of_written, written, &spread_of(bench_of_numbers, of_written, written))
     };
+    let aliases = aliases(&setting, model);
     let undecided = setting.undecided(&model.named);
     let after = misfit(of_written, written, &undecided);
-    let mut effects = effects(bench, &setting, model, outcome, &spread, (&undecided, after.holdout_rms), options);
+    let mut effects =
+        effects(bench, &setting, model, outcome, (&spread, &aliases), (&undecided, after.holdout_rms), options);
     let slipped = effects.iter_mut().find(|named| named.effect.slipping().is_some());
     let may_be = same_as_wild(bench, &outcome.selection.model, &outcome.events);
     let isolated = isolated(prepared, outcome, after.holdout_rms, slipped, &may_be);
@@ -211,13 +214,11 @@ fn numbers(
             *visibility = Visibility::Unseen;
         }
     }
-    estimates(
-        &campaign.robot,
-        (&prepared.own, &visibility),
-        &values(prepared, setting, model),
-        &model.fit.columns,
-        spread,
-    )
+    let columns = &model.fit.columns;
+    let values = values(prepared, setting, model);
+    let mut estimates = estimates(&campaign.robot, (&prepared.own, &visibility), &values, columns, spread);
+    tell(&mut estimates, &aliases(setting, model), |own| columns.iter().position(|&column| column == own));
+    estimates
 }
 
 /// What is left of each row and of each pose before and after, given stacked, in the base

@@ -11,6 +11,7 @@ use crate::identify::prepare::Prepared;
 use crate::trace::alias::{in_part, same_as};
 use crate::trace::bench::Bench;
 use crate::trace::catalogue::{BASE_SLIP, SHIFT};
+use crate::trace::confounded::Alias;
 use crate::trace::found::{EffectParameter, Found};
 use crate::trace::isolated::Event;
 use crate::trace::model::{Fitted, Named, Setting};
@@ -27,7 +28,7 @@ pub fn effects(
     setting: &Setting<'_>,
     fine: &Fitted,
     outcome: &Outcome,
-    spread: &DMatrix<f64>,
+    (spread, aliases): (&DMatrix<f64>, &[Alias]),
     (but, whole): (&[usize], f64),
     options: &Options,
 ) -> Vec<NamedEffect> {
@@ -41,13 +42,21 @@ pub fn effects(
         let parameters = parameters(setting, fine, spread, k);
         let candidate = &setting.candidates[model.named[k].candidate];
         let same_as = same_as(bench, model, k, outcome.structure(), options);
-        let in_part = in_part(bench, model, k);
+        let mut parts = in_part(bench, model, k);
+        let of_effect = setting.variant(model.named[k]).columns.iter();
+        let places: Vec<usize> = of_effect.filter_map(|column| place_of(fine, *column)).collect();
+        let changes = |alias: &&Alias| places.iter().any(|&at| alias.changes(at, spread[(at, at)].sqrt()));
+        for Alias { name, .. } in aliases.iter().filter(changes) {
+            if *name != candidate.name() && !parts.contains(name) {
+                parts.push(name.clone());
+            }
+        }
         NamedEffect {
             effect: Found::new(candidate.kind, candidate.place, parameters).in_whole(bench.robot()),
             lines: Vec::new(),
             p_value: outcome.selection.p_values[k],
             holdout_rms,
-            in_part: in_part.into_iter().filter(|name| !same_as.contains(name)).collect(),
+            in_part: parts.into_iter().filter(|name| !same_as.contains(name)).collect(),
             same_as,
             partial: outcome.structure(),
         }
@@ -62,13 +71,18 @@ pub fn unseen_rms(bench: &Bench<'_>, named: &[Named], but: &[usize]) -> Option<f
     Some(setting.holdout_rms(&setting.fit(named).ok()?.fit, but))
 }
 
+/// The place of a column in the fit of a model.
+fn place_of(model: &Fitted, column: usize) -> Option<usize> {
+    model.fit.columns.iter().position(|&of| of == column)
+}
+
 /// The numbers of one of a model's effects, with their standard deviations; where they fit
 /// best it has the same effects in the same order.
 fn parameters(setting: &Setting<'_>, model: &Fitted, spread: &DMatrix<f64>, k: usize) -> Vec<EffectParameter> {
     let variant = setting.variant(model.named[k]);
     let fitted = variant.columns.iter().enumerate().map(|(n, column)| {
         let number = &setting.numbers[column - setting.own.len()];
-        let at = model.fit.columns.iter().position(|c| c == column).expect("its own model has it");
+        let at = place_of(model, *column).expect("its own model has it");
         let (value, std) = match number.share_of {
             Some(joint) => share_of(setting, model, spread, at, joint),
             None => (model.fit.coefficients[at], spread[(at, at)].sqrt()),

@@ -11,6 +11,7 @@ use self::errors::Errors;
 use self::named::effects;
 pub use self::named::parts;
 use super::bench::{Bench, Model, Proposed};
+use super::confounded::aliases;
 use super::search::Searched;
 use super::spread::{spread_as_declared, spread_of};
 use super::unseen::{undecided, unseen};
@@ -19,8 +20,10 @@ use super::written::{described, own_effects, without_untold};
 use crate::campaign::Campaign;
 use crate::identify::misread::{NOISIEST, apart, in_positions};
 use crate::identify::positions::estimated;
+use crate::identify::positions::regression::STANDS;
 use crate::identify::{Error, NoiseSource};
 use crate::trace::catalogue::{KINDS, Kind};
+use crate::trace::confounded::tell;
 use crate::trace::held_out;
 use crate::trace::selection::WITHIN_REACH;
 use crate::trace::verdict::{self, Besides};
@@ -69,7 +72,12 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
     let estimates_before =
         estimated(&bench.prepared, &bench.prepared.values(&base.solved.state), &spread_as_declared(base));
     let estimates = match tells {
-        true => estimated(&bench.prepared, &values, &spread_written),
+        true => {
+            let (mut estimates, seen) = (estimated(&bench.prepared, &values, &spread_written), bench.prepared.seen());
+            let at = |own: usize| seen.iter().position(|&number| number == own).map(|at| STANDS + at);
+            tell(&mut estimates, &aliases(bench, written, campaign.robot.joints.len()), at);
+            estimates
+        }
         false => estimates_before.clone(),
     };
     Ok(Trace {
