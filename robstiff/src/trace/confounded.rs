@@ -21,8 +21,9 @@ use super::catalogue::{
     BASE_COMPLIANCE, Candidate, Kind, LINK_COMPLIANCE, TOOL_COMPLIANCE, TRANSVERSE_COMPLIANCE, Variant,
 };
 use super::model::{Fitted, Setting};
-use crate::identify::Estimate;
 use crate::identify::normal::{Fit, Normal, Projected, Scaled, Sign};
+use crate::identify::prepare::Prepared;
+use crate::identify::{Estimate, Visibility, element_name};
 
 /// Kinds whose numbers are compliances of one place each, which add up with those of others.
 static ADD_UP: [&Kind; 4] = [&TOOL_COMPLIANCE, &BASE_COMPLIANCE, &TRANSVERSE_COMPLIANCE, &LINK_COMPLIANCE];
@@ -36,12 +37,12 @@ const ALIKE: f64 = 1e-3;
 /// than this many standard deviations of the noise.
 const HIDDEN: f64 = 2.0;
 
-/// What others have of a column's energy below this is rounding.
+/// A fraction of a column's energy below this, left by others or that of one of them, is rounding.
 const ROUNDING: f64 = 1e-6;
 
 /// An effect that the data cannot tell from what a model has.
 pub struct Alias {
-    /// Its full name.
+    /// Its full name, or that of its number where the description has it.
     pub name: String,
     /// What each coefficient of the fit changes by, were there as much of it as there can be.
     shifts: DVector<f64>,
@@ -69,42 +70,44 @@ pub struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    /// The aliases among candidates that [add up](adds_up); each with whether the model has it, and
-    /// its columns, of which the model has some.
-    pub fn aliases<'c>(&self, candidates: impl Iterator<Item = (&'c Candidate, bool, BTreeSet<usize>)>) -> Vec<Alias> {
+    /// The aliases among effects that [add up](adds_up); each by its name, with whether it is there,
+    /// and its columns, of which the fit has some.
+    pub fn aliases(&self, effects: impl Iterator<Item = (String, bool, BTreeSet<usize>)>) -> Vec<Alias> {
         let Some(factor) = Scaled::of(&self.total.gram_of(&self.fit.columns)) else { return Vec::new() };
-        let of_candidate = |(candidate, is_named, columns): (&Candidate, bool, BTreeSet<usize>)| {
+        let of_effect = |(name, is_there, columns): (String, bool, BTreeSet<usize>)| {
             let missing = columns.into_iter().filter(|column| !self.fit.columns.contains(column));
-            let shifts = missing.filter_map(|column| self.shifts(&factor, column, is_named));
-            shifts.map(|shifts| Alias { name: candidate.name(), shifts }).collect::<Vec<_>>()
+            let shifts = missing.filter_map(|column| self.shifts(&factor, column, is_there));
+            shifts.map(|shifts| Alias { name: name.clone(), shifts }).collect::<Vec<_>>()
         };
-        candidates.flat_map(of_candidate).collect()
+        effects.flat_map(of_effect).collect()
     }
 
     /// What the coefficients change by, were there as much of a column as there can be: until one
     /// is at zero. `None` where the data tell it from the model's, or no effect says that it
     /// may be there.
-    fn shifts(&self, factor: &Scaled, column: usize, is_named: bool) -> Option<DVector<f64>> {
+    fn shifts(&self, factor: &Scaled, column: usize, is_there: bool) -> Option<DVector<f64>> {
         let (fit, whole) = (self.fit, self.total.gram[(column, column)]);
         let Projected { gram, shares } = self.total.projected(&[column], factor, &fit.columns);
         let part = |k: usize| shares[k] * shares[k] * self.total.gram[(fit.columns[k], fit.columns[k])] / whole;
         let left = gram[(0, 0)];
-        let takes_from_effect = (0..fit.columns.len()).any(|k| self.of_effect[k] && part(k) > ALIKE);
         // Of a column at zero nothing is asked either.
-        if !(left < ALIKE * whole) || !(is_named || takes_from_effect) {
+        let is_alike = left < ALIKE * whole;
+        let takes_from_effect = (0..fit.columns.len()).any(|k| self.of_effect[k] && part(k) > ALIKE);
+        if !is_alike || !(is_there || takes_from_effect) {
             return None;
         }
         let takes = |&k: &usize| self.signs[k] == Sign::Nonnegative && shares[k] > 0.0 && part(k) > ROUNDING;
         let most = (0..fit.columns.len()).filter(takes).map(|k| fit.coefficients[k] / shares[k]);
         let most = most.reduce(f64::min)?;
-        let is_hidden = most * most * left < HIDDEN * HIDDEN * self.variance;
+        let is_hidden = left < ROUNDING * whole || most * most * left < HIDDEN * HIDDEN * self.variance;
         let shift = |k: usize| if part(k) > ROUNDING { -most * shares[k] } else { 0.0 };
         is_hidden.then(|| DVector::from_fn(fit.columns.len(), |k, _| shift(k)))
     }
 }
 
-/// The aliases of a model of displacements at its setting.
-pub fn aliases(setting: &Setting<'_>, model: &Fitted) -> Vec<Alias> {
+/// The aliases of a model of displacements at its setting: of the catalogue, and those numbers of
+/// the description's effects that it has at zero because the data do not tell them.
+pub fn aliases(prepared: &Prepared<'_>, setting: &Setting<'_>, model: &Fitted) -> Vec<Alias> {
     let fit = &model.fit;
     let asked = Asked {
         total: &setting.problem.total,
@@ -115,7 +118,19 @@ pub fn aliases(setting: &Setting<'_>, model: &Fitted) -> Vec<Alias> {
     };
     let is_named = |index: usize| model.named.iter().any(|one| one.candidate == index);
     let candidates = setting.candidates.iter().enumerate().filter(|(_, candidate)| adds_up(candidate));
-    asked.aliases(candidates.map(|(index, candidate)| (candidate, is_named(index), columns_of(candidate))))
+    let of_catalogue = candidates.map(|(index, candidate)| (candidate.name(), is_named(index), columns_of(candidate)));
+    let own = prepared.own.iter().enumerate().filter(|&(column, number)| {
+        number.effect.is_some() && is_left_at_zero(number.value, &prepared.visibility[column])
+    });
+    let of_description =
+        own.map(|(column, number)| (element_name(prepared.description, number), true, BTreeSet::from([column])));
+    asked.aliases(of_catalogue.chain(of_description))
+}
+
+/// Whether a number of a description's effect says nothing: the effect is there, but the data do not
+/// tell the number, and none is declared.
+pub fn is_left_at_zero(declared: f64, visibility: &Visibility) -> bool {
+    declared == 0.0 && matches!(visibility, Visibility::Confounded(_))
 }
 
 /// Whether the numbers of a candidate are compliances of one place each.

@@ -30,9 +30,13 @@ fn seven_axis(apart: f64) -> Description {
     )
 }
 
-fn of(robot: &Description, hidden: &[(Spring, f64)]) -> Trace {
+fn measured(robot: &Description, hidden: &[(Spring, f64)]) -> Campaign {
     let hidden: Vec<(Column, f64)> = hidden.iter().map(|&(spring, value)| (Column::Spring(spring), value)).collect();
-    traced(&campaign(robot, 20, &hidden, 5))
+    campaign(robot, 20, &hidden, 5)
+}
+
+fn of(robot: &Description, hidden: &[(Spring, f64)]) -> Trace {
+    traced(&measured(robot, hidden))
 }
 
 /// By joint, the number of standard deviations off the truth, and what it is confounded with.
@@ -80,12 +84,19 @@ fn a_share_of_a_tilt_may_be_of_another() {
 #[test]
 fn a_link_that_yields_may_twist_about_its_joint() {
     let robot = seven_axis(0.0);
-    let trace = of(&robot, &[(Spring::LinkBending(3), 3e-7), (Spring::LinkTorsion(3), 5e-7)]);
+    let hidden = [(Spring::LinkBending(3), 3e-7), (Spring::LinkTorsion(3), 5e-7)];
+    let campaign = measured(&robot, &hidden);
+    let trace = traced(&campaign);
     assert_eq!(names(&trace), ["link_compliance@link 3"]);
     for (joint, (off, confounded)) in (1..).zip(joints(&trace, &robot)) {
         assert!(off.abs() < 4.0, "joint {joint} is {off} standard deviations off");
         assert_eq!(!confounded.is_empty(), joint == 3, "joint {joint}: {confounded:?}");
     }
+    // Nor is that forgotten with what is written.
+    let written = Campaign { robot: trace.description, ..campaign };
+    let again = joints(&traced(&written), &robot);
+    assert_eq!(again[2].1, ["link_compliance@link 3 torsion"]);
+    assert!(again[2].0.abs() < 4.0, "{again:?}");
 }
 
 /// What is not there changes no number, nor what the data tell from what is.

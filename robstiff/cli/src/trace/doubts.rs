@@ -52,7 +52,11 @@ fn confounded(trace: &Trace) -> impl Iterator<Item = String> {
         format!(
             "These data do not tell {} from {}, of which any share fits as well: {its} standard {deviation} for that.",
             and(&numbers),
-            spoken(effect)
+            trace
+                .estimates
+                .iter()
+                .find(|own| own.name == *effect)
+                .map_or_else(|| spoken(effect), |own| name_of(trace, own))
         )
     })
 }

@@ -21,6 +21,8 @@ mod beyond;
 #[cfg(test)]
 mod beyond_tests;
 mod confounded;
+#[cfg(test)]
+mod confounded_tests;
 mod course;
 mod crowd;
 #[cfg(test)]

@@ -59,7 +59,7 @@ pub fn report(
     } else {
         numbers(campaign, prepared, of_written, written, &spread_of(bench_of_numbers, of_written, written))
     };
-    let aliases = aliases(&setting, model);
+    let aliases = aliases(prepared, &setting, model);
     let undecided = setting.undecided(&model.named);
     let after = misfit(of_written, written, &undecided);
     let mut effects =
@@ -217,7 +217,7 @@ fn numbers(
     let columns = &model.fit.columns;
     let values = values(prepared, setting, model);
     let mut estimates = estimates(&campaign.robot, (&prepared.own, &visibility), &values, columns, spread);
-    tell(&mut estimates, &aliases(setting, model), |own| columns.iter().position(|&column| column == own));
+    tell(&mut estimates, &aliases(prepared, setting, model), |own| columns.iter().position(|&column| column == own));
     estimates
 }
 
