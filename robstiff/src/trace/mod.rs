@@ -1,6 +1,6 @@
 //! Tracing: which effects a campaign shows that a description lacks.
 //!
-//! The way of the data, in the order of `search.rs`:
+//! The way of the data, in the order of `displacements.rs` and `search.rs`:
 //! 1. every row has a forward model (`identify/setup.rs`), whose nonlinear numbers are fitted in
 //!    their own form (`bench`); at what comes out, a campaign becomes a regression with a column
 //!    for everything in the `catalogue` (`point`, `model`);
@@ -17,9 +17,11 @@
 //!    the file says;
 //! 7. `misread` asks whether the files say something else than what was measured, and if so nothing
 //!    is told of the arm;
-//! 8. where masses are known, `preload` asks whether gears carry the arm's own weight;
-//! 9. `alias` says what the data cannot tell apart, `confounded` which numbers depend on it, and
-//!    `report` puts all of it together.
+//! 8. where nothing seems to be left, `overlooked` asks whether something fits far better that the
+//!    tests did not see, as few poses hardly show it;
+//! 9. where masses are known, `preload` asks whether gears carry the arm's own weight;
+//! 10. `alias` says what the data cannot tell apart, `confounded` which numbers depend on it, and
+//!     `report` puts all of it together.
 //!
 //! Positions and clamped axes go the same way on benches of their own (`positions`, `clamped`).
 //!
