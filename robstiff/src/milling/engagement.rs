@@ -2,6 +2,13 @@
 
 use core::f64::consts::PI;
 
+/// An angle within this of a wall is at it (rad), a tenth of a degree: of a tool of 20 mm less than
+/// a tenth of a micrometre is left of what is between them.
+const AT_WALL: f64 = 2e-3;
+
+/// Rounding of an angle that was written as half a turn (rad).
+const ROUNDING: f64 = 1e-6;
+
 /// Which way the teeth go through the material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
@@ -40,18 +47,46 @@ impl Engagement {
     }
 
     /// The engagement between two angles (rad); `None` where they are not
-    /// `0 <= entry < exit <= pi`.
+    /// `0 <= entry < exit <= pi`, but for the rounding of pi.
     pub fn between(entry: f64, exit: f64) -> Option<Self> {
+        let exit = if exit <= PI + ROUNDING { exit.min(PI) } else { exit };
         (0.0 <= entry && entry < exit && exit <= PI).then_some(Self { entry, exit })
     }
 
     /// Where the wall is that the cut leaves behind: 1 at +normal (up milling),
-    /// -1 at -normal (down milling); `None` where it leaves both or neither.
+    /// -1 at -normal (down milling); `None` where it leaves both or neither. An angle a
+    /// tenth of a degree from a wall is at it.
     pub fn wall(&self) -> Option<f64> {
-        match (self.entry <= 0.0, self.exit >= PI) {
-            (true, false) => Some(1.0),
-            (false, true) => Some(-1.0),
+        match self.meets() {
+            [true, false] => Some(1.0),
+            [false, true] => Some(-1.0),
             _ => None,
         }
+    }
+
+    /// Whether it leaves a wall on either side.
+    pub fn is_slot(&self) -> bool {
+        self.meets() == [true; 2]
+    }
+
+    /// Whether it meets the walls at +normal and at -normal.
+    fn meets(&self) -> [bool; 2] {
+        [self.entry <= AT_WALL, self.exit >= PI - AT_WALL]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Angles are written with some digits.
+    #[test]
+    fn angles_need_not_meet_the_wall_exactly() {
+        let wall = |entry, exit| Engagement::between(entry, exit).expect("part of a turn").wall();
+        assert_eq!([wall(1.77, PI - 1e-3), wall(1.77, PI + 5e-8), wall(1.77, PI)], [Some(-1.0); 3]);
+        assert_eq!([wall(0.0, 1.4), wall(1e-3, 1.4)], [Some(1.0); 2]);
+        assert_eq!([wall(0.5, 2.1), wall(0.0, PI), wall(1e-3, PI - 1e-3)], [None; 3]);
+        assert_eq!(Engagement::between(1.0, 3.1417), None);
+        assert!(Engagement::SLOT.is_slot() && !Engagement { entry: 0.5, exit: 2.1 }.is_slot());
     }
 }

@@ -10,6 +10,7 @@ use robstiff::nalgebra::{Matrix4, Unit, Vector3};
 use robstiff::path::{SolvedPath, ToolPath};
 use robstiff_robots::quantity::Dimension;
 
+use super::doubts::{complain_of_size, complain_of_wall};
 use crate::failure::Failure;
 use crate::input::{positive, tool_axis};
 use crate::output::{self, Files};
@@ -204,6 +205,12 @@ impl CuttingRequest {
         };
         has_direction(&load, &self.name, path)?;
         let deviation = Deviation::of(robot, solved, &load).map_err(Failure::new)?;
+        let forces = match &self.source {
+            Source::Cut(file) => Some(&file.forces),
+            Source::Table(..) => None,
+        };
+        complain_of_wall(&self.name, forces, self.surface);
+        complain_of_size(&self.name, forces, &deviation);
         let tolerance = self.tolerance.map(|tolerance| (tolerance, deviation.stretches(tolerance)));
         let beyond = |i: usize, limit: f64| deviation.points[i].judged().is_some_and(|error| error.abs() > limit);
         let broken = self.tolerance.filter(|limit| (0..deviation.points.len()).any(|i| beyond(i, *limit)));

@@ -3,6 +3,7 @@
 
 pub mod cutting;
 mod deviation;
+mod doubts;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
