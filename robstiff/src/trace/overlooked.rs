@@ -47,13 +47,13 @@ pub fn instead<'c>(
     if !matches!(outcome.verdict, Verdict::Adequate | Verdict::Explained) {
         return Ok((bench, outcome));
     }
-    let Some((other, on)) = far_better(&bench, &outcome.selection.model)? else { return Ok((bench, outcome)) };
+    let Some((other, on)) = far_better(&bench, &outcome.selection.model) else { return Ok((bench, outcome)) };
     let names = on.names(&other.named);
     let mut step = Step::bare(outcome.names(&bench));
     step.outcome = format!("what fits far better by its own form: {}", names.join(", "));
     outcome.selection.steps.push(step);
     let why = besides(&outcome, &bench, (&other, &on))?;
-    if let Some((found_on, found)) = anew(on, other, prepared, options)? {
+    if let Some((found_on, found)) = anew(on, other, prepared, options) {
         return Ok((found_on, found.after(outcome)));
     }
     if outcome.names(&bench).iter().all(|name| names.contains(name)) && !outcome.selection.model.named.is_empty() {
@@ -67,44 +67,41 @@ pub fn instead<'c>(
 
 /// The model that fits far better than another, of all that were tried the best, and the bench
 /// that it is of.
-fn far_better<'c>(bench: &Bench<'c>, model: &Fitted) -> Result<Option<(Fitted, Bench<'c>)>, String> {
+fn far_better<'c>(bench: &Bench<'c>, model: &Fitted) -> Option<(Fitted, Bench<'c>)> {
     let mut rests: Vec<Vec<Named>> = (0..model.named.len()).map(|k| all_but(&model.named, k)).collect();
     rests.extend([model.named.clone(), Vec::new()]);
     rests.sort_unstable();
     rests.dedup();
-    let mut others = tried(bench, &rests, |_| true)?;
+    let others = tried(bench, &rests, |_| true);
     let count = others.len() + 1;
-    let mut on = bench.copy();
-    if !bench.has(&REFLECTOR_OFFSET) {
-        let wide = bench.with_reflector()?;
-        let reflector = tried(&wide, &[Vec::new()], |candidate| candidate.kind == &REFLECTOR_OFFSET)?;
-        let best = others.iter().map(|other| other.bic).fold(f64::INFINITY, f64::min);
-        if reflector.first().is_some_and(|reflector| reflector.bic < best) {
-            (others, on) = (reflector, wide);
-        }
-    }
-    let is_far = |other: &Fitted| {
-        other.bic < model.bic - FAR && by_chance(bench, model, other).is_none_or(|p| told(count as f64 * p) <= STRICT)
-    };
     let best = others.into_iter().min_by(|a, b| a.bic.total_cmp(&b.bic));
-    Ok(best.filter(is_far).map(|other| (other, on)))
+    let wide = if bench.has(&REFLECTOR_OFFSET) { None } else { bench.with_reflector().ok() };
+    let reflector = wide.and_then(|wide| {
+        let alone = tried(&wide, &[Vec::new()], |candidate| candidate.kind == &REFLECTOR_OFFSET);
+        Some((alone.into_iter().next()?, wide))
+    });
+    let (other, on) = match (best, reflector) {
+        (Some(best), Some((alone, _))) if best.bic <= alone.bic => (best, bench.copy()),
+        (_, Some(reflector)) => reflector,
+        (best, None) => (best?, bench.copy()),
+    };
+    let is_far =
+        other.bic < model.bic - FAR && by_chance(bench, model, &other).is_none_or(|p| told(count as f64 * p) <= STRICT);
+    is_far.then_some((other, on))
 }
 
 /// The models of some effects and one candidate more, in their own form.
-fn tried(
-    bench: &Bench<'_>,
-    rests: &[Vec<Named>],
-    is_wanted: impl Fn(&Candidate) -> bool,
-) -> Result<Vec<Fitted>, String> {
+fn tried(bench: &Bench<'_>, rests: &[Vec<Named>], is_wanted: impl Fn(&Candidate) -> bool) -> Vec<Fitted> {
     let mut found = Vec::new();
     for rest in rests {
-        let setting = bench.at(rest)?;
+        bench.spare_memory();
+        let Ok(setting) = bench.at(rest) else { continue };
         for candidate in (0..bench.candidates().len()).filter(|&one| is_wanted(&bench.candidates()[one])) {
             let linear = best_with(&setting, rest, candidate);
             found.extend(linear.and_then(|linear| bench.refit(&setting, &linear).ok()).filter(|one| one.physical));
         }
     }
-    Ok(found)
+    found
 }
 
 /// How probable it is by chance that a model leaves so much less than one of fewer numbers; `None`
@@ -122,21 +119,21 @@ fn anew<'c>(
     start: Fitted,
     prepared: &Prepared<'c>,
     options: &Options,
-) -> Result<Option<(Bench<'c>, Outcome)>, String> {
+) -> Option<(Bench<'c>, Outcome)> {
     on.by_own_form = true;
-    let left_out = |named: &[Named]| -> Result<f64, String> {
-        let setting = on.at(named)?;
-        Ok(setting.left_out(&setting.fit(named)?.fit).deviance)
+    let left_out = |named: &[Named]| {
+        let setting = on.at(named).ok()?;
+        Some(setting.left_out(&setting.fit(named).ok()?.fit).deviance)
     };
     let predicts = left_out(&start.named)? < left_out(&[])?;
     if !predicts || p_values(&on, &start.named, options).iter().any(|&p| p > options.alpha) {
-        return Ok(None);
+        return None;
     }
     let names = on.names(&start.named);
-    let (on, found) = searched_from(on, prepared, start, options, &|_| ())?;
+    let (on, found) = searched_from(on, prepared, start, options, &|_| ()).ok()?;
     let found_names = found.names(&on);
     let keeps = names.iter().all(|name| found_names.contains(name)) && found.verdict != Verdict::Insufficient;
-    Ok(keeps.then_some((on, found)))
+    keeps.then_some((on, found))
 }
 
 /// That something fits far better which is not significant.
@@ -146,8 +143,8 @@ fn besides(outcome: &Outcome, bench: &Bench<'_>, (other, on): (&Fitted, &Bench<'
     };
     let model = &outcome.selection.model;
     Ok(format!(
-        "with {} what is left of a reading is {} instead of {}, but these few poses do not say that this is no chance; \
-         measure at more of them",
+        "with {} what is left of a reading is {} instead of {}, but these poses do not say that this is no chance; measure \
+         at more",
         on.names(&other.named).join(", "),
         left(on, other)?,
         left(bench, model)?
