@@ -89,15 +89,24 @@ impl MeasuredForce {
 
     /// The mean of the samples (N), of those of whole revolutions where times or angles, with
     /// the speed of the spindle (rad/s), say which these are: half a revolution more would
-    /// count some teeth twice.
+    /// count some teeth twice. Each counts by the angle from halfway to the one before to halfway
+    /// to the next, so that a record may be denser where more happens.
     pub fn mean(&self, speed: Option<f64>) -> Vector3<f64> {
-        let samples = &self.samples[..self.of_whole_revolutions(speed).unwrap_or(self.samples.len())];
-        samples.iter().map(|sample| sample.force).sum::<Vector3<f64>>() / samples.len().max(1) as f64
+        let Some((angles, revolutions)) = self.whole_revolutions(speed) else {
+            return self.samples.iter().map(|sample| sample.force).sum::<Vector3<f64>>()
+                / self.samples.len().max(1) as f64;
+        };
+        let (last, period) = (angles.len() - 1, revolutions * TAU);
+        let before = |k: usize| if k == 0 { angles[last] - period } else { angles[k - 1] };
+        let next = |k: usize| if k == last { angles[0] + period } else { angles[k + 1] };
+        let counted = |(k, sample): (usize, &Sample)| sample.force * (next(k) - before(k));
+        self.samples[..=last].iter().enumerate().map(counted).sum::<Vector3<f64>>() / (2.0 * period)
     }
 
-    /// How many samples, from the first, are those of whole revolutions; `None` where the spindle
-    /// does not go on from each to the next, or not once around.
-    fn of_whole_revolutions(&self, speed: Option<f64>) -> Option<usize> {
+    /// The angles (rad) of the samples, from the first, that are those of whole revolutions, and how
+    /// many these are; `None` where the spindle does not go on from each to the next, or not once
+    /// around.
+    fn whole_revolutions(&self, speed: Option<f64>) -> Option<(Vec<f64>, f64)> {
         let mut angles = self.angles(speed)?;
         // Recorded angles may begin again at each revolution.
         for k in 1..angles.len() {
@@ -110,9 +119,13 @@ impl MeasuredForce {
             return None;
         }
         let step = (last - first) / (angles.len() - 1).max(1) as f64;
-        let revolutions = ((last - first + step) / TAU * (1.0 + ROUNDING)).floor();
+        // A record may be sparser where less happens, at its end, too.
+        let gap = angles[angles.len() - 1] - angles[angles.len().saturating_sub(2)];
+        let behind = step.max(gap.min(0.25 * TAU));
+        let revolutions = ((last - first + behind) / TAU * (1.0 + ROUNDING)).floor();
         let end = first + revolutions * TAU - 0.5 * step;
-        (revolutions >= 1.0).then(|| angles.partition_point(|angle| *angle < end))
+        angles.truncate(angles.partition_point(|angle| *angle < end));
+        (revolutions >= 1.0).then_some((angles, revolutions))
     }
 
     /// The angle of the spindle at each sample (rad): the recorded one, or the time's at

@@ -182,6 +182,12 @@ fn a_mean_is_that_of_whole_revolutions() {
         let again = table("angle [deg]", turns, |turn| (360.0 * turn + 30.0) % 360.0);
         assert!((again.mean(None).x - 100.0).abs() < 1e-9, "{turns} turns by angles that begin again");
     }
+    // Denser where a tooth cuts: half the turn at one degree each, the other at five.
+    let angles = || (0..180).chain((180..360).step_by(5));
+    let rows = angles().map(|angle| format!("{angle},{},0,0\n", if angle < 180 { 200.0 } else { 0.0 }));
+    let text = format!("angle [deg],Fx,Fy,Fz\n{}", rows.collect::<std::string::String>());
+    let (uneven, _) = MeasuredForce::parse("f.csv", &text, ForceFrame::Cut, false).unwrap();
+    assert!((uneven.mean(None).x - 100.0).abs() < 2.0, "{}", uneven.mean(None).x);
     // Less than a turn, or nobody knows of what: all that there is.
     assert!((table("angle [deg]", 0.75, |turn| 360.0 * turn).mean(None).x - 200.0 / 1.5).abs() < 1e-9);
     assert!((table("t [s]", 1.25, |turn| 0.02 * turn).mean(None).x - 120.0).abs() < 1e-9);
