@@ -10,8 +10,8 @@ use crate::golden::inner;
 
 /// Each depth that is looked at over the one before, where there is no closed form.
 const RATIO: f64 = 1.01;
-/// The least of them, where nothing tells a larger one: of the greatest.
-const LEAST: f64 = 1e-6;
+/// The least of them (m), where nothing tells a larger one: no cut is as thin.
+const LEAST: f64 = 1e-9;
 /// Halvings of a step.
 const HALVINGS: usize = 40;
 /// Cuts by the golden section, to 1e-8 of two steps.
@@ -142,7 +142,7 @@ impl Modes {
         // A force on what has no mass is up to twice as large where half of that is not reached.
         let yielding = process.norm() * self.massless.norm();
         let depth = (0.5 * apart / force).min(0.5 / yielding);
-        if depth.is_finite() { depth.clamp(LEAST * greatest, greatest) } else { greatest }
+        if depth.is_finite() { depth.max(LEAST).min(greatest) } else { greatest }
     }
 }
 

@@ -302,6 +302,9 @@ fn equal_stiffnesses_couple_at_once_and_damping_holds_them() {
     let damped = plane(1e6, 1e6, 100.0, 0.05).limits(&slot, 0.01).limiting().unwrap();
     let more = plane(1e6, 1e6, 100.0, 0.10).limits(&slot, 0.01).limiting().unwrap();
     assert!(damped > 1e-5 && more > damped);
+    // However far beyond it is looked.
+    let far = plane(1e6, 1e6, 100.0, 0.05).limits(&slot, 1e4).limiting().unwrap();
+    assert!((far / damped - 1.0).abs() < 1e-6, "{far} {damped}");
     // Close to the threshold of flutter with damping: N Kt b / 4 = 2 zeta k.
     let expected = 2.0 * 0.05 * 1e6 / (0.25 * 4.0 * 767e6);
     assert!((damped / expected - 1.0).abs() < 0.05, "{damped} {expected}");

@@ -15,7 +15,7 @@ const SLOW: f64 = 0.05;
 const RISING: f64 = 0.25;
 
 /// How near the ends of the last interval are, the higher over the lower.
-const NEAR: f64 = 1.02;
+const NEAR: f64 = 1.002;
 
 /// The frequency (Hz) up to which less than some part of the deviation is left.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,7 +121,7 @@ mod tests {
                 for (part, periods) in [(0.5, 2.0 * 0.25_f64.asin() / std::f64::consts::TAU), (1.0, 1.0 / 6.0)] {
                     let found = Reach::of(part, (first, lag), |_| true, late(lag));
                     let error = found.found().expect("it is found") * lag / periods - 1.0;
-                    assert!(error.abs() < 0.01, "{lag} {first} {part}: {found}");
+                    assert!(error.abs() < 0.001, "{lag} {first} {part}: {found}");
                 }
             }
         }
