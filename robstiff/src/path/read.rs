@@ -109,6 +109,9 @@ impl ToolPath {
             // Every row is checked before any gives the file up.
             rows.collect::<Vec<_>>().into_iter().collect::<Option<Vec<_>>>()
         });
+        if let Some(warning) = points.as_deref().and_then(shorter_than_straight) {
+            table.warn(&warning);
+        }
         let (points, warnings) = table.finish(points)?;
         Ok(Self {
             file: file.to_owned(),
@@ -248,6 +251,31 @@ fn not_back(table: &Table<'_>, record: &Record, column: Numbers, last: &mut f64)
     *last = s;
     Some(s)
 }
+
+/// What to warn of where the arc length grows by less than points are apart, as in another unit: no
+/// path is shorter than the straight line.
+fn shorter_than_straight(points: &[Waypoint]) -> Option<String> {
+    let place = |point: &Waypoint| match &point.goal {
+        Goal::Tool(target) => Some((point.line, point.s?, target.position)),
+        Goal::Joints(_) => None,
+    };
+    points.windows(2).find_map(|pair| {
+        let [(_, before, from), (line, s, to)] = [place(&pair[0])?, place(&pair[1])?];
+        let (grown, apart) = (s - before, (to - from).norm());
+        (grown < apart * (1.0 - SHORTER) - NO_LENGTH).then(|| {
+            format!(
+                "the arc length `s` grows by {:.6} mm on line {line}, and the points are {:.6} mm apart: is it in another \
+                 unit? left out, it is computed",
+                1e3 * grown,
+                1e3 * apart
+            )
+        })
+    })
+}
+
+/// An arc length is shorter than the straight line by this share, or by this much (m), for rounding.
+const SHORTER: f64 = 1e-2;
+const NO_LENGTH: f64 = 1e-5;
 
 /// What numbers without a unit look like that are beyond some limit in SI.
 pub struct Bare {

@@ -204,6 +204,15 @@ fn mistakes_are_shown_where_they_are() {
         let said = refused(text);
         assert!(said.contains(part), "{text}: {said}");
     }
+    // No path is shorter than the straight line.
+    let path = |s: [u32; 3]| {
+        let rows = s.iter().zip([1500, 1520, 1540]).map(|(s, x)| format!("{x},0,600,0,0,-1,{s}\n"));
+        let text = format!("x [mm],y [mm],z [mm],ux,uy,uz,s [mm]\n{}", rows.collect::<std::string::String>());
+        parse(&text, &description).unwrap().warnings
+    };
+    assert!(path([0, 20, 40]).is_empty() && path([0, 30, 60]).is_empty());
+    let short = path([0, 2, 4]).concat();
+    assert!(short.contains("grows by 2.000000 mm on line 3, and the points are 20.000000 mm apart"), "{short}");
     let warned = parse("x,y,z,ux,uy,uz,tool\n1500,0,1,0,0,1,3\n", &description).unwrap().warnings;
     assert_eq!(warned.len(), 2, "{warned:?}");
     assert!(warned[0].contains("write `x [mm]`") && warned[1].contains("`tool` is not used"), "{warned:?}");
