@@ -152,7 +152,7 @@ impl<R: Robot<N> + Sync, const N: usize> Space<N> for CartesianSpace<'_, R, N> {
         let computed = measure.compute(robot, Poses::List(&poses));
         let mut best: Vec<Option<usize>> = vec![None; cells.len()];
         for (i, &(cell, _)) in owners.iter().enumerate() {
-            let better = best[cell].is_none_or(|k| measure.is_worse(computed[0][k], computed[0][i]));
+            let better = best[cell].is_none_or(|k| measure.is_clearly_worse(computed[0][k], computed[0][i]));
             if better && !computed[0][i].is_nan() {
                 best[cell] = Some(i);
             }

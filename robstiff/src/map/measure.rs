@@ -37,6 +37,9 @@ pub struct Column {
     pub scale: f64,
 }
 
+/// Values this near are alike but for rounding, by share.
+const ROUNDING: f64 = 1e-9;
+
 const fn column(name: &'static str, unit: &'static str, scale: f64) -> Column {
     Column { name, unit, scale }
 }
@@ -108,6 +111,11 @@ impl Measure {
         if self.worse_is_larger() { one > other } else { one < other }
     }
 
+    /// The same, by more than rounding: of ways that are all alike the first is as good.
+    pub fn is_clearly_worse(&self, one: f64, other: f64) -> bool {
+        self.is_worse(one, other) && (one - other).abs() > ROUNDING * other.abs()
+    }
+
     /// The columns at some poses, in SI. A stiffness without end is infinite.
     pub fn compute<const N: usize>(&self, robot: &impl Evaluate<N>, poses: Poses<'_, N>) -> Vec<Vec<f64>> {
         let count = poses.len();
@@ -152,4 +160,23 @@ fn principal(triangle: &[f64; 21]) -> Principal {
     let (yy, yz, zz) = (triangle[6], triangle[7], triangle[11]);
     PrincipalDirections::of(&Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz))
         .map_or((Matrix3::repeat(f64::NAN), Vector3::repeat(f64::NAN)), |found| (found.directions, found.compliances))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of turns of the tool that make no difference the first stays.
+    #[test]
+    fn what_differs_by_rounding_is_no_worse() {
+        let deviation = Measure::Deviation(Vector6::zeros());
+        assert!(!deviation.is_clearly_worse(1e-4 * (1.0 + 1e-12), 1e-4) && deviation.is_clearly_worse(1.01e-4, 1e-4));
+        assert!(
+            !Measure::Stiffness.is_clearly_worse(1e6 * (1.0 - 1e-12), 1e6)
+                && Measure::Stiffness.is_clearly_worse(0.99e6, 1e6)
+        );
+        assert!(
+            !deviation.is_clearly_worse(f64::INFINITY, f64::INFINITY) && deviation.is_clearly_worse(f64::INFINITY, 1.0)
+        );
+    }
 }

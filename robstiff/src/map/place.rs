@@ -47,7 +47,7 @@ pub fn best_placement(axes: &[Axis; 3], values: &[f64], size: [f64; 3], measure:
         if worst.is_nan() || !fits(at) {
             continue;
         }
-        if best.is_none_or(|best| measure.is_worse(best.worst, worst)) {
+        if best.is_none_or(|best| measure.is_clearly_worse(best.worst, worst)) {
             let corner = [0, 1, 2].map(|k| axes[k].values[at[k]]);
             best = Some(WorkpiecePlace { corner, first: at, span, worst });
         }

@@ -224,7 +224,7 @@ fn place<const N: usize>(
         Placed { size, turn: Some(turn), each: false, best: best_placement(axes, &values, size, measure) }
     };
     let better = |one: Placed, other: Placed| match (&one.best, &other.best) {
-        (Some(a), Some(b)) if !measure.is_worse(a.worst, b.worst) => one,
+        (Some(a), Some(b)) if !measure.is_clearly_worse(a.worst, b.worst) => one,
         (Some(_), None) => one,
         _ => other,
     };
