@@ -25,12 +25,6 @@ const MOST_EFFECTS: usize = 4;
 /// How many of the best proposals are put to the tests in one step.
 const PROPOSALS: usize = 3;
 
-/// Times that numbers out of grids are looked at in turn, how far from the grid's
-/// value, and how finely, in logarithms.
-const SWEEPS: usize = 2;
-const REACH: f64 = 0.9;
-const FINE: f64 = 0.02;
-
 /// The rows with everything that may explain them.
 pub struct Bench {
     /// The rows.
@@ -263,42 +257,6 @@ impl Bench {
         let before = self.left_out_rms(&smaller.fit);
         let mut near = near.filter(|one| self.left_out_rms(&one.fit) < before);
         near.find(|one| self.is_significant(&one.named, options)).cloned()
-    }
-
-    /// The same with numbers out of grids where they fit best.
-    pub fn polished(&self, named: &[Named]) -> Self {
-        let mut offers = self.offers.clone();
-        let left = |offers: &[(&'static Kind, OnAxes)]| {
-            let forms = named.iter().map(|one| &offers[one.candidate].1.forms[one.variant]);
-            let columns = forms.flat_map(|form| (form.columns)(&form.values()));
-            let base = (0..self.base).map(|k| self.raw.column(k).into_owned());
-            let raw: Vec<DVector<f64>> = base.chain(columns).collect();
-            let signs: Vec<Sign> = self.columns(named).iter().map(|&column| self.signs[column]).collect();
-            let all: Vec<usize> = (0..raw.len()).collect();
-            let total = problem(&self.axes.rows, DMatrix::from_columns(&raw)).equations.total;
-            total.solve_signed(&all, &signs).map_or(f64::INFINITY, |fit| fit.rss)
-        };
-        let variance = left(&offers) / self.axes.rows.len() as f64;
-        for _ in 0..SWEEPS {
-            for one in named {
-                for k in 0..self.form(*one).shape.len() {
-                    let form = &offers[one.candidate].1.forms[one.variant];
-                    let ([least, most], likely, at) = (form.within, form.likely, form.shape[k].value.ln());
-                    let mut of = |log: f64| {
-                        offers[one.candidate].1.forms[one.variant].shape[k].value = log.exp();
-                        let unlikely = likely.map_or(0.0, |[middle, spread]| ((log - middle.ln()) / spread).powi(2));
-                        left(&offers) + variance * unlikely
-                    };
-                    let (low, high) = ((at - REACH).max(least.ln()), (at + REACH).min(most.ln()));
-                    let steps = ((high - low) / FINE).ceil().max(1.0) as usize;
-                    let tried = (0..=steps).map(|k| low + (high - low) * k as f64 / steps as f64);
-                    let best = tried.map(|log| (of(log), log)).min_by(|a, b| a.0.total_cmp(&b.0));
-                    let better = best.filter(|(found, _)| *found < of(at)).map_or(at, |(_, log)| log);
-                    of(better);
-                }
-            }
-        }
-        Self::new(self.axes.clone(), Some(&offers))
     }
 
     /// The same with the compliances of a model, and its bias of the torque, in what effects

@@ -17,6 +17,7 @@ mod axes;
 mod bench;
 mod curves;
 mod one_off;
+mod polish;
 #[cfg(test)]
 mod reading_tests;
 mod report;
