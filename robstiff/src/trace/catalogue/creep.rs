@@ -2,16 +2,21 @@
 //! displacement grows by `share log10(1 + t / onset)` of itself in the time `t`
 //! since it was made, and recovers alike; in rows where the file tells no time.
 
+use core::f64::consts::LN_10;
+use std::format;
 use std::vec::Vec;
 
-use super::{Form, Kind, Number, Offers, Place, Scene};
-use crate::trace::clamped::{Axes, AxisNumber, OnAxes};
+use super::{Form, Kind, Number, Offers, Part, Place, Scene, place_words};
+use crate::trace::clamped::{Axes, AxisNumber, OnAxes, axes_column};
 
 /// The kind.
 pub static KIND: Kind = Kind {
     name: "creep",
     of_rig: true,
-    words: |_| "creep under load".into(),
+    words: |found| match found.place() {
+        Place::Rig => "creep under load".into(),
+        Place::Part(_) => format!("the creep of {} under load", place_words(found)),
+    },
     explanation: "The arm, its mount or the ground goes on yielding under a load that stays. Wait the same time \
         before each reading, and write the time into the file.",
     offer,
@@ -58,26 +63,35 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
     offers.add(Place::Rig, numbers, forms);
 }
 
-/// Every axis creeps alike, in rows; the file tells no time.
+/// All axes creep alike, or one by a share of its own; in rows, the file tells no time.
 fn on_axes(axes: &Axes) -> Vec<OnAxes> {
-    let steps: Vec<(Vec<usize>, Vec<f64>)> = axes.loaded().map(|axis| (axes.rows_of(axis), axes.turns(axis))).collect();
+    let all: Vec<usize> = axes.loaded().collect();
+    let own = all.iter().map(|&axis| of_axes(axes, Part::Joint(axis).into(), &[axis]));
+    // Of one axis alone both are the same.
+    core::iter::once(of_axes(axes, Place::Rig, &all)).chain(own.filter(|_| all.len() > 1)).collect()
+}
+
+/// What creeps by one share.
+fn of_axes(axes: &Axes, place: Place, which: &[usize]) -> OnAxes {
+    let turns = |&axis: &usize| (axes.rows_of(axis), axes.turns(axis));
+    let turns: Vec<(Vec<usize>, Vec<f64>)> = which.iter().map(turns).collect();
     let count = axes.rows.len();
     let numbers = [AxisNumber { name: "share", unit: "1", range: [0.0, MOST] }].into();
     let onsets = ONSETS.map(|onset| std::vec![onset]).into();
     let [first, .., last] = ONSETS;
-    let crept = OnAxes::new(Place::Rig, numbers, &[("onset", "row")], onsets, move |shape| {
-        let mut grown = nalgebra::DVector::zeros(count);
-        for (rows, turns) in &steps {
-            for (k, &row) in rows.iter().enumerate() {
-                for step in 0..=k {
-                    // A load is put on when the row before it was read.
-                    let share = ((k - step + 1) as f64 / shape[0]).ln_1p() / core::f64::consts::LN_10;
-                    let before = if step == 0 { 0.0 } else { turns[step - 1] };
-                    grown[row] += share * (turns[step] - before);
-                }
-            }
-        }
-        std::vec![grown]
+    let crept = OnAxes::new(place, numbers, &[("onset", "row")], onsets, move |shape| {
+        let columns = turns.iter().map(|(rows, turns)| axes_column(count, rows, grown(turns, shape[0])));
+        [columns.sum()].into()
     });
-    [crept.within([0.5 * first, 2.0 * last]).likely([(first * last).sqrt(), LIKELY])].into()
+    crept.within([0.5 * first, 2.0 * last]).likely([(first * last).sqrt(), LIKELY])
+}
+
+/// What turns that are made in one row after the other have grown by in each, at a share of 1.
+fn grown(turns: &[f64], onset: f64) -> Vec<f64> {
+    // A load is put on when the row before it was read.
+    let since: Vec<f64> = (1..=turns.len()).map(|rows| (rows as f64 / onset).ln_1p() / LN_10).collect();
+    let before = core::iter::once(&0.0).chain(turns);
+    let steps: Vec<f64> = turns.iter().zip(before).map(|(turn, before)| turn - before).collect();
+    let in_row = |k: usize| steps[..=k].iter().rev().zip(&since).map(|(step, since)| step * since).sum();
+    (0..turns.len()).map(in_row).collect()
 }

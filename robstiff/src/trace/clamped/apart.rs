@@ -70,6 +70,13 @@ impl Apart {
     pub fn is_as_good(&self) -> bool {
         !self.names.is_empty() && self.worse < self.limits[1]
     }
+
+    /// Whether it is of the same kind as what it is held against, of each axis by itself.
+    pub fn is_of_one_kind(&self, model: &Fitted) -> bool {
+        let (bench, shared) = (&self.found.0, model.named[self.shared].candidate);
+        let new = self.found.1.named.iter().filter(|new| model.named.iter().all(|old| old.candidate != new.candidate));
+        new.into_iter().all(|new| bench.candidates[new.candidate].kind == bench.candidates[shared].kind)
+    }
 }
 
 /// The limits for one of the effects of a model that all axes share: what cannot be told stays
@@ -112,6 +119,7 @@ fn grown(bench: &Bench, model: Fitted) -> Standing {
 mod tests {
     use std::format;
 
+    use super::super::creep_tests::creep;
     use super::super::tests::{both_ways, measured, names, play, traced};
     use super::*;
     use crate::campaign::Campaign;
@@ -156,19 +164,7 @@ mod tests {
     #[test]
     fn what_all_axes_share_stays_one_number() {
         for seed in 0..3 {
-            let loads = core::cell::RefCell::new((0, Vec::new()));
-            let crept = |axis: usize, torque: f64| {
-                let mut loads = loads.borrow_mut();
-                if loads.0 != axis {
-                    *loads = (axis, Vec::new());
-                }
-                loads.1.push(torque);
-                let own = five_axis().joints[axis - 1].compliance();
-                let step = |k: usize| loads.1[k] - k.checked_sub(1).map_or(0.0, |before| loads.1[before]);
-                let since = |k: usize| (1.0 + (loads.1.len() - k) as f64 / 0.3).log10();
-                own * (0..loads.1.len()).map(|k| 0.03 * since(k) * step(k)).sum::<f64>()
-            };
-            let told = told(&measured(&five_axis(), &both_ways(), 780 + seed, crept));
+            let told = told(&measured(&five_axis(), &both_ways(), 780 + seed, creep([0.03; 5])));
             assert_eq!(told, (Verdict::Explained, ["creep@rig".into()].into()), "{seed}");
         }
     }

@@ -12,9 +12,12 @@
 //! Nothing here shows where links bend, how joints are coupled or where the tool
 //! is: nothing of that moves. A load cell's scale is a scale of all compliances.
 
+mod alike;
 mod apart;
 mod axes;
 mod bench;
+#[cfg(test)]
+mod creep_tests;
 mod curves;
 mod one_off;
 mod polish;

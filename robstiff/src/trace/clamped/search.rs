@@ -4,6 +4,7 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
+use super::alike::Alike;
 use super::apart::Apart;
 use super::axes::Axes;
 use super::bench::Bench;
@@ -90,6 +91,9 @@ fn from_start(course: Course, options: &Options, progress: &Progress<'_>) -> Res
 fn to_end(mut course: Course, options: &Options, progress: &Progress<'_>) -> Result<Found, String> {
     course.run(options, progress)?;
     if course.set_apart() {
+        course.run(options, progress)?;
+    }
+    if course.set_alike() {
         course.run(options, progress)?;
     }
     let (mut p_values, missing) = course.settle(options)?;
@@ -184,7 +188,18 @@ impl Course {
     /// Turns to effects of each axis where they say what all share better; whether they do.
     fn set_apart(&mut self) -> bool {
         let found = Apart::of(&self.at.bench, &self.at.model).filter(Apart::is_better);
-        let Some(Apart { found, .. }) = found else { return false };
+        self.turned_to(found.map(|apart| apart.found))
+    }
+
+    /// Turns to gears that all lag or all creep where these data do not tell; whether it does.
+    fn set_alike(&mut self) -> bool {
+        let found = Alike::of(&self.at.bench, &self.at.model).filter(Alike::is_better);
+        self.turned_to(found.map(|alike| alike.found))
+    }
+
+    /// Goes on from another model, if there is one; whether there is.
+    fn turned_to(&mut self, found: Option<(Bench, Fitted)>) -> bool {
+        let Some(found) = found else { return false };
         (self.at.bench, self.at.model) = found;
         (self.strict, self.unnamed) = (false, false);
         self.told_apart();

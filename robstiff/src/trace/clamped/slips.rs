@@ -10,7 +10,7 @@ use super::axes::{SLIPPED_AXIS, axes_column};
 use super::bench::Bench;
 use crate::identify::clamped::regression::problem;
 use crate::identify::normal::Sign;
-use crate::trace::catalogue::{HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY, axis_tells_hysteresis};
+use crate::trace::catalogue::{CREEP, HYSTERESIS, LOST_MOTION, STIFFNESS_NONLINEARITY, axis_tells_hysteresis};
 use crate::trace::found::Place;
 use crate::trace::model::{Fitted, Named, all_but};
 use crate::trace::selection::WITHIN_REACH;
@@ -45,7 +45,7 @@ pub fn instead_of_slip(bench: &Bench, named: &[Named], slip: usize) -> Vec<Inste
     let of_gear = |candidate: usize| {
         let one = &bench.candidates[candidate];
         one.place == Part::Joint(axis).into()
-            && [&HYSTERESIS, &STIFFNESS_NONLINEARITY, &LOST_MOTION].contains(&one.kind)
+            && [&HYSTERESIS, &STIFFNESS_NONLINEARITY, &LOST_MOTION, &CREEP].contains(&one.kind)
     };
     let with = |candidate: usize| {
         let mut other: Vec<Named> = rest.iter().copied().filter(|one| one.candidate != candidate).collect();

@@ -5,6 +5,7 @@ use std::string::{String, ToString};
 
 use super::errors::rms;
 use super::named::slip;
+use crate::trace::clamped::alike::is_mixed;
 use crate::trace::clamped::bench::Bench;
 use crate::trace::clamped::search::Found as Searched;
 use crate::trace::clamped::slips::shifts_all;
@@ -13,15 +14,19 @@ use crate::trace::verdict::{self, Besides};
 use crate::trace::{NamedEffect, Verdict};
 
 /// The verdict and why. `apart`: whether what all axes share and what each has of its own account
-/// for the readings alike.
-pub fn judged(found: &Searched, apart: bool) -> (Verdict, String) {
+/// for the readings alike; `alike`: whether gears that all lag and gears that all creep do.
+pub fn judged(found: &Searched, apart: bool, alike: bool) -> (Verdict, String) {
     if let Some(why) = &found.too_little {
         return (Verdict::Insufficient, why.clone());
     }
     let (bench, model) = (&found.bench, &found.selection.model);
     let besides = Besides { isolated: usize::from(!found.wild.0.is_empty()), ..Besides::default() };
     let judged = verdict::judge(&found.selection, &found.left, &besides);
-    let against = apart.then(told_apart).or_else(|| off(bench, model)).or_else(|| many(bench));
+    let against = apart
+        .then(told_apart)
+        .or_else(|| mixed(bench, model, alike))
+        .or_else(|| off(bench, model))
+        .or_else(|| many(bench));
     match (judged.0, against) {
         (Verdict::Adequate, Some(why)) => (Verdict::Unexplained, why),
         (Verdict::Explained, Some(why)) => (Verdict::Partial, why),
@@ -31,6 +36,14 @@ pub fn judged(found: &Searched, apart: bool) -> (Verdict, String) {
 
 fn told_apart() -> String {
     String::from("what all axes share and what each has of its own account for the readings alike")
+}
+
+/// Why gears that lag and gears that creep are not told from each other.
+fn mixed(bench: &Bench, model: &Fitted, alike: bool) -> Option<String> {
+    if is_mixed(bench, model) {
+        return Some(String::from("gears that all lag, or all creep, look as if some did the one and some the other"));
+    }
+    alike.then(|| String::from("a gear that lags and one that creeps account for the readings alike"))
 }
 
 /// What is left in readings as they are, over the noise that rows have to themselves, is more than

@@ -13,6 +13,7 @@ use nalgebra::DMatrix;
 use self::errors::Errors;
 use self::judged::{judged, one_more_is_off};
 use self::named::{effects, of_model};
+use super::alike::Alike;
 use super::apart::Apart;
 use super::bench::Bench;
 use super::search::Found as Searched;
@@ -33,7 +34,9 @@ use crate::trace::{Rival, Trace, Verdict};
 pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched) -> Result<Trace, Error> {
     let (bench, model) = (&found.bench, &found.selection.model);
     let apart = Apart::of(bench, model).filter(|apart| found.too_little.is_none() && apart.is_as_good());
-    let (verdict, why) = judged(found, apart.is_some());
+    let alike = Alike::of(bench, model).filter(|alike| found.too_little.is_none() && alike.is_as_good());
+    let two_kinds = apart.as_ref().is_some_and(|apart| !apart.is_of_one_kind(model));
+    let (verdict, why) = judged(found, two_kinds, alike.is_some());
     let tells = verdict != Verdict::Insufficient;
     let structure = found.left.structure || found.selection.unnamed;
     // What is told of the axes, and the errors, are those of what is written; the effects that
@@ -44,7 +47,7 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
     let spread_written = spread(bench, written);
     let spread = if fewer.is_some() { spread(bench, model) } else { spread_written.clone() };
     let effects = match tells {
-        true => effects(found, &spread, structure, errors.after.holdout_rms, apart.as_ref()),
+        true => effects(found, &spread, structure, errors.after.holdout_rms, apart.as_ref(), alike.as_ref()),
         false => Vec::new(),
     };
     let (verdict, why) = match one_more_is_off(bench, model, &effects) {

@@ -9,6 +9,7 @@ use robstiff_robots::effect::Place as Part;
 
 use crate::trace::NamedEffect;
 use crate::trace::catalogue::{BASE_SLIP, HYSTERESIS, OUTLIERS, STIFFNESS_NONLINEARITY, axis_tells_hysteresis};
+use crate::trace::clamped::alike::Alike;
 use crate::trace::clamped::apart::Apart;
 use crate::trace::clamped::axes::AxisNumber;
 use crate::trace::clamped::bench::Bench;
@@ -30,12 +31,15 @@ pub fn effects(
     partial: bool,
     holdout_rms: f64,
     apart: Option<&Apart>,
+    alike: Option<&Alike>,
 ) -> Vec<NamedEffect> {
     let (bench, model) = (&found.bench, &found.selection.model);
     let replaced = bench.replaced(&model.named);
     let all = with_spread(bench, model, spread);
     let mut so_far = Vec::new();
     let by_cost = costliest_first(&model.named, |rest| Some(bench.fit(rest)?.bic));
+    let of_apart = |k| apart.filter(|apart| apart.shared == k).map_or_else(Vec::new, |apart| apart.names.clone());
+    let of_alike = |k| alike.map_or_else(Vec::new, |alike| alike.instead_of(model, k));
     let named = by_cost.into_iter().map(|k| {
         so_far.push(model.named[k]);
         so_far.sort_unstable();
@@ -45,7 +49,7 @@ pub fn effects(
             p_value: found.selection.p_values[k],
             holdout_rms: bench.fit(&so_far).map_or(holdout_rms, |so_far| bench.left_out_rms(&so_far.fit)),
             in_part: Vec::new(),
-            same_as: same_as(bench, model, k, &replaced, apart.filter(|apart| apart.shared == k)),
+            same_as: same_as(bench, model, k, &replaced, [of_apart(k), of_alike(k)].concat()),
             partial,
         }
     });
@@ -103,14 +107,9 @@ fn with_spread(bench: &Bench, model: &Fitted, spread: &DMatrix<f64>) -> Vec<Foun
 }
 
 /// Full names of what an effect of a model may as well be; `replaced` are the models with another
-/// one in the place of each.
-fn same_as(
-    bench: &Bench,
-    model: &Fitted,
-    k: usize,
-    replaced: &[(usize, Fitted)],
-    apart: Option<&Apart>,
-) -> Vec<String> {
+/// one in the place of each, `wholes` the names of what is in its place in models that are held
+/// against this one as wholes.
+fn same_as(bench: &Bench, model: &Fitted, k: usize, replaced: &[(usize, Fitted)], wholes: Vec<String>) -> Vec<String> {
     let candidate = &bench.candidates[model.named[k].candidate];
     let near = replaced.iter().filter(|(of, other)| *of == k && other.bic < model.bic + WITHIN_REACH);
     let in_its_place = |(_, other): &(usize, Fitted)| {
@@ -118,7 +117,7 @@ fn same_as(
         Some(bench.candidates[new.candidate].name())
     };
     let names = near.filter_map(in_its_place).chain(dead_zone(bench, model, k));
-    let names = names.chain(apart.into_iter().flat_map(|apart| apart.names.iter().cloned()));
+    let names = names.chain(wholes);
     let mut same_as: Vec<String> = Vec::new();
     for name in names.chain(as_good_as_slip(bench, model, k)).chain(wild_row(bench, model, k)) {
         // Slips of several axes have one name.
