@@ -42,7 +42,7 @@ fn together(places: &[&str]) -> String {
         }
     }
     let place = |place: &&str| match *place {
-        "base" | "tool" | "robot" => format!("the {place}"),
+        "base" | "tool" | "robot" | "rig" => format!("the {place}"),
         place => place.replace(',', "/"),
     };
     and(&places.iter().map(place).collect::<Vec<_>>())

@@ -66,9 +66,16 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
 /// All axes creep alike, or one by a share of its own; in rows, the file tells no time.
 fn on_axes(axes: &Axes) -> Vec<OnAxes> {
     let all: Vec<usize> = axes.loaded().collect();
-    let own = all.iter().map(|&axis| of_axes(axes, Part::Joint(axis).into(), &[axis]));
     // Of one axis alone both are the same.
-    core::iter::once(of_axes(axes, Place::Rig, &all)).chain(own.filter(|_| all.len() > 1)).collect()
+    let own = all.iter().filter(|&&axis| all.len() > 1 && is_told(&axes.torques(axis)));
+    let own = own.map(|&axis| of_axes(axes, Part::Joint(axis).into(), &[axis]));
+    core::iter::once(of_axes(axes, Place::Rig, &all)).chain(own).collect()
+}
+
+/// Whether the rows of an axis tell its creep from a gear that softens: under loads that only
+/// rise both are curves of the torque.
+fn is_told(torques: &[f64]) -> bool {
+    torques.windows(2).any(|two| two[1].abs() <= two[0].abs() || two[0] * two[1] < 0.0)
 }
 
 /// What creeps by one share.
@@ -94,4 +101,23 @@ fn grown(turns: &[f64], onset: f64) -> Vec<f64> {
     let steps: Vec<f64> = turns.iter().zip(before).map(|(turn, before)| turn - before).collect();
     let in_row = |k: usize| steps[..=k].iter().rev().zip(&since).map(|(step, since)| step * since).sum();
     (0..turns.len()).map(in_row).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_loads_that_rest_or_go_back_tell_the_creep_of_an_axis() {
+        assert!(!is_told(&[]) && !is_told(&[100.0]) && !is_told(&[20.0, 50.0, 100.0]) && !is_told(&[-20.0, -100.0]));
+        assert!(is_told(&[20.0, 100.0, 60.0]) && is_told(&[50.0, 50.0]) && is_told(&[-20.0, 100.0]));
+    }
+
+    /// Every step goes on growing by the time since it was made.
+    #[test]
+    fn steps_grow_from_when_they_were_made() {
+        let [one, two] = [1.0, 2.0].map(|rows: f64| (1.0 + rows / 0.5).log10());
+        let grown = grown(&[2.0, 1.0], 0.5);
+        assert!((grown[0] - 2.0 * one).abs() < 1e-12 && (grown[1] - (2.0 * two - one)).abs() < 1e-12, "{grown:?}");
+    }
 }

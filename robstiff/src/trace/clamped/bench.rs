@@ -78,9 +78,7 @@ impl Bench {
                 let slips = form.told.iter().find(|number| number.name == SLIPPED_AXIS);
                 let is_dear =
                     slips.is_some_and(|axis| one.forms.len() > 1 || !axes.is_loaded_both_ways(axis.value as usize));
-                // What is known of a number beforehand is no choice of the data's.
-                let known = form.likely.map_or(0, |_| form.shape.len());
-                let parameters = plain.parameters + usize::from(is_dear) - known;
+                let parameters = plain.parameters + usize::from(is_dear);
                 Variant { within: form.within, likely: form.likely, parameters, ..plain }
             };
             let variants = one.forms.iter().map(variant).collect();
@@ -144,9 +142,11 @@ impl Bench {
         schwarz(rss, self.axes.rows.len() as f64, (self.parameters(named) + more) as f64)
     }
 
-    /// How many numbers a model has, those out of grids counting each as one.
+    /// How many numbers a model has, those out of grids counting each as one, but those of which
+    /// is known beforehand what they are likely to be: data say little more of them.
     pub fn parameters(&self, named: &[Named]) -> usize {
-        self.base + named.iter().map(|&one| self.variant(one).parameters).sum::<usize>()
+        let known = |form: &OnAxesForm| form.likely.map_or(0, |_| form.shape.len());
+        self.base + named.iter().map(|&one| self.variant(one).parameters - known(self.form(one))).sum::<usize>()
     }
 
     fn variant(&self, one: Named) -> &Variant {
