@@ -80,3 +80,22 @@ pub fn problem(rows: &[ClampedRow], raw: DMatrix<f64>) -> Problem {
     };
     Problem { equations, white }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether columns move one axis or all.
+    #[test]
+    fn products_are_those_of_all_columns() {
+        let row = |k: usize| ClampedRow { line: k + 2, axis: [3, 1, 3][k % 3], torque: 1.0, deflection: 0.5 };
+        let rows: Vec<ClampedRow> = (0..9).map(row).collect();
+        let raw = DMatrix::from_fn(9, 4, |i, j| match j {
+            0 | 1 if rows[i].axis != [1, 3][j] => 0.0,
+            _ => ((3 * i + 5 * j) as f64).sin(),
+        });
+        let problem = problem(&rows, raw);
+        let all = problem.white.tr_mul(&problem.white);
+        assert!((&problem.total.gram - &all).amax() < 1e-12, "{}", problem.total.gram);
+    }
+}

@@ -54,12 +54,11 @@ impl Alike {
     /// The names of what is in the place of an effect of the other model.
     pub fn instead_of(&self, model: &Fitted, k: usize) -> Vec<String> {
         let (bench, found) = &self.found;
-        let (axis, has) = (bench.axis_of(model.named[k].candidate), |of: &Fitted, one: &Named| {
-            of.named.iter().any(|other| other.candidate == one.candidate)
-        });
+        let has = |of: &Fitted, one: &Named| of.named.iter().any(|other| other.candidate == one.candidate);
         if has(found, &model.named[k]) {
             return Vec::new();
         }
+        let axis = bench.axis_of(model.named[k].candidate);
         let is_new = |new: &&Named| !has(model, new) && (axis.is_none() || bench.axis_of(new.candidate) == axis);
         found.named.iter().filter(is_new).map(|new| bench.candidates[new.candidate].name()).collect()
     }

@@ -86,3 +86,38 @@ impl Bench {
         Self::new(self.axes.clone(), Some(&offers))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::axes::Axes;
+    use super::super::tests::{both_ways, measured, play};
+    use super::*;
+    use crate::campaign::Data;
+    use crate::identify::clamped::slopes;
+    use crate::samples::five_axis;
+
+    #[test]
+    fn what_is_tried_leaves_what_a_bench_of_it_does() {
+        let state = core::cell::Cell::new(0.0);
+        let lags = |axis: usize, torque: f64| {
+            state.set(play(torque, 200.0, if axis == 2 { state.get() } else { 0.0 }));
+            if axis == 2 { 1e-7 * state.get() } else { 0.0 }
+        };
+        let campaign = measured(&five_axis(), &both_ways(), 930, lags);
+        let Data::Clamped(rows) = &campaign.data else { unreachable!("made of clamped axes") };
+        let identified = slopes(&campaign, rows, &[]).expect("every axis is loaded");
+        let bench = Bench::new(Axes::new(&campaign.robot, rows, &identified), None);
+        let best = bench.extended(&[]).into_iter().next().expect("something is missing");
+        let polished = bench.polished(&best.named);
+        let form = polished.form(best.named[0]);
+        let mut own = Own::of(&bench, &best.named);
+        own.replace(bench.base, &(form.columns)(&form.values()));
+        let left = polished.fit(&best.named).expect("it is possible").fit.rss;
+        assert!(
+            (own.left() / left - 1.0).abs() < 1e-6 && left < best.fit.rss,
+            "{} {left} {}",
+            own.left(),
+            best.fit.rss
+        );
+    }
+}
