@@ -209,7 +209,7 @@ impl CuttingRequest {
             Source::Cut(file) => Some(&file.forces),
             Source::Table(..) => None,
         };
-        complain_of_wall(&self.name, forces, self.surface);
+        complain_of_wall(&self.name, forces, self.surface, &deviation);
         complain_of_size(&self.name, forces, &deviation);
         let tolerance = self.tolerance.map(|tolerance| (tolerance, deviation.stretches(tolerance)));
         let beyond = |i: usize, limit: f64| deviation.points[i].judged().is_some_and(|error| error.abs() > limit);
