@@ -10,7 +10,7 @@ use robstiff::nalgebra::{Matrix4, Unit, Vector3};
 use robstiff::path::{SolvedPath, ToolPath};
 use robstiff_robots::quantity::Dimension;
 
-use super::doubts::{complain_of_size, complain_of_wall};
+use super::doubts::{complain_of_size, lacks_wall};
 use crate::failure::Failure;
 use crate::input::{positive, tool_axis};
 use crate::output::{self, Files};
@@ -92,6 +92,8 @@ pub struct Cutting {
     pub name: String,
     /// The machined surface.
     pub surface: &'static str,
+    /// Whether the wall is taken to be left of the tool because nothing says where it is.
+    pub takes_left: bool,
     /// Point by point.
     pub deviation: Deviation,
     /// Lines without a force, for want of a direction.
@@ -209,8 +211,6 @@ impl CuttingRequest {
             Source::Cut(file) => Some(&file.forces),
             Source::Table(..) => None,
         };
-        complain_of_wall(&self.name, forces, self.surface, &deviation);
-        complain_of_size(&self.name, forces, &deviation);
         let tolerance = self.tolerance.map(|tolerance| (tolerance, deviation.stretches(tolerance)));
         let beyond = |i: usize, limit: f64| deviation.points[i].judged().is_some_and(|error| error.abs() > limit);
         let broken = self.tolerance.filter(|limit| (0..deviation.points.len()).any(|i| beyond(i, *limit)));
@@ -230,9 +230,11 @@ impl CuttingRequest {
             _ => None,
         };
         let corrected = if self.compensate { Some(self.correct(robot, path, solved, &load)?) } else { None };
+        complain_of_size(&self.name, forces, &deviation);
         Ok(Cutting {
             name: self.name.clone(),
             surface: if self.surface == Surface::Side { "side" } else { "face" },
+            takes_left: self.surface == Surface::Side && lacks_wall(forces),
             deviation,
             undirected: load.undirected,
             tolerance,

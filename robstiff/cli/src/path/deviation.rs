@@ -35,7 +35,14 @@ pub fn page(cutting: &Cutting) -> String {
     let judged = if points.iter().any(|point| point.peak.is_some()) { ", peak of a revolution" } else { "" };
     row(&format!("error of the {}{judged}", surface(cutting)), cutting.deviation.errors());
     page += &rows.to_string();
-    page += "positive errors are into the part, negative ones leave material\n";
+    page += "positive errors are into the part, negative ones leave material";
+    if cutting.takes_left && cutting.deviation.errors().is_some() {
+        page += &format!(
+            ";\n{} does not say on which side the wall is, so left of the tool is taken, as in up milling",
+            cutting.name
+        );
+    }
+    page.push('\n');
     if !cutting.undirected.is_empty() {
         page += &format!(
             "no force on {}: the tool plunges or stays in place, and the cut has no direction\n",

@@ -1,6 +1,6 @@
 //! What numbers along a path mean less than they seem to, said before they are.
 
-use robstiff::deviation::{Deviation, DeviationPoint, Surface, width};
+use robstiff::deviation::{Deviation, DeviationPoint, width};
 use robstiff::milling::Forces;
 
 use crate::output::complain;
@@ -13,18 +13,12 @@ const SMALL: f64 = 0.01;
 /// proportion than at first.
 const PART: f64 = 0.5;
 
-/// Says where nobody knows on which side the wall is: of forces without a model, and of a cut that
-/// meets no wall. A slot has one on either side, and what only plunges none.
-pub fn complain_of_wall(name: &str, forces: Option<&Forces>, surface: Surface, deviation: &Deviation) {
-    let is_known = match forces {
-        Some(Forces::Model(cut)) => cut.engagement.wall().is_some() || cut.engagement.is_slot(),
-        Some(Forces::Measured { .. }) | None => false,
-    };
-    if surface == Surface::Side && !is_known && deviation.errors().is_some() {
-        complain(format_args!(
-            "warning: {name} does not say on which side the wall is: it is taken left of the tool, as in up milling; in \
-             down milling the error of the wall has the other sign"
-        ));
+/// Whether nobody knows on which side the wall is: of forces without a model, and of a cut that
+/// meets no wall. A slot has one on either side.
+pub fn lacks_wall(forces: Option<&Forces>) -> bool {
+    match forces {
+        Some(Forces::Model(cut)) => cut.engagement.wall().is_none() && !cut.engagement.is_slot(),
+        Some(Forces::Measured { .. }) | None => true,
     }
 }
 
