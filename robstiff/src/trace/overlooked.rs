@@ -34,6 +34,9 @@ use crate::words::micrometres;
 /// A criterion that is lower by this is far better: odds of three millions to one.
 const FAR: f64 = 30.0;
 
+/// More poses have signs enough.
+const FEW_POSES: usize = 25;
+
 /// What was found, or what is found from where something that was overlooked fits far better; if
 /// that is not significant either, that something is missing, or that the data cannot tell.
 ///
@@ -44,7 +47,9 @@ pub fn instead<'c>(
     prepared: &Prepared<'c>,
     options: &Options,
 ) -> Result<(Bench<'c>, Outcome), String> {
-    if !matches!(outcome.verdict, Verdict::Adequate | Verdict::Explained) {
+    let is_told = matches!(outcome.verdict, Verdict::Adequate | Verdict::Explained);
+    // Noise with heavy tails, which wild readings come with, is no measure of what is better.
+    if !is_told || !outcome.events.is_empty() || bench.at(&[])?.problem.blocks.len() > FEW_POSES {
         return Ok((bench, outcome));
     }
     let Some((other, on)) = far_better(&bench, &outcome.selection.model) else { return Ok((bench, outcome)) };
