@@ -174,6 +174,11 @@ impl<'c> Bench<'c> {
         (self.problem, _) = self.regression.at(state, &all, &self.rows);
     }
 
+    /// How many readings are fitted to.
+    pub fn readings(&self) -> usize {
+        self.problem.total.rows
+    }
+
     /// The numbers of a model, the description's own first.
     pub fn chosen(&self, named: &[Named]) -> Vec<usize> {
         let effects = named.iter().flat_map(|&one| &self.variant(one).columns).map(|column| column - STANDS);

@@ -201,16 +201,13 @@ pub enum Kept {
 /// What is wild at a model where no row is left out, and whether it stays for an
 /// effect's sake; it is none then.
 fn wild_at(bench: &mut Bench<'_>, model: &Model, strict: bool, kept: Kept) -> (Wild, bool) {
-    let chosen = bench.chosen(&model.named);
-    let (whole, _) = bench.regression.at(&model.solved.state, &chosen, &bench.rows);
-    let payload = |row: usize| bench.prepared.data.rows[row].payload;
-    let wild = single_rows(&whole, payload, strict).unwrap_or_default();
+    let wild = single_rows(bench, model, strict).unwrap_or_default();
     if wild.rows.is_empty() || kept == Kept::Never {
         return (wild, false);
     }
     bench.turn_to(model);
-    let readings = whole.total.rows as f64;
-    let numbers = (STANDS + chosen.len() + WILD * wild.rows.len()) as f64;
+    let readings = bench.readings() as f64;
+    let numbers = (STANDS + bench.chosen(&model.named).len() + WILD * wild.rows.len()) as f64;
     let bic = schwarz(wild.rss, readings, numbers);
     // A slip that only the first or the last row has is that row: with as many numbers.
     let fewer = bic - readings.ln();

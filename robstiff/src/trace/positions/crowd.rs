@@ -10,8 +10,8 @@ use std::string::ToString;
 
 use statrs::distribution::{DiscreteCDF, Hypergeometric};
 
+use super::bench::{Bench, Model};
 use crate::identify::positions::wild::{Many, Wild, wild_rows};
-use crate::identify::problem::Problem;
 use crate::probability::told;
 use crate::trace::lack_of_fit::StructureTest;
 
@@ -26,23 +26,27 @@ pub struct Crowd {
     pub of_payload: bool,
 }
 
-/// The rows of a regression that are wild, each by itself, by what each carries (kg). Unless
-/// `strict`, they must stand out from structure that may be left, too.
+/// The rows that are wild at a model fitted to all of them, each by itself. Unless `strict`, they
+/// must stand out from structure that may be left, too.
 ///
 /// # Errors
 /// What stands out are no single rows.
-pub fn single_rows(problem: &Problem, payload: impl Fn(usize) -> f64, strict: bool) -> Result<Wild, Crowd> {
+pub fn single_rows(bench: &Bench<'_>, model: &Model, strict: bool) -> Result<Wild, Crowd> {
+    let mut all = bench.rows.clone();
+    all.left_out.fill(false);
+    let (problem, _) = bench.regression.at(&model.solved.state, &bench.chosen(&model.named), &all);
+    let payload = |row: usize| bench.prepared.data.rows[row].payload;
     let fitted = || problem.blocks.iter().flat_map(|block| block.rows.iter().copied());
     let many = |Many { rows, p }: Many| {
         let name = "more rows stand out than single ones do".to_string();
         Crowd { test: StructureTest { name, statistic: rows.len() as f64, p_value: p }, of_payload: false }
     };
-    let wild = wild_rows(problem, strict).map_err(many)?;
+    let wild = wild_rows(&problem, strict).map_err(many)?;
     let rows = fitted().count();
-    let mean = fitted().map(&payload).sum::<f64>() / rows as f64;
+    let mean = fitted().map(payload).sum::<f64>() / rows as f64;
     let heavy = |row: &usize| payload(*row) > mean;
-    let (all, of_wild) = (fitted().filter(heavy).count(), wild.rows.iter().filter(|row| heavy(row)).count());
-    match as_heavy([rows, all], [wild.rows.len(), of_wild]) {
+    let (weighty, of_wild) = (fitted().filter(heavy).count(), wild.rows.iter().filter(|row| heavy(row)).count());
+    match as_heavy([rows, weighty], [wild.rows.len(), of_wild]) {
         Some(p_value) if p_value <= LEVEL => {
             let name = "the rows that stand out are those under payload".to_string();
             Err(Crowd { test: StructureTest { name, statistic: of_wild as f64, p_value }, of_payload: true })

@@ -53,7 +53,7 @@ pub fn structure(bench: &Bench<'_>, model: &Model, noise: Option<f64>, options: 
     let held_out = usize::from(!model.solved.problem.held_out.is_empty());
     let level = options.alpha / (tests.len() + held_out).max(1) as f64;
     let mut structure = tests.iter().any(|test| test.p_value <= level);
-    let crowd = crowd_left(bench, model);
+    let crowd = single_rows(bench, model, true).err();
     structure |= crowd.is_some();
     let freedom = model.solved.problem.freedom(&model.solved.fit);
     let of_size = size.filter(|size| size.p_value <= level).map_or(0.0, |size| size.beyond);
@@ -73,14 +73,6 @@ pub fn structure(bench: &Bench<'_>, model: &Model, noise: Option<f64>, options: 
         }
     }
     LackOfFit { tests, structure, fraction: of_size.max(of_largest).clamp(0.0, 1.0), depends_on }
-}
-
-/// What stands out at a model, where it is [no single rows](super::crowd).
-fn crowd_left(bench: &Bench<'_>, model: &Model) -> Option<Crowd> {
-    let mut all = bench.rows.clone();
-    all.left_out.fill(false);
-    let (whole, _) = bench.regression.at(&model.solved.state, &bench.chosen(&model.named), &all);
-    single_rows(&whole, |row| bench.prepared.data.rows[row].payload, true).err()
 }
 
 /// What is left against the noise that is declared, by chi-square. In that noise is by
