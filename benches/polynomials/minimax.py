@@ -4,6 +4,10 @@ On |r| <= pi/4, and beside tables on |r| <= pi/32 (tables.rs) and pi/256 (circle
 
     sin r = r + r z S(z),        cos r = 1 - z/2 + z^2 C(z).
 
+and of a whole angle, |x| <= 3.236 (near.rs), with u = x^2 less the rounded 3.236^2 / 2,
+
+    sin x = x S(u),        cos x = C(u).
+
 S and C are chosen so that the largest error of the sine, relative to r, and of
 the cosine is as small as it can be. Such a polynomial of n coefficients misses
 by equal amounts of alternating sign at n + 1 points (Chebyshev). Remez: solve
@@ -63,19 +67,57 @@ def solve(rows, right):
     return x
 
 
-def remez(first, known, n, last):
-    """n more coefficients after the known ones; weight z for S, z^2 for C."""
-    power = first - 2 if first == 3 else 2
+class Small:
+    """S (first = 3) or C (first = 4) of an angle near 0, in powers of z."""
+
+    def __init__(self, first, last, _):
+        self.first, self.last, self.middle = first, last, D(0)
+
+    def value(self, z):
+        return tail(z, self.first)
+
+    def weight(self, z):
+        return z if self.first == 3 else z**2
+
+    def order(self, n):
+        """The order in which coefficients are rounded."""
+        return range(n)
+
+
+class Whole:
+    """S (first = 3) or C (first = 4) of a whole angle, in powers of u."""
+
+    def __init__(self, first, last, single):
+        self.first, self.last, self.middle = first, last, rounded(last / 2, single)
+
+    def value(self, z):
+        return 1 + z * tail(z, 3) if self.first == 3 else 1 - z / 2 + z * z * tail(z, 4)
+
+    def weight(self, z):
+        return D(1)
+
+    def order(self, n):
+        """Highest first: powers of u without the lowest are all 0 in the middle."""
+        return reversed(range(n))
+
+
+def remez(shape, fixed):
+    """The best coefficients, of which those that are not None are fixed."""
     def error(z, cs):
-        return z**power * (tail(z, first) - horner(cs, z))
-    m = len(known)
+        return shape.weight(z) * (shape.value(z) - horner(cs, z - shape.middle))
+    free = [k for k, c in enumerate(fixed) if c is None]
+    known = [c or D(0) for c in fixed]
+    n, last = len(free), shape.last
     points = [last * (1 - D(math.cos(math.pi * (i + 0.5) / (n + 1)))) / 2 for i in range(n + 1)]
     for _ in range(8):
         rows, right = [], []
         for i, z in enumerate(points):
-            rows.append([z ** (k + m) for k in range(n)] + [(-1) ** i / z**power])
-            right.append(tail(z, first) - horner(known, z))
-        cs = known + solve(rows, right)[:n]
+            u = z - shape.middle
+            rows.append([u**k for k in free] + [(-1) ** i / shape.weight(z)])
+            right.append(shape.value(z) - horner(known, u))
+        cs = list(known)
+        for k, c in zip(free, solve(rows, right)):
+            cs[k] = c
         grid = [last * D(i) / 1500 for i in range(1, 1501)]
         values = [error(z, cs) for z in grid]
         extremes, run = [], [0]
@@ -102,17 +144,16 @@ def rounded(x, single):
     return D(struct.unpack("f", struct.pack("f", x))[0] if single else x)
 
 
-def fit(first, n, single, last):
-    known = []
-    while len(known) < n:
-        cs, _ = remez(first, known, n - len(known), last)
-        known = known + [rounded(cs[len(known)], single)]
-    power = first - 2 if first == 3 else 2
+def fit(shape, n, single):
+    cs = [None] * n
+    for k in shape.order(n):
+        best, _ = remez(shape, cs)
+        cs[k] = rounded(best[k], single)
     worst = max(
-        abs(z**power * (tail(z, first) - horner(known, z)))
-        for z in (last * D(i) / 1500 for i in range(1, 1501))
+        abs(shape.weight(z) * (shape.value(z) - horner(cs, z - shape.middle)))
+        for z in (shape.last * D(i) / 1500 for i in range(1, 1501))
     )
-    return known, worst
+    return cs, worst
 
 
 def parts(bits, whole=PI / 2):
@@ -128,15 +169,19 @@ def parts(bits, whole=PI / 2):
 
 
 if __name__ == "__main__":
-    for name, single, part, counts in (
-        ("f64", False, 4, (6, 6)),
-        ("f64, tables", False, 32, (3, 3)),
-        ("f64, circle", False, 256, (2,)),
-        ("f32", True, 4, (4, 3)),
-        ("f32", True, 4, (3, 3)),
+    # Of all limits from 3.23 to 3.26 that where what is rounded does least harm, and cos 0 is 1.
+    near = D("3.236") ** 2
+    for name, single, shape, last, counts in (
+        ("f64", False, Small, end(4), (6, 6)),
+        ("f64, near", False, Whole, near, (11, 11)),
+        ("f64, tables", False, Small, end(32), (3, 3)),
+        ("f64, circle", False, Small, end(256), (2,)),
+        ("f32", True, Small, end(4), (4, 3)),
+        ("f32", True, Small, end(4), (3, 3)),
+        ("f32, near", True, Whole, near, (8, 8)),
     ):
         for first, n in zip((3, 4), counts):
-            cs, worst = fit(first, n, single, end(part))
+            cs, worst = fit(shape(first, last, single), n, single)
             print(name, "sin" if first == 3 else "cos", n, f"largest error {float(worst):.2e} = 2^{math.log2(worst):.1f}")
             for c in cs:
                 print("   ", repr(float(c)))

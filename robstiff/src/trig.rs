@@ -1,27 +1,21 @@
 //! Sines and cosines of several angles side by side.
 //!
 //! The platform's `sin` takes one angle, and takes most of the time of a
-//! compliance. Here every angle goes the same way, without a branch or a
-//! table, so that the angles of a pose, or of several poses, go into the lanes
-//! of one vector ([`Abreast`]). Batches have tables where these are faster: with AVX2 in
-//! memory (`circle.rs`), of `f64` with AVX-512 in registers (`tables.rs`). The way without:
+//! compliance. Here all angles of a pose, or of several poses, go the same way, side by side
+//! in the lanes of vectors ([`Abreast`]). Which way that is for one pose, a
+//! single comparison tells:
 //!
-//! 1. `k`, the multiple of pi/2 nearest to the angle, by adding and
-//!    subtracting a number so large that only whole ones fit ([`places::SHIFT`]);
-//! 2. `r = x - k pi/2`, between -pi/4 and pi/4 (Cody and Waite): pi/2 in parts,
-//!    the first ones so short that `k` times them is exact, so that only the
-//!    last subtraction rounds;
-//! 3. `sin r = r + r z S(z)` and `cos r = 1 + z (z C(z) - 1/2)` with `z = r^2`
-//!    and the best polynomials of their length: for a single pose, which waits
-//!    more than it computes, in steps that wait for each other as little as
-//!    possible, for many poses with as few multiplications as possible;
-//! 4. the last two bits of `k` set the signs of the two and exchange them.
+//! - where all of them are [`near`], polynomials of the angles as they are, within
+//!   [`Float::NEAR_BOUND`] of the truth;
+//! - where some are not, up to [`Float::DOMAIN`], polynomials of the angles less multiples of
+//!   pi/2 ([`reduced`]), within [`Float::BOUND`];
+//! - where one is beyond that, an infinity or a NaN, the platform's functions.
 //!
-//! Both parts of the answer are within [`Float::BOUND`] of the truth for
-//! angles up to [`Float::DOMAIN`]; `sin 0 = 0`, `cos 0 = 1`, and the symmetries
-//! of sine and cosine hold exactly. An array with an angle beyond that, an
-//! infinity or a NaN goes to the platform's functions, which costs one
-//! comparison to find out: of the bits of the number that `k` is added to.
+//! Batches, which compute more than they wait, take all angles as [`reduced`] does, or have
+//! tables where these are faster: with AVX2 in memory (`circle.rs`), of `f64` with AVX-512 in
+//! registers (`tables.rs`).
+//!
+//! Everywhere `sin 0 = 0`, `cos 0 = 1`, and the symmetries of sine and cosine hold exactly.
 //!
 //! Gain: `benches/README.md`. The feature `platform-trig` takes all this out.
 
@@ -29,14 +23,16 @@ mod abreast;
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 pub(crate) mod circle;
 mod float;
+mod near;
+mod reduced;
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 pub(crate) mod tables;
 #[cfg(all(test, feature = "std"))]
 mod tests;
 
 use abreast::{Abreast, Pairs, Vector};
-use float::places;
 pub(crate) use float::{FUSED, Float};
+pub(crate) use reduced::{sin_cos_each, within_domain};
 
 /// `a * b + c`, rounded once if `FUSED`.
 #[inline(always)]
@@ -44,121 +40,18 @@ pub(crate) fn mul_add<F: Float, const FUSED: bool>(a: F, b: F, c: F) -> F {
     abreast::mul_add::<F, F, FUSED>(a, b, c)
 }
 
-/// The nearest multiples of pi/2, as the last bits of a large number.
-#[inline(always)]
-fn quarters<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> V {
-    abreast::mul_add::<F, V, FUSED>(x, V::number(places::TWO_OVER_PI), V::number(places::SHIFT))
-}
-
-/// The angles less those multiples of pi/2.
-#[inline(always)]
-fn reduced<F: Float, V: Abreast<F>, const FUSED: bool>(x: V, shifted: V) -> V {
-    let k = shifted - V::number(places::SHIFT);
-    let mut r = x;
-    for part in 0..F::PARTS - 1 {
-        r = abreast::mul_add::<F, V, FUSED>(k, V::number(places::PARTS + part), r);
-    }
-    // Not fused: this product does not wait for the others.
-    r + k * V::number(places::PARTS + F::PARTS - 1)
-}
-
-/// A polynomial, the lowest coefficient first: pairs of terms, which do not
-/// wait for each other, and then one step in `z^2` for each pair; of many angles
-/// (`MANY`) term by term (Horner).
-#[inline(always)]
-fn polynomial<F: Float, V: Abreast<F>, const FUSED: bool, const MANY: bool>(
-    coefficient: impl Fn(usize) -> V,
-    z: V,
-    z2: V,
-) -> V {
-    let mul_add = abreast::mul_add::<F, V, FUSED>;
-    if MANY {
-        let mut value = coefficient(F::TERMS - 1);
-        for i in 1..F::TERMS {
-            value = mul_add(value, z, coefficient(F::TERMS - 1 - i));
-        }
-        return value;
-    }
-    let pair = |i: usize| {
-        let low = coefficient(i);
-        if i + 1 < F::TERMS { mul_add(z, coefficient(i + 1), low) } else { low }
-    };
-    let mut i = (F::TERMS - 1) / 2 * 2;
-    let mut value = pair(i);
-    while i > 0 {
-        i -= 2;
-        value = mul_add(value, z2, pair(i));
-    }
-    value
-}
-
-/// Sines and cosines of angles within the domain.
-///
-/// `FUSED`: multiplies and adds in one instruction, which the target must have.
-/// `MANY`: many angles follow each other, which do not wait for each other.
-#[inline(always)]
-pub(crate) fn within_domain<F: Float, V: Abreast<F>, const FUSED: bool, const MANY: bool>(x: V) -> (V, V) {
-    let mul_add = abreast::mul_add::<F, V, FUSED>;
-    let shifted = quarters::<F, V, FUSED>(x);
-    let r = reduced::<F, V, FUSED>(x, shifted);
-    let z = r * r;
-    let z2 = z * z;
-    // Once: of two such shifts the compiler makes a comparison of one. Gain: `benches/README.md`.
-    let odd = V::odd(shifted);
-    let (sign_of_sin, sign_of_cos) = V::signs(shifted, odd);
-    let signed = r.change_signs(sign_of_sin);
-    let sin_tail = polynomial::<F, V, FUSED, MANY>(|i| V::number(places::sin::<F>() + i), z, z2);
-    let sin = mul_add(signed * z, sin_tail, signed);
-    let cos_tail = polynomial::<F, V, FUSED, MANY>(|i| V::number(places::cos::<F>() + i), z, z2);
-    let cos = if MANY {
-        let cos = mul_add(z, mul_add(z, cos_tail, V::number(places::MINUS_HALF)), V::number(places::ONE));
-        cos.change_signs(sign_of_cos)
-    } else {
-        // Both terms and not the sum, which all that follows waits for. Gain: `benches/README.md`.
-        let most = mul_add(z, V::number(places::MINUS_HALF), V::number(places::ONE));
-        mul_add(z2.change_signs(sign_of_cos), cos_tail, most.change_signs(sign_of_cos))
-    };
-    V::exchange(odd, sin, cos)
-}
-
-/// The same of angles that are there in pairs, sine and cosine side by side.
-#[inline(always)]
-fn pairs_within_domain<F: Float, V: Pairs<F>, const FUSED: bool>(x: V) -> V {
-    let mul_add = abreast::mul_add::<F, V, FUSED>;
-    let shifted = quarters::<F, V, FUSED>(x);
-    let r = reduced::<F, V, FUSED>(x, shifted);
-    let z = r * r;
-    let z2 = z * z;
-    let tail = polynomial::<F, V, FUSED, false>(|i| V::numbers(places::sin::<F>() + i, places::cos::<F>() + i), z, z2);
-    let most = mul_add(z, V::number(places::MINUS_HALF), V::number(places::ONE));
-    let signs = V::signs_of_pairs(shifted);
-    let factor = V::sides(r, z).change_signs(signs);
-    mul_add(z * factor, tail, V::sides(r, most).change_signs(signs)).exchange_pairs(V::odd(shifted))
-}
-
-/// Sines and cosines of many angles, in a loop that the compiler makes vectors of.
-/// False if some angle is out of the domain or a NaN: then they mean nothing.
-#[inline(always)]
-pub(crate) fn sin_cos_each<F: Float, const FUSED: bool, const K: usize>(
-    angles: &[F; K],
-    sines: &mut [F; K],
-    cosines: &mut [F; K],
-) -> bool {
-    let mut strange = F::ZERO;
-    for i in 0..K {
-        strange = strange.or(F::strange(quarters::<F, F, FUSED>(angles[i])));
-        (sines[i], cosines[i]) = within_domain::<F, F, FUSED, true>(angles[i]);
-    }
-    strange.is_usual()
-}
-
 /// Sine and cosine of one angle.
 #[inline]
 pub(crate) fn sin_cos<F: Float>(angle: F) -> (F, F) {
-    if cfg!(feature = "platform-trig") || !angle.is_in_domain() {
-        return angle.platform_sin_cos();
+    if !cfg!(feature = "platform-trig") {
+        if !near::room::<F, F>(angle).is_negative_somewhere() {
+            return near::sin_cos::<F, F, FUSED>(angle);
+        }
+        if angle.is_in_domain() {
+            return within_domain::<F, F, FUSED>(angle);
+        }
     }
-    within_domain::<F, F, FUSED, false>(angle)
+    angle.platform_sin_cos()
 }
 
 /// Sines and cosines of several angles, `(sin, cos)` each.
@@ -175,29 +68,29 @@ pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K]) -> [(F, F); 
     let left = K % lanes;
     let in_pairs = if 2 * left <= lanes { left } else { 0 };
     let alone = K - in_pairs;
-    let mut strange = F::Vector::number(0);
+    let mut room = F::Vector::number(0);
     for first in (0..alone).step_by(lanes) {
-        let next = strangeness(F::Vector::gather(&angles, first));
-        strange = if first == 0 { next } else { strange.or(next) };
+        let next = near::room(F::Vector::gather(&angles, first));
+        room = if first == 0 { next } else { room.or(next) };
     }
     if in_pairs > 0 {
-        let last = strangeness(F::Vector::gather_pairs(&angles, alone));
-        strange = if alone == 0 { last } else { strange.or(last) };
+        let last = near::room(F::Vector::gather_pairs(&angles, alone));
+        room = if alone == 0 { last } else { room.or(last) };
     }
-    let within = !cfg!(feature = "platform-trig") && (K == 0 || strange.is_usual());
+    let are_near = !cfg!(feature = "platform-trig") && !room.is_negative_somewhere();
     // Both branches end in vectors. If they ended in numbers, the compiler would make other vectors of those.
     let mut vectors = [(F::Vector::number(0), F::Vector::number(0)); K];
     let mut pairs = F::Vector::number(0);
-    if within {
+    if are_near {
         for first in (0..alone).step_by(lanes) {
-            vectors[first / lanes] = within_domain::<F, F::Vector, FUSED, false>(F::Vector::gather(&angles, first));
+            vectors[first / lanes] = near::sin_cos::<F, F::Vector, FUSED>(F::Vector::gather(&angles, first));
         }
         if in_pairs > 0 {
-            pairs = pairs_within_domain::<F, F::Vector, FUSED>(F::Vector::gather_pairs(&angles, alone));
+            pairs = near::pairs::<F, F::Vector, FUSED>(F::Vector::gather_pairs(&angles, alone));
         }
     } else {
         let copies = angles;
-        let (sines, cosines) = one_by_one(&copies);
+        let (sines, cosines) = far(&copies);
         for first in (0..alone).step_by(lanes) {
             vectors[first / lanes] = (F::Vector::gather(&sines, first), F::Vector::gather(&cosines, first));
         }
@@ -229,14 +122,20 @@ fn handed_on<V>(vectors: V) -> V {
     if BY_MEMORY { core::hint::black_box(vectors) } else { vectors }
 }
 
-#[inline(always)]
-fn strangeness<F: Float, V: Vector<F>>(angles: V) -> V {
-    V::strange(quarters::<F, V, FUSED>(angles))
-}
-
+/// Sines and cosines of angles of which one or more are not near; a function of its own, so
+/// that callers are not twice as long.
 #[cold]
 #[inline(never)]
-fn one_by_one<F: Float, const K: usize>(angles: &[F; K]) -> ([F; K], [F; K]) {
-    let both = angles.map(F::platform_sin_cos);
+fn far<F: Float, const K: usize>(angles: &[F; K]) -> ([F; K], [F; K]) {
+    let mut both = [(F::ZERO, F::ZERO); K];
+    if !cfg!(feature = "platform-trig") && angles.iter().all(|angle| angle.is_in_domain()) {
+        // Whole vectors only: of the last one, some lanes compute the same.
+        for first in (0..K).step_by(F::Vector::LANES) {
+            let (sin, cos) = within_domain::<F, F::Vector, FUSED>(F::Vector::gather(angles, first));
+            F::Vector::scatter(sin, cos, &mut both, first);
+        }
+    } else {
+        both = angles.map(F::platform_sin_cos);
+    }
     (both.map(|(sin, _)| sin), both.map(|(_, cos)| cos))
 }

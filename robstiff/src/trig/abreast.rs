@@ -30,15 +30,11 @@ pub(crate) trait Abreast<F>: Copy + Add<Output = Self> + Sub<Output = Self> + Mu
     /// The two exchanged where the quarter turns are odd.
     fn exchange(odd: Self, sin: Self, cos: Self) -> (Self, Self);
 
-    /// Of an angle as [`quarters`](super::quarters) shifts it: bits that are 0
-    /// where it is within the domain, and some not where it is not or is a NaN.
-    fn strange(shifted: Self) -> Self;
-
     /// The bits of both.
     fn or(self, other: Self) -> Self;
 
-    /// Whether all bits that [`strange`](Self::strange) left are 0.
-    fn is_usual(self) -> bool;
+    /// Whether one of them has the sign of a negative number.
+    fn is_negative_somewhere(self) -> bool;
 }
 
 /// `a * b + c`, rounded once if `FUSED`.
@@ -74,11 +70,8 @@ pub(crate) trait Pairs<F>: Vector<F> {
     /// The sines' lanes of one, the cosines' of another.
     fn sides(sin: Self, cos: Self) -> Self;
 
-    /// As [`signs`](Abreast::signs), each in its lanes.
-    fn signs_of_pairs(shifted: Self) -> Self;
-
-    /// As [`exchange`](Abreast::exchange).
-    fn exchange_pairs(self, odd: Self) -> Self;
+    /// Its own numbers in the sines' lanes, 1 in the cosines'.
+    fn sines_beside_ones(self) -> Self;
 }
 
 macro_rules! single {
@@ -123,18 +116,13 @@ macro_rules! single {
             }
 
             #[inline(always)]
-            fn strange(shifted: Self) -> Self {
-                Self::from_bits(shifted.to_bits() ^ $module::QUARTERS.0)
-            }
-
-            #[inline(always)]
             fn or(self, other: Self) -> Self {
                 Self::from_bits(self.to_bits() | other.to_bits())
             }
 
             #[inline(always)]
-            fn is_usual(self) -> bool {
-                self.to_bits() & $module::QUARTERS.1 == 0
+            fn is_negative_somewhere(self) -> bool {
+                self.is_sign_negative()
             }
         }
     };
@@ -176,12 +164,7 @@ impl<F: Float> Pairs<F> for F {
     }
 
     #[inline(always)]
-    fn signs_of_pairs(shifted: Self) -> Self {
-        F::signs(shifted, F::odd(shifted)).0
-    }
-
-    #[inline(always)]
-    fn exchange_pairs(self, _: Self) -> Self {
+    fn sines_beside_ones(self) -> Self {
         self
     }
 }
@@ -236,19 +219,13 @@ macro_rules! vectors {
             }
 
             #[inline(always)]
-            fn strange(shifted: Self) -> Self {
-                Self::from_bits(shifted.to_bits() ^ wide::$bits::splat($module::QUARTERS.0))
-            }
-
-            #[inline(always)]
             fn or(self, other: Self) -> Self {
                 Self::from_bits(self.to_bits() | other.to_bits())
             }
 
             #[inline(always)]
-            fn is_usual(self) -> bool {
-                let strange = self.to_bits() & wide::$bits::splat($module::QUARTERS.1);
-                strange.simd_eq(wide::$bits::splat(0)).all()
+            fn is_negative_somewhere(self) -> bool {
+                self.to_bitmask() != 0
             }
         }
 
@@ -312,24 +289,12 @@ macro_rules! vectors {
             }
 
             #[inline(always)]
-            fn signs_of_pairs(shifted: Self) -> Self {
-                // Both bits change the sign of a sine, the second that of a cosine: the
-                // second of one more is both.
-                let mut more = [0; $lanes];
+            fn sines_beside_ones(self) -> Self {
+                let mut lanes = self.to_array();
                 for lane in 0..$lanes / 2 {
-                    more[2 * lane] = 1;
+                    lanes[2 * lane + 1] = 1.0;
                 }
-                let turns = shifted.to_bits() + wide::$bits::new(more);
-                Self::from_bits((turns << ($unsigned::BITS - 2)) & wide::$bits::splat(1 << ($unsigned::BITS - 1)))
-            }
-
-            #[inline(always)]
-            fn exchange_pairs(self, odd: Self) -> Self {
-                let (own, mut others) = (self.to_array(), self.to_array());
-                for lane in 0..$lanes {
-                    others[lane] = own[lane ^ 1];
-                }
-                exchange!($vector, $bits, $unsigned, odd).select(Self::new(others), self)
+                Self::new(lanes)
             }
         }
     )*};

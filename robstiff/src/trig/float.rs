@@ -24,14 +24,29 @@ pub(crate) trait Float: Abreast<Self> + Neg<Output = Self> + PartialEq + 'static
     const PARTS: usize;
     /// How many coefficients each of the two polynomials has.
     const TERMS: usize;
+    /// How many each of the two of [near](super::near) angles has.
+    const NEAR_TERMS: usize;
+    /// The largest near angle (rad).
+    #[cfg_attr(not(all(test, feature = "std")), expect(dead_code, reason = "[`places::MIDDLE`] is half its square"))]
+    const NEAR: Self;
+    /// How far sines and cosines of near angles are off at most.
+    #[cfg_attr(not(all(test, feature = "std")), expect(dead_code, reason = "what the tests hold the functions to"))]
+    const NEAR_BOUND: f64;
     /// The largest angle (rad) that is not left to the platform.
     const DOMAIN: Self;
-    /// How far sines and cosines within the domain are off at most.
+    /// How far those of all other angles within the domain are off at most, and those of batches.
     #[cfg_attr(not(all(test, feature = "std")), expect(dead_code, reason = "what the tests hold the functions to"))]
     const BOUND: f64;
 
     /// Whether it is an angle within the domain; false for a NaN.
     fn is_in_domain(self) -> bool;
+
+    /// Of an angle as [`quarters`](super::reduced::quarters) shifts it: bits that are 0
+    /// where it is within the domain, and some not where it is not or is a NaN.
+    fn strange(shifted: Self) -> Self;
+
+    /// Whether all bits that [`strange`](Self::strange) left are 0.
+    fn is_usual(self) -> bool;
 
     /// The platform's or libm's function.
     fn platform_sin_cos(self) -> (Self, Self);
@@ -50,8 +65,13 @@ pub(crate) mod places {
     pub const ONE: usize = 2;
     /// -1/2.
     pub const MINUS_HALF: usize = 3;
+    /// Half the square of the largest near angle: what `u` is measured from, and the
+    /// largest `u`.
+    pub const MIDDLE: usize = 4;
+    /// The same with the other sign.
+    pub const MINUS_MIDDLE: usize = 5;
     /// The parts of -pi/2.
-    pub const PARTS: usize = 4;
+    pub const PARTS: usize = 6;
 
     /// The coefficients of `S` in `sin r = r + r z S(z)`.
     pub const fn sin<F: Float>() -> usize {
@@ -61,6 +81,16 @@ pub(crate) mod places {
     /// The coefficients of `C` in `cos r = 1 - z/2 + z^2 C(z)`.
     pub const fn cos<F: Float>() -> usize {
         sin::<F>() + F::TERMS
+    }
+
+    /// The coefficients of `S` in `sin x = x S(u)`.
+    pub const fn near_sin<F: Float>() -> usize {
+        cos::<F>() + F::TERMS
+    }
+
+    /// The coefficients of `C` in `cos x = C(u)`.
+    pub const fn near_cos<F: Float>() -> usize {
+        near_sin::<F>() + F::NEAR_TERMS
     }
 }
 
@@ -78,12 +108,17 @@ macro_rules! float {
         pi_over_2: [$($part:expr),*],
         sin: [$($sin:expr),*],
         cos: [$($cos:expr),*],
+        near: $near:literal, middle: $middle:expr, near_bound: $near_bound:expr,
+        near_sin: [$($near_sin:expr),*],
+        near_cos: [$($near_cos:expr),*],
     ) => {
         pub(crate) mod $module {
             use super::Spread;
 
-            pub(crate) const NUMBERS: &[$float] =
-                &[core::$float::consts::FRAC_2_PI, $shift, 1.0, -0.5, $(-$part,)* $($sin,)* $($cos,)*];
+            pub(crate) const NUMBERS: &[$float] = &[
+                core::$float::consts::FRAC_2_PI, $shift, 1.0, -0.5, $middle, -$middle,
+                $(-$part,)* $($sin,)* $($cos,)* $($near_sin,)* $($near_cos,)*
+            ];
 
             /// Which bits the shift has while there are at most so many quarter turns,
             /// back or forth, and those of them that stay, less one: no sum with the
@@ -111,12 +146,25 @@ macro_rules! float {
             const NUMBERS: &'static [Self] = $module::NUMBERS;
             const PARTS: usize = [$($part),*].len();
             const TERMS: usize = [$($sin),*].len();
+            const NEAR_TERMS: usize = [$($near_sin),*].len();
+            const NEAR: Self = $near;
+            const NEAR_BOUND: f64 = $near_bound;
             const DOMAIN: Self = $domain;
             const BOUND: f64 = $bound;
 
             #[inline(always)]
             fn is_in_domain(self) -> bool {
                 self.abs() <= Self::DOMAIN
+            }
+
+            #[inline(always)]
+            fn strange(shifted: Self) -> Self {
+                Self::from_bits(shifted.to_bits() ^ $module::QUARTERS.0)
+            }
+
+            #[inline(always)]
+            fn is_usual(self) -> bool {
+                self.to_bits() & $module::QUARTERS.1 == 0
             }
 
             #[cold]
@@ -146,6 +194,19 @@ float! {
         0.041_666_666_666_666_6, -0.001_388_888_888_887_445_7, 2.480_158_728_965_296_3e-5,
         -2.755_731_439_393_726e-7, 2.087_572_812_571_144e-9, -1.135_986_600_306_813_5e-11
     ],
+    near: 3.236, middle: 5.235_848, near_bound: 5e-16,
+    near_sin: [
+        0.329_305_827_674_127_7, -0.094_228_718_572_198_86, 0.005_635_822_596_431_977,
+        -0.000_147_124_634_478_504_13, 2.162_225_566_841_367e-6, -2.042_555_077_618_425e-8,
+        1.346_248_312_991_311_5e-10, -6.547_386_721_134_336e-13, 2.447_332_459_622_405_2e-15,
+        -7.254_783_722_331_333e-18, 1.746_192_367_898_084e-20
+    ],
+    near_cos: [
+        -0.657_428_667_683_492_6, -0.164_652_913_837_063_99, 0.023_557_179_643_049_71,
+        -0.000_939_303_766_071_900_4, 1.839_057_930_981_339e-5, -2.162_225_567_037_32e-7,
+        1.702_129_231_305_496_2e-9, -9.616_057_742_514_533e-12, 4.092_116_901_843_382e-14,
+        -1.360_226_718_137_778_9e-16, 3.627_067_546_238_003_3e-19
+    ],
 }
 
 // f32: twice 11 bits of pi/2, exact with 11 bits of k, and the rest. Error of
@@ -156,4 +217,13 @@ float! {
     pi_over_2: [1.570_312_5, 4.837_513e-4, 7.549_79e-8],
     sin: [-0.166_666_55, 0.008_332_191, -0.000_195_185_99],
     cos: [0.041_666_646, -0.001_388_731_4, 2.443_315_8e-5],
+    near: 3.236, middle: 5.235_848, near_bound: 2.6e-7,
+    near_sin: [
+        0.329_305_83, -0.094_228_72, 0.005_635_822_7, -0.000_147_124_64, 2.162_223_4e-6, -2.042_554_2e-8,
+        1.347_588_7e-10, -6.551_668_4e-13
+    ],
+    near_cos: [
+        -0.657_428_7, -0.164_652_91, 0.023_557_18, -0.000_939_303_8, 1.839_054_1e-5, -2.162_223_9e-7,
+        1.704_370_6e-9, -9.624_225e-12
+    ],
 }

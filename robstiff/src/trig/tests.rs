@@ -96,8 +96,10 @@ fn angles(domain: f64) -> impl Iterator<Item = f64> {
     dense.chain(anywhere).chain(near).chain(edge).filter(move |x| x.abs() <= domain)
 }
 
-fn worst<const FUSED: bool, const MANY: bool>() -> [f64; 2] {
-    worst_of(angles(f64::DOMAIN).map(|x| (x, within_domain::<f64, f64, FUSED, MANY>(x))))
+/// The angles that are near, and no others.
+fn near_angles(near: f64) -> impl Iterator<Item = f64> {
+    let dense = (-400_000..=400_000).map(move |i| near * f64::from(i) / 400_000.0);
+    dense.chain(angles(near))
 }
 
 /// The largest error of angles' sines and cosines, absolute and in units in the last
@@ -118,15 +120,17 @@ fn worst_of(all: impl Iterator<Item = (f64, (f64, f64))>) -> [f64; 2] {
 
 #[test]
 fn double_precision_is_as_near_as_stated() {
-    for (name, [absolute, places]) in [
-        ("plain", worst::<false, false>()),
-        ("fused", worst::<true, false>()),
-        ("plain, of many", worst::<false, true>()),
-        ("fused, of many", worst::<true, true>()),
+    let within = |sin_cos: fn(f64) -> (f64, f64)| worst_of(angles(f64::DOMAIN).map(|x| (x, sin_cos(x))));
+    let near = |sin_cos: fn(f64) -> (f64, f64)| worst_of(near_angles(f64::NEAR).map(|x| (x, sin_cos(x))));
+    for (name, [absolute, places], bound, most) in [
+        ("plain", within(within_domain::<f64, f64, false>), f64::BOUND, 1.6),
+        ("fused", within(within_domain::<f64, f64, true>), f64::BOUND, 1.6),
+        ("near, plain", near(near::sin_cos::<f64, f64, false>), f64::NEAR_BOUND, f64::INFINITY),
+        ("near, fused", near(near::sin_cos::<f64, f64, true>), f64::NEAR_BOUND, f64::INFINITY),
     ] {
         std::println!("{name}: {absolute:e}, {places:.3} ulp");
-        assert!(absolute <= f64::BOUND, "{name}: off by {absolute:e}");
-        assert!(places <= 1.6, "{name}: {places} units in the last place");
+        assert!(absolute <= bound, "{name}: off by {absolute:e}");
+        assert!(places <= most, "{name}: {places} units in the last place");
     }
 }
 
@@ -202,22 +206,24 @@ fn tables_are_as_near_as_stated() {
 
 #[test]
 fn single_precision_is_as_near_as_stated() {
-    let mut worst = [0.0_f64; 4];
-    for x in angles(f64::from(f32::DOMAIN)).map(|x| x as f32).filter(|x| x.is_in_domain()) {
-        let [sin, cos] = reference(f64::from(x));
-        let all = [
-            within_domain::<f32, f32, false, false>(x),
-            within_domain::<f32, f32, true, false>(x),
-            within_domain::<f32, f32, false, true>(x),
-            within_domain::<f32, f32, true, true>(x),
-        ];
-        for ((s, c), worst) in all.into_iter().zip(&mut worst) {
-            let error = (f64::from(s) - sin.0).abs().max((f64::from(c) - cos.0).abs());
-            *worst = worst.max(error);
-        }
+    let worst = |angles: &mut dyn Iterator<Item = f64>, sin_cos: fn(f32) -> (f32, f32)| {
+        let angles = angles.map(|x| x as f32).filter(|x| x.is_in_domain());
+        worst_of(angles.map(|x| {
+            let (sin, cos) = sin_cos(x);
+            (f64::from(x), (f64::from(sin), f64::from(cos)))
+        }))[0]
+    };
+    let within = |sin_cos| worst(&mut angles(f32::DOMAIN.into()), sin_cos);
+    let near = |sin_cos| worst(&mut near_angles(f32::NEAR.into()), sin_cos);
+    for (name, absolute, bound) in [
+        ("plain", within(within_domain::<f32, f32, false>), f32::BOUND),
+        ("fused", within(within_domain::<f32, f32, true>), f32::BOUND),
+        ("near, plain", near(near::sin_cos::<f32, f32, false>), f32::NEAR_BOUND),
+        ("near, fused", near(near::sin_cos::<f32, f32, true>), f32::NEAR_BOUND),
+    ] {
+        std::println!("f32 {name}: {absolute:e}");
+        assert!(absolute <= bound, "f32 {name}: off by {absolute:e}");
     }
-    std::println!("f32 plain and fused, and both of many: {worst:?}");
-    assert!(worst.into_iter().all(|error| error <= f32::BOUND), "off by {worst:?}");
 }
 
 #[test]
@@ -240,26 +246,48 @@ fn zero_and_symmetry_are_exact() {
     }
 }
 
+/// Holds angles side by side to what they are one by one, all of them by one way.
+fn check_side_by_side<F: Float + core::fmt::Debug, const K: usize>(
+    one: impl Fn(F) -> (F, F),
+    angle: impl Fn(usize) -> F,
+) {
+    // The sine of what is known when compiled is the compiler's, not the platform's.
+    let angles = core::hint::black_box(core::array::from_fn(angle));
+    let all = sin_cos_all::<F, K>(angles);
+    // The compiler may vectorise, but not round in another way.
+    assert_eq!(all, angles.map(one), "{angles:?}");
+}
+
 #[test]
 fn side_by_side_is_one_by_one() {
-    fn check<F: Float + PartialEq + core::fmt::Debug, const K: usize>(angle: impl Fn(usize) -> F) {
-        // The sine of what is known when compiled is the compiler's, not the platform's.
-        let angles = core::hint::black_box(core::array::from_fn(angle));
-        let all = sin_cos_all::<F, K>(angles);
-        let single = angles.map(sin_cos);
-        // The compiler may vectorise, but not round in another way.
-        assert_eq!(all, single);
-    }
     macro_rules! counts {
         ($($k:literal)*) => {$(
-            check::<f64, $k>(|i| 1.7 * i as f64 - 5.0);
-            check::<f32, $k>(|i| 1.7 * i as f32 - 5.0);
+            let (one, single) = (sin_cos::<f64>, sin_cos::<f32>);
+            // All near, and all beyond.
+            check_side_by_side::<_, $k>(one, |i| 0.2 * i as f64 - 3.0);
+            check_side_by_side::<_, $k>(single, |i| 0.2 * i as f32 - 3.0);
+            check_side_by_side::<_, $k>(one, |i| 1.7 * i as f64 + 3.3);
+            check_side_by_side::<_, $k>(single, |i| 1.7 * i as f32 + 3.3);
             // As far as the domain goes, either way.
-            check::<f64, $k>(|i| [f64::DOMAIN, -f64::DOMAIN, 1e-310][i % 3]);
-            check::<f32, $k>(|i| [f32::DOMAIN, -f32::DOMAIN, 1e-40][i % 3]);
+            check_side_by_side::<_, $k>(one, |i| [f64::DOMAIN, -f64::DOMAIN][i % 2]);
+            check_side_by_side::<_, $k>(single, |i| [f32::DOMAIN, -f32::DOMAIN][i % 2]);
         )*};
     }
     counts!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 30);
+}
+
+#[test]
+fn one_angle_that_is_not_near_takes_the_others_along() {
+    let (one, single) = (within_domain::<f64, f64, FUSED>, within_domain::<f32, f32, FUSED>);
+    macro_rules! counts {
+        ($($k:literal)*) => {$(
+            for far in 0..$k {
+                check_side_by_side::<_, $k>(one, |i| if i == far { -3.24 } else { [3.236, 1e-310, -0.0][i % 3] });
+                check_side_by_side::<_, $k>(single, |i| if i == far { 3.24 } else { [-3.236, 1e-40, -0.0][i % 3] });
+            }
+        )*};
+    }
+    counts!(1 2 3 4 5 6 7 8 9 10 11 12 13);
 }
 
 #[test]

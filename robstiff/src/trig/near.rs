@@ -1,0 +1,82 @@
+//! Angles of at most [`Float::NEAR`], 185 degrees either way: where joints mostly are, and
+//! where nothing has to be taken away first.
+//!
+//! `sin x = x S(u)` and `cos x = C(u)` with `u = x^2 - m`, `m` half the square of the
+//! largest near angle. For `u` is as far below 0 as above, the terms of both polynomials
+//! fall quickly and nothing large cancels; in powers of `x^2` they would be up to 5, for
+//! results of 1.
+//!
+//! A single pose waits for its sines and cosines: here for the load and six operations in a
+//! row (20 cycles where a fused one takes 4), whereas reduction, shorter polynomials, signs and
+//! exchange ([`reduced`](super::reduced)) take some 48, and more operations besides.
+//! Gain: `benches/README.md`.
+
+use super::abreast::{self, Abreast, Pairs};
+use super::float::{FUSED, Float, places};
+
+/// `u` of angles.
+#[inline(always)]
+pub(super) fn measured<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> V {
+    abreast::mul_add::<F, V, FUSED>(x, x, V::number(places::MINUS_MIDDLE))
+}
+
+/// Negative where an angle is not near; of a NaN either, for both ways make a NaN of it.
+#[inline(always)]
+pub(super) fn room<F: Float, V: Abreast<F>>(x: V) -> V {
+    V::number(places::MIDDLE) - measured::<F, V, FUSED>(x)
+}
+
+/// A polynomial in `u` as `low + u^4 rest`, the lowest coefficient first: by fours, each of
+/// which is two pairs, so that nothing waits for more than it must (Estrin).
+#[inline(always)]
+fn polynomial<F: Float, V: Abreast<F>, const FUSED: bool>(
+    coefficient: impl Fn(usize) -> V,
+    u: V,
+    u2: V,
+    u4: V,
+) -> (V, V) {
+    let mul_add = abreast::mul_add::<F, V, FUSED>;
+    let pair = |first: usize| {
+        if first + 1 < F::NEAR_TERMS {
+            mul_add(u, coefficient(first + 1), coefficient(first))
+        } else {
+            coefficient(first)
+        }
+    };
+    let four = |first: usize| {
+        if first + 2 < F::NEAR_TERMS { mul_add(u2, pair(first + 2), pair(first)) } else { pair(first) }
+    };
+    let mut first = (F::NEAR_TERMS - 1) / 4 * 4;
+    let mut rest = four(first);
+    while first > 4 {
+        first -= 4;
+        rest = mul_add(u4, rest, four(first));
+    }
+    (four(0), rest)
+}
+
+/// Sines and cosines of near angles.
+#[inline(always)]
+pub(super) fn sin_cos<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> (V, V) {
+    let mul_add = abreast::mul_add::<F, V, FUSED>;
+    let u = measured::<F, V, FUSED>(x);
+    let u2 = u * u;
+    let u4 = u2 * u2;
+    let (low, rest) = polynomial::<F, V, FUSED>(|i| V::number(places::near_sin::<F>() + i), u, u2, u4);
+    // Each part times the angle, not their sum, which would wait for one product more.
+    let sin = mul_add(x * u4, rest, x * low);
+    let (low, rest) = polynomial::<F, V, FUSED>(|i| V::number(places::near_cos::<F>() + i), u, u2, u4);
+    (sin, mul_add(u4, rest, low))
+}
+
+/// The same of angles that are there in pairs, sine and cosine side by side.
+#[inline(always)]
+pub(super) fn pairs<F: Float, V: Pairs<F>, const FUSED: bool>(x: V) -> V {
+    let u = measured::<F, V, FUSED>(x);
+    let u2 = u * u;
+    let u4 = u2 * u2;
+    let coefficient = |i| V::numbers(places::near_sin::<F>() + i, places::near_cos::<F>() + i);
+    let (low, rest) = polynomial::<F, V, FUSED>(coefficient, u, u2, u4);
+    let factor = x.sines_beside_ones();
+    abreast::mul_add::<F, V, FUSED>(factor * u4, rest, factor * low)
+}
