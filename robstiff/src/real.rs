@@ -20,9 +20,9 @@ pub trait Real:
 
     /// Sine and cosine of an angle in rad.
     ///
-    /// Those of `f64` are within 5e-16 of the truth up to 3.236 rad (185 degrees), where they
-    /// take least time, and within 1.8e-16 from there up to 1.6e6 rad; those of `f32` within
-    /// 2.6e-7 and, from there up to 3000 rad, within 9.4e-8. Beyond, and with the feature
+    /// Those of `f64` are within 6.5e-16 of the truth up to 1.6e6 rad, those of
+    /// `f32` within 3.3e-7 up to 3000 rad (of batches within 1.8e-16 and 9.4e-8), and take
+    /// least time up to 3.236 rad (185 degrees). Beyond, and with the feature
     /// `platform-trig` everywhere, they are the platform's (without the
     /// feature `std`, those of the crate libm). An infinity or a NaN gives NaN.
     fn sin_cos(self) -> (Self, Self);

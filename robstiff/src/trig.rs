@@ -2,18 +2,16 @@
 //!
 //! The platform's `sin` takes one angle, and takes most of the time of a
 //! compliance. Here all angles of a pose, or of several poses, go the same way, side by side
-//! in the lanes of vectors ([`Abreast`]). Which way that is for one pose, a
-//! single comparison tells:
+//! in the lanes of vectors ([`Abreast`]):
 //!
-//! - where all of them are [`near`], polynomials of the angles as they are, within
-//!   [`Float::NEAR_BOUND`] of the truth;
-//! - where some are not, up to [`Float::DOMAIN`], polynomials of the angles less multiples of
-//!   pi/2 ([`reduced`]), within [`Float::BOUND`];
-//! - where one is beyond that, an infinity or a NaN, the platform's functions.
-//!
-//! Batches, which compute more than they wait, take all angles as [`reduced`] does, or have
-//! tables where these are faster: with AVX2 in memory (`circle.rs`), of `f64` with AVX-512 in
-//! registers (`tables.rs`).
+//! - those of a pose, which waits more than it computes, into polynomials of whole angles
+//!   ([`near`]), within [`Float::BOUND_OF_POSES`] of the truth;
+//! - those of batches into shorter polynomials of what is left when multiples of pi/2 are
+//!   taken away ([`reduced`]), within [`Float::BOUND`], or into tables where these are
+//!   faster: with AVX2 in memory (`circle.rs`), of `f64` with AVX-512 in registers
+//!   (`tables.rs`);
+//! - where one of them is beyond [`Float::DOMAIN`], an infinity or a NaN, all to the
+//!   platform's functions.
 //!
 //! Everywhere `sin 0 = 0`, `cos 0 = 1`, and the symmetries of sine and cosine hold exactly.
 //!
@@ -43,68 +41,115 @@ pub(crate) fn mul_add<F: Float, const FUSED: bool>(a: F, b: F, c: F) -> F {
 /// Sine and cosine of one angle.
 #[inline]
 pub(crate) fn sin_cos<F: Float>(angle: F) -> (F, F) {
-    if !cfg!(feature = "platform-trig") {
-        if !near::room::<F, F>(angle).is_negative_somewhere() {
-            return near::sin_cos::<F, F, FUSED>(angle);
-        }
-        if angle.is_in_domain() {
-            return within_domain::<F, F, FUSED>(angle);
-        }
+    if cfg!(feature = "platform-trig") {
+        return angle.platform_sin_cos();
     }
-    angle.platform_sin_cos()
+    if !near::room::<F, F>(angle).is_negative_somewhere() {
+        return near::sin_cos::<F, F, FUSED>(angle);
+    }
+    if near::room_in_domain::<F, F>(angle).is_negative_somewhere() {
+        return angle.platform_sin_cos();
+    }
+    near::sin_cos::<F, F, FUSED>(near::wrapped::<F, F, FUSED>(angle))
+}
+
+/// The angles of a pose in vectors: whole ones and, of what is left, each twice if there is
+/// room for sines and cosines in one vector; else one more vector filled up with the last angle.
+#[derive(Clone, Copy)]
+struct Angles<F: Float, const K: usize> {
+    whole: [F::Vector; K],
+    in_pairs: F::Vector,
+}
+
+impl<F: Float, const K: usize> Angles<F, K> {
+    const LANES: usize = <F::Vector as Vector<F>>::LANES;
+    const IN_PAIRS: usize = if 2 * (K % Self::LANES) <= Self::LANES { K % Self::LANES } else { 0 };
+    const ALONE: usize = K - Self::IN_PAIRS;
+    const WHOLE: usize = Self::ALONE.div_ceil(Self::LANES);
+
+    #[inline(always)]
+    fn gather(angles: &[F; K]) -> Self {
+        let mut gathered = Self { whole: [F::Vector::number(0); K], in_pairs: F::Vector::number(0) };
+        for (i, vector) in gathered.whole.iter_mut().enumerate().take(Self::WHOLE) {
+            *vector = F::Vector::gather(angles, i * Self::LANES);
+        }
+        if Self::IN_PAIRS > 0 {
+            gathered.in_pairs = F::Vector::gather_pairs(angles, Self::ALONE);
+        }
+        gathered
+    }
+
+    #[inline(always)]
+    fn map(mut self, each: impl Fn(F::Vector) -> F::Vector) -> Self {
+        for vector in self.whole.iter_mut().take(Self::WHOLE) {
+            *vector = each(*vector);
+        }
+        if Self::IN_PAIRS > 0 {
+            self.in_pairs = each(self.in_pairs);
+        }
+        self
+    }
+
+    /// Sines and cosines of whole vectors, and the pairs of both.
+    #[inline(always)]
+    fn sin_cos(self) -> ([F::Vector; K], [F::Vector; K], F::Vector) {
+        let (mut sines, mut cosines, mut pairs) = (self.whole, self.whole, self.in_pairs);
+        for i in 0..Self::WHOLE {
+            (sines[i], cosines[i]) = near::sin_cos::<F, F::Vector, FUSED>(self.whole[i]);
+        }
+        if Self::IN_PAIRS > 0 {
+            pairs = near::pairs::<F, F::Vector, FUSED>(self.in_pairs);
+        }
+        (sines, cosines, pairs)
+    }
+
+    /// Whether some number of a vector has the sign of a negative one.
+    #[inline(always)]
+    fn is_negative_somewhere(self) -> bool {
+        if Self::WHOLE == 0 {
+            return Self::IN_PAIRS > 0 && self.in_pairs.is_negative_somewhere();
+        }
+        let mut bits = self.whole[0];
+        // Not by an iterator, which is not unrolled.
+        for i in 1..Self::WHOLE {
+            bits = bits.or(self.whole[i]);
+        }
+        if Self::IN_PAIRS > 0 {
+            bits = bits.or(self.in_pairs);
+        }
+        bits.is_negative_somewhere()
+    }
 }
 
 /// Sines and cosines of several angles, `(sin, cos)` each.
-///
-/// Whole vectors of angles; of what is left, sines and cosines in one vector if
-/// there is room, else one more vector filled up with the last angle.
 ///
 /// Nothing here has its address taken on the way that is usual, so that angles
 /// stay in registers, and results but for [`BY_MEMORY`]: numbers stored one by one
 /// and loaded as a vector would have to wait for the cache.
 #[inline(always)]
 pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K]) -> [(F, F); K] {
-    let lanes = F::Vector::LANES;
-    let left = K % lanes;
-    let in_pairs = if 2 * left <= lanes { left } else { 0 };
-    let alone = K - in_pairs;
-    let mut room = F::Vector::number(0);
-    for first in (0..alone).step_by(lanes) {
-        let next = near::room(F::Vector::gather(&angles, first));
-        room = if first == 0 { next } else { room.or(next) };
-    }
-    if in_pairs > 0 {
-        let last = near::room(F::Vector::gather_pairs(&angles, alone));
-        room = if alone == 0 { last } else { room.or(last) };
-    }
-    let are_near = !cfg!(feature = "platform-trig") && !room.is_negative_somewhere();
+    let mut gathered = Angles::gather(&angles);
+    let are_near = !gathered.map(near::room).is_negative_somewhere();
+    let are_strange = !are_near && gathered.map(near::room_in_domain).is_negative_somewhere();
     // Both branches end in vectors. If they ended in numbers, the compiler would make other vectors of those.
-    let mut vectors = [(F::Vector::number(0), F::Vector::number(0)); K];
-    let mut pairs = F::Vector::number(0);
-    if are_near {
-        for first in (0..alone).step_by(lanes) {
-            vectors[first / lanes] = near::sin_cos::<F, F::Vector, FUSED>(F::Vector::gather(&angles, first));
-        }
-        if in_pairs > 0 {
-            pairs = near::pairs::<F, F::Vector, FUSED>(F::Vector::gather_pairs(&angles, alone));
-        }
-    } else {
+    let (sines, cosines, pairs) = if cfg!(feature = "platform-trig") || are_strange {
         let copies = angles;
-        let (sines, cosines) = far(&copies);
-        for first in (0..alone).step_by(lanes) {
-            vectors[first / lanes] = (F::Vector::gather(&sines, first), F::Vector::gather(&cosines, first));
+        let (sines, cosines) = one_by_one(&copies);
+        let (sines, cosines) = (Angles::gather(&sines), Angles::gather(&cosines));
+        (sines.whole, cosines.whole, F::Vector::sides(sines.in_pairs, cosines.in_pairs))
+    } else {
+        if !are_near {
+            gathered = gathered.map(near::wrapped::<F, F::Vector, FUSED>);
         }
-        if in_pairs > 0 {
-            pairs = F::Vector::sides(F::Vector::gather_pairs(&sines, alone), F::Vector::gather_pairs(&cosines, alone));
-        }
-    }
+        gathered.sin_cos()
+    };
     let mut out = [(F::ZERO, F::ZERO); K];
-    for first in (0..alone).step_by(lanes) {
-        let (sin, cos) = handed_on(vectors[first / lanes]);
-        F::Vector::scatter(sin, cos, &mut out, first);
+    for i in 0..Angles::<F, K>::WHOLE {
+        let (sin, cos) = handed_on((sines[i], cosines[i]));
+        F::Vector::scatter(sin, cos, &mut out, i * Angles::<F, K>::LANES);
     }
-    if in_pairs > 0 {
-        handed_on(pairs).scatter_pairs(&mut out, alone);
+    if Angles::<F, K>::IN_PAIRS > 0 {
+        handed_on(pairs).scatter_pairs(&mut out, Angles::<F, K>::ALONE);
     }
     out
 }
@@ -122,20 +167,9 @@ fn handed_on<V>(vectors: V) -> V {
     if BY_MEMORY { core::hint::black_box(vectors) } else { vectors }
 }
 
-/// Sines and cosines of angles of which one or more are not near; a function of its own, so
-/// that callers are not twice as long.
 #[cold]
 #[inline(never)]
-fn far<F: Float, const K: usize>(angles: &[F; K]) -> ([F; K], [F; K]) {
-    let mut both = [(F::ZERO, F::ZERO); K];
-    if !cfg!(feature = "platform-trig") && angles.iter().all(|angle| angle.is_in_domain()) {
-        // Whole vectors only: of the last one, some lanes compute the same.
-        for first in (0..K).step_by(F::Vector::LANES) {
-            let (sin, cos) = within_domain::<F, F::Vector, FUSED>(F::Vector::gather(angles, first));
-            F::Vector::scatter(sin, cos, &mut both, first);
-        }
-    } else {
-        both = angles.map(F::platform_sin_cos);
-    }
+fn one_by_one<F: Float, const K: usize>(angles: &[F; K]) -> ([F; K], [F; K]) {
+    let both = angles.map(F::platform_sin_cos);
     (both.map(|(sin, _)| sin), both.map(|(_, cos)| cos))
 }

@@ -24,17 +24,14 @@ pub(crate) trait Float: Abreast<Self> + Neg<Output = Self> + PartialEq + 'static
     const PARTS: usize;
     /// How many coefficients each of the two polynomials has.
     const TERMS: usize;
-    /// How many each of the two of [near](super::near) angles has.
+    /// How many each of the two of [whole angles](super::near) has.
     const NEAR_TERMS: usize;
-    /// The largest near angle (rad).
-    #[cfg_attr(not(all(test, feature = "std")), expect(dead_code, reason = "[`places::MIDDLE`] is half its square"))]
-    const NEAR: Self;
-    /// How far sines and cosines of near angles are off at most.
+    /// How far sines and cosines of poses' angles within the domain are off at most.
     #[cfg_attr(not(all(test, feature = "std")), expect(dead_code, reason = "what the tests hold the functions to"))]
-    const NEAR_BOUND: f64;
+    const BOUND_OF_POSES: f64;
     /// The largest angle (rad) that is not left to the platform.
     const DOMAIN: Self;
-    /// How far those of all other angles within the domain are off at most, and those of batches.
+    /// How far those of batches are off at most.
     #[cfg_attr(not(all(test, feature = "std")), expect(dead_code, reason = "what the tests hold the functions to"))]
     const BOUND: f64;
 
@@ -70,12 +67,21 @@ pub(crate) mod places {
     pub const MIDDLE: usize = 4;
     /// The same with the other sign.
     pub const MINUS_MIDDLE: usize = 5;
+    /// The square of the largest angle of the domain.
+    pub const DOMAIN_SQUARED: usize = 6;
+    /// 1 / (2 pi).
+    pub const TURNS_PER_RADIAN: usize = 7;
     /// The parts of -pi/2.
-    pub const PARTS: usize = 6;
+    pub const PARTS: usize = 8;
+
+    /// The parts of -2 pi.
+    pub const fn turn<F: Float>() -> usize {
+        PARTS + F::PARTS
+    }
 
     /// The coefficients of `S` in `sin r = r + r z S(z)`.
     pub const fn sin<F: Float>() -> usize {
-        PARTS + F::PARTS
+        turn::<F>() + F::PARTS
     }
 
     /// The coefficients of `C` in `cos r = 1 - z/2 + z^2 C(z)`.
@@ -108,7 +114,7 @@ macro_rules! float {
         pi_over_2: [$($part:expr),*],
         sin: [$($sin:expr),*],
         cos: [$($cos:expr),*],
-        near: $near:literal, middle: $middle:expr, near_bound: $near_bound:expr,
+        middle: $middle:expr, bound_of_poses: $bound_of_poses:expr,
         near_sin: [$($near_sin:expr),*],
         near_cos: [$($near_cos:expr),*],
     ) => {
@@ -117,7 +123,8 @@ macro_rules! float {
 
             pub(crate) const NUMBERS: &[$float] = &[
                 core::$float::consts::FRAC_2_PI, $shift, 1.0, -0.5, $middle, -$middle,
-                $(-$part,)* $($sin,)* $($cos,)* $($near_sin,)* $($near_cos,)*
+                $domain * $domain, core::$float::consts::FRAC_2_PI / 4.0,
+                $(-$part,)* $(-4.0 * $part,)* $($sin,)* $($cos,)* $($near_sin,)* $($near_cos,)*
             ];
 
             /// Which bits the shift has while there are at most so many quarter turns,
@@ -147,8 +154,7 @@ macro_rules! float {
             const PARTS: usize = [$($part),*].len();
             const TERMS: usize = [$($sin),*].len();
             const NEAR_TERMS: usize = [$($near_sin),*].len();
-            const NEAR: Self = $near;
-            const NEAR_BOUND: f64 = $near_bound;
+            const BOUND_OF_POSES: f64 = $bound_of_poses;
             const DOMAIN: Self = $domain;
             const BOUND: f64 = $bound;
 
@@ -194,7 +200,7 @@ float! {
         0.041_666_666_666_666_6, -0.001_388_888_888_887_445_7, 2.480_158_728_965_296_3e-5,
         -2.755_731_439_393_726e-7, 2.087_572_812_571_144e-9, -1.135_986_600_306_813_5e-11
     ],
-    near: 3.236, middle: 5.235_848, near_bound: 5e-16,
+    middle: 5.235_848, bound_of_poses: 6.5e-16,
     near_sin: [
         0.329_305_827_674_127_7, -0.094_228_718_572_198_86, 0.005_635_822_596_431_977,
         -0.000_147_124_634_478_504_13, 2.162_225_566_841_367e-6, -2.042_555_077_618_425e-8,
@@ -217,7 +223,7 @@ float! {
     pi_over_2: [1.570_312_5, 4.837_513e-4, 7.549_79e-8],
     sin: [-0.166_666_55, 0.008_332_191, -0.000_195_185_99],
     cos: [0.041_666_646, -0.001_388_731_4, 2.443_315_8e-5],
-    near: 3.236, middle: 5.235_848, near_bound: 2.6e-7,
+    middle: 5.235_848, bound_of_poses: 3.3e-7,
     near_sin: [
         0.329_305_83, -0.094_228_72, 0.005_635_822_7, -0.000_147_124_64, 2.162_223_4e-6, -2.042_554_2e-8,
         1.347_588_7e-10, -6.551_668_4e-13

@@ -1,29 +1,48 @@
-//! Angles of at most [`Float::NEAR`], 185 degrees either way: where joints mostly are, and
-//! where nothing has to be taken away first.
+//! The way of a pose: polynomials of whole angles.
 //!
-//! `sin x = x S(u)` and `cos x = C(u)` with `u = x^2 - m`, `m` half the square of the
-//! largest near angle. For `u` is as far below 0 as above, the terms of both polynomials
-//! fall quickly and nothing large cancels; in powers of `x^2` they would be up to 5, for
-//! results of 1.
+//! 1. Of angles of at most 3.236 rad (185 degrees), where joints mostly are, nothing is taken
+//!    away. If one of a pose is larger, whole turns are taken from all ([`wrapped`]), in parts
+//!    as quarters are by [`reduced`](super::reduced); they change neither sines nor cosines.
+//! 2. `sin x = x S(u)` and `cos x = C(u)` with `u = x^2 - m`, `m` half the square of the
+//!    largest near angle. For `u` is as far below 0 as above, the terms of both polynomials
+//!    fall quickly and nothing large cancels; in powers of `x^2` they would be up to 5, for
+//!    results of 1.
 //!
-//! A single pose waits for its sines and cosines: here for the load and six operations in a
-//! row (20 cycles where a fused one takes 4), whereas reduction, shorter polynomials, signs and
-//! exchange ([`reduced`](super::reduced)) take some 48, and more operations besides.
-//! Gain: `benches/README.md`.
+//! A single pose waits for its sines and cosines: here for six operations in a row (20 cycles
+//! where a fused one takes 4), whereas quarters, shorter polynomials, signs and an exchange
+//! take some 48, and more operations besides. Gain: `benches/README.md`.
 
 use super::abreast::{self, Abreast, Pairs};
 use super::float::{FUSED, Float, places};
 
 /// `u` of angles.
 #[inline(always)]
-pub(super) fn measured<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> V {
+fn measured<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> V {
     abreast::mul_add::<F, V, FUSED>(x, x, V::number(places::MINUS_MIDDLE))
 }
 
-/// Negative where an angle is not near; of a NaN either, for both ways make a NaN of it.
+/// Negative where an angle is not near; of a NaN either, for polynomials make a NaN of it.
 #[inline(always)]
 pub(super) fn room<F: Float, V: Abreast<F>>(x: V) -> V {
     V::number(places::MIDDLE) - measured::<F, V, FUSED>(x)
+}
+
+/// The same of what is beyond the domain.
+#[inline(always)]
+pub(super) fn room_in_domain<F: Float, V: Abreast<F>>(x: V) -> V {
+    V::number(places::DOMAIN_SQUARED) - x * x
+}
+
+/// Angles of the domain less whole turns, of near ones none: at most pi.
+#[inline(always)]
+pub(super) fn wrapped<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> V {
+    let mul_add = abreast::mul_add::<F, V, FUSED>;
+    let turns = mul_add(x, V::number(places::TURNS_PER_RADIAN), V::number(places::SHIFT)) - V::number(places::SHIFT);
+    let mut r = x;
+    for part in 0..F::PARTS {
+        r = mul_add(turns, V::number(places::turn::<F>() + part), r);
+    }
+    r
 }
 
 /// A polynomial in `u` as `low + u^4 rest`, the lowest coefficient first: by fours, each of
@@ -55,7 +74,7 @@ fn polynomial<F: Float, V: Abreast<F>, const FUSED: bool>(
     (four(0), rest)
 }
 
-/// Sines and cosines of near angles.
+/// Sines and cosines of near or wrapped angles.
 #[inline(always)]
 pub(super) fn sin_cos<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> (V, V) {
     let mul_add = abreast::mul_add::<F, V, FUSED>;
