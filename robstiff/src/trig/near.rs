@@ -45,57 +45,42 @@ pub(super) fn wrapped<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> V {
     r
 }
 
-/// A polynomial in `u` as `low + u^4 rest`, the lowest coefficient first: by fours, each of
-/// which is two pairs, so that nothing waits for more than it must (Estrin).
+/// A polynomial in `u`, the lowest coefficient first: by fours, each of which is two pairs,
+/// so that nothing waits for more than it must (Estrin).
 #[inline(always)]
-fn polynomial<F: Float, V: Abreast<F>, const FUSED: bool>(
-    coefficient: impl Fn(usize) -> V,
-    u: V,
-    u2: V,
-    u4: V,
-) -> (V, V) {
+fn polynomial<F: Float, V: Abreast<F>, const FUSED: bool>(coefficient: impl Fn(usize) -> V, u: V) -> V {
     let mul_add = abreast::mul_add::<F, V, FUSED>;
+    let u2 = u * u;
+    let u4 = u2 * u2;
     let pair = |first: usize| {
-        if first + 1 < F::NEAR_TERMS {
-            mul_add(u, coefficient(first + 1), coefficient(first))
-        } else {
-            coefficient(first)
-        }
+        let low = coefficient(first);
+        if first + 1 < F::NEAR_TERMS { mul_add(u, coefficient(first + 1), low) } else { low }
     };
     let four = |first: usize| {
         if first + 2 < F::NEAR_TERMS { mul_add(u2, pair(first + 2), pair(first)) } else { pair(first) }
     };
     let mut first = (F::NEAR_TERMS - 1) / 4 * 4;
-    let mut rest = four(first);
-    while first > 4 {
+    let mut value = four(first);
+    while first > 0 {
         first -= 4;
-        rest = mul_add(u4, rest, four(first));
+        value = mul_add(u4, value, four(first));
     }
-    (four(0), rest)
+    value
 }
 
 /// Sines and cosines of near or wrapped angles.
 #[inline(always)]
 pub(super) fn sin_cos<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> (V, V) {
-    let mul_add = abreast::mul_add::<F, V, FUSED>;
     let u = measured::<F, V, FUSED>(x);
-    let u2 = u * u;
-    let u4 = u2 * u2;
-    let (low, rest) = polynomial::<F, V, FUSED>(|i| V::number(places::near_sin::<F>() + i), u, u2, u4);
-    // Each part times the angle, not their sum, which would wait for one product more.
-    let sin = mul_add(x * u4, rest, x * low);
-    let (low, rest) = polynomial::<F, V, FUSED>(|i| V::number(places::near_cos::<F>() + i), u, u2, u4);
-    (sin, mul_add(u4, rest, low))
+    let sin = polynomial::<F, V, FUSED>(|i| V::number(places::near_sin::<F>() + i), u);
+    let cos = polynomial::<F, V, FUSED>(|i| V::number(places::near_cos::<F>() + i), u);
+    (x * sin, cos)
 }
 
 /// The same of angles that are there in pairs, sine and cosine side by side.
 #[inline(always)]
 pub(super) fn pairs<F: Float, V: Pairs<F>, const FUSED: bool>(x: V) -> V {
-    let u = measured::<F, V, FUSED>(x);
-    let u2 = u * u;
-    let u4 = u2 * u2;
     let coefficient = |i| V::numbers(places::near_sin::<F>() + i, places::near_cos::<F>() + i);
-    let (low, rest) = polynomial::<F, V, FUSED>(coefficient, u, u2, u4);
-    let factor = x.sines_beside_ones();
-    abreast::mul_add::<F, V, FUSED>(factor * u4, rest, factor * low)
+    let both = polynomial::<F, V, FUSED>(coefficient, measured::<F, V, FUSED>(x));
+    both * x.sines_beside_ones()
 }

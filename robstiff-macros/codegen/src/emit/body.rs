@@ -337,8 +337,7 @@ fn arrange(order: &mut [usize], angles: &[Angle], is_in_columns: bool) {
         && let &mut [tip, second, sum, third, base] = order
         && angles[sum].terms().len() > 1
     {
-        // Of five angles one is alone in its vector: the sum, which is known last. How the
-        // others stand matters little.
-        order.copy_from_slice(&[second, third, base, tip, sum]);
+        // Of five angles one is alone in its vector. Found by trying all orders.
+        order.copy_from_slice(&[base, tip, third, sum, second]);
     }
 }
