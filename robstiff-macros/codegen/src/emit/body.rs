@@ -338,6 +338,6 @@ fn arrange(order: &mut [usize], angles: &[Angle], is_in_columns: bool) {
         && angles[sum].terms().len() > 1
     {
         // Of five angles one is alone in its vector. Found by trying all orders.
-        order.copy_from_slice(&[base, tip, third, sum, second]);
+        order.copy_from_slice(&[tip, sum, base, third, second]);
     }
 }
