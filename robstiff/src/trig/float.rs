@@ -62,8 +62,8 @@ pub(crate) mod places {
     pub const ONE: usize = 2;
     /// -1/2.
     pub const MINUS_HALF: usize = 3;
-    /// Half the square of the largest near angle: what `u` is measured from, and the
-    /// largest `u`.
+    /// Half the square of the largest near angle, 3.236 rad: what `u` is measured from, and
+    /// the largest `u`.
     pub const MIDDLE: usize = 4;
     /// The same with the other sign.
     pub const MINUS_MIDDLE: usize = 5;
@@ -187,7 +187,8 @@ macro_rules! float {
 // All numbers from benches/polynomials/minimax.py.
 //
 // f64: 33 bits of pi/2, whose products with 20 bits of k are exact, and the
-// rest. Error of the polynomials 2^-58 of the sine, 2^-64 of the cosine.
+// rest. Error of the polynomials 2^-58 of the sine, 2^-64 of the cosine, of those of
+// whole angles 2^-54 and 2^-53.
 float! {
     f64, u64, double, 4, libm::sincos,
     shift: 6_755_399_442_104_320.0, quarters: 0x10_0000, domain: 1.6e6, bound: 1.8e-16,
@@ -216,7 +217,8 @@ float! {
 }
 
 // f32: twice 11 bits of pi/2, exact with 11 bits of k, and the rest. Error of
-// the polynomials 2^-28 of the sine, 2^-33 of the cosine.
+// the polynomials 2^-28 of the sine, 2^-33 of the cosine, of those of whole angles
+// 2^-25 each.
 float! {
     f32, u32, single, 8, libm::sincosf,
     shift: 12_584_960.0, quarters: 0x800, domain: 3000.0, bound: 9.4e-8,
