@@ -149,7 +149,7 @@ impl<T: Float, const FUSED: bool> Real for Known<T, FUSED> {
             (true, false) => self.sin_cos,
             (true, true) if !cfg!(feature = "platform-trig") && self.apart.is_in_domain() => {
                 // Of a constant, this costs nothing: the compiler does it.
-                let apart = trig::within_domain::<T, T, FUSED>(self.apart);
+                let apart = trig::within_domain::<T, FUSED>(self.apart);
                 addition_theorem::<T, FUSED>(self.sin_cos, apart)
             }
             _ => trig::sin_cos(self.value),

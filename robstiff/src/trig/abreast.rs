@@ -16,20 +16,6 @@ pub(crate) trait Abreast<F>: Copy + Add<Output = Self> + Sub<Output = Self> + Mu
     /// `self * a + b`, rounded once.
     fn fused(self, a: Self, b: Self) -> Self;
 
-    /// In the first bit the last one of `shifted`: whether the quarter turns are odd.
-    fn odd(shifted: Self) -> Self;
-
-    /// The signs that a sine and a cosine get from as many quarter turns more as the
-    /// last bits of `shifted` say, before they are exchanged: the bit before the last
-    /// changes both, the last one, which is `odd`, that of the sine once more.
-    fn signs(shifted: Self, odd: Self) -> (Self, Self);
-
-    /// With the other sign where `signs` has one.
-    fn change_signs(self, signs: Self) -> Self;
-
-    /// The two exchanged where the quarter turns are odd.
-    fn exchange(odd: Self, sin: Self, cos: Self) -> (Self, Self);
-
     /// The bits of both.
     fn or(self, other: Self) -> Self;
 
@@ -75,7 +61,7 @@ pub(crate) trait Pairs<F>: Vector<F> {
 }
 
 macro_rules! single {
-    ($float:ident, $bits:ident, $signed:ident, $module:ident, $fma:path) => {
+    ($float:ident, $module:ident, $fma:path) => {
         impl Abreast<$float> for $float {
             #[inline(always)]
             fn number(place: usize) -> Self {
@@ -88,31 +74,6 @@ macro_rules! single {
                 return self.mul_add(a, b);
                 #[cfg(not(feature = "std"))]
                 return $fma(self, a, b);
-            }
-
-            #[inline(always)]
-            fn odd(shifted: Self) -> Self {
-                Self::from_bits(shifted.to_bits() << ($bits::BITS - 1))
-            }
-
-            #[inline(always)]
-            fn signs(shifted: Self, odd: Self) -> (Self, Self) {
-                const TOP: $bits = 1 << ($bits::BITS - 1);
-                let both = (shifted.to_bits() << ($bits::BITS - 2)) & TOP;
-                (Self::from_bits(both ^ odd.to_bits()), Self::from_bits(both))
-            }
-
-            #[inline(always)]
-            fn change_signs(self, signs: Self) -> Self {
-                Self::from_bits(self.to_bits() ^ signs.to_bits())
-            }
-
-            #[inline(always)]
-            fn exchange(odd: Self, sin: Self, cos: Self) -> (Self, Self) {
-                let (odd, sin, cos) = (odd.to_bits(), sin.to_bits(), cos.to_bits());
-                // A mask and not a choice: without SSE4.1 there is no other way.
-                let exchange = (sin ^ cos) & ((odd as $signed) >> ($bits::BITS - 1)) as $bits;
-                (Self::from_bits(sin ^ exchange), Self::from_bits(cos ^ exchange))
             }
 
             #[inline(always)]
@@ -169,22 +130,11 @@ impl<F: Float> Pairs<F> for F {
     }
 }
 
-single!(f32, u32, i32, single, libm::fmaf);
-single!(f64, u64, i64, double, libm::fma);
-
-/// Lanes to exchange. A blend looks at the first bit only; without one, all bits.
-macro_rules! exchange {
-    ($vector:ident, $bits:ident, $unsigned:ident, $odd:ident) => {{
-        if cfg!(target_feature = "sse4.1") {
-            $odd
-        } else {
-            wide::$vector::from_bits(wide::$bits::splat(0) - ($odd.to_bits() >> ($unsigned::BITS - 1)))
-        }
-    }};
-}
+single!(f32, single, libm::fmaf);
+single!(f64, double, libm::fma);
 
 macro_rules! vectors {
-    ($($vector:ident $bits:ident $float:ident $unsigned:ident $module:ident $lanes:literal)*) => {$(
+    ($($vector:ident $float:ident $module:ident $lanes:literal)*) => {$(
         impl Abreast<$float> for wide::$vector {
             #[inline(always)]
             fn number(place: usize) -> Self {
@@ -194,28 +144,6 @@ macro_rules! vectors {
             #[inline(always)]
             fn fused(self, a: Self, b: Self) -> Self {
                 self.mul_add(a, b)
-            }
-
-            #[inline(always)]
-            fn odd(shifted: Self) -> Self {
-                Self::from_bits(shifted.to_bits() << ($unsigned::BITS - 1))
-            }
-
-            #[inline(always)]
-            fn signs(shifted: Self, odd: Self) -> (Self, Self) {
-                let both = (shifted.to_bits() << ($unsigned::BITS - 2)) & wide::$bits::splat(1 << ($unsigned::BITS - 1));
-                (Self::from_bits(both ^ odd.to_bits()), Self::from_bits(both))
-            }
-
-            #[inline(always)]
-            fn change_signs(self, signs: Self) -> Self {
-                Self::from_bits(self.to_bits() ^ signs.to_bits())
-            }
-
-            #[inline(always)]
-            fn exchange(odd: Self, sin: Self, cos: Self) -> (Self, Self) {
-                let exchange = exchange!($vector, $bits, $unsigned, odd);
-                (exchange.select(cos, sin), exchange.select(sin, cos))
             }
 
             #[inline(always)]
@@ -324,8 +252,8 @@ pub(crate) mod target {
 }
 
 vectors! {
-    f32x4 u32x4 f32 u32 single 4
-    f64x2 u64x2 f64 u64 double 2
-    f32x8 u32x8 f32 u32 single 8
-    f64x4 u64x4 f64 u64 double 4
+    f32x4 f32 single 4
+    f64x2 f64 double 2
+    f32x8 f32 single 8
+    f64x4 f64 double 4
 }

@@ -38,6 +38,20 @@ pub(crate) trait Float: Abreast<Self> + Neg<Output = Self> + PartialEq + 'static
     /// Whether it is an angle within the domain; false for a NaN.
     fn is_in_domain(self) -> bool;
 
+    /// In the first bit the last one of `shifted`: whether the quarter turns are odd.
+    fn odd(shifted: Self) -> Self;
+
+    /// The signs that a sine and a cosine get from as many quarter turns more as the
+    /// last bits of `shifted` say, before they are exchanged: the bit before the last
+    /// changes both, the last one, which is `odd`, that of the sine once more.
+    fn signs(shifted: Self, odd: Self) -> (Self, Self);
+
+    /// With the other sign where `signs` has one.
+    fn change_signs(self, signs: Self) -> Self;
+
+    /// The two exchanged where the quarter turns are odd.
+    fn exchange(odd: Self, sin: Self, cos: Self) -> (Self, Self);
+
     /// Of an angle as [`quarters`](super::reduced::quarters) shifts it: bits that are 0
     /// where it is within the domain, and some not where it is not or is a NaN.
     fn strange(shifted: Self) -> Self;
@@ -109,7 +123,7 @@ pub(crate) struct Spread<F, const LANES: usize, const N: usize>(pub [[F; LANES];
 
 macro_rules! float {
     (
-        $float:ident, $bits:ident, $module:ident, $lanes:literal, $platform:path,
+        $float:ident, $bits:ident, $signed:ident, $module:ident, $lanes:literal, $platform:path,
         shift: $shift:expr, quarters: $quarters:literal, domain: $domain:expr, bound: $bound:expr,
         pi_over_2: [$($part:expr),*],
         sin: [$($sin:expr),*],
@@ -164,6 +178,31 @@ macro_rules! float {
             }
 
             #[inline(always)]
+            fn odd(shifted: Self) -> Self {
+                Self::from_bits(shifted.to_bits() << ($bits::BITS - 1))
+            }
+
+            #[inline(always)]
+            fn signs(shifted: Self, odd: Self) -> (Self, Self) {
+                const TOP: $bits = 1 << ($bits::BITS - 1);
+                let both = (shifted.to_bits() << ($bits::BITS - 2)) & TOP;
+                (Self::from_bits(both ^ odd.to_bits()), Self::from_bits(both))
+            }
+
+            #[inline(always)]
+            fn change_signs(self, signs: Self) -> Self {
+                Self::from_bits(self.to_bits() ^ signs.to_bits())
+            }
+
+            #[inline(always)]
+            fn exchange(odd: Self, sin: Self, cos: Self) -> (Self, Self) {
+                let (odd, sin, cos) = (odd.to_bits(), sin.to_bits(), cos.to_bits());
+                // A mask and not a choice: without SSE4.1 there is no other way.
+                let exchange = (sin ^ cos) & ((odd as $signed) >> ($bits::BITS - 1)) as $bits;
+                (Self::from_bits(sin ^ exchange), Self::from_bits(cos ^ exchange))
+            }
+
+            #[inline(always)]
             fn strange(shifted: Self) -> Self {
                 Self::from_bits(shifted.to_bits() ^ $module::QUARTERS.0)
             }
@@ -190,7 +229,7 @@ macro_rules! float {
 // rest. Error of the polynomials 2^-58 of the sine, 2^-64 of the cosine, of those of
 // whole angles 2^-54 and 2^-53.
 float! {
-    f64, u64, double, 4, libm::sincos,
+    f64, u64, i64, double, 4, libm::sincos,
     shift: 6_755_399_442_104_320.0, quarters: 0x10_0000, domain: 1.6e6, bound: 1.8e-16,
     pi_over_2: [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11],
     sin: [
@@ -220,7 +259,7 @@ float! {
 // the polynomials 2^-28 of the sine, 2^-33 of the cosine, of those of whole angles
 // 2^-25 each.
 float! {
-    f32, u32, single, 8, libm::sincosf,
+    f32, u32, i32, single, 8, libm::sincosf,
     shift: 12_584_960.0, quarters: 0x800, domain: 3000.0, bound: 9.4e-8,
     pi_over_2: [1.570_312_5, 4.837_513e-4, 7.549_79e-8],
     sin: [-0.166_666_55, 0.008_332_191, -0.000_195_185_99],

@@ -14,6 +14,7 @@
 
 use super::abreast::{self, Abreast, Pairs};
 use super::float::{FUSED, Float, places};
+use super::reduced::less_multiples;
 
 /// `u` of angles.
 #[inline(always)]
@@ -36,13 +37,8 @@ pub(super) fn room_in_domain<F: Float, V: Abreast<F>>(x: V) -> V {
 /// Angles of the domain less whole turns, of near ones none: at most pi.
 #[inline(always)]
 pub(super) fn wrapped<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> V {
-    let mul_add = abreast::mul_add::<F, V, FUSED>;
-    let turns = mul_add(x, V::number(places::TURNS_PER_RADIAN), V::number(places::SHIFT)) - V::number(places::SHIFT);
-    let mut r = x;
-    for part in 0..F::PARTS {
-        r = mul_add(turns, V::number(places::turn::<F>() + part), r);
-    }
-    r
+    let turns = abreast::mul_add::<F, V, FUSED>(x, V::number(places::TURNS_PER_RADIAN), V::number(places::SHIFT));
+    less_multiples::<F, V, FUSED>(x, turns, places::turn::<F>())
 }
 
 /// A polynomial in `u`, the lowest coefficient first: by fours, each of which is two pairs,

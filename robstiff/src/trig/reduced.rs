@@ -11,53 +11,55 @@
 
 use super::abreast::{self, Abreast};
 use super::float::{Float, places};
+use super::mul_add;
 
 /// The nearest multiples of pi/2, as the last bits of a large number.
 #[inline(always)]
-pub(super) fn quarters<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> V {
-    abreast::mul_add::<F, V, FUSED>(x, V::number(places::TWO_OVER_PI), V::number(places::SHIFT))
+pub(super) fn quarters<F: Float, const FUSED: bool>(x: F) -> F {
+    mul_add::<F, FUSED>(x, F::number(places::TWO_OVER_PI), F::number(places::SHIFT))
 }
 
-/// The angles less those multiples of pi/2.
+/// Angles less the multiples that are the last bits of `shifted`, of what has its parts, with
+/// the other sign, from place `parts` on.
 #[inline(always)]
-fn reduced<F: Float, V: Abreast<F>, const FUSED: bool>(x: V, shifted: V) -> V {
+pub(super) fn less_multiples<F: Float, V: Abreast<F>, const FUSED: bool>(x: V, shifted: V, parts: usize) -> V {
     let k = shifted - V::number(places::SHIFT);
     let mut r = x;
     for part in 0..F::PARTS - 1 {
-        r = abreast::mul_add::<F, V, FUSED>(k, V::number(places::PARTS + part), r);
+        r = abreast::mul_add::<F, V, FUSED>(k, V::number(parts + part), r);
     }
     // Not fused: this product does not wait for the others.
-    r + k * V::number(places::PARTS + F::PARTS - 1)
+    r + k * V::number(parts + F::PARTS - 1)
 }
 
 /// A polynomial, the lowest coefficient first, term by term (Horner).
 #[inline(always)]
-fn polynomial<F: Float, V: Abreast<F>, const FUSED: bool>(coefficient: impl Fn(usize) -> V, z: V) -> V {
+fn polynomial<F: Float, const FUSED: bool>(coefficient: impl Fn(usize) -> F, z: F) -> F {
     let mut value = coefficient(F::TERMS - 1);
     for i in 1..F::TERMS {
-        value = abreast::mul_add::<F, V, FUSED>(value, z, coefficient(F::TERMS - 1 - i));
+        value = mul_add::<F, FUSED>(value, z, coefficient(F::TERMS - 1 - i));
     }
     value
 }
 
-/// Sines and cosines of angles within the domain.
+/// Sine and cosine of an angle within the domain.
 ///
 /// `FUSED`: multiplies and adds in one instruction, which the target must have.
 #[inline(always)]
-pub(crate) fn within_domain<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> (V, V) {
-    let mul_add = abreast::mul_add::<F, V, FUSED>;
-    let shifted = quarters::<F, V, FUSED>(x);
-    let r = reduced::<F, V, FUSED>(x, shifted);
+pub(crate) fn within_domain<F: Float, const FUSED: bool>(x: F) -> (F, F) {
+    let mul_add = mul_add::<F, FUSED>;
+    let shifted = quarters::<F, FUSED>(x);
+    let r = less_multiples::<F, F, FUSED>(x, shifted, places::PARTS);
     let z = r * r;
     // Once: of two such shifts the compiler makes a comparison of one. Gain: `benches/README.md`.
-    let odd = V::odd(shifted);
-    let (sign_of_sin, sign_of_cos) = V::signs(shifted, odd);
+    let odd = F::odd(shifted);
+    let (sign_of_sin, sign_of_cos) = F::signs(shifted, odd);
     let signed = r.change_signs(sign_of_sin);
-    let sin_tail = polynomial::<F, V, FUSED>(|i| V::number(places::sin::<F>() + i), z);
+    let sin_tail = polynomial::<F, FUSED>(|i| F::number(places::sin::<F>() + i), z);
     let sin = mul_add(signed * z, sin_tail, signed);
-    let cos_tail = polynomial::<F, V, FUSED>(|i| V::number(places::cos::<F>() + i), z);
-    let cos = mul_add(z, mul_add(z, cos_tail, V::number(places::MINUS_HALF)), V::number(places::ONE));
-    V::exchange(odd, sin, cos.change_signs(sign_of_cos))
+    let cos_tail = polynomial::<F, FUSED>(|i| F::number(places::cos::<F>() + i), z);
+    let cos = mul_add(z, mul_add(z, cos_tail, F::number(places::MINUS_HALF)), F::number(places::ONE));
+    F::exchange(odd, sin, cos.change_signs(sign_of_cos))
 }
 
 /// Sines and cosines of many angles, in a loop that the compiler makes vectors of.
@@ -70,8 +72,8 @@ pub(crate) fn sin_cos_each<F: Float, const FUSED: bool, const K: usize>(
 ) -> bool {
     let mut strange = F::ZERO;
     for i in 0..K {
-        strange = strange.or(F::strange(quarters::<F, F, FUSED>(angles[i])));
-        (sines[i], cosines[i]) = within_domain::<F, F, FUSED>(angles[i]);
+        strange = strange.or(F::strange(quarters::<F, FUSED>(angles[i])));
+        (sines[i], cosines[i]) = within_domain::<F, FUSED>(angles[i]);
     }
     strange.is_usual()
 }

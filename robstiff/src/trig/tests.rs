@@ -134,8 +134,8 @@ fn double_precision_is_as_near_as_stated() {
     let of_poses_within =
         |sin_cos: fn(f64) -> (f64, f64)| worst_of(angles_of_poses(f64::DOMAIN).map(|x| (x, sin_cos(x))));
     for (name, [absolute, places], bound, most) in [
-        ("plain", within(within_domain::<f64, f64, false>), f64::BOUND, 1.6),
-        ("fused", within(within_domain::<f64, f64, true>), f64::BOUND, 1.6),
+        ("plain", within(within_domain::<f64, false>), f64::BOUND, 1.6),
+        ("fused", within(within_domain::<f64, true>), f64::BOUND, 1.6),
         ("of poses, plain", of_poses_within(of_poses::<f64, false>), f64::BOUND_OF_POSES, f64::INFINITY),
         ("of poses, fused", of_poses_within(of_poses::<f64, true>), f64::BOUND_OF_POSES, f64::INFINITY),
     ] {
@@ -227,8 +227,8 @@ fn single_precision_is_as_near_as_stated() {
     let within = |sin_cos| worst(&mut angles(f32::DOMAIN.into()), sin_cos);
     let of_poses_within = |sin_cos| worst(&mut angles_of_poses(f32::DOMAIN.into()), sin_cos);
     for (name, absolute, bound) in [
-        ("plain", within(within_domain::<f32, f32, false>), f32::BOUND),
-        ("fused", within(within_domain::<f32, f32, true>), f32::BOUND),
+        ("plain", within(within_domain::<f32, false>), f32::BOUND),
+        ("fused", within(within_domain::<f32, true>), f32::BOUND),
         ("of poses, plain", of_poses_within(of_poses::<f32, false>), f32::BOUND_OF_POSES),
         ("of poses, fused", of_poses_within(of_poses::<f32, true>), f32::BOUND_OF_POSES),
     ] {
