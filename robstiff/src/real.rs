@@ -34,6 +34,20 @@ pub trait Real:
         angles.map(Self::sin_cos)
     }
 
+    /// Sines and cosines of several angles in rad, each times a constant, `(sin, cos)` as
+    /// they: with constants that the compiler sees, those of `f64` and `f32` take no
+    /// operation more. A sine is off by its constant times what it is off otherwise, and
+    /// by the roundings of the products.
+    #[inline(always)]
+    fn scaled_sin_cos_all<const K: usize>(angles: [Self; K], factors: [(Self, Self); K]) -> [(Self, Self); K] {
+        let mut all = Self::sin_cos_all(angles);
+        for ((sin, cos), (by_sin, by_cos)) in all.iter_mut().zip(factors) {
+            *sin *= by_sin;
+            *cos *= by_cos;
+        }
+        all
+    }
+
     /// `self * factor + summand`; in one instruction, with one rounding, where
     /// the target has it.
     #[inline(always)]
@@ -138,7 +152,12 @@ macro_rules! real {
 
             #[inline(always)]
             fn sin_cos_all<const K: usize>(angles: [Self; K]) -> [(Self, Self); K] {
-                trig::sin_cos_all(angles)
+                trig::sin_cos_all(angles, None)
+            }
+
+            #[inline(always)]
+            fn scaled_sin_cos_all<const K: usize>(angles: [Self; K], factors: [(Self, Self); K]) -> [(Self, Self); K] {
+                trig::sin_cos_all(angles, Some(factors))
             }
 
             #[inline(always)]

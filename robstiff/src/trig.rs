@@ -90,15 +90,22 @@ impl<F: Float, const K: usize> Angles<F, K> {
         self
     }
 
-    /// Sines and cosines of whole vectors, and the pairs of both.
+    /// Sines and cosines of whole vectors, and the pairs of both, times constants if these
+    /// are there.
     #[inline(always)]
-    fn sin_cos(self) -> ([F::Vector; K], [F::Vector; K], F::Vector) {
+    fn sin_cos(self, factors: Option<(Self, Self)>) -> ([F::Vector; K], [F::Vector; K], F::Vector) {
         let (mut sines, mut cosines, mut pairs) = (self.whole, self.whole, self.in_pairs);
         for i in 0..Self::WHOLE {
-            (sines[i], cosines[i]) = near::sin_cos::<F, F::Vector, FUSED>(self.whole[i]);
+            (sines[i], cosines[i]) = match factors {
+                None => near::sin_cos::<F, F::Vector, FUSED>(self.whole[i]),
+                Some((by_sin, by_cos)) => {
+                    near::scaled_sin_cos::<F, F::Vector, FUSED>(self.whole[i], (by_sin.whole[i], by_cos.whole[i]))
+                }
+            };
         }
         if Self::IN_PAIRS > 0 {
-            pairs = near::pairs::<F, F::Vector, FUSED>(self.in_pairs);
+            let by = factors.map(|(by_sin, by_cos)| F::Vector::sides(by_sin.in_pairs, by_cos.in_pairs));
+            pairs = near::pairs::<F, F::Vector, FUSED>(self.in_pairs, by);
         }
         (sines, cosines, pairs)
     }
@@ -121,27 +128,35 @@ impl<F: Float, const K: usize> Angles<F, K> {
     }
 }
 
-/// Sines and cosines of several angles, `(sin, cos)` each.
+/// Sines and cosines of several angles, `(sin, cos)` each, times constants if these are there.
 ///
 /// Nothing here has its address taken on the way that is usual, so that angles
 /// stay in registers, and results but for [`BY_MEMORY`]: numbers stored one by one
 /// and loaded as a vector would have to wait for the cache.
 #[inline(always)]
-pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K]) -> [(F, F); K] {
+pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K], factors: Option<[(F, F); K]>) -> [(F, F); K] {
     let mut gathered = Angles::gather(&angles);
     let are_near = !gathered.map(near::room).is_negative_somewhere();
     let are_strange = !are_near && gathered.map(near::room_in_domain).is_negative_somewhere();
     // Both branches end in vectors. If they ended in numbers, the compiler would make other vectors of those.
     let (sines, cosines, pairs) = if cfg!(feature = "platform-trig") || are_strange {
         let copies = angles;
-        let (sines, cosines) = one_by_one(&copies);
+        let (mut sines, mut cosines) = one_by_one(&copies);
+        if let Some(factors) = factors {
+            for (i, (by_sin, by_cos)) in factors.into_iter().enumerate() {
+                (sines[i], cosines[i]) = (sines[i] * by_sin, cosines[i] * by_cos);
+            }
+        }
         let (sines, cosines) = (Angles::gather(&sines), Angles::gather(&cosines));
         (sines.whole, cosines.whole, F::Vector::sides(sines.in_pairs, cosines.in_pairs))
     } else {
         if !are_near {
             gathered = gathered.map(near::wrapped::<F, F::Vector, FUSED>);
         }
-        gathered.sin_cos()
+        gathered.sin_cos(factors.map(|factors| {
+            let (by_sin, by_cos) = (factors.map(|(by_sin, _)| by_sin), factors.map(|(_, by_cos)| by_cos));
+            (Angles::gather(&by_sin), Angles::gather(&by_cos))
+        }))
     };
     let mut out = [(F::ZERO, F::ZERO); K];
     for i in 0..Angles::<F, K>::WHOLE {

@@ -168,6 +168,11 @@ impl Scope<'_> {
                     "T::sin_cos" | "T::sin_cos_all" => {
                         arguments().flat_map(|angle| [angle.sin(), angle.cos()]).collect()
                     }
+                    "T::scaled_sin_cos_all" => {
+                        let (angles, factors) = (self.entries(&call.args[0]), self.entries(&call.args[1]));
+                        let plain = angles.iter().flat_map(|angle| [angle.sin(), angle.cos()]);
+                        plain.zip(factors).map(|(plain, factor)| plain * factor).collect()
+                    }
                     "T::scaled" => {
                         let numbers: Vec<f64> = arguments().collect();
                         numbers[..4].iter().map(|entry| entry * numbers[4]).collect()

@@ -24,6 +24,11 @@ impl Function {
         Self { graph, outputs }
     }
 
+    /// From a graph and which of its nodes are results.
+    pub(crate) fn new(graph: Graph, outputs: Vec<Id>) -> Self {
+        Self { graph, outputs }
+    }
+
     /// The expressions.
     pub fn graph(&self) -> &Graph {
         &self.graph
@@ -149,8 +154,8 @@ impl Function {
                 Op::Coordinate(index) => coordinates[index],
                 Op::Wrench(index) => wrench[index],
                 Op::Play(joint, index) => plays[joint][index],
-                Op::Sin(index) => angle(index).sin(),
-                Op::Cos(index) => angle(index).cos(),
+                Op::Sin(index) => self.graph.factors(index)[0] * angle(index).sin(),
+                Op::Cos(index) => self.graph.factors(index)[1] * angle(index).cos(),
                 Op::Add(a, b) => values[a] + values[b],
                 Op::Sub(a, b) => values[a] - values[b],
                 Op::Mul(a, b) => values[a] * values[b],

@@ -59,6 +59,9 @@ pub struct Graph {
     known: RefCell<HashMap<Op, Id>>,
     named_numbers: RefCell<Vec<NamedNumber>>,
     angles: RefCell<Vec<Angle>>,
+    /// What the sine and the cosine of each angle are multiplied by; of none, if they are
+    /// as they are.
+    factors: Vec<[f64; 2]>,
     /// Sine and cosine each.
     deviations: RefCell<Vec<(Id, Id)>>,
     hints: RefCell<BTreeMap<Id, String>>,
@@ -85,6 +88,18 @@ impl Graph {
     /// The angles, which [`Op::Sin`] and [`Op::Cos`] index.
     pub fn angles(&self) -> Ref<'_, [Angle]> {
         Ref::map(self.angles.borrow(), Vec::as_slice)
+    }
+
+    /// A graph without nodes of the same angles, whose sines and cosines are multiplied by
+    /// these factors, and with the same named numbers.
+    pub(crate) fn with_factors(&self, factors: Vec<[f64; 2]>) -> Self {
+        Self { angles: self.angles.clone(), named_numbers: self.named_numbers.clone(), factors, ..Self::default() }
+    }
+
+    /// What the sine and the cosine of an angle are multiplied by, which costs nothing: the
+    /// constants that they are computed with are.
+    pub fn factors(&self, angle: usize) -> [f64; 2] {
+        self.factors.get(angle).copied().unwrap_or([1.0; 2])
     }
 
     /// Names that the algorithms gave to nodes.

@@ -8,7 +8,8 @@
 //!    written down (`fold`, [`angle`]);
 //! 3. a [`function`] is a graph with outputs: dead nodes are dropped, the cost
 //!    counted, and it can be interpreted, which is how the generator is tested;
-//! 4. [`emit`] turns functions into Rust tokens and readable source.
+//! 4. what is in columns is scaled so that constants cost less (`scales`);
+//! 5. [`emit`] turns functions into Rust tokens and readable source.
 //!
 //! The same description always gives the same code.
 
@@ -18,6 +19,7 @@ mod fold;
 pub mod function;
 pub mod graph;
 pub mod op;
+mod scales;
 pub mod symbolic;
 
 #[cfg(feature = "text")]

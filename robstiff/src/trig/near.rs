@@ -71,10 +71,22 @@ pub(super) fn sin_cos<F: Float, V: Abreast<F>, const FUSED: bool>(x: V) -> (V, V
     (x * sin, cos)
 }
 
+/// The same, each times a constant: of a sine it is the angle that is multiplied, which waits
+/// for nothing, of a cosine the compiler multiplies the coefficients, for which it must see them.
+#[inline(always)]
+pub(super) fn scaled_sin_cos<F: Float, V: Pairs<F>, const FUSED: bool>(x: V, (by_sin, by_cos): (V, V)) -> (V, V) {
+    let u = measured::<F, V, FUSED>(x);
+    let sin = polynomial::<F, V, FUSED>(|i| V::number(places::near_sin::<F>() + i), u);
+    let coefficient = |i| V::numbers(places::near_cos::<F>() + i, places::near_cos::<F>() + i) * by_cos;
+    let cos = polynomial::<F, V, FUSED>(coefficient, u);
+    ((x * by_sin) * sin, cos)
+}
+
 /// The same of angles that are there in pairs, sine and cosine side by side.
 #[inline(always)]
-pub(super) fn pairs<F: Float, V: Pairs<F>, const FUSED: bool>(x: V) -> V {
+pub(super) fn pairs<F: Float, V: Pairs<F>, const FUSED: bool>(x: V, by: Option<V>) -> V {
     let coefficient = |i| V::numbers(places::near_sin::<F>() + i, places::near_cos::<F>() + i);
     let both = polynomial::<F, V, FUSED>(coefficient, measured::<F, V, FUSED>(x));
-    both * x.sines_beside_ones()
+    let sines_beside_ones = x.sines_beside_ones();
+    both * by.map_or(sines_beside_ones, |by| sines_beside_ones * by)
 }

@@ -262,9 +262,15 @@ fn side_by_side_is_one_by_one() {
     fn check<F: Float + core::fmt::Debug, const K: usize>(angle: impl Fn(usize) -> F) {
         // The sine of what is known when compiled is the compiler's, not the platform's.
         let angles = core::hint::black_box(core::array::from_fn(angle));
-        let all = sin_cos_all::<F, K>(angles);
+        let all = sin_cos_all::<F, K>(angles, None);
         // The compiler may vectorise, but not round in another way.
         assert_eq!(all, angles.map(sin_cos), "{angles:?}");
+        // A power of two rounds nothing, wherever it is multiplied by.
+        let by = |i: usize| [F::ONE, F::ONE + F::ONE, -(F::ONE + F::ONE)][i % 3];
+        let factors = core::array::from_fn(|i| (by(i), by(i / 3)));
+        let scaled = sin_cos_all::<F, K>(angles, Some(factors));
+        let each = core::array::from_fn(|i| (all[i].0 * factors[i].0, all[i].1 * factors[i].1));
+        assert_eq!(scaled, each, "{angles:?}");
     }
     macro_rules! counts {
         ($($k:literal)*) => {$(
@@ -290,13 +296,17 @@ fn beyond_the_domain_is_the_platforms() {
     for outside in [1.648e6, -3e8, 1e22, f64::MAX] {
         let platform = outside.platform_sin_cos();
         assert_eq!(sin_cos(outside), platform);
-        assert_eq!(sin_cos_all([0.5, outside, 0.25])[1], platform);
-        assert_eq!(sin_cos_all([0.5, outside, 0.25])[0], 0.5.platform_sin_cos());
+        assert_eq!(sin_cos_all([0.5, outside, 0.25], None)[1], platform);
+        assert_eq!(sin_cos_all([0.5, outside, 0.25], None)[0], 0.5.platform_sin_cos());
     }
     for none in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let (s, c) = sin_cos(none);
         assert!(s.is_nan() && c.is_nan());
-        let [(s, c), (t, _)] = sin_cos_all([none, 0.3]);
-        assert!(s.is_nan() && c.is_nan() && (t - 0.3_f64.sin()).abs() < 1e-15);
+        for factors in [None, Some([(1.0, 1.0), (3.0, 5.0)])] {
+            let [(s, c), (t, u)] = sin_cos_all([none, 0.3], factors);
+            let (by_sin, by_cos) = factors.map_or((1.0, 1.0), |[_, factors]| factors);
+            assert!(s.is_nan() && c.is_nan());
+            assert!((t - by_sin * 0.3_f64.sin()).abs() < 1e-15 && (u - by_cos * 0.3_f64.cos()).abs() < 2e-15);
+        }
     }
 }

@@ -58,6 +58,7 @@ pub trait Other: Sized {
     fn new() {}
     fn sin_cos(self) {}
     fn sin_cos_all<T>(_: T) {}
+    fn scaled_sin_cos_all<T, F>(_: T, _: F) {}
     fn mul_add(self, _: Self, _: Self) {}
     fn turn_blocks<T>(_: T) {}
     fn scaled<T>(_: T) {}

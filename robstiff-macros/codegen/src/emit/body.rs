@@ -164,17 +164,27 @@ impl<'f> Writer<'f> {
     }
 
     /// `let [(s1, c1), (s23, c23)] = T::sin_cos_all([q[0], q[1] + q[2]]);`:
-    /// all angles together, so that scalars may compute them side by side.
+    /// all angles together, so that scalars may compute them side by side; with what they
+    /// are multiplied by, if they are.
     fn sin_cos(&self) -> Option<TokenStream> {
         let angles = self.function.graph().angles();
         let is_needed = |&index: &usize| self.live.contains(&Op::Sin(index)) || self.live.contains(&Op::Cos(index));
         let mut order: Vec<usize> = (0..angles.len()).filter(is_needed).collect();
         arrange(&mut order, &angles, self.live.iter().any(|op| op.is_column()));
+        let factors: Vec<[f64; 2]> = order.iter().map(|&index| self.function.graph().factors(index)).collect();
         let (mut patterns, mut sums) = (Vec::new(), Vec::new());
         for index in order {
             let [sin, cos] = [Op::Sin(index), Op::Cos(index)].map(|op| self.pattern(op));
             patterns.push(quote!((#sin, #cos)));
             sums.push(sum(&angles[index], self.reader));
+        }
+        if factors.iter().flatten().any(|&factor| factor != 1.0) {
+            let of = |[sin, cos]: [f64; 2]| {
+                let [sin, cos] = [sin, cos].map(|factor| number(factor, self.reader));
+                quote!((T::of(#sin), T::of(#cos)))
+            };
+            let factors = factors.into_iter().map(of);
+            return Some(quote!(let [#(#patterns),*] = T::scaled_sin_cos_all([#(#sums),*], [#(#factors),*]);));
         }
         match (patterns.as_slice(), sums.as_slice()) {
             ([], _) => None,

@@ -9,6 +9,7 @@ use super::Signature;
 use super::body::Reader;
 use super::facts::from;
 use crate::function::Function;
+use crate::scales::with_scales;
 use crate::symbolic::{self, Algorithm, columns};
 
 /// Builds a result from its entries.
@@ -253,7 +254,8 @@ impl Generated {
 
     fn of(method: Calculation, robot: &Description) -> Self {
         let function = method.function(robot);
-        let in_columns = method.in_columns.map(|(algorithm, result)| (Function::of(|g| algorithm(g, robot)), result));
+        let in_columns =
+            method.in_columns.map(|(algorithm, result)| (with_scales(Function::of(|g| algorithm(g, robot))), result));
         let in_columns = in_columns.filter(|(columns, _)| columns.cost_in_columns() < function.cost_in_columns());
         Self { method, function, in_columns }
     }

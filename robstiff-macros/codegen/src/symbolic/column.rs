@@ -20,6 +20,11 @@ impl<'g> Column<'g> {
         Self { g, id: g.intern(Op::Column(entries.map(Sym::id)), None).id() }
     }
 
+    /// A node that is a column.
+    pub fn of_node(g: &'g Graph, id: Id) -> Self {
+        Self { g, id }
+    }
+
     /// The unit vector along `axis`, from 0; 3 is the origin.
     pub fn unit(g: &'g Graph, axis: usize) -> Self {
         Self::of(g, std::array::from_fn(|i| g.number(f64::from(u8::from(i == axis)))))
@@ -97,7 +102,8 @@ impl<'g> Column<'g> {
         self.sym(self.id)
     }
 
-    fn is_zero_at(self, i: usize) -> bool {
+    /// Whether entry `i` is known to be 0.
+    pub fn is_zero_at(self, i: usize) -> bool {
         let column = |id| Self { g: self.g, id };
         match self.op() {
             Op::Direction(_) if i == 3 => true,
