@@ -47,8 +47,10 @@ struct Scaling<'f> {
 /// What it is worth if an equation holds.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Gain {
-    /// An operation less.
-    Operation,
+    /// A product of a column less.
+    Column,
+    /// One of numbers less, which are known earlier.
+    Number,
     /// A sum where there would be a fused product, which takes a pipe of the products.
     Sum,
 }
@@ -77,7 +79,8 @@ impl<'f> Scaling<'f> {
             system.demand(equation);
         }
         let mut wishes = scaling.wishes();
-        wishes.sort_by_key(|&(gain, id, _)| (gain, Reverse(id)));
+        let delays = scaling.delays();
+        wishes.sort_by_key(|&(gain, id, _)| (gain, Reverse(delays[id]), Reverse(id)));
         for (_, _, equation) in wishes {
             system.demand(equation);
         }
@@ -99,6 +102,17 @@ impl<'f> Scaling<'f> {
             Op::Column(entries) => entries.iter().all(|&entry| self.nodes[entry].constant.is_some()),
             _ => self.nodes[id].constant.is_some(),
         }
+    }
+
+    /// How long the longest chain of operations through each is.
+    fn delays(&self) -> Vec<usize> {
+        let mut after = vec![0; self.nodes.len()];
+        for (id, op) in (0..self.nodes.len()).rev().map(|id| (id, self.nodes[id].op)) {
+            for operand in op.operands().filter(|_| self.uses[id] > 0) {
+                after[operand] = after[operand].max(after[id] + op.latency());
+            }
+        }
+        self.nodes.iter().zip(after).map(|(node, after)| node.ready + after).collect()
     }
 
     /// What must hold.
@@ -150,7 +164,8 @@ impl<'f> Scaling<'f> {
             let gain = match op {
                 Op::PlusScaled(..) | Op::PlusProduct(..) => Gain::Sum,
                 _ if summed.contains(&id) => Gain::Sum,
-                _ => Gain::Operation,
+                Op::Mul(..) => Gain::Number,
+                _ => Gain::Column,
             };
             if constant > 0.0 || matches!(op, Op::PlusScaled(..)) {
                 wishes.push((gain, id, Equation::new(id, constant.abs().recip(), &[other])));

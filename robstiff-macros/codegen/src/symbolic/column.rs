@@ -73,7 +73,8 @@ impl<'g> Column<'g> {
         self.product_at(i).unwrap_or_else(|| self.at(i))
     }
 
-    fn product_at(self, i: usize) -> Option<Sym<'g>> {
+    /// An entry as products of others, if it is one.
+    pub fn product_at(self, i: usize) -> Option<Sym<'g>> {
         let column = |id| Self { g: self.g, id };
         let (other, factor) = match self.op() {
             Op::Column(entries) => return Some(self.sym(entries[i])),

@@ -17,6 +17,7 @@ mod levers;
 use robstiff_robots::Description;
 
 use self::arm::{Arm, Twist};
+use self::compliance::Twists;
 use super::chain::{Step, chain};
 use super::column::{Column, Signed};
 use super::elastic::Elastic;
@@ -48,19 +49,19 @@ pub fn jacobian<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
 /// The four columns of the transform, the entries of the Jacobian and of the compliance.
 pub fn statics<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
     let arm = Arm::of(g, robot);
-    let compliance = compliance_of(g, robot, &arm);
+    let compliance = compliance_of(g, robot, &arm, Twists::Computed);
     [homogeneous(arm.axes, arm.origin), entries(&arm.joints), compliance].concat()
 }
 
 /// The 36 entries of the compliance by rows; as without columns, where it is not
 /// of joints alone.
 pub fn compliance<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
-    compliance_of(g, robot, &Arm::of(g, robot))
+    compliance_of(g, robot, &Arm::of(g, robot), Twists::Unneeded)
 }
 
-fn compliance_of<'g>(g: &'g Graph, robot: &Description, arm: &Arm<'g>) -> Vec<Sym<'g>> {
+fn compliance_of<'g>(g: &'g Graph, robot: &Description, arm: &Arm<'g>, twists: Twists) -> Vec<Sym<'g>> {
     let elastic = Elastic::of(g, robot);
-    if elastic.is_of_joints() { compliance::of_joints(g, &arm.joints, &elastic) } else { super::compliance(g, robot) }
+    if elastic.is_of_joints() { compliance::of_joints(g, arm, &elastic, twists) } else { super::compliance(g, robot) }
 }
 
 /// Whether a turn about the same axis follows.

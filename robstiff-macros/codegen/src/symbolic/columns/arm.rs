@@ -37,6 +37,8 @@ pub struct Arm<'g> {
     pub joints: Vec<Twist<'g>>,
     pub axes: [Signed<'g>; 3],
     pub origin: Column<'g>,
+    stands: Vec<Stand<'g>>,
+    levers: Vec<Vec3<'g>>,
 }
 
 impl<'g> Arm<'g> {
@@ -49,7 +51,24 @@ impl<'g> Arm<'g> {
             Some(first) => along(first.origin, first.axes, levers[0]),
             None => walker.origin,
         };
-        Self { joints, axes: walker.axes, origin }
+        Self { joints, axes: walker.axes, origin, stands, levers }
+    }
+
+    /// What a unit of a joint that turns moves at the TCP, times a number and added to `onto`,
+    /// without that column itself: the number goes into the lever, which is a number, too.
+    /// `moved` is what [`Stand::along_normal`] asks for, if it is not what the twists say.
+    pub fn moves_times(
+        &self,
+        joint: usize,
+        number: Sym<'g>,
+        onto: Option<Column<'g>>,
+        moved: Option<impl FnOnce(usize) -> Vec<Sym<'g>>>,
+    ) -> Column<'g> {
+        let (stand, mut lever) = (&self.stands[joint], self.levers[joint]);
+        if let Some(along) = moved.and_then(|moved| stand.along_normal(moved)) {
+            lever.0[0] = along;
+        }
+        stand.moves_times(lever, number, onto)
     }
 }
 
@@ -93,9 +112,8 @@ fn twists<'g>(g: &'g Graph, stands: &[Stand<'g>], mut levers: Vec<Vec3<'g>>) -> 
     for (k, stand) in stands.iter().enumerate().rev() {
         // From the tip on: the next joint is the last of these.
         let next = joints.last().filter(|_| stands[k + 1].is_revolute);
-        if let Some(along_normal) = stand.along_normal(&joints).filter(|_| next.is_some()) {
-            levers[k].0[0] = along_normal;
-        }
+        let along_normal = next.and_then(|_| stand.along_normal(|axis| moved(&joints, axis)));
+        levers[k].0[0] = along_normal.unwrap_or(levers[k].0[0]);
         let beyond = stand.parallel.filter(|_| stand.is_revolute && next.is_some());
         let (translation, rotation) = match (stand.is_revolute, next.zip(beyond)) {
             (false, _) => (stand.axes[2].column(), Column::zero(g)),
@@ -186,18 +204,41 @@ impl<'g> Stand<'g> {
         Signed::combined((y, lever[0]), (x, -lever[1])).column()
     }
 
-    /// The lever's part along x, where the twists behind say it, the next one last: its
-    /// translation part by part, so that what is known last is added last.
-    fn along_normal(&self, behind: &[Twist<'g>]) -> Option<Sym<'g>> {
-        let (sine, mut along) = (self.twist?, self.normal?);
-        let (axis, sign) = self.axes[2].column().unit_axis()?;
-        for twist in behind.iter().rev() {
-            let entry = twist.beyond.unwrap_or(twist.translation).early_at(axis);
-            along = if sine * sign > 0.0 { along + entry } else { along - entry };
-            if twist.beyond.is_none() {
-                break;
+    /// The same times a number, and added to another column.
+    fn moves_times(&self, lever: Vec3<'g>, number: Sym<'g>, onto: Option<Column<'g>>) -> Column<'g> {
+        let [x, y, _] = self.axes;
+        let parts = [(y, lever[0] * number), (x, -lever[1] * number)];
+        match onto {
+            Some(sum) => {
+                let mut parts = parts;
+                // What is known later goes in later.
+                parts.sort_by_key(|(axis, lever)| axis.column().whole().ready().max(lever.ready()));
+                parts.into_iter().fold(sum, |sum, (axis, lever)| axis.added(sum, lever))
             }
+            // A single length meets the number.
+            None if lever[0].is_zero() || lever[1].is_zero() => self.moves(lever).times(Column::thrice(number)),
+            None => Signed::combined(parts[0], parts[1]).column(),
         }
-        Some(along)
     }
+
+    /// The lever's part along x, where the twists behind say it: `moved` gives what the next
+    /// joint moves along an axis, part by part, so that what is known last is added last.
+    fn along_normal(&self, moved: impl FnOnce(usize) -> Vec<Sym<'g>>) -> Option<Sym<'g>> {
+        let (sine, normal) = (self.twist?, self.normal?);
+        let (axis, sign) = self.axes[2].column().unit_axis()?;
+        let add = |along, entry| if sine * sign > 0.0 { along + entry } else { along - entry };
+        Some(moved(axis).into_iter().fold(normal, add))
+    }
+}
+
+/// What the last of the joints, from the tip on, moves along an axis, part by part.
+fn moved<'g>(joints: &[Twist<'g>], axis: usize) -> Vec<Sym<'g>> {
+    let mut parts = Vec::new();
+    for twist in joints.iter().rev() {
+        parts.push(twist.beyond.unwrap_or(twist.translation).early_at(axis));
+        if twist.beyond.is_none() {
+            break;
+        }
+    }
+    parts
 }
