@@ -215,8 +215,10 @@ impl<'g> Stand<'g> {
                 parts.sort_by_key(|(axis, lever)| axis.column().whole().ready().max(lever.ready()));
                 parts.into_iter().fold(sum, |sum, (axis, lever)| axis.added(sum, lever))
             }
-            // A single length meets the number.
-            None if lever[0].is_zero() || lever[1].is_zero() => self.moves(lever).times(Column::thrice(number)),
+            // A constant beside a column is one operand.
+            None if [0, 1].map(|i| lever[i].constant()).iter().all(Option::is_some) => {
+                self.moves(lever).times(Column::thrice(number))
+            }
             None => Signed::combined(parts[0], parts[1]).column(),
         }
     }
