@@ -34,10 +34,11 @@ pub trait Real:
         angles.map(Self::sin_cos)
     }
 
-    /// Sines and cosines of several angles in rad, each times a constant, `(sin, cos)` as
-    /// they: with constants that the compiler sees, those of `f64` and `f32` take no
-    /// operation more. A sine is off by its constant times what it is off otherwise, and
-    /// by the roundings of the products.
+    /// Sines and cosines of several angles in rad, each times its factor, `(sin, cos)`. With
+    /// factors that the compiler sees, those of `f64` and `f32` take as long as without: the
+    /// constants that they are computed with are multiplied, or the angles before. Errors are
+    /// those of [`sin_cos`](Self::sin_cos) times the factors, and the roundings of these
+    /// products.
     #[inline(always)]
     fn scaled_sin_cos_all<const K: usize>(angles: [Self; K], factors: [(Self, Self); K]) -> [(Self, Self); K] {
         let mut all = Self::sin_cos_all(angles);

@@ -29,8 +29,8 @@ impl Equation {
         for (&id, own) in &other.powers {
             *self.powers.entry(id).or_default() += power * own;
         }
-        // Powers are small whole numbers or halves, which cancel exactly.
-        self.powers.retain(|_, power| *power != 0.0);
+        // Powers are small fractions, of which rounding may leave something.
+        self.powers.retain(|_, power| power.abs() > 1e-9);
         self.value /= power_of(other.value, power);
         self
     }
@@ -102,6 +102,19 @@ mod tests {
         assert!(!system.demand(Equation::new(2, 4.0, &[])));
         assert!(system.demand(Equation::new(0, 6.0, &[])));
         assert_eq!(system.scales(), BTreeMap::from([(0, 6.0), (1, 0.5), (2, 3.0), (3, 9.0)]));
+    }
+
+    #[test]
+    fn thirds_cancel() {
+        let mut system = System::default();
+        assert!(system.demand(Equation::new(0, 1.0, &[1, 1, 1, 1])));
+        assert!(system.demand(Equation::new(2, 8.0, &[1, 1, 1])));
+        assert!(system.demand(Equation::new(2, 1.0, &[0, 0])));
+        let scales = system.scales();
+        let scale = |id: Id| scales.get(&id).copied().unwrap_or(1.0);
+        assert!((scale(0) / scale(1).powi(4) - 1.0).abs() < 1e-14);
+        assert!((scale(2) / scale(1).powi(3) - 8.0).abs() < 1e-13);
+        assert!((scale(2) / scale(0).powi(2) - 1.0).abs() < 1e-14);
     }
 
     #[test]
