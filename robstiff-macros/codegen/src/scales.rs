@@ -87,10 +87,7 @@ impl<'f> Scaling<'f> {
     }
 
     fn is_constant(&self, id: Id) -> bool {
-        match self.nodes[id].op {
-            Op::Column(entries) => entries.iter().all(|&entry| self.nodes[entry].constant.is_some()),
-            _ => self.nodes[id].constant.is_some(),
-        }
+        self.nodes[id].constant.is_some() || Column::of_node(self.graph, id).is_constant()
     }
 
     /// The summands of a sum: those that must have its scale, and one that may be multiplied
@@ -288,11 +285,8 @@ impl<'g> Rewriter<'_, 'g> {
 
     /// Whether a column without a last entry is multiplied by 1 in all directions.
     fn is_vector_times_one(&self, vector: Id, one: Id) -> bool {
-        let is_ones = match self.sym(one).op() {
-            Op::Column([x, y, z, _]) => [x, y, z].into_iter().all(|entry| self.is_one(entry)),
-            _ => false,
-        };
-        is_ones && Column::of_node(self.graph, vector).is_zero_at(3)
+        let [vector, one] = [vector, one].map(|id| Column::of_node(self.graph, id));
+        one.is_one() && vector.is_zero_at(3)
     }
 
     /// The factors of a product that has a scale: of two that vary they have it already.

@@ -207,7 +207,7 @@ impl<'g> Column<'g> {
     }
 
     /// Whether it is 1 for all directions.
-    fn is_one(self) -> bool {
+    pub fn is_one(self) -> bool {
         self == Self::thrice(self.g.number(1.0))
     }
 

@@ -207,16 +207,15 @@ impl<'g> Stand<'g> {
     /// The same times a number, and added to another column.
     fn moves_times(&self, lever: Vec3<'g>, number: Sym<'g>, onto: Option<Column<'g>>) -> Column<'g> {
         let [x, y, _] = self.axes;
-        let parts = [(y, lever[0] * number), (x, -lever[1] * number)];
+        let mut parts = [(y, lever[0] * number), (x, -lever[1] * number)];
         match onto {
             Some(sum) => {
-                let mut parts = parts;
                 // What is known later goes in later.
                 parts.sort_by_key(|(axis, lever)| axis.column().whole().ready().max(lever.ready()));
                 parts.into_iter().fold(sum, |sum, (axis, lever)| axis.added(sum, lever))
             }
             // A constant beside a column is one operand.
-            None if [0, 1].map(|i| lever[i].constant()).iter().all(Option::is_some) => {
+            None if lever[0].constant().and(lever[1].constant()).is_some() => {
                 self.moves(lever).times(Column::thrice(number))
             }
             None => Signed::combined(parts[0], parts[1]).column(),
