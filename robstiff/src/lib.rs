@@ -48,7 +48,7 @@
 //! ```
 #![no_std]
 
-#[cfg(feature = "std")]
+#[cfg(any(feature = "std", test))]
 extern crate std;
 
 // The code of `robot!` names this crate; the tests are in it.
