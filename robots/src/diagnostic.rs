@@ -140,7 +140,7 @@ impl fmt::Display for Diagnostic {
         let [message, help] = [&beginning(message), help].map(|text| shown(text.chars()));
         write!(f, "error: {message}\n{:gutter$}--> {file}:{line}:{column}", "")?;
         if !path.is_empty() {
-            write!(f, "  ({path})")?;
+            write!(f, "  ({})", shown(path.chars()))?;
         }
         let text = shown(source_line.chars());
         write!(f, "\n{:gutter$} |\n{line} | {}", "", text.trim_end())?;
@@ -238,6 +238,14 @@ mod tests {
 
     fn carets(source_line: &str, column: usize, width: usize) -> String {
         diagnostic(source_line, column, width).to_string().lines().last().unwrap().to_owned()
+    }
+
+    #[test]
+    fn nothing_of_a_file_moves_the_cursor() {
+        let moving = "\u{1b}[2J\r\t".to_owned();
+        let told = diagnostic(&moving, 1, 1);
+        let told = Diagnostic { message: moving.clone(), path: moving.clone(), help: moving, ..told }.to_string();
+        assert!(!told.contains(|c: char| c.is_control() && c != '\n'), "{told:?}");
     }
 
     #[test]

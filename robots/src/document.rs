@@ -28,7 +28,7 @@ pub(crate) use nesting::too_deep;
 pub use node::{Map, Node};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Line};
-use content::{Step, extent, locate, source_line};
+use content::{Step, extent, line_count, locate, source_line};
 use nesting::MOST_NESTED;
 use serde::Deserialize;
 use std::cell::RefCell;
@@ -156,6 +156,12 @@ fn nested(file: &str, text: &str, (line, column): (usize, usize)) -> Diagnostic 
     )
 }
 
+/// A place, or the end of the last line where the parser counts one more than there is.
+fn within(text: &str, line: usize, column: usize) -> (usize, usize) {
+    let lines = line_count(text);
+    if line <= lines { (line, column) } else { (lines, 1 + source_line(text, lines).chars().count()) }
+}
+
 fn syntax_problem(file: &str, text: &str, error: &serde_yaml::Error) -> Diagnostic {
     let told = error.to_string();
     let place = place_of_byte(text, &told)
@@ -166,6 +172,7 @@ fn syntax_problem(file: &str, text: &str, error: &serde_yaml::Error) -> Diagnost
     let (line, column) = place.or(outdented.map(|line| (line, 1))).unwrap_or((1, 1));
     // The place is shown on its own; a second place in the message is of use.
     let message = told.replacen(&format!(" at line {line} column {column}"), "", 1);
+    let (line, column) = within(text, line, column);
     let at = source_line(text, line).chars().nth(column - 1);
     let message = match outdented {
         Some(_) => "this line is indented less than the first",

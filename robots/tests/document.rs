@@ -120,3 +120,13 @@ fn what_is_nested_too_deep_is_refused_at_once() {
     assert!(told.starts_with("error: this is nested more than 128 deep\n --> deep.yaml:2:137"), "{told}");
     assert_eq!(Description::outline(&text), Outline::default());
 }
+
+/// At the end of a text without a last line break the parser counts a line more.
+#[test]
+fn no_problem_is_behind_the_last_line() {
+    for (text, place) in [("a: 1\nb", (2, 2)), ("a: 1\nb\n", (3, 1)), ("a: 1\r\n<", (2, 2))] {
+        let problems = Document::parse("x.yaml", text).unwrap_err();
+        let problem = problems.iter().next().unwrap();
+        assert_eq!((problem.line, problem.column), place, "{text:?}: {problem}");
+    }
+}

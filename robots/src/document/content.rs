@@ -212,6 +212,11 @@ pub(super) fn source_line(text: &str, line: usize) -> &str {
     rest.split(is_break).next().unwrap_or_default()
 }
 
+/// How many lines there are, the one behind the last break among them.
+pub(super) fn line_count(text: &str) -> usize {
+    1 + text.matches(is_break).count() - text.matches("\r\n").count()
+}
+
 fn is_break(character: char) -> bool {
     matches!(character, '\n' | '\r' | '\u{85}' | '\u{2028}' | '\u{2029}')
 }
