@@ -110,8 +110,10 @@ impl MeasuredForce {
         let mut angles = self.angles(speed)?;
         // Recorded angles may begin again at each revolution.
         for k in 1..angles.len() {
-            while angles[k] < angles[k - 1] - 0.5 * TAU {
-                angles[k] += TAU;
+            let back = angles[k - 1] - angles[k];
+            if back > 0.5 * TAU {
+                // At once: a turn more of an angle without places is the same angle.
+                angles[k] += (back / TAU - 0.5).ceil() * TAU;
             }
         }
         let (first, last) = (*angles.first()?, *angles.last()?);
