@@ -102,6 +102,7 @@ impl Document {
     /// The line and the column (from 1) of a part, and what stands in the line from there on.
     fn place(&self, steps: &[Step]) -> (Line<'_>, usize, String) {
         let (number, column) = locate(&self.text, steps);
+        let (number, column) = within(&self.text, number, column);
         let line = Line { number, text: source_line(&self.text, number) };
         (line, column, line.text.chars().skip(column - 1).collect())
     }

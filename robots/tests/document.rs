@@ -129,4 +129,6 @@ fn no_problem_is_behind_the_last_line() {
         let problem = problems.iter().next().unwrap();
         assert_eq!((problem.line, problem.column), place, "{text:?}: {problem}");
     }
+    let nothing = Document::parse("x.yaml", "# a remark").unwrap();
+    assert_eq!(places(nothing, |document| vec![document.root()]), [(1, 11, 0)]);
 }
