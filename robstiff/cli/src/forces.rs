@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use robstiff::milling::{Cut, CutFile, ForceFrame, Forces, MeasuredForce, Revolution};
 use robstiff::nalgebra::Vector3;
+use robstiff_machining::milling::{Cut, CutFile, ForceFrame, Forces, MeasuredForce, Revolution};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;

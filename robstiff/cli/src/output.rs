@@ -6,7 +6,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use robstiff::campaign::Campaign;
+use robstiff_identify::campaign::Campaign;
 use robstiff_robots::Description;
 
 use crate::failure::Failure;

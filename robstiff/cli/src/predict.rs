@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use robstiff::campaign::{Campaign, Data};
-use robstiff::identify::{PredictedRow, Prediction, predict};
+use robstiff_identify::campaign::{Campaign, Data};
+use robstiff_identify::identify::{PredictedRow, Prediction, predict};
 use serde_json::json;
 
 use crate::failure::Failure;

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use robstiff::campaign::Data;
-use robstiff::simulate::{Scenario, Simulated, simulate};
+use robstiff_identify::campaign::Data;
+use robstiff_identify::simulate::{Scenario, Simulated, simulate};
 use serde_json::json;
 
 use crate::failure::Failure;

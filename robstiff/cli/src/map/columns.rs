@@ -11,7 +11,7 @@ use parquet::errors::Result;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::{SerializedFileWriter, SerializedPageWriter, TrackedWrite};
 use parquet::schema::types::{ColumnPath, SchemaDescriptor, Type};
-use robstiff::map::{Axis, Chunk, Column};
+use robstiff_machining::map::{Axis, Chunk, Column};
 
 use super::table::{Counter, heading, single};
 

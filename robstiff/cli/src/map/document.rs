@@ -1,7 +1,7 @@
 //! A map's summary as JSON, and for a terminal.
 
-use robstiff::map::{Axis, Column, Extreme, Measure, Summary, WorkpiecePlace, people};
 use robstiff::nalgebra::Isometry3;
+use robstiff_machining::map::{Axis, Column, Extreme, Measure, Summary, WorkpiecePlace, people};
 use robstiff_robots::quantity::Dimension;
 use serde_json::{Map, Value, json};
 

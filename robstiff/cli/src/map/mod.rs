@@ -16,9 +16,9 @@ use std::path::{Path, PathBuf};
 
 use indicatif::{HumanCount, ProgressBar, ProgressStyle};
 use robstiff::Generic;
-use robstiff::map::read::{Over, Positions, Task};
-use robstiff::map::{Axis, CartesianSpace, Chunk, JointSpace, Measure, Survey, Tool, best_placement};
 use robstiff::nalgebra::Isometry3;
+use robstiff_machining::map::read::{Over, Positions, Task};
+use robstiff_machining::map::{Axis, CartesianSpace, Chunk, JointSpace, Measure, Survey, Tool, best_placement};
 use robstiff_robots::Description;
 use robstiff_robots::document::{Document, Node};
 use robstiff_robots::quantity::Dimension;

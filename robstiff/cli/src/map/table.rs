@@ -2,7 +2,7 @@
 
 use std::io::Write as _;
 
-use robstiff::map::{Axis, Chunk, Column};
+use robstiff_machining::map::{Axis, Chunk, Column};
 
 /// How cells are written down.
 pub struct Table {

@@ -1,6 +1,6 @@
 //! What is left, as text, as a table and as JSON.
 
-use robstiff::online::{HeldBack, LeftOfSine};
+use robstiff_machining::online::{HeldBack, LeftOfSine};
 use robstiff_robots::{Description, Joint};
 use serde_json::{Value, json};
 

@@ -1,8 +1,8 @@
 //! What forces do to the tool along a path: told, and written.
 
-use robstiff::compensation::LeftIfWrong;
-use robstiff::deviation::{DeviationPoint, Stretch, Summary};
-use robstiff::path::lines;
+use robstiff_machining::compensation::LeftIfWrong;
+use robstiff_machining::deviation::{DeviationPoint, Stretch, Summary};
+use robstiff_machining::path::lines;
 use serde_json::{Value, json};
 
 use super::cutting::{Corrected, Cutting, WRONG};

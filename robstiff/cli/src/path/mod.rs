@@ -8,10 +8,10 @@ mod doubts;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use robstiff::inverse::Inverse;
 use robstiff::nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
-use robstiff::path::{Jump, ToolPath};
 use robstiff::{Robot, with_robot};
+use robstiff_machining::inverse::Inverse;
+use robstiff_machining::path::{Jump, ToolPath};
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, JointKind};
 use serde_json::{Value, json};

@@ -8,10 +8,10 @@ use std::path::PathBuf;
 
 use robstiff::analysis::translational_compliance;
 use robstiff::elements::{compliance_under, contributions, contributions_under};
-use robstiff::milling::{Cut, Forces};
 use robstiff::nalgebra::{Matrix3, SVector, Vector3, Vector6};
-use robstiff::stability::{FeedLimit, Modes, mass_of_first_mode, over_feeds};
 use robstiff::{Robot, with_robot};
+use robstiff_machining::milling::{Cut, Forces};
+use robstiff_machining::stability::{FeedLimit, Modes, mass_of_first_mode, over_feeds};
 use robstiff_robots::Description;
 use robstiff_robots::quantity::{self, Dimension};
 use serde_json::{Value, json};
@@ -190,7 +190,7 @@ fn document(predicted: &Predicted, robot: &Description, cut: &Cut, q: &[f64]) ->
         "tool_axis": json::numbers(predicted.axis.iter().copied()),
         "depth_m": json::number(cut.depth),
         "greatest_depth_m": json::number(predicted.greatest),
-        "best": robstiff::stability::best(&predicted.feeds).map(feed),
+        "best": robstiff_machining::stability::best(&predicted.feeds).map(feed),
         "feeds": predicted.feeds.iter().map(feed).collect::<Value>(),
     })
 }

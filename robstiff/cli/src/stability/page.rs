@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use robstiff::analysis::PrincipalDirections;
-use robstiff::milling::Cut;
 use robstiff::nalgebra::{SymmetricEigen, Vector3};
-use robstiff::stability::{FeedLimit, Limits, best};
+use robstiff_machining::milling::Cut;
+use robstiff_machining::stability::{FeedLimit, Limits, best};
 use robstiff_robots::Description;
 
 use super::{Predicted, softest};

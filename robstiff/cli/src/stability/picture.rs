@@ -1,7 +1,7 @@
 //! The depths over the feed, as a picture.
 
-use robstiff::milling::Cut;
-use robstiff::stability::{FeedLimit, best};
+use robstiff_machining::milling::Cut;
+use robstiff_machining::stability::{FeedLimit, best};
 
 use super::{Predicted, page};
 use crate::report::svg::{Svg, tick_label, ticks};

@@ -1,0 +1,26 @@
+//! Measured data against the model of a robot arm.
+//!
+//! - [`campaign`]: the files: loads and what moved, absolute positions, clamped axes;
+//! - [`triage`]: what the readings say without a model;
+//! - [`identify`]: the joint compliances that fit them;
+//! - [`trace`]: the effects that they show to be missing;
+//! - [`plan`], [`simulate`]: what to measure next, and campaigns on an arm that hides something,
+//!   to try a measurement before it is made.
+//!
+//! Tracing and planning take minutes in a build without optimisation. A debug build is as quick
+//! with this in the `Cargo.toml` of the workspace:
+//!
+//! ```toml
+//! [profile.dev.package.robstiff-identify]
+//! opt-level = 2
+//! ```
+
+pub mod campaign;
+mod golden;
+pub mod identify;
+pub mod plan;
+mod probability;
+pub mod simulate;
+pub mod trace;
+pub mod triage;
+mod words;
