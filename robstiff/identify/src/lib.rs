@@ -16,10 +16,20 @@
 //! ```
 
 pub mod campaign;
+#[allow(dead_code)]
+mod effects;
 mod golden;
 pub mod identify;
+#[allow(dead_code)]
+mod model;
+#[allow(dead_code)]
+mod observe;
 pub mod plan;
 mod probability;
+#[allow(dead_code)]
+mod regression;
+#[allow(dead_code)]
+mod select;
 pub mod simulate;
 pub mod trace;
 pub mod triage;

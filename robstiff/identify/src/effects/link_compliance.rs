@@ -1,0 +1,43 @@
+//! A link bends, and twists.
+
+use robstiff::Effect;
+use robstiff_robots::Place as Part;
+
+use super::{Form, Kind, Offers, Scene, Side};
+use crate::model::Parameter;
+use crate::model::spring::Spring;
+
+/// The kind.
+pub static KIND: Kind = Kind {
+    name: "link_compliance",
+    side: Side::Robot,
+    words: |place, _| format!("the bending and torsion of {}", place.words()),
+    explanation: "",
+    offer,
+};
+
+/// A link that is shorter than this is a housing (m).
+const SHORTEST: f64 = 0.05;
+
+fn offer(scene: &Scene<'_>, offers: &mut Offers) {
+    if !scene.is_loaded() {
+        return;
+    }
+    for link in scene.joints().take(scene.kinds.len() - 1) {
+        let row = &scene.robot.joints[link - 1];
+        if row.d.hypot(row.a) < SHORTEST || !scene.turns(link) {
+            continue;
+        }
+        let size = 0.5 * scene.middle;
+        let bending = || Parameter::compliance("bending", "rad/Nm", size, Spring::Bending(link));
+        let torsion = Parameter::compliance("torsion", "rad/Nm", size, Spring::Torsion(link));
+        let written = move |bending, torsion| vec![Effect::LinkCompliance { link, bending, torsion }];
+        offers.add(
+            Part::Link(link),
+            vec![
+                Form::new("bending", vec![bending()]).written(move |v| written(v[0], 0.0)),
+                Form::new("both", vec![bending(), torsion]).written(move |v| written(v[0], v[1])),
+            ],
+        );
+    }
+}

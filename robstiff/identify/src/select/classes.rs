@@ -1,0 +1,1 @@
+//! What these readings cannot tell apart.

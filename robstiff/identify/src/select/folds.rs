@@ -1,0 +1,1 @@
+//! The whole search repeated without some poses.
