@@ -6,8 +6,8 @@ use robstiff_robots::Place as Part;
 
 use super::scene::What;
 use super::{Form, Kind, Offers, Scene, Side};
-use crate::model::Parameter;
 use crate::model::arm::THETA;
+use crate::model::{Parameter, Size, Term};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -26,9 +26,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
         return;
     }
     for joint in scene.turning() {
-        let zero = Parameter::of_world("offset", "rad", LIKELY, move |world, by| {
-            world.arm.rows[joint - 1].numbers[THETA] += by;
-        });
+        let zero = Parameter::new("offset", "rad", Size::Of(LIKELY), Term::Table(joint, THETA));
         let form = Form::new("", vec![zero]);
         offers
             .add(Part::Joint(joint), vec![form.written(move |v| vec![Effect::JointZeroOffset { joint, value: v[0] }])]);

@@ -4,8 +4,8 @@ use robstiff::Effect;
 use robstiff_robots::Place as Part;
 
 use super::{Form, Kind, Offers, Scene, Side};
-use crate::model::Parameter;
 use crate::model::spring::Spring;
+use crate::model::{Arm, Parameter};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -23,9 +23,11 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
     if !scene.is_loaded() {
         return;
     }
+    let arm = Arm::of(scene.robot);
+    let joints = arm.stand(&vec![0.0; arm.joints()], &[]).joints;
+    let lengths: Vec<f64> = joints.windows(2).map(|two| (two[1].at - two[0].at).norm()).collect();
     for link in scene.joints().take(scene.kinds.len() - 1) {
-        let row = &scene.robot.joints[link - 1];
-        if row.d.hypot(row.a) < SHORTEST || !scene.turns(link) {
+        if lengths[link - 1] < SHORTEST || !scene.turns(link) {
             continue;
         }
         let size = 0.5 * scene.middle;

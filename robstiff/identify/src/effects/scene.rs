@@ -10,6 +10,10 @@ use crate::model::Weight;
 /// The compliance of a joint that nothing is known of (rad/Nm).
 const LIKELY: f64 = 3e-7;
 
+/// Moments of a slip that are tried, and how many visits stand on either side of one.
+const MOMENTS: usize = 20;
+const FEWEST_ASIDE: usize = 3;
+
 /// What a campaign reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum What {
@@ -118,14 +122,20 @@ impl Scene<'_> {
     }
 
     /// The rows from which on something may have slipped: the first rows of some twenty visits, and
-    /// those near moments that were found.
+    /// those near moments that were found. A part of the visits stands on either side and shows it.
     pub fn moments(&self) -> Vec<(usize, bool)> {
         let begins = (1..self.visit.len()).filter(|&row| self.visit[row] != self.visit[row - 1]);
         let begins: Vec<usize> = begins.collect();
-        let step = (begins.len() / 20).max(1);
+        let step = (begins.len() / MOMENTS).max(FEWEST_ASIDE);
         let grid: Vec<usize> = begins.iter().copied().skip(step - 1).step_by(step).collect();
-        let between = self.shapes.moments.iter().filter(|row| !grid.contains(row)).map(|row| (*row, true));
-        grid.iter().map(|row| (*row, false)).chain(between).collect()
+        let (Some(&first), Some(&last)) =
+            (begins.get(FEWEST_ASIDE - 1), begins.len().checked_sub(FEWEST_ASIDE).and_then(|at| begins.get(at)))
+        else {
+            return Vec::new();
+        };
+        let grid: Vec<usize> = grid.into_iter().filter(|row| (first..=last).contains(row)).collect();
+        let near = self.shapes.moments.iter().filter(|row| !grid.contains(row) && (first..=last).contains(row));
+        grid.iter().map(|row| (*row, false)).chain(near.map(|row| (*row, true))).collect()
     }
 
     /// The line of a row.

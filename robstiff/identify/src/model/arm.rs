@@ -99,7 +99,8 @@ pub struct Arm {
 pub struct Stand {
     /// Frame 0.
     pub base: Frame,
-    /// The frames on whose z axes the joints act.
+    /// The frames on whose z axes the joints act, fixed to what carries the joint: x and y do not turn
+    /// with it.
     pub joints: Vec<Frame>,
     /// The frames behind the rows of the table; the last is the flange.
     pub links: Vec<Frame>,
@@ -194,10 +195,14 @@ impl Arm {
                 Convention::Modified => {
                     let (twist, tilt, bent) = bend(&frame);
                     let reached = along(&bent);
-                    let own = joint(&reached);
-                    screws.push([turns(&own, 2), slides(&own, 2), slides(&bent, 0), twist, tilt]);
-                    joints.push(own);
-                    frame = motion(&own);
+                    screws.push([turns(&reached, 2), slides(&reached, 2), slides(&bent, 0), twist, tilt]);
+                    let moved = motion(&reached);
+                    // At the origin of the joint's frame, with the axes of what carries its bearing.
+                    let carried = joint(&Frame { turn: reached.turn, at: moved.at });
+                    let aside = carried.turn != reached.turn;
+                    let turn = if aside { carried.turn * reached.turn.transpose() * moved.turn } else { moved.turn };
+                    frame = Frame { turn, at: moved.at };
+                    joints.push(carried);
                 }
             }
             links.push(frame);

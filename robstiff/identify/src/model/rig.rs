@@ -96,14 +96,19 @@ impl Rig {
     pub fn seen(&self, twist: &Vector6<f64>, tcp: &Frame, declared: &Frame) -> Vector6<f64> {
         let turned = turn_by(&self.reading_turn[BASE]);
         let in_tool = tcp.turn * turn_by(&self.reading_turn[TOOL]) * tcp.turn.transpose();
-        let into_file = match self.measured_frame {
-            campaign::Frame::Base => Matrix3::identity(),
-            campaign::Frame::Tool => declared.turn.transpose(),
-        };
-        let see = into_file * turned * in_tool * (1.0 + self.reading_scale);
-        let d = see * twist.fixed_rows::<3>(0);
-        let r = see * twist.fixed_rows::<3>(3);
+        let see = turned * in_tool * (1.0 + self.reading_scale);
+        let d = self.into_file(&(see * twist.fixed_rows::<3>(0)), declared);
+        let r = self.into_file(&(see * twist.fixed_rows::<3>(3)), declared);
         Vector6::new(d.x, d.y, d.z, r.x, r.y, r.z)
+    }
+
+    /// A vector of the base frame in the frame that the file has readings in; `declared` is the tool as
+    /// the controller knows it.
+    pub fn into_file(&self, vector: &Vector3<f64>, declared: &Frame) -> Vector3<f64> {
+        match self.measured_frame {
+            campaign::Frame::Base => *vector,
+            campaign::Frame::Tool => declared.turn.transpose() * vector,
+        }
     }
 
     /// A point of the base frame in the frame of what reads absolute positions (m).

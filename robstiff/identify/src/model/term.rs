@@ -61,6 +61,9 @@ pub enum Term {
     /// A joint (from 1) stands aside of its coordinate without any load, by a turn about an axis of
     /// its own frame (rad).
     Aside(usize, usize, Rc<dyn Fn(&At<'_>) -> f64>),
+    /// It is a number of the table: of a joint (from 1), and which ([`THETA`](super::arm::THETA) and so
+    /// on).
+    Table(usize, usize),
     /// It changes the arm or the rig; what the readings make of that is not linear.
     World(Rc<dyn Fn(&mut World, f64)>),
     /// It adds to a position or displacement, in the base frame (m).
@@ -75,6 +78,7 @@ impl fmt::Debug for Term {
             Self::Spring(spring) => write!(f, "{spring:?}"),
             Self::Law(joint, _) => write!(f, "law of joint {joint}"),
             Self::Aside(joint, axis, _) => write!(f, "joint {joint} aside about axis {axis}"),
+            Self::Table(joint, number) => write!(f, "number {number} of row {joint}"),
             Self::World(_) => f.write_str("world"),
             Self::Reading(_) => f.write_str("reading"),
             Self::Gain(_) => f.write_str("gain"),

@@ -243,10 +243,8 @@ impl<'c> Displacement<'c> {
     /// What adds to the readings at a row, in the base frame (m).
     fn read_directly(&self, of: &dyn Fn(&At<'_>) -> Vector3<f64>) -> DVector<f64> {
         stacked(self.rows(), self.readings.width, |row, numbers| {
-            let moved = of(&self.at(row));
-            let declared = &self.declared[self.station[row]].tcp;
-            let twist = Vector6::new(moved.x, moved.y, moved.z, 0.0, 0.0, 0.0);
-            self.put(&self.world.rig.seen(&twist, declared, declared), numbers);
+            let moved = self.world.rig.into_file(&of(&self.at(row)), &self.declared[self.station[row]].tcp);
+            numbers.iter_mut().zip(&self.directions).for_each(|(number, along)| *number = along.dot(&moved));
         })
     }
 
@@ -254,13 +252,17 @@ impl<'c> Displacement<'c> {
         gains(parameters, values, &mut |of| (0..self.rows()).for_each(|row| of(&self.at(row))))
     }
 
-    /// The prediction but for what large loads make of the arm's shape.
-    fn predict_at(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
+    /// What the arm's yielding reads, to first order.
+    fn yielded(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
         let world = changed(world, parameters, values);
         let loaded = self.loaded(&world, parameters, values);
         let yielding = sum(parameters, values, (&loaded, &self.sequence), &self.encoders);
-        let yielding = yielding.gained(&self.gains(parameters, values));
-        let mut read = self.read(&world, &loaded, &yielding);
+        self.read(&world, &loaded, &yielding.gained(&self.gains(parameters, values)))
+    }
+
+    /// The prediction but for what large loads make of the arm's shape.
+    fn predict_at(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
+        let mut read = self.yielded(world, parameters, values);
         for (parameter, &value) in parameters.iter().zip(values).filter(|(_, value)| **value != 0.0) {
             if let Term::Reading(of) = &parameter.term {
                 read += self.read_directly(&**of) * value;
@@ -359,14 +361,14 @@ impl Observation for Displacement<'_> {
                     let gained = Yielding { twists, turns: turns.collect() };
                     Some(self.read(&here, &loaded, &gained))
                 }
-                Term::Aside(..) | Term::World(_) => None,
+                Term::Aside(..) | Term::Table(..) | Term::World(_) => None,
             };
             let column = column.unwrap_or_else(|| {
                 let step = step_of(parameter);
                 let shifted = |by: f64| {
                     let mut values = values.to_vec();
                     values[which] += by;
-                    self.predict_at(world, parameters, &values)
+                    self.yielded(world, parameters, &values)
                 };
                 (shifted(step) - shifted(-step)) / (2.0 * step)
             });

@@ -123,7 +123,7 @@ pub fn yielding(term: &Term, loaded: &Loaded, sequence: &Sequence, encoders: &[u
             let of = |encoder: &usize| if encoder == joint { turns.clone() } else { vec![0.0; rows] };
             Some(Yielding { twists, turns: encoders.iter().map(of).collect() })
         }
-        Term::Aside(..) | Term::World(_) | Term::Reading(_) | Term::Gain(_) => None,
+        Term::Aside(..) | Term::Table(..) | Term::World(_) | Term::Reading(_) | Term::Gain(_) => None,
     }
 }
 

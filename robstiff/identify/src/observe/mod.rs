@@ -85,8 +85,10 @@ pub trait Observation {
 fn changed(world: &World, parameters: &[Parameter], values: &[f64]) -> World {
     let mut changed = world.clone();
     for (parameter, &value) in parameters.iter().zip(values).filter(|(_, value)| **value != 0.0) {
-        if let Term::World(change) = &parameter.term {
-            change(&mut changed, value);
+        match &parameter.term {
+            Term::World(change) => change(&mut changed, value),
+            Term::Table(joint, number) => changed.arm.rows[joint - 1].numbers[*number] += value,
+            _ => {}
         }
     }
     changed

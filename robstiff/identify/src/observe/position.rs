@@ -87,11 +87,15 @@ impl<'c> Position<'c> {
         }
     }
 
-    /// The arm of a world under its payloads.
-    fn loaded(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> Loaded {
-        let asides = asides(parameters, values, self.kinds.len(), &mut |of| {
+    /// By how much the joints stand aside, row by row; empty where none does.
+    fn asides(&self, parameters: &[Parameter], values: &[f64]) -> Vec<Vec<Vector3<f64>>> {
+        asides(parameters, values, self.kinds.len(), &mut |of| {
             (0..self.rows()).for_each(|row| of(&self.at(row)));
-        });
+        })
+    }
+
+    /// The arm of a world under its payloads, its joints aside by so much.
+    fn loaded(&self, world: &World, asides: &[Vec<Vector3<f64>>]) -> Loaded {
         let none = Vec::new();
         let stand = |(row, of): (usize, &PositionRow)| world.arm.stand(&of.q, asides.get(row).unwrap_or(&none));
         let stands: Vec<Stand> = self.data.rows.iter().enumerate().map(stand).collect();
@@ -100,6 +104,35 @@ impl<'c> Position<'c> {
         };
         let wrenches = stands.iter().zip(&self.data.rows).map(wrench).collect();
         Loaded::new(&self.kinds, stands, (0..self.rows()).collect(), wrenches)
+    }
+
+    /// What is read with the joints aside by so much.
+    fn predict_with(
+        &self,
+        asides: &[Vec<Vector3<f64>>],
+        world: &World,
+        parameters: &[Parameter],
+        values: &[f64],
+    ) -> DVector<f64> {
+        let world = changed(world, parameters, values);
+        let loaded = self.loaded(&world, asides);
+        let yields = self.payloads.then(|| sum(parameters, values, (&loaded, &self.sequence), &[]));
+        let direct: Vec<_> = parameters
+            .iter()
+            .zip(values)
+            .filter_map(|(parameter, &value)| match &parameter.term {
+                Term::Reading(of) if value != 0.0 => Some((of, value)),
+                _ => None,
+            })
+            .collect();
+        stacked(self.rows(), 3, |row, numbers| {
+            let twist = yields.as_ref().map_or_else(Vector6::zeros, |yields| yields.twists[row]);
+            let mut read = world.rig.position(&self.point(&world, &loaded.stands[row], &twist));
+            for (of, value) in &direct {
+                read += of(&self.at(row)) * *value;
+            }
+            numbers.copy_from_slice(read.as_slice());
+        })
     }
 
     /// The point that is read at a row, displaced by a twist of the tool centre point (m).
@@ -120,30 +153,14 @@ impl Observation for Position<'_> {
     }
 
     fn predict(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
-        let world = changed(world, parameters, values);
-        let loaded = self.loaded(&world, parameters, values);
-        let yields = self.payloads.then(|| sum(parameters, values, (&loaded, &self.sequence), &[]));
-        let direct: Vec<_> = parameters
-            .iter()
-            .zip(values)
-            .filter_map(|(parameter, &value)| match &parameter.term {
-                Term::Reading(of) if value != 0.0 => Some((of, value)),
-                _ => None,
-            })
-            .collect();
-        stacked(self.rows(), 3, |row, numbers| {
-            let twist = yields.as_ref().map_or_else(Vector6::zeros, |yields| yields.twists[row]);
-            let mut read = world.rig.position(&self.point(&world, &loaded.stands[row], &twist));
-            for (of, value) in &direct {
-                read += of(&self.at(row)) * *value;
-            }
-            numbers.copy_from_slice(read.as_slice());
-        })
+        let asides = self.asides(parameters, values);
+        self.predict_with(&asides, world, parameters, values)
     }
 
     fn columns(&self, world: &World, parameters: &[Parameter], values: &[f64], of: &[usize]) -> DMatrix<f64> {
         let here = changed(world, parameters, values);
-        let loaded = self.loaded(&here, parameters, values);
+        let asides = self.asides(parameters, values);
+        let loaded = self.loaded(&here, &asides);
         let levers: Vec<Vector3<f64>> =
             loaded.stands.iter().map(|stand| self.point(&here, stand, &Vector6::zeros())).collect();
         let mut columns = DMatrix::zeros(3 * self.rows(), of.len());
@@ -169,6 +186,10 @@ impl Observation for Position<'_> {
                     numbers.copy_from_slice(of(&self.at(row)).as_slice());
                 })),
                 Term::Gain(_) => Some(DVector::zeros(3 * self.rows())),
+                Term::Table(joint, number) => Some(stacked(self.rows(), 3, |row, numbers| {
+                    let moved = loaded.stands[row].screws[joint - 1][*number].at(&levers[row]);
+                    numbers.copy_from_slice(here.rig.direction(&moved).as_slice());
+                })),
                 Term::World(_) => None,
             };
             let column = column.unwrap_or_else(|| {
@@ -176,7 +197,7 @@ impl Observation for Position<'_> {
                 let shifted = |by: f64| {
                     let mut values = values.to_vec();
                     values[which] += by;
-                    self.predict(world, parameters, &values)
+                    self.predict_with(&asides, world, parameters, &values)
                 };
                 (shifted(step) - shifted(-step)) / (2.0 * step)
             });

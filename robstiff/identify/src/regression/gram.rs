@@ -3,7 +3,7 @@
 //! With columns `Z` and readings `y`, whitened by their covariance, all that a fit asks for is
 //! `[Z y]^T [Z y]`. It is kept for groups of poses, so that leaving a group out is a subtraction.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3};
 
 use super::noise::{Noise, discrepancies, rows_of_blocks};
 use crate::observe::Readings;
@@ -127,7 +127,7 @@ fn of_group(
         }
         loads.push(((forces.tr_mul(&forces)).fixed_view::<3, 3>(0, 0).into_owned(), shared.len()));
     }
-    let whole = white.tr_mul(&white);
+    let whole = square(&white);
     let under = |&kappa: &f64| {
         if kappa == 0.0 {
             return Gram { matrix: whole.clone(), log_det: plain, count: count as f64 };
@@ -146,9 +146,14 @@ fn of_group(
                 at += 3;
             }
         }
-        Gram { matrix: &whole - taken.tr_mul(&taken), log_det, count: count as f64 }
+        Gram { matrix: &whole - square(&taken), log_det, count: count as f64 }
     };
     kappas.iter().map(under).collect()
+}
+
+/// `M^T M`; by a product, which is far quicker than by columns.
+fn square(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    &matrix.transpose() * matrix
 }
 
 /// Columns with the readings behind them.
@@ -159,11 +164,12 @@ pub fn with_target(columns: DMatrix<f64>, target: &DVector<f64>) -> DMatrix<f64>
     all
 }
 
-/// The three directions of the load of each row are those of its force; see
-/// [`Readings::force`].
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector3;
+
     use super::*;
+    use crate::regression::noise::DISCREPANCIES;
 
     fn readings() -> Readings {
         let rows = 7;

@@ -216,9 +216,8 @@ pub fn of_positions(scene: &Scene<'_>, poses: usize) -> Vec<Parameter> {
         for (number, name, unit) in TABLE {
             // Of a joint that slides, theta and d are the angle and the coordinate.
             let group = if unit == "m" { LENGTHS } else { ANGLES };
-            let change = move |world: &mut World, by| world.arm.rows[joint - 1].numbers[number] += by;
             let size = Size::Learned(group, LIKELY_SCALES[group]);
-            always.push(Parameter::new(name, unit, size, Term::World(Rc::new(change))));
+            always.push(Parameter::new(name, unit, size, Term::Table(joint, number)));
         }
     }
     if poses >= POSES_FOR_BLOCK {

@@ -28,6 +28,7 @@ pub struct Point {
 }
 
 /// A campaign that is searched.
+#[derive(Clone)]
 pub struct Engine<'c> {
     /// What is read.
     pub observation: &'c dyn Observation,
@@ -317,10 +318,29 @@ impl<'c> Engine<'c> {
         point
     }
 
-    /// Searches, and begins where it is; `progress` is told what goes on.
+    /// The same campaign as declared, of which nothing was learned.
+    #[must_use]
+    pub fn fresh(&self) -> Self {
+        let mut scene = self.scene.clone();
+        scene.shapes = Shapes::default();
+        let noise = (self.prior.size != LIKELY_NOISE).then_some(self.prior.size);
+        let fresh = Self::new(self.observation, self.robot, scene, self.training.clone(), noise);
+        Self { sizes: self.sizes, ..fresh }
+    }
+
+    /// Searches, from the campaign as declared; `progress` is told what goes on.
     pub fn run(&mut self, progress: &dyn Fn(&str)) -> Option<Found> {
+        Some(self.run_from_alone(progress)?.0)
+    }
+
+    /// The same, with what the description's own numbers alone leave of every row.
+    pub fn run_from_alone(&mut self, progress: &dyn Fn(&str)) -> Option<(Found, DVector<f64>)> {
         progress("fitting the description's own numbers");
-        self.fit_alone()?;
+        let alone = self.fit_alone()?;
+        Some((self.look(progress)?, alone))
+    }
+
+    fn look(&mut self, progress: &dyn Fn(&str)) -> Option<Found> {
         let [wide, first, _] = self.widths();
         let mut names: Vec<(String, String)> = Vec::new();
         let mut pass = 0;
@@ -355,20 +375,22 @@ impl<'c> Engine<'c> {
         self.last(&names, wide)
     }
 
-    /// Fits what is always in, in steps that come from far away.
-    fn fit_alone(&mut self) -> Option<()> {
+    /// Fits what is always in, in steps that come from far away; what it leaves of every row.
+    pub fn fit_alone(&mut self) -> Option<DVector<f64>> {
         let kappa = FIRST_KAPPA.min(discrepancies(self.observation.readings()).len() - 1);
         let layout = Layout { candidates: Vec::new(), ..self.layout() };
         self.with_block = false;
+        let mut left = None;
         for steps in [1, 1, 2 * STEPS] {
             let begin = self.start.clone();
             let solved = self.solve(&layout, &[], (&self.point, kappa), steps)?;
             self.point = solved.point.clone();
             self.start = if steps > 1 { (solved.fit.variance, solved.fit.scales.clone()) } else { begin };
+            left = Some(solved.left);
         }
         self.with_block = true;
         self.learn_sizes(&layout);
-        Some(())
+        left
     }
 
     /// What is likely of bearings and laws where no compliance is declared: what was fitted.
@@ -443,7 +465,7 @@ impl<'c> Engine<'c> {
             visited.posterior().into_iter().take(OWN).map(|(set, p)| (set.clone(), p)).collect();
         let curved = |set: &Set| {
             let columns = set.iter().flat_map(|&form| &layout.forms[form].columns);
-            columns.into_iter().any(|&k| matches!(layout.parameters[k].term, Term::World(_)))
+            columns.into_iter().any(|&k| matches!(layout.parameters[k].term, Term::World(_) | Term::Table(..)))
         };
         let any = near.iter().any(|(set, p)| *p > UNLIKELY && curved(set));
         for (set, p) in &near {

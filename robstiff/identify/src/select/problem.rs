@@ -1,5 +1,7 @@
 //! The readings and columns at a linearisation point, and the evidence of sets of forms.
 
+use core::cell::Cell;
+
 use statrs::function::gamma::ln_gamma;
 
 use super::Layout;
@@ -34,6 +36,8 @@ pub struct Problem<'l> {
     /// The same under each discrepancy with what is always in taken out, and its part of the
     /// evidence.
     rest: Vec<(Gram, f64)>,
+    /// The discrepancy that was the likeliest when last asked: that of the next set is near.
+    likeliest: Cell<usize>,
 }
 
 /// How good a set is.
@@ -44,6 +48,12 @@ pub struct Judged {
     /// The likeliest discrepancy, by its index.
     pub kappa: usize,
 }
+
+/// What a unit moves the readings by at least (m, rad), for its size to be told by that.
+const LEAST_MOVED: f64 = 1e-3;
+
+/// A discrepancy that is so much less likely than another has no part, and no one beyond it.
+const NO_MATTER: f64 = 12.0;
 
 /// Rounds for the noise and the scales.
 const ROUNDS: usize = 8;
@@ -70,8 +80,19 @@ impl<'l> Problem<'l> {
         candidates.dedup();
         let always = layout.always().filter(|&column| moves[column] > 0.0).collect();
         let candidates = candidates.len();
-        let mut problem =
-            Self { layout, always, priors, offered, candidates, grams, noise, start, likely, rest: Vec::new() };
+        let mut problem = Self {
+            layout,
+            always,
+            priors,
+            offered,
+            candidates,
+            grams,
+            noise,
+            start,
+            likely,
+            rest: Vec::new(),
+            likeliest: Cell::new(0),
+        };
         problem.reduce();
         problem
     }
@@ -80,15 +101,41 @@ impl<'l> Problem<'l> {
     fn reduce(&mut self) {
         let at = Start { variance: self.start.0, scales: &self.start.1 };
         let rest = |gram| {
-            reduced(gram, &self.always, &self.priors, at).unwrap_or_else(|| (Gram::clone(gram), f64::NEG_INFINITY))
+            let behind = self.layout.always().end;
+            let rest = reduced(gram, &self.always, behind, &self.priors, at);
+            rest.unwrap_or_else(|| (Gram::clone(gram), f64::NEG_INFINITY))
         };
         self.rest = self.grams.iter().map(rest).collect();
+    }
+
+    /// Learns the noise and the scales with a set, in at most so many rounds; how good it is then.
+    pub fn learn(&mut self, set: &[usize], rounds: usize) -> Option<f64> {
+        let of = self.fit_from(set, 0, &self.start.1, rounds)?;
+        self.begin_at(&of);
+        Some(of.evidence + self.log_prior(set))
     }
 
     /// Begins fits at the noise and the scales of one.
     pub fn begin_at(&mut self, of: &Fit) {
         self.start = (of.variance, of.scales.clone());
         self.reduce();
+    }
+
+    /// The scales with that of the unnamed block far smaller, where there is one.
+    pub fn small_block(&self) -> Option<Scales> {
+        smaller(&self.start.1)
+    }
+
+    /// How good a set is when noise and scales are learned from some on, and the fit.
+    pub fn learned(&self, set: &[usize], from: &Scales, rounds: usize) -> Option<(f64, Fit)> {
+        let fit = self.fit_from(set, 0, from, rounds)?;
+        Some((fit.evidence + self.log_prior(set), fit))
+    }
+
+    /// The most promising additions at other scales, the best first.
+    pub fn small_additions(&mut self, set: &[usize], scales: &Scales) -> Option<Vec<usize>> {
+        let fit = self.fit_from(set, 0, scales, 1)?;
+        Some(self.additions_to(&fit, &self.grams[0], set).into_iter().map(|(_, form)| form).collect())
     }
 
     /// Whether scales are learned.
@@ -123,43 +170,42 @@ impl<'l> Problem<'l> {
 
     /// A fit of a set under a discrepancy, with what is always in.
     pub fn fit(&self, set: &[usize], kappa: usize) -> Option<Fit> {
+        self.fit_from(set, kappa, &self.start.1, ROUNDS)
+    }
+
+    fn fit_from(&self, set: &[usize], kappa: usize, scales: &Scales, rounds: usize) -> Option<Fit> {
         let columns: Vec<usize> = self.always.iter().copied().chain(self.columns(set)).collect();
-        let from = |scales: &Scales| {
-            let start = Start { variance: self.start.0, scales };
-            fit(&self.grams[kappa], &columns, &self.priors, self.noise, start, ROUNDS)
-        };
-        let first = from(&self.start.1);
-        // The scale of a block without a name has two optima: where it says what effects could say,
-        // and where it does not.
-        let Some(small) = smaller(&self.start.1) else { return first };
-        let second = from(&small);
-        first.into_iter().chain(second).max_by(|a, b| a.evidence.total_cmp(&b.evidence))
+        let start = Start { variance: self.start.0, scales };
+        fit(&self.grams[kappa], &columns, &self.priors, self.noise, start, rounds)
     }
 
-    /// How good a set is, over all discrepancies. Scales are learned.
+    /// How good a set is, over all discrepancies, with the scales as they are.
     pub fn judge(&self, set: &[usize]) -> Option<Judged> {
-        match self.learns() {
-            true => {
-                let fit = self.fit(set, 0)?;
-                Some(Judged { score: fit.evidence + self.log_prior(set), kappa: 0 })
-            }
-            false => self.judge_here(set),
-        }
-    }
-
-    /// The same with the scales as they are.
-    pub fn judge_here(&self, set: &[usize]) -> Option<Judged> {
-        let (score, kappa) = self.weigh(|kappa| Some(self.fit_rest(set, kappa)?.evidence + self.rest[kappa].1))?;
+        let (score, kappa) =
+            self.weigh(self.likeliest.get(), |kappa| Some(self.fit_rest(set, kappa)?.evidence + self.rest[kappa].1))?;
+        self.likeliest.set(kappa);
         Some(Judged { score: score + self.log_prior(set), kappa })
     }
 
-    /// The log-evidence of each discrepancy together, and the likeliest.
-    fn weigh(&self, of: impl Fn(usize) -> Option<f64>) -> Option<(f64, usize)> {
-        let each: Vec<f64> =
-            (0..self.grams.len()).map(|kappa| Some(of(kappa)? + self.log_kappa(kappa))).collect::<Option<_>>()?;
-        let best = (0..each.len()).max_by(|a, b| each[*a].total_cmp(&each[*b]))?;
-        let sum: f64 = each.iter().map(|one| (one - each[best]).exp()).sum();
-        Some((each[best] + sum.ln(), best))
+    /// The log-evidence of the discrepancies together, and the likeliest. From one on in both
+    /// directions, as far as they matter.
+    fn weigh(&self, from: usize, of: impl Fn(usize) -> Option<f64>) -> Option<(f64, usize)> {
+        let mut known: Vec<(f64, usize)> = vec![(of(from)? + self.log_kappa(from), from)];
+        let down = (0..from).rev();
+        let up = from + 1..self.grams.len();
+        for way in [down.collect::<Vec<usize>>(), up.collect()] {
+            for kappa in way {
+                let one = of(kappa)? + self.log_kappa(kappa);
+                known.push((one, kappa));
+                let best = known.iter().map(|(of, _)| *of).fold(f64::NEG_INFINITY, f64::max);
+                if one < best - NO_MATTER {
+                    break;
+                }
+            }
+        }
+        let (best, kappa) = known.iter().copied().max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let sum: f64 = known.iter().map(|(one, _)| (one - best).exp()).sum();
+        Some((best + sum.ln(), kappa))
     }
 
     /// The probability of each discrepancy with a set.
@@ -183,13 +229,17 @@ impl<'l> Problem<'l> {
     /// a discrepancy and with the scales as they are: only differences count. The best first.
     pub fn additions(&self, set: &[usize], kappa: usize) -> Vec<(f64, usize)> {
         let Some(fit) = self.fit_rest(set, kappa) else { return Vec::new() };
+        self.additions_to(&fit, &self.rest[kappa].0, set)
+    }
+
+    fn additions_to(&self, fit: &Fit, gram: &Gram, set: &[usize]) -> Vec<(f64, usize)> {
         let taken = |form: usize| {
             let candidate = self.layout.forms[form].candidate;
             set.iter().any(|&own| self.layout.forms[own].candidate == candidate)
         };
         let forms: Vec<usize> = self.offered.iter().copied().filter(|&form| !taken(form)).collect();
         let lists: Vec<&[usize]> = forms.iter().map(|&form| self.layout.forms[form].columns.as_slice()).collect();
-        let gains = fit.gains(&self.rest[kappa].0, &self.priors, &lists);
+        let gains = fit.gains(gram, &self.priors, &lists);
         let mut found: Vec<(f64, usize)> = gains
             .into_iter()
             .zip(forms)
@@ -226,8 +276,7 @@ fn prior(layout: &Layout, column: usize, moves: f64, sizes: f64) -> Prior {
     let is_always = layout.always().contains(&column);
     let (sd, group) = match parameter.size {
         Size::Of(sd) | Size::Flat(sd) => (sd, None),
-        Size::Moves(by) if moves > 0.0 => (by / moves, None),
-        Size::Moves(_) => (0.0, None),
+        Size::Moves(by) => (by / moves.max(LEAST_MOVED), None),
         Size::Learned(group, _) => (1.0, Some(group)),
     };
     let sd = if is_always { sd } else { sd * sizes };

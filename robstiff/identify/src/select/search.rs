@@ -24,7 +24,7 @@ impl Width {
     /// Of one that is repeated without some poses.
     pub const FOLD: Self = Self { beam: 3, top: 8, most: 6 };
     /// Where scales are learned, and an arm deviates in many small ways.
-    pub const LEARNED: Self = Self { beam: 1, top: 4, most: 25 };
+    pub const LEARNED: Self = Self { beam: 1, top: 8, most: 25 };
 }
 
 /// The sets that were judged.
@@ -139,49 +139,106 @@ pub fn candidates_of(problem: &Problem<'_>, set: &[usize]) -> Vec<usize> {
 
 /// Adds, drops, swaps and changes forms of the best set until nothing makes it better.
 fn improve(problem: &mut Problem<'_>, visited: &mut Visited, width: Width) {
+    // With scales that are learned anew a set may look better that was left before.
+    let mut left: Vec<Set> = Vec::new();
+    let mut turned = !problem.learns();
+    let mut best = visited.best();
     loop {
-        let best = visited.best();
-        let before = visited.score(&best);
-        if problem.learns()
-            && let Some(fit) = problem.fit(&best, 0)
-        {
-            problem.begin_at(&fit);
+        if problem.learns() {
+            learn(problem, visited, &best);
         }
         let kappa = visited.sets.get(&best).map_or(0, |judged| judged.kappa);
+        let mut near: Vec<Set> = Vec::new();
         if best.len() < width.most {
-            for (_, form) in problem.additions(&best, kappa).into_iter().take(width.top) {
-                judge(problem, visited, with(&best, form));
+            near = problem
+                .additions(&best, kappa)
+                .into_iter()
+                .take(width.top)
+                .map(|(_, form)| with(&best, form))
+                .collect();
+        }
+        let mut next = better(problem, visited, &best, near, &left);
+        if next.is_none() {
+            next = better(problem, visited, &best, changes(problem, &best, kappa, width.top), &left);
+        }
+        if next.is_none() && !turned {
+            turned = true;
+            if let Some(set) = from_small_block(problem, &best) {
+                visited.sets.clear();
+                next = Some(set);
             }
-            if visited.score(&visited.best()) > before {
-                continue;
-            }
         }
-        for set in changes(problem, &best, kappa, width.top) {
-            judge(problem, visited, set);
-        }
-        if visited.score(&visited.best()) <= before + 1e-6 {
-            return;
-        }
+        let Some(next) = next else { return };
+        left.push(core::mem::replace(&mut best, next));
     }
 }
 
-/// The most promising sets with a form of a set dropped, swapped for another, or in another form.
+/// The best of some sets that is better than one, but those that were left before.
+fn better(problem: &Problem<'_>, visited: &mut Visited, than: &Set, sets: Vec<Set>, left: &[Set]) -> Option<Set> {
+    let least = judge(problem, visited, than.clone()) + LEAST_BETTER;
+    let judged =
+        sets.into_iter().filter(|set| !left.contains(set)).map(|set| (judge(problem, visited, set.clone()), set));
+    let best = judged.max_by(|a, b| a.0.total_cmp(&b.0).then_with(|| b.1.cmp(&a.1)));
+    best.filter(|(score, _)| *score > least).map(|(_, set)| set)
+}
+
+/// A set that is better by less is not another one.
+const LEAST_BETTER: f64 = 1e-6;
+
+/// Rounds of learning beside each step of a search.
+const ROUNDS: usize = 2;
+
+/// Learns the noise and the scales with a set. What was judged with others is no longer comparable, and
+/// is judged again.
+fn learn(problem: &mut Problem<'_>, visited: &mut Visited, best: &Set) {
+    problem.learn(best, ROUNDS);
+    let known: Vec<Set> = visited.ranked().into_iter().take(KEPT).map(|(set, _)| set.clone()).collect();
+    visited.sets.clear();
+    for set in known.into_iter().chain([best.clone(), Set::new()]) {
+        judge(problem, visited, set);
+    }
+}
+
+/// So many sets are judged again.
+const KEPT: usize = 40;
+
+/// A better set where the block without a name is small: its scale has two optima, one where it says
+/// what effects could say, and one where it does not.
+fn from_small_block(problem: &mut Problem<'_>, best: &Set) -> Option<Set> {
+    let small = problem.small_block()?;
+    let now = problem.start.1.clone();
+    let before = problem.learned(best, &now, FULL)?;
+    let forms = problem.small_additions(best, &small)?;
+    let sets = forms.into_iter().take(TURNED).map(|form| with(best, form)).chain([best.clone()]);
+    let found = sets.filter_map(|set| Some((problem.learned(&set, &small, FULL)?, set)));
+    let ((score, fit), set) = found.max_by(|a, b| a.0.0.total_cmp(&b.0.0))?;
+    if score < before.0 + WORTH_IT {
+        return None;
+    }
+    problem.begin_at(&fit);
+    Some(set)
+}
+
+/// So many additions are tried at the other optimum.
+const TURNED: usize = 2;
+
+/// Rounds until scales are learned, and by how much another optimum must be better.
+const FULL: usize = 8;
+const WORTH_IT: f64 = 0.1;
+
+/// The sets with a form of a set dropped, swapped for another, or in another form.
 fn changes(problem: &Problem<'_>, set: &Set, kappa: usize, top: usize) -> Vec<Set> {
-    let mut found: Vec<(f64, Set)> = Vec::new();
-    let score = |set: &Set| problem.judge_here(set).map_or(f64::NEG_INFINITY, |judged| judged.score);
+    let mut found: Vec<Set> = Vec::new();
     for k in 0..set.len() {
         let rest = without(set, k);
         let swaps = problem.additions(&rest, kappa).into_iter().take(2 * top).map(|(_, form)| form);
         let near: Vec<usize> = swaps.chain(problem.other_forms(set[k]).take(2 * top)).collect();
-        let changed = near.into_iter().map(|form| with(&rest, form)).filter(|changed| changed != set);
-        found.extend(changed.map(|changed| (score(&changed), changed)));
-        found.push((score(&rest), rest));
+        found.extend(near.into_iter().map(|form| with(&rest, form)).filter(|changed| changed != set));
+        found.push(rest);
     }
-    found.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(&b.1)));
-    found.dedup_by(|a, b| a.1 == b.1);
-    // With learned scales each is dear; else all are known already.
-    let count = if problem.learns() { top } else { found.len() };
-    found.into_iter().take(count).map(|(_, set)| set).collect()
+    found.sort_unstable();
+    found.dedup();
+    found
 }
 
 /// A set without one of its forms, by its place.
