@@ -2,7 +2,7 @@
 //!
 //! - [`inverse`], [`path`]: the joint coordinates of a pose of the tool, and of a tool path;
 //! - [`milling`], [`stability`]: the force of an end mill, and the depth of cut at which the arm
-//!   chatters;
+//!   chatters, by direction of feed and spindle speed;
 //! - [`deviation`], [`compensation`]: how far a cut pushes the tool off a path, and the path that
 //!   makes up for it;
 //! - [`online`]: correcting the joint targets while cutting;

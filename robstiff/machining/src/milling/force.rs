@@ -106,6 +106,12 @@ impl Cut {
         Some(teeth_per_second * self.feed_per_tooth)
     }
 
+    /// The time between two teeth (s), where the speed is known. With runout some teeth may not
+    /// cut; it is that of all teeth.
+    pub fn tooth_period(&self) -> Option<f64> {
+        self.speed.map(|speed| core::f64::consts::TAU / (speed * self.mill.teeth as f64))
+    }
+
     fn pieces(&self) -> Vec<Vec<Piece>> {
         pieces(&self.mill, self.engagement, self.feed_per_tooth)
     }

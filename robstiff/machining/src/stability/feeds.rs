@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use nalgebra::{Matrix3, Unit, Vector3};
 
-use super::{Limits, Modes};
+use super::{Limits, Lobes, Modes};
 use crate::milling::{Coefficients, Cut, CutFrame, Engagement};
 
 /// The change of the force on the tool with its displacement per depth of cut,
@@ -54,8 +54,13 @@ pub struct FeedLimit {
     pub feed: Vector3<f64>,
     /// The arm that bears the cut.
     pub modes: Modes,
-    /// The depths.
+    /// The depths, where each tooth meets the surface that the tooth before it has cut.
     pub limits: Limits,
+    /// The same on a surface that stays even, as if the delay between two teeth did not count:
+    /// the model of mode coupling alone, which the literature compares with.
+    pub without_delay: Limits,
+    /// What gives the depths at any other spindle speed.
+    pub lobes: Lobes,
 }
 
 /// So many directions across a tool axis, with their angles (rad), evenly
@@ -72,29 +77,34 @@ pub fn feeds_in_plane(axis: &Vector3<f64>, count: usize) -> Option<Vec<(f64, Vec
 }
 
 /// The depths that are not stable for each of so many feeds across a tool axis
-/// (from the spindle to the tip), the cut turning with the feed. `modes` are those
+/// (from the spindle to the tip), the cut turning with the feed, with a time between two teeth
+/// (`period`, s: [`Cut::tooth_period`]), up to a greatest depth (m). `modes` are those
 /// of the arm under the mean force of such a cut, 3 (N) in the frame of the axis:
 /// an arm with backlash or hardening has others under each. They are those at the
 /// depth of the cut, also where other depths are looked at. `None` for an axis of
-/// zero length, and where there are no modes.
+/// zero length, where there are no modes, and where the cut or the greatest depth gives no [`Lobes`].
 pub fn over_feeds(
     modes: impl Fn(&Vector3<f64>) -> Option<Modes>,
     cut: &Cut,
     axis: &Vector3<f64>,
     count: usize,
+    period: f64,
     greatest: f64,
 ) -> Option<Vec<FeedLimit>> {
     let force = cut.mean_force();
     let limit = |(angle, feed): (f64, Vector3<f64>)| {
         let frame = CutFrame::new(axis, &feed)?;
         let modes = modes(&frame.force(&force))?;
-        Some(FeedLimit { angle, feed, limits: modes.limits(&process(cut, &frame), greatest), modes })
+        let process = process(cut, &frame);
+        let lobes = Lobes::new(&modes, &process, greatest)?;
+        let without_delay = modes.limits(&process, greatest);
+        Some(FeedLimit { angle, feed, limits: lobes.limits(period), without_delay, lobes, modes })
     };
     feeds_in_plane(axis, count)?.into_iter().map(limit).collect()
 }
 
-/// The feed whose limiting depth is the greatest; of equal ones the first. `None`
-/// of none.
+/// The feed whose limiting depth with regeneration is the greatest; of equal ones the first.
+/// `None` of none.
 pub fn best(feeds: &[FeedLimit]) -> Option<&FeedLimit> {
     let depth = |feed: &FeedLimit| feed.limits.limiting().unwrap_or(f64::INFINITY);
     feeds.iter().reduce(|best, feed| if depth(feed) > depth(best) { feed } else { best })

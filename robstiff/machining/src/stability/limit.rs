@@ -45,9 +45,9 @@ impl Limits {
 }
 
 impl Modes {
-    /// The depths that are not stable, of a force that changes with the tool's
+    /// The depths that are not stable without delay, of a force that changes with the tool's
     /// displacement by `depth * process * x`, `process` 3 x 3 per depth
-    /// (N/m^2).
+    /// (N/m^2), wherever the tooth before was. With it: [`Lobes`](super::Lobes).
     ///
     /// For two modes without damping the limits are the roots of two quadratics,
     /// `(a - d)^2 + 4 b c` and the determinant. Otherwise depths are looked at that grow by 1 %
@@ -81,7 +81,7 @@ impl Modes {
     fn roots(&self, seen: &DMatrix<f64>) -> Vec<f64> {
         let squares: Vec<f64> = self.frequencies().iter().map(|frequency| frequency * frequency).collect();
         match squares[..] {
-            [square] => std::vec![square / seen[(0, 0)]],
+            [square] => vec![square / seen[(0, 0)]],
             [one, other] => {
                 let (a, b, c, d) = (seen[(0, 0)], seen[(0, 1)], seen[(1, 0)], seen[(1, 1)]);
                 let (apart, change) = (one - other, d - a);

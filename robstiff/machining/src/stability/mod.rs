@@ -1,15 +1,24 @@
-//! Whether a robot chatters by mode coupling: two weak directions of the arm
-//! that feed each other through the cutting force, at the low frequencies of the
-//! arm's own modes.
+//! Whether a robot chatters in a cut, at the low frequencies of the arm's own modes.
 //!
-//! The model is that of Pan, Zhang, Zhu, Wang, Chatter analysis of robotic
-//! machining process, Journal of Materials Processing Technology 173 (2006)
-//! 301-309: `M x'' + C x' + K x = P x`, where `x` is the displacement of the
-//! tool, `M`, `C`, `K` are the arm's mass, damping and stiffness there and `P` is
-//! the change of the cutting force with the displacement, [`rank_one`] in the
-//! paper (`-kp f n^T`), for an end mill its average over the teeth ([`process`]).
-//! `P` grows with the depth of cut, and is not symmetric: where it makes two
-//! modes meet, they flutter.
+//! The model is `M x'' + C x' + K x = P (x(t) - x(t - T))`, where `x` is the displacement of the
+//! tool, `M`, `C`, `K` are the arm's mass, damping and stiffness there, `T` is the time between
+//! two teeth, and `P` is the change of the cutting force with the thickness of the chip: for an
+//! end mill its average over the teeth ([`process`]; Altintas and Budak, Analytical prediction of
+//! stability lobes in milling, CIRP Annals 44/1 (1995) 357-362). `P` grows with the depth of cut.
+//! A tooth that cuts into the waves of the tooth before meets a chip that is thicker only by what
+//! the tool has moved since ([`Lobes`]). Cordes, Hintze, Altintas, Chatter stability in robotic
+//! milling, Robotics and Computer-Integrated Manufacturing 55 (2019) 11-18, look at the modes of
+//! arms in this way.
+//!
+//! Where the teeth pass far quicker than the arm moves, `x(t) - x(t - T)` is `T x'`: the cut damps
+//! the arm, or feeds it, and is no spring.
+//!
+//! # Without delay
+//! Pan, Zhang, Zhu, Wang, Chatter analysis of robotic machining process, Journal of Materials
+//! Processing Technology 173 (2006) 301-309, leave the tooth before out:
+//! `M x'' + C x' + K x = P x`, [`rank_one`] in the paper (`-kp f n^T`). `P` is not symmetric:
+//! where it makes two modes meet, they flutter (mode coupling). [`Modes::limits`] has that for
+//! comparison; the two rank the feeds differently.
 //!
 //! # What this covers and what not
 //! - The arm's elasticity at one pose, with one mass at the tool by the 3 x 3
@@ -19,27 +28,31 @@
 //!   they have under the mean force of the cut, see [`over_feeds`] and
 //!   [`compliance_under`](robstiff::elements::compliance_under): movements that cross
 //!   the backlash are not small, and not looked at.
-//! - No regenerative chatter: the surface left by the tooth before is taken to be
-//!   even. That is the matter of the modes of spindle, tool and workpiece and of
-//!   stability lobes, and needs their measured frequency responses. For the
-//!   structural modes of arms at high spindle speeds see Cordes, Hintze, Altintas,
-//!   Chatter stability in robotic milling, Robotics and Computer-Integrated
-//!   Manufacturing 55 (2019) 11-18.
-//! - Forces averaged over a revolution; no process damping, no controller.
+//! - Not the modes of spindle, tool and workpiece, which decide at higher frequencies: their
+//!   lobes need their measured frequency responses.
+//! - Forces averaged over a revolution: the teeth pass far quicker than the modes move. No
+//!   process damping, no controller; all teeth cut, evenly spaced.
 //!
-//! Forces are on the tool, lengths in m, masses in kg, all in the base frame.
+//! Forces are on the tool, lengths in m, masses in kg, times in s, all in the base frame.
 
+#[cfg(test)]
+mod delay_tests;
 mod feeds;
 mod limit;
 #[cfg(test)]
 mod links_tests;
+mod lobes;
+#[cfg(test)]
+mod lobes_tests;
 mod mass;
 mod modes;
+mod response;
 mod spectrum;
 #[cfg(test)]
 mod tests;
 
 pub use feeds::{FeedLimit, best, feeds_in_plane, over_feeds, process, rank_one};
 pub use limit::Limits;
+pub use lobes::Lobes;
 pub use mass::{MassError, mass_of_first_mode};
 pub use modes::{Modes, has_complex_pair};
