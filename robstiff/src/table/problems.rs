@@ -6,8 +6,8 @@ use std::vec::Vec;
 
 use robstiff_robots::{Diagnostic, Diagnostics, Line};
 
+use super::extent::extent;
 use super::header::Header;
-use super::lines::extent;
 use super::{Numbers, Record, Table};
 
 impl Table<'_> {

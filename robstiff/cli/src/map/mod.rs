@@ -22,6 +22,7 @@ use robstiff::nalgebra::Isometry3;
 use robstiff_robots::Description;
 use robstiff_robots::document::{Document, Node};
 use robstiff_robots::quantity::Dimension;
+use robstiff_robots::text::{self, MOST_OF_DOCUMENT};
 
 use crate::failure::Failure;
 use crate::output::{self, Files, Growing};
@@ -134,7 +135,7 @@ fn refuse_if_larger(size: [f64; 3], axes: &[Axis; 3], map: &Path) -> Result<(), 
 }
 
 fn task(path: &Path, robot: &Description) -> Result<Task, Failure> {
-    let text = robstiff_robots::text::read(path)?;
+    let text = text::read(path, MOST_OF_DOCUMENT)?;
     let file = path.display().to_string();
     // Beyond the joints' limits they are refused, so before.
     if let Some(asked) = are_degrees(&file, &text, robot) {
