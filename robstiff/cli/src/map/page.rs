@@ -62,13 +62,15 @@ fn headline(mapped: &Mapped) -> String {
         return "No pose reaches any of it.".to_owned();
     };
     let mut said = format!(
-        "From {} {unit} at {} to {} {unit} at {}.",
-        mapped.figure(best.values[0]),
+        "From {} at {} to {} at {}.",
+        mapped.with_unit(best.values[0]),
         mapped.place(best.cell),
-        mapped.figure(worst.values[0]),
+        mapped.with_unit(worst.values[0]),
         mapped.place(worst.cell),
-        unit = mapped.unit()
     );
+    if let Some(rigid) = mapped.rigid() {
+        write!(said, " {}.", capital(&rigid)).expect("a string takes any text");
+    }
     if summary.unreachable > 0 {
         write!(said, " {} of the {} are out of reach.", summary.unreachable, count(summary.cells, "cell"))
             .expect("a string takes any text");
@@ -101,7 +103,10 @@ fn extremes(mapped: &Mapped) -> String {
         table.row(false, [words(format!("{} [{}]", axis.name, axis.unit())), at(&cells[0]), at(&cells[1])]);
     }
     for (k, column) in mapped.columns.iter().enumerate() {
-        let value = |values: &[f64]| number(crate::text::significant(values[k] * column.scale, 4));
+        let value = |values: &[f64]| match k {
+            0 => number(mapped.figure(values[0])),
+            _ => number(crate::text::significant(values[k] * column.scale, 4)),
+        };
         table.row(k == 0, [words(micro(&heading(column))), value(&best.values), value(&worst.values)]);
     }
     table.html()
@@ -121,14 +126,9 @@ fn data(mapped: &Mapped, slices: &Slices, [wide, narrow]: [&[heat::Frame]; 2]) -
     };
     let slice = |(k, slice): (usize, &super::slices::Slice)| {
         let values = slice.values.iter().map(|&value| {
-            let value = f64::from(single(value, column));
-            if value.is_finite() {
-                crate::text::significant(value, 4)
-                    .parse::<f64>()
-                    .map_or(serde_json::Value::Null, serde_json::Value::from)
-            } else {
-                serde_json::Value::Null
-            }
+            let value = single(value, column).map(f64::from);
+            let shown = value.and_then(|value| crate::text::significant(value, 4).parse::<f64>().ok());
+            shown.map_or(serde_json::Value::Null, serde_json::Value::from)
         });
         let frames = [&wide[k], &narrow[k]].map(|frame| [frame.corner, frame.size]);
         serde_json::json!({
