@@ -127,3 +127,10 @@ fn what_is_nested_too_deep_is_refused() {
     assert!(told.starts_with("error: this is nested more than 128 deep\n --> deep.yaml:2:137"), "{told}");
     assert_eq!(Description::outline(&text), Outline { name: Some("A".into()), joints: None });
 }
+
+/// Where it breaks is a line or more behind the bracket that was to be closed.
+#[test]
+fn a_bracket_that_is_not_closed_is_told_with_its_line() {
+    let told = Document::parse("x.yaml", "name: [bench\nrobot: robot.yaml\n").map(|_| ()).unwrap_err().to_string();
+    assert!(told.contains(", and the `[` of line 1 is not closed\n --> x.yaml:2:"), "{told}");
+}

@@ -210,6 +210,19 @@ impl Loader<'_> {
         self.bytes(&span.tag_span().unwrap_or(*span))
     }
 
+    /// The innermost bracket that is open at a byte, where it is on a line before: most likely it is
+    /// that which was to be closed.
+    fn bracket_before(&self, at: usize) -> String {
+        let line = |byte: usize| 1 + self.text[..byte].matches('\n').count();
+        let bracket = self.open.last().and_then(|open| Some((open.start, self.text[open.start..].chars().next()?)));
+        match bracket {
+            Some((start, bracket @ ('[' | '{'))) if line(start) < line(at) => {
+                format!(", and the `{bracket}` of line {} is not closed", line(start))
+            }
+            _ => String::new(),
+        }
+    }
+
     /// What the parser refuses.
     fn refused(&self, error: &ScanError) -> Refusal {
         let mark = error.marker();
@@ -227,7 +240,7 @@ impl Loader<'_> {
                 let tab = self.text[..end].rfind('\t').unwrap_or(at);
                 syntax(tab..tab + 1, "a tab cannot stand here")
             }
-            _ => syntax(at..end, &error.info()),
+            _ => syntax(at..end, &(error.info() + &self.bracket_before(at))),
         }
     }
 }

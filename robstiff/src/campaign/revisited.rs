@@ -42,8 +42,8 @@ fn coordinates<R: AtPose>(poses: usize, rows: &[R]) -> Option<Vec<&[f64]>> {
     coordinates.into_iter().collect()
 }
 
-/// For each pose the first one that is alike: within [`SAME_POSE`] in each joint of one that is
-/// alike no other before.
+/// For each pose the first that it is alike, within [`SAME_POSE`] in each joint; itself, where it
+/// is alike none.
 fn first_alike(poses: &[&[f64]]) -> Vec<usize> {
     // In a cell of this size any two are alike, so that each has one first at most.
     let cell = |q: &[f64]| q.iter().map(|q| (q / SAME_POSE).floor() as i64).collect::<Vec<i64>>();
