@@ -1,23 +1,24 @@
 //! A CSV file as a table of checked numbers, every problem at its place.
 
+mod extent;
 mod header;
-mod lines;
 mod problems;
 
 use core::cell::RefCell;
+use std::collections::HashSet;
 use std::path::Path;
 
 use crate::quantity::{Dimension, QuantityError, finite, scale};
+use crate::text::{self, Lines, MOST_OF_TABLE};
 use crate::words::count;
 use crate::{Diagnostic, Diagnostics, ReadError};
 
 use header::Header;
-pub use lines::Lines;
 
 /// A table, and the problems found in it so far.
 pub struct Table<'t> {
     file: &'t str,
-    lines: Lines<'t>,
+    lines: Lines<&'t str>,
     header: Vec<Header>,
     /// The line of the header, from 1.
     header_line: usize,
@@ -30,18 +31,24 @@ pub struct Table<'t> {
     warnings: RefCell<Vec<String>>,
 }
 
-/// The text of a file; a byte order mark, as spreadsheets write it, is no part
+/// The columns of a table, at the most: what is recorded has some ten.
+const MOST_COLUMNS: usize = 1000;
+
+/// The text of a table's file; a byte order mark, as spreadsheets write it, is no part
 /// of it.
 pub fn text_of(path: &Path) -> Result<String, ReadError> {
-    let text = crate::text::read(path)?;
-    Ok(text.strip_prefix('\u{feff}').map(ToOwned::to_owned).unwrap_or(text))
+    let mut text = text::read(path, MOST_OF_TABLE)?;
+    if text.starts_with('\u{feff}') {
+        text.drain(..'\u{feff}'.len_utf8());
+    }
+    Ok(text)
 }
 
 /// One row.
 pub struct Record {
     /// The line of the file, from 1.
     pub line: usize,
-    fields: Vec<String>,
+    fields: csv::StringRecord,
 }
 
 /// A column of numbers: where it is, and what makes its unit SI.
@@ -107,6 +114,13 @@ impl<'t> Table<'t> {
                 .problem(table.header_line, usize::MAX, "numbers, and no header above them", HEADER)
                 .into());
         }
+        if header.len() > MOST_COLUMNS {
+            let message =
+                format!("the header has {}, a table has {MOST_COLUMNS} at most", count(header.len(), "column"));
+            return Err(table
+                .problem(table.header_line, MOST_COLUMNS, &message, "keep the columns that are read")
+                .into());
+        }
         table.header = header.iter().map(Header::parse).collect();
         table.check_header();
         for row in rows {
@@ -124,15 +138,22 @@ impl<'t> Table<'t> {
 
     /// The line that a record begins in, from 1.
     fn line_of(&self, record: &csv::StringRecord) -> usize {
-        record.position().map_or(1, |position| self.lines.number_at(position.byte() as usize))
+        record.position().map_or(1, |position| {
+            // Where the reader began to look for a row is before the empty lines that it skips.
+            let byte = position.byte() as usize;
+            let rest = self.lines.text().as_bytes().get(byte..).unwrap_or_default();
+            let empty = rest.iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
+            self.lines.number_at(byte + empty)
+        })
     }
 
     fn check_header(&self) {
         let line = self.header_line;
+        let mut names = HashSet::new();
         for (i, header) in self.header.iter().enumerate() {
             if header.name.is_empty() {
                 self.report(line, i, "a column without a name", "write `name [unit]` or `name`");
-            } else if self.header[..i].iter().any(|before| before.name == header.name) {
+            } else if !names.insert(&header.name) {
                 self.report(line, i, &format!("the column `{}` is there twice", header.name), "keep one of them");
             }
             if !header.closed {
@@ -154,7 +175,7 @@ impl<'t> Table<'t> {
         if found == 1 && expected > 1 && row.iter().all(|field| field.trim().is_empty()) {
             // An empty line, but for blanks that nobody sees.
         } else if found == expected {
-            self.records.push(Record { line, fields: row.iter().map(ToOwned::to_owned).collect() });
+            self.records.push(Record { line, fields: row.clone() });
         } else {
             let message = format!("this row has {}, the header has {expected}", count(found, "field"));
             let help = "give every row one field a column, with a point as decimal sign";

@@ -2,8 +2,8 @@
 
 use crate::{Diagnostic, Diagnostics, Line};
 
+use super::extent::extent;
 use super::header::Header;
-use super::lines::extent;
 use super::{Numbers, Record, Table};
 
 impl Table<'_> {

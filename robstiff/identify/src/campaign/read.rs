@@ -8,6 +8,7 @@ use std::vec::Vec;
 
 use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
+use robstiff_robots::text::{self, MOST_OF_DOCUMENT};
 use robstiff_robots::{ReadError, catalogue};
 
 use super::beyond::{told_angle, told_length};
@@ -58,7 +59,8 @@ impl Campaign {
     pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
         let path = path.as_ref();
         let folder = path.parent().unwrap_or(Path::new(""));
-        let document = Document::parse(&path.display().to_string(), &text_of(path)?).map_err(ReadError::Invalid)?;
+        let document = Document::parse(&path.display().to_string(), &text::read(path, MOST_OF_DOCUMENT)?)
+            .map_err(ReadError::Invalid)?;
         let plan = plan(&document, folder);
         let plan = document.finish(plan).map_err(ReadError::Invalid)?;
 

@@ -2,6 +2,7 @@
 //! its own. Rows of one pose are one witness of what the arm does there, whatever they are
 //! called: poses are drawn, left out and held out as a whole.
 
+use std::collections::BTreeMap;
 use std::format;
 use std::string::String;
 use std::vec::Vec;
@@ -41,31 +42,43 @@ fn coordinates<R: AtPose>(poses: usize, rows: &[R]) -> Option<Vec<&[f64]>> {
     coordinates.into_iter().collect()
 }
 
-/// For each pose the first one that is alike.
+/// For each pose the first that it is alike, within [`SAME_POSE`] in each joint; itself, where it
+/// is alike none.
 fn first_alike(poses: &[&[f64]]) -> Vec<usize> {
-    // Only poses that are near each other along some direction are compared.
-    let weight = |joint: usize| ((joint + 1) as f64).sqrt();
-    let along = |q: &[f64]| q.iter().enumerate().map(|(joint, q)| weight(joint) * q).sum::<f64>();
-    let mut sorted: Vec<(f64, usize)> = poses.iter().enumerate().map(|(pose, q)| (along(q), pose)).collect();
-    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let near = SAME_POSE * (0..poses.first().map_or(0, |q| q.len())).map(weight).sum::<f64>();
-    let alike = |a: usize, b: usize| poses[a].iter().zip(poses[b]).all(|(a, b)| (a - b).abs() <= SAME_POSE);
-    let mut first: Vec<usize> = (0..poses.len()).collect();
-    for (place, &(at, pose)) in sorted.iter().enumerate() {
-        let before = sorted[..place].iter().rev().take_while(|(other, _)| at - other <= near);
-        for &(_, other) in before.filter(|(_, other)| alike(pose, *other)) {
-            let (a, b) = (root(&first, pose), root(&first, other));
-            first[a.max(b)] = a.min(b);
-        }
-    }
-    (0..poses.len()).map(|pose| root(&first, pose)).collect()
+    // In a cell of this size any two are alike, so that each has one first at most.
+    let cell = |q: &[f64]| q.iter().map(|q| (q / SAME_POSE).floor() as i64).collect::<Vec<i64>>();
+    let mut firsts: BTreeMap<Vec<i64>, usize> = BTreeMap::new();
+    let pose_of = |(pose, q): (usize, &&[f64])| {
+        let at = cell(q);
+        let alike = |other: usize| q.iter().zip(poses[other]).all(|(a, b)| (a - b).abs() <= SAME_POSE);
+        beside(&firsts, &mut Vec::new(), &at, &alike).unwrap_or_else(|| {
+            firsts.insert(at, pose);
+            pose
+        })
+    };
+    poses.iter().enumerate().map(pose_of).collect()
 }
 
-fn root(first: &[usize], mut pose: usize) -> usize {
-    while first[pose] != pose {
-        pose = first[pose];
+/// The first of the poses in a cell or one beside it that is alike. Cells are looked for joint by
+/// joint, for most have none beside them.
+fn beside(
+    firsts: &BTreeMap<Vec<i64>, usize>,
+    begun: &mut Vec<i64>,
+    cell: &[i64],
+    alike: &impl Fn(usize) -> bool,
+) -> Option<usize> {
+    let Some(&here) = cell.get(begun.len()) else {
+        return firsts.get(begun).copied().filter(|&pose| alike(pose));
+    };
+    let mut first: Option<usize> = None;
+    for step in -1..=1 {
+        begun.push(here.saturating_add(step));
+        let is_any = firsts.range(begun.clone()..).next().is_some_and(|(cell, _)| cell.starts_with(begun));
+        let found = if is_any { beside(firsts, begun, cell, alike) } else { None };
+        first = first.into_iter().chain(found).min();
+        begun.pop();
     }
-    pose
+    first
 }
 
 #[cfg(test)]
@@ -119,6 +132,23 @@ mod tests {
             "pose `c` has the joint coordinates of pose `a`, and of 1 more those of another; rows with the same count \
              as one pose"
         );
+    }
+
+    /// As many rows as a file holds, each of a pose of its own where the arm always is, or all on a
+    /// line: a reader that compares each with each does not come to the end of this.
+    #[test]
+    fn there_may_be_many() {
+        let all = |q: &dyn Fn(usize) -> [f64; 2]| -> Vec<Row> { (0..300_000).map(|pose| Row(pose, q(pose))).collect() };
+        for (q, left) in [
+            (&(|_| [0.3, -1.0]) as &dyn Fn(usize) -> [f64; 2], 1),
+            (&|pose| [1e-12 * pose as f64, 0.0], 1),
+            (&|pose| [core::f64::consts::SQRT_2 * pose as f64 * 1e-3, -1e-3 * pose as f64], 300_000),
+        ] {
+            let mut rows = all(q);
+            let mut names: Vec<String> = rows.iter().map(|row| row.0.to_string()).collect();
+            unite(&mut names, &mut rows);
+            assert_eq!(names.len(), left);
+        }
     }
 
     #[test]

@@ -27,7 +27,7 @@ pub fn still(rows: &[Observation], of: fn(&Observation) -> Option<[f64; 3]>) -> 
 /// rounding alone.
 const FINE_STEP: f64 = 1e-3;
 
-/// Which rows repeat earlier ones to the last digit, their time included, if these are too many
+/// Which rows, in order, repeat earlier ones to the last digit, their time included, if these are too many
 /// for chance. Rows without a displacement may.
 pub fn copies(rows: &[Observation]) -> Vec<usize> {
     let mut known = HashSet::new();
@@ -44,7 +44,7 @@ pub fn are_copies(copies: &[usize], rows: &[Observation]) -> bool {
     let readings = rows.iter().flat_map(|row| row.displacement);
     let largest = readings.clone().map(f64::abs).fold(0.0, f64::max);
     let mut times = HashSet::new();
-    let others = rows.iter().enumerate().filter(|(row, _)| !copies.contains(row));
+    let others = rows.iter().enumerate().filter(|(row, _)| copies.binary_search(row).is_err());
     others.map(|(_, row)| row.time).all(|time| time.is_some_and(|time| times.insert(time.to_bits())))
         || step(readings).is_none_or(|step| step < FINE_STEP * largest)
 }

@@ -115,11 +115,14 @@ impl Simulated {
     }
 }
 
-/// One row of a table, with all the digits it has.
+/// One row of a table, with all the digits it has. What is no number leaves its field empty.
 fn line(text: &mut String, [pose, visit]: [&str; 2], values: impl Iterator<Item = f64>) {
     *text += &format!("{pose},{visit}");
     for value in values {
-        write!(text, ",{value}").expect("a string takes any text");
+        text.push(',');
+        if value.is_finite() {
+            write!(text, "{value}").expect("a string takes any text");
+        }
     }
     text.push('\n');
 }

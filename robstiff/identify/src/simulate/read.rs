@@ -10,6 +10,7 @@ use std::vec::Vec;
 
 use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
+use robstiff_robots::text::{self, MOST_OF_DOCUMENT};
 use robstiff_robots::words;
 use robstiff_robots::{Description, Diagnostics, Joint, ReadError};
 
@@ -17,7 +18,6 @@ use self::measured::{Measured, measured};
 use super::{Measures, Poses, Scenario};
 use crate::campaign::read::{NOISIEST, holdout};
 use robstiff::{Effect, JointKind};
-use robstiff_robots::table::text_of;
 
 /// The fields of a scenario.
 const FIELDS: [&str; 16] = [
@@ -43,7 +43,8 @@ impl Scenario {
     /// A file that cannot be read, and everything [`parse`](Self::parse) finds.
     pub fn read(path: impl AsRef<Path>, robot: &Description) -> Result<Self, ReadError> {
         let path = path.as_ref();
-        Self::parse(&path.display().to_string(), &text_of(path)?, robot).map_err(ReadError::Invalid)
+        Self::parse(&path.display().to_string(), &text::read(path, MOST_OF_DOCUMENT)?, robot)
+            .map_err(ReadError::Invalid)
     }
 
     /// Reads a scenario; `file` is the name that problems show.

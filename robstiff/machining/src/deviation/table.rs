@@ -4,6 +4,7 @@ use std::path::Path;
 
 use nalgebra::{Matrix3, Unit, Vector3, Vector6};
 use robstiff_robots::quantity::Dimension;
+use robstiff_robots::text::Lines;
 use robstiff_robots::words::count;
 use robstiff_robots::{Diagnostic, Diagnostics, Line, ReadError};
 
@@ -12,7 +13,7 @@ use super::{Load, Surface};
 use crate::milling::ForceFrame;
 use crate::path::SolvedPath;
 use crate::path::read::LENGTHS;
-use robstiff_robots::table::{Lines, Numbers, Record, Table, text_of};
+use robstiff_robots::table::{Numbers, Record, Table, text_of};
 
 /// Wrenches on the tool along a path: one a point, or by arc length.
 #[derive(Clone, Debug, PartialEq)]

@@ -113,7 +113,8 @@ impl Measure {
         self.is_worse(one, other) && (one - other).abs() > ROUNDING * other.abs()
     }
 
-    /// The columns at some poses, in SI. A stiffness without end is infinite.
+    /// The columns at some poses, in SI. Where no force moves the tool the stiffness is infinite,
+    /// and the weakest direction is none (NaN).
     pub fn compute<const N: usize>(&self, robot: &impl Evaluate<N>, poses: Poses<'_, N>) -> Vec<Vec<f64>> {
         let count = poses.len();
         let mut columns = vec![vec![0.0; count]; self.columns().len()];
@@ -136,7 +137,7 @@ impl Measure {
         };
         for (i, (triangle, (figure, direction))) in triangles.iter().zip(found).enumerate() {
             columns[0][i] = if self.worse_is_larger() { figure } else { figure.recip() };
-            let weak = upright(direction);
+            let weak = if figure == 0.0 { Vector3::repeat(f64::NAN) } else { upright(direction) };
             for k in 0..3 {
                 columns[1 + k][i] = weak[k];
             }

@@ -18,6 +18,8 @@ pub struct Summary {
     pub cells: usize,
     /// How many of them no pose reaches.
     pub unreachable: usize,
+    /// At how many no force moves the tool, so that the stiffness there has no end.
+    pub rigid: usize,
     /// The mean over those that are reached and finite.
     pub mean: f64,
     /// The cell where the measure is best, the first where several are.
@@ -32,7 +34,7 @@ impl Summary {
     /// Of a chunk.
     pub fn of(chunk: &Chunk, measure: &Measure) -> Self {
         let figures = &chunk.columns[0];
-        let (mut sum, mut finite, mut unreachable) = (0.0, 0, 0);
+        let (mut sum, mut finite, mut unreachable, mut rigid) = (0.0, 0, 0, 0);
         let (mut best, mut worst): (Option<usize>, Option<usize>) = (None, None);
         for (i, &figure) in figures.iter().enumerate() {
             if figure.is_nan() {
@@ -41,6 +43,8 @@ impl Summary {
             }
             if figure.is_finite() {
                 (sum, finite) = (sum + figure, finite + 1);
+            } else if !measure.worse_is_larger() {
+                rigid += 1;
             }
             if best.is_none_or(|k| measure.is_worse(figures[k], figure)) {
                 best = Some(i);
@@ -56,6 +60,7 @@ impl Summary {
         Self {
             cells: figures.len(),
             unreachable,
+            rigid,
             mean: if finite > 0 { sum / finite as f64 } else { f64::NAN },
             best: best.map(extreme),
             worst: worst.map(extreme),
@@ -75,6 +80,7 @@ impl Summary {
         self.finite = finite;
         self.cells += next.cells;
         self.unreachable += next.unreachable;
+        self.rigid += next.rigid;
         let figure = |extreme: &Option<Extreme>| extreme.as_ref().map(|extreme| extreme.values[0]);
         let beats = |next: f64, own: Option<f64>, than: fn(&Measure, f64, f64) -> bool| {
             own.is_none_or(|own| than(measure, next, own))

@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use robstiff_robots::ReadError;
 use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
+use robstiff_robots::text::{self, MOST_OF_DOCUMENT};
 
 use super::{
     Coefficients, Cut, CutFrame, Direction, EndMill, Engagement, ForceFrame, MeasuredForce, coefficients, materials,
@@ -101,7 +102,11 @@ impl CutFile {
     /// that has problems, each problem at its place.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
         let path = path.as_ref();
-        Self::parse(&path.display().to_string(), &text_of(path)?, path.parent().unwrap_or(Path::new("")))
+        Self::parse(
+            &path.display().to_string(),
+            &text::read(path, MOST_OF_DOCUMENT)?,
+            path.parent().unwrap_or(Path::new("")),
+        )
     }
 
     /// Reads a cut; `file` is the name that problems show, `folder` what the

@@ -109,9 +109,9 @@ impl MeasuredForce {
         let mut angles = self.angles(speed)?;
         // Recorded angles may begin again at each revolution.
         for k in 1..angles.len() {
-            while angles[k] < angles[k - 1] - 0.5 * TAU {
-                angles[k] += TAU;
-            }
+            // All turns at once: an angle may be anything.
+            let behind = angles[k - 1] - 0.5 * TAU - angles[k];
+            angles[k] += TAU * (behind / TAU).ceil().max(0.0);
         }
         let (first, last) = (*angles.first()?, *angles.last()?);
         if !angles.is_sorted() {

@@ -254,3 +254,18 @@ fn materials_have_their_source() {
     }
     assert_eq!(materials[0].coefficients, MATERIAL);
 }
+
+/// From one sample to the next a recorded angle may be anything: turns are not counted one by one.
+#[test]
+fn an_angle_may_jump_by_any_number_of_turns() {
+    let sample = |angle: f64| Sample { time: None, angle: Some(angle), force: Vector3::new(1.0, 2.0, 3.0) };
+    let mean = |angles: &[f64]| {
+        let samples = angles.iter().map(|&angle| sample(angle)).collect();
+        MeasuredForce { frame: ForceFrame::Tool, samples }.mean(None)
+    };
+    let expected = Vector3::new(1.0, 2.0, 3.0);
+    assert!((mean(&[0.0, 1e30, 0.0, 1.0]) - expected).norm() < 1e-9);
+    // Twice around, with an angle that begins again.
+    let twice: Vec<f64> = (0..40).map(|k| TAU * f64::from(k % 20) / 20.0).collect();
+    assert!((mean(&twice) - expected).norm() < 1e-9);
+}

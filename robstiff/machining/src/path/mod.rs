@@ -12,6 +12,7 @@ mod seeds;
 mod tests;
 
 use nalgebra::{Matrix4, SVector, Unit, Vector3};
+use robstiff_robots::text::Lines;
 use robstiff_robots::{Diagnostics, words};
 
 pub use crate::inverse::{Orientation, Remaining, Target, Unreached};
@@ -29,7 +30,7 @@ pub struct ToolPath {
     /// The tool's axis in the TCP's frame.
     tool: Unit<Vector3<f64>>,
     /// The file's lines, to show them.
-    lines: Vec<String>,
+    lines: Lines<String>,
 }
 
 /// One point of a [`ToolPath`].

@@ -4,11 +4,12 @@ use std::path::Path;
 
 use nalgebra::{Quaternion, Rotation3, Unit, UnitQuaternion, Vector3};
 use robstiff_robots::quantity::Dimension;
+use robstiff_robots::text::Lines;
 use robstiff_robots::{Description, Diagnostics, ReadError};
 
 use super::{Goal, Target, ToolPath, Waypoint};
 use robstiff::JointKind;
-use robstiff_robots::table::{Lines, Numbers, Record, Table, text_of};
+use robstiff_robots::table::{Numbers, Record, Table, text_of};
 
 /// A unit quaternion is rounded by less than this.
 const ROUNDED: f64 = 1e-3;
@@ -109,18 +110,12 @@ impl ToolPath {
             table.warn(&warning);
         }
         let (points, warnings) = table.finish(points)?;
-        Ok(Self {
-            file: file.to_owned(),
-            points,
-            warnings,
-            tool,
-            lines: Lines::new(text).all().map(ToOwned::to_owned).collect(),
-        })
+        Ok(Self { file: file.to_owned(), points, warnings, tool, lines: Lines::new(text.to_owned()) })
     }
 
     /// A line of the file (from 1).
     pub(super) fn line(&self, line: usize) -> &str {
-        self.lines.get(line - 1).map_or("", String::as_str)
+        self.lines.line(line)
     }
 }
 
