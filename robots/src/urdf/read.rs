@@ -43,7 +43,7 @@ impl Tree {
     ///
     /// # Errors
     /// What is wrong with it, each problem at its place; more text than
-    /// [`MOST_OF_URDF`](crate::text::MOST_OF_URDF), elements that are nested too deep.
+    /// [`MOST_OF_URDF`], elements that are nested too deep.
     pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
         let text = without_byte_order_mark(text);
         if text.len() > MOST_OF_URDF {

@@ -21,9 +21,13 @@ mod effects;
 mod golden;
 pub mod identify;
 #[allow(dead_code)]
+mod judge;
+#[allow(dead_code)]
 mod model;
 #[allow(dead_code)]
 mod observe;
+#[allow(dead_code, unused_imports)]
+mod outcome;
 pub mod plan;
 mod probability;
 #[allow(dead_code)]

@@ -23,6 +23,7 @@ mod load_cell_bias;
 mod load_cell_misalignment;
 mod load_cell_scale;
 mod lost_motion;
+mod outliers;
 mod own_weight;
 mod own_weight_tilt;
 mod pose_dependent_compliance;
@@ -47,12 +48,13 @@ use robstiff::Effect;
 use robstiff_robots::Place as Part;
 
 pub use hysteresis::play;
+pub use outliers::KIND as OUTLIERS;
 pub use scene::{Scene, Shapes, What};
 
 use crate::model::{Parameter, Size};
 
 /// Every kind there is.
-pub static REGISTRY: [&Kind; 33] = [
+pub static REGISTRY: [&Kind; 34] = [
     &thermal_drift::KIND,
     &creep::KIND,
     &load_cell_bias::KIND,
@@ -65,6 +67,7 @@ pub static REGISTRY: [&Kind; 33] = [
     &base_slip::KIND,
     &reflector_slip::KIND,
     &unloaded_reading::KIND,
+    &outliers::KIND,
     &tool_compliance::KIND,
     &base_compliance::KIND,
     &transverse_compliance::KIND,
@@ -242,12 +245,15 @@ pub struct Offers {
     kind: &'static Kind,
     /// What was offered.
     pub candidates: Vec<Candidate>,
+    /// The full names of what the description declares.
+    declared: Vec<String>,
 }
 
 impl Offers {
     /// All candidates of a scene.
     pub fn of(scene: &Scene<'_>) -> Vec<Candidate> {
-        let mut offers = Self { kind: REGISTRY[0], candidates: Vec::new() };
+        let declared = scene.robot.effects.iter().filter(|effect| !effect.is_kinematic()).map(ToString::to_string);
+        let mut offers = Self { kind: REGISTRY[0], candidates: Vec::new(), declared: declared.collect() };
         for kind in REGISTRY {
             offers.kind = kind;
             (kind.offer)(scene, &mut offers);
@@ -255,10 +261,12 @@ impl Offers {
         offers.candidates
     }
 
-    /// Adds a candidate, if it has any form.
+    /// Adds a candidate, if it has any form. What the description declares is fitted anyway; errors of
+    /// the kinematics add up with what it declares.
     pub fn add(&mut self, place: impl Into<Place>, forms: Vec<Form>) {
-        if !forms.is_empty() {
-            self.candidates.push(Candidate { kind: self.kind, place: place.into(), forms });
+        let candidate = Candidate { kind: self.kind, place: place.into(), forms };
+        if !candidate.forms.is_empty() && !self.declared.contains(&candidate.name()) {
+            self.candidates.push(candidate);
         }
     }
 }

@@ -11,7 +11,7 @@ use robstiff_robots::Place as Part;
 
 use super::scene::What;
 use super::{Form, Kind, Offers, Scene, Side};
-use crate::model::{At, Parameter, Size, Stand, Term};
+use crate::model::{At, OfRow, Parameter, Size, Stand, Term};
 
 /// The kind.
 pub static KIND: Kind = Kind {
@@ -36,9 +36,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
         return;
     }
     for joint in scene.turning().into_iter().filter(|&joint| joint > 1) {
-        let number = |name, size, of: Rc<dyn Fn(&At<'_>) -> f64>| {
-            Parameter::new(name, "rad", Size::Moves(size), Term::Aside(joint, 2, of))
-        };
+        let number = |name, size, of: OfRow| Parameter::new(name, "rad", Size::Moves(size), Term::Aside(joint, 2, of));
         let arm = number("sag", LIKELY, Rc::new(move |at: &At<'_>| profile(at.stand, joint))).nonnegative();
         let mass = |name, which: usize| {
             number(name, LIKELY, Rc::new(move |at: &At<'_>| about(at.stand, joint, &point(at.stand, which))))

@@ -16,7 +16,7 @@ pub mod weight;
 pub use arm::{Arm, Frame, Stand};
 pub use rig::Rig;
 pub use spring::Spring;
-pub use term::{At, Parameter, Sign, Size, Term, Torques};
+pub use term::{At, EachRow, OfRow, Parameter, Sign, Size, Term, Torques};
 pub use weight::Weight;
 
 /// The arm and the rig.

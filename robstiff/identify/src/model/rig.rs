@@ -97,14 +97,14 @@ impl Rig {
         let turned = turn_by(&self.reading_turn[BASE]);
         let in_tool = tcp.turn * turn_by(&self.reading_turn[TOOL]) * tcp.turn.transpose();
         let see = turned * in_tool * (1.0 + self.reading_scale);
-        let d = self.into_file(&(see * twist.fixed_rows::<3>(0)), declared);
-        let r = self.into_file(&(see * twist.fixed_rows::<3>(3)), declared);
+        let d = self.as_filed(&(see * twist.fixed_rows::<3>(0)), declared);
+        let r = self.as_filed(&(see * twist.fixed_rows::<3>(3)), declared);
         Vector6::new(d.x, d.y, d.z, r.x, r.y, r.z)
     }
 
     /// A vector of the base frame in the frame that the file has readings in; `declared` is the tool as
     /// the controller knows it.
-    pub fn into_file(&self, vector: &Vector3<f64>, declared: &Frame) -> Vector3<f64> {
+    pub fn as_filed(&self, vector: &Vector3<f64>, declared: &Frame) -> Vector3<f64> {
         match self.measured_frame {
             campaign::Frame::Base => *vector,
             campaign::Frame::Tool => declared.turn.transpose() * vector,

@@ -51,6 +51,18 @@ pub struct Torques<'a> {
 /// How far a joint turns under its torque through all rows, per unit.
 pub type Law = Rc<dyn Fn(&Torques<'_>) -> Vec<f64>>;
 
+/// A number of each row.
+pub type OfRow = Rc<dyn Fn(&At<'_>) -> f64>;
+
+/// A vector of each row.
+pub type VectorOfRow = Rc<dyn Fn(&At<'_>) -> Vector3<f64>>;
+
+/// What a number makes of the arm and the rig.
+pub type OnWorld = Rc<dyn Fn(&mut World, f64)>;
+
+/// Calls something with each row in turn.
+pub type EachRow<'a> = dyn FnMut(&mut dyn FnMut(&At<'_>)) + 'a;
+
 /// What a unit of a number does.
 #[derive(Clone)]
 pub enum Term {
@@ -60,16 +72,16 @@ pub enum Term {
     Law(usize, Law),
     /// A joint (from 1) stands aside of its coordinate without any load, by a turn about an axis of
     /// its own frame (rad).
-    Aside(usize, usize, Rc<dyn Fn(&At<'_>) -> f64>),
+    Aside(usize, usize, OfRow),
     /// It is a number of the table: of a joint (from 1), and which ([`THETA`](super::arm::THETA) and so
     /// on).
     Table(usize, usize),
     /// It changes the arm or the rig; what the readings make of that is not linear.
-    World(Rc<dyn Fn(&mut World, f64)>),
+    World(OnWorld),
     /// It adds to a position or displacement, in the base frame (m).
-    Reading(Rc<dyn Fn(&At<'_>) -> Vector3<f64>>),
+    Reading(VectorOfRow),
     /// The arm yields more by this share.
-    Gain(Rc<dyn Fn(&At<'_>) -> f64>),
+    Gain(OfRow),
 }
 
 impl fmt::Debug for Term {

@@ -243,7 +243,7 @@ impl<'c> Displacement<'c> {
     /// What adds to the readings at a row, in the base frame (m).
     fn read_directly(&self, of: &dyn Fn(&At<'_>) -> Vector3<f64>) -> DVector<f64> {
         stacked(self.rows(), self.readings.width, |row, numbers| {
-            let moved = self.world.rig.into_file(&of(&self.at(row)), &self.declared[self.station[row]].tcp);
+            let moved = self.world.rig.as_filed(&of(&self.at(row)), &self.declared[self.station[row]].tcp);
             numbers.iter_mut().zip(&self.directions).for_each(|(number, along)| *number = along.dot(&moved));
         })
     }

@@ -3,7 +3,7 @@
 use nalgebra::{DVector, Vector3, Vector6};
 use robstiff::JointKind;
 
-use crate::model::{At, Parameter, Stand, Term, Torques};
+use crate::model::{EachRow, Parameter, Stand, Term, Torques};
 
 /// An arm that stands somewhere at each row, under a load.
 pub struct Loaded {
@@ -144,7 +144,7 @@ pub fn sum(
 }
 
 /// What the gains make of what the arm yields, row by row: 1 where there are none.
-pub fn gains(parameters: &[Parameter], values: &[f64], each: &mut dyn FnMut(&mut dyn FnMut(&At<'_>))) -> Vec<f64> {
+pub fn gains(parameters: &[Parameter], values: &[f64], each: &mut EachRow<'_>) -> Vec<f64> {
     let own = parameters.iter().zip(values).filter(|(_, value)| **value != 0.0);
     let own: Vec<_> = own
         .filter_map(|(parameter, value)| match &parameter.term {
@@ -163,7 +163,7 @@ pub fn asides(
     parameters: &[Parameter],
     values: &[f64],
     joints: usize,
-    each: &mut dyn FnMut(&mut dyn FnMut(&At<'_>)),
+    each: &mut EachRow<'_>,
 ) -> Vec<Vec<Vector3<f64>>> {
     let own = parameters.iter().zip(values).filter(|(_, value)| **value != 0.0);
     let own: Vec<_> = own

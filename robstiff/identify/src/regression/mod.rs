@@ -13,4 +13,3 @@ pub mod noise;
 
 pub use evidence::{Fit, NoisePrior, Prior, Scales};
 pub use gram::{Gram, Grams};
-pub use noise::{DISCREPANCIES, Noise};

@@ -55,6 +55,8 @@ pub struct Noise {
     pub scales: Vec<f64>,
     /// The part of the rows that is outlying.
     pub outlying: f64,
+    /// The log-likelihood ratio of outlying rows against none.
+    pub for_outliers: f64,
     /// The size of the displacement of each row (m).
     sizes: Vec<f64>,
 }
@@ -73,6 +75,7 @@ impl Noise {
             growth: 0.0,
             scales: (0..channels).map(|channel| if channel == 0 { 1.0 } else { lever }).collect(),
             outlying: 0.0,
+            for_outliers: 0.0,
             sizes,
         }
     }
@@ -201,6 +204,7 @@ impl Noise {
             part = (of_rows().map(|&row| outlying[row]).sum::<f64>() / count).clamp(1e-4, MOST_OUTLYING);
         }
         self.outlying = part;
+        self.for_outliers = of_rows().map(|&row| (1.0 - part + part * odds(squares[row])).ln()).sum();
         for &row in of_rows() {
             self.weights[row] = 1.0 - outlying[row] + outlying[row] / (WIDER * WIDER);
         }

@@ -3,6 +3,9 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
 
 use super::always::{Declared, LIKELY_SCALES, always, fixed};
@@ -10,11 +13,11 @@ use super::layout::Layout;
 use super::problem::{Problem, Set, moves};
 use super::search::{Visited, Width, search};
 use crate::effects::{Offers, Scene, Shapes, What};
-use crate::model::{Size, Term, World};
+use crate::model::{Sign, Size, Term, World};
 use crate::observe::Observation;
 use crate::regression::evidence::{Start, fit};
 use crate::regression::gram::with_target;
-use crate::regression::noise::{Noise, discrepancies};
+use crate::regression::noise::{Noise, discrepancies, rows_of_blocks};
 use crate::regression::{Fit, Gram, Grams, NoisePrior, Prior, Scales};
 
 /// Where a model is linearised: what its parameters are, by their keys, and the world that they
@@ -83,6 +86,8 @@ pub struct Solved {
     pub score: f64,
     /// The likeliest discrepancy, by its index.
     pub kappa: usize,
+    /// The columns whose numbers are held at zero, for they cannot be negative.
+    pub held: Vec<usize>,
 }
 
 /// Before any discrepancy is known the first steps assume this one, by its index.
@@ -183,10 +188,8 @@ impl<'c> Engine<'c> {
         }
         let mut target = self.observation.readings().values.clone();
         target -= self.observation.predict(&point.world, &layout.parameters, &values);
-        for k in layout.fixed..layout.parameters.len() {
-            if values[k] != 0.0 {
-                target.axpy(values[k], &columns.column(k), 1.0);
-            }
+        for (k, value) in values.iter().enumerate().skip(layout.fixed).filter(|(_, value)| **value != 0.0) {
+            target.axpy(*value, &columns.column(k), 1.0);
         }
         with_target(columns, &target)
     }
@@ -199,7 +202,7 @@ impl<'c> Engine<'c> {
     }
 
     /// All blocks that are fitted to in one group.
-    fn one_group(&self) -> Vec<Option<usize>> {
+    pub fn one_group(&self) -> Vec<Option<usize>> {
         self.training.iter().map(|fitted| fitted.then_some(0)).collect()
     }
 
@@ -209,17 +212,38 @@ impl<'c> Engine<'c> {
     }
 
     /// A set at its own optimum, by Gauss-Newton steps from a point, under a discrepancy.
-    pub fn solve(
+    pub fn solve(&self, layout: &Layout, set: &[usize], from: (&Point, usize), steps: usize) -> Option<Solved> {
+        self.solve_without(layout, set, from, steps, &[])
+    }
+
+    /// The same with numbers that cannot be negative held at zero where they would be.
+    pub fn solve_bounded(&self, layout: &Layout, set: &[usize], from: (&Point, usize), steps: usize) -> Option<Solved> {
+        let mut held = Vec::new();
+        loop {
+            let solved = self.solve_without(layout, set, from, steps, &held)?;
+            let columns = solved.fit.columns.iter().zip(solved.fit.mean.iter());
+            let negative = columns.filter(|(k, mean)| layout.parameters[**k].sign == Sign::Nonnegative && **mean < 0.0);
+            let negative: Vec<usize> = negative.map(|(k, _)| *k).collect();
+            if negative.is_empty() {
+                return Some(Solved { held, ..solved });
+            }
+            held.extend(negative);
+        }
+    }
+
+    fn solve_without(
         &self,
         layout: &Layout,
         set: &[usize],
         (from, kappa): (&Point, usize),
         steps: usize,
+        held: &[usize],
     ) -> Option<Solved> {
         let chosen: Vec<usize> = layout
             .always()
             .filter(|k| self.with_block || !is_of_block(layout, *k))
             .chain(set.iter().flat_map(|&form| layout.forms[form].columns.iter().copied()))
+            .filter(|k| !held.contains(k))
             .collect();
         let readings = self.observation.readings();
         let mut point = self.only(layout, &chosen, from);
@@ -280,7 +304,7 @@ impl<'c> Engine<'c> {
             found = again;
         }
         found.columns = own.iter().map(|&k| chosen[k]).collect();
-        Some(Solved { point, fit: found, left, score, kappa })
+        Some(Solved { point, fit: found, left, score, kappa, held: Vec::new() })
     }
 
     /// The evidence over all discrepancies, and the likeliest.
@@ -393,6 +417,41 @@ impl<'c> Engine<'c> {
         left
     }
 
+    /// The description's own numbers alone, at their optimum.
+    pub fn alone(&self, layout: &Layout) -> Option<Solved> {
+        self.solve_bounded(layout, &[], (&self.point, 0), 2 * STEPS)
+    }
+
+    /// The noise of one axis of a reading where no discrepancy accounts for any of what is left.
+    pub fn noise_at(&self, found: &Found) -> f64 {
+        let grams = self.grams(&found.columns, &self.one_group()).total;
+        let problem = self.problem(&found.layout, &found.columns, grams);
+        problem.fit(&found.best, 0).map_or(0.0, |fit| fit.variance.sqrt())
+    }
+
+    /// The error of a set on poses that are left out in turn, where the columns were linearised.
+    pub fn unseen_rms(&self, found: &Found, set: &Set) -> Option<f64> {
+        let readings = self.observation.readings();
+        let group = groups(&self.training, UNSEEN_FOLDS, 1);
+        let grams = self.grams(&found.columns, &group);
+        let (mut sum, mut count) = (0.0, 0);
+        for fold in 0..group.iter().flatten().max().map_or(0, |last| last + 1) {
+            let problem = self.problem(&found.layout, &found.columns, grams.without(fold).total);
+            let fit = problem.fit(set, found.kappa)?;
+            let unseen: Vec<bool> = group.iter().map(|of| *of == Some(fold)).collect();
+            for row in rows_of_blocks(readings, &unseen).concat() {
+                for k in 0..readings.told {
+                    let at = row * readings.width + k;
+                    let taken: f64 =
+                        fit.columns.iter().zip(fit.mean.iter()).map(|(&c, b)| found.columns[(at, c)] * b).sum();
+                    sum += (found.columns[(at, found.columns.ncols() - 1)] - taken).powi(2);
+                    count += 1;
+                }
+            }
+        }
+        (count > 0).then(|| (sum / f64::from(count)).sqrt())
+    }
+
     /// What is likely of bearings and laws where no compliance is declared: what was fitted.
     fn learn_sizes(&mut self, layout: &Layout) {
         for (k, own) in self.declared().iter().enumerate() {
@@ -482,7 +541,7 @@ impl<'c> Engine<'c> {
         let best = visited.best();
         let kappa = visited.sets.get(&best)?.kappa;
         let begin = self.start_of(&problem, &best, kappa);
-        let own = self.solve(&layout, &best, (&begin, kappa), 2 * STEPS)?;
+        let own = self.solve_bounded(&layout, &best, (&begin, kappa), 2 * STEPS)?;
         drop(problem);
         Some(Found { layout, visited, best, kappa, columns, own })
     }
@@ -494,6 +553,19 @@ impl<'c> Engine<'c> {
         let values = values.map(|(&k, &value)| (problem.layout.keys[k].clone(), value)).collect();
         self.absorbed(problem.layout, Point { world: self.point.world.clone(), values })
     }
+}
+
+/// Folds for the error that named effects leave one after the other.
+const UNSEEN_FOLDS: usize = 5;
+
+/// The fold of each block, drawn at random; none of one that is not fitted to.
+pub fn groups(training: &[bool], folds: usize, seed: u64) -> Vec<Option<usize>> {
+    let mut blocks: Vec<usize> = (0..training.len()).filter(|&block| training[block]).collect();
+    blocks.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));
+    let folds = folds.min(blocks.len());
+    let mut group = vec![None; training.len()];
+    blocks.into_iter().enumerate().for_each(|(k, block)| group[block] = Some(k % folds.max(1)));
+    group
 }
 
 /// So many sets are compared at their own optimum, those that are at least so likely.

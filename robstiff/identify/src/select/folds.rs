@@ -7,11 +7,8 @@
 //! next to no part in them, and a fold is a subtraction of Gram matrices.
 
 use nalgebra::{DMatrix, DVector};
-use rand::SeedableRng;
-use rand::seq::SliceRandom;
-use rand_chacha::ChaCha8Rng;
 
-use super::engine::{Engine, Found};
+use super::engine::{Engine, Found, groups};
 use super::problem::Set;
 use super::search::{Visited, candidates_of, search};
 use crate::regression::noise::rows_of_blocks;
@@ -74,16 +71,6 @@ pub fn nested(engine: &Engine<'_>, found: &Found, folds: usize, seed: u64, progr
         anew(engine, &group, &mut nested, progress);
     }
     nested
-}
-
-/// The fold of each block; none of one that is not fitted to.
-fn groups(training: &[bool], folds: usize, seed: u64) -> Vec<Option<usize>> {
-    let mut blocks: Vec<usize> = (0..training.len()).filter(|&block| training[block]).collect();
-    blocks.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));
-    let folds = folds.min(blocks.len());
-    let mut group = vec![None; training.len()];
-    blocks.into_iter().enumerate().for_each(|(k, block)| group[block] = Some(k % folds.max(1)));
-    group
 }
 
 /// Puts what is left of some rows in its place.

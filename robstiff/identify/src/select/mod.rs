@@ -16,7 +16,6 @@ pub mod layout;
 pub mod problem;
 pub mod search;
 
-pub use engine::{Engine, Point};
+pub use engine::Engine;
 pub use layout::Layout;
 pub use problem::{Problem, Set};
-pub use search::Visited;
