@@ -236,13 +236,28 @@ fn any_description_becomes_docs() {
     let robot = Description { description: said.into(), source: said.into(), ..five_axes() };
     let text = text(&robot, "arm.yaml");
     assert!(syn::parse_file(&text).is_ok());
-    for line in
-        ["/// Reads\n", "/// Matrix4::new(\n", "/// and, besides,\n", "/// \\[links] \\<and> tags\n", "/// and back\n"]
-    {
+    for line in [
+        "/// Reads\n",
+        "/// Matrix4::new(\n",
+        "/// and, besides,\n",
+        "/// \\[links] \\<and> tags\n",
+        "/// and \\u{202e}back\\u{2069}\n",
+    ] {
         assert!(text.contains(line), "{line}");
     }
     // Code would be run as a test of the user's.
     assert!(!text.contains("```") && !text.contains("~~~"), "{text}");
+}
+
+/// A line end in the name of a description's file ends no comment.
+#[test]
+fn the_name_of_a_file_is_no_code() {
+    let items = |file: &str| syn::parse_file(&text(&five_axes(), file)).expect("Rust").items.len();
+    for file in
+        ["arm\npub fn injected() {}\n.yaml", "arm\r\npub fn injected() {}\n.yaml", "arm*/ pub fn f() {} /*.yaml"]
+    {
+        assert_eq!(items(file), items("arm.yaml"), "{file:?}");
+    }
 }
 
 /// An address is a link, and of the text around it nothing goes with it.

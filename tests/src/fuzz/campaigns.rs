@@ -2,9 +2,9 @@
 
 use std::fs;
 
-use robstiff::campaign::{Campaign, Data};
-use robstiff::identify::{identify, predict};
-use robstiff::triage::triage;
+use robstiff_identify::campaign::{Campaign, Data};
+use robstiff_identify::identify::{identify, predict};
+use robstiff_identify::triage::triage;
 
 use super::accepted::{assert_same, with_line_breaks_of_windows};
 use super::grammar::Grammar;

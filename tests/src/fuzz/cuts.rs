@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use robstiff::milling::{CutFile, Forces};
+use robstiff_machining::milling::{CutFile, Forces};
 
 use super::accepted::{assert_same, with_line_breaks_of_windows};
 use super::grammar::Grammar;

@@ -1,8 +1,8 @@
 //! Map files: what is computed, and where.
 
 use robstiff::Generic;
-use robstiff::map::read::{Over, Task};
-use robstiff::map::{JointSpace, stream};
+use robstiff_machining::map::read::{Over, Task};
+use robstiff_machining::map::{JointSpace, stream};
 use robstiff_robots::Description;
 
 use super::accepted::{assert_same, with_line_breaks_of_windows};

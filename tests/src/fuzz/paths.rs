@@ -1,7 +1,7 @@
 //! Tool paths.
 
 use nalgebra::Vector3;
-use robstiff::path::ToolPath;
+use robstiff_machining::path::ToolPath;
 use robstiff_robots::Description;
 
 use super::accepted::{assert_same, with_line_breaks_of_windows};

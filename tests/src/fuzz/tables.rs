@@ -2,9 +2,9 @@
 
 use std::fs;
 
-use robstiff::campaign::JointTable;
-use robstiff::deviation::ForceTable;
-use robstiff::milling::{ForceFrame, MeasuredForce};
+use robstiff_identify::campaign::JointTable;
+use robstiff_machining::deviation::ForceTable;
+use robstiff_machining::milling::{ForceFrame, MeasuredForce};
 use robstiff_robots::Description;
 
 use super::accepted::{assert_same, with_line_breaks_of_windows};

@@ -13,10 +13,10 @@ mod warned;
 
 use std::path::PathBuf;
 
-use robstiff::campaign::Data;
-use robstiff::identify::Error;
-use robstiff::plan::next;
-use robstiff::trace::{Correction, Options, trace};
+use robstiff_identify::campaign::Data;
+use robstiff_identify::identify::Error;
+use robstiff_identify::plan::next;
+use robstiff_identify::trace::{Correction, Options, trace};
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
@@ -75,7 +75,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     files.foresee_robot(&robot, &campaign.robot)?;
     let (triage, traced, correction) =
         output::working("asking the readings themselves", |spinner| -> Result<_, Error> {
-            let triage = robstiff::triage::triage(&campaign);
+            let triage = robstiff_identify::triage::triage(&campaign);
             let mut traced = trace(&campaign, &options, &|stage| spinner.set_message(stage.to_owned()))?;
             spinner.set_message("choosing what to measure next");
             // A trace stands without proposals, where none can be made.
