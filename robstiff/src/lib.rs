@@ -30,7 +30,7 @@
 //! Without default features the crate is `no_std` and allocates nothing.
 #![no_std]
 
-#[cfg(feature = "std")]
+#[cfg(any(feature = "std", test))]
 extern crate std;
 
 // The code of `robot!` names this crate; the tests are in it.

@@ -4,6 +4,7 @@
 
 use robstiff::{Convention, DhEntry, Effect, JointKind};
 use robstiff_codegen::{Cost, Function, Origin, functions, skeleton, source, symbolic, tokens};
+use robstiff_robots::effect::CATALOGUE;
 use robstiff_robots::{Description, Joint, Part, Placement};
 use robstiff_tests::arms::{self, description};
 
@@ -335,5 +336,29 @@ fn angles_that_differ_in_their_offset_have_two_names() {
     let jacobian = method(&sliders, "jacobian");
     for name in ["(s1o, c1o)", "(s1o_2, c1o_2)", "(s1o_3, c1o_3)"] {
         assert_eq!(jacobian.matches(name).count(), 1, "{jacobian}");
+    }
+}
+
+/// The program that links only if no panic can be reached calls every method of the trait, of
+/// arms with every effect.
+#[test]
+fn every_method_and_every_effect_is_in_the_proof() {
+    let program = include_str!("../no_panic/src/main.rs");
+    let source = syn::parse_file(include_str!("../../robstiff/src/robot.rs")).expect("the trait's file");
+    let robot = source.items.iter().find_map(|item| match item {
+        syn::Item::Trait(robot) if robot.ident == "Robot" => Some(robot),
+        _ => None,
+    });
+    let methods = robot.expect("the trait").items.iter().filter_map(|item| match item {
+        syn::TraitItem::Fn(method) => Some(method.sig.ident.to_string()),
+        _ => None,
+    });
+    let missing: Vec<String> = methods.filter(|method| !program.contains(&format!("robot.{method}("))).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+    let files = program.split("\"../robots/").skip(1).filter_map(|rest| rest.split('"').next());
+    let kinds: Vec<&str> =
+        files.flat_map(|file| description(file).effects.iter().map(Effect::kind).collect::<Vec<_>>()).collect();
+    for about in CATALOGUE {
+        assert!(kinds.contains(&about.kind), "no arm has {}", about.kind);
     }
 }

@@ -189,3 +189,13 @@ fn a_mean_is_that_of_whole_revolutions() {
     assert!((table("angle [deg]", 0.75, |turn| 360.0 * turn).mean(None).x - 200.0 / 1.5).abs() < 1e-9);
     assert!((table("t [s]", 1.25, |turn| 0.02 * turn).mean(None).x - 120.0).abs() < 1e-9);
 }
+
+/// Times that go back at an absurd speed: a turn is far less than the last place of such angles.
+#[test]
+fn no_angle_is_wound_on_without_end() {
+    let text = "t [ms],Fx,Fy,Fz\n0,1,2,3\n-200,4,5,6\n10,1,2,3\n";
+    let (force, _) = MeasuredForce::parse("f.csv", text, ForceFrame::Cut, false).unwrap();
+    for speed in [1e3, 1e17, 1e300, f64::MAX] {
+        assert!(force.mean(Some(speed)).iter().all(|force| (1.0..=6.0).contains(force)), "{speed}");
+    }
+}
