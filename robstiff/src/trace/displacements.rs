@@ -8,7 +8,7 @@ use super::model::{Fitted, Setting};
 use super::report::report;
 use super::search::{Outcome, search};
 use super::verdict::{self, Verdict};
-use super::{Options, Progress, Trace, elsewhere, follows, misread, overlooked, preload};
+use super::{Options, Progress, Trace, follows, misread, overlooked, preload};
 use crate::campaign::Campaign;
 use crate::identify::prepare::Prepared;
 use crate::identify::{AGAINST_THE_LOADS, Error};
@@ -23,7 +23,7 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
     progress("identifying the joints");
     let prepared = Prepared::new(campaign)?;
     let in_other_unit = misread::in_other_unit(campaign, &prepared);
-    let searched = in_other_unit.unwrap_or_else(|| elsewhere::searched(campaign, &prepared, options, progress));
+    let searched = in_other_unit.unwrap_or_else(|| of_campaign(campaign, &prepared, options, progress));
     let (bench, outcome) = searched.map_err(Error::NotShown)?;
     let outcome = misread::unless(&bench, outcome, options).map_err(Error::NotShown)?;
     let found = overlooked::instead((bench, outcome), &prepared, options);
@@ -37,17 +37,17 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
     better.map_or_else(|| report(campaign, &prepared, &bench, &outcome, options), Ok)
 }
 
-/// What a campaign of displacements shows among the candidates of a fresh bench: the bench that
-/// it was found on, and what was.
+/// What a campaign of displacements shows: the bench that it was found on, and what was.
 ///
 /// # Errors
 /// Why not even the description's own numbers can be fitted.
-pub fn searched<'c>(
-    mut bench: Bench<'c>,
-    prepared: &Prepared<'c>,
+pub fn of_campaign<'c>(
+    campaign: &'c Campaign,
+    prepared: &'c Prepared<'c>,
     options: &Options,
     progress: &Progress<'_>,
 ) -> Result<(Bench<'c>, Outcome), String> {
+    let mut bench = Bench::new(campaign, prepared)?;
     let setting = bench.at(&[])?;
     let base = setting.fit(&[])?;
     if let Some(why) = too_little(&setting).or_else(|| against_the_loads(prepared, &base)) {

@@ -13,14 +13,12 @@
 //!    named effect does;
 //! 5. `verdict` takes names back and draws the conclusion, unless the readings do not even follow
 //!    the loads (`follows`);
-//! 6. where something is missing, `elsewhere` asks whether it is that what is read is not where
-//!    the file says;
-//! 7. `misread` asks whether the files say something else than what was measured, and if so nothing
+//! 6. `misread` asks whether the files say something else than what was measured, and if so nothing
 //!    is told of the arm;
-//! 8. where nothing seems to be left, `overlooked` asks whether something fits far better that the
+//! 7. where nothing seems to be left, `overlooked` asks whether something fits far better that the
 //!    tests did not see, as few poses hardly show it;
-//! 9. where masses are known, `preload` asks whether gears carry the arm's own weight;
-//! 10. `alias` says what the data cannot tell apart, `confounded` which numbers depend on it, and
+//! 8. where masses are known, `preload` asks whether gears carry the arm's own weight;
+//! 9. `alias` says what the data cannot tell apart, `confounded` which numbers depend on it, and
 //!     `report` puts all of it together.
 //!
 //! Positions and clamped axes go the same way on benches of their own (`positions`, `clamped`).
@@ -47,9 +45,6 @@ mod confounded;
 mod confounded_tests;
 pub(crate) mod correction;
 mod displacements;
-mod elsewhere;
-#[cfg(test)]
-mod elsewhere_tests;
 pub(crate) mod features;
 mod follows;
 #[cfg(test)]
@@ -73,6 +68,8 @@ mod physics_tests;
 pub(crate) mod point;
 pub(crate) mod positions;
 mod preload;
+#[cfg(test)]
+mod reflector_tests;
 mod report;
 mod resemblance;
 mod search;

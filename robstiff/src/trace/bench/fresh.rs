@@ -23,19 +23,10 @@ impl<'c> Bench<'c> {
     /// # Errors
     /// Why not even the description's own model can be fitted.
     pub fn new(campaign: &'c Campaign, prepared: &'c Prepared<'c>) -> Result<Self, String> {
-        Self::of(campaign, prepared, false)
-    }
-
-    /// The same where the reflector may be [elsewhere](mod@crate::trace::elsewhere), if so.
-    ///
-    /// # Errors
-    /// As for [`new`](Self::new).
-    pub fn of(campaign: &'c Campaign, prepared: &'c Prepared<'c>, elsewhere: bool) -> Result<Self, String> {
         let rows = prepared.samples.rows.len();
         let contradicted = prepared.covariance.beyond_doubt();
         let on = (&*prepared.samples, prepared.data.measured_frame);
         let mut bench = Self {
-            elsewhere,
             left_out: prepared.left_out.clone(),
             events: contradicted.into_iter().map(|one| Event::contradicted(one, on)).collect(),
             ..Self::bare(campaign, prepared)
@@ -55,7 +46,7 @@ impl<'c> Bench<'c> {
     /// # Errors
     /// As for [`new`](Self::new).
     pub fn anew(&self) -> Result<Self, String> {
-        Self::of(self.campaign, self.prepared, self.elsewhere)
+        Self::new(self.campaign, self.prepared)
     }
 
     /// One that judges alike, fresh, in whose catalogue is also what has no name.
@@ -77,24 +68,6 @@ impl<'c> Bench<'c> {
     pub fn widened_as_it_is(&self) -> Result<Self, String> {
         let mut bench = Self { wide: true, ..self.copy() };
         bench.set_up_again(Candidate::is_nameless, |kept, nameless| [kept, nameless].concat())?;
-        Ok(bench)
-    }
-
-    /// One that fits the same numbers to the same rows, with the same weights, where the reflector
-    /// may be [elsewhere](mod@crate::trace::elsewhere), too.
-    ///
-    /// # Errors
-    /// As for [`new`](Self::new).
-    pub fn with_reflector(&self) -> Result<Self, String> {
-        let mut bench = Self {
-            strict: self.strict,
-            by_own_pose: self.by_own_pose,
-            left_out: self.left_out.clone(),
-            noise: Rc::clone(&self.noise),
-            ..Self::of(self.campaign, self.prepared, true)?
-        };
-        bench.fit_to(&self.base);
-        bench.set_up()?;
         Ok(bench)
     }
 
@@ -133,7 +106,6 @@ impl<'c> Bench<'c> {
             by_own_pose: false,
             by_own_form: false,
             wide: false,
-            elsewhere: false,
             moments: Moments::default(),
             settings: RefCell::default(),
             stored: Rc::default(),

@@ -62,8 +62,6 @@ pub struct Bench<'c> {
     pub by_own_form: bool,
     /// Whether the candidates have those without a name among them, behind all others.
     wide: bool,
-    /// Whether they have a reflector among them that is elsewhere.
-    elsewhere: bool,
     /// Where slips that all later rows keep may have begun.
     moments: Moments,
     settings: Solved<Setting<'c>>,
@@ -95,7 +93,6 @@ impl<'c> Bench<'c> {
             samples: &self.prepared.samples,
             compliance: self.prepared.values[..self.prepared.samples.joints()].to_vec(),
             moments: &self.moments,
-            elsewhere: self.elsewhere,
         }
     }
 

@@ -24,10 +24,7 @@ pub static KIND: Kind = Kind {
 /// Further off it is on another tool (m).
 const MOST: f64 = 0.5;
 
-fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
-    if !scene.elsewhere {
-        return;
-    }
+fn offer(_: &Scene<'_>, offers: &mut Offers<'_>) {
     let number = |k: usize| {
         Number::of_setup(
             POINT[k],

@@ -159,11 +159,6 @@ fn declared(prepared: &Prepared<'_>, problem: &Equations, but: &[usize]) -> Misf
 /// Models that the data cannot tell from the one that is told, the best first.
 fn rivals_of(bench: &Bench<'_>, outcome: &Outcome) -> Vec<Rival> {
     let mut rivals = rivals(bench, &outcome.selection.model);
-    if let Some(rival) = &outcome.rival
-        && rivals.iter().all(|other| other.names != rival.names)
-    {
-        rivals.push(rival.clone());
-    }
     rivals.sort_by(|a, b| a.bic_difference.total_cmp(&b.bic_difference));
     rivals
 }
