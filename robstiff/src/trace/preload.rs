@@ -57,9 +57,10 @@ pub fn better(preloaded: &Campaign, plain: (&Bench<'_>, &Outcome), options: &Opt
     if !is_better((&bench, &outcome), plain) {
         return None;
     }
-    let mut trace = report(preloaded, &prepared, &bench, &outcome, options).ok()?;
+    let mut trace = report(preloaded, &prepared, &bench, outcome, options).ok()?;
+    let has_curve = trace.effects.iter().any(|named| is_curve(named.effect.kind()));
     tell(&mut trace);
-    Some(trace)
+    has_curve.then_some(trace)
 }
 
 /// Whether what was found with gears that carry the weight accounts better for the data.

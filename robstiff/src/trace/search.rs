@@ -8,7 +8,7 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use super::alias::{bic_as_wild, with_wild_rows};
+use super::alias::{Rival, bic_of_all, with_wild_rows};
 use super::bench::Bench;
 use super::beyond::{self, Beyond};
 use super::isolated::Event;
@@ -36,6 +36,8 @@ pub struct Outcome {
     pub looks_like: Vec<String>,
     /// Whether these are what the files may have been written with.
     pub misread: bool,
+    /// Another model that is about as good, come to by another way.
+    pub rival: Option<Rival>,
     /// The conclusion.
     pub verdict: Verdict,
     /// Why.
@@ -47,7 +49,7 @@ impl Outcome {
     pub fn nothing(model: Fitted, verdict: Verdict, why: String) -> Self {
         let selection = Selection { model, p_values: Vec::new(), steps: Vec::new(), unnamed: false };
         let (events, looks_like) = (Vec::new(), Vec::new());
-        Self { selection, left: None, events, looks_like, misread: false, verdict, why }
+        Self { selection, left: None, events, looks_like, misread: false, rival: None, verdict, why }
     }
 
     /// The same, with the steps that came before.
@@ -76,9 +78,9 @@ impl Outcome {
         bench.names(&self.selection.model.named)
     }
 
-    /// The criterion of Schwarz, of all rows: what is wrong in single visits counts as wild.
+    /// The criterion of Schwarz, of all rows.
     pub fn bic_of_all(&self, bench: &Bench<'_>) -> Option<f64> {
-        bic_as_wild(bench, &self.selection.model, &self.events)
+        bic_of_all(bench, &self.selection.model, &self.events)
     }
 
     /// Whether structure is left.
@@ -158,7 +160,7 @@ pub fn search<'c>(
     if may_share_unloaded(prepared, &left, options) {
         why.push_str("; rows that share an unloaded reading agree, too: a column `visit` says which do");
     }
-    Ok(Outcome { selection, left: Some(left), events, looks_like, misread: false, verdict, why })
+    Ok(Outcome { selection, left: Some(left), events, looks_like, misread: false, rival: None, verdict, why })
 }
 
 /// Whether what readings of a pose agree on may be their unloaded reading: of each row the

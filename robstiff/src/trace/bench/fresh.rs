@@ -23,10 +23,19 @@ impl<'c> Bench<'c> {
     /// # Errors
     /// Why not even the description's own model can be fitted.
     pub fn new(campaign: &'c Campaign, prepared: &'c Prepared<'c>) -> Result<Self, String> {
+        Self::of(campaign, prepared, true)
+    }
+
+    /// The same where the reflector may sit elsewhere, if so.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn of(campaign: &'c Campaign, prepared: &'c Prepared<'c>, elsewhere: bool) -> Result<Self, String> {
         let rows = prepared.samples.rows.len();
         let contradicted = prepared.covariance.beyond_doubt();
         let on = (&*prepared.samples, prepared.data.measured_frame);
         let mut bench = Self {
+            elsewhere,
             left_out: prepared.left_out.clone(),
             events: contradicted.into_iter().map(|one| Event::contradicted(one, on)).collect(),
             ..Self::bare(campaign, prepared)
@@ -46,7 +55,7 @@ impl<'c> Bench<'c> {
     /// # Errors
     /// As for [`new`](Self::new).
     pub fn anew(&self) -> Result<Self, String> {
-        Self::new(self.campaign, self.prepared)
+        Self::of(self.campaign, self.prepared, self.elsewhere)
     }
 
     /// One that judges alike, fresh, in whose catalogue is also what has no name.
@@ -106,6 +115,7 @@ impl<'c> Bench<'c> {
             by_own_pose: false,
             by_own_form: false,
             wide: false,
+            elsewhere: true,
             moments: Moments::default(),
             settings: RefCell::default(),
             stored: Rc::default(),

@@ -170,6 +170,8 @@ pub struct Scene<'c> {
     pub compliance: Vec<f64>,
     /// When something may have slipped.
     pub moments: &'c Moments,
+    /// Whether what is read may be elsewhere on the tool.
+    pub elsewhere: bool,
 }
 
 impl Scene<'_> {

@@ -24,7 +24,10 @@ pub static KIND: Kind = Kind {
 /// Further off it is on another tool (m).
 const MOST: f64 = 0.5;
 
-fn offer(_: &Scene<'_>, offers: &mut Offers<'_>) {
+fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
+    if !scene.elsewhere {
+        return;
+    }
     let number = |k: usize| {
         Number::of_setup(
             POINT[k],
