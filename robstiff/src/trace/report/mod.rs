@@ -66,9 +66,9 @@ pub fn report(
     let undecided = setting.undecided(&model.named);
     let after = misfit(of_written, written, &undecided);
     let swaps = swaps(bench, &outcome.selection.model, &outcome.events);
-    let of_numbers = (&spread, &aliases[..]);
+    let of_numbers = (&spread, &aliases[..], &swaps[..]);
     let mut effects =
-        effects(bench, &setting, model, outcome, of_numbers, &swaps, (&undecided, after.holdout_rms), options);
+        effects(bench, &setting, model, outcome, of_numbers, (&undecided, after.holdout_rms), options);
     let slipped = effects.iter_mut().find(|named| named.effect.slipping().is_some());
     let may_be = same_as_wild(bench, &outcome.selection.model, &outcome.events);
     let isolated = isolated(prepared, outcome, after.holdout_rms, slipped, &may_be);

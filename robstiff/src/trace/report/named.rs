@@ -28,8 +28,7 @@ pub fn effects(
     setting: &Setting<'_>,
     fine: &Fitted,
     outcome: &Outcome,
-    (spread, aliases): (&DMatrix<f64>, &[Alias]),
-    swaps: &[Swap],
+    (spread, aliases, swaps): (&DMatrix<f64>, &[Alias], &[Swap]),
     (but, whole): (&[usize], f64),
     options: &Options,
 ) -> Vec<NamedEffect> {
