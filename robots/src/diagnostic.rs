@@ -3,6 +3,8 @@
 
 use std::fmt;
 
+use crate::text::{is_bidirectional, shown_in_line};
+
 /// One problem, with its place in the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
@@ -15,14 +17,17 @@ pub struct Diagnostic {
     /// How many characters the problem covers in its line; shown as at least 1.
     pub width: usize,
     /// The path inside the document, e.g. `joints[1].theta`; empty where there
-    /// is none.
+    /// is none. Of a long one its beginning.
     pub path: String,
-    /// What is wrong.
+    /// What is wrong; of a long message, which quotes the file, its beginning.
     pub message: String,
-    /// What would be right; empty where nothing can be said.
+    /// What would be right; empty where nothing can be said. Of a long text its beginning.
     pub help: String,
-    /// The line of the file the problem is in, without its line break.
+    /// The line of the file the problem is in, without its line break; of a long line what is
+    /// about the problem, between `..`.
     pub source_line: String,
+    /// How many characters of `source_line` are before the problem.
+    before: usize,
 }
 
 /// A line of a file.
@@ -44,16 +49,25 @@ impl Diagnostic {
         message: impl Into<String>,
         help: impl Into<String>,
     ) -> Self {
+        // A hundred problems in one line of megabytes are not to hold it a hundred times.
+        let (source_line, before) = around(line.text, column.saturating_sub(1));
         Self {
             file: file.into(),
             line: line.number,
             column,
             width,
             path: String::new(),
-            message: message.into(),
-            help: help.into(),
-            source_line: line.text.to_owned(),
+            message: beginning(message.into(), LONGEST),
+            help: beginning(help.into(), LONGEST_HELP),
+            source_line,
+            before,
         }
+    }
+
+    /// The same with a path inside the document.
+    #[must_use]
+    pub fn at(self, path: impl Into<String>) -> Self {
+        Self { path: beginning(path.into(), LONGEST), ..self }
     }
 
     /// A problem with a whole line.
@@ -86,12 +100,14 @@ fn columns(character: char) -> usize {
 }
 
 /// The text as shown: tabs as four spaces, since their width is the terminal's
-/// own; control characters, which could move its cursor, replaced.
+/// own; control characters, which could move its cursor, replaced; what turns the direction of
+/// writing spelled out.
 fn shown(text: impl Iterator<Item = char>) -> String {
     let mut line = String::new();
     for character in text {
         match character {
             '\t' => line.push_str("    "),
+            turn if is_bidirectional(turn) => line.extend(turn.escape_unicode()),
             control if control.is_control() => line.push('\u{fffd}'),
             other => line.push(other),
         }
@@ -103,12 +119,16 @@ fn shown(text: impl Iterator<Item = char>) -> String {
 /// a table's row or of a list that somebody's program wrote fills a terminal.
 const LONGEST: usize = 240;
 
+/// The longest help, in characters: all kinds of effects and all units are less.
+const LONGEST_HELP: usize = 2000;
+
 /// How much is shown before the place in a line of which only a part is.
 const BEFORE: usize = 80;
 
 /// A line, or of a long one what is about the `column` (from 0), and the column in that.
 fn around(line: &str, column: usize) -> (String, usize) {
-    let count = line.chars().count();
+    // Fewer bytes are fewer characters.
+    let count = if line.len() <= LONGEST { 0 } else { line.chars().count() };
     if count <= LONGEST {
         return (line.to_owned(), column);
     }
@@ -118,11 +138,12 @@ fn around(line: &str, column: usize) -> (String, usize) {
     (format!("{before}{part}{behind}"), column - from + before.len())
 }
 
-/// A message, or of a long one, which quotes the file, its beginning.
-fn beginning(message: &str) -> String {
-    let mut shown = message.chars();
-    let beginning: String = shown.by_ref().take(LONGEST).collect();
-    if shown.next().is_some() { beginning + " .." } else { beginning }
+/// A text, or of one with more characters than `most` its beginning.
+fn beginning(text: String, most: usize) -> String {
+    match text.char_indices().nth(most) {
+        Some((end, _)) => text[..end].to_owned() + " ..",
+        None => text,
+    }
 }
 
 fn shown_columns(text: impl Iterator<Item = char>) -> usize {
@@ -131,16 +152,15 @@ fn shown_columns(text: impl Iterator<Item = char>) -> usize {
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { file, line, column, width, path, message, help, source_line } = self;
+        let Self { file, line, column, width, path, message, help, source_line, before } = self;
         let gutter = line.to_string().len();
-        let (source_line, before) = &around(source_line, column.saturating_sub(1));
         let indent = shown_columns(source_line.chars().take(*before));
         let carets = shown_columns(source_line.chars().skip(*before).take(*width)).max(1);
         // They quote the file, too.
-        let [message, help] = [&beginning(message), help].map(|text| shown(text.chars()));
-        write!(f, "error: {message}\n{:gutter$}--> {file}:{line}:{column}", "")?;
+        let [message, help] = [message, help].map(|text| shown(text.chars()));
+        write!(f, "error: {message}\n{:gutter$}--> {}:{line}:{column}", "", shown_in_line(file))?;
         if !path.is_empty() {
-            write!(f, "  ({path})")?;
+            write!(f, "  ({})", shown_in_line(path))?;
         }
         let text = shown(source_line.chars());
         write!(f, "\n{:gutter$} |\n{line} | {}", "", text.trim_end())?;
@@ -162,8 +182,8 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// Readers record no more problems than these: nobody reads them, each costs a pass
-    /// over the text, and a column that is wrong is wrong in every row.
+    /// Readers record no more problems than these: nobody reads them, and a column that is wrong
+    /// is wrong in every row.
     pub const MOST: usize = 100;
 
     /// The problems in the order of the file, each said once; `None` if there
@@ -224,16 +244,7 @@ mod tests {
     use super::*;
 
     fn diagnostic(source_line: &str, column: usize, width: usize) -> Diagnostic {
-        Diagnostic {
-            file: "loads.csv".into(),
-            line: 12,
-            column,
-            width,
-            path: String::new(),
-            message: "not a number".into(),
-            help: String::new(),
-            source_line: source_line.into(),
-        }
+        Diagnostic::new("loads.csv", Line { number: 12, text: source_line }, (column, width), "not a number", "")
     }
 
     fn carets(source_line: &str, column: usize, width: usize) -> String {
@@ -252,8 +263,10 @@ mod tests {
         assert!(lines[3].starts_with("12 | .. ") && lines[3].ends_with(" .."), "{told}");
         let first = diagnostic(&row, 1, 4).to_string();
         assert!(first.lines().nth(3).is_some_and(|line| line.starts_with("12 | 1.25,")), "{first}");
-        let quoting = Diagnostic { message: "x".repeat(1000), ..diagnostic("1", 1, 1) }.to_string();
-        assert!(quoting.lines().all(|line| line.len() < 260), "{quoting}");
+        let long = "x".repeat(1000);
+        let line = Line { number: 1, text: "1" };
+        let quoting = Diagnostic::new("loads.csv", line, (1, 1), &*long, "").at(&*long).to_string();
+        assert!(quoting.lines().all(|line| line.len() < 280), "{quoting}");
     }
 
     #[test]
@@ -276,6 +289,27 @@ mod tests {
     fn a_place_beyond_the_line_still_shows_a_caret() {
         assert_eq!(carets("ab", 9, 4), "   |   ^");
         assert_eq!(carets("", 0, 0), "   | ^");
+    }
+
+    /// Of a hundred problems in a line of megabytes none holds the line.
+    #[test]
+    fn a_problem_holds_what_it_shows() {
+        let (line, name) = ("x,".repeat(1 << 20), "y".repeat(1 << 20));
+        let line = Line { number: 1, text: &line };
+        let problem = Diagnostic::new("loads.csv", line, (1 << 20, 1), &*name, &*name).at(&*name);
+        let held = [&problem.message, &problem.help, &problem.path, &problem.source_line].map(String::len);
+        assert!(held.iter().sum::<usize>() < 4000, "{held:?}");
+    }
+
+    /// A number may read as another one, and a caret is where it is.
+    #[test]
+    fn what_turns_the_direction_of_writing_is_spelled_out() {
+        let line = Line { number: 1, text: "1\u{202e}21,x" };
+        let told = Diagnostic::new("a\u{2066}\nb.csv", line, (6, 1), "`1\u{202e}21` is no number", "").to_string();
+        assert_eq!(
+            told,
+            "error: `1\\u{202e}21` is no number\n --> a\\u{2066}\u{fffd}b.csv:1:6\n  |\n1 | 1\\u{202e}21,x\n  |             ^"
+        );
     }
 
     #[test]

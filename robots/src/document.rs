@@ -20,24 +20,24 @@
 //! ```
 
 mod content;
-mod nesting;
+mod load;
 mod node;
+mod scalar;
 
-pub(crate) use content::Content;
-pub(crate) use nesting::too_deep;
+pub(crate) use content::{Content, Value};
 pub use node::{Map, Node};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Line};
-use content::{Step, extent, locate, source_line};
-use nesting::MOST_NESTED;
-use serde::Deserialize;
+use crate::text::Lines;
+use content::width;
+use load::{Refusal, load};
 use std::cell::RefCell;
 
 /// A YAML document and the problems found in it so far.
 #[derive(Debug)]
 pub struct Document {
     file: String,
-    text: String,
+    lines: Lines<String>,
     root: Content,
     /// Whether bare numbers are refused that are certainly in another unit than SI.
     wary: bool,
@@ -47,17 +47,18 @@ pub struct Document {
 impl Document {
     /// Reads a document; `file` is the name that problems show.
     ///
+    /// It takes a time and a memory that grow with the text alone, whatever that is: aliases share
+    /// what they repeat, and may not repeat much.
+    ///
     /// # Errors
-    /// What is not YAML, with its place.
+    /// What is not YAML, with its place; more text than
+    /// [`MOST_OF_DOCUMENT`](crate::text::MOST_OF_DOCUMENT), lists and maps that are nested too deep,
+    /// aliases that repeat too much.
     pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
         let text = without_byte_order_mark(text);
-        if let Some(place) = too_deep(text) {
-            return Err(nested(file, text, place).into());
-        }
-        let root = Content::deserialize(serde_yaml::Deserializer::from_str(text));
-        let root = root.map_err(|error| syntax_problem(file, text, &error))?;
-        let (file, text) = (file.to_owned(), text.to_owned());
-        let document = Self { file, text, root, wary: false, problems: RefCell::default() };
+        let root = load(text).map_err(|(refusal, _)| refused(file, text, refusal))?;
+        let (file, lines) = (file.to_owned(), Lines::new(text.to_owned()));
+        let document = Self { file, lines, root, wary: false, problems: RefCell::default() };
         document.root().check_keys();
         Ok(document)
     }
@@ -89,21 +90,28 @@ impl Document {
         }
     }
 
-    fn report(&self, steps: &[Step], path: &str, content: &Content, message: String, help: String) {
-        if self.problems.borrow().len() >= Diagnostics::MOST {
-            return;
-        }
-        let (line, column, rest) = self.place(steps);
-        let place = (column, extent(&rest, content));
-        let problem = Diagnostic::new(&self.file, line, place, message, help);
-        self.problems.borrow_mut().push(Diagnostic { path: path.to_owned(), ..problem });
+    /// Whether as many problems are recorded as anybody reads: what is said of more is not even
+    /// put into words.
+    fn is_full(&self) -> bool {
+        self.problems.borrow().len() >= Diagnostics::MOST
     }
 
-    /// The line and the column (from 1) of a part, and what stands in the line from there on.
-    fn place(&self, steps: &[Step]) -> (Line<'_>, usize, String) {
-        let (number, column) = locate(&self.text, steps);
-        let line = Line { number, text: source_line(&self.text, number) };
-        (line, column, line.text.chars().skip(column - 1).collect())
+    fn report(&self, content: &Content, path: String, message: String, help: String) {
+        if self.is_full() {
+            return;
+        }
+        let (number, column) = self.lines.place(content.at.start);
+        let line = Line { number, text: self.lines.line(number) };
+        let place = (column, width(self.rest_of_line(content), content));
+        let problem = Diagnostic::new(&self.file, line, place, message, help).at(path);
+        self.problems.borrow_mut().push(problem);
+    }
+
+    /// What stands in the line of a part from there on.
+    fn rest_of_line(&self, content: &Content) -> &str {
+        let start = content.at.start;
+        let end = self.lines.range(self.lines.number_at(start)).end;
+        &self.lines.text()[start..end.max(start)]
     }
 }
 
@@ -112,71 +120,19 @@ pub(crate) fn without_byte_order_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }
 
-/// The line (from 1) at which a second document begins, behind the end of the
-/// first if that is marked.
-fn second_document(text: &str) -> Option<usize> {
-    let is_marker = |line: &str| line.trim_end() == "..." || line.starts_with("... ");
-    let begins = |line: &str| line.trim_end() == "---" || line.starts_with("--- ");
-    let is_before = |line: &str| begins(line) || line.trim().is_empty() || line.starts_with(['#', '%']);
-    let mut ended = false;
-    let mut lines = text.lines().enumerate().skip_while(|(_, line)| is_before(line));
-    let second = lines.find(|(_, line)| {
-        let is_second = begins(line) || (ended && !is_before(line) && !is_marker(line));
-        ended |= is_marker(line);
-        is_second
-    });
-    second.map(|(index, _)| index + 1)
+/// The fields of the map that a text is, or begins to be before it breaks.
+pub(crate) fn fields_before_the_break(text: &str) -> Vec<(Content, Content)> {
+    match load(without_byte_order_mark(text)) {
+        Ok(Content { value: Value::Map(entries), .. }) => entries.to_vec(),
+        Ok(_) => Vec::new(),
+        Err((_, entries)) => entries,
+    }
 }
 
-/// The line (from 1) that is indented less than the first one, which the parser takes for
-/// a second document.
-fn outdented(text: &str) -> Option<usize> {
-    let says_something = |line: &str| !matches!(line.trim_start().chars().next(), None | Some('#' | '%'));
-    let indent = |line: &str| line.len() - line.trim_start_matches(' ').len();
-    let mut lines = text.lines().enumerate().filter(|(_, line)| says_something(line));
-    let first = indent(lines.next()?.1);
-    lines.find(|(_, line)| indent(line) < first).map(|(index, _)| index + 1)
-}
-
-/// Line and column of the byte that the parser tells in place of them, where it does: of
-/// characters that no YAML may have.
-fn place_of_byte(text: &str, message: &str) -> Option<(usize, usize)> {
-    let before = text.get(..message.rsplit_once(" at position ")?.1.parse().ok()?)?;
-    let line = before.rsplit('\n').next().unwrap_or_default();
-    Some((1 + before.matches('\n').count(), 1 + line.chars().count()))
-}
-
-fn nested(file: &str, text: &str, (line, column): (usize, usize)) -> Diagnostic {
-    Diagnostic::new(
-        file,
-        Line { number: line, text: text.lines().nth(line - 1).unwrap_or_default() },
-        (column, 1),
-        format!("this is nested more than {MOST_NESTED} deep"),
-        "close every bracket; a list or a map of a document is in a few others at most",
-    )
-}
-
-fn syntax_problem(file: &str, text: &str, error: &serde_yaml::Error) -> Diagnostic {
-    let told = error.to_string();
-    let place = place_of_byte(text, &told)
-        .or_else(|| error.location().map(|at| (at.line(), at.column())))
-        // The parser does not tell where a second document begins, nor what it takes for one.
-        .or_else(|| Some((second_document(text)?, 1)));
-    let outdented = if place.is_none() { outdented(text) } else { None };
-    let (line, column) = place.or(outdented.map(|line| (line, 1))).unwrap_or((1, 1));
-    // The place is shown on its own; a second place in the message is of use.
-    let message = told.replacen(&format!(" at line {line} column {column}"), "", 1);
-    let at = source_line(text, line).chars().nth(column - 1);
-    let message = match outdented {
-        Some(_) => "this line is indented less than the first",
-        None if at == Some('\t') => "a tab cannot stand here",
-        None => message.split(" at position ").next().unwrap_or_default(),
-    };
-    Diagnostic::new(
-        file,
-        Line { number: line, text: source_line(text, line) },
-        (column, 1),
-        format!("this cannot be read as YAML: {message}"),
-        "one document a file; indent with spaces, put a space after every `:`, close every bracket and quote",
-    )
+fn refused(file: &str, text: &str, Refusal { at, message, help }: Refusal) -> Diagnostic {
+    let lines = Lines::new(text);
+    let (number, column) = lines.place(at.start);
+    let end = at.end.min(lines.range(number).end).max(at.start);
+    let place = (column, text.get(at.start..end).unwrap_or_default().chars().count());
+    Diagnostic::new(file, Line { number, text: lines.line(number) }, place, message, help)
 }

@@ -111,13 +111,16 @@ impl Effect {
     /// Whether another is one with it, whatever their numbers: of the same name, or an error of
     /// theta beside the zero offset of the joint that turns there.
     pub fn is_same(&self, other: &Self) -> bool {
-        let zero = |effect: &Self| match *effect {
-            Self::JointZeroOffset { joint, .. } => Some(joint),
-            Self::DhError { entry: DhEntry::Theta(row), .. } => Some(row),
-            _ => None,
-        };
-        let of_one_name = self.kind() == other.kind() && self.place() == other.place();
-        of_one_name || zero(self).is_some_and(|joint| zero(other) == Some(joint))
+        self.number() == other.number()
+    }
+
+    /// The number of the robot that it is, by kind and place: a joint's zero is the same as its
+    /// `theta`.
+    pub(crate) const fn number(&self) -> (&'static str, Place) {
+        match *self {
+            Self::DhError { entry: DhEntry::Theta(joint), .. } => ("joint_zero_offset", Place::Joint(joint)),
+            _ => (self.kind(), self.place()),
+        }
     }
 
     /// What the kind's numbers are, with this effect's, in order.

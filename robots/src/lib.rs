@@ -3,7 +3,8 @@
 //! [`effect`] holds the catalogue of effects, with their physics, and the plain
 //! types that the runtime shares (`no_std`, no allocation). With the feature
 //! `read` (on by default) come the [`Description`] and what reads, checks and
-//! writes one, with `urdf` what makes one from a URDF file.
+//! writes one, with `urdf` what makes one from a URDF file, with `table` what reads a CSV
+//! file of numbers.
 #![cfg_attr(not(feature = "read"), no_std)]
 
 pub mod angle;
@@ -25,7 +26,12 @@ pub mod quantity;
 #[cfg(feature = "read")]
 mod read;
 #[cfg(feature = "read")]
+#[doc(hidden)]
+pub mod samples;
+#[cfg(feature = "read")]
 mod suggest;
+#[cfg(feature = "table")]
+pub mod table;
 #[cfg(feature = "read")]
 pub mod text;
 #[cfg(feature = "read")]

@@ -39,7 +39,9 @@ impl fmt::Display for ReadError {
             Self::Io { path, .. } if path.as_os_str() == "-" => {
                 f.write_str("error: `-` does not stand for standard input; name a file")
             }
-            Self::Io { path, error } => write!(f, "error: cannot read {}: {error}", path.display()),
+            Self::Io { path, error } => {
+                write!(f, "error: cannot read {}: {error}", text::shown_in_line(&path.display().to_string()))
+            }
             Self::Invalid(problems) => problems.fmt(f),
         }
     }
@@ -61,7 +63,7 @@ impl Description {
     /// A file that cannot be read, and everything [`parse`](Self::parse) finds.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
         let path = path.as_ref();
-        Self::parse(&path.display().to_string(), &text::read(path)?).map_err(ReadError::Invalid)
+        Self::parse(&path.display().to_string(), &text::read(path, text::MOST_OF_DOCUMENT)?).map_err(ReadError::Invalid)
     }
 
     /// Reads a description; `file` is the name that problems show.

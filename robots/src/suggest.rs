@@ -1,10 +1,18 @@
 //! What a misspelt word was probably meant to be.
 
+/// The longest word, in bytes, of which it is asked what it was meant to be: how many edits are
+/// between two words takes a time that grows with the product of their lengths.
+const LONGEST: usize = 100;
+
 /// The candidate nearest to `word`, if one is near enough to be meant.
 pub(crate) fn closest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
+    if word.len() > LONGEST {
+        return None;
+    }
     let allowed = (word.chars().count() / 3).max(1);
     candidates
         .into_iter()
+        .filter(|candidate| candidate.len() <= 2 * LONGEST)
         .map(|candidate| (distance(&word.to_lowercase(), &candidate.to_lowercase()), candidate))
         .filter(|(distance, candidate)| *distance <= allowed && *distance < candidate.chars().count())
         .min_by_key(|(distance, _)| *distance)
@@ -69,5 +77,8 @@ mod tests {
         assert_eq!(closest("Complience", ["theta", "compliance"]), Some("compliance"));
         assert_eq!(closest("stiffness", ["theta", "compliance"]), None);
         assert_eq!(closest("x", ["d", "a"]), None);
+        // Nobody means a word like this one, and to compare two of a megabyte takes hours.
+        let long = "a".repeat(1 << 20);
+        assert_eq!((closest(&long, [&*long]), closest("theta", [&*long])), (None, None));
     }
 }

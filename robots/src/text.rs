@@ -1,17 +1,72 @@
 //! Files as text.
 
-use crate::diagnostic::{Diagnostic, Diagnostics, Line};
-use crate::read::ReadError;
+mod lines;
+mod shown;
+
+use std::fs::{self, File, Metadata};
+use std::io::{self, Read as _};
 use std::path::Path;
 
-/// The text of a file.
+use crate::diagnostic::{Diagnostic, Diagnostics, Line};
+use crate::read::ReadError;
+
+pub use lines::Lines;
+pub use shown::{is_bidirectional, shown, shown_in_line};
+
+/// The most bytes of a YAML document; the largest that people write have some ten thousand.
+pub const MOST_OF_DOCUMENT: usize = 1 << 20;
+
+/// The most bytes of a URDF file. It names its meshes and does not hold them.
+pub const MOST_OF_URDF: usize = 16 << 20;
+
+/// The most bytes of a table. Some million rows are less.
+pub const MOST_OF_TABLE: usize = 256 << 20;
+
+/// The text of a file with so many bytes at most.
 ///
 /// # Errors
-/// A file that cannot be read; one that is not UTF-8, with the place where it
-/// ceases to be.
-pub fn read(path: &Path) -> Result<String, ReadError> {
-    let bytes = std::fs::read(path).map_err(|error| ReadError::Io { path: path.to_owned(), error })?;
+/// A file that cannot be read, as [`bytes`] has it; one that is not UTF-8, with the place where
+/// it ceases to be.
+pub fn read(path: &Path, most: usize) -> Result<String, ReadError> {
+    let bytes = bytes(path, most).map_err(|error| ReadError::Io { path: path.to_owned(), error })?;
     decoded(&path.display().to_string(), bytes).map_err(ReadError::Invalid)
+}
+
+/// What is in a regular file with so many bytes at most.
+///
+/// # Errors
+/// A file that cannot be read; one that is none, such as a folder, a pipe or a device, which
+/// may never end; a larger one, of which no more is read.
+pub fn bytes(path: &Path, most: usize) -> io::Result<Vec<u8>> {
+    // Before it is opened: a pipe waits for its writer.
+    check(&fs::metadata(path)?, most)?;
+    let file = File::open(path)?;
+    // By now another file may have the name.
+    let found = file.metadata()?;
+    check(&found, most)?;
+    let mut bytes = Vec::with_capacity(usize::try_from(found.len()).unwrap_or_default());
+    // It may grow, or not say how long it is.
+    file.take(most as u64 + 1).read_to_end(&mut bytes)?;
+    if bytes.len() > most { Err(too_large(most)) } else { Ok(bytes) }
+}
+
+fn check(found: &Metadata, most: usize) -> io::Result<()> {
+    if found.is_dir() {
+        return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder"));
+    }
+    if !found.is_file() {
+        return Err(io::Error::other("it is a pipe or a device, and only regular files are read"));
+    }
+    if found.len() > most as u64 { Err(too_large(most)) } else { Ok(()) }
+}
+
+fn too_large(most: usize) -> io::Error {
+    io::Error::new(io::ErrorKind::FileTooLarge, format!("it is {}", larger(most)))
+}
+
+/// `larger than 1 MiB, the most that is read`.
+pub(crate) fn larger(most: usize) -> String {
+    format!("larger than {} MiB, the most that is read of such a file", most >> 20)
 }
 
 /// The text of a file's bytes; `file` is the name that problems show.
@@ -104,6 +159,32 @@ mod tests {
             assert!(told.starts_with(&shown) && told.ends_with("save the file as UTF-8"), "{told}");
         }
         assert_eq!(decoded("arm.yaml", "name: Ä".into()).as_deref(), Ok("name: Ä"));
+    }
+
+    #[test]
+    fn no_more_of_a_file_is_read_than_may_be() {
+        let path = std::env::temp_dir().join(format!("robstiff-text-{}", std::process::id()));
+        // A file with a hole takes no room.
+        File::create(&path).and_then(|file| file.set_len(1 << 40)).unwrap();
+        let told = read(&path, 1 << 20).unwrap_err().to_string();
+        assert!(told.ends_with("it is larger than 1 MiB, the most that is read of such a file"), "{told}");
+        fs::write(&path, "name: A").unwrap();
+        assert_eq!(read(&path, 7).unwrap(), "name: A");
+        assert_eq!(bytes(&path, 6).unwrap_err().kind(), io::ErrorKind::FileTooLarge);
+        fs::remove_file(&path).unwrap();
+        assert_eq!(read(&std::env::temp_dir(), 7).unwrap_err().to_string().rsplit(": ").next(), Some("it is a folder"));
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn what_is_no_regular_file_is_not_opened() {
+        for device in ["/dev/zero", "/dev/null"] {
+            let Err(error) = bytes(Path::new(device), 1 << 20) else { panic!("{device} is no file") };
+            assert!(error.to_string().contains("only regular files are read"), "{error}");
+        }
+        // Files that say that they are empty are read no further either.
+        assert!(bytes(Path::new("/proc/self/environ"), 1 << 20).is_ok());
+        assert!(bytes(Path::new("/proc/self/maps"), 8).is_err_and(|error| error.kind() == io::ErrorKind::FileTooLarge));
     }
 
     #[test]

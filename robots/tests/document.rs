@@ -59,7 +59,7 @@ fn quotes_that_are_escaped_end_nothing() {
 fn places_across_lines() {
     assert_places(
         "# first\n\n'k': |\n  long\n  text\nj: >-\n  folded\nf: {x: 1,\n    y: 2}\nw: plain text\n  goes on\n",
-        &[(3, 1, 3), (3, 6, 1), (6, 4, 1), (8, 4, 6), (8, 8, 1), (9, 8, 1), (10, 4, 10)],
+        &[(3, 1, 3), (4, 3, 4), (7, 3, 6), (8, 4, 6), (8, 8, 1), (9, 8, 1), (10, 4, 10)],
     );
 }
 
@@ -75,7 +75,7 @@ fn places_with_other_line_ends_and_a_byte_order_mark() {
 #[test]
 fn what_an_alias_repeats_is_where_the_anchor_is() {
     let text = "a: &x [1 mm]\nb: *x\n";
-    assert_places(text, &[(1, 1, 1), (1, 4, 8), (1, 4, 8), (1, 8, 4), (1, 8, 4)]);
+    assert_places(text, &[(1, 1, 1), (1, 7, 6), (1, 7, 6), (1, 8, 4), (1, 8, 4)]);
 }
 
 #[test]
@@ -112,11 +112,37 @@ fn hostile_documents_are_refused() {
     assert_eq!(document.finish(Some(())).unwrap_err().iter().count(), 100);
 }
 
-/// The parser takes a minute for as many brackets.
 #[test]
-fn what_is_nested_too_deep_is_refused_at_once() {
+fn what_is_nested_too_deep_is_refused() {
+    for open in ["[", "{a: ", "- ", "? "] {
+        let text = |count: usize| format!("name: A\nb:\n {}", open.repeat(count));
+        let told = Document::parse("deep.yaml", &text(100_000)).map(|_| ()).unwrap_err().to_string();
+        assert!(told.starts_with("error: this is nested more than 128 deep\n --> deep.yaml:3:"), "{open}: {told}");
+    }
+    let by_indentation: String = (0..1000).map(|depth| format!("{}a:\n", " ".repeat(depth))).collect();
+    let told = Document::parse("deep.yaml", &by_indentation).map(|_| ()).unwrap_err().to_string();
+    assert!(told.contains("nested more than 128 deep\n   --> deep.yaml:129:129"), "{told}");
     let text = format!("name: A\njoints: {}\n", "[".repeat(100_000));
     let told = Document::parse("deep.yaml", &text).unwrap_err().to_string();
     assert!(told.starts_with("error: this is nested more than 128 deep\n --> deep.yaml:2:137"), "{told}");
-    assert_eq!(Description::outline(&text), Outline::default());
+    assert_eq!(Description::outline(&text), Outline { name: Some("A".into()), joints: None });
+}
+
+/// Where it breaks is a line or more behind the bracket that was to be closed.
+#[test]
+fn a_bracket_that_is_not_closed_is_told_with_its_line() {
+    let told = Document::parse("x.yaml", "name: [bench\nrobot: robot.yaml\n").map(|_| ()).unwrap_err().to_string();
+    assert!(told.contains(", and the `[` of line 1 is not closed\n --> x.yaml:2:"), "{told}");
+}
+
+/// At the end of a text without a last line break the parser counts a line more.
+#[test]
+fn no_problem_is_behind_the_last_line() {
+    for (text, place) in [("a: 1\nb", (2, 2)), ("a: 1\nb\n", (3, 1)), ("a: 1\r\n<", (2, 2))] {
+        let problems = Document::parse("x.yaml", text).unwrap_err();
+        let problem = problems.iter().next().unwrap();
+        assert_eq!((problem.line, problem.column), place, "{text:?}: {problem}");
+    }
+    let nothing = Document::parse("x.yaml", "# a remark").unwrap();
+    assert_eq!(places(nothing, |document| vec![document.root()]), [(1, 11, 0)]);
 }

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
 use proc_macro2::Span;
-use robstiff_robots::{catalogue, text};
+use robstiff_robots::catalogue;
+use robstiff_robots::text::{self, MOST_OF_DOCUMENT};
 
 /// A description that was found.
 pub(crate) struct Located {
@@ -36,7 +37,7 @@ pub(crate) fn locate(file: &str, call: Span) -> Result<Located, String> {
         if path.is_dir() {
             continue;
         }
-        match fs::read(&path) {
+        match text::bytes(&path, MOST_OF_DOCUMENT) {
             Ok(bytes) => {
                 let path =
                     fs::canonicalize(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;

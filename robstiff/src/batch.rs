@@ -43,12 +43,9 @@
 //! ```
 //!
 //! Results are those of the single pose but for rounding, 1e-13 of the largest entry
-//! for `f64` coordinates of a few turns. A single pose adds up the angles of parallel
-//! joints, which costs large ones their last places; a batch adds up by the sines of
-//! each, and is the more exact one where they differ: by 6e-13 at 1e4 rad and 5e-11
-//! at 1e6 rad, of `f32` by 1.5e-5 at 500 rad. Coordinates beyond the domain of
-//! robstiff's sines (1.6e6 rad of `f64`) are computed as single poses are, but those of a
-//! [`Grid`] by the sines of each even then.
+//! for `f64`, however large coordinates are. Blocks with coordinates beyond 1.6e6 rad (of `f32`
+//! 3000 rad) are computed as single poses are, but those of a [`Grid`] by the sines of each even
+//! then.
 //!
 //! From the fastest on: [`compliance_blocks`], where results are used and not
 //! kept; [`compliance_by_entry`], unless the slices begin a multiple of 4096

@@ -164,6 +164,11 @@ impl<T: Real, const K: usize> Real for Dual<T, K> {
     }
 
     #[inline]
+    fn wrapped(self) -> Self {
+        Self { value: self.value.wrapped(), ..self }
+    }
+
+    #[inline]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         self.chain(root, (root + root).recip())

@@ -18,16 +18,14 @@ use nalgebra::{Matrix3, Matrix4, Matrix6, Matrix6x3, SVector, Vector3, Vector6};
 
 use crate::{Convention, Effect, JointKind, Real, Robot};
 
-#[cfg(feature = "identify")]
+#[cfg(feature = "generic")]
 mod deformed;
 mod laws;
 #[cfg(all(test, feature = "generic"))]
 mod tests;
 
-#[cfg(feature = "identify")]
-pub use deformed::{Deformed, deformed};
-#[cfg(feature = "identify")]
-pub(crate) use deformed::{Part, Rest, at_rest, displacement_at};
+#[cfg(feature = "generic")]
+pub use deformed::{Deformed, Part, Rest, at_rest, deformed, displacement_at};
 pub use laws::{
     Torque, commanded_rates, deviation, joint_turns, own_weight_torque, plays, share_of_preload, share_of_weight, turn,
     turn_about, turns_under,

@@ -15,6 +15,8 @@ use weight::Weight;
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod turns_tests;
 mod weight;
 
 /// A robot with `N` joints, built from a [`Description`] at run time.
@@ -142,12 +144,16 @@ impl<const N: usize> Generic<N> {
         })
     }
 
-    /// Where the joints stand at their coordinates, but for a sag.
+    /// Where the joints stand at their coordinates, but for a sag and for whole turns.
     fn upright<T: Real>(&self, q: &SVector<T, N>) -> SVector<T, N> {
         SVector::from_fn(|i, _| {
             let aside = self.effects.iter().filter(|effect| effect.row() == Some(i + 1));
             let aside = aside.filter_map(|effect| deviation(effect, q[i]));
-            aside.fold(q[i], |sum, aside| sum + aside)
+            let coordinate = match self.joints[i].kind {
+                JointKind::Revolute => q[i].wrapped(),
+                JointKind::Prismatic => q[i],
+            };
+            aside.fold(coordinate, |sum, aside| sum + aside)
         })
     }
 

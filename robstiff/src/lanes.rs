@@ -3,9 +3,10 @@
 use core::array;
 use core::ops::{Add, AddAssign, Index, Mul, MulAssign, Neg, Sub, SubAssign};
 
+use nalgebra::SVector;
 use num_traits::{One, Zero};
 
-use crate::Real;
+use crate::{Real, trig};
 
 /// `W` numbers that are computed with as one: a joint coordinate of `W` poses.
 ///
@@ -124,6 +125,30 @@ impl<T: Real, const W: usize> Real for Lanes<T, W> {
     }
 
     #[inline(always)]
+    fn wrapped(self) -> Self {
+        self.each(T::wrapped)
+    }
+
+    /// With one comparison for all coordinates of all lanes.
+    #[inline(always)]
+    fn sin_cos_of_sums<const N: usize, const K: usize>(
+        q: &SVector<Self, N>,
+        angles: impl Fn(&SVector<Self, N>) -> [Self; K],
+    ) -> [(Self, Self); K] {
+        let few_turns = T::of(trig::FEW_TURNS);
+        let mut largest = Self::splat(few_turns);
+        for coordinate in q.iter() {
+            // In this order a NaN is passed over.
+            largest = coordinate.max(-*coordinate).max(largest);
+        }
+        let mut q = *q;
+        if largest != Self::splat(few_turns) {
+            q.apply(|coordinate| *coordinate = coordinate.wrapped());
+        }
+        Self::sin_cos_all(angles(&q))
+    }
+
+    #[inline(always)]
     fn mul_add(self, factor: Self, summand: Self) -> Self {
         Self(array::from_fn(|i| self.0[i].mul_add(factor.0[i], summand.0[i])))
     }
@@ -156,7 +181,7 @@ impl<T: Real, const W: usize> Real for Lanes<T, W> {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{SVector, Vector6};
+    use nalgebra::Vector6;
 
     use super::*;
     use crate::Robot;

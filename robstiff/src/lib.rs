@@ -22,33 +22,15 @@
 //! - [`analysis`]: stiffness, directional stiffness, principal directions;
 //! - [`batch`]: slices of poses, several abreast; [`Lanes`] and [`Dual`]: vectors
 //!   and derivatives through the same generated code;
-//! - `campaign`, `triage`, `identify`, `trace` (feature `identify`): measured
-//!   data, what they say without a model, the joint compliances that fit them,
-//!   and the effects they show to be missing;
-//! - `plan`, `simulate` (likewise): what to measure next, and campaigns on an arm
-//!   that hides something, to try a measurement before making it;
-//! - `inverse`, `path` (feature `machining`): the joint coordinates of a pose of
-//!   the tool, and of a whole tool path;
-//! - `milling`, `stability` (likewise): the force of an end mill, and the depths
-//!   of cut at which the arm chatters by mode coupling;
-//! - `map` (likewise): stiffness and deviation over joint space, planes and boxes,
-//!   as a stream, and where a workpiece is best put;
-//! - `deviation`, `compensation` (likewise): how far a cut pushes the tool off a
-//!   path, and the path that makes up for it;
-//! - `online` (likewise): correcting the joint targets while cutting.
+//!
+//! Measured data are in `robstiff-identify` (the joint compliances that fit them, the effects
+//! they show to be missing, what to measure next), machining is in `robstiff-machining` (tool
+//! paths, milling forces, deviation and compensation, stability, maps).
 //!
 //! Without default features the crate is `no_std` and allocates nothing.
-//!
-//! Tracing and planning draw thousands of samples, which a build without optimisation takes
-//! minutes for. A debug build is as quick with this in the `Cargo.toml` of the workspace:
-//!
-//! ```toml
-//! [profile.dev.package.robstiff]
-//! opt-level = 2
-//! ```
 #![no_std]
 
-#[cfg(feature = "std")]
+#[cfg(any(feature = "std", test))]
 extern crate std;
 
 // The code of `robot!` names this crate; the tests are in it.
@@ -58,54 +40,18 @@ extern crate self as robstiff;
 pub mod analysis;
 pub mod batch;
 mod blocks;
-#[cfg(feature = "identify")]
-pub mod campaign;
 mod columns;
-#[cfg(feature = "machining")]
-pub mod compensation;
-#[cfg(feature = "machining")]
-pub mod deviation;
 mod dual;
 pub mod elements;
 #[cfg(feature = "generic")]
 pub mod generic;
-#[cfg(any(feature = "identify", feature = "machining"))]
-mod golden;
-#[cfg(feature = "identify")]
-pub mod identify;
-#[cfg(feature = "machining")]
-pub mod inverse;
 mod lanes;
-#[cfg(feature = "machining")]
-pub mod map;
-#[cfg(feature = "machining")]
-pub mod milling;
-#[cfg(feature = "machining")]
-pub mod online;
-#[cfg(feature = "machining")]
-pub mod path;
-#[cfg(feature = "identify")]
-pub mod plan;
-#[cfg(feature = "identify")]
-mod probability;
 pub mod real;
 pub mod robot;
 #[cfg(all(test, feature = "generic"))]
 mod samples;
-#[cfg(feature = "identify")]
-pub mod simulate;
-#[cfg(feature = "machining")]
-pub mod stability;
 mod state;
-#[cfg(any(feature = "identify", feature = "machining"))]
-mod table;
-#[cfg(feature = "identify")]
-pub mod trace;
-#[cfg(feature = "identify")]
-pub mod triage;
 mod trig;
-#[cfg(feature = "identify")]
-mod words;
 
 pub use dual::Dual;
 #[cfg(feature = "generic")]

@@ -5,13 +5,15 @@
 //! in the lanes of vectors ([`Abreast`]):
 //!
 //! - those of a pose, which waits more than it computes, into polynomials of whole angles
-//!   ([`near`]), within [`Float::BOUND_OF_POSES`] of the truth;
+//!   ([`near`]), within [`Float::BOUND_OF_POSES`] of the truth. Joint coordinates of more than
+//!   five turns lose whole turns before they are added ([`wrapped`]);
 //! - those of batches into shorter polynomials of what is left when multiples of pi/2 are
 //!   taken away ([`reduced`]), within [`Float::BOUND`], or into tables where these are
 //!   faster: with AVX2 in memory (`circle.rs`), of `f64` with AVX-512 in registers
 //!   (`tables.rs`);
-//! - where one of them is beyond [`Float::DOMAIN`], an infinity or a NaN, all to the
-//!   platform's functions.
+//! - where one of a block of a batch is beyond [`Float::DOMAIN`], an infinity or a NaN, all of
+//!   the block as those of poses. Beyond the domain whole turns are taken away in whole numbers
+//!   (`payne_hanek.rs`), which is exact however large an angle is.
 //!
 //! Everywhere `sin 0 = 0`, `cos 0 = 1`, and the symmetries of sine and cosine hold exactly.
 //!
@@ -22,14 +24,17 @@ mod abreast;
 pub(crate) mod circle;
 mod float;
 mod near;
+mod payne_hanek;
 mod reduced;
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 pub(crate) mod tables;
-#[cfg(all(test, feature = "std"))]
+#[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod turns_tests;
 
 use abreast::{Abreast, Pairs, Vector};
-pub(crate) use float::{FUSED, Float};
+pub(crate) use float::{FEW_TURNS, FUSED, Float};
 pub(crate) use reduced::{sin_cos_each, within_domain};
 
 /// `a * b + c`, rounded once if `FUSED`.
@@ -38,19 +43,29 @@ pub(crate) fn mul_add<F: Float, const FUSED: bool>(a: F, b: F, c: F) -> F {
     abreast::mul_add::<F, F, FUSED>(a, b, c)
 }
 
+/// An angle of many turns less whole turns, any other as it is: its sine and cosine stay, but
+/// it loses no place where something is added to it.
+#[inline(always)]
+pub(crate) fn wrapped<F: Float>(angle: F) -> F {
+    if angle.is_few_turns() { angle } else { without_turns(angle) }
+}
+
+#[cold]
+#[inline(never)]
+fn without_turns<F: Float>(angle: F) -> F {
+    if angle.is_in_domain() { near::wrapped::<F, F, FUSED>(angle) } else { angle.without_turns() }
+}
+
 /// Sine and cosine of one angle.
 #[inline]
 pub(crate) fn sin_cos<F: Float>(angle: F) -> (F, F) {
     if cfg!(feature = "platform-trig") {
-        return angle.platform_sin_cos();
+        return wrapped(angle).platform_sin_cos();
     }
     if !near::room::<F, F>(angle).is_negative_somewhere() {
         return near::sin_cos::<F, F, FUSED>(angle);
     }
-    if near::room_in_domain::<F, F>(angle).is_negative_somewhere() {
-        return angle.platform_sin_cos();
-    }
-    near::sin_cos::<F, F, FUSED>(near::wrapped::<F, F, FUSED>(angle))
+    near::sin_cos::<F, F, FUSED>(near::wrapped::<F, F, FUSED>(wrapped(angle)))
 }
 
 /// The angles of a pose in vectors: whole ones and, of what is left, each twice if there is
@@ -129,19 +144,26 @@ impl<F: Float, const K: usize> Angles<F, K> {
 }
 
 /// Sines and cosines of several angles, `(sin, cos)` each, times constants if these are there.
+/// The angles are sums of whole multiples of coordinates, and of constants, as `angles` adds
+/// them.
 ///
 /// Nothing here has its address taken on the way that is usual, so that angles
 /// stay in registers, and results but for [`BY_MEMORY`]: numbers stored one by one
 /// and loaded as a vector would have to wait for the cache.
 #[inline(always)]
-pub(crate) fn sin_cos_all<F: Float, const K: usize>(angles: [F; K], factors: Option<[(F, F); K]>) -> [(F, F); K] {
-    let mut gathered = Angles::gather(&angles);
+pub(crate) fn sin_cos_of_sums<F: Float, const N: usize, const K: usize>(
+    coordinates: [F; N],
+    angles: impl Fn([F; N]) -> [F; K],
+    factors: Option<[(F, F); K]>,
+) -> [(F, F); K] {
+    let mut gathered = Angles::gather(&angles(coordinates));
     let are_near = !gathered.map(near::room).is_negative_somewhere();
-    let are_strange = !are_near && gathered.map(near::room_in_domain).is_negative_somewhere();
-    // Both branches end in vectors. If they ended in numbers, the compiler would make other vectors of those.
-    let (sines, cosines, pairs) = if cfg!(feature = "platform-trig") || are_strange {
-        let copies = angles;
-        let (mut sines, mut cosines) = one_by_one(&copies);
+    let are_many_turns = !are_near && gathered.map(near::room_in_few_turns).is_negative_somewhere();
+    // Both branches end in vectors. If they ended in numbers, the compiler would make other vectors of those. The call
+    // leads back to none of what is usual, and gets how angles are added as a value: else there would be a frame.
+    let (sines, cosines, pairs) = if cfg!(feature = "platform-trig") || are_many_turns {
+        let copies = coordinates;
+        let (mut sines, mut cosines) = one_by_one(&copies, angles);
         if let Some(factors) = factors {
             for (i, (by_sin, by_cos)) in factors.into_iter().enumerate() {
                 (sines[i], cosines[i]) = (sines[i] * by_sin, cosines[i] * by_cos);
@@ -184,7 +206,10 @@ fn handed_on<V>(vectors: V) -> V {
 
 #[cold]
 #[inline(never)]
-fn one_by_one<F: Float, const K: usize>(angles: &[F; K]) -> ([F; K], [F; K]) {
-    let both = angles.map(F::platform_sin_cos);
+fn one_by_one<F: Float, const N: usize, const K: usize>(
+    coordinates: &[F; N],
+    angles: impl Fn([F; N]) -> [F; K],
+) -> ([F; K], [F; K]) {
+    let both = angles(coordinates.map(wrapped)).map(sin_cos);
     (both.map(|(sin, _)| sin), both.map(|(_, cos)| cos))
 }

@@ -447,15 +447,18 @@ impl Robot<6> for EveryEffect {
         );
         let k22 = T::of(-(Self::A3 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL)));
         let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s6o, c6o), (s1o, c1o),
-        ] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[3] + T::of(Self::THETA4),
-            q[4],
-            q[5],
-            q[5] + T::of(Self::THETA6 + Self::TOOL_YAW),
-            q[0] + T::of(Self::THETA1),
-        ]);
+        ] = T::sin_cos_of_sums(
+            q,
+            |q| [
+                q[1] + q[2],
+                q[1],
+                q[3] + T::of(Self::THETA4),
+                q[4],
+                q[5],
+                q[5] + T::of(Self::THETA6 + Self::TOOL_YAW),
+                q[0] + T::of(Self::THETA1),
+            ],
+        );
 
         // Axes and origins, from the base to the tip.
         let t1 = base_x + (k6 * c1o + k8 * s1o + k11);
@@ -622,14 +625,17 @@ impl Robot<6> for EveryEffect {
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k21 = T::of(-(Self::A3 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL)));
-        let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[3] + T::of(Self::THETA4),
-            q[4],
-            q[5],
-            q[0] + T::of(Self::THETA1),
-        ]);
+        let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_of_sums(
+            q,
+            |q| [
+                q[1] + q[2],
+                q[1],
+                q[3] + T::of(Self::THETA4),
+                q[4],
+                q[5],
+                q[0] + T::of(Self::THETA1),
+            ],
+        );
 
         // Axes and origins, from the base to the tip.
         let p1_x = base_x + (k6 * c1o + k8 * s1o + k11);
@@ -838,14 +844,17 @@ impl Robot<6> for EveryEffect {
                     - Self::COS_BASE_ROLL * (Self::SIN_BASE_PITCH * Self::SIN_BASE_YAW)),
         );
         let k22 = T::of(-(Self::A3 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL)));
-        let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[3] + T::of(Self::THETA4),
-            q[4],
-            q[5],
-            q[0] + T::of(Self::THETA1),
-        ]);
+        let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_of_sums(
+            q,
+            |q| [
+                q[1] + q[2],
+                q[1],
+                q[3] + T::of(Self::THETA4),
+                q[4],
+                q[5],
+                q[0] + T::of(Self::THETA1),
+            ],
+        );
 
         // Axes and origins, from the base to the tip.
         let t1 = k1 * c1o + k4 * s1o;
@@ -1178,14 +1187,17 @@ impl Robot<6> for EveryEffect {
                 * ((Self::TORSION2 - Self::BENDING2) * (1.0 / (Self::A2 * Self::A2))),
         );
         let k22 = T::of(Self::COUPLING2_3 + Self::COUPLING2_3);
-        let [(s6o, c6o), (s5, c5), (s4o, c4o), (s3, c3), (s23, c23), (s1o, c1o)] = T::sin_cos_all([
-            q[5] + T::of(Self::TOOL_YAW + Self::THETA6),
-            q[4],
-            q[3] + T::of(Self::THETA4),
-            q[2],
-            q[1] + q[2],
-            q[0] + T::of(Self::THETA1),
-        ]);
+        let [(s6o, c6o), (s5, c5), (s4o, c4o), (s3, c3), (s23, c23), (s1o, c1o)] = T::sin_cos_of_sums(
+            q,
+            |q| [
+                q[5] + T::of(Self::TOOL_YAW + Self::THETA6),
+                q[4],
+                q[3] + T::of(Self::THETA4),
+                q[2],
+                q[1] + q[2],
+                q[0] + T::of(Self::THETA1),
+            ],
+        );
 
         // From joint 6 to the TCP.
         let t1 = r6x * c6o;
@@ -1703,14 +1715,17 @@ impl Robot<6> for EveryEffect {
             (Self::A3 * Self::A3 + Self::D3 * Self::D3) * (Self::BENDING3 * (1.0 / 12.0)),
         );
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[3] + T::of(Self::THETA4),
-            q[4],
-            q[5],
-            q[0] + T::of(Self::THETA1),
-        ]);
+        let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_of_sums(
+            q,
+            |q| [
+                q[1] + q[2],
+                q[1],
+                q[3] + T::of(Self::THETA4),
+                q[4],
+                q[5],
+                q[0] + T::of(Self::THETA1),
+            ],
+        );
 
         // Axes and origins, from the base to the tip.
         let t1 = k3 * c1o + k6 * s1o;
@@ -2049,14 +2064,17 @@ impl Robot<6> for EveryEffect {
         );
         let k22 = T::of(-(Self::A3 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL)));
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[3] + T::of(Self::THETA4),
-            q[4],
-            q[5],
-            q[0] + T::of(Self::THETA1),
-        ]);
+        let [(s23, c23), (s2, c2), (s4o, c4o), (s5, c5), (s6, c6), (s1o, c1o)] = T::sin_cos_of_sums(
+            q,
+            |q| [
+                q[1] + q[2],
+                q[1],
+                q[3] + T::of(Self::THETA4),
+                q[4],
+                q[5],
+                q[0] + T::of(Self::THETA1),
+            ],
+        );
 
         // Axes and origins, from the base to the tip.
         let t1 = k1 * c1o + k4 * s1o;
@@ -2483,16 +2501,19 @@ impl Robot<6> for EveryEffect {
         );
         let k44 = T::of(Self::COUPLING2_3 + Self::COUPLING2_3);
         let [(s23, c23), (s2, c2), (s3, c3), (s4o, c4o), (s5, c5), (s6, c6), (s6o, c6o),
-        (s1o, c1o)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[2],
-            q[3] + T::of(Self::THETA4),
-            q[4],
-            q[5],
-            q[5] + T::of(Self::THETA6 + Self::TOOL_YAW),
-            q[0] + T::of(Self::THETA1),
-        ]);
+        (s1o, c1o)] = T::sin_cos_of_sums(
+            q,
+            |q| [
+                q[1] + q[2],
+                q[1],
+                q[2],
+                q[3] + T::of(Self::THETA4),
+                q[4],
+                q[5],
+                q[5] + T::of(Self::THETA6 + Self::TOOL_YAW),
+                q[0] + T::of(Self::THETA1),
+            ],
+        );
 
         // Axes and origins, from the base to the tip.
         let t1 = k6 * c1o + k8 * s1o + k11;

@@ -583,17 +583,20 @@ impl Robot<7> for EveryLaw {
         );
         let k14 = T::of(Self::D2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
-        (s7, c7), (s7o, c7o)] = T::sin_cos_all([
-            q[1] + T::of(Self::THETA2),
-            q[2],
-            T::of(2.0) * q[3],
-            q[3] + T::of(Self::THETA4),
-            q[4],
-            q[5],
-            T::of(41.0) * q[6],
-            q[6],
-            q[6] + T::of(Self::THETA7 + Self::TOOL_YAW),
-        ]);
+        (s7, c7), (s7o, c7o)] = T::sin_cos_of_sums(
+            q,
+            |q| [
+                q[1] + T::of(Self::THETA2),
+                q[2],
+                T::of(2.0) * q[3],
+                q[3] + T::of(Self::THETA4),
+                q[4],
+                q[5],
+                T::of(41.0) * q[6],
+                q[6],
+                q[6] + T::of(Self::THETA7 + Self::TOOL_YAW),
+            ],
+        );
 
         // Of the periodic angle error of joint 3.
         let e3 = sin_error3 * s3 + cos_error3 * c3;
@@ -776,16 +779,19 @@ impl Robot<7> for EveryLaw {
         );
         let k11 = T::of(Self::D2 * (Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
-        (s7, c7)] = T::sin_cos_all([
-            q[1] + T::of(Self::THETA2),
-            q[2],
-            T::of(2.0) * q[3],
-            q[3] + T::of(Self::THETA4),
-            q[4],
-            q[5],
-            T::of(41.0) * q[6],
-            q[6],
-        ]);
+        (s7, c7)] = T::sin_cos_of_sums(
+            q,
+            |q| [
+                q[1] + T::of(Self::THETA2),
+                q[2],
+                T::of(2.0) * q[3],
+                q[3] + T::of(Self::THETA4),
+                q[4],
+                q[5],
+                T::of(41.0) * q[6],
+                q[6],
+            ],
+        );
 
         // Of the periodic angle error of joint 3.
         let e3 = sin_error3 * s3 + cos_error3 * c3;
@@ -1011,16 +1017,19 @@ impl Robot<7> for EveryLaw {
         );
         let k10 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
-        (s7, c7)] = T::sin_cos_all([
-            q[1] + T::of(Self::THETA2),
-            q[2],
-            T::of(2.0) * q[3],
-            q[3] + T::of(Self::THETA4),
-            q[4],
-            q[5],
-            T::of(41.0) * q[6],
-            q[6],
-        ]);
+        (s7, c7)] = T::sin_cos_of_sums(
+            q,
+            |q| [
+                q[1] + T::of(Self::THETA2),
+                q[2],
+                T::of(2.0) * q[3],
+                q[3] + T::of(Self::THETA4),
+                q[4],
+                q[5],
+                T::of(41.0) * q[6],
+                q[6],
+            ],
+        );
 
         // Of the periodic angle error of joint 3.
         let e3 = sin_error3 * s3 + cos_error3 * c3;
@@ -1347,16 +1356,19 @@ impl Robot<7> for EveryLaw {
             1.0 / Self::GAP_KNEE3 * (Self::GAP3 * 0.5) + (Self::H3 + Self::ADDED3),
         );
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
-        (s7, c7)] = T::sin_cos_all([
-            q[1] + T::of(Self::THETA2),
-            q[2],
-            T::of(2.0) * q[3],
-            q[3] + T::of(Self::THETA4),
-            q[4],
-            q[5],
-            T::of(41.0) * q[6],
-            q[6],
-        ]);
+        (s7, c7)] = T::sin_cos_of_sums(
+            q,
+            |q| [
+                q[1] + T::of(Self::THETA2),
+                q[2],
+                T::of(2.0) * q[3],
+                q[3] + T::of(Self::THETA4),
+                q[4],
+                q[5],
+                T::of(41.0) * q[6],
+                q[6],
+            ],
+        );
 
         // Of the compliance of joint 3 that varies with its angle.
         let t1 = cos2_3 * ((c3 - s3) * (s3 + c3));
@@ -1884,16 +1896,19 @@ impl Robot<7> for EveryLaw {
         );
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
-        (s7, c7)] = T::sin_cos_all([
-            q[1] + T::of(Self::THETA2),
-            q[2],
-            T::of(2.0) * q[3],
-            q[3] + T::of(Self::THETA4),
-            q[4],
-            q[5],
-            T::of(41.0) * q[6],
-            q[6],
-        ]);
+        (s7, c7)] = T::sin_cos_of_sums(
+            q,
+            |q| [
+                q[1] + T::of(Self::THETA2),
+                q[2],
+                T::of(2.0) * q[3],
+                q[3] + T::of(Self::THETA4),
+                q[4],
+                q[5],
+                T::of(41.0) * q[6],
+                q[6],
+            ],
+        );
 
         // Of the periodic angle error of joint 3.
         let e3 = sin_error3 * s3 + cos_error3 * c3;
@@ -2205,16 +2220,19 @@ impl Robot<7> for EveryLaw {
         let k10 = T::of(-(Self::COS_BASE_PITCH * Self::COS_BASE_ROLL));
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
-        (s7, c7)] = T::sin_cos_all([
-            q[1] + T::of(Self::THETA2),
-            q[2],
-            T::of(2.0) * q[3],
-            q[3] + T::of(Self::THETA4),
-            q[4],
-            q[5],
-            T::of(41.0) * q[6],
-            q[6],
-        ]);
+        (s7, c7)] = T::sin_cos_of_sums(
+            q,
+            |q| [
+                q[1] + T::of(Self::THETA2),
+                q[2],
+                T::of(2.0) * q[3],
+                q[3] + T::of(Self::THETA4),
+                q[4],
+                q[5],
+                T::of(41.0) * q[6],
+                q[6],
+            ],
+        );
 
         // Of the periodic angle error of joint 3.
         let e3 = sin_error3 * s3 + cos_error3 * c3;
@@ -2610,17 +2628,20 @@ impl Robot<7> for EveryLaw {
             1.0 / Self::GAP_KNEE3 * (0.5 * Self::GAP3) + (Self::H3 + Self::ADDED3),
         );
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
-        (s7, c7), (s7o, c7o)] = T::sin_cos_all([
-            q[1] + T::of(Self::THETA2),
-            q[2],
-            T::of(2.0) * q[3],
-            q[3] + T::of(Self::THETA4),
-            q[4],
-            q[5],
-            T::of(41.0) * q[6],
-            q[6],
-            q[6] + T::of(Self::THETA7 + Self::TOOL_YAW),
-        ]);
+        (s7, c7), (s7o, c7o)] = T::sin_cos_of_sums(
+            q,
+            |q| [
+                q[1] + T::of(Self::THETA2),
+                q[2],
+                T::of(2.0) * q[3],
+                q[3] + T::of(Self::THETA4),
+                q[4],
+                q[5],
+                T::of(41.0) * q[6],
+                q[6],
+                q[6] + T::of(Self::THETA7 + Self::TOOL_YAW),
+            ],
+        );
 
         // Of the periodic angle error of joint 3.
         let e3 = sin_error3 * s3 + cos_error3 * c3;
@@ -3301,16 +3322,19 @@ impl Robot<7> for EveryLaw {
         let before3_3 = state.plays[2][2];
         let before6_1 = state.plays[5][0];
         let [(s2o, c2o), (s3, c3), (_, c2x4), (s4o, c4o), (s5, c5), (s6, c6), (s41x7, _),
-        (s7, c7)] = T::sin_cos_all([
-            q[1] + T::of(Self::THETA2),
-            q[2],
-            T::of(2.0) * q[3],
-            q[3] + T::of(Self::THETA4),
-            q[4],
-            q[5],
-            T::of(41.0) * q[6],
-            q[6],
-        ]);
+        (s7, c7)] = T::sin_cos_of_sums(
+            q,
+            |q| [
+                q[1] + T::of(Self::THETA2),
+                q[2],
+                T::of(2.0) * q[3],
+                q[3] + T::of(Self::THETA4),
+                q[4],
+                q[5],
+                T::of(41.0) * q[6],
+                q[6],
+            ],
+        );
 
         // Of the periodic angle error of joint 3.
         let e3 = sin_error3 * s3 + cos_error3 * c3;

@@ -244,14 +244,10 @@ impl Robot<6> for FanucR2000ic {
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
-        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[3],
-            q[4],
-            q[5],
-            q[0],
-        ]);
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_of_sums(
+            q,
+            |q| [q[1] + q[2], q[1], q[3], q[4], q[5], q[0]],
+        );
 
         // Axes and origins, from the base to the tip.
         let t1 = a3 * s2;
@@ -307,14 +303,10 @@ impl Robot<6> for FanucR2000ic {
         let d4 = T::of(Self::D4);
         let a4 = T::of(Self::A4);
         let d6 = T::of(Self::D6);
-        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[3],
-            q[4],
-            q[5],
-            q[0],
-        ]);
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_of_sums(
+            q,
+            |q| [q[1] + q[2], q[1], q[3], q[4], q[5], q[0]],
+        );
 
         // Axes and origins, from the base to the tip.
         let p2_x = a2 * c1;
@@ -409,14 +401,10 @@ impl Robot<6> for FanucR2000ic {
         let tool_x = T::of(Self::TOOL_X);
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
-        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[3],
-            q[4],
-            q[5],
-            q[0],
-        ]);
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_of_sums(
+            q,
+            |q| [q[1] + q[2], q[1], q[3], q[4], q[5], q[0]],
+        );
 
         // Axes and origins, from the base to the tip.
         let t1 = s23 * c4;
@@ -529,14 +517,10 @@ impl Robot<6> for FanucR2000ic {
         let k3 = T::of(
             (Self::D6 + Self::TOOL_Z) * (Self::H5 * (Self::D6 + Self::TOOL_Z)),
         );
-        let [(s6, c6), (s5, c5), (s4, c4), (s3, c3), (s23, c23), (s1, c1)] = T::sin_cos_all([
-            q[5],
-            q[4],
-            q[3],
-            q[2],
-            q[1] + q[2],
-            q[0],
-        ]);
+        let [(s6, c6), (s5, c5), (s4, c4), (s3, c3), (s23, c23), (s1, c1)] = T::sin_cos_of_sums(
+            q,
+            |q| [q[5], q[4], q[3], q[2], q[1] + q[2], q[0]],
+        );
 
         // From joint 6 to the TCP.
         let r5x = tool_x * c6 - tool_y * s6;
@@ -716,14 +700,10 @@ impl Robot<6> for FanucR2000ic {
         let h5 = T::of(Self::H5);
         let h6 = T::of(Self::H6);
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[3],
-            q[4],
-            q[5],
-            q[0],
-        ]);
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_of_sums(
+            q,
+            |q| [q[1] + q[2], q[1], q[3], q[4], q[5], q[0]],
+        );
 
         // Axes and origins, from the base to the tip.
         let t1 = s23 * c4;
@@ -825,14 +805,10 @@ impl Robot<6> for FanucR2000ic {
         let tool_y = T::of(Self::TOOL_Y);
         let tool_z = T::of(Self::TOOL_Z);
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[3],
-            q[4],
-            q[5],
-            q[0],
-        ]);
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_of_sums(
+            q,
+            |q| [q[1] + q[2], q[1], q[3], q[4], q[5], q[0]],
+        );
         let t1 = fx * c1 + fy * s1;
         let t2 = fy * c1 - fx * s1;
         let t3 = c1 * mx + s1 * my;
@@ -934,15 +910,10 @@ impl Robot<6> for FanucR2000ic {
         let k3 = T::of(
             (Self::D6 + Self::TOOL_Z) * (Self::H5 * (Self::D6 + Self::TOOL_Z)),
         );
-        let [(s23, c23), (s2, c2), (s3, c3), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[2],
-            q[3],
-            q[4],
-            q[5],
-            q[0],
-        ]);
+        let [(s23, c23), (s2, c2), (s3, c3), (s4, c4), (s5, c5), (s6, c6), (s1, c1)] = T::sin_cos_of_sums(
+            q,
+            |q| [q[1] + q[2], q[1], q[2], q[3], q[4], q[5], q[0]],
+        );
 
         // Axes and origins, from the base to the tip.
         let t1 = a2 * c1;

@@ -215,13 +215,10 @@ impl Robot<5> for Rv130hsc {
         let a3 = T::of(Self::A3);
         let d4 = T::of(Self::D4);
         let a5 = T::of(Self::A5);
-        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[3],
-            q[4],
-            q[0],
-        ]);
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_of_sums(
+            q,
+            |q| [q[1] + q[2], q[1], q[3], q[4], q[0]],
+        );
 
         // Axes and origins, from the base to the tip.
         let t1 = a3 * s23;
@@ -268,13 +265,10 @@ impl Robot<5> for Rv130hsc {
         let a3 = T::of(Self::A3);
         let d4 = T::of(Self::D4);
         let a5 = T::of(Self::A5);
-        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[3],
-            q[4],
-            q[0],
-        ]);
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_of_sums(
+            q,
+            |q| [q[1] + q[2], q[1], q[3], q[4], q[0]],
+        );
 
         // Axes and origins, from the base to the tip.
         let p1_x = a1 * c1;
@@ -356,13 +350,10 @@ impl Robot<5> for Rv130hsc {
         let a3 = T::of(Self::A3);
         let d4 = T::of(Self::D4);
         let a5 = T::of(Self::A5);
-        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[3],
-            q[4],
-            q[0],
-        ]);
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_of_sums(
+            q,
+            |q| [q[1] + q[2], q[1], q[3], q[4], q[0]],
+        );
 
         // Axes and origins, from the base to the tip.
         let z5x = s23 * s4;
@@ -439,13 +430,10 @@ impl Robot<5> for Rv130hsc {
         let h5_a5 = T::of(Self::H5 * Self::A5);
         let h4_a5 = T::of(Self::H4 * Self::A5);
         let neg_h5 = T::of(-Self::H5);
-        let [(s5, c5), (s4, c4), (s3, c3), (s23, c23), (s1, c1)] = T::sin_cos_all([
-            q[4],
-            q[3],
-            q[2],
-            q[1] + q[2],
-            q[0],
-        ]);
+        let [(s5, c5), (s4, c4), (s3, c3), (s23, c23), (s1, c1)] = T::sin_cos_of_sums(
+            q,
+            |q| [q[4], q[3], q[2], q[1] + q[2], q[0]],
+        );
 
         // From the flange to the TCP.
         let r5x = a5 * c5;
@@ -582,13 +570,10 @@ impl Robot<5> for Rv130hsc {
         let h4 = T::of(Self::H4);
         let h5 = T::of(Self::H5);
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[3],
-            q[4],
-            q[0],
-        ]);
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_of_sums(
+            q,
+            |q| [q[1] + q[2], q[1], q[3], q[4], q[0]],
+        );
 
         // Axes and origins, from the base to the tip.
         let z5x = s23 * s4;
@@ -668,13 +653,10 @@ impl Robot<5> for Rv130hsc {
         let d4 = T::of(Self::D4);
         let a5 = T::of(Self::A5);
         let [fx, fy, fz, mx, my, mz] = wrench.data.0[0];
-        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[3],
-            q[4],
-            q[0],
-        ]);
+        let [(s23, c23), (s2, c2), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_of_sums(
+            q,
+            |q| [q[1] + q[2], q[1], q[3], q[4], q[0]],
+        );
         let t1 = fx * c1 + fy * s1;
         let t2 = fy * c1 - fx * s1;
         let t3 = c1 * mx + s1 * my;
@@ -738,14 +720,10 @@ impl Robot<5> for Rv130hsc {
         let a5_h5 = T::of(Self::A5 * Self::H5);
         let a5_h4 = T::of(Self::A5 * Self::H4);
         let neg_h5 = T::of(-Self::H5);
-        let [(s23, c23), (s2, c2), (s3, c3), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_all([
-            q[1] + q[2],
-            q[1],
-            q[2],
-            q[3],
-            q[4],
-            q[0],
-        ]);
+        let [(s23, c23), (s2, c2), (s3, c3), (s4, c4), (s5, c5), (s1, c1)] = T::sin_cos_of_sums(
+            q,
+            |q| [q[1] + q[2], q[1], q[2], q[3], q[4], q[0]],
+        );
 
         // Axes and origins, from the base to the tip.
         let t1 = a3 * s23;

@@ -156,6 +156,12 @@ impl Scope<'_> {
         inner.iter().fold(0, |taken, pattern| taken + self.bind(pattern, &values[taken..]))
     }
 
+    /// The sines and cosines of the angles that a closure adds up.
+    fn sines_and_cosines(&self, angles: &Expr) -> Vec<f64> {
+        let Expr::Closure(angles) = angles else { panic!("a closure adds the angles up") };
+        self.entries(&angles.body).into_iter().flat_map(|angle| [angle.sin(), angle.cos()]).collect()
+    }
+
     /// The numbers in a matrix, a list, or a single one.
     fn entries(&self, expression: &Expr) -> Vec<f64> {
         match expression {
@@ -165,13 +171,10 @@ impl Scope<'_> {
             Expr::Call(call) => {
                 let arguments = || call.args.iter().flat_map(|argument| self.entries(argument));
                 match path(&call.func).as_str() {
-                    "T::sin_cos" | "T::sin_cos_all" => {
-                        arguments().flat_map(|angle| [angle.sin(), angle.cos()]).collect()
-                    }
-                    "T::scaled_sin_cos_all" => {
-                        let (angles, factors) = (self.entries(&call.args[0]), self.entries(&call.args[1]));
-                        let plain = angles.iter().flat_map(|angle| [angle.sin(), angle.cos()]);
-                        plain.zip(factors).map(|(plain, factor)| plain * factor).collect()
+                    "T::sin_cos_of_sums" => self.sines_and_cosines(&call.args[1]),
+                    "T::scaled_sin_cos_of_sums" => {
+                        let (plain, factors) = (self.sines_and_cosines(&call.args[1]), self.entries(&call.args[2]));
+                        plain.into_iter().zip(factors).map(|(plain, factor)| plain * factor).collect()
                     }
                     "T::scaled" => {
                         let numbers: Vec<f64> = arguments().collect();

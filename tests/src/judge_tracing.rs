@@ -11,7 +11,7 @@
 //!
 //! [`would_do`]: crate::matrix::alias::would_do
 
-use robstiff::trace::{EffectParameter, Trace, Verdict};
+use robstiff_identify::trace::{EffectParameter, Trace, Verdict};
 
 /// Standard deviations that have 95 % of a normal distribution within.
 const WITHIN: f64 = 1.959_964;

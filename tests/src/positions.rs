@@ -6,9 +6,9 @@ use std::fs;
 use rand::seq::IndexedRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use robstiff::campaign::{Campaign, Data, Noise};
-use robstiff::identify::PreparedPositions;
-use robstiff::trace::{Options, Trace, Verdict, trace};
+use robstiff_identify::campaign::{Campaign, Data, Noise};
+use robstiff_identify::identify::PreparedPositions;
+use robstiff_identify::trace::{Options, Trace, Verdict, trace};
 use robstiff_robots::{Description, Effect};
 
 use crate::folder::Folder;

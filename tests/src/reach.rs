@@ -4,7 +4,7 @@ use nalgebra::{Matrix4, SVector, Unit, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use robstiff::Robot;
-use robstiff::inverse::{Inverse, Target};
+use robstiff_machining::inverse::{Inverse, Target};
 
 /// What came of some poses.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -7,7 +7,7 @@
 use std::fs;
 use std::path::Path;
 
-use robstiff::campaign::Campaign;
+use robstiff_identify::campaign::Campaign;
 
 const ROBOT: &str = "name: Two
 convention: standard

@@ -7,9 +7,9 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use robstiff::Effect;
-use robstiff::campaign::{Campaign, Noise};
-use robstiff::identify::NoiseSource;
-use robstiff::trace::{NamedEffect, Options, RowResidual, Trace, Verdict, nested, trace};
+use robstiff_identify::campaign::{Campaign, Noise};
+use robstiff_identify::identify::NoiseSource;
+use robstiff_identify::trace::{NamedEffect, Options, RowResidual, Trace, Verdict, nested, trace};
 use robstiff_robots::Description;
 use robstiff_tests::folder::Folder;
 use robstiff_tests::positions;

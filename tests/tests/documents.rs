@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use robstiff::campaign::{Campaign, Data, Holdout};
-use robstiff::simulate::{Scenario, Simulated, simulate};
-use robstiff::trace::{Options, Verdict, trace};
+use robstiff_identify::campaign::{Campaign, Data, Holdout};
+use robstiff_identify::simulate::{Scenario, Simulated, simulate};
+use robstiff_identify::trace::{Options, Verdict, trace};
 use robstiff_robots::Description;
 
 /// The first block of a language in a document.

@@ -4,6 +4,7 @@
 
 use robstiff::{Convention, DhEntry, Effect, JointKind};
 use robstiff_codegen::{Cost, Function, Origin, functions, skeleton, source, symbolic, tokens};
+use robstiff_robots::effect::CATALOGUE;
 use robstiff_robots::{Description, Joint, Part, Placement};
 use robstiff_tests::arms::{self, description};
 
@@ -235,13 +236,28 @@ fn any_description_becomes_docs() {
     let robot = Description { description: said.into(), source: said.into(), ..five_axes() };
     let text = text(&robot, "arm.yaml");
     assert!(syn::parse_file(&text).is_ok());
-    for line in
-        ["/// Reads\n", "/// Matrix4::new(\n", "/// and, besides,\n", "/// \\[links] \\<and> tags\n", "/// and back\n"]
-    {
+    for line in [
+        "/// Reads\n",
+        "/// Matrix4::new(\n",
+        "/// and, besides,\n",
+        "/// \\[links] \\<and> tags\n",
+        "/// and \\u{202e}back\\u{2069}\n",
+    ] {
         assert!(text.contains(line), "{line}");
     }
     // Code would be run as a test of the user's.
     assert!(!text.contains("```") && !text.contains("~~~"), "{text}");
+}
+
+/// A line end in the name of a description's file ends no comment.
+#[test]
+fn the_name_of_a_file_is_no_code() {
+    let items = |file: &str| syn::parse_file(&text(&five_axes(), file)).expect("Rust").items.len();
+    for file in
+        ["arm\npub fn injected() {}\n.yaml", "arm\r\npub fn injected() {}\n.yaml", "arm*/ pub fn f() {} /*.yaml"]
+    {
+        assert_eq!(items(file), items("arm.yaml"), "{file:?}");
+    }
 }
 
 /// An address is a link, and of the text around it nothing goes with it.
@@ -320,5 +336,29 @@ fn angles_that_differ_in_their_offset_have_two_names() {
     let jacobian = method(&sliders, "jacobian");
     for name in ["(s1o, c1o)", "(s1o_2, c1o_2)", "(s1o_3, c1o_3)"] {
         assert_eq!(jacobian.matches(name).count(), 1, "{jacobian}");
+    }
+}
+
+/// The program that links only if no panic can be reached calls every method of the trait, of
+/// arms with every effect.
+#[test]
+fn every_method_and_every_effect_is_in_the_proof() {
+    let program = include_str!("../no_panic/src/main.rs");
+    let source = syn::parse_file(include_str!("../../robstiff/src/robot.rs")).expect("the trait's file");
+    let robot = source.items.iter().find_map(|item| match item {
+        syn::Item::Trait(robot) if robot.ident == "Robot" => Some(robot),
+        _ => None,
+    });
+    let methods = robot.expect("the trait").items.iter().filter_map(|item| match item {
+        syn::TraitItem::Fn(method) => Some(method.sig.ident.to_string()),
+        _ => None,
+    });
+    let missing: Vec<String> = methods.filter(|method| !program.contains(&format!("robot.{method}("))).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+    let files = program.split("\"../robots/").skip(1).filter_map(|rest| rest.split('"').next());
+    let kinds: Vec<&str> =
+        files.flat_map(|file| description(file).effects.iter().map(Effect::kind).collect::<Vec<_>>()).collect();
+    for about in CATALOGUE {
+        assert!(kinds.contains(&about.kind), "no arm has {}", about.kind);
     }
 }

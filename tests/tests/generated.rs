@@ -3,7 +3,7 @@
 //! conventions, in random poses, with both scalars.
 
 use nalgebra::{Matrix4, Matrix6, SMatrix, SVector, Vector6};
-use robstiff::{Generic, Robot, State, Statics};
+use robstiff::{Generic, JointKind, Robot, State, Statics};
 use robstiff_robots::catalogue::catalogue;
 use robstiff_tests::arms::{FILES, description};
 use robstiff_tests::for_every_arm;
@@ -43,8 +43,9 @@ fn states_the_facts<const N: usize, R: Robot<N>>(robot: R, file: &str) {
 
 fn agrees<const N: usize, R: Robot<N>>(robot: R, file: &str) {
     let (description, generic) = (description(file), generic::<N>(file));
-    for (q, wrench) in trials::<N>(POSES, 1) {
-        let sizes = Sizes::of(&description, q.as_slice());
+    let far = many_turns(generic.joint_kinds(), 3, 300);
+    for (at, q, wrench) in trials::<N>(POSES, 1).map(|(q, wrench)| (q, q, wrench)).chain(far) {
+        let sizes = Sizes::of(&description, at.as_slice());
         let (found, expected) = (All::of(&robot, &q, &wrench), All::of(&generic, &q, &wrench));
         found.assert_close(&expected, &sizes, &wrench, DOUBLE);
         let Statics { transform, jacobian, compliance } = robot.statics(&q);
@@ -53,6 +54,24 @@ fn agrees<const N: usize, R: Robot<N>>(robot: R, file: &str) {
         let one_by_one = All { compliance: by_entries(&robot, &q), ..together };
         one_by_one.assert_close(&expected, &sizes, &wrench, DOUBLE);
     }
+}
+
+/// Random trials with some joints turned further, by up to `10^digits` rad. The first of a
+/// trial's coordinates are within +-3, which a robot is as large as.
+fn many_turns<const N: usize>(
+    kinds: [JointKind; N],
+    seed: u64,
+    digits: i32,
+) -> impl Iterator<Item = (SVector<f64, N>, SVector<f64, N>, Vector6<f64>)> {
+    (0..).zip(trials::<N>(POSES / 4, seed)).map(move |(trial, (at, wrench))| {
+        let further = |i: usize| match (kinds[i], (trial + 5 * i) % 4) {
+            (JointKind::Prismatic, _) | (_, 0) => at[i],
+            // Coordinates of the same size, and of any.
+            (_, 1) => at[i] * 10_f64.powi(1 + (trial as i32 % digits)),
+            _ => at[i] * 10_f64.powi(((trial * 37 + i * 101) as i32) % digits),
+        };
+        (at, SVector::from_fn(|i, _| further(i)), wrench)
+    })
 }
 
 /// The compliance from the entries that are handed over one by one.
@@ -73,7 +92,8 @@ fn by_entries<const N: usize>(robot: &impl Robot<N>, q: &SVector<f64, N>) -> Mat
 /// Generated `f32` code against the generic robot in `f64`, at the same inputs.
 fn agrees_in_single_precision<const N: usize, R: Robot<N>>(robot: R, file: &str) {
     let (description, generic) = (description(file), generic::<N>(file));
-    for (q, wrench) in trials::<N>(POSES, 2) {
+    let far = many_turns(generic.joint_kinds(), 4, 37);
+    for (at, q, wrench) in trials::<N>(POSES, 2).map(|(q, wrench)| (q, q, wrench)).chain(far) {
         let (q, wrench) = (q.map(|x| x as f32), wrench.map(|x| x as f32));
         let mut state = State::new();
         robot.deflection_with(&q, &wrench, &mut state);
@@ -89,7 +109,7 @@ fn agrees_in_single_precision<const N: usize, R: Robot<N>>(robot: R, file: &str)
             joint_torques: robot.joint_torques(&q, &wrench).map(f64::from),
         };
         let (q, wrench) = (q.map(f64::from), wrench.map(f64::from));
-        let sizes = Sizes::of(&description, q.as_slice());
+        let sizes = Sizes::of(&description, at.as_slice());
         found.assert_close(&All::of(&generic, &q, &wrench), &sizes, &wrench, SINGLE);
     }
 }

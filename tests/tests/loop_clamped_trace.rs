@@ -5,8 +5,8 @@
 
 use std::fs;
 
-use robstiff::campaign::Campaign;
-use robstiff::trace::{Options, Trace, Verdict, trace};
+use robstiff_identify::campaign::Campaign;
+use robstiff_identify::trace::{Options, Trace, Verdict, trace};
 use robstiff_robots::{Description, Effect};
 use robstiff_tests::folder::Folder;
 use robstiff_tests::judge_tracing::Told;

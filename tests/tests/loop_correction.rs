@@ -6,10 +6,10 @@ use std::fs;
 use std::path::PathBuf;
 
 use nalgebra::{SVector, Vector3, Vector6};
-use robstiff::campaign::Campaign;
-use robstiff::identify::predict;
-use robstiff::trace::{Correction, Options, trace};
 use robstiff::with_robot;
+use robstiff_identify::campaign::Campaign;
+use robstiff_identify::identify::predict;
+use robstiff_identify::trace::{Correction, Options, trace};
 use robstiff_tests::matrix::interval::fewest;
 use robstiff_tests::matrix::{Case, Group, Ready};
 use robstiff_tests::simulator::{Scenario, Simulated};

@@ -12,11 +12,11 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use nalgebra::{DMatrix, DVector, SVector, Vector6};
-use robstiff::campaign::{Campaign, Data, Observation};
-use robstiff::identify::predict;
-use robstiff::trace::{Options, Trace, Verdict, trace};
 use robstiff::{Effect, Generic, Robot};
 use robstiff_codegen::{Function, symbolic};
+use robstiff_identify::campaign::{Campaign, Data, Observation};
+use robstiff_identify::identify::predict;
+use robstiff_identify::trace::{Options, Trace, Verdict, trace};
 use robstiff_robots::Description;
 use robstiff_tests::simulator::Arm;
 use user::User;

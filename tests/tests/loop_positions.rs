@@ -4,9 +4,9 @@
 //! `matrix_sample`: of the rate that is claimed, a count below them has a probability
 //! of 1 in 1000.
 
-use robstiff::campaign::{Campaign, Data};
-use robstiff::identify::predict;
-use robstiff::trace::{Options, Trace, Verdict, trace};
+use robstiff_identify::campaign::{Campaign, Data};
+use robstiff_identify::identify::predict;
+use robstiff_identify::trace::{Options, Trace, Verdict, trace};
 use robstiff_robots::{Description, Effect, Link};
 use robstiff_tests::judge_tracing::Told;
 use robstiff_tests::matrix::interval::fewest;

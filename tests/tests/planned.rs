@@ -7,11 +7,11 @@ use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use robstiff::Effect;
-use robstiff::campaign::{Campaign, Data, Frame, Noise};
-use robstiff::identify::identify;
-use robstiff::plan::{Group, Options, Outlook, Plan, plan_between};
-use robstiff::simulate::{Measures, Poses, Pull, Scenario, Simulated, UnderForces, simulate};
-use robstiff::trace::{self, trace};
+use robstiff_identify::campaign::{Campaign, Data, Frame, Noise};
+use robstiff_identify::identify::identify;
+use robstiff_identify::plan::{Group, Options, Outlook, Plan, plan_between};
+use robstiff_identify::simulate::{Measures, Poses, Pull, Scenario, Simulated, UnderForces, simulate};
+use robstiff_identify::trace::{self, trace};
 use robstiff_robots::Description;
 use robstiff_tests::simulator::{five_axis, six_axis};
 
@@ -140,7 +140,7 @@ fn gains(robot: &Description, truth: Effect, rival: Effect) -> Gains {
         let first = simulate(robot, &scenario(&[truth], drawn(robot, FIRST), Vec::new(), seed)).expect("measured");
         let options = Options { poses: MORE, ..Options::default() };
         let planned = plan_for(&campaign(&first), truth, &[rival], &options);
-        let next = |planned: &robstiff::plan::Planned| {
+        let next = |planned: &robstiff_identify::plan::Planned| {
             let [x, y, z, ..] = planned.greatest;
             (planned.visit.q.clone(), [x, y, z])
         };

@@ -5,8 +5,8 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use robstiff::Robot;
-use robstiff::inverse::{Inverse, Target};
 use robstiff::nalgebra::SVector;
+use robstiff_machining::inverse::{Inverse, Target};
 use rs_opw_kinematics::kinematic_traits::Kinematics;
 use rs_opw_kinematics::kinematics_impl::OPWKinematics;
 use rs_opw_kinematics::parameters::opw_kinematics::Parameters;

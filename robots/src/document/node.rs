@@ -1,6 +1,9 @@
 //! Walking a document, with checks that report rather than stop.
 
-use super::{Content, Document, Step, locate};
+use std::collections::HashSet;
+use std::rc::Rc;
+
+use super::{Content, Document, Value};
 use crate::bare::in_si;
 use crate::quantity::{self, Dimension};
 use crate::suggest::{called, closest, list};
@@ -10,52 +13,85 @@ use crate::suggest::{called, closest, list};
 pub struct Node<'d> {
     document: &'d Document,
     content: &'d Content,
-    steps: Vec<Step>,
-    path: String,
+    way: Option<Rc<Step<'d>>>,
+}
+
+/// The last step to a value, and those before it. Put into words only where a problem is: the key
+/// of a map may be long, and the items in it many.
+#[derive(Debug)]
+struct Step<'d> {
+    before: Option<Rc<Step<'d>>>,
+    part: Part<'d>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Part<'d> {
+    Field(&'d str),
+    Item(usize),
 }
 
 impl<'d> Node<'d> {
     pub(super) fn root(document: &'d Document) -> Self {
-        Self { document, content: &document.root, steps: Vec::new(), path: String::new() }
+        Self { document, content: &document.root, way: None }
     }
 
     /// The path of the value, e.g. `joints[1].theta`; items count from 0.
-    pub fn path(&self) -> &str {
-        &self.path
+    pub fn path(&self) -> String {
+        let mut parts = Vec::new();
+        let mut way = self.way.as_deref();
+        while let Some(Step { before, part }) = way {
+            parts.push(*part);
+            way = before.as_deref();
+        }
+        let mut path = String::new();
+        for part in parts.into_iter().rev() {
+            match part {
+                Part::Item(index) => path += &format!("[{index}]"),
+                Part::Field(name) => {
+                    path += if path.is_empty() { "" } else { "." };
+                    path += name;
+                }
+            }
+        }
+        path
     }
 
     /// The line of the value, from 1.
     pub fn line(&self) -> usize {
-        locate(&self.document.text, &self.steps).0
+        self.document.lines.number_at(self.content.at.start)
     }
 
     /// What stands in the value's line from there on.
-    fn rest_of_line(&self) -> String {
-        self.document.place(&self.steps).2
+    fn rest_of_line(&self) -> &'d str {
+        self.document.rest_of_line(self.content)
     }
 
     /// Reports a problem with this value.
     pub fn error(&self, message: impl Into<String>, help: impl Into<String>) {
-        self.document.report(&self.steps, &self.path, self.content, message.into(), help.into());
+        if !self.document.is_full() {
+            self.document.report(self.content, self.path(), message.into(), help.into());
+        }
     }
 
     pub(crate) fn expected(&self, what: &str, help: impl Into<String>) {
-        self.error(format!("{what} is expected here, not {}", self.content), help);
+        if !self.document.is_full() {
+            self.error(format!("{what} is expected here, not {}", self.content.value), help);
+        }
     }
 
     /// Whether the value is a map.
     pub fn is_map(&self) -> bool {
-        matches!(self.content, Content::Map(_))
+        matches!(self.content.value, Value::Map(_))
     }
 
     /// Whether the value is a number, and as a quantity one without its unit.
     pub fn is_number(&self) -> bool {
-        matches!(self.content, Content::Integer(_) | Content::Number(_))
+        matches!(self.content.value, Value::Integer(_) | Value::Number(_))
     }
 
     /// Whether the value is a list.
     pub fn is_sequence(&self) -> bool {
-        matches!(self.content, Content::Sequence(_))
+        matches!(self.content.value, Value::Sequence(_))
     }
 
     /// The value as a map of these fields; any other field is reported.
@@ -65,6 +101,9 @@ impl<'d> Node<'d> {
             let Some(name) = map.key(index) else { continue };
             if fields.contains(&name) {
                 continue;
+            }
+            if self.document.is_full() {
+                break;
             }
             let known = list(fields.iter().copied());
             let slip = map.decimal_comma(index).or_else(|| map.missing_space(index, fields));
@@ -82,7 +121,7 @@ impl<'d> Node<'d> {
     /// The value as a map with fields of any name; `help` says what such a map
     /// looks like.
     pub fn any_map(&self, help: &str) -> Option<Map<'d>> {
-        let Content::Map(entries) = self.content else {
+        let Value::Map(entries) = &self.content.value else {
             self.expected("a map", help);
             return None;
         };
@@ -91,26 +130,22 @@ impl<'d> Node<'d> {
 
     /// The value as a list.
     pub fn sequence(&self) -> Option<Vec<Node<'d>>> {
-        let Content::Sequence(items) = self.content else {
+        let Value::Sequence(items) = &self.content.value else {
             self.expected("a list", "write `[..]`, or one item a line, each after `- `");
             return None;
         };
-        let item = |(index, content)| self.child(Step::Item(index), content, format!("{}[{index}]", self.path));
-        Some(items.iter().enumerate().map(item).collect())
+        Some(items.iter().enumerate().map(|(index, content)| self.child(Part::Item(index), content)).collect())
     }
 
     /// The value, where it is a text; nothing is reported.
     pub(crate) fn as_text(&self) -> Option<&'d str> {
-        match self.content {
-            Content::Text(text) => Some(text),
-            _ => None,
-        }
+        self.content.text()
     }
 
     /// The value, where it is a whole number; nothing is reported.
     pub(crate) fn as_integer(&self) -> Option<i64> {
-        match self.content {
-            Content::Integer(value) => Some(*value),
+        match self.content.value {
+            Value::Integer(value) => Some(value),
             _ => None,
         }
     }
@@ -128,11 +163,11 @@ impl<'d> Node<'d> {
     pub fn choice<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
         let names = || words.iter().map(|(name, _)| *name);
         let help = format!("write one of {}", list(names()));
-        let Content::Text(text) = self.content else {
+        let Some(text) = self.as_text() else {
             self.expected("a word", help);
             return None;
         };
-        let found = words.iter().find(|(name, _)| name == text).map(|(_, value)| *value);
+        let found = words.iter().find(|(name, _)| *name == text).map(|(_, value)| *value);
         if found.is_none() {
             let close = || closest(text, names()).map(|meant| format!("did you mean `{meant}`? {help}"));
             let help = called(text, &names().collect::<Vec<_>>()).or_else(close).unwrap_or_else(|| help.clone());
@@ -145,13 +180,13 @@ impl<'d> Node<'d> {
     pub fn integer(&self, example: i64) -> Option<i64> {
         let value = self.as_integer();
         let help = format!("e.g. `{example}`");
-        match self.content {
-            Content::Integer(_) => {}
+        match self.content.value {
+            Value::Integer(_) => {}
             // Beyond what an integer holds the parser makes it a number.
-            Content::Number(value) if value.fract() == 0.0 && value.abs() >= i64::MAX as f64 => {
+            Value::Number(value) if value.fract() == 0.0 && value.abs() >= i64::MAX as f64 => {
                 self.error(format!("{value:e} is too large a number here"), help);
             }
-            Content::Number(value) if value.fract() == 0.0 => {
+            Value::Number(value) if value.fract() == 0.0 => {
                 self.expected("a whole number without a point or an exponent", format!("write `{value}`"));
             }
             _ => self.expected("a whole number", help),
@@ -162,10 +197,10 @@ impl<'d> Node<'d> {
     /// The value as a finite quantity, in SI units: a number in SI, or a text
     /// `value unit`.
     pub fn quantity(&self, dimension: Dimension) -> Option<f64> {
-        let value = match self.content {
-            Content::Integer(value) => quantity::checked(*value as f64, dimension),
-            Content::Number(value) => quantity::checked(*value, dimension),
-            Content::Text(text) => quantity::parse(text, dimension),
+        let value = match &self.content.value {
+            Value::Integer(value) => quantity::checked(*value as f64, dimension),
+            Value::Number(value) => quantity::checked(*value, dimension),
+            Value::Text(text) => quantity::parse(text, dimension),
             _ => {
                 self.expected(dimension.name(), dimension.help());
                 return None;
@@ -215,21 +250,25 @@ impl<'d> Node<'d> {
         values.try_into().ok()
     }
 
-    fn child(&self, step: Step, content: &'d Content, path: String) -> Self {
-        let mut steps = self.steps.clone();
-        steps.push(step);
-        Self { document: self.document, content, steps, path }
+    fn child(&self, part: Part<'d>, content: &'d Content) -> Self {
+        let way = Some(Rc::new(Step { before: self.way.clone(), part }));
+        Self { document: self.document, content, way }
     }
 
     /// Reports keys that stand twice and keys that are no text, here and in
     /// everything below.
     pub(super) fn check_keys(&self) {
-        match self.content {
-            Content::Sequence(_) => self.sequence().into_iter().flatten().for_each(|item| item.check_keys()),
-            Content::Map(entries) => {
+        match &self.content.value {
+            Value::Sequence(items) => {
+                for (index, content) in items.iter().enumerate() {
+                    self.child(Part::Item(index), content).check_keys();
+                }
+            }
+            Value::Map(entries) => {
                 let map = Map { node: self.clone(), entries };
+                let mut names = HashSet::new();
                 for index in 0..entries.len() {
-                    map.check_key(index);
+                    map.check_key(index, &mut names);
                     map.value(index).check_keys();
                 }
             }
@@ -244,8 +283,7 @@ fn decimal_commas(items: &[Node<'_>], count: usize) -> Option<String> {
     // Who separates values does so with a blank, or there are more such places than values too
     // many.
     let meant = |item: &Node<'_>| {
-        let rest = item.rest_of_line();
-        let (whole, rest) = rest.split_once(',')?;
+        let (whole, rest) = item.rest_of_line().split_once(',')?;
         let decimals = rest.split([',', ']']).next()?.trim_end();
         let digits = whole.trim_start_matches(['+', '-', '\u{2212}']);
         let is_whole = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
@@ -296,30 +334,20 @@ impl<'d> Map<'d> {
     }
 
     fn key(&self, index: usize) -> Option<&'d str> {
-        match &self.entries[index].0 {
-            Content::Text(name) => Some(name),
-            _ => None,
-        }
+        self.entries[index].0.text()
     }
 
     fn value(&self, index: usize) -> Node<'d> {
-        self.node.child(Step::Value(index), &self.entries[index].1, self.path_of(index))
-    }
-
-    fn path_of(&self, index: usize) -> String {
-        let parent = &self.node.path;
-        match (self.key(index), parent.is_empty()) {
-            (Some(name), true) => name.to_owned(),
-            (Some(name), false) => format!("{parent}.{name}"),
-            (None, _) => parent.clone(),
+        let content = &self.entries[index].1;
+        match self.key(index) {
+            Some(name) => self.node.child(Part::Field(name), content),
+            None => Node { content, ..self.node.clone() },
         }
     }
 
     fn error_at_key(&self, index: usize, message: String, help: impl Into<String>) {
         let (document, key) = (self.node.document, &self.entries[index].0);
-        let mut steps = self.node.steps.clone();
-        steps.push(Step::Key(index));
-        document.report(&steps, &self.path_of(index), key, message, help.into());
+        document.report(key, self.value(index).path(), message, help.into());
     }
 
     /// What is right, where this field is what stands behind a decimal comma:
@@ -327,13 +355,12 @@ impl<'d> Map<'d> {
     fn decimal_comma(&self, index: usize) -> Option<String> {
         let name = self.key(index.checked_sub(1)?)?;
         // Places are whole numbers.
-        if name == "at" || self.entries[index].1 != Content::Null {
+        if name == "at" || !self.is_null(index) {
             return None;
         }
-        let Content::Integer(_) = &self.entries[index - 1].1 else { return None };
+        let Value::Integer(_) = self.entries[index - 1].1.value else { return None };
         // As it is written: -0 and 05 are read as other numbers.
-        let rest = self.value(index - 1).rest_of_line();
-        let (whole, rest) = rest.split_once(',')?;
+        let (whole, rest) = self.value(index - 1).rest_of_line().split_once(',')?;
         let decimals = rest.split([',', '}']).next()?.trim();
         let is_number = decimals.starts_with(|first: char| first.is_ascii_digit());
         is_number.then(|| format!("a decimal point, not a comma: `{name}: {}.{decimals}`", whole.trim()))
@@ -343,21 +370,25 @@ impl<'d> Map<'d> {
     /// as `{"a:1 m": nothing}`.
     fn missing_space(&self, index: usize, fields: &[&str]) -> Option<String> {
         let (name, value) = self.key(index)?.split_once(':')?;
-        (self.entries[index].1 == Content::Null && fields.contains(&name))
-            .then(|| format!("a space after `:`, e.g. `{name}: {value}`"))
+        (self.is_null(index) && fields.contains(&name)).then(|| format!("a space after `:`, e.g. `{name}: {value}`"))
     }
 
-    fn check_key(&self, index: usize) {
-        let key = &self.entries[index].0;
-        let Some(name) = self.key(index) else {
+    fn is_null(&self, index: usize) -> bool {
+        matches!(self.entries[index].1.value, Value::Null)
+    }
+
+    /// Reports a key that is no text or one of the `names` before it.
+    fn check_key(&self, index: usize, names: &mut HashSet<&'d str>) {
+        if let Some(name) = self.key(index) {
+            if !names.insert(name) && !self.node.document.is_full() {
+                self.error_at_key(index, format!("the field `{name}` is given twice"), "keep one of the two");
+            }
+        } else if !self.node.document.is_full() {
             // `{at: joints 2,3}` reads as `{at: joints 2, 3: nothing}`.
             let quotes = || "inside `{..}` a text with a comma needs quotes, e.g. `at: \"joints 2,3\"`".to_owned();
             let help = self.decimal_comma(index).unwrap_or_else(quotes);
-            return self.error_at_key(index, format!("the name of a field is expected here, not {key}"), help);
-        };
-        if self.entries[..index].iter().any(|(earlier, _)| earlier == key) {
-            let help = "keep one of the two";
-            self.error_at_key(index, format!("the field `{name}` is given twice"), help);
+            let key = &self.entries[index].0.value;
+            self.error_at_key(index, format!("the name of a field is expected here, not {key}"), help);
         }
     }
 }

@@ -4,7 +4,7 @@ use core::fmt;
 
 /// Where an effect sits; displays as descriptions spell it (`joint 3`,
 /// `joints 2,3`, `link 2`, `base`, `tool`, `a2`, `robot`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Place {
     /// One joint, from 1.
     Joint(usize),
@@ -58,7 +58,7 @@ impl fmt::Display for Place {
 
 /// An entry of the DH table, by its column and its row, from 1; displays as
 /// `a2`, `alpha1`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DhEntry {
     /// The length along x.
     A(usize),

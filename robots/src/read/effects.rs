@@ -1,5 +1,7 @@
 //! The effects of a description, and what physics asks of them.
 
+use std::collections::HashMap;
+
 use crate::bare::of_effect;
 use crate::description::{Joint, Link, corrected, has_length, is_stroke};
 use crate::document::{Map, Node};
@@ -41,21 +43,23 @@ pub(super) struct Arm<'a> {
 pub(super) fn effects(node: &Node, arm: &Arm<'_>) -> Option<Vec<Effect>> {
     let items = node.sequence()?;
     let read: Vec<Option<Effect>> = items.iter().map(|item| effect(item, arm)).collect();
+    let mut firsts: HashMap<(&str, Place), usize> = HashMap::new();
     for (index, effect) in read.iter().enumerate() {
         let Some(effect) = effect else { continue };
-        let same = |other: &&Option<Effect>| other.is_some_and(|other| other.is_same(effect));
-        if let Some(first) = read[..index].iter().position(|other| same(&other)) {
-            let (message, help) = match read[first] {
-                Some(other) if orders(&other) != orders(effect) => {
-                    (format!("`{effect}` has a second order, and a description takes one a joint"), "keep the larger")
-                }
-                Some(other) if other.kind() != effect.kind() => {
-                    (format!("`{effect}` is the same number as `{other}`"), "merge the two")
-                }
-                _ => (format!("the effect `{effect}` is given twice"), "merge the two"),
-            };
-            items[index].error(message, format!("the first is `{}`; {help}", items[first].path()));
+        let first = *firsts.entry(effect.number()).or_insert(index);
+        if first == index {
+            continue;
         }
+        let (message, help) = match read[first] {
+            Some(other) if orders(&other) != orders(effect) => {
+                (format!("`{effect}` has a second order, and a description takes one a joint"), "keep the larger")
+            }
+            Some(other) if other.kind() != effect.kind() => {
+                (format!("`{effect}` is the same number as `{other}`"), "merge the two")
+            }
+            _ => (format!("the effect `{effect}` is given twice"), "merge the two"),
+        };
+        items[index].error(message, format!("the first is `{}`; {help}", items[first].path()));
     }
     if let Some(joints) = arm.joints {
         check_couplings(&items, &read, joints);

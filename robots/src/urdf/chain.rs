@@ -1,8 +1,10 @@
 //! The serial chain between two links of a tree.
 
+use std::collections::HashSet;
+
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 
-use super::{Motion, Tree};
+use super::{Connection, Motion, Tree};
 use crate::description::MOST_JOINTS;
 use crate::suggest::{closest, list};
 use crate::{Diagnostics, JointKind, words};
@@ -144,7 +146,7 @@ impl Tree {
 
     /// The link that no joint carries.
     fn root(&self) -> Result<usize, Diagnostics> {
-        let is_root = |index: &usize| self.joints.iter().all(|joint| joint.child != *index);
+        let is_root = |index: &usize| self.hangs.on[*index].is_none();
         let roots: Vec<usize> = (0..self.links.len()).filter(is_root).collect();
         match roots[..] {
             [root] => Ok(root),
@@ -159,14 +161,18 @@ impl Tree {
 
     /// The only end of the tree behind moving joints.
     fn end(&self, base: usize) -> Result<usize, Diagnostics> {
-        let carries = |index: usize| self.joints.iter().any(|joint| joint.parent == index);
-        let moves = |tip: usize| {
-            let path = self.path(base, tip)?;
-            let count = path.iter().filter(|&&joint| self.joints[joint].motion.is_some()).count();
-            (count > 0).then_some((tip, count))
-        };
-        let ends: Vec<(usize, usize)> =
-            (0..self.links.len()).filter(|&index| !carries(index)).filter_map(moves).collect();
+        // How many joints move each link below the base, the nearest first.
+        let (mut moving, mut ends) = (vec![(base, 0)], Vec::new());
+        while let Some((link, count)) = moving.pop() {
+            for &joint in &self.hangs.carries[link] {
+                let Connection { child, motion, .. } = &self.joints[joint];
+                moving.push((*child, count + usize::from(motion.is_some())));
+            }
+            if self.hangs.carries[link].is_empty() && count > 0 {
+                ends.push((link, count));
+            }
+        }
+        ends.sort_unstable();
         match ends[..] {
             [(end, _)] => Ok(end),
             [] => Err(self.problem(&self.links[base].place, "nothing moves behind this link", "choose another base")),
@@ -187,7 +193,7 @@ impl Tree {
     fn path(&self, base: usize, tip: usize) -> Option<Vec<usize>> {
         let (mut path, mut link) = (Vec::new(), tip);
         while link != base {
-            let joint = self.joints.iter().position(|joint| joint.child == link)?;
+            let joint = self.hangs.on[link]?;
             path.push(joint);
             link = self.joints[joint].parent;
         }
@@ -200,9 +206,10 @@ impl Tree {
     fn bodies(&self, path: &[usize]) -> (Vec<(f64, Vector3<f64>)>, Vec<String>) {
         let mut bodies: Vec<(f64, Vector3<f64>)> = Vec::new();
         let mut warnings = Vec::new();
+        let first = path.first().map_or(0, |&joint| self.joints[joint].parent);
         // Links to visit with the body they belong to (none before the first
         // moving joint) and their frame in that body's.
-        let first = path.first().map_or(0, |&joint| self.joints[joint].parent);
+        let path: HashSet<usize> = path.iter().copied().collect();
         let mut open = vec![(first, None, Isometry3::identity())];
         while let Some((link, body, frame)) = open.pop() {
             if let (Some(body), Some((mass, center))) = (body, self.links[link].inertia) {
@@ -210,7 +217,8 @@ impl Tree {
                 *sum += mass;
                 *moment += (frame * nalgebra::Point3::from(center)).coords * mass;
             }
-            for (index, joint) in self.joints.iter().enumerate().filter(|(_, joint)| joint.parent == link) {
+            for &index in &self.hangs.carries[link] {
+                let joint = &self.joints[index];
                 match (&joint.motion, path.contains(&index)) {
                     (None, _) => open.push((joint.child, body, frame * joint.origin)),
                     (Some(_), true) => {

@@ -18,6 +18,7 @@ use std::vec::Vec;
 use nalgebra::{Isometry3, Unit, Vector3};
 
 use crate::JointKind;
+use crate::text::Lines;
 pub use chain::Chain;
 
 /// The links and joints of a URDF file.
@@ -32,7 +33,17 @@ pub struct Tree {
     /// What the reader noticed without refusing the file.
     pub warnings: Vec<String>,
     file: String,
-    text: String,
+    lines: Lines<String>,
+    hangs: Hangs,
+}
+
+/// How the links hang on each other.
+#[derive(Clone, Debug, Default)]
+struct Hangs {
+    /// The joint that carries each link, the first where several do, by its index.
+    on: Vec<Option<usize>>,
+    /// The joints on each link, by their indices.
+    carries: Vec<Vec<usize>>,
 }
 
 /// A link.

@@ -2,22 +2,24 @@
 
 use core::f64::consts::FRAC_PI_2;
 use core::ops::Range;
+use std::collections::{HashMap, HashSet};
 
 use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::{Document, Node};
 
-use super::{Body, Connection, Motion, Tree};
+use super::{Body, Connection, Hangs, Motion, Tree};
 use crate::bare::in_si;
 use crate::document::without_byte_order_mark;
 use crate::quantity::Dimension;
 use crate::suggest::list;
+use crate::text::{Lines, MOST_OF_URDF, larger};
 use crate::words::count;
 use crate::{Diagnostic, Diagnostics, JointKind, Line, ReadError, text};
 
 /// A reader with the problems found so far.
 pub(super) struct Reader<'t> {
     file: &'t str,
-    text: &'t str,
+    lines: &'t Lines<String>,
     problems: Vec<Diagnostic>,
     warnings: Vec<String>,
     rounded: usize,
@@ -31,7 +33,7 @@ impl Tree {
     /// place.
     pub fn read(path: impl AsRef<std::path::Path>) -> Result<Self, ReadError> {
         let path = path.as_ref();
-        Self::parse(&path.display().to_string(), &text::read(path)?).map_err(ReadError::Invalid)
+        Self::parse(&path.display().to_string(), &text::read(path, MOST_OF_URDF)?).map_err(ReadError::Invalid)
     }
 
     /// Reads a URDF text; `file` is the name that problems show.
@@ -40,28 +42,35 @@ impl Tree {
     /// is written with, such as `1.5708`, is that multiple.
     ///
     /// # Errors
-    /// What is wrong with it, each problem at its place.
+    /// What is wrong with it, each problem at its place; more text than
+    /// [`MOST_OF_URDF`], elements that are nested too deep.
     pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
         let text = without_byte_order_mark(text);
+        if text.len() > MOST_OF_URDF {
+            let (line, message) = (Line { number: 1, text: "" }, format!("this text is {}", larger(MOST_OF_URDF)));
+            return Err(Diagnostic::new(file, line, (1, 1), message, "a URDF file names its meshes").into());
+        }
+        let lines = Lines::new(text.to_owned());
+        if let Some((at, message)) = too_many(text) {
+            let help = "a URDF file names a namespace or two, and its elements have a few attributes";
+            return Err(self::at(file, &lines, &(at..at + 1), &message, help).into());
+        }
         let document = Document::parse(text).map_err(|error| {
             let help = "close every element and every quote; `&` and `<` in a text are `&amp;` and `&lt;`";
             let problem = |number, column, message: &str| {
-                Diagnostic::new(file, line(text, number), (column, 1), format!("this is not XML: {message}"), help)
+                Diagnostic::new(file, line(&lines, number), (column, 1), format!("this is not XML: {message}"), help)
             };
             // Of a file that is cut off the parser tells the beginning.
             if matches!(error, roxmltree::Error::UnexpectedEndOfStream | roxmltree::Error::UnclosedRootNode) {
-                let last = text.lines().last().unwrap_or_default();
-                return problem(
-                    text.lines().count().max(1),
-                    1 + last.chars().count(),
-                    "the file ends before its root element does",
-                );
+                // Behind the end of the last line is no other.
+                let (number, column) = lines.place(text.strip_suffix('\n').unwrap_or(text).len());
+                return problem(number, column, "the file ends before its root element does");
             }
             let (at, message) = (error.pos(), error.to_string());
             // The place is shown on its own.
             problem(at.row as usize, at.col as usize, message.trim_end_matches(&format!(" at {at}")))
         })?;
-        let mut reader = Reader { file, text, problems: Vec::new(), warnings: Vec::new(), rounded: 0 };
+        let mut reader = Reader { file, lines: &lines, problems: Vec::new(), warnings: Vec::new(), rounded: 0 };
         let tree = reader.tree(document.root_element());
         let rounded = reader.rounded;
         if rounded > 0 {
@@ -71,49 +80,94 @@ impl Tree {
             );
             reader.warnings.push(warning);
         }
-        match Diagnostics::new(reader.problems) {
+        let (problems, warnings) = (reader.problems, reader.warnings);
+        match Diagnostics::new(problems) {
             Some(problems) => Err(problems),
-            None => Ok(Self { warnings: reader.warnings, ..tree }),
+            None => Ok(Self { warnings, lines, ..tree }),
         }
     }
 
     /// Where problems of the whole file are shown: at its first character.
     pub(super) fn whole(&self) -> Range<usize> {
-        0..self.text.chars().next().map_or(0, char::len_utf8)
+        0..self.lines.text().chars().next().map_or(0, char::len_utf8)
     }
 
     /// A problem at a place of the file.
     pub(super) fn problem(&self, place: &Range<usize>, message: &str, help: &str) -> Diagnostics {
-        at(&self.file, &self.text, place, message, help).into()
+        at(&self.file, &self.lines, place, message, help).into()
     }
 }
 
 /// A line of the text, empty where there is none.
-fn line(text: &str, number: usize) -> Line<'_> {
-    Line { number, text: text.lines().nth(number.saturating_sub(1)).unwrap_or_default() }
+fn line(lines: &Lines<String>, number: usize) -> Line<'_> {
+    Line { number, text: lines.line(number) }
 }
 
 /// A problem with a range of the text, shown in its first line.
-fn at(file: &str, text: &str, place: &Range<usize>, message: &str, help: &str) -> Diagnostic {
-    let before = &text[..place.start];
-    let number = 1 + before.matches('\n').count();
-    let column = 1 + before.rsplit('\n').next().unwrap_or_default().chars().count();
-    let shown = text[place.clone()].lines().next().unwrap_or_default();
+fn at(file: &str, lines: &Lines<String>, place: &Range<usize>, message: &str, help: &str) -> Diagnostic {
+    let (number, column) = lines.place(place.start);
+    let end = lines.range(number).end.min(place.end).max(place.start);
+    let shown = &lines.text()[place.start..end];
     // Of an element only its start tag.
-    let width = shown.find('>').map_or(shown.chars().count(), |end| shown[..=end].chars().count());
-    Diagnostic::new(file, line(text, number), (column, width), message, help)
+    let width = shown.find('>').map_or(shown, |end| &shown[..=end]).chars().count();
+    Diagnostic::new(file, line(lines, number), (column, width), message, help)
+}
+
+/// Attributes of an element, and declarations of namespaces in a file. The parser compares each
+/// with all others, so that a file of nothing else would take it hours.
+const MOST_ATTRIBUTES: usize = 1000;
+
+/// The byte of the start tag that has too many of them, and what is said of it.
+fn too_many(text: &str) -> Option<(usize, String)> {
+    let (mut namespaces, mut from) = (0, 0);
+    while let Some(start) = text[from..].find('<').map(|at| from + at) {
+        // In a comment a quote is a letter.
+        let skipped =
+            [("<!--", "-->"), ("<![CDATA[", "]]>")].into_iter().find(|(open, _)| text[start..].starts_with(open));
+        if let Some((_, close)) = skipped {
+            from = text[start..].find(close).map_or(text.len(), |at| start + at);
+            continue;
+        }
+        let (mut quote, mut attributes) = (None, 0);
+        from = text.len();
+        for (at, byte) in text.bytes().enumerate().skip(start + 1) {
+            match (quote, byte) {
+                (None, b'>') => {
+                    from = at;
+                    break;
+                }
+                (None, b'=') => attributes += 1,
+                (None, b'"' | b'\'') => quote = Some(byte),
+                (Some(open), _) if open == byte => quote = None,
+                _ => {}
+            }
+        }
+        namespaces += text[start..from].matches("xmlns").count();
+        let said = |what| format!("more than {MOST_ATTRIBUTES} {what}");
+        match (attributes, namespaces) {
+            (MOST_ATTRIBUTES.., _) => return Some((start, said("attributes of an element"))),
+            (_, MOST_ATTRIBUTES..) => return Some((start, said("declarations of namespaces"))),
+            _ => {}
+        }
+    }
+    None
 }
 
 impl Reader<'_> {
+    /// Whether as many problems are recorded as anybody reads.
+    fn is_full(&self) -> bool {
+        self.problems.len() >= Diagnostics::MOST
+    }
+
     pub(super) fn report(&mut self, place: &Range<usize>, message: &str, help: &str) {
-        if self.problems.len() < Diagnostics::MOST {
-            self.problems.push(at(self.file, self.text, place, message, help));
+        if !self.is_full() {
+            self.problems.push(at(self.file, self.lines, place, message, help));
         }
     }
 
     /// What the reader does not refuse, with its line.
     pub(super) fn warn(&mut self, node: Node<'_, '_>, message: &str) {
-        let line = 1 + self.text[..node.range().start].matches('\n').count();
+        let line = self.lines.number_at(node.range().start);
         self.warnings.push(format!("{}:{line}: {message}", self.file));
     }
 
@@ -129,31 +183,34 @@ impl Reader<'_> {
         }
         self.spelling(root);
         let elements = |name: &'static str| root.children().filter(move |node| node.has_tag_name(name));
-        let mut links: Vec<Body> = Vec::new();
+        let mut links = Links::default();
         for node in elements("link") {
             self.spelling(node);
             let Some(name) = self.attribute(node, "name") else { continue };
-            if links.iter().any(|link| link.name == name) {
+            if links.named.contains_key(&name) {
                 self.report(&node.range(), &format!("the link `{name}` is there twice"), "give one another name");
             }
             let inertia = self.inertia(node);
             links.push(Body { name, inertia, place: node.range() });
         }
-        let mut joints: Vec<Connection> = Vec::new();
+        let (mut joints, mut names): (Vec<Connection>, HashSet<String>) = (Vec::new(), HashSet::new());
+        let mut hangs = Hangs::of(links.all.len());
         for node in elements("joint") {
             let joint = self.joint(node, &links);
             let Some(joint) = joint else { continue };
-            if joints.iter().any(|other| other.name == joint.name) {
+            if !names.insert(joint.name.clone()) {
                 let message = format!("the joint `{}` is there twice", joint.name);
                 self.report(&node.range(), &message, "give one another name");
             }
-            if joints.iter().any(|other| other.child == joint.child) {
-                let child = &links[joint.child].name;
+            if hangs.on[joint.child].is_some() {
+                let child = &links.all[joint.child].name;
                 let message = format!("the link `{child}` hangs on two joints");
                 self.report(&node.range(), &message, "a URDF file is a tree: give every link one parent");
             }
+            hangs.add(joints.len(), &joint);
             joints.push(joint);
         }
+        let links = links.all;
         if root.has_tag_name("robot") && elements("link").next().is_none() {
             self.report(
                 &root.range(),
@@ -161,7 +218,7 @@ impl Reader<'_> {
                 "a chain leads from link to link: `<link name=\"..\"/>`",
             );
         }
-        if let Some(joint) = joints.iter().find(|joint| is_in_a_ring(&joints, joint)) {
+        if let Some(joint) = hangs.in_a_ring(&joints) {
             let message = format!("the link `{}` hangs on itself, in a ring of joints", links[joint.child].name);
             self.report(&joint.place, &message, "a URDF file is a tree: leave out the joint that closes the ring");
         }
@@ -171,11 +228,12 @@ impl Reader<'_> {
             joints,
             warnings: Vec::new(),
             file: self.file.to_owned(),
-            text: self.text.to_owned(),
+            lines: Lines::new(String::new()),
+            hangs,
         }
     }
 
-    fn joint(&mut self, node: Node<'_, '_>, links: &[Body]) -> Option<Connection> {
+    fn joint(&mut self, node: Node<'_, '_>, links: &Links) -> Option<Connection> {
         self.spelling(node);
         let name = self.attribute(node, "name");
         let kind = self.attribute(node, "type");
@@ -216,16 +274,16 @@ impl Reader<'_> {
     }
 
     /// The link that `parent` or `child` names.
-    fn end(&mut self, node: Node<'_, '_>, tag: &str, links: &[Body]) -> Option<usize> {
+    fn end(&mut self, node: Node<'_, '_>, tag: &str, links: &Links) -> Option<usize> {
         let Some(end) = element(node, tag) else {
             self.report(&node.range(), &format!("the joint has no `{tag}`"), &format!("write `<{tag} link=\"..\"/>`"));
             return None;
         };
         let name = self.attribute(end, "link")?;
-        let index = links.iter().position(|link| link.name == name);
-        if index.is_none() {
+        let index = links.named.get(&name).copied();
+        if index.is_none() && !self.is_full() {
             let place = end.attribute_node("link").map_or(end.range(), |attribute| attribute.range_value());
-            let near = crate::suggest::closest(&name, links.iter().map(|link| link.name.as_str()));
+            let near = crate::suggest::closest(&name, links.all.iter().map(|link| link.name.as_str()));
             let help = near.map_or("a joint's links are elements `link` of the same file".to_owned(), |near| {
                 format!("did you mean `{near}`?")
             });
@@ -325,18 +383,51 @@ impl Reader<'_> {
     }
 }
 
-/// Whether a joint's child is above it, too.
-fn is_in_a_ring(joints: &[Connection], joint: &Connection) -> bool {
-    let mut link = joint.parent;
-    // More steps than joints lead into another ring.
-    for _ in joints {
-        if link == joint.child {
-            return true;
-        }
-        let Some(above) = joints.iter().find(|above| above.child == link) else { return false };
-        link = above.parent;
+/// The links read so far, with the index of each name, the first where several have it.
+#[derive(Default)]
+struct Links {
+    all: Vec<Body>,
+    named: HashMap<String, usize>,
+}
+
+impl Links {
+    fn push(&mut self, link: Body) {
+        self.named.entry(link.name.clone()).or_insert(self.all.len());
+        self.all.push(link);
     }
-    false
+}
+
+impl Hangs {
+    fn of(links: usize) -> Self {
+        Self { on: vec![None; links], carries: vec![Vec::new(); links] }
+    }
+
+    fn add(&mut self, index: usize, joint: &Connection) {
+        self.on[joint.child].get_or_insert(index);
+        self.carries[joint.parent].push(index);
+    }
+
+    /// The first joint that is in a ring: its child is above it, too.
+    fn in_a_ring<'j>(&self, joints: &'j [Connection]) -> Option<&'j Connection> {
+        // On which way up a link was met, from 1: each is gone through once.
+        let mut met = vec![0; self.on.len()];
+        let mut first = None;
+        for way in 1..=self.on.len() {
+            let mut link = way - 1;
+            while met[link] == 0 {
+                met[link] = way;
+                let Some(joint) = self.on[link] else { break };
+                link = joints[joint].parent;
+            }
+            // A way that meets itself has come round.
+            if met[link] == way && self.on[link].is_some() {
+                let ring = core::iter::successors(self.on[link], |&joint| self.on[joints[joint].parent]);
+                let ring = ring.enumerate().take_while(|&(steps, joint)| steps == 0 || joints[joint].child != link);
+                first = ring.map(|(_, joint)| joint).chain(first).min();
+            }
+        }
+        first.map(|joint| &joints[joint])
+    }
 }
 
 pub(super) fn element<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {

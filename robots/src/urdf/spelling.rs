@@ -1,9 +1,11 @@
 //! Words that no reader of a URDF file knows: what is misspelt is left out like what a
 //! reader has no use for, and the robot is another one.
 
+use std::collections::HashSet;
+
 use roxmltree::Node;
 
-use super::read::{Reader, element};
+use super::read::Reader;
 use crate::suggest::{closest, list};
 
 /// The elements that are read whole, and the attributes that they may have.
@@ -32,6 +34,7 @@ impl Reader<'_> {
     pub(super) fn spelling(&mut self, node: Node<'_, '_>) {
         let tag = node.tag_name().name();
         let Some((_, known)) = ELEMENTS.iter().find(|(name, _)| *name == tag) else { return };
+        let mut seen = HashSet::new();
         for child in node.children().filter(|child| child.is_element()) {
             let name = child.tag_name();
             // With a prefix it is an extension.
@@ -41,7 +44,7 @@ impl Reader<'_> {
             let name = name.name();
             if !known.contains(&name) {
                 self.perhaps_misspelt(child, tag, known);
-            } else if ONCE.contains(&name) && element(node, name) != Some(child) {
+            } else if ONCE.contains(&name) && !seen.insert(name) {
                 let message = format!("`{tag}` has a second `{name}`");
                 self.report(&child.range(), &message, "leave one of the two");
             }

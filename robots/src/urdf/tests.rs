@@ -349,3 +349,104 @@ proptest! {
         prop_assert!(apart(&chain, &read, &q[..moving]) < 1e-9 * far);
     }
 }
+
+/// As many repetitions of a part as make a megabyte or two, in a robot. The test is not timed: a reader
+/// whose time grows faster than the text does not come to its end.
+fn full_of(part: impl Fn(usize) -> String) -> String {
+    format!("<robot name=\"r\">\n{}</robot>\n", (0..20_000).map(part).collect::<String>())
+}
+
+fn joint(kind: &str, name: usize, parent: usize, child: usize) -> String {
+    format!(
+        "<joint name=\"j{name}\" type=\"{kind}\"><parent link=\"l{parent}\"/><child link=\"l{child}\"/>\
+         <axis xyz=\"0 0 1\"/></joint>\n"
+    )
+}
+
+/// Links on each other in any way, in a time that grows with their number.
+#[test]
+fn a_tree_may_be_large() {
+    let link = |index: usize| format!("<link name=\"l{index}\"/>\n");
+    let tree = |kind: &str, parent: fn(usize) -> usize| {
+        full_of(|i| link(i) + &if i > 0 { joint(kind, i, parent(i), i) } else { String::new() })
+    };
+    let told = |text: &str| match Tree::parse("r.urdf", text) {
+        Ok(tree) => tree.chain(None, None).unwrap_err().to_string(),
+        Err(problems) => problems.to_string(),
+    };
+    for (parent, expected) in [
+        ((|i| i - 1) as fn(usize) -> usize, "19999 moving joints between `l0` and `l19999`"),
+        (|_| 0, "the tree has several ends"),
+        (|i| i / 2, "the tree has several ends"),
+    ] {
+        let said = told(&tree("continuous", parent));
+        assert!(said.contains(expected) && said.len() < 5000, "{} {said}", said.len());
+        let said = told(&tree("fixed", parent));
+        assert!(said.contains("nothing moves behind this link"), "{said}");
+    }
+    // A ring of all of them, rings of two, and none of a ring but hanging on one.
+    let said = told(&tree("fixed", |i| i - 1).replace("</robot>", &(joint("fixed", 0, 19_999, 0) + "</robot>")));
+    assert!(said.contains("the link `l1` hangs on itself, in a ring of joints"), "{said}");
+    let said = told(
+        &full_of(|i| link(i) + &joint("fixed", i, i ^ 1, i))
+            .replace("l1\"/><child link=\"l0", "l2\"/><child link=\"l0"),
+    );
+    assert!(said.contains("the link `l2` hangs on itself"), "{said}");
+}
+
+/// What is wrong everywhere is said a hundred times, and looked up as often.
+#[test]
+fn a_tree_may_be_wrong_everywhere() {
+    let wrong: [&dyn Fn(usize) -> String; 8] = [
+        &|_| "<link name=\"l\"/>".to_owned(),
+        &|_| "<link/>".to_owned(),
+        &|index| format!("<link name=\"l{index}\"><inertial><mass value=\"x\"/></inertial></link>"),
+        &|index| joint("fixed", index, index, index + 1),
+        &|index| joint("continuous", 1, index, index),
+        &|_| "<jiont/><origin/><origin/>\n".to_owned(),
+        &|index| if index < 10_000 { "<a/>\n".to_owned() } else { "<link/>\n".to_owned() },
+        &|_| "<joint name=\"j\"><!-- don't --></joint>\n".to_owned(),
+    ];
+    for part in wrong {
+        let text = full_of(part);
+        let problems = Tree::parse("r.urdf", &text).unwrap_err();
+        assert_eq!(problems.iter().count(), Diagnostics::MOST, "{}", &text[..200]);
+    }
+    // Of each of which only the first of its kind counts, behind many others.
+    let inside = format!("<a/>{0}{0}", "<origin xyz=\"0 0 0\"/>".repeat(30_000));
+    let text = full_of(|index| if index == 0 { format!("<joint>{inside}</joint>") } else { String::new() });
+    assert_eq!(Tree::parse("r.urdf", &text).unwrap_err().iter().count(), Diagnostics::MOST);
+}
+
+#[test]
+fn an_element_has_no_thousand_attributes() {
+    let many: String = (0..60_000).map(|index| format!(" a{index}=\"1\"")).collect();
+    let told = Tree::parse("r.urdf", &format!("<robot>\n<link{many}/></robot>")).unwrap_err().to_string();
+    assert!(told.starts_with("error: more than 1000 attributes of an element\n --> r.urdf:2:1\n"), "{told}");
+    let nested = |index: usize| format!("<a xmlns:n{index}=\"n\">");
+    let told = Tree::parse("r.urdf", &full_of(nested)).unwrap_err().to_string();
+    assert!(told.starts_with("error: more than 1000 declarations of namespaces\n"), "{told}");
+    // In comments and texts are no attributes.
+    let marks = "=".repeat(2000);
+    let text = format!("<robot name=\"r\"><!-- {marks} don't --><link name=\"l{marks}\"/>{marks}</robot>");
+    assert!(Tree::parse("r.urdf", &text).is_ok());
+}
+
+/// Names that are compared letter by letter would take hours.
+#[test]
+fn a_name_may_be_long() {
+    let [a, b] = ["ab", "ba"].map(|name| name.repeat(100_000));
+    let text = format!(
+        "<robot name=\"r\"><link name=\"{a}\"/><joint name=\"j\" type=\"fixed\"><parent link=\"{b}\"/></joint></robot>"
+    );
+    let told = Tree::parse("r.urdf", &text).unwrap_err().to_string();
+    assert!(told.contains("error: there is no link `bab") && told.len() < 3000, "{}", told.len());
+}
+
+#[test]
+fn a_file_has_a_size() {
+    let text =
+        format!("<robot name=\"r\"><link name=\"l\"/><!-- {} --></robot>", "x".repeat(crate::text::MOST_OF_URDF));
+    let told = Tree::parse("r.urdf", &text).unwrap_err().to_string();
+    assert!(told.starts_with("error: this text is larger than 16 MiB"), "{told}");
+}

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path;
 use std::process::ExitCode;
 
-use robstiff::campaign::Campaign;
+use robstiff_identify::campaign::Campaign;
 use robstiff_robots::{Diagnostics, ReadError};
 
 /// Problems of a file that are shown: of those that readers record, enough to see what is wrong.
@@ -26,7 +26,7 @@ impl Failure {
     }
 
     /// A failure of what a campaign was asked for, which names its file.
-    pub fn about(campaign: &Campaign) -> impl Fn(robstiff::identify::Error) -> Self {
+    pub fn about(campaign: &Campaign) -> impl Fn(robstiff_identify::identify::Error) -> Self {
         move |error| Self::new(format_args!("{}: {error}", campaign.path.display()))
     }
 
@@ -67,8 +67,8 @@ impl From<ReadError> for Failure {
     }
 }
 
-impl From<robstiff::path::Unsolved> for Failure {
-    fn from(unsolved: robstiff::path::Unsolved) -> Self {
+impl From<robstiff_machining::path::Unsolved> for Failure {
+    fn from(unsolved: robstiff_machining::path::Unsolved) -> Self {
         Self::Explained(unsolved.to_string())
     }
 }

@@ -3,13 +3,13 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use robstiff::milling::{Cut, CutFile, ForceFrame, Forces, MeasuredForce, Revolution};
 use robstiff::nalgebra::Vector3;
+use robstiff_machining::milling::{Cut, CutFile, ForceFrame, Forces, MeasuredForce, Revolution};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
-use crate::text::{Table, decimals, significant};
+use crate::text::{Table, cell, decimals, significant};
 use crate::{input, json};
 
 /// The force of a cut on the tool: mean, peak, and over a revolution
@@ -167,7 +167,8 @@ fn table(forces: &Forces, revolution: &Revolution) -> String {
     let mut table = format!("angle [deg],{x} [N],{y} [N],{z} [N]\n");
     for (angle, force) in &revolution.samples {
         let angle = (angle.to_degrees() * 1e9).round() / 1e9;
-        writeln!(table, "{angle},{:.4},{:.4},{:.4}", force.x, force.y, force.z).expect("a string takes any text");
+        let [x, y, z] = [force.x, force.y, force.z].map(|force| cell(force, 4));
+        writeln!(table, "{angle},{x},{y},{z}").expect("a string takes any text");
     }
     table
 }

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use robstiff::campaign::{Campaign, Data, Displacements, Positions};
-use robstiff::identify::{
+use robstiff_identify::campaign::{Campaign, Data, Displacements, Positions};
+use robstiff_identify::identify::{
     Basis, Covariance, Estimate, Identification, NoiseSource, Visibility, identify, misread, noise_not_used,
     off_by_one_factor,
 };

@@ -1,6 +1,5 @@
 //! `robstiff import`: a description from a URDF file.
 
-use std::fs;
 use std::path::PathBuf;
 
 use robstiff::nalgebra::{Matrix4, SVector};
@@ -78,7 +77,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         )));
     }
     // Compliances may have been typed into it since.
-    let differs = || fs::read(&arguments.out).map_or(true, |there| there != yaml.as_bytes());
+    let differs =
+        || robstiff_robots::text::bytes(&arguments.out, yaml.len()).map_or(true, |there| there != yaml.as_bytes());
     if arguments.out.is_file() && !arguments.force && differs() {
         return Err(Failure::there_already(&arguments.out, "file"));
     }

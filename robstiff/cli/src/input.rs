@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use robstiff::campaign::Campaign;
-use robstiff::milling::CutFile;
+use robstiff_identify::campaign::Campaign;
+use robstiff_machining::milling::CutFile;
 use robstiff_robots::quantity::{self, Dimension};
 use robstiff_robots::{Description, Joint, JointKind, catalogue};
 

@@ -6,8 +6,9 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use robstiff::campaign::Campaign;
+use robstiff_identify::campaign::Campaign;
 use robstiff_robots::Description;
+use robstiff_robots::text::shown;
 
 use crate::failure::Failure;
 
@@ -25,7 +26,7 @@ pub use unfinished::goes_when_interrupted;
 /// what it wanted.
 pub fn print(text: impl fmt::Display) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    match write!(out, "{}", harmless(&text.to_string())).and_then(|()| out.flush()) {
+    match write!(out, "{}", shown(&text.to_string())).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::new(format!("cannot write to standard output: {error}")))
         }
@@ -35,13 +36,8 @@ pub fn print(text: impl fmt::Display) -> Result<(), Failure> {
 
 /// Prints to standard error; where that is gone, nobody is there to be told.
 pub fn complain(message: impl fmt::Display) {
-    let message = harmless(&message.to_string());
+    let message = shown(&message.to_string());
     let _ = progress::beside(|| writeln!(io::stderr(), "{message}"));
-}
-
-/// What a terminal may be given: text of files could hold what moves its cursor.
-fn harmless(text: &str) -> String {
-    text.replace(|character: char| character.is_control() && !matches!(character, '\n' | '\t'), "\u{fffd}")
 }
 
 /// Files to write, all together when everything is computed.

@@ -3,13 +3,13 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use robstiff::campaign::{Campaign, Data};
-use robstiff::identify::{PredictedRow, Prediction, predict};
+use robstiff_identify::campaign::{Campaign, Data};
+use robstiff_identify::identify::{PredictedRow, Prediction, predict};
 use serde_json::json;
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
-use crate::text::{count, decimals, field, micrometres};
+use crate::text::{cell, count, field, micrometres};
 use crate::{input, json};
 
 /// The error of a robot on the measurements of a campaign
@@ -98,10 +98,10 @@ fn table(campaign: &Campaign, prediction: &Prediction) -> String {
     for (row, (pose, visit)) in rows {
         csv += &format!("{},{}", field(&poses[pose]), field(&visits[visit]));
         for value in [row.predicted, row.measured].concat() {
-            csv += &format!(",{}", decimals(value * factor, 4));
+            csv += &format!(",{}", cell(value * factor, 4));
         }
         for axis in 0..3 {
-            csv += &format!(",{}", decimals((row.measured[axis] - row.predicted[axis]) * 1e6, 4));
+            csv += &format!(",{}", cell((row.measured[axis] - row.predicted[axis]) * 1e6, 4));
         }
         csv += &format!(",{}\n", row.line);
     }

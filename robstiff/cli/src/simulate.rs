@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use robstiff::campaign::Data;
-use robstiff::simulate::{Scenario, Simulated, simulate};
+use robstiff_identify::campaign::Data;
+use robstiff_identify::simulate::{Scenario, Simulated, simulate};
+use robstiff_robots::text::{self, MOST_OF_DOCUMENT};
 use serde_json::json;
 
 use crate::failure::Failure;
@@ -39,7 +40,8 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (robot, _) = input::robot(&arguments.robot)?;
     input::complain_if_rigid(&robot);
-    let (name, text) = (arguments.scenario.display().to_string(), robstiff_robots::text::read(&arguments.scenario)?);
+    let name = arguments.scenario.display().to_string();
+    let text = text::read(&arguments.scenario, MOST_OF_DOCUMENT)?;
     let scenario = Scenario::parse(&name, &text, &robot)?;
     let mut files = Files::default();
     files.protect(&arguments.robot);

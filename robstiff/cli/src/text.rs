@@ -145,6 +145,11 @@ pub fn course(before: f64, after: f64) -> [String; 2] {
     [does.to_owned(), format!("from {from} to {to}")]
 }
 
+/// A number with so many decimals as a field of a CSV file; empty where there is none.
+pub fn cell(value: f64, decimals: usize) -> String {
+    if value.is_finite() { self::decimals(value, decimals) } else { String::new() }
+}
+
 /// A text as a field of a CSV file.
 pub fn field(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
@@ -190,6 +195,12 @@ impl fmt::Display for Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_cell_holds_a_number_or_nothing() {
+        let cells = [1.25, -0.0001, f64::INFINITY, f64::NEG_INFINITY, f64::NAN].map(|value| cell(value, 2));
+        assert_eq!(cells, ["1.25", "0.00", "", "", ""]);
+    }
 
     #[test]
     fn fields_with_commas_are_quoted() {

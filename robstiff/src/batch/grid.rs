@@ -166,17 +166,19 @@ impl<'t, T: Float, const N: usize> Steps<'t, T, N> {
     }
 
     /// Part of a row, the first joint in the lanes.
-    fn row(&mut self, count: usize, joints: &mut Joints<T, N>) {
+    fn row(&mut self, count: usize, needs: Needs, joints: &mut Joints<T, N>) {
         for joint in 1..N {
             let (axis, at) = (&self.grid.axes[joint], self.at[joint]);
             joints.values[joint][0] = axis.values[at];
             joints.sines[joint][0] = axis.sines[at];
             joints.cosines[joint][0] = axis.cosines[at];
+            wrap(joint, needs, &mut joints.values[joint][..1]);
         }
         let (axis, at) = (&self.grid.axes[0], self.at[0]);
         joints.values[0][..count].copy_from_slice(&axis.values[at..at + count]);
         joints.sines[0][..count].copy_from_slice(&axis.sines[at..at + count]);
         joints.cosines[0][..count].copy_from_slice(&axis.cosines[at..at + count]);
+        wrap(0, needs, &mut joints.values[0][..count]);
         self.advance(count);
     }
 
@@ -201,6 +203,7 @@ impl<'t, T: Float, const N: usize> Steps<'t, T, N> {
                 self.settled[joint] = (run == BLOCK).then_some(at);
                 if needs.value(joint) {
                     fill(axis.values, &mut joints.values[joint]);
+                    wrap(joint, needs, &mut joints.values[joint][lanes.clone()]);
                 }
                 if needs.sin_cos(joint) {
                     fill(axis.sines, &mut joints.sines[joint]);
@@ -210,6 +213,15 @@ impl<'t, T: Float, const N: usize> Steps<'t, T, N> {
             self.advance(run);
             lane += run;
         }
+    }
+}
+
+/// Coordinates of many turns less whole ones, for multiples of them: a joint turns if it is asked
+/// for its value beside its sine.
+#[inline(always)]
+fn wrap<T: Float>(joint: usize, needs: Needs, values: &mut [T]) {
+    if needs.value(joint) && needs.sin_cos(joint) {
+        values.iter_mut().for_each(|value| *value = trig::wrapped(*value));
     }
 }
 
@@ -235,7 +247,7 @@ impl<T: Float, const N: usize> Source<T, N> for Steps<'_, T, N> {
         let count = BLOCK.min(self.grid.len() - first);
         if self.fastest == 0 && N > 0 && self.grid.axes[0].values.len() >= ROW {
             let count = self.run(count);
-            self.row(count, joints);
+            self.row(count, needs, joints);
             return Filled::Row(count);
         }
         self.each(count, needs, joints);

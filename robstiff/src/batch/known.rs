@@ -2,6 +2,7 @@
 
 use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
+use nalgebra::SVector;
 use num_traits::{One, Zero};
 
 use super::Float;
@@ -147,12 +148,16 @@ impl<T: Float, const FUSED: bool> Real for Known<T, FUSED> {
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = match (self.is_known, self.is_apart) {
             (true, false) => self.sin_cos,
-            (true, true) if !cfg!(feature = "platform-trig") && self.apart.is_in_domain() => {
-                // Of a constant, this costs nothing: the compiler does it.
-                let apart = trig::within_domain::<T, FUSED>(self.apart);
+            (true, true) => {
+                let apart = if !cfg!(feature = "platform-trig") && self.apart.is_in_domain() {
+                    // Of a constant, this costs nothing: the compiler does it.
+                    trig::within_domain::<T, FUSED>(self.apart)
+                } else {
+                    trig::sin_cos(self.apart)
+                };
                 addition_theorem::<T, FUSED>(self.sin_cos, apart)
             }
-            _ => trig::sin_cos(self.value),
+            (false, _) => trig::sin_cos(self.value),
         };
         (Self::number(sin), Self::number(cos))
     }
@@ -165,6 +170,15 @@ impl<T: Float, const FUSED: bool> Real for Known<T, FUSED> {
             out[i] = angles[i].sin_cos();
         }
         out
+    }
+
+    /// The sine of each coordinate is known, so no sum is rounded.
+    #[inline(always)]
+    fn sin_cos_of_sums<const N: usize, const K: usize>(
+        q: &SVector<Self, N>,
+        angles: impl Fn(&SVector<Self, N>) -> [Self; K],
+    ) -> [(Self, Self); K] {
+        Self::sin_cos_all(angles(q))
     }
 
     #[inline(always)]

@@ -2,6 +2,7 @@
 
 use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
+use nalgebra::SVector;
 use num_traits::{One, Zero};
 
 use crate::Real;
@@ -67,11 +68,11 @@ impl Traced {
     #[inline(always)]
     fn sum(self, other: Self) -> Self {
         let value = self.value | other.value;
-        match (self.is_angle, other.is_angle) {
-            (true, true) => Self { value, sin_cos: self.sin_cos | other.sin_cos, is_angle: true },
-            (false, false) => Self::number(value),
-            // Should the number be a very large angle, the sum itself is asked.
-            _ => Self { value, sin_cos: self.sin_cos | other.sin_cos | value, is_angle: true },
+        if self.is_angle || other.is_angle {
+            // The sine of a number depends on its value.
+            Self { value, sin_cos: self.sin_cos | other.sin_cos, is_angle: true }
+        } else {
+            Self::number(value)
         }
     }
 
@@ -163,6 +164,14 @@ impl Real for Traced {
             out[i] = angles[i].sin_cos();
         }
         out
+    }
+
+    #[inline(always)]
+    fn sin_cos_of_sums<const N: usize, const K: usize>(
+        q: &SVector<Self, N>,
+        angles: impl Fn(&SVector<Self, N>) -> [Self; K],
+    ) -> [(Self, Self); K] {
+        Self::sin_cos_all(angles(q))
     }
 
     #[inline(always)]

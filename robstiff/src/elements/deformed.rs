@@ -69,7 +69,7 @@ pub fn deformed<const N: usize>(
 
 /// What yields.
 #[expect(clippy::large_enum_variant, reason = "there are a dozen, for a moment")]
-pub(crate) enum Part {
+pub enum Part {
     /// A joint, from 0, with the twist of the TCP per unit of its turn.
     Joint(usize, Vector6<f64>),
     /// Anything else, with what it adds to the compliance at the TCP.
@@ -77,7 +77,7 @@ pub(crate) enum Part {
 }
 
 /// Parts at rest under a load.
-pub(crate) struct Rest {
+pub struct Rest {
     /// The motion of the tool, about the place of the unloaded TCP and along the axes of
     /// the base frame.
     pub motion: Isometry3<f64>,
@@ -90,7 +90,7 @@ pub(crate) struct Rest {
 /// Where parts from base to tip come to rest: `load` is the wrench at the moved TCP, in
 /// the base frame, for each motion of it, `turns_under` gives the turns of the joints
 /// under their torques.
-pub(crate) fn at_rest(
+pub fn at_rest(
     parts: &[Part],
     load: impl Fn(&Isometry3<f64>) -> Vector6<f64>,
     turns_under: impl Fn(&[f64]) -> Vec<f64>,
@@ -173,7 +173,7 @@ fn taken_back(motion: &Isometry3<f64>, force: &Vector3<f64>, moment: &Vector3<f6
 
 /// What a motion displaces a point by, and turns it, `lever` away from the place of the
 /// unloaded TCP.
-pub(crate) fn displacement_at(motion: &Isometry3<f64>, lever: &Vector3<f64>) -> Vector6<f64> {
+pub fn displacement_at(motion: &Isometry3<f64>, lever: &Vector3<f64>) -> Vector6<f64> {
     let moved = motion.translation.vector + motion.rotation * lever - lever;
     let turned = motion.rotation.scaled_axis();
     Vector6::new(moved.x, moved.y, moved.z, turned.x, turned.y, turned.z)

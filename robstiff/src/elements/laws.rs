@@ -162,8 +162,9 @@ fn numbers<T: Real>(effect: &Effect) -> ([Number<T>; MOST_PARAMETERS], usize) {
     (numbers, own.len())
 }
 
-/// Sine and cosine of whole multiples of a coordinate.
+/// Sine and cosine of whole multiples of a coordinate, of which whole turns do not matter.
 fn harmonic<T: Real>(q: T) -> impl Fn(f64) -> (Number<T>, Number<T>) {
+    let q = q.wrapped();
     move |order| {
         let (s, c) = (q * T::of(order)).sin_cos();
         (Number(s), Number(c))

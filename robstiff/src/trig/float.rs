@@ -3,12 +3,16 @@
 use core::ops::Neg;
 
 use super::abreast::{Abreast, Pairs, target};
+use super::payne_hanek;
 
 /// Whether the target multiplies and adds in one instruction. Without it
 /// `mul_add` would be a call of a slow function. It is not in `core`, so there
 /// it is not used.
 pub(crate) const FUSED: bool =
     cfg!(all(feature = "std", any(target_feature = "fma", all(target_arch = "aarch64", target_feature = "neon"))));
+
+/// The largest angle (rad) of a pose that is computed with as it is: five turns.
+pub(crate) const FEW_TURNS: f64 = 32.0;
 
 /// A floating point number that [`sin_cos`](super::sin_cos) knows.
 pub(crate) trait Float: Abreast<Self> + Neg<Output = Self> + PartialEq + 'static {
@@ -27,16 +31,23 @@ pub(crate) trait Float: Abreast<Self> + Neg<Output = Self> + PartialEq + 'static
     /// How many each of the two of [whole angles](super::near) has.
     const NEAR_TERMS: usize;
     /// How far sines and cosines of poses' angles within the domain are off at most.
-    #[cfg_attr(not(all(test, feature = "std")), expect(dead_code, reason = "what the tests hold the functions to"))]
+    #[cfg_attr(not(test), expect(dead_code, reason = "what the tests hold the functions to"))]
     const BOUND_OF_POSES: f64;
-    /// The largest angle (rad) that is not left to the platform.
+    /// The largest angle (rad) that multiples of pi/2 or 2 pi are taken away from in parts.
     const DOMAIN: Self;
     /// How far those of batches are off at most.
-    #[cfg_attr(not(all(test, feature = "std")), expect(dead_code, reason = "what the tests hold the functions to"))]
+    #[cfg_attr(not(test), expect(dead_code, reason = "what the tests hold the functions to"))]
     const BOUND: f64;
 
     /// Whether it is an angle within the domain; false for a NaN.
     fn is_in_domain(self) -> bool;
+
+    /// Whether it is an angle of few turns; false for a NaN.
+    fn is_few_turns(self) -> bool;
+
+    /// An angle beyond the domain, less whole turns: at most half a turn. Of an infinity or
+    /// a NaN a NaN.
+    fn without_turns(self) -> Self;
 
     /// In the first bit the last one of `shifted`: whether the quarter turns are odd.
     fn odd(shifted: Self) -> Self;
@@ -59,7 +70,7 @@ pub(crate) trait Float: Abreast<Self> + Neg<Output = Self> + PartialEq + 'static
     /// Whether all bits that [`strange`](Self::strange) left are 0.
     fn is_usual(self) -> bool;
 
-    /// The platform's or libm's function.
+    /// The platform's or libm's function: with the feature `platform-trig`.
     fn platform_sin_cos(self) -> (Self, Self);
 }
 
@@ -81,8 +92,8 @@ pub(crate) mod places {
     pub const MIDDLE: usize = 4;
     /// The same with the other sign.
     pub const MINUS_MIDDLE: usize = 5;
-    /// The square of the largest angle of the domain.
-    pub const DOMAIN_SQUARED: usize = 6;
+    /// The square of the largest angle of few turns.
+    pub const FEW_TURNS_SQUARED: usize = 6;
     /// 1 / (2 pi).
     pub const TURNS_PER_RADIAN: usize = 7;
     /// The parts of -pi/2.
@@ -135,9 +146,10 @@ macro_rules! float {
         pub(crate) mod $module {
             use super::Spread;
 
+            pub(crate) const FEW_TURNS: $float = super::FEW_TURNS as $float;
             pub(crate) const NUMBERS: &[$float] = &[
                 core::$float::consts::FRAC_2_PI, $shift, 1.0, -0.5, $middle, -$middle,
-                $domain * $domain, core::$float::consts::FRAC_2_PI / 4.0,
+                FEW_TURNS * FEW_TURNS, core::$float::consts::FRAC_2_PI / 4.0,
                 $(-$part,)* $(-4.0 * $part,)* $($sin,)* $($cos,)* $($near_sin,)* $($near_cos,)*
             ];
 
@@ -175,6 +187,16 @@ macro_rules! float {
             #[inline(always)]
             fn is_in_domain(self) -> bool {
                 self.abs() <= Self::DOMAIN
+            }
+
+            #[inline(always)]
+            fn is_few_turns(self) -> bool {
+                self.abs() <= $module::FEW_TURNS
+            }
+
+            #[inline(always)]
+            fn without_turns(self) -> Self {
+                payne_hanek::$float(self)
             }
 
             #[inline(always)]

@@ -28,10 +28,10 @@ pub(super) fn room<F: Float, V: Abreast<F>>(x: V) -> V {
     V::number(places::MIDDLE) - measured::<F, V, FUSED>(x)
 }
 
-/// The same of what is beyond the domain.
+/// The same of angles of many turns.
 #[inline(always)]
-pub(super) fn room_in_domain<F: Float, V: Abreast<F>>(x: V) -> V {
-    V::number(places::DOMAIN_SQUARED) - x * x
+pub(super) fn room_in_few_turns<F: Float, V: Abreast<F>>(x: V) -> V {
+    V::number(places::FEW_TURNS_SQUARED) - x * x
 }
 
 /// Angles of the domain less whole turns, of near ones none: at most pi.

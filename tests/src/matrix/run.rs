@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 use std::{env, fs, process, thread};
 
-use robstiff::campaign::Campaign;
-use robstiff::identify::predict;
-use robstiff::trace::{Options, Trace, Verdict, trace};
+use robstiff_identify::campaign::Campaign;
+use robstiff_identify::identify::predict;
+use robstiff_identify::trace::{Options, Trace, Verdict, trace};
 use robstiff_robots::Description;
 
 use super::alias::would_do;

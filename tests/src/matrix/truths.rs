@@ -102,7 +102,7 @@ fn common_scale(hidden: &Hidden, told: &Name) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use robstiff::trace::Verdict;
+    use robstiff_identify::trace::Verdict;
     use robstiff_robots::Effect;
 
     use super::*;

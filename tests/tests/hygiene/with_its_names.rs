@@ -56,9 +56,8 @@ pub trait Other: Sized {
     fn one() {}
     fn from<T>(_: T) {}
     fn new() {}
-    fn sin_cos(self) {}
-    fn sin_cos_all<T>(_: T) {}
-    fn scaled_sin_cos_all<T, F>(_: T, _: F) {}
+    fn sin_cos_of_sums<T, F>(_: T, _: F) {}
+    fn scaled_sin_cos_of_sums<T, F, G>(_: T, _: F, _: G) {}
     fn mul_add(self, _: Self, _: Self) {}
     fn turn_blocks<T>(_: T) {}
     fn scaled<T>(_: T) {}

@@ -3,8 +3,8 @@
 
 use nalgebra::{Matrix3, Matrix6, SVector, Vector3};
 use robstiff::elements::{Pose, Spring};
-use robstiff::trace::Trace;
 use robstiff::{Effect, Generic};
+use robstiff_identify::trace::Trace;
 use robstiff_robots::Description;
 use robstiff_tests::judge::trials;
 use robstiff_tests::simulator::{Scenario, five_axis, six_axis};

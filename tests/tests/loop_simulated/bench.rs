@@ -4,8 +4,8 @@
 use std::fs;
 
 use robstiff::Effect;
-use robstiff::campaign::Campaign;
-use robstiff::trace::{NamedEffect, Options, Trace, trace};
+use robstiff_identify::campaign::Campaign;
+use robstiff_identify::trace::{NamedEffect, Options, Trace, trace};
 use robstiff_robots::Description;
 use robstiff_tests::folder::Folder;
 use robstiff_tests::simulator::{Scenario, Simulated, scattered};

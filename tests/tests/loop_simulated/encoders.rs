@@ -5,7 +5,7 @@
 //! resolve; a gear's own errors are 30 urad, one number a pose and joint.
 
 use robstiff::Effect;
-use robstiff::trace::{Trace, Verdict};
+use robstiff_identify::trace::{Trace, Verdict};
 use robstiff_robots::Description;
 use robstiff_tests::simulator::{Encoders, Scenario, five_axis, six_axis};
 

@@ -1,7 +1,7 @@
 //! Arms that lack nothing but the right compliances of their joints.
 
 use robstiff::Effect;
-use robstiff::trace::{Trace, Verdict};
+use robstiff_identify::trace::{Trace, Verdict};
 use robstiff_robots::Description;
 use robstiff_tests::simulator::{five_axis, scattered, six_axis};
 

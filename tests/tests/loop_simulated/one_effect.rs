@@ -8,7 +8,7 @@
 //! leaves.
 
 use robstiff::Effect;
-use robstiff::trace::{Trace, Verdict};
+use robstiff_identify::trace::{Trace, Verdict};
 use robstiff_robots::Description;
 use robstiff_tests::simulator::{five_axis, scattered, six_axis};
 

@@ -3,7 +3,7 @@
 //! without a name, or is said to be more than its names.
 
 use nalgebra::{Rotation3, Vector3};
-use robstiff::trace::{EffectParameter, Trace, Verdict};
+use robstiff_identify::trace::{EffectParameter, Trace, Verdict};
 use robstiff_robots::{Description, Placement};
 use robstiff_tests::simulator::{Arm, Hidden, Outside, Row, Scenario, Simulated, five_axis, six_axis};
 

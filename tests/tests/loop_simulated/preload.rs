@@ -2,7 +2,7 @@
 //! on the links, and its gears act on all that they carry; the description knows the masses.
 
 use robstiff::Effect;
-use robstiff::trace::{Trace, Verdict};
+use robstiff_identify::trace::{Trace, Verdict};
 use robstiff_robots::{Description, Link};
 use robstiff_tests::simulator::{Hidden, Scenario, six_axis};
 

@@ -2,7 +2,7 @@
 //! with both, but mostly does.
 
 use robstiff::Effect;
-use robstiff::trace::{Trace, Verdict};
+use robstiff_identify::trace::{Trace, Verdict};
 use robstiff_robots::Description;
 use robstiff_tests::simulator::{five_axis, six_axis};
 

@@ -3,8 +3,8 @@
 use nalgebra::{SVector, Vector6};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use robstiff::trace::{Trace, Verdict};
 use robstiff::{Effect, Generic, Robot};
+use robstiff_identify::trace::{Trace, Verdict};
 use robstiff_robots::Description;
 use robstiff_tests::simulator::{Hidden, Row, Scenario, Simulated, five_axis, six_axis};
 

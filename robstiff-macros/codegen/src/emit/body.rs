@@ -163,9 +163,10 @@ impl<'f> Writer<'f> {
         plays.collect()
     }
 
-    /// `let [(s1, c1), (s23, c23)] = T::sin_cos_all([q[0], q[1] + q[2]]);`:
+    /// `let [(s1, c1), (s23, c23)] = T::sin_cos_of_sums(q, |q| [q[0], q[1] + q[2]]);`:
     /// all angles together, so that scalars may compute them side by side; with what they
-    /// are multiplied by, if they are.
+    /// are multiplied by, if they are. How angles are added is handed over, since coordinates
+    /// of many turns lose these before.
     fn sin_cos(&self) -> Option<TokenStream> {
         let angles = self.function.graph().angles();
         let is_needed = |&index: &usize| self.live.contains(&Op::Sin(index)) || self.live.contains(&Op::Cos(index));
@@ -184,13 +185,10 @@ impl<'f> Writer<'f> {
                 quote!((T::of(#sin), T::of(#cos)))
             };
             let factors = factors.into_iter().map(of);
-            return Some(quote!(let [#(#patterns),*] = T::scaled_sin_cos_all([#(#sums),*], [#(#factors),*]);));
+            let call = quote!(T::scaled_sin_cos_of_sums(q, |q| [#(#sums),*], [#(#factors),*]));
+            return Some(quote!(let [#(#patterns),*] = #call;));
         }
-        match (patterns.as_slice(), sums.as_slice()) {
-            ([], _) => None,
-            ([pattern], [sum]) => Some(quote!(let #pattern = T::sin_cos(#sum);)),
-            _ => Some(quote!(let [#(#patterns),*] = T::sin_cos_all([#(#sums),*]);)),
-        }
+        (!sums.is_empty()).then(|| quote!(let [#(#patterns),*] = T::sin_cos_of_sums(q, |q| [#(#sums),*]);))
     }
 
     /// The name of an input, or `_` if it does not matter.

@@ -67,7 +67,7 @@ mod tests {
     fn variables_and_parameters_are_bound() {
         let code = quote! {
             fn statics<T: Real>(&self, q: &SVector<T, 5>, mut put: impl ::core::ops::FnMut(usize, T)) -> Statics<5, T> {
-                let [_, (s1, c1), [tt_xx, _]] = T::sin_cos_all([q[0], x]);
+                let [_, (s1, c1), [tt_xx, _]] = T::sin_cos_of_sums(q, |q| [q[0], x]);
                 let t1 = s1 * Self::A1;
                 if T::COLUMNS { let t2 = -t1; }
                 Statics { transform: t1, jacobian: f(t2) }

@@ -3,6 +3,7 @@
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 use robstiff_robots::description::MOST_JOINTS;
+use robstiff_robots::text::{shown, shown_in_line};
 use robstiff_robots::words::count;
 use robstiff_robots::{Description, JointKind, Place};
 use syn::Ident;
@@ -155,6 +156,7 @@ pub(super) fn imports_of(robot: &Description, runtime: &TokenStream) -> TokenStr
 /// The type with its documentation and its named numbers.
 pub(super) fn definition(robot: &Description, origin: &Origin, functions: &[Generated], reader: Reader) -> TokenStream {
     let Origin { file, visibility, .. } = origin;
+    let file = shown_in_line(file);
     let name = Ident::new(&robot.name, Span::call_site());
     let mut docs = Vec::new();
     if !robot.description.trim().is_empty() {
@@ -273,9 +275,8 @@ fn lines(text: &str) -> Vec<String> {
     // A comment with a lone carriage return is no Rust.
     let escaped = text.trim().replace('\r', "\n").replace('[', "\\[").replace('<', "\\<");
     let escaped = escaped.replace("```", "\\`\\`\\`").replace("~~~", "\\~\\~\\~");
-    // rustc refuses what turns the direction of a source file's text.
-    let escaped = escaped.replace(|c| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'), "");
-    linked(&escaped).lines().map(|line| format!(" {}", line.trim()).trim_end().to_owned()).collect()
+    // rustc refuses what turns the direction of a source file's text: it is spelled out.
+    linked(&shown(&escaped)).lines().map(|line| format!(" {}", line.trim()).trim_end().to_owned()).collect()
 }
 
 /// A text whose addresses are links, for rustdoc warns of those that are none.

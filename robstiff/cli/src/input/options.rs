@@ -15,6 +15,7 @@ pub fn with_unit(text: &str, dimension: Dimension) -> Result<f64, String> {
             Dimension::Time => "ms",
             Dimension::Speed => "mm/min",
             Dimension::Angle => "deg",
+            Dimension::RotationalSpeed => "rpm",
             _ => dimension.unit(),
         };
         let text = text.trim();

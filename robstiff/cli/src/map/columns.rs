@@ -11,7 +11,7 @@ use parquet::errors::Result;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::{SerializedFileWriter, SerializedPageWriter, TrackedWrite};
 use parquet::schema::types::{ColumnPath, SchemaDescriptor, Type};
-use robstiff::map::{Axis, Chunk, Column};
+use robstiff_machining::map::{Axis, Chunk, Column};
 
 use super::table::{Counter, heading, single};
 
@@ -32,7 +32,7 @@ impl Columns {
         let names = axes.iter().filter(|axis| axis.varies()).map(|axis| format!("{} [{}]", axis.name, axis.unit()));
         let names: Vec<String> = names.collect();
         let required = names.iter().cloned().map(|name| (name, Repetition::REQUIRED));
-        // Where no pose reaches the cell there is no value.
+        // Where no pose reaches the cell, or nothing gives way in it, there is no value.
         let optional = columns.iter().map(|column| (heading(column), Repetition::OPTIONAL));
         let field = |(name, repetition): (String, Repetition)| {
             Type::primitive_type_builder(&name, Physical::FLOAT).with_repetition(repetition).build().map(Arc::new)
@@ -77,9 +77,8 @@ impl Columns {
             group.push(self.column(&schema, group.len(), values, None)?);
         }
         for (column, values) in self.columns.iter().zip(&chunk.columns) {
-            let there: Vec<i16> = values.iter().map(|value| i16::from(!value.is_nan())).collect();
-            let values: Vec<f32> =
-                values.iter().filter(|value| !value.is_nan()).map(|&value| single(value, column)).collect();
+            let there: Vec<i16> = values.iter().map(|&value| i16::from(single(value, column).is_some())).collect();
+            let values: Vec<f32> = values.iter().filter_map(|&value| single(value, column)).collect();
             group.push(self.column(&schema, group.len(), &values, Some(&there))?);
         }
         Ok(group)

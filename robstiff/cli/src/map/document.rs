@@ -1,7 +1,7 @@
 //! A map's summary as JSON, and for a terminal.
 
-use robstiff::map::{Axis, Column, Extreme, Measure, Summary, WorkpiecePlace, people};
 use robstiff::nalgebra::Isometry3;
+use robstiff_machining::map::{Axis, Column, Extreme, Measure, Summary, WorkpiecePlace, people};
 use robstiff_robots::quantity::Dimension;
 use serde_json::{Map, Value, json};
 
@@ -94,7 +94,26 @@ impl Mapped {
 
     /// A value of the first column for people.
     pub fn figure(&self, value: f64) -> String {
-        significant(value * self.columns[0].scale, 4)
+        if self.is_rigid(value) { "rigid".to_owned() } else { significant(value * self.columns[0].scale, 4) }
+    }
+
+    /// The same with its unit.
+    pub fn with_unit(&self, value: f64) -> String {
+        let figure = self.figure(value);
+        if self.is_rigid(value) { figure } else { format!("{figure} {}", self.unit()) }
+    }
+
+    fn is_rigid(&self, value: f64) -> bool {
+        value.is_infinite() && !self.measure.worse_is_larger()
+    }
+
+    /// What is said of cells where no force moves the tool, if there are any.
+    pub fn rigid(&self) -> Option<String> {
+        let rigid = self.summary.rigid;
+        (rigid > 0).then(|| {
+            let cells = count(rigid, "cell");
+            format!("{cells} {} rigid: no force moves the tool there, and tables have no value", are(rigid))
+        })
     }
 
     /// Where a cell is: `q1 = -30 deg, q2 = 12.5 deg`.
@@ -151,6 +170,7 @@ impl Mapped {
             "axes": self.axes.iter().map(axis).collect::<Value>(),
             "cells": self.summary.cells,
             "unreachable": self.summary.unreachable,
+            "rigid": self.summary.rigid,
             "mean": json::number(self.summary.mean * self.columns[0].scale),
             "best": self.extreme(self.summary.best.as_ref()),
             "worst": self.extreme(self.summary.worst.as_ref()),
@@ -188,13 +208,12 @@ impl Mapped {
         let sentence = |placed: &Placed| {
             let Some(best) = placed.best else { return capital(&format!("{}.", placed.nowhere())) };
             format!(
-                "A workpiece of {} mm is best put with its lower corner at ({}) mm{}: the worst of {} in it is {} {}.",
+                "A workpiece of {} mm is best put with its lower corner at ({}) mm{}: the worst of {} in it is {}.",
                 lengths(placed.size, " x "),
                 lengths(best.corner, ", "),
                 placed.how(),
                 count(best.span.iter().product(), "point"),
-                self.figure(best.worst),
-                self.unit()
+                self.with_unit(best.worst)
             )
         };
         self.placements.iter().map(sentence).collect()
@@ -219,6 +238,9 @@ impl Mapped {
         if *unreachable > 0 {
             page += &format!("{} of them no pose reaches\n", unreachable);
         }
+        if let Some(rigid) = self.rigid() {
+            page += &format!("{rigid}\n");
+        }
         let (Some(best), Some(worst)) = (best, worst) else {
             let over = self.axes.iter().any(|axis| axis.dimension == Dimension::Length);
             if over && unreachable == cells {
@@ -233,16 +255,19 @@ impl Mapped {
         table.row(["mean".to_owned(), self.figure(*mean), String::new()]);
         table.row(["worst".to_owned(), self.figure(worst.values[0]), self.place(worst.cell)]);
         page += &format!("\n{table}");
-        if !matches!(self.measure, Measure::Deviation(_)) {
+        if !matches!(self.measure, Measure::Deviation(_)) && worst.values[1].is_finite() {
             let [x, y, z] = [1, 2, 3].map(|k| crate::text::decimals(worst.values[k], 3));
             page += &format!("the weakest direction there is ({x}, {y}, {z}) in the base frame\n");
         }
-        // That there is no place at all is an error's to say.
-        for sentence in self.placed().iter().filter(|_| self.unplaced().is_none()) {
+        for sentence in self.placed() {
             page += &format!("\n{sentence}\n");
         }
         page + "\n"
     }
+}
+
+fn are(count: usize) -> &'static str {
+    if count == 1 { "is" } else { "are" }
 }
 
 /// Nothing that an arm reaches is farther from its base (m).

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use robstiff::map::Axis;
+use robstiff_machining::map::Axis;
 
 use super::contour::contours;
 use super::document::Mapped;

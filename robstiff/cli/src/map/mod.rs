@@ -16,15 +16,17 @@ use std::path::{Path, PathBuf};
 
 use indicatif::{HumanCount, ProgressBar, ProgressStyle};
 use robstiff::Generic;
-use robstiff::map::read::{Over, Positions, Task};
-use robstiff::map::{Axis, CartesianSpace, Chunk, JointSpace, Measure, Survey, Tool, best_placement};
 use robstiff::nalgebra::Isometry3;
+use robstiff_machining::map::read::{Over, Positions, Task};
+use robstiff_machining::map::{Axis, CartesianSpace, Chunk, JointSpace, Measure, Survey, Tool, best_placement};
 use robstiff_robots::Description;
 use robstiff_robots::document::{Document, Node};
 use robstiff_robots::quantity::Dimension;
+use robstiff_robots::text::{self, MOST_OF_DOCUMENT};
 
 use crate::failure::Failure;
 use crate::output::{self, Files, Growing};
+use crate::text::count;
 use crate::{input, json};
 use columns::{Columns, RowGroup};
 use document::{Mapped, Placed};
@@ -110,13 +112,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.json {
         files.add(path, json::document(&mapped.json()));
     }
-    let said = files.write()?;
-    output::print(mapped.page() + &said)?;
-    // The map stands, and shows where it has holes.
-    mapped.unplaced().map_or(Ok(()), |said| {
+    // The map is an answer, also that no place in it will do: it shows where it has holes.
+    if let Some(said) = mapped.unplaced() {
         let map = arguments.map.display();
-        Err(Failure::new(format_args!("{map}: {said}; what would help is a smaller one, a wider map or more turns")))
-    })
+        output::complain(format_args!(
+            "warning: {map}: {said}; what would help is a smaller one, a wider map or more turns"
+        ));
+    }
+    let said = files.write()?;
+    output::print(mapped.page() + &said)
 }
 
 /// Stops, before what may take minutes, where a workpiece (m) is larger than the map.
@@ -134,7 +138,7 @@ fn refuse_if_larger(size: [f64; 3], axes: &[Axis; 3], map: &Path) -> Result<(), 
 }
 
 fn task(path: &Path, robot: &Description) -> Result<Task, Failure> {
-    let text = robstiff_robots::text::read(path)?;
+    let text = text::read(path, MOST_OF_DOCUMENT)?;
     let file = path.display().to_string();
     // Beyond the joints' limits they are refused, so before.
     if let Some(asked) = are_degrees(&file, &text, robot) {
@@ -258,6 +262,8 @@ struct Pieces {
     group: Option<parquet::errors::Result<RowGroup>>,
     dots: Vec<Dot>,
     values: Vec<f64>,
+    /// Numbers that the tables do not hold.
+    too_large: usize,
 }
 
 /// Maps a space to the files that are asked for.
@@ -278,6 +284,7 @@ fn write(survey: &Survey<'_>, arguments: &Arguments, files: &mut Files) -> Resul
     if let Some(csv) = &mut csv {
         put(csv, table.header().as_bytes())?;
     }
+    let is_table = arguments.csv.is_some() || arguments.parquet.is_some();
     announce(axes, cells);
     let progress = progress(cells, chunk);
     let encode = |chunk: &Chunk| Pieces {
@@ -286,9 +293,12 @@ fn write(survey: &Survey<'_>, arguments: &Arguments, files: &mut Files) -> Resul
         group: arguments.parquet.as_ref().map(|_| groups.encode(chunk)),
         dots: wanted.as_ref().map_or_else(Vec::new, |slices| slices.dots(chunk)),
         values: if arguments.place.is_some() { chunk.columns[0].clone() } else { Vec::new() },
+        too_large: if is_table { table::too_large(chunk, columns) } else { 0 },
     };
+    let mut too_large = 0;
     let take = |pieces: Pieces| {
         progress.inc(pieces.cells as u64);
+        too_large += pieces.too_large;
         values.extend(pieces.values);
         if let Some(slices) = &mut slices {
             slices.draw(pieces.dots);
@@ -301,6 +311,12 @@ fn write(survey: &Survey<'_>, arguments: &Arguments, files: &mut Files) -> Resul
     let summary = survey.stream(encode, take);
     progress.finish_and_clear();
     let summary = summary?;
+    if too_large > 0 {
+        let numbers = count(too_large, "number");
+        output::complain(format_args!(
+            "warning: {numbers} beyond single precision, 3.4e38: tables have no value there"
+        ));
+    }
     if let Some(csv) = csv {
         files.grown(csv)?;
     }

@@ -7,7 +7,7 @@ use super::heat::{self, Room, beside, heat};
 use super::slices::Slices;
 use super::table::{heading, single};
 use crate::report;
-use crate::report::html::{Table, escape, number, text, words};
+use crate::report::html::{self, Table, escape, number, text, words};
 use crate::text::{capital, count};
 
 const SCRIPT: &str = include_str!("page.js");
@@ -20,7 +20,7 @@ pub fn svg(mapped: &Mapped, slices: &Slices) -> String {
 /// The page: the picture, what it comes to, and a value wherever one points.
 pub fn html(mapped: &Mapped, slices: &Slices) -> String {
     let [wide, narrow] = [Room::Wide, Room::Narrow].map(|room| heat(mapped, slices, room));
-    let title = escape(&format!("{}: {}", mapped.robot, mapped.words()));
+    let title = format!("{}: {}", mapped.robot, mapped.words());
     let mut body = format!("<header>\n{}{}", text("p", "Map of a robot's elastostatics"), text("h1", &mapped.robot));
     let mut said = capital(&mapped.words());
     if !mapped.fixed().is_empty() {
@@ -43,15 +43,8 @@ pub fn html(mapped: &Mapped, slices: &Slices) -> String {
     writeln!(body, "<figcaption>{caption}<span class=\"point\"> Point at the map to read a value.</span></figcaption>")
         .expect("a string takes any text");
     body += &extremes(mapped);
-    let data = data(mapped, slices, [&wide.frames, &narrow.frames]);
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{title}</title>\n<style>\n{}{}{TIP}</style>\n</head>\n<body>\n{body}\
-         <script type=\"application/json\" id=\"map\">{data}</script>\n<script>\n{SCRIPT}</script>\n</body>\n</html>\n",
-        report::STYLE,
-        heat::STYLE
-    )
+    body += &html::data("map", &data(mapped, slices, [&wide.frames, &narrow.frames]));
+    html::page(&title, &[report::STYLE, heat::STYLE, TIP].concat(), &body, SCRIPT)
 }
 
 const TIP: &str = "figure.map { position: relative; }\nfigure.map svg { min-width: 0; }\n.wide svg { max-height: 88vh; }\n\
@@ -69,13 +62,15 @@ fn headline(mapped: &Mapped) -> String {
         return "No pose reaches any of it.".to_owned();
     };
     let mut said = format!(
-        "From {} {unit} at {} to {} {unit} at {}.",
-        mapped.figure(best.values[0]),
+        "From {} at {} to {} at {}.",
+        mapped.with_unit(best.values[0]),
         mapped.place(best.cell),
-        mapped.figure(worst.values[0]),
+        mapped.with_unit(worst.values[0]),
         mapped.place(worst.cell),
-        unit = mapped.unit()
     );
+    if let Some(rigid) = mapped.rigid() {
+        write!(said, " {}.", capital(&rigid)).expect("a string takes any text");
+    }
     if summary.unreachable > 0 {
         write!(said, " {} of the {} are out of reach.", summary.unreachable, count(summary.cells, "cell"))
             .expect("a string takes any text");
@@ -108,7 +103,10 @@ fn extremes(mapped: &Mapped) -> String {
         table.row(false, [words(format!("{} [{}]", axis.name, axis.unit())), at(&cells[0]), at(&cells[1])]);
     }
     for (k, column) in mapped.columns.iter().enumerate() {
-        let value = |values: &[f64]| number(crate::text::significant(values[k] * column.scale, 4));
+        let value = |values: &[f64]| match k {
+            0 => number(mapped.figure(values[0])),
+            _ => number(crate::text::significant(values[k] * column.scale, 4)),
+        };
         table.row(k == 0, [words(micro(&heading(column))), value(&best.values), value(&worst.values)]);
     }
     table.html()
@@ -116,7 +114,7 @@ fn extremes(mapped: &Mapped) -> String {
 
 /// What the script reads: each slice's frames in the wide and the narrow picture, axes,
 /// and values by rows from below.
-fn data(mapped: &Mapped, slices: &Slices, [wide, narrow]: [&[heat::Frame]; 2]) -> String {
+fn data(mapped: &Mapped, slices: &Slices, [wide, narrow]: [&[heat::Frame]; 2]) -> serde_json::Value {
     let column = &mapped.columns[0];
     let axis = |k: usize| {
         let axis = &mapped.axes[slices.drawn[k]];
@@ -128,14 +126,9 @@ fn data(mapped: &Mapped, slices: &Slices, [wide, narrow]: [&[heat::Frame]; 2]) -
     };
     let slice = |(k, slice): (usize, &super::slices::Slice)| {
         let values = slice.values.iter().map(|&value| {
-            let value = f64::from(single(value, column));
-            if value.is_finite() {
-                crate::text::significant(value, 4)
-                    .parse::<f64>()
-                    .map_or(serde_json::Value::Null, serde_json::Value::from)
-            } else {
-                serde_json::Value::Null
-            }
+            let value = single(value, column).map(f64::from);
+            let shown = value.and_then(|value| crate::text::significant(value, 4).parse::<f64>().ok());
+            shown.map_or(serde_json::Value::Null, serde_json::Value::from)
         });
         let frames = [&wide[k], &narrow[k]].map(|frame| [frame.corner, frame.size]);
         serde_json::json!({
@@ -144,15 +137,13 @@ fn data(mapped: &Mapped, slices: &Slices, [wide, narrow]: [&[heat::Frame]; 2]) -
             "values": values.collect::<Vec<_>>(),
         })
     };
-    let document = serde_json::json!({
+    serde_json::json!({
         "name": column.name,
         "unit": column.unit.replace('u', "µ"),
         "right": axis(0),
         "up": axis(1),
         "slices": slices.slices.iter().enumerate().map(slice).collect::<Vec<_>>(),
-    });
-    // Nothing in it ends the element it stands in.
-    document.to_string().replace('<', "\\u003c")
+    })
 }
 
 fn micro(text: &str) -> String {

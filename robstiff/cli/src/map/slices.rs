@@ -1,6 +1,6 @@
 //! What of a map is drawn: slices along its first two axes that vary.
 
-use robstiff::map::{Axis, Chunk, Measure};
+use robstiff_machining::map::{Axis, Chunk, Measure};
 
 use super::table::Counter;
 

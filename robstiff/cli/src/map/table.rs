@@ -1,8 +1,6 @@
 //! A map as CSV: a line a cell, the coordinates that vary before the columns.
 
-use std::io::Write as _;
-
-use robstiff::map::{Axis, Chunk, Column};
+use robstiff_machining::map::{Axis, Chunk, Column};
 
 /// How cells are written down.
 pub struct Table {
@@ -35,8 +33,7 @@ impl Table {
         axes.chain(self.columns.iter().map(heading)).collect::<Vec<_>>().join(",") + "\n"
     }
 
-    /// The lines of a chunk. Values have single precision; where no pose reaches
-    /// the cell there is none.
+    /// The lines of a chunk. Values have single precision; where there is none the field is empty.
     pub fn lines(&self, chunk: &Chunk) -> Vec<u8> {
         let mut lines = Vec::with_capacity(chunk.cells.len() * 12 * (self.axes.len() + self.columns.len()));
         let mut at = Counter::new(self.axes.iter().map(|axis| axis.values.len()), chunk.cells.start);
@@ -55,11 +52,8 @@ impl Table {
                     lines.push(b',');
                 }
                 comma = true;
-                let value = single(values[cell], column);
-                if value.is_finite() {
+                if let Some(value) = single(values[cell], column) {
                     lines.extend_from_slice(number.format_finite(value).as_bytes());
-                } else if !value.is_nan() {
-                    write!(lines, "{value}").expect("memory takes any text");
                 }
             }
             lines.push(b'\n');
@@ -74,10 +68,20 @@ pub fn heading(column: &Column) -> String {
     if column.unit.is_empty() { column.name.to_owned() } else { format!("{} [{}]", column.name, column.unit) }
 }
 
-/// A value as files hold it.
-pub fn single(value: f64, column: &Column) -> f32 {
+/// A value as files hold it; none, where no pose reaches the cell or nothing gives way in it, and
+/// of a number that single precision does not hold.
+pub fn single(value: f64, column: &Column) -> Option<f32> {
     // No negative zero.
-    (value * column.scale) as f32 + 0.0
+    let value = (value * column.scale) as f32 + 0.0;
+    value.is_finite().then_some(value)
+}
+
+/// How many numbers of a chunk are too large for single precision.
+pub fn too_large(chunk: &Chunk, columns: &[Column]) -> usize {
+    let of_column = |(column, values): (&Column, &Vec<f64>)| {
+        values.iter().filter(|value| value.is_finite() && single(**value, column).is_none()).count()
+    };
+    columns.iter().zip(&chunk.columns).map(of_column).sum()
 }
 
 /// The indices of cell after cell, the first fastest.

@@ -6,12 +6,12 @@
 
 use std::array;
 
-use robstiff::map::{Evaluate, Poses};
 use robstiff::nalgebra::{SVector, Vector6};
 use robstiff::{Lanes, Real};
 use robstiff_codegen::Function;
 use robstiff_codegen::op::Op;
 use robstiff_codegen::symbolic::{compliance, deflection};
+use robstiff_machining::map::{Evaluate, Poses};
 use robstiff_robots::Description;
 
 /// Poses abreast.
@@ -194,8 +194,8 @@ impl<const N: usize> Evaluate<N> for Tape<N> {
 
 #[cfg(test)]
 mod tests {
-    use robstiff::map::{Axis, JointSpace, Space};
     use robstiff::{Generic, Robot};
+    use robstiff_machining::map::{Axis, JointSpace, Space};
     use robstiff_robots::catalogue::catalogue;
 
     use super::*;
@@ -255,7 +255,7 @@ mod tests {
         let axes: [Axis; 6] = array::from_fn(|i| Axis::angles(&format!("q{}", i + 1), -0.4, 0.3, 1 + i % 3));
         let mut tables = Vec::new();
         let space = JointSpace::new(&axes, &mut tables);
-        let measure = robstiff::map::Measure::Stiffness;
+        let measure = robstiff_machining::map::Measure::Stiffness;
         let by_tape = space.compute(&Tape::<6>::new(&robot), &measure, 5..30);
         let by_batch = space.compute(&Generic::<6>::new(&robot).unwrap(), &measure, 5..30);
         for (one, other) in by_tape[0].iter().zip(&by_batch[0]) {

@@ -1,6 +1,6 @@
 //! What nobody would wait for.
 
-use robstiff::online::{Controller, Effort, Servo};
+use robstiff_machining::online::{Controller, Effort, Servo};
 
 use super::Variant;
 use crate::failure::Failure;

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use robstiff::deviation::{Deviation, ForceTable, Surface, load_of_cut};
-use robstiff::milling::{CutFile, CutFrame, ForceFrame, Forces};
 use robstiff::nalgebra::{Matrix3, SVector, Unit, Vector3, Vector6};
-use robstiff::online::{HeldBack, Instant, LeftOfSine, Timeline, left_of_sine, simulate_along};
-use robstiff::path::ToolPath;
 use robstiff::{Robot, with_robot};
+use robstiff_machining::deviation::{Deviation, ForceTable, Surface, load_of_cut};
+use robstiff_machining::milling::{CutFile, CutFrame, ForceFrame, Forces};
+use robstiff_machining::online::{HeldBack, Instant, LeftOfSine, Timeline, left_of_sine, simulate_along};
+use robstiff_machining::path::ToolPath;
 use robstiff_robots::Description;
 
 use super::reach::Reach;
@@ -141,7 +141,8 @@ impl LoadRequest {
                     Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0)
                 };
                 if let Forces::Measured { force, .. } = &file.forces {
-                    let sample = |sample: &robstiff::milling::Sample| Some((sample.time?, wrench(sample.force)));
+                    let sample =
+                        |sample: &robstiff_machining::milling::Sample| Some((sample.time?, wrench(sample.force)));
                     if let Some(samples) = force.samples.iter().map(sample).collect() {
                         if load.frequencies.is_some() {
                             return Err(Failure::Usage(format!(

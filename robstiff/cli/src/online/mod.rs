@@ -8,8 +8,8 @@ mod reach;
 use std::path::PathBuf;
 
 use robstiff::nalgebra::{Unit, Vector3};
-use robstiff::online::{Controller, Limits, Sensing, Servo};
 use robstiff::{Generic, with_robot};
+use robstiff_machining::online::{Controller, Limits, Sensing, Servo};
 use robstiff_robots::Description;
 use robstiff_robots::quantity::Dimension;
 

@@ -1,6 +1,6 @@
 //! What is left, as text, as a table and as JSON.
 
-use robstiff::online::{HeldBack, LeftOfSine};
+use robstiff_machining::online::{HeldBack, LeftOfSine};
 use robstiff_robots::{Description, Joint};
 use serde_json::{Value, json};
 
@@ -8,7 +8,7 @@ use super::loads::{Course, Outcome, Simulated, Stop};
 use super::reach::Reach;
 use super::{ControlArguments, Loss, Variant};
 use crate::json::{number, numbers};
-use crate::text::{Table, decimals, field, micrometres, significant};
+use crate::text::{Table, cell, decimals, field, micrometres, significant};
 
 /// How many rows of places a person reads.
 const ROWS: usize = 12;
@@ -173,7 +173,7 @@ pub fn table(simulated: &Simulated, variants: &[Variant]) -> String {
             let mut csv = format!("frequency [Hz]{}\n", names("%"));
             for (k, frequency) in frequencies.iter().enumerate() {
                 csv += &frequency.to_string();
-                left.iter().for_each(|left| csv += &format!(",{}", decimals(100.0 * left[k].rms, 4)));
+                left.iter().for_each(|left| csv += &format!(",{}", cell(100.0 * left[k].rms, 4)));
                 csv.push('\n');
             }
             csv
@@ -182,11 +182,11 @@ pub fn table(simulated: &Simulated, variants: &[Variant]) -> String {
             let mut csv = format!("t [s],line,s [mm],without [um]{}\n", names("um"));
             for (at, stop) in stops.iter().enumerate() {
                 let (line, s) =
-                    stop.place.map_or_else(Default::default, |(line, s)| (line.to_string(), decimals(s * 1e3, 6)));
-                csv += &format!("{},{line},{s}", decimals(stop.time, 6));
+                    stop.place.map_or_else(Default::default, |(line, s)| (line.to_string(), cell(s * 1e3, 6)));
+                csv += &format!("{},{line},{s}", cell(stop.time, 6));
                 for course in std::iter::once(without).chain(with) {
                     let since = course.since[at];
-                    csv += &if since.is_nan() { ",".to_owned() } else { format!(",{}", decimals(since * 1e6, 4)) };
+                    csv += &format!(",{}", cell(since * 1e6, 4));
                 }
                 csv.push('\n');
             }

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use robstiff::Robot;
-use robstiff::compensation::{CompensatedPoint, Keep, Sensitivity, compensate, sensitivity};
-use robstiff::deviation::{Deviation, ForceTable, Load, Stretch, Surface, blame, load_of_cut, removal_rate};
-use robstiff::milling::{CutFile, ForceFrame, Forces};
 use robstiff::nalgebra::{Matrix4, Unit, Vector3};
-use robstiff::path::{SolvedPath, ToolPath};
+use robstiff_machining::compensation::{CompensatedPoint, Keep, Sensitivity, compensate, sensitivity};
+use robstiff_machining::deviation::{Deviation, ForceTable, Load, Stretch, Surface, blame, load_of_cut, removal_rate};
+use robstiff_machining::milling::{CutFile, ForceFrame, Forces};
+use robstiff_machining::path::{SolvedPath, ToolPath};
 use robstiff_robots::quantity::Dimension;
 
 use super::doubts::{complain_of_size, lacks_wall};

@@ -1,13 +1,13 @@
 //! What forces do to the tool along a path: told, and written.
 
-use robstiff::compensation::LeftIfWrong;
-use robstiff::deviation::{DeviationPoint, Stretch, Summary};
-use robstiff::path::lines;
+use robstiff_machining::compensation::LeftIfWrong;
+use robstiff_machining::deviation::{DeviationPoint, Stretch, Summary};
+use robstiff_machining::path::lines;
 use serde_json::{Value, json};
 
 use super::cutting::{Corrected, Cutting, WRONG};
 use crate::json::{number, numbers};
-use crate::text::{Table, count, decimals, micrometres};
+use crate::text::{Table, cell, count, decimals, micrometres};
 
 /// Stretches and elements that a person is shown.
 const MOST_SHOWN: usize = 12;
@@ -189,18 +189,18 @@ fn acting(cutting: &Cutting, index: usize) -> [f64; 6] {
 pub fn cells(cutting: &Cutting, has: Columns, index: usize) -> String {
     let point = &cutting.deviation.points[index];
     let wrench = acting(cutting, index).into_iter().take(if has.moments { 6 } else { 3 });
-    let mut cells: Vec<String> = wrench.map(|component| decimals(component, 4)).collect();
+    let mut cells: Vec<String> = wrench.map(|component| cell(component, 4)).collect();
     let along = |axis: usize| point.components.map(|components| components[axis]);
     let lengths = [Some(point.distance()), along(0), along(1), along(2), point.error];
-    let cell = |length: Option<f64>| length.map_or_else(String::new, |length| decimals(length * 1e6, 4));
-    cells.extend(lengths.map(cell));
+    let micro = |length: Option<f64>| length.map_or_else(String::new, |length| cell(length * 1e6, 4));
+    cells.extend(lengths.map(micro));
     if has.peaks {
-        cells.push(cell(point.peak));
+        cells.push(micro(point.peak));
     }
     if let Some(corrected) = &cutting.corrected {
         let point = &corrected.points[index];
-        cells.extend(point.correction.map(|length| decimals(length * 1e6, 4)));
-        cells.push(decimals(point.remaining * 1e6, 6));
+        cells.extend(point.correction.map(|length| cell(length * 1e6, 4)));
+        cells.push(cell(point.remaining * 1e6, 6));
     }
     cells.join(",")
 }

@@ -1,7 +1,7 @@
 //! What numbers along a path mean less than they seem to, said before they are.
 
-use robstiff::deviation::{Deviation, DeviationPoint, width};
-use robstiff::milling::Forces;
+use robstiff_machining::deviation::{Deviation, DeviationPoint, width};
+use robstiff_machining::milling::Forces;
 
 use crate::output::complain;
 use crate::text::{decimals, micrometres};

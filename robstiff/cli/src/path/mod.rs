@@ -8,17 +8,17 @@ mod doubts;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use robstiff::inverse::Inverse;
 use robstiff::nalgebra::{Matrix4, Rotation3, SVector, Unit, UnitQuaternion, Vector3};
-use robstiff::path::{Jump, ToolPath};
 use robstiff::{Robot, with_robot};
+use robstiff_machining::inverse::Inverse;
+use robstiff_machining::path::{Jump, ToolPath};
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, JointKind};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
-use crate::text::{Table, count, decimals};
+use crate::text::{Table, cell, count, decimals};
 use crate::{input, json};
 use cutting::{Cutting, CuttingRequest};
 
@@ -246,13 +246,13 @@ fn table(robot: &Description, solved: &Solved) -> String {
         for (&q, joint) in q.iter().zip(&robot.joints) {
             // All digits: the file is read again.
             let unit = if joint.kind == JointKind::Revolute { 1_f64.to_radians() } else { 1e-3 };
-            csv += &format!("{},", decimals(q / unit, 10));
+            csv += &format!("{},", cell(q / unit, 10));
         }
-        let position: Vec<String> = (0..3).map(|axis| decimals(pose[(axis, 3)] * 1e3, 6)).collect();
-        let turn = quaternion(pose).map(|part| decimals(part, 12));
-        csv += &format!("{},{},{}", position.join(","), turn.join(","), decimals(point.s * 1e3, 6));
+        let position: Vec<String> = (0..3).map(|axis| cell(pose[(axis, 3)] * 1e3, 6)).collect();
+        let turn = quaternion(pose).map(|part| cell(part, 12));
+        csv += &format!("{},{},{}", position.join(","), turn.join(","), cell(point.s * 1e3, 6));
         if let Some(feed) = point.feed {
-            csv += &format!(",{}", decimals(feed * 6e4, 6));
+            csv += &format!(",{}", cell(feed * 6e4, 6));
         }
         if let Some((cutting, has)) = cutting {
             csv += &format!(",{}", deviation::cells(cutting, has, i));

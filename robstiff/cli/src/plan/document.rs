@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use robstiff::campaign::{Campaign, Data};
-use robstiff::plan::{Number, Outlook, Pair, Plan, Planned, Visit};
-use robstiff::trace::Trace;
+use robstiff_identify::campaign::{Campaign, Data};
+use robstiff_identify::plan::{Number, Outlook, Pair, Plan, Planned, Visit};
+use robstiff_identify::trace::Trace;
 use serde_json::{Value, json};
 
 use crate::json::{number, numbers};

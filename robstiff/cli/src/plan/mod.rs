@@ -6,9 +6,9 @@ mod page;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use robstiff::identify::Error;
-use robstiff::plan::{self, Options, plan};
-use robstiff::trace::{self, trace};
+use robstiff_identify::identify::Error;
+use robstiff_identify::plan::{self, Options, plan};
+use robstiff_identify::trace::{self, trace};
 use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;

@@ -1,8 +1,8 @@
 //! A plan for a terminal.
 
-use robstiff::campaign::{Campaign, Data};
-use robstiff::plan::{Outlook, Pair, Plan};
-use robstiff::trace::Trace;
+use robstiff_identify::campaign::{Campaign, Data};
+use robstiff_identify::plan::{Outlook, Pair, Plan};
+use robstiff_identify::trace::Trace;
 
 use super::document::columns_of_loads;
 use crate::text::{Table, count, decimals, significant};

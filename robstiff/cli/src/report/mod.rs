@@ -4,6 +4,7 @@
 //! paper, and figures that can be read without colour.
 
 mod arm;
+pub mod base64;
 pub mod content;
 mod figure;
 pub mod html;
@@ -37,12 +38,7 @@ pub fn html(report: &Report) -> String {
         sections::origins(report),
     ]
     .concat();
-    let title = escape(&format!("{}: what the model lacks", report.robot));
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n"
-    )
+    html::page(&format!("{}: what the model lacks", report.robot), STYLE, &body, "")
 }
 
 fn heading(report: &Report) -> String {

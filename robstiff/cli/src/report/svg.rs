@@ -82,7 +82,7 @@ impl Svg {
     pub fn image(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], source: &str) {
         self.push(format_args!(
             "<image class=\"cells\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" \
-             preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"{source}\"/>"
+             preserveAspectRatio=\"none\" href=\"{source}\"/>"
         ));
     }
 

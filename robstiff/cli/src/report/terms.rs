@@ -2,7 +2,7 @@
 //! deflections of axes that are loaded one by one.
 
 use robstiff::JointKind;
-use robstiff::campaign::{Campaign, Data};
+use robstiff_identify::campaign::{Campaign, Data};
 
 /// The words for one kind of campaign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

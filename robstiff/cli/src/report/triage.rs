@@ -17,7 +17,7 @@ const TOP: f64 = 34.0;
 const POWERS: f64 = 4.0;
 
 /// The level of all checks together.
-const LEVEL: f64 = robstiff::triage::LEVEL;
+const LEVEL: f64 = robstiff_identify::triage::LEVEL;
 
 /// The section; empty where nothing was asked.
 pub fn section(report: &Report) -> String {

@@ -1,10 +1,10 @@
 //! What a scene shows: the poses with compliance and displacement, computed.
 
 use robstiff::analysis::principal_directions;
-use robstiff::campaign::{Campaign, Data};
-use robstiff::identify::{PredictedRow, predict};
 use robstiff::nalgebra::{Matrix4, SVector, Vector3, Vector6};
 use robstiff::{Convention, Generic, JointKind, Robot, State, with_robot};
+use robstiff_identify::campaign::{Campaign, Data};
+use robstiff_identify::identify::{PredictedRow, predict};
 use robstiff_robots::{Description, Joint};
 use serde_json::{Value, json};
 

@@ -6,7 +6,7 @@ mod picture;
 
 use std::path::PathBuf;
 
-use robstiff::campaign::JointTable;
+use robstiff_identify::campaign::JointTable;
 use robstiff_robots::Description;
 
 use crate::failure::Failure;

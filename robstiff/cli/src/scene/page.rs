@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::content::{Kind, Pose, Scene};
 use super::picture;
-use crate::report::html::{Table, element, escape, number, text, words};
+use crate::report::html::{Table, data, element, escape, number, page, text, words};
 use crate::text::{decimals, significant};
 
 const STYLE: &str = include_str!("scene.css");
@@ -15,26 +15,21 @@ const SCRIPTS: [&str; 4] =
 
 /// The page, with the scene as the scripts read it.
 pub fn html(robot: &Description, scene: &Scene, document: &Value) -> String {
-    let title = escape(&format!("{}: compliance in 3-D", robot.name));
-    // Nothing in a string may close the element.
-    let data = document.to_string().replace('<', "\\u003c");
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{}\
-         <main>\n<div class=\"stage\">\n<canvas id=\"scene\" tabindex=\"0\" role=\"img\" \
+    let body = format!(
+        "{}<main>\n<div class=\"stage\">\n<canvas id=\"scene\" tabindex=\"0\" role=\"img\" \
          aria-label=\"{}; arrow keys turn it, plus and minus zoom\"></canvas>\n\
          <p id=\"keys\" class=\"live\">Drag or arrow keys turn, wheel or + and − zoom, 0 resets.</p>\n\
-         <figure id=\"drawing\">\n{}</figure>\n</div>\n{}{}</main>\n{}\
-         <script type=\"application/json\" id=\"data\">{data}</script>\n<script>\n\"use strict\";\n{}</script>\n</body>\n</html>\n",
+         <figure id=\"drawing\">\n{}</figure>\n</div>\n{}{}</main>\n{}{}",
         heading(robot, scene),
         escape(&described(robot, scene)),
         picture::svg(robot, scene),
         legend(scene),
         controls(robot, scene),
         table(scene),
-        SCRIPTS.concat(),
-    )
+        data("data", document),
+    );
+    let title = format!("{}: compliance in 3-D", robot.name);
+    page(&title, STYLE, &body, &format!("\"use strict\";\n{}", SCRIPTS.concat()))
 }
 
 fn heading(robot: &Description, scene: &Scene) -> String {

@@ -1,6 +1,7 @@
-//! `robstiff stability`: how deep a cut may be before the arm chatters by mode
-//! coupling, by the direction of the feed.
+//! `robstiff stability`: how deep a cut may be before the arm chatters, by the direction of the
+//! feed and the speed of the spindle.
 
+mod lobes;
 mod page;
 mod picture;
 
@@ -8,10 +9,10 @@ use std::path::PathBuf;
 
 use robstiff::analysis::translational_compliance;
 use robstiff::elements::{compliance_under, contributions, contributions_under};
-use robstiff::milling::{Cut, Forces};
 use robstiff::nalgebra::{Matrix3, SVector, Vector3, Vector6};
-use robstiff::stability::{FeedLimit, Modes, mass_of_first_mode, over_feeds};
 use robstiff::{Robot, with_robot};
+use robstiff_machining::milling::{Cut, Forces};
+use robstiff_machining::stability::{FeedLimit, Modes, mass_of_first_mode, over_feeds};
 use robstiff_robots::Description;
 use robstiff_robots::quantity::{self, Dimension};
 use serde_json::{Value, json};
@@ -20,12 +21,13 @@ use crate::failure::Failure;
 use crate::input::{axis, positive, whole};
 use crate::output::{self, Files};
 use crate::{forces, input, json};
+use lobes::Lobe;
 
-/// The depths of cut at which the arm chatters by mode coupling, by direction of feed
+/// The depths of cut at which the arm chatters, by direction of feed and spindle speed
 ///
-/// Mode coupling only: two weak directions of the arm that feed each other at
-/// its own low frequencies. Regenerative chatter of spindle, tool or workpiece
-/// is another matter, and not looked at.
+/// At the low frequencies of the arm's own modes, each tooth cutting the surface
+/// that the tooth before has left. The modes of spindle, tool and workpiece are
+/// another matter, and not looked at.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The robot's description, or the name of a robot in the catalogue
@@ -45,13 +47,19 @@ pub struct Arguments {
     /// The axis of the spindle in the TCP's frame, from the spindle to the tip: x, y, z, -x, -y, -z, or a vector "0,0,1"
     #[arg(long, value_name = "AXIS", default_value = "z", allow_hyphen_values = true, value_parser = axis)]
     tool_axis: Vector3<f64>,
+    /// The speed of the spindle, e.g. "9000 rpm", in place of the cut's
+    #[arg(long, value_name = "SPEED", allow_hyphen_values = true, value_parser = positive(Dimension::RotationalSpeed))]
+    speed: Option<f64>,
+    /// The speeds of the lobe diagram, e.g. "3000 rpm, 18000 rpm"; where left out from a fifth to twice the speed
+    #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = lobes::range)]
+    speeds: Option<[f64; 2]>,
     /// The greatest depth looked at, e.g. "10 mm", at least the cut's; where left out, ten times that
     #[arg(long, value_name = "DEPTH", allow_hyphen_values = true, value_parser = positive(Dimension::Length))]
     greatest: Option<f64>,
     /// How many directions of the feed are looked at
     #[arg(long, value_name = "COUNT", default_value_t = 72, value_parser = whole::<u16>(4, 3600))]
     feeds: u16,
-    /// Draw the depths over the feed to FILE
+    /// Draw the depths over the feed and over the spindle speed to FILE
     #[arg(long, value_name = "FILE.svg")]
     out: Option<PathBuf>,
     /// Write the same as JSON to FILE
@@ -80,6 +88,8 @@ pub struct Predicted {
     /// The greatest depth looked at (m).
     greatest: f64,
     feeds: Vec<FeedLimit>,
+    /// The same feeds at other speeds.
+    lobes: Vec<Lobe>,
 }
 
 /// Predicts.
@@ -92,6 +102,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "a measured force does not say how it changes with the chip; give the cut with tool and material",
         ));
     };
+    let cut = &Cut { speed: arguments.speed.or(cut.speed), ..cut.clone() };
+    let (Some(speed), Some(period)) = (cut.speed, cut.tooth_period()) else {
+        return Err(Failure::new(format!(
+            "{} gives no `speed` of the spindle, on which the depth depends; write it there, or give it: \
+             --speed \"9000 rpm\"",
+            arguments.cut.display()
+        )));
+    };
     if let Some(greatest) = arguments.greatest.filter(|greatest| *greatest < cut.depth) {
         let [greatest, depth] = [greatest, cut.depth].map(page::millimetres);
         return Err(Failure::Usage(format!(
@@ -103,7 +121,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     files.protect(&arguments.robot);
     forces::protect(&mut files, &arguments.cut, &file);
     files.foresee(arguments.out.iter().chain(&arguments.json))?;
-    let predicted = with_robot!(&robot, |arm| predict(&arm, &robot, cut, &q, arguments))?;
+    let predicted = with_robot!(&robot, |arm| predict(&arm, &robot, cut, [speed, period], &q, arguments))?;
     if let Some(path) = &arguments.out {
         files.add(path, picture::svg(&predicted, cut));
     }
@@ -118,6 +136,7 @@ fn predict<const N: usize>(
     arm: &impl Robot<N>,
     robot: &Description,
     cut: &Cut,
+    [speed, period]: [f64; 2],
     q: &[f64],
     arguments: &Arguments,
 ) -> Result<Predicted, Failure> {
@@ -153,12 +172,13 @@ fn predict<const N: usize>(
             }
         }
     };
-    let feeds = over_feeds(under, cut, &axis, arguments.feeds.into(), greatest)
+    let feeds = over_feeds(under, cut, &axis, arguments.feeds.into(), period, greatest)
         .ok_or_else(|| Failure::new("the compliance under the cut is not finite"))?;
     let change = |feed: &FeedLimit| (feed.modes.compliance() - compliance).amax() / compliance.amax();
     let stiffens = feeds.iter().any(|feed| change(feed) > ROUNDING);
     let mass = first.or_else(|| modes.mass());
-    Ok(Predicted { mass, modes, stiffens, axis, greatest, feeds })
+    let lobes = lobes::over_speeds(&feeds, cut, lobes::speeds(arguments.speeds, speed));
+    Ok(Predicted { mass, modes, stiffens, axis, greatest, feeds, lobes })
 }
 
 /// The stiffness of the softest direction (N/m); `None` where all are rigid.
@@ -174,8 +194,17 @@ fn document(predicted: &Predicted, robot: &Description, cut: &Cut, q: &[f64]) ->
             "feed": json::numbers(feed.feed.iter().copied()),
             "softest_N_per_m": softest(&feed.modes),
             "limiting_depth_m": feed.limits.limiting(),
+            "without_delay_m": feed.without_delay.limiting(),
+            "at_any_speed_m": feed.lobes.at_any_speed(),
             "unstable_m": feed.limits.unstable,
             "stable": feed.limits.is_stable_up_to(cut.depth),
+        })
+    };
+    let lobe = |lobe: &Lobe| {
+        json!({
+            "speed_rad_per_s": json::number(lobe.speed),
+            // In the order of `feeds`.
+            "limiting_depth_m": lobe.limits,
         })
     };
     json!({
@@ -188,9 +217,12 @@ fn document(predicted: &Predicted, robot: &Description, cut: &Cut, q: &[f64]) ->
         "frequencies_Hz": json::numbers(predicted.modes.frequencies().iter().map(|w| w / std::f64::consts::TAU)),
         "damping": predicted.modes.damping(),
         "tool_axis": json::numbers(predicted.axis.iter().copied()),
+        "speed_rad_per_s": cut.speed.map(json::number),
+        "teeth_Hz": cut.tooth_period().map(|period| json::number(period.recip())),
         "depth_m": json::number(cut.depth),
         "greatest_depth_m": json::number(predicted.greatest),
-        "best": robstiff::stability::best(&predicted.feeds).map(feed),
+        "best": robstiff_machining::stability::best(&predicted.feeds).map(feed),
         "feeds": predicted.feeds.iter().map(feed).collect::<Value>(),
+        "lobes": predicted.lobes.iter().map(lobe).collect::<Value>(),
     })
 }

@@ -3,20 +3,22 @@
 use std::f64::consts::TAU;
 
 use robstiff::analysis::PrincipalDirections;
-use robstiff::milling::Cut;
 use robstiff::nalgebra::{SymmetricEigen, Vector3};
-use robstiff::stability::{FeedLimit, Limits, best};
+use robstiff_machining::milling::Cut;
+use robstiff_machining::stability::{Limits, best};
 use robstiff_robots::Description;
 
 use super::{Predicted, softest};
 use crate::text::{Table, decimals, significant};
 
 /// What a prediction says, and what it does not.
-pub const COVERS: &str = "mode coupling of the arm's own modes in this pose, with forces averaged over a revolution; \
-                          not regenerative chatter of spindle, tool or workpiece";
+pub const COVERS: &str = "chatter of the arm's own modes in this pose, each tooth on the surface that the one before \
+                          has cut, with forces averaged over a revolution; not the modes of spindle, tool or workpiece";
 
 /// How many rows of directions a person reads.
 const ROWS: usize = 12;
+/// How many of speeds, so that the cut's is among them.
+const SPEED_ROWS: usize = 10;
 
 pub fn page(predicted: &Predicted, robot: &Description, cut: &Cut, measured: bool) -> String {
     let state = if predicted.stiffens { ", without load" } else { "" };
@@ -41,6 +43,12 @@ pub fn page(predicted: &Predicted, robot: &Description, cut: &Cut, measured: boo
         true => format!(", damping ratio {}\n", significant(damping, 3)),
         false => ", no damping\n".to_owned(),
     };
+    let (speed, teeth) = (cut.speed.unwrap_or_default(), cut.tooth_period().unwrap_or_default().recip());
+    page += &format!("teeth pass at {} Hz, {} rpm\n", significant(teeth, 4), rpm(speed));
+    if damping == 0.0 {
+        page += "without damping a movement that the cut feeds at all grows at any depth: give the measured ratio, e.g. \
+                 --damping 0.02\n";
+    }
     page += &format!("\nDepth at which it begins, by feed (up to {} mm looked at)\n", millimetres(predicted.greatest));
     page += &feeds(predicted);
     if predicted.stiffens {
@@ -50,6 +58,10 @@ pub fn page(predicted: &Predicted, robot: &Description, cut: &Cut, measured: boo
             millimetres(cut.depth)
         );
     }
+    page += "any speed: stable up to there at every speed; without delay: on a surface that stays even\n";
+    page += "\nDepth at which it begins, by spindle speed\n";
+    page += &lobes(predicted);
+    page += "\n";
     page + &verdict(predicted, cut)
 }
 
@@ -68,14 +80,33 @@ fn directions(predicted: &Predicted) -> String {
 }
 
 fn feeds(Predicted { feeds, stiffens, .. }: &Predicted) -> String {
-    let header = ["angle [deg]", "feed x", "y", "z", "depth [mm]"];
+    let header = ["angle [deg]", "feed x", "y", "z", "depth [mm]", "any speed [mm]", "without delay [mm]"];
     let mut table = Table::new(0, header.into_iter().chain(stiffens.then_some("softest [N/um]")));
     for feed in feeds.iter().step_by(feeds.len().div_ceil(ROWS)) {
         let mut row = vec![degrees(feed.angle)];
         row.extend(feed.feed.iter().map(|&part| decimals(part, 3)));
-        row.push(depth(feed));
+        let at_any_speed = feed.lobes.at_any_speed();
+        row.extend([feed.limits.limiting(), at_any_speed, feed.without_delay.limiting()].map(depth));
         row.extend(stiffens.then(|| softest(&feed.modes).map_or("rigid".to_owned(), |k| significant(k * 1e-6, 4))));
         table.row(row);
+    }
+    table.to_string()
+}
+
+fn lobes(Predicted { feeds, lobes, .. }: &Predicted) -> String {
+    let Some(best) = best(feeds) else { return String::new() };
+    let place = feeds.iter().position(|feed| feed.angle == best.angle).unwrap_or(0);
+    let this = format!("{} deg [mm]", degrees(best.angle));
+    let mut table = Table::new(0, ["speed [rpm]", &this, "worst feed [mm]", "best feed [deg]", "its depth [mm]"]);
+    for lobe in lobes.iter().step_by(lobes.len().div_ceil(SPEED_ROWS)) {
+        let best = lobe.best();
+        table.row(vec![
+            rpm(lobe.speed),
+            depth(lobe.limits[place]),
+            depth(lobe.least()),
+            degrees(feeds[best].angle),
+            depth(lobe.limits[best]),
+        ]);
     }
     table.to_string()
 }
@@ -110,8 +141,14 @@ fn verdict(predicted: &Predicted, cut: &Cut) -> String {
     verdict
 }
 
-fn depth(feed: &FeedLimit) -> String {
-    feed.limits.limiting().map_or_else(|| "none".to_owned(), millimetres)
+fn depth(limit: Option<f64>) -> String {
+    limit.map_or_else(|| "none".to_owned(), millimetres)
+}
+
+/// A speed in rad/s in turns a minute, without the unit.
+fn rpm(speed: f64) -> String {
+    let turns = speed * 60.0 / TAU;
+    if turns < 100.0 { significant(turns, 3) } else { decimals(turns, 0) }
 }
 
 /// An angle in rad as degrees without the unit.

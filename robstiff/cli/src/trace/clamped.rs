@@ -1,8 +1,8 @@
 //! The errors of clamped axes.
 
-use robstiff::campaign::{Campaign, ClampedRow};
-use robstiff::identify::without_laws;
-use robstiff::trace::Trace;
+use robstiff_identify::campaign::{Campaign, ClampedRow};
+use robstiff_identify::identify::without_laws;
+use robstiff_identify::trace::Trace;
 
 use super::content::without_effects;
 use crate::report::content::PoseError;
@@ -21,7 +21,7 @@ pub fn errors(trace: &Trace, campaign: &Campaign, rows: &[ClampedRow]) -> Vec<Po
         let of_axis = with.iter().zip(&without).filter(|(row, _)| format!("axis {}", row.axis) == name);
         rms(of_axis.map(|(with, without)| without.deflection - with.deflection))
     };
-    let error = |one: &robstiff::trace::PoseError| PoseError {
+    let error = |one: &robstiff_identify::trace::PoseError| PoseError {
         id: one.pose.clone(),
         declared: 1e6 * declared(&one.pose),
         identified: 1e6 * one.before,

@@ -1,9 +1,11 @@
 //! What the report shows of a tracing.
 
-use robstiff::campaign::{Campaign, Data};
-use robstiff::identify::{Estimate, Visibility, predict};
-use robstiff::trace::{EffectParameter, NamedEffect, Nested, Options, RowResidual, Step, Tested, Trace, Verdict};
-use robstiff::triage::Triage;
+use robstiff_identify::campaign::{Campaign, Data};
+use robstiff_identify::identify::{Estimate, Visibility, predict};
+use robstiff_identify::trace::{
+    EffectParameter, NamedEffect, Nested, Options, RowResidual, Step, Tested, Trace, Verdict,
+};
+use robstiff_identify::triage::Triage;
 use robstiff_robots::Description;
 
 use super::doubts::doubts;
@@ -81,7 +83,7 @@ pub fn report(
 }
 
 fn stages(trace: &Trace) -> Vec<Stage> {
-    let stage = |name: &str, remark: &str, misfit: &robstiff::trace::Misfit| Stage {
+    let stage = |name: &str, remark: &str, misfit: &robstiff_identify::trace::Misfit| Stage {
         name: name.to_owned(),
         remark: remark.to_owned(),
         rms_um: misfit.rms * 1e6,
@@ -245,8 +247,8 @@ fn origins(trace: &Trace, campaign: &Campaign, options: &Options) -> Vec<(String
 
 #[cfg(test)]
 mod tests {
-    use robstiff::campaign::{ClampedRow, Noise};
-    use robstiff::simulate::{Scenario, simulate};
+    use robstiff_identify::campaign::{ClampedRow, Noise};
+    use robstiff_identify::simulate::{Scenario, simulate};
     use robstiff_robots::catalogue;
 
     use super::*;
@@ -271,7 +273,7 @@ mod tests {
             warnings: Vec::new(),
         };
         let options = Options { draws: 499, ..Options::default() };
-        let trace = robstiff::trace::trace(&campaign, &options, &|_| {}).expect("joints are seen");
+        let trace = robstiff_identify::trace::trace(&campaign, &options, &|_| {}).expect("joints are seen");
         (trace, campaign)
     }
 

@@ -1,6 +1,6 @@
 //! A correction that is no physics, for people and for programs.
 
-use robstiff::trace::{Correction, Trace};
+use robstiff_identify::trace::{Correction, Trace};
 use serde_json::{Value, json};
 
 use crate::json::{number, numbers};

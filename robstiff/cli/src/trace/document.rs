@@ -1,10 +1,10 @@
 //! `trace.json`.
 
 use robstiff::JointKind;
-use robstiff::campaign::Campaign;
-use robstiff::identify::EncodersRead;
-use robstiff::trace::{Misfit, NamedEffect, Nested, Proposal, Rival, Trace};
-use robstiff::triage::Triage;
+use robstiff_identify::campaign::Campaign;
+use robstiff_identify::identify::EncodersRead;
+use robstiff_identify::trace::{Misfit, NamedEffect, Nested, Proposal, Rival, Trace};
+use robstiff_identify::triage::Triage;
 use serde_json::{Value, json};
 
 use super::{triage, warned};

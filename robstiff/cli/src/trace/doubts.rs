@@ -1,7 +1,7 @@
 //! What a tracing leaves open.
 
-use robstiff::identify::{Estimate, Visibility};
-use robstiff::trace::{Rival, Trace, is_offered_as_change};
+use robstiff_identify::identify::{Estimate, Visibility};
+use robstiff_identify::trace::{Rival, Trace, is_offered_as_change};
 use robstiff_robots::Effect;
 
 use super::story::{declared, name_of};

@@ -13,10 +13,10 @@ mod warned;
 
 use std::path::PathBuf;
 
-use robstiff::campaign::Data;
-use robstiff::identify::Error;
-use robstiff::plan::next;
-use robstiff::trace::{Correction, Options, account_for, nested, trace};
+use robstiff_identify::campaign::Data;
+use robstiff_identify::identify::Error;
+use robstiff_identify::plan::next;
+use robstiff_identify::trace::{Correction, Options, account_for, nested, trace};
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
@@ -80,7 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (triage, traced, nested, correction) =
         output::working("asking the readings themselves", |spinner| -> Result<_, Error> {
             let progress = |stage: &str| spinner.set_message(stage.to_owned());
-            let mut triage = robstiff::triage::triage(&campaign);
+            let mut triage = robstiff_identify::triage::triage(&campaign);
             let mut traced = trace(&campaign, &options, &progress)?;
             account_for(&mut triage, &campaign, &traced);
             let folds = arguments.nested.map(|folds| folds.map(|folds| folds as usize));

@@ -1,11 +1,11 @@
 //! What the pictures of a report are drawn from: the arm in its poses, and the
 //! residual against what it depends on most.
 
-use robstiff::campaign::{Campaign, Data, Observation, PositionRow};
 use robstiff::elements::Pose;
 use robstiff::nalgebra::{DMatrix, DVector, Matrix4, SVector};
-use robstiff::trace::Trace;
 use robstiff::{Robot, with_robot};
+use robstiff_identify::campaign::{Campaign, Data, Observation, PositionRow};
+use robstiff_identify::trace::Trace;
 use robstiff_robots::Description;
 
 use crate::report::content::{Arm, Dependence};

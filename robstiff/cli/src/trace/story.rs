@@ -1,9 +1,9 @@
 //! What a tracing came to, in sentences.
 
 use robstiff::JointKind;
-use robstiff::campaign::Campaign;
-use robstiff::identify::{EncodersRead, Estimate, Visibility, predict};
-use robstiff::trace::{EffectParameter, NamedEffect, Nested, Proposal, RowResidual, Trace, Verdict};
+use robstiff_identify::campaign::Campaign;
+use robstiff_identify::identify::{EncodersRead, Estimate, Visibility, predict};
+use robstiff_identify::trace::{EffectParameter, NamedEffect, Nested, Proposal, RowResidual, Trace, Verdict};
 use robstiff_robots::{Description, Effect, Joint};
 
 use super::doubts::doubts;

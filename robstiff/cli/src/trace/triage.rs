@@ -1,7 +1,7 @@
 //! What the readings say before any model, for a terminal, `trace.json` and the
 //! report.
 
-use robstiff::triage::{Answer, Check, Finding, LEVEL, Stray, Triage};
+use robstiff_identify::triage::{Answer, Check, Finding, LEVEL, Stray, Triage};
 use serde_json::{Value, json};
 
 use crate::json::number;

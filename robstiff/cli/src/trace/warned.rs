@@ -1,8 +1,8 @@
 //! What looks wrong with the files that a tracing is of.
 
-use robstiff::campaign::Campaign;
-use robstiff::identify::{ALL_JOINTS, noise_not_used, off_by_one_factor};
-use robstiff::trace::Trace;
+use robstiff_identify::campaign::Campaign;
+use robstiff_identify::identify::{ALL_JOINTS, noise_not_used, off_by_one_factor};
+use robstiff_identify::trace::Trace;
 
 /// What looks wrong, a sentence each.
 pub fn warnings(trace: &Trace, campaign: &Campaign) -> Vec<String> {

@@ -1,0 +1,145 @@
+//! What a campaign can show.
+
+use std::collections::BTreeSet;
+
+use robstiff::JointKind;
+use robstiff_robots::Description;
+
+use crate::model::Weight;
+
+/// The compliance of a joint that nothing is known of (rad/Nm).
+const LIKELY: f64 = 3e-7;
+
+/// Moments of a slip that are tried, and how many visits stand on either side of one.
+const MOMENTS: usize = 20;
+const FEWEST_ASIDE: usize = 3;
+
+/// What a campaign reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum What {
+    /// Displacements under loads.
+    Displacements,
+    /// Absolute positions.
+    Positions,
+    /// Clamped axes.
+    Clamped,
+}
+
+/// Shapes beyond the grids: knees, radii and moments near those of a model that was found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Shapes {
+    /// Of the law of a joint: the kind, the joint (from 1), and the shape over the largest torque.
+    pub of_laws: Vec<(&'static str, usize, f64)>,
+    /// Rows from which on something slipped.
+    pub moments: BTreeSet<usize>,
+}
+
+/// The campaign that candidates are looked for in.
+#[derive(Clone, Debug)]
+pub struct Scene<'c> {
+    /// The description as declared.
+    pub robot: &'c Description,
+    /// What is read.
+    pub what: What,
+    /// Turning or sliding, a joint each.
+    pub kinds: Vec<JointKind>,
+    /// The likely compliance of each joint (rad/Nm or m/N): as declared, else as fitted.
+    pub compliance: Vec<f64>,
+    /// The middle one of the first three that turn (rad/Nm).
+    pub middle: f64,
+    /// The largest torque of the loads on each joint (Nm or N); zero where no row loads it.
+    pub torque: Vec<f64>,
+    /// The largest force (N); zero where nothing loads the arm.
+    pub force: f64,
+    /// The masses of the links.
+    pub weight: Weight,
+    /// The lines of the rows.
+    pub lines: Vec<usize>,
+    /// The visit of each row.
+    pub visit: Vec<usize>,
+    /// How many visits there are.
+    pub visits: usize,
+    /// Over how many kelvin the temperature goes; zero where it is not told.
+    pub warmth: f64,
+    /// The shapes that are looked at besides.
+    pub shapes: Shapes,
+    /// The axes (from 1) that are loaded one by one.
+    pub axes: Vec<usize>,
+}
+
+impl Scene<'_> {
+    /// Finds the middle one of the compliances of the first three joints that turn.
+    pub fn learn_middle(&mut self) {
+        let mut first: Vec<f64> = self.turning().into_iter().take(3).map(|joint| self.compliance[joint - 1]).collect();
+        first.sort_by(f64::total_cmp);
+        self.middle = first.get(first.len() / 2).copied().filter(|h| *h > 0.0).unwrap_or(LIKELY);
+    }
+
+    /// The joints, from 1.
+    pub fn joints(&self) -> impl Iterator<Item = usize> + use<> {
+        1..=self.kinds.len()
+    }
+
+    /// Whether a joint (from 1) turns.
+    pub fn turns(&self, joint: usize) -> bool {
+        self.kinds[joint - 1] == JointKind::Revolute
+    }
+
+    /// The joints that turn, from 1.
+    pub fn turning(&self) -> Vec<usize> {
+        self.joints().filter(|&joint| self.turns(joint)).collect()
+    }
+
+    /// What is likely of the compliance of a bearing at a joint (rad/Nm).
+    pub fn likely(&self, joint: usize) -> f64 {
+        if self.turns(joint) { self.compliance[joint - 1] } else { self.middle }
+    }
+
+    /// Whether loads are measured, or payloads hang on the tool.
+    pub fn is_loaded(&self) -> bool {
+        self.force > 0.0 && self.what != What::Clamped
+    }
+
+    /// Whether loads are measured.
+    pub fn has_loads(&self) -> bool {
+        self.what == What::Displacements
+    }
+
+    /// Whether the loads of a joint (from 1) are seen to turn it.
+    pub fn is_driven(&self, joint: usize) -> bool {
+        self.torque[joint - 1] > 0.0
+    }
+
+    /// The unit of the compliance of a joint (from 1).
+    pub fn unit(&self, joint: usize) -> &'static str {
+        if self.turns(joint) { "rad/Nm" } else { "m/N" }
+    }
+
+    /// Shapes of the law of a joint (from 1) that were found, over its largest torque.
+    pub fn found(&self, kind: &'static str, joint: usize) -> impl Iterator<Item = f64> + '_ {
+        let own = move |(of, at, _): &&(&str, usize, f64)| *of == kind && *at == joint;
+        self.shapes.of_laws.iter().filter(own).map(|(_, _, shape)| *shape)
+    }
+
+    /// The rows from which on something may have slipped: the first rows of some twenty visits, and
+    /// those near moments that were found. A part of the visits stands on either side and shows it.
+    pub fn moments(&self) -> Vec<(usize, bool)> {
+        let begins = (1..self.visit.len()).filter(|&row| self.visit[row] != self.visit[row - 1]);
+        let begins: Vec<usize> = begins.collect();
+        let step = (begins.len() / MOMENTS).max(FEWEST_ASIDE);
+        let grid: Vec<usize> = begins.iter().copied().skip(step - 1).step_by(step).collect();
+        let (Some(&first), Some(&last)) =
+            (begins.get(FEWEST_ASIDE - 1), begins.len().checked_sub(FEWEST_ASIDE).and_then(|at| begins.get(at)))
+        else {
+            return Vec::new();
+        };
+        let grid: Vec<usize> = grid.into_iter().filter(|row| (first..=last).contains(row)).collect();
+        let near = self.shapes.moments.iter().filter(|row| !grid.contains(row) && (first..=last).contains(row));
+        grid.iter().map(|row| (*row, false)).chain(near.map(|row| (*row, true))).collect()
+    }
+
+    /// The line of a row.
+    pub fn line(&self, row: usize) -> f64 {
+        self.lines[row.min(self.lines.len() - 1)] as f64
+    }
+}

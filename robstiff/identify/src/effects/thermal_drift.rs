@@ -1,0 +1,61 @@
+//! The readings drift with the temperature or with the time.
+
+use super::scene::What;
+use super::{Form, Kind, Offers, Place, SHIFT, Scene, Side, three_readings};
+use crate::model::{Parameter, Size};
+
+/// The kind.
+pub static KIND: Kind = Kind {
+    name: "thermal_drift",
+    side: Side::Rig,
+    words: |_, _| "a drift of the readings".into(),
+    explanation: "The readings move while nothing pulls: the robot or the stand of the tracker warms up, or settles. \
+        Warm up before, read the unloaded arm at every visit, and mix the order of poses.",
+    offer,
+};
+
+/// What readings are likely to drift by: over a kelvin (m), and over the campaign (m); and by how much
+/// they are off where it begins (m).
+const BY_KELVIN: f64 = 2.5e-5;
+const BY_TIME: f64 = 1e-4;
+const FROM: f64 = 5e-5;
+
+/// Less warmth tells nothing (K).
+const COLD: f64 = 0.2;
+
+/// Fewer visits tell no drift from what is off at each.
+pub(super) const FEWEST_VISITS: usize = 8;
+
+fn offer(scene: &Scene<'_>, offers: &mut Offers) {
+    if scene.what == What::Clamped || scene.visits < FEWEST_VISITS {
+        return;
+    }
+    let offset = || three_readings(["x0", "y0", "z0"], "m", FROM, |_| 1.0);
+    // Where absolute positions begin is where the robot stands.
+    let from = |of: Vec<Parameter>| -> Vec<Vec<Parameter>> {
+        match scene.what {
+            What::Positions => vec![of],
+            _ => vec![of.clone(), of.into_iter().chain(offset()).collect()],
+        }
+    };
+    let mut forms = Vec::new();
+    if scene.warmth > COLD {
+        for (k, parameters) in from(three_readings(SHIFT, "m/K", BY_KELVIN, |at| at.warmer)).into_iter().enumerate() {
+            forms.push(Form::new(["with the temperature", "with the temperature, from elsewhere"][k], parameters));
+        }
+    }
+    for (k, parameters) in from(three_readings(SHIFT, "m", BY_TIME, |at| at.time)).into_iter().enumerate() {
+        forms.push(Form::new(["with the time", "with the time, from elsewhere"][k], parameters));
+    }
+    if scene.what == What::Positions && scene.warmth > COLD {
+        forms.push(growth());
+    }
+    offers.add(Place::Rig, forms);
+}
+
+/// Everything grows with the warmth, away from the base.
+fn growth() -> Form {
+    let of = |at: &crate::model::At<'_>| at.stand.tcp.at * at.warmer;
+    let term = crate::model::Term::Reading(std::rc::Rc::new(of));
+    Form::new("growth", vec![Parameter::new("growth", "1/K", Size::Of(1.5e-5), term)])
+}

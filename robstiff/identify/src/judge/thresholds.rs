@@ -1,0 +1,52 @@
+//! Every number that decides what is said. None was fitted to simulated campaigns; how often what is
+//! said is right is a figure that is measured and told.
+
+/// A class that is less likely is not named: one in twenty is the usual level of a first finding.
+pub const PROBABLE: f64 = 0.95;
+
+/// The probability must hold whatever effects are likely to be: for priors this much narrower and
+/// wider.
+pub const SIZES: [f64; 2] = [1.0 / 3.0, 3.0];
+
+/// A class must be back in this part of the folds (Meinshausen and Buehlmann, J. R. Statist. Soc. B
+/// 72, 2010, take 0.6 to 0.9).
+pub const RECURS: f64 = 0.8;
+
+/// Unseen poses must be predicted worse without the class, by this many standard errors of the
+/// difference between poses: one in a hundred by chance, one-sided.
+pub const WORSE: f64 = 2.33;
+
+/// An effect without which the error grows by less than this part of the noise does not matter.
+pub const MATTERS: f64 = 0.1;
+
+/// A number within so many standard deviations of zero is not distinct from it: the 95 % interval.
+pub const DISTINCT: f64 = 1.96;
+
+/// A discrepancy is left where one of this size or a larger one is likelier than none or a smaller one:
+/// it doubles the error at a load of usual size.
+pub const DISCREPANCY: f64 = 0.3;
+
+/// Where a discrepancy is left, effects are named only if together they account for this part of what
+/// is beyond the noise: what takes less may be standing in for what is not in the catalogue.
+pub const ACCOUNTS: f64 = 0.8;
+
+/// More names at once are never the whole truth.
+pub const MOST_NAMES: usize = 3;
+
+/// Fewer poses tell nothing apart.
+pub const FEWEST_POSES: usize = 8;
+
+/// A model that leaves more than the known noise by this factor does not account for the readings.
+pub const ABOVE_NOISE: f64 = 1.25;
+
+/// A set without effects that is likelier than this says that nothing is missing.
+pub const NOTHING: f64 = 0.5;
+
+/// An effect that is less likely than this is not even suspected.
+pub const SUSPECTED: f64 = 0.05;
+
+/// Folds in which the search is repeated.
+pub const FOLDS: usize = 5;
+
+/// An effect for which so many readings in ten thousand are outlying is one of the rig.
+pub const OUTLYING_ROWS: f64 = 0.002;

@@ -1,0 +1,433 @@
+//! Displacements under measured loads: loaded minus unloaded.
+
+use nalgebra::{DMatrix, DVector, Rotation3, Vector3, Vector6};
+use robstiff::JointKind;
+
+use super::elastic::{Loaded, Sequence, Yielding, asides, gains, stacked, sum, yielding};
+use super::{Observation, Readings, changed, step_of};
+use crate::campaign::{Displacements, Observation as Row};
+use crate::model::arm::Frame;
+use crate::model::weight::Weight;
+use crate::model::{Arm, At, Parameter, Rig, Spring, Stand, Term, World};
+
+/// A campaign of displacements.
+pub struct Displacement<'c> {
+    data: &'c Displacements,
+    readings: Readings,
+    world: World,
+    kinds: Vec<JointKind>,
+    /// The joint coordinates of each station, and the station of each row.
+    stations: Vec<&'c [f64]>,
+    station: Vec<usize>,
+    /// Where the arm stands as declared, a station each.
+    declared: Vec<Stand>,
+    sequence: Sequence,
+    clock: Clock,
+    /// The directions that are read, in the frame of the file.
+    directions: Vec<Vector3<f64>>,
+    /// Whether rotations are read.
+    turns: bool,
+    /// The joints (from 1) whose angle is read behind the gear.
+    pub encoders: Vec<usize>,
+}
+
+/// When and where the rows were read.
+pub(super) struct Clock {
+    pub time: Vec<f64>,
+    pub warmer: Vec<f64>,
+    pub load: Vec<f64>,
+    pub place: Vec<Vector3<f64>>,
+}
+
+impl Clock {
+    /// From the times (s) and temperatures of all rows, where told.
+    pub fn new(times: &[Option<f64>], temperatures: &[Option<f64>]) -> Self {
+        let rows = times.len();
+        let last = times.iter().flatten().copied().fold(0.0, f64::max);
+        let told = last > 0.0 && times.iter().all(Option::is_some);
+        let time = |(row, time): (usize, &Option<f64>)| match time {
+            Some(time) if told => time / last,
+            _ => row as f64 / rows.saturating_sub(1).max(1) as f64,
+        };
+        let known: Vec<f64> = temperatures.iter().flatten().copied().collect();
+        let mean = known.iter().sum::<f64>() / known.len().max(1) as f64;
+        Self {
+            time: times.iter().enumerate().map(time).collect(),
+            warmer: temperatures.iter().map(|t| t.map_or(0.0, |t| t - mean)).collect(),
+            load: vec![0.0; rows],
+            place: vec![Vector3::zeros(); rows],
+        }
+    }
+}
+
+/// For how long each row's visit has lasted (s); a minute a row where no time is told.
+pub(super) fn in_visit(visit: &[usize], times: &[Option<f64>]) -> Vec<f64> {
+    let visits = visit.iter().max().map_or(0, |last| last + 1);
+    let (mut began, mut count) = (vec![None; visits], vec![0.0; visits]);
+    let row = |(&visit, time): (&usize, &Option<f64>)| {
+        let elapsed = match time {
+            Some(time) => time - *began[visit].get_or_insert(*time),
+            None => 60.0 * count[visit],
+        };
+        count[visit] += 1.0;
+        elapsed.max(0.0)
+    };
+    visit.iter().zip(times).map(row).collect()
+}
+
+impl<'c> Displacement<'c> {
+    /// Of a campaign on the arm of a description.
+    pub fn new(robot: &robstiff_robots::Description, data: &'c Displacements) -> Self {
+        let kinds: Vec<JointKind> = robot.joints.iter().map(|joint| joint.kind).collect();
+        let arm = Arm::of(robot);
+        let (mut stations, mut station): (Vec<&[f64]>, Vec<usize>) = (Vec::new(), Vec::new());
+        for row in &data.rows {
+            match station.last().filter(|&&last| stations[last] == row.q.as_slice()) {
+                Some(&last) => station.push(last),
+                None => {
+                    station.push(stations.len());
+                    stations.push(&row.q);
+                }
+            }
+        }
+        let declared: Vec<Stand> = stations.iter().map(|q| arm.stand(q, &[])).collect();
+        let turns = data.rows.iter().all(|row| row.rotation.is_some()) && !data.rows.is_empty();
+        let (encoders, turned, given) = encoders(data);
+        let directions: Vec<Vector3<f64>> = (0..3).map(|k| Vector3::ith(k, 1.0)).collect();
+        let rig = Rig::declared((data.wrench_frame, data.wrench_at), (data.measured_frame, data.measured_at));
+        let weight = Weight::of(robot);
+        let weights = |joint: usize| -> Vec<f64> {
+            let at_station: Vec<f64> = declared.iter().map(|stand| weight.torque(stand, &kinds, joint)).collect();
+            station.iter().map(|&at| at_station[at]).collect()
+        };
+        let weights: Vec<Vec<f64>> = (0..kinds.len()).map(weights).collect();
+        let times: Vec<Option<f64>> = data.rows.iter().map(|row| row.time).collect();
+        let temperatures: Vec<Option<f64>> = data.rows.iter().map(|row| row.temperature).collect();
+        let visit: Vec<usize> = data.rows.iter().map(|row| row.visit).collect();
+        let sequence = Sequence {
+            preload: weights.iter().map(|of| of.iter().map(|torque| torque * weight.preload).collect()).collect(),
+            weight: weights,
+            q: (0..kinds.len()).map(|joint| data.rows.iter().map(|row| row.q[joint]).collect()).collect(),
+            in_visit: in_visit(&visit, &times),
+            visit: visit.clone(),
+        };
+        let forces: Vec<Vector3<f64>> = data
+            .rows
+            .iter()
+            .zip(&station)
+            .map(|(row, &at)| rig.wrench(&declared[at].tcp, &row.wrench).fixed_rows::<3>(0).into_owned())
+            .collect();
+        let largest = (forces.iter().map(|f| f.norm_squared()).sum::<f64>() / forces.len().max(1) as f64).sqrt();
+        let forces: Vec<Vector3<f64>> = forces.iter().map(|f| f / if largest > 0.0 { largest } else { 1.0 }).collect();
+        let mut clock = Clock::new(&times, &temperatures);
+        clock.load = forces.iter().map(|force| force.norm()).collect();
+        let middle = station.iter().map(|&at| declared[at].tcp.at).sum::<Vector3<f64>>() / station.len().max(1) as f64;
+        clock.place = station.iter().map(|&at| declared[at].tcp.at - middle).collect();
+        let width = directions.len() + if turns { 3 } else { 0 } + encoders.len();
+        let channels = (0..directions.len()).map(|_| 0).chain((0..if turns { 3 } else { 0 }).map(|_| 1));
+        let channels = channels.chain((0..encoders.len()).map(|k| 2 + k)).collect();
+        let mut observation = Self {
+            readings: Readings {
+                values: DVector::zeros(0),
+                width,
+                told: directions.len(),
+                channels,
+                block: data.rows.iter().map(|row| row.pose).collect(),
+                blocks: data.poses.len(),
+                visit,
+                force: forces,
+                lines: data.rows.iter().map(|row| row.line).collect(),
+                differences: true,
+            },
+            data,
+            world: World { arm, rig },
+            kinds,
+            stations,
+            station,
+            declared,
+            sequence,
+            clock,
+            directions,
+            turns,
+            encoders,
+        };
+        observation.readings.values = stacked(data.rows.len(), width, |i, numbers| {
+            let row = &data.rows[i];
+            let read = Vector6::from_iterator(row.displacement.into_iter().chain(row.rotation.unwrap_or_default()));
+            // What the motors let through is no deflection.
+            let stand = &observation.declared[observation.station[i]];
+            let of_motors = given.get(i).map_or_else(Vector6::zeros, |given| {
+                let screw = |joint: usize| stand.joint_screw(joint, observation.kinds[joint]).twist_at(&stand.tcp.at);
+                given.iter().enumerate().map(|(joint, by)| screw(joint) * *by).sum()
+            });
+            let world = &observation.world;
+            let seen = observation.seen(world, &of_motors, &stand.tcp, i);
+            observation.put(&(read - seen), numbers);
+            let first = numbers.len() - observation.encoders.len();
+            numbers[first..].iter_mut().enumerate().for_each(|(k, number)| *number = turned[i][k]);
+        });
+        observation
+    }
+
+    /// A twist of the tool centre point as the file has it of the point that is read.
+    fn seen(&self, world: &World, twist: &Vector6<f64>, tcp: &Frame, row: usize) -> Vector6<f64> {
+        let marker = world.rig.marker(tcp);
+        let turn: Vector3<f64> = twist.fixed_rows::<3>(3).into_owned();
+        let mut at_marker = *twist;
+        let mut moved = at_marker.fixed_rows_mut::<3>(0);
+        moved += turn.cross(&marker);
+        world.rig.seen(&at_marker, tcp, &self.declared[self.station[row]].tcp)
+    }
+
+    /// Puts what is read of a displacement into the numbers of a row.
+    fn put(&self, seen: &Vector6<f64>, numbers: &mut [f64]) {
+        let moved: Vector3<f64> = seen.fixed_rows::<3>(0).into_owned();
+        for (number, direction) in numbers.iter_mut().zip(&self.directions) {
+            *number = direction.dot(&moved);
+        }
+        if self.turns {
+            let from = self.directions.len();
+            (0..3).for_each(|k| numbers[from + k] = seen[3 + k]);
+        }
+    }
+
+    fn rows(&self) -> usize {
+        self.data.rows.len()
+    }
+
+    fn at<'a>(&'a self, row: usize) -> At<'a> {
+        At {
+            row,
+            q: &self.data.rows[row].q,
+            before: &self.data.rows[row.saturating_sub(1)].q,
+            time: self.clock.time[row],
+            in_visit: self.sequence.in_visit[row],
+            warmer: self.clock.warmer[row],
+            load: self.clock.load[row],
+            place: self.clock.place[row],
+            stand: &self.declared[self.station[row]],
+        }
+    }
+
+    /// The arm of a world under the loads of all rows.
+    pub fn loaded(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> Loaded {
+        let mut firsts: Vec<usize> = Vec::with_capacity(self.stations.len());
+        for (row, &at) in self.station.iter().enumerate() {
+            if at == firsts.len() {
+                firsts.push(row);
+            }
+        }
+        let asides = asides(parameters, values, self.kinds.len(), &mut |of| {
+            firsts.iter().for_each(|&row| of(&self.at(row)));
+        });
+        let none = Vec::new();
+        let stand = |(at, q): (usize, &&[f64])| world.arm.stand(q, asides.get(at).unwrap_or(&none));
+        let stands: Vec<Stand> = self.stations.iter().enumerate().map(stand).collect();
+        let wrench = |(row, &at): (&Row, &usize)| world.rig.wrench(&stands[at].tcp, &row.wrench);
+        let wrenches = self.data.rows.iter().zip(&self.station).map(wrench).collect();
+        Loaded::new(&self.kinds, stands, self.station.clone(), wrenches)
+    }
+
+    /// What the arm's yielding reads, stacked.
+    fn read(&self, world: &World, loaded: &Loaded, yielding: &Yielding) -> DVector<f64> {
+        stacked(self.rows(), self.readings.width, |row, numbers| {
+            let stand = &loaded.stands[loaded.station[row]];
+            self.put(&self.seen(world, &yielding.twists[row], &stand.tcp, row), numbers);
+            let first = numbers.len() - self.encoders.len();
+            for (number, turns) in numbers[first..].iter_mut().zip(&yielding.turns) {
+                *number = turns[row];
+            }
+        })
+    }
+
+    /// What adds to the readings at a row, in the base frame (m).
+    fn read_directly(&self, of: &dyn Fn(&At<'_>) -> Vector3<f64>) -> DVector<f64> {
+        stacked(self.rows(), self.readings.width, |row, numbers| {
+            let moved = self.world.rig.as_filed(&of(&self.at(row)), &self.declared[self.station[row]].tcp);
+            numbers.iter_mut().zip(&self.directions).for_each(|(number, along)| *number = along.dot(&moved));
+        })
+    }
+
+    fn gains(&self, parameters: &[Parameter], values: &[f64]) -> Vec<f64> {
+        gains(parameters, values, &mut |of| (0..self.rows()).for_each(|row| of(&self.at(row))))
+    }
+
+    /// What the arm's yielding reads, to first order.
+    fn yielded(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
+        let world = changed(world, parameters, values);
+        let loaded = self.loaded(&world, parameters, values);
+        let yielding = sum(parameters, values, (&loaded, &self.sequence), &self.encoders);
+        self.read(&world, &loaded, &yielding.gained(&self.gains(parameters, values)))
+    }
+
+    /// The prediction but for what large loads make of the arm's shape.
+    fn predict_at(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
+        let mut read = self.yielded(world, parameters, values);
+        for (parameter, &value) in parameters.iter().zip(values).filter(|(_, value)| **value != 0.0) {
+            if let Term::Reading(of) = &parameter.term {
+                read += self.read_directly(&**of) * value;
+            }
+        }
+        read
+    }
+
+    /// What large loads make of the arm's shape: it carries them on other levers once it has
+    /// yielded. The displacement of the joints' own springs in equilibrium, less that about the
+    /// unloaded arm; some 0.2 % of it under 800 N.
+    fn second_order(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
+        let world = changed(world, parameters, values);
+        let mut own = vec![0.0; self.kinds.len()];
+        for (parameter, &value) in parameters.iter().zip(values) {
+            if let Term::Spring(Spring::Joint(joint)) = parameter.term {
+                own[joint - 1] += value.max(0.0);
+            }
+        }
+        let loaded = self.loaded(&world, &[], &[]);
+        stacked(self.rows(), self.readings.width, |row, numbers| {
+            let (rest, q) = (&loaded.stands[loaded.station[row]], &self.data.rows[row].q);
+            let wrench = &loaded.wrenches[row];
+            let (force, moment) = (wrench.fixed_rows::<3>(0).into_owned(), wrench.fixed_rows::<3>(3).into_owned());
+            let lever = rest.tcp.turn.transpose() * (rest.tcp.turn * (world.rig.wrench_at + world.rig.lever));
+            let alone: Vector3<f64> = moment - (rest.tcp.turn * lever).cross(&force);
+            let turns = |stand: &Stand| -> Vec<f64> {
+                let moment = alone + (stand.tcp.turn * lever).cross(&force);
+                let wrench = Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
+                let turn = |joint: usize| {
+                    own[joint] * stand.joint_screw(joint, self.kinds[joint]).twist_at(&stand.tcp.at).dot(&wrench)
+                };
+                (0..own.len()).map(turn).collect()
+            };
+            let linear = turns(rest);
+            let twist: Vector6<f64> =
+                linear.iter().enumerate().map(|(joint, turn)| loaded.twist(row, joint) * *turn).sum();
+            let mut turned = linear.clone();
+            let mut stand = rest.clone();
+            for _ in 0..PASSES {
+                let moved: Vec<f64> = q.iter().zip(&turned).map(|(q, turn)| q + turn).collect();
+                stand = world.arm.stand(&moved, &[]);
+                turned = turns(&stand);
+            }
+            let (before, after) =
+                (rest.tcp.at + world.rig.marker(&rest.tcp), stand.tcp.at + world.rig.marker(&stand.tcp));
+            let rotation = Rotation3::from_matrix_unchecked(stand.tcp.turn * rest.tcp.turn.transpose()).scaled_axis();
+            let d = after - before;
+            let at_marker = Vector6::new(d.x, d.y, d.z, rotation.x, rotation.y, rotation.z);
+            let declared = &self.declared[self.station[row]].tcp;
+            let whole = world.rig.seen(&at_marker, &rest.tcp, declared);
+            self.put(&(whole - self.seen(&world, &twist, &rest.tcp, row)), numbers);
+            let first = numbers.len() - self.encoders.len();
+            for (number, &joint) in numbers[first..].iter_mut().zip(&self.encoders) {
+                *number = turned[joint - 1] - linear[joint - 1];
+            }
+        })
+    }
+}
+
+/// An arm is closer to its equilibrium by a factor of some thousand with each pass.
+const PASSES: usize = 3;
+
+impl Observation for Displacement<'_> {
+    fn readings(&self) -> &Readings {
+        &self.readings
+    }
+
+    fn world(&self) -> &World {
+        &self.world
+    }
+
+    fn predict(&self, world: &World, parameters: &[Parameter], values: &[f64]) -> DVector<f64> {
+        self.predict_at(world, parameters, values) + self.second_order(world, parameters, values)
+    }
+
+    fn columns(&self, world: &World, parameters: &[Parameter], values: &[f64], of: &[usize]) -> DMatrix<f64> {
+        let here = changed(world, parameters, values);
+        let loaded = self.loaded(&here, parameters, values);
+        let gains = self.gains(parameters, values);
+        let mut whole = None;
+        let mut columns = DMatrix::zeros(self.rows() * self.readings.width, of.len());
+        for (k, &which) in of.iter().enumerate() {
+            let parameter = &parameters[which];
+            let column = match &parameter.term {
+                Term::Spring(_) | Term::Law(..) => yielding(&parameter.term, &loaded, &self.sequence, &self.encoders)
+                    .map(|part| self.read(&here, &loaded, &part.gained(&gains))),
+                Term::Reading(of) => Some(self.read_directly(&**of)),
+                Term::Gain(gain) => {
+                    let whole =
+                        whole.get_or_insert_with(|| sum(parameters, values, (&loaded, &self.sequence), &self.encoders));
+                    let of_rows: Vec<f64> = (0..self.rows()).map(|row| gain(&self.at(row))).collect();
+                    let twists = whole.twists.iter().zip(&of_rows).map(|(twist, gain)| twist * *gain).collect();
+                    let turns =
+                        whole.turns.iter().map(|turns| turns.iter().zip(&of_rows).map(|(t, g)| t * g).collect());
+                    let gained = Yielding { twists, turns: turns.collect() };
+                    Some(self.read(&here, &loaded, &gained))
+                }
+                Term::Aside(..) | Term::Table(..) | Term::World(_) => None,
+            };
+            let column = column.unwrap_or_else(|| {
+                let step = step_of(parameter);
+                let shifted = |by: f64| {
+                    let mut values = values.to_vec();
+                    values[which] += by;
+                    self.yielded(world, parameters, &values)
+                };
+                (shifted(step) - shifted(-step)) / (2.0 * step)
+            });
+            columns.set_column(k, &column);
+        }
+        columns
+    }
+
+    fn each(&self, of: &mut dyn FnMut(&At<'_>)) {
+        (0..self.rows()).for_each(|row| of(&self.at(row)));
+    }
+}
+
+/// A row whose wrench is below this share of the largest of its visit carries no load.
+const UNLOADED: f64 = 0.01;
+
+/// An encoder that differs from the motor by less than this at every row copies it (rad or m).
+const COPIED: f64 = 1e-12;
+
+/// The joints (from 1) whose angle is read behind the gear; by row and one of these, by how much it
+/// has turned beyond its motor; and by row and joint, by how much the motor has turned, where that is
+/// read (rad or m).
+fn encoders(data: &Displacements) -> (Vec<usize>, Vec<Vec<f64>>, Vec<Vec<f64>>) {
+    let given = given(data).unwrap_or_default();
+    let output: Option<Vec<&[f64]>> = data.rows.iter().map(|row| row.encoders.as_deref()).collect();
+    let Some(output) = output.filter(|output| !output.is_empty()) else {
+        return (Vec::new(), Vec::new(), given);
+    };
+    let beyond = |row: usize, joint: usize| {
+        let motor = given.get(row).map_or(0.0, |given: &Vec<f64>| given[joint]);
+        output[row][joint] - data.rows[row].q[joint] - motor
+    };
+    let reads = |joint: &usize| (0..output.len()).any(|row| beyond(row, *joint).abs() > COPIED);
+    let joints: Vec<usize> = (0..data.rows[0].q.len()).filter(reads).collect();
+    let turned = (0..output.len()).map(|row| joints.iter().map(|&joint| beyond(row, joint)).collect()).collect();
+    (joints.into_iter().map(|joint| joint + 1).collect(), turned, given)
+}
+
+/// By how much each motor has turned, where that is read. Where a visit has rows without a load, the
+/// motors' angles there are where the controller holds them, not `q`.
+fn given(data: &Displacements) -> Option<Vec<Vec<f64>>> {
+    let motors: Vec<&[f64]> = data.rows.iter().map(|row| row.motors.as_deref()).collect::<Option<_>>()?;
+    let size = |row: &Row| row.wrench.iter().map(|w| w * w).sum::<f64>().sqrt();
+    let mut largest = vec![0.0_f64; data.visits.len()];
+    data.rows.iter().for_each(|row| largest[row.visit] = largest[row.visit].max(size(row)));
+    // By visit, the sums over rows without a load and their number.
+    let mut still = vec![(Vec::new(), 0.0); data.visits.len()];
+    for (row, motors) in data.rows.iter().zip(&motors) {
+        if size(row) <= UNLOADED * largest[row.visit] {
+            let (sums, count): &mut (Vec<f64>, f64) = &mut still[row.visit];
+            sums.resize(motors.len(), 0.0);
+            sums.iter_mut().zip(*motors).zip(&row.q).for_each(|((sum, m), q)| *sum += m - q);
+            *count += 1.0;
+        }
+    }
+    let of_row = |(row, motors): (&Row, &&[f64])| -> Vec<f64> {
+        let (sums, count) = &still[row.visit];
+        let held = |joint: usize| sums.get(joint).map_or(0.0, |sum| sum / count);
+        motors.iter().zip(&row.q).enumerate().map(|(joint, (m, q))| m - q - held(joint)).collect()
+    };
+    Some(data.rows.iter().zip(&motors).map(of_row).collect())
+}

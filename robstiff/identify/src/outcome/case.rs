@@ -1,0 +1,162 @@
+//! A campaign as something that can be searched.
+
+use robstiff_robots::Description;
+
+use crate::campaign::{Campaign, Data, Holdout};
+use crate::effects::{Scene, Shapes, What};
+use crate::model::Weight;
+use crate::observe::Observation;
+use crate::observe::clamped::Clamped;
+use crate::observe::displacement::Displacement;
+use crate::observe::position::Position;
+use crate::select::Engine;
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+
+/// What a campaign reads, and what it can show.
+pub struct Case<'c> {
+    /// The readings.
+    pub observation: Box<dyn Observation + 'c>,
+    /// What they can show.
+    pub scene: Scene<'c>,
+    /// Which blocks are fitted to.
+    pub training: Vec<bool>,
+    /// The names of the blocks.
+    pub blocks: Vec<String>,
+    /// The noise of one axis of a row, where it is declared (m, rad).
+    pub noise: Option<f64>,
+    /// The joints (from 1) whose angle is read behind the gear.
+    pub encoders: Vec<usize>,
+    /// Of clamped axes, the torque of each row over the largest of its axis.
+    loads: Vec<f64>,
+}
+
+impl<'c> Case<'c> {
+    /// A campaign, on the arm of a description that need not be its own.
+    pub fn new(campaign: &'c Campaign, robot: &'c Description) -> Self {
+        let declared = campaign.noise_of_reading();
+        match &campaign.data {
+            Data::Displacement(data) => {
+                let observation = Displacement::new(robot, data);
+                let loaded = observation.loaded(observation.world(), &[], &[]);
+                let largest = |of: &Vec<f64>| of.iter().fold(0.0_f64, |most, torque| most.max(torque.abs()));
+                let torque: Vec<f64> = loaded.torques.iter().map(largest).collect();
+                let force = loaded.wrenches.iter().map(|w| w.fixed_rows::<3>(0).norm()).fold(0.0, f64::max);
+                let warmth = span(data.rows.iter().filter_map(|row| row.temperature));
+                let encoders = observation.encoders.clone();
+                // Of a row that shares its unloaded reading with no other, both are in its noise.
+                let alone = data.visits.len() >= data.rows.len();
+                let noise = declared.map(|noise| if alone { noise * core::f64::consts::SQRT_2 } else { noise });
+                let scene = scene(robot, What::Displacements, &observation, (torque, force), warmth, Vec::new());
+                let training = training(data.poses.len(), campaign.holdout);
+                let observation = Box::new(observation);
+                Self { observation, scene, training, blocks: data.poses.clone(), noise, encoders, loads: Vec::new() }
+            }
+            Data::Position(data) => {
+                let observation = Position::new(robot, data);
+                let warmth = span(data.rows.iter().filter_map(|row| row.temperature));
+                let load = if observation.payloads { 1.0 } else { 0.0 };
+                let torque = vec![load; robot.joints.len()];
+                let scene = scene(robot, What::Positions, &observation, (torque, load), warmth, Vec::new());
+                let training = training(data.poses.len(), campaign.holdout);
+                let observation = Box::new(observation);
+                Self {
+                    observation,
+                    scene,
+                    training,
+                    blocks: data.poses.clone(),
+                    noise: declared,
+                    encoders: Vec::new(),
+                    loads: Vec::new(),
+                }
+            }
+            Data::Clamped(rows) => {
+                let observation = Clamped::new(robot, rows);
+                let mut torque = vec![0.0_f64; robot.joints.len()];
+                rows.iter().for_each(|row| torque[row.axis - 1] = torque[row.axis - 1].max(row.torque.abs()));
+                let axes = observation.axes.clone();
+                let blocks = axes.iter().map(|axis| format!("axis {axis}")).collect();
+                let training = vec![true; axes.len()];
+                let scene = scene(robot, What::Clamped, &observation, (torque, 0.0), 0.0, axes);
+                let loads =
+                    rows.iter().map(|row| row.torque / scene.torque[row.axis - 1].max(f64::MIN_POSITIVE)).collect();
+                let (observation, noise) = (Box::new(observation), campaign.noise.rotation);
+                Self { observation, scene, training, blocks, noise, encoders: Vec::new(), loads }
+            }
+        }
+    }
+
+    /// The campaign, ready to be searched.
+    pub fn engine<'e>(&'e self, robot: &'e Description) -> Engine<'e>
+    where
+        'c: 'e,
+    {
+        Engine::new(&*self.observation, robot, self.scene.clone(), self.training.clone(), self.noise)
+    }
+
+    /// Whether two rows of a visit were read under the same load, but for a part of the usual one.
+    pub fn is_same_load(&self, one: usize, other: usize, part: f64) -> bool {
+        let readings = self.observation.readings();
+        match self.scene.what {
+            What::Displacements => (readings.force[one] - readings.force[other]).norm() < part,
+            What::Clamped => (self.loads[one] - self.loads[other]).abs() < part,
+            What::Positions => false,
+        }
+    }
+
+    /// The rows of the blocks that are fitted to, or of the others.
+    pub fn rows(&self, fitted: bool) -> Vec<usize> {
+        let readings = self.observation.readings();
+        (0..readings.rows()).filter(|&row| self.training[readings.block[row]] == fitted).collect()
+    }
+}
+
+fn scene<'c>(
+    robot: &'c Description,
+    what: What,
+    observation: &dyn Observation,
+    (torque, force): (Vec<f64>, f64),
+    warmth: f64,
+    axes: Vec<usize>,
+) -> Scene<'c> {
+    let readings = observation.readings();
+    let mut scene = Scene {
+        robot,
+        what,
+        kinds: robot.joints.iter().map(|joint| joint.kind).collect(),
+        compliance: robot.joints.iter().map(|joint| joint.compliance()).collect(),
+        middle: 0.0,
+        torque,
+        force,
+        weight: Weight::of(robot),
+        lines: readings.lines.clone(),
+        visit: readings.visit.clone(),
+        visits: readings.visit.iter().max().map_or(0, |last| last + 1),
+        warmth,
+        shapes: Shapes::default(),
+        axes,
+    };
+    scene.learn_middle();
+    scene
+}
+
+/// From the least to the largest of some numbers; zero of none.
+fn span(numbers: impl Iterator<Item = f64>) -> f64 {
+    let ends = numbers.fold(None, |ends: Option<[f64; 2]>, number| {
+        Some(ends.map_or([number; 2], |[least, most]| [least.min(number), most.max(number)]))
+    });
+    ends.map_or(0.0, |[least, most]| most - least)
+}
+
+/// Whether each of so many poses is fitted to. Whole poses are held out: rows of one share what is
+/// wrong with it.
+pub fn training(poses: usize, holdout: Option<Holdout>) -> Vec<bool> {
+    let mut training = vec![true; poses];
+    if let Some(holdout) = holdout {
+        let mut order: Vec<usize> = (0..poses).collect();
+        order.shuffle(&mut ChaCha8Rng::seed_from_u64(holdout.seed));
+        order[..holdout.count(poses)].iter().for_each(|&pose| training[pose] = false);
+    }
+    training
+}

@@ -1,0 +1,83 @@
+//! How far off models are.
+
+use nalgebra::DVector;
+
+use super::case::Case;
+
+/// How far off a model is (m; of clamped axes, rad).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Misfit {
+    /// On the rows fitted to, all of them.
+    pub rms: f64,
+    /// On poses that had no part in the fit, the choice of effects included: those held out, or each
+    /// fold's by the whole search without them.
+    pub holdout_rms: f64,
+}
+
+/// What is left of a row (m; of clamped axes, the angle in rad): of a displacement in the frame that it
+/// is read in, of a position likewise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowResidual {
+    /// The line of the CSV file, from 1.
+    pub line: usize,
+    /// Index of the pose.
+    pub pose: usize,
+    /// With the description's own numbers fitted again.
+    pub before: [f64; 3],
+    /// With everything that was found.
+    pub after: [f64; 3],
+}
+
+/// The rms of one pose, or of one clamped axis, in the unit of [`Misfit`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseError {
+    /// The pose's id.
+    pub pose: String,
+    /// Whether the pose was held out.
+    pub held_out: bool,
+    /// With the description's own numbers fitted again.
+    pub before: f64,
+    /// With everything that was found.
+    pub after: f64,
+}
+
+/// The error of what is left of all rows, and of what is left of unseen ones; where poses are held out,
+/// these are what is unseen.
+pub fn misfit(case: &Case<'_>, left: &DVector<f64>, unseen: &DVector<f64>) -> Misfit {
+    let readings = case.observation.readings();
+    let (fitted, held_out) = (case.rows(true), case.rows(false));
+    let holdout_rms = match held_out.is_empty() {
+        true => readings.rms(unseen, fitted.iter().copied()),
+        false => readings.rms(left, held_out),
+    };
+    Misfit { rms: readings.rms(left, fitted), holdout_rms }
+}
+
+/// What is left of each row before and after.
+pub fn rows(case: &Case<'_>, before: &DVector<f64>, after: &DVector<f64>) -> Vec<RowResidual> {
+    let readings = case.observation.readings();
+    let of = |left: &DVector<f64>, row: usize| -> [f64; 3] {
+        core::array::from_fn(|k| if k < readings.told { left[row * readings.width + k] } else { 0.0 })
+    };
+    let row = |row: usize| RowResidual {
+        line: readings.lines[row],
+        pose: readings.block[row],
+        before: of(before, row),
+        after: of(after, row),
+    };
+    (0..readings.rows()).map(row).collect()
+}
+
+/// What is left of each pose before and after.
+pub fn poses(case: &Case<'_>, before: &DVector<f64>, after: &DVector<f64>) -> Vec<PoseError> {
+    let readings = case.observation.readings();
+    let mut rows: Vec<Vec<usize>> = vec![Vec::new(); readings.blocks];
+    readings.block.iter().enumerate().for_each(|(row, &block)| rows[block].push(row));
+    let pose = |(block, id): (usize, &String)| PoseError {
+        pose: id.clone(),
+        held_out: !case.training[block],
+        before: readings.rms(before, rows[block].iter().copied()),
+        after: readings.rms(after, rows[block].iter().copied()),
+    };
+    case.blocks.iter().enumerate().map(pose).collect()
+}

@@ -1,0 +1,63 @@
+//! Where the noise of a reading is known from.
+
+use nalgebra::DVector;
+
+use super::case::Case;
+use crate::campaign::Campaign;
+
+/// Where the noise of a reading is known from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoiseSource {
+    /// The campaign declares it.
+    Declared,
+    /// The campaign declares less than the step that readings are in: with what their rounding adds.
+    Rounded,
+    /// From what repeated readings differ by.
+    Repetitions,
+    /// From what the model leaves: an upper bound, since it counts what the model lacks as noise.
+    Residuals,
+}
+
+/// With fewer degrees of freedom a variance is uncertain by half and more (`sqrt(2 / 10)` is 45 %).
+const FEWEST_REPETITIONS: usize = 10;
+
+/// Two loads are the same if they differ by less than this part of the usual load.
+const SAME: f64 = 1e-3;
+
+/// The noise of one axis of a reading that is known independently of the model (m, rad), and from
+/// what; `left` is what a model leaves of each row.
+pub fn known(campaign: &Campaign, case: &Case<'_>, left: &DVector<f64>) -> Option<(f64, NoiseSource)> {
+    if let Some(noise) = case.noise {
+        let source = if campaign.step_beyond_noise().is_some() { NoiseSource::Rounded } else { NoiseSource::Declared };
+        return Some((noise, source));
+    }
+    repeated(case, left).map(|noise| (noise, NoiseSource::Repetitions))
+}
+
+/// From readings of one visit under the same load: whatever a model predicts of two of them is the same
+/// but for what depends on their order, which the best model has taken out.
+fn repeated(case: &Case<'_>, left: &DVector<f64>) -> Option<f64> {
+    let readings = case.observation.readings();
+    let (mut sum, mut count) = (0.0, 0);
+    let visits = readings.visit.iter().max().map_or(0, |last| last + 1);
+    let mut rows: Vec<Vec<usize>> = vec![Vec::new(); visits];
+    readings.visit.iter().enumerate().for_each(|(row, &visit)| rows[visit].push(row));
+    for rows in rows {
+        let mut used = vec![false; rows.len()];
+        for i in 0..rows.len() {
+            let same = |j: &usize| !used[*j] && case.is_same_load(rows[i], rows[*j], SAME);
+            let alike: Vec<usize> = (i..rows.len()).filter(same).collect();
+            if used[i] || alike.len() < 2 {
+                continue;
+            }
+            alike.iter().for_each(|&j| used[j] = true);
+            for k in 0..readings.told {
+                let of: Vec<f64> = alike.iter().map(|&j| left[rows[j] * readings.width + k]).collect();
+                let mean = of.iter().sum::<f64>() / of.len() as f64;
+                sum += of.iter().map(|one| (one - mean).powi(2)).sum::<f64>();
+                count += of.len() - 1;
+            }
+        }
+    }
+    (count >= FEWEST_REPETITIONS).then(|| (sum / count as f64).sqrt())
+}

@@ -1,0 +1,365 @@
+//! Putting the result together.
+
+use nalgebra::DVector;
+
+use super::case::Case;
+use super::errors::{misfit, poses, rows};
+use super::estimate::estimates;
+use super::features::depends_on;
+use super::found::Found as Effect;
+use super::noise::{self, NoiseSource};
+use super::written::described;
+use super::{NamedEffect, Nested, Rival, Suspected, Trace, Verdict, concluded};
+use crate::campaign::{Campaign, Data};
+use crate::effects::{Number, Side, What};
+use crate::identify::Error;
+use crate::judge::gates::{Judgement, Weighed};
+use crate::judge::thresholds::{OUTLYING_ROWS, SUSPECTED};
+use crate::model::Term;
+use crate::select::classes::ODDS;
+use crate::select::engine::{Engine, Found};
+use crate::select::folds;
+use crate::select::{Layout, Set};
+
+/// A tracing in full.
+///
+/// # Errors
+/// Numbers that no description takes beside its own effects.
+pub fn report(
+    campaign: &Campaign,
+    (case, engine): (&Case<'_>, &Engine<'_>),
+    (found, alone): (&Found, &DVector<f64>),
+    nested: &folds::Nested,
+    judgement: &Judgement,
+) -> Result<Trace, Error> {
+    let readings = case.observation.readings();
+    let own = engine.declared();
+    let (named, rest): (Vec<&Weighed>, Vec<&Weighed>) = judgement.classes.iter().partition(|of| of.why_not.is_none());
+    let side = |of: &&Weighed| found.layout.candidates[of.class.members[0].0].kind.side;
+    let (unnamed, rest): (Vec<&Weighed>, Vec<&Weighed>) = rest.into_iter().partition(|of| side(of) == Side::Unnamed);
+    let suspected: Vec<Suspected> = rest
+        .iter()
+        .chain(&unnamed)
+        .filter(|of| of.class.probability > SUSPECTED)
+        .map(|of| suspected(found, of))
+        .collect();
+    let looks_like: Vec<String> =
+        unnamed.iter().filter(|of| of.least > 0.5).map(|of| effect(found, of).words()).collect();
+    // What is written has the named effects alone in it; absolute positions are predicted best by all
+    // that the description takes.
+    let written: Set = match case.scene.what {
+        What::Positions => found.best.clone(),
+        _ => named.iter().map(|of| of.class.form).collect(),
+    };
+    let model = if written == found.best {
+        found.own.clone()
+    } else {
+        engine
+            .solve_bounded(&found.layout, &sorted(&written), (&found.own.point, found.kappa), 8)
+            .unwrap_or_else(|| found.own.clone())
+    };
+    let before = engine.alone(&found.layout);
+    let estimates_before = estimates(&campaign.robot, &own, before.as_ref().map(|solved| (&found.layout, solved)));
+    let estimates = estimates(&campaign.robot, &own, Some((&found.layout, &model)));
+    let by_order = order_of(engine, found, &named, nested);
+    let mut effects: Vec<NamedEffect> = by_order
+        .iter()
+        .map(|(of, rms)| NamedEffect {
+            effect: effect(found, of),
+            lines: Vec::new(),
+            probability: of.class.probability,
+            class: class(found, of),
+            recurs: of.recurs,
+            holdout_rms: *rms,
+            partial: false,
+        })
+        .collect();
+    let known = noise::known(campaign, case, &found.own.left);
+    let size = found.own.fit.variance.sqrt();
+    let plain = engine.noise_at(found);
+    let over_noise = known.map(|(known, _)| plain / known);
+    let names: Vec<String> = suspected.iter().filter(|of| !is_unnamed(of)).map(|of| of.effect.to_string()).collect();
+    let (verdict, why) = concluded(effects.len(), (&names, &looks_like), judgement, over_noise);
+    effects.extend(outliers(engine, found, case));
+    effects.iter_mut().for_each(|named| named.partial = verdict == Verdict::Partial);
+    let written: Vec<Effect> = match case.scene.what {
+        What::Positions => judgement.classes.iter().map(|of| effect(found, of)).collect(),
+        _ => effects.iter().map(|named| named.effect.clone()).collect(),
+    };
+    let written: Vec<&Effect> = written.iter().filter(|of| !of.is_of_rig()).collect();
+    let table = table(case, &found.layout, &model.point.values);
+    let description = described(campaign, (&own, &estimates), &table, &written)?;
+    let left_declared = declared(campaign, case);
+    let misfits = |left: &DVector<f64>, unseen: &DVector<f64>| misfit(case, left, unseen);
+    let (noise, noise_source) = known.unwrap_or((size, NoiseSource::Residuals));
+    let fitted = case.rows(true);
+    let held_out = case.training.contains(&false);
+    let left_rms = readings.rms(&found.own.left, fitted.iter().copied());
+    Ok(Trace {
+        robot: campaign.robot.name.clone(),
+        rows: readings.rows(),
+        poses: readings.blocks,
+        held_out: case
+            .blocks
+            .iter()
+            .zip(&case.training)
+            .filter(|(_, kept)| !**kept)
+            .map(|(id, _)| id.clone())
+            .collect(),
+        noise,
+        noise_source,
+        encoders: case
+            .encoders
+            .iter()
+            .enumerate()
+            .map(|(k, &joint)| (joint, size / engine.noise.scales[2 + k]))
+            .collect(),
+        motors: matches!(&campaign.data, Data::Displacement(data) if data.rows.iter().all(|row| row.motors.is_some())),
+        declared: misfits(&left_declared, &left_declared),
+        identified: misfits(alone, &nested.alone),
+        after: misfits(&found.own.left, &nested.left),
+        unexplained: match known {
+            Some((known, _)) if plain > known => 1.0 - (known / plain).powi(2),
+            _ if judgement.discrepancy > 0.5 && plain > size => 1.0 - (size / plain).powi(2),
+            _ => 0.0,
+        },
+        depends_on: if matches!(verdict, Verdict::Partial | Verdict::Unexplained) {
+            depends_on(case, &found.own.left)
+        } else {
+            Vec::new()
+        },
+        effects,
+        suspected,
+        verdict,
+        why,
+        looks_like,
+        rivals: rivals(found),
+        sets: sets(found),
+        invisible: invisible(engine, found),
+        next: Vec::new(),
+        nested: Nested {
+            folds: if held_out { 0 } else { nested.folds },
+            rms: readings.rms(&nested.left, fitted.iter().copied()),
+            identified_rms: readings.rms(&nested.alone, fitted.iter().copied()),
+            names: nested.names(),
+        },
+        description,
+        estimates_before,
+        estimates,
+        residuals: rows(case, alone, &found.own.left),
+        components: readings.told,
+        differences: readings.differences,
+        pose_errors: poses(case, alone, &found.own.left),
+    })
+    .map(|trace| checked(trace, left_rms))
+}
+
+/// A trace whose numbers are finite.
+fn checked(trace: Trace, left: f64) -> Trace {
+    debug_assert!(left.is_finite());
+    trace
+}
+
+/// That a campaign cannot tell.
+///
+/// # Errors
+/// None of its own.
+pub fn insufficient(campaign: &Campaign, case: &Case<'_>, engine: &Engine<'_>, why: String) -> Result<Trace, Error> {
+    let readings = case.observation.readings();
+    let left = declared(campaign, case);
+    let declared = misfit(case, &left, &left);
+    let estimates = estimates(&campaign.robot, &engine.declared(), None);
+    let noise = case.noise.unwrap_or(declared.rms);
+    Ok(Trace {
+        robot: campaign.robot.name.clone(),
+        rows: readings.rows(),
+        poses: readings.blocks,
+        held_out: Vec::new(),
+        noise,
+        noise_source: if case.noise.is_some() { NoiseSource::Declared } else { NoiseSource::Residuals },
+        encoders: Vec::new(),
+        motors: false,
+        declared,
+        identified: declared,
+        after: declared,
+        effects: Vec::new(),
+        suspected: Vec::new(),
+        verdict: Verdict::Insufficient,
+        why,
+        unexplained: 0.0,
+        depends_on: Vec::new(),
+        looks_like: Vec::new(),
+        rivals: Vec::new(),
+        sets: Vec::new(),
+        invisible: Vec::new(),
+        next: Vec::new(),
+        nested: Nested::default(),
+        description: campaign.robot.clone(),
+        estimates_before: estimates.clone(),
+        estimates,
+        residuals: rows(case, &left, &left),
+        components: readings.told,
+        differences: readings.differences,
+        pose_errors: poses(case, &left, &left),
+    })
+}
+
+/// What the description as declared leaves of each row.
+fn declared(campaign: &Campaign, case: &Case<'_>) -> DVector<f64> {
+    let engine = case.engine(&campaign.robot);
+    let layout = Layout { candidates: Vec::new(), ..engine.layout() };
+    let own = engine.declared();
+    let values = own.iter().enumerate().map(|(k, own)| (layout.keys[layout.fixed + k].clone(), own.parameter.mean));
+    let values = layout.values(&values.collect());
+    let predicted = case.observation.predict(case.observation.world(), &layout.parameters, &values);
+    &case.observation.readings().values - predicted
+}
+
+fn sorted(set: &Set) -> Set {
+    let mut sorted = set.clone();
+    sorted.sort_unstable();
+    sorted
+}
+
+fn is_unnamed(of: &Suspected) -> bool {
+    crate::effects::kind_of(of.effect.kind()).is_some_and(|kind| kind.side == Side::Unnamed)
+}
+
+/// An effect of the best set with its numbers.
+fn effect(found: &Found, of: &Weighed) -> Effect {
+    let columns = &found.layout.forms[of.class.form];
+    let candidate = &found.layout.candidates[columns.candidate];
+    let form = &candidate.forms[columns.form];
+    let fit = &found.own.fit;
+    let number = |&k: &usize| {
+        let parameter = &found.layout.parameters[k];
+        let at = fit.place(k);
+        Number { name: parameter.name, value: fit.value(k), std: at.map(|at| fit.std[at]), unit: parameter.unit }
+    };
+    let values: Vec<f64> = columns.columns.iter().map(|&k| fit.value(k)).collect();
+    let written = form.written.as_ref().map_or_else(Vec::new, |written| written(&values));
+    let numbers = columns.columns.iter().map(number).chain(form.shape.iter().cloned()).collect();
+    Effect::new(candidate.kind, candidate.place, numbers, written)
+}
+
+fn class(found: &Found, of: &Weighed) -> Vec<(String, f64)> {
+    of.class.members.iter().map(|(member, p)| (found.layout.candidates[*member].name(), *p)).collect()
+}
+
+fn suspected(found: &Found, of: &Weighed) -> Suspected {
+    Suspected {
+        effect: effect(found, of),
+        probability: of.class.probability,
+        class: class(found, of),
+        recurs: of.recurs,
+        why_not: of.why_not.clone().unwrap_or_default(),
+    }
+}
+
+/// Named effects, the one that matters most first, each with the error on unseen poses that it and
+/// those before it leave.
+fn order_of<'w>(
+    engine: &Engine<'_>,
+    found: &Found,
+    named: &[&'w Weighed],
+    nested: &folds::Nested,
+) -> Vec<(&'w Weighed, f64)> {
+    let mut ordered: Vec<&Weighed> = named.to_vec();
+    ordered.sort_by(|a, b| b.matters.total_cmp(&a.matters));
+    let mut so_far = Set::new();
+    let unseen = |set: &Set| engine.unseen_rms(found, set);
+    let readings = engine.observation.readings();
+    let rows = (0..readings.rows()).filter(|&row| engine.training[readings.block[row]]);
+    let last = readings.rms(&nested.left, rows);
+    let whole = unseen(&found.best).filter(|whole| *whole > 0.0);
+    ordered
+        .into_iter()
+        .map(|of| {
+            so_far = crate::select::search::with(&so_far, of.class.form);
+            // Relative to the best set's, whose choice is in the nested error.
+            let rms = match (unseen(&so_far), whole) {
+                (Some(rms), Some(whole)) => last * rms / whole,
+                _ => last,
+            };
+            (of, rms)
+        })
+        .collect()
+}
+
+/// Rows that do not belong to the others, where they are few and far off.
+fn outliers(engine: &Engine<'_>, found: &Found, case: &Case<'_>) -> Option<NamedEffect> {
+    let readings = case.observation.readings();
+    let rows: Vec<usize> = engine.noise.outliers().filter(|&row| engine.training[readings.block[row]]).collect();
+    let fitted = case.rows(true).len();
+    if rows.is_empty()
+        || engine.noise.for_outliers < FOR_OUTLIERS
+        || (rows.len() as f64) < OUTLYING_ROWS * fitted as f64
+    {
+        return None;
+    }
+    let name = "outliers@rig".to_owned();
+    Some(NamedEffect {
+        effect: Effect::outliers(rows.len()),
+        lines: rows.iter().map(|&row| readings.lines[row]).collect(),
+        probability: 1.0 - (-engine.noise.for_outliers).exp(),
+        class: vec![(name, 1.0)],
+        recurs: 1.0,
+        holdout_rms: engine.unseen_rms(found, &found.best).unwrap_or_default(),
+        partial: false,
+    })
+}
+
+/// The log-likelihood ratio from which on rows are told as outlying: odds of three thousand.
+const FOR_OUTLIERS: f64 = 8.0;
+
+/// What the table's numbers change by, a row each; none but of absolute positions.
+fn table(case: &Case<'_>, layout: &Layout, values: &std::collections::BTreeMap<String, f64>) -> Vec<[f64; 5]> {
+    let mut table = vec![[0.0; 5]; case.scene.kinds.len()];
+    if case.scene.what == What::Positions {
+        for k in layout.always() {
+            if let Term::Table(joint, number) = layout.parameters[k].term {
+                table[joint - 1][number] = values.get(&layout.keys[k]).copied().unwrap_or(0.0);
+            }
+        }
+    }
+    table
+}
+
+/// Other sets of candidates that are nearly as probable.
+fn rivals(found: &Found) -> Vec<Rival> {
+    let names = |set: &Set| -> Vec<String> { set.iter().map(|&form| found.layout.names(form).0).collect() };
+    let best = names(&found.best);
+    let mut rivals: Vec<Rival> = Vec::new();
+    let Some(top) = found.visited.sets.get(&found.best).map(|judged| judged.score) else { return rivals };
+    for (set, judged) in found.visited.ranked() {
+        let behind = top - judged.score;
+        if behind > ODDS.ln() {
+            break;
+        }
+        let names = names(set);
+        if names != best && rivals.iter().all(|rival| rival.names != names) {
+            rivals.push(Rival { names, bic_difference: 2.0 * behind.max(0.0) });
+        }
+    }
+    rivals
+}
+
+/// The most probable sets.
+fn sets(found: &Found) -> Vec<(Vec<String>, f64)> {
+    const TOLD: usize = 12;
+    let name = |form: &usize| {
+        let (name, label) = found.layout.names(*form);
+        if label.is_empty() { name } else { format!("{name} ({label})") }
+    };
+    found.visited.posterior().into_iter().take(TOLD).map(|(set, p)| (set.iter().map(name).collect(), p)).collect()
+}
+
+/// Full names of candidates that these readings could not show.
+fn invisible(engine: &Engine<'_>, found: &Found) -> Vec<String> {
+    let grams = engine.grams(&found.columns, &engine.one_group()).total;
+    let problem = engine.problem(&found.layout, &found.columns, grams);
+    let shown: Vec<usize> = problem.offered.iter().map(|&form| found.layout.forms[form].candidate).collect();
+    let all = found.layout.candidates.iter().enumerate();
+    let hidden = all.filter(|(k, of)| !shown.contains(k) && of.kind.side != Side::Unnamed);
+    hidden.map(|(_, of)| of.name()).collect()
+}

@@ -1,0 +1,90 @@
+//! What goes into the description.
+
+use robstiff_robots::effect::physics::{Parameter, Range};
+use robstiff_robots::{Description, Effect};
+
+use super::estimate::{Estimate, with_values};
+use super::found::Found;
+use crate::campaign::Campaign;
+use crate::identify::Error;
+use crate::select::always::Declared;
+use robstiff_robots::DhEntry;
+
+/// A description with estimates, corrections of the table, and effects, which says where they are
+/// from.
+///
+/// # Errors
+/// Numbers that no description takes beside its own effects.
+pub fn described(
+    campaign: &Campaign,
+    (own, estimates): (&[Declared], &[Estimate]),
+    table: &[[f64; 5]],
+    effects: &[&Found],
+) -> Result<Description, Error> {
+    let mut description = with_values(&campaign.robot, own, estimates);
+    for (joint, by) in description.joints.iter_mut().zip(table) {
+        for (number, by) in [&mut joint.theta, &mut joint.d, &mut joint.a, &mut joint.alpha].into_iter().zip(by) {
+            *number += by;
+        }
+    }
+    if !is_readable(&description) {
+        return Err(Error::NoDescription);
+    }
+    let mut names = Vec::new();
+    for found in effects {
+        let mut with = description.clone();
+        found.written.iter().for_each(|effect| add(&mut with, *effect));
+        // What a fit allows may still be beyond what a description takes.
+        if !found.written.is_empty() && is_readable(&with) {
+            description = with;
+            names.push(found.to_string());
+        }
+    }
+    let from = if campaign.name.is_empty() { "a campaign" } else { &campaign.name };
+    let with = if names.is_empty() { "nothing added".to_owned() } else { names.join(", ") };
+    let said = format!("Traced from {from}: {with}.");
+    description.source = match description.source.trim() {
+        "" => said,
+        source => format!("{source}\n{said}"),
+    };
+    Ok(description)
+}
+
+/// Whether a description can be read back.
+fn is_readable(description: &Description) -> bool {
+    Description::parse("", &description.to_yaml()).is_ok()
+}
+
+/// Whether an effect adds up with one that is declared: an error of the kinematics.
+pub fn is_offered_as_change(effect: &Effect) -> bool {
+    matches!(effect, Effect::JointZeroOffset { .. } | Effect::DhError { .. } | Effect::TransmissionError { .. })
+}
+
+/// Adds an effect to a description, as a change where that declares it already.
+fn add(description: &mut Description, effect: Effect) {
+    let slides = |joint: usize| {
+        description.joints.get(joint - 1).is_some_and(|joint| joint.kind == robstiff::JointKind::Prismatic)
+    };
+    let effect = match effect {
+        Effect::JointZeroOffset { joint, value } if slides(joint) => {
+            Effect::DhError { entry: DhEntry::D(joint), value }
+        }
+        effect => effect,
+    };
+    let same = |declared: &Effect| is_offered_as_change(declared) && declared.is_same(&effect);
+    let place = description.effects.iter().position(|declared| same(declared) && sum(declared, &effect).is_some());
+    match place.and_then(|at| Some((at, sum(&description.effects[at], &effect)?))) {
+        Some((at, whole)) => description.effects[at] = whole,
+        None => description.effects.push(effect),
+    }
+}
+
+/// A declared effect with a change; none of a periodic error whose order is another.
+fn sum(declared: &Effect, change: &Effect) -> Option<Effect> {
+    let number = |((parameter, declared), by): ((&Parameter, f64), f64)| match parameter.range {
+        Range::Whole(_) => (declared == by).then_some(declared),
+        _ => Some(declared + by),
+    };
+    let numbers: Option<Vec<f64>> = declared.parameters().zip(change.numbers()).map(number).collect();
+    Effect::of_kind(declared.kind(), declared.place(), &numbers?)
+}

@@ -1,0 +1,269 @@
+//! What a reading is off by.
+//!
+//! The readings of a pose have the covariance, for each of their axes alike,
+//!
+//! `S = s^2 [diag(v_r / w_r) + rho 1_visit + kappa F_r . F_s / F_0^2]`.
+//!
+//! `s` is the noise of one reading. `rho` is the unloaded reading that the rows of a visit share.
+//! `v_r = 1 + (a |d_r|)^2` grows with the displacement. `w_r` is small where a row is outlying: a
+//! normal distribution contaminated with a wider one (Lange, Little and Taylor, JASA 84, 1989). The
+//! last part is what the model does not account for at a pose, its *discrepancy* (Kennedy and
+//! O'Hagan, J. R. Statist. Soc. B 63, 2001): a random compliance of each pose, which adds the more,
+//! the larger the load.
+
+use nalgebra::{DMatrix, DVector, Vector3};
+
+use crate::observe::Readings;
+
+/// The discrepancies `kappa` that are weighed against each other; none has half the prior.
+pub const DISCREPANCIES: [f64; 5] = [0.0, 0.03, 0.3, 3.0, 30.0];
+
+/// The shares `rho` of the unloaded reading that are tried: none, some, and as noisy as the loaded
+/// one.
+const SHARED: [f64; 3] = [0.0, 0.3, 1.0];
+
+/// The parts of a displacement by which noise may grow that are tried.
+const PROPORTIONAL: [f64; 5] = [0.0, 0.005, 0.01, 0.02, 0.04];
+
+/// The log-odds against noise that grows, and against an unusual share, before the data speak.
+const AGAINST_GROWTH: f64 = 4.0;
+/// See [`AGAINST_GROWTH`].
+const AGAINST_SOME: f64 = 2.0;
+
+/// Rounds until noise that grows is of its own size.
+const GROWING: usize = 4;
+
+/// By which factor the wider distribution is wider.
+const WIDER: f64 = 12.0;
+
+/// At most such a part of the rows is outlying: more of them are what the noise is like.
+const MOST_OUTLYING: f64 = 0.1;
+
+/// A row with less weight than this is outlying.
+pub const OUTLYING: f64 = 0.3;
+
+/// The noise of the readings, up to its size.
+#[derive(Clone, Debug)]
+pub struct Noise {
+    /// The weight `w` of each row.
+    pub weights: Vec<f64>,
+    /// The share `rho` of the unloaded reading.
+    pub shared: f64,
+    /// The growth `a` with the displacement (1/m).
+    pub growth: f64,
+    /// What brings each channel to the noise of the first.
+    pub scales: Vec<f64>,
+    /// The part of the rows that is outlying.
+    pub outlying: f64,
+    /// The log-likelihood ratio of outlying rows against none.
+    pub for_outliers: f64,
+    /// The size of the displacement of each row (m).
+    sizes: Vec<f64>,
+}
+
+impl Noise {
+    /// Alike for all rows; rotations and encoders as noisy as if read over `lever` (m).
+    pub fn plain(readings: &Readings, lever: f64) -> Self {
+        let channels = readings.channels.iter().max().map_or(1, |last| last + 1);
+        let sizes = match readings.differences {
+            true => (0..readings.rows()).map(|row| readings.square(&readings.values, row).sqrt()).collect(),
+            false => vec![0.0; readings.rows()],
+        };
+        Self {
+            weights: vec![1.0; readings.rows()],
+            shared: if has_shared(readings) { 1.0 } else { 0.0 },
+            growth: 0.0,
+            scales: (0..channels).map(|channel| if channel == 0 { 1.0 } else { lever }).collect(),
+            outlying: 0.0,
+            for_outliers: 0.0,
+            sizes,
+        }
+    }
+
+    /// The variance of a row's own reading, over that of one reading.
+    fn own(&self, row: usize, growth: f64) -> f64 {
+        1.0 + (growth * self.sizes[row]).powi(2)
+    }
+
+    /// The rows whose weight says that they are outlying.
+    pub fn outliers(&self) -> impl Iterator<Item = usize> + '_ {
+        self.weights.iter().enumerate().filter(|(_, weight)| **weight < OUTLYING).map(|(row, _)| row)
+    }
+
+    /// Learns from what a model leaves, under some discrepancy, of the blocks that it was fitted to.
+    pub fn learn(&mut self, readings: &Readings, left: &DVector<f64>, kappa: f64, training: &[bool]) {
+        let rows: Vec<Vec<usize>> = rows_of_blocks(readings, training);
+        self.learn_scales(readings, left, &rows);
+        let shares: &[f64] = if has_shared(readings) { &SHARED } else { &SHARED[..1] };
+        for _ in 0..2 {
+            let parts: &[f64] = if readings.differences { &PROPORTIONAL } else { &PROPORTIONAL[..1] };
+            let tried = shares.iter().flat_map(|share| parts.iter().map(move |part| (*share, *part)));
+            let judged = tried.map(|(share, part)| {
+                let price = if part > 0.0 { AGAINST_GROWTH } else { 0.0 }
+                    + if share > 0.0 && share < 1.0 { AGAINST_SOME } else { 0.0 };
+                let (likelihood, growth) = self.grown(readings, left, kappa, &rows, (share, part));
+                (likelihood - price, share, growth)
+            });
+            if let Some((_, share, growth)) = judged.max_by(|a, b| a.0.total_cmp(&b.0)) {
+                (self.shared, self.growth) = (share, growth);
+            }
+            self.learn_weights(readings, left, kappa, &rows);
+        }
+    }
+
+    /// The log-likelihood where noise has a part in proportion to the displacement, and how it grows
+    /// then: by this part over its own size.
+    fn grown(
+        &self,
+        readings: &Readings,
+        left: &DVector<f64>,
+        kappa: f64,
+        rows: &[Vec<usize>],
+        (share, part): (f64, f64),
+    ) -> (f64, f64) {
+        let mut growth = 0.0;
+        let (mut likelihood, mut size) = self.likelihood(readings, left, kappa, rows, (share, growth));
+        if part > 0.0 {
+            for _ in 0..GROWING {
+                growth = part / size;
+                (likelihood, size) = self.likelihood(readings, left, kappa, rows, (share, growth));
+            }
+        }
+        (likelihood, growth)
+    }
+
+    /// Rotations and encoders by the medians of what is left of them.
+    fn learn_scales(&mut self, readings: &Readings, left: &DVector<f64>, rows: &[Vec<usize>]) {
+        let median = |channel: usize| {
+            let numbers = rows.iter().flatten().flat_map(|row| {
+                let of_row = (0..readings.width).filter(move |k| readings.channels[*k] == channel);
+                of_row.map(move |k| left[row * readings.width + k].abs())
+            });
+            median(numbers.collect())
+        };
+        let first = median(0);
+        for channel in 1..self.scales.len() {
+            let own = median(channel);
+            if own > 0.0 && first > 0.0 {
+                self.scales[channel] = first / own;
+            }
+        }
+    }
+
+    /// The log-likelihood of what is left, at its most likely size, and that size (m).
+    fn likelihood(
+        &self,
+        readings: &Readings,
+        left: &DVector<f64>,
+        kappa: f64,
+        rows: &[Vec<usize>],
+        (share, growth): (f64, f64),
+    ) -> (f64, f64) {
+        let (mut sum, mut log_det, mut count) = (0.0, 0.0, 0);
+        for rows in rows.iter().filter(|rows| !rows.is_empty()) {
+            let Some(factor) = self.covariance(readings, rows, kappa, (share, growth)).cholesky() else { continue };
+            let told = self.told(readings, left, rows);
+            sum += told.dot(&factor.solve(&told));
+            log_det += factor.l_dirty().diagonal().iter().map(|d| 2.0 * d.ln()).sum::<f64>() * told.ncols() as f64;
+            count += told.len();
+        }
+        let count = count.max(1) as f64;
+        let variance = (sum / count).max(f64::MIN_POSITIVE);
+        (-0.5 * count * variance.ln() - 0.5 * log_det, variance.sqrt())
+    }
+
+    /// Weighs rows by how likely each is outlying, once what its visit and pose share is taken out.
+    fn learn_weights(&mut self, readings: &Readings, left: &DVector<f64>, kappa: f64, rows: &[Vec<usize>]) {
+        let size = self.likelihood(readings, left, kappa, rows, (self.shared, self.growth)).1;
+        let mut squares = vec![0.0; readings.rows()];
+        for rows in rows.iter().filter(|rows| !rows.is_empty()) {
+            let covariance = self.covariance(readings, rows, kappa, (self.shared, self.growth));
+            let Some(factor) = covariance.cholesky() else { continue };
+            let solved = factor.solve(&self.told(readings, left, rows));
+            for (k, &row) in rows.iter().enumerate() {
+                let own = self.own(row, self.growth) / self.weights[row];
+                squares[row] = solved.row(k).norm_squared() * own * own / self.own(row, self.growth) / (size * size);
+            }
+        }
+        let axes = readings.told as f64;
+        let of_rows = || rows.iter().flatten();
+        // The median of chi-square is its degrees of freedom less some 0.66.
+        let bulk = median(of_rows().map(|&row| squares[row]).collect()) / (axes - 0.66).max(0.34);
+        if bulk > 0.0 {
+            squares.iter_mut().for_each(|square| *square /= bulk);
+        }
+        let odds = |square: f64| WIDER.powf(-axes) * (0.5 * square * (1.0 - 1.0 / (WIDER * WIDER))).min(600.0).exp();
+        let mut part = self.outlying.max(0.01);
+        let mut outlying = vec![0.0; readings.rows()];
+        for _ in 0..20 {
+            for &row in of_rows() {
+                let weighed = part * odds(squares[row]);
+                outlying[row] = weighed / (weighed + 1.0 - part);
+            }
+            let count = of_rows().count().max(1) as f64;
+            part = (of_rows().map(|&row| outlying[row]).sum::<f64>() / count).clamp(1e-4, MOST_OUTLYING);
+        }
+        self.outlying = part;
+        self.for_outliers = of_rows().map(|&row| (1.0 - part + part * odds(squares[row])).ln()).sum();
+        for &row in of_rows() {
+            self.weights[row] = 1.0 - outlying[row] + outlying[row] / (WIDER * WIDER);
+        }
+    }
+
+    /// What is told of some rows, a column an axis.
+    fn told(&self, readings: &Readings, left: &DVector<f64>, rows: &[usize]) -> DMatrix<f64> {
+        DMatrix::from_fn(rows.len(), readings.told, |i, k| left[rows[i] * readings.width + k])
+    }
+
+    /// The covariance of one axis over some rows of a block, over `s^2`.
+    fn covariance(&self, readings: &Readings, rows: &[usize], kappa: f64, (share, growth): (f64, f64)) -> DMatrix<f64> {
+        DMatrix::from_fn(rows.len(), rows.len(), |i, j| {
+            let (a, b) = (rows[i], rows[j]);
+            let own = if i == j { self.own(a, growth) / self.weights[a] } else { 0.0 };
+            let visit = if readings.visit[a] == readings.visit[b] { share } else { 0.0 };
+            own + visit + kappa * readings.force[a].dot(&readings.force[b])
+        })
+    }
+
+    /// The covariance of one axis over some rows of a block without any discrepancy, over `s^2`.
+    pub fn of_block(&self, readings: &Readings, rows: &[usize]) -> DMatrix<f64> {
+        self.covariance(readings, rows, 0.0, (self.shared, self.growth))
+    }
+
+    /// The variance of a row's own reading over `s^2`, as weighed.
+    pub fn of_row(&self, row: usize) -> f64 {
+        self.own(row, self.growth) / self.weights[row]
+    }
+}
+
+/// The rows of the blocks that are fitted to, a list each.
+pub fn rows_of_blocks(readings: &Readings, training: &[bool]) -> Vec<Vec<usize>> {
+    let mut rows = vec![Vec::new(); readings.blocks];
+    for (row, &block) in readings.block.iter().enumerate() {
+        if training[block] {
+            rows[block].push(row);
+        }
+    }
+    rows
+}
+
+/// Whether rows share an unloaded reading with others.
+fn has_shared(readings: &Readings) -> bool {
+    let visits = readings.visit.iter().max().map_or(0, |last| last + 1);
+    // Of a clamped axis every row has its own.
+    readings.differences && readings.width > 1 && visits < readings.rows()
+}
+
+/// Whether anything loads the arm, so that there can be a discrepancy.
+pub fn discrepancies(readings: &Readings) -> &'static [f64] {
+    let is_loaded = readings.force.iter().any(|force: &Vector3<f64>| *force != Vector3::zeros());
+    if is_loaded { &DISCREPANCIES } else { &DISCREPANCIES[..1] }
+}
+
+fn median(mut numbers: Vec<f64>) -> f64 {
+    if numbers.is_empty() {
+        return 0.0;
+    }
+    let middle = numbers.len() / 2;
+    *numbers.select_nth_unstable_by(middle, f64::total_cmp).1
+}

@@ -1,0 +1,81 @@
+//! What a correction leaves when the arm is not as described.
+
+use super::Compensated;
+use crate::deviation::{Load, PulledIn, Stand, Summary, displaced};
+use crate::path::SolvedPath;
+use robstiff::Robot;
+
+/// What a correction leaves of the displacement of the TCP, as fractions of what it
+/// is without correction on the same arm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeftIfWrong {
+    /// Of the root of the mean square over the points.
+    pub rms: f64,
+    /// Of the largest.
+    pub worst: f64,
+}
+
+/// What is left when the true arm is softer or stiffer than the model by a part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensitivity {
+    /// All joints and effects at once, softer and stiffer.
+    pub all: [LeftIfWrong; 2],
+    /// Each joint and then each effect alone, in the order of the description.
+    pub each: Vec<[LeftIfWrong; 2]>,
+}
+
+/// What is left on an arm whose joints and effects are softer than the robot's by a
+/// factor each (in the order of the description); 1 for all is the robot itself.
+///
+/// # Errors
+/// The points at which arm and cut do not settle.
+///
+/// # Panics
+/// If the load or the correction has another number of points than the path.
+pub fn left<const N: usize>(
+    robot: &impl Robot<N>,
+    factors: &[f64],
+    path: &SolvedPath<N>,
+    load: &Load,
+    compensated: &Compensated<N>,
+) -> Result<LeftIfWrong, PulledIn> {
+    assert_eq!(compensated.points.len(), path.points.len(), "a correction for every point of the path");
+    let distances = |stands: Vec<Stand>| Summary::of(stands.iter().map(|stand| stand.off.fixed_rows::<3>(0).norm()));
+    let uncorrected = displaced(robot, Some(factors), path.points.iter().map(|point| point.q), path, load)?;
+    let corrected = displaced(robot, Some(factors), compensated.points.iter().map(|point| point.q), path, load)?;
+    // An arm that is not pushed anywhere has nothing to correct.
+    let part = |with: f64, without: f64| if without > 0.0 { with / without } else { 0.0 };
+    let both = distances(corrected).zip(distances(uncorrected));
+    Ok(both.map_or(LeftIfWrong { rms: 0.0, worst: 0.0 }, |(with, without)| LeftIfWrong {
+        rms: part(with.rms, without.rms),
+        worst: part(with.worst, without.worst),
+    }))
+}
+
+/// What is left when the true arm's compliance is `by` larger and smaller than the
+/// model's (0.1 for 10 %): all of it, and each joint and effect alone.
+///
+/// # Errors
+/// The points at which arm and cut do not settle.
+///
+/// # Panics
+/// As [`left`].
+pub fn sensitivity<const N: usize>(
+    robot: &impl Robot<N>,
+    path: &SolvedPath<N>,
+    load: &Load,
+    compensated: &Compensated<N>,
+    by: f64,
+) -> Result<Sensitivity, PulledIn> {
+    let count = N + robot.effects().len();
+    let both = |wrong: &dyn Fn(usize) -> bool| -> Result<[LeftIfWrong; 2], PulledIn> {
+        let with = |factor: f64| {
+            let factors: Vec<f64> = (0..count).map(|k| if wrong(k) { factor } else { 1.0 }).collect();
+            left(robot, &factors, path, load, compensated)
+        };
+        Ok([with(1.0 + by)?, with(1.0 - by)?])
+    };
+    let all = both(&|_| true)?;
+    let each: Result<Vec<_>, _> = (0..count).map(|wrong| both(&|k| k == wrong)).collect();
+    Ok(Sensitivity { all, each: each? })
+}

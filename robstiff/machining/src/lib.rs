@@ -1,0 +1,20 @@
+//! Machining with a robot arm that yields.
+//!
+//! - [`inverse`], [`path`]: the joint coordinates of a pose of the tool, and of a tool path;
+//! - [`milling`], [`stability`]: the force of an end mill, and the depth of cut at which the arm
+//!   chatters, by direction of feed and spindle speed;
+//! - [`deviation`], [`compensation`]: how far a cut pushes the tool off a path, and the path that
+//!   makes up for it;
+//! - [`online`]: correcting the joint targets while cutting;
+//! - [`map`]: stiffness and deviation over joint space, planes and boxes, and where a workpiece
+//!   is best put.
+
+pub mod compensation;
+pub mod deviation;
+mod golden;
+pub mod inverse;
+pub mod map;
+pub mod milling;
+pub mod online;
+pub mod path;
+pub mod stability;

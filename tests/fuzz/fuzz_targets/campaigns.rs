@@ -1,0 +1,4 @@
+//! The target `campaigns`.
+#![no_main]
+
+robstiff_fuzz::target!("campaigns");

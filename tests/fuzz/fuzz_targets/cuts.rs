@@ -1,0 +1,4 @@
+//! The target `cuts`.
+#![no_main]
+
+robstiff_fuzz::target!("cuts");

@@ -1,0 +1,4 @@
+//! The target `descriptions`.
+#![no_main]
+
+robstiff_fuzz::target!("descriptions");

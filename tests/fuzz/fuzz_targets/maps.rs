@@ -1,0 +1,4 @@
+//! The target `maps`.
+#![no_main]
+
+robstiff_fuzz::target!("maps");

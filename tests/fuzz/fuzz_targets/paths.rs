@@ -1,0 +1,4 @@
+//! The target `paths`.
+#![no_main]
+
+robstiff_fuzz::target!("paths");

@@ -1,0 +1,4 @@
+//! The target `tables`.
+#![no_main]
+
+robstiff_fuzz::target!("tables");

@@ -1,0 +1,4 @@
+//! The target `urdf`.
+#![no_main]
+
+robstiff_fuzz::target!("urdf");
