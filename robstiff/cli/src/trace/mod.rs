@@ -45,7 +45,7 @@ pub struct Arguments {
     alpha: f64,
     /// Repeat the whole search without each pose in turn, or in FOLDS parts, and report the error on
     /// the poses that a search was without
-    #[arg(long, value_name = "FOLDS", num_args = 0..=1, allow_hyphen_values = true, value_parser = input::whole::<u32>(2, 1_000_000))]
+    #[arg(long, value_name = "FOLDS", num_args = 0..=1, value_parser = input::whole::<u32>(2, 1_000_000))]
     nested: Option<Option<u32>>,
     /// Look for a correction of what is left that is no physics, and where it predicts unseen poses
     /// better write it to `correction.json`
@@ -81,10 +81,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         output::working("asking the readings themselves", |spinner| -> Result<_, Error> {
             let progress = |stage: &str| spinner.set_message(stage.to_owned());
             let mut triage = robstiff_identify::triage::triage(&campaign);
-            let mut traced = trace(&campaign, &options, &progress)?;
-            account_for(&mut triage, &campaign, &traced);
+            // First, for it may refuse the campaign or the folds.
             let folds = arguments.nested.map(|folds| folds.map(|folds| folds as usize));
             let nested = folds.map(|folds| nested(&campaign, &options, folds, &progress)).transpose()?;
+            let mut traced = trace(&campaign, &options, &progress)?;
+            account_for(&mut triage, &campaign, &traced);
             spinner.set_message("choosing what to measure next");
             // A trace stands without proposals, where none can be made.
             traced.next = next(&campaign, &traced, PROPOSALS).unwrap_or_default();
