@@ -97,7 +97,7 @@ fn stages(trace: &Trace) -> Vec<Stage> {
         let number = count(trace.effects.len(), "effect");
         let left_out = match story::left_out(trace).len() {
             0 => String::new(),
-            rows => format!("; {} left out of the fit and predicted by it", count(rows, "wild row")),
+            rows => format!(", {} predicted", count(rows, "wild row")),
         };
         let remark = format!("{number}, everything fitted again{left_out}");
         stages.push(stage("With effects", &remark, &trace.after));
