@@ -321,6 +321,39 @@ fn one_seed_gives_one_result_over_an_older_one() {
 }
 
 #[test]
+fn the_search_is_repeated_without_some_poses() {
+    let folder = folder("nested");
+    let out = inside(&folder, "out");
+    let page = succeed(&["trace", &campaign(), "--nested", "2", "--out", &out, "--draws", "99"]);
+    let nested = &json(&inside(Path::new(&out), "trace.json"))["nested"];
+    assert_eq!(keys(nested), ["folds", "rms_um", "identified_rms_um", "names"]);
+    assert_eq!(nested["folds"], 2);
+    assert_eq!(keys(&nested["names"][0]), ["name", "share"]);
+    let report = fs::read_to_string(Path::new(&out).join("report.html")).unwrap();
+    // The error that the search has not seen is the one that is told first.
+    let errors = ["identified_rms_um", "rms_um"].map(|key| format!("{:.1}", nested[key].as_f64().unwrap()));
+    for text in [&page, &report] {
+        assert!(text.contains("The whole search was repeated 2 times"), "{text}");
+        assert!(text.contains(&format!("from {} to {} um", errors[0], errors[1])), "{errors:?}: {text}");
+    }
+}
+
+#[test]
+fn folds_that_cannot_be_are_refused() {
+    let folder = folder("folds");
+    let out = inside(&folder, "out");
+    for folds in ["0", "1", "-2", "few"] {
+        assert_eq!(run(&["trace", &campaign(), "--nested", folds, "--out", &out]).code, 2, "{folds}");
+    }
+    let said = fail(1, &["trace", &campaign(), "--nested", "44", "--out", &out]);
+    assert!(said.contains("43 poses in 44 folds: from 2 to 43 are possible"), "{said}");
+    // What follows is no number of folds.
+    let said = fail(2, &["trace", &campaign(), "--nested", "--out", &out, "--draws", "3"]);
+    assert!(said.contains("--draws"), "{said}");
+    assert!(!Path::new(&out).exists());
+}
+
+#[test]
 fn levels_that_draws_cannot_resolve_are_wrong_usage() {
     let trace = |option: [&str; 2]| run(&["trace", &campaign(), "--out", "nowhere", option[0], option[1]]);
     for option in [["--alpha", "0"], ["--alpha", "2"], ["--alpha", "1e-5"], ["--draws", "3"], ["--seed", "-1"]] {

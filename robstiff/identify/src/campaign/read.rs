@@ -9,7 +9,7 @@ use std::vec::Vec;
 use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::text::{self, MOST_OF_DOCUMENT};
-use robstiff_robots::{ReadError, catalogue};
+use robstiff_robots::{Description, JointKind, ReadError, catalogue};
 
 use super::beyond::{told_angle, told_length};
 use super::{Campaign, Data, Frame, Holdout, Noise, clamped, displacements, positions};
@@ -19,7 +19,7 @@ use robstiff_robots::table::{Table, text_of};
 const FIELDS: [&str; 8] = ["name", "robot", "observations", "kind", "wrench", "measured", "noise", "holdout"];
 
 /// Of those, the ones that are about poses and the tool: clamped axes have neither.
-const OF_POSES: [&str; 4] = ["wrench", "measured", "noise", "holdout"];
+const OF_POSES: [&str; 3] = ["wrench", "measured", "holdout"];
 
 /// What they say of frames and rotations: a weight pulls downwards, a tracker reads
 /// points in a frame of its own. That the frame is the base's goes without saying.
@@ -93,7 +93,10 @@ impl Campaign {
         let kept = kept.map(|kept| format!("{}: `holdout` keeps {kept} of {poses} poses from the fit", path.display()));
         let of_robot = robot.warnings();
         let of_robot = of_robot.iter().map(|said| format!("{}: {said}", robot_path.display()));
-        let warnings = of_robot.chain(far).chain(noisy).chain(unused).chain(kept).chain(of_table).collect();
+        let of_axes = of_other_axes(plan.noise, &data, &robot);
+        let of_axes = of_axes.map(|said| format!("{}: {said}", path.display()));
+        let warnings =
+            of_robot.chain(far).chain(noisy).chain(unused).chain(kept).chain(of_axes).chain(of_table).collect();
         Ok(Self {
             name: plan.name,
             path: path.to_owned(),
@@ -103,6 +106,7 @@ impl Campaign {
             data,
             noise: plan.noise,
             holdout: plan.holdout,
+            held_out: Vec::new(),
             warnings,
         })
     }
@@ -154,6 +158,18 @@ fn unused(map: &Map<'_>, kind: Kind) -> Vec<(&'static str, usize)> {
             OF_DISPLACEMENTS.into_iter().filter_map(inner).collect()
         }
     }
+}
+
+/// The noise that says nothing of clamped axes, for they turn, or for they slide.
+fn of_other_axes(noise: Noise, data: &Data, robot: &Description) -> Option<String> {
+    let Data::Clamped(rows) = data else { return None };
+    let is = |kind: JointKind| rows.iter().all(|row| robot.joints[row.axis - 1].kind == kind);
+    let (field, do_what) = match noise {
+        Noise { displacement: Some(_), .. } if is(JointKind::Revolute) => ("displacement", "turn"),
+        Noise { rotation: Some(_), .. } if is(JointKind::Prismatic) => ("rotation", "slide"),
+        _ => return None,
+    };
+    Some(format!("`{field}` of the noise is not used with axes that {do_what}"))
 }
 
 /// A file that the campaign names, by its path from the campaign's folder.

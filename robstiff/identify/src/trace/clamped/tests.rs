@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
 
 use crate::campaign::made::campaign;
-use crate::campaign::{Campaign, ClampedRow, Data};
+use crate::campaign::{Campaign, ClampedRow, Data, Noise};
 use crate::identify::uncertainty::WITHIN;
 use crate::probability::normal;
 use crate::trace::{Options, Trace, Verdict, trace};
@@ -31,7 +31,8 @@ pub(super) fn measured(robot: &Description, torques: &[f64], seed: u64, more: im
             rows.push(ClampedRow { line: rows.len() + 2, axis, torque, deflection });
         }
     }
-    campaign(robot.clone(), Data::Clamped(rows))
+    let noise = Noise { displacement: None, rotation: Some(NOISE) };
+    Campaign { noise, ..campaign(robot.clone(), Data::Clamped(rows)) }
 }
 
 pub(super) fn traced(campaign: &Campaign) -> Trace {
