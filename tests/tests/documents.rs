@@ -20,13 +20,13 @@ fn nth_block<'d>(document: &'d str, language: &str, nth: usize) -> &'d str {
 }
 
 #[test]
-fn the_campaign_of_the_readme_reads() {
-    let readme = include_str!("../../robots/measured/README.md");
+fn the_campaign_of_the_book_reads() {
+    let page = include_str!("../../robstiff/docs/campaigns.md");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("documents");
     fs::create_dir_all(&folder).expect("a folder");
     let write = |name: &str, text: &str| fs::write(folder.join(name), text).expect("a file");
-    write("campaign.yaml", block(readme, "yaml"));
-    write("loads.csv", block(readme, "csv"));
+    write("campaign.yaml", block(page, "yaml"));
+    write("loads.csv", block(page, "csv"));
     write("robot.yaml", include_str!("../../robots/rv130hsc.yaml"));
     let campaign = Campaign::read(folder.join("campaign.yaml")).unwrap_or_else(|problem| panic!("{problem}"));
     assert!(campaign.warnings.is_empty(), "{:?}", campaign.warnings);
@@ -41,9 +41,9 @@ fn the_campaign_of_the_readme_reads() {
 
 /// The campaign of a scenario of the measuring page, read back from its files.
 fn simulated(which: usize, folder: &str) -> (Simulated, Campaign) {
-    let readme = include_str!("../../robots/measured/README.md");
+    let page = include_str!("../../robstiff/docs/measuring.md");
     let robot = Description::parse("robot.yaml", include_str!("../../robots/kuka-kr270-r2700.yaml")).expect("a robot");
-    let scenario = Scenario::parse("README.md", nth_block(readme, "yaml", which), &robot);
+    let scenario = Scenario::parse("measuring.md", nth_block(page, "yaml", which), &robot);
     let simulated = simulate(&robot, &scenario.unwrap_or_else(|problems| panic!("{problems}"))).expect("measured");
     let (files, folder) = (simulated.files(), Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder));
     fs::create_dir_all(&folder).expect("a folder");
@@ -74,8 +74,8 @@ fn is_explained(simulated: &Simulated, campaign: &Campaign) -> bool {
 
 /// The scenarios that are shown are some that tracing gets to the bottom of.
 #[test]
-fn the_scenario_of_the_readme_simulates_and_traces() {
-    let (simulated, campaign) = simulated(2, "scenario");
+fn the_scenario_of_the_book_simulates_and_traces() {
+    let (simulated, campaign) = simulated(1, "scenario");
     assert_eq!(campaign.noise.displacement, Some(8e-6));
     assert_eq!(campaign.holdout, Some(Holdout { fraction: 0.25, seed: 1 }));
     let Data::Displacement(data) = &campaign.data else { panic!("a campaign of displacements") };
@@ -85,7 +85,7 @@ fn the_scenario_of_the_readme_simulates_and_traces() {
 
 #[test]
 fn the_scenario_of_positions_simulates_and_traces() {
-    let (simulated, campaign) = simulated(3, "positions");
+    let (simulated, campaign) = simulated(2, "positions");
     let Data::Position(data) = &campaign.data else { panic!("a campaign of positions") };
     assert_eq!((data.poses.len(), data.rows.len()), (60, 120));
     assert!(is_explained(&simulated, &campaign));

@@ -15,7 +15,7 @@ use crate::{input, json};
 /// The force of a cut on the tool: mean, peak, and over a revolution
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The cut: tool, material, engagement and feed, or measured forces (robstiff/cli/docs/forces.md)
+    /// The cut: tool, material, engagement and feed, or measured forces (robstiff/docs/commands/forces.md)
     #[arg(value_name = "CUT.yaml")]
     cut: PathBuf,
     /// How many angles of a revolution are looked at

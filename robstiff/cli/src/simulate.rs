@@ -22,7 +22,7 @@ pub struct Arguments {
     /// The robot's description, or the name of a robot in the catalogue
     #[arg(value_name = "ROBOT.yaml")]
     robot: PathBuf,
-    /// What is measured, how well, and what is hidden (robots/measured/README.md)
+    /// What is measured, how well, and what is hidden (robstiff/docs/campaigns.md)
     #[arg(value_name = "SCENARIO.yaml")]
     scenario: PathBuf,
     /// The folder for the campaign

@@ -1,10 +1,10 @@
-//! The pages of `docs/`: every command has one, and what they tell a reader to
-//! type works.
+//! The pages of the book: every command has one, and what the pages say to type
+//! works.
 //!
 //! The blocks marked `sh` of a page are run in their order, in one copy of
-//! `docs/files`; a block `text printed` after one is what that printed, `..` for
+//! `commands/files`; a block `text printed` after one is what that printed, `..` for
 //! lines left out; a block `yaml NAME` or `csv NAME` is the beginning of that
-//! file of `docs/files`.
+//! file of `commands/files`. Blocks of cargo are not run.
 #![cfg(unix)]
 
 mod common;
@@ -26,8 +26,18 @@ struct Block {
     text: String,
 }
 
+/// The book.
+fn book() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs")
+}
+
+/// The pages of the commands.
 fn docs() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")
+    book().join("commands")
+}
+
+fn readme() -> String {
+    fs::read_to_string(book().join("../../README.md")).unwrap()
 }
 
 /// The pages by command.
@@ -78,7 +88,7 @@ fn workplace(name: &str) -> PathBuf {
         let path = entry.unwrap().path();
         fs::copy(&path, place.join(path.file_name().unwrap())).unwrap();
     }
-    symlink(docs().join("../../../robots").canonicalize().unwrap(), place.join("robots")).unwrap();
+    symlink(book().join("../../robots").canonicalize().unwrap(), place.join("robots")).unwrap();
     place
 }
 
@@ -129,51 +139,78 @@ fn every_command_has_a_page_and_every_page_a_command() {
 fn the_outline_lists_every_page() {
     let outline = fs::read_to_string(docs().join("README.md")).unwrap();
     for (name, _) in pages() {
-        assert!(outline.contains(&format!("[{name}]({name}.md)")), "docs/README.md does not list {name}.md");
+        assert!(outline.contains(&format!("[{name}]({name}.md)")), "commands/README.md does not list {name}.md");
     }
+}
+
+#[test]
+fn the_summary_lists_every_page_of_the_book() {
+    let summary = fs::read_to_string(book().join("SUMMARY.md")).unwrap();
+    for folder in ["", "commands/", "pictures/"] {
+        for entry in fs::read_dir(book().join(folder)).unwrap() {
+            let name = entry.unwrap().file_name().into_string().unwrap();
+            let listed = summary.contains(&format!("({folder}{name})")) || name == "SUMMARY.md";
+            assert!(!name.ends_with(".md") || listed, "SUMMARY.md does not list {folder}{name}");
+        }
+    }
+}
+
+/// Runs the blocks of a page in their order, and compares what they print with
+/// what the page shows. All that was run.
+fn follow(name: &str, page: &str) -> String {
+    let place = workplace(name);
+    let (mut printed, mut typed) = (String::new(), String::new());
+    for block in blocks(page) {
+        match block.info.as_str() {
+            "sh" if !block.text.contains("cargo ") => {
+                printed = bash(&block, name, &place);
+                typed += &block.text;
+            }
+            "text printed" => {
+                let missing = unprinted(&block.text, &printed);
+                assert_eq!(missing, None, "{name}.md:{}: the command does not print this\n{printed}", block.line);
+            }
+            _ => {}
+        }
+    }
+    typed
 }
 
 #[test]
 fn what_the_pages_say_to_type_works() {
     for (name, page) in pages() {
-        let place = workplace(&name);
-        let mut printed = String::new();
-        let mut used = false;
-        for block in blocks(&page) {
-            match block.info.as_str() {
-                "sh" => {
-                    printed = bash(&block, &name, &place);
-                    used |= block.text.contains(&format!("robstiff {name} "));
-                }
-                "text printed" => {
-                    let missing = unprinted(&block.text, &printed);
-                    assert_eq!(missing, None, "{name}.md:{}: the command does not print this\n{printed}", block.line);
-                }
-                _ => {}
-            }
-        }
-        assert!(used, "{name}.md has no sh block that runs `robstiff {name}`");
+        let typed = follow(&name, &page);
+        assert!(typed.contains(&format!("robstiff {name} ")), "{name}.md has no sh block that runs `robstiff {name}`");
     }
 }
 
-/// All of it, and nothing else.
 #[test]
-fn the_readme_shows_what_its_main_command_prints() {
-    let readme = fs::read_to_string(docs().join("../../../README.md")).unwrap();
-    let blocks = blocks(&readme);
-    let shown = blocks.iter().position(|block| block.info == "text printed").unwrap();
-    let cargo = "cargo run --bin robstiff --";
-    let main = blocks[..shown].iter().find(|block| block.text.starts_with(cargo)).unwrap();
-    let command = Block { info: String::new(), line: main.line, text: main.text.replace(cargo, "robstiff") };
-    assert_eq!(bash(&command, "README", &workplace("readme")), blocks[shown].text);
+fn what_the_readme_says_to_type_works() {
+    let readme = readme();
+    let typed = follow("README", &readme);
+    for command in ["import", "show", "simulate", "trace", "path"] {
+        assert!(typed.contains(&format!("robstiff {command} ")), "README.md does not run `robstiff {command}`");
+    }
+    assert!(readme.lines().count() <= 180, "README.md is no longer read at one sitting");
 }
 
 #[test]
-fn what_the_readme_says_to_type_at_the_workpiece_works() {
-    let readme = fs::read_to_string(docs().join("../../../README.md")).unwrap();
-    let blocks = blocks(&readme);
-    let block = blocks.iter().find(|block| block.text.starts_with("robstiff import ")).unwrap();
-    bash(block, "README", &workplace("workpiece"));
+fn what_the_guides_say_to_type_works() {
+    for name in ["guide", "machining"] {
+        let typed = follow(name, &fs::read_to_string(book().join(format!("{name}.md"))).unwrap());
+        assert!(typed.contains("robstiff "), "{name}.md runs no command");
+    }
+}
+
+/// The page on tracing shows all that the README's main command prints, and nothing else.
+#[test]
+fn the_page_on_tracing_shows_what_the_readmes_main_command_prints() {
+    let cargo = "cargo run --bin robstiff --";
+    let main = blocks(&readme()).into_iter().find(|block| block.text.starts_with(cargo)).unwrap();
+    let command = Block { info: String::new(), line: main.line, text: main.text.replace(cargo, "robstiff") };
+    let page = fs::read_to_string(book().join("tracing.md")).unwrap();
+    let shown = blocks(&page).into_iter().find(|block| block.info == "text printed").unwrap();
+    assert_eq!(bash(&command, "README", &workplace("main")), shown.text);
 }
 
 #[test]

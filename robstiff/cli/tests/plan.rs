@@ -40,7 +40,7 @@ fn proposes_poses_for_the_fanuc() {
     assert_eq!(pair["outlook"], "separable");
     let numbers = plan["numbers"].as_array().unwrap();
     assert!(numbers.iter().all(|known| number(&known["factor"]) >= 1.0));
-    // The same plan as in the README.
+    // The same plan as in the book.
     let joints = numbers.iter().filter(|known| known["name"].as_str().unwrap().starts_with("joint "));
     let factors: Vec<f64> = joints.map(|known| number(&known["factor"])).collect();
     let said = format!(
@@ -51,8 +51,8 @@ fn proposes_poses_for_the_fanuc() {
         factors.iter().copied().fold(f64::INFINITY, f64::min),
         factors.iter().copied().fold(0.0, f64::max)
     );
-    let readme = include_str!("../../../README.md").split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(readme.contains(&said), "{said}");
+    let page = include_str!("../../docs/measuring.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(page.contains(&said), "{said}");
 
     // The campaign's own columns, within its range, at its greatest force.
     let table = fs::read_to_string(table).unwrap();

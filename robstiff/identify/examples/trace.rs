@@ -10,7 +10,7 @@ use robstiff_identify::identify::predict;
 use robstiff_identify::trace::{Options, trace};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots/measured/fanuc-r2000ic");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots/measured/fanuc-r2000ic");
     let campaign = Campaign::read(folder.join("campaign.yaml"))?;
     let traced = trace(&campaign, &Options { draws: 499, ..Options::default() }, &|_| ())?;
 

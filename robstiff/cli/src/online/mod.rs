@@ -31,13 +31,13 @@ const TOO_STIFF: f64 = 0.1;
 /// Each control step reads a force sensor, or encoders on the output side of the
 /// gears, and shifts the joint targets; that acts after a delay and through the
 /// position loops. Along a path with a cut or recorded forces, or at a pose under
-/// a force by its frequency. See robstiff/cli/docs/online.md.
+/// a force by its frequency. See robstiff/docs/commands/online.md.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The robot's description, or the name of a robot in the catalogue
     #[arg(value_name = "ROBOT.yaml")]
     robot: PathBuf,
-    /// The tool path (robstiff/cli/docs/path.md); without it, a pose
+    /// The tool path (robstiff/docs/commands/path.md); without it, a pose
     #[arg(value_name = "PATH.csv", conflicts_with = "at")]
     path: Option<PathBuf>,
     #[command(flatten)]

@@ -32,7 +32,7 @@ pub struct ForceArguments {
     /// What the columns of `--forces` are along
     #[arg(long, value_name = "FRAME", default_value = "base", value_enum, requires = "forces", conflicts_with = "cut")]
     force_frame: Frame,
-    /// The cut that pushes the tool (robstiff/cli/docs/forces.md)
+    /// The cut that pushes the tool (robstiff/docs/commands/forces.md)
     #[arg(long, value_name = "CUT.yaml", group = "load")]
     cut: Option<PathBuf>,
     /// Another cut to compare it with

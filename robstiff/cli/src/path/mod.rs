@@ -30,7 +30,7 @@ const MOST_JUMPS: usize = 20;
 /// PATH.csv has a point a row: `x y z` and an orientation (`qw qx qy qz`, a
 /// rotation vector `rx ry rz`, angles `a b c` about z, y, x, or the direction
 /// `ux uy uz` of the tool's axis), or joint coordinates `q1`..; each column as
-/// `name [unit]`. See robstiff/cli/docs/path.md.
+/// `name [unit]`. See robstiff/docs/commands/path.md.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The robot's description, or the name of a robot in the catalogue

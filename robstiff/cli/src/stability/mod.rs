@@ -33,7 +33,7 @@ pub struct Arguments {
     /// The robot's description, or the name of a robot in the catalogue
     #[arg(value_name = "ROBOT.yaml")]
     robot: PathBuf,
-    /// The cut (robstiff/cli/docs/forces.md); its depth is the one that is judged
+    /// The cut (robstiff/docs/commands/forces.md); its depth is the one that is judged
     #[arg(value_name = "CUT.yaml")]
     cut: PathBuf,
     #[command(flatten)]

@@ -1,5 +1,5 @@
-//! The README's example is a description, and its table of effects the
-//! catalogue's. To write the table anew, run with `ROBSTIFF_BLESS=1`.
+//! The book's example of a description reads, and its table of effects is the
+//! catalogue's. With `ROBSTIFF_BLESS=1` the table is written again.
 #![cfg(feature = "read")]
 
 use robstiff_robots::Description;
@@ -10,18 +10,18 @@ use std::path::Path;
 
 #[test]
 fn the_example_reads() {
-    let readme = include_str!("../README.md");
-    let example = readme.split("```yaml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
-    let robot = Description::parse("README.md", example).unwrap_or_else(|problems| panic!("{problems}"));
+    let page = include_str!("../../robstiff/docs/description.md");
+    let example = page.split("```yaml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    let robot = Description::parse("description.md", example).unwrap_or_else(|problems| panic!("{problems}"));
     assert_eq!((robot.joints.len(), robot.effects.len()), (3, 2));
 }
 
 #[test]
 fn the_table_of_effects_is_the_catalogues() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
-    let readme = fs::read_to_string(&path).unwrap();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robstiff/docs/description.md");
+    let page = fs::read_to_string(&path).unwrap();
     let head = "| effect | at | parameters |\n|---|---|---|\n";
-    let (before, rest) = readme.split_once(head).expect("a table of effects");
+    let (before, rest) = page.split_once(head).expect("a table of effects");
     let (found, after) = rest.split_once("\n\n").expect("an end of the table");
     let expected: Vec<String> = CATALOGUE.iter().map(|about| row(about)).collect();
     if std::env::var_os("ROBSTIFF_BLESS").is_some_and(|value| value == "1") {
