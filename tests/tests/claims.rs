@@ -103,7 +103,7 @@ fn what_the_fanuc_shows_is_not_the_whole_truth() {
 fn the_search_without_poses_of_the_fanuc_errs_by_more() {
     let again = nested(&FANUC, &Options::default(), Some(5), &|_| {}).expect("it can be traced");
     assert_eq!(again.folds, 5);
-    // The README's figure.
+    // The figure that the page on tracing shows.
     assert_near("searched", again.rms, 134.9e-6, 0.05);
     assert!(again.rms > 1.1 * FOUND.after.holdout_rms, "{again:?}, {:?}", FOUND.after);
     assert!(again.rms < again.identified_rms && again.identified_rms > FOUND.identified.rms, "{again:?}");
