@@ -260,8 +260,7 @@ fn lost_motion_does_not_account_for_a_reading_that_is_off() {
 /// It came out as a load cell whose scale is wrong.
 #[test]
 fn a_foundation_that_tilts_unequally_is_known_beside_the_catalogue() {
-    for seed in [0, 1] {
-        let arm = if seed % 2 == 0 { five_axis() } else { six_axis() };
+    for (seed, arm) in [(0, five_axis()), (1, six_axis())] {
         let uneven = Hidden::Outside(Outside::UnevenFoundation { tilt: [8e-8, 2e-8] });
         let found = traced(&read(&plan(&arm, seed).hiding(uneven).run(), &arm));
         assert_eq!((found.verdict, names(&found)), (Verdict::Unexplained, vec![]), "{}", found.why);
