@@ -107,7 +107,22 @@ impl Description {
     }
 }
 
+/// `None` with the problem reported where the file is a campaign.
+fn refuse_campaign(root: &Node) -> Option<()> {
+    let Some(map) = root.is_map().then(|| root.any_map("")).flatten() else { return Some(()) };
+    let there = |field: &str| map.get(field).is_some();
+    if there("observations") && !there("joints") {
+        let robot = map.get("robot").and_then(|node| node.as_text().map(str::to_owned));
+        let robot = robot.map(|robot| format!(", here `{robot}`")).unwrap_or_default();
+        let help = format!("give the robot's description, which the campaign names under `robot:`{robot}");
+        root.error("this is a campaign, and no robot's description", help);
+        return None;
+    }
+    Some(())
+}
+
 fn description(root: &Node) -> Option<Description> {
+    refuse_campaign(root)?;
     let map =
         root.map(&["name", "description", "source", "convention", "base", "joints", "tool", "links", "effects"])?;
     // Everything is read before anything is given up, to report all problems.

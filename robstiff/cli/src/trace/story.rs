@@ -14,6 +14,9 @@ use crate::report::terms::Terms;
 use crate::text::words::spoken;
 use crate::text::{Table, and, capital, count, course, decimals, fine_micrometres, p_value, quantity};
 
+/// How a mistake ends that is of the angles of joints.
+const BACKWARDS: &str = " counted the other way";
+
 /// The finding in one sentence.
 pub fn headline(trace: &Trace, nested: Option<&Nested>, terms: Terms) -> String {
     let Terms { unseen: [_, unseen], unit, .. } = terms;
@@ -63,7 +66,14 @@ pub fn headline(trace: &Trace, nested: Option<&Nested>, terms: Terms) -> String 
                  {unseen}"
             )
         }
-        Verdict::Insufficient => "These data cannot tell whether anything is missing".to_owned(),
+        Verdict::Insufficient => match trace.looks_like.first().and_then(|words| words.strip_suffix(BACKWARDS)) {
+            // Whoever sees nothing else sees this.
+            Some(joints) if trace.looks_like.len() == 1 => {
+                let count = if joints.contains(' ') { "count" } else { "counts" };
+                format!("The files may say something else than what was measured: {joints} {count} the other way")
+            }
+            _ => "These data cannot tell whether anything is missing".to_owned(),
+        },
     }
 }
 

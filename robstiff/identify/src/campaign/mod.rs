@@ -22,8 +22,11 @@ mod poses;
 mod positions;
 pub(crate) mod read;
 mod reference;
+mod renamed;
 mod revisited;
 pub(crate) mod rounded;
+#[cfg(test)]
+mod tables_tests;
 #[cfg(test)]
 mod tests;
 mod times;

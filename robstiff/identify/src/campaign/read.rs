@@ -12,11 +12,13 @@ use robstiff_robots::text::{self, MOST_OF_DOCUMENT};
 use robstiff_robots::{Description, JointKind, ReadError, catalogue};
 
 use super::beyond::{told_angle, told_length};
+use super::renamed::{self, Renamed, renamed};
 use super::{Campaign, Data, Frame, Holdout, Noise, clamped, displacements, positions};
 use robstiff_robots::table::{Table, text_of};
 
 /// The fields of a campaign file.
-const FIELDS: [&str; 8] = ["name", "robot", "observations", "kind", "wrench", "measured", "noise", "holdout"];
+const FIELDS: [&str; 9] =
+    ["name", "robot", "observations", "kind", "columns", "wrench", "measured", "noise", "holdout"];
 
 /// Of those, the ones that are about poses and the tool: clamped axes have neither.
 const OF_POSES: [&str; 3] = ["wrench", "measured", "holdout"];
@@ -39,6 +41,7 @@ struct Plan {
     robot: String,
     observations: String,
     kind: Kind,
+    columns: Vec<Renamed>,
     wrench: (Frame, [f64; 3]),
     measured: (Frame, [f64; 3]),
     noise: Noise,
@@ -59,15 +62,17 @@ impl Campaign {
     pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
         let path = path.as_ref();
         let folder = path.parent().unwrap_or(Path::new(""));
-        let document = Document::parse(&path.display().to_string(), &text::read(path, MOST_OF_DOCUMENT)?)
-            .map_err(ReadError::Invalid)?;
+        let (file, said) = (path.display().to_string(), text::read(path, MOST_OF_DOCUMENT)?);
+        let document = Document::parse(&file, &said).map_err(ReadError::Invalid)?;
         let plan = plan(&document, folder);
         let plan = document.finish(plan).map_err(ReadError::Invalid)?;
 
         let (robot, robot_path) = catalogue::read(folder, Path::new(&plan.robot))?;
         let observations_path = folder.join(&plan.observations);
         let (table_name, text) = (observations_path.display().to_string(), text_of(&observations_path)?);
-        let table = Table::parse(&table_name, &text).map_err(ReadError::Invalid)?;
+        let mut table = Table::parse(&table_name, &text).map_err(ReadError::Invalid)?;
+        renamed::take(&mut table, &plan.columns, (&file, &said)).map_err(ReadError::Invalid)?;
+        table.take_joints(robot.joints.len());
         let data = match plan.kind {
             Kind::Displacement => {
                 displacements::read(&table, &robot, plan.wrench, plan.measured).map(Data::Displacement)
@@ -116,6 +121,7 @@ impl Campaign {
 const FAR_FROM_TCP: f64 = 5.0;
 
 fn plan(document: &Document, folder: &Path) -> Option<Plan> {
+    refuse_robot(document)?;
     let map = document.root().map(&FIELDS)?;
     let kinds = [("displacement", Kind::Displacement), ("position", Kind::Position), ("clamped", Kind::Clamped)];
     let name = match map.get("name") {
@@ -125,6 +131,7 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
     let robot = file(&map, "robot", "robot: robot.yaml", folder);
     let observations = file(&map, "observations", "observations: loads.csv", folder);
     let kind = map.require("kind", "kind: displacement").and_then(|node| node.choice(&kinds));
+    let columns = renamed(&map);
     let wrench = place(&map, "wrench");
     let measured = place(&map, "measured");
     let noise = noise(&map);
@@ -136,6 +143,7 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
         robot: robot?,
         observations: observations?,
         kind: kind?,
+        columns: columns?,
         wrench: wrench?,
         measured: measured?,
         noise: noise?,
@@ -143,6 +151,21 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
         unused,
         noisy,
     })
+}
+
+/// `None` with the problem reported where the file is a robot's description.
+fn refuse_robot(document: &Document) -> Option<()> {
+    let root = document.root();
+    let Some(map) = root.is_map().then(|| root.any_map("")).flatten() else { return Some(()) };
+    let there = |field: &str| map.get(field).is_some();
+    if there("joints") && !there("observations") && !there("robot") {
+        root.error(
+            "this is a robot's description, and no campaign",
+            "give the campaign, a file with `robot:` and `observations:`; `robstiff start` makes one for a robot",
+        );
+        return None;
+    }
+    Some(())
 }
 
 /// The fields that are not used with a kind, with their lines.
