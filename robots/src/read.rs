@@ -3,58 +3,22 @@
 
 mod couplings;
 mod effects;
+mod name;
 mod outline;
 
 pub use outline::Outline;
 
 use crate::angle::snapped;
-use crate::description::{Description, Joint, Link, MOST_JOINTS, Part, Placement, TAKEN};
+use crate::description::{Description, Joint, Link, MOST_JOINTS, Part, Placement};
 use crate::diagnostic::Diagnostics;
 use crate::document::{Document, Map, Node};
 use crate::effect::{Convention, Effect, JointKind};
 use crate::quantity::Dimension;
+use crate::read_error::ReadError;
 use crate::text;
 use crate::words::count;
-use std::fmt;
-use std::io;
-use std::path::{Path, PathBuf};
-
-/// Why a description could not be read.
-#[derive(Debug)]
-pub enum ReadError {
-    /// The file could not be read.
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        error: io::Error,
-    },
-    /// The file was read, but is not what it should be.
-    Invalid(Diagnostics),
-}
-
-impl fmt::Display for ReadError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Io { path, .. } if path.as_os_str() == "-" => {
-                f.write_str("error: `-` does not stand for standard input; name a file")
-            }
-            Self::Io { path, error } => {
-                write!(f, "error: cannot read {}: {error}", text::shown_in_line(&path.display().to_string()))
-            }
-            Self::Invalid(problems) => problems.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for ReadError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::Io { error, .. } => Some(error),
-            Self::Invalid(problems) => Some(problems),
-        }
-    }
-}
+use name::name;
+use std::path::Path;
 
 impl Description {
     /// Reads a description from a file.
@@ -85,20 +49,6 @@ impl Description {
         let (joints, links) = (Some(&joints[..]), Some(&self.links[..]));
         let arm = effects::Arm { convention: Some(self.convention), joints, links, count: Some(self.joints.len()) };
         effects::effects(node, &arm)
-    }
-
-    /// A free name for a robot's type that is like `text`, e.g. a file's name.
-    pub fn name_like(text: &str) -> String {
-        let words = text.split(|character: char| !character.is_ascii_alphanumeric());
-        let camel: String = words
-            .filter_map(|word| Some((word.chars().next()?.to_ascii_uppercase(), &word[1..])))
-            .map(|(first, rest)| format!("{first}{rest}"))
-            .collect();
-        match camel.as_str() {
-            free if is_type_name(free) => camel,
-            "" | "Robot" => "MyRobot".to_owned(),
-            _ => format!("Robot{camel}"),
-        }
     }
 
     /// What can be told of a robot from a text that may be broken anywhere.
@@ -162,30 +112,6 @@ fn optional<T: Default>(map: &Map, field: &str, read: impl FnOnce(&Node) -> Opti
 fn every<T>(items: &[Node], read: impl FnMut(&Node) -> Option<T>) -> Option<Vec<T>> {
     let read: Vec<Option<T>> = items.iter().map(read).collect();
     read.into_iter().collect()
-}
-
-fn name(node: &Node) -> Option<String> {
-    let name = node.text()?;
-    if !is_type_name(name) {
-        let why = if TAKEN.contains(&name) {
-            "it becomes a Rust type, and the generated code uses this name itself: write another one"
-        } else if !name.is_ascii() {
-            "it becomes a Rust type, of ASCII letters and digits only: write it in upper camel case without others"
-        } else {
-            "it becomes a Rust type, so write it in upper camel case"
-        };
-        let help = format!("{why}, e.g. `{}`", Description::name_like(name));
-        node.error(format!("`{name}` cannot name a robot"), help);
-        return None;
-    }
-    Some(name.to_owned())
-}
-
-/// Whether a text is an upper camel case identifier that is free.
-fn is_type_name(name: &str) -> bool {
-    name.starts_with(|first: char| first.is_ascii_uppercase())
-        && name.chars().all(|character| character.is_ascii_alphanumeric())
-        && !TAKEN.contains(&name)
 }
 
 impl Placement {
@@ -320,20 +246,5 @@ mod tests {
         let text = "name: Arm\nconvention: standard\njoints: [{a: 1 m}]\n";
         let arm = Description::parse("arm.yaml", text).unwrap_or_else(|problems| panic!("{problems}"));
         assert!(arm.joints[0].compliance().is_sign_positive());
-    }
-
-    #[test]
-    fn suggests_names_that_are_names() {
-        for (name, suggested) in [
-            ("rv130-hsc", "Rv130Hsc"),
-            ("6axis arm", "Robot6axisArm"),
-            ("Self", "RobotSelf"),
-            ("Robot", "MyRobot"),
-            ("ü", "MyRobot"),
-        ] {
-            assert!(!is_type_name(name));
-            assert_eq!(Description::name_like(name), suggested);
-            assert!(is_type_name(suggested));
-        }
     }
 }

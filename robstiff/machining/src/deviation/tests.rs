@@ -1,4 +1,4 @@
-use nalgebra::{SVector, Unit, Vector3, Vector6};
+use nalgebra::{Matrix3, SVector, Unit, Vector3, Vector6};
 use robstiff_robots::{Description, catalogue};
 
 use super::*;
