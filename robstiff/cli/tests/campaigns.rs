@@ -334,7 +334,7 @@ fn the_search_is_repeated_without_some_poses() {
     let errors = ["identified_rms_um", "rms_um"].map(|key| format!("{:.1}", nested[key].as_f64().unwrap()));
     for text in [&page, &report] {
         assert!(text.contains("The whole search was repeated 2 times"), "{text}");
-        assert!(text.contains(&format!("from {} to {} ", errors[0], errors[1])), "{errors:?}: {text}");
+        assert!(text.contains(&format!("from {} to {}", errors[0], errors[1])), "{errors:?}: {text}");
     }
 }
 
