@@ -20,6 +20,7 @@ mod scene;
 mod show;
 mod simulate;
 mod stability;
+mod start;
 mod text;
 mod trace;
 
@@ -39,6 +40,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Start(start::Arguments),
     Show(show::Arguments),
     Identify(identify::Arguments),
     Trace(trace::Arguments),
@@ -58,6 +60,7 @@ enum Command {
 impl Command {
     fn run(&self) -> Result<(), Failure> {
         match self {
+            Self::Start(arguments) => start::run(arguments),
             Self::Show(arguments) => show::run(arguments),
             Self::Identify(arguments) => identify::run(arguments),
             Self::Trace(arguments) => trace::run(arguments),
