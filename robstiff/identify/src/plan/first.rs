@@ -132,6 +132,7 @@ pub fn unread(robot: &Description, visits: &[Visit]) -> Campaign {
         data: Data::Displacement(data),
         noise: Noise::default(),
         holdout: None,
+        held_out: Vec::new(),
         warnings: Vec::new(),
     }
 }
