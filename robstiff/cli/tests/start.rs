@@ -9,30 +9,33 @@ use common::{fail, folder, inside, json, names, succeed};
 
 const FILES: [&str; 3] = ["campaign.yaml", "how-to-measure.html", "loads.csv"];
 
-/// Fills in what a robot would read whose joints and foundation give way, by the prediction of another
-/// description.
+/// Fills in what would be read on an arm that is as a description says, with some noise.
 fn fill(folder: &Path, truth: &str) {
     let table = folder.join("loads.csv");
     let campaign = inside(folder, "campaign.yaml");
     let text = fs::read_to_string(&table).unwrap();
-    // What is predicted does not depend on what was read.
-    fs::write(&table, text.replace(",,,", ",1,1,1")).unwrap();
+    // What is predicted does not depend on what was read; rows that read alike would pass for copies.
+    let reads = |(number, line): (usize, &str)| match line.strip_suffix(",,,") {
+        Some(row) => format!("{row},{number},1,1\n"),
+        None => format!("{line}\n"),
+    };
+    fs::write(&table, text.lines().enumerate().map(reads).collect::<String>()).unwrap();
     let predicted = inside(folder, "predicted.csv");
     succeed(&["predict", truth, &campaign, "--csv", &predicted]);
     let predicted = fs::read_to_string(predicted).unwrap();
     let mut rows = predicted.lines();
     let header: Vec<&str> = rows.next().unwrap().split(',').collect();
     let column = |name: &str| header.iter().position(|header| header.starts_with(name)).expect(name);
-    let at = ["dx", "dy", "dz"].map(column);
+    let at = ["predicted_dx", "predicted_dy", "predicted_dz"].map(column);
     let mut filled = text.lines().take(1).map(|line| line.to_owned() + "\n").collect::<String>();
-    // A thousandth of a number is drawn from a sequence that fills the unit interval: noise of some um.
+    // A sequence that fills the unit interval evenly: noise of some um.
     let mut draw = 0.5_f64;
     for (line, row) in text.lines().skip(1).zip(rows) {
         let fields: Vec<&str> = row.split(',').collect();
         let readings = at.map(|at| {
             draw = (draw + 0.618_033_988_749_895).fract();
-            let unit = if header[at].contains("um") { 1.0 } else { 1e6 };
-            format!("{:.2}", fields[at].parse::<f64>().unwrap() * unit + 4.0 * (draw - 0.5))
+            assert!(header[at].ends_with("[um]"), "{}", header[at]);
+            format!("{:.2}", fields[at].parse::<f64>().unwrap() + 4.0 * (draw - 0.5))
         });
         filled += &format!("{},{}\n", line.strip_suffix(",,,").unwrap(), readings.join(","));
     }
