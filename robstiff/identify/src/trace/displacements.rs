@@ -62,7 +62,9 @@ pub fn of_campaign<'c>(
     }
     progress("searching again without a reflector that sits elsewhere");
     bench.spare_memory();
-    let other = without_reflector(campaign, prepared, options);
+    // Its stages are those that were told before.
+    let without = Bench::of(campaign, prepared, false).and_then(|on| of_bench(on, prepared, options, &|_| ())).ok();
+    let other = without.as_ref().and_then(|without| searched_on(campaign, prepared, without, options));
     Ok(match other.filter(|other| is_better((&other.0, &other.1), (&bench, &outcome))) {
         Some((on, mut found)) => {
             found.rival = rival((&bench, &outcome), (&on, &found));
@@ -71,20 +73,24 @@ pub fn of_campaign<'c>(
             outcome.selection.steps.push(step);
             (on, found.after(outcome))
         }
-        None => (bench, outcome),
+        None => {
+            // What several others do together is no swap of one name.
+            let near = without.and_then(|(on, found)| rival((&on, &found), (&bench, &outcome)));
+            outcome.rival = outcome.rival.take().or(near);
+            (bench, outcome)
+        }
     })
 }
 
-/// What is found from a model on that a search without the reflector came to, where one has it: what
+/// What is found from the model on that a search `without` the reflector came to, where one has it: what
 /// turns the tool is much like one, so that it can be named early for what several do together, and
 /// effects are replaced one at a time.
-fn without_reflector<'c>(
+fn searched_on<'c>(
     campaign: &'c Campaign,
     prepared: &'c Prepared<'c>,
+    (on, found): &(Bench<'c>, Outcome),
     options: &Options,
 ) -> Option<(Bench<'c>, Outcome)> {
-    // Its stages are those that were told before.
-    let (on, found) = of_bench(Bench::of(campaign, prepared, false).ok()?, prepared, options, &|_| ()).ok()?;
     let bench = Bench::new(campaign, prepared).ok()?;
     let same = |one: &Named| {
         let name = on.candidates()[one.candidate].name();

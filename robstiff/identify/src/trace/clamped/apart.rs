@@ -146,7 +146,7 @@ mod tests {
                 let mut all = states.get();
                 all[axis - 1] = play(torque, 100.0, all[axis - 1]);
                 states.set(all);
-                0.2 * five_axis().joints[axis - 1].compliance() * all[axis - 1]
+                0.5 * five_axis().joints[axis - 1].compliance() * all[axis - 1]
             };
             assert_eq!(told(&measured(&five_axis(), &both_ways(), 760 + seed, lags)), of_all("hysteresis"), "{seed}");
         }
