@@ -219,7 +219,7 @@ fn predicts_every_row() {
 
 /// A column that is wrong is wrong in every row.
 #[test]
-fn ten_problems_of_a_table_are_shown_and_the_others_counted() {
+fn a_problem_of_all_rows_is_shown_once_and_the_others_counted() {
     let folder = folder("many-problems");
     let campaign = copy(&folder);
     let loads = fs::read_to_string(folder.join("loads.csv")).unwrap();
@@ -227,8 +227,8 @@ fn ten_problems_of_a_table_are_shown_and_the_others_counted() {
     let loads = [loads.lines().next().unwrap().to_owned()].into_iter().chain(rows).collect::<Vec<_>>().join("\n");
     fs::write(folder.join("loads.csv"), loads).unwrap();
     let said = fail(1, &["identify", &campaign, "--out", &inside(&folder, "out")]);
-    assert_eq!(said.matches("error: ").count(), 10, "{said}");
-    assert!(said.trim_end().ends_with("and 33 more"), "{said}");
+    assert_eq!(said.matches("error: ").count(), 1, "{said}");
+    assert!(said.contains(".. and 42 more rows like it: lines 3-44"), "{said}");
 }
 
 #[test]
