@@ -115,7 +115,7 @@ fn assert_alive(seen: &Value) {
 }
 
 fn docs(file: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/files").join(file).to_str().unwrap().to_owned()
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands/files").join(file).to_str().unwrap().to_owned()
 }
 
 #[test]
