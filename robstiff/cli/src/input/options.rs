@@ -67,6 +67,11 @@ fn is_of_number(c: char) -> bool {
     c.is_ascii_digit() || ".+-eE".contains(c)
 }
 
+/// A length of either sign.
+pub fn length(text: &str) -> Result<f64, String> {
+    with_unit(text, Dimension::Length)
+}
+
 /// A margin to limits in percent: less than half of the range at either end.
 pub fn margin(text: &str) -> Result<f64, String> {
     let number = text.trim().trim_end_matches('%').trim().parse::<f64>();

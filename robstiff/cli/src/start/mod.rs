@@ -36,7 +36,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FORCE", default_value = "500 N", allow_hyphen_values = true, value_parser = positive(Dimension::Force))]
     force: f64,
     /// The least height of the tool above the base's origin, e.g. "300 mm"; a tenth of the reach where left out
-    #[arg(long, value_name = "HEIGHT", allow_hyphen_values = true, value_parser = height)]
+    #[arg(long, value_name = "HEIGHT", allow_hyphen_values = true, value_parser = input::length)]
     floor: Option<f64>,
     /// How far joints stay inside their limits, in percent of the range between these
     #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * plan::MARGIN, allow_hyphen_values = true, value_parser = input::margin)]
@@ -44,10 +44,6 @@ pub struct Arguments {
     /// Seed of the poses to choose from; one seed gives one folder
     #[arg(long, default_value_t = Options::default().seed, allow_hyphen_values = true, value_parser = input::seed)]
     seed: u64,
-}
-
-fn height(text: &str) -> Result<f64, String> {
-    input::with_unit(text, Dimension::Length)
 }
 
 /// Writes the folder.
