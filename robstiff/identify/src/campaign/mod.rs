@@ -64,7 +64,7 @@ pub struct Campaign {
     pub noise: Noise,
     /// Which part of the poses to hold out, if the file asks for it.
     pub holdout: Option<Holdout>,
-    /// Poses that are held out besides, by index.
+    /// More poses that are held out, by index.
     pub held_out: Vec<usize>,
     /// What the reader noticed without refusing the files, e.g. unknown columns.
     pub warnings: Vec<String>,

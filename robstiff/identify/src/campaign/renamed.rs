@@ -19,7 +19,7 @@ pub struct Renamed {
     line: usize,
 }
 
-/// What campaigns call columns, besides those of joints.
+/// What campaigns call the columns that are not of joints.
 const COLUMNS: [&str; 23] = [
     "pose",
     "visit",

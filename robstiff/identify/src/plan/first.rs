@@ -150,7 +150,7 @@ fn shown(campaign: &Campaign, robot: &Description) -> Result<Vec<DMatrix<f64>>, 
     let (rows, width) = (readings.rows(), readings.width);
     let mut kept = Vec::new();
     for (k, &parameter) in of.iter().enumerate() {
-        let moves = columns.column(k).norm() / ((rows * readings.told) as f64).sqrt();
+        let moves = columns.column(k).norm() / ((rows * readings.reported) as f64).sqrt();
         let size = match layout.parameters[parameter].size {
             Size::Of(size) | Size::Learned(_, size) => size,
             Size::Moves(by) => by / moves,
