@@ -1,10 +1,10 @@
 //! The mathematics, on symbols.
 //!
-//! - [`step`]: the elementary steps of a chain;
-//! - [`parameters`](mod@parameters): the numbers of joints and effects, under the names that generated
+//! - `step`: the elementary steps of a chain;
+//! - `parameters`: the numbers of joints and effects, under the names that generated
 //!   code has for them;
 //! - [`elastic`]: what yields, under the names that generated code has for it;
-//! - [`upright`](mod@upright): a description as elementary steps from base to TCP, without a sag;
+//! - `upright`: a description as elementary steps from base to TCP, without a sag;
 //! - [`chain`](mod@chain): the same where every joint stands;
 //! - [`turning`]: what is turned on the way, parallel axes as one angle;
 //! - [`forward`](mod@forward): frames and levers, from the base to the TCP;
