@@ -16,23 +16,15 @@
 //! ```
 
 pub mod campaign;
-#[allow(dead_code)]
 mod effects;
 mod golden;
 pub mod identify;
-#[allow(dead_code)]
 mod judge;
-#[allow(dead_code)]
 mod model;
-#[allow(dead_code)]
 mod observe;
-#[allow(dead_code, unused_imports)]
-mod outcome;
 pub mod plan;
 mod probability;
-#[allow(dead_code)]
 mod regression;
-#[allow(dead_code)]
 mod select;
 pub mod simulate;
 pub mod trace;

@@ -70,7 +70,7 @@ use robstiff::elements::Spring;
 #[non_exhaustive]
 pub enum Error {
     /// A campaign, or options, that are none: what [`Campaign::check`] or
-    /// [`Options::check`](crate::trace::Options::check) find.
+    /// [`Options::check`](crate::campaign::Campaign::check) find.
     Invalid(String),
     /// Another kind of campaign is needed, or one of another robot.
     OtherCampaign(String),

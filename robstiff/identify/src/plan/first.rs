@@ -20,7 +20,7 @@ use crate::campaign::{Campaign, Data, Displacements, Frame, Noise, Observation a
 use crate::effects::Side;
 use crate::identify::Error;
 use crate::model::Size;
-use crate::outcome::case::Case;
+use crate::trace::case::Case;
 use crate::select::Layout;
 
 /// The loads of a visit as shares of its greatest: up, and down again, so that play and friction show.

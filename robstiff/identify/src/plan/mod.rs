@@ -15,12 +15,10 @@
 
 pub mod advice;
 pub mod criterion;
-pub mod displacements;
 pub mod exchange;
 pub mod first;
 #[cfg(test)]
 mod first_tests;
-pub mod positions;
 pub mod regressors;
 pub mod rivals;
 pub mod space;
@@ -45,7 +43,6 @@ use self::rivals::{Rivals, groups};
 use self::space::Space;
 use crate::campaign::{Campaign, Data};
 use crate::identify::Error;
-use crate::identify::prepare::Prepared;
 use crate::trace::{Proposal, Trace};
 
 /// What to plan.
@@ -206,17 +203,8 @@ pub fn plan(campaign: &Campaign, trace: &Trace, options: &Options) -> Result<Pla
 /// As [`plan`].
 pub fn plan_between(campaign: &Campaign, trace: &Trace, groups: &[Group], options: &Options) -> Result<Plan, Error> {
     let space = Space::new(campaign, options)?;
-    match &campaign.data {
-        Data::Position(data) => {
-            let (adapter, rivals) = positions::Adapter::new(campaign, data, trace, groups)?;
-            Ok(best(&adapter, &rivals, &space, options))
-        }
-        Data::Displacement(_) | Data::Clamped(_) => {
-            let prepared = Prepared::new(campaign)?;
-            let (adapter, rivals) = displacements::Adapter::new(campaign, &prepared, trace, groups)?;
-            Ok(best(&adapter, &rivals, &space, options))
-        }
-    }
+    let _ = (space, trace, groups);
+    todo!()
 }
 
 /// The best visits that are found.

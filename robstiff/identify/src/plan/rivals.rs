@@ -3,16 +3,11 @@
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use crate::trace::catalogue::GRAVITY_PRELOAD;
-use crate::trace::selection::WITHIN_REACH;
-use crate::trace::{NamedEffect, Trace, Verdict};
+use crate::trace::Trace;
 
 /// Rivals of one effect beyond these many are not followed: all pairs count,
 /// and the best fitting are the likely ones.
 const MOST: usize = 4;
-
-/// What may be missing at all, family-wise, where nothing was named.
-const SUGGESTIVE: f64 = 0.05;
 
 /// Kinds that depend on when something is measured, not on pose and load: what
 /// to propose for them is not computed.
@@ -111,51 +106,14 @@ pub fn pairs(rivals: &[(String, Rival)], core: &[usize]) -> Vec<Contest> {
     rivals.iter().enumerate().flat_map(with_later).collect()
 }
 
-/// The groups of a trace: each effect named with what it could not be told
-/// from, and where something more is missing, the candidates within reach.
+/// The groups of a trace: each class of effects, named or suspected, that has several members, or that
+/// may not be there at all.
 pub fn groups(trace: &Trace) -> Vec<Group> {
-    let named = trace.effects.iter().enumerate().map(|(k, named)| {
-        let names = core::iter::once(named.effect.to_string()).chain(named.same_as.iter().cloned());
-        Group { named: Some(k), names: names.take(MOST).collect() }
-    });
-    let mut groups: Vec<Group> = named.collect();
-    if matches!(trace.verdict, Verdict::Partial | Verdict::Unexplained) {
-        let names = within_reach(trace);
-        if names.len() > 1 {
-            groups.push(Group { named: None, names });
-        }
-    }
-    groups
-}
-
-/// The candidates that fit about as well as the best, in the last step that has
-/// the effects named as its model.
-fn within_reach(trace: &Trace) -> Vec<String> {
-    // What is wrong in single visits is in no step, nor is what effects of several joints are
-    // together (a preload).
-    let was_searched = |named: &&NamedEffect| {
-        named.effect.kind() != GRAVITY_PRELOAD.name && named.lines.is_empty()
-            || trace.steps.iter().any(|step| step.named.contains(&named.effect.to_string()))
+    let group = |named: Option<usize>, class: &[(String, f64)]| Group {
+        named,
+        names: class.iter().map(|(name, _)| name.clone()).take(MOST).collect(),
     };
-    let mut named: Vec<String> =
-        trace.effects.iter().filter(was_searched).map(|named| named.effect.to_string()).collect();
-    named.sort();
-    let of_model = |step: &&crate::trace::Step| {
-        let mut before = step.named.clone();
-        before.sort();
-        before == named
-    };
-    let Some(step) = trace.steps.iter().rfind(of_model) else { return Vec::new() };
-    let in_question = |name: &String| {
-        !trace.effects.iter().any(|named| named.effect.to_string() == *name || named.same_as.contains(name))
-    };
-    let mut candidates: Vec<(f64, String)> = step
-        .candidates
-        .iter()
-        .filter(|tested| tested.p_value <= SUGGESTIVE && in_question(&tested.name))
-        .filter_map(|tested| Some((tested.bic?, tested.name.clone())))
-        .collect();
-    candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let best = candidates.first().map_or(f64::INFINITY, |best| best.0);
-    candidates.into_iter().filter(|(bic, _)| bic - best < WITHIN_REACH).take(MOST).map(|(_, name)| name).collect()
+    let named = trace.effects.iter().enumerate().map(|(k, named)| group(Some(k), &named.class));
+    let suspected = trace.suspected.iter().map(|of| group(None, &of.class));
+    named.chain(suspected).filter(|group| !group.names.is_empty()).collect()
 }

@@ -11,10 +11,6 @@ use std::vec::Vec;
 use nalgebra::Vector3;
 use robstiff_robots::Description;
 
-use super::catalogue::{
-    BASE_COMPLIANCE, GRAVITY_PRELOAD, HYSTERESIS, JOINT_COUPLING, Kind, LINK_COMPLIANCE, LOST_MOTION, OUTLIERS,
-    POSE_DEPENDENT_COMPLIANCE, STIFFNESS_NONLINEARITY, TOOL_COMPLIANCE, TRANSVERSE_COMPLIANCE,
-};
 use super::{NamedEffect, RowResidual, Trace, Verdict};
 use crate::campaign::{Campaign, ClampedRow, Data, Displacements, Frame, Observation};
 use crate::identify::predict;
@@ -22,23 +18,24 @@ use crate::identify::samples::Samples;
 use crate::triage::{Answer, Triage, triage};
 use robstiff::Effect;
 
-/// Springs that are linear at every pose: they break no law.
-static LINEAR: [&Kind; 6] = [
-    &TRANSVERSE_COMPLIANCE,
-    &LINK_COMPLIANCE,
-    &BASE_COMPLIANCE,
-    &TOOL_COMPLIANCE,
-    &JOINT_COUPLING,
-    &POSE_DEPENDENT_COMPLIANCE,
+/// Springs that are linear at every pose break no law; nor do single readings.
+const LINEAR: [&str; 7] = [
+    "transverse_compliance",
+    "link_compliance",
+    "base_compliance",
+    "tool_compliance",
+    "joint_coupling",
+    "pose_dependent_compliance",
+    "outliers",
 ];
 
 /// What a gear does that is not linear in the load.
-static LAWS: [&Kind; 4] = [&LOST_MOTION, &STIFFNESS_NONLINEARITY, &HYSTERESIS, &GRAVITY_PRELOAD];
+const LAWS: [&str; 4] = ["lost_motion", "stiffness_nonlinearity", "hysteresis", "gravity_preload"];
 
 /// Says of each check that fails, and of each reading that does not belong to the others, which
 /// named effects account for it, if they do.
 pub fn account_for(asked: &mut Triage, campaign: &Campaign, trace: &Trace) {
-    let may_account = |named: &&NamedEffect| !LINEAR.iter().chain([&&OUTLIERS]).any(|kind| named.effect.is(kind));
+    let may_account = |named: &&NamedEffect| !LINEAR.contains(&named.effect.kind());
     let names: Vec<String> = trace.effects.iter().filter(may_account).map(|named| named.effect.to_string()).collect();
     if names.is_empty() || trace.verdict == Verdict::Insufficient {
         return;
@@ -64,7 +61,7 @@ pub fn account_for(asked: &mut Triage, campaign: &Campaign, trace: &Trace) {
 fn linear(campaign: &Campaign, trace: &Trace) -> Option<Campaign> {
     let mut robot = campaign.robot.clone();
     robot.joints.clone_from(&trace.description.joints);
-    let is_law = |effect: &Effect| LAWS.iter().any(|kind| kind.is_of(effect));
+    let is_law = |effect: &Effect| LAWS.contains(&effect.kind());
     robot.effects = trace.description.effects.iter().filter(|effect| !is_law(effect)).copied().collect();
     let data = match &campaign.data {
         Data::Displacement(data) => Data::Displacement(displacements(data, &robot, campaign, trace)?),

@@ -1,138 +1,68 @@
-//! What a residual may depend on, as kernels: how alike two rows are.
+//! What the residuals depend on, by simple quantities of each row.
 
-use std::borrow::ToOwned;
-use std::format;
-use std::rc::Rc;
-use std::string::String;
-use std::vec::Vec;
+use nalgebra::DVector;
+use robstiff::JointKind;
 
-use nalgebra::DMatrix;
+use super::case::Case;
 
-use crate::campaign::Displacements;
-use crate::identify::samples::Samples;
+/// A dependence with a larger probability by chance is none, all quantities counted.
+const LEVEL: f64 = 0.01;
 
-/// The name of a row's place in its visit.
-pub const LOAD_ORDER: &str = "load order";
+/// So many are reported at most.
+const MOST: usize = 4;
 
-/// How alike rows are in one column of the table, in all joint angles, or in
-/// being rows at all.
-pub struct Feature {
-    /// The column's name; empty where it is not a single column.
-    pub name: String,
-    /// One row a row of the table, standardised.
-    coordinates: DMatrix<f64>,
-    /// The scalar products of the forces of every two rows, over their mean square, where
-    /// an elastic residual turns with the force.
-    forces: Option<Rc<DMatrix<f64>>>,
-}
-
-impl Feature {
-    /// How alike every two rows are: falls off over a standard deviation of
-    /// the column. Of a single column the mean over all rows is taken out, so
-    /// that what is common to all rows is not put down to every column. What
-    /// depends on a joint angle is an elastic displacement, which changes sign
-    /// with the force, so these kernels carry the forces' scalar product.
-    pub fn kernel(&self) -> DMatrix<f64> {
-        let (rows, columns) = self.coordinates.shape();
-        let points = self.coordinates.transpose();
-        let point = |i: usize| &points.as_slice()[i * columns..(i + 1) * columns];
-        // For all joint angles together, per angle: otherwise no two poses
-        // would be alike.
-        let near = |i: usize, j: usize| {
-            let square: f64 = point(i).iter().zip(point(j)).map(|(a, b)| (a - b) * (a - b)).sum();
-            (-0.5 * square / columns.max(1) as f64).exp()
-        };
-        let mut kernel = DMatrix::zeros(rows, rows);
-        for j in 0..rows {
-            for i in 0..=j {
-                let near = near(i, j);
-                kernel[(i, j)] = near;
-                kernel[(j, i)] = near;
-            }
-        }
-        if !self.name.is_empty() {
-            centre(&mut kernel);
-        }
-        if let Some(forces) = &self.forces {
-            kernel.component_mul_assign(forces);
-        }
-        kernel
-    }
-}
-
-/// Takes the means of rows and columns out of a symmetric matrix.
-fn centre(kernel: &mut DMatrix<f64>) {
-    let means = kernel.column_mean();
-    let mean = means.mean();
-    for j in 0..kernel.ncols() {
-        for i in 0..kernel.nrows() {
-            kernel[(i, j)] += mean - means[i] - means[j];
+/// The names of the quantities that what is left depends on, the strongest first: a correlation of a
+/// component, or of its size, with it that chance hardly has.
+pub fn depends_on(case: &Case<'_>, left: &DVector<f64>) -> Vec<String> {
+    let readings = case.observation.readings();
+    let rows = case.rows(true);
+    let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
+    let kinds = case.scene.kinds.clone();
+    let names: Vec<String> = kinds.iter().enumerate().map(|(i, _)| format!("q{}", i + 1)).collect();
+    let mut angles: Vec<Vec<f64>> = vec![Vec::new(); kinds.len()];
+    let (mut time, mut warmer) = (Vec::new(), Vec::new());
+    case.observation.each(&mut |at| {
+        at.q.iter().zip(&mut angles).for_each(|(q, of)| of.push(*q));
+        time.push(at.time);
+        warmer.push(at.warmer);
+    });
+    for (name, (of, kind)) in names.into_iter().zip(angles.into_iter().zip(&kinds)) {
+        if *kind == JointKind::Revolute {
+            columns.push((name.clone(), of.iter().map(|q| q.sin()).collect()));
+            columns.push((name, of.iter().map(|q| q.cos()).collect()));
+        } else {
+            columns.push((name, of));
         }
     }
-}
-
-/// The features of some rows of a campaign; columns that do not vary have
-/// none.
-pub fn features(samples: &Samples, data: &Displacements, rows: &[usize]) -> Vec<Feature> {
-    let column = |of: &dyn Fn(usize) -> f64| -> Vec<f64> { rows.iter().map(|&row| of(row)).collect() };
-    let force = |row: usize| samples.rows[row].wrench.fixed_rows::<3>(0).into_owned();
-    let size = column(&|row| force(row).norm());
-    let mean_square = size.iter().map(|size| size * size).sum::<f64>() / rows.len() as f64;
-    let scale = mean_square.sqrt().max(f64::MIN_POSITIVE);
-    let forces = DMatrix::from_fn(rows.len(), 3, |i, k| force(rows[i])[k] / scale);
-    let forces = Rc::new(&forces * forces.transpose());
-
-    let mut found: Vec<Feature> = Vec::new();
-    let mut angles: Vec<Vec<f64>> = Vec::new();
-    let mut add = |name: String, values: Vec<f64>, forces: Option<&Rc<DMatrix<f64>>>| -> Option<Vec<f64>> {
-        let values = standardised(values)?;
-        let coordinates = DMatrix::from_column_slice(rows.len(), 1, &values);
-        found.push(Feature { name, coordinates, forces: forces.cloned() });
-        Some(values)
-    };
-    for joint in 0..samples.joints() {
-        let values = column(&|row| samples.rows[row].q[joint]);
-        angles.extend(add(format!("q{}", joint + 1), values, Some(&forces)));
-    }
+    columns.push(("time".into(), time));
+    columns.push(("temperature".into(), warmer));
     for (k, name) in ["Fx", "Fy", "Fz"].into_iter().enumerate() {
-        add(name.to_owned(), column(&|row| force(row)[k]), None);
+        columns.push((name.into(), readings.force.iter().map(|force| force[k]).collect()));
     }
-    add("|F|".to_owned(), size, Some(&forces));
-    let known = |of: &dyn Fn(usize) -> Option<f64>| -> Option<Vec<f64>> { rows.iter().map(|&row| of(row)).collect() };
-    if let Some(time) = known(&|row| data.rows[row].time) {
-        add("time".to_owned(), time, None);
+    let reported: Vec<Vec<f64>> =
+        (0..readings.reported).map(|k| rows.iter().map(|row| left[row * readings.width + k]).collect()).collect();
+    let size: Vec<f64> = rows.iter().map(|&row| readings.square(left, row).sqrt()).collect();
+    let tests = columns.len() * (reported.len() + 1);
+    let mut found: Vec<(f64, String)> = Vec::new();
+    for (name, column) in columns {
+        let column: Vec<f64> = rows.iter().map(|&row| column[row]).collect();
+        let strongest = reported.iter().chain([&size]).map(|of| correlation(of, &column).abs()).fold(0.0, f64::max);
+        // Fisher: artanh(r) has a standard deviation of 1 / sqrt(n - 3).
+        let z = strongest.min(1.0 - 1e-12).atanh() * (rows.len().saturating_sub(3) as f64).sqrt();
+        let by_chance = tests as f64 * statrs::function::erf::erfc(z / core::f64::consts::SQRT_2);
+        if by_chance < LEVEL && found.iter().all(|(_, known)| *known != name) {
+            found.push((z, name));
+        }
     }
-    if let Some(temperature) = known(&|row| data.rows[row].temperature) {
-        add("temperature".to_owned(), temperature, None);
-    }
-    add("row order".to_owned(), column(&|row| row as f64), None);
-    let places = places_in_visit(samples);
-    add(LOAD_ORDER.to_owned(), column(&|row| places[row]), Some(&forces));
-    if !angles.is_empty() {
-        let coordinates = DMatrix::from_fn(rows.len(), angles.len(), |i, k| angles[k][i]);
-        found.push(Feature { name: String::new(), coordinates, forces: Some(forces) });
-    }
-    // What is common to all rows: a bias of the readings.
-    found.push(Feature { name: String::new(), coordinates: DMatrix::zeros(rows.len(), 0), forces: None });
-    found
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    found.into_iter().take(MOST).map(|(_, name)| name).collect()
 }
 
-/// How far each row is through its visit, from 0 to below 1: loading and unloading.
-fn places_in_visit(samples: &Samples) -> Vec<f64> {
-    let visits = samples.rows.iter().map(|row| row.visit).max().map_or(0, |last| last + 1);
-    let (mut sizes, mut places) = (std::vec![0_usize; visits], Vec::new());
-    for row in &samples.rows {
-        places.push(sizes[row.visit]);
-        sizes[row.visit] += 1;
-    }
-    let place = |(row, place): (usize, &usize)| *place as f64 / sizes[samples.rows[row].visit] as f64;
-    places.iter().enumerate().map(place).collect()
-}
-
-/// Mean 0 and standard deviation 1; `None` where nothing varies.
-fn standardised(values: Vec<f64>) -> Option<Vec<f64>> {
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64;
-    let spread = variance.sqrt();
-    (spread > 1e-9 * mean.abs().max(f64::MIN_POSITIVE)).then(|| values.iter().map(|v| (v - mean) / spread).collect())
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len().max(1) as f64;
+    let (of_a, of_b) = (mean(a), mean(b));
+    let sum = |f: &dyn Fn(f64, f64) -> f64| a.iter().zip(b).map(|(a, b)| f(a - of_a, b - of_b)).sum::<f64>();
+    let both = sum(&|a, b| a * b);
+    let size = (sum(&|a, _| a * a) * sum(&|_, b| b * b)).sqrt();
+    if size > 0.0 { both / size } else { 0.0 }
 }
