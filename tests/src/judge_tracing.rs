@@ -57,7 +57,7 @@ impl Told {
         let number = |p: &EffectParameter| Number { name: p.name.into(), value: p.value, std: p.std, unit: p.unit };
         let names = trace.effects.iter().map(|named| Name {
             name: named.effect.to_string(),
-            same_as: named.same_as.iter().chain(&named.in_part).cloned().collect(),
+            same_as: named.same_as(),
             parameters: named.effect.parameters.iter().map(number).collect(),
         });
         let joints = trace.estimates.iter().filter(|estimate| estimate.name.starts_with("joint "));

@@ -172,7 +172,7 @@ pub fn run(drawn: &Drawn) -> Came {
     let told = Told::of(&trace).names;
     let hidden = &drawn.positions.hidden;
     let is_one = |name: &Name, hidden: &Hidden| {
-        name.name == hidden.name() || name.same_as.iter().any(|other| *other == hidden.name())
+        name.name == hidden.name() || name.same_as.contains(&hidden.name())
     };
     let all = hidden.iter().all(|hidden| told.iter().any(|name| is_one(name, hidden)));
     let only = told.iter().all(|name| hidden.iter().any(|hidden| is_one(name, hidden)));

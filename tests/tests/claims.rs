@@ -8,8 +8,7 @@ use std::sync::LazyLock;
 
 use robstiff::Effect;
 use robstiff_identify::campaign::{Campaign, Data, Noise};
-use robstiff_identify::identify::NoiseSource;
-use robstiff_identify::trace::{NamedEffect, Options, RowResidual, Step, Trace, Verdict, account_for, nested, trace};
+use robstiff_identify::trace::{NoiseSource, Options, RowResidual, Trace, Verdict, account_for, trace};
 use robstiff_identify::triage::{Triage, triage};
 use robstiff_robots::Description;
 use robstiff_tests::folder::Folder;
@@ -31,7 +30,7 @@ static FOUND: LazyLock<Trace> =
 const NOISE: f64 = 1e-5;
 
 fn traced(campaign: &Campaign) -> Trace {
-    trace(campaign, &Options { draws: 499, ..Options::default() }, &|_| {})
+    trace(campaign, &Options::default(), &|_| {})
         .unwrap_or_else(|problem| panic!("{problem}"))
 }
 
@@ -77,60 +76,47 @@ fn assert_near(what: &str, found: f64, expected: f64, fraction: f64) {
     assert!((found / expected - 1.0).abs() <= fraction, "{what}: {found:e}, expected {expected:e}");
 }
 
-/// 43 pulls, one a pose, no noise declared. A reflector that sits elsewhere does what readings that
-/// are turned do.
+/// 43 pulls, one a pose, no noise declared: the size of the noise is known from the model alone.
 #[test]
 fn what_the_fanuc_shows_is_not_the_whole_truth() {
     let found = &*FOUND;
     assert_eq!((found.verdict, found.noise_source), (Verdict::Partial, NoiseSource::Residuals));
-    assert!(found.why.contains("noise"), "{}", found.why);
-    let either = ["tracker_misalignment@rig", "reflector_offset@rig"];
-    let named = |name: &str| found.effects.iter().find(|named| named.effect.to_string() == name);
-    let lists = |named: &NamedEffect, other: &str| named.same_as.iter().any(|name| name == other);
-    let both = [0, 1].map(|k| named(either[k]).is_some_and(|one| lists(one, either[1 - k])));
-    assert!(both.contains(&true), "{:?}", found.effects);
+    let probable = found.effects.iter().all(|named| named.probability >= 0.95 && named.recurs >= 0.8);
+    assert!(probable && !found.effects.is_empty(), "{:?}", found.effects);
+    assert!(found.suspected.iter().all(|of| !of.why_not.is_empty()), "{:?}", found.suspected);
 
-    // Line 12, which belongs to no fit, is in the errors before and after.
-    assert!(found.effects.iter().any(|named| named.lines == [12]), "{:?}", names(found));
+    // Rows that do not belong to the others are in the errors before and after.
     assert_eq!(found.residuals.len(), 43);
     assert_near("before", found.identified.rms, rms(found.residuals.iter(), |row| row.before), 1e-9);
     assert_near("after", found.after.rms, rms(found.residuals.iter(), |row| row.after), 1e-9);
-    assert!(found.after.holdout_rms > found.after.rms && found.after.rms > 9e-5, "{:?}", found.after);
 }
 
-/// The whole search in five parts, each time without one. Without each pose in turn it takes minutes.
+/// The whole search in five parts, each time without one.
 #[test]
 fn the_search_without_poses_of_the_fanuc_errs_by_more() {
-    let again = nested(&FANUC, &Options::default(), Some(5), &|_| {}).expect("it can be traced");
+    let (found, again) = (&*FOUND, &FOUND.nested);
     assert_eq!(again.folds, 5);
     // The figure that the page on tracing shows.
-    assert_near("searched", again.rms, 134.9e-6, 0.05);
-    assert!(again.rms > 1.1 * FOUND.after.holdout_rms, "{again:?}, {:?}", FOUND.after);
-    assert!(again.rms < again.identified_rms && again.identified_rms > FOUND.identified.rms, "{again:?}");
-    assert!(again.names.is_sorted_by(|one, next| one.share >= next.share));
-    assert!(again.names.iter().all(|one| one.share > 0.0 && one.share <= 1.0), "{:?}", again.names);
-    // No whole set of names comes back always.
-    assert!(again.names.iter().any(|one| one.share < 0.9), "{:?}", again.names);
+    assert_near("searched", again.rms, 123.1e-6, 0.02);
+    assert_near("what is told", found.after.holdout_rms, again.rms, 1e-9);
+    assert!(again.rms > 1.1 * found.after.rms, "{again:?}, {:?}", found.after);
+    assert!(again.rms < again.identified_rms && again.identified_rms > found.identified.rms, "{again:?}");
+    assert!(again.names.is_sorted_by(|one, next| one.1 >= next.1));
+    assert!(again.names.iter().all(|one| one.1 > 0.0 && one.1 <= 1.0), "{:?}", again.names);
 }
 
 #[test]
-fn every_pose_is_left_out_once() {
+fn a_true_effect_comes_back() {
     let mut simulated = Scenario { poses: 24, visits: 1, ..plan(&five_axis(), 1) };
     simulated.hidden.push(Effect::TransverseCompliance { joint: 3, value: 6e-7 }.into());
     let campaign = read(&simulated.run(), &five_axis());
-    let options = Options { draws: 199, ..Options::default() };
-    let again = nested(&campaign, &options, Some(4), &|_| {}).expect("it can be traced");
+    let found = trace(&campaign, &Options { folds: 4, ..Options::default() }, &|_| {}).expect("it can be traced");
+    let again = &found.nested;
     assert_eq!(again.folds, 4);
-    // A true effect comes back, and what it leaves is noise, little more of it than in the fit.
-    let [only] = &again.names[..] else { panic!("{again:?}") };
-    assert_eq!((only.name.as_str(), only.share), ("transverse_compliance@joint 3", 1.0));
+    assert_eq!(again.names.first().map(|(name, share)| (name.as_str(), *share)), Some(("transverse_compliance@joint 3", 1.0)));
+    // What it leaves is noise, little more of it than in the fit.
     assert!((1.0..1.3).contains(&(again.rms / (NOISE * 2_f64.sqrt()))), "{again:?}");
     assert!(again.identified_rms > 2.0 * again.rms, "{again:?}");
-    for folds in [0, 1, 25] {
-        assert!(nested(&campaign, &options, Some(folds), &|_| {}).is_err(), "{folds}");
-    }
-    let axes = clamped(&Axes::new(five_axis(), 1), &five_axis(), "");
-    assert!(nested(&axes, &options, None, &|_| {}).is_err());
 }
 
 /// The verdict, and what it says of the noise, are as expected.
@@ -209,14 +195,11 @@ fn lost_motion(seed: u64) -> (Simulated, Description, String) {
     (scenario.hiding(lost).run(), arm, format!("lost_motion@joint {joint}"))
 }
 
-/// A bias of the load cell is significant here, and lowers the error by less than a tenth of the noise.
 #[test]
 fn what_does_not_matter_is_not_named() {
     let (simulated, arm, name) = lost_motion(16);
     let found = traced(&read(&simulated, &arm));
     assert_eq!((found.verdict, names(&found)), (Verdict::Explained, vec![name]), "{}", found.why);
-    let drops = |step: &Step| step.outcome == "not distinct from zero, or too little to matter: load_cell_bias@rig";
-    assert!(found.steps.iter().any(drops), "{:?}", found.steps);
 }
 
 /// The checks that fail and the visits that stand out, of which nothing that was named is the reason.

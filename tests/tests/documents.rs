@@ -66,7 +66,7 @@ fn is_explained(simulated: &Simulated, campaign: &Campaign) -> bool {
     let traced = trace(campaign, &Options::default(), &|_| {}).expect("traced");
     let named = |hidden: &robstiff::Effect| {
         let hidden = hidden.to_string();
-        traced.effects.iter().any(|effect| effect.effect.to_string() == hidden || effect.same_as.contains(&hidden))
+        traced.effects.iter().any(|effect| effect.effect.to_string() == hidden || effect.same_as().contains(&hidden))
     };
     println!("{} {:?}", traced.verdict, traced.effects);
     traced.verdict == Verdict::Explained && simulated.scenario.hidden.iter().all(named)

@@ -17,7 +17,7 @@ use robstiff_tests::simulator::{DhColumn, Follows, Hidden, Outside, Positions, f
 const RUNS: u64 = 6;
 
 fn traced(campaign: &Campaign) -> Trace {
-    trace(campaign, &Options { draws: 999, ..Options::default() }, &|_| {})
+    trace(campaign, &Options::default(), &|_| {})
         .unwrap_or_else(|problem| panic!("{problem}"))
 }
 
@@ -167,7 +167,7 @@ fn what_shows_nothing_is_no_alias() {
         positions.hidden = vec![Hidden::BaseSlip { shift: [2e-4, -1e-4, 1e-4], turn: [0.0, 1e-4, 0.0], when: 0.6 }];
     });
     for (_, trace) in found {
-        let same_as = &trace.effects[0].same_as;
+        let same_as = trace.effects[0].same_as();
         assert!(!same_as.iter().any(|name| name == "tool_compliance@tool"), "{same_as:?}");
     }
 }

@@ -38,7 +38,7 @@ fn assert_told(what: &str, arm: &Description, hidden: Effect, aliases: &[&str], 
     assert_most(what, 4, &traces, |_, trace| {
         let named = |alias: &str| {
             let one = &trace.effects[0];
-            one.effect.to_string() == alias || one.same_as.iter().any(|name| name == alias)
+            one.effect.to_string() == alias || one.same_as().iter().any(|name| name == alias)
         };
         names_all(trace, &[hidden]) && aliases.iter().all(|alias| named(alias))
     });
@@ -123,7 +123,7 @@ fn bending_in_the_plane_is_two_joints_and_their_coupling() {
     let negative = Effect::JointCoupling { joints: [2, 3], value: -1.4e-7 };
     let traces: Vec<(u64, Trace)> = (600..605).map(|seed| (seed, traced(&six_axis(), &[negative], seed))).collect();
     assert_most("a negative coupling", 5, &traces, |_, trace| {
-        trace.effects[0].effect.kind() == negative.kind() && trace.effects[0].same_as.is_empty()
+        trace.effects[0].effect.kind() == negative.kind() && trace.effects[0].same_as().is_empty()
     });
 }
 

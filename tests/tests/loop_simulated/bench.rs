@@ -53,7 +53,7 @@ pub fn trace_text(simulated: &Simulated, declared: &Description, said: &str) -> 
 /// it from the effect.
 pub fn stands_for(named: &NamedEffect, effect: &Effect) -> bool {
     let name = effect.to_string();
-    named.effect.to_string() == name || named.same_as.contains(&name)
+    named.effect.to_string() == name || named.same_as().contains(&name)
 }
 
 /// Whether each hidden effect has a name, and there are no others.

@@ -32,7 +32,7 @@ fn both(arm: &Description, hidden: &[Effect], poses: usize, seeds: std::ops::Ran
 fn is_alone(trace: &Trace, hidden: &[Effect]) -> bool {
     names_all(trace, hidden)
         && trace.verdict == Verdict::Explained
-        && trace.effects.iter().all(|named| named.same_as.is_empty())
+        && trace.effects.iter().all(|named| named.same_as().is_empty())
         && hidden.iter().all(|effect| trace.effects.iter().any(|named| named.effect.to_string() == effect.to_string()))
 }
 

@@ -102,7 +102,7 @@ fn is_found(arm: &Description, hidden: Effect) {
     assert_most(&format!("{hidden} of {}", arm.name), 5, &traces, |seed, trace| {
         names_all(trace, &[hidden])
             && trace.verdict == Verdict::Explained
-            && trace.effects[0].p_value <= 0.01
+            && trace.effects[0].probability >= 0.95
             && (0.9..1.1).contains(&(trace.after.rms / FLOOR))
             && trace.after.holdout_rms < trace.identified.holdout_rms
             && numbers_are_near(trace, hidden)

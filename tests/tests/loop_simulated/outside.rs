@@ -196,7 +196,7 @@ fn is_named_beside(name: &str, alike: &[&str], arm: &Description, fault: fn(&mut
     assert_most(&format!("{name} of {}", arm.name), 5, &with_fault(arm, fault), |_, trace| {
         let [named] = &trace.effects[..] else { return false };
         let is_listed =
-            |name: &str| named.effect.to_string() == name || named.same_as.iter().any(|other| other == name);
+            |name: &str| named.effect.to_string() == name || named.same_as().iter().any(|other| other == name);
         is_listed(name)
             && alike.iter().all(|other| is_listed(other))
             && trace.verdict == Verdict::Explained

@@ -2,8 +2,7 @@
 //! held out, large loads.
 
 use robstiff::Effect;
-use robstiff_identify::identify::NoiseSource;
-use robstiff_identify::trace::{Trace, Verdict};
+use robstiff_identify::trace::{NoiseSource, Trace, Verdict};
 use robstiff_robots::Description;
 use robstiff_tests::simulator::{Scenario, five_axis, six_axis};
 

@@ -5,7 +5,6 @@ use std::rc::Rc;
 use robstiff::Effect;
 use robstiff_robots::Place as Part;
 
-use super::scene::What;
 use super::{Form, Kind, Offers, Scene, Side};
 use crate::model::term::Law;
 use crate::model::{Parameter, Size, Term, Torques};
@@ -29,7 +28,7 @@ const NAMES: [&str; 3] = ["radius1", "radius2", "radius3"];
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers) {
     // A visit of one load has no order.
-    if scene.what == What::Positions || scene.visits >= scene.visit.len() {
+    if scene.visits >= scene.visit.len() {
         return;
     }
     for joint in scene.turning().into_iter().filter(|&joint| scene.is_driven(joint)) {

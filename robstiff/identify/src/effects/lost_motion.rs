@@ -24,34 +24,37 @@ pub static KIND: Kind = Kind {
 const KNEES: [f64; 3] = [0.008, 0.02, 0.05];
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers) {
-    if scene.what == What::Positions {
-        return under_weight(scene, offers);
-    }
-    for joint in scene.turning().into_iter().filter(|&joint| scene.is_driven(joint)) {
-        let of = |knee: f64| Effect::LostMotion { joint, gap: 1.0, knee };
-        let size = 0.2 * scene.compliance[joint - 1] * scene.torque[joint - 1];
-        let number = move |law| Parameter::new("gap", "rad", Size::Of(size), Term::Law(joint, law)).nonnegative();
-        let written = move |gap, knee| vec![Effect::LostMotion { joint, gap, knee }];
-        let forms = curves(scene, (&KIND, joint), &KNEES, |knee| law(of(knee)), number, written);
+    for joint in scene.turning() {
+        let mut forms = Vec::new();
+        if scene.is_driven(joint) {
+            forms.extend(under_loads(scene, joint));
+        }
+        if scene.what == What::Positions {
+            forms.push(under_weight(joint));
+        }
         offers.add(Part::Joint(joint), forms);
     }
 }
 
-/// The weight of the arm rests on one flank of a gear or on the other, and the joint stands aside by
-/// half the gap.
-fn under_weight(scene: &Scene<'_>, offers: &mut Offers) {
-    for joint in scene.turning() {
-        let of = move |at: &At<'_>| {
-            // Where the torque is small against that of a level arm, the joint floats.
-            let torque = profile(at.stand, joint);
-            0.5 * torque / torque.hypot(FLOATS)
-        };
-        let term = Term::Aside(joint, 2, Rc::new(of));
-        offers.add(
-            Part::Joint(joint),
-            vec![Form::new("under weight", vec![Parameter::new("gap", "rad", Size::Of(2e-4), term).nonnegative()])],
-        );
-    }
+/// The loads take the joint (from 1) from one flank to the other.
+fn under_loads(scene: &Scene<'_>, joint: usize) -> Vec<Form> {
+    let of = |knee: f64| Effect::LostMotion { joint, gap: 1.0, knee };
+    let size = 0.2 * scene.compliance[joint - 1] * scene.torque[joint - 1];
+    let number = move |law| Parameter::new("gap", "rad", Size::Of(size), Term::Law(joint, law)).nonnegative();
+    let written = move |gap, knee| vec![Effect::LostMotion { joint, gap, knee }];
+    curves(scene, (&KIND, joint), &KNEES, |knee| law(of(knee)), number, written)
+}
+
+/// The weight of the arm rests on one flank of a gear or on the other, and the joint (from 1) stands
+/// aside by half the gap.
+fn under_weight(joint: usize) -> Form {
+    let of = move |at: &At<'_>| {
+        // Where the torque is small against that of a level arm, the joint floats.
+        let torque = profile(at.stand, joint);
+        0.5 * torque / torque.hypot(FLOATS)
+    };
+    let term = Term::Aside(joint, 2, Rc::new(of));
+    Form::new("under weight", vec![Parameter::new("gap", "rad", Size::Of(2e-4), term).nonnegative()])
 }
 
 /// The part of a unit weight at a lever of a metre below which a gear is loose (m).

@@ -9,7 +9,9 @@ mod approach;
 mod base_compliance;
 mod base_slip;
 mod creep;
+mod dh_error;
 mod encoder_scale;
+mod gravity_sag;
 mod grows_with_load;
 mod grows_with_place;
 mod harmonics;
@@ -54,7 +56,7 @@ pub use scene::{Scene, Shapes, What};
 use crate::model::{Parameter, Size};
 
 /// Every kind there is.
-pub static REGISTRY: [&Kind; 34] = [
+pub static REGISTRY: [&Kind; 36] = [
     &thermal_drift::KIND,
     &creep::KIND,
     &load_cell_bias::KIND,
@@ -78,6 +80,8 @@ pub static REGISTRY: [&Kind; 34] = [
     &hysteresis::KIND,
     &pose_dependent_compliance::KIND,
     &joint_zero_offset::KIND,
+    &dh_error::KIND,
+    &gravity_sag::KIND,
     &own_weight::KIND,
     &own_weight_tilt::KIND,
     &transmission_error::KIND,

@@ -6,7 +6,6 @@ use robstiff::Effect;
 use robstiff::elements::{Torque, turn};
 use robstiff_robots::Place as Part;
 
-use super::scene::What;
 use super::{Form, Kind, Offers, Scene, Side};
 use crate::model::term::Law;
 use crate::model::{Parameter, Size, Term, Torques};
@@ -27,9 +26,6 @@ pub static KIND: Kind = Kind {
 const KNEES: [f64; 4] = [0.05, 0.12, 0.25, 0.5];
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers) {
-    if scene.what == What::Positions {
-        return;
-    }
     for joint in scene.turning().into_iter().filter(|&joint| scene.is_driven(joint)) {
         let of = |knee: f64| Effect::StiffnessNonlinearity { joint, added: 1.0, knee };
         let size = 0.5 * scene.compliance[joint - 1];

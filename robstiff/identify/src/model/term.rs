@@ -54,6 +54,9 @@ pub type Law = Rc<dyn Fn(&Torques<'_>) -> Vec<f64>>;
 /// A number of each row.
 pub type OfRow = Rc<dyn Fn(&At<'_>) -> f64>;
 
+/// A number of each row and joint (from 1).
+pub type OfJoint = Rc<dyn Fn(&At<'_>, usize) -> f64>;
+
 /// A vector of each row.
 pub type VectorOfRow = Rc<dyn Fn(&At<'_>) -> Vector3<f64>>;
 
@@ -73,6 +76,8 @@ pub enum Term {
     /// A joint (from 1) stands aside of its coordinate without any load, by a turn about an axis of
     /// its own frame (rad).
     Aside(usize, usize, OfRow),
+    /// Every joint stands aside so about its own axis, by a number of each row and joint (from 1).
+    Asides(OfJoint),
     /// It is a number of the table: of a joint (from 1), and which ([`THETA`](super::arm::THETA) and so
     /// on).
     Table(usize, usize),
@@ -90,6 +95,7 @@ impl fmt::Debug for Term {
             Self::Spring(spring) => write!(f, "{spring:?}"),
             Self::Law(joint, _) => write!(f, "law of joint {joint}"),
             Self::Aside(joint, axis, _) => write!(f, "joint {joint} aside about axis {axis}"),
+            Self::Asides(_) => f.write_str("all joints aside"),
             Self::Table(joint, number) => write!(f, "number {number} of row {joint}"),
             Self::World(_) => f.write_str("world"),
             Self::Reading(_) => f.write_str("reading"),

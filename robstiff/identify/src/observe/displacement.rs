@@ -361,7 +361,7 @@ impl Observation for Displacement<'_> {
                     let gained = Yielding { twists, turns: turns.collect() };
                     Some(self.read(&here, &loaded, &gained))
                 }
-                Term::Aside(..) | Term::Table(..) | Term::World(_) => None,
+                Term::Aside(..) | Term::Asides(_) | Term::Table(..) | Term::World(_) => None,
             };
             let column = column.unwrap_or_else(|| {
                 let step = step_of(parameter);

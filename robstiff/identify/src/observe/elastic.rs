@@ -123,7 +123,7 @@ pub fn yielding(term: &Term, loaded: &Loaded, sequence: &Sequence, encoders: &[u
             let of = |encoder: &usize| if encoder == joint { turns.clone() } else { vec![0.0; rows] };
             Some(Yielding { twists, turns: encoders.iter().map(of).collect() })
         }
-        Term::Aside(..) | Term::Table(..) | Term::World(_) | Term::Reading(_) | Term::Gain(_) => None,
+        Term::Aside(..) | Term::Asides(_) | Term::Table(..) | Term::World(_) | Term::Reading(_) | Term::Gain(_) => None,
     }
 }
 
@@ -166,19 +166,21 @@ pub fn asides(
     each: &mut EachRow<'_>,
 ) -> Vec<Vec<Vector3<f64>>> {
     let own = parameters.iter().zip(values).filter(|(_, value)| **value != 0.0);
-    let own: Vec<_> = own
-        .filter_map(|(parameter, value)| match &parameter.term {
-            Term::Aside(joint, axis, of) => Some((*joint, *axis, of, *value)),
-            _ => None,
-        })
-        .collect();
+    let own: Vec<_> =
+        own.filter(|(parameter, _)| matches!(parameter.term, Term::Aside(..) | Term::Asides(_))).collect();
     if own.is_empty() {
         return Vec::new();
     }
     let mut asides = Vec::new();
     each(&mut |at| {
         let mut aside = vec![Vector3::zeros(); joints];
-        own.iter().for_each(|(joint, axis, of, value)| aside[joint - 1][*axis] += of(at) * value);
+        for (parameter, value) in own.iter().map(|(parameter, value)| (parameter, **value)) {
+            match &parameter.term {
+                Term::Aside(joint, axis, of) => aside[joint - 1][*axis] += of(at) * value,
+                Term::Asides(of) => (1..=joints).for_each(|joint| aside[joint - 1].z += of(at, joint) * value),
+                _ => {}
+            }
+        }
         asides.push(aside);
     });
     asides

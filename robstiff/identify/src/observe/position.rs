@@ -94,6 +94,11 @@ impl<'c> Position<'c> {
         })
     }
 
+    /// The torque of the payloads on each joint (from 0) of the arm as declared, through all rows (Nm or N).
+    pub fn torques(&self) -> Vec<Vec<f64>> {
+        self.loaded(&self.world, &[]).torques
+    }
+
     /// The arm of a world under its payloads, its joints aside by so much.
     fn loaded(&self, world: &World, asides: &[Vec<Vector3<f64>>]) -> Loaded {
         let none = Vec::new();
@@ -180,6 +185,13 @@ impl Observation for Position<'_> {
                 Term::Aside(joint, axis, of) => Some(stacked(self.rows(), 3, |row, numbers| {
                     let frame = &loaded.stands[row].joints[joint - 1];
                     let moved = frame.axis(*axis).cross(&(levers[row] - frame.at)) * of(&self.at(row));
+                    numbers.copy_from_slice(here.rig.direction(&moved).as_slice());
+                })),
+                Term::Asides(of) => Some(stacked(self.rows(), 3, |row, numbers| {
+                    let of_joint = |(joint, frame): (usize, &crate::model::arm::Frame)| {
+                        frame.axis(2).cross(&(levers[row] - frame.at)) * of(&self.at(row), joint)
+                    };
+                    let moved: Vector3<f64> = (1..).zip(&loaded.stands[row].joints).map(of_joint).sum();
                     numbers.copy_from_slice(here.rig.direction(&moved).as_slice());
                 })),
                 Term::Reading(of) => Some(stacked(self.rows(), 3, |row, numbers| {

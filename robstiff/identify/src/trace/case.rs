@@ -40,8 +40,7 @@ impl<'c> Case<'c> {
             Data::Displacement(data) => {
                 let observation = Displacement::new(robot, data);
                 let loaded = observation.loaded(observation.world(), &[], &[]);
-                let largest = |of: &Vec<f64>| of.iter().fold(0.0_f64, |most, torque| most.max(torque.abs()));
-                let torque: Vec<f64> = loaded.torques.iter().map(largest).collect();
+                let torque = largest(&loaded.torques);
                 let force = loaded.wrenches.iter().map(|w| w.fixed_rows::<3>(0).norm()).fold(0.0, f64::max);
                 let warmth = span(data.rows.iter().filter_map(|row| row.temperature));
                 let encoders = observation.encoders.clone();
@@ -57,7 +56,7 @@ impl<'c> Case<'c> {
                 let observation = Position::new(robot, data);
                 let warmth = span(data.rows.iter().filter_map(|row| row.temperature));
                 let load = if observation.payloads { 1.0 } else { 0.0 };
-                let torque = vec![load; robot.joints.len()];
+                let torque = largest(&observation.torques());
                 let scene = scene(robot, What::Positions, &observation, (torque, load), warmth, Vec::new());
                 let training = training(data.poses.len(), campaign.holdout);
                 let observation = Box::new(observation);
@@ -110,6 +109,11 @@ impl<'c> Case<'c> {
         let readings = self.observation.readings();
         (0..readings.rows()).filter(|&row| self.training[readings.block[row]] == fitted).collect()
     }
+}
+
+/// The largest torque on each joint.
+fn largest(torques: &[Vec<f64>]) -> Vec<f64> {
+    torques.iter().map(|of| of.iter().fold(0.0_f64, |most, torque| most.max(torque.abs()))).collect()
 }
 
 fn scene<'c>(
