@@ -60,8 +60,8 @@ pub fn errors(report: &Report) -> String {
             svg.circle("before", [x, frame.up(pose.identified)], radius, &title);
         }
         svg.circle("after", [x, frame.up(last(pose))], radius, &title);
-        if pose.wild {
-            svg.text("small", [x + radius + 4.0, frame.up(last(pose)) + 4.0], "start", "wild");
+        if pose.outlying {
+            svg.text("small", [x + radius + 4.0, frame.up(last(pose)) + 4.0], "start", "outlier");
         }
     }
     let beyond = poses.iter().any(|pose| pose.declared > frame.range[1]);
@@ -87,10 +87,10 @@ pub fn errors(report: &Report) -> String {
 
 fn pose_title(pose: &PoseError, terms: Terms, with_effects: bool) -> String {
     let [declared, identified, after] = [pose.declared, pose.identified, pose.after].map(|um| decimals(um, 1));
-    let kept = match (pose.held_out, pose.wild) {
+    let kept = match (pose.held_out, pose.outlying) {
         (true, false) => ", held out",
-        (false, true) => ", with a wild reading",
-        (true, true) => ", held out, with a wild reading",
+        (false, true) => ", with an outlier",
+        (true, true) => ", held out, with an outlier",
         (false, false) => "",
     };
     let (name, unit) = (terms.named(&pose.id), terms.printed);

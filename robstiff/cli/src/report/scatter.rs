@@ -56,7 +56,7 @@ pub fn figure(report: &Report) -> (String, String) {
             }
         }
     }
-    let caption = "Each row's residual, wild readings aside, against the quantities that account for most of it, in the direction where they do. \
+    let caption = "Each row's residual, without outliers, against the quantities that account for most of it, in the direction where they do. \
                    Over each: how much of the variance a parabola accounts for, before and after; noise has none.";
     (svg.html(), caption.to_owned())
 }
