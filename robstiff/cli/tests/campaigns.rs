@@ -262,10 +262,12 @@ fn traces_the_missing_effect_and_writes_everything() {
             "noise_um",
             "before",
             "effects",
+            "suspected",
             "after",
             "verdict",
             "why",
             "unexplained",
+            "nested",
             "warnings",
             "numbers",
             "rivals",
@@ -313,7 +315,7 @@ fn traces_the_missing_effect_and_writes_everything() {
 fn one_seed_gives_one_result_over_an_older_one() {
     let folder = folder("seed");
     let out = inside(&folder, "out");
-    let arguments = ["trace", &campaign(), "--out", &out, "--seed", "7", "--draws", "499"];
+    let arguments = ["trace", &campaign(), "--out", &out, "--seed", "7"];
     let first = (succeed(&arguments), json(&inside(Path::new(&out), "trace.json")));
     let second = (succeed(&arguments), json(&inside(Path::new(&out), "trace.json")));
     assert_eq!(first, second);
@@ -324,7 +326,7 @@ fn one_seed_gives_one_result_over_an_older_one() {
 fn the_search_is_repeated_without_some_poses() {
     let folder = folder("nested");
     let out = inside(&folder, "out");
-    let page = succeed(&["trace", &campaign(), "--nested", "2", "--out", &out, "--draws", "99"]);
+    let page = succeed(&["trace", &campaign(), "--nested", "2", "--out", &out]);
     let nested = &json(&inside(Path::new(&out), "trace.json"))["nested"];
     assert_eq!(keys(nested), ["folds", "rms_um", "identified_rms_um", "names"]);
     assert_eq!(nested["folds"], 2);
@@ -338,6 +340,7 @@ fn the_search_is_repeated_without_some_poses() {
     }
 }
 
+/// Each pose by itself where there are no more of them than parts asked for.
 #[test]
 fn folds_that_cannot_be_are_refused() {
     let folder = folder("folds");
@@ -345,19 +348,17 @@ fn folds_that_cannot_be_are_refused() {
     for folds in ["0", "1", "-2", "few"] {
         assert_eq!(run(&["trace", &campaign(), "--nested", folds, "--out", &out]).code, 2, "{folds}");
     }
-    let said = fail(1, &["trace", &campaign(), "--nested", "44", "--out", &out]);
-    assert!(said.contains("43 poses in 44 folds: from 2 to 43 are possible"), "{said}");
     // What follows is no number of folds.
-    let said = fail(2, &["trace", &campaign(), "--nested", "--out", &out, "--draws", "3"]);
-    assert!(said.contains("--draws"), "{said}");
+    let said = fail(2, &["trace", &campaign(), "--nested", "--out", &out, "--seed", "-3"]);
+    assert!(said.contains("--seed"), "{said}");
     assert!(!Path::new(&out).exists());
 }
 
 #[test]
-fn levels_that_draws_cannot_resolve_are_wrong_usage() {
-    let trace = |option: [&str; 2]| run(&["trace", &campaign(), "--out", "nowhere", option[0], option[1]]);
-    for option in [["--alpha", "0"], ["--alpha", "2"], ["--alpha", "1e-5"], ["--draws", "3"], ["--seed", "-1"]] {
-        assert_eq!(trace(option).code, 2, "{option:?}");
+fn options_of_earlier_versions_are_wrong_usage() {
+    for option in [&["--alpha", "0.05"][..], &["--draws", "499"], &["--correction"]] {
+        let ran = run(&[&["trace", &campaign(), "--out", "nowhere"][..], option].concat());
+        assert_eq!(ran.code, 2, "{option:?}");
     }
 }
 

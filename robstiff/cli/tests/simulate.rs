@@ -35,7 +35,7 @@ fn what_is_simulated_is_traced() {
     assert_eq!((&told["rows"], &told["hidden"][0]), (&120.into(), &"transverse_compliance@joint 3".into()));
     let campaign = format!("{out}/campaign.yaml");
     let traced = inside(&folder, "traced");
-    let page = succeed(&["trace", &campaign, "--out", &traced, "--draws", "499"]);
+    let page = succeed(&["trace", &campaign, "--out", &traced]);
     assert!(page.contains("transverse_compliance@joint 3"), "{page}");
     // The truth predicts it to the noise of a displacement, the difference of two readings.
     let predicted = inside(&folder, "predicted.json");
@@ -55,7 +55,7 @@ fn encoders_are_simulated_and_read() {
     let loads = fs::read_to_string(folder.join("out/loads.csv")).unwrap();
     assert!(loads.lines().next().unwrap().contains(",q6 [deg],j1 [deg],"), "{loads:.200}");
     let traced = inside(&folder, "traced");
-    succeed(&["trace", &format!("{out}/campaign.yaml"), "--out", &traced, "--draws", "499"]);
+    succeed(&["trace", &format!("{out}/campaign.yaml"), "--out", &traced]);
     let traced = json(&format!("{traced}/trace.json"));
     assert_eq!(traced["effects"][0]["at"], "joint 3", "{}", traced["effects"]);
     let encoders = traced["encoders"]["output"].as_array().unwrap();
@@ -77,7 +77,7 @@ fn positions_are_simulated_and_traced() {
     assert!(page.contains("60 rows at 60 poses") && page.contains("  joint_zero_offset@joint 3"), "{page}");
     assert_eq!(names(Path::new(&out)), ["campaign.yaml", "positions.csv", "robot.yaml", "truth.yaml"]);
     let campaign = format!("{out}/campaign.yaml");
-    let page = succeed(&["trace", &campaign, "--out", &inside(&folder, "traced"), "--draws", "499"]);
+    let page = succeed(&["trace", &campaign, "--out", &inside(&folder, "traced")]);
     assert!(page.contains("joint_zero_offset@joint 3"), "{page}");
     let predicted = inside(&folder, "predicted.json");
     succeed(&["predict", &format!("{out}/truth.yaml"), &campaign, "--json", &predicted]);
@@ -89,7 +89,7 @@ fn positions_are_simulated_and_traced() {
     let declared = "effects: [{kind: joint_zero_offset, at: joint 3, value: 0.3 mrad}]\n";
     fs::write(&robot, fs::read_to_string(&robot).unwrap() + declared).unwrap();
     let again = inside(&folder, "again");
-    let page = succeed(&["trace", &campaign, "--out", &again, "--draws", "499"]);
+    let page = succeed(&["trace", &campaign, "--out", &again]);
     assert!(
         page.contains("Verdict: adequate. Nothing is missing: the description's numbers, fitted again, "),
         "{page}"
@@ -117,7 +117,7 @@ fn a_declared_zero_that_is_true_no_longer_is_replaced() {
     let declared = "effects: [{kind: joint_zero_offset, at: joint 3, value: 30 mrad}]\n";
     fs::write(&robot, fs::read_to_string(&robot).unwrap() + declared).unwrap();
     let traced = inside(&folder, "traced");
-    let page = succeed(&["trace", &format!("{out}/campaign.yaml"), "--out", &traced, "--draws", "499"]);
+    let page = succeed(&["trace", &format!("{out}/campaign.yaml"), "--out", &traced]);
     assert!(page.contains("declared of it is replaced: joint_zero_offset@joint 3 was 1.719 deg."), "{page}");
     let written = fs::read_to_string(format!("{traced}/robot.yaml")).unwrap();
     let value = written.split("at: joint 3, value: ").nth(1).expect("it is written").split(' ').next().unwrap();
@@ -173,7 +173,7 @@ fn declared_noise_that_is_not_used_is_warned_of() {
     let said = "The declared noise of 80.0 um is not used: the readings show ";
     let warned = |is_said: bool| {
         let identified = succeed(&["identify", &campaign, "--out", &found, "--json", &told]);
-        let page = succeed(&["trace", &campaign, "--out", &traced, "--draws", "499"]);
+        let page = succeed(&["trace", &campaign, "--out", &traced]);
         assert!(identified.contains(said) == is_said && page.contains(said) == is_said, "{identified}\n{page}");
         for document in [json(&told), json(&format!("{traced}/trace.json"))] {
             let warnings = document["warnings"].as_array().unwrap();

@@ -71,6 +71,13 @@ pub struct Report {
     pub origins: Vec<(String, String)>,
 }
 
+impl Report {
+    /// Whether the last model has more than the description's numbers fitted again.
+    pub fn has_effects(&self) -> bool {
+        !self.effects.is_empty() || !self.suspected.is_empty()
+    }
+}
+
 /// A model and its error.
 #[derive(Clone, Debug)]
 pub struct Stage {

@@ -16,7 +16,7 @@ pub fn errors(report: &Report) -> String {
     let poses = &report.errors;
     let terms = report.terms;
     let Terms { place: [place, _], printed, .. } = terms;
-    let with_effects = !report.effects.is_empty();
+    let with_effects = report.has_effects();
     let (top, upper) = (34.0, 220.0);
     let (gap, lower) = if with_effects { (44.0, 80.0) } else { (0.0, 0.0) };
     let mut svg = Svg::new(WIDTH, top + upper + gap + lower + 40.0, &format!("Error of each {place} before and after"));
@@ -134,7 +134,7 @@ fn pose_axis(svg: &mut Svg, poses: &[PoseError], y: f64, step: f64) {
 
 /// The tips of the residual vectors seen along y and along z.
 pub fn residuals(report: &Report) -> String {
-    let (side, with_effects) = (360.0, !report.effects.is_empty());
+    let (side, with_effects) = (360.0, report.has_effects());
     let top = 58.0;
     let mut svg = Svg::new(WIDTH, top + side + 40.0, "Residual vectors before and after in two projections");
     let last = |one: &Residual| if with_effects { one.after } else { one.before };

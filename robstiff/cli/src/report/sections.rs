@@ -73,9 +73,9 @@ fn by_pose(report: &Report) -> String {
     if report.errors.iter().any(|pose| pose.held_out) {
         caption += &format!(" Shaded: {places} that were held out.");
     }
-    if !report.effects.is_empty() {
+    if report.has_effects() {
         caption += &format!(
-            " Below: how far the named effects {moves}; fitted together with them, the joints give part of it back."
+            " Below: how far the effects that the description now has {moves}; fitted together with them, the joints give part of it back."
         );
     }
     framed(&figure::errors(report), &caption)
@@ -97,7 +97,7 @@ pub fn residuals(report: &Report) -> String {
     if !report.dependences.is_empty() {
         figures.push(scatter::figure(report));
     }
-    let cloud = "Residual vectors of single rows in the base frame. A model that lacks nothing leaves a round cloud the \
+    let cloud = "Residual vectors of single rows in the frame that they were read in. A model that lacks nothing leaves a round cloud the \
                  size of the noise.";
     figures.push((figure::residuals(report), cloud.to_owned()));
     let figures: String = figures.iter().map(|(svg, caption)| framed(svg, caption)).collect();

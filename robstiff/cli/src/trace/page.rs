@@ -62,18 +62,17 @@ fn errors(trace: &Trace, Terms { unseen: [_, unseen], unit, .. }: Terms) -> Tabl
     let header = [format!("error [{unit}]"), format!("fitted {unseen}"), format!("unseen {unseen}")];
     let mut errors = Table::new(1, header);
     let mut stages = vec![("as declared", trace.declared), ("joints identified again", trace.identified)];
-    if has_effects(trace) {
-        stages.push(("with the effects", trace.after));
-    }
+    let last = match (trace.effects.is_empty(), trace.suspected.is_empty()) {
+        (true, true) => None,
+        (false, true) => Some("with the effects"),
+        (true, false) => Some("with what is suspected"),
+        (false, false) => Some("with the effects and what is suspected"),
+    };
+    stages.extend(last.map(|name| (name, trace.after)));
     for (name, misfit) in stages {
         errors.row([name.to_owned(), fine_micrometres(misfit.rms), fine_micrometres(misfit.holdout_rms)]);
     }
     errors
-}
-
-/// Whether the last model has more than the joints.
-fn has_effects(trace: &Trace) -> bool {
-    !trace.effects.is_empty() || !trace.suspected.is_empty()
 }
 
 /// What was named, by where it goes.

@@ -109,8 +109,12 @@ fn rms(values: impl Iterator<Item = f64>) -> f64 {
 fn without_effects(trace: &Trace, robot: &Description) -> Description {
     let mut without = trace.description.clone();
     without.effects.truncate(robot.effects.len());
+    let found = || {
+        let suspected = trace.suspected.iter().map(|one| &one.effect);
+        trace.effects.iter().map(|one| &one.effect).chain(suspected)
+    };
     for (effect, before) in without.effects.iter_mut().zip(&robot.effects) {
-        if trace.effects.iter().any(|named| declared(robot, &named.effect) == Some(before)) {
+        if found().any(|one| declared(robot, one) == Some(before)) {
             *effect = *before;
         }
     }
