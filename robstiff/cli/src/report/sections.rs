@@ -152,7 +152,10 @@ fn effect(effect: &Effect) -> String {
     );
     let mut facts: Vec<(&str, String)> = Vec::new();
     if !effect.numbers.is_empty() {
-        let numbers: Vec<String> = effect.numbers.iter().map(number_line).collect();
+        let mut numbers: Vec<String> = effect.numbers.iter().take(MOST_NUMBERS).map(number_line).collect();
+        if effect.numbers.len() > MOST_NUMBERS {
+            numbers.push(format!("and {} more", effect.numbers.len() - MOST_NUMBERS));
+        }
         facts.push(("Found", numbers.join(", ")));
     }
     let mut certain = effect.probability.clone();
@@ -175,6 +178,9 @@ fn effect(effect: &Effect) -> String {
     html += &element("dl", list);
     html + "</article>\n"
 }
+
+/// So many numbers of an effect are shown.
+const MOST_NUMBERS: usize = 6;
 
 fn number_line(number: &Number) -> String {
     format!("{} = {}", number.name, quantity(number.value, number.std, &number.unit))

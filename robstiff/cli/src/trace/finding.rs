@@ -25,8 +25,13 @@ pub fn headline(trace: &Trace, campaign: &Campaign) -> String {
             format!("Nothing is missing: {what} unseen {unseen} to {}", remain(before))
         }
         Verdict::Explained | Verdict::Partial => format!(
-            "{}; the error on unseen {unseen} {} {unit}{}",
+            "{}; with {} the error on unseen {unseen} {} {unit}{}",
             named(trace),
+            match (trace.suspected.is_empty(), trace.effects.len()) {
+                (false, _) => "what is suspected as well",
+                (true, 1) => "it",
+                (true, _) => "them",
+            },
             change_of_error(before, after),
             if trace.verdict == Verdict::Partial { ", but something more may be missing" } else { "" }
         ),
@@ -62,8 +67,9 @@ fn named(trace: &Trace) -> String {
 pub fn summary(trace: &Trace, campaign: &Campaign, warnings: &[String]) -> Vec<String> {
     let terms = Terms::of(campaign);
     let mut sentences = vec![sentence(&trace.why)];
-    sentences.extend(repeated(trace, terms));
+    // What looks wrong with the files puts all that follows in doubt.
     sentences.extend(warnings.iter().cloned());
+    sentences.extend(repeated(trace, terms));
     sentences.extend(encoders(trace));
     sentences.extend(without_outliers(trace, terms));
     sentences.extend(alone(trace, campaign));
@@ -74,8 +80,8 @@ pub fn summary(trace: &Trace, campaign: &Campaign, warnings: &[String]) -> Vec<S
     sentences
 }
 
-/// A name that is back in fewer of the searches is not reported.
-const SELDOM: f64 = 0.1;
+/// A name that fewer of the searches found is in the report only.
+const OFTEN: f64 = 0.5;
 
 /// What the repeated search says of poses that it was without, and what it found again.
 fn repeated(trace: &Trace, Terms { unit, place: [_, places], .. }: Terms) -> Vec<String> {
@@ -89,10 +95,10 @@ fn repeated(trace: &Trace, Terms { unit, place: [_, places], .. }: Terms) -> Vec
          with the joints alone {before} {unit}.",
         nested.folds
     )];
-    let often = nested.names.iter().filter(|(_, of)| *of >= SELDOM);
-    let often: Vec<String> = often.map(|(name, of)| format!("{} in {}", spoken(name), share(*of))).collect();
+    let often = nested.names.iter().filter(|(_, of)| *of >= OFTEN);
+    let often: Vec<String> = often.map(|(name, of)| format!("{} ({})", spoken(name), share(*of))).collect();
     if !often.is_empty() {
-        sentences.push(format!("These searches found {} of the cases.", and(&often)));
+        sentences.push(format!("Half of these searches or more found {}.", and(&often)));
     }
     sentences
 }

@@ -112,10 +112,18 @@ fn suspected(trace: &Trace, of: &Suspected) -> String {
 fn numbers(effect: &Found) -> String {
     let number =
         |number: &EffectParameter| format!("{} = {}", number.name, quantity(number.value, number.std, number.unit));
-    let numbers: Vec<String> = reported(effect).map(number).collect();
+    let mut numbers: Vec<String> = reported(effect).map(number).collect();
+    let more = numbers.len().saturating_sub(MOST_NUMBERS);
+    if more > 0 {
+        numbers.truncate(MOST_NUMBERS);
+        numbers.push(format!("and {more} more"));
+    }
     let colon = if numbers.is_empty() { "" } else { ": " };
     format!("    {effect}{colon}{}\n", numbers.join(", "))
 }
+
+/// So many numbers of an effect are shown: what wanders has one of each axis at many moments.
+const MOST_NUMBERS: usize = 6;
 
 /// How certain an effect is, and what it may be instead.
 fn certain(trace: &Trace, (p, recurs): (f64, f64), class: &[(String, f64)]) -> String {
