@@ -133,16 +133,15 @@ pub fn fine_micrometres(length: f64) -> String {
     if small { significant(length * 1e6, 2) } else { micrometres(length) }
 }
 
-/// What an error (m) does, in micrometres without the unit: `falls`, `from 17.4 to 12.1`; what is
-/// told by the same number stays, whatever its further digits do.
-pub fn course(before: f64, after: f64) -> [String; 2] {
-    let told = [before, after].map(fine_micrometres);
-    let [from, to] = &told;
+/// How an error (m) changes, in micrometres without the unit: `falls from 17.4 to 12.1`. Errors that are
+/// written alike stay, whatever their further digits do.
+pub fn change_of_error(before: f64, after: f64) -> String {
+    let [from, to] = [before, after].map(fine_micrometres);
     if from == to {
-        return ["stays".to_owned(), format!("at {to}")];
+        return format!("stays at {to}");
     }
     let does = if after < before { "falls" } else { "rises" };
-    [does.to_owned(), format!("from {from} to {to}")]
+    format!("{does} from {from} to {to}")
 }
 
 /// A number with so many decimals as a field of a CSV file; empty where there is none.
@@ -208,12 +207,12 @@ mod tests {
     }
 
     #[test]
-    fn an_error_that_is_told_by_one_number_stays() {
-        let told = |before: f64, after: f64| course(before * 1e-6, after * 1e-6).join(" ");
-        assert_eq!(told(233.9, 79.81), "falls from 233.9 to 79.8");
-        assert_eq!(told(17.44, 17.36), "stays at 17.4");
-        assert_eq!(told(17.36, 17.44), "stays at 17.4");
-        assert_eq!(told(0.5, 0.71), "rises from 0.5 to 0.71");
+    fn an_error_that_is_written_alike_stays() {
+        let change = |before: f64, after: f64| change_of_error(before * 1e-6, after * 1e-6);
+        assert_eq!(change(233.9, 79.81), "falls from 233.9 to 79.8");
+        assert_eq!(change(17.44, 17.36), "stays at 17.4");
+        assert_eq!(change(17.36, 17.44), "stays at 17.4");
+        assert_eq!(change(0.5, 0.71), "rises from 0.5 to 0.71");
     }
 
     #[test]

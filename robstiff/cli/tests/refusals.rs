@@ -141,8 +141,8 @@ fn one_unit_is_that_of_all_three_components() {
     succeed(&[&["online", "rv130hsc", "--step", "12, 4ms", "--lost", "1, 0.5 s"][..], &pocket].concat());
     let said = fail(2, &["online", "rv130hsc", "--force", "150, -200, 300"]);
     assert!(said.contains("`150` has no unit; write e.g. `150 N`"), "{said}");
-    let said = fail(2, &["trace", "campaign.yaml", "--out", "out", "--draws", "-1"]);
-    assert!(said.contains("a whole number from 99 to 1000000 is expected here"), "{said}");
+    let said = fail(2, &["plan", "campaign.yaml", "--poses", "-1"]);
+    assert!(said.contains("a whole number from 1 to 200 is expected here"), "{said}");
 }
 
 #[test]
@@ -180,10 +180,9 @@ fn two_texts_in_one_file_are_refused_before_the_work() {
     let folder = folder("refused-twice");
     let campaign = copy(&folder);
     let out = inside(&folder, "out");
-    for name in ["report.html", "robot.yaml", "correction.json"] {
-        // More draws than anybody waits for.
+    for name in ["report.html", "robot.yaml"] {
         let json = format!("{out}/{name}");
-        let said = fail(2, &["trace", &campaign, "--out", &out, "--json", &json, "--correction", "--draws", "1000000"]);
+        let said = fail(2, &["trace", &campaign, "--out", &out, "--json", &json]);
         assert!(said.contains("would be written twice"), "{said}");
     }
     let robot = format!("{out}/robot.yaml");
@@ -192,19 +191,6 @@ fn two_texts_in_one_file_are_refused_before_the_work() {
     let (page, same) = (inside(&folder, "page.html"), format!("{}/./page.html", folder.display()));
     let said = fail(2, &["view", "rv130hsc", "--out", &page, "--json", &same]);
     assert!(said.contains("would be written twice") && !folder.join("page.html").exists(), "{said}");
-}
-
-#[test]
-fn a_correction_of_an_earlier_trace_is_told() {
-    let folder = folder("told-stale");
-    let campaign = copy(&folder);
-    let out = folder.join("out");
-    fs::create_dir(&out).unwrap();
-    write(&out, "correction.json", "{}\n");
-    let trace = ["trace", &campaign, "--out", out.to_str().unwrap(), "--draws", "99"];
-    let ran = run(&[&trace[..], &["--json", out.join("trace.json").to_str().unwrap()]].concat());
-    assert_eq!(ran.code, 0, "{}", ran.err);
-    assert!(ran.err.contains("correction.json is of an earlier trace"), "{}", ran.err);
 }
 
 /// At a force as along a path.

@@ -6,6 +6,13 @@ use std::fs;
 use std::path::Path;
 
 use common::{fail, folder, inside, json, keys, names, run, succeed};
+use serde_json::Value;
+
+/// Whether a class of a trace, named or suspected, has an effect in it.
+fn is_found(trace: &Value, name: &str) -> bool {
+    let all = ["effects", "suspected"].into_iter().flat_map(|key| trace[key].as_array().unwrap());
+    all.flat_map(|effect| effect["class"].as_array().unwrap()).any(|member| member["name"] == name)
+}
 
 const SCENARIO: &str = "\
 seed: 3
@@ -35,8 +42,8 @@ fn what_is_simulated_is_traced() {
     assert_eq!((&told["rows"], &told["hidden"][0]), (&120.into(), &"transverse_compliance@joint 3".into()));
     let campaign = format!("{out}/campaign.yaml");
     let traced = inside(&folder, "traced");
-    let page = succeed(&["trace", &campaign, "--out", &traced, "--draws", "499"]);
-    assert!(page.contains("transverse_compliance@joint 3"), "{page}");
+    let page = succeed(&["trace", &campaign, "--out", &traced]);
+    assert!(is_found(&json(&format!("{traced}/trace.json")), "transverse_compliance@joint 3"), "{page}");
     // The truth predicts it to the noise of a displacement, the difference of two readings.
     let predicted = inside(&folder, "predicted.json");
     succeed(&["predict", &format!("{out}/truth.yaml"), &campaign, "--json", &predicted]);
@@ -55,9 +62,9 @@ fn encoders_are_simulated_and_read() {
     let loads = fs::read_to_string(folder.join("out/loads.csv")).unwrap();
     assert!(loads.lines().next().unwrap().contains(",q6 [deg],j1 [deg],"), "{loads:.200}");
     let traced = inside(&folder, "traced");
-    succeed(&["trace", &format!("{out}/campaign.yaml"), "--out", &traced, "--draws", "499"]);
+    succeed(&["trace", &format!("{out}/campaign.yaml"), "--out", &traced]);
     let traced = json(&format!("{traced}/trace.json"));
-    assert_eq!(traced["effects"][0]["at"], "joint 3", "{}", traced["effects"]);
+    assert!(is_found(&traced, "transverse_compliance@joint 3"), "{} {}", traced["effects"], traced["suspected"]);
     let encoders = traced["encoders"]["output"].as_array().unwrap();
     assert_eq!(encoders.len(), 6);
     for encoder in encoders {
@@ -77,32 +84,20 @@ fn positions_are_simulated_and_traced() {
     assert!(page.contains("60 rows at 60 poses") && page.contains("  joint_zero_offset@joint 3"), "{page}");
     assert_eq!(names(Path::new(&out)), ["campaign.yaml", "positions.csv", "robot.yaml", "truth.yaml"]);
     let campaign = format!("{out}/campaign.yaml");
-    let page = succeed(&["trace", &campaign, "--out", &inside(&folder, "traced"), "--draws", "499"]);
-    assert!(page.contains("joint_zero_offset@joint 3"), "{page}");
-    let predicted = inside(&folder, "predicted.json");
-    succeed(&["predict", &format!("{out}/truth.yaml"), &campaign, "--json", &predicted]);
-    let rms = json(&predicted)["rms_um"].as_f64().unwrap();
-    assert!((rms / 30.0 - 1.0).abs() < 0.2, "{rms}");
-
-    // Traced again from another value of what is declared now, it is told what it is.
-    let robot = format!("{out}/robot.yaml");
-    let declared = "effects: [{kind: joint_zero_offset, at: joint 3, value: 0.3 mrad}]\n";
-    fs::write(&robot, fs::read_to_string(&robot).unwrap() + declared).unwrap();
-    let again = inside(&folder, "again");
-    let page = succeed(&["trace", &campaign, "--out", &again, "--draws", "499"]);
-    assert!(
-        page.contains("Verdict: adequate. Nothing is missing: the description's numbers, fitted again, "),
-        "{page}"
-    );
-    assert!(
-        page.contains("that the description declares were fitted again: zero offset of joint 3 was 300 urad and is 0."),
-        "{page}"
-    );
-    assert!(!page.contains("taken as they are"), "{page}");
-    let told = json(&format!("{again}/trace.json"));
-    let number = told["numbers"].as_array().unwrap().last().unwrap();
-    assert_eq!((&number["name"], &number["unit"]), (&"joint_zero_offset@joint 3".into(), &"rad".into()));
-    assert!((number["value"].as_f64().unwrap().to_degrees() - 0.1).abs() < 0.005, "{number}");
+    let traced = inside(&folder, "traced");
+    let page = succeed(&["trace", &campaign, "--out", &traced]);
+    // Zeros are numbers of the table, which are fitted with everything.
+    assert!(page.contains("These changed most: ") && page.contains("theta3 by "), "{page}");
+    let rms = |robot: &str| {
+        let predicted = inside(&folder, "predicted.json");
+        succeed(&["predict", robot, &campaign, "--json", &predicted]);
+        json(&predicted)["rms_um"].as_f64().unwrap()
+    };
+    let truth = rms(&format!("{out}/truth.yaml"));
+    assert!((truth / 30.0 - 1.0).abs() < 0.2, "{truth}");
+    // The robot that is written reads the positions as well as the true one.
+    let written = rms(&format!("{traced}/robot.yaml"));
+    assert!(written < 1.2 * truth, "{written} {truth}");
 }
 
 /// Displacements do not say where the tool is, but what is declared of that and is true no longer
@@ -117,7 +112,7 @@ fn a_declared_zero_that_is_true_no_longer_is_replaced() {
     let declared = "effects: [{kind: joint_zero_offset, at: joint 3, value: 30 mrad}]\n";
     fs::write(&robot, fs::read_to_string(&robot).unwrap() + declared).unwrap();
     let traced = inside(&folder, "traced");
-    let page = succeed(&["trace", &format!("{out}/campaign.yaml"), "--out", &traced, "--draws", "499"]);
+    let page = succeed(&["trace", &format!("{out}/campaign.yaml"), "--out", &traced]);
     assert!(page.contains("declared of it is replaced: joint_zero_offset@joint 3 was 1.719 deg."), "{page}");
     let written = fs::read_to_string(format!("{traced}/robot.yaml")).unwrap();
     let value = written.split("at: joint 3, value: ").nth(1).expect("it is written").split(' ').next().unwrap();
@@ -168,17 +163,14 @@ fn declared_noise_that_is_not_used_is_warned_of() {
     let (scenario, out) = (scenario(&folder, SCENARIO), inside(&folder, "out"));
     succeed(&["simulate", "kuka-kr270-r2700", &scenario, "--out", &out]);
     let campaign = format!("{out}/campaign.yaml");
-    let (found, traced) = (inside(&folder, "found"), inside(&folder, "traced"));
-    let told = inside(&folder, "told.json");
+    let (found, told) = (inside(&folder, "found"), inside(&folder, "told.json"));
     let said = "The declared noise of 80.0 um is not used: the readings show ";
     let warned = |is_said: bool| {
-        let identified = succeed(&["identify", &campaign, "--out", &found, "--json", &told]);
-        let page = succeed(&["trace", &campaign, "--out", &traced, "--draws", "499"]);
-        assert!(identified.contains(said) == is_said && page.contains(said) == is_said, "{identified}\n{page}");
-        for document in [json(&told), json(&format!("{traced}/trace.json"))] {
-            let warnings = document["warnings"].as_array().unwrap();
-            assert_eq!(warnings.iter().any(|one| one.as_str().unwrap().starts_with(said)), is_said, "{warnings:?}");
-        }
+        let page = succeed(&["identify", &campaign, "--out", &found, "--json", &told]);
+        assert!(page.contains(said) == is_said, "{page}");
+        let document = json(&told);
+        let warnings = document["warnings"].as_array().unwrap();
+        assert_eq!(warnings.iter().any(|one| one.as_str().unwrap().starts_with(said)), is_said, "{warnings:?}");
     };
     warned(false);
     let text = fs::read_to_string(&campaign).unwrap();

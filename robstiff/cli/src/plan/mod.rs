@@ -52,7 +52,7 @@ pub struct Arguments {
     /// How far joints stay inside their limits, in percent of the range between these
     #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * plan::MARGIN, allow_hyphen_values = true, value_parser = input::margin)]
     margin: f64,
-    /// Seed of the search and of the bootstrap of the trace; one seed gives one result
+    /// Seed of the search, and of the folds of the trace; one seed gives one result
     #[arg(long, default_value_t = Options::default().seed, allow_hyphen_values = true, value_parser = input::seed)]
     seed: u64,
 }

@@ -19,7 +19,7 @@ type View = (usize, usize, &'static str);
 /// The figure and its caption.
 pub fn figure(report: &Report) -> (String, String) {
     let arms: Vec<&Arm> = report.arms.iter().filter(|arm| is_finite(arm)).collect();
-    let with_effects = !report.effects.is_empty();
+    let with_effects = report.has_effects();
     let spread = |axis: usize| {
         let tips = || arms.iter().filter_map(|arm| arm.points.last()).map(|tip| tip[axis]);
         tips().fold(f64::MIN, f64::max) - tips().fold(f64::MAX, f64::min)

@@ -19,7 +19,7 @@ pub struct Report {
     /// The verdict's word.
     pub verdict: String,
     /// Whether nothing is left open.
-    pub settled: bool,
+    pub conclusive: bool,
     /// The words for what was read.
     pub terms: Terms,
     /// Rows of the campaign.
@@ -43,6 +43,8 @@ pub struct Report {
     pub stages: Vec<Stage>,
     /// The effects named.
     pub effects: Vec<Effect>,
+    /// The effects that are not certain enough to be named.
+    pub suspected: Vec<Effect>,
     /// The description's own numbers before and after.
     pub compliances: Vec<Compliance>,
     /// The error pose by pose.
@@ -55,16 +57,25 @@ pub struct Report {
     pub dependences: Vec<Dependence>,
     /// What else there could be, a sentence each.
     pub doubts: Vec<String>,
-    /// The search, step by step.
-    pub steps: Vec<SearchStep>,
-    /// What is left.
-    pub left: Unexplained,
+    /// The most probable sets of effects, the best first.
+    pub sets: Vec<ProbableSet>,
+    /// The search repeated without some poses.
+    pub repeated: Repeated,
+    /// What stays unexplained.
+    pub unexplained: Unexplained,
     /// What to measure next.
     pub next: Vec<Next>,
     /// What the readers of the files noticed.
     pub warnings: Vec<String>,
     /// Where everything came from, a name and a text each.
     pub origins: Vec<(String, String)>,
+}
+
+impl Report {
+    /// Whether the last model has more than the description's numbers fitted again.
+    pub fn has_effects(&self) -> bool {
+        !self.effects.is_empty() || !self.suspected.is_empty()
+    }
 }
 
 /// A model and its error.
@@ -80,7 +91,7 @@ pub struct Stage {
     pub holdout_rms_um: f64,
 }
 
-/// An effect that was named.
+/// An effect that was named, or is suspected.
 #[derive(Clone, Debug)]
 pub struct Effect {
     /// `kind@at`.
@@ -95,12 +106,16 @@ pub struct Effect {
     pub written: bool,
     /// Its numbers.
     pub numbers: Vec<Number>,
-    /// The family-wise p-value.
-    pub p_value: f64,
-    /// The error on unseen poses with it (um).
+    /// The probability of its class, in words.
+    pub probability: String,
+    /// In how many of the repeated searches it is back, in words; empty where none was.
+    pub recurs: String,
+    /// The error on unseen poses with it and those before it (um); of a suspected one none.
     pub holdout_rms_um: f64,
     /// What these data cannot tell it from, in words.
     pub same_as: String,
+    /// What keeps it from being named; empty where it is named.
+    pub why_not: String,
 }
 
 /// A number of an effect, in SI.
@@ -146,8 +161,8 @@ pub struct PoseError {
     pub contribution: f64,
     /// Whether the pose was held out.
     pub held_out: bool,
-    /// Whether a row of it was left out as wild.
-    pub wild: bool,
+    /// Whether a reading of it does not belong to the others.
+    pub outlying: bool,
 }
 
 /// Residuals of one row (um) in the base frame.
@@ -188,52 +203,31 @@ pub struct Dependence {
     pub points: Vec<[f64; 3]>,
 }
 
-/// One step of the search.
+/// A set of effects.
 #[derive(Clone, Debug)]
-pub struct SearchStep {
-    /// What was named before.
-    pub named: Vec<String>,
-    /// What came of it.
-    pub outcome: String,
-    /// The candidates, the strongest first.
-    pub candidates: Vec<Candidate>,
+pub struct ProbableSet {
+    /// Full names with their forms; none of the joints alone.
+    pub names: Vec<String>,
+    /// Its probability, in words.
+    pub probability: String,
 }
 
-/// A candidate in one step.
-#[derive(Clone, Debug)]
-pub struct Candidate {
-    /// `kind@at`.
-    pub name: String,
-    /// Its statistic.
-    pub statistic: Option<f64>,
-    /// Its family-wise p-value.
-    pub p_value: f64,
-    /// The error with it on poses left out of the fit, each in turn (um).
-    pub left_out_rms_um: Option<f64>,
-    /// Why it was not taken; empty where it was.
-    pub reason: String,
+/// The search repeated without some poses.
+#[derive(Clone, Debug, Default)]
+pub struct Repeated {
+    /// How many times.
+    pub folds: usize,
+    /// Full names, each with the share of the searches that found it.
+    pub names: Vec<(String, String)>,
 }
 
-/// What is left unexplained.
+/// What stays unexplained.
 #[derive(Clone, Debug, Default)]
 pub struct Unexplained {
     /// The fraction of the residual variance that is not noise.
     pub fraction: f64,
     /// On what it depends.
     pub depends_on: Vec<String>,
-    /// The tests for it.
-    pub tests: Vec<Structure>,
-}
-
-/// A test for structure in what is left.
-#[derive(Clone, Debug)]
-pub struct Structure {
-    /// What was tested.
-    pub name: String,
-    /// Its statistic.
-    pub statistic: f64,
-    /// The probability of so much under noise alone.
-    pub p_value: f64,
 }
 
 /// A measurement worth making.

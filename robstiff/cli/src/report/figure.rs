@@ -16,7 +16,7 @@ pub fn errors(report: &Report) -> String {
     let poses = &report.errors;
     let terms = report.terms;
     let Terms { place: [place, _], printed, .. } = terms;
-    let with_effects = !report.effects.is_empty();
+    let with_effects = report.has_effects();
     let (top, upper) = (34.0, 220.0);
     let (gap, lower) = if with_effects { (44.0, 80.0) } else { (0.0, 0.0) };
     let mut svg = Svg::new(WIDTH, top + upper + gap + lower + 40.0, &format!("Error of each {place} before and after"));
@@ -60,8 +60,8 @@ pub fn errors(report: &Report) -> String {
             svg.circle("before", [x, frame.up(pose.identified)], radius, &title);
         }
         svg.circle("after", [x, frame.up(last(pose))], radius, &title);
-        if pose.wild {
-            svg.text("small", [x + radius + 4.0, frame.up(last(pose)) + 4.0], "start", "wild");
+        if pose.outlying {
+            svg.text("small", [x + radius + 4.0, frame.up(last(pose)) + 4.0], "start", "outlier");
         }
     }
     let beyond = poses.iter().any(|pose| pose.declared > frame.range[1]);
@@ -87,10 +87,10 @@ pub fn errors(report: &Report) -> String {
 
 fn pose_title(pose: &PoseError, terms: Terms, with_effects: bool) -> String {
     let [declared, identified, after] = [pose.declared, pose.identified, pose.after].map(|um| decimals(um, 1));
-    let kept = match (pose.held_out, pose.wild) {
+    let kept = match (pose.held_out, pose.outlying) {
         (true, false) => ", held out",
-        (false, true) => ", with a wild reading",
-        (true, true) => ", held out, with a wild reading",
+        (false, true) => ", with an outlier",
+        (true, true) => ", held out, with an outlier",
         (false, false) => "",
     };
     let (name, unit) = (terms.named(&pose.id), terms.printed);
@@ -134,7 +134,7 @@ fn pose_axis(svg: &mut Svg, poses: &[PoseError], y: f64, step: f64) {
 
 /// The tips of the residual vectors seen along y and along z.
 pub fn residuals(report: &Report) -> String {
-    let (side, with_effects) = (360.0, !report.effects.is_empty());
+    let (side, with_effects) = (360.0, report.has_effects());
     let top = 58.0;
     let mut svg = Svg::new(WIDTH, top + side + 40.0, "Residual vectors before and after in two projections");
     let last = |one: &Residual| if with_effects { one.after } else { one.before };

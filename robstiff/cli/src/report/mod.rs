@@ -29,7 +29,8 @@ pub fn html(report: &Report) -> String {
         triage::section(report),
         sections::errors(report),
         sections::effects(report),
-        sections::left(report),
+        sections::suspected(report),
+        sections::unexplained(report),
         sections::doubts(report),
         sections::next(report),
         sections::residuals(report),
@@ -52,7 +53,7 @@ fn heading(report: &Report) -> String {
         page += &text("p", &report.description);
     }
     page += "</header>\n";
-    let class = if report.settled { "finding" } else { "finding open" };
+    let class = if report.conclusive { "finding" } else { "finding open" };
     let summary: String = report.summary.iter().map(|sentence| text("p", &micro(sentence))).collect();
     page + &format!(
         "<section class=\"{class}\">\n<p class=\"headline\">{}.</p>\n{summary}<p><span class=\"verdict\">verdict: {}</span></p>\n</section>\n",

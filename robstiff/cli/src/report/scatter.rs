@@ -15,7 +15,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The figure and its caption.
 pub fn figure(report: &Report) -> (String, String) {
-    let with_effects = !report.effects.is_empty();
+    let with_effects = report.has_effects();
     let count = report.dependences.len().max(3) as f64;
     let width = (WIDTH - LEFT - 16.0 - GAP * (count - 1.0)) / count;
     let mut svg = Svg::new(WIDTH, TOP + HEIGHT + 54.0, "Residual against what it depends on most");
@@ -56,7 +56,7 @@ pub fn figure(report: &Report) -> (String, String) {
             }
         }
     }
-    let caption = "Each row's residual, wild readings aside, against the quantities that account for most of it, in the direction where they do. \
+    let caption = "Each row's residual, without outliers, against the quantities that account for most of it, in the direction where they do. \
                    Over each: how much of the variance a parabola accounts for, before and after; noise has none.";
     (svg.html(), caption.to_owned())
 }

@@ -1,13 +1,11 @@
 //! The sections of a report below its heading, each empty where there is
 //! nothing to say.
 
-use super::content::{Candidate, Effect, Number, Report, SearchStep};
+use super::content::{Effect, Number, Report};
 use super::html::{Cell, Table, element, escape, number, text, words};
 use super::terms::Terms;
 use super::{arm, figure, micro, scatter};
-use crate::text::{
-    and, capital, change, count, decimals, is_compliance, p_value, plus_minus, probability, quantity, significant,
-};
+use crate::text::{and, capital, change, count, decimals, is_compliance, plus_minus, quantity, significant};
 
 /// The error of each model.
 pub fn errors(report: &Report) -> String {
@@ -75,9 +73,9 @@ fn by_pose(report: &Report) -> String {
     if report.errors.iter().any(|pose| pose.held_out) {
         caption += &format!(" Shaded: {places} that were held out.");
     }
-    if !report.effects.is_empty() {
+    if report.has_effects() {
         caption += &format!(
-            " Below: how far the named effects {moves}; fitted together with them, the joints give part of it back."
+            " Below: how far the effects that the description now has {moves}; fitted together with them, the joints give part of it back."
         );
     }
     framed(&figure::errors(report), &caption)
@@ -99,7 +97,7 @@ pub fn residuals(report: &Report) -> String {
     if !report.dependences.is_empty() {
         figures.push(scatter::figure(report));
     }
-    let cloud = "Residual vectors of single rows in the base frame. A model that lacks nothing leaves a round cloud the \
+    let cloud = "Residual vectors of single rows in the frame that they were read in. A model that lacks nothing leaves a round cloud the \
                  size of the noise.";
     figures.push((figure::residuals(report), cloud.to_owned()));
     let figures: String = figures.iter().map(|(svg, caption)| framed(svg, caption)).collect();
@@ -127,10 +125,21 @@ pub fn effects(report: &Report) -> String {
         html += &rig.into_iter().map(effect).collect::<String>();
     }
     if !html.is_empty() {
-        let note = "p: the probability that chance alone would show as much somewhere in the catalogue. Numbers with one standard deviation.";
+        let note = "Probability: that the effect is there, or one that these data cannot tell from it. Numbers with one \
+                    standard deviation.";
         html += &format!("<p class=\"note\">{}</p>\n", escape(note));
     }
     html
+}
+
+/// What is likely, but not certain enough to be named.
+pub fn suspected(report: &Report) -> String {
+    if report.suspected.is_empty() {
+        return String::new();
+    }
+    let note = "These would account for some of the residual. Each misses a condition for a name.";
+    let effects: String = report.suspected.iter().map(effect).collect();
+    element("h2", "What is suspected") + &text("p", note) + &effects
 }
 
 fn effect(effect: &Effect) -> String {
@@ -143,20 +152,35 @@ fn effect(effect: &Effect) -> String {
     );
     let mut facts: Vec<(&str, String)> = Vec::new();
     if !effect.numbers.is_empty() {
-        let numbers: Vec<String> = effect.numbers.iter().map(number_line).collect();
+        let mut numbers: Vec<String> = effect.numbers.iter().take(MOST_NUMBERS).map(number_line).collect();
+        if effect.numbers.len() > MOST_NUMBERS {
+            numbers.push(format!("and {} more", effect.numbers.len() - MOST_NUMBERS));
+        }
         facts.push(("Found", numbers.join(", ")));
     }
-    facts.push(("How sure", p_value(effect.p_value)));
+    let mut certain = effect.probability.clone();
+    if !effect.recurs.is_empty() {
+        certain += &format!(", back in {} of the searches without some poses", effect.recurs);
+    }
+    facts.push(("Probability", certain));
     if !effect.same_as.is_empty() {
         facts.push(("Or else", format!("{}: these data cannot tell", effect.same_as)));
     }
-    if !effect.of_rig && !effect.written {
+    if !effect.why_not.is_empty() {
+        facts.push(("Not named", effect.why_not.clone()));
+        if effect.written {
+            facts.push(("Written", "the description has it: it predicts best with it".to_owned()));
+        }
+    } else if !effect.of_rig && !effect.written {
         facts.push(("Not written", "the description does not take it".to_owned()));
     }
     let list: String = facts.iter().map(|(name, said)| text("dt", name) + &text("dd", &micro(said))).collect();
     html += &element("dl", list);
     html + "</article>\n"
 }
+
+/// So many numbers of an effect are shown.
+const MOST_NUMBERS: usize = 6;
 
 fn number_line(number: &Number) -> String {
     format!("{} = {}", number.name, quantity(number.value, number.std, &number.unit))
@@ -206,22 +230,18 @@ pub fn compliances(report: &Report) -> String {
     element("h2", heading) + &table.html() + &text("p", note)
 }
 
-/// What is left.
-pub fn left(report: &Report) -> String {
-    if report.left.tests.is_empty() {
+/// What stays unexplained.
+pub fn unexplained(report: &Report) -> String {
+    let of = &report.unexplained;
+    if of.fraction <= 0.0 && of.depends_on.is_empty() {
         return String::new();
     }
-    let mut said =
-        format!("{} % of the variance of what is left is beyond the noise.", decimals(report.left.fraction * 100.0, 0));
-    if !report.left.depends_on.is_empty() {
-        said += &format!(" What is left depends on {}.", and(&report.left.depends_on));
+    let mut sentence =
+        format!("{} % of the variance of the residual is beyond the noise.", decimals(of.fraction * 100.0, 0));
+    if !of.depends_on.is_empty() {
+        sentence += &format!(" The residual depends on {}.", and(&of.depends_on));
     }
-    let mut table = Table::new([words("Test for structure"), number("statistic"), number("p")]);
-    for test in &report.left.tests {
-        table
-            .row(false, [words(&test.name), number(significant(test.statistic, 3)), number(probability(test.p_value))]);
-    }
-    element("h2", "What is left") + &text("p", &said) + &table.html()
+    element("h2", "What stays unexplained") + &text("p", &sentence)
 }
 
 /// What to measure next.
@@ -237,57 +257,44 @@ pub fn next(report: &Report) -> String {
     element("h2", "What to measure next") + &table.html()
 }
 
-/// The search, step by step; long tables are folded.
+/// The most probable sets of effects, and what the repeated search found.
 pub fn search(report: &Report) -> String {
-    if report.steps.is_empty() {
+    if report.sets.is_empty() {
         return String::new();
     }
-    let note =
-        "Every effect of the catalogue at every place, against the model so far. p: family-wise, over all of them.";
-    let steps = report.steps.iter().enumerate().map(|(index, step)| search_step(index + 1, step, report.terms));
-    let steps: String = steps.collect();
-    let summary = text("summary", &format!("{} of the search", count(report.steps.len(), "step")));
-    element("h2", "How it was found") + &element("details", summary + &text("p", note) + &steps)
+    let note = "Each set of effects is weighed by its evidence: how probable the readings are with it, whatever its \
+                numbers, times a prior that makes large sets less probable.";
+    let mut sets = Table::new([words("Effects"), number("probability")]);
+    for (index, set) in report.sets.iter().enumerate() {
+        sets.row(index == 0, [codes(&set.names), number(&set.probability)]);
+    }
+    element("h2", "How it was found") + &text("p", note) + &sets.html() + &repeated(report)
 }
 
-/// How many candidates of a step show without unfolding.
-const SHOWN: usize = 8;
-
-fn search_step(index: usize, step: &SearchStep, terms: Terms) -> String {
-    let before =
-        if step.named.is_empty() { "the joints alone".to_owned() } else { format!("with {}", and(&step.named)) };
-    let heading = text("h3", &format!("Step {index}, {before}: {}", step.outcome));
-    let (first, rest) = step.candidates.split_at(step.candidates.len().min(SHOWN));
-    let mut html = heading + &candidates(first, terms);
-    if !rest.is_empty() {
-        let summary = text("summary", &count(rest.len(), "weaker candidate"));
-        html += &element("details", summary + &candidates(rest, terms));
+fn repeated(report: &Report) -> String {
+    let repeated = &report.repeated;
+    if repeated.folds == 0 || repeated.names.is_empty() {
+        return String::new();
     }
-    html
+    let note = format!(
+        "The whole search was repeated {} times, each time without some {}. The best set of so many of these searches has \
+         each effect:",
+        repeated.folds, report.terms.place[1]
+    );
+    let mut table = Table::new([words("Effect"), number("share of the searches")]);
+    for (name, share) in &repeated.names {
+        table.row(false, [codes(std::slice::from_ref(name)), number(share)]);
+    }
+    text("p", &note) + &table.html()
 }
 
-fn candidates(candidates: &[Candidate], terms: Terms) -> String {
-    let mut table = Table::new([
-        words("Candidate"),
-        number("statistic"),
-        number("p"),
-        number(format!("{} left out [{}]", terms.unseen[1], terms.printed)),
-        words("why not"),
-    ]);
-    for candidate in candidates {
-        let named = candidate.reason.is_empty();
-        table.row(
-            named,
-            [
-                Cell::Html(format!("<code>{}</code>", escape(&candidate.name))),
-                number(candidate.statistic.map_or_else(|| "-".to_owned(), |statistic| significant(statistic, 3))),
-                number(probability(candidate.p_value)),
-                number(candidate.left_out_rms_um.map_or_else(|| "-".to_owned(), |um| decimals(um, 1))),
-                words(if named { "named" } else { &candidate.reason }),
-            ],
-        );
+/// Full names of effects for a cell.
+fn codes(names: &[String]) -> Cell {
+    if names.is_empty() {
+        return words("the joints alone");
     }
-    table.html()
+    let names: Vec<String> = names.iter().map(|name| format!("<code>{}</code>", escape(name))).collect();
+    Cell::Html(names.join(", "))
 }
 
 /// Where everything came from, and what the readers noticed.

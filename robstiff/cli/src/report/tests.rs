@@ -1,12 +1,25 @@
 use super::content::{
-    Arm, Candidate, Check, Compliance, Dependence, Effect, Next, Number, PoseError, Report, Residual, SearchStep,
-    Stage, State,
+    Arm, Check, Compliance, Dependence, Effect, Next, Number, PoseError, ProbableSet, Repeated, Report, Residual,
+    Stage, State, Unexplained,
 };
 use super::html;
 
 /// A report in which every text tries to be markup, and numbers are missing.
 fn hostile() -> Report {
     let bad = || "<script>alert(\"a & 'b'\")</script>".to_owned();
+    let effect = || Effect {
+        name: bad(),
+        words: bad(),
+        explanation: bad(),
+        of_rig: true,
+        written: false,
+        numbers: vec![Number { name: bad(), value: f64::NAN, std: None, unit: bad() }],
+        probability: bad(),
+        recurs: bad(),
+        holdout_rms_um: f64::NAN,
+        same_as: bad(),
+        why_not: bad(),
+    };
     Report {
         robot: bad(),
         description: bad(),
@@ -32,17 +45,8 @@ fn hostile() -> Report {
             .to_vec(),
         outliers: vec![bad()],
         stages: vec![Stage { name: bad(), remark: bad(), rms_um: f64::NAN, holdout_rms_um: f64::INFINITY }],
-        effects: vec![Effect {
-            name: bad(),
-            words: bad(),
-            explanation: bad(),
-            of_rig: true,
-            written: false,
-            numbers: vec![Number { name: bad(), value: f64::NAN, std: None, unit: bad() }],
-            p_value: f64::NAN,
-            holdout_rms_um: f64::NAN,
-            same_as: bad(),
-        }],
+        effects: vec![effect()],
+        suspected: vec![effect()],
         compliances: vec![Compliance { name: bad(), unit: bad(), declared: 0.0, identified: None, after: None }],
         errors: vec![PoseError {
             id: bad(),
@@ -51,7 +55,7 @@ fn hostile() -> Report {
             after: 0.0,
             contribution: 1.0,
             held_out: true,
-            wild: true,
+            outlying: true,
         }],
         residuals: vec![Residual { before: [f64::NAN; 3], after: [0.0; 3] }],
         arms: vec![Arm { id: bad(), points: vec![[f64::NAN; 3]; 3], before: [f64::NAN; 3], after: [1.0; 3] }],
@@ -63,17 +67,9 @@ fn hostile() -> Report {
             points: vec![[f64::NAN, 1.0, f64::INFINITY], [0.0; 3]],
         }],
         doubts: vec![bad()],
-        steps: vec![SearchStep {
-            named: vec![bad()],
-            outcome: bad(),
-            candidates: vec![Candidate {
-                name: bad(),
-                statistic: None,
-                p_value: f64::NAN,
-                left_out_rms_um: None,
-                reason: bad(),
-            }],
-        }],
+        sets: vec![ProbableSet { names: vec![bad()], probability: bad() }],
+        repeated: Repeated { folds: 2, names: vec![(bad(), bad())] },
+        unexplained: Unexplained { fraction: f64::NAN, depends_on: vec![bad()] },
         next: vec![Next { pose: bad(), load: bad(), separates: [bad(), bad()] }],
         warnings: vec![bad()],
         origins: vec![(bad(), bad())],
@@ -114,7 +110,7 @@ fn without_effects_pictures_show_what_their_legend_says() {
             after,
             contribution: 0.0,
             held_out: false,
-            wild: false,
+            outlying: false,
         });
         html(&Report { errors: errors.to_vec(), residuals, arms, dependences, noise_um: 1.0, ..Report::default() })
     };

@@ -2,12 +2,13 @@
 //! residual against what it depends on most.
 
 use robstiff::elements::Pose;
-use robstiff::nalgebra::{DMatrix, DVector, Matrix4, SVector};
+use robstiff::nalgebra::{DMatrix, DVector, Matrix3, Matrix4, SVector, Vector3};
 use robstiff::{Robot, with_robot};
-use robstiff_identify::campaign::{Campaign, Data, Observation, PositionRow};
+use robstiff_identify::campaign::{Campaign, Data, Frame, Observation, PositionRow};
 use robstiff_identify::trace::Trace;
 use robstiff_robots::Description;
 
+use super::wording::outliers;
 use crate::report::content::{Arm, Dependence};
 
 /// What a row was read at.
@@ -41,8 +42,10 @@ fn placed(row: &PositionRow) -> Row<'_> {
     Row { pose: row.pose, q: &row.q, loads, time: row.time, temperature: row.temperature }
 }
 
-/// The arm in every pose, with the residual of the row of its largest load.
+/// The arm in every pose, with the residual of the row of its largest load in the base frame; none of
+/// positions, for how the tracker's frame stands to the base is part of the fit.
 pub fn arms(trace: &Trace, campaign: &Campaign) -> Vec<Arm> {
+    let Data::Displacement(data) = &campaign.data else { return Vec::new() };
     let Some((poses, rows)) = rows(campaign) else { return Vec::new() };
     let load = |row: usize| rows[row].loads.last().map_or(0.0, |(.., size)| *size);
     let mut largest: Vec<Option<usize>> = vec![None; poses.len()];
@@ -55,22 +58,22 @@ pub fn arms(trace: &Trace, campaign: &Campaign) -> Vec<Arm> {
     let arm = |(row, id): (&Option<usize>, &String)| {
         let row = (*row)?;
         let residual = trace.residuals.get(row)?;
-        Some(Arm {
-            id: id.clone(),
-            points: points(&trace.description, rows[row].q),
-            before: residual.before.map(|metres| metres * 1e6),
-            after: residual.after.map(|metres| metres * 1e6),
-        })
+        let (points, turn) = with_robot!(&trace.description, |robot| chain(&robot, rows[row].q));
+        let in_base = |residual: [f64; 3]| -> [f64; 3] {
+            let um = Vector3::from(residual) * 1e6;
+            match data.measured_frame {
+                Frame::Base => um.into(),
+                Frame::Tool => (turn * um).into(),
+            }
+        };
+        Some(Arm { id: id.clone(), points, before: in_base(residual.before), after: in_base(residual.after) })
     };
     largest.iter().zip(poses).filter_map(arm).collect()
 }
 
-/// From the ground to the TCP, joint by joint (m), in the base frame.
-fn points(robot: &Description, q: &[f64]) -> Vec<[f64; 3]> {
-    with_robot!(robot, |robot| chain(&robot, q))
-}
-
-fn chain<const N: usize>(robot: &impl Robot<N>, q: &[f64]) -> Vec<[f64; 3]> {
+/// From the ground to the TCP, joint by joint (m), in the base frame; and how the tool is turned
+/// there.
+fn chain<const N: usize>(robot: &impl Robot<N>, q: &[f64]) -> (Vec<[f64; 3]>, Matrix3<f64>) {
     let pose = Pose::of(robot, &SVector::<f64, N>::from_column_slice(q));
     let geometry = pose.geometry();
     let at = |frame: &Matrix4<f64>| -> [f64; 3] { std::array::from_fn(|k| frame[(k, 3)]) };
@@ -78,7 +81,7 @@ fn chain<const N: usize>(robot: &impl Robot<N>, q: &[f64]) -> Vec<[f64; 3]> {
     points.extend(geometry.joint_frames.iter().map(at));
     points.extend([at(&geometry.flange), at(&geometry.tcp)]);
     points.dedup();
-    points
+    (points, geometry.tcp.fixed_view::<3, 3>(0, 0).into_owned())
 }
 
 /// How many quantities are shown.
@@ -122,11 +125,12 @@ fn quantities(rows: &[Row<'_>], robot: &Description) -> Vec<(String, &'static st
 /// A quantity with the component of the residual that depends on it most;
 /// none where it does not vary.
 fn strongest(trace: &Trace, name: String, unit: &'static str, values: &[f64]) -> Option<Dependence> {
-    // One wild reading would pass for a law of its own.
-    let is_wild = |line: usize| trace.effects.iter().any(|named| named.lines.contains(&line));
-    let residuals = || trace.residuals.iter().filter(|row| !is_wild(row.line));
+    // One outlier would pass for a law.
+    let outliers = outliers(trace);
+    let is_outlier = |line: usize| outliers.contains(&line);
+    let residuals = || trace.residuals.iter().filter(|row| !is_outlier(row.line));
     let values: Vec<f64> =
-        values.iter().zip(&trace.residuals).filter(|(_, row)| !is_wild(row.line)).map(|(&x, _)| x).collect();
+        values.iter().zip(&trace.residuals).filter(|(_, row)| !is_outlier(row.line)).map(|(&x, _)| x).collect();
     let component = |axis: usize| -> [Vec<f64>; 2] {
         [
             residuals().map(|row| row.before[axis] * 1e6).collect(),
