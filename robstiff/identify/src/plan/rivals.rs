@@ -11,7 +11,7 @@ const MOST: usize = 4;
 
 /// Kinds that depend on when something is measured, not on pose and load: what
 /// to propose for them is not computed.
-const OF_TIME: [&str; 5] = ["thermal_drift", "creep", "base_slip", "reflector_slip", "outliers"];
+const OF_TIME: [&str; 6] = ["thermal_drift", "creep", "base_slip", "reflector_slip", "wandering", "outliers"];
 
 /// The rivals with their columns, among the numbers that planning looks at.
 #[derive(Clone, Debug)]
@@ -106,8 +106,8 @@ pub fn pairs(rivals: &[(String, Rival)], core: &[usize]) -> Vec<Contest> {
     rivals.iter().enumerate().flat_map(with_later).collect()
 }
 
-/// The groups of a trace: each class of effects, named or suspected, that has several members, or that
-/// may not be there at all.
+/// The groups of a trace: each class of effects, named or suspected. One of a single member has no
+/// rival.
 pub fn groups(trace: &Trace) -> Vec<Group> {
     let group = |named: Option<usize>, class: &[(String, f64)]| Group {
         named,

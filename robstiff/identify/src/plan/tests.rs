@@ -1,19 +1,14 @@
-use std::string::{String, ToString};
 use std::vec;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use robstiff_robots::effect::Place as Part;
 
 use super::criterion::{Criterion, Judge};
 use super::exchange::Search;
 use super::regressors::Visit;
-use super::rivals::{Contest, Number, Rival, Rivals, groups};
-use crate::campaign::made::Plan;
-use crate::trace::catalogue::GRAVITY_PRELOAD;
-use crate::trace::{Found, NamedEffect, Options, Step, Tested, Trace, Verdict, trace};
+use super::rivals::{Contest, Number, Rival, Rivals};
 
 const NUMBERS: usize = 5;
 
@@ -110,38 +105,4 @@ fn aliases_have_no_angle() {
     columns.set_column(4, &alias);
     let gram = columns.tr_mul(&columns);
     assert!(judge(&columns).separable(&gram).is_empty() && judge(&columns).angle(&gram, 0) < 1e-4);
-}
-
-/// A wild row beside structure, or a preload, which no step has, does not hide what is within reach of each other.
-#[test]
-fn candidates_within_reach_are_told_apart_beside_wild_rows() {
-    let campaign = Plan { poses: 12, ..Plan::new(1) }.run();
-    let mut trace = trace(&campaign, &Options { draws: 199, ..Options::default() }, &|_| {}).expect("displacements");
-    let tested = |name: &str, p_value, bic| Tested {
-        name: name.into(),
-        statistic: Some(12.0),
-        p_value,
-        bic: Some(bic),
-        left_out_rms: None,
-        reason: String::new(),
-    };
-    let candidates = vec![tested("a@x", 0.02, 100.0), tested("b@y", 0.03, 101.0), tested("c@z", 0.9, 102.0)];
-    trace.steps = vec![Step { named: Vec::new(), candidates, outcome: String::new() }];
-    (trace.effects, trace.verdict) = (Vec::new(), Verdict::Unexplained);
-    let names = |trace: &Trace| groups(trace).pop().map(|group| (group.named, group.names));
-    let within_reach = Some((None, vec!["a@x".to_string(), "b@y".to_string()]));
-    assert_eq!(names(&trace), within_reach);
-    let named = |effect: Found, lines: Vec<usize>| NamedEffect {
-        effect,
-        lines,
-        p_value: 1e-6,
-        holdout_rms: 1e-5,
-        same_as: Vec::new(),
-        in_part: Vec::new(),
-        partial: true,
-    };
-    trace.effects.push(named(Found::outliers(1), vec![7]));
-    assert_eq!(names(&trace), within_reach);
-    trace.effects = vec![named(Found::new(&GRAVITY_PRELOAD, Part::Robot.into(), Vec::new()), Vec::new())];
-    assert_eq!(names(&trace), within_reach);
 }
