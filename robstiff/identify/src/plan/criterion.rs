@@ -37,7 +37,8 @@ pub enum Criterion {
 const TELLING_APART: f64 = 0.7;
 
 /// Patterns that differ by less than this fraction of their energy over all
-/// poses and loads are one, as in [`crate::trace::alias`].
+/// poses and loads are one: a thousandth of what is read is beyond what the model of an arm
+/// is exact to.
 const EXACT: f64 = 1e-6;
 
 /// Rivals that are no further apart (chi-square) are not told apart at all.

@@ -20,8 +20,8 @@ use crate::campaign::{Campaign, Data, Displacements, Frame, Noise, Observation a
 use crate::effects::Side;
 use crate::identify::Error;
 use crate::model::Size;
-use crate::trace::case::Case;
 use crate::select::Layout;
+use crate::trace::case::Case;
 
 /// The loads of a visit as shares of its greatest: up, and down again, so that play and friction show.
 pub const RAMP: [f64; 4] = [0.25, 0.5, 1.0, 0.5];

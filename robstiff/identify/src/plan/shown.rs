@@ -9,9 +9,7 @@ use std::rc::Rc;
 use nalgebra::{DMatrix, Vector3};
 
 use super::first::unread;
-use super::regressors::{
-    ENCODER_NOISE, LEVELS, PAYLOADS, REACH, ROTATION_NOISE, Regressors, Sensor, Visit,
-};
+use super::regressors::{ENCODER_NOISE, LEVELS, PAYLOADS, REACH, ROTATION_NOISE, Regressors, Sensor, Visit};
 use super::rivals::{Group, Rivals};
 use super::source::Source;
 use crate::campaign::{Campaign, Data, Displacements, PositionRow, Positions};
@@ -371,3 +369,6 @@ impl Regressors for Shown<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -82,8 +82,7 @@ impl Source {
             let own = &layout.forms[of.form].columns;
             for &k in own {
                 let parameter = &layout.parameters[k];
-                let name =
-                    if own.len() == 1 { of.name.clone() } else { format!("{} {}", of.name, parameter.name) };
+                let name = if own.len() == 1 { of.name.clone() } else { format!("{} {}", of.name, parameter.name) };
                 let column = places.of(k);
                 effects.push(column);
                 model.push(Number { column, name, unit: parameter.unit, value: fit.value(k) });
