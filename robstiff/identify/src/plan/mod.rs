@@ -228,6 +228,9 @@ fn best(regressors: &impl Regressors, rivals: &Rivals, space: &Space, options: &
     told.plan(&chosen, space.assumptions.clone())
 }
 
+/// Every trace proposes something: from few poses, for that takes less time than the trace.
+const FEW: usize = 40;
+
 /// The first proposals, as a trace holds them: what separates rivals.
 ///
 /// # Errors
@@ -236,7 +239,8 @@ pub fn next(campaign: &Campaign, trace: &Trace, count: usize) -> Result<Vec<Prop
     if groups(trace).iter().all(|group| group.names.len() < 2) {
         return Ok(Vec::new());
     }
-    let plan = plan(campaign, trace, &Options { poses: count, starts: 1, ..Options::default() })?;
+    let options = Options { poses: count, starts: 1, candidates: FEW, ..Options::default() };
+    let plan = plan(campaign, trace, &options)?;
     let proposal = |planned: &Planned| {
         let [x, y, z, ..] = planned.greatest;
         Some(Proposal {

@@ -1,6 +1,6 @@
 //! Who rivals whom: the effects that a trace could not tell apart.
 
-use std::string::{String, ToString};
+use std::string::String;
 use std::vec::Vec;
 
 use crate::trace::Trace;
@@ -92,7 +92,12 @@ pub struct Group {
 
 /// The names of those in the running that poses and loads have to do with.
 pub fn computed(names: &[String]) -> impl Iterator<Item = &String> {
-    names.iter().filter(|name| !OF_TIME.iter().any(|kind| name.starts_with(kind)))
+    names.iter().filter(|name| !is_of_time(name))
+}
+
+/// Whether an effect depends on when something is measured, by its full name.
+pub fn is_of_time(name: &str) -> bool {
+    OF_TIME.contains(&name.split('@').next().unwrap_or(name))
 }
 
 /// Every two of some rivals, beside the columns that all their models have.

@@ -1,12 +1,13 @@
 //! What planning goes on from: the regression of a campaign where its trace ended.
 //!
 //! The model has the numbers that are always fitted, and the effects that were named. The block of
-//! waves without a name has hundreds of numbers and moves little: it is fitted to the campaign with
-//! the others, and held where it is afterwards.
+//! waves without a name has hundreds of numbers and moves little, and what depends on when something
+//! is read has nothing to do with poses and loads. Both are fitted to the campaign with the others, and
+//! held where they are afterwards.
 
 use nalgebra::DMatrix;
 
-use super::rivals::{Group, Number, Rival, Rivals, computed, pairs};
+use super::rivals::{Group, Number, Rival, Rivals, computed, is_of_time, pairs};
 use crate::identify::Error;
 use crate::model::{Parameter, Size, Term};
 use crate::select::always::{BLOCK, TABLE};
@@ -57,7 +58,10 @@ impl Source {
         let set = sorted(found.iter().map(|of| of.form));
         let hidden = || Error::NotShown("these data do not show the numbers that a plan is made for".into());
         let fit = problem.fit(&set, kappa).ok_or_else(hidden)?;
-        let (away, always): (Vec<usize>, Vec<usize>) = layout.always().partition(|&k| is_of_block(&layout, k));
+        let (mut away, always): (Vec<usize>, Vec<usize>) = layout.always().partition(|&k| is_of_block(&layout, k));
+        let (of_time, found): (Vec<InModel>, Vec<InModel>) = found.into_iter().partition(|of| is_of_time(&of.name));
+        away.extend(of_time.iter().flat_map(|of| &layout.forms[of.form].columns));
+        let of_time: Vec<usize> = of_time.iter().map(|of| of.form).collect();
         let mut places = Places { columns: always.clone() };
         let mut model = Vec::new();
         for &k in &always {
@@ -91,12 +95,25 @@ impl Source {
         let mut contests = Vec::new();
         for Group { names, .. } in groups {
             let beside: Vec<usize> = found.iter().filter(|of| !names.contains(&of.name)).map(|of| of.form).collect();
-            let beside = sorted(beside.into_iter());
             let core: Vec<usize> = always.iter().copied().chain(problem.columns(&beside)).collect();
             let core = places.all(&core);
+            let beside = sorted(beside.into_iter().chain(of_time.iter().copied()));
             let rival = |name: &String| {
                 let form = forms.of(name, &beside)?;
                 let fit = problem.fit(&sorted(beside.iter().copied().chain([form])), kappa)?;
+                if std::env::var("DBG").is_ok() {
+                    eprintln!(
+                        "DBG {name} {:?} kappa {kappa} {:?} var {:e} {:e} best {best:?}",
+                        layout.names(form),
+                        layout.forms[form]
+                            .columns
+                            .iter()
+                            .map(|&k| (fit.value(k), fit.std[fit.place(k).unwrap()]))
+                            .collect::<Vec<_>>(),
+                        fit.variance,
+                        engine.start.0
+                    );
+                }
                 let own = &layout.forms[form];
                 let shape = layout.candidates[own.candidate].forms[own.form].shape.len();
                 let values = own.columns.iter().map(|&k| fit.value(k)).collect();

