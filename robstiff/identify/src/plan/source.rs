@@ -101,19 +101,6 @@ impl Source {
             let rival = |name: &String| {
                 let form = forms.of(name, &beside)?;
                 let fit = problem.fit(&sorted(beside.iter().copied().chain([form])), kappa)?;
-                if std::env::var("DBG").is_ok() {
-                    eprintln!(
-                        "DBG {name} {:?} kappa {kappa} {:?} var {:e} {:e} best {best:?}",
-                        layout.names(form),
-                        layout.forms[form]
-                            .columns
-                            .iter()
-                            .map(|&k| (fit.value(k), fit.std[fit.place(k).unwrap()]))
-                            .collect::<Vec<_>>(),
-                        fit.variance,
-                        engine.start.0
-                    );
-                }
                 let own = &layout.forms[form];
                 let shape = layout.candidates[own.candidate].forms[own.form].shape.len();
                 let values = own.columns.iter().map(|&k| fit.value(k)).collect();

@@ -5,9 +5,10 @@ use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::advice::remedies;
 use super::criterion::{Criterion, Judge};
 use super::exchange::Search;
-use super::regressors::Visit;
+use super::regressors::{Regressors, Sensor, Visit};
 use super::rivals::{Contest, Number, Rival, Rivals};
 
 const NUMBERS: usize = 5;
@@ -105,4 +106,53 @@ fn aliases_have_no_angle() {
     columns.set_column(4, &alias);
     let gram = columns.tr_mul(&columns);
     assert!(judge(&columns).separable(&gram).is_empty() && judge(&columns).angle(&gram, 0) < 1e-4);
+}
+
+/// Two effects that are one to visits, and two to encoders.
+struct Alike {
+    known: DMatrix<f64>,
+    apart: DMatrix<f64>,
+}
+
+impl Regressors for Alike {
+    fn variance(&self) -> f64 {
+        1.0
+    }
+
+    fn readings(&self, _: &[Visit]) -> usize {
+        40
+    }
+
+    fn sensors(&self) -> Vec<Sensor> {
+        vec![Sensor::Lever, Sensor::Encoders]
+    }
+
+    fn known(&self) -> DMatrix<f64> {
+        self.known.clone()
+    }
+
+    fn likely(&self) -> DMatrix<f64> {
+        0.0 * &self.known
+    }
+
+    fn information(&self, visits: &[Visit], besides: Option<Sensor>) -> Vec<DMatrix<f64>> {
+        let gives = if besides == Some(Sensor::Encoders) { &self.apart } else { &self.known };
+        visits.iter().map(|_| gives.clone()).collect()
+    }
+}
+
+/// Sensors that tell rivals apart are said to, and no others.
+#[test]
+fn remedies_are_what_tells_apart() {
+    let mut random = ChaCha8Rng::seed_from_u64(4);
+    let mut columns = DMatrix::from_fn(40, NUMBERS, |_, _| random.random_range(-1.0..1.0));
+    let apart = columns.tr_mul(&columns);
+    let alias = columns.column(3) * 3.0;
+    columns.set_column(4, &alias);
+    let alike = Alike { known: columns.tr_mul(&columns), apart };
+    let (rivals, .., visits) = setting(1);
+    let judge = Judge::new(&alike.known, &rivals, 1.0);
+    let found = remedies(&alike, &judge, &visits, (&rivals.pairs[0], 0), 0.0);
+    let [found] = &found[..] else { panic!("{found:?}") };
+    assert!(found.words.starts_with("encoders") && found.separation.is_some_and(|sigmas| sigmas > 3.0), "{found:?}");
 }
