@@ -114,7 +114,9 @@ impl Source {
         let is_asked = |column: &usize| model.iter().any(|number| number.column == *column);
         let nuisance = (0..always.len()).filter(|column| !is_asked(column)).collect();
         let variance = if trace.basis.is_some() { engine.start.0 } else { fit.variance };
-        let precision = |k: usize| if layout.always().contains(&k) { variance / sd(&problem, k).powi(2) } else { 0.0 };
+        // The numbers of rivals have no prior: data alone are to tell them apart.
+        let has_prior = |k: &usize| layout.always().contains(k) || away.contains(k);
+        let precision = |k: usize| if has_prior(&k) { variance / sd(&problem, k).powi(2) } else { 0.0 };
         let whole = DMatrix::from_fn(gram.nrows() - 1, gram.ncols() - 1, |i, j| {
             gram[(i, j)] + if i == j { precision(i) } else { 0.0 }
         });
