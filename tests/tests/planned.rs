@@ -90,9 +90,11 @@ fn measured(robot: &Description, hidden: &[Effect], pulls: &Pulls, seed: u64) ->
 
 /// A plan to tell an effect from others, whatever the trace made of them.
 fn plan_for(campaign: &Campaign, one: Effect, others: &[Effect], options: &Options) -> Plan {
-    let tracing = trace::Options { draws: 199, alpha: 0.05, ..trace::Options::default() };
+    // Folds have no part in a plan.
+    let tracing = trace::Options { folds: 2, ..trace::Options::default() };
     let mut traced = trace(campaign, &tracing, &|_| {}).expect("traced");
     traced.effects.clear();
+    traced.suspected.clear();
     let names = [&[one], others].concat().iter().map(ToString::to_string).collect();
     plan_between(campaign, &traced, &[Group { named: None, names }], options).expect("planned")
 }
@@ -117,7 +119,7 @@ fn decides(campaign: &Campaign, truth: Effect, rival: Effect) -> bool {
     let [named] = &traced.effects[..] else { return false };
     let stands_for = |effect: Effect| {
         let name = effect.to_string();
-        named.effect.to_string() == name || named.same_as.contains(&name)
+        named.effect.to_string() == name || named.same_as().contains(&name)
     };
     stands_for(truth) && !stands_for(rival)
 }
@@ -201,21 +203,20 @@ fn planned(robot: &Description, named: Effect, same_as: &[Effect], options: &Opt
     plan_for(&campaign(&first), named, same_as, options)
 }
 
-/// What no pose separates is said to be so, and what would separate it.
+/// What no pose separates is said to be so, and no sensor is named that would not separate it either.
 #[test]
-fn exact_aliases_need_other_sensors() {
+fn exact_aliases_are_said_to_be_so() {
     let robot = five_axis();
     let base = |tilt, translation| Effect::BaseCompliance { tilt, translation };
     let tool = Effect::ToolCompliance { rotation: 0.0, translation: 8e-8 };
-    for (named, rival, remedy) in [
-        (base(6e-8, 0.0), Effect::TransverseCompliance { joint: 1, value: 6e-8 }, "markers on the foot"),
-        (base(0.0, 8e-8), tool, "markers on"),
-    ] {
+    for (named, rival) in
+        [(base(6e-8, 0.0), Effect::TransverseCompliance { joint: 1, value: 6e-8 }), (base(0.0, 8e-8), tool)]
+    {
         let found = planned(&robot, named, &[rival], &Options { poses: 6, ..Options::default() });
         let [pair] = &found.pairs[..] else { panic!("{:?}", found.pairs) };
         assert_eq!(pair.outlook, Outlook::Alias, "{pair:?}");
         assert!(pair.after < 1e-2 && pair.angle < 1e-3, "{pair:?}");
-        assert!(pair.remedies.iter().any(|one| one.words.starts_with(remedy)), "{:?}", pair.remedies);
+        assert_eq!(pair.remedies, [], "{pair:?}");
         assert!(found.proposals.iter().all(|proposal| proposal.separates.is_none()));
     }
 }

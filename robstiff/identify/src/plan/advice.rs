@@ -23,9 +23,6 @@ pub struct Remedy {
 /// A sensor that does not bring this factor is not worth its trouble.
 const WORTH_IT: f64 = 1.5;
 
-/// Markers with this share of the best separation do about as well.
-const ABOUT_AS_WELL: f64 = 0.8;
-
 /// What would tell a pair, by its index, apart, the best first. `without` is the
 /// separation (sigmas) with the visits alone.
 pub fn remedies(
@@ -39,12 +36,8 @@ pub fn remedies(
         let gives = regressors.information(visits, Some(sensor)).into_iter();
         judge.separations(&gives.fold(regressors.known(), |sum, one| sum + one))[pair]
     };
-    let tried = regressors.sensors().into_iter().map(|sensor| (separation(sensor), sensor));
-    let (markers, mut tried): (Vec<_>, Vec<_>) = tried.partition(|(_, sensor)| matches!(sensor, Sensor::Markers(_)));
-    // Of markers that do about as well, those next to the foot, which is easily
-    // reached.
-    let most = markers.iter().map(|(sigmas, _)| *sigmas).fold(0.0, f64::max);
-    tried.extend(markers.into_iter().find(|(sigmas, _)| *sigmas >= ABOUT_AS_WELL * most));
+    let sensors = regressors.sensors().into_iter();
+    let mut tried: Vec<(f64, Sensor)> = sensors.map(|sensor| (separation(sensor), sensor)).collect();
     tried.retain(|(sigmas, _)| *sigmas >= TOLD_APART && *sigmas >= WORTH_IT * without);
     tried.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut found: Vec<Remedy> =
@@ -62,9 +55,6 @@ fn words(sensor: Sensor) -> String {
                 ROTATION_NOISE * 1e6
             )
         }
-        Sensor::Markers(0) => format!("markers on the foot, {millimetres:.0} mm about its origin"),
-        Sensor::Markers(1) => format!("markers on the column (link 1), {millimetres:.0} mm about joint 2"),
-        Sensor::Markers(body) => format!("markers on link {body}, {millimetres:.0} mm about its far end"),
         Sensor::Encoders => format!("encoders on the output side of the gears (to {:.0} urad)", ENCODER_NOISE * 1e6),
         Sensor::Lever => {
             format!("the same forces at a second lever length, {millimetres:.0} mm further out along the tool")
@@ -82,14 +72,7 @@ fn words(sensor: Sensor) -> String {
 
 /// What is known of kinds of effects and cannot be computed from a pose and a
 /// load alone.
-fn of_kinds(contest: &Contest) -> Vec<&'static str> {
-    let is = |kinds: &[&str]| contest.names.iter().any(|name| kinds.contains(&name.split('@').next().unwrap_or(name)));
-    let mut found = Vec::new();
-    if is(&["hysteresis"]) {
-        found.push("loading and unloading in steps at every pose");
-    }
-    if is(&["thermal_drift", "creep", "base_slip", "reflector_slip"]) {
-        found.push("a look at the unloaded arm between loads, and poses in random order");
-    }
-    found
+fn of_kinds(contest: &Contest) -> Option<&'static str> {
+    let is_hysteresis = contest.names.iter().any(|name| name.starts_with("hysteresis@"));
+    is_hysteresis.then_some("loading and unloading in steps at every pose")
 }

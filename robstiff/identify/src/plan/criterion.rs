@@ -37,7 +37,8 @@ pub enum Criterion {
 const TELLING_APART: f64 = 0.7;
 
 /// Patterns that differ by less than this fraction of their energy over all
-/// poses and loads are one, as in [`crate::trace::alias`].
+/// poses and loads are one: a thousandth of what is read is beyond what the model of an arm
+/// is exact to.
 const EXACT: f64 = 1e-6;
 
 /// Rivals that are no further apart (chi-square) are not told apart at all.
@@ -59,9 +60,20 @@ pub struct Judge {
     /// Those of the effects, within the model.
     effects: Vec<usize>,
     contests: Vec<Contest>,
+    /// The columns that the models of all contests have: they are eliminated once for all of them.
+    common: Vec<usize>,
+    /// The other columns of contests.
+    further: Vec<usize>,
     /// The pairs that the criterion counts.
     pairs: Vec<usize>,
     variance: f64,
+}
+
+/// The scaled information of the further columns.
+struct Reduced {
+    matrix: DMatrix<f64>,
+    /// What keeps factorisations of it going.
+    ridge: DVector<f64>,
 }
 
 impl Judge {
@@ -69,7 +81,11 @@ impl Judge {
     /// (m^2).
     pub fn new(known: &DMatrix<f64>, rivals: &Rivals, variance: f64) -> Self {
         let size = |k: usize| if known[(k, k)] > 0.0 { known[(k, k)].sqrt().recip() } else { 1.0 };
+        let in_all = |k: &usize| rivals.pairs.iter().all(|contest| contest.core.contains(k));
+        let (common, further) = (0..known.nrows()).partition(in_all);
         Self {
+            common,
+            further,
             scale: DVector::from_fn(known.nrows(), |k, _| size(k)),
             nuisance: rivals.nuisance.clone(),
             model: rivals.model.iter().map(|number| number.column).collect(),
@@ -93,10 +109,10 @@ impl Judge {
 
     /// The angle between what two rivals show (rad), with the rest fitted again.
     pub fn angle(&self, information: &DMatrix<f64>, pair: usize) -> f64 {
-        let contest = &self.contests[pair];
+        let (contest, reduced) = (&self.contests[pair], self.reduced(information));
         let one = |truth: usize| {
-            let whole = self.left(information, contest, truth, &contest.core);
-            let left = self.left(information, contest, truth, contest.without(truth));
+            let whole = self.left(&reduced, contest, truth, &contest.core);
+            let left = self.left(&reduced, contest, truth, contest.without(truth));
             (left / whole.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
         };
         one(0).min(one(1)).sqrt().asin()
@@ -104,26 +120,45 @@ impl Judge {
 
     /// The separation of each pair (sigmas): see [`super::Pair::now`].
     pub fn separations(&self, information: &DMatrix<f64>) -> Vec<f64> {
-        (0..self.contests.len()).map(|k| self.chi_square(information, k).sqrt()).collect()
+        let reduced = self.reduced(information);
+        (0..self.contests.len()).map(|k| self.chi_square(&reduced, k).sqrt()).collect()
     }
 
     /// The expected difference in chi-square, for the less clear truth.
-    fn chi_square(&self, information: &DMatrix<f64>, pair: usize) -> f64 {
+    fn chi_square(&self, reduced: &Reduced, pair: usize) -> f64 {
         let contest = &self.contests[pair];
-        let one = |truth: usize| self.left(information, contest, truth, contest.without(truth));
+        let one = |truth: usize| self.left(reduced, contest, truth, contest.without(truth));
         one(0).min(one(1)) / self.variance
     }
 
     /// `b^T S b` of the truth's readings, when the numbers `rest` are fitted.
-    fn left(&self, information: &DMatrix<f64>, contest: &Contest, truth: usize, rest: &[usize]) -> f64 {
+    fn left(&self, reduced: &Reduced, contest: &Contest, truth: usize, rest: &[usize]) -> f64 {
+        let Reduced { matrix, ridge } = reduced;
         let rival = &contest.rivals[truth];
-        let gram = |i: usize, j: usize| information[(i, j)] * self.scale[i] * self.scale[j];
-        let size: Vec<f64> = rival.columns.iter().zip(&rival.values).map(|(&c, b)| b / self.scale[c]).collect();
-        let along = |i: usize| -> f64 { rival.columns.iter().zip(&size).map(|(&c, b)| gram(i, c) * b).sum() };
-        let energy: f64 = rival.columns.iter().zip(&size).map(|(&c, b)| b * along(c)).sum();
+        let place = |column: &usize| self.further.binary_search(column).ok();
+        let own = rival.columns.iter().zip(&rival.values);
+        let own: Vec<(usize, f64)> = own.filter_map(|(c, b)| Some((place(c)?, b / self.scale[*c]))).collect();
+        let rest: Vec<usize> = rest.iter().filter_map(place).collect();
+        let along = |i: usize| -> f64 { own.iter().map(|&(c, b)| matrix[(i, c)] * b).sum() };
+        let energy: f64 = own.iter().map(|&(c, b)| b * along(c)).sum();
         let cross = DVector::from_fn(rest.len(), |k, _| along(rest[k]));
-        let Some(factor) = self.of(information, rest).cholesky() else { return 0.0 };
+        let of_rest = DMatrix::from_fn(rest.len(), rest.len(), |i, j| {
+            matrix[(rest[i], rest[j])] + if i == j { ridge[rest[i]] } else { 0.0 }
+        });
+        let Some(factor) = of_rest.cholesky() else { return 0.0 };
         (energy - cross.dot(&factor.solve(&cross))).max(0.0)
+    }
+
+    /// The scaled information of the further columns, with the common ones fitted again.
+    fn reduced(&self, information: &DMatrix<f64>) -> Reduced {
+        let gram = |i: usize, j: usize| information[(i, j)] * self.scale[i] * self.scale[j];
+        let (common, further) = (&self.common, &self.further);
+        let own = DMatrix::from_fn(further.len(), further.len(), |i, j| gram(further[i], further[j]));
+        let ridge = own.diagonal().map(|value| RIDGE * value + f64::MIN_POSITIVE);
+        let Some(factor) = self.of(information, common).cholesky() else { return Reduced { matrix: own, ridge } };
+        let mut beside = DMatrix::from_fn(common.len(), further.len(), |i, j| gram(common[i], further[j]));
+        factor.l_dirty().solve_lower_triangular_mut(&mut beside);
+        Reduced { matrix: own - beside.tr_mul(&beside), ridge }
     }
 
     /// The scaled information of some numbers.
@@ -160,7 +195,8 @@ impl Judge {
         };
         let d = || beside(&self.model, &self.nuisance) / self.model.len().max(1) as f64;
         let t = || {
-            let chi_square = |&k: &usize| self.chi_square(information, k).max(NOTHING);
+            let reduced = self.reduced(information);
+            let chi_square = |&k: &usize| self.chi_square(&reduced, k).max(NOTHING);
             let inverse: f64 = self.pairs.iter().map(|k| chi_square(k).recip()).sum();
             (self.pairs.len() as f64 / inverse).ln()
         };

@@ -20,8 +20,8 @@ use crate::campaign::{Campaign, Data, Displacements, Frame, Noise, Observation a
 use crate::effects::Side;
 use crate::identify::Error;
 use crate::model::Size;
-use crate::trace::case::Case;
 use crate::select::Layout;
+use crate::trace::case::Case;
 
 /// The loads of a visit as shares of its greatest: up, and down again, so that play and friction show.
 pub const RAMP: [f64; 4] = [0.25, 0.5, 1.0, 0.5];
@@ -83,7 +83,7 @@ pub fn first(robot: &Description, options: &Options) -> Result<First, Error> {
         pulls.iter().map(|pull| Visit { q: q.clone(), loads: loads(pull) }).collect::<Vec<_>>()
     };
     let visits: Vec<Visit> = space.poses.iter().flat_map(with).collect();
-    let campaign = unread(robot, &visits);
+    let campaign = campaign(robot, unread(&visits));
     let shown = shown(&campaign, robot)?;
     let chosen = most_informative(&shown, options.poses, |one, other| visits[one].q == visits[other].q);
     Ok(First {
@@ -93,8 +93,8 @@ pub fn first(robot: &Description, options: &Options) -> Result<First, Error> {
     })
 }
 
-/// A campaign of these visits before anything was read.
-pub fn unread(robot: &Description, visits: &[Visit]) -> Campaign {
+/// The rows of these visits before anything was read, each at a pose of its own.
+pub fn unread(visits: &[Visit]) -> Displacements {
     let names: Vec<String> = (1..=visits.len()).map(|visit| std::format!("{visit}")).collect();
     let mut rows = Vec::new();
     for (index, visit) in visits.iter().enumerate() {
@@ -114,7 +114,7 @@ pub fn unread(robot: &Description, visits: &[Visit]) -> Campaign {
             });
         }
     }
-    let data = Displacements {
+    Displacements {
         wrench_frame: Frame::Base,
         wrench_at: [0.0; 3],
         measured_frame: Frame::Base,
@@ -122,7 +122,11 @@ pub fn unread(robot: &Description, visits: &[Visit]) -> Campaign {
         poses: names.clone(),
         visits: names,
         rows,
-    };
+    }
+}
+
+/// A campaign of such rows, of which nothing is known.
+fn campaign(robot: &Description, data: Displacements) -> Campaign {
     Campaign {
         name: String::new(),
         path: "".into(),

@@ -1,17 +1,18 @@
 //! Planning: which poses and loads to measure next.
 //!
 //! The way of the data: [`rivals`] takes from a trace the effects that the
-//! campaign could not tell apart, each with its size; [`space`] draws poses and
-//! loads that can be measured; [`regressors`] says what each would show, through
-//! adapters to the regressions that tracing uses, of [`displacements`] and of
-//! absolute [`positions`]; [`criterion`] turns that into what is known after a set
-//! of measurements; [`exchange`] looks for the best set; [`advice`] says what else
-//! would do where no pose does.
+//! campaign could not tell apart; [`space`] draws poses and loads that can be
+//! measured; `source` takes up the regression where the trace ended, with the
+//! size of each rival; `shown` says what each visit would show, by the observation
+//! and the noise of the campaign; [`criterion`] turns that into what is known after
+//! a set of measurements; [`exchange`] looks for the best set; [`advice`] says what
+//! else would do where no pose does.
 //!
 //! Everything expected is to first order, with the noise that the trace found
 //! and each rival in turn taken for the truth at the size that fits best, the knees
 //! of gears held at the best of a grid. The measurements are visits like the campaign's own,
 //! with its sequence of loads, of displacements with one unloaded reading for each.
+//! Numbers that are always fitted keep what is likely of them.
 
 pub mod advice;
 pub mod criterion;
@@ -21,6 +22,8 @@ pub mod first;
 mod first_tests;
 pub mod regressors;
 pub mod rivals;
+mod shown;
+mod source;
 pub mod space;
 #[cfg(test)]
 mod tests;
@@ -40,6 +43,7 @@ use self::criterion::Judge;
 use self::exchange::{Search, in_order, refine};
 use self::regressors::Regressors;
 use self::rivals::{Rivals, groups};
+use self::shown::Shown;
 use self::space::Space;
 use crate::campaign::{Campaign, Data};
 use crate::identify::Error;
@@ -156,21 +160,19 @@ pub enum Outlook {
 pub struct Number {
     /// `joint 3`, or an effect's number.
     pub name: String,
-    /// Its value: of displacements in the linear fit that the plan is made with, knees held at
-    /// the best of a grid, so not quite what a trace says, which fits each in its own form.
+    /// Its value in the linear fit that the plan is made with, about the trace's.
     pub value: f64,
     /// Its unit.
     pub unit: &'static str,
-    /// One standard deviation with the campaign as it is, from the noise alone; that of a trace is
-    /// of what each pose leaves, and mostly larger.
+    /// One standard deviation with the campaign as it is.
     pub now: f64,
     /// The same with all proposals measured.
     pub after: f64,
 }
 
-/// Rivals closer than this after all proposals are not told apart by them: the
-/// level of [`same_as`](crate::trace::NamedEffect::same_as), a likelihood ratio
-/// of 2.33 standard errors, is met in half the campaigns there.
+/// Rivals closer than this after all proposals are not told apart by them: a difference in
+/// chi-square of nine are odds of ninety to one, beyond those at which one of a
+/// [class](crate::trace::NamedEffect::same_as) stands alone.
 pub const TOLD_APART: f64 = 3.0;
 
 /// Whether measurements after a campaign can be planned.
@@ -203,8 +205,8 @@ pub fn plan(campaign: &Campaign, trace: &Trace, options: &Options) -> Result<Pla
 /// As [`plan`].
 pub fn plan_between(campaign: &Campaign, trace: &Trace, groups: &[Group], options: &Options) -> Result<Plan, Error> {
     let space = Space::new(campaign, options)?;
-    let _ = (space, trace, groups);
-    todo!()
+    let (shown, rivals) = Shown::new(campaign, trace, groups)?;
+    Ok(best(&shown, &rivals, &space, options))
 }
 
 /// The best visits that are found.
@@ -213,6 +215,8 @@ fn best(regressors: &impl Regressors, rivals: &Rivals, space: &Space, options: &
     let judge = Judge::new(&regressors.known(), rivals, regressors.variance());
     let information: Vec<DMatrix<f64>> = regressors.information(&visits, None);
     let everything = information.iter().sum::<DMatrix<f64>>() + regressors.known();
+    // What is likely beforehand tells two apart that no reading does.
+    let everything = everything - regressors.likely();
     let open = judge.separable(&everything);
     let judge = judge.with_pairs(open.clone());
     let search = Search { judge: &judge, known: &regressors.known(), information: &information, visits: &visits };
@@ -224,6 +228,9 @@ fn best(regressors: &impl Regressors, rivals: &Rivals, space: &Space, options: &
     told.plan(&chosen, space.assumptions.clone())
 }
 
+/// Every trace proposes something: from few poses, for that takes less time than the trace.
+const FEW: usize = 40;
+
 /// The first proposals, as a trace holds them: what separates rivals.
 ///
 /// # Errors
@@ -232,7 +239,8 @@ pub fn next(campaign: &Campaign, trace: &Trace, count: usize) -> Result<Vec<Prop
     if groups(trace).iter().all(|group| group.names.len() < 2) {
         return Ok(Vec::new());
     }
-    let plan = plan(campaign, trace, &Options { poses: count, starts: 1, ..Options::default() })?;
+    let options = Options { poses: count, starts: 1, candidates: FEW, ..Options::default() };
+    let plan = plan(campaign, trace, &options)?;
     let proposal = |planned: &Planned| {
         let [x, y, z, ..] = planned.greatest;
         Some(Proposal {

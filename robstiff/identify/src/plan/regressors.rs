@@ -68,8 +68,7 @@ pub const ROTATION_NOISE: f64 = 5e-5;
 /// arc.
 pub const ENCODER_NOISE: f64 = 5e-6;
 
-/// How far markers on a link stand from its end, how much further out the second lever
-/// acts, and how far aside the second reflector is (m).
+/// How much further out the second lever is, and how far aside the second reflector (m).
 pub const REACH: f64 = 0.3;
 
 /// The levels of [`Sensor::Levels`], as shares of the greatest load.
@@ -83,11 +82,9 @@ pub const PAYLOADS: [f64; 5] = [0.0, 0.1, 0.25, 0.5, 1.0];
 pub enum Sensor {
     /// The rotation of the tool, where it is not read already.
     Rotations,
-    /// Markers on the body behind so many joints: 0 is the foot.
-    Markers(usize),
     /// Encoders on the output side of every gear.
     Encoders,
-    /// The same loads once more, further out along the tool.
+    /// The same loads once more, acting and read [`REACH`] further out along the tool.
     Lever,
     /// Load levels from below 3 % of the greatest up, and with the sign
     /// reversed.
@@ -109,8 +106,11 @@ pub trait Regressors {
     /// What could be measured besides.
     fn sensors(&self) -> Vec<Sensor>;
 
-    /// The information of the campaign as it is, as that of a visit.
+    /// The information of the campaign as it is, as that of a visit, with that of what is likely.
     fn known(&self) -> DMatrix<f64>;
+
+    /// The part of that which is of what is likely alone, and of no reading.
+    fn likely(&self) -> DMatrix<f64>;
 
     /// The information that each visit gives on the numbers: the Gram matrix of
     /// its whitened columns (those of a unit of each number), to be divided by

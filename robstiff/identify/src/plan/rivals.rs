@@ -1,6 +1,6 @@
 //! Who rivals whom: the effects that a trace could not tell apart.
 
-use std::string::{String, ToString};
+use std::string::String;
 use std::vec::Vec;
 
 use crate::trace::Trace;
@@ -11,7 +11,7 @@ const MOST: usize = 4;
 
 /// Kinds that depend on when something is measured, not on pose and load: what
 /// to propose for them is not computed.
-const OF_TIME: [&str; 5] = ["thermal_drift", "creep", "base_slip", "reflector_slip", "outliers"];
+const OF_TIME: [&str; 6] = ["thermal_drift", "creep", "base_slip", "reflector_slip", "wandering", "outliers"];
 
 /// The rivals with their columns, among the numbers that planning looks at.
 #[derive(Clone, Debug)]
@@ -92,7 +92,12 @@ pub struct Group {
 
 /// The names of those in the running that poses and loads have to do with.
 pub fn computed(names: &[String]) -> impl Iterator<Item = &String> {
-    names.iter().filter(|name| !OF_TIME.iter().any(|kind| name.starts_with(kind)))
+    names.iter().filter(|name| !is_of_time(name))
+}
+
+/// Whether an effect depends on when something is measured, by its full name.
+pub fn is_of_time(name: &str) -> bool {
+    OF_TIME.contains(&name.split('@').next().unwrap_or(name))
 }
 
 /// Every two of some rivals, beside the columns that all their models have.
@@ -106,8 +111,8 @@ pub fn pairs(rivals: &[(String, Rival)], core: &[usize]) -> Vec<Contest> {
     rivals.iter().enumerate().flat_map(with_later).collect()
 }
 
-/// The groups of a trace: each class of effects, named or suspected, that has several members, or that
-/// may not be there at all.
+/// The groups of a trace: each class of effects, named or suspected. One of a single member has no
+/// rival.
 pub fn groups(trace: &Trace) -> Vec<Group> {
     let group = |named: Option<usize>, class: &[(String, f64)]| Group {
         named,

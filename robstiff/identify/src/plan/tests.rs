@@ -1,19 +1,15 @@
-use std::string::{String, ToString};
 use std::vec;
 use std::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use robstiff_robots::effect::Place as Part;
 
+use super::advice::remedies;
 use super::criterion::{Criterion, Judge};
 use super::exchange::Search;
-use super::regressors::Visit;
-use super::rivals::{Contest, Number, Rival, Rivals, groups};
-use crate::campaign::made::Plan;
-use crate::trace::catalogue::GRAVITY_PRELOAD;
-use crate::trace::{Found, NamedEffect, Options, Step, Tested, Trace, Verdict, trace};
+use super::regressors::{Regressors, Sensor, Visit};
+use super::rivals::{Contest, Number, Rival, Rivals};
 
 const NUMBERS: usize = 5;
 
@@ -112,36 +108,51 @@ fn aliases_have_no_angle() {
     assert!(judge(&columns).separable(&gram).is_empty() && judge(&columns).angle(&gram, 0) < 1e-4);
 }
 
-/// A wild row beside structure, or a preload, which no step has, does not hide what is within reach of each other.
+/// Two effects that are one to visits, and two to encoders.
+struct Alike {
+    known: DMatrix<f64>,
+    apart: DMatrix<f64>,
+}
+
+impl Regressors for Alike {
+    fn variance(&self) -> f64 {
+        1.0
+    }
+
+    fn readings(&self, _: &[Visit]) -> usize {
+        40
+    }
+
+    fn sensors(&self) -> Vec<Sensor> {
+        vec![Sensor::Lever, Sensor::Encoders]
+    }
+
+    fn known(&self) -> DMatrix<f64> {
+        self.known.clone()
+    }
+
+    fn likely(&self) -> DMatrix<f64> {
+        0.0 * &self.known
+    }
+
+    fn information(&self, visits: &[Visit], besides: Option<Sensor>) -> Vec<DMatrix<f64>> {
+        let gives = if besides == Some(Sensor::Encoders) { &self.apart } else { &self.known };
+        visits.iter().map(|_| gives.clone()).collect()
+    }
+}
+
+/// Sensors that tell rivals apart are said to, and no others.
 #[test]
-fn candidates_within_reach_are_told_apart_beside_wild_rows() {
-    let campaign = Plan { poses: 12, ..Plan::new(1) }.run();
-    let mut trace = trace(&campaign, &Options { draws: 199, ..Options::default() }, &|_| {}).expect("displacements");
-    let tested = |name: &str, p_value, bic| Tested {
-        name: name.into(),
-        statistic: Some(12.0),
-        p_value,
-        bic: Some(bic),
-        left_out_rms: None,
-        reason: String::new(),
-    };
-    let candidates = vec![tested("a@x", 0.02, 100.0), tested("b@y", 0.03, 101.0), tested("c@z", 0.9, 102.0)];
-    trace.steps = vec![Step { named: Vec::new(), candidates, outcome: String::new() }];
-    (trace.effects, trace.verdict) = (Vec::new(), Verdict::Unexplained);
-    let names = |trace: &Trace| groups(trace).pop().map(|group| (group.named, group.names));
-    let within_reach = Some((None, vec!["a@x".to_string(), "b@y".to_string()]));
-    assert_eq!(names(&trace), within_reach);
-    let named = |effect: Found, lines: Vec<usize>| NamedEffect {
-        effect,
-        lines,
-        p_value: 1e-6,
-        holdout_rms: 1e-5,
-        same_as: Vec::new(),
-        in_part: Vec::new(),
-        partial: true,
-    };
-    trace.effects.push(named(Found::outliers(1), vec![7]));
-    assert_eq!(names(&trace), within_reach);
-    trace.effects = vec![named(Found::new(&GRAVITY_PRELOAD, Part::Robot.into(), Vec::new()), Vec::new())];
-    assert_eq!(names(&trace), within_reach);
+fn remedies_are_what_tells_apart() {
+    let mut random = ChaCha8Rng::seed_from_u64(4);
+    let mut columns = DMatrix::from_fn(40, NUMBERS, |_, _| random.random_range(-1.0..1.0));
+    let apart = columns.tr_mul(&columns);
+    let alias = columns.column(3) * 3.0;
+    columns.set_column(4, &alias);
+    let alike = Alike { known: columns.tr_mul(&columns), apart };
+    let (rivals, .., visits) = setting(1);
+    let judge = Judge::new(&alike.known, &rivals, 1.0);
+    let found = remedies(&alike, &judge, &visits, (&rivals.pairs[0], 0), 0.0);
+    let [found] = &found[..] else { panic!("{found:?}") };
+    assert!(found.words.starts_with("encoders") && found.separation.is_some_and(|sigmas| sigmas > 3.0), "{found:?}");
 }

@@ -81,6 +81,16 @@ impl Grams {
     }
 }
 
+/// The Gram matrix of the whitened columns of each block, under one discrepancy.
+pub fn of_each_block(readings: &Readings, noise: &Noise, columns: &DMatrix<f64>, kappa: f64) -> Vec<DMatrix<f64>> {
+    let rows = rows_of_blocks(readings, &vec![true; readings.blocks]);
+    let of_block = |rows: &Vec<usize>| {
+        let gram = of_group(readings, noise, columns, &[rows.as_slice()], &[kappa]).pop();
+        gram.map_or_else(|| DMatrix::zeros(columns.ncols(), columns.ncols()), |gram| gram.matrix)
+    };
+    rows.iter().map(of_block).collect()
+}
+
 /// The Gram matrices of some blocks, under each discrepancy.
 fn of_group(
     readings: &Readings,
@@ -94,9 +104,10 @@ fn of_group(
     let shared: Vec<usize> = (0..width).filter(|k| readings.channels[*k] < 2).collect();
     let mut white = DMatrix::zeros(count, wide);
     let mut plain = 0.0;
+    let is_discrepant = kappas.iter().any(|kappa| *kappa > 0.0);
     // The directions of the load in each block, whitened: three for each axis that yields.
     let mut loads: Vec<(Matrix3<f64>, usize)> = Vec::new();
-    let mut loaded = DMatrix::zeros(if kappas.len() > 1 { 3 * shared.len() * blocks.len() } else { 0 }, wide);
+    let mut loaded = DMatrix::zeros(if is_discrepant { 3 * shared.len() * blocks.len() } else { 0 }, wide);
     let (mut at, mut at_load) = (0, 0);
     for rows in blocks {
         let Some(factor) = noise.of_block(readings, rows).cholesky() else { continue };
@@ -109,7 +120,7 @@ fn of_group(
             let of_axis = DMatrix::from_fn(rows.len(), wide, |i, j| columns[(rows[i] * width + axis, j)] * scale);
             let of_axis = lower.solve_lower_triangular(&of_axis).unwrap_or(of_axis);
             plain -= 2.0 * scale.ln() * rows.len() as f64;
-            if kappas.len() > 1 {
+            if is_discrepant {
                 loaded.rows_mut(at_load, 3).copy_from(&forces.tr_mul(&of_axis));
                 at_load += 3;
             }
@@ -218,6 +229,9 @@ mod tests {
             assert!((found.log_det - covariance.determinant().ln()).abs() < 1e-9, "{kappa}");
             assert_eq!(found.count, size as f64);
             let rest = Grams::new(&readings, &noise, &all, &[Some(0), None, None]);
+            let each = of_each_block(&readings, &noise, &all, kappa);
+            assert!((each.iter().sum::<DMatrix<f64>>() - &expected).amax() < 1e-9 * expected.amax());
+            assert!((&each[0] - &rest.total[k].matrix).amax() < 1e-9 * expected.amax());
             let without = grams.without(1);
             assert!((&without.total[k].matrix - &rest.total[k].matrix).amax() < 1e-9 * expected.amax());
             assert!((without.total[k].log_det - rest.total[k].log_det).abs() < 1e-9);

@@ -177,7 +177,8 @@ fn one(term: Term) -> Parameter {
 /// Groups of learned scales: lengths of the table, its angles, and the unnamed block.
 const LENGTHS: usize = 0;
 const ANGLES: usize = 1;
-const BLOCK: usize = 2;
+/// See [`LENGTHS`].
+pub const BLOCK: usize = 2;
 
 /// What the scales are likely to be (m, rad).
 pub const LIKELY_SCALES: [f64; 3] = [3e-4, 3.5e-4, 3e-5];

@@ -8,6 +8,7 @@
 //! 5. the named effects go into the [description](written).
 
 mod accounted;
+pub(crate) mod basis;
 pub(crate) mod case;
 mod errors;
 mod estimate;
@@ -33,6 +34,7 @@ use crate::judge::thresholds::{FEWEST_POSES, FOLDS};
 pub use crate::judge::verdict::Verdict;
 use crate::judge::{gates, verdict};
 use crate::select::folds::nested;
+use basis::Basis;
 use case::Case;
 
 /// How to trace.
@@ -118,6 +120,8 @@ pub struct Trace {
     pub differences: bool,
     /// The rms of each pose.
     pub pose_errors: Vec<PoseError>,
+    /// Where it ended; none where the data cannot tell.
+    pub(crate) basis: Option<Basis>,
 }
 
 /// An effect that was named.

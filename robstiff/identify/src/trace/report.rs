@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use super::basis::Basis;
 use super::case::Case;
 use super::errors::{misfit, poses, rows};
 use super::estimate::estimates;
@@ -150,6 +151,7 @@ pub fn report(
         components: readings.reported,
         differences: readings.differences,
         pose_errors: poses(case, alone, &found.own.left),
+        basis: Some(Basis::of(engine, found)),
     })
     .map(|trace| checked(trace, left_rms))
 }
@@ -201,6 +203,7 @@ pub fn insufficient(campaign: &Campaign, case: &Case<'_>, engine: &Engine<'_>, w
         components: readings.reported,
         differences: readings.differences,
         pose_errors: poses(case, &left, &left),
+        basis: None,
     })
 }
 
