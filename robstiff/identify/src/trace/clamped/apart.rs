@@ -149,8 +149,9 @@ mod tests {
                 0.5 * five_axis().joints[axis - 1].compliance() * all[axis - 1]
             };
             let (verdict, names) = told(&measured(&five_axis(), &both_ways(), 760 + seed, lags));
-            // The last axis may be left without a name, but then something is said to be missing.
-            let lag = names.iter().all(|name| name.starts_with("hysteresis@")) && names.len() >= 4;
+            // Of axes that are hardly loaded a lag may be too small to name, but then something is said to be
+            // missing.
+            let lag = names.iter().all(|name| name.starts_with("hysteresis@")) && names.len() >= 3;
             assert!(lag && (names.len() == 5 || verdict == Verdict::Partial), "{seed}: {verdict:?} {names:?}");
         }
     }
