@@ -6,6 +6,9 @@ use crate::words::count;
 /// So many of a kind are said one by one.
 const ONE_BY_ONE: usize = 2;
 
+/// So many of one line: columns that the header lacks are each another problem.
+const IN_A_LINE: usize = 12;
+
 /// So many ranges of lines are listed.
 const RANGES: usize = 6;
 
@@ -35,7 +38,8 @@ impl Repeated {
 
     /// One more of the kind.
     pub fn take(&mut self, problem: impl FnOnce() -> Diagnostic, line: usize) {
-        if self.first.len() < ONE_BY_ONE {
+        let of_one_line = self.first.iter().all(|problem| problem.line == line);
+        if self.first.len() < if of_one_line { IN_A_LINE } else { ONE_BY_ONE } {
             self.first.push(problem());
         } else if self.others.last() != Some(&line) {
             self.others.push(line);
