@@ -87,13 +87,42 @@ fn displacements(
     let samples = Samples::of_description(robot, data);
     let mut linear = data.clone();
     for (i, row) in linear.rows.iter_mut().enumerate() {
-        let in_base = Vector3::from(predicted.rows[i].predicted) + Vector3::from(trace.residuals[i].after);
-        let read = match data.measured_frame {
+        let in_base = Vector3::from(predicted.rows[i].predicted);
+        let as_filed = match data.measured_frame {
             Frame::Base => in_base,
             Frame::Tool => samples.rows[i].tcp.fixed_view::<3, 3>(0, 0).transpose() * in_base,
         };
+        // What is left is in the frame of the file already.
+        let read = as_filed + Vector3::from(trace.residuals[i].after);
         // What is left of rotations and of encoders is not told.
         *row = Observation { displacement: read.into(), rotation: None, encoders: None, motors: None, ..row.clone() };
     }
     Some(linear)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::made::{Plan, displacements as read};
+    use crate::trace::{Options, trace};
+
+    /// Of an arm whose springs are linear that is what was read, but for the second order.
+    #[test]
+    fn what_a_linear_arm_reads_is_in_the_frame_of_the_file() {
+        for measured_frame in [Frame::Base, Frame::Tool] {
+            let campaign = Plan { measured_frame, noise: [3e-5; 3], ..Plan::new(5) }.run();
+            let found = trace(&campaign, &Options::default(), &|_| ()).expect("it can be traced");
+            let linear = linear(&campaign, &found).expect("of displacements");
+            let pairs = read(&campaign).rows.iter().zip(&read(&linear).rows);
+            let off = |(one, other): (&Observation, &Observation)| {
+                (Vector3::from(one.displacement) - Vector3::from(other.displacement)).norm_squared()
+            };
+            let off = (pairs.map(off).sum::<f64>() / campaign_rows(&campaign) as f64).sqrt();
+            assert!(off < 1e-5, "{measured_frame:?} {off}");
+        }
+    }
+
+    fn campaign_rows(campaign: &Campaign) -> usize {
+        read(campaign).rows.len()
+    }
 }
