@@ -4,7 +4,7 @@
 use std::rc::Rc;
 
 use robstiff::elements::{Torque, turn};
-use robstiff::{Effect, JointKind};
+use robstiff::{Convention, Effect, JointKind};
 use robstiff_robots::Description;
 
 use crate::effects::{Scene, What};
@@ -177,7 +177,7 @@ fn one(term: Term) -> Parameter {
 /// Groups of learned scales: lengths of the table, its angles, and the unnamed block.
 const LENGTHS: usize = 0;
 const ANGLES: usize = 1;
-/// See [`LENGTHS`].
+/// That of the unnamed block.
 pub const BLOCK: usize = 2;
 
 /// What the scales are likely to be (m, rad).
@@ -190,7 +190,15 @@ pub const POSES_FOR_BLOCK: usize = 80;
 const ANYWHERE: f64 = 1e3;
 
 /// What the reflector of absolute positions is likely to be off by (m).
-const REFLECTOR: f64 = 0.1;
+const REFLECTOR_OFF: f64 = 0.1;
+
+/// The names of its numbers.
+pub const REFLECTOR: [&str; 3] = ["reflector x", "reflector y", "reflector z"];
+
+/// Axes are nearly parallel where the sine of the twist between them is smaller. There an angle
+/// between them about y is no combination of the table's other numbers (Hayati 1983); elsewhere it is
+/// one, and would only split what these say.
+const PARALLEL: f64 = 0.1;
 
 /// The numbers of the table, by what they are called.
 pub const TABLE: [(usize, &str, &str); 5] =
@@ -211,10 +219,10 @@ pub fn of_positions(scene: &Scene<'_>, poses: usize) -> Vec<Parameter> {
     }
     for k in 0..3 {
         let term = Term::World(Rc::new(move |world: &mut World, by| world.rig.reflector[k] += by));
-        always.push(Parameter::new(["reflector x", "reflector y", "reflector z"][k], "m", Size::Of(REFLECTOR), term));
+        always.push(Parameter::new(REFLECTOR[k], "m", Size::Of(REFLECTOR_OFF), term));
     }
     for joint in scene.joints() {
-        for (number, name, unit) in TABLE {
+        for (number, name, unit) in TABLE.into_iter().filter(|of| of.0 != BETA || is_parallel(scene, joint)) {
             // Of a joint that slides, theta and d are the angle and the coordinate.
             let group = if unit == "m" { LENGTHS } else { ANGLES };
             let size = Size::Learned(group, LIKELY_SCALES[group]);
@@ -225,6 +233,16 @@ pub fn of_positions(scene: &Scene<'_>, poses: usize) -> Vec<Parameter> {
         always.extend(block(scene));
     }
     always
+}
+
+/// Whether the twist of a joint's row lies between two nearly parallel axes of joints. In the standard
+/// table it lies behind the joint (from 1), in the modified one before it.
+fn is_parallel(scene: &Scene<'_>, joint: usize) -> bool {
+    let end = match scene.robot.convention {
+        Convention::Standard => scene.kinds.len(),
+        Convention::Modified => 1,
+    };
+    joint != end && scene.robot.joints[joint - 1].alpha.sin().abs() < PARALLEL
 }
 
 /// Every joint stands aside by sines and cosines of its own and of neighbouring angles: what an arm

@@ -5,6 +5,7 @@ use core::cell::Cell;
 use statrs::function::gamma::ln_gamma;
 
 use super::Layout;
+use super::always::BLOCK;
 use crate::model::{Sign, Size};
 use crate::observe::Readings;
 use crate::regression::evidence::{Start, fit, reduced};
@@ -262,7 +263,6 @@ impl<'l> Problem<'l> {
 
 /// The same scales with that of the unnamed block far smaller, where there is one.
 fn smaller(scales: &Scales) -> Option<Scales> {
-    const BLOCK: usize = 2;
     let mut small = scales.clone();
     let now = small.now.get_mut(BLOCK)?;
     *now = (*now / 8.0).max(0.1 * scales.typical[BLOCK]);
