@@ -91,6 +91,8 @@ fn stages(trace: &Trace) -> Vec<Stage> {
             remark += &format!(" and {in_doubt} suspected");
         }
         stages.push(stage("With effects", &(remark + ", everything fitted again"), &trace.after));
+        let remark = "what the description takes, faults of the measurement corrected for";
+        stages.push(stage("As written", remark, &trace.written));
     }
     stages
 }

@@ -25,6 +25,7 @@ pub fn document(trace: &Trace, triage: &Triage, campaign: &Campaign, warnings: &
         "effects": trace.effects.iter().map(|named| effect(named, unit)).collect::<Value>(),
         "suspected": trace.suspected.iter().map(suspected).collect::<Value>(),
         "after": misfit(&trace.after),
+        "written": misfit(&trace.written),
         "verdict": trace.verdict.to_string(),
         "why": trace.why,
         "unexplained": {

@@ -68,7 +68,9 @@ fn errors(trace: &Trace, Terms { unseen: [_, unseen], unit, .. }: Terms) -> Tabl
         (true, false) => Some("with what is suspected"),
         (false, false) => Some("with the effects and what is suspected"),
     };
-    stages.extend(last.map(|name| (name, trace.after)));
+    stages.extend(
+        last.into_iter().flat_map(|name| [(name, trace.after), ("as the description is written", trace.written)]),
+    );
     for (name, misfit) in stages {
         errors.row([name.to_owned(), fine_micrometres(misfit.rms), fine_micrometres(misfit.holdout_rms)]);
     }

@@ -1,10 +1,10 @@
 //! What a class of effects must pass to be named.
 
-use super::thresholds::{ACCOUNTS, DISCREPANCY, DISTINCT, MATTERS, PROBABLE, RECURS, SIZES, WORSE};
-use crate::effects::Side;
+use super::thresholds::{ACCOUNTS, DISCREPANCY, DISTINCT, FALLS, LOSS, MATTERS, PROBABLE, RECURS, SIZES, WORSE};
+use crate::effects::{Side, What};
 use crate::observe::Readings;
-use crate::regression::noise::{discrepancies, rows_of_blocks};
-use crate::select::classes::{ByCandidate, Class, classes};
+use crate::regression::noise::{OUTLYING, discrepancies, rows_of_blocks};
+use crate::select::classes::{ByCandidate, Class, classes, extend, weigh_again};
 use crate::select::engine::{Engine, Found, groups};
 use crate::select::folds::Nested;
 use crate::select::search::{search, with, without};
@@ -15,20 +15,29 @@ use crate::select::{Problem, Set};
 pub struct Weighed {
     /// The class.
     pub class: Class,
-    /// The least probability with priors that are narrower or wider.
+    /// The least probability with priors as they are, narrower and wider.
     pub least: f64,
+    /// How many times as wide the priors are with which it is the least.
+    pub least_at: f64,
     /// The share of folds in which it is back.
     pub recurs: f64,
-    /// By how many standard errors unseen poses are predicted worse without it.
-    pub worse: f64,
-    /// By how much the error on unseen poses grows without it (1).
-    pub loss: f64,
+    /// Of absolute positions, what it costs on unseen poses to put the best of all others in its place.
+    pub replaced: Option<Replaced>,
     /// By how much the error grows without its effect, over the noise.
     pub matters: f64,
     /// Whether its numbers are distinct from zero.
     pub distinct: bool,
     /// What keeps it from being named, in words; none where it is named.
     pub why_not: Option<String>,
+}
+
+/// How unseen poses are predicted with the best of all others in the place of a class.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Replaced {
+    /// By how many standard errors of the difference between poses they are predicted worse.
+    pub worse: f64,
+    /// By how much the error grows (1).
+    pub loss: f64,
 }
 
 /// The classes of the best set, weighed, and what is left.
@@ -38,6 +47,9 @@ pub struct Judgement {
     pub classes: Vec<Weighed>,
     /// The probability that nothing is there.
     pub nothing: f64,
+    /// By how much the error on unseen poses falls with the whole search, against the description's own
+    /// numbers alone (1). Outlying rows have no part: they are as far off either way.
+    pub falls: f64,
     /// The probability that a discrepancy is left.
     pub discrepancy: f64,
     /// The share of what is beyond the noise that the best set accounts for; of a campaign in which a
@@ -52,45 +64,49 @@ pub fn weigh(engine: &Engine<'_>, found: &Found, nested: &Nested, seed: u64) -> 
     if problem.learns() {
         problem.learn(&found.best, 8);
     }
-    let classes = classes(&problem, &found.visited, &found.best);
-    let least = at_other_sizes(engine, found, &classes, seed);
-    let unseen = without_each(engine, found, &classes, seed);
+    let mut classes = classes(&problem, &found.visited, &found.best);
+    let by = ByCandidate::of(&problem, &found.visited);
+    let least = at_other_sizes(engine, found, &mut classes, &by);
+    let unseen = match engine.scene.what {
+        What::Positions => without_each(engine, found, &classes, seed).into_iter().map(Some).collect(),
+        What::Displacements | What::Clamped => vec![None; classes.len()],
+    };
+    let falls = fall(engine, nested);
     let readings = engine.observation.readings();
     let noise = found.own.fit.variance.sqrt();
-    let by = ByCandidate::of(&problem, &found.visited);
     let likely = problem.discrepancies(&found.best);
     let discrepancy =
         likely.iter().zip(discrepancies(readings)).filter(|(_, kappa)| **kappa >= DISCREPANCY).map(|(p, _)| p).sum();
     let accounts = accounted(&problem, &found.best, found.kappa);
     let weighed = classes.into_iter().enumerate().map(|(k, class)| {
         let names: Vec<String> = class.members.iter().map(|(of, _)| found.layout.candidates[*of].name()).collect();
-        let (worse, loss) = unseen[k];
+        let (at, least) = least[k];
         let matters = growth_without(&problem, found, k, noise);
         let mut weighed = Weighed {
-            least: least[k].min(class.probability),
+            least,
+            least_at: at,
             recurs: nested.recurs(&names),
-            worse,
-            loss,
+            replaced: unseen[k],
             matters,
             distinct: is_distinct(found, class.form),
             why_not: None,
             class,
         };
-        weighed.why_not = why_not(&weighed, found, discrepancy, accounts);
+        weighed.why_not = why_not(&weighed, found, falls, (discrepancy, accounts));
         weighed
     });
-    Judgement { classes: weighed.collect(), nothing: by.of_none(), discrepancy, accounts }
+    Judgement { classes: weighed.collect(), nothing: by.of_none(), falls, discrepancy, accounts }
 }
 
 /// What keeps a class from being named.
-fn why_not(of: &Weighed, found: &Found, discrepancy: f64, accounts: f64) -> Option<String> {
+fn why_not(of: &Weighed, found: &Found, falls: f64, (discrepancy, accounts): (f64, f64)) -> Option<String> {
     let side = found.layout.candidates[of.class.members[0].0].kind.side;
     let percent = |p: f64| format!("{:.0} %", 100.0 * p);
     if side == Side::Unnamed {
         return Some("a description has no word for it".into());
     }
     if of.least < PROBABLE {
-        return Some(format!("its probability is {}, less than {}", percent(of.least), percent(PROBABLE)));
+        return Some(improbable(of, percent));
     }
     if of.recurs < RECURS {
         return Some(format!("it is back in {} of the searches without some poses only", percent(of.recurs)));
@@ -101,8 +117,11 @@ fn why_not(of: &Weighed, found: &Found, discrepancy: f64, accounts: f64) -> Opti
     if of.matters < MATTERS {
         return Some("without it the error grows by next to nothing".into());
     }
-    if of.worse < WORSE {
-        return Some("unseen poses are predicted about as well without it".into());
+    if of.replaced.is_some_and(|of| of.loss < LOSS || of.worse < WORSE) {
+        return Some("unseen poses are predicted about as well with something else in its place".into());
+    }
+    if of.replaced.is_none() && falls < FALLS {
+        return Some("all effects together predict unseen poses no better than the description's own numbers".into());
     }
     if discrepancy > 0.5 && accounts < ACCOUNTS {
         return Some(format!(
@@ -113,29 +132,51 @@ fn why_not(of: &Weighed, found: &Found, discrepancy: f64, accounts: f64) -> Opti
     None
 }
 
-/// The probability of each class with priors that are narrower and wider, the least.
-fn at_other_sizes(engine: &Engine<'_>, found: &Found, classes: &[Class], _seed: u64) -> Vec<f64> {
-    let mut least = vec![1.0_f64; classes.len()];
+/// That a class is not probable enough, and where it is least so.
+fn improbable(of: &Weighed, percent: impl Fn(f64) -> String) -> String {
+    if of.class.probability < PROBABLE {
+        return format!("its probability is {}, less than {}", percent(of.class.probability), percent(PROBABLE));
+    }
+    let size = if of.least_at > 1.0 { "larger" } else { "smaller" };
+    format!("its probability falls to {} where effects are taken to be three times {size}", percent(of.least))
+}
+
+/// By how much the error on unseen poses falls with the whole search.
+fn fall(engine: &Engine<'_>, nested: &Nested) -> f64 {
+    let readings = engine.observation.readings();
+    let is_asked = |row: &usize| engine.training[readings.block[*row]] && engine.noise.weights[*row] >= OUTLYING;
+    let rms = |left| readings.rms(left, (0..readings.rows()).filter(is_asked));
+    let alone = rms(&nested.alone);
+    if alone > 0.0 { 1.0 - rms(&nested.left) / alone } else { 0.0 }
+}
+
+/// Extends classes by what may stand in the place of their effects with priors that are narrower or
+/// wider, and finds the least probability of each with any, after how many times as wide they are then.
+fn at_other_sizes(engine: &Engine<'_>, found: &Found, classes: &mut [Class], by: &ByCandidate) -> Vec<(f64, f64)> {
+    let mut others: Vec<(f64, ByCandidate)> = Vec::new();
     for sizes in SIZES {
         let mut other = engine.clone();
         other.sizes = sizes;
         let grams = other.grams(&found.columns, &other.one_group()).total;
         let mut problem = other.problem(&found.layout, &found.columns, grams);
         let visited = search(&mut problem, &found.best, engine.fold_width());
-        let by = ByCandidate::of(&problem, &visited);
-        for (least, class) in least.iter_mut().zip(classes) {
-            let members: Vec<usize> = class.members.iter().map(|(of, _)| *of).collect();
-            *least = least.min(by.of_any(&members));
-        }
+        extend(classes, &problem, &visited, &found.best);
+        others.push((sizes, ByCandidate::of(&problem, &visited)));
     }
-    least
+    weigh_again(classes, by);
+    let least = |class: &Class| {
+        let members: Vec<usize> = class.members.iter().map(|(of, _)| *of).collect();
+        let each = others.iter().map(|(sizes, by)| (*sizes, by.of_any(&members)));
+        each.fold((1.0, class.probability), |least, one| if one.1 < least.1 { one } else { least })
+    };
+    classes.iter().map(least).collect()
 }
 
 /// Of each class, by how many standard errors unseen poses are predicted worse without it, the best of
 /// all others in its place, and by how much.
-fn without_each(engine: &Engine<'_>, found: &Found, classes: &[Class], seed: u64) -> Vec<(f64, f64)> {
+fn without_each(engine: &Engine<'_>, found: &Found, classes: &[Class], seed: u64) -> Vec<Replaced> {
     let readings = engine.observation.readings();
-    let group = groups(&engine.training, super::thresholds::FOLDS, seed);
+    let group = groups(readings, &engine.training, super::thresholds::FOLDS, seed);
     let folds = group.iter().flatten().max().map_or(0, |last| last + 1);
     let grams = engine.grams(&found.columns, &group);
     // The sum of squares of each block, of the best set and without each class.
@@ -163,7 +204,8 @@ fn without_each(engine: &Engine<'_>, found: &Found, classes: &[Class], seed: u64
         let mean = differences.iter().sum::<f64>() / count;
         let spread = differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (count - 1.0);
         let error = (spread / count).sqrt().max(f64::MIN_POSITIVE);
-        (mean / error, ((whole + mean * count).max(0.0) / whole.max(f64::MIN_POSITIVE)).sqrt() - 1.0)
+        let loss = ((whole + mean * count).max(0.0) / whole.max(f64::MIN_POSITIVE)).sqrt() - 1.0;
+        Replaced { worse: mean / error, loss }
     };
     less.iter().map(of_class).collect()
 }
@@ -237,5 +279,29 @@ fn accounted(problem: &Problem<'_>, best: &Set, kappa: usize) -> f64 {
     match (variance(&Set::new(), 0), variance(best, 0), variance(best, kappa)) {
         (Some(alone), Some(with), Some(noise)) if alone > noise => ((alone - with) / (alone - noise)).clamp(0.0, 1.0),
         _ => 1.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_reason_is_what_decided() {
+        let of = |probability, least, least_at| Weighed {
+            class: Class { form: 0, members: vec![(0, probability)], probability },
+            least,
+            least_at,
+            recurs: 1.0,
+            replaced: None,
+            matters: 1.0,
+            distinct: true,
+            why_not: None,
+        };
+        let percent = |p: f64| format!("{:.0} %", 100.0 * p);
+        assert_eq!(improbable(&of(0.7, 0.04, 3.0), percent), "its probability is 70 %, less than 95 %");
+        let wider = "its probability falls to 4 % where effects are taken to be three times larger";
+        assert_eq!(improbable(&of(0.99, 0.04, 3.0), percent), wider);
+        assert_eq!(improbable(&of(0.99, 0.04, 1.0 / 3.0), percent), wider.replace("larger", "smaller"));
     }
 }

@@ -12,9 +12,18 @@ pub const SIZES: [f64; 2] = [1.0 / 3.0, 3.0];
 /// 72, 2010, take 0.6 to 0.9).
 pub const RECURS: f64 = 0.8;
 
-/// Unseen poses must be predicted worse without the class, by this many standard errors of the
-/// difference between poses: one in a hundred by chance, one-sided.
-pub const WORSE: f64 = 2.33;
+/// Of loaded arms, the whole search must predict unseen poses better than the description's own numbers
+/// alone, by this part. A fault of the rig may do so little by itself, and much with another: what is
+/// asked is whether all together predict.
+pub const FALLS: f64 = 0.01;
+
+/// Of absolute positions an arm deviates in many small ways, of which most may replace each other.
+/// With the best of all others in its place unseen poses must be predicted worse by this part, and by
+/// this many standard errors of the difference between poses: one in a hundred and fifty by chance,
+/// one-sided.
+pub const LOSS: f64 = 0.03;
+/// See [`LOSS`].
+pub const WORSE: f64 = 2.5;
 
 /// An effect without which the error grows by less than this part of the noise does not matter.
 pub const MATTERS: f64 = 0.1;

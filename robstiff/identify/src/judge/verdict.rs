@@ -34,6 +34,8 @@ impl fmt::Display for Verdict {
 pub struct Evidence<'a> {
     /// How many effects are named.
     pub named: usize,
+    /// Whether outlying readings are.
+    pub outliers: bool,
     /// Full names of what is suspected besides.
     pub suspected: &'a [String],
     /// What has no name and looks like this, each as a noun for a sentence.
@@ -43,7 +45,16 @@ pub struct Evidence<'a> {
     /// The probability that a discrepancy is left.
     pub discrepancy: f64,
     /// What the model leaves over the noise, where that is known independently of the model.
-    pub over_noise: Option<f64>,
+    pub over_noise: Option<OverNoise>,
+}
+
+/// What a model leaves against a noise that is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OverNoise {
+    /// One over the other.
+    pub ratio: f64,
+    /// What this may well be by chance.
+    pub by_chance: f64,
 }
 
 use super::thresholds::{ABOVE_NOISE, MOST_NAMES};
@@ -51,7 +62,7 @@ use super::thresholds::{ABOVE_NOISE, MOST_NAMES};
 /// The verdict, and why in a sentence without its full stop.
 pub fn verdict(of: &Evidence<'_>) -> (Verdict, String) {
     let left = of.discrepancy > 0.5;
-    let above = of.over_noise.is_some_and(|ratio| ratio > ABOVE_NOISE);
+    let above = of.over_noise.is_some_and(|of| of.ratio > ABOVE_NOISE.max(of.by_chance));
     let more = || -> Option<String> {
         if !of.looks_like.is_empty() {
             return Some(format!(
@@ -67,9 +78,10 @@ pub fn verdict(of: &Evidence<'_>) -> (Verdict, String) {
         }
         above.then(|| "what is left is more than the noise".into())
     };
+    let is_none = of.named == 0 && !of.outliers;
     match (of.named, more()) {
-        (0, None) => (Verdict::Adequate, "nothing is missing that these data could show".into()),
-        (0, Some(why)) => (Verdict::Unexplained, why),
+        (_, None) if is_none => (Verdict::Adequate, "nothing is missing that these data could show".into()),
+        (_, Some(why)) if is_none => (Verdict::Unexplained, why),
         (_, Some(why)) => (Verdict::Partial, why),
         (named, None) if named > MOST_NAMES => {
             (Verdict::Partial, format!("{named} effects at once are more than these data can vouch for"))
@@ -79,5 +91,36 @@ pub fn verdict(of: &Evidence<'_>) -> (Verdict, String) {
             "the noise of the readings is known from the model only: declare it, or repeat loads within a visit".into(),
         ),
         _ => (Verdict::Explained, "what the named effects leave looks like noise".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NOTHING: Evidence<'static> = Evidence {
+        named: 0,
+        outliers: false,
+        suspected: &[],
+        looks_like: &[],
+        nothing: 1.0,
+        discrepancy: 0.0,
+        over_noise: Some(OverNoise { ratio: 1.0, by_chance: 1.0 }),
+    };
+
+    #[test]
+    fn outlying_readings_are_something() {
+        assert_eq!(verdict(&NOTHING).0, Verdict::Adequate);
+        assert_eq!(verdict(&Evidence { outliers: true, ..NOTHING }).0, Verdict::Explained);
+        assert_eq!(verdict(&Evidence { outliers: true, over_noise: None, ..NOTHING }).0, Verdict::Partial);
+    }
+
+    /// Ten repetitions know a noise to no better than half of it.
+    #[test]
+    fn what_few_repetitions_say_is_uncertain() {
+        let over =
+            |ratio, by_chance| verdict(&Evidence { over_noise: Some(OverNoise { ratio, by_chance }), ..NOTHING }).0;
+        assert_eq!(over(1.3, 1.0), Verdict::Unexplained);
+        assert_eq!(over(1.3, 1.9), Verdict::Adequate);
     }
 }

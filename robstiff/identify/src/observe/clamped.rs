@@ -7,7 +7,8 @@ use super::{Observation, Readings};
 use crate::campaign::{ClampedRow, Frame};
 use crate::model::{Arm, At, Parameter, Rig, Spring, Stand, Term, Torques, World};
 
-/// A campaign of clamped axes. Every axis is a block, and its rows are one sequence of loads.
+/// A campaign of clamped axes. The rows of an axis are one sequence of loads, and one visit; its blocks
+/// are parts of that sequence.
 pub struct Clamped<'c> {
     rows: &'c [ClampedRow],
     readings: Readings,
@@ -26,8 +27,9 @@ impl<'c> Clamped<'c> {
         let mut axes: Vec<usize> = rows.iter().map(|row| row.axis).collect();
         axes.sort_unstable();
         axes.dedup();
-        let block = |row: &ClampedRow| axes.iter().position(|axis| *axis == row.axis).unwrap_or_default();
-        let block: Vec<usize> = rows.iter().map(block).collect();
+        let axis = |row: &ClampedRow| axes.iter().position(|axis| *axis == row.axis).unwrap_or_default();
+        let axis: Vec<usize> = rows.iter().map(axis).collect();
+        let (block, stratum) = parts(&axis, axes.len());
         let q = vec![0.0; arm.joints()];
         let stand = arm.stand(&q, &[]);
         let readings = Readings {
@@ -36,8 +38,9 @@ impl<'c> Clamped<'c> {
             reported: 1,
             // Each axis has a reading of its own.
             channels: vec![0],
-            visit: block.clone(),
-            blocks: axes.len(),
+            visit: axis,
+            blocks: stratum.len(),
+            stratum,
             block,
             force: vec![Vector3::zeros(); rows.len()],
             lines: rows.iter().map(|row| row.line).collect(),
@@ -100,6 +103,22 @@ impl<'c> Clamped<'c> {
     }
 }
 
+/// The loads of an axis are left out in so many parts: one axis says nothing of another, so each has to
+/// be in every fit.
+const PARTS: usize = 5;
+
+/// The block of each row, and the axis of each block, by the axis of each row.
+fn parts(axis: &[usize], axes: usize) -> (Vec<usize>, Vec<usize>) {
+    let (mut block, mut stratum) = (vec![0; axis.len()], Vec::new());
+    for of in 0..axes {
+        let rows: Vec<usize> = (0..axis.len()).filter(|&row| axis[row] == of).collect();
+        let parts = PARTS.min(rows.len());
+        rows.iter().enumerate().for_each(|(k, &row)| block[row] = stratum.len() + k * parts / rows.len());
+        stratum.extend(vec![of; parts]);
+    }
+    (block, stratum)
+}
+
 impl Observation for Clamped<'_> {
     fn readings(&self) -> &Readings {
         &self.readings
@@ -127,5 +146,19 @@ impl Observation for Clamped<'_> {
 
     fn each(&self, of: &mut dyn FnMut(&At<'_>)) {
         (0..self.rows.len()).for_each(|row| of(&self.at(row)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each part is a stretch of one axis, however the axes take turns.
+    #[test]
+    fn parts_are_stretches_of_one_axis() {
+        let axis = [0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0];
+        let (block, stratum) = parts(&axis, 2);
+        assert_eq!(stratum, [0, 0, 0, 0, 0, 1, 1]);
+        assert_eq!(block, [0, 0, 5, 1, 1, 2, 2, 6, 3, 3, 4]);
     }
 }

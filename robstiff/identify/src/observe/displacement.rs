@@ -134,6 +134,7 @@ impl<'c> Displacement<'c> {
                 channels,
                 block: data.rows.iter().map(|row| row.pose).collect(),
                 blocks: data.poses.len(),
+                stratum: vec![0; data.poses.len()],
                 visit,
                 force: forces,
                 lines: data.rows.iter().map(|row| row.line).collect(),

@@ -27,11 +27,14 @@ pub struct Readings {
     /// The noise that each number of a row shares: 0 for what is reported, 1 for rotations, 2 and so on
     /// for encoders, one each.
     pub channels: Vec<usize>,
-    /// The block of each row, from 0: its pose, or its clamped axis. Rows of a block share what is
-    /// wrong with it.
+    /// The block of each row, from 0: its pose, or its part of a clamped axis's loads. Rows of a block
+    /// share what is wrong with it, and are left out together.
     pub block: Vec<usize>,
     /// How many blocks there are.
     pub blocks: usize,
+    /// What each block is of: folds leave out alike of each. All are of one, but for clamped axes,
+    /// whose blocks are parts of an axis.
+    pub stratum: Vec<usize>,
     /// The visit of each row.
     pub visit: Vec<usize>,
     /// The force on each row over the root mean square of all, in the base frame; zero where

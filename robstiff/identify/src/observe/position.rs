@@ -61,6 +61,7 @@ impl<'c> Position<'c> {
             channels: vec![0; 3],
             block: data.rows.iter().map(|row| row.pose).collect(),
             blocks: data.poses.len(),
+            stratum: vec![0; data.poses.len()],
             visit,
             force: vec![Vector3::zeros(); read.len()],
             lines: data.rows.iter().map(|row| row.line).collect(),

@@ -191,6 +191,7 @@ mod tests {
             channels: vec![0, 0, 0, 2],
             block: vec![0, 0, 0, 1, 1, 2, 2],
             blocks: 3,
+            stratum: vec![0; 3],
             visit: vec![0, 0, 1, 2, 2, 3, 4],
             force: (0..rows).map(|i| Vector3::new((i as f64).cos(), 0.3, (2.0 * i as f64).sin())).collect(),
             lines: (2..rows + 2).collect(),

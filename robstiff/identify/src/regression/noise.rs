@@ -12,6 +12,7 @@
 //! the larger the load.
 
 use nalgebra::{DMatrix, DVector, Vector3};
+use statrs::function::gamma::ln_gamma;
 
 use crate::observe::Readings;
 
@@ -57,6 +58,8 @@ pub struct Noise {
     pub outlying: f64,
     /// The log-likelihood ratio of outlying rows against none.
     pub for_outliers: f64,
+    /// The log-likelihood ratio of a heavy-tailed noise of all rows against none.
+    pub for_tails: f64,
     /// The size of the displacement of each row (m).
     sizes: Vec<f64>,
 }
@@ -76,6 +79,7 @@ impl Noise {
             scales: (0..channels).map(|channel| if channel == 0 { 1.0 } else { lever }).collect(),
             outlying: 0.0,
             for_outliers: 0.0,
+            for_tails: 0.0,
             sizes,
         }
     }
@@ -205,6 +209,8 @@ impl Noise {
         }
         self.outlying = part;
         self.for_outliers = of_rows().map(|&row| (1.0 - part + part * odds(squares[row])).ln()).sum();
+        let squares: Vec<f64> = of_rows().map(|&row| squares[row]).collect();
+        self.for_tails = for_tails(&squares, axes);
         for &row in of_rows() {
             self.weights[row] = 1.0 - outlying[row] + outlying[row] / (WIDER * WIDER);
         }
@@ -234,6 +240,28 @@ impl Noise {
     pub fn of_row(&self, row: usize) -> f64 {
         self.own(row, self.growth) / self.weights[row]
     }
+}
+
+/// The degrees of freedom of the heavy-tailed distributions that are tried, and their sizes over that of
+/// the bulk.
+const TAILS: [f64; 6] = [2.0, 3.0, 4.0, 6.0, 10.0, 20.0];
+const TAIL_SIZES: [f64; 8] = [0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2];
+
+/// The log-likelihood ratio of Student's distribution of some axes (Lange, Little and Taylor, JASA 84,
+/// 1989) against a normal one, for lengths squared over the variance of the bulk; at its likeliest.
+fn for_tails(squares: &[f64], axes: f64) -> f64 {
+    let likelihood = |freedom: f64, size: f64| {
+        let share = ln_gamma(0.5 * (freedom + axes))
+            - ln_gamma(0.5 * freedom)
+            - 0.5 * axes * (0.5 * freedom).ln()
+            - axes * size.ln();
+        let of = |square: &f64| {
+            share - 0.5 * (freedom + axes) * (square / (freedom * size * size)).ln_1p() + 0.5 * square.min(1200.0)
+        };
+        squares.iter().map(of).sum::<f64>()
+    };
+    let all = TAILS.into_iter().flat_map(|freedom| TAIL_SIZES.into_iter().map(move |size| likelihood(freedom, size)));
+    all.fold(0.0, f64::max)
 }
 
 /// The rows of the blocks that are fitted to, a list each.

@@ -77,18 +77,47 @@ pub fn classes(problem: &Problem<'_>, visited: &Visited, best: &Set) -> Vec<Clas
     best.iter().map(|&form| class(problem, &by, &of_best, form)).collect()
 }
 
-fn class(problem: &Problem<'_>, by: &ByCandidate, of_best: &[usize], form: usize) -> Class {
-    let own = problem.layout.forms[form].candidate;
-    let whole = by.of_set(of_best);
-    let all = 0..problem.layout.candidates.len();
-    let mut members = vec![own];
-    for other in all.clone().filter(|other| !of_best.contains(other)) {
+/// The candidates in whose place a set is nearly as probable as with one of its candidates, or as with the
+/// best in its place.
+fn in_place_of(problem: &Problem<'_>, by: &ByCandidate, of_best: &[usize], own: usize) -> Vec<usize> {
+    let others = (0..problem.layout.candidates.len()).filter(|other| !of_best.contains(other));
+    let with = |other: usize| {
         let mut swapped: Vec<usize> = of_best.iter().map(|&of| if of == own { other } else { of }).collect();
         swapped.sort_unstable();
-        if by.of_set(&swapped) * ODDS > whole {
-            members.push(other);
+        by.of_set(&swapped)
+    };
+    let each: Vec<(usize, f64)> = others.map(|other| (other, with(other))).collect();
+    let most = each.iter().map(|(_, p)| *p).fold(with(own), f64::max);
+    each.into_iter().filter(|(_, p)| p * ODDS > most).map(|(other, _)| other).collect()
+}
+
+/// Adds to classes what may as well stand in the place of their effects under other priors.
+pub fn extend(classes: &mut [Class], problem: &Problem<'_>, visited: &Visited, best: &Set) {
+    let by = ByCandidate::of(problem, visited);
+    let of_best = candidates_of(problem, best);
+    for class in classes {
+        for other in in_place_of(problem, &by, &of_best, class.members[0].0) {
+            if class.members.iter().all(|(member, _)| *member != other) {
+                class.members.push((other, 0.0));
+            }
         }
     }
+}
+
+/// Weighs what is in classes again.
+pub fn weigh_again(classes: &mut [Class], by: &ByCandidate) {
+    for class in classes {
+        class.members.iter_mut().for_each(|(of, p)| *p = by.of_any(&[*of]));
+        class.members[1..].sort_by(|a, b| b.1.total_cmp(&a.1));
+        class.probability = by.of_any(&class.members.iter().map(|(of, _)| *of).collect::<Vec<_>>());
+    }
+}
+
+fn class(problem: &Problem<'_>, by: &ByCandidate, of_best: &[usize], form: usize) -> Class {
+    let own = problem.layout.forms[form].candidate;
+    let all = 0..problem.layout.candidates.len();
+    let mut members = vec![own];
+    members.extend(in_place_of(problem, by, of_best, own));
     // What is there where none of these is, and hardly ever with one of them.
     while by.of_any(&members) < LIKELY {
         let gain = |other: &usize| {

@@ -1,6 +1,6 @@
 //! Linearise, search, fit, learn the noise, and again.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
@@ -8,13 +8,14 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
 
-use super::always::{Declared, LIKELY_SCALES, always, fixed};
+use super::always::{BLOCK, Declared, LIKELY_SCALES, REFLECTOR, always, fixed};
 use super::layout::Layout;
-use super::problem::{Problem, Set, moves};
+use super::problem::{Judged, Problem, Set, moves};
 use super::search::{Visited, Width, search};
 use crate::effects::{Offers, Scene, Shapes, What};
+use crate::model::arm::BETA;
 use crate::model::{Sign, Size, Term, World};
-use crate::observe::Observation;
+use crate::observe::{Observation, Readings};
 use crate::regression::evidence::{Start, fit};
 use crate::regression::gram::with_target;
 use crate::regression::noise::{Noise, discrepancies, rows_of_blocks};
@@ -53,8 +54,22 @@ pub struct Engine<'c> {
     pub sizes: f64,
     /// How many effects are likely.
     pub likely: f64,
-    /// Whether the unnamed block is fitted.
-    with_block: bool,
+    /// Which of what is always in is fitted.
+    fitted: Fitted,
+    /// The noise of one reading, where it is known before (m, rad).
+    known: Option<f64>,
+}
+
+/// Which of what is always in is fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fitted {
+    /// All of it.
+    All,
+    /// Only what a description takes, and the rig: not the unnamed block, and no angle between
+    /// parallel axes.
+    Written,
+    /// The same with the reflector where the file says.
+    AsFiled,
 }
 
 /// What a search came to.
@@ -109,6 +124,9 @@ const SETTLED: f64 = 0.01;
 const LIKELY_NOISE: f64 = 2e-5;
 /// As many readings say so.
 const SAY_SO: f64 = 6.0;
+/// No instrument reads more finely (m, rad). Of displacements whose noise is not known, one reading says
+/// so: it keeps readings without any noise from having none, and has no part in others.
+const FINEST: f64 = 1e-8;
 
 /// Rotations and encoders are at first as noisy as if read at this lever (m).
 const LEVER: f64 = 0.2;
@@ -129,6 +147,12 @@ impl<'c> Engine<'c> {
     ) -> Self {
         let readings = observation.readings();
         let positions = scene.what == What::Positions;
+        let prior = match noise {
+            Some(size) => NoisePrior { size, weight: SAY_SO },
+            // Of positions a discrepancy of each pose is noise, whose size is not that of the instrument.
+            None if positions => NoisePrior { size: LIKELY_NOISE, weight: SAY_SO },
+            None => NoisePrior { size: FINEST, weight: 1.0 },
+        };
         let size = noise.unwrap_or(LIKELY_NOISE);
         let scales = if positions { Scales::new(LIKELY_SCALES.to_vec()) } else { Scales::default() };
         let likely = if positions { LIKELY_ABSOLUTE } else { LIKELY_LOADED };
@@ -136,15 +160,22 @@ impl<'c> Engine<'c> {
             observation,
             robot,
             noise: Noise::plain(readings, LEVER),
-            prior: NoisePrior { size, weight: SAY_SO },
+            prior,
             point: Point { world: observation.world().clone(), values: BTreeMap::new() },
             start: (size * size, scales),
             sizes: 1.0,
             likely,
-            with_block: true,
+            fitted: Fitted::All,
+            known: noise,
             scene,
             training,
         }
+    }
+
+    /// The same where only some of what is always in is fitted.
+    #[must_use]
+    pub fn fitting(&self, fitted: Fitted) -> Self {
+        Self { fitted, ..self.clone() }
     }
 
     /// How many blocks are fitted to.
@@ -183,9 +214,7 @@ impl<'c> Engine<'c> {
         let all: Vec<usize> = (layout.fixed..layout.parameters.len()).collect();
         let parts = self.observation.columns(&point.world, &layout.parameters, &values, &all);
         let mut columns = parts.insert_columns(0, layout.fixed, 0.0);
-        if !self.with_block {
-            layout.always().filter(|k| is_of_block(layout, *k)).for_each(|k| columns.column_mut(k).fill(0.0));
-        }
+        layout.always().filter(|k| self.is_out(layout, *k)).for_each(|k| columns.column_mut(k).fill(0.0));
         let mut target = self.observation.readings().values.clone();
         target -= self.observation.predict(&point.world, &layout.parameters, &values);
         for (k, value) in values.iter().enumerate().skip(layout.fixed).filter(|(_, value)| **value != 0.0) {
@@ -241,7 +270,7 @@ impl<'c> Engine<'c> {
     ) -> Option<Solved> {
         let chosen: Vec<usize> = layout
             .always()
-            .filter(|k| self.with_block || !is_of_block(layout, *k))
+            .filter(|k| !self.is_out(layout, *k))
             .chain(set.iter().flat_map(|&form| layout.forms[form].columns.iter().copied()))
             .filter(|k| !held.contains(k))
             .collect();
@@ -347,8 +376,7 @@ impl<'c> Engine<'c> {
     pub fn fresh(&self) -> Self {
         let mut scene = self.scene.clone();
         scene.shapes = Shapes::default();
-        let noise = (self.prior.size != LIKELY_NOISE).then_some(self.prior.size);
-        let fresh = Self::new(self.observation, self.robot, scene, self.training.clone(), noise);
+        let fresh = Self::new(self.observation, self.robot, scene, self.training.clone(), self.known);
         Self { sizes: self.sizes, ..fresh }
     }
 
@@ -399,27 +427,53 @@ impl<'c> Engine<'c> {
         self.last(&names, wide)
     }
 
-    /// Fits what is always in, in steps that come from far away; what it leaves of every row.
+    /// Fits the description's own numbers, in steps that come from far away; what they leave of every
+    /// row, none of the compliances negative.
     pub fn fit_alone(&mut self) -> Option<DVector<f64>> {
-        let kappa = FIRST_KAPPA.min(discrepancies(self.observation.readings()).len() - 1);
+        let kappa = self.first_kappa();
         let layout = Layout { candidates: Vec::new(), ..self.layout() };
-        self.with_block = false;
+        self.fitted = Fitted::Written;
         let mut left = None;
         for steps in [1, 1, 2 * STEPS] {
             let begin = self.start.clone();
-            let solved = self.solve(&layout, &[], (&self.point, kappa), steps)?;
+            let solved = match steps {
+                1 => self.solve(&layout, &[], (&self.point, kappa), steps)?,
+                _ => self.solve_bounded(&layout, &[], (&self.point, kappa), steps)?,
+            };
             self.point = solved.point.clone();
             self.start = if steps > 1 { (solved.fit.variance, solved.fit.scales.clone()) } else { begin };
             left = Some(solved.left);
         }
-        self.with_block = true;
+        self.fitted = Fitted::All;
         self.learn_sizes(&layout);
         left
     }
 
-    /// The description's own numbers alone, at their optimum.
+    /// The description's own numbers alone, at their optimum, none of the compliances negative.
     pub fn alone(&self, layout: &Layout) -> Option<Solved> {
-        self.solve_bounded(layout, &[], (&self.point, 0), 2 * STEPS)
+        self.fitting(Fitted::Written).solve_bounded(layout, &[], (&self.point, self.first_kappa()), 2 * STEPS)
+    }
+
+    /// The same where compliances may be negative.
+    pub fn free(&self, layout: &Layout) -> Option<Solved> {
+        self.fitting(Fitted::Written).solve(layout, &[], (&self.point, self.first_kappa()), 2 * STEPS)
+    }
+
+    /// The discrepancy that is assumed before any is known, by its index.
+    fn first_kappa(&self) -> usize {
+        FIRST_KAPPA.min(discrepancies(self.observation.readings()).len() - 1)
+    }
+
+    /// Whether a column that is always in is not fitted.
+    fn is_out(&self, layout: &Layout, column: usize) -> bool {
+        let parameter = &layout.parameters[column];
+        let is_unwritten =
+            matches!(parameter.size, Size::Learned(BLOCK, _)) || matches!(parameter.term, Term::Table(_, BETA));
+        match self.fitted {
+            Fitted::All => false,
+            Fitted::Written => is_unwritten,
+            Fitted::AsFiled => is_unwritten || REFLECTOR.contains(&parameter.name),
+        }
     }
 
     /// The noise of one axis of a reading where no discrepancy accounts for any of what is left.
@@ -429,22 +483,22 @@ impl<'c> Engine<'c> {
         problem.fit(&found.best, 0).map_or(0.0, |fit| fit.variance.sqrt())
     }
 
-    /// The error of a set on poses that are left out in turn, where the columns were linearised.
-    pub fn unseen_rms(&self, found: &Found, set: &Set) -> Option<f64> {
+    /// The error of a set under a discrepancy on poses that are left out in turn, with the columns of
+    /// a layout as they were linearised.
+    pub fn unseen_rms(&self, layout: &Layout, columns: &DMatrix<f64>, set: &[usize], kappa: usize) -> Option<f64> {
         let readings = self.observation.readings();
-        let group = groups(&self.training, UNSEEN_FOLDS, 1);
-        let grams = self.grams(&found.columns, &group);
+        let group = groups(readings, &self.training, UNSEEN_FOLDS, 1);
+        let grams = self.grams(columns, &group);
         let (mut sum, mut count) = (0.0, 0);
         for fold in 0..group.iter().flatten().max().map_or(0, |last| last + 1) {
-            let problem = self.problem(&found.layout, &found.columns, grams.without(fold).total);
-            let fit = problem.fit(set, found.kappa)?;
+            let problem = self.problem(layout, columns, grams.without(fold).total);
+            let fit = problem.fit(set, kappa)?;
             let unseen: Vec<bool> = group.iter().map(|of| *of == Some(fold)).collect();
             for row in rows_of_blocks(readings, &unseen).concat() {
                 for k in 0..readings.reported {
                     let at = row * readings.width + k;
-                    let taken: f64 =
-                        fit.columns.iter().zip(fit.mean.iter()).map(|(&c, b)| found.columns[(at, c)] * b).sum();
-                    sum += (found.columns[(at, found.columns.ncols() - 1)] - taken).powi(2);
+                    let taken: f64 = fit.columns.iter().zip(fit.mean.iter()).map(|(&c, b)| columns[(at, c)] * b).sum();
+                    sum += (columns[(at, columns.ncols() - 1)] - taken).powi(2);
                     count += 1;
                 }
             }
@@ -520,6 +574,9 @@ impl<'c> Engine<'c> {
         let mut start: Set = names.iter().filter_map(|(name, form)| layout.find(name, form)).collect();
         start.sort_unstable();
         let mut visited = search(&mut problem, &start, width);
+        if !problem.learns() {
+            self.over_sizes(&problem, &columns, &mut visited);
+        }
         let near: Vec<(Set, f64)> =
             visited.posterior().into_iter().take(OWN).map(|(set, p)| (set.clone(), p)).collect();
         let curved = |set: &Set| {
@@ -532,8 +589,10 @@ impl<'c> Engine<'c> {
                 let kappa = visited.sets[set].kappa;
                 let begin = self.start_of(&problem, set, kappa);
                 if let Some(solved) = self.solve(&layout, set, (&begin, kappa), STEPS) {
+                    let linear =
+                        problem.judge(set).map_or(solved.score, |judged| judged.score - problem.log_prior(set));
                     let judged = visited.sets.get_mut(set).expect("it was visited");
-                    judged.score = solved.score + problem.log_prior(set);
+                    judged.score += solved.score - linear;
                     judged.kappa = solved.kappa;
                 }
             }
@@ -544,6 +603,42 @@ impl<'c> Engine<'c> {
         let own = self.solve_bounded(&layout, &best, (&begin, kappa), 2 * STEPS)?;
         drop(problem);
         Some(Found { layout, visited, best, kappa, columns, own })
+    }
+
+    /// Weighs sets over how large effects are likely to be: of three sizes each is as likely, so that one
+    /// which is larger than usual is not passed over for two that are usual.
+    fn over_sizes(&self, problem: &Problem<'_>, columns: &DMatrix<f64>, visited: &mut Visited) {
+        let best = visited.best();
+        let mut others: Vec<(Problem<'_>, Visited)> = Vec::new();
+        for by in OTHER_SIZES {
+            let other = Self { sizes: by * self.sizes, ..self.clone() };
+            let mut problem = other.problem(problem.layout, columns, problem.grams.clone());
+            let own = search(&mut problem, &best, self.fold_width());
+            others.push((problem, own));
+        }
+        let mut likely: BTreeSet<Set> = BTreeSet::new();
+        for visited in others.iter().map(|(_, visited)| visited).chain([&*visited]) {
+            let ranked = visited.ranked();
+            let Some(least) = ranked.first().map(|(_, judged)| judged.score - NO_MATTER) else { continue };
+            likely.extend(ranked.iter().take_while(|(_, judged)| judged.score > least).map(|(set, _)| (*set).clone()));
+        }
+        let count = (1 + others.len()) as f64;
+        visited.sets.values_mut().for_each(|judged| judged.score -= count.ln());
+        for set in likely {
+            let at_other =
+                others.iter().map(|(problem, own)| own.sets.get(&set).copied().or_else(|| problem.judge(&set)));
+            let usual = visited.sets.get(&set).copied();
+            let usual = usual.or_else(|| {
+                let judged = problem.judge(&set)?;
+                Some(Judged { score: judged.score - count.ln(), ..judged })
+            });
+            let at_other = at_other.flatten().map(|judged| Judged { score: judged.score - count.ln(), ..judged });
+            let each: Vec<Judged> = usual.into_iter().chain(at_other).collect();
+            if let Some(most) = each.iter().copied().max_by(|a, b| a.score.total_cmp(&b.score)) {
+                let sum: f64 = each.iter().map(|one| (one.score - most.score).exp()).sum();
+                visited.sets.insert(set, Judged { score: most.score + sum.ln(), ..most });
+            }
+        }
     }
 
     /// Where a set begins: its fit at the linearisation point.
@@ -558,15 +653,23 @@ impl<'c> Engine<'c> {
 /// Folds for the error that named effects leave one after the other.
 const UNSEEN_FOLDS: usize = 5;
 
-/// The fold of each block, drawn at random; none of one that is not fitted to.
-pub fn groups(training: &[bool], folds: usize, seed: u64) -> Vec<Option<usize>> {
+/// The fold of each block, drawn at random, alike from each stratum; none of one that is not fitted
+/// to.
+pub fn groups(readings: &Readings, training: &[bool], folds: usize, seed: u64) -> Vec<Option<usize>> {
     let mut blocks: Vec<usize> = (0..training.len()).filter(|&block| training[block]).collect();
     blocks.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));
+    blocks.sort_by_key(|&block| readings.stratum[block]);
     let folds = folds.min(blocks.len());
     let mut group = vec![None; training.len()];
     blocks.into_iter().enumerate().for_each(|(k, block)| group[block] = Some(k % folds.max(1)));
     group
 }
+
+/// How many times larger effects may be than usual, beside usual.
+const OTHER_SIZES: [f64; 2] = [1.0 / 3.0, 3.0];
+
+/// A set that is so much less likely than the best (in the logarithm) is not weighed over sizes.
+const NO_MATTER: f64 = 10.0;
 
 /// So many sets are compared at their own optimum, those that are at least so likely.
 const OWN: usize = 10;
@@ -574,8 +677,3 @@ const UNLIKELY: f64 = 2e-3;
 
 /// Rows about a moment that was found which are tried as well.
 const NEAR: usize = 12;
-
-/// Whether a parameter is of the block without a name.
-fn is_of_block(layout: &Layout, column: usize) -> bool {
-    matches!(layout.parameters[column].size, Size::Learned(2, _))
-}

@@ -61,7 +61,7 @@ impl Nested {
 /// Repeats a search in so many folds, drawn at random; in each pose by itself where there are no more
 /// of them.
 pub fn nested(engine: &Engine<'_>, found: &Found, folds: usize, seed: u64, progress: &dyn Fn(&str)) -> Nested {
-    let group = groups(&engine.training, folds, seed);
+    let group = groups(engine.observation.readings(), &engine.training, folds, seed);
     let folds = group.iter().flatten().max().map_or(0, |last| last + 1);
     let size = engine.observation.readings().values.len();
     let mut nested = Nested { folds, left: DVector::zeros(size), alone: DVector::zeros(size), found: Vec::new() };
@@ -114,10 +114,15 @@ fn by_subtraction(
         let unseen: Vec<bool> = group.iter().map(|of| *of == Some(fold)).collect();
         let rows: Vec<usize> = rows_of_blocks(readings, &unseen).concat();
         let best = visited.best();
-        for (set, whole) in [(&best, &mut nested.left), (&Set::new(), &mut nested.alone)] {
-            let kappa = visited.sets.get(set).map_or(0, |judged| judged.kappa);
-            let Some(fit) = problem.fit(set, kappa) else { continue };
-            put(whole, &left_by(&found.columns, &fit.columns, &fit.mean), &rows, readings.width);
+        let kappa = visited.sets.get(&best).map_or(0, |judged| judged.kappa);
+        if let Some(fit) = problem.fit(&best, kappa) {
+            put(&mut nested.left, &left_by(&found.columns, &fit.columns, &fit.mean), &rows, readings.width);
+        }
+        // Their optimum is elsewhere, and no compliance is negative there.
+        let mut without = engine.clone();
+        without.training = group.iter().map(|of| of.is_some_and(|of| of != fold)).collect();
+        if let Some(alone) = without.alone(&found.layout) {
+            put(&mut nested.alone, &alone.left, &rows, readings.width);
         }
         nested.found.push(posterior(&visited, |set| {
             candidates_of(&problem, set).into_iter().map(|of| found.layout.candidates[of].name()).collect()

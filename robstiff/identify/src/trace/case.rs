@@ -22,8 +22,10 @@ pub struct Case<'c> {
     pub scene: Scene<'c>,
     /// Which blocks are fitted to.
     pub training: Vec<bool>,
-    /// The names of the blocks.
-    pub blocks: Vec<String>,
+    /// What errors are told of one by one: the names of poses, or of clamped axes.
+    pub groups: Vec<String>,
+    /// The group of each row.
+    pub group: Vec<usize>,
     /// The noise of one axis of a row, where it is declared (m, rad).
     pub noise: Option<f64>,
     /// The joints (from 1) whose angle is read behind the gear.
@@ -50,7 +52,8 @@ impl<'c> Case<'c> {
                 let scene = scene(robot, What::Displacements, &observation, (torque, force), warmth, Vec::new());
                 let training = training(data.poses.len(), campaign.holdout);
                 let observation = Box::new(observation);
-                Self { observation, scene, training, blocks: data.poses.clone(), noise, encoders, loads: Vec::new() }
+                let (groups, group) = (data.poses.clone(), observation.readings().block.clone());
+                Self { observation, scene, training, groups, group, noise, encoders, loads: Vec::new() }
             }
             Data::Position(data) => {
                 let observation = Position::new(robot, data);
@@ -60,28 +63,23 @@ impl<'c> Case<'c> {
                 let scene = scene(robot, What::Positions, &observation, (torque, load), warmth, Vec::new());
                 let training = training(data.poses.len(), campaign.holdout);
                 let observation = Box::new(observation);
-                Self {
-                    observation,
-                    scene,
-                    training,
-                    blocks: data.poses.clone(),
-                    noise: declared,
-                    encoders: Vec::new(),
-                    loads: Vec::new(),
-                }
+                let (groups, group) = (data.poses.clone(), observation.readings().block.clone());
+                let (noise, encoders, loads) = (declared, Vec::new(), Vec::new());
+                Self { observation, scene, training, groups, group, noise, encoders, loads }
             }
             Data::Clamped(rows) => {
                 let observation = Clamped::new(robot, rows);
                 let mut torque = vec![0.0_f64; robot.joints.len()];
                 rows.iter().for_each(|row| torque[row.axis - 1] = torque[row.axis - 1].max(row.torque.abs()));
                 let axes = observation.axes.clone();
-                let blocks = axes.iter().map(|axis| format!("axis {axis}")).collect();
-                let training = vec![true; axes.len()];
+                let groups = axes.iter().map(|axis| format!("axis {axis}")).collect();
+                let (blocks, group) = (observation.readings().blocks, observation.readings().visit.clone());
+                let training = vec![true; blocks];
                 let scene = scene(robot, What::Clamped, &observation, (torque, 0.0), 0.0, axes);
                 let loads =
                     rows.iter().map(|row| row.torque / scene.torque[row.axis - 1].max(f64::MIN_POSITIVE)).collect();
                 let (observation, noise) = (Box::new(observation), campaign.noise.rotation);
-                Self { observation, scene, training, blocks, noise, encoders: Vec::new(), loads }
+                Self { observation, scene, training, groups, group, noise, encoders: Vec::new(), loads }
             }
         }
     }
@@ -102,6 +100,12 @@ impl<'c> Case<'c> {
             What::Clamped => (self.loads[one] - self.loads[other]).abs() < part,
             What::Positions => false,
         }
+    }
+
+    /// The poses that are held out.
+    pub fn held_out(&self) -> Vec<String> {
+        let is_held_out = |group: usize| self.rows(false).iter().any(|&row| self.group[row] == group);
+        (0..self.groups.len()).filter(|&group| is_held_out(group)).map(|group| self.groups[group].clone()).collect()
     }
 
     /// The rows of the blocks that are fitted to, or of the others.

@@ -20,7 +20,7 @@ pub struct Misfit {
 pub struct RowResidual {
     /// The line of the CSV file, from 1.
     pub line: usize,
-    /// Index of the pose.
+    /// Index of the pose, or of the clamped axis.
     pub pose: usize,
     /// With the description's own numbers fitted again.
     pub before: [f64; 3],
@@ -61,7 +61,7 @@ pub fn rows(case: &Case<'_>, before: &DVector<f64>, after: &DVector<f64>) -> Vec
     };
     let row = |row: usize| RowResidual {
         line: readings.lines[row],
-        pose: readings.block[row],
+        pose: case.group[row],
         before: of(before, row),
         after: of(after, row),
     };
@@ -71,13 +71,13 @@ pub fn rows(case: &Case<'_>, before: &DVector<f64>, after: &DVector<f64>) -> Vec
 /// What is left of each pose before and after.
 pub fn poses(case: &Case<'_>, before: &DVector<f64>, after: &DVector<f64>) -> Vec<PoseError> {
     let readings = case.observation.readings();
-    let mut rows: Vec<Vec<usize>> = vec![Vec::new(); readings.blocks];
-    readings.block.iter().enumerate().for_each(|(row, &block)| rows[block].push(row));
-    let pose = |(block, id): (usize, &String)| PoseError {
+    let mut rows: Vec<Vec<usize>> = vec![Vec::new(); case.groups.len()];
+    case.group.iter().enumerate().for_each(|(row, &group)| rows[group].push(row));
+    let pose = |(group, id): (usize, &String)| PoseError {
         pose: id.clone(),
-        held_out: !case.training[block],
-        before: readings.rms(before, rows[block].iter().copied()),
-        after: readings.rms(after, rows[block].iter().copied()),
+        held_out: rows[group].iter().any(|&row| !case.training[readings.block[row]]),
+        before: readings.rms(before, rows[group].iter().copied()),
+        after: readings.rms(after, rows[group].iter().copied()),
     };
-    case.blocks.iter().enumerate().map(pose).collect()
+    case.groups.iter().enumerate().map(pose).collect()
 }

@@ -10,12 +10,15 @@
 mod accounted;
 pub(crate) mod basis;
 pub(crate) mod case;
+mod corrected;
 mod errors;
 mod estimate;
 mod features;
 mod found;
 mod noise;
 mod report;
+#[cfg(test)]
+mod tests;
 mod written;
 
 use robstiff_robots::Description;
@@ -30,9 +33,11 @@ pub use written::is_offered_as_change;
 use crate::campaign::Campaign;
 pub use crate::effects::{Number as EffectParameter, Place};
 use crate::identify::Error;
-use crate::judge::thresholds::{FEWEST_POSES, FOLDS};
+use crate::judge::thresholds::{DISTINCT, FEWEST_POSES, FOLDS};
 pub use crate::judge::verdict::Verdict;
 use crate::judge::{gates, verdict};
+use crate::select::Engine;
+use crate::select::always::{Declared, Own};
 use crate::select::folds::nested;
 use basis::Basis;
 use case::Case;
@@ -81,6 +86,9 @@ pub struct Trace {
     pub identified: Misfit,
     /// The error with everything that was found; as declared where the data cannot tell.
     pub after: Misfit,
+    /// The error of the description that is written, what the rig is off by corrected for. It is that of
+    /// the description's own numbers alone where these predict unseen poses better.
+    pub written: Misfit,
     /// The effects named, the one that matters most first.
     pub effects: Vec<NamedEffect>,
     /// What is likely, but not certain enough to be named.
@@ -211,7 +219,7 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
     let mut engine = case.engine(&campaign.robot);
     let nothing = || Error::NotShown("these data show none of the robot's numbers".into());
     let (found, alone) = engine.run_from_alone(progress).ok_or_else(nothing)?;
-    if let Some(why) = too_little(&case, &found) {
+    if let Some(why) = too_little(&case, &found).or_else(|| against_the_loads(campaign, &engine, &found)) {
         return report::insufficient(campaign, &case, &engine, why);
     }
     let nested = nested(&engine, &found, options.folds, options.seed, progress);
@@ -234,15 +242,35 @@ fn too_little(case: &Case<'_>, found: &crate::select::engine::Found) -> Option<S
     few.then(|| format!("{count} readings are too few for {numbers} numbers"))
 }
 
+/// Why readings that go against the loads say nothing, if these do: no joint that they show yields.
+fn against_the_loads(campaign: &Campaign, engine: &Engine<'_>, found: &crate::select::engine::Found) -> Option<String> {
+    let own = engine.declared();
+    let alone = engine.alone(&found.layout)?;
+    let estimates = estimates(&campaign.robot, &own, Some((&found.layout, &alone)));
+    let is_joint =
+        |(own, of): &(&Declared, &Estimate)| matches!(own.what, Own::Joint(_)) && of.visibility == Visibility::Seen;
+    let mut seen = own.iter().zip(&estimates).filter(is_joint).peekable();
+    seen.peek()?;
+    let free = engine.free(&found.layout)?;
+    let negative = |k: usize| free.fit.mean[k] < -DISTINCT * free.fit.std[k];
+    let goes_against = (0..own.len()).filter_map(|k| free.fit.place(found.layout.fixed + k)).any(negative);
+    (goes_against && seen.all(|(_, of)| of.value <= 0.0)).then(|| {
+        "every joint that the readings show comes out rigid: they go against the loads, so that they or the loads have \
+         a wrong sign or frame"
+            .into()
+    })
+}
+
 /// The verdict, from what was judged.
 fn concluded(
-    named: usize,
+    (named, outliers): (usize, bool),
     (suspected, looks_like): (&[String], &[String]),
     judgement: &gates::Judgement,
-    over_noise: Option<f64>,
+    over_noise: Option<verdict::OverNoise>,
 ) -> (Verdict, String) {
     verdict::verdict(&verdict::Evidence {
         named,
+        outliers,
         suspected,
         looks_like,
         nothing: judgement.nothing,

@@ -1,6 +1,7 @@
 //! Where the noise of a reading is known from.
 
 use nalgebra::DVector;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::case::Case;
 use crate::campaign::Campaign;
@@ -26,17 +27,41 @@ const SAME: f64 = 1e-3;
 
 /// The noise of one axis of a reading that is known independently of the model (m, rad), and from
 /// what; `left` is what a model leaves of each row.
-pub fn known(campaign: &Campaign, case: &Case<'_>, left: &DVector<f64>) -> Option<(f64, NoiseSource)> {
-    if let Some(noise) = case.noise {
+pub fn known(campaign: &Campaign, case: &Case<'_>, left: &DVector<f64>) -> Option<Known> {
+    if let Some(size) = case.noise {
         let source = if campaign.step_beyond_noise().is_some() { NoiseSource::Rounded } else { NoiseSource::Declared };
-        return Some((noise, source));
+        return Some(Known { size, source, freedom: None });
     }
-    repeated(case, left).map(|noise| (noise, NoiseSource::Repetitions))
+    let (size, count) = repeated(case, left)?;
+    Some(Known { size, source: NoiseSource::Repetitions, freedom: Some(count as f64) })
+}
+
+/// A noise that is known independently of the model.
+#[derive(Clone, Copy, Debug)]
+pub struct Known {
+    /// Of one axis of one reading (m, rad).
+    pub size: f64,
+    /// From what.
+    pub source: NoiseSource,
+    /// From how many degrees of freedom; none where it is declared.
+    freedom: Option<f64>,
+}
+
+/// The part of the cases in which chance alone makes noise seem smaller than that.
+const BY_CHANCE: f64 = 0.01;
+
+impl Known {
+    /// By which factor the noise may be larger than known, in all but one in a hundred cases: what few
+    /// repetitions scatter by is uncertain.
+    pub fn by_chance(&self) -> f64 {
+        let least = |freedom: f64| Some(ChiSquared::new(freedom).ok()?.inverse_cdf(BY_CHANCE) / freedom);
+        self.freedom.and_then(least).map_or(1.0, |least| 1.0 / least.sqrt())
+    }
 }
 
 /// From readings of one visit under the same load: whatever a model predicts of two of them is the same
-/// but for what depends on their order, which the best model has taken out.
-fn repeated(case: &Case<'_>, left: &DVector<f64>) -> Option<f64> {
+/// but for what depends on their order, which the best model has taken out. With the degrees of freedom.
+fn repeated(case: &Case<'_>, left: &DVector<f64>) -> Option<(f64, usize)> {
     let readings = case.observation.readings();
     let (mut sum, mut count) = (0.0, 0);
     let visits = readings.visit.iter().max().map_or(0, |last| last + 1);
@@ -59,5 +84,19 @@ fn repeated(case: &Case<'_>, left: &DVector<f64>) -> Option<f64> {
             }
         }
     }
-    (count >= FEWEST_REPETITIONS).then(|| (sum / count as f64).sqrt())
+    (count >= FEWEST_REPETITIONS).then(|| ((sum / count as f64).sqrt(), count))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The lower hundredth of chi-square with ten degrees of freedom is 2.558.
+    #[test]
+    fn few_repetitions_leave_a_noise_uncertain() {
+        let known = |freedom| Known { size: 1e-6, source: NoiseSource::Repetitions, freedom };
+        assert!((known(Some(10.0)).by_chance() - (10.0_f64 / 2.558).sqrt()).abs() < 1e-3);
+        assert!(known(Some(2000.0)).by_chance() < 1.04);
+        assert_eq!(known(None).by_chance(), 1.0);
+    }
 }

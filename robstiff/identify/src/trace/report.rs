@@ -4,6 +4,7 @@ use nalgebra::DVector;
 
 use super::basis::Basis;
 use super::case::Case;
+use super::corrected::corrected;
 use super::errors::{misfit, poses, rows};
 use super::estimate::estimates;
 use super::features::depends_on;
@@ -16,7 +17,9 @@ use crate::effects::{Number, Side, What};
 use crate::identify::Error;
 use crate::judge::gates::{Judgement, Weighed};
 use crate::judge::thresholds::{OUTLYING_ROWS, SUSPECTED};
+use crate::judge::verdict::OverNoise;
 use crate::model::Term;
+use crate::regression::Fit;
 use crate::select::classes::ODDS;
 use crate::select::engine::{Engine, Found};
 use crate::select::folds;
@@ -46,22 +49,11 @@ pub fn report(
         .collect();
     let looks_like: Vec<String> =
         unnamed.iter().filter(|of| of.least > 0.5).map(|of| effect(found, of).words()).collect();
-    // What is written has the named effects alone in it; absolute positions are predicted best by all
-    // that the description takes.
-    let written: Set = match case.scene.what {
-        What::Positions => found.best.clone(),
-        _ => named.iter().map(|of| of.class.form).collect(),
-    };
-    let model = if written == found.best {
-        found.own.clone()
-    } else {
-        engine
-            .solve_bounded(&found.layout, &sorted(&written), (&found.own.point, found.kappa), 8)
-            .unwrap_or_else(|| found.own.clone())
-    };
+    let model = corrected(case, engine, found, nested)
+        .ok_or_else(|| Error::NotShown("no description fits these data".into()))?;
     let before = engine.alone(&found.layout);
     let estimates_before = estimates(&campaign.robot, &own, before.as_ref().map(|solved| (&found.layout, solved)));
-    let estimates = estimates(&campaign.robot, &own, Some((&found.layout, &model)));
+    let estimates = estimates(&campaign.robot, &own, Some((&found.layout, &model.solved)));
     let by_order = order_of(engine, found, &named, nested);
     let mut effects: Vec<NamedEffect> = by_order
         .iter()
@@ -78,35 +70,28 @@ pub fn report(
     let known = noise::known(campaign, case, &found.own.left);
     let size = found.own.fit.variance.sqrt();
     let plain = engine.noise_at(found);
-    let over_noise = known.map(|(known, _)| plain / known);
+    let over_noise = known.map(|known| OverNoise { ratio: plain / known.size, by_chance: known.by_chance() });
     let names: Vec<String> = suspected.iter().filter(|of| !is_unnamed(of)).map(|of| of.effect.to_string()).collect();
-    let (verdict, why) = concluded(effects.len(), (&names, &looks_like), judgement, over_noise);
-    effects.extend(outliers(engine, found, case));
+    let outliers = outliers(engine, found, case);
+    let (verdict, why) = concluded((effects.len(), outliers.is_some()), (&names, &looks_like), judgement, over_noise);
+    effects.extend(outliers);
     effects.iter_mut().for_each(|named| named.partial = verdict == Verdict::Partial);
-    let written: Vec<Effect> = match case.scene.what {
-        What::Positions => judgement.classes.iter().map(|of| effect(found, of)).collect(),
-        _ => effects.iter().map(|named| named.effect.clone()).collect(),
-    };
-    let written: Vec<&Effect> = written.iter().filter(|of| !of.is_of_rig()).collect();
-    let table = table(case, &found.layout, &model.point.values);
-    let description = described(campaign, (&own, &estimates), &table, &written)?;
+    let robots = |form: &&usize| found.layout.candidates[found.layout.forms[**form].candidate].kind.side == Side::Robot;
+    let written: Vec<Effect> =
+        model.set.iter().filter(robots).map(|&form| of_form(&found.layout, &model.solved.fit, form)).collect();
+    let table = table(case, &found.layout, &model.solved.point.values);
+    let description = described(campaign, (&own, &estimates), &table, (&written, &engine.scene.compliance))?;
     let left_declared = declared(campaign, case);
     let misfits = |left: &DVector<f64>, unseen: &DVector<f64>| misfit(case, left, unseen);
-    let (noise, noise_source) = known.unwrap_or((size, NoiseSource::Residuals));
+    let (noise, noise_source) = known.map_or((size, NoiseSource::Residuals), |known| (known.size, known.source));
     let fitted = case.rows(true);
     let held_out = case.training.contains(&false);
     let left_rms = readings.rms(&found.own.left, fitted.iter().copied());
     Ok(Trace {
         robot: campaign.robot.name.clone(),
         rows: readings.rows(),
-        poses: readings.blocks,
-        held_out: case
-            .blocks
-            .iter()
-            .zip(&case.training)
-            .filter(|(_, kept)| !**kept)
-            .map(|(id, _)| id.clone())
-            .collect(),
+        poses: case.groups.len(),
+        held_out: case.held_out(),
         noise,
         noise_source,
         encoders: case
@@ -119,8 +104,9 @@ pub fn report(
         declared: misfits(&left_declared, &left_declared),
         identified: misfits(alone, &nested.alone),
         after: misfits(&found.own.left, &nested.left),
+        written: model.error,
         unexplained: match known {
-            Some((known, _)) if plain > known => 1.0 - (known / plain).powi(2),
+            Some(known) if plain > known.size => 1.0 - (known.size / plain).powi(2),
             _ if judgement.discrepancy > 0.5 && plain > size => 1.0 - (size / plain).powi(2),
             _ => 0.0,
         },
@@ -175,7 +161,7 @@ pub fn insufficient(campaign: &Campaign, case: &Case<'_>, engine: &Engine<'_>, w
     Ok(Trace {
         robot: campaign.robot.name.clone(),
         rows: readings.rows(),
-        poses: readings.blocks,
+        poses: case.groups.len(),
         held_out: Vec::new(),
         noise,
         noise_source: if case.noise.is_some() { NoiseSource::Declared } else { NoiseSource::Residuals },
@@ -184,6 +170,7 @@ pub fn insufficient(campaign: &Campaign, case: &Case<'_>, engine: &Engine<'_>, w
         declared,
         identified: declared,
         after: declared,
+        written: declared,
         effects: Vec::new(),
         suspected: Vec::new(),
         verdict: Verdict::Insufficient,
@@ -218,29 +205,28 @@ fn declared(campaign: &Campaign, case: &Case<'_>) -> DVector<f64> {
     &case.observation.readings().values - predicted
 }
 
-fn sorted(set: &Set) -> Set {
-    let mut sorted = set.clone();
-    sorted.sort_unstable();
-    sorted
-}
-
 fn is_unnamed(of: &Suspected) -> bool {
     crate::effects::kind_of(of.effect.kind()).is_some_and(|kind| kind.side == Side::Unnamed)
 }
 
 /// An effect of the best set with its numbers.
 fn effect(found: &Found, of: &Weighed) -> Effect {
-    let columns = &found.layout.forms[of.class.form];
-    let candidate = &found.layout.candidates[columns.candidate];
+    of_form(&found.layout, &found.own.fit, of.class.form)
+}
+
+/// An effect in one of its forms with its numbers in a fit.
+fn of_form(layout: &Layout, fit: &Fit, form: usize) -> Effect {
+    let columns = &layout.forms[form];
+    let candidate = &layout.candidates[columns.candidate];
     let form = &candidate.forms[columns.form];
-    let fit = &found.own.fit;
     let number = |&k: &usize| {
-        let parameter = &found.layout.parameters[k];
+        let parameter = &layout.parameters[k];
         let at = fit.place(k);
         Number { name: parameter.name, value: fit.value(k), std: at.map(|at| fit.std[at]), unit: parameter.unit }
     };
     let values: Vec<f64> = columns.columns.iter().map(|&k| fit.value(k)).collect();
-    let written = form.written.as_ref().map_or_else(Vec::new, |written| written(&values));
+    let is_there = values.iter().any(|value| *value != 0.0);
+    let written = form.written.as_ref().filter(|_| is_there).map_or_else(Vec::new, |written| written(&values));
     let numbers = columns.columns.iter().map(number).chain(form.shape.iter().cloned()).collect();
     Effect::new(candidate.kind, candidate.place, numbers, written)
 }
@@ -270,7 +256,7 @@ fn order_of<'w>(
     let mut ordered: Vec<&Weighed> = named.to_vec();
     ordered.sort_by(|a, b| b.matters.total_cmp(&a.matters));
     let mut so_far = Set::new();
-    let unseen = |set: &Set| engine.unseen_rms(found, set);
+    let unseen = |set: &Set| engine.unseen_rms(&found.layout, &found.columns, set, found.kappa);
     let readings = engine.observation.readings();
     let rows = (0..readings.rows()).filter(|&row| engine.training[readings.block[row]]);
     let last = readings.rms(&nested.left, rows);
@@ -289,13 +275,14 @@ fn order_of<'w>(
         .collect()
 }
 
-/// Rows that do not belong to the others, where they are few and far off.
+/// Rows that do not belong to the others, where they are few and far off: not the tail of the others.
 fn outliers(engine: &Engine<'_>, found: &Found, case: &Case<'_>) -> Option<NamedEffect> {
     let readings = case.observation.readings();
     let rows: Vec<usize> = engine.noise.outliers().filter(|&row| engine.training[readings.block[row]]).collect();
     let fitted = case.rows(true).len();
     if rows.is_empty()
         || engine.noise.for_outliers < FOR_OUTLIERS
+        || engine.noise.for_outliers < engine.noise.for_tails + ODDS.ln()
         || (rows.len() as f64) < OUTLYING_ROWS * fitted as f64
     {
         return None;
@@ -307,7 +294,7 @@ fn outliers(engine: &Engine<'_>, found: &Found, case: &Case<'_>) -> Option<Named
         probability: 1.0 - (-engine.noise.for_outliers).exp(),
         class: vec![(name, 1.0)],
         recurs: 1.0,
-        holdout_rms: engine.unseen_rms(found, &found.best).unwrap_or_default(),
+        holdout_rms: engine.unseen_rms(&found.layout, &found.columns, &found.best, found.kappa).unwrap_or_default(),
         partial: false,
     })
 }

@@ -11,7 +11,7 @@ use crate::select::always::Declared;
 use robstiff_robots::DhEntry;
 
 /// A description with estimates, corrections of the table, and effects, which says where they are
-/// from.
+/// from. Shares were fitted of `compliance` (rad/Nm or m/N, a joint each).
 ///
 /// # Errors
 /// Numbers that no description takes beside its own effects.
@@ -19,7 +19,7 @@ pub fn described(
     campaign: &Campaign,
     (own, estimates): (&[Declared], &[Estimate]),
     table: &[[f64; 5]],
-    effects: &[&Found],
+    (effects, compliance): (&[Found], &[f64]),
 ) -> Result<Description, Error> {
     let mut description = with_values(&campaign.robot, own, estimates);
     for (joint, by) in description.joints.iter_mut().zip(table) {
@@ -33,7 +33,10 @@ pub fn described(
     let mut names = Vec::new();
     for found in effects {
         let mut with = description.clone();
-        found.written.iter().for_each(|effect| add(&mut with, *effect));
+        for effect in &found.written {
+            let effect = in_shares(effect, &with, compliance);
+            add(&mut with, effect);
+        }
         // What a fit allows may still be beyond what a description takes.
         if !found.written.is_empty() && is_readable(&with) {
             description = with;
@@ -48,6 +51,24 @@ pub fn described(
         source => format!("{source}\n{said}"),
     };
     Ok(description)
+}
+
+/// An effect whose numbers are shares of a joint's compliance, as shares of what that is now.
+fn in_shares(effect: &Effect, description: &Description, compliance: &[f64]) -> Effect {
+    match *effect {
+        Effect::PoseDependentCompliance { joint, cos1, sin1, cos2, sin2 } => {
+            let now = description.joints[joint - 1].compliance();
+            let by = if now > 0.0 { compliance[joint - 1] / now } else { 1.0 };
+            Effect::PoseDependentCompliance {
+                joint,
+                cos1: by * cos1,
+                sin1: by * sin1,
+                cos2: by * cos2,
+                sin2: by * sin2,
+            }
+        }
+        effect => effect,
+    }
 }
 
 /// Whether a description can be read back.
