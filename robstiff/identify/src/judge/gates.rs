@@ -1,12 +1,16 @@
 //! What a class of effects must pass to be named.
 
-use super::thresholds::{ACCOUNTS, DISCREPANCY, DISTINCT, FALLS, LOSS, MATTERS, PROBABLE, RECURS, SIZES, WORSE};
+use super::thresholds::{
+    ACCOUNTS, DISCREPANCY, DISTINCT, FALLS, LOSS, MATTERS, PROBABLE, RECURS, SIZES, STANDS_OUT, WORSE,
+};
 use crate::effects::{Side, What};
+use crate::model::Term;
 use crate::observe::Readings;
 use crate::regression::noise::{OUTLYING, discrepancies, rows_of_blocks};
 use crate::select::classes::{ByCandidate, Class, classes, extend, weigh_again};
 use crate::select::engine::{Engine, Found, groups};
 use crate::select::folds::Nested;
+use crate::select::problem::moves;
 use crate::select::search::{search, with, without};
 use crate::select::{Problem, Set};
 
@@ -27,6 +31,8 @@ pub struct Weighed {
     pub matters: f64,
     /// Whether its numbers are distinct from zero.
     pub distinct: bool,
+    /// Of a number of the table that absolute positions show, whether it stands out from the others.
+    pub stands_out: Option<bool>,
     /// What keeps it from being named, in words; none where it is named.
     pub why_not: Option<String>,
 }
@@ -89,6 +95,7 @@ pub fn weigh(engine: &Engine<'_>, found: &Found, nested: &Nested, seed: u64) -> 
             replaced: unseen[k],
             matters,
             distinct: is_distinct(found, class.form),
+            stands_out: stands_out(engine, found, class.form),
             why_not: None,
             class,
         };
@@ -114,10 +121,13 @@ fn why_not(of: &Weighed, found: &Found, falls: f64, (discrepancy, accounts): (f6
     if !of.distinct {
         return Some("its numbers are not distinct from zero".into());
     }
-    if of.matters < MATTERS {
+    if of.stands_out == Some(false) {
+        return Some("it does not stand out from the other numbers of the table".into());
+    }
+    if of.stands_out.is_none() && of.matters < MATTERS {
         return Some("without it the error grows by next to nothing".into());
     }
-    if of.replaced.is_some_and(|of| of.loss < LOSS || of.worse < WORSE) {
+    if of.stands_out.is_none() && of.replaced.is_some_and(|of| of.loss < LOSS || of.worse < WORSE) {
         return Some("unseen poses are predicted about as well with something else in its place".into());
     }
     if of.replaced.is_none() && falls < FALLS {
@@ -272,6 +282,23 @@ fn is_distinct(found: &Found, form: usize) -> bool {
     })
 }
 
+/// Whether a number of the table that absolute positions show stands out; none of another effect.
+fn stands_out(engine: &Engine<'_>, found: &Found, form: usize) -> Option<bool> {
+    let columns = &found.layout.forms[form].columns;
+    let is_of_table = columns.iter().all(|&k| matches!(found.layout.parameters[k].term, Term::Table(..)));
+    if engine.scene.what != What::Positions || !is_of_table {
+        return None;
+    }
+    let moves = moves(engine.observation.readings(), &found.columns, &engine.training);
+    let fit = &found.own.fit;
+    let noise = fit.variance.sqrt();
+    Some(columns.iter().any(|&k| {
+        let std = fit.place(k).map_or(f64::INFINITY, |at| fit.std[at]);
+        let value = fit.value(k).abs();
+        value > STANDS_OUT * std && value * moves[k] > noise
+    }))
+}
+
 /// The share of what the joints alone leave beyond the noise that a set accounts for, both without any
 /// discrepancy that the model might hide behind.
 fn accounted(problem: &Problem<'_>, best: &Set, kappa: usize) -> f64 {
@@ -296,6 +323,7 @@ mod tests {
             replaced: None,
             matters: 1.0,
             distinct: true,
+            stands_out: None,
             why_not: None,
         };
         let percent = |p: f64| format!("{:.0} %", 100.0 * p);

@@ -31,6 +31,11 @@ pub const MATTERS: f64 = 0.1;
 /// A number within so many standard deviations of zero is not distinct from it: the 95 % interval.
 pub const DISTINCT: f64 = 1.96;
 
+/// Of absolute positions every number of the table is off a little, and any of them can take most of what
+/// another says. One stands out if it is so many standard deviations from zero, and moves the readings by
+/// more than the noise.
+pub const STANDS_OUT: f64 = 5.0;
+
 /// A discrepancy is left where one of this size or a larger one is likelier than none or a smaller one:
 /// it doubles the error at a load of usual size.
 pub const DISCREPANCY: f64 = 0.3;

@@ -157,6 +157,7 @@ fn every_axis_is_in_every_fold() {
 fn a_written_table_predicts_what_was_fitted() {
     let campaign = simulated(&format!("{POSITIONS}{ZERO}"), Some(3e-5));
     let found = traced(&campaign);
+    assert_eq!(names(&found), ["joint_zero_offset@joint 3".to_string()], "{:?}", found.suspected);
     let error = predict(&found.description, &campaign).expect("it is of this robot").rms;
     assert!((error / found.written.rms - 1.0).abs() < 0.02, "{error} {:?}", found.written);
     assert!(error < 1.1 * 3e-5, "{error}");
