@@ -58,8 +58,10 @@ pub struct Noise {
     pub outlying: f64,
     /// The log-likelihood ratio of outlying rows against none.
     pub for_outliers: f64,
-    /// The log-likelihood ratio of a heavy-tailed noise of all rows against none.
-    pub for_tails: f64,
+    /// The rows that are beyond the tails of the others.
+    pub beyond_tails: Vec<usize>,
+    /// The log-likelihood ratio for any being so.
+    pub for_beyond: f64,
     /// The size of the displacement of each row (m).
     sizes: Vec<f64>,
 }
@@ -79,7 +81,8 @@ impl Noise {
             scales: (0..channels).map(|channel| if channel == 0 { 1.0 } else { lever }).collect(),
             outlying: 0.0,
             for_outliers: 0.0,
-            for_tails: 0.0,
+            beyond_tails: Vec::new(),
+            for_beyond: 0.0,
             sizes,
         }
     }
@@ -87,11 +90,6 @@ impl Noise {
     /// The variance of a row's own reading, over that of one reading.
     fn own(&self, row: usize, growth: f64) -> f64 {
         1.0 + (growth * self.sizes[row]).powi(2)
-    }
-
-    /// The rows whose weight says that they are outlying.
-    pub fn outliers(&self) -> impl Iterator<Item = usize> + '_ {
-        self.weights.iter().enumerate().filter(|(_, weight)| **weight < OUTLYING).map(|(row, _)| row)
     }
 
     /// Learns from what a model leaves, under some discrepancy, of the blocks that it was fitted to.
@@ -210,7 +208,10 @@ impl Noise {
         self.outlying = part;
         self.for_outliers = of_rows().map(|&row| (1.0 - part + part * odds(squares[row])).ln()).sum();
         let squares: Vec<f64> = of_rows().map(|&row| squares[row]).collect();
-        self.for_tails = for_tails(&squares, axes);
+        let (ratio, beyond) = beyond_tails(&squares, axes);
+        self.for_beyond = ratio;
+        self.beyond_tails = of_rows().zip(beyond).filter(|(_, beyond)| *beyond).map(|(row, _)| *row).collect();
+        self.beyond_tails.sort_unstable();
         for &row in of_rows() {
             self.weights[row] = 1.0 - outlying[row] + outlying[row] / (WIDER * WIDER);
         }
@@ -242,26 +243,50 @@ impl Noise {
     }
 }
 
-/// The degrees of freedom of the heavy-tailed distributions that are tried, and their sizes over that of
-/// the bulk.
-const TAILS: [f64; 6] = [2.0, 3.0, 4.0, 6.0, 10.0, 20.0];
-const TAIL_SIZES: [f64; 8] = [0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2];
+/// The degrees of freedom of the heavy-tailed distributions that are tried (the last is as good as
+/// normal), and their sizes over that of the bulk.
+const TAILS: [f64; 6] = [2.0, 3.0, 4.0, 6.0, 12.0, 1e3];
+const TAIL_SIZES: [f64; 4] = [0.6, 0.75, 0.9, 1.05];
 
-/// The log-likelihood ratio of Student's distribution of some axes (Lange, Little and Taylor, JASA 84,
-/// 1989) against a normal one, for lengths squared over the variance of the bulk; at its likeliest.
-fn for_tails(squares: &[f64], axes: f64) -> f64 {
-    let likelihood = |freedom: f64, size: f64| {
-        let share = ln_gamma(0.5 * (freedom + axes))
+/// The parts of the rows that may be beyond the tails, and by which factors these are wider than the bulk.
+const PARTS_BEYOND: [f64; 3] = [0.003, 0.02, 0.08];
+const WIDER_BEYOND: [f64; 3] = [WIDER, 60.0, 300.0];
+
+/// Which of some lengths squared, over the variance of the bulk, are beyond the tails of the others, and
+/// the log-likelihood ratio for that: Student's distribution (Lange, Little and Taylor, JASA 84, 1989)
+/// with some rows from a far wider normal one, against the likeliest without.
+fn beyond_tails(squares: &[f64], axes: f64) -> (f64, Vec<bool>) {
+    let tail = |square: f64, freedom: f64, size: f64| {
+        ln_gamma(0.5 * (freedom + axes))
             - ln_gamma(0.5 * freedom)
-            - 0.5 * axes * (0.5 * freedom).ln()
-            - axes * size.ln();
-        let of = |square: &f64| {
-            share - 0.5 * (freedom + axes) * (square / (freedom * size * size)).ln_1p() + 0.5 * square.min(1200.0)
-        };
-        squares.iter().map(of).sum::<f64>()
+            - axes * (0.5 * (core::f64::consts::PI * freedom).ln() + size.ln())
+            - 0.5 * (freedom + axes) * (square / (freedom * size * size)).ln_1p()
     };
-    let all = TAILS.into_iter().flat_map(|freedom| TAIL_SIZES.into_iter().map(move |size| likelihood(freedom, size)));
-    all.fold(0.0, f64::max)
+    let wide = |square: f64, wider: f64| {
+        -axes * (0.5 * core::f64::consts::TAU.ln() + wider.ln()) - 0.5 * square / (wider * wider)
+    };
+    let (mut without, mut best) = (f64::NEG_INFINITY, (f64::NEG_INFINITY, vec![false; squares.len()]));
+    for freedom in TAILS {
+        for size in TAIL_SIZES {
+            let tails: Vec<f64> = squares.iter().map(|&square| tail(square, freedom, size)).collect();
+            without = without.max(tails.iter().sum());
+            for wider in WIDER_BEYOND {
+                for part in PARTS_BEYOND {
+                    let pairs = || {
+                        squares
+                            .iter()
+                            .zip(&tails)
+                            .map(|(&square, tail)| (wide(square, wider) + part.ln(), tail + (-part).ln_1p()))
+                    };
+                    let sum: f64 = pairs().map(|(a, b)| a.max(b) + (-(a - b).abs()).exp().ln_1p()).sum();
+                    if sum > best.0 {
+                        best = (sum, pairs().map(|(far, near)| far > near).collect());
+                    }
+                }
+            }
+        }
+    }
+    (best.0 - without, best.1)
 }
 
 /// The rows of the blocks that are fitted to, a list each.
@@ -294,4 +319,28 @@ fn median(mut numbers: Vec<f64>) -> f64 {
     }
     let middle = numbers.len() / 2;
     *numbers.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lengths squared of three axes at the middles of equal parts of a distribution: normal, and
+    /// Student's with three degrees of freedom, where they are three times those of F with 3 and 3.
+    #[test]
+    fn tails_are_told_from_what_is_beyond_them() {
+        use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
+        let (normal, heavy) = (ChiSquared::new(3.0).unwrap(), FisherSnedecor::new(3.0, 3.0).unwrap());
+        let middles = || (0..200).map(|k| (f64::from(k) + 0.5) / 200.0);
+        let normal: Vec<f64> = middles().map(|p| normal.inverse_cdf(p)).collect();
+        let heavy: Vec<f64> = middles().map(|p| 3.0 * heavy.inverse_cdf(p)).collect();
+        for squares in [normal, heavy] {
+            assert!(beyond_tails(&squares, 3.0).0 < 1.0);
+            let far = [squares, vec![1e4, 9e3, 1.2e4]].concat();
+            let (gain, which) = beyond_tails(&far, 3.0);
+            assert!(gain > 5.0, "{gain}");
+            let rows: Vec<usize> = (0..far.len()).filter(|&row| which[row]).collect();
+            assert!(rows.ends_with(&[200, 201, 202]) && rows.len() < 6, "{rows:?}");
+        }
+    }
 }

@@ -278,11 +278,11 @@ fn order_of<'w>(
 /// Rows that do not belong to the others, where they are few and far off: not the tail of the others.
 fn outliers(engine: &Engine<'_>, found: &Found, case: &Case<'_>) -> Option<NamedEffect> {
     let readings = case.observation.readings();
-    let rows: Vec<usize> = engine.noise.outliers().filter(|&row| engine.training[readings.block[row]]).collect();
+    let rows = &engine.noise.beyond_tails;
     let fitted = case.rows(true).len();
     if rows.is_empty()
         || engine.noise.for_outliers < FOR_OUTLIERS
-        || engine.noise.for_outliers < engine.noise.for_tails + ODDS.ln()
+        || engine.noise.for_beyond < ODDS.ln()
         || (rows.len() as f64) < OUTLYING_ROWS * fitted as f64
     {
         return None;
@@ -291,7 +291,7 @@ fn outliers(engine: &Engine<'_>, found: &Found, case: &Case<'_>) -> Option<Named
     Some(NamedEffect {
         effect: Effect::outliers(rows.len()),
         lines: rows.iter().map(|&row| readings.lines[row]).collect(),
-        probability: 1.0 - (-engine.noise.for_outliers).exp(),
+        probability: 1.0 - (-engine.noise.for_beyond).exp(),
         class: vec![(name, 1.0)],
         recurs: 1.0,
         holdout_rms: engine.unseen_rms(&found.layout, &found.columns, &found.best, found.kappa).unwrap_or_default(),
