@@ -605,14 +605,22 @@ impl<'c> Engine<'c> {
         Some(Found { layout, visited, best, kappa, columns, own })
     }
 
-    /// Weighs sets over how large effects are likely to be: of three sizes each is as likely, so that one
-    /// which is larger than usual is not passed over for two that are usual.
+    /// Weighs sets over how large springs and laws of joints are likely to be: of three sizes each is as
+    /// likely, so that one which is larger than usual is not passed over for two that are usual. Lengths
+    /// and angles have sizes that one knows.
     fn over_sizes(&self, problem: &Problem<'_>, columns: &DMatrix<f64>, visited: &mut Visited) {
         let best = visited.best();
         let mut others: Vec<(Problem<'_>, Visited)> = Vec::new();
         for by in OTHER_SIZES {
             let other = Self { sizes: by * self.sizes, ..self.clone() };
             let mut problem = other.problem(problem.layout, columns, problem.grams.clone());
+            problem.priors.iter_mut().zip(&problem.layout.parameters).skip(problem.layout.always().end).for_each(
+                |(prior, parameter)| {
+                    if !matches!(parameter.term, Term::Spring(_) | Term::Law(..)) {
+                        prior.sd /= by;
+                    }
+                },
+            );
             let own = search(&mut problem, &best, self.fold_width());
             others.push((problem, own));
         }
