@@ -28,6 +28,8 @@ mod read;
 #[cfg(feature = "read")]
 #[doc(hidden)]
 pub mod samples;
+#[cfg(feature = "schema")]
+pub mod schema;
 #[cfg(feature = "read")]
 mod suggest;
 #[cfg(feature = "table")]
