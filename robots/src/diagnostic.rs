@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use crate::text::{is_bidirectional, shown_in_line};
+use crate::text::shown::{is_bidirectional, shown_in_line};
 
 /// One problem, with its place in the file.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -22,27 +22,16 @@
 mod content;
 mod load;
 mod node;
+mod problems;
 mod scalar;
 
 pub(crate) use content::{Content, Value};
 pub use node::{Map, Node};
+pub use problems::Document;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Line};
 use crate::text::Lines;
-use content::width;
 use load::{Refusal, load};
-use std::cell::RefCell;
-
-/// A YAML document and the problems found in it so far.
-#[derive(Debug)]
-pub struct Document {
-    file: String,
-    lines: Lines<String>,
-    root: Content,
-    /// Whether bare numbers are refused that are certainly in another unit than SI.
-    wary: bool,
-    problems: RefCell<Vec<Diagnostic>>,
-}
 
 impl Document {
     /// Reads a document; `file` is the name that problems show.
@@ -57,61 +46,9 @@ impl Document {
     pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
         let text = without_byte_order_mark(text);
         let root = load(text).map_err(|(refusal, _)| refused(file, text, refusal))?;
-        let (file, lines) = (file.to_owned(), Lines::new(text.to_owned()));
-        let document = Self { file, lines, root, wary: false, problems: RefCell::default() };
+        let document = Self::new(file, text, root);
         document.root().check_keys();
         Ok(document)
-    }
-
-    /// The document, in which a number without a unit must be one that a robot
-    /// can have in SI: in degrees or millimetres it is refused.
-    #[must_use]
-    pub fn wary(self) -> Self {
-        Self { wary: true, ..self }
-    }
-
-    /// The document's top value.
-    pub fn root(&self) -> Node<'_> {
-        Node::root(self)
-    }
-
-    /// The value that was read, if no problem was found on the way.
-    ///
-    /// # Errors
-    /// All the problems found, in the order of the file.
-    ///
-    /// # Panics
-    /// If there is neither a value nor a problem: whoever gives up on a value
-    /// must have reported why.
-    pub fn finish<T>(self, value: Option<T>) -> Result<T, Diagnostics> {
-        match Diagnostics::new(self.problems.into_inner()) {
-            Some(problems) => Err(problems),
-            None => Ok(value.expect("a value was given up without a problem being reported")),
-        }
-    }
-
-    /// Whether as many problems are recorded as anybody reads: what is said of more is not even
-    /// put into words.
-    fn is_full(&self) -> bool {
-        self.problems.borrow().len() >= Diagnostics::MOST
-    }
-
-    fn report(&self, content: &Content, path: String, message: String, help: String) {
-        if self.is_full() {
-            return;
-        }
-        let (number, column) = self.lines.place(content.at.start);
-        let line = Line { number, text: self.lines.line(number) };
-        let place = (column, width(self.rest_of_line(content), content));
-        let problem = Diagnostic::new(&self.file, line, place, message, help).at(path);
-        self.problems.borrow_mut().push(problem);
-    }
-
-    /// What stands in the line of a part from there on.
-    fn rest_of_line(&self, content: &Content) -> &str {
-        let start = content.at.start;
-        let end = self.lines.range(self.lines.number_at(start)).end;
-        &self.lines.text()[start..end.max(start)]
     }
 }
 

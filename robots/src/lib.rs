@@ -26,6 +26,8 @@ pub mod quantity;
 #[cfg(feature = "read")]
 mod read;
 #[cfg(feature = "read")]
+mod read_error;
+#[cfg(feature = "read")]
 #[doc(hidden)]
 pub mod samples;
 #[cfg(feature = "schema")]
@@ -53,4 +55,6 @@ pub use description::{Description, Joint, Link, Part, Placement};
 pub use diagnostic::{Diagnostic, Diagnostics, Line};
 pub use effect::{Convention, DhEntry, Effect, JointKind, Place};
 #[cfg(feature = "read")]
-pub use read::{Outline, ReadError};
+pub use read::Outline;
+#[cfg(feature = "read")]
+pub use read_error::ReadError;

@@ -3,58 +3,22 @@
 
 mod couplings;
 mod effects;
+mod name;
 mod outline;
 
 pub use outline::Outline;
 
 use crate::angle::snapped;
-use crate::description::{Description, Joint, Link, MOST_JOINTS, Part, Placement, TAKEN};
+use crate::description::{Description, Joint, Link, MOST_JOINTS, Part, Placement};
 use crate::diagnostic::Diagnostics;
 use crate::document::{Document, Map, Node};
 use crate::effect::{Convention, Effect, JointKind};
 use crate::quantity::Dimension;
+use crate::read_error::ReadError;
 use crate::text;
 use crate::words::count;
-use std::fmt;
-use std::io;
-use std::path::{Path, PathBuf};
-
-/// Why a description could not be read.
-#[derive(Debug)]
-pub enum ReadError {
-    /// The file could not be read.
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        error: io::Error,
-    },
-    /// The file was read, but is not what it should be.
-    Invalid(Diagnostics),
-}
-
-impl fmt::Display for ReadError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Io { path, .. } if path.as_os_str() == "-" => {
-                f.write_str("error: `-` does not stand for standard input; name a file")
-            }
-            Self::Io { path, error } => {
-                write!(f, "error: cannot read {}: {error}", text::shown_in_line(&path.display().to_string()))
-            }
-            Self::Invalid(problems) => problems.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for ReadError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::Io { error, .. } => Some(error),
-            Self::Invalid(problems) => Some(problems),
-        }
-    }
-}
+use name::name;
+use std::path::Path;
 
 impl Description {
     /// Reads a description from a file.
@@ -87,20 +51,6 @@ impl Description {
         effects::effects(node, &arm)
     }
 
-    /// A free name for a robot's type that is like `text`, e.g. a file's name.
-    pub fn name_like(text: &str) -> String {
-        let words = text.split(|character: char| !character.is_ascii_alphanumeric());
-        let camel: String = words
-            .filter_map(|word| Some((word.chars().next()?.to_ascii_uppercase(), &word[1..])))
-            .map(|(first, rest)| format!("{first}{rest}"))
-            .collect();
-        match camel.as_str() {
-            free if is_type_name(free) => camel,
-            "" | "Robot" => "MyRobot".to_owned(),
-            _ => format!("Robot{camel}"),
-        }
-    }
-
     /// What can be told of a robot from a text that may be broken anywhere.
     pub fn outline(text: &str) -> Outline {
         outline::outline(text)
@@ -120,7 +70,22 @@ pub(crate) const LINK: [&str; 2] = ["mass", "center_of_mass"];
 /// Those of a placement.
 pub(crate) const PLACEMENT: [&str; 2] = ["xyz", "rpy"];
 
+/// `None` with the problem reported where the file is a campaign.
+fn refuse_campaign(root: &Node) -> Option<()> {
+    let Some(map) = root.is_map().then(|| root.any_map("")).flatten() else { return Some(()) };
+    let there = |field: &str| map.get(field).is_some();
+    if there("observations") && !there("joints") {
+        let robot = map.get("robot").and_then(|node| node.as_text().map(str::to_owned));
+        let robot = robot.map(|robot| format!(", here `{robot}`")).unwrap_or_default();
+        let help = format!("give the robot's description, which the campaign names under `robot:`{robot}");
+        root.error("this is a campaign, and no robot's description", help);
+        return None;
+    }
+    Some(())
+}
+
 fn description(root: &Node) -> Option<Description> {
+    refuse_campaign(root)?;
     let map = root.map(&ROBOT)?;
     // Everything is read before anything is given up, to report all problems.
     let name = map.require("name", "name: Rv130hsc").and_then(|node| name(&node));
@@ -159,30 +124,6 @@ fn optional<T: Default>(map: &Map, field: &str, read: impl FnOnce(&Node) -> Opti
 fn every<T>(items: &[Node], read: impl FnMut(&Node) -> Option<T>) -> Option<Vec<T>> {
     let read: Vec<Option<T>> = items.iter().map(read).collect();
     read.into_iter().collect()
-}
-
-fn name(node: &Node) -> Option<String> {
-    let name = node.text()?;
-    if !is_type_name(name) {
-        let why = if TAKEN.contains(&name) {
-            "it becomes a Rust type, and the generated code uses this name itself: write another one"
-        } else if !name.is_ascii() {
-            "it becomes a Rust type, of ASCII letters and digits only: write it in upper camel case without others"
-        } else {
-            "it becomes a Rust type, so write it in upper camel case"
-        };
-        let help = format!("{why}, e.g. `{}`", Description::name_like(name));
-        node.error(format!("`{name}` cannot name a robot"), help);
-        return None;
-    }
-    Some(name.to_owned())
-}
-
-/// Whether a text is an upper camel case identifier that is free.
-fn is_type_name(name: &str) -> bool {
-    name.starts_with(|first: char| first.is_ascii_uppercase())
-        && name.chars().all(|character| character.is_ascii_alphanumeric())
-        && !TAKEN.contains(&name)
 }
 
 impl Placement {
@@ -317,20 +258,5 @@ mod tests {
         let text = "name: Arm\nconvention: standard\njoints: [{a: 1 m}]\n";
         let arm = Description::parse("arm.yaml", text).unwrap_or_else(|problems| panic!("{problems}"));
         assert!(arm.joints[0].compliance().is_sign_positive());
-    }
-
-    #[test]
-    fn suggests_names_that_are_names() {
-        for (name, suggested) in [
-            ("rv130-hsc", "Rv130Hsc"),
-            ("6axis arm", "Robot6axisArm"),
-            ("Self", "RobotSelf"),
-            ("Robot", "MyRobot"),
-            ("ü", "MyRobot"),
-        ] {
-            assert!(!is_type_name(name));
-            assert_eq!(Description::name_like(name), suggested);
-            assert!(is_type_name(suggested));
-        }
     }
 }

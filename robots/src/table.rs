@@ -1,8 +1,11 @@
 //! A CSV file as a table of checked numbers, every problem at its place.
 
+mod columns;
 mod extent;
+mod form;
 mod header;
 mod problems;
+mod repeated;
 
 use core::cell::RefCell;
 use std::collections::HashSet;
@@ -11,14 +14,17 @@ use std::path::Path;
 use crate::quantity::{Dimension, QuantityError, finite, scale};
 use crate::text::{self, Lines, MOST_OF_TABLE};
 use crate::words::count;
-use crate::{Diagnostic, Diagnostics, ReadError};
+use crate::{Diagnostics, ReadError};
 
+use form::Form;
 use header::Header;
+use repeated::Repeated;
 
 /// A table, and the problems found in it so far.
 pub struct Table<'t> {
     file: &'t str,
     lines: Lines<&'t str>,
+    form: Form,
     header: Vec<Header>,
     /// The line of the header, from 1.
     header_line: usize,
@@ -27,7 +33,7 @@ pub struct Table<'t> {
     asked_for: RefCell<Vec<usize>>,
     /// The names of columns that were asked for and are not there.
     absent: RefCell<Vec<String>>,
-    problems: RefCell<Vec<Diagnostic>>,
+    problems: RefCell<Vec<Repeated>>,
     warnings: RefCell<Vec<String>>,
 }
 
@@ -76,6 +82,7 @@ impl<'t> Table<'t> {
         let mut table = Self {
             file,
             lines: Lines::new(text),
+            form: Form::default(),
             header: Vec::new(),
             header_line: 1,
             records: Vec::new(),
@@ -84,7 +91,15 @@ impl<'t> Table<'t> {
             problems: RefCell::default(),
             warnings: RefCell::default(),
         };
+        match Form::of(text) {
+            Ok(form) => table.form = form,
+            Err(ambiguous) => {
+                let form::Ambiguous { line, field, message, help } = ambiguous;
+                return Err(table.problem(line, field, &message, &help).into());
+            }
+        }
         let mut reader = csv::ReaderBuilder::new()
+            .delimiter(table.form.separator as u8)
             .has_headers(false)
             .flexible(true)
             .trim(csv::Trim::All)
@@ -99,14 +114,6 @@ impl<'t> Table<'t> {
         }
         if header.get(0).is_some_and(|name| name.starts_with('#')) {
             return Err(table.problem(table.header_line, usize::MAX, "a comment line?", HEADER).into());
-        }
-        for (separator, message) in
-            [(';', "the columns are separated by semicolons"), ('\t', "the columns are separated by tabs")]
-        {
-            if let Some(field) = header.iter().position(|name| name.contains(separator)) {
-                let help = "the separator is a comma, and the decimal sign a point: `pose,q1 [deg],Fx [N]`";
-                return Err(table.problem(table.header_line, field, message, help).into());
-            }
         }
         // An id or two may be no numbers; no column is called as one.
         if 2 * header.iter().filter(|name| name.parse::<f64>().is_ok()).count() > header.len() {
@@ -178,11 +185,14 @@ impl<'t> Table<'t> {
             self.records.push(Record { line, fields: row.clone() });
         } else {
             let message = format!("this row has {}, the header has {expected}", count(found, "field"));
-            let help = "give every row one field a column, with a point as decimal sign";
+            let help = match self.form.separator {
+                ',' => "give every row one field a column, with a point as decimal sign",
+                _ => "give every row one field a column",
+            };
             let help = match found.checked_sub(expected) {
-                Some(1) if row.get(expected).is_some_and(str::is_empty) => Some(ONE_TOO_MANY.to_owned()),
-                Some(more) => decimal_comma(row, more),
-                None => None,
+                Some(1) if row.get(expected).is_some_and(str::is_empty) => Some(one_too_many(self.form.separator)),
+                Some(more) if self.form.separator == ',' => decimal_comma(row, more),
+                _ => None,
             }
             .unwrap_or_else(|| help.to_owned());
             self.report(line, found.min(expected), &message, &help);
@@ -227,7 +237,7 @@ impl<'t> Table<'t> {
         let index = self.position(name);
         if index.is_none() && self.in_round_brackets(name).is_none() {
             let names: Vec<_> = self.header.iter().map(|header| format!("`{}`", header.name)).collect();
-            let other = self.header.iter().position(|header| header.name.eq_ignore_ascii_case(name));
+            let other = self.header.iter().position(|header| header.key.eq_ignore_ascii_case(name));
             let help = match other {
                 Some(field) => format!("write `{name}` in place of `{}`", self.header[field].name),
                 None => format!("the header line has {}", names.join(", ")),
@@ -247,7 +257,7 @@ impl<'t> Table<'t> {
 
     /// The index of a column. One whose unit is in round brackets is reported.
     pub fn position(&self, name: &str) -> Option<usize> {
-        let index = self.header.iter().position(|header| header.name == name);
+        let index = self.header.iter().position(|header| header.key == name);
         match (index, self.in_round_brackets(name)) {
             (Some(index), _) => self.asked_for.borrow_mut().push(index),
             (None, Some((field, unit))) => {
@@ -271,7 +281,12 @@ impl<'t> Table<'t> {
     /// A number of a row in SI; what is not a finite number, or beyond all sums, is reported.
     pub fn number(&self, record: &Record, column: Numbers) -> Option<f64> {
         let text = &record.fields[column.index];
-        let number = text.parse::<f64>().map(|number| (number.is_finite(), number * column.scale));
+        let written = self.form.with_point(text);
+        if let Some([message, help]) = self.form.mixed(text) {
+            self.report(record.line, column.index, &message, &help);
+            return None;
+        }
+        let number = written.parse::<f64>().map(|number| (number.is_finite(), number * column.scale));
         let problem = match number {
             Ok((true, number)) if number.is_infinite() => format!("`{text}` in SI units is too large"),
             Ok((true, number)) => {
@@ -285,12 +300,24 @@ impl<'t> Table<'t> {
         let name = &self.header[column.index].name;
         let point = text.replacen(',', ".", 1);
         let help = match text.contains(',') && point.parse::<f64>().is_ok() {
-            true => comma_help(&point),
-            false if column.whole => format!("the column `{name}` holds whole numbers, e.g. `1`"),
-            false => format!("the column `{name}` holds finite numbers, e.g. `0.25`"),
+            true if self.form.comma.is_none() => comma_help(&point),
+            _ if column.whole => format!("the column `{name}` holds whole numbers, e.g. `1`"),
+            _ => format!("the column `{name}` holds finite numbers, e.g. `0.25`"),
         };
         self.report(record.line, column.index, &problem, &help);
         None
+    }
+
+    /// Reports it, once, where nothing is written in any row of some columns.
+    pub fn refuse_unfilled<const K: usize>(&self, columns: [Numbers; K], of: &str) -> Option<()> {
+        let first = self.records.first()?;
+        let unfilled = |record: &Record| columns.iter().all(|&column| self.is_empty(record, column));
+        if self.records.iter().all(unfilled) {
+            let message = format!("no readings yet: fill in {of}");
+            self.report(first.line, columns[0].index, &message, "measure, and write what was read into every row");
+            return None;
+        }
+        Some(())
     }
 
     /// Whether nothing is written there.
@@ -300,7 +327,7 @@ impl<'t> Table<'t> {
 
     /// A number of a row in SI, unchecked.
     pub fn peek(&self, record: &Record, column: Numbers) -> Option<f64> {
-        record.fields[column.index].parse::<f64>().ok().map(|number| number * column.scale)
+        self.form.with_point(&record.fields[column.index]).parse::<f64>().ok().map(|number| number * column.scale)
     }
 
     /// The numbers of several columns, all checked.
@@ -355,8 +382,15 @@ fn open_quote(row: &csv::StringRecord) -> Option<usize> {
     row.iter().position(|field| field.contains(['\r', '\n']))
 }
 
-/// What is right where a row ends in a comma.
-const ONE_TOO_MANY: &str = "leave out the comma at the end";
+/// What is right where a row ends in a separator.
+fn one_too_many(separator: char) -> String {
+    let name = match separator {
+        ';' => "semicolon",
+        '\t' => "tab",
+        _ => "comma",
+    };
+    format!("leave out the {name} at the end")
+}
 
 /// What is said of a number with a comma, written with a point.
 fn comma_help(point: &str) -> String {

@@ -1,14 +1,14 @@
 //! Files as text.
 
 mod lines;
-mod shown;
+pub(crate) mod shown;
 
 use std::fs::{self, File, Metadata};
 use std::io::{self, Read as _};
 use std::path::Path;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Line};
-use crate::read::ReadError;
+use crate::read_error::ReadError;
 
 pub use lines::Lines;
 pub use shown::{is_bidirectional, shown, shown_in_line};

@@ -6,7 +6,7 @@ use std::fs;
 use rand::seq::IndexedRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use robstiff_identify::campaign::{Campaign, Data};
+use robstiff_identify::campaign::{Campaign, Data, Noise};
 use robstiff_identify::identify::PreparedPositions;
 use robstiff_identify::trace::{Options, Trace, Verdict, trace};
 use robstiff_robots::{Description, Effect};
@@ -47,8 +47,8 @@ pub struct Came {
     pub numbers: [usize; 2],
 }
 
-/// Reads a simulated campaign back from files; `reflector` is where the file says that
-/// it is.
+/// Reads a simulated campaign back from files, with its noise declared; `reflector` is where the
+/// file says that it is.
 ///
 /// # Panics
 /// Where files cannot be written or the campaign cannot be read.
@@ -58,7 +58,10 @@ pub fn read(positions: &Positions, declared: &Description, reflector: [f64; 3]) 
     write("robot.yaml", &declared.to_yaml());
     write("campaign.yaml", &Positions::campaign(reflector));
     write("positions.csv", &positions.table());
-    Campaign::read(folder.0.join("campaign.yaml")).unwrap_or_else(|problem| panic!("{problem}"))
+    let campaign = Campaign::read(folder.0.join("campaign.yaml")).unwrap_or_else(|problem| panic!("{problem}"));
+    let noise = positions.noise[0].hypot(positions.noise[1]);
+    let noise = Noise { displacement: (noise > 0.0).then_some(noise), rotation: None };
+    Campaign { noise, ..campaign }
 }
 
 /// A campaign with so many effects of the catalogue hidden, or with something outside

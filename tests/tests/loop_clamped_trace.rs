@@ -20,7 +20,9 @@ fn traced(axes: &Axes, declared: &Description) -> Trace {
     let folder = Folder::new();
     let write = |file: &str, text: &str| fs::write(folder.0.join(file), text).expect("a temporary file");
     write("robot.yaml", &declared.to_yaml());
-    write("campaign.yaml", "name: axis by axis\nrobot: robot.yaml\nobservations: axes.csv\nkind: clamped\n");
+    let noise = format!("noise: {{rotation: {} urad}}\n", 1e6 * axes.noise);
+    let said = "name: axis by axis\nrobot: robot.yaml\nobservations: axes.csv\nkind: clamped\n";
+    write("campaign.yaml", &(said.to_owned() + &noise));
     write("axes.csv", &axes.table());
     let campaign = Campaign::read(folder.0.join("campaign.yaml")).unwrap_or_else(|problem| panic!("{problem}"));
     trace(&campaign, &Options::default(), &|_| {}).unwrap_or_else(|problem| panic!("{problem}"))

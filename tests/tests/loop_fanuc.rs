@@ -55,7 +55,11 @@ fn the_tilt_of_joint_3_is_missing() {
 
     // The readings are turned against the loads, and the cable does not pull at
     // the TCP: with that, less than half is left of what the tilt alone leaves.
-    assert!(whole(found.after.rms) < 0.15 && whole(found.after.holdout_rms) < 0.16, "{:?}", found.after);
+    // Line 12 is in these errors, though in no fit.
+    assert!(whole(found.after.rms) < 0.2 && whole(found.after.holdout_rms) < 0.21, "{:?}", found.after);
+    let fitted = found.residuals.iter().filter(|row| row.line != 12).flat_map(|row| row.after);
+    let squares: f64 = fitted.map(|one| one * one).sum();
+    assert!(whole((squares / (3.0 * 42.0)).sqrt()) < 0.15, "{squares}");
     let of_kind = |kind: &str| found.effects.iter().find(|named| named.effect.kind() == kind);
     for kind in ["tracker_misalignment", "lever_arm"] {
         assert!(of_kind(kind).is_some_and(|named| named.effect.is_of_rig() && named.p_value < 0.01), "{kind}");
@@ -68,7 +72,8 @@ fn the_tilt_of_joint_3_is_missing() {
     assert_near("the tilt (rad/Nm)", value, 6.37e-7, 0.05);
     assert!(named.effect.parameters[0].std.is_some_and(|std| std < 0.1 * value), "{:?}", named.effect.parameters);
     assert!(named.p_value < 0.01, "{}", named.p_value);
-    assert!(matches!(found.verdict, Verdict::Explained | Verdict::Partial));
+    // Nothing but what the model leaves says how large the noise is.
+    assert_eq!(found.verdict, Verdict::Partial);
     assert!((0.0..1.0).contains(&found.unexplained) && !found.why.is_empty());
 }
 

@@ -255,11 +255,12 @@ fn what_has_no_name_is_told_for_what_it_looks_like() {
     let knocked = |when: f64, by: f64| Hidden::ReflectorSlip { shift: [by, -by, 0.5 * by], when };
     let back = "another slip of the reflector on the tool before line ";
     let cases = [
-        ("an encoder of joint 4 that has a scale of its own", Some([4, 4]), vec![], None),
-        ("joint 5 going along with joint 4", Some([5, 4]), vec![], None),
-        (back, None, vec![knocked(0.3, 2e-4), knocked(0.6, -2e-4)], Some("reflector_slip@rig")),
+        ("an encoder of joint 4 that has a scale of its own", Some([4, 4]), vec![]),
+        ("joint 5 going along with joint 4", Some([5, 4]), vec![]),
+        // One of the two alone hardly lowers the error, so it has no name either.
+        (back, None, vec![knocked(0.3, 2e-4), knocked(0.6, -2e-4)]),
     ];
-    for (seed, (words, follows, hidden, beside)) in (1000..).step_by(20).zip(cases) {
+    for (seed, (words, follows, hidden)) in (1000..).step_by(20).zip(cases) {
         let right = (0..RUNS).filter(|&run| {
             let (mut positions, declared) = positions(run, seed);
             positions.hidden.clone_from(&hidden);
@@ -270,7 +271,7 @@ fn what_has_no_name_is_told_for_what_it_looks_like() {
             let trace = traced(&campaign);
             let named: Vec<String> = trace.effects.iter().map(|named| named.effect.to_string()).collect();
             println!("{words} {run}: {} {named:?} {:?}", trace.verdict, trace.looks_like);
-            named.iter().map(String::as_str).eq(beside)
+            named.is_empty()
                 && trace.description.effects.is_empty()
                 && trace.looks_like.len() == 1
                 && trace.looks_like[0].starts_with(words)

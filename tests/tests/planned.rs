@@ -68,6 +68,7 @@ fn campaign(simulated: &Simulated) -> Campaign {
         data: simulated.data.clone(),
         noise: Noise { displacement: Some(NOISE), rotation: None },
         holdout: None,
+        held_out: Vec::new(),
         warnings: Vec::new(),
     }
 }

@@ -60,6 +60,7 @@ fn measured(robot: &Description, hidden: &[Effect], payloads: &[f64], poses: Pos
         data: simulated.data,
         noise: Noise { displacement: Some(NOISE), rotation: None },
         holdout: None,
+        held_out: Vec::new(),
         warnings: Vec::new(),
     }
 }

@@ -3,10 +3,18 @@
 use std::collections::HashSet;
 use std::rc::Rc;
 
-use super::{Content, Document, Value};
+use super::content::{Content, Value};
+use super::problems::Document;
 use crate::bare::in_si;
 use crate::quantity::{self, Dimension};
 use crate::suggest::{called, closest, list};
+
+impl Document {
+    /// The document's top value.
+    pub fn root(&self) -> Node<'_> {
+        Node::root(self)
+    }
+}
 
 /// A value in a document, with its place.
 #[derive(Clone, Debug)]
@@ -31,7 +39,7 @@ enum Part<'d> {
 }
 
 impl<'d> Node<'d> {
-    pub(super) fn root(document: &'d Document) -> Self {
+    fn root(document: &'d Document) -> Self {
         Self { document, content: &document.root, way: None }
     }
 

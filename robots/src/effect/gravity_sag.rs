@@ -5,8 +5,9 @@
 //! without sag; `share` is how much of it the controller does not correct.
 //! Gravity points against z of the base (world) frame.
 
+use super::joint::JointKind;
 use super::physics::*;
-use super::{Dimension, JointKind, Scalar};
+use super::{Dimension, Scalar};
 
 /// Standard gravity (m/s^2).
 pub const GRAVITY: f64 = 9.80665;

@@ -1,5 +1,6 @@
 //! A robot's name and number of joints from a file that may be broken.
 
+use super::name::is_type_name;
 use crate::description::MOST_JOINTS;
 use crate::document::{Value, fields_before_the_break};
 
@@ -19,7 +20,7 @@ pub(super) fn outline(text: &str) -> Outline {
     for (key, content) in fields_before_the_break(text) {
         match (key.text(), &content.value) {
             (Some("name"), Value::Text(name)) => {
-                outline.name = Some(name.to_string()).filter(|name| super::is_type_name(name));
+                outline.name = Some(name.to_string()).filter(|name| is_type_name(name));
             }
             (Some("joints"), Value::Sequence(joints)) => {
                 outline.joints = Some(joints.len()).filter(|count| (1..=MOST_JOINTS).contains(count));

@@ -4,6 +4,8 @@
 pub struct Header {
     /// What the column is called.
     pub name: String,
+    /// What readers look for it by: its name, but where it is another's.
+    pub key: String,
     /// Its unit, if there is one.
     pub unit: Option<String>,
     /// Whether the bracket of the unit is closed.
@@ -20,7 +22,8 @@ impl Header {
             }
             None => (text, None, true),
         };
-        Self { name: name.trim().to_owned(), unit, closed }
+        let name = name.trim().to_owned();
+        Self { key: name.clone(), name, unit, closed }
     }
 }
 

@@ -4,14 +4,18 @@ use crate::{Diagnostic, Diagnostics, Line};
 
 use super::extent::extent;
 use super::header::Header;
+use super::repeated::{Repeated, kind_of};
 use super::{Numbers, Record, Table};
 
 impl Table<'_> {
     /// Reports a problem with a field (by its index) of a line.
     pub fn report(&self, line: usize, field: usize, message: &str, help: &str) {
-        if self.problems.borrow().len() < Diagnostics::MOST {
-            let problem = self.problem(line, field, message, help);
-            self.problems.borrow_mut().push(problem);
+        let kind = kind_of(message);
+        let mut problems = self.problems.borrow_mut();
+        if let Some(alike) = problems.iter_mut().find(|known| known.field == field && known.kind == kind) {
+            alike.take(|| self.problem(line, field, message, help), line);
+        } else if problems.len() < Diagnostics::MOST {
+            problems.push(Repeated::new(self.problem(line, field, message, help), field, kind));
         }
     }
 
@@ -52,7 +56,7 @@ impl Table<'_> {
     pub(super) fn problem(&self, line: usize, field: usize, message: &str, help: &str) -> Diagnostic {
         let source_line = self.lines.line(line);
         let line = Line { number: line, text: source_line };
-        Diagnostic::new(self.file, line, extent(source_line, field), message, help)
+        Diagnostic::new(self.file, line, extent(source_line, self.form.separator, field), message, help)
     }
 
     /// What was read with the warnings, if no problem was found on the way.
@@ -63,7 +67,7 @@ impl Table<'_> {
     /// # Panics
     /// If there is neither a value nor a problem.
     pub fn finish<T>(self, value: Option<T>) -> Result<(T, Vec<String>), Diagnostics> {
-        if let Some(problems) = Diagnostics::new(self.problems.take()) {
+        if let Some(problems) = Diagnostics::new(self.problems.take().into_iter().flat_map(Repeated::said).collect()) {
             return Err(problems);
         }
         let asked_for = self.asked_for.borrow();

@@ -19,7 +19,7 @@ use std::cell::Ref;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
-use self::system::{Equation, System};
+use self::system::{Equation, System, is_one};
 use crate::function::Function;
 use crate::graph::{Graph, Node, Sym};
 use crate::op::{Id, Op};
@@ -315,14 +315,6 @@ impl<'g> Rewriter<'_, 'g> {
         }
     }
 }
-
-/// Whether it is 1 but for rounding.
-fn is_one(value: f64) -> bool {
-    (value - 1.0).abs() < ROUNDING
-}
-
-/// More than some dozens of products are off, and less than descriptions tell apart.
-const ROUNDING: f64 = 1e-14;
 
 #[cfg(test)]
 mod tests {

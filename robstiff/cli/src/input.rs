@@ -14,8 +14,8 @@ use crate::failure::Failure;
 use crate::{output, text};
 
 pub use options::{
-    Force, above_zero, all_with_unit, axis, axis_name, force, positive, seed, three_with_unit, tool_axis, whole,
-    with_unit,
+    Force, above_zero, all_with_unit, axis, axis_name, force, length, margin, positive, seed, three_with_unit,
+    tool_axis, whole, with_unit,
 };
 
 /// Reads a robot's description, and says what is doubtful in it, with its file's name: a file, or where there is

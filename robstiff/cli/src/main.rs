@@ -22,6 +22,7 @@ mod shell;
 mod show;
 mod simulate;
 mod stability;
+mod start;
 mod text;
 mod trace;
 
@@ -41,6 +42,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Start(start::Arguments),
     Show(show::Arguments),
     Identify(identify::Arguments),
     Trace(trace::Arguments),
@@ -63,6 +65,7 @@ enum Command {
 impl Command {
     fn run(&self) -> Result<(), Failure> {
         match self {
+            Self::Start(arguments) => start::run(arguments),
             Self::Show(arguments) => show::run(arguments),
             Self::Identify(arguments) => identify::run(arguments),
             Self::Trace(arguments) => trace::run(arguments),

@@ -219,7 +219,7 @@ fn predicts_every_row() {
 
 /// A column that is wrong is wrong in every row.
 #[test]
-fn ten_problems_of_a_table_are_shown_and_the_others_counted() {
+fn a_problem_of_all_rows_is_shown_once_and_the_others_counted() {
     let folder = folder("many-problems");
     let campaign = copy(&folder);
     let loads = fs::read_to_string(folder.join("loads.csv")).unwrap();
@@ -227,8 +227,8 @@ fn ten_problems_of_a_table_are_shown_and_the_others_counted() {
     let loads = [loads.lines().next().unwrap().to_owned()].into_iter().chain(rows).collect::<Vec<_>>().join("\n");
     fs::write(folder.join("loads.csv"), loads).unwrap();
     let said = fail(1, &["identify", &campaign, "--out", &inside(&folder, "out")]);
-    assert_eq!(said.matches("error: ").count(), 10, "{said}");
-    assert!(said.trim_end().ends_with("and 33 more"), "{said}");
+    assert_eq!(said.matches("error: ").count(), 1, "{said}");
+    assert!(said.contains(".. and 42 more rows like it: lines 3-44"), "{said}");
 }
 
 #[test]
@@ -318,6 +318,39 @@ fn one_seed_gives_one_result_over_an_older_one() {
     let second = (succeed(&arguments), json(&inside(Path::new(&out), "trace.json")));
     assert_eq!(first, second);
     assert_eq!(names(Path::new(&out)).len(), 3);
+}
+
+#[test]
+fn the_search_is_repeated_without_some_poses() {
+    let folder = folder("nested");
+    let out = inside(&folder, "out");
+    let page = succeed(&["trace", &campaign(), "--nested", "2", "--out", &out, "--draws", "99"]);
+    let nested = &json(&inside(Path::new(&out), "trace.json"))["nested"];
+    assert_eq!(keys(nested), ["folds", "rms_um", "identified_rms_um", "names"]);
+    assert_eq!(nested["folds"], 2);
+    assert_eq!(keys(&nested["names"][0]), ["name", "share"]);
+    let report = fs::read_to_string(Path::new(&out).join("report.html")).unwrap();
+    // The error that the search has not seen is the one that is told first.
+    let errors = ["identified_rms_um", "rms_um"].map(|key| format!("{:.1}", nested[key].as_f64().unwrap()));
+    for text in [&page, &report] {
+        assert!(text.contains("The whole search was repeated 2 times"), "{text}");
+        assert!(text.contains(&format!("from {} to {}", errors[0], errors[1])), "{errors:?}: {text}");
+    }
+}
+
+#[test]
+fn folds_that_cannot_be_are_refused() {
+    let folder = folder("folds");
+    let out = inside(&folder, "out");
+    for folds in ["0", "1", "-2", "few"] {
+        assert_eq!(run(&["trace", &campaign(), "--nested", folds, "--out", &out]).code, 2, "{folds}");
+    }
+    let said = fail(1, &["trace", &campaign(), "--nested", "44", "--out", &out]);
+    assert!(said.contains("43 poses in 44 folds: from 2 to 43 are possible"), "{said}");
+    // What follows is no number of folds.
+    let said = fail(2, &["trace", &campaign(), "--nested", "--out", &out, "--draws", "3"]);
+    assert!(said.contains("--draws"), "{said}");
+    assert!(!Path::new(&out).exists());
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::path::Path;
 use common::{fail, folder, inside, json, keys, run, succeed};
 
 fn arm() -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/files/arm.urdf").to_str().unwrap().to_owned()
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands/files/arm.urdf").to_str().unwrap().to_owned()
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::path::Path;
 use common::{fail, folder, inside, json, names, run, succeed};
 
 fn file(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/files").join(name).to_str().unwrap().to_owned()
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands/files").join(name).to_str().unwrap().to_owned()
 }
 
 /// A file of the pages with some of its text replaced.

@@ -9,7 +9,7 @@ use common::{fail, folder, inside, json, run, succeed};
 use serde_json::Value;
 
 fn file(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/files").join(name).to_str().unwrap().to_owned()
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands/files").join(name).to_str().unwrap().to_owned()
 }
 
 /// The documents of a run along the pocket, with more options.

@@ -8,7 +8,7 @@ use std::path::Path;
 use common::{fail, folder, inside, json, keys, run, succeed};
 
 fn pocket() -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/files/pocket.csv").to_str().unwrap().to_owned()
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands/files/pocket.csv").to_str().unwrap().to_owned()
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn a_path_is_placed_and_begun_as_asked() {
 
 /// A cut beside the example files.
 fn file(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/files").join(name).to_str().unwrap().to_owned()
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands/files").join(name).to_str().unwrap().to_owned()
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use common::{copy, fail, folder, inside, json, run, succeed};
 
 fn file(name: &str) -> String {
-    let path: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/files").join(name);
+    let path: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/commands/files").join(name);
     path.to_str().unwrap().to_owned()
 }
 

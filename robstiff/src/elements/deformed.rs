@@ -64,7 +64,7 @@ pub fn deformed<const N: usize>(
             state.plays[joint] = plays(effect, torque, state.plays[joint]);
         }
     }
-    Deformed { tcp: moved(&tcp, &motion), turns: SVector::from_vec(turns), motion }
+    Deformed { tcp: moved(&tcp, &motion), turns: SVector::from_column_slice(&turns), motion }
 }
 
 /// What yields.

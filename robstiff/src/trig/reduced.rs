@@ -11,12 +11,11 @@
 
 use super::abreast::{self, Abreast};
 use super::float::{Float, places};
-use super::mul_add;
 
 /// The nearest multiples of pi/2, as the last bits of a large number.
 #[inline(always)]
 pub(super) fn quarters<F: Float, const FUSED: bool>(x: F) -> F {
-    mul_add::<F, FUSED>(x, F::number(places::TWO_OVER_PI), F::number(places::SHIFT))
+    abreast::mul_add::<F, F, FUSED>(x, F::number(places::TWO_OVER_PI), F::number(places::SHIFT))
 }
 
 /// Angles less the multiples that are the last bits of `shifted`, of what has its parts, with
@@ -37,7 +36,7 @@ pub(super) fn less_multiples<F: Float, V: Abreast<F>, const FUSED: bool>(x: V, s
 fn polynomial<F: Float, const FUSED: bool>(coefficient: impl Fn(usize) -> F, z: F) -> F {
     let mut value = coefficient(F::TERMS - 1);
     for i in 1..F::TERMS {
-        value = mul_add::<F, FUSED>(value, z, coefficient(F::TERMS - 1 - i));
+        value = abreast::mul_add::<F, F, FUSED>(value, z, coefficient(F::TERMS - 1 - i));
     }
     value
 }
@@ -47,7 +46,7 @@ fn polynomial<F: Float, const FUSED: bool>(coefficient: impl Fn(usize) -> F, z: 
 /// `FUSED`: multiplies and adds in one instruction, which the target must have.
 #[inline(always)]
 pub(crate) fn within_domain<F: Float, const FUSED: bool>(x: F) -> (F, F) {
-    let mul_add = mul_add::<F, FUSED>;
+    let mul_add = abreast::mul_add::<F, F, FUSED>;
     let shifted = quarters::<F, FUSED>(x);
     let r = less_multiples::<F, F, FUSED>(x, shifted, places::PARTS);
     let z = r * r;

@@ -238,8 +238,14 @@ impl Arm {
             }
         }
         for hidden in &self.hidden {
-            if let Hidden::Outside(Outside::SoftFoundation { compliance, knee }) = *hidden {
-                chain.push(Motion::Turn, Response::Stiffening { compliance, knee });
+            match *hidden {
+                Hidden::Outside(Outside::SoftFoundation { compliance, knee }) => {
+                    chain.push(Motion::Turn, Response::Stiffening { compliance, knee });
+                }
+                Hidden::Outside(Outside::UnevenFoundation { tilt: [x, y] }) => {
+                    chain.spring(Motion::Turn, Vector3::new(x, y, 0.0));
+                }
+                _ => {}
             }
         }
     }

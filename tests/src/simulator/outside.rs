@@ -45,6 +45,12 @@ pub enum Outside {
         /// (Nm)
         knee: f64,
     },
+    /// The robot stands on a plate that yields more one way than the other: it tilts about x and y
+    /// of the base frame, each by its own compliance.
+    UnevenFoundation {
+        /// About x and about y (rad/Nm).
+        tilt: [f64; 2],
+    },
     /// A gear beside a rod: the joint's compliance times
     /// `1 + cos cos(q) + sin sin(q)` with the angle `q` of another joint.
     CrossDependence {
@@ -126,6 +132,7 @@ impl Outside {
             Self::Cable { .. } => "cable",
             Self::LinkGrowth { .. } => "link_growth",
             Self::SoftFoundation { .. } => "soft_foundation",
+            Self::UnevenFoundation { .. } => "uneven_foundation",
             Self::CrossDependence { .. } => "cross_dependence",
             Self::LooseFlange { .. } => "loose_flange",
             Self::LooseTaper { .. } => "loose_taper",
@@ -148,7 +155,7 @@ impl Outside {
             Self::GainOfAngle { joint, .. } => format!("rig by {joint}"),
             Self::CrossDependence { joint, of, .. } => format!("joint {joint} by {of}"),
             Self::Cable { link, .. } | Self::LinkGrowth { link, .. } => format!("link {link}"),
-            Self::SoftFoundation { .. } => "base".into(),
+            Self::SoftFoundation { .. } | Self::UnevenFoundation { .. } => "base".into(),
             Self::LooseFlange { .. } | Self::LooseTaper { .. } => "tool".into(),
             Self::BentCell { .. } | Self::LoadFriction { .. } => "rig".into(),
         }
@@ -173,6 +180,7 @@ impl Outside {
             Self::ViscousJoint { compliance, .. }
             | Self::SoftFoundation { compliance, .. }
             | Self::HardeningBearing { compliance, .. } => vec![compliance],
+            Self::UnevenFoundation { tilt } => tilt.iter_mut().collect(),
             Self::Cable { stiffness, .. } => vec![stiffness],
             Self::LinkGrowth { per_kelvin, .. } | Self::WarmingJoint { per_kelvin, .. } => vec![per_kelvin],
             Self::CrossDependence { cos, sin, .. } => vec![cos, sin],

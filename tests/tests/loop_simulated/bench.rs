@@ -82,6 +82,14 @@ pub fn told(trace: &Trace) -> String {
     format!("{}, {identified:.1} -> {after:.1} um: {effects}", trace.verdict)
 }
 
+/// What the final model leaves of the rows that belong to the others (m, one axis).
+pub fn left(trace: &Trace) -> f64 {
+    let is_off = |line: usize| trace.effects.iter().any(|named| named.lines.contains(&line));
+    let rows = trace.residuals.iter().filter(|row| !is_off(row.line));
+    let squares: Vec<f64> = rows.flat_map(|row| row.after).map(|one| one * one).collect();
+    (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+}
+
 /// Asserts that at least so many of the traces, each with its seed, are right.
 pub fn assert_most(what: &str, least: usize, traces: &[(u64, Trace)], right: impl Fn(u64, &Trace) -> bool) {
     let right: Vec<bool> = traces.iter().map(|(seed, trace)| right(*seed, trace)).collect();

@@ -7,7 +7,7 @@ use robstiff_identify::trace::{EffectParameter, Trace, Verdict};
 use robstiff_robots::{Description, Placement};
 use robstiff_tests::simulator::{Arm, Hidden, Outside, Row, Scenario, Simulated, five_axis, six_axis};
 
-use crate::bench::{FLOOR, assert_most, plan, trace_files};
+use crate::bench::{FLOOR, assert_most, left, plan, trace_files};
 
 #[test]
 fn turned_force_of_five() {
@@ -200,7 +200,7 @@ fn is_named_beside(name: &str, alike: &[&str], arm: &Description, fault: fn(&mut
         is_listed(name)
             && alike.iter().all(|other| is_listed(other))
             && trace.verdict == Verdict::Explained
-            && (0.9..1.1).contains(&(trace.after.rms / FLOOR))
+            && (0.9..1.1).contains(&(left(trace) / FLOOR))
             && (!named.effect.is_of_rig() || trace.description.effects.is_empty())
     });
 }

@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::facts::number;
 use super::fuse::{FusedSum, Fusion};
 use super::lines::{Lines, inverse_of};
 use super::operation::{Binding, arithmetic, call, column, sum};
+use super::reader::{Reader, number};
 use super::turns::{Lane, Turn, Turns};
 use crate::angle::Angle;
 use crate::function::Function;
@@ -18,16 +18,6 @@ use crate::op::{Id, Op};
 pub(super) struct Body {
     pub statements: TokenStream,
     pub outputs: Vec<TokenStream>,
-}
-
-/// Whom the code is for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Reader {
-    /// The compiler: products and sums are fused.
-    Compiler,
-    /// People: plain operators, and the remarks of the algorithms as
-    /// statements that the text form turns into comments.
-    Person,
 }
 
 /// Writes a function out.

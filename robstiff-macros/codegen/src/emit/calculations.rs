@@ -5,9 +5,8 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use robstiff_robots::{Description, Effect, JointKind};
 
-use super::Signature;
-use super::body::Reader;
-use super::facts::from;
+use super::reader::{Reader, from};
+use super::signature::Signature;
 use crate::function::Function;
 use crate::scales::with_scales;
 use crate::symbolic::{self, Algorithm, columns};

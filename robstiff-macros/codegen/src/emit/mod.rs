@@ -7,7 +7,9 @@ mod facts;
 mod fuse;
 mod lines;
 mod operation;
+mod reader;
 mod robot;
+mod signature;
 #[cfg(feature = "text")]
 mod text;
 mod turns;
@@ -16,8 +18,3 @@ pub use calculations::{functions, functions_in_columns};
 pub use robot::{Origin, skeleton, tokens};
 #[cfg(feature = "text")]
 pub use text::source;
-
-use proc_macro2::TokenStream;
-
-/// The signature of a method of `Robot`, for a number of joints.
-type Signature = fn(&TokenStream) -> TokenStream;

@@ -3,8 +3,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::body::Reader;
-use super::facts::number;
+use super::reader::{Reader, number};
 use crate::angle::Angle;
 use crate::op::{Id, Op};
 

@@ -8,11 +8,12 @@ use robstiff_robots::words::count;
 use robstiff_robots::{Description, JointKind, Place};
 use syn::Ident;
 
-use super::Signature;
-use super::body::{Body, Reader, body, handing_over};
+use super::body::{Body, body, handing_over};
 use super::bound::hidden;
 use super::calculations::{Build, CALCULATIONS, Calculation, Generated, OF_SOME, compliance_entries};
-use super::facts::{FACTS, Fact, number};
+use super::facts::{FACTS, Fact};
+use super::reader::{Reader, number};
+use super::signature::Signature;
 use crate::function::{Cost, Function};
 use crate::graph::NamedNumber;
 use crate::symbolic;

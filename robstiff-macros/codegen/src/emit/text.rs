@@ -5,8 +5,8 @@ use quote::quote;
 use robstiff_robots::text::shown_in_line;
 use robstiff_robots::{Description, JointKind};
 
-use super::body::Reader;
 use super::calculations::Generated;
+use super::reader::Reader;
 use super::robot::{Origin, definition, implementation, imports_of};
 
 /// The source of a module with one robot: a header that names the

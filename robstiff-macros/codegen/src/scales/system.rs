@@ -56,7 +56,7 @@ impl System {
     pub fn demand(&mut self, equation: Equation) -> bool {
         let Equation { mut powers, value } = self.solved.iter().fold(equation, Equation::with);
         let Some((&scale, &power)) = powers.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) else {
-            return super::is_one(value);
+            return is_one(value);
         };
         powers.remove(&scale);
         powers.values_mut().for_each(|other| *other /= -power);
@@ -87,6 +87,14 @@ fn power_of(value: f64, power: f64) -> f64 {
         value.powf(power)
     }
 }
+
+/// Whether it is 1 but for rounding.
+pub(super) fn is_one(value: f64) -> bool {
+    (value - 1.0).abs() < ROUNDING
+}
+
+/// More than some dozens of products are off, and less than descriptions tell apart.
+const ROUNDING: f64 = 1e-14;
 
 #[cfg(test)]
 mod tests {

@@ -13,17 +13,17 @@
 mod arm;
 mod compliance;
 mod levers;
+mod walker;
 
 use robstiff_robots::Description;
 
 use self::arm::{Arm, Twist};
 use self::compliance::Twists;
+use self::walker::Walker;
 use super::chain::{Step, chain};
 use super::column::{Column, Signed};
 use super::elastic::Elastic;
 use super::turning::Turning;
-use super::vector::Vec3;
-use crate::angle::Angle;
 use crate::graph::{Graph, Sym};
 
 /// The four columns of the TCP's frame in the base frame.
@@ -61,7 +61,11 @@ pub fn compliance<'g>(g: &'g Graph, robot: &Description) -> Vec<Sym<'g>> {
 
 fn compliance_of<'g>(g: &'g Graph, robot: &Description, arm: &Arm<'g>, twists: Twists) -> Vec<Sym<'g>> {
     let elastic = Elastic::of(g, robot);
-    if elastic.is_of_joints() { compliance::of_joints(g, arm, &elastic, twists) } else { super::compliance(g, robot) }
+    if elastic.is_of_joints() {
+        compliance::of_joints(g, arm, &elastic, twists)
+    } else {
+        super::compliance::compliance(g, robot)
+    }
 }
 
 /// Whether a turn about the same axis follows.
@@ -81,58 +85,4 @@ fn homogeneous<'g>(axes: [Signed<'g>; 3], origin: Column<'g>) -> Vec<Sym<'g>> {
 
 fn entries<'g>(joints: &[Twist<'g>]) -> Vec<Sym<'g>> {
     joints.iter().flat_map(|joint| [joint.translation, joint.rotation].map(|part| part.vector().0)).flatten().collect()
-}
-
-/// From the base to the tip.
-struct Walker<'g> {
-    g: &'g Graph,
-    axes: [Signed<'g>; 3],
-    origin: Column<'g>,
-    /// A turn about z that the axes do not contain yet.
-    pending: Angle,
-}
-
-impl<'g> Turning<'g> for Walker<'g> {
-    fn graph(&self) -> &'g Graph {
-        self.g
-    }
-
-    fn pending(&mut self) -> &mut Angle {
-        &mut self.pending
-    }
-
-    fn turn(&mut self, axis: usize, (s, c): (Sym<'g>, Sym<'g>)) {
-        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        let (u, v) = (self.axes[i], self.axes[j]);
-        self.axes[i] = Signed::combined((u, c), (v, s));
-        self.axes[j] = Signed::combined((v, c), (u, -s));
-    }
-}
-
-impl<'g> Walker<'g> {
-    fn at_base(g: &'g Graph) -> Self {
-        Self {
-            g,
-            axes: std::array::from_fn(|axis| Signed::of(Column::unit(g, axis))),
-            origin: Column::unit(g, 3),
-            pending: Angle::default(),
-        }
-    }
-
-    fn step(&mut self, step: &Step<'g>) {
-        match step {
-            Step::Move(by) => {
-                let by = by.turned(2, self.g.sin_cos(&self.pending));
-                self.origin = along(self.origin, self.axes, by);
-            }
-            Step::Turn(angle) => self.turn_later(angle),
-            Step::Tilt(tilt) => self.tilt(*tilt),
-            _ => {}
-        }
-    }
-}
-
-/// A point and a vector from there, in the given axes.
-fn along<'g>(point: Column<'g>, axes: [Signed<'g>; 3], by: Vec3<'g>) -> Column<'g> {
-    (0..3).fold(point, |point, axis| axes[axis].added(point, by[axis]))
 }

@@ -1,6 +1,6 @@
 //! Forward kinematics, base to tip.
 
-use super::chain::Step;
+use super::step::Step;
 use super::turning::Turning;
 use super::vector::Vec3;
 use crate::angle::Angle;

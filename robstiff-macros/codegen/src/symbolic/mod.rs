@@ -1,7 +1,11 @@
 //! The mathematics, on symbols.
 //!
+//! - `step`: the elementary steps of a chain;
+//! - `parameters`: the numbers of joints and effects, under the names that generated
+//!   code has for them;
 //! - [`elastic`]: what yields, under the names that generated code has for it;
-//! - [`chain`](mod@chain): a description as elementary steps from base to TCP;
+//! - `upright`: a description as elementary steps from base to TCP, without a sag;
+//! - [`chain`](mod@chain): the same where every joint stands;
 //! - [`turning`]: what is turned on the way, parallel axes as one angle;
 //! - [`forward`](mod@forward): frames and levers, from the base to the TCP;
 //! - [`waist`]: the first joint's turn, left for the end where that is cheaper;
@@ -20,7 +24,10 @@ pub mod compliance;
 pub mod elastic;
 pub mod forward;
 pub mod kinematics;
+mod parameters;
+mod step;
 pub mod turning;
+mod upright;
 pub mod vector;
 pub mod waist;
 pub mod weight;

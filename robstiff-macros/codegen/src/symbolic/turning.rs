@@ -2,7 +2,7 @@
 
 use std::mem::take;
 
-use super::chain::Tilt;
+use super::step::Tilt;
 use crate::angle::Angle;
 use crate::graph::{Graph, Sym};
 

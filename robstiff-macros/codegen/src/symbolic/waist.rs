@@ -9,8 +9,10 @@
 
 use robstiff_robots::Description;
 
-use super::chain::{Step, chain};
+use super::chain::chain;
 use super::forward::{Forward, forward};
+use super::step::Step;
+pub use super::step::without_waist;
 use super::vector::Vec3;
 use crate::angle::Angle;
 use crate::function::Function;
@@ -50,27 +52,6 @@ impl<'g> Start<'g> {
     pub fn from_base(&self, v: Vec3<'g>) -> Vec3<'g> {
         if self.rest.is_zero() { v } else { v.turned(2, self.g.sin_cos(&-self.rest.clone())) }
     }
-}
-
-/// Steps without the turn of the first joint, and that turn, if it is about the base's
-/// z axis, if all moves before are along it, and if no parallel axis follows: turns about
-/// parallel axes are one.
-pub fn without_waist<'g>(steps: &[Step<'g>]) -> Option<(Vec<Step<'g>>, Angle)> {
-    let is_turn = |step: &Step<'g>| matches!(step, Step::Turn(_) | Step::Tilt(_));
-    let first = steps.iter().position(is_turn)?;
-    let along_z = |step: &Step<'g>| match step {
-        Step::Move(by) => by[0].is_zero() && by[1].is_zero(),
-        _ => true,
-    };
-    let next = steps[first + 1..].iter().find(|step| is_turn(step));
-    let settles = matches!(next, Some(Step::Tilt(tilt)) if !tilt.is_half_turn_about_x());
-    let Step::Turn(angle) = &steps[first] else { return None };
-    if angle.terms().is_empty() || !settles || !steps[..first].iter().all(along_z) {
-        return None;
-    }
-    let mut rest = steps.to_vec();
-    rest.remove(first);
-    Some((rest, angle.clone()))
 }
 
 /// Runs an algorithm from where it takes the fewest operations.

@@ -3,11 +3,11 @@
 use robstiff_robots::effect::gravity_sag::{GRAVITY, torque};
 use robstiff_robots::{Description, Effect, Joint, JointKind, Place};
 
-use super::chain::{Step, upright};
-use super::elastic::{joint_compliances, parameters};
 use super::forward::{Frame, forward};
+use super::parameters::{joint_compliances, parameters};
+use super::step::{Step, without_waist};
+use super::upright::upright;
 use super::vector::Vec3;
-use super::waist::without_waist;
 use crate::graph::{Graph, Sym};
 
 /// By how much each joint yields (rad or m), if the description says that the

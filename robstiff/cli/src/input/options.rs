@@ -67,6 +67,20 @@ fn is_of_number(c: char) -> bool {
     c.is_ascii_digit() || ".+-eE".contains(c)
 }
 
+/// A length of either sign.
+pub fn length(text: &str) -> Result<f64, String> {
+    with_unit(text, Dimension::Length)
+}
+
+/// A margin to limits in percent: less than half of the range at either end.
+pub fn margin(text: &str) -> Result<f64, String> {
+    let number = text.trim().trim_end_matches('%').trim().parse::<f64>();
+    match number {
+        Ok(margin) if (0.0..=45.0).contains(&margin) => Ok(margin),
+        _ => Err("a percentage from 0 to 45 is expected here, e.g. `5`".to_owned()),
+    }
+}
+
 /// Three of them.
 pub fn three_with_unit(parts: [&str; 3], dimension: Dimension) -> Result<[f64; 3], String> {
     let all = all_with_unit(&parts, dimension)?;

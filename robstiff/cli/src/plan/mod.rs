@@ -47,8 +47,11 @@ pub struct Arguments {
     #[arg(long, value_name = "MOMENT", allow_hyphen_values = true, value_parser = positive(Dimension::Torque))]
     moment: Option<f64>,
     /// The least height of the tool above the base's origin, e.g. "300 mm"; the campaign's lowest where left out
-    #[arg(long, value_name = "HEIGHT", allow_hyphen_values = true, value_parser = height)]
+    #[arg(long, value_name = "HEIGHT", allow_hyphen_values = true, value_parser = input::length)]
     floor: Option<f64>,
+    /// How far joints stay inside their limits, in percent of the range between these
+    #[arg(long, value_name = "PERCENT", default_value_t = 100.0 * plan::MARGIN, allow_hyphen_values = true, value_parser = input::margin)]
+    margin: f64,
     /// Seed of the search and of the bootstrap of the trace; one seed gives one result
     #[arg(long, default_value_t = Options::default().seed, allow_hyphen_values = true, value_parser = input::seed)]
     seed: u64,
@@ -65,10 +68,6 @@ enum Criterion {
     Ds,
     /// All numbers (D-optimal)
     D,
-}
-
-fn height(text: &str) -> Result<f64, String> {
-    input::with_unit(text, Dimension::Length)
 }
 
 /// Plans.
@@ -98,6 +97,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         force: arguments.force,
         moment: arguments.moment,
         floor: arguments.floor,
+        margin: arguments.margin / 100.0,
         ..Options::default()
     };
     let (planned, traced) = output::working("tracing", |spinner| -> Result<_, Error> {

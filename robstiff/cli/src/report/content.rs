@@ -271,6 +271,8 @@ pub enum State {
     Holds,
     /// It fails.
     Violated,
+    /// It fails, and what was named accounts for that.
+    AccountedFor,
     /// These data cannot be asked.
     NotAsked,
 }

@@ -20,7 +20,7 @@ fn hostile() -> Report {
         unseen: bad(),
         rows: 2,
         poses: 1,
-        checks: [State::Holds, State::Violated, State::NotAsked]
+        checks: [State::Holds, State::Violated, State::AccountedFor, State::NotAsked]
             .map(|state| Check {
                 name: bad(),
                 question: bad(),
@@ -125,7 +125,7 @@ fn without_effects_pictures_show_what_their_legend_says() {
 
 #[test]
 fn readings_that_no_check_could_be_made_on_are_not_praised() {
-    let [holds, violated, not_asked] = <[Check; 3]>::try_from(hostile().checks).expect("one of each state");
+    let [holds, violated, _, not_asked] = <[Check; 4]>::try_from(hostile().checks).expect("one of each state");
     let said = |checks: &[&Check]| {
         html(&Report { checks: checks.iter().map(|&check| check.clone()).collect(), ..Report::default() })
     };

@@ -1,5 +1,5 @@
 //! The section on what the readings say before any model. A disc is a check that
-//! fails, a ring one that holds; the words say the same.
+//! fails, a ring one that holds or that what was named accounts for; the words say the same.
 
 use super::content::{Check, Report, State};
 use super::html::{Cell, Table, element, escape, number, text, words};
@@ -31,9 +31,12 @@ pub fn section(report: &Report) -> String {
     );
     let of = |state: State| report.checks.iter().filter(move |check| check.state == state).collect::<Vec<&Check>>();
     let (fails, holds, not_asked) = (of(State::Violated), of(State::Holds), of(State::NotAsked));
+    let accounted = of(State::AccountedFor);
     let mut html = element("h2", "Before any model");
-    if fails.is_empty() && holds.is_empty() {
+    if fails.is_empty() && holds.is_empty() && accounted.is_empty() {
         html += &text("p", "No check of the readings by themselves could be made.");
+    } else if fails.is_empty() && !accounted.is_empty() {
+        html += &text("p", "The readings by themselves show nothing that the named effects do not account for.");
     } else if fails.is_empty() {
         // One check of many says little.
         let made = match not_asked.len() {
@@ -46,6 +49,9 @@ pub fn section(report: &Report) -> String {
     } else {
         html += &text("p", &note);
         html += &fails.iter().map(|check| failing(check)).collect::<String>();
+    }
+    if !accounted.is_empty() {
+        html += &table(&accounted);
     }
     if !holds.is_empty() {
         let judged = report.checks.iter().filter(|check| check.p_value.is_some()).count();

@@ -2,7 +2,9 @@
 
 use robstiff_identify::campaign::{Campaign, Data};
 use robstiff_identify::identify::{Estimate, Visibility, predict};
-use robstiff_identify::trace::{EffectParameter, NamedEffect, Options, RowResidual, Step, Tested, Trace, Verdict};
+use robstiff_identify::trace::{
+    EffectParameter, NamedEffect, Nested, Options, RowResidual, Step, Tested, Trace, Verdict,
+};
 use robstiff_identify::triage::Triage;
 use robstiff_robots::Description;
 
@@ -24,6 +26,7 @@ use crate::text::words::spoken;
 /// traced does not.
 pub fn report(
     (trace, summary): (&Trace, Vec<String>),
+    nested: Option<&Nested>,
     triage: &Triage,
     campaign: &Campaign,
     options: &Options,
@@ -33,7 +36,7 @@ pub fn report(
         robot: trace.robot.clone(),
         description: campaign.robot.description.trim().to_owned(),
         campaign: campaign.name.clone(),
-        headline: story::headline(trace, terms),
+        headline: story::headline(trace, nested, terms),
         summary,
         verdict: trace.verdict.to_string(),
         settled: matches!(trace.verdict, Verdict::Adequate | Verdict::Explained),
@@ -41,7 +44,7 @@ pub fn report(
         rows: trace.rows,
         poses: trace.poses,
         checks: triage.checks.iter().map(super::triage::check).collect(),
-        outliers: triage.outliers.clone(),
+        outliers: super::triage::strays(triage).map(|stray| stray.said.clone()).collect(),
         reading_um: trace.noise * 1e6,
         noise_um: story::noise(trace) * 1e6,
         noise_source: source_of(trace.noise_source).to_owned(),
@@ -94,7 +97,7 @@ fn stages(trace: &Trace) -> Vec<Stage> {
         let number = count(trace.effects.len(), "effect");
         let left_out = match story::left_out(trace).len() {
             0 => String::new(),
-            rows => format!(", without {}", count(rows, "wild row")),
+            rows => format!(", {} predicted", count(rows, "wild row")),
         };
         let remark = format!("{number}, everything fitted again{left_out}");
         stages.push(stage("With effects", &remark, &trace.after));
@@ -266,6 +269,7 @@ mod tests {
             data,
             noise: Noise::default(),
             holdout: None,
+            held_out: Vec::new(),
             warnings: Vec::new(),
         };
         let options = Options { draws: 499, ..Options::default() };

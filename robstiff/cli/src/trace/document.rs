@@ -3,7 +3,7 @@
 use robstiff::JointKind;
 use robstiff_identify::campaign::Campaign;
 use robstiff_identify::identify::EncodersRead;
-use robstiff_identify::trace::{Misfit, NamedEffect, Proposal, Rival, Trace};
+use robstiff_identify::trace::{Misfit, NamedEffect, Nested, Proposal, Rival, Trace};
 use robstiff_identify::triage::Triage;
 use serde_json::{Value, json};
 
@@ -13,7 +13,7 @@ use crate::json::{number, numbers};
 use crate::report::terms::Terms;
 
 /// The result for other programs.
-pub fn document(trace: &Trace, triage: &Triage, campaign: &Campaign) -> Value {
+pub fn document(trace: &Trace, triage: &Triage, nested: Option<&Nested>, campaign: &Campaign) -> Value {
     let unit = Terms::of(campaign).unit;
     let misfit = |misfit| misfit_in(unit, misfit);
     let mut document = json!({
@@ -40,6 +40,14 @@ pub fn document(trace: &Trace, triage: &Triage, campaign: &Campaign) -> Value {
     });
     if let Some(read) = &trace.encoders {
         document["encoders"] = encoders(read, campaign);
+    }
+    if let Some(Nested { folds, rms, identified_rms, names }) = nested {
+        document["nested"] = json!({
+            "folds": folds,
+            (format!("rms_{unit}")): number(rms * 1e6),
+            (format!("identified_rms_{unit}")): number(identified_rms * 1e6),
+            "names": names.iter().map(|one| json!({"name": one.name, "share": number(one.share)})).collect::<Value>(),
+        });
     }
     document
 }

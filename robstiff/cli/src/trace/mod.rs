@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use robstiff_identify::campaign::Data;
 use robstiff_identify::identify::Error;
 use robstiff_identify::plan::next;
-use robstiff_identify::trace::{Correction, Options, trace};
+use robstiff_identify::trace::{Correction, Options, account_for, nested, trace};
 
 use crate::failure::Failure;
 use crate::output::{self, Files};
@@ -43,6 +43,10 @@ pub struct Arguments {
     /// Level of the tests, over all candidates together
     #[arg(long, default_value_t = Options::default().alpha, allow_hyphen_values = true, value_parser = level)]
     alpha: f64,
+    /// Repeat the whole search without each pose in turn, or in FOLDS parts, and report the error on
+    /// the poses that a search was without
+    #[arg(long, value_name = "FOLDS", num_args = 0..=1, value_parser = input::whole::<u32>(2, 1_000_000))]
+    nested: Option<Option<u32>>,
     /// Look for a correction of what is left that is no physics, and where it predicts unseen poses
     /// better write it to `correction.json`
     #[arg(long)]
@@ -73,10 +77,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let correction_too = arguments.correction.then_some(&correcting);
     files.foresee(again.chain([&robot, &told, &shown]).chain(correction_too))?;
     files.foresee_robot(&robot, &campaign.robot)?;
-    let (triage, traced, correction) =
+    let (triage, traced, nested, correction) =
         output::working("asking the readings themselves", |spinner| -> Result<_, Error> {
-            let triage = robstiff_identify::triage::triage(&campaign);
-            let mut traced = trace(&campaign, &options, &|stage| spinner.set_message(stage.to_owned()))?;
+            let progress = |stage: &str| spinner.set_message(stage.to_owned());
+            let mut triage = robstiff_identify::triage::triage(&campaign);
+            // First, for it may refuse the campaign or the folds.
+            let folds = arguments.nested.map(|folds| folds.map(|folds| folds as usize));
+            let nested = folds.map(|folds| nested(&campaign, &options, folds, &progress)).transpose()?;
+            let mut traced = trace(&campaign, &options, &progress)?;
+            account_for(&mut triage, &campaign, &traced);
             spinner.set_message("choosing what to measure next");
             // A trace stands without proposals, where none can be made.
             traced.next = next(&campaign, &traced, PROPOSALS).unwrap_or_default();
@@ -84,15 +93,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 Data::Displacement(_) if arguments.correction => Some(Correction::of(&campaign, &traced)),
                 _ => None,
             };
-            Ok((triage, traced, correction))
+            Ok((triage, traced, nested, correction))
         })
         .map_err(Failure::about(&campaign))?;
 
-    let document = document::document(&traced, &triage, &campaign);
+    let nested = nested.as_ref();
+    let document = document::document(&traced, &triage, nested, &campaign);
     // Once: the campaign is predicted for it.
-    let summary = story::summary(&traced, &campaign);
-    let mut page = triage::page(&triage) + &story::page(&traced, &campaign, &summary);
-    let mut report = content::report((&traced, summary), &triage, &campaign, &options)?;
+    let summary = story::summary(&traced, nested, &campaign);
+    let mut page = triage::page(&triage) + &story::page(&traced, nested, &campaign, &summary);
+    let mut report = content::report((&traced, summary), nested, &triage, &campaign, &options)?;
     if let Some(found) = &correction {
         let said = correction::sentence(found.as_ref());
         page += &format!("\n{said}\n");

@@ -3,7 +3,7 @@
 use robstiff::JointKind;
 use robstiff_identify::campaign::Campaign;
 use robstiff_identify::identify::{EncodersRead, Estimate, Visibility, predict};
-use robstiff_identify::trace::{EffectParameter, NamedEffect, Proposal, RowResidual, Trace, Verdict};
+use robstiff_identify::trace::{EffectParameter, NamedEffect, Nested, Proposal, RowResidual, Trace, Verdict};
 use robstiff_robots::{Description, Effect, Joint};
 
 use super::doubts::doubts;
@@ -14,10 +14,18 @@ use crate::report::terms::Terms;
 use crate::text::words::spoken;
 use crate::text::{Table, and, capital, count, course, decimals, fine_micrometres, p_value, quantity};
 
+/// How a mistake ends that is of the angles of joints.
+const BACKWARDS: &str = " counted the other way";
+
 /// The finding in one sentence.
-pub fn headline(trace: &Trace, terms: Terms) -> String {
+pub fn headline(trace: &Trace, nested: Option<&Nested>, terms: Terms) -> String {
     let Terms { unseen: [_, unseen], unit, .. } = terms;
-    let after = fine_micrometres(trace.after.holdout_rms);
+    // What the search has not seen is the better witness.
+    let (before, after) = match nested {
+        Some(nested) => (nested.identified_rms, nested.rms),
+        None => (trace.identified.holdout_rms, trace.after.holdout_rms),
+    };
+    let told = fine_micrometres(after);
     let words = |of_rig: bool| -> Vec<String> {
         let those = trace.effects.iter().filter(|named| named.effect.is_of_rig() == of_rig);
         those.map(|named| named.effect.words()).collect()
@@ -38,35 +46,44 @@ pub fn headline(trace: &Trace, terms: Terms) -> String {
                 None => "identified joints predict",
                 Some(_) => "the description's numbers, fitted again, predict",
             };
-            format!("Nothing is missing: {what} unseen {unseen} to {after} {unit}")
+            format!("Nothing is missing: {what} unseen {unseen} to {told} {unit}")
         }
         Verdict::Explained | Verdict::Partial => format!(
-            "{}; with {} the error on unseen {unseen} {} {unit}{}{}",
+            "{}; with {} the error on unseen {unseen} {} {unit}{}",
             shown(),
             if trace.effects.len() == 1 { "it" } else { "them" },
-            course(trace.identified.holdout_rms, trace.after.holdout_rms).join(" "),
-            match left_out(trace).len() {
-                0 => String::new(),
-                rows => format!(" (the latter without {})", count(rows, "wild row")),
-            },
-            if trace.verdict == Verdict::Partial { ", but something more is missing" } else { "" }
+            course(before, after).join(" "),
+            match trace.verdict {
+                Verdict::Partial if trace.effects.iter().any(|named| named.partial) =>
+                    ", but something more is missing",
+                Verdict::Partial => ", but something more may be missing",
+                _ => "",
+            }
         ),
         Verdict::Unexplained => {
             format!(
-                "Something is missing that no effect in the catalogue accounts for: {after} {unit} remain on unseen \
+                "Something is missing that no effect in the catalogue accounts for: {told} {unit} remain on unseen \
                  {unseen}"
             )
         }
-        Verdict::Insufficient => "These data cannot tell whether anything is missing".to_owned(),
+        Verdict::Insufficient => match trace.looks_like.first().and_then(|words| words.strip_suffix(BACKWARDS)) {
+            // Whoever sees nothing else sees this.
+            Some(joints) if trace.looks_like.len() == 1 => {
+                let count = if joints.contains(' ') { "count" } else { "counts" };
+                format!("The files may say something else than what was measured: {joints} {count} the other way")
+            }
+            _ => "These data cannot tell whether anything is missing".to_owned(),
+        },
     }
 }
 
 /// What follows the finding, a sentence each.
-pub fn summary(trace: &Trace, campaign: &Campaign) -> Vec<String> {
+pub fn summary(trace: &Trace, nested: Option<&Nested>, campaign: &Campaign) -> Vec<String> {
     let mut sentences = vec![sentence(&trace.why)];
+    sentences.extend(nested.map(|nested| searched_again(nested, Terms::of(campaign))));
     sentences.extend(warned::besides(trace, campaign));
     sentences.extend(trace.encoders.iter().flat_map(|read| encoders(read, trace)));
-    sentences.extend(on_the_same_rows(trace, Terms::of(campaign)));
+    sentences.extend(without_rows(trace, Terms::of(campaign)));
     sentences.extend(alone(trace, campaign));
     sentences.extend(undecided(trace));
     if trace.verdict == Verdict::Insufficient {
@@ -94,6 +111,23 @@ pub fn summary(trace: &Trace, campaign: &Campaign) -> Vec<String> {
         sentences.push(format!("What is left depends on {}.", and(&trace.depends_on)));
     }
     sentences
+}
+
+/// A name that comes back in fewer of the searches is not told.
+const SELDOM: f64 = 0.1;
+
+/// What the search says of poses that it was without, and what it named again.
+fn searched_again(nested: &Nested, Terms { unit, .. }: Terms) -> String {
+    let [before, after] = [nested.identified_rms, nested.rms].map(fine_micrometres);
+    let often = nested.names.iter().filter(|one| one.share >= SELDOM);
+    let again: Vec<String> =
+        often.map(|one| format!("{} in {} %", spoken(&one.name), decimals(100.0 * one.share, 0))).collect();
+    let named = if again.is_empty() { String::from("no effect often") } else { and(&again) };
+    format!(
+        "The whole search was repeated {} times, each time without some poses: the error on these is {after} {unit} \
+         ({before} {unit} with joints identified again). It named {named} of the searches.",
+        nested.folds
+    )
 }
 
 /// How well the description predicts that is written, where the fit has faults of the rig besides.
@@ -194,36 +228,29 @@ pub fn name_of(trace: &Trace, estimate: &Estimate) -> String {
     of_effects.next().unwrap_or_else(|| estimate.name.clone())
 }
 
-/// The lines of the table that the final model is not fitted to, nor judged
-/// by.
+/// The lines of the table that the final model is not fitted to.
 pub fn left_out(trace: &Trace) -> Vec<usize> {
     trace.effects.iter().flat_map(|named| named.lines.iter().copied()).collect()
 }
 
-/// The errors on equal terms, where rows were left out: those before the
-/// effects are over all rows.
-fn on_the_same_rows(trace: &Trace, Terms { unit, .. }: Terms) -> Option<String> {
+/// The errors without the rows that the fit with the effects leaves out; all others are of all rows.
+fn without_rows(trace: &Trace, Terms { unit, .. }: Terms) -> Option<String> {
     let lines = left_out(trace);
     if lines.is_empty() {
         return None;
     }
-    let rms = |of: fn(&RowResidual) -> [f64; 3], all: bool| {
-        let rows = trace.residuals.iter().filter(|row| all || !lines.contains(&row.line));
+    let rms = |of: fn(&RowResidual) -> [f64; 3]| {
+        let rows = trace.residuals.iter().filter(|row| !lines.contains(&row.line));
         let components = rows.flat_map(|row| of(row).into_iter().take(trace.components));
         let squares: Vec<f64> = components.map(|component| component * component).collect();
         (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
     };
-    let (before, after) = (|row: &RowResidual| row.before, |row: &RowResidual| row.after);
-    let [does, from_to] = course(rms(before, false), rms(after, false));
-    let [does_with_all, from_to_with_all] = course(rms(before, true), rms(after, true));
-    // A verb serves both.
-    let again = if does_with_all == does { String::new() } else { format!("{does_with_all} ") };
+    let without = course(rms(|row| row.before), rms(|row| row.after)).join(" ");
+    let [line, it] = if lines.len() == 1 { ["line", "it"] } else { ["lines", "them"] };
     Some(format!(
-        "The error with the effects leaves out line{} {}, that before does not. On the same rows it {does} {from_to} \
-         {unit} without {}, and {again}{from_to_with_all} {unit} with all rows.",
-        if lines.len() == 1 { "" } else { "s" },
-        and(&lines.iter().map(usize::to_string).collect::<Vec<_>>()),
-        if lines.len() == 1 { "it" } else { "them" }
+        "The fit with the effects leaves out {line} {}; the errors above have {it} in, by what the fit predicts. \
+         Without {it} the error on fitted rows {without} {unit}.",
+        and(&lines.iter().map(usize::to_string).collect::<Vec<_>>())
     ))
 }
 
@@ -284,7 +311,7 @@ pub fn noise(trace: &Trace) -> f64 {
 /// How the errors on unseen poses came about.
 pub fn unseen(trace: &Trace, terms: Terms) -> String {
     match trace.held_out.len() {
-        0 => format!("each {} predicted by the fit without it", terms.unseen[0]),
+        0 => format!("each {} predicted by the fit without it; the search has seen it", terms.unseen[0]),
         held_out => format!("{} held out of the search and of every fit", count(held_out, "pose")),
     }
 }
@@ -301,7 +328,7 @@ pub fn pose(next: &Proposal, joints: &[Joint]) -> String {
 }
 
 /// The story for a terminal, with its [`summary`].
-pub fn page(trace: &Trace, campaign: &Campaign, summary: &[String]) -> String {
+pub fn page(trace: &Trace, nested: Option<&Nested>, campaign: &Campaign, summary: &[String]) -> String {
     let terms = Terms::of(campaign);
     let Terms { unseen: [_, unseen], reading, unit, .. } = terms;
     let mut noise =
@@ -321,7 +348,7 @@ pub fn page(trace: &Trace, campaign: &Campaign, summary: &[String]) -> String {
     for (name, misfit) in stages {
         errors.row([name.to_owned(), fine_micrometres(misfit.rms), fine_micrometres(misfit.holdout_rms)]);
     }
-    let (judged, headline) = (self::unseen(trace, terms), headline(trace, terms));
+    let (judged, headline) = (self::unseen(trace, terms), headline(trace, nested, terms));
     page += &format!("{errors}  (unseen: {judged})\n\nVerdict: {}. {headline}.\n", trace.verdict);
     for said in summary {
         page += &format!("{said}\n");

@@ -1,25 +1,26 @@
 //! What the readings say before any model, for a terminal, `trace.json` and the
 //! report.
 
-use robstiff_identify::triage::{Answer, Check, Finding, LEVEL, Triage};
+use robstiff_identify::triage::{Answer, Check, Finding, LEVEL, Stray, Triage};
 use serde_json::{Value, json};
 
 use crate::json::number;
 use crate::report::content;
+use crate::text::words::spoken;
 use crate::text::{Table, and, count, probability, significant};
 
 /// The answers for a terminal: what fails, and the rest in a sentence each.
 pub fn page(triage: &Triage) -> String {
     let mut page = String::from("Before any model, the readings themselves:\n");
     let mut table = Table::new(1, ["check", "found", "p"]);
-    for (check, finding) in triage.violated() {
+    for (check, finding) in failing(triage) {
         let p = finding.adjusted.map_or_else(|| "-".to_owned(), probability);
         table.row([format!("{} fails", check.name), found(finding), p]);
     }
-    if triage.violated().next().is_some() {
+    if failing(triage).next().is_some() {
         page += &table.to_string();
     }
-    for (_, finding) in triage.violated() {
+    for (_, finding) in failing(triage) {
         page += &format!("  {}\n", finding.said);
     }
     let holds: Vec<String> =
@@ -27,14 +28,41 @@ pub fn page(triage: &Triage) -> String {
     if !holds.is_empty() {
         page += &format!("  {} {}.\n", and(&holds), if holds.len() == 1 { "holds" } else { "hold" });
     }
-    for outlier in &triage.outliers {
-        page += &format!("  Does not belong: {outlier}.\n");
+    for stray in strays(triage) {
+        page += &format!("  Does not belong: {}.\n", stray.said);
+    }
+    let accounted: Vec<(&Check, &Finding)> = triage.violated().filter(|(_, finding)| !is_open(finding)).collect();
+    if let Some((_, finding)) = accounted.first() {
+        let names: Vec<String> = accounted.iter().map(|(check, _)| check.name.to_owned()).collect();
+        let verb = if names.len() == 1 { "fails" } else { "fail" };
+        page += &format!("  {} {verb} by the readings themselves, {}.\n", and(&names), accounts(finding));
     }
     let not_asked = triage.checks.len() - triage.asked().count();
     if not_asked > 0 {
         page += &format!("  {} other data than these; the report says which.\n", needing(not_asked));
     }
     page + "\n"
+}
+
+/// Whether nothing that was named accounts for a check that fails.
+fn is_open(finding: &Finding) -> bool {
+    finding.accounted_for_by.is_empty()
+}
+
+/// The checks that fail, and nothing that was named accounts for it.
+fn failing(triage: &Triage) -> impl Iterator<Item = (&Check, &Finding)> {
+    triage.violated().filter(|(_, finding)| is_open(finding))
+}
+
+/// The readings that do not belong to the others, whatever was named.
+pub fn strays(triage: &Triage) -> impl Iterator<Item = &Stray> {
+    triage.outliers.iter().filter(|stray| stray.accounted_for_by.is_empty())
+}
+
+/// `accounted for by lost motion of joint 2`.
+fn accounts(finding: &Finding) -> String {
+    let names: Vec<String> = finding.accounted_for_by.iter().map(|name| spoken(name)).collect();
+    format!("accounted for by {}", and(&names))
 }
 
 /// `3 checks need`, `1 check needs`.
@@ -64,13 +92,16 @@ pub fn document(triage: &Triage) -> Value {
             "violated": finding.violated,
             "witnesses": finding.witnesses,
             "said": finding.said,
+            "accounted_for_by": finding.accounted_for_by,
         }),
     };
+    let accounted = triage.outliers.iter().filter(|stray| !stray.accounted_for_by.is_empty());
     json!({
         "level": LEVEL,
         "reading_um": triage.reading.map(|reading| number(reading * 1e6)),
         "checks": triage.checks.iter().map(check).collect::<Value>(),
-        "outliers": triage.outliers,
+        "outliers": strays(triage).map(|stray| stray.said.as_str()).collect::<Value>(),
+        "outliers_accounted_for": accounted.map(|stray| stray.said.as_str()).collect::<Value>(),
     })
 }
 
@@ -89,10 +120,17 @@ pub fn check(check: &Check) -> content::Check {
         Answer::Asked(finding) => content::Check {
             name,
             question,
-            state: if finding.violated { content::State::Violated } else { content::State::Holds },
+            state: match (finding.violated, is_open(finding)) {
+                (false, _) => content::State::Holds,
+                (true, true) => content::State::Violated,
+                (true, false) => content::State::AccountedFor,
+            },
             found: found(finding),
             p_value: finding.adjusted,
-            said: finding.said.clone(),
+            said: match is_open(finding) {
+                true => finding.said.clone(),
+                false => format!("It fails by the readings themselves, {}.", accounts(finding)),
+            },
         },
     }
 }

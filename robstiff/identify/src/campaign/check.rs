@@ -35,6 +35,14 @@ impl Campaign {
             }
             Data::Clamped(rows) => (rows.len(), rows.iter().find_map(|row| Some((row.line, of_clamped(row, joints)?)))),
         };
+        let poses = self.data.poses().len();
+        let is_held_out = |pose: usize| self.held_out.contains(&pose);
+        if let Some(pose) = self.held_out.iter().find(|pose| **pose >= poses) {
+            return Err(format!("pose {pose}, counted from 0, is held out, and there are {poses}"));
+        }
+        if poses > 0 && (0..poses).all(is_held_out) {
+            return Err(String::from("all poses are held out"));
+        }
         match wrong {
             Some((line, wrong)) => Err(format!("the row of line {line} {wrong}")),
             None if rows == 0 => Err(String::from("there are no rows")),

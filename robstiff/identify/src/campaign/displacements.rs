@@ -55,6 +55,7 @@ pub fn read(
     (measured_frame, measured_at): (Frame, [f64; 3]),
 ) -> Option<Displacements> {
     let columns = columns(table, robot)?;
+    table.refuse_unfilled(columns.displacement, "dx, dy, dz")?;
     let (mut poses, mut rows) = (Poses::default(), Vec::new());
     let mut complete = true;
     let order = order::of_reading(table, &columns.at, columns.time.as_deref());

@@ -46,7 +46,8 @@ impl JointTable {
     /// A file that cannot be read, and every problem in it at its place.
     pub fn read(path: &Path, robot: &Description, column: Option<&str>) -> Result<Self, ReadError> {
         let (name, text) = (path.display().to_string(), text_of(path)?);
-        let table = Table::parse(&name, &text).map_err(ReadError::Invalid)?;
+        let mut table = Table::parse(&name, &text).map_err(ReadError::Invalid)?;
+        table.take_joints(robot.joints.len());
         let mut warnings = beyond(&table, &name, robot);
         let read = rows(&table, robot, column);
         table.warn_of_misspelt();

@@ -187,6 +187,7 @@ pub fn campaign(robot: Description, data: Data) -> Campaign {
         data,
         noise: Noise::default(),
         holdout: None,
+        held_out: Vec::new(),
         warnings: Vec::<String>::new(),
     }
 }

@@ -1,5 +1,5 @@
-//! Campaigns of absolute positions for tests, from the model that is fitted to them:
-//! what is tested with them is the statistics, not the mechanics.
+//! Campaigns of absolute positions for tests, from the model that is fitted to them, with their noise
+//! declared: what is tested with them is the statistics, not the mechanics.
 
 use std::format;
 use std::vec;
@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use robstiff_robots::Description;
 
 use super::made::campaign;
-use super::{Campaign, Data, PositionRow, Positions};
+use super::{Campaign, Data, Noise, PositionRow, Positions};
 use crate::identify::positions::model::Model;
 use crate::identify::positions::registration::Registration;
 use crate::probability::normal;
@@ -100,6 +100,8 @@ impl Plan {
             disturb(i, row);
             row.position = (Vector3::from(row.position) + three(self.noise)).into();
         }
-        campaign(self.robot.clone(), Data::Position(data))
+        let noise = self.noise.hypot(self.repeatability);
+        let noise = Noise { displacement: (noise > 0.0).then_some(noise), rotation: None };
+        Campaign { noise, ..campaign(self.robot.clone(), Data::Position(data)) }
     }
 }

@@ -22,8 +22,11 @@ mod poses;
 mod positions;
 pub(crate) mod read;
 mod reference;
+mod renamed;
 mod revisited;
 pub(crate) mod rounded;
+#[cfg(test)]
+mod tables_tests;
 #[cfg(test)]
 mod tests;
 mod times;
@@ -61,6 +64,8 @@ pub struct Campaign {
     pub noise: Noise,
     /// Which part of the poses to hold out, if the file asks for it.
     pub holdout: Option<Holdout>,
+    /// More poses that are held out, by index.
+    pub held_out: Vec<usize>,
     /// What the reader noticed without refusing the files, e.g. unknown columns.
     pub warnings: Vec<String>,
 }

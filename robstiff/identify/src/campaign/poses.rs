@@ -44,6 +44,8 @@ pub trait AtPose {
 pub struct Columns {
     pose: usize,
     visit: Option<usize>,
+    /// Whether visits are numbered within each pose.
+    within_pose: bool,
     q: Vec<Numbers>,
 }
 
@@ -82,12 +84,16 @@ impl Columns {
                 robot.name
             ));
         }
-        Some(Self { pose: pose?, visit, q })
+        let pose = pose?;
+        let within_pose = visit.is_some_and(|visit| counts_within_poses(table, pose, visit));
+        Some(Self { pose, visit, within_pose, q })
     }
 
-    /// The id of a row's visit, where there is a column of them.
-    pub fn visit_of<'r>(&self, table: &Table<'_>, record: &'r Record) -> Option<&'r str> {
-        Some(table.text(record, self.visit?))
+    /// What names a row's visit, where there is a column of them: its id, behind that of its pose
+    /// where visits are numbered within each.
+    pub fn visit_of<'r>(&self, table: &Table<'_>, record: &'r Record) -> Option<[&'r str; 2]> {
+        let visit = table.text(record, self.visit?);
+        Some([if self.within_pose { table.text(record, self.pose) } else { "" }, visit])
     }
 
     /// The joint coordinates of a row; every number is checked before any gives it up.
@@ -128,7 +134,12 @@ impl Poses {
     pub fn named(&mut self, table: &Table<'_>, columns: &Columns, record: &Record) -> (usize, usize, bool) {
         let pose = self.poses.index_of(table.id(record, columns.pose));
         let visit = match columns.visit {
-            Some(column) => self.visits.index_of(table.id(record, column)),
+            Some(column) => match table.id(record, column) {
+                id if columns.within_pose && !id.is_empty() => {
+                    self.visits.index_of(&format!("{id} of pose {}", table.text(record, columns.pose)))
+                }
+                id => self.visits.index_of(id),
+            },
             None => self.visits.push(format!("line {}", record.line)),
         };
         (pose, visit, !self.poses.names[pose].is_empty() && !self.visits.names[visit].is_empty())
@@ -167,6 +178,18 @@ impl Poses {
     pub fn names(self) -> [Vec<String>; 2] {
         [self.poses.names, self.visits.names]
     }
+}
+
+/// Whether the visits of every pose are numbered from the same first number on. Ids that go through all
+/// poses begin with another at each.
+fn counts_within_poses(table: &Table<'_>, pose: usize, visit: usize) -> bool {
+    let mut first = HashMap::new();
+    for record in &table.records {
+        first.entry(table.text(record, pose)).or_insert_with(|| table.text(record, visit));
+    }
+    let mut ids = first.values();
+    let one = ids.next();
+    first.len() > 1 && one.is_some_and(|id| id.parse::<u32>().is_ok()) && ids.all(|id| Some(id) == one)
 }
 
 /// The same pose id means the same joint coordinates.

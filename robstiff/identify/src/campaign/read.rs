@@ -9,17 +9,19 @@ use std::vec::Vec;
 use robstiff_robots::document::{Document, Map, Node};
 use robstiff_robots::quantity::Dimension;
 use robstiff_robots::text::{self, MOST_OF_DOCUMENT};
-use robstiff_robots::{ReadError, catalogue};
+use robstiff_robots::{Description, JointKind, ReadError, catalogue};
 
 use super::beyond::{told_angle, told_length};
+use super::renamed::{self, Renamed, renamed};
 use super::{Campaign, Data, Frame, Holdout, Noise, clamped, displacements, positions};
 use robstiff_robots::table::{Table, text_of};
 
 /// The fields of a campaign file.
-const FIELDS: [&str; 8] = ["name", "robot", "observations", "kind", "wrench", "measured", "noise", "holdout"];
+const FIELDS: [&str; 9] =
+    ["name", "robot", "observations", "kind", "columns", "wrench", "measured", "noise", "holdout"];
 
 /// Of those, the ones that are about poses and the tool: clamped axes have neither.
-const OF_POSES: [&str; 4] = ["wrench", "measured", "noise", "holdout"];
+const OF_POSES: [&str; 3] = ["wrench", "measured", "holdout"];
 
 /// What they say of frames and rotations: a weight pulls downwards, a tracker reads
 /// points in a frame of its own. That the frame is the base's goes without saying.
@@ -39,6 +41,7 @@ struct Plan {
     robot: String,
     observations: String,
     kind: Kind,
+    columns: Vec<Renamed>,
     wrench: (Frame, [f64; 3]),
     measured: (Frame, [f64; 3]),
     noise: Noise,
@@ -59,15 +62,17 @@ impl Campaign {
     pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
         let path = path.as_ref();
         let folder = path.parent().unwrap_or(Path::new(""));
-        let document = Document::parse(&path.display().to_string(), &text::read(path, MOST_OF_DOCUMENT)?)
-            .map_err(ReadError::Invalid)?;
+        let (file, said) = (path.display().to_string(), text::read(path, MOST_OF_DOCUMENT)?);
+        let document = Document::parse(&file, &said).map_err(ReadError::Invalid)?;
         let plan = plan(&document, folder);
         let plan = document.finish(plan).map_err(ReadError::Invalid)?;
 
         let (robot, robot_path) = catalogue::read(folder, Path::new(&plan.robot))?;
         let observations_path = folder.join(&plan.observations);
         let (table_name, text) = (observations_path.display().to_string(), text_of(&observations_path)?);
-        let table = Table::parse(&table_name, &text).map_err(ReadError::Invalid)?;
+        let mut table = Table::parse(&table_name, &text).map_err(ReadError::Invalid)?;
+        renamed::take(&mut table, &plan.columns, (&file, &said)).map_err(ReadError::Invalid)?;
+        table.take_joints(robot.joints.len());
         let data = match plan.kind {
             Kind::Displacement => {
                 displacements::read(&table, &robot, plan.wrench, plan.measured).map(Data::Displacement)
@@ -93,7 +98,10 @@ impl Campaign {
         let kept = kept.map(|kept| format!("{}: `holdout` keeps {kept} of {poses} poses from the fit", path.display()));
         let of_robot = robot.warnings();
         let of_robot = of_robot.iter().map(|said| format!("{}: {said}", robot_path.display()));
-        let warnings = of_robot.chain(far).chain(noisy).chain(unused).chain(kept).chain(of_table).collect();
+        let of_axes = of_other_axes(plan.noise, &data, &robot);
+        let of_axes = of_axes.map(|said| format!("{}: {said}", path.display()));
+        let warnings =
+            of_robot.chain(far).chain(noisy).chain(unused).chain(kept).chain(of_axes).chain(of_table).collect();
         Ok(Self {
             name: plan.name,
             path: path.to_owned(),
@@ -103,6 +111,7 @@ impl Campaign {
             data,
             noise: plan.noise,
             holdout: plan.holdout,
+            held_out: Vec::new(),
             warnings,
         })
     }
@@ -112,6 +121,7 @@ impl Campaign {
 const FAR_FROM_TCP: f64 = 5.0;
 
 fn plan(document: &Document, folder: &Path) -> Option<Plan> {
+    refuse_robot(document)?;
     let map = document.root().map(&FIELDS)?;
     let kinds = [("displacement", Kind::Displacement), ("position", Kind::Position), ("clamped", Kind::Clamped)];
     let name = match map.get("name") {
@@ -121,6 +131,7 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
     let robot = file(&map, "robot", "robot: robot.yaml", folder);
     let observations = file(&map, "observations", "observations: loads.csv", folder);
     let kind = map.require("kind", "kind: displacement").and_then(|node| node.choice(&kinds));
+    let columns = renamed(&map);
     let wrench = place(&map, "wrench");
     let measured = place(&map, "measured");
     let noise = noise(&map);
@@ -132,6 +143,7 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
         robot: robot?,
         observations: observations?,
         kind: kind?,
+        columns: columns?,
         wrench: wrench?,
         measured: measured?,
         noise: noise?,
@@ -139,6 +151,21 @@ fn plan(document: &Document, folder: &Path) -> Option<Plan> {
         unused,
         noisy,
     })
+}
+
+/// `None` with the problem reported where the file is a robot's description.
+fn refuse_robot(document: &Document) -> Option<()> {
+    let root = document.root();
+    let Some(map) = root.is_map().then(|| root.any_map("")).flatten() else { return Some(()) };
+    let there = |field: &str| map.get(field).is_some();
+    if there("joints") && !there("observations") && !there("robot") {
+        root.error(
+            "this is a robot's description, and no campaign",
+            "give the campaign, a file with `robot:` and `observations:`; `robstiff start` makes one for a robot",
+        );
+        return None;
+    }
+    Some(())
 }
 
 /// The fields that are not used with a kind, with their lines.
@@ -154,6 +181,18 @@ fn unused(map: &Map<'_>, kind: Kind) -> Vec<(&'static str, usize)> {
             OF_DISPLACEMENTS.into_iter().filter_map(inner).collect()
         }
     }
+}
+
+/// The noise that says nothing of clamped axes, for they turn, or for they slide.
+fn of_other_axes(noise: Noise, data: &Data, robot: &Description) -> Option<String> {
+    let Data::Clamped(rows) = data else { return None };
+    let is = |kind: JointKind| rows.iter().all(|row| robot.joints[row.axis - 1].kind == kind);
+    let (field, do_what) = match noise {
+        Noise { displacement: Some(_), .. } if is(JointKind::Revolute) => ("displacement", "turn"),
+        Noise { rotation: Some(_), .. } if is(JointKind::Prismatic) => ("rotation", "slide"),
+        _ => return None,
+    };
+    Some(format!("`{field}` of the noise is not used with axes that {do_what}"))
 }
 
 /// A file that the campaign names, by its path from the campaign's folder.

@@ -207,8 +207,6 @@ fn every_problem_of_a_header_has_its_place() {
     assert_eq!(found("pose,q1,q2,Fx,Fy,Fz,dx,dy,dz,dx"), ["1:30 the column `dx` is there twice"]);
     assert_eq!(found("pose,q1 [mm],q2,Fx,Fy,Fz,dx,dy,dz"), ["1:6 `mm` is a length, an angle is expected here"]);
     assert_eq!(found("pose,q1,q2,Fx,Fy,Fz,dx [um,dy,dz"), ["1:21 the bracket of the unit is not closed"]);
-    assert_eq!(found("pose;q1;q2;Fx;Fy;Fz;dx;dy;dz"), ["1:1 the columns are separated by semicolons"]);
-    assert_eq!(found("pose\tq1 [deg]\tq2 [deg]\tFx [N]"), ["1:1 the columns are separated by tabs"]);
     assert_eq!(found("pose,q1,q2,Fx,Fy,Fz,dx,dy,dz [furlong]"), ["1:27 unknown unit `furlong` for a length"]);
 }
 

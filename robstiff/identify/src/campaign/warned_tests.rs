@@ -265,12 +265,15 @@ fn times_that_go_back_within_a_visit_are_warned_of() {
 /// Clamped axes have no poses to hold out, and no tool.
 #[test]
 fn what_clamped_axes_do_not_use_is_warned_of() {
-    let plan = CAMPAIGN.replace("displacement", "clamped") + "noise: {rotation: 1e-6}\nholdout: {fraction: 0.25}\n";
+    let plan = CAMPAIGN.replace("displacement", "clamped")
+        + "noise: {rotation: 1e-6, displacement: 1e-6}\nholdout: {fraction: 0.25}\n";
     let folder = Folder::new(&plan, "axis,torque,deflection\n1,100,1e-4\n");
     let (campaign, file) = (folder.read().unwrap(), folder.0.join("campaign.yaml"));
     let said =
         |field: &str, line| format!("{}: `{field}` on line {line} is not used with `kind: clamped`", file.display());
-    assert_eq!(campaign.warnings, [said("noise", 5), said("holdout", 6)]);
+    let of_turning = "`displacement` of the noise is not used with axes that turn";
+    assert_eq!(campaign.warnings, [said("holdout", 6), format!("{}: {of_turning}", file.display())]);
+    assert_eq!(campaign.noise.rotation, Some(1e-6));
 }
 
 /// Payloads pull downwards and a tracker reads points in its own frame, so neither has

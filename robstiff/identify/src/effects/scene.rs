@@ -59,7 +59,7 @@ pub struct Scene<'c> {
     pub visit: Vec<usize>,
     /// How many visits there are.
     pub visits: usize,
-    /// Over how many kelvin the temperature goes; zero where it is not told.
+    /// Over how many kelvin the temperature goes; zero where it is not given.
     pub warmth: f64,
     /// The shapes that are looked at besides.
     pub shapes: Shapes,

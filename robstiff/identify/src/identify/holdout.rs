@@ -7,7 +7,7 @@ use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
-use crate::campaign::Holdout;
+use crate::campaign::{Campaign, Holdout};
 
 /// Whether each of `poses` poses is fitted to; whole poses are held out, since
 /// rows of one pose share what is wrong with it.
@@ -20,6 +20,13 @@ pub fn training(poses: usize, holdout: Option<Holdout>) -> Vec<bool> {
             training[pose] = false;
         }
     }
+    training
+}
+
+/// The same of a campaign, without the poses that it holds out besides.
+pub fn training_of(poses: usize, campaign: &Campaign) -> Vec<bool> {
+    let mut training = training(poses, campaign.holdout);
+    campaign.held_out.iter().for_each(|&pose| training[pose] = false);
     training
 }
 

@@ -12,7 +12,7 @@ use super::baseline::{Declared, Visibility, declared, visibility, with_values};
 use super::column::Column;
 use super::covariance::contrasts::Level;
 use super::covariance::{Basis, Covariance};
-use super::holdout::training;
+use super::holdout::training_of;
 use super::normal::{Fit, Sign};
 use super::not_shown::nothing_shows;
 use super::problem::{Equations, Problem, Weights, raw};
@@ -134,7 +134,7 @@ impl<'c> Prepared<'c> {
     ) -> Result<Self, Error> {
         let description = &campaign.robot;
         let samples = Samples::of_description(description, data);
-        let training = training(samples.poses, campaign.holdout);
+        let training = training_of(samples.poses, campaign);
         let own = declared(description);
         let noise = campaign.noise;
         let straight = straightened(&samples, known, |pose| training[pose]);

@@ -203,7 +203,7 @@ fn add_squares(
     let Some(fit) = problem.fit(set, kappa) else { return };
     let last = found.columns.ncols() - 1;
     for &row in rows {
-        for k in 0..readings.told {
+        for k in 0..readings.reported {
             let at = row * readings.width + k;
             let taken: f64 = fit.columns.iter().zip(fit.mean.iter()).map(|(&c, b)| found.columns[(at, c)] * b).sum();
             sums[readings.block[row]] += (found.columns[(at, last)] - taken).powi(2);

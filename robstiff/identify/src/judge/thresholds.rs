@@ -1,5 +1,5 @@
 //! Every number that decides what is said. None was fitted to simulated campaigns; how often what is
-//! said is right is a figure that is measured and told.
+//! said is right is a figure that is measured and reported.
 
 /// A class that is less likely is not named: one in twenty is the usual level of a first finding.
 pub const PROBABLE: f64 = 0.95;

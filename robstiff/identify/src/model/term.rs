@@ -16,11 +16,11 @@ pub struct At<'a> {
     pub q: &'a [f64],
     /// Those of the row before; its own where there is none.
     pub before: &'a [f64],
-    /// When, from 0 at the first row to 1 at the last; the order of rows where no time is told.
+    /// When, from 0 at the first row to 1 at the last; the order of rows where no time is given.
     pub time: f64,
-    /// For how long the visit has lasted (s); a minute a row where no time is told.
+    /// For how long the visit has lasted (s); a minute a row where no time is given.
     pub in_visit: f64,
-    /// By how much it is warmer than on average (K); zero where no temperature is told.
+    /// By how much it is warmer than on average (K); zero where no temperature is given.
     pub warmer: f64,
     /// The force over the root mean square of all forces; zero where nothing loads the arm.
     pub load: f64,

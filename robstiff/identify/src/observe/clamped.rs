@@ -15,7 +15,7 @@ pub struct Clamped<'c> {
     stand: Stand,
     /// The axes (from 1) that are loaded.
     pub axes: Vec<usize>,
-    /// Zero for every joint: where the arm stands is not told.
+    /// Zero for every joint: where the arm stands is not given.
     q: Vec<f64>,
 }
 
@@ -33,7 +33,7 @@ impl<'c> Clamped<'c> {
         let readings = Readings {
             values: DVector::from_iterator(rows.len(), rows.iter().map(|row| row.deflection)),
             width: 1,
-            told: 1,
+            reported: 1,
             // Each axis has a reading of its own.
             channels: vec![0],
             visit: block.clone(),

@@ -40,13 +40,13 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    /// From the times (s) and temperatures of all rows, where told.
+    /// From the times (s) and temperatures of all rows, where given.
     pub fn new(times: &[Option<f64>], temperatures: &[Option<f64>]) -> Self {
         let rows = times.len();
         let last = times.iter().flatten().copied().fold(0.0, f64::max);
-        let told = last > 0.0 && times.iter().all(Option::is_some);
+        let reported = last > 0.0 && times.iter().all(Option::is_some);
         let time = |(row, time): (usize, &Option<f64>)| match time {
-            Some(time) if told => time / last,
+            Some(time) if reported => time / last,
             _ => row as f64 / rows.saturating_sub(1).max(1) as f64,
         };
         let known: Vec<f64> = temperatures.iter().flatten().copied().collect();
@@ -60,7 +60,7 @@ impl Clock {
     }
 }
 
-/// For how long each row's visit has lasted (s); a minute a row where no time is told.
+/// For how long each row's visit has lasted (s); a minute a row where no time is given.
 pub(super) fn in_visit(visit: &[usize], times: &[Option<f64>]) -> Vec<f64> {
     let visits = visit.iter().max().map_or(0, |last| last + 1);
     let (mut began, mut count) = (vec![None; visits], vec![0.0; visits]);
@@ -130,7 +130,7 @@ impl<'c> Displacement<'c> {
             readings: Readings {
                 values: DVector::zeros(0),
                 width,
-                told: directions.len(),
+                reported: directions.len(),
                 channels,
                 block: data.rows.iter().map(|row| row.pose).collect(),
                 blocks: data.poses.len(),

@@ -21,10 +21,10 @@ pub struct Readings {
     pub values: DVector<f64>,
     /// How many numbers a row has.
     pub width: usize,
-    /// How many of these, the first ones, the error is told of: three of a displacement or
+    /// How many of these, the first ones, the error is reported of: three of a displacement or
     /// position, one of a clamped axis.
-    pub told: usize,
-    /// The noise that each number of a row shares: 0 for what is told, 1 for rotations, 2 and so on
+    pub reported: usize,
+    /// The noise that each number of a row shares: 0 for what is reported, 1 for rotations, 2 and so on
     /// for encoders, one each.
     pub channels: Vec<usize>,
     /// The block of each row, from 0: its pose, or its clamped axis. Rows of a block share what is
@@ -50,16 +50,16 @@ impl Readings {
         self.lines.len()
     }
 
-    /// The part of a stacked vector that is told of a row, its length squared.
+    /// The part of a stacked vector that is reported of a row, its length squared.
     pub fn square(&self, stacked: &DVector<f64>, row: usize) -> f64 {
-        stacked.rows(row * self.width, self.told).norm_squared()
+        stacked.rows(row * self.width, self.reported).norm_squared()
     }
 
     /// The root mean square of one axis over some rows of a stacked vector; zero of none.
     pub fn rms(&self, stacked: &DVector<f64>, rows: impl IntoIterator<Item = usize>) -> f64 {
         let (sum, count) =
             rows.into_iter().fold((0.0, 0_usize), |(sum, count), row| (sum + self.square(stacked, row), count + 1));
-        (sum / (count.max(1) * self.told) as f64).sqrt()
+        (sum / (count.max(1) * self.reported) as f64).sqrt()
     }
 }
 

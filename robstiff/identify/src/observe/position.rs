@@ -57,7 +57,7 @@ impl<'c> Position<'c> {
         let readings = Readings {
             values: DVector::from_iterator(3 * read.len(), read.iter().flat_map(|point| point.iter().copied())),
             width: 3,
-            told: 3,
+            reported: 3,
             channels: vec![0; 3],
             block: data.rows.iter().map(|row| row.pose).collect(),
             blocks: data.poses.len(),

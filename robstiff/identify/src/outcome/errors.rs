@@ -57,7 +57,7 @@ pub fn misfit(case: &Case<'_>, left: &DVector<f64>, unseen: &DVector<f64>) -> Mi
 pub fn rows(case: &Case<'_>, before: &DVector<f64>, after: &DVector<f64>) -> Vec<RowResidual> {
     let readings = case.observation.readings();
     let of = |left: &DVector<f64>, row: usize| -> [f64; 3] {
-        core::array::from_fn(|k| if k < readings.told { left[row * readings.width + k] } else { 0.0 })
+        core::array::from_fn(|k| if k < readings.reported { left[row * readings.width + k] } else { 0.0 })
     };
     let row = |row: usize| RowResidual {
         line: readings.lines[row],

@@ -8,7 +8,7 @@ use super::case::Case;
 /// A dependence with a larger probability by chance is none, all quantities counted.
 const LEVEL: f64 = 0.01;
 
-/// So many are told at most.
+/// So many are reported at most.
 const MOST: usize = 4;
 
 /// The names of the quantities that what is left depends on, the strongest first: a correlation of a
@@ -39,14 +39,14 @@ pub fn depends_on(case: &Case<'_>, left: &DVector<f64>) -> Vec<String> {
     for (k, name) in ["Fx", "Fy", "Fz"].into_iter().enumerate() {
         columns.push((name.into(), readings.force.iter().map(|force| force[k]).collect()));
     }
-    let told: Vec<Vec<f64>> =
-        (0..readings.told).map(|k| rows.iter().map(|row| left[row * readings.width + k]).collect()).collect();
+    let reported: Vec<Vec<f64>> =
+        (0..readings.reported).map(|k| rows.iter().map(|row| left[row * readings.width + k]).collect()).collect();
     let size: Vec<f64> = rows.iter().map(|&row| readings.square(left, row).sqrt()).collect();
-    let tests = columns.len() * (told.len() + 1);
+    let tests = columns.len() * (reported.len() + 1);
     let mut found: Vec<(f64, String)> = Vec::new();
     for (name, column) in columns {
         let column: Vec<f64> = rows.iter().map(|&row| column[row]).collect();
-        let strongest = told.iter().chain([&size]).map(|of| correlation(of, &column).abs()).fold(0.0, f64::max);
+        let strongest = reported.iter().chain([&size]).map(|of| correlation(of, &column).abs()).fold(0.0, f64::max);
         // Fisher: artanh(r) has a standard deviation of 1 / sqrt(n - 3).
         let z = strongest.min(1.0 - 1e-12).atanh() * (rows.len().saturating_sub(3) as f64).sqrt();
         let by_chance = tests as f64 * statrs::function::erf::erfc(z / core::f64::consts::SQRT_2);

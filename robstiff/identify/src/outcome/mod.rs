@@ -47,7 +47,7 @@ impl Default for Options {
     }
 }
 
-/// What is told while it takes: one line for each stage.
+/// What is reported while it takes: one line for each stage.
 pub type Progress<'a> = dyn Fn(&str) + 'a;
 
 /// The result of tracing a campaign. Lengths are in m; an rms is over rows of the residual's length
@@ -217,7 +217,7 @@ pub fn trace(campaign: &Campaign, options: &Options, progress: &Progress<'_>) ->
 fn too_little(case: &Case<'_>, found: &crate::select::engine::Found) -> Option<String> {
     let readings = case.observation.readings();
     let blocks = case.training.iter().filter(|fitted| **fitted).count();
-    let is_clamped = readings.told == 1 && readings.width == 1;
+    let is_clamped = readings.reported == 1 && readings.width == 1;
     if !is_clamped && blocks < FEWEST_POSES {
         return Some(format!("{blocks} poses are too few to judge by, at least {FEWEST_POSES} are needed"));
     }

@@ -51,7 +51,7 @@ fn repeated(case: &Case<'_>, left: &DVector<f64>) -> Option<f64> {
                 continue;
             }
             alike.iter().for_each(|&j| used[j] = true);
-            for k in 0..readings.told {
+            for k in 0..readings.reported {
                 let of: Vec<f64> = alike.iter().map(|&j| left[rows[j] * readings.width + k]).collect();
                 let mean = of.iter().sum::<f64>() / of.len() as f64;
                 sum += of.iter().map(|one| (one - mean).powi(2)).sum::<f64>();

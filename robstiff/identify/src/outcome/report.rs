@@ -147,7 +147,7 @@ pub fn report(
         estimates_before,
         estimates,
         residuals: rows(case, alone, &found.own.left),
-        components: readings.told,
+        components: readings.reported,
         differences: readings.differences,
         pose_errors: poses(case, alone, &found.own.left),
     })
@@ -198,7 +198,7 @@ pub fn insufficient(campaign: &Campaign, case: &Case<'_>, engine: &Engine<'_>, w
         estimates_before: estimates.clone(),
         estimates,
         residuals: rows(case, &left, &left),
-        components: readings.told,
+        components: readings.reported,
         differences: readings.differences,
         pose_errors: poses(case, &left, &left),
     })
@@ -309,7 +309,7 @@ fn outliers(engine: &Engine<'_>, found: &Found, case: &Case<'_>) -> Option<Named
     })
 }
 
-/// The log-likelihood ratio from which on rows are told as outlying: odds of three thousand.
+/// The log-likelihood ratio from which on rows are reported as outlying: odds of three thousand.
 const FOR_OUTLIERS: f64 = 8.0;
 
 /// What the table's numbers change by, a row each; none but of absolute positions.

@@ -17,6 +17,9 @@ pub mod advice;
 pub mod criterion;
 pub mod displacements;
 pub mod exchange;
+pub mod first;
+#[cfg(test)]
+mod first_tests;
 pub mod positions;
 pub mod regressors;
 pub mod rivals;
@@ -65,7 +68,13 @@ pub struct Options {
     /// The least height of the tool centre point above the origin of frame 0,
     /// along z of the base frame (m); the campaign's lowest where there is none.
     pub floor: Option<f64>,
+    /// How far joints stay inside their limits, as a share of the range between these.
+    pub margin: f64,
 }
+
+/// Measured poses are approached from either side, and a limit of a description is that of a data
+/// sheet: a twentieth of the range at either end is not used.
+pub const MARGIN: f64 = 0.05;
 
 impl Default for Options {
     fn default() -> Self {
@@ -78,6 +87,7 @@ impl Default for Options {
             force: None,
             moment: None,
             floor: None,
+            margin: MARGIN,
         }
     }
 }

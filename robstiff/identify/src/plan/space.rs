@@ -1,8 +1,9 @@
 //! Poses and loads that can be proposed.
 //!
-//! Poses fill the joints' limits evenly (a Halton sequence, shifted by the
-//! seed). A joint without limits stays where the campaign has been: what was
-//! reached once can be reached again.
+//! Poses fill the joints' ranges evenly (a Halton sequence, shifted by the
+//! seed). A range is the campaign's and a quarter more on either side, within the
+//! joint's limits with a margin. A joint without limits stays where the campaign has
+//! been: what was reached once can be reached again.
 //! The tool stays as high above the base's origin and as far from its vertical
 //! as it did in the campaign. Whether the arm hits itself or its surroundings is
 //! not known here.
@@ -59,7 +60,7 @@ impl Space {
             Data::Clamped(_) => Vec::new(),
         };
         let mut assumptions = Vec::new();
-        let ranges = ranges(campaign, &visited, &mut assumptions);
+        let ranges = ranges(campaign, &visited, options.margin, &mut assumptions);
         let seen: Vec<Vector3<f64>> = visited.iter().map(|q| tool_centre_point(&campaign.robot, q)).collect();
         let lowest = seen.iter().map(|point| height(&campaign.robot, point)).fold(f64::INFINITY, f64::min);
         let floor = options.floor.unwrap_or(lowest);
@@ -138,30 +139,154 @@ fn radical_inverse(mut index: u64, base: u32) -> f64 {
     value
 }
 
-fn ranges(campaign: &Campaign, visited: &[&[f64]], assumptions: &mut Vec<String>) -> Vec<[f64; 2]> {
+/// So much of what the campaign ranged over is added on either side of it, and at least so much of
+/// the limits.
+const NEAR: f64 = 0.25;
+const AT_LEAST: f64 = 0.1;
+
+/// A joint's limits without a margin at either end, a share of the range between them.
+fn within([low, high]: [f64; 2], margin: f64) -> [f64; 2] {
+    let margin = margin * (high - low);
+    [low + margin, high - margin]
+}
+
+fn ranges(campaign: &Campaign, visited: &[&[f64]], margin: f64, assumptions: &mut Vec<String>) -> Vec<[f64; 2]> {
     let mut without = Vec::new();
     let range = |(index, joint): (usize, &robstiff_robots::Joint)| {
-        joint.limits.unwrap_or_else(|| {
-            let seen = visited.iter().map(|q| q[index]);
-            let range = seen.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q), high.max(q)]);
-            let [low, high] = range.map(|q| joint.for_people(q));
+        let seen = visited.iter().map(|q| q[index]);
+        let seen = seen.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q), high.max(q)]);
+        let Some(limits) = joint.limits else {
+            let [low, high] = seen.map(|q| joint.for_people(q));
             without.push(format!("{} [{low:.0}, {high:.0}] {}", index + 1, joint.people_unit()));
-            range
-        })
+            return seen;
+        };
+        let inside = within(limits, margin);
+        let more = (NEAR * (seen[1] - seen[0])).max(AT_LEAST * (limits[1] - limits[0]));
+        let near = [(seen[0] - more).max(inside[0]), (seen[1] + more).min(inside[1])];
+        // A campaign may have been at a limit, or beyond it.
+        if near[0] < near[1] { near } else { inside }
     };
     let ranges = campaign.robot.joints.iter().enumerate().map(range).collect();
-    if without.is_empty() {
-        assumptions.push(String::from("the joints stay within the limits of the description"));
-    } else {
+    if without.len() < campaign.robot.joints.len() {
+        assumptions.push(format!(
+            "the joints stay near the campaign's range, and {} inside the limits of the description",
+            percent(margin)
+        ));
+    }
+    if !without.is_empty() {
         let joints = without.join(", ");
         assumptions.push(format!("joints without limits in the description stay in the campaign's range: {joints}"));
     }
     ranges
 }
 
+/// A margin as it is told.
+fn percent(margin: f64) -> String {
+    format!("{} % of the range", (margin * 1e3).round() / 10.0)
+}
+
+/// A joint that turns and has no limits is not turned further than this either way (rad).
+const WITHOUT_LIMITS: f64 = core::f64::consts::FRAC_PI_2;
+
+/// The tool stays so far above the base and from its vertical, as shares of the farthest that it reaches:
+/// an arm that folds up hits itself.
+const LOW: f64 = 0.1;
+const CLOSE: f64 = 0.25;
+
+/// Poses looked at for how far the tool reaches.
+const REACHES: usize = 200;
+
+impl Space {
+    /// The space of a robot of which nothing was measured, without loads.
+    ///
+    /// # Errors
+    /// A joint that slides and has no limits; too few poses in the region.
+    pub fn of_robot(robot: &Description, options: &Options) -> Result<Self, Error> {
+        let mut assumptions = Vec::new();
+        let (mut ranges, mut without) = (Vec::new(), Vec::new());
+        for (number, joint) in (1..).zip(&robot.joints) {
+            ranges.push(match (joint.limits, joint.kind) {
+                (Some(limits), _) => within(limits, options.margin),
+                (None, robstiff::JointKind::Revolute) => {
+                    without.push(format!("{number}"));
+                    [-WITHOUT_LIMITS, WITHOUT_LIMITS]
+                }
+                (None, robstiff::JointKind::Prismatic) => {
+                    return Err(Error::NoPlan(format!(
+                        "joint {number} slides and has no `limits` in the description: how far may it go?"
+                    )));
+                }
+            });
+        }
+        if without.len() < robot.joints.len() {
+            assumptions.push(format!("the joints stay {} inside their limits", percent(options.margin)));
+        }
+        if !without.is_empty() {
+            assumptions.push(format!(
+                "joints without limits in the description stay within 90 deg of zero: {}",
+                without.join(", ")
+            ));
+        }
+        let mut space = Self {
+            robot: robot.clone(),
+            ranges,
+            floor: f64::NEG_INFINITY,
+            column: 0.0,
+            loads: Vec::new(),
+            poses: Vec::new(),
+            assumptions,
+        };
+        let reach = |q: &Vec<f64>| {
+            let point = tool_centre_point(robot, q);
+            from_vertical(robot, &point).hypot(height(robot, &point))
+        };
+        let reach = space.spread(REACHES, options.seed).iter().map(reach).fold(0.0, f64::max);
+        space.floor = options.floor.unwrap_or(LOW * reach);
+        space.column = CLOSE * reach;
+        space.assumptions.push(format!(
+            "the tool stays at least {:.0} mm above the base's origin and {:.0} mm from its vertical",
+            space.floor * 1e3,
+            space.column * 1e3
+        ));
+        // In whole degrees and millimetres, as people type them.
+        let rounded =
+            |q: Vec<f64>| -> Vec<f64> { q.iter().zip(&robot.joints).map(|(&q, joint)| whole(joint, q)).collect() };
+        let inside = |q: &Vec<f64>| {
+            let mut joints = q.iter().zip(&space.ranges);
+            joints.all(|(q, [low, high])| (*low..=*high).contains(q)) && space.reaches(q)
+        };
+        let wanted = options.candidates.max(options.poses);
+        let mut poses: Vec<Vec<f64>> = Vec::new();
+        for q in space.spread(2 * wanted, options.seed).into_iter().map(rounded).filter(inside) {
+            if poses.len() < wanted && !poses.contains(&q) {
+                poses.push(q);
+            }
+        }
+        if poses.len() < options.poses {
+            return Err(Error::NoPlan(format!(
+                "within these limits and above {:.0} mm there are only {} poses of {} asked for",
+                space.floor * 1e3,
+                poses.len(),
+                options.poses
+            )));
+        }
+        space.poses = poses;
+        Ok(space)
+    }
+}
+
+/// A coordinate in whole degrees or millimetres.
+fn whole(joint: &robstiff_robots::Joint, q: f64) -> f64 {
+    let unit = match joint.kind {
+        robstiff::JointKind::Revolute => 1_f64.to_radians(),
+        robstiff::JointKind::Prismatic => 1e-3,
+    };
+    (q / unit).round() * unit
+}
+
 /// Directions to pull in: along the axes, the diagonals of the faces and those of
 /// the cube; downwards where there is a choice, as weights pull.
-fn directions() -> Vec<Vector3<f64>> {
+pub(super) fn directions() -> Vec<Vector3<f64>> {
     let mut found: Vec<Vector3<f64>> = Vec::new();
     for code in 0..27 {
         let direction = Vector3::from([code / 9, code / 3 % 3, code % 3].map(|digit: i32| f64::from(digit - 1)));

@@ -176,7 +176,7 @@ mod tests {
         Readings {
             values: DVector::from_fn(rows * 4, |i, _| (1.3 * i as f64).sin()),
             width: 4,
-            told: 3,
+            reported: 3,
             channels: vec![0, 0, 0, 2],
             block: vec![0, 0, 0, 1, 1, 2, 2],
             blocks: 3,

@@ -162,10 +162,10 @@ impl Noise {
         let (mut sum, mut log_det, mut count) = (0.0, 0.0, 0);
         for rows in rows.iter().filter(|rows| !rows.is_empty()) {
             let Some(factor) = self.covariance(readings, rows, kappa, (share, growth)).cholesky() else { continue };
-            let told = self.told(readings, left, rows);
-            sum += told.dot(&factor.solve(&told));
-            log_det += factor.l_dirty().diagonal().iter().map(|d| 2.0 * d.ln()).sum::<f64>() * told.ncols() as f64;
-            count += told.len();
+            let reported = self.reported(readings, left, rows);
+            sum += reported.dot(&factor.solve(&reported));
+            log_det += factor.l_dirty().diagonal().iter().map(|d| 2.0 * d.ln()).sum::<f64>() * reported.ncols() as f64;
+            count += reported.len();
         }
         let count = count.max(1) as f64;
         let variance = (sum / count).max(f64::MIN_POSITIVE);
@@ -179,13 +179,13 @@ impl Noise {
         for rows in rows.iter().filter(|rows| !rows.is_empty()) {
             let covariance = self.covariance(readings, rows, kappa, (self.shared, self.growth));
             let Some(factor) = covariance.cholesky() else { continue };
-            let solved = factor.solve(&self.told(readings, left, rows));
+            let solved = factor.solve(&self.reported(readings, left, rows));
             for (k, &row) in rows.iter().enumerate() {
                 let own = self.own(row, self.growth) / self.weights[row];
                 squares[row] = solved.row(k).norm_squared() * own * own / self.own(row, self.growth) / (size * size);
             }
         }
-        let axes = readings.told as f64;
+        let axes = readings.reported as f64;
         let of_rows = || rows.iter().flatten();
         // The median of chi-square is its degrees of freedom less some 0.66.
         let bulk = median(of_rows().map(|&row| squares[row]).collect()) / (axes - 0.66).max(0.34);
@@ -210,9 +210,9 @@ impl Noise {
         }
     }
 
-    /// What is told of some rows, a column an axis.
-    fn told(&self, readings: &Readings, left: &DVector<f64>, rows: &[usize]) -> DMatrix<f64> {
-        DMatrix::from_fn(rows.len(), readings.told, |i, k| left[rows[i] * readings.width + k])
+    /// What is reported of some rows, a column an axis.
+    fn reported(&self, readings: &Readings, left: &DVector<f64>, rows: &[usize]) -> DMatrix<f64> {
+        DMatrix::from_fn(rows.len(), readings.reported, |i, k| left[rows[i] * readings.width + k])
     }
 
     /// The covariance of one axis over some rows of a block, over `s^2`.

@@ -352,7 +352,7 @@ impl<'c> Engine<'c> {
         Self { sizes: self.sizes, ..fresh }
     }
 
-    /// Searches, from the campaign as declared; `progress` is told what goes on.
+    /// Searches, from the campaign as declared; `progress` hears what goes on.
     pub fn run(&mut self, progress: &dyn Fn(&str)) -> Option<Found> {
         Some(self.run_from_alone(progress)?.0)
     }
@@ -440,7 +440,7 @@ impl<'c> Engine<'c> {
             let fit = problem.fit(set, found.kappa)?;
             let unseen: Vec<bool> = group.iter().map(|of| *of == Some(fold)).collect();
             for row in rows_of_blocks(readings, &unseen).concat() {
-                for k in 0..readings.told {
+                for k in 0..readings.reported {
                     let at = row * readings.width + k;
                     let taken: f64 =
                         fit.columns.iter().zip(fit.mean.iter()).map(|(&c, b)| found.columns[(at, c)] * b).sum();

@@ -1,6 +1,6 @@
 //! The whole search repeated without some poses.
 //!
-//! The error on unseen poses that is told anywhere is this one: nothing of a fold's poses, the choice
+//! The error on unseen poses that is reported anywhere is this one: nothing of a fold's poses, the choice
 //! of effects included, has a part in what predicts them (Varma and Simon, BMC Bioinformatics 7, 2006).
 //! With few poses everything is done again from the declared description, the noise and the
 //! linearisation too; with many the columns and the noise are those of all poses, of which a few have

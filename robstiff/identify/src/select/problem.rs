@@ -49,7 +49,7 @@ pub struct Judged {
     pub kappa: usize,
 }
 
-/// What a unit moves the readings by at least (m, rad), for its size to be told by that.
+/// What a unit moves the readings by at least (m, rad), for its size to follow from that.
 const LEAST_MOVED: f64 = 1e-3;
 
 /// A discrepancy that is so much less likely than another has no part, and no one beyond it.
@@ -285,7 +285,7 @@ fn prior(layout: &Layout, column: usize, moves: f64, sizes: f64) -> Prior {
     Prior { mean: parameter.mean, sd, group, nonnegative }
 }
 
-/// Gram matrices of all rows together, and how much each column moves what is told of a row.
+/// Gram matrices of all rows together, and how much each column moves what is reported of a row.
 pub fn moves(readings: &Readings, columns: &nalgebra::DMatrix<f64>, training: &[bool]) -> Vec<f64> {
     let rows: Vec<usize> = (0..readings.rows()).filter(|&row| training[readings.block[row]]).collect();
     let of = |column: usize| {

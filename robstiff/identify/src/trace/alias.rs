@@ -13,6 +13,7 @@ use super::isolated::Event;
 use super::model::{Fitted, Named, Setting, all_but};
 use super::selection::{CURVATURE, Tests, WITHIN_REACH, best_with};
 use crate::identify::normal::{Fit, Sign};
+use crate::probability::schwarz;
 use robstiff::Effect;
 use robstiff_robots::effect::Place as Part;
 
@@ -35,8 +36,16 @@ const BEYOND_DOUBT: f64 = 100.0;
 /// The names of what the data cannot tell effect `k` of a model from, with `structure`
 /// left or none: exact aliases at the model's own solution, and rivals that predict poses
 /// left out better than no effect does and fit about as well as this one, or nearly so
-/// where they are significant too. The best fitting first.
-pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, structure: bool, options: &Options) -> Vec<String> {
+/// where they are significant too; and what is as good in its own form by all rows, one of `swaps`. The
+/// best fitting first.
+pub fn same_as(
+    bench: &Bench<'_>,
+    model: &Fitted,
+    k: usize,
+    swaps: &[Swap],
+    structure: bool,
+    options: &Options,
+) -> Vec<String> {
     let (one, rest) = (model.named[k], all_but(&model.named, k));
     let Some(alone) = Alone::of(bench, model, &rest) else { return Vec::new() };
     let without = Without::of(bench, &rest, options);
@@ -49,6 +58,7 @@ pub fn same_as(bench: &Bench<'_>, model: &Fitted, k: usize, structure: bool, opt
         let Some(bic) = bic.or_else(|| Some(best_with(own, &rest, candidate)?.bic)) else { continue };
         let is_alike = alone.is_exact(one, &rest, candidate)
             || one_formula(bench, own, model, one, candidate)
+            || swaps.iter().any(|swap| swap.k == k && swap.candidate == candidate)
             || rival.is_some_and(|(without, rival)| contest.is_open(without, &rival, candidate));
         if is_alike {
             found.push((bic, own.candidates[candidate].name()));
@@ -285,15 +295,6 @@ pub fn same_as_wild(bench: &Bench<'_>, model: &Fitted, events: &[Event]) -> Vec<
     best_first(found).collect()
 }
 
-/// The criterion of a model of all rows in which each of its events has a shift of its own;
-/// `None` where it cannot be fitted so.
-pub fn bic_as_wild(bench: &Bench<'_>, model: &Fitted, events: &[Event]) -> Option<f64> {
-    match events {
-        [] => Some(model.bic),
-        _ => Wild::of(bench, &model.named, events).map(|wild| wild.as_wild),
-    }
-}
-
 /// Names in the order of their criterion.
 fn best_first(mut found: Vec<(f64, String)>) -> impl Iterator<Item = String> {
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -360,25 +361,96 @@ pub struct Rival {
     pub bic_difference: f64,
 }
 
-/// The models of as many effects as the one named, each with one of them
-/// replaced, within reach by the criterion; the best first.
-pub fn rivals(bench: &Bench<'_>, model: &Fitted) -> Vec<Rival> {
-    let mut found: Vec<Rival> = Vec::new();
+/// A model that has another candidate in the place of one effect of the model named, in its own
+/// form.
+pub struct Swap {
+    /// Which effect is replaced, by its place.
+    pub k: usize,
+    /// The candidate in its place.
+    pub candidate: usize,
+    /// The model.
+    pub model: Fitted,
+    /// By how much its criterion of all rows is above that of the model named.
+    pub behind: f64,
+}
+
+/// The models with one effect replaced that are within reach of a model by the criterion of all
+/// rows, or better, the best first. `events` are what is wrong in single visits by the model.
+pub fn swaps(bench: &Bench<'_>, model: &Fitted, events: &[Event]) -> Vec<Swap> {
+    let mut found = Vec::new();
+    let of_all_rows = OfAllRows::new(bench, events);
+    let Some(own) = of_all_rows.bic(model) else { return found };
+    let whole = bench.at(&model.named).ok();
+    let is_named = |candidate: &usize| model.named.iter().any(|one| one.candidate == *candidate);
     for k in 0..model.named.len() {
-        let (one, rest) = (model.named[k], all_but(&model.named, k));
-        let Ok(setting) = bench.at(&rest) else { continue };
-        for candidate in (0..setting.candidates.len()).filter(|&candidate| candidate != one.candidate) {
-            let Some(rival) = best_with(&setting, &rest, candidate) else { continue };
-            if rival.bic - model.bic > CURVATURE {
+        let rest = all_but(&model.named, k);
+        let settings: Vec<Rc<Setting<'_>>> = bench.at(&rest).ok().into_iter().chain(whole.clone()).collect();
+        for candidate in (0..bench.candidates().len()).filter(|candidate| !is_named(candidate)) {
+            let linear = settings.iter().filter_map(|at| Some((at, best_with(at, &rest, candidate)?)));
+            let Some((at, near)) = linear.min_by(|a, b| a.1.bic.total_cmp(&b.1.bic)) else { continue };
+            if near.bic - model.bic > CURVATURE {
                 continue;
             }
-            let Ok(rival) = bench.refit(&setting, &rival) else { continue };
-            let bic_difference = rival.bic - model.bic;
-            if bic_difference < WITHIN_REACH {
-                found.push(Rival { names: bench.names(&rival.named), bic_difference });
+            // A proposal that is linear is in its own form where the others stand without it.
+            let in_own_form = bench.refit(at, &near).ok().filter(|rival| rival.bic - model.bic < CURVATURE);
+            let Some(rival) = in_own_form else { continue };
+            let Some(behind) = of_all_rows.bic(&rival).map(|bic| bic - own) else { continue };
+            if behind < WITHIN_REACH {
+                found.push(Swap { k, candidate, model: rival, behind });
             }
         }
     }
-    found.sort_by(|a, b| a.bic_difference.total_cmp(&b.bic_difference));
+    found.sort_by(|a, b| a.behind.total_cmp(&b.behind));
     found
+}
+
+/// The criterion of a model of all rows: what is wrong in single visits has a shift of its own, or is
+/// in the fit, whichever is better; `None` where it cannot be fitted so.
+pub fn bic_of_all(bench: &Bench<'_>, model: &Fitted, events: &[Event]) -> Option<f64> {
+    OfAllRows::new(bench, events).bic(model)
+}
+
+/// What models are held against by the criterion of all rows.
+struct OfAllRows<'b, 'c> {
+    bench: &'b Bench<'c>,
+    /// With the rows in the fit that are left out for what is wrong in single visits.
+    whole: Bench<'c>,
+    /// How many such visits there are among those fitted to.
+    events: usize,
+}
+
+impl<'b, 'c> OfAllRows<'b, 'c> {
+    fn new(bench: &'b Bench<'c>, events: &[Event]) -> Self {
+        // Those of poses held out have no part in a fit.
+        let is_fitted_to = |event: &&Event| event.rows.iter().all(|&row| bench.is_fitted_to(row));
+        Self { bench, whole: bench.leaving_out(&[]), events: events.iter().filter(is_fitted_to).count() }
+    }
+
+    fn bic(&self, model: &Fitted) -> Option<f64> {
+        if self.events == 0 {
+            return Some(model.bic);
+        }
+        let of_effects = self.bench.parameters(&model.named);
+        let [rows, all] = [self.bench.count_readings(), self.whole.count_readings()];
+        let criterion = |fit: &Fit, rss: f64, more: usize| {
+            let base = fit.columns.iter().filter(|&&column| self.bench.is_base(column)).count();
+            schwarz(rss, all as f64, (base + of_effects + more) as f64)
+        };
+        // An event of several rows has one shift, and noise in the rest of their readings.
+        let noise = (all - rows).saturating_sub(3 * self.events);
+        let freedom = rows.saturating_sub(model.fit.columns.len()).max(1);
+        let rss = model.fit.rss * (1.0 + noise as f64 / freedom as f64);
+        let as_wild = criterion(&model.fit, rss, 4 * self.events);
+        let in_the_fit = self.whole.fit_at_solution(&model.named).ok();
+        Some(in_the_fit.map_or(as_wild, |fit| as_wild.min(criterion(&fit, fit.rss, 0))))
+    }
+}
+
+/// The models that come close to the one named: of as many effects, and another that was come to.
+pub fn rivals(bench: &Bench<'_>, swaps: &[Swap], other: Option<&Rival>) -> Vec<Rival> {
+    let rival = |swap: &Swap| Rival { names: bench.names(&swap.model.named), bic_difference: swap.behind.max(0.0) };
+    let mut rivals: Vec<Rival> = swaps.iter().map(rival).collect();
+    rivals.extend(other.filter(|other| rivals.iter().all(|rival| rival.names != other.names)).cloned());
+    rivals.sort_by(|a, b| a.bic_difference.total_cmp(&b.bic_difference));
+    rivals
 }

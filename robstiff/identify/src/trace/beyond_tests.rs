@@ -44,14 +44,18 @@ fn friction_in_a_pulley_is_no_creep() {
 /// without one has none.
 #[test]
 fn a_coupling_without_a_drive_has_no_name() {
-    let coupled = |pair, seed| {
-        let hidden = vec![(Column::Spring(Spring::Coupling(pair)), 2e-7)];
+    let coupled = |pair, value, seed| {
+        let hidden = vec![(Column::Spring(Spring::Coupling(pair)), value)];
         Plan { hidden, ..Plan::new(seed) }.run()
     };
     for (seed, [i, j]) in (0..).zip([[1, 2], [1, 5], [3, 4]]) {
-        assert!(looks_like(&coupled([i, j], seed), &format!("a coupling of joints {i} and {j}, which share no drive")));
+        assert!(looks_like(
+            &coupled([i, j], 2e-7, seed),
+            &format!("a coupling of joints {i} and {j}, which share no drive")
+        ));
     }
-    let named = traced(&coupled([4, 5], 3));
+    // Of the wrist as little would not matter.
+    let named = traced(&coupled([4, 5], 8e-7, 3));
     assert_eq!((names(&named), named.verdict), (vec!["joint_coupling@joints 4,5".into()], Verdict::Explained));
 }
 

@@ -92,6 +92,8 @@ fn columns_in_other_units_are_told() {
 #[test]
 fn joints_that_are_counted_otherwise_are_told() {
     tells(&traced(&with(1, |row| row.q[3] *= -1.0)), "q4 counted the other way");
+    let several = with(4, |row| [0, 3].into_iter().for_each(|joint| row.q[joint] *= -1.0));
+    tells(&traced(&several), "q1 and q4 counted the other way");
     let from_elsewhere = "q2 less by 90 deg than the description counts";
     tells(&traced(&with(2, |row| row.q[1] -= FRAC_PI_2)), from_elsewhere);
     let from_the_floor = "q3 less by q2 than the description counts, as where it is counted from the floor";

@@ -52,6 +52,8 @@ pub struct Setting<'c> {
     /// The second order of the joints' displacement, which the fit does not
     /// see (m).
     pub correction: DVector<f64>,
+    /// Whether each pose is fitted to.
+    pub training: &'c [bool],
 }
 
 /// The whitened columns of a regression, as long as there is memory for them.
@@ -318,24 +320,28 @@ impl Setting<'_> {
         undecided(moments, &among(&self.problem.blocks), &among(&self.problem.held_out))
     }
 
-    /// The residuals on poses the fit has not seen, stacked: of the poses held
-    /// out but for some rows, or where none are, of each pose by the fit without it. With the
-    /// campaign's rows they are of.
-    fn unseen_residuals(&self, fit: &Fit, but: &[usize]) -> (DVector<f64>, Vec<usize>) {
-        let problem = &self.problem;
-        if problem.held_out.is_empty() {
-            let LeftOut { residuals, rows, .. } = self.left_out(fit);
-            return (residuals, rows);
-        }
-        let rows = problem.held_out.iter().flat_map(|block| block.rows.iter().copied());
-        (self.residuals(fit), rows.filter(|row| !but.contains(row)).collect())
+    /// The campaign's rows of poses that are fitted to, or of those that are held out, with those
+    /// that are left out.
+    fn rows(&self, fitted_to: bool) -> impl Iterator<Item = usize> {
+        let rows = self.point.samples.rows.iter().enumerate();
+        rows.filter(move |(_, row)| self.training[row.pose] == fitted_to).map(|(i, _)| i)
     }
 
-    /// The root mean square of [`unseen_residuals`](Self::unseen_residuals) (m):
-    /// for judging a model, never for choosing one.
+    /// The root mean square of what a fit leaves of the poses fitted to (m), in rows that it leaves
+    /// out, too.
+    pub fn fitted_rms(&self, fit: &Fit) -> f64 {
+        rms(&self.residuals(fit), self.problem.axes, self.rows(true))
+    }
+
+    /// The root mean square on poses that the fit has not seen (m): of the poses held
+    /// out but for some rows, or where none are, of each pose by the fit without it, in rows that
+    /// are left out, too. For judging a model, never for choosing one.
     pub fn holdout_rms(&self, fit: &Fit, but: &[usize]) -> f64 {
-        let (residuals, rows) = self.unseen_residuals(fit, but);
-        rms(&residuals, self.problem.axes, rows)
+        let axes = self.problem.axes;
+        match self.training.contains(&false) {
+            false => rms(&self.left_out(fit).residuals, axes, self.rows(true)),
+            true => rms(&self.residuals(fit), axes, self.rows(false).filter(|row| !but.contains(row))),
+        }
     }
 
     /// What each pose fitted to leaves of the fit without it: for choosing a model. Poses held out
@@ -353,19 +359,27 @@ impl Setting<'_> {
         };
         let columns = in_place(fit).columns;
         let (mut residuals, mut deviance) = ((*problem.readings).clone(), 0.0);
+        for (column, &value) in raw.iter().zip(fit.coefficients.iter()) {
+            residuals.axpy(-value, column, 1.0);
+        }
+        // Rows that are left out are predicted with the others of their pose.
+        let samples = &self.point.samples;
+        let in_the_fit = Block::among(&problem.blocks, samples.rows.len());
+        let left_out: Vec<usize> = self.rows(true).filter(|&row| !in_the_fit[row]).collect();
         for block in problem.blocks.iter() {
             // The whole fit where that block alone sees a column.
             let without = problem.solve_without(block, &columns, Some(&signs));
             let coefficients = without.as_ref().unwrap_or(&fit.coefficients);
             deviance += problem.block_residuals(block, &columns, coefficients).norm_squared();
-            for &i in &block.stacked {
+            let of_pose = left_out.iter().filter(|&&row| samples.rows[row].pose == block.pose);
+            let of_pose = of_pose.flat_map(|row| row * problem.axes..(row + 1) * problem.axes);
+            for i in block.stacked.iter().copied().chain(of_pose) {
                 let fitted: f64 = raw.iter().zip(coefficients.iter()).map(|(column, value)| column[i] * value).sum();
-                residuals[i] -= fitted;
+                residuals[i] = problem.readings[i] - fitted;
             }
         }
-        let rows: Vec<usize> = problem.blocks.iter().flat_map(|block| block.rows.iter().copied()).collect();
-        let rms = rms(&residuals, problem.axes, rows.iter().copied());
-        LeftOut { residuals, rows, rms, deviance }
+        let rms = rms(&residuals, problem.axes, problem.blocks.iter().flat_map(|block| block.rows.iter().copied()));
+        LeftOut { residuals, rms, deviance }
     }
 
     /// The squared whitened residuals of each block.
@@ -378,11 +392,9 @@ impl Setting<'_> {
 
 /// What poses leave of fits without them.
 pub struct LeftOut {
-    /// Of the readings as measured, stacked (m, rad).
+    /// Of the readings as measured, stacked (m, rad); of poses with no row in the fit by all others.
     pub residuals: DVector<f64>,
-    /// The campaign's rows that these are of.
-    pub rows: Vec<usize>,
-    /// The root mean square of the displacements (m), as people are told it.
+    /// The root mean square of the displacements in the fit (m), as people are told it.
     pub rms: f64,
     /// The sum of the squares of what is left, whitened: of all that is read, each by its noise. By
     /// this models are compared, for by it they are fitted.

@@ -19,7 +19,6 @@ use std::vec::Vec;
 
 use super::Options;
 use super::bench::Bench;
-use super::catalogue::{Candidate, REFLECTOR_OFFSET};
 use super::displacements::searched_from;
 use super::model::{Fitted, Named, all_but};
 use super::search::Outcome;
@@ -77,31 +76,22 @@ fn far_better<'c>(bench: &Bench<'c>, model: &Fitted) -> Option<(Fitted, Bench<'c
     rests.extend([model.named.clone(), Vec::new()]);
     rests.sort_unstable();
     rests.dedup();
-    let others = tried(bench, &rests, |_| true);
+    let others = tried(bench, &rests);
     let count = others.len() + 1;
     let best = others.into_iter().min_by(|a, b| a.bic.total_cmp(&b.bic));
-    let wide = if bench.has(&REFLECTOR_OFFSET) { None } else { bench.with_reflector().ok() };
-    let reflector = wide.and_then(|wide| {
-        let alone = tried(&wide, &[Vec::new()], |candidate| candidate.kind == &REFLECTOR_OFFSET);
-        Some((alone.into_iter().next()?, wide))
-    });
-    let (other, on) = match (best, reflector) {
-        (Some(best), Some((alone, _))) if best.bic <= alone.bic => (best, bench.copy()),
-        (_, Some(reflector)) => reflector,
-        (best, None) => (best?, bench.copy()),
-    };
+    let other = best?;
     let is_far =
         other.bic < model.bic - FAR && by_chance(bench, model, &other).is_none_or(|p| told(count as f64 * p) <= STRICT);
-    is_far.then_some((other, on))
+    is_far.then(|| (other, bench.copy()))
 }
 
 /// The models of some effects and one candidate more, in their own form.
-fn tried(bench: &Bench<'_>, rests: &[Vec<Named>], is_wanted: impl Fn(&Candidate) -> bool) -> Vec<Fitted> {
+fn tried(bench: &Bench<'_>, rests: &[Vec<Named>]) -> Vec<Fitted> {
     let mut found = Vec::new();
     for rest in rests {
         bench.spare_memory();
         let Ok(setting) = bench.at(rest) else { continue };
-        for candidate in (0..bench.candidates().len()).filter(|&one| is_wanted(&bench.candidates()[one])) {
+        for candidate in 0..bench.candidates().len() {
             let linear = best_with(&setting, rest, candidate);
             found.extend(linear.and_then(|linear| bench.refit(&setting, &linear).ok()).filter(|one| one.physical));
         }

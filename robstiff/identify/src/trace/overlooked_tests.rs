@@ -25,8 +25,8 @@ fn a_reflector_elsewhere_is_found_at_few_poses() {
         let Data::Displacement(data) = &mut campaign.data else { unreachable!("displacements") };
         data.measured_at = core::array::from_fn(|k| data.measured_at[k] - OFF[k]);
         let trace = traced(&campaign);
-        assert_eq!((trace.verdict, names(&trace)), (Verdict::Explained, vec!["reflector_offset@rig".into()]), "{seed}");
-        assert!(trace.steps.iter().any(|step| step.outcome.starts_with("what fits far better")), "{seed}");
+        // One load a pose, and no noise declared: nothing but the fit says how large it is.
+        assert_eq!((trace.verdict, names(&trace)), (Verdict::Partial, vec!["reflector_offset@rig".into()]), "{seed}");
         for (number, off) in trace.effects[0].effect.parameters.iter().zip(OFF) {
             let std = number.std.expect("a length has one");
             assert!((number.value - off).abs() < 4.0 * std && std < 0.05, "{seed}: {number:?}");

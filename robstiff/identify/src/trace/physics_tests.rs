@@ -93,6 +93,6 @@ fn an_effect_that_is_not_possible_alone_is_told_with_the_error_of_all() {
     let mut outcome = Outcome::nothing(model.clone(), Verdict::Partial, String::new());
     outcome.selection.p_values = vec![0.0; 2];
     let options = Options { draws: 99, ..Options::default() };
-    let told = effects(&bench, &setting, &model, &outcome, (&spread, &[]), (&[], 1.5e-5), &options);
+    let told = effects(&bench, &setting, &model, &outcome, (&spread, &[], &[]), (&[], 1.5e-5), &options);
     assert_eq!(told.iter().map(|named| named.holdout_rms).collect::<Vec<f64>>(), [1.5e-5; 2]);
 }

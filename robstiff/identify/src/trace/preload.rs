@@ -19,7 +19,7 @@ use super::found::{EffectParameter, Found};
 use super::report::report;
 use super::search::Outcome;
 use super::selection::WITHIN_REACH;
-use super::{NamedEffect, Options, Trace, Verdict, elsewhere};
+use super::{NamedEffect, Options, Trace, Verdict, displacements};
 use crate::campaign::Campaign;
 use crate::identify::prepare::Prepared;
 use robstiff::Effect;
@@ -53,13 +53,14 @@ pub fn worth_a_try(campaign: &Campaign, outcome: &Outcome) -> Option<Campaign> {
 pub fn better(preloaded: &Campaign, plain: (&Bench<'_>, &Outcome), options: &Options) -> Option<Trace> {
     let prepared = Prepared::new(preloaded).ok()?;
     // Its stages are those that were told before.
-    let (bench, outcome) = elsewhere::searched(preloaded, &prepared, options, &|_| ()).ok()?;
+    let (bench, outcome) = displacements::of_campaign(preloaded, &prepared, options, &|_| ()).ok()?;
     if !is_better((&bench, &outcome), plain) {
         return None;
     }
-    let mut trace = report(preloaded, &prepared, &bench, &outcome, options).ok()?;
+    let mut trace = report(preloaded, &prepared, &bench, outcome, options).ok()?;
+    let has_curve = trace.effects.iter().any(|named| is_curve(named.effect.kind()));
     tell(&mut trace);
-    Some(trace)
+    has_curve.then_some(trace)
 }
 
 /// Whether what was found with gears that carry the weight accounts better for the data.

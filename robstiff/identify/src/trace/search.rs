@@ -8,7 +8,7 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-use super::alias::{Rival, bic_as_wild, with_wild_rows};
+use super::alias::{Rival, bic_of_all, with_wild_rows};
 use super::bench::Bench;
 use super::beyond::{self, Beyond};
 use super::isolated::Event;
@@ -36,7 +36,7 @@ pub struct Outcome {
     pub looks_like: Vec<String>,
     /// Whether these are what the files may have been written with.
     pub misread: bool,
-    /// Another model that is about as good, come to from elsewhere.
+    /// Another model that is about as good, come to by another way.
     pub rival: Option<Rival>,
     /// The conclusion.
     pub verdict: Verdict,
@@ -78,9 +78,9 @@ impl Outcome {
         bench.names(&self.selection.model.named)
     }
 
-    /// The criterion of Schwarz, of all rows: what is wrong in single visits counts as wild.
+    /// The criterion of Schwarz, of all rows.
     pub fn bic_of_all(&self, bench: &Bench<'_>) -> Option<f64> {
-        bic_as_wild(bench, &self.selection.model, &self.events)
+        bic_of_all(bench, &self.selection.model, &self.events)
     }
 
     /// Whether structure is left.

@@ -50,7 +50,7 @@ fn beside(plan: &Plan, lever: [f64; 3]) -> Trace {
 
 #[test]
 fn of_a_lever_is_named_what_shows() {
-    let lever = [0.03, -0.02, 0.05];
+    let lever = [0.09, -0.06, 0.15];
     let trace = beside(&plan(SCARA, 1), lever);
     assert_eq!(names(&trace), ["lever_arm@rig"], "{}", trace.why);
     let numbers = &trace.effects[0].effect.parameters;
@@ -69,7 +69,7 @@ fn of_a_lever_is_named_what_shows() {
 /// A belt goes along a slide.
 #[test]
 fn joints_with_a_slide_between_are_coupled() {
-    let hidden = vec![(Column::Spring(Spring::Coupling([2, 4])), 2e-6)];
+    let hidden = vec![(Column::Spring(Spring::Coupling([2, 4])), 6e-6)];
     let trace = traced(&Plan { hidden, ..plan(SCARA, 3) }.run());
     assert_eq!(names(&trace), ["joint_coupling@joints 2,4".to_string()], "{}", trace.why);
 }

@@ -22,7 +22,8 @@ pub enum Verdict {
     Adequate,
     /// Effects are named, and the rest is noise.
     Explained,
-    /// Effects are named, and structure is left.
+    /// Effects are named, and structure is left, or nothing but what they leave says how large the
+    /// noise is.
     Partial,
     /// Structure, and nothing in the catalogue accounts for it.
     Unexplained,

@@ -64,7 +64,8 @@ fn a_row_alone_at_its_pose_cannot_hide() {
     for (seed, off) in (1..=6).flat_map(|seed| [6e-4, 5e-3].map(|off| (seed, off))) {
         let found = traced(&one_load(15, seed, Some((3, off))));
         let told = (names(&found), found.verdict);
-        assert_eq!(told, (vec!["outliers@rig".into()], Verdict::Explained), "{off} m, seed {seed}: {}", found.why);
+        // One load a pose, and no noise declared: nothing but the fit says how large it is.
+        assert_eq!(told, (vec!["outliers@rig".into()], Verdict::Partial), "{off} m, seed {seed}: {}", found.why);
         assert_eq!(found.effects[0].lines, [5], "{off} m, seed {seed}");
     }
 }
@@ -90,7 +91,7 @@ fn wild_rows_of_poses_held_out_are_told_too() {
     let found = traced(&Campaign { holdout, ..shifted(&[TILT_3], &[row], 15.0) });
     assert_eq!(names(&found), ["transverse_compliance@joint 3", "outliers@rig"]);
     assert_eq!((found.verdict, &found.effects[1].lines), (Verdict::Explained, &vec![row + 2]));
-    // It reaches neither the fit nor the error there.
+    // It does not reach the fit; the error there has it in, by what the fit predicts.
     assert_eq!(found.estimates, without.estimates);
-    assert!((found.after.holdout_rms / without.after.holdout_rms - 1.0).abs() < 0.1);
+    assert!(found.after.holdout_rms > without.after.holdout_rms);
 }

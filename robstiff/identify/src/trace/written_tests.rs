@@ -174,7 +174,7 @@ noise: {displacement: 4 um}
 fn what_is_declared_of_the_kinematics_is_told_as_it_is_now() {
     for (effect, number) in [
         ("{kind: joint_zero_offset, at: joint 3, value: 0.03 rad}", "offset"),
-        ("{kind: dh_error, at: alpha3, value: 0.03 rad}", "value"),
+        ("{kind: dh_error, at: alpha3, value: 0.1 rad}", "value"),
     ] {
         let mut campaign = measured(&robot(""), 3, PLAN);
         campaign.robot = robot(effect);

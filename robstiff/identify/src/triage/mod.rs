@@ -51,8 +51,8 @@ pub struct Triage {
     pub checks: Vec<Check>,
     /// One sigma of a displacement reading (m), where the readings say.
     pub reading: Option<f64>,
-    /// Wild readings, a sentence each with visit and line.
-    pub outliers: Vec<String>,
+    /// Wild readings.
+    pub outliers: Vec<Stray>,
 }
 
 /// A check and its answer.
@@ -95,6 +95,20 @@ pub struct Finding {
     pub witnesses: usize,
     /// What was found and what it points to.
     pub said: String,
+    /// Full names of the effects that account for a violation, once a trace has named them
+    /// ([`account_for`](crate::trace::account_for)).
+    pub accounted_for_by: Vec<String>,
+}
+
+/// A reading that does not belong to the others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stray {
+    /// The visit, by index.
+    pub visit: usize,
+    /// It in a sentence, with visit and line.
+    pub said: String,
+    /// Full names of the effects that account for it, likewise.
+    pub accounted_for_by: Vec<String>,
 }
 
 /// A check by its name, its question, and how it is answered.
@@ -148,7 +162,7 @@ pub fn triage(campaign: &Campaign) -> Triage {
         Data::Displacement(data) => {
             let evidence = Evidence::new(campaign, data);
             let checks: Vec<_> = CHECKS.iter().map(|&(name, question, ask)| (name, question, ask(&evidence))).collect();
-            (checks, evidence.covariance.reading(), noise::sentences(&evidence))
+            (checks, evidence.covariance.reading(), noise::strays(&evidence))
         }
     };
     let adjusted =
@@ -175,6 +189,7 @@ fn judged(raw: Raw, adjusted: Option<f64>) -> Finding {
         violated,
         witnesses: raw.witnesses,
         said: if violated { fails } else { holds },
+        accounted_for_by: Vec::new(),
     }
 }
 

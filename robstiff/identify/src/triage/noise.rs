@@ -5,9 +5,9 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::evidence::Evidence;
-use super::{Raw, Unjudged};
-use crate::identify::covariance::WILD;
+use super::{Raw, Stray, Unjudged};
 use crate::identify::covariance::contrasts::Level;
+use crate::identify::covariance::{Outlier, WILD};
 use crate::probability::chi_square_tail;
 use crate::words::{count, micrometres};
 
@@ -129,7 +129,12 @@ pub(super) fn outliers(evidence: &Evidence<'_>) -> Unjudged {
     })
 }
 
-/// Each wild reading in a sentence.
-pub(super) fn sentences(evidence: &Evidence<'_>) -> Vec<String> {
-    evidence.covariance.outliers.iter().map(|outlier| outlier.told(evidence.data)).collect()
+/// The wild readings.
+pub(super) fn strays(evidence: &Evidence<'_>) -> Vec<Stray> {
+    let stray = |outlier: &Outlier| Stray {
+        visit: outlier.visit,
+        said: outlier.told(evidence.data),
+        accounted_for_by: Vec::new(),
+    };
+    evidence.covariance.outliers.iter().map(stray).collect()
 }

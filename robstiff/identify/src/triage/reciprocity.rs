@@ -93,8 +93,9 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Unjudged {
             format!("Loads and displacements are reciprocal (Betti), to {}.", percent(share.max(MATTERS))),
             format!(
                 "Loads and displacements are not reciprocal (Betti): what one load does along another differs from the \
-                 reverse by {} of the displacement. No spring does that, so the frame or the point of the forces or \
-                 of the displacements is not what the file says, or there is friction.",
+                 reverse by {} of the displacement. No linear spring does that: gears are not linear (lost motion, a \
+                 stiffness that changes with torque), or there is friction, or the frame or the point of the forces or \
+                 of the displacements is not what the file says.",
                 percent(share)
             ),
         ],

@@ -272,7 +272,7 @@ fn wild_readings_are_listed() {
     }));
     assert_eq!(names(&triage), ["outliers"]);
     assert_eq!(triage.outliers.len(), 1);
-    assert!(triage.outliers[0].starts_with("visit 16, line 102: off by ("), "{:?}", triage.outliers);
+    assert!(triage.outliers[0].said.starts_with("visit 16, line 102: off by ("), "{:?}", triage.outliers);
 }
 
 /// Encoders on the output side see all of a gear and nothing of a bearing.

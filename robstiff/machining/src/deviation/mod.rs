@@ -27,7 +27,9 @@
 //! so that the latter is a bound, not a forecast.
 
 mod blame;
+mod contact;
 mod load;
+mod parts;
 mod removal;
 mod settle;
 mod stretches;
@@ -35,59 +37,20 @@ mod table;
 #[cfg(test)]
 pub(crate) mod tests;
 
-use nalgebra::{Matrix3, Vector3, Vector6};
+use nalgebra::{Vector3, Vector6};
 
-use crate::milling::CutFrame;
 use crate::path::SolvedPath;
 use robstiff::Robot;
 
-pub use blame::{blame, parts};
+pub use blame::blame;
+pub use contact::{Contact, Load, Surface};
 pub use load::load_of_cut;
+pub use parts::parts;
 pub use removal::{removal_rate, width};
 pub use settle::PulledIn;
 pub(crate) use settle::{Stand, displaced, settle, turned};
 pub use stretches::{Stretch, Summary};
 pub use table::ForceTable;
-
-/// Which surface is machined.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Surface {
-    /// A wall, by the circumference of the tool.
-    Side,
-    /// A floor, by its tip.
-    Face,
-}
-
-/// What acts on the tool at one point of a path.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
-    /// The wrench at the TCP in the base frame (N, Nm) where the tool is on the path.
-    pub wrench: Vector6<f64>,
-    /// What a displacement of the TCP from the path adds to the force, 3 x 3 in the
-    /// base frame (N/m).
-    pub response: Matrix3<f64>,
-    /// Feed, normal and axis in the base frame; `None` where the tool plunges or
-    /// stays in place.
-    pub frame: Option<CutFrame>,
-    /// The unit vector into the part, across the machined surface, in the base frame.
-    pub into: Option<Vector3<f64>>,
-    /// What turns the forces of [`Load::revolution`] into the base frame.
-    pub turn: Matrix3<f64>,
-}
-
-/// What acts on the tool along a path.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Load {
-    /// Point by point, as many as the path has.
-    pub contacts: Vec<Contact>,
-    /// The forces of a revolution (N), at any of its angles; empty where only the mean
-    /// counts.
-    pub revolution: Vec<Vector3<f64>>,
-    /// The lines at which there is no force because the tool plunges or stays in
-    /// place, so that the cut has no direction. Forces along the axes of the base's
-    /// or the TCP's frame need none.
-    pub undirected: Vec<usize>,
-}
 
 /// Where the tool is under load, point by point.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,16 +97,6 @@ impl DeviationPoint {
     /// made.
     pub fn judged(&self) -> Option<f64> {
         self.peak.or(self.error).filter(|_| self.in_cut())
-    }
-}
-
-impl Load {
-    /// The same with each force of a revolution looked at (N, along the axes that
-    /// the cut's force has).
-    #[must_use]
-    pub fn with_revolution(mut self, forces: Vec<Vector3<f64>>) -> Self {
-        self.revolution = forces;
-        self
     }
 }
 

@@ -2,7 +2,8 @@
 
 use nalgebra::{Matrix3, Matrix4, Rotation3, SVector, Vector3, Vector6};
 
-use super::{Contact, Load, parts};
+use super::contact::{Contact, Load};
+use super::parts::parts;
 use crate::inverse::Target;
 use crate::path::{SolvedPath, lines};
 use robstiff::{Robot, State};

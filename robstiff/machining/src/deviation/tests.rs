@@ -1,4 +1,4 @@
-use nalgebra::{SVector, Unit, Vector3, Vector6};
+use nalgebra::{Matrix3, SVector, Unit, Vector3, Vector6};
 use robstiff_robots::{Description, catalogue};
 
 use super::*;
@@ -145,7 +145,7 @@ fn arms_with_backlash_are_corrected() {
 #[test]
 fn parts_sum_to_the_deflection_with_every_effect() {
     for file in ["every-effect.yaml", "every-law.yaml"] {
-        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/robots");
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/robots");
         let description = Description::read(folder.join(file)).unwrap();
         assert!(!description.effects.is_empty());
         with_robot!(&description, |robot| sum(&robot));

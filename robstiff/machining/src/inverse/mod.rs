@@ -16,6 +16,7 @@ mod sweep;
 mod target;
 #[cfg(test)]
 mod tests;
+mod turns;
 mod unreached;
 mod wrist;
 

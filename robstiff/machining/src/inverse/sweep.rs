@@ -14,9 +14,6 @@ use super::screws::Turn;
 use super::wrist::{Free, Wrist};
 use crate::golden::inner;
 
-/// Turns about a free tool axis that six axes try.
-const TURNS: usize = 120;
-
 /// Steps all around for five, each of which may be halved so often while its
 /// middle is so far from a straight line.
 const STEPS: usize = 36;
@@ -36,11 +33,6 @@ const NEARLY_RIGHT: f64 = 1e-6;
 /// A lowest place between two turns is looked for where a parabola has it below
 /// this.
 const LOW: f64 = 0.05;
-
-/// Turns all around (rad).
-pub fn turns() -> impl Iterator<Item = f64> {
-    (0..TURNS).map(|k| TAU * k as f64 / TURNS as f64)
-}
 
 /// What is wrong at a turn about the tool's axis (rad), and how far the wrist is
 /// out of reach there, below zero where it is not.

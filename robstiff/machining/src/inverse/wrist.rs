@@ -16,8 +16,8 @@ use nalgebra::{Matrix3, Matrix4, Rotation3, SVector, Vector3};
 
 use super::base::{Base, Way};
 use super::screws::{Axis, Turn, axes, meeting};
-use super::sweep::turns;
 use super::target::{Orientation, Target, any_across, rotation, translation};
+use super::turns::turns;
 use robstiff::Robot;
 
 /// An arm with a closed form: six axes with a spherical wrist, or five of which

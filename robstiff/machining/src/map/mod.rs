@@ -33,6 +33,7 @@
 
 mod axis;
 mod cartesian;
+mod chunk;
 mod evaluate;
 mod largest;
 mod measure;
@@ -46,9 +47,10 @@ mod tests;
 
 pub use axis::{Axis, people};
 pub use cartesian::{CartesianSpace, Tool};
+pub use chunk::{CHUNK, Chunk};
 pub use evaluate::{Evaluate, Poses};
 pub use measure::{Column, Measure};
 pub use place::{WorkpiecePlace, best_placement};
 pub use space::{JointSpace, Space};
-pub use stream::{CHUNK, Chunk, Survey, stream};
+pub use stream::{Survey, stream};
 pub use summary::{Extreme, Summary};

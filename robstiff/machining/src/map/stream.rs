@@ -2,20 +2,7 @@
 
 use core::ops::Range;
 
-use super::{Axis, Column, Evaluate, Measure, Space, Summary};
-
-/// Cells in a chunk, where one costs little.
-pub const CHUNK: usize = 1 << 16;
-
-/// Some cells of a map in a row.
-#[derive(Clone, Debug)]
-pub struct Chunk {
-    /// Their numbers.
-    pub cells: Range<usize>,
-    /// The columns of the measure, then those of the space: `columns[k][i]` of the
-    /// `i`-th of these cells, in SI; NaN where no pose reaches it.
-    pub columns: Vec<Vec<f64>>,
-}
+use super::{Axis, Chunk, Column, Evaluate, Measure, Space, Summary};
 
 /// What a robot's measure is all over a space, to be computed: whatever the number of joints,
 /// so that what is made of it is compiled once and not for each.

@@ -28,6 +28,7 @@
 //! workshop.
 
 mod coefficients;
+mod cut;
 mod engagement;
 mod file;
 mod force;
@@ -38,8 +39,9 @@ mod revolution;
 mod tests;
 
 pub use coefficients::{Coefficients, Material, materials};
+pub use cut::{Cut, EndMill};
 pub use engagement::{Direction, Engagement};
 pub use file::{CutFile, Forces};
-pub use force::{Cut, EndMill, Range, Revolution};
+pub use force::{Range, Revolution};
 pub use frame::CutFrame;
 pub use measured::{ForceFrame, MeasuredForce, Sample};

@@ -11,7 +11,8 @@ use core::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 
-use super::{Coefficients, Cut, EndMill, Engagement};
+use super::cut::{Cut, EndMill};
+use super::{Coefficients, Engagement};
 
 /// A stretch of a tooth's way with one formula for its chip.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use super::{Controller, Servo};
+use super::controller::{Controller, Servo};
 
 /// Points within a control step at which the deviation is looked at, at least (so
 /// that what a step does within is seen) and at most.

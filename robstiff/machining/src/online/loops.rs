@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use core::f64::consts::TAU;
 use nalgebra::{Matrix2, SVector, Vector2};
 
-use super::Servo;
+use super::controller::Servo;
 
 /// The loops of all joints, with what is on its way to them.
 pub struct Loops<const N: usize> {

@@ -3,7 +3,8 @@
 use nalgebra::{DMatrix, Matrix3};
 
 use super::Modes;
-use super::modes::{Margin, largest_real, squared_difference};
+use super::modes::{Margin, largest_real};
+use super::spectrum::squared_difference;
 use crate::golden::inner;
 
 /// Each depth that is looked at over the one before, where there is no closed form.

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, SymmetricEigen};
 
-use super::spectrum::Spectrum;
+use super::spectrum::{Spectrum, squared_difference};
 use robstiff::analysis::resolution;
 
 /// The modes of the tool on the arm, without a cut: of one mass at the tool as many as there
@@ -171,9 +171,4 @@ pub(super) fn largest_real(matrix: &Matrix3<f64>) -> f64 {
 /// the couplings must be negative, and larger than what keeps the modes apart.
 pub fn has_complex_pair(matrix: &Matrix2<f64>) -> bool {
     squared_difference(matrix[(0, 0)], matrix[(0, 1)], matrix[(1, 0)], matrix[(1, 1)]) < 0.0
-}
-
-/// The square of the difference of the eigenvalues of a 2 x 2 matrix `a b; c d`.
-pub(super) fn squared_difference(a: f64, b: f64, c: f64, d: f64) -> f64 {
-    (a - d) * (a - d) + 4.0 * b * c
 }

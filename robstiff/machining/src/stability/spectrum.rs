@@ -2,8 +2,6 @@
 
 use nalgebra::{Complex, DMatrix, Schur};
 
-use super::modes::squared_difference;
-
 /// How often the iteration may turn.
 const MOST_ITERATIONS: usize = 10_000;
 
@@ -62,4 +60,9 @@ impl Spectrum {
     pub fn least(&self) -> f64 {
         self.values.iter().map(|value| value.re).fold(f64::INFINITY, f64::min)
     }
+}
+
+/// The square of the difference of the eigenvalues of a 2 x 2 matrix `a b; c d`.
+pub(super) fn squared_difference(a: f64, b: f64, c: f64, d: f64) -> f64 {
+    (a - d) * (a - d) + 4.0 * b * c
 }

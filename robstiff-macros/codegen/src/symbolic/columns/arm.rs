@@ -15,7 +15,7 @@
 use robstiff_robots::{Description, JointKind};
 
 use super::levers::levers;
-use super::{Walker, along};
+use super::walker::{Walker, along};
 use crate::graph::{Graph, Sym};
 use crate::symbolic::chain::{Step, Tilt, chain};
 use crate::symbolic::column::{Column, Signed};

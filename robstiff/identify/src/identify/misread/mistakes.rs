@@ -10,6 +10,7 @@ use robstiff_robots::{Convention, Description};
 
 use super::axes::Axes;
 use crate::campaign::{Displacements, Frame, Observation, PositionRow, Positions};
+use crate::words::and;
 use robstiff::JointKind;
 
 /// One mistake.
@@ -25,6 +26,8 @@ pub enum Mistake {
     Unit(Vector, usize, Unit),
     /// The coordinate of a joint, from 0, is another.
     Counted(usize, Counted),
+    /// The coordinates of several joints, from 0, count the other way round.
+    Backwards(Vec<usize>),
     /// The angles of all joints that turn are in another unit, lengths of others are not.
     AllAngles(Unit),
     /// The coordinates of two joints, from 0, are exchanged.
@@ -135,8 +138,17 @@ fn of_robot(robot: &Description) -> Vec<Mistake> {
         let alike = (joint + 1..joints).filter(|&other| turns(other) == turns(joint));
         all.extend(alike.map(|other| Mistake::Exchanged([joint, other])));
     }
+    // Every choice of more is one more that may fit by chance, and a fit.
+    if joints <= MOST_BACKWARDS {
+        let chosen = |of: u32| (0..joints).filter(move |joint| of >> joint & 1 == 1).collect::<Vec<_>>();
+        let several = (0..1 << joints).map(chosen).filter(|joints| joints.len() > 1);
+        all.extend(several.map(Mistake::Backwards));
+    }
     all
 }
+
+/// Arms of more joints are not tried with several of them counted the other way.
+const MOST_BACKWARDS: usize = 7;
 
 impl Mistake {
     /// The robot and its displacements as they are where this mistake was made.
@@ -198,6 +210,7 @@ impl Mistake {
 
     fn undo_in_coordinates(&self, q: &mut [f64], robot: &Description) {
         match *self {
+            Self::Backwards(ref joints) => joints.iter().for_each(|&joint| q[joint] = -q[joint]),
             Self::AllAngles(unit) => {
                 let angles = q.iter_mut().zip(&robot.joints).filter(|(_, joint)| joint.kind == JointKind::Revolute);
                 angles.for_each(|(q, _)| *q *= unit.factor);
@@ -276,6 +289,10 @@ impl fmt::Display for Mistake {
                     }
                     Counted::In(Unit { name, .. }) => format!("{q} in {name}"),
                 }
+            }
+            Self::Backwards(ref joints) => {
+                let joints: Vec<String> = joints.iter().map(|joint| format!("q{}", joint + 1)).collect();
+                format!("{} counted the other way", and(&joints))
             }
             Self::AllAngles(Unit { name, .. }) => format!("all angles in {name}"),
             Self::Exchanged([one, other]) => format!("q{} and q{} exchanged", one + 1, other + 1),

@@ -14,7 +14,7 @@ use super::regression::{Regression, Rows, STANDS};
 use crate::campaign::{Campaign, Positions};
 use crate::identify::Error;
 use crate::identify::baseline::{Visibility, visibility};
-use crate::identify::holdout::training;
+use crate::identify::holdout::training_of;
 use crate::identify::normal::{Normal, Projected, Scaled, Sign};
 
 /// A campaign of positions, ready to be fitted.
@@ -64,7 +64,7 @@ impl<'c> Prepared<'c> {
         own: Vec<Own>,
         rig: impl IntoIterator<Item = Enters>,
     ) -> Result<Self, Error> {
-        let training: Rc<[bool]> = training(data.poses.len(), campaign.holdout).into();
+        let training: Rc<[bool]> = training_of(data.poses.len(), campaign).into();
         let rows = Rows { training: Rc::clone(&training), left_out: std::vec![false; data.rows.len()] };
         let mut start = Model::new(&campaign.robot, data);
         let registration = standing(&start, data, |row| training[data.rows[row].pose])?;

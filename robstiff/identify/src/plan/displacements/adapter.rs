@@ -66,7 +66,7 @@ impl<'c> Adapter<'c> {
         let lines: Vec<usize> = trace.effects.iter().flat_map(|named| named.lines.iter().copied()).collect();
         let wild: Vec<usize> =
             (0..).zip(&prepared.data.rows).filter(|(_, row)| lines.contains(&row.line)).map(|(i, _)| i).collect();
-        let bench = Bench::of(campaign, prepared, true).map_err(Error::NotShown)?.leaving_out(&wild);
+        let bench = Bench::new(campaign, prepared).map_err(Error::NotShown)?.leaving_out(&wild);
         let everything = catalogue(&bench.scene(), prepared.own.len(), false);
         let source = Source { bench: &bench, prepared, everything: &everything };
         let (rivals, model, columns) = source.rivals(campaign, trace, groups)?;

@@ -23,10 +23,10 @@ impl<'c> Bench<'c> {
     /// # Errors
     /// Why not even the description's own model can be fitted.
     pub fn new(campaign: &'c Campaign, prepared: &'c Prepared<'c>) -> Result<Self, String> {
-        Self::of(campaign, prepared, false)
+        Self::of(campaign, prepared, true)
     }
 
-    /// The same where the reflector may be [elsewhere](mod@crate::trace::elsewhere), if so.
+    /// The same where the reflector may sit elsewhere, if so.
     ///
     /// # Errors
     /// As for [`new`](Self::new).
@@ -80,24 +80,6 @@ impl<'c> Bench<'c> {
         Ok(bench)
     }
 
-    /// One that fits the same numbers to the same rows, with the same weights, where the reflector
-    /// may be [elsewhere](mod@crate::trace::elsewhere), too.
-    ///
-    /// # Errors
-    /// As for [`new`](Self::new).
-    pub fn with_reflector(&self) -> Result<Self, String> {
-        let mut bench = Self {
-            strict: self.strict,
-            by_own_pose: self.by_own_pose,
-            left_out: self.left_out.clone(),
-            noise: Rc::clone(&self.noise),
-            ..Self::of(self.campaign, self.prepared, true)?
-        };
-        bench.fit_to(&self.base);
-        bench.set_up()?;
-        Ok(bench)
-    }
-
     /// The same without what has no name.
     #[must_use]
     pub fn narrowed(mut self) -> Self {
@@ -133,7 +115,7 @@ impl<'c> Bench<'c> {
             by_own_pose: false,
             by_own_form: false,
             wide: false,
-            elsewhere: false,
+            elsewhere: true,
             moments: Moments::default(),
             settings: RefCell::default(),
             stored: Rc::default(),

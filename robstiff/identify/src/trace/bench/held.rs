@@ -113,7 +113,8 @@ mod tests {
             let prepared = Prepared::new(&campaign).expect("displacements");
             assert!(!prepared.doubted.is_empty(), "{seed}");
             let found = traced(&campaign);
-            assert_eq!((names(&found), found.verdict), (vec!["outliers@rig".into()], Verdict::Explained), "{seed}");
+            // One load a pose, and no noise declared: nothing but the fit says how large it is.
+            assert_eq!((names(&found), found.verdict), (vec!["outliers@rig".into()], Verdict::Partial), "{seed}");
             for joint in &found.estimates {
                 assert_eq!(joint.visibility, Visibility::Seen, "{seed}: {joint:?}");
             }

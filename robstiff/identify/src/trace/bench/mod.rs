@@ -21,7 +21,7 @@ use robstiff_robots::Description;
 pub use self::noise::Known;
 use self::solve::State;
 use super::Options;
-use super::catalogue::{Candidate, Kind, Number, Scene};
+use super::catalogue::{Candidate, Number, Scene};
 use super::isolated::Event;
 use super::model::{Fitted, Named, Setting, Stored};
 use super::point::Point;
@@ -62,7 +62,7 @@ pub struct Bench<'c> {
     pub by_own_form: bool,
     /// Whether the candidates have those without a name among them, behind all others.
     wide: bool,
-    /// Whether they have a reflector among them that is elsewhere.
+    /// Whether they have a reflector among them that sits elsewhere.
     elsewhere: bool,
     /// Where slips that all later rows keep may have begun.
     moments: Moments,
@@ -122,11 +122,6 @@ impl<'c> Bench<'c> {
     /// The candidates.
     pub fn candidates(&self) -> &[Candidate] {
         &self.candidates
-    }
-
-    /// Whether effects of a kind are among the candidates.
-    pub fn has(&self, kind: &Kind) -> bool {
-        self.candidates.iter().any(|candidate| candidate.kind == kind)
     }
 
     /// The full names of a model's effects.
@@ -212,6 +207,11 @@ impl<'c> Bench<'c> {
         self.prepared.training[self.prepared.samples.rows[row].pose]
     }
 
+    /// Whether a column is of one of the description's own numbers.
+    pub fn is_base(&self, column: usize) -> bool {
+        column < self.own.len()
+    }
+
     /// How rows are weighed.
     pub fn weights(&self) -> Weights<'_> {
         Weights { covariance: &self.noise.covariance, training: &self.prepared.training, left_out: &self.left_out }
@@ -289,6 +289,7 @@ impl<'c> Bench<'c> {
             joint_values: self.prepared.own[..self.prepared.samples.joints()].iter().map(|own| own.value).collect(),
             tangents: tangents.clone(),
             correction: self.prepared.correction.clone(),
+            training: &self.prepared.training,
         })
     }
 

@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 use super::Bench;
 use crate::golden::least;
 use crate::identify::covariance::Whitener;
-use crate::identify::normal::{Normal, Sign};
+use crate::identify::normal::{Fit, Normal, Sign};
 use crate::trace::catalogue::{Number, Refine, Variant};
 use crate::trace::model::{Fitted, Named, Setting};
 use crate::trace::point::Point;
@@ -245,6 +245,19 @@ impl<'c> Bench<'c> {
     /// How many numbers a model's effects take, those out of a grid among them.
     pub fn parameters(&self, named: &[Named]) -> usize {
         named.iter().map(|&one| self.variant(one).parameters).sum()
+    }
+
+    /// How many readings are fitted to.
+    pub fn count_readings(&self) -> usize {
+        self.fitted_to().count()
+    }
+
+    /// The fit of a model at its solution, whether physics allows it or not.
+    ///
+    /// # Errors
+    /// Why it cannot be fitted.
+    pub fn fit_at_solution(&self, named: &[Named]) -> Result<Fit, String> {
+        Ok(self.state(named)?.fit.clone())
     }
 
     fn variant(&self, one: Named) -> &Variant {

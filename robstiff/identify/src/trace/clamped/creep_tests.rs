@@ -37,7 +37,7 @@ fn gears_that_all_creep_do_not_lag() {
         line.clone().rev().chain(line.skip(1)).collect()
     };
     for (seed, torques) in (0..4).zip([both_ways(), there_and_back()].iter().cycle()) {
-        let creep = creep(shares([6.0, 11.0, 8.0, 14.0, 9.0]));
+        let creep = creep(shares([12.0, 22.0, 16.0, 28.0, 18.0]));
         let trace = traced(&measured(&five_axis(), torques, 900 + seed, creep));
         let told = names(&trace);
         assert!(told.iter().all(|name| name.starts_with("creep@")), "{seed}: {told:?}");

@@ -19,6 +19,7 @@ mod bench;
 #[cfg(test)]
 mod creep_tests;
 mod curves;
+mod noise;
 mod one_off;
 mod polish;
 #[cfg(test)]
@@ -32,6 +33,7 @@ mod standing;
 mod structure;
 #[cfg(test)]
 mod tests;
+mod worth;
 
 pub use self::axes::{Axes, AxisNumber, OnAxes, SLIPPED_AXIS, axes_column};
 use std::string::String;
@@ -65,5 +67,6 @@ pub fn trace(
     let identified = slopes(campaign, rows, &[])?;
     let axes = Axes::new(&campaign.robot, rows, &identified);
     let found = search::search(axes, in_other_unit(campaign), options, progress).map_err(Error::NotShown)?;
-    report::report(campaign, &identified, &found)
+    let found = worth::worth_naming(campaign, found, options);
+    report::report(campaign, &identified, &found, options)
 }

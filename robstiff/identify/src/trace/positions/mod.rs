@@ -57,6 +57,7 @@ mod wander_tests;
 mod weight;
 #[cfg(test)]
 mod weight_tests;
+mod worth;
 mod written;
 
 use self::bench::Bench;
@@ -78,5 +79,6 @@ pub fn trace(
     progress("finding where the robot stands");
     let bench = Bench::new(campaign, data)?;
     let found = search::search(campaign, bench, options, progress).map_err(Error::NotShown)?;
+    let found = worth::worth_naming(campaign, found, options);
     report::report(campaign, &found, options)
 }

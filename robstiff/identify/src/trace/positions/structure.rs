@@ -14,6 +14,8 @@ use nalgebra::{DMatrix, Vector3};
 use super::bench::{Bench, Model};
 use super::crowd::{Crowd, single_rows};
 use super::smooth::{PAYLOAD, everything};
+use crate::campaign::Campaign;
+use crate::identify::NoiseSource;
 use crate::identify::normal::Sign;
 use crate::probability::{chi_square_tail, fisher_tail, told};
 use crate::trace::Options;
@@ -29,6 +31,8 @@ const FEWEST_REPEATED: f64 = 10.0;
 /// noise alone, and the ratio of the variances.
 struct Size {
     name: &'static str,
+    /// The variance of a reading that it should be (m^2).
+    noise: f64,
     beyond: f64,
     p_value: f64,
     ratio: f64,
@@ -75,6 +79,18 @@ pub fn structure(bench: &Bench<'_>, model: &Model, noise: Option<f64>, options: 
     LackOfFit { tests, structure, fraction: of_size.max(of_largest).clamp(0.0, 1.0), depends_on }
 }
 
+/// One sigma of a reading at a model (m), and where it is known from: as declared, or from visits of one
+/// pose, where it has in it how well the robot comes back.
+pub fn noise(campaign: &Campaign, bench: &Bench<'_>, model: &Model) -> (f64, NoiseSource) {
+    if let Some(declared) = campaign.noise_of_reading() {
+        return (declared, NoiseSource::of_declared(campaign));
+    }
+    match against_repeated(bench, model) {
+        Some(size) => (size.noise.sqrt(), NoiseSource::Repetitions),
+        None => (model.solved.problem.variance(&model.solved.fit).sqrt(), NoiseSource::Residuals),
+    }
+}
+
 /// What is left against the noise that is declared, by chi-square. In that noise is by
 /// what the robot misses a pose, which the rows of a visit have in common, so a visit
 /// counts once.
@@ -87,6 +103,7 @@ fn against_declared(bench: &Bench<'_>, model: &Model, noise: f64) -> Option<Size
     let statistic = share * model.solved.fit.rss / (noise * noise);
     Some(Size {
         name: "residuals are larger than the noise",
+        noise: noise * noise,
         beyond: 1.0 - freedom / statistic,
         p_value: told(chi_square_tail(statistic, freedom)?),
         ratio: statistic / freedom,
@@ -126,6 +143,7 @@ fn against_repeated(bench: &Bench<'_>, model: &Model) -> Option<Size> {
     let share = visits / count;
     Some(Size {
         name: "residuals are larger than what visits differ by",
+        noise: pure,
         beyond: 1.0 - pure * problem.freedom(&model.solved.fit) / model.solved.fit.rss,
         p_value: told(fisher_tail(left / pure, [(freedom * share).max(1.0), visits])?),
         ratio: left / pure,

@@ -5,7 +5,7 @@ use std::vec::Vec;
 use super::bench::{Bench, Model};
 use crate::identify::positions::regression::Solved;
 use crate::identify::positions::residuals;
-use crate::identify::problem::rms;
+use crate::identify::problem::{Block, rms};
 use crate::trace::lack_of_fit::StructureTest;
 use crate::trace::slip::{self, SLIPPED_AT};
 use crate::trace::{Options, held_out};
@@ -33,12 +33,22 @@ pub fn unseen(model: &Model, but: &[usize], options: &Options) -> Option<Structu
 }
 
 /// The error of a model on poses that its fit has not seen (m): those held out but for some
-/// rows, or each by the fit without it.
+/// rows, or each by the fit without it; in rows that are left out, too.
 pub fn unseen_rms(bench: &Bench<'_>, model: &Model, but: &[usize]) -> f64 {
     let (data, training) = (bench.prepared.data, &bench.rows.training);
-    if !training.contains(&false) {
-        return bench.left_out_rms(&model.solved);
+    let mut left = residuals(&bench.regression, &model.solved.state);
+    if training.contains(&false) {
+        let held_out = (0..data.rows.len()).filter(|&row| !training[data.rows[row].pose] && !but.contains(&row));
+        return rms(&left, 3, held_out);
     }
-    let held_out = (0..data.rows.len()).filter(|&row| !training[data.rows[row].pose] && !but.contains(&row));
-    rms(&residuals(&bench.regression, &model.solved.state), 3, held_out)
+    let Solved { problem, fit, signs, .. } = &model.solved;
+    for block in problem.blocks.iter() {
+        let Some(without) = problem.solve_without(block, &fit.columns, Some(signs)) else { continue };
+        let rows: Vec<usize> = (0..data.rows.len()).filter(|&row| data.rows[row].pose == block.pose).collect();
+        let stacked: Vec<usize> = rows.iter().flat_map(|row| 3 * row..3 * (row + 1)).collect();
+        let whole = Block { pose: block.pose, rows, stacked };
+        let own = problem.block_residuals(&whole, &fit.columns, &without);
+        whole.stacked.iter().zip(own.iter()).for_each(|(&i, &residual)| left[i] = residual);
+    }
+    rms(&left, 3, 0..data.rows.len())
 }

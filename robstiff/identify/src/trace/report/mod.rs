@@ -2,6 +2,7 @@
 
 pub mod named;
 mod spread;
+mod worth;
 
 use std::format;
 use std::rc::Rc;
@@ -13,7 +14,8 @@ use robstiff_robots::effect::physics::MOST_DEVIATION;
 
 use self::named::{effects, isolated};
 use self::spread::spread_of;
-use super::alias::{Rival, rivals, same_as_wild};
+use self::worth::worth_naming;
+use super::alias::{rivals, same_as_wild, swaps};
 use super::bench::Bench;
 use super::catalogue::TRANSMISSION_ERROR;
 use super::confounded::{aliases, tell};
@@ -38,9 +40,10 @@ pub fn report(
     campaign: &Campaign,
     prepared: &Prepared<'_>,
     bench: &Bench<'_>,
-    outcome: &Outcome,
+    outcome: Outcome,
     options: &Options,
 ) -> Result<Trace, Error> {
+    let outcome = &worth_naming(campaign, prepared, bench, outcome, options).map_err(Error::NotShown)?;
     // Before anything was corrected, wild rows and all.
     let untouched = Bench::bare(campaign, prepared);
     let all = untouched.at(&[]).map_err(Error::NotShown)?;
@@ -62,8 +65,9 @@ pub fn report(
     let aliases = aliases(prepared, &setting, model);
     let undecided = setting.undecided(&model.named);
     let after = misfit(of_written, written, &undecided);
-    let mut effects =
-        effects(bench, &setting, model, outcome, (&spread, &aliases), (&undecided, after.holdout_rms), options);
+    let swaps = swaps(bench, &outcome.selection.model, &outcome.events);
+    let of_numbers = (&spread, &aliases[..], &swaps[..]);
+    let mut effects = effects(bench, &setting, model, outcome, of_numbers, (&undecided, after.holdout_rms), options);
     let slipped = effects.iter_mut().find(|named| named.effect.slipping().is_some());
     let may_be = same_as_wild(bench, &outcome.selection.model, &outcome.events);
     let isolated = isolated(prepared, outcome, after.holdout_rms, slipped, &may_be);
@@ -103,7 +107,7 @@ pub fn report(
         unexplained: left.map_or(0.0, |left| left.fraction),
         depends_on: left.map_or_else(Vec::new, |left| left.depends_on.clone()),
         looks_like: outcome.looks_like.clone(),
-        rivals: if tells { rivals_of(bench, outcome) } else { Vec::new() },
+        rivals: if tells { rivals(bench, &swaps, outcome.rival.as_ref()) } else { Vec::new() },
         invisible: invisible(bench, &effects),
         next: Vec::new(),
         description,
@@ -156,18 +160,6 @@ fn declared(prepared: &Prepared<'_>, problem: &Equations, but: &[usize]) -> Misf
     Misfit { rms: fitted_to, holdout_rms }
 }
 
-/// Models that the data cannot tell from the one that is told, the best first.
-fn rivals_of(bench: &Bench<'_>, outcome: &Outcome) -> Vec<Rival> {
-    let mut rivals = rivals(bench, &outcome.selection.model);
-    if let Some(rival) = &outcome.rival
-        && rivals.iter().all(|other| other.names != rival.names)
-    {
-        rivals.push(rival.clone());
-    }
-    rivals.sort_by(|a, b| a.bic_difference.total_cmp(&b.bic_difference));
-    rivals
-}
-
 /// Full names of what could not be seen. What a named effect may as well be has shown, if it
 /// is there.
 fn invisible(bench: &Bench<'_>, effects: &[NamedEffect]) -> Vec<String> {
@@ -177,24 +169,18 @@ fn invisible(bench: &Bench<'_>, effects: &[NamedEffect]) -> Vec<String> {
 
 /// How far off a model is at its setting, on unseen poses but for some rows.
 fn misfit(setting: &Setting<'_>, model: &Fitted, but: &[usize]) -> Misfit {
-    let fitted_rows = setting.problem.blocks.iter().flat_map(|block| block.rows.iter().copied());
-    Misfit {
-        rms: rms(&setting.residuals(&model.fit), setting.problem.axes, fitted_rows),
-        holdout_rms: setting.holdout_rms(&model.fit, but),
-    }
+    Misfit { rms: setting.fitted_rms(&model.fit), holdout_rms: setting.holdout_rms(&model.fit, but) }
 }
 
 /// The noise of one reading (m), and where it is known from, by the variance of what the
 /// model leaves (m^2).
 fn noise(prepared: &Prepared<'_>, bench: &Bench<'_>, residual_variance: f64) -> (f64, NoiseSource) {
     match prepared.noise(residual_variance) {
-        // Repeated readings differ by more than noise where they depend on time or
-        // order; a model that accounts for it knows better.
-        (repeated, NoiseSource::Repetitions) if repeated * repeated > residual_variance => {
-            (residual_variance.sqrt(), NoiseSource::Residuals)
+        // Learnt again without what the effects do: repeated readings differ by more than noise where
+        // they depend on time or order.
+        (before, source @ (NoiseSource::Repetitions | NoiseSource::Poses)) => {
+            (bench.noise.covariance.reading().unwrap_or(before), source)
         }
-        // Learnt again without what the effects do.
-        (before, NoiseSource::Poses) => (bench.noise.covariance.reading().unwrap_or(before), NoiseSource::Poses),
         known => known,
     }
 }

@@ -8,7 +8,7 @@ use robstiff_robots::effect::Place as Part;
 
 use super::spread::share_of;
 use crate::identify::prepare::Prepared;
-use crate::trace::alias::{in_part, same_as};
+use crate::trace::alias::{Swap, in_part, same_as};
 use crate::trace::bench::Bench;
 use crate::trace::catalogue::{BASE_SLIP, SHIFT};
 use crate::trace::confounded::Alias;
@@ -28,7 +28,7 @@ pub fn effects(
     setting: &Setting<'_>,
     fine: &Fitted,
     outcome: &Outcome,
-    (spread, aliases): (&DMatrix<f64>, &[Alias]),
+    (spread, aliases, swaps): (&DMatrix<f64>, &[Alias], &[Swap]),
     (but, whole): (&[usize], f64),
     options: &Options,
 ) -> Vec<NamedEffect> {
@@ -41,7 +41,7 @@ pub fn effects(
         let holdout_rms = unseen_rms(bench, &so_far, but).unwrap_or(whole);
         let parameters = parameters(setting, fine, spread, k);
         let candidate = &setting.candidates[model.named[k].candidate];
-        let same_as = same_as(bench, model, k, outcome.structure(), options);
+        let same_as = same_as(bench, model, k, swaps, outcome.structure(), options);
         let mut parts = in_part(bench, model, k);
         let of_effect = setting.variant(model.named[k]).columns.iter();
         let places: Vec<usize> = of_effect.filter_map(|column| place_of(fine, *column)).collect();
@@ -78,7 +78,7 @@ fn place_of(model: &Fitted, column: usize) -> Option<usize> {
 
 /// The numbers of one of a model's effects, with their standard deviations; where they fit
 /// best it has the same effects in the same order.
-fn parameters(setting: &Setting<'_>, model: &Fitted, spread: &DMatrix<f64>, k: usize) -> Vec<EffectParameter> {
+pub fn parameters(setting: &Setting<'_>, model: &Fitted, spread: &DMatrix<f64>, k: usize) -> Vec<EffectParameter> {
     let variant = setting.variant(model.named[k]);
     let fitted = variant.columns.iter().enumerate().map(|(n, column)| {
         let number = &setting.numbers[column - setting.own.len()];

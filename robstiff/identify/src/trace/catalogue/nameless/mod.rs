@@ -18,6 +18,7 @@ mod loose_tool;
 mod one_sided;
 mod soft_base;
 mod stray_coupling;
+mod uneven_base;
 mod warmth;
 
 use std::sync::Arc;
@@ -28,12 +29,13 @@ use super::{Kind, Number};
 use crate::identify::setup::Setup;
 
 /// Every kind without a name, in the order of precedence among exact aliases.
-pub static NAMELESS: [&Kind; 11] = [
+pub static NAMELESS: [&Kind; 12] = [
     &bent_cell::KIND,
     &friction::KIND,
     &growth::KIND,
     &loose_tool::KIND,
     &soft_base::KIND,
+    &uneven_base::KIND,
     &lag::KIND,
     &one_sided::KIND,
     &gain_of_angle::KIND,

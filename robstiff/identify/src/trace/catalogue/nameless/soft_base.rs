@@ -42,12 +42,12 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers<'_>) {
 }
 
 /// From the foot to the TCP (m).
-fn lever(row: &Sample) -> Vector3<f64> {
+pub fn lever(row: &Sample) -> Vector3<f64> {
     (row.tcp - row.base).fixed_view::<3, 1>(0, 3).into_owned()
 }
 
 /// The moment at the foot about the axes of frame 0 that lie in the floor, in the base frame (Nm).
-fn moment(row: &Sample) -> Vector3<f64> {
+pub fn moment(row: &Sample) -> Vector3<f64> {
     let [force, moment] = [0, 3].map(|k| row.wrench.fixed_rows::<3>(k).into_owned());
     let whole = moment + lever(row).cross(&force);
     let up: Vector3<f64> = row.base.fixed_view::<3, 1>(0, 2).into_owned();

@@ -33,7 +33,10 @@ impl Errors {
         let declared = Misfit { rms: rms(&left_declared), holdout_rms: rms(&left_declared) };
         let left_before = whole.residuals(&base.fit);
         let (after, left_after) = match written {
-            Some(written) => (misfit(bench, &written.fit), whole.residuals(&written.fit)),
+            Some(written) => {
+                let left = whole.residuals(&written.fit);
+                (Misfit { rms: rms(&left), holdout_rms: unseen_rms(bench, &written.fit, &left) }, left)
+            }
             None => (declared, left_declared),
         };
         let residual = |(i, row): (usize, &ClampedRow)| RowResidual {
@@ -49,7 +52,7 @@ impl Errors {
         };
         Self {
             declared,
-            identified: misfit(&whole, &base.fit),
+            identified: Misfit { rms: rms(&left_before), holdout_rms: whole.left_out_rms(&base.fit) },
             after,
             residuals: whole.axes.rows.iter().enumerate().map(residual).collect(),
             of_axes: bench.axes.loaded().map(of_axis).collect(),
@@ -63,8 +66,15 @@ fn as_declared(campaign: &Campaign, whole: &Bench) -> DVector<f64> {
     DVector::from_iterator(whole.axes.rows.len(), whole.axes.rows.iter().map(left))
 }
 
-fn misfit(bench: &Bench, fit: &Fit) -> Misfit {
-    Misfit { rms: rms(&bench.residuals(fit)), holdout_rms: bench.left_out_rms(fit) }
+/// The root mean square of each row's residual by the fit without it (rad): of rows that have no part
+/// in the fit, of `left`, what it leaves of all rows.
+pub fn unseen_rms(bench: &Bench, fit: &Fit, left: &DVector<f64>) -> f64 {
+    let whole = bench.axes.whole();
+    let is_out = |row: &ClampedRow| bench.axes.left_out().any(|out| out.line == row.line);
+    let out: f64 =
+        (0..).zip(&whole.rows).filter(|(_, row)| is_out(row)).map(|(i, _): (usize, _)| left[i].powi(2)).sum();
+    let rows = bench.axes.rows.len() as f64;
+    ((rows * bench.left_out_rms(fit).powi(2) + out) / whole.rows.len().max(1) as f64).sqrt()
 }
 
 /// The root mean square of what is left (rad).

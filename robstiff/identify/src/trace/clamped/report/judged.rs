@@ -14,8 +14,9 @@ use crate::trace::verdict::{self, Besides};
 use crate::trace::{NamedEffect, Verdict};
 
 /// The verdict and why. `apart`: whether what all axes share and what each has of its own account
-/// for the readings alike; `alike`: whether gears that all lag and gears that all creep do.
-pub fn judged(found: &Searched, apart: bool, alike: bool) -> (Verdict, String) {
+/// for the readings alike; `alike`: whether gears that all lag and gears that all creep do; `exceeded`:
+/// that more is left than noise, if so.
+pub fn judged(found: &Searched, apart: bool, alike: bool, exceeded: Option<String>) -> (Verdict, String) {
     if let Some(why) = &found.too_little {
         return (Verdict::Insufficient, why.clone());
     }
@@ -26,7 +27,8 @@ pub fn judged(found: &Searched, apart: bool, alike: bool) -> (Verdict, String) {
         .then(told_apart)
         .or_else(|| mixed(bench, model, alike))
         .or_else(|| off(bench, model))
-        .or_else(|| many(bench));
+        .or_else(|| many(bench))
+        .or(exceeded);
     match (judged.0, against) {
         (Verdict::Adequate, Some(why)) => (Verdict::Unexplained, why),
         (Verdict::Explained, Some(why)) => (Verdict::Partial, why),

@@ -12,31 +12,40 @@ use nalgebra::DMatrix;
 
 use self::errors::Errors;
 use self::judged::{judged, one_more_is_off};
+pub use self::named::with_spread;
 use self::named::{effects, of_model};
 use super::alike::Alike;
 use super::apart::Apart;
 use super::bench::Bench;
+use super::noise::{is_exceeded, noise};
 use super::search::Found as Searched;
 use super::spread::spread;
 use crate::campaign::Campaign;
 use crate::identify::baseline::{declared, with_values};
-use crate::identify::{Error, Estimate, Identification, NoiseSource};
+use crate::identify::{Error, Estimate, Identification};
 use crate::trace::catalogue::{Candidate, KINDS, OUTLIERS};
 use crate::trace::model::Fitted;
 use crate::trace::selection::WITHIN_REACH;
 use crate::trace::written::{described, fitted_again, in_told_order, taken_by};
-use crate::trace::{Rival, Trace, Verdict};
+use crate::trace::{Options, Rival, Trace, Verdict};
 
 /// A tracing in full.
 ///
 /// # Errors
 /// Declared effects that do not go with the compliances found.
-pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched) -> Result<Trace, Error> {
+pub fn report(
+    campaign: &Campaign,
+    identified: &Identification,
+    found: &Searched,
+    options: &Options,
+) -> Result<Trace, Error> {
     let (bench, model) = (&found.bench, &found.selection.model);
     let apart = Apart::of(bench, model).filter(|apart| found.too_little.is_none() && apart.is_as_good());
     let alike = Alike::of(bench, model).filter(|alike| found.too_little.is_none() && alike.is_as_good());
     let two_kinds = apart.as_ref().is_some_and(|apart| !apart.is_of_one_kind(model));
-    let (verdict, why) = judged(found, two_kinds, alike.is_some());
+    let exceeded = is_exceeded(campaign, bench, model, options);
+    let (verdict, why) = judged(found, two_kinds, alike.is_some(), exceeded);
+    let (noise, noise_source) = noise(campaign, bench, model);
     let tells = verdict != Verdict::Insufficient;
     let structure = found.left.structure || found.selection.unnamed;
     // What is told of the axes, and the errors, are those of what is written; the effects that
@@ -68,8 +77,8 @@ pub fn report(campaign: &Campaign, identified: &Identification, found: &Searched
         rows: errors.residuals.len(),
         poses: errors.of_axes.len(),
         held_out: Vec::new(),
-        noise: bench.problem.variance(&model.fit).sqrt(),
-        noise_source: NoiseSource::Residuals,
+        noise,
+        noise_source,
         declared: errors.declared,
         identified: errors.identified,
         after: errors.after,

@@ -7,6 +7,7 @@ use std::vec::Vec;
 use nalgebra::DMatrix;
 use robstiff_robots::effect::Place as Part;
 
+use super::errors::unseen_rms;
 use crate::trace::NamedEffect;
 use crate::trace::catalogue::{BASE_SLIP, HYSTERESIS, OUTLIERS, STIFFNESS_NONLINEARITY, axis_tells_hysteresis};
 use crate::trace::clamped::alike::Alike;
@@ -34,6 +35,7 @@ pub fn effects(
     alike: Option<&Alike>,
 ) -> Vec<NamedEffect> {
     let (bench, model) = (&found.bench, &found.selection.model);
+    let whole = Bench::new(bench.axes.whole(), Some(&bench.offers));
     let replaced = bench.replaced(&model.named);
     let all = with_spread(bench, model, spread);
     let mut so_far = Vec::new();
@@ -47,7 +49,9 @@ pub fn effects(
             effect: all[k].clone(),
             lines: Vec::new(),
             p_value: found.selection.p_values[k],
-            holdout_rms: bench.fit(&so_far).map_or(holdout_rms, |so_far| bench.left_out_rms(&so_far.fit)),
+            holdout_rms: bench
+                .fit(&so_far)
+                .map_or(holdout_rms, |so_far| unseen_rms(bench, &so_far.fit, &whole.residuals(&so_far.fit))),
             in_part: Vec::new(),
             same_as: same_as(bench, model, k, &replaced, [of_apart(k), of_alike(k)].concat()),
             partial,
@@ -91,7 +95,7 @@ pub fn of_model(bench: &Bench, model: &Fitted, one: Named) -> Found {
 /// The effects of a model with the uncertainty of their numbers. `spread` is the covariance of the
 /// axes' compliances, then of the numbers of each effect that enter linearly, in the order of
 /// the model, and then of the logarithms of their shapes.
-fn with_spread(bench: &Bench, model: &Fitted, spread: &DMatrix<f64>) -> Vec<Found> {
+pub fn with_spread(bench: &Bench, model: &Fitted, spread: &DMatrix<f64>) -> Vec<Found> {
     let (mut linear, mut shapes) = (bench.base.., model.fit.columns.len()..);
     let next = |of: &mut core::ops::RangeFrom<usize>| of.next().map(|k| spread[(k, k)].sqrt());
     let one = |&one: &Named| {

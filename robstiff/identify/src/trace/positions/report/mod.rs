@@ -9,19 +9,20 @@ use std::vec::Vec;
 
 use self::errors::Errors;
 use self::named::effects;
-pub use self::named::parts;
+pub use self::named::{parameters, parts};
 use super::bench::{Bench, Model, Proposed};
 use super::confounded::aliases;
 use super::search::Searched;
 use super::spread::{spread_as_declared, spread_of};
+use super::structure::noise;
 use super::unseen::{undecided, unseen};
 use super::weight;
 use super::written::{described, own_effects, without_untold};
 use crate::campaign::Campaign;
+use crate::identify::Error;
 use crate::identify::misread::{NOISIEST, apart, in_positions};
 use crate::identify::positions::estimated;
 use crate::identify::positions::regression::STANDS;
-use crate::identify::{Error, NoiseSource};
 use crate::trace::catalogue::{KINDS, Kind};
 use crate::trace::confounded::tell;
 use crate::trace::held_out;
@@ -65,10 +66,7 @@ pub fn report(campaign: &Campaign, found: &Searched<'_>, options: &Options) -> R
         false => campaign.robot.clone(),
     };
     let kept_back = data.poses.iter().zip(bench.rows.training.iter()).filter(|(_, training)| !**training);
-    let (noise, noise_source) = match campaign.noise_of_reading() {
-        Some(noise) => (noise, NoiseSource::of_declared(campaign)),
-        None => (model.solved.problem.variance(&model.solved.fit).sqrt(), NoiseSource::Residuals),
-    };
+    let (noise, noise_source) = noise(campaign, bench, model);
     let estimates_before =
         estimated(&bench.prepared, &bench.prepared.values(&base.solved.state), &spread_as_declared(base));
     let estimates = match tells {

@@ -54,7 +54,7 @@ pub fn effects(
 }
 
 /// The numbers of effect `k` of a model, with their standard deviations.
-fn parameters(bench: &Bench<'_>, model: &Model, spread: &DMatrix<f64>, k: usize) -> Vec<EffectParameter> {
+pub fn parameters(bench: &Bench<'_>, model: &Model, spread: &DMatrix<f64>, k: usize) -> Vec<EffectParameter> {
     let one = model.named[k];
     let form = bench.variant(one);
     let chosen = bench.chosen(&model.named);
