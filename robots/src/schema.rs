@@ -6,7 +6,6 @@
 
 mod effects;
 
-
 use serde_json::{Map, Value, json};
 
 use crate::description::MOST_JOINTS;

@@ -18,7 +18,8 @@ fn value(node: &Node<'_>) -> Value {
     } else if node.is_sequence() {
         node.sequence().unwrap().iter().map(value).collect()
     } else if node.is_number() {
-        json!(node.quantity(Dimension::Number).unwrap())
+        // A number that is not finite no editor has.
+        node.quantity(Dimension::Number).map_or(Value::Null, |number| json!(number))
     } else {
         node.text().map_or(Value::Null, Value::from)
     }
@@ -69,7 +70,26 @@ fn every_spelling_of_a_quantity_that_is_read_is_taken() {
 
 /// Files of `bad` whose shape is right: what is wrong in them follows from other fields, from
 /// the numbers, or from how YAML is written, and only the reader knows it.
-const RIGHT_IN_SHAPE: [&str; 0] = [];
+const RIGHT_IN_SHAPE: [&str; 18] = [
+    "bare.yaml",
+    "bare_effects.yaml",
+    "coupling.yaml",
+    "coupling_singular.yaml",
+    "couplings.yaml",
+    "endless_slide.yaml",
+    "keyword.yaml",
+    "no_length.yaml",
+    "no_length_modified.yaml",
+    "no_masses.yaml",
+    "orders.yaml",
+    "rigid.yaml",
+    "sag.yaml",
+    "sag_corrected.yaml",
+    "softening.yaml",
+    "stroke.yaml",
+    "stroke_corrected.yaml",
+    "weakened.yaml",
+];
 
 #[test]
 fn what_is_wrong_in_shape_is_refused() {

@@ -1,6 +1,5 @@
 //! The schema of an effect, from the catalogue.
 
-
 use serde_json::{Value, json};
 
 use super::{Sign, default, described, object, quantity};
