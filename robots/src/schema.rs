@@ -10,9 +10,25 @@ use serde_json::{Map, Value, json};
 
 use crate::description::MOST_JOINTS;
 use crate::dimension::Dimension;
+use crate::document::Node;
 use crate::effect::Convention;
 use crate::read::{JOINT, LINK, PLACEMENT, ROBOT};
 use crate::units::UNITS;
+
+/// A document as an editor reads it, to hold it against a schema; `null` in place of what is no value of
+/// JSON.
+pub fn value_of(node: &Node<'_>) -> Value {
+    if node.is_map() {
+        let map = node.any_map("");
+        map.iter().flat_map(|map| map.fields().map(|(name, node)| (name.to_owned(), value_of(&node)))).collect()
+    } else if node.is_sequence() {
+        node.sequence().iter().flatten().map(value_of).collect()
+    } else if node.is_number() {
+        node.quantity(Dimension::Number).map_or(Value::Null, Value::from)
+    } else {
+        node.text().map_or(Value::Null, Value::from)
+    }
+}
 
 /// What signs a quantity may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +78,35 @@ pub fn object(fields: &[&str], required: &[&str], describe: impl Fn(&str) -> Val
 /// A list of exactly `count` values.
 pub fn list(item: Value, count: usize) -> Value {
     json!({ "type": "array", "items": item, "minItems": count, "maxItems": count })
+}
+
+/// A list of at least one value.
+pub fn some(item: Value) -> Value {
+    json!({ "type": "array", "items": item, "minItems": 1 })
+}
+
+/// One of some words.
+pub fn word(words: &[&str], what: &str) -> Value {
+    json!({ "enum": words, "description": what })
+}
+
+/// A text.
+pub fn text(what: &str) -> Value {
+    json!({ "type": "string", "description": what })
+}
+
+/// A whole number from one to another.
+pub fn whole(least: u64, most: Option<u64>, what: &str) -> Value {
+    let mut whole = json!({ "type": "integer", "minimum": least, "description": what });
+    if let Some(most) = most {
+        whole["maximum"] = json!(most);
+    }
+    whole
+}
+
+/// Either of two.
+pub fn either(one: Value, other: Value) -> Value {
+    json!({ "anyOf": [one, other] })
 }
 
 /// A quantity: a number in SI, or a text with a unit.

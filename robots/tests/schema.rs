@@ -4,29 +4,13 @@
 use std::fs;
 use std::path::Path;
 
-use robstiff_robots::document::{Document, Node};
+use robstiff_robots::document::Document;
 use robstiff_robots::effect::CATALOGUE;
-use robstiff_robots::quantity::Dimension;
 use robstiff_robots::{Description, catalogue, schema};
-use serde_json::{Map, Value, json};
-
-/// A document as the values of JSON that an editor makes of it.
-fn value(node: &Node<'_>) -> Value {
-    if node.is_map() {
-        let map = node.any_map("").unwrap();
-        Value::Object(map.fields().map(|(name, node)| (name.to_owned(), value(&node))).collect::<Map<_, _>>())
-    } else if node.is_sequence() {
-        node.sequence().unwrap().iter().map(value).collect()
-    } else if node.is_number() {
-        // A number that is not finite no editor has.
-        node.quantity(Dimension::Number).map_or(Value::Null, |number| json!(number))
-    } else {
-        node.text().map_or(Value::Null, Value::from)
-    }
-}
+use serde_json::Value;
 
 fn parsed(text: &str) -> Option<Value> {
-    Document::parse("", text).ok().map(|document| value(&document.root()))
+    Document::parse("", text).ok().map(|document| schema::value_of(&document.root()))
 }
 
 fn validator() -> jsonschema::Validator {

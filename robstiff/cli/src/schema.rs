@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use robstiff_identify::{campaign, simulate};
+use robstiff_machining::{map, milling};
 use robstiff_robots::schema;
 
 use crate::failure::Failure;
@@ -23,12 +25,24 @@ pub struct Arguments {
 enum Kind {
     /// A robot's description
     Robot,
+    /// A campaign: what was measured
+    Campaign,
+    /// A scenario, to simulate a campaign
+    Scenario,
+    /// A cut: the force of a tool
+    Cut,
+    /// What to map
+    Map,
 }
 
 /// Prints the schema; standard output is the schema, and nothing but the schema.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let schema = json::document(&match arguments.kind {
         Kind::Robot => schema::robot(),
+        Kind::Campaign => campaign::schema::schema(),
+        Kind::Scenario => simulate::schema::schema(),
+        Kind::Cut => milling::schema::schema(),
+        Kind::Map => map::schema::schema(),
     });
     let Some(path) = arguments.out.as_deref() else {
         return output::print(schema);
