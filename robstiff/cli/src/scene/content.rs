@@ -180,7 +180,8 @@ impl Scene {
         let scale = quantity::scale(&values.unit, Dimension::Length).map_err(|error| {
             Failure::Usage(format!("a tolerance is a length, and {} is not: {}", values.name, error.message))
         })?;
-        values.tolerance = Some(tolerance / scale);
+        // As it was typed: a division leaves a last digit.
+        values.tolerance = Some((tolerance / scale * 1e9).round() / 1e9);
         Ok(self)
     }
 
