@@ -30,6 +30,8 @@ mod read_error;
 #[cfg(feature = "read")]
 #[doc(hidden)]
 pub mod samples;
+#[cfg(feature = "schema")]
+pub mod schema;
 #[cfg(feature = "read")]
 mod suggest;
 #[cfg(feature = "table")]

@@ -57,6 +57,19 @@ impl Description {
     }
 }
 
+/// The fields of a description.
+pub(crate) const ROBOT: [&str; 9] =
+    ["name", "description", "source", "convention", "base", "joints", "tool", "links", "effects"];
+
+/// Those of a joint.
+pub(crate) const JOINT: [&str; 7] = ["type", "theta", "d", "a", "alpha", "limits", "compliance"];
+
+/// Those of a link.
+pub(crate) const LINK: [&str; 2] = ["mass", "center_of_mass"];
+
+/// Those of a placement.
+pub(crate) const PLACEMENT: [&str; 2] = ["xyz", "rpy"];
+
 /// `None` with the problem reported where the file is a campaign.
 fn refuse_campaign(root: &Node) -> Option<()> {
     let Some(map) = root.is_map().then(|| root.any_map("")).flatten() else { return Some(()) };
@@ -73,8 +86,7 @@ fn refuse_campaign(root: &Node) -> Option<()> {
 
 fn description(root: &Node) -> Option<Description> {
     refuse_campaign(root)?;
-    let map =
-        root.map(&["name", "description", "source", "convention", "base", "joints", "tool", "links", "effects"])?;
+    let map = root.map(&ROBOT)?;
     // Everything is read before anything is given up, to report all problems.
     let name = map.require("name", "name: Rv130hsc").and_then(|node| name(&node));
     let text = |field| map.get(field).map_or(Some(String::new()), |node| node.text().map(str::to_owned));
@@ -118,7 +130,7 @@ impl Placement {
     /// Reads `{xyz: [..], rpy: [..]}`, each of them zero where it is left out; `None`
     /// with the mistakes reported to the document.
     pub fn read(node: &Node) -> Option<Self> {
-        let map = node.map(&["xyz", "rpy"])?;
+        let map = node.map(&PLACEMENT)?;
         let xyz = optional(&map, "xyz", |node| node.quantities(Dimension::Length));
         let rpy = optional(&map, "rpy", |node| node.quantities(Dimension::Angle));
         Some(Self { xyz: xyz?, rpy: rpy?.map(snapped) })
@@ -138,7 +150,7 @@ fn joints(node: &Node) -> Option<Vec<Joint>> {
 }
 
 fn joint(node: &Node) -> Option<Joint> {
-    let map = node.map(&["type", "theta", "d", "a", "alpha", "limits", "compliance"])?;
+    let map = node.map(&JOINT)?;
     let kind = map.get("type").map_or(Some(JointKind::Revolute), |node| {
         node.choice(&[("revolute", JointKind::Revolute), ("prismatic", JointKind::Prismatic)])
     });
@@ -198,7 +210,7 @@ fn links(node: &Node, joints: Option<usize>) -> Option<Vec<Link>> {
         );
     }
     let links = every(&items, |node| {
-        let map = node.map(&["mass", "center_of_mass"])?;
+        let map = node.map(&LINK)?;
         let mass = optional(&map, "mass", |node| node.nonnegative(Dimension::Mass));
         let center_of_mass = optional(&map, "center_of_mass", |node| node.quantities(Dimension::Length));
         Some(Link { mass: mass?, center_of_mass: center_of_mass? })

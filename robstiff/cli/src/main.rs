@@ -17,6 +17,8 @@ mod plan;
 mod predict;
 mod report;
 mod scene;
+mod schema;
+mod shell;
 mod show;
 mod simulate;
 mod stability;
@@ -26,7 +28,7 @@ mod trace;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use failure::Failure;
 
@@ -55,6 +57,9 @@ enum Command {
     View(scene::Arguments),
     Map(map::Arguments),
     Online(online::Arguments),
+    Schema(schema::Arguments),
+    Completions(shell::Completions),
+    Man(shell::Manual),
 }
 
 impl Command {
@@ -75,6 +80,9 @@ impl Command {
             Self::View(arguments) => scene::run(arguments),
             Self::Map(arguments) => map::run(arguments),
             Self::Online(arguments) => online::run(arguments),
+            Self::Schema(arguments) => schema::run(arguments),
+            Self::Completions(arguments) => shell::completions(arguments, Arguments::command()),
+            Self::Man(arguments) => shell::manual(arguments, Arguments::command()),
         }
     }
 }

@@ -183,6 +183,59 @@ fn a_path_is_coloured_by_its_deviation() {
     let worst = page.split("the worst dozen first").nth(1).unwrap();
     let row = worst.split("</tr>").nth(1).unwrap();
     assert!(row.contains(">109<") && row.contains(">-109<"), "{row}");
+    // The last piece of the path, the worst, has the strongest colour; the bar says sizes.
+    let lines: Vec<&str> = page.split("class=\"path shade").skip(1).map(|rest| &rest[..1]).collect();
+    assert_eq!((lines.len(), lines[0], lines[107]), (108, "0", "9"));
+    assert!(page.contains("<span>1</span><span>55</span><span>109</span>"));
+}
+
+#[test]
+fn a_tolerance_passes_or_fails_at_the_top() {
+    let folder = folder("view-tolerance");
+    let [page, told] = ["page.html", "told.json"].map(|name| inside(&folder, name));
+    let path = docs("pocket-solved.csv");
+    let view = |tolerance: &str| {
+        let arguments = ["view", "kuka-kr270-r2700", "--path", &path, "--tolerance", tolerance, "--out", &page];
+        let said = succeed(&[&arguments[..], &["--json", &told]].concat());
+        let text = fs::read_to_string(&page).unwrap();
+        let top = text.split("<header>").nth(1).unwrap().split("</header>").next().unwrap().to_owned();
+        (said, top, text, json(&told))
+    };
+    let (said, top, text, told_fail) = view("0.5 mm");
+    let values = told_fail["poses"].as_array().unwrap().iter().map(|pose| number(&pose["value"]));
+    let beyond = values.filter(|value| *value > 500.0).count();
+    let verdict = format!("Fail: {beyond} of 109 points are beyond 500 ");
+    assert!(beyond > 0 && said.contains(&verdict) && top.contains(&verdict), "{said}{top}");
+    assert_eq!((&told_fail["value"]["passes"], &told_fail["value"]["tolerance"]), (&false.into(), &500.0.into()));
+    // 172.7 to 607.6: the mark is at (500 - 172.7) / 434.9 of the bar.
+    assert!(text.contains("x1=\"75.2%\"") || text.contains("x1=\"75.3%\""));
+    let (said, top, _, told_pass) = view("1 mm");
+    assert!(said.contains("Pass: none of 109 points") && top.contains("verdict pass"), "{said}{top}");
+    assert_eq!(told_pass["value"]["passes"], true);
+    // A force is no length.
+    let arguments = ["view", "kuka-kr270-r2700", "--path", &path, "--column", "Fx", "--tolerance", "1 mm"];
+    assert!(fail(2, &[&arguments[..], &["--out", &page]].concat()).contains("a tolerance is a length"));
+}
+
+/// Beside a pocket of 40 mm an ellipsoid as large as a sixth of the arm says nothing.
+#[test]
+fn no_ellipsoid_is_longer_than_the_path() {
+    let folder = folder("view-ellipsoid");
+    let [page, told] = ["page.html", "told.json"].map(|name| inside(&folder, name));
+    let path = docs("pocket-solved.csv");
+    succeed(&["view", "kuka-kr270-r2700", "--path", &path, "--out", &page, "--json", &told]);
+    let told = json(&told);
+    let poses = told["poses"].as_array().unwrap();
+    let side = |axis: usize| {
+        let ends = poses.iter().map(|pose| number(&pose["tcp"][axis]));
+        ends.clone().fold(f64::MIN, f64::max) - ends.fold(f64::MAX, f64::min)
+    };
+    let extent = (0..3).map(side).fold(0.0, f64::hypot);
+    let text = fs::read_to_string(&page).unwrap();
+    let scale = text.split("ellipsoids: 1 µm/N is ").nth(1).unwrap().split(" mm").next().unwrap();
+    // The softest direction of the robot's page is 1.187 um/N.
+    let longest = 2.0 * 1.187 * scale.parse::<f64>().unwrap() / 1e3;
+    assert!(longest <= extent && longest > 0.2 * extent, "{longest} {extent}");
 }
 
 /// The file's own deviation and what the page computes, of each of its rows.

@@ -5,11 +5,13 @@ use robstiff::nalgebra::{Matrix4, SVector, Vector3, Vector6};
 use robstiff::{Convention, Generic, JointKind, Robot, State, with_robot};
 use robstiff_identify::campaign::{Campaign, Data};
 use robstiff_identify::identify::{PredictedRow, predict};
+use robstiff_robots::quantity::{self, Dimension};
 use robstiff_robots::{Description, Joint};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::json::{number, numbers};
+use crate::text::significant;
 
 /// Longer paths are thinned out: no screen has more points across.
 const MOST_POSES: usize = 3000;
@@ -76,6 +78,38 @@ pub struct Values {
     pub least: f64,
     /// The greatest.
     pub most: f64,
+    /// How large it may be, either way, in its unit.
+    pub tolerance: Option<f64>,
+    /// The values of all rows that have one, drawn or not.
+    all: Vec<f64>,
+}
+
+impl Values {
+    /// The least and the greatest distance from zero: errors have signs.
+    pub fn sizes(&self) -> [f64; 2] {
+        let [least, most] = [self.least, self.most].map(f64::abs);
+        [if self.least * self.most < 0.0 { 0.0 } else { least.min(most) }, least.max(most)]
+    }
+
+    /// Whether the rows are within the tolerance, in a sentence; nothing without one.
+    pub fn verdict(&self) -> Option<(bool, String)> {
+        let most = self.tolerance?;
+        let unit = if self.unit == "um" { "µm" } else { &self.unit };
+        let (tolerance, worst) = (significant(most, 4), significant(self.sizes()[1], 4));
+        let beyond = self.all.iter().filter(|value| value.abs() > most).count();
+        let (passes, count) = (beyond == 0, self.all.len());
+        let said = match passes {
+            true => {
+                format!("Pass: none of {count} points is beyond {tolerance} {unit}. The worst is at {worst} {unit}.")
+            }
+            false => {
+                format!(
+                    "Fail: {beyond} of {count} points are beyond {tolerance} {unit}. The worst is at {worst} {unit}."
+                )
+            }
+        };
+        Some((passes, said))
+    }
 }
 
 /// Everything that is drawn.
@@ -129,6 +163,26 @@ impl Scene {
             column.clone_into(&mut values.name);
         }
         self
+    }
+
+    /// The same with the tolerance (m) of what colours it.
+    ///
+    /// # Errors
+    /// Where that is no length.
+    pub fn within(mut self, tolerance: Option<f64>) -> Result<Self, Failure> {
+        let Some(tolerance) = tolerance else { return Ok(self) };
+        let Some(values) = &mut self.values else {
+            return Err(Failure::Usage(
+                "a tolerance is of the deviation under a force: give `--force`, or `--column` for one that the path has"
+                    .to_owned(),
+            ));
+        };
+        let scale = quantity::scale(&values.unit, Dimension::Length).map_err(|error| {
+            Failure::Usage(format!("a tolerance is a length, and {} is not: {}", values.name, error.message))
+        })?;
+        // As it was typed: a division leaves a last digit.
+        values.tolerance = Some((tolerance / scale * 1e9).round() / 1e9);
+        Ok(self)
     }
 
     /// The poses of a campaign, each with the row of its largest displacement, or of the
@@ -199,6 +253,7 @@ impl Scene {
             "force": self.force.map(numbers),
             "value": self.values.as_ref().map(|values| json!({
                 "name": values.name, "unit": values.unit, "least": number(values.least), "most": number(values.most),
+                "tolerance": values.tolerance.map(number), "passes": values.verdict().map(|(passes, _)| passes),
             })),
             "poses": self.poses.iter().map(|pose| json!({
                 "row": pose.row + 1,
@@ -305,7 +360,8 @@ fn points<const N: usize>(description: &Description, robot: &Generic<N>, q: &SVe
 fn values(name: &str, unit: String, values: &[Option<f64>]) -> Option<Values> {
     let values = || values.iter().copied().flatten();
     let (least, most) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-    (least <= most).then(|| Values { name: name.to_owned(), unit, least, most })
+    let all = || values().collect();
+    (least <= most).then(|| Values { name: name.to_owned(), unit, least, most, tolerance: None, all: all() })
 }
 
 /// The length of a vector.

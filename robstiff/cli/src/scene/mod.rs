@@ -8,9 +8,10 @@ use std::path::PathBuf;
 
 use robstiff_identify::campaign::JointTable;
 use robstiff_robots::Description;
+use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;
-use crate::input::{Force, force};
+use crate::input::{Force, force, with_unit};
 use crate::output::{self, Files};
 use crate::text::{count, significant};
 use crate::{effect, input, json};
@@ -40,6 +41,9 @@ pub struct Arguments {
     /// The column of the path that colours it; the deviation under the force where left out
     #[arg(long, value_name = "NAME", requires = "path", conflicts_with_all = ["campaign", "at"])]
     column: Option<String>,
+    /// How large what colours the poses may be, either way, e.g. "0.1 mm": marked on the scale, with pass or fail at the top
+    #[arg(long, value_name = "LENGTH", conflicts_with = "at", value_parser = |text: &str| with_unit(text, Dimension::Length))]
+    tolerance: Option<f64>,
     /// The page
     #[arg(long, value_name = "PAGE.html")]
     out: PathBuf,
@@ -73,6 +77,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let row = Row { q, wrench: arguments.force.map(Force::wrench), value: None };
         Scene::new(&robot, Kind::Pose, &[row])
     };
+    let scene = scene.within(arguments.tolerance)?;
     let document = scene.document(&robot);
     files.add(&arguments.out, page::html(&robot, &scene, &document));
     if let Some(path) = &arguments.json {
@@ -110,6 +115,7 @@ fn summary(robot: &Description, scene: &Scene) -> String {
         let [least, most] = [values.least, values.most].map(|value| significant(value, 4));
         let range = if least == most { least } else { format!("{least} to {most}") };
         said += &format!("{}: {range}{unit}\n", values.name);
+        said.extend(values.verdict().map(|(_, verdict)| verdict.replace('µ', "u") + "\n"));
     }
     said
 }

@@ -3,7 +3,7 @@
 use robstiff_robots::Description;
 use serde_json::Value;
 
-use super::content::{Kind, Pose, Scene};
+use super::content::{Kind, Pose, Scene, Values};
 use super::picture;
 use crate::report::html::{Table, data, element, escape, number, page, text, words};
 use crate::text::{decimals, significant};
@@ -34,6 +34,9 @@ pub fn html(robot: &Description, scene: &Scene, document: &Value) -> String {
 
 fn heading(robot: &Description, scene: &Scene) -> String {
     let mut said = format!("<header>\n{}", text("h1", &robot.name));
+    if let Some((passes, verdict)) = scene.values.as_ref().and_then(Values::verdict) {
+        said += &format!("<p class=\"verdict {}\">{}</p>\n", if passes { "pass" } else { "fail" }, escape(&verdict));
+    }
     if !robot.description.is_empty() {
         said += &text("p", robot.description.trim());
     }
@@ -58,15 +61,18 @@ fn legend(scene: &Scene) -> String {
     if let Some(values) = scene.values.as_ref().filter(|_| scene.kind != Kind::Pose) {
         let unit = if values.unit == "um" { "µm" } else { &values.unit };
         let steps: String = (0..10).map(|shade| format!("<span class=\"shade{shade}\"></span>")).collect();
-        let middle = 0.5 * (values.least + values.most);
-        let marks: String = [values.least, middle, values.most]
+        let [nearest, farthest] = values.sizes();
+        let middle = 0.5 * (nearest + farthest);
+        let marks: String = [nearest, middle, farthest]
             .map(|value| format!("<span>{}</span>", escape(&significant(value, 3))))
             .concat();
         let heading = if unit.is_empty() { values.name.clone() } else { format!("{} [{unit}]", values.name) };
         said += &format!(
-            "<div class=\"scale\">{}<div class=\"bar\" aria-hidden=\"true\">{steps}</div>\
-             <div class=\"marks\">{marks}</div>\n<p>{} where it is {}.</p></div>\n",
+            "<div class=\"scale\">{}<div class=\"bar\" aria-hidden=\"true\">{steps}{}</div>\
+             <div class=\"marks\">{marks}</div>\n{}<p>{} where it is {}.</p></div>\n",
             text("h2", &heading),
+            tolerance_mark(values),
+            tolerance_said(values, unit),
             if scene.kind == Kind::Path { "The line is wider" } else { "The dots are larger" },
             if values.least < 0.0 { "farther from zero" } else { "more" }
         );
@@ -91,6 +97,23 @@ fn legend(scene: &Scene) -> String {
         );
     }
     said + "</div>\n"
+}
+
+/// The tolerance on the bar; at an end where it is beyond all values.
+fn tolerance_mark(values: &Values) -> String {
+    let [nearest, farthest] = values.sizes();
+    let mark = |tolerance: f64| {
+        let share = (tolerance - nearest) / (farthest - nearest).max(f64::MIN_POSITIVE);
+        // The page allows no style of an element's own.
+        let at = decimals(100.0 * share.clamp(0.0, 1.0), 1);
+        format!("<svg class=\"limit\"><line x1=\"{at}%\" x2=\"{at}%\" y1=\"0\" y2=\"100%\"/></svg>")
+    };
+    values.tolerance.map(mark).unwrap_or_default()
+}
+
+fn tolerance_said(values: &Values, unit: &str) -> String {
+    let said = |tolerance| text("p", &format!("The mark is the tolerance, {} {unit}.", significant(tolerance, 4)));
+    values.tolerance.map(said).unwrap_or_default()
 }
 
 fn controls(robot: &Description, scene: &Scene) -> String {

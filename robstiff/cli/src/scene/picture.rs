@@ -16,6 +16,8 @@ const TURN: f64 = -0.9;
 const HEIGHT_ANGLE: f64 = 0.38;
 /// More ellipsoids than these hide each other.
 const MOST_ELLIPSOIDS: usize = 9;
+/// A path that is shorter is a place (m).
+const LEAST_EXTENT: f64 = 1e-3;
 /// The last colour and the last width of the scale, from 0.
 const SHADES: f64 = 9.0;
 
@@ -48,10 +50,23 @@ fn shown(scene: &Scene) -> Option<&Pose> {
     scene.poses.iter().max_by(|a, b| a.size().total_cmp(&b.size()))
 }
 
-/// Metres a um/N: the longest semi-axis is at most a sixth of the arm.
+/// Metres a um/N: the longest semi-axis is at most a sixth of the arm, and no ellipsoid is
+/// longer than the path.
 fn ellipsoid_scale(scene: &Scene) -> f64 {
     let longest = scene.poses.iter().filter_map(|pose| pose.principal).map(|[softest, ..]| softest).fold(0.0, f64::max);
-    if longest > 0.0 { round(reach(scene) / 6.0 / longest) } else { 0.0 }
+    let most = (reach(scene) / 6.0).min(extent(scene).map_or(f64::INFINITY, |extent| extent / 2.0));
+    if longest > 0.0 { round(most / longest) } else { 0.0 }
+}
+
+/// From corner to corner of the box that a path is in (m); nothing where it stays in one place.
+fn extent(scene: &Scene) -> Option<f64> {
+    let tips = || scene.poses.iter().filter_map(|pose| pose.points.last());
+    let side = |axis: usize| {
+        let low = tips().fold(f64::INFINITY, |low, tip| low.min(tip[axis]));
+        tips().fold(low, |high, tip| high.max(tip[axis])) - low
+    };
+    let extent = length(std::array::from_fn(side));
+    (scene.kind == Kind::Path && extent > LEAST_EXTENT).then_some(extent)
 }
 
 /// The next round number below.
@@ -152,24 +167,18 @@ fn arm(svg: &mut Svg, view: &View, pose: &Pose) {
 
 fn path(svg: &mut Svg, view: &View, scene: &Scene) {
     let Some(values) = &scene.values else { return };
-    let value = |pose: &Pose| pose.value.unwrap_or(values.least);
-    let step = |value: f64, [least, most]: [f64; 2]| {
-        (SHADES * (value - least) / (most - least).max(f64::MIN_POSITIVE)).round()
-    };
-    let shade = |value: f64| step(value, [values.least, values.most]);
     // Errors have signs: what is far from zero is bad either way.
-    let farthest = values.least.abs().max(values.most.abs());
-    let nearest = if values.least * values.most < 0.0 { 0.0 } else { values.least.abs().min(values.most.abs()) };
+    let [nearest, farthest] = values.sizes();
+    let step = |size: f64| (SHADES * (size - nearest) / (farthest - nearest).max(f64::MIN_POSITIVE)).round();
+    let shade = |pose: &Pose| step(pose.value.map_or(nearest, f64::abs));
     for pair in scene.poses.windows(2).filter(|_| scene.kind == Kind::Path) {
         let [one, other] = [&pair[0], &pair[1]].map(|pose| pose.points.last().copied().unwrap_or_default());
-        let [first, second] = [&pair[0], &pair[1]].map(value);
-        let worse = if first.abs() > second.abs() { first } else { second };
-        let class = format!("path shade{:.0} wide{:.0}", shade(worse), step(worse.abs(), [nearest, farthest]));
-        svg.line(&class, view.at(one), view.at(other));
+        let worse = shade(&pair[0]).max(shade(&pair[1]));
+        svg.line(&format!("path shade{worse:.0} wide{worse:.0}"), view.at(one), view.at(other));
     }
     for pose in scene.poses.iter().filter(|_| scene.kind == Kind::Campaign) {
         let at = view.at(pose.points.last().copied().unwrap_or_default());
-        svg.circle(&format!("spot shade{:.0}", shade(value(pose))), at, 4.5, pose.name.as_deref().unwrap_or_default());
+        svg.circle(&format!("spot shade{:.0}", shade(pose)), at, 4.5, pose.name.as_deref().unwrap_or_default());
     }
 }
 

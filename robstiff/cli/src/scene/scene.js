@@ -36,7 +36,9 @@ const extent = Math.max(1e-3, norm(box.map(([low, high]) => high - low)));
 let large, perUnit, perMicrometre;
 function measure() {
   large = state.near ? extent : reach;
-  perUnit = softest > 0 ? round(large / 6.5 / softest) : 0;
+  // No ellipsoid is longer than the path.
+  const longest = Math.min(large / 6.5, data.kind === "path" && extent > 1e-3 ? extent / 2 : Infinity);
+  perUnit = softest > 0 ? round(longest / softest) : 0;
   perMicrometre = farthest > 0 ? round((large / 7 / farthest) * 1e6) / 1e6 : 0;
 }
 measure();
@@ -65,10 +67,11 @@ function toFit() {
   return fitted;
 }
 
-const shade = (value) => {
-  const { least, most } = data.value;
-  return Math.max(0, Math.min(9, Math.round((9 * (value - least)) / (most - least || 1))));
-};
+// Errors have signs: what is far from zero is bad either way.
+const sizes = data.value ? [data.value.least, data.value.most].map(Math.abs) : [0, 0];
+const [small, great] = [data.value && data.value.least * data.value.most < 0 ? 0 : Math.min(...sizes), Math.max(...sizes)];
+const bad = (value) => (Math.abs(value ?? small) - small) / (great - small || 1);
+const shade = (value) => Math.max(0, Math.min(9, Math.round(9 * bad(value))));
 
 function shown() {
   const pose = data.poses[state.row];
@@ -146,13 +149,10 @@ function drawArm(picture, arm) {
 
 function drawPath(picture) {
   if (data.kind === "path") {
-    // Errors have signs: what is far from zero is bad either way.
-    const sizes = data.value ? [data.value.least, data.value.most].map(Math.abs) : [0, 0];
-    const [small, great] = [data.value && data.value.least * data.value.most < 0 ? 0 : Math.min(...sizes), Math.max(...sizes)];
-    const width = (...poses) => 2.5 + 3.2 * Math.max(...poses.map(({ value }) => (Math.abs(value ?? 0) - small) / (great - small || 1)));
+    const width = (...poses) => 2.5 + 3.2 * Math.max(...poses.map(({ value }) => bad(value)));
     for (let k = 1; k < data.poses.length; k++) {
       const [one, other] = [data.poses[k - 1], data.poses[k]];
-      const n = data.value ? shade(Math.abs(one.value) > Math.abs(other.value) ? one.value : other.value) : 0;
+      const n = data.value ? Math.max(shade(one.value), shade(other.value)) : 0;
       const points = [one.tcp, other.tcp];
       // Behind the neighbours' own colour.
       picture.line(points, colours.css("edge"), width(one, other) + 2.5, -0.03 * large);

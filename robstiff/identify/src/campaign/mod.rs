@@ -25,6 +25,8 @@ mod reference;
 mod renamed;
 mod revisited;
 pub(crate) mod rounded;
+#[cfg(feature = "schema")]
+pub mod schema;
 #[cfg(test)]
 mod tables_tests;
 #[cfg(test)]

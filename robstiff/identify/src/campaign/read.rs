@@ -17,7 +17,7 @@ use super::{Campaign, Data, Frame, Holdout, Noise, clamped, displacements, posit
 use robstiff_robots::table::{Table, text_of};
 
 /// The fields of a campaign file.
-const FIELDS: [&str; 9] =
+pub const FIELDS: [&str; 9] =
     ["name", "robot", "observations", "kind", "columns", "wrench", "measured", "noise", "holdout"];
 
 /// Of those, the ones that are about poses and the tool: clamped axes have neither.

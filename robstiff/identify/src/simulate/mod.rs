@@ -21,6 +21,8 @@ mod files;
 mod positions;
 mod read;
 mod refused;
+#[cfg(feature = "schema")]
+pub mod schema;
 #[cfg(test)]
 mod tests;
 

@@ -20,14 +20,14 @@ use crate::campaign::read::{NOISIEST, holdout};
 use robstiff::{Effect, JointKind};
 
 /// The fields of a scenario.
-const FIELDS: [&str; 16] = [
+pub const FIELDS: [&str; 16] = [
     "name", "kind", "seed", "poses", "visits", "ramp", "force", "moment", "payloads", "wrench", "measured", "noise",
     "unloaded", "hidden", "scatter", "holdout",
 ];
 
 /// More of anything than a campaign on a real robot has, and less than what
 /// fills a machine's memory.
-const MOST: i64 = 100_000;
+pub const MOST: i64 = 100_000;
 
 /// The same for the rows, which is what the memory is filled by.
 const MOST_ROWS: usize = 1_000_000;

@@ -39,6 +39,8 @@ mod largest;
 mod measure;
 mod place;
 pub mod read;
+#[cfg(feature = "schema")]
+pub mod schema;
 mod space;
 mod stream;
 mod summary;

@@ -9,10 +9,10 @@ use robstiff_robots::{Description, Diagnostics, Joint, JointKind, Placement};
 use super::{Axis, Measure, Tool};
 
 /// The fields of a map file.
-const FIELDS: [&str; 6] = ["joints", "positions", "tool", "force", "moment", "measure"];
+pub const FIELDS: [&str; 6] = ["joints", "positions", "tool", "force", "moment", "measure"];
 
 /// Values of an axis: more than any map has, and less than what fills a memory.
-const MOST: i64 = 1_000_000;
+pub const MOST: i64 = 1_000_000;
 
 /// Poses of a map: as many rows as readers hold that number them with 32 bits; as CSV
 /// they would fill hundreds of gigabytes.

@@ -14,7 +14,7 @@ use super::{
 use robstiff_robots::table::text_of;
 
 /// The fields of a cut.
-const FIELDS: [&str; 12] = [
+pub const FIELDS: [&str; 12] = [
     "name",
     "tool",
     "material",

@@ -35,6 +35,8 @@ mod force;
 mod frame;
 mod measured;
 mod revolution;
+#[cfg(feature = "schema")]
+pub mod schema;
 #[cfg(test)]
 mod tests;
 
