@@ -152,15 +152,12 @@ pub fn robot() -> Value {
             "pattern": "^[A-Z][A-Za-z0-9]*$",
             "description": "The name of the robot, in upper camel case: it becomes the Rust type",
         }),
-        "description" => json!({ "type": "string", "description": "One line on what the robot is" }),
-        "source" => json!({
-            "type": "string",
-            "description": "Where every number comes from; what is a surrogate, and why",
-        }),
-        "convention" => json!({
-            "enum": [Convention::Standard.word(), Convention::Modified.word()],
-            "description": "The Denavit-Hartenberg convention of the table",
-        }),
+        "description" => text("One line on what the robot is"),
+        "source" => text("Where every number comes from; what is a surrogate, and why"),
+        "convention" => word(
+            &[Convention::Standard.word(), Convention::Modified.word()],
+            "The Denavit-Hartenberg convention of the table",
+        ),
         "base" => described(placement(), "Frame 0 in the base frame; left out, it is the base frame"),
         "tool" => described(placement(), "The tool centre point in the flange frame; left out, it is the flange"),
         "joints" => json!({
@@ -221,11 +218,7 @@ fn joint() -> Value {
     };
     let row = |dimension, what| default(quantity(dimension, Sign::Any, what), 0);
     let mut joint = object(&JOINT, &[], |field| match field {
-        "type" => json!({
-            "enum": ["revolute", "prismatic"],
-            "default": "revolute",
-            "description": "Whether the joint turns or slides",
-        }),
+        "type" => default(word(&["revolute", "prismatic"], "Whether the joint turns or slides"), "revolute"),
         "theta" => row(Dimension::Angle, "The angle about z"),
         "d" => row(Dimension::Length, "The offset along z"),
         "a" => row(Dimension::Length, "The length along x"),

@@ -8,10 +8,9 @@ use std::path::PathBuf;
 
 use robstiff_identify::campaign::JointTable;
 use robstiff_robots::Description;
-use robstiff_robots::quantity::Dimension;
 
 use crate::failure::Failure;
-use crate::input::{Force, force, with_unit};
+use crate::input::{Force, force, length};
 use crate::output::{self, Files};
 use crate::text::{count, significant};
 use crate::{effect, input, json};
@@ -42,7 +41,7 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", requires = "path", conflicts_with_all = ["campaign", "at"])]
     column: Option<String>,
     /// How large what colours the poses may be, either way, e.g. "0.1 mm": marked on the scale, with pass or fail at the top
-    #[arg(long, value_name = "LENGTH", conflicts_with = "at", value_parser = |text: &str| with_unit(text, Dimension::Length))]
+    #[arg(long, value_name = "LENGTH", conflicts_with = "at", value_parser = length)]
     tolerance: Option<f64>,
     /// The page
     #[arg(long, value_name = "PAGE.html")]
