@@ -1,4 +1,4 @@
-//! Probabilities as they are told, tails of distributions, and normal variates.
+//! Probabilities as they are reported, tails of distributions, and normal variates.
 //!
 //! A tail is the probability of a statistic as large as this or larger. It is `None`
 //! where a degree of freedom is missing, or where the statistic is no number: readings
@@ -46,7 +46,7 @@ fn number(statistic: f64) -> Option<f64> {
 /// The square of a standard normal variate that is as rare as the square of one of
 /// Student's with so many degrees of freedom (Wallace, Annals of Mathematical
 /// Statistics 30, 1959, 1121-1130): what is held against a variance that few
-/// readings told becomes as if it had been known.
+/// readings gave becomes as if it had been known.
 pub fn as_normal(square: f64, freedom: f64) -> f64 {
     ((8.0 * freedom + 1.0) / (8.0 * freedom + 3.0)).powi(2) * freedom * (square / freedom).ln_1p()
 }

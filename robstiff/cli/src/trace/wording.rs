@@ -19,7 +19,7 @@ pub fn share(share: f64) -> String {
     format!("{} %", decimals(100.0 * share, 0))
 }
 
-/// A probability that is never told as certain: `97 %`, `> 99.9 %`.
+/// A probability that is never reported as certain: `97 %`, `> 99.9 %`.
 pub fn probability(p: f64) -> String {
     match p {
         p if p > 0.999 => "> 99.9 %".to_owned(),

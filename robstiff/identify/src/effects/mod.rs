@@ -188,7 +188,7 @@ pub struct Form {
     pub label: String,
     /// Its parameters.
     pub parameters: Vec<Parameter>,
-    /// What it has besides that is chosen and not fitted.
+    /// Its numbers that are chosen and not fitted, such as a knee.
     pub shape: Vec<Number>,
     /// What it is in a description, given the values of the parameters.
     pub written: Option<Written>,

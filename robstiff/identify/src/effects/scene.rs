@@ -61,7 +61,7 @@ pub struct Scene<'c> {
     pub visits: usize,
     /// Over how many kelvin the temperature goes; zero where it is not given.
     pub warmth: f64,
-    /// The shapes that are looked at besides.
+    /// Shapes that are offered beside those of the grids.
     pub shapes: Shapes,
     /// The axes (from 1) that are loaded one by one.
     pub axes: Vec<usize>,

@@ -72,7 +72,7 @@ fn nothing_was_read(campaign: &Campaign) -> Result<(), Error> {
     Ok(())
 }
 
-/// The fit that is told, of numbers that a description takes, with its covariance. What it tells
+/// The fit that is reported, of numbers that a description takes, with its covariance. What it tells
 /// no more of than was declared is held at that, and the rest fitted beside it.
 fn told(
     campaign: &Campaign,

@@ -84,7 +84,7 @@ fn given(data: &Displacements) -> Option<Vec<Vec<f64>>> {
     Some(data.rows.iter().zip(&motors).map(of_row).collect())
 }
 
-/// What the encoders of a campaign were to a trace.
+/// What the encoders of a campaign were to a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EncodersRead {
     /// The joints (from 1) whose angle behind the gear took part.

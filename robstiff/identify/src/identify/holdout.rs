@@ -23,7 +23,7 @@ pub fn training(poses: usize, holdout: Option<Holdout>) -> Vec<bool> {
     training
 }
 
-/// The same of a campaign, without the poses that it holds out besides.
+/// The same of a campaign, without the poses that it holds out as well.
 pub fn training_of(poses: usize, campaign: &Campaign) -> Vec<bool> {
     let mut training = training(poses, campaign.holdout);
     campaign.held_out.iter().for_each(|&pose| training[pose] = false);

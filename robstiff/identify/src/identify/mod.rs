@@ -185,10 +185,8 @@ pub struct Estimate {
     /// Whether it is zero only because a compliance is not negative: the data
     /// see it, but do not follow the load on it.
     pub at_bound: bool,
-    /// Full names of effects, or of numbers of the description's effects, that would change it by
-    /// more than its standard deviation without the data telling, beside one that is named; `std`
-    /// then allows for every share of them. Found by [`trace`](crate::trace::trace) only:
-    /// [`identify`] knows no effects but the description's.
+    /// Full names of effects that would change it by more than its standard deviation and that the
+    /// data do not show. None of [`identify`], which knows no effects but the description's.
     pub confounded_with: Vec<String>,
 }
 

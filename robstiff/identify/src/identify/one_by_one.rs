@@ -1,13 +1,13 @@
-//! Wild readings that hide each other.
+//! Outlying readings that hide each other.
 //!
-//! Each of several makes the others look less wild. So the one that stands out most is taken
-//! away time and again, and all are wild up to the last that was significant, whatever those
+//! Each of several makes the others look less outlying. So the one that stands out most is taken
+//! away time and again, and all are outlying up to the last that was significant, whatever those
 //! before it seemed (Rosner, Technometrics 25, 1983, 165-172). What stands out, and when that is
 //! significant, is asked of each kind of reading in its own way.
 
 use std::vec::Vec;
 
-/// Those that are wild, the one that stands out most first, with what is said of the last.
+/// Those that are outlying, the one that stands out most first, with what is said of the last.
 ///
 /// `take` takes away what stands out most of what is left: which one it is, and what there is to
 /// say of it where it is significant. It is asked up to `most` times, and not again once it has

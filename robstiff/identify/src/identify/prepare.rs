@@ -41,7 +41,7 @@ pub struct Prepared<'c> {
     /// What the data can see of them.
     pub visibility: Vec<Visibility>,
     /// The columns of those that are lost in noise which nothing but the fit itself tells of.
-    /// What is missing in it, and rows that are wild, pass for noise: another model may see them.
+    /// What is missing in it, and rows that are outlying, pass for noise: another model may see them.
     pub doubted: Vec<usize>,
     /// What they are: identified where seen, declared elsewhere.
     pub values: Vec<f64>,
@@ -59,7 +59,7 @@ pub struct Prepared<'c> {
     pub correction: DVector<f64>,
 }
 
-/// Rotation weights settle to three digits within this many passes.
+/// Rotation weights converge to three digits within this many passes.
 const WEIGHT_PASSES: usize = 4;
 
 /// A joint whose declared compliance is not even one standard deviation, and
@@ -80,7 +80,7 @@ pub fn believed_noise(campaign: &Campaign, covariance: &Covariance) -> Option<f6
 }
 
 /// That the noise which a campaign of displacements declares is not used, in a sentence, where the
-/// noise that is told (m) is known from elsewhere: the readings show far less.
+/// noise that is reported (m) is known from elsewhere: the readings show far less.
 pub fn noise_not_used(campaign: &Campaign, (noise, source): (f64, NoiseSource)) -> Option<String> {
     let declared = campaign.noise.displacement?;
     let is_used = source.is_declared() || !matches!(campaign.data, Data::Displacement(_));
@@ -104,7 +104,7 @@ impl<'c> Prepared<'c> {
     }
 
     /// The same without the rows that the rest of the campaign contradicts, their load above
-    /// all: tracing looks for these with its effects, and nothing else does.
+    /// all. A trace has no part in this: it weighs rows and deletes none.
     ///
     /// # Errors
     /// Likewise.

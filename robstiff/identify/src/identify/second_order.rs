@@ -81,7 +81,7 @@ pub fn straightened(samples: &Samples, description: &Description, of_pose: impl 
 }
 
 /// How many times as large displacements are as joints of such compliances make them: the
-/// median of the rows, which a wild one does not move; 0 where they go the other way.
+/// median of the rows, which an outlying one does not move; 0 where they go the other way.
 fn size(samples: &Samples, compliance: &[f64], of_pose: impl Fn(usize) -> bool) -> f64 {
     let of_row = |row: &Sample| {
         let linear: Vector6<f64> = row.twists.iter().zip(compliance).map(|(s, h)| s * (h * s.dot(&row.wrench))).sum();

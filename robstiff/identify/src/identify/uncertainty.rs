@@ -14,12 +14,12 @@
 //!
 //! With hardly more readings than coefficients what is left says nothing: nearly
 //! all is fitted. Of displacements noise that the campaign declares counts as much as
-//! ten more readings do, and no coefficient is told surer than it
+//! ten more readings do, and no coefficient is reported surer than it
 //! alone would let it be, had each reading that and no more. Not so of positions:
 //! what a tracker reads has in it by how much the robot misses a pose, which is
 //! more, and which no campaign declares.
 //!
-//! What is told is the standard deviation of the normal distribution that has
+//! What is reported is the standard deviation of the normal distribution that has
 //! the same 95 % interval: `V^1/2` times the quantile of Student's distribution
 //! over that of the normal one. So the 95 % interval is 1.96 of it on either
 //! side, whatever the number of poses.

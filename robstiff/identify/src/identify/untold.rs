@@ -1,4 +1,4 @@
-//! Numbers of which a fit that stands tells no more than was declared.
+//! Numbers of which a fit says no more than was declared.
 //!
 //! A number is held against the noise of the readings before it is fitted for good
 //! ([`lost`](super::prepare::Prepared::lost)), but that noise is not all that a number may be

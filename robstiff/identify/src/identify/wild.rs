@@ -1,14 +1,14 @@
 //! Rows of displacements that the rest of the campaign contradicts: those of which the load is
 //! wrong, above all.
 //!
-//! A wild displacement is contradicted by the other readings of its own pose
-//! ([`outliers`](super::covariance::outliers)), which have a free response to their loads. A wild
+//! An outlying displacement is contradicted by the other readings of its own pose
+//! ([`outliers`](super::covariance::outliers)), which have a free response to their loads. An outlying
 //! load is not: one that is alone in its direction, or a thousand times the others, *is* that
 //! response. It pulls the fit to all poses, the more the larger it is. So a row is held against
 //! the fit to the others: by how much the sum of squares falls without it, over the variance that
 //! the others then have. Of those the median counts, for the model may lack something. What it
 //! lacks grows with the load, and the other rows of the visit and the pose have it, too: a row must
-//! be off by many times the share of its displacement that they are off by. Several wild rows hide
+//! be off by many times the share of its displacement that they are off by. Several outlying rows hide
 //! each other, so the row without which least is left is taken away [one by one](super::one_by_one),
 //! and each is judged once more by the fit without all of them.
 
@@ -30,7 +30,7 @@ use super::whitening::mean_share;
 use crate::campaign::Campaign;
 use crate::probability::{fisher_tail, told};
 
-/// What a wild row must explain over the variance of the others: beyond fourteen standard
+/// What an outlying row must explain over the variance of the others: beyond fourteen standard
 /// deviations, since structure may be left.
 const STANDS_OUT: f64 = 200.0;
 
@@ -46,7 +46,7 @@ const HIDDEN: usize = 20;
 const ALONE: f64 = 1e-9;
 
 /// Leaves out of a fit the rows that the rest of the campaign contradicts. A load that is wrong
-/// makes the other readings of its pose look wild, so where others do, what is wild among these is
+/// makes the other readings of its pose look outlying, so where others do, what is outlying among these is
 /// asked again without it. Whether there are any that the other readings of their pose did not
 /// contradict.
 pub fn leave_out(prepared: &mut Prepared<'_>, campaign: &Campaign) -> bool {

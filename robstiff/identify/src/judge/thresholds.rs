@@ -41,7 +41,7 @@ pub const STANDS_OUT: f64 = 5.0;
 pub const DISCREPANCY: f64 = 0.3;
 
 /// Where a discrepancy is left, effects are named only if together they account for this part of what
-/// is beyond the noise: what takes less may be standing in for what is not in the catalogue.
+/// is beyond the noise: what takes less may stand in for what is not in the catalogue.
 pub const ACCOUNTS: f64 = 0.8;
 
 /// More names at once are never the whole truth.
@@ -56,11 +56,12 @@ pub const ABOVE_NOISE: f64 = 1.25;
 /// A set without effects that is likelier than this says that nothing is missing.
 pub const NOTHING: f64 = 0.5;
 
-/// An effect that is less likely than this is not even suspected.
+/// An effect that is less likely than this is not even suspected: odds of nineteen to one against it.
 pub const SUSPECTED: f64 = 0.05;
 
-/// Folds in which the search is repeated.
+/// Folds in which the search is repeated: four fifths of the poses are left to search on, and an effect
+/// may be missing in one fold ([`RECURS`]).
 pub const FOLDS: usize = 5;
 
-/// An effect for which so many readings in ten thousand are outlying is one of the rig.
+/// Outlying rows are reported if they are this part of all rows or more: fewer are the tail of the others.
 pub const OUTLYING_ROWS: f64 = 0.002;

@@ -36,7 +36,7 @@ pub struct Evidence<'a> {
     pub named: usize,
     /// Whether outlying readings are.
     pub outliers: bool,
-    /// Full names of what is suspected besides.
+    /// Full names of what is suspected.
     pub suspected: &'a [String],
     /// What has no name and looks like this, each as a noun for a sentence.
     pub looks_like: &'a [String],

@@ -157,7 +157,7 @@ impl Arm {
         self.rows.len()
     }
 
-    /// Where it stands at joint coordinates (rad or m), if joints turn aside besides, each by a
+    /// Where it stands at joint coordinates (rad or m), if joints turn aside as well, each by a
     /// rotation vector in its own frame (rad); none do where `aside` is empty.
     pub fn stand(&self, q: &[f64], aside: &[Vector3<f64>]) -> Stand {
         let mut frame = self.base;

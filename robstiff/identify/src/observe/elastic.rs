@@ -42,7 +42,7 @@ impl Loaded {
     }
 }
 
-/// What the laws of joints need to know of all rows besides torques.
+/// What the laws of joints need to know of all rows beside the torques of the loads.
 #[derive(Clone, Debug, Default)]
 pub struct Sequence {
     /// What the arm's own weight puts on each joint (from 0), through all rows (Nm or N).

@@ -19,7 +19,7 @@ use super::criterion::{Criterion, Judge};
 use super::regressors::{Regressors, Visit};
 use super::space::Space;
 
-/// Passes over all visits; exchange settles after three or four.
+/// Passes over all visits; exchange converges after three or four.
 const PASSES: usize = 10;
 
 /// A gain below this is rounding.

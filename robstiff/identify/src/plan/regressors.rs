@@ -77,7 +77,7 @@ pub const LEVELS: [f64; 5] = [0.025, 0.25, 0.5, 1.0, -1.0];
 /// Those of [`Sensor::Payloads`].
 pub const PAYLOADS: [f64; 5] = [0.0, 0.1, 0.25, 0.5, 1.0];
 
-/// What could be measured besides.
+/// What could be measured as well.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sensor {
     /// The rotation of the tool, where it is not read already.
@@ -103,7 +103,7 @@ pub trait Regressors {
     /// How many numbers the campaign and some visits read.
     fn readings(&self, visits: &[Visit]) -> usize;
 
-    /// What could be measured besides.
+    /// What could be measured as well.
     fn sensors(&self) -> Vec<Sensor>;
 
     /// The information of the campaign as it is, as that of a visit, with that of what is likely.

@@ -180,7 +180,7 @@ fn ranges(campaign: &Campaign, visited: &[&[f64]], margin: f64, assumptions: &mu
     ranges
 }
 
-/// A margin as it is told.
+/// A margin as it is reported.
 fn percent(margin: f64) -> String {
     format!("{} % of the range", (margin * 1e3).round() / 10.0)
 }

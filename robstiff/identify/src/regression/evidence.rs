@@ -1,16 +1,18 @@
 //! How well some columns account for the readings.
 //!
-//! With a prior `N(m, A)` for the numbers `b` of the columns and noise of variance `s^2`, the
-//! *evidence* is the likelihood of the readings with `b` integrated out. From the Gram matrix `G` of
-//! the whitened columns and readings,
+//! With a prior `N(m, A)` for the numbers `b` of the columns and noise of covariance `s^2 S`, the
+//! *evidence* is the likelihood of the readings `y` with `b` integrated out. Of the whitened columns
+//! `Z` and readings a fit needs `G = Z^T Z`, `g = Z^T (y - Z m)` and `E = |y - Z m|^2`. The posterior
+//! mean of `b - m` is `u = (G + s^2 A^-1)^-1 g`, and
 //!
-//! `ln p = -n/2 ln 2 pi s^2 - 1/2 ln |I + A^1/2 G A^1/2 / s^2| - 1/2 (y^T y - b^T G^-1 ..) / s^2 - 1/2 ln |S|`,
+//! `ln p = -n/2 ln 2 pi s^2 - 1/2 ln |I + A^1/2 G A^1/2 / s^2| - (E - u^T g) / 2 s^2 - 1/2 ln |S|`,
 //!
 //! at the `s^2`, and the scales of learned priors, that make it largest (MacKay, Neural Computation
-//! 4, 1992: the effective number of parameters `gamma`). Where a number cannot be negative its prior
-//! is half-normal, which multiplies the evidence by `2 Phi(z)` at the posterior's mean over its
-//! standard deviation. The evidence prefers no model for having more columns: what they could have
-//! said and did not counts against them.
+//! 4, 1992: the effective number of parameters `gamma`; Bishop, Pattern Recognition and Machine
+//! Learning, 2006, 3.5). Where a number cannot be negative its prior is half-normal, which multiplies
+//! the evidence by `2 Phi(z)` at the posterior's mean over its standard deviation. The evidence
+//! prefers no model for having more columns: what they could have said and did not counts against
+//! them.
 
 use nalgebra::{DMatrix, DVector};
 use statrs::function::erf::erfc;

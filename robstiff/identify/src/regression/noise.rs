@@ -134,7 +134,7 @@ impl Noise {
         (likelihood, growth)
     }
 
-    /// Rotations and encoders by the medians of what is left of them.
+    /// Rotations and encoders by the medians of their residuals.
     fn learn_scales(&mut self, readings: &Readings, left: &DVector<f64>, rows: &[Vec<usize>]) {
         let median = |channel: usize| {
             let numbers = rows.iter().flatten().flat_map(|row| {
@@ -152,7 +152,7 @@ impl Noise {
         }
     }
 
-    /// The log-likelihood of what is left, at its most likely size, and that size (m).
+    /// The log-likelihood of the residuals, at their most likely size, and that size (m).
     fn likelihood(
         &self,
         readings: &Readings,
@@ -217,7 +217,7 @@ impl Noise {
         }
     }
 
-    /// What is reported of some rows, a column an axis.
+    /// The reported part of some rows, a column an axis.
     fn reported(&self, readings: &Readings, left: &DVector<f64>, rows: &[usize]) -> DMatrix<f64> {
         DMatrix::from_fn(rows.len(), readings.reported, |i, k| left[rows[i] * readings.width + k])
     }

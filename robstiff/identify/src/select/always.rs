@@ -246,7 +246,7 @@ fn is_parallel(scene: &Scene<'_>, joint: usize) -> bool {
 }
 
 /// Every joint stands aside by sines and cosines of its own and of neighbouring angles: what an arm
-/// does besides, without any name.
+/// does for causes that have no name.
 fn block(scene: &Scene<'_>) -> Vec<Parameter> {
     let turning = scene.turning();
     let mut waves: Vec<Vec<(usize, f64)>> = Vec::new();

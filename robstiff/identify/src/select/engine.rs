@@ -208,7 +208,7 @@ impl<'c> Engine<'c> {
     }
 
     /// The columns at the linearisation point, with the readings behind: such that they are the
-    /// product of columns and values, and what is left.
+    /// product of columns and values, and the residual.
     pub fn linearise(&self, layout: &Layout, point: &Point) -> DMatrix<f64> {
         let values = layout.values(&point.values);
         let all: Vec<usize> = (layout.fixed..layout.parameters.len()).collect();
@@ -476,7 +476,7 @@ impl<'c> Engine<'c> {
         }
     }
 
-    /// The noise of one axis of a reading where no discrepancy accounts for any of what is left.
+    /// The noise of one axis of a reading where no discrepancy accounts for any of the residual.
     pub fn noise_at(&self, found: &Found) -> f64 {
         let grams = self.grams(&found.columns, &self.one_group()).total;
         let problem = self.problem(&found.layout, &found.columns, grams);

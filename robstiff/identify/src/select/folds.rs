@@ -73,7 +73,7 @@ pub fn nested(engine: &Engine<'_>, found: &Found, folds: usize, seed: u64, progr
     nested
 }
 
-/// Puts what is left of some rows in its place.
+/// Puts the residuals of some rows in their place.
 fn put(whole: &mut DVector<f64>, left: &DVector<f64>, rows: &[usize], width: usize) {
     for row in rows {
         whole.rows_mut(row * width, width).copy_from(&left.rows(row * width, width));

@@ -139,7 +139,7 @@ pub fn candidates_of(problem: &Problem<'_>, set: &[usize]) -> Vec<usize> {
 
 /// Adds, drops, swaps and changes forms of the best set until nothing makes it better.
 fn improve(problem: &mut Problem<'_>, visited: &mut Visited, width: Width) {
-    // With scales that are learned anew a set may look better that was left before.
+    // With scales that are learned again, a set may look better that was given up before.
     let mut left: Vec<Set> = Vec::new();
     let mut turned = !problem.learns();
     let mut best = visited.best();
@@ -173,7 +173,7 @@ fn improve(problem: &mut Problem<'_>, visited: &mut Visited, width: Width) {
     }
 }
 
-/// The best of some sets that is better than one, but those that were left before.
+/// The best of some sets that is better than one, but those that were given up before.
 fn better(problem: &Problem<'_>, visited: &mut Visited, than: &Set, sets: Vec<Set>, left: &[Set]) -> Option<Set> {
     let least = judge(problem, visited, than.clone()) + LEAST_BETTER;
     let judged =

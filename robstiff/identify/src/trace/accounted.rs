@@ -94,7 +94,7 @@ fn displacements(
         };
         // What is left is in the frame of the file already.
         let read = as_filed + Vector3::from(trace.residuals[i].after);
-        // What is left of rotations and of encoders is not told.
+        // The residuals of rotations and of encoders are not reported.
         *row = Observation { displacement: read.into(), rotation: None, encoders: None, motors: None, ..row.clone() };
     }
     Some(linear)

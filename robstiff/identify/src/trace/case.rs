@@ -22,7 +22,7 @@ pub struct Case<'c> {
     pub scene: Scene<'c>,
     /// Which blocks are fitted to.
     pub training: Vec<bool>,
-    /// What errors are told of one by one: the names of poses, or of clamped axes.
+    /// What errors are reported of one by one: the names of poses, or of clamped axes.
     pub groups: Vec<String>,
     /// The group of each row.
     pub group: Vec<usize>,

@@ -14,7 +14,7 @@ pub struct Misfit {
     pub holdout_rms: f64,
 }
 
-/// What is left of a row (m; of clamped axes, the angle in rad): of a displacement in the frame that it
+/// The residual of a row (m; of clamped axes, the angle in rad): of a displacement in the frame that it
 /// is read in, of a position likewise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowResidual {
@@ -41,7 +41,7 @@ pub struct PoseError {
     pub after: f64,
 }
 
-/// The error of what is left of all rows, and of what is left of unseen ones; where poses are held out,
+/// The error of the residuals of all rows, and of those of unseen ones; where poses are held out,
 /// these are what is unseen.
 pub fn misfit(case: &Case<'_>, left: &DVector<f64>, unseen: &DVector<f64>) -> Misfit {
     let readings = case.observation.readings();
@@ -53,7 +53,7 @@ pub fn misfit(case: &Case<'_>, left: &DVector<f64>, unseen: &DVector<f64>) -> Mi
     Misfit { rms: readings.rms(left, fitted), holdout_rms }
 }
 
-/// What is left of each row before and after.
+/// The residual of each row before and after.
 pub fn rows(case: &Case<'_>, before: &DVector<f64>, after: &DVector<f64>) -> Vec<RowResidual> {
     let readings = case.observation.readings();
     let of = |left: &DVector<f64>, row: usize| -> [f64; 3] {
@@ -68,7 +68,7 @@ pub fn rows(case: &Case<'_>, before: &DVector<f64>, after: &DVector<f64>) -> Vec
     (0..readings.rows()).map(row).collect()
 }
 
-/// What is left of each pose before and after.
+/// The error of each pose before and after.
 pub fn poses(case: &Case<'_>, before: &DVector<f64>, after: &DVector<f64>) -> Vec<PoseError> {
     let readings = case.observation.readings();
     let mut rows: Vec<Vec<usize>> = vec![Vec::new(); case.groups.len()];

@@ -11,7 +11,7 @@ const LEVEL: f64 = 0.01;
 /// So many are reported at most.
 const MOST: usize = 4;
 
-/// The names of the quantities that what is left depends on, the strongest first: a correlation of a
+/// The names of the quantities that the residual depends on, the strongest first: a correlation of a
 /// component, or of its size, with it that chance hardly has.
 pub fn depends_on(case: &Case<'_>, left: &DVector<f64>) -> Vec<String> {
     let readings = case.observation.readings();

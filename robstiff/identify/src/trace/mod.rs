@@ -5,7 +5,7 @@
 //! 2. the [search](crate::select) weighs sets of effects by their evidence;
 //! 3. it is [repeated](crate::select::folds) without some poses, which gives the error on unseen poses;
 //! 4. each class of effects is [judged](crate::judge): named, or suspected;
-//! 5. the named effects go into the [description](written).
+//! 5. the effects that predict go into the [description](written), as far as it takes them.
 
 mod accounted;
 pub(crate) mod basis;
@@ -97,9 +97,9 @@ pub struct Trace {
     pub verdict: Verdict,
     /// Why, in a sentence without its full stop.
     pub why: String,
-    /// The share of what is left that is beyond the noise.
+    /// The share of the residual's variance that is beyond the noise.
     pub unexplained: f64,
-    /// The columns that what is left depends on, the strongest first.
+    /// The columns that the residual depends on, the strongest first.
     pub depends_on: Vec<String>,
     /// What it looks like that the catalogue has no name for, each as a noun for a sentence.
     pub looks_like: Vec<String>,

@@ -26,7 +26,7 @@ const FEWEST_REPETITIONS: usize = 10;
 const SAME: f64 = 1e-3;
 
 /// The noise of one axis of a reading that is known independently of the model (m, rad), and from
-/// what; `left` is what a model leaves of each row.
+/// what; `left` is the residual of each row.
 pub fn known(campaign: &Campaign, case: &Case<'_>, left: &DVector<f64>) -> Option<Known> {
     if let Some(size) = case.noise {
         let source = if campaign.step_beyond_noise().is_some() { NoiseSource::Rounded } else { NoiseSource::Declared };

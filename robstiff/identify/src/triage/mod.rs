@@ -51,7 +51,7 @@ pub struct Triage {
     pub checks: Vec<Check>,
     /// One sigma of a displacement reading (m), where the readings say.
     pub reading: Option<f64>,
-    /// Wild readings.
+    /// Outlying readings.
     pub outliers: Vec<Stray>,
 }
 

@@ -99,7 +99,7 @@ pub(super) fn tails(evidence: &Evidence<'_>) -> Unjudged {
     })
 }
 
-/// Wild readings, by externally studentised shifts (Bonferroni).
+/// Outlying readings, by externally studentised shifts (Bonferroni).
 pub(super) fn outliers(evidence: &Evidence<'_>) -> Unjudged {
     if evidence.covariance.freedom == 0 {
         return Err(String::from(SEVERAL));
@@ -109,7 +109,7 @@ pub(super) fn outliers(evidence: &Evidence<'_>) -> Unjudged {
     Ok(Raw {
         statistic: wild.len() as f64,
         unit: "readings",
-        // Those that are not wild are not kept; they are above the level.
+        // Those that are not outlying are not kept; they are above the level.
         p_value: Some(if wild.is_empty() { 1.0 } else { least }),
         matters_from: 1.0,
         witnesses: evidence.samples.rows.len(),
@@ -129,7 +129,7 @@ pub(super) fn outliers(evidence: &Evidence<'_>) -> Unjudged {
     })
 }
 
-/// The wild readings.
+/// The outlying readings.
 pub(super) fn strays(evidence: &Evidence<'_>) -> Vec<Stray> {
     let stray = |outlier: &Outlier| Stray {
         visit: outlier.visit,

@@ -119,7 +119,7 @@ fn enough(rows: &[ClampedRow]) -> Result<(), Error> {
     )))
 }
 
-/// The wild rows of the axes of one kind, by index: radians and metres have no noise in common.
+/// The outlying rows of the axes of one kind, by index: radians and metres have no noise in common.
 fn wild_of(robot: &Description, rows: &[ClampedRow], kind: JointKind) -> Vec<usize> {
     let at: Vec<usize> = (0..rows.len()).filter(|&row| robot.joints[rows[row].axis - 1].kind == kind).collect();
     let own: Vec<ClampedRow> = at.iter().map(|&row| rows[row]).collect();
@@ -128,7 +128,7 @@ fn wild_of(robot: &Description, rows: &[ClampedRow], kind: JointKind) -> Vec<usi
     wild.map_or_else(Vec::new, |(wild, _)| wild.into_iter().map(|row| at[row]).collect())
 }
 
-/// Whether an axis deflects against its torque: a sign is wrong in most of its rows, a wild reading
+/// Whether an axis deflects against its torque: a sign is wrong in most of its rows, an outlying reading
 /// in one. Of an axis that does not move, readings may be a step off on either side; `rounding` is
 /// their variance by that.
 fn goes_against(rows: &[&ClampedRow], rounding: f64) -> bool {

@@ -76,7 +76,7 @@ fn declared_laws_are_not_counted_twice() {
     assert!((found.estimates[0].value / 2.63e-7 - 1.0).abs() < 1e-9, "{:?}", found.estimates[0]);
 }
 
-/// One reading the wrong way is a wild one, most of them a wrong sign.
+/// One reading the wrong way is an outlying one, most of them a wrong sign.
 #[test]
 fn a_wild_reading_is_no_wrong_sign() {
     let mut rows = [row(100.0, 3e-5), row(200.0, 6e-5), row(300.0, -9e-4)];

@@ -1,14 +1,14 @@
-//! Rows of clamped axes that are wild.
+//! Rows of clamped axes that are outlying.
 //!
 //! A row is held against what the fit leaves of the others, by its externally
-//! studentised residual. Several wild rows hide each other in that, so the row that
+//! studentised residual. Several outlying rows hide each other in that, so the row that
 //! stands out most is taken away [one by one](crate::identify::one_by_one), as many times
-//! as there may be wild ones. Which stands out most a median tells, which wild rows do
+//! as there may be outlying ones. Which stands out most a median tells, which outlying rows do
 //! not move.
 //!
-//! Wild rows are few, of every axis. Where many rows of one stand out, or one slip says
+//! Outlying rows are few, of every axis. Where many rows of one stand out, or one slip says
 //! the same of them with fewer numbers, something is missing that they all have: none of
-//! that axis is wild then.
+//! that axis is outlying then.
 
 use std::vec;
 use std::vec::Vec;
@@ -28,13 +28,13 @@ use crate::probability::{student_tail, told};
 /// The row that stands out most.
 struct Worst {
     row: usize,
-    /// Its square over a variance that wild rows do not move.
+    /// Its square over a variance that outlying rows do not move.
     over: f64,
     /// The probability of that much against the other rows, over all.
     p: f64,
 }
 
-/// How many rows may be wild, of all and of each axis (from 0).
+/// How many rows may be outlying, of all and of each axis (from 0).
 #[derive(Clone, Debug)]
 pub struct Room {
     /// Of all.
@@ -42,7 +42,7 @@ pub struct Room {
     of_axis: Vec<usize>,
 }
 
-/// Of an axis two rows may be wild, or this share of them, but not as many as the others.
+/// Of an axis two rows may be outlying, or this share of them, but not as many as the others.
 const FEW_OF_AXIS: f64 = 0.2;
 const TWO: usize = 2;
 
@@ -62,7 +62,7 @@ impl Room {
         Self { all: 0, of_axis: Vec::new() }
     }
 
-    /// What is left of it beside rows that are wild, each told by its axis.
+    /// What is left of it beside rows that are outlying, each told by its axis.
     pub fn beside(&self, wild: impl IntoIterator<Item = usize>) -> Self {
         let mut left = self.clone();
         for axis in wild {
@@ -72,19 +72,19 @@ impl Room {
         left
     }
 
-    /// Whether one more row of an axis may be wild.
+    /// Whether one more row of an axis may be outlying.
     pub fn is_left(&self, axis: usize) -> bool {
         self.all > 0 && self.of_axis[axis - 1] > 0
     }
 
-    /// An axis of which more of some rows are wild than may be.
+    /// An axis of which more of some rows are outlying than may be.
     fn exceeded(&self, rows: &[ClampedRow], wild: &[usize]) -> Option<usize> {
         let count = |axis: usize| wild.iter().filter(|&&row| rows[row].axis == axis).count();
         (1..=self.of_axis.len()).find(|&axis| count(axis) > self.of_axis[axis - 1])
     }
 }
 
-/// The rows that are wild, by index, the one that stands out most first, with the
+/// The rows that are outlying, by index, the one that stands out most first, with the
 /// probability of the last; `raw` are the columns of the model. Unless `strict`,
 /// structure may be left, and they must stand out from that as well.
 pub fn wild_rows(rows: &[ClampedRow], raw: &DMatrix<f64>, strict: bool, room: &Room) -> Option<(Vec<usize>, f64)> {
@@ -108,7 +108,7 @@ fn of_rows(raw: &DMatrix<f64>, rows: &[usize]) -> DMatrix<f64> {
     own.select_columns(&moved)
 }
 
-/// Whether one slip says of several wild rows of an axis as much with fewer numbers, by
+/// Whether one slip says of several outlying rows of an axis as much with fewer numbers, by
 /// Schwarz's criterion: which row and how far it is off are two of each, and of a slip.
 fn slips(rows: &[ClampedRow], raw: &DMatrix<f64>, wild: &[usize], axis: usize) -> bool {
     let (here, there): (Vec<usize>, Vec<usize>) = wild.iter().partition(|&&row| rows[row].axis == axis);
@@ -188,7 +188,7 @@ fn worst(rows: &[ClampedRow], raw: &DMatrix<f64>, rounding: &[f64]) -> Option<Wo
     let all = gains(rows, &problem, &fit)?;
     let whole = by_median(all.iter().copied());
     let own = of_most(rows, &(problem.readings.as_ref() - raw * &fit.coefficients));
-    // One step of a gauge is no wild reading where all others fit exactly.
+    // One step of a gauge is no outlying reading where all others fit exactly.
     let own = |row: usize| own[rows[row].axis - 1].max(rounding[rows[row].axis - 1]);
     let over = |row: usize| all[row] / own(row).max(whole);
     let row = (0..all.len()).max_by(|&a, &b| over(a).total_cmp(&over(b)))?;
@@ -199,7 +199,7 @@ fn worst(rows: &[ClampedRow], raw: &DMatrix<f64>, rounding: &[f64]) -> Option<Wo
 }
 
 /// By axis, the variance of what is left of most of its rows, by the slope that
-/// leaves least of them. A curve of its gear is in most of them; wild rows, a
+/// leaves least of them. A curve of its gear is in most of them; outlying rows, a
 /// minority, are not.
 fn of_most(rows: &[ClampedRow], residuals: &DVector<f64>) -> Vec<f64> {
     let mut variances = vec![0.0; rows.iter().map(|row| row.axis).max().unwrap_or(0)];

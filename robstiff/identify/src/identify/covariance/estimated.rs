@@ -56,7 +56,7 @@ impl Estimated {
         beyond_noise(of(&self.chunks), of(&freer.chunks))
     }
 
-    /// The readings that are wild.
+    /// The readings that are outlying.
     pub fn wild(&self) -> Vec<Outlier> {
         if self.variances.iter().any(|&variance| variance <= 0.0) {
             return Vec::new();

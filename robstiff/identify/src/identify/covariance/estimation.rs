@@ -14,9 +14,9 @@
 //!   where the data tell 0 from 1 no better than chance it is 1;
 //! - the axes have one variance unless they differ (Bartlett's test,
 //!   [`EQUAL_AXES`]);
-//! - wild readings ([`outliers`](super::outliers)), sought before anything more is freed, are
+//! - outlying readings ([`outliers`](super::outliers)), sought before anything more is freed, are
 //!   listed and set aside: they would pass for noise. Those that are so beyond doubt
-//!   ([`Covariance::beyond_doubt`]) no fit begins with; tracing looks for its own, too.
+//!   ([`Covariance::beyond_doubt`]) no fit begins with.
 //!
 //! Where poses have too few rows for that (one load a pose), the axes are taken
 //! to be equal and `lambda` to be 1, and [`Covariance::refined`] weighs the axes
@@ -36,7 +36,7 @@ use crate::identify::normal::Fit;
 use crate::identify::problem::Problem;
 use crate::identify::samples::Samples;
 
-/// Wild readings are looked for at most so many times over.
+/// Outlying readings are looked for at most so many times over.
 const PASSES: usize = 8;
 
 impl Covariance {
@@ -89,7 +89,7 @@ impl Covariance {
             let chunks = contrasts(samples, &readings, level, &of_pose, |row| left_out[row]);
             Estimated::at(level, chunks, samples.axes)
         };
-        // Wild readings first, where little is free: they make curvature, and where
+        // Outlying readings first, where little is free: they make curvature, and where
         // every load has its own displacement no one can say which of two is off.
         for _ in 0..PASSES {
             let Some(linear) = at(Level::Linear, &left_out) else { break };

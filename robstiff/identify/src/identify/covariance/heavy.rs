@@ -1,5 +1,5 @@
 //! Whether noise has heavier tails than the normal distribution, by quantiles, which
-//! readings that do not belong hardly move: tails show in many readings, wild ones are
+//! readings that do not belong hardly move: tails show in many readings, outlying ones are
 //! few.
 
 use std::vec::Vec;
@@ -75,7 +75,7 @@ mod tests {
         (0..count).map(one).collect()
     }
 
-    /// Of 1000 at one in 100, with a few wild ones left among them.
+    /// Of 1000 at one in 100, with a few outlying ones left among them.
     #[test]
     fn normal_noise_has_no_heavy_tails() {
         for count in [60, 600] {

@@ -42,7 +42,7 @@ pub const NESTED: f64 = 0.01;
 /// Level at which axes have variances of their own.
 pub const EQUAL_AXES: f64 = 0.05;
 
-/// Family-wise level at which a reading is wild.
+/// Family-wise level at which a reading is outlying.
 pub const WILD: f64 = 0.01;
 
 /// With fewer contrasts an axis a variance is uncertain by half and more

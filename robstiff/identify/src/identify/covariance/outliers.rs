@@ -5,7 +5,7 @@
 //! contrasts: what it explains of them on all axes together, over what is left
 //! without it (externally studentised, an F statistic), times the number of
 //! shifts tested (Bonferroni). The largest is set aside and the rest is judged
-//! again, so that one wild reading does not hide another; in one pass at most
+//! again, so that one outlying reading does not hide another; in one pass at most
 //! one a pose.
 
 use std::format;
@@ -66,7 +66,7 @@ pub const FEW: f64 = 0.1;
 /// The median of chi-square with one degree of freedom.
 const MEDIAN: f64 = 0.4549;
 
-/// The variance that squares have by their median, which wild ones do not move.
+/// The variance that squares have by their median, which outlying ones do not move.
 pub fn by_median(squares: impl Iterator<Item = f64>) -> f64 {
     let mut squares: Vec<f64> = squares.collect();
     squares.sort_by(f64::total_cmp);
@@ -77,7 +77,7 @@ pub fn by_median(squares: impl Iterator<Item = f64>) -> f64 {
 /// cannot be judged.
 const LEFT: f64 = 0.05;
 
-/// What is wild at a level: at most one a chunk, the wildest.
+/// What is outlying at a level: at most one a chunk, the furthest off.
 pub fn find(chunks: &[Chunk], axes: usize, shared: f64, variances: &[f64], level: f64) -> Vec<Outlier> {
     let sums = sums(chunks, axes, shared);
     let total: f64 = sums.iter().zip(variances).map(|(sum, variance)| sum / variance).sum();

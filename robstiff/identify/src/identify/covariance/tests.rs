@@ -158,7 +158,7 @@ fn whitening_inverts_the_covariance() {
     assert!((found.variance(1, &weights) / by_hand - 1.0).abs() < 1e-12);
 }
 
-/// A wild row and a wild unloaded reading are named, and do not pass for noise.
+/// An outlying row and an outlying unloaded reading are named, and do not pass for noise.
 #[test]
 fn wild_readings_are_named() {
     let found = of(&Plan::new(9).run_with(|i, row| {
@@ -199,7 +199,7 @@ fn heavy_tails_are_noticed() {
     assert!(noticed <= 8, "{noticed}");
 }
 
-/// Clean campaigns: wild readings in at most as many as the level says (in 60 at
+/// Clean campaigns: outlying readings in at most as many as the level says (in 60 at
 /// 1 %, more than 3 with a probability of 0.3 %).
 #[test]
 fn no_reading_of_a_clean_campaign_is_wild() {

@@ -33,7 +33,7 @@ pub const FAR_LESS: f64 = 0.25;
 /// What is left of one mistake is told from what is left of another by this factor, by squares.
 pub const ALIKE: f64 = 1.5;
 
-/// So many mistakes that do alike are told.
+/// So many mistakes that do alike are reported.
 const MOST_TOLD: usize = 3;
 
 /// Rows that are looked at: more say no more of a mistake.

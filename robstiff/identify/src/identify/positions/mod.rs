@@ -46,7 +46,7 @@ use crate::campaign::{Campaign, Positions};
 pub use self::prepare::Prepared;
 
 /// Positions are all but linear in compliances: a step is off by some 1e-3 of itself. As
-/// often are wild rows looked for.
+/// often are outlying rows looked for.
 const PASSES: usize = 3;
 
 /// Identifies the compliances that payloads show: from what payloads of one visit
@@ -118,7 +118,7 @@ pub fn identify(campaign: &Campaign, data: &Positions) -> Result<Identification,
     })
 }
 
-/// The numbers that are told, by index, their regression, values and covariance. What positions
+/// The numbers that are reported, by index, their regression, values and covariance. What positions
 /// tell no more of than was declared is held at that, and the rest fitted beside it.
 fn told<'c>(prepared: &mut Prepared<'c>) -> Result<(Regression<'c>, Vec<usize>, State, DMatrix<f64>), Error> {
     loop {

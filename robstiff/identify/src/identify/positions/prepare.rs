@@ -100,7 +100,7 @@ impl<'c> Prepared<'c> {
         (0..self.own.len()).filter(|&k| self.visibility[k] == Visibility::Seen).collect()
     }
 
-    /// The regression on all own numbers, and numbers besides.
+    /// The regression on all own numbers, and further numbers.
     pub fn regression(&self, more: impl IntoIterator<Item = (Enters, Sign)>) -> Regression<'c> {
         let own = self.own.iter().map(|number| (number.enters(), number.sign));
         let (numbers, signs) = own.chain(more).unzip();

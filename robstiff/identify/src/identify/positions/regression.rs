@@ -106,7 +106,7 @@ impl Regression<'_> {
                 return Some(Solved { state, problem, fit, signs });
             }
         }
-        // What does not settle is as good as its last step.
+        // What does not converge is as good as its last step.
         let (problem, _) = self.at(&state, chosen, rows);
         let fit = problem.total.solve_signed(&columns, &signs)?;
         Some(Solved { state, problem, fit, signs })

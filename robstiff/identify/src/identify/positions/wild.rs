@@ -2,7 +2,7 @@
 //!
 //! A row is held against what the fit leaves of the others: by how much the sum of
 //! squares falls without it, which is Fisher's F with three degrees of freedom over
-//! the rest's. Several wild rows hide each other in that, so the row that stands out
+//! the rest's. Several outlying rows hide each other in that, so the row that stands out
 //! most is taken away [one by one](crate::identify::one_by_one).
 
 use std::vec::Vec;
@@ -18,7 +18,7 @@ use crate::probability::{fisher_tail, told};
 /// The median of chi-square with three degrees of freedom.
 const MEDIAN: f64 = 2.366;
 
-/// Single rows that are wild; by default, none.
+/// Single rows that are outlying; by default, none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wild {
     /// The rows, by index, the one that stands out most first.
@@ -38,7 +38,7 @@ pub struct Many {
     pub p: f64,
 }
 
-/// The rows of a regression that are wild. Unless `strict`, structure may be left,
+/// The rows of a regression that are outlying. Unless `strict`, structure may be left,
 /// and they must stand out from that as well.
 ///
 /// # Errors
