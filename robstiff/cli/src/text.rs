@@ -104,7 +104,7 @@ pub fn is_compliance(unit: &str) -> bool {
     unit.contains('/')
 }
 
-/// A probability; what the draws of a bootstrap resolve has three decimals.
+/// A probability; what random signs of poses resolve has three decimals.
 pub fn probability(p: f64) -> String {
     if p < 0.001 { "< 0.001".to_owned() } else { decimals(p, 3) }
 }
