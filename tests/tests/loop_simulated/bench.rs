@@ -74,7 +74,7 @@ pub fn told(trace: &Trace) -> String {
                 .iter()
                 .map(|p| format!("{} {:.3e} +- {:.0e}", p.name, p.value, p.std.unwrap_or(0.0)))
                 .collect();
-            format!("{} ({}) = {:?}", named.effect, numbers.join(", "), named.same_as)
+            format!("{} ({}) = {:?}", named.effect, numbers.join(", "), named.same_as())
         })
         .collect();
     let [identified, after] = [trace.identified, trace.after].map(|misfit| 1e6 * misfit.rms);
