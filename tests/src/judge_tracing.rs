@@ -11,7 +11,7 @@
 //!
 //! [`would_do`]: crate::matrix::alias::would_do
 
-use robstiff_identify::trace::{EffectParameter, Trace, Verdict};
+use robstiff_identify::trace::{EffectParameter, Suspected, Trace, Verdict};
 
 /// Standard deviations that have 95 % of a normal distribution within.
 const WITHIN: f64 = 1.959_964;
@@ -25,6 +25,12 @@ pub struct Told {
     pub names: Vec<Name>,
     /// Value and standard deviation of each joint's compliance (rad/Nm).
     pub joints: Vec<(f64, Option<f64>)>,
+}
+
+/// What was suspected and why it has no name, for when a count fails.
+pub fn suspected(trace: &Trace) -> String {
+    let one = |of: &Suspected| format!("\n    suspected {}: {}", of.effect, of.why_not);
+    trace.suspected.iter().map(one).collect()
 }
 
 /// A name with what was said about it.

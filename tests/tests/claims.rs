@@ -97,7 +97,7 @@ fn the_search_without_poses_of_the_fanuc_errs_by_more() {
     let (found, again) = (&*FOUND, &FOUND.nested);
     assert_eq!(again.folds, 5);
     // The figure that the page on tracing shows.
-    assert_near("searched", again.rms, 123.1e-6, 0.02);
+    assert_near("searched", again.rms, 118.8e-6, 0.02);
     assert_near("what is told", found.after.holdout_rms, again.rms, 1e-9);
     assert!(again.rms > 1.1 * found.after.rms, "{again:?}, {:?}", found.after);
     assert!(again.rms < again.identified_rms && again.identified_rms > found.identified.rms, "{again:?}");
@@ -240,13 +240,16 @@ fn lost_motion_does_not_account_for_a_reading_that_is_off() {
     assert_eq!(open(&asked).1, [data.rows[40].visit], "{asked:?}");
 }
 
-/// It came out as a load cell whose scale is wrong.
+/// It may not come out as a load cell whose scale is wrong.
 #[test]
-fn a_foundation_that_tilts_unequally_is_known_beside_the_catalogue() {
+fn a_foundation_that_tilts_unequally_is_the_base() {
     for (seed, arm) in [(0, five_axis()), (1, six_axis())] {
         let uneven = Hidden::Outside(Outside::UnevenFoundation { tilt: [8e-8, 2e-8] });
         let found = traced(&read(&plan(&arm, seed).hiding(uneven).run(), &arm));
-        assert_eq!((found.verdict, names(&found)), (Verdict::Unexplained, vec![]), "{}", found.why);
-        assert_eq!(found.looks_like, ["a foundation that tilts more about one axis than about the other"]);
+        let name = String::from("base_compliance@base");
+        assert_eq!((found.verdict, names(&found)), (Verdict::Explained, vec![name]), "{}", found.why);
+        let tilts = ["tilt_x", "tilt_y"].map(|name| found.effects[0].effect.value(name));
+        assert_near("about x", tilts[0], 8e-8, 0.1);
+        assert_near("about y", tilts[1], 2e-8, 0.3);
     }
 }

@@ -9,7 +9,7 @@ use robstiff_identify::campaign::Campaign;
 use robstiff_identify::trace::{Options, Trace, Verdict, trace};
 use robstiff_robots::{Description, Effect};
 use robstiff_tests::folder::Folder;
-use robstiff_tests::judge_tracing::Told;
+use robstiff_tests::judge_tracing::{Told, suspected};
 use robstiff_tests::matrix::interval::fewest;
 use robstiff_tests::simulator::{Axes, Hidden, five_axis, scattered, six_axis};
 
@@ -45,7 +45,7 @@ fn assert_named(name: &str, seed: u64, hide: impl Fn(&mut Axes)) -> Vec<(Axes, T
         let told = Told::of(&trace);
         let stands = told.names.len() == 1
             && (told.names[0].name == name || told.names[0].same_as.iter().any(|other| other == name));
-        println!("{name} {run}: {} {:?}", trace.verdict, told.names);
+        println!("{name} {run}: {} {:?}{}", trace.verdict, told.names, suspected(&trace));
         if stands && trace.verdict == Verdict::Explained {
             right.push((axes, trace));
         }
@@ -109,7 +109,8 @@ fn lag_of_all_axes_but_one_is_no_creep() {
         println!("{run}: {} {names:?}", trace.verdict);
         names.sort_unstable();
         let each = (1..=5).map(|joint| format!("hysteresis@joint {joint}"));
-        trace.verdict == Verdict::Explained && each.eq(names)
+        // So many names at once are never called the whole truth.
+        trace.verdict == Verdict::Partial && each.eq(names)
     });
     let (count, least) = (right.count(), fewest(RUNS as usize, 0.9, 1e-3));
     assert!(count >= least, "{count} of {RUNS}, not {least}");
@@ -124,10 +125,10 @@ fn unloaded_readings_of_several_axes_are_off() {
         axes.slips = (0..5).map(|axis| (20 * axis, [4e-5, -3e-5, 2e-5, -1.5e-5, 1e-5][axis])).collect();
         let trace = traced(&axes, &declared);
         let names: Vec<String> = trace.effects.iter().map(|named| named.effect.to_string()).collect();
-        println!("{run}: {} {names:?}", trace.verdict);
-        let slips = names.iter().filter(|name| *name == "base_slip@base").count();
-        assert!(slips >= 2, "{names:?}");
-        assert!(trace.verdict != Verdict::Explained || slips == names.len(), "{names:?}");
+        println!("{run}: {} {names:?}{}", trace.verdict, suspected(&trace));
+        let off = names.iter().filter(|name| name.starts_with("unloaded_reading@joint ")).count();
+        assert!(off >= 2, "{names:?}");
+        assert!(trace.verdict != Verdict::Explained || off == names.len(), "{names:?}");
     }
 }
 
@@ -136,14 +137,14 @@ fn faults_of_the_rig_are_named_and_not_written() {
     let named = [
         assert_named("load_cell_bias@rig", 9500, |axes| axes.torque_bias = 40.0),
         assert_named("thermal_drift@rig", 9600, |axes| axes.drift = 1.5e-6),
-        assert_named("base_slip@base", 10_000, |axes| axes.slips = vec![(29, 3e-5)]),
+        assert_named("unloaded_reading@joint 2", 10_000, |axes| axes.slips = vec![(29, 3e-5)]),
         assert_named("outliers@rig", 9700, |axes| axes.wild = vec![(7, 3e-4), (31, -2e-4)]),
     ];
     for (axes, trace) in named.iter().flatten() {
         assert!(trace.description.effects.is_empty(), "seed {}", axes.seed);
     }
     // Lines count from the heading.
-    let slipped = |(_, trace): &(Axes, Trace)| trace.effects[0].effect.value("line");
+    let slipped = |(_, trace): &(Axes, Trace)| trace.effects[0].effect.value("from_line");
     assert!(named[2].iter().all(|one| slipped(one) == 31.0));
     assert!(named[3].iter().all(|(_, trace)| trace.effects[0].lines == [9, 33]));
 }

@@ -8,6 +8,7 @@ use robstiff_identify::campaign::Campaign;
 use robstiff_identify::trace::{NamedEffect, Options, Trace, trace};
 use robstiff_robots::Description;
 use robstiff_tests::folder::Folder;
+use robstiff_tests::judge_tracing::suspected;
 use robstiff_tests::simulator::{Scenario, Simulated, scattered};
 
 /// Noise of one reading on each axis, one sigma (m).
@@ -79,7 +80,8 @@ pub fn told(trace: &Trace) -> String {
         .collect();
     let [identified, after] = [trace.identified, trace.after].map(|misfit| 1e6 * misfit.rms);
     let effects = if effects.is_empty() { "no name".into() } else { effects.join(" + ") };
-    format!("{}, {identified:.1} -> {after:.1} um: {effects}", trace.verdict)
+    let suspected = suspected(trace);
+    format!("{}, {identified:.1} -> {after:.1} um: {effects} ({}){suspected}", trace.verdict, trace.why)
 }
 
 /// What the final model leaves of the rows that belong to the others (m, one axis).

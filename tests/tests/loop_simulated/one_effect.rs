@@ -119,9 +119,10 @@ fn numbers_are_near(trace: &Trace, hidden: Effect) -> bool {
         return true;
     }
     let expected = |name: &str| match (hidden, name) {
-        (Effect::TransverseCompliance { value, .. }, "h") | (Effect::JointCoupling { value, .. }, "value") => value,
+        (Effect::TransverseCompliance { value, .. }, "h") | (Effect::JointCoupling { value, .. }, "c") => value,
         (Effect::BaseCompliance { tilt, .. }, "tilt") => tilt,
         (Effect::ToolCompliance { rotation, .. }, "rotation") => rotation,
+        (Effect::ToolCompliance { translation, .. }, "across" | "along") => translation,
         (Effect::BaseCompliance { translation, .. } | Effect::ToolCompliance { translation, .. }, "translation") => {
             translation
         }

@@ -20,6 +20,9 @@ pub static KIND: Kind = Kind {
 /// A foundation shifts by as much as it tilts at this height (1/m^2 of its tilt).
 const SHIFTS: f64 = 1.0 / 3.0;
 
+/// What tilts as the base does.
+const JOINT_1: &str = "transverse_compliance@joint 1";
+
 fn offer(scene: &Scene<'_>, offers: &mut Offers) {
     if !scene.is_loaded() {
         return;
@@ -31,8 +34,9 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
     offers.add(
         Part::Base,
         vec![
-            Form::new("tilt", vec![tilt("tilt", ACROSS)]).written(move |v| written(v[0], 0.0)),
-            Form::new("tilts", vec![tilt("tilt_x", EACH[0]), tilt("tilt_y", EACH[1])]),
+            // Frame 0 tilts as joint 1 does.
+            Form::new("tilt", vec![tilt("tilt", ACROSS)]).written(move |v| written(v[0], 0.0)).same_as(JOINT_1),
+            Form::new("tilts", vec![tilt("tilt_x", EACH[0]), tilt("tilt_y", EACH[1])]).same_as(JOINT_1),
             Form::new("shifts", vec![shift("x", EACH[0]), shift("y", EACH[1]), shift("z", EACH[2])]),
         ],
     );

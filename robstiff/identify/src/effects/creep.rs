@@ -38,6 +38,10 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
             offers.add(Place::Rig, vec![Form::new("", vec![share])]);
         }
         What::Clamped => {
+            let own = scene.compliance.clone();
+            let law = move |joint: usize, torques: &Torques<'_>| crept(torques, own[joint - 1]);
+            let share = Parameter::new("share", "1", Size::Of(LIKELY), Term::Laws(Rc::new(law))).nonnegative();
+            offers.add(Place::Rig, vec![Form::new("", vec![share])]);
             for &axis in &scene.axes {
                 let own = scene.compliance[axis - 1];
                 let law = move |torques: &Torques<'_>| crept(torques, own);

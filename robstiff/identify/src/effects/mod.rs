@@ -194,6 +194,8 @@ pub struct Form {
     pub written: Option<Written>,
     /// Whether it lies between others of a grid, and counts as one with them.
     pub between: bool,
+    /// Full names of effects that do exactly the same, and are no candidates of their own therefore.
+    pub same: Vec<&'static str>,
 }
 
 /// What values make of a description: the effects that go into it.
@@ -208,13 +210,20 @@ impl fmt::Debug for Form {
 impl Form {
     /// A form with these parameters.
     pub fn new(label: impl Into<String>, parameters: Vec<Parameter>) -> Self {
-        Self { label: label.into(), parameters, shape: Vec::new(), written: None, between: false }
+        Self { label: label.into(), parameters, shape: Vec::new(), written: None, between: false, same: Vec::new() }
     }
 
     /// The same, which a description writes so.
     #[must_use]
     pub fn written(mut self, of: impl Fn(&[f64]) -> Vec<Effect> + 'static) -> Self {
         self.written = Some(Rc::new(of));
+        self
+    }
+
+    /// The same, which does exactly what an effect of another name does.
+    #[must_use]
+    pub fn same_as(mut self, name: &'static str) -> Self {
+        self.same.push(name);
         self
     }
 

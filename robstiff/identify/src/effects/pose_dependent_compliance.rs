@@ -5,7 +5,6 @@ use std::rc::Rc;
 use robstiff::Effect;
 use robstiff_robots::Place as Part;
 
-use super::scene::What;
 use super::{Form, Kind, Offers, Scene, Side};
 use crate::model::{Parameter, Size, Term, Torques};
 
@@ -22,7 +21,7 @@ pub static KIND: Kind = Kind {
 const LIKELY: f64 = 0.4;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers) {
-    if scene.what != What::Displacements {
+    if !scene.is_loaded() {
         return;
     }
     for joint in scene.turning().into_iter().filter(|&joint| scene.is_driven(joint)) {

@@ -27,7 +27,11 @@ const COLD: f64 = 0.2;
 pub(super) const FEWEST_VISITS: usize = 8;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers) {
-    if scene.what == What::Clamped || scene.visits < FEWEST_VISITS {
+    if scene.what == What::Clamped {
+        offers.add(Place::Rig, vec![of_clamped(scene)]);
+        return;
+    }
+    if scene.visits < FEWEST_VISITS {
         return;
     }
     let offset = || three_readings(["x0", "y0", "z0"], "m", FROM, |_| 1.0);
@@ -51,6 +55,19 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
         forms.push(growth());
     }
     offers.add(Place::Rig, forms);
+}
+
+/// What a reading is likely to drift by while an axis is loaded (rad, m).
+const OF_AXIS: f64 = 2e-5;
+
+/// The reading of each clamped axis drifts alike, from its first load to the last of the longest sequence.
+fn of_clamped(scene: &Scene<'_>) -> Form {
+    let rows = |k: usize| scene.visit.iter().filter(|visit| **visit == k).count();
+    let longest = 60.0 * (0..scene.axes.len()).map(rows).max().unwrap_or(1).max(2) as f64;
+    let of = move |at: &crate::model::At<'_>| nalgebra::Vector3::x() * (at.in_visit / longest);
+    let term = crate::model::Term::Reading(std::rc::Rc::new(of));
+    let unit = if scene.axes.iter().all(|&axis| scene.turns(axis)) { "rad" } else { "m" };
+    Form::new("", vec![Parameter::new("drift", unit, Size::Of(OF_AXIS), term)])
 }
 
 /// Everything grows with the warmth, away from the base.

@@ -31,7 +31,10 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
     offers.add(
         Part::Tool,
         vec![
-            Form::new("shift", vec![shift("translation", ALL)]).written(move |v| written(0.0, v[0])),
+            // What shifts alike in all directions shifts anywhere along the arm.
+            Form::new("shift", vec![shift("translation", ALL)])
+                .written(move |v| written(0.0, v[0]))
+                .same_as("base_compliance@base"),
             Form::new("shift across and along", vec![shift("across", ACROSS), shift("along", EACH[2])]),
             Form::new("shifts", vec![shift("x", EACH[0]), shift("y", EACH[1]), shift("z", EACH[2])]),
             Form::new("turn", vec![turn("rotation", ALL)]).written(move |v| written(v[0], 0.0)),

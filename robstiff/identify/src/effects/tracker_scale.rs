@@ -15,7 +15,7 @@ pub static KIND: Kind = Kind {
 };
 
 /// What a scale is likely to be off by (1).
-const LIKELY: f64 = 5e-5;
+const LIKELY: f64 = 1e-4;
 
 fn offer(scene: &Scene<'_>, offers: &mut Offers) {
     if scene.what == What::Positions {

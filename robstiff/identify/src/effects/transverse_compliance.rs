@@ -21,7 +21,7 @@ fn offer(scene: &Scene<'_>, offers: &mut Offers) {
     if !scene.is_loaded() {
         return;
     }
-    // Frame 0 tilts as the first joint does: that is the base.
+    // Frame 0 tilts as the first joint does: that is the base, which lists it as the same.
     for joint in scene.joints().skip(1) {
         let size = 0.5 * scene.likely(joint);
         let tilt = |name, axes| Parameter::compliance(name, "rad/Nm", size, Spring::Turn(Site::Joint(joint), axes));

@@ -99,14 +99,19 @@ pub fn weigh(engine: &Engine<'_>, found: &Found, nested: &Nested, seed: u64) -> 
             why_not: None,
             class,
         };
-        weighed.why_not = why_not(&weighed, found, falls, (discrepancy, accounts));
+        weighed.why_not = why_not(&weighed, (found, engine.scene.what), falls, (discrepancy, accounts));
         weighed
     });
     Judgement { classes: weighed.collect(), nothing: by.of_none(), falls, discrepancy, accounts }
 }
 
 /// What keeps a class from being named.
-fn why_not(of: &Weighed, found: &Found, falls: f64, (discrepancy, accounts): (f64, f64)) -> Option<String> {
+fn why_not(
+    of: &Weighed,
+    (found, what): (&Found, What),
+    falls: f64,
+    (discrepancy, accounts): (f64, f64),
+) -> Option<String> {
     let side = found.layout.candidates[of.class.members[0].0].kind.side;
     let percent = |p: f64| format!("{:.0} %", 100.0 * p);
     if side == Side::Unnamed {
@@ -124,13 +129,13 @@ fn why_not(of: &Weighed, found: &Found, falls: f64, (discrepancy, accounts): (f6
     if of.stands_out == Some(false) {
         return Some("it does not stand out from the other numbers of the table".into());
     }
-    if of.stands_out.is_none() && of.matters < MATTERS {
+    if of.replaced.is_none() && of.matters < MATTERS {
         return Some("without it the error grows by next to nothing".into());
     }
     if of.stands_out.is_none() && of.replaced.is_some_and(|of| of.loss < LOSS || of.worse < WORSE) {
         return Some("unseen poses are predicted about as well with something else in its place".into());
     }
-    if of.replaced.is_none() && falls < FALLS {
+    if what == What::Displacements && falls < FALLS {
         return Some("all effects together predict unseen poses no better than the description's own numbers".into());
     }
     if discrepancy > 0.5 && accounts < ACCOUNTS {
@@ -224,9 +229,13 @@ fn without_each(engine: &Engine<'_>, found: &Found, classes: &[Class], seed: u64
 fn replaced(problem: &Problem<'_>, best: &Set, class: &Class, kappa: usize) -> Set {
     let Some(at) = best.iter().position(|form| *form == class.form) else { return best.clone() };
     let rest = without(best, at);
+    let own = &problem.layout.candidates[class.members[0].0];
     let is_member = |form: usize| {
         let of = problem.layout.forms[form].candidate;
-        class.members.iter().any(|(member, _)| *member == of)
+        let candidate = &problem.layout.candidates[of];
+        // What has no name and is at the same place has the effect within it.
+        let is_wider = candidate.kind.side == Side::Unnamed && candidate.place == own.place;
+        is_wider || class.members.iter().any(|(member, _)| *member == of)
     };
     let others = problem.additions(&rest, kappa).into_iter().filter(|(_, form)| !is_member(*form));
     let mut judged: Vec<(f64, Set)> = others

@@ -51,6 +51,9 @@ pub struct Torques<'a> {
 /// How far a joint turns under its torque through all rows, per unit.
 pub type Law = Rc<dyn Fn(&Torques<'_>) -> Vec<f64>>;
 
+/// The same for each joint (from 1).
+pub type LawOfEach = Rc<dyn Fn(usize, &Torques<'_>) -> Vec<f64>>;
+
 /// A number of each row.
 pub type OfRow = Rc<dyn Fn(&At<'_>) -> f64>;
 
@@ -73,6 +76,8 @@ pub enum Term {
     Spring(Spring),
     /// A joint (from 1) yields to its torque by a law.
     Law(usize, Law),
+    /// Every joint yields to its torque by a law, with one number for all.
+    Laws(LawOfEach),
     /// A joint (from 1) stands aside of its coordinate without any load, by a turn about an axis of
     /// its own frame (rad).
     Aside(usize, usize, OfRow),
@@ -94,6 +99,7 @@ impl fmt::Debug for Term {
         match self {
             Self::Spring(spring) => write!(f, "{spring:?}"),
             Self::Law(joint, _) => write!(f, "law of joint {joint}"),
+            Self::Laws(_) => f.write_str("laws of all joints"),
             Self::Aside(joint, axis, _) => write!(f, "joint {joint} aside about axis {axis}"),
             Self::Asides(_) => f.write_str("all joints aside"),
             Self::Table(joint, number) => write!(f, "number {number} of row {joint}"),
@@ -123,6 +129,8 @@ pub enum Size {
     Moves(f64),
     /// Learned with all others of a group, beginning with this.
     Learned(usize, f64),
+    /// As much as the noise of one reading.
+    Noise,
     /// Nothing is known (the standard deviation is far beyond any value, in its unit).
     Flat(f64),
 }

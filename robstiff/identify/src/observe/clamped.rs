@@ -74,27 +74,27 @@ impl<'c> Clamped<'c> {
         }
     }
 
+    /// Puts the turn of a joint (from 1) by a law into a column.
+    fn add_law(&self, joint: usize, law: &dyn Fn(&Torques<'_>) -> Vec<f64>, column: &mut DVector<f64>) {
+        let rows = self.of_axis(joint);
+        let load: Vec<f64> = rows.iter().map(|&row| self.rows[row].torque).collect();
+        let none = vec![0.0; rows.len()];
+        let in_visit: Vec<f64> = (0..rows.len()).map(|k| 60.0 * k as f64).collect();
+        let visit = vec![0; rows.len()];
+        let torques =
+            Torques { load: &load, preload: &none, weight: &none, q: &none, visit: &visit, in_visit: &in_visit };
+        rows.iter().zip(law(&torques)).for_each(|(&row, turn)| column[row] = turn);
+    }
+
     fn column(&self, term: &Term) -> DVector<f64> {
         let mut column = DVector::zeros(self.rows.len());
         match term {
             Term::Spring(Spring::Joint(joint)) => {
                 self.of_axis(*joint).into_iter().for_each(|row| column[row] = self.rows[row].torque);
             }
-            Term::Law(joint, law) => {
-                let rows = self.of_axis(*joint);
-                let load: Vec<f64> = rows.iter().map(|&row| self.rows[row].torque).collect();
-                let none = vec![0.0; rows.len()];
-                let in_visit: Vec<f64> = (0..rows.len()).map(|k| 60.0 * k as f64).collect();
-                let visit = vec![0; rows.len()];
-                let torques = Torques {
-                    load: &load,
-                    preload: &none,
-                    weight: &none,
-                    q: &none,
-                    visit: &visit,
-                    in_visit: &in_visit,
-                };
-                rows.iter().zip(law(&torques)).for_each(|(&row, turn)| column[row] = turn);
+            Term::Law(joint, law) => self.add_law(*joint, &**law, &mut column),
+            Term::Laws(law) => {
+                self.axes.iter().for_each(|&joint| self.add_law(joint, &|torques| law(joint, torques), &mut column));
             }
             Term::Reading(of) => (0..self.rows.len()).for_each(|row| column[row] = of(&self.at(row)).x),
             _ => {}

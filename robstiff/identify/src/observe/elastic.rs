@@ -1,5 +1,7 @@
 //! How an arm yields to the loads of all rows.
 
+use std::rc::Rc;
+
 use nalgebra::{DVector, Vector3, Vector6};
 use robstiff::JointKind;
 
@@ -122,6 +124,15 @@ pub fn yielding(term: &Term, loaded: &Loaded, sequence: &Sequence, encoders: &[u
             let twists = twists.collect();
             let of = |encoder: &usize| if encoder == joint { turns.clone() } else { vec![0.0; rows] };
             Some(Yielding { twists, turns: encoders.iter().map(of).collect() })
+        }
+        Term::Laws(law) => {
+            let mut sum = Yielding::none(rows, encoders.len());
+            for joint in 1..=loaded.kinds.len() {
+                let own = law.clone();
+                let law = Term::Law(joint, Rc::new(move |torques: &Torques<'_>| own(joint, torques)));
+                yielding(&law, loaded, sequence, encoders).into_iter().for_each(|part| sum.add(&part, 1.0));
+            }
+            Some(sum)
         }
         Term::Aside(..) | Term::Asides(_) | Term::Table(..) | Term::World(_) | Term::Reading(_) | Term::Gain(_) => None,
     }

@@ -173,7 +173,7 @@ impl Observation for Position<'_> {
         for (k, &which) in of.iter().enumerate() {
             let parameter = &parameters[which];
             let column = match &parameter.term {
-                Term::Spring(_) | Term::Law(..) => {
+                Term::Spring(_) | Term::Law(..) | Term::Laws(_) => {
                     let part = yielding(&parameter.term, &loaded, &self.sequence, &[]);
                     part.map(|part| {
                         stacked(self.rows(), 3, |row, numbers| {

@@ -159,6 +159,7 @@ fn shown(campaign: &Campaign, robot: &Description) -> Result<Vec<DMatrix<f64>>, 
             Size::Of(size) | Size::Learned(_, size) => size,
             Size::Moves(by) => by / moves,
             Size::Flat(_) => FLAT / moves,
+            Size::Noise => NOISE,
         };
         // What the poses and loads do not show at all, no choice of them tells.
         if moves > 0.0 && size.is_finite() && size * moves > 1e-3 * NOISE {

@@ -8,6 +8,7 @@
 use nalgebra::DMatrix;
 
 use super::rivals::{Group, Number, Rival, Rivals, computed, is_of_time, pairs};
+use crate::effects::Candidate;
 use crate::identify::Error;
 use crate::model::{Parameter, Size, Term};
 use crate::select::always::{BLOCK, TABLE};
@@ -173,7 +174,7 @@ impl Forms<'_> {
         let own = self.best.iter().find(|(of, _)| of == name);
         own.and_then(|(name, label)| self.layout.find(name, label)).or_else(|| {
             let additions = self.problem.additions(beside, self.kappa);
-            additions.into_iter().map(|(_, form)| form).find(|&form| self.layout.names(form).0 == name)
+            additions.into_iter().map(|(_, form)| form).find(|&form| self.layout.stands_for(form, name))
         })
     }
 }
@@ -206,7 +207,12 @@ fn wanted(engine: &Engine<'_>, trace: &Trace, groups: &[Group]) -> Layout {
     let has_value = |name: &str| {
         engine.point.values.keys().any(|key| key.strip_prefix(name).is_some_and(|rest| rest.starts_with('/')))
     };
-    let candidates = candidates.into_iter().filter(|of| names.contains(&of.name()) || has_value(&of.name()));
+    let does_same = |of: &Candidate| {
+        of.forms.iter().flat_map(|form| &form.same).any(|name| names.iter().any(|asked| asked == name))
+    };
+    let candidates = candidates
+        .into_iter()
+        .filter(|of| names.contains(&of.name()) || has_value(&of.name()) || does_same(of));
     Layout::new(parameters[..fixed].to_vec(), parameters[fixed..fixed + always].to_vec(), candidates.collect())
 }
 

@@ -3,6 +3,7 @@
 
 use std::rc::Rc;
 
+use nalgebra::Vector3;
 use robstiff::elements::{Torque, turn};
 use robstiff::{Convention, Effect, JointKind};
 use robstiff_robots::Description;
@@ -276,6 +277,17 @@ fn block(scene: &Scene<'_>) -> Vec<Parameter> {
     block
 }
 
+/// The unloaded reading that the rows of each clamped axis share is as noisy as the others.
+fn of_clamped(scene: &Scene<'_>) -> Vec<Parameter> {
+    let of_axis = |(k, &axis): (usize, &usize)| {
+        let rows: Vec<bool> = scene.visit.iter().map(|visit| *visit == k).collect();
+        let of = move |at: &At<'_>| Vector3::x() * if rows[at.row] { 1.0 } else { 0.0 };
+        let unit = if scene.turns(axis) { "rad" } else { "m" };
+        Parameter::new("unloaded", unit, Size::Noise, Term::Reading(Rc::new(of)))
+    };
+    scene.axes.iter().enumerate().map(of_axis).collect()
+}
+
 /// What is always fitted in a scene, with so many poses; the description's own numbers first.
 pub fn always(robot: &Description, scene: &Scene<'_>, poses: usize) -> (Vec<Declared>, Vec<Parameter>) {
     let own = match scene.what {
@@ -291,8 +303,10 @@ pub fn always(robot: &Description, scene: &Scene<'_>, poses: usize) -> (Vec<Decl
         }
     };
     let mut all: Vec<Parameter> = own.iter().map(|own| own.parameter.clone()).collect();
-    if scene.what == What::Positions {
-        all.extend(of_positions(scene, poses));
+    match scene.what {
+        What::Positions => all.extend(of_positions(scene, poses)),
+        What::Clamped => all.extend(of_clamped(scene)),
+        What::Displacements => {}
     }
     (own, all)
 }

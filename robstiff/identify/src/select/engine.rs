@@ -506,12 +506,13 @@ impl<'c> Engine<'c> {
         (count > 0).then(|| (sum / f64::from(count)).sqrt())
     }
 
-    /// What is likely of bearings and laws where no compliance is declared: what was fitted.
+    /// What is likely of bearings and laws where no compliance is declared: what was fitted. A clamped axis
+    /// shows its compliance whatever else there is, and what a bias does to it goes with that.
     fn learn_sizes(&mut self, layout: &Layout) {
         for (k, own) in self.declared().iter().enumerate() {
             let key = &layout.keys[layout.fixed + k];
             if let super::always::Own::Joint(joint) = own.what
-                && self.robot.joints[joint - 1].compliance() == 0.0
+                && (self.robot.joints[joint - 1].compliance() == 0.0 || self.scene.what == What::Clamped)
             {
                 self.scene.compliance[joint - 1] = self.point.values.get(key).copied().unwrap_or(0.0).max(0.0);
             }

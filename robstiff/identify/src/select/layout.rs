@@ -99,6 +99,13 @@ impl Layout {
         })
     }
 
+    /// Whether a form is one of an effect, or does exactly the same, by the effect's full name.
+    pub fn stands_for(&self, form: usize, name: &str) -> bool {
+        let of = &self.forms[form];
+        let candidate = &self.candidates[of.candidate];
+        candidate.name() == name || candidate.forms[of.form].same.iter().any(|same| *same == name)
+    }
+
     /// The names of a form and of its candidate.
     pub fn names(&self, form: usize) -> (String, String) {
         let of = &self.forms[form];

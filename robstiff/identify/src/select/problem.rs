@@ -72,7 +72,9 @@ impl<'l> Problem<'l> {
         (noise, start): (NoisePrior, (f64, Scales)),
         (likely, sizes): (f64, f64),
     ) -> Self {
-        let priors: Vec<Prior> = (0..layout.parameters.len()).map(|k| prior(layout, k, moves[k], sizes)).collect();
+        let of_noise = start.0.sqrt();
+        let priors: Vec<Prior> =
+            (0..layout.parameters.len()).map(|k| prior(layout, k, (moves[k], of_noise), sizes)).collect();
         let least = UNSEEN * start.0.sqrt();
         let is_seen =
             |form: &usize| layout.forms[*form].columns.iter().any(|&column| moves[column] * priors[column].sd > least);
@@ -269,14 +271,15 @@ fn smaller(scales: &Scales) -> Option<Scales> {
     Some(small)
 }
 
-/// What a number is likely to be, given by how much a unit of it moves the readings; what is likely of
-/// candidates times `sizes`.
-fn prior(layout: &Layout, column: usize, moves: f64, sizes: f64) -> Prior {
+/// What a number is likely to be, given by how much a unit of it moves the readings and by the noise of
+/// one; what is likely of candidates times `sizes`.
+fn prior(layout: &Layout, column: usize, (moves, noise): (f64, f64), sizes: f64) -> Prior {
     let parameter = &layout.parameters[column];
     let is_always = layout.always().contains(&column);
     let (sd, group) = match parameter.size {
         Size::Of(sd) | Size::Flat(sd) => (sd, None),
         Size::Moves(by) => (by / moves.max(LEAST_MOVED), None),
+        Size::Noise => (noise, None),
         Size::Learned(group, _) => (1.0, Some(group)),
     };
     let sd = if is_always { sd } else { sd * sizes };

@@ -9,6 +9,7 @@
 
 mod accounted;
 pub(crate) mod basis;
+mod beside;
 pub(crate) mod case;
 mod corrected;
 mod errors;

@@ -4,6 +4,7 @@ use nalgebra::DVector;
 
 use super::basis::Basis;
 use super::case::Case;
+use super::beside;
 use super::corrected::corrected;
 use super::errors::{misfit, poses, rows};
 use super::estimate::estimates;
@@ -13,10 +14,10 @@ use super::noise::{self, NoiseSource};
 use super::written::described;
 use super::{NamedEffect, Nested, Rival, Suspected, Trace, Verdict, concluded};
 use crate::campaign::{Campaign, Data};
-use crate::effects::{Number, Side, What};
+use crate::effects::{Number, Offers, Scene, Side, What};
 use crate::identify::Error;
 use crate::judge::gates::{Judgement, Weighed};
-use crate::judge::thresholds::{OUTLYING_ROWS, SUSPECTED};
+use crate::judge::thresholds::{MATTERS, SUSPECTED};
 use crate::judge::verdict::OverNoise;
 use crate::model::Term;
 use crate::regression::Fit;
@@ -71,10 +72,14 @@ pub fn report(
     let size = found.own.fit.variance.sqrt();
     let plain = engine.noise_at(found);
     let over_noise = known.map(|known| OverNoise { ratio: plain / known.size, by_chance: known.by_chance() });
-    let names: Vec<String> = suspected.iter().filter(|of| !is_unnamed(of)).map(|of| of.effect.to_string()).collect();
-    let outliers = outliers(engine, found, case);
-    let (verdict, why) = concluded((effects.len(), outliers.is_some()), (&names, &looks_like), judgement, over_noise);
-    effects.extend(outliers);
+    // What does not matter is within the noise that is left.
+    let names = rest.iter().filter(|of| of.class.probability > SUSPECTED && of.matters >= MATTERS);
+    let names: Vec<String> = names.map(|of| effect(found, of).to_string()).collect();
+    let outliers = beside::outliers(engine, found, case);
+    let reflector = beside::reflector(engine, found);
+    let many = effects.len() + usize::from(reflector.is_some());
+    let (verdict, why) = concluded((many, outliers.is_some()), (&names, &looks_like), judgement, over_noise);
+    effects.extend(reflector.into_iter().chain(outliers));
     effects.iter_mut().for_each(|named| named.partial = verdict == Verdict::Partial);
     let robots = |form: &&usize| found.layout.candidates[found.layout.forms[**form].candidate].kind.side == Side::Robot;
     let written: Vec<Effect> =
@@ -205,10 +210,6 @@ fn declared(campaign: &Campaign, case: &Case<'_>) -> DVector<f64> {
     &case.observation.readings().values - predicted
 }
 
-fn is_unnamed(of: &Suspected) -> bool {
-    crate::effects::kind_of(of.effect.kind()).is_some_and(|kind| kind.side == Side::Unnamed)
-}
-
 /// An effect of the best set with its numbers.
 fn effect(found: &Found, of: &Weighed) -> Effect {
     of_form(&found.layout, &found.own.fit, of.class.form)
@@ -232,7 +233,15 @@ fn of_form(layout: &Layout, fit: &Fit, form: usize) -> Effect {
 }
 
 fn class(found: &Found, of: &Weighed) -> Vec<(String, f64)> {
-    of.class.members.iter().map(|(member, p)| (found.layout.candidates[*member].name(), *p)).collect()
+    let of_form = &found.layout.forms[of.class.form];
+    let same = &found.layout.candidates[of_form.candidate].forms[of_form.form].same;
+    let own = of.class.members[0].1;
+    let members = of.class.members.iter().map(|(member, p)| (found.layout.candidates[*member].name(), *p));
+    let mut all: Vec<(String, f64)> = members.collect();
+    let twins = same.iter().filter(|name| all.iter().all(|(other, _)| other != *name));
+    let twins: Vec<(String, f64)> = twins.map(|name| ((*name).to_owned(), own)).collect();
+    all.splice(1..1, twins);
+    all
 }
 
 fn suspected(found: &Found, of: &Weighed) -> Suspected {
@@ -274,33 +283,6 @@ fn order_of<'w>(
         })
         .collect()
 }
-
-/// Rows that do not belong to the others, where they are few and far off: not the tail of the others.
-fn outliers(engine: &Engine<'_>, found: &Found, case: &Case<'_>) -> Option<NamedEffect> {
-    let readings = case.observation.readings();
-    let rows = &engine.noise.beyond_tails;
-    let fitted = case.rows(true).len();
-    if rows.is_empty()
-        || engine.noise.for_outliers < FOR_OUTLIERS
-        || engine.noise.for_beyond < ODDS.ln()
-        || (rows.len() as f64) < OUTLYING_ROWS * fitted as f64
-    {
-        return None;
-    }
-    let name = "outliers@rig".to_owned();
-    Some(NamedEffect {
-        effect: Effect::outliers(rows.len()),
-        lines: rows.iter().map(|&row| readings.lines[row]).collect(),
-        probability: 1.0 - (-engine.noise.for_beyond).exp(),
-        class: vec![(name, 1.0)],
-        recurs: 1.0,
-        holdout_rms: engine.unseen_rms(&found.layout, &found.columns, &found.best, found.kappa).unwrap_or_default(),
-        partial: false,
-    })
-}
-
-/// The log-likelihood ratio from which on rows are reported as outlying: odds of three thousand.
-const FOR_OUTLIERS: f64 = 8.0;
 
 /// What the table's numbers change by, a row each; none but of absolute positions.
 fn table(case: &Case<'_>, layout: &Layout, values: &std::collections::BTreeMap<String, f64>) -> Vec<[f64; 5]> {
@@ -351,5 +333,13 @@ fn invisible(engine: &Engine<'_>, found: &Found) -> Vec<String> {
     let shown: Vec<usize> = problem.offered.iter().map(|&form| found.layout.forms[form].candidate).collect();
     let all = found.layout.candidates.iter().enumerate();
     let hidden = all.filter(|(k, of)| !shown.contains(k) && of.kind.side != Side::Unnamed);
-    hidden.map(|(_, of)| of.name()).collect()
+    let mut names: Vec<String> = hidden.map(|(_, of)| of.name()).collect();
+    if engine.scene.what == What::Clamped {
+        // What loads at the tool would show.
+        let pulled = Scene { what: What::Displacements, force: 1.0, ..engine.scene.clone() };
+        let offered: Vec<String> = found.layout.candidates.iter().map(|of| of.name()).collect();
+        let others = Offers::of(&pulled).into_iter().filter(|of| of.kind.side != Side::Unnamed);
+        names.extend(others.map(|of| of.name()).filter(|name| !offered.contains(name)));
+    }
+    names
 }

@@ -1,0 +1,66 @@
+//! What is named beside the classes: what is in every set, and stands out all the same.
+
+use super::NamedEffect;
+use super::case::Case;
+use super::found::Found as Effect;
+use crate::effects::{Number, Place, kind_of};
+use crate::judge::thresholds::{OUTLYING_ROWS, STANDS_OUT};
+use crate::probability::chi_square_tail;
+use crate::select::always::REFLECTOR;
+use crate::select::classes::ODDS;
+use crate::select::engine::{Engine, Found};
+
+/// The reflector of absolute positions, where it is elsewhere than the file says. It is always fitted, so
+/// no set does without it: what counts is how far from zero it comes out.
+pub fn reflector(engine: &Engine<'_>, found: &Found) -> Option<NamedEffect> {
+    let fit = &found.own.fit;
+    let noise = fit.variance.sqrt();
+    let of = |(k, name): (usize, &'static str)| {
+        let column = found.layout.always().find(|&column| found.layout.parameters[column].name == REFLECTOR[k])?;
+        let at = fit.place(column)?;
+        Some(Number { name, value: fit.mean[at], std: Some(fit.std[at]), unit: "m" })
+    };
+    let numbers: Vec<Number> = ["x", "y", "z"].into_iter().enumerate().filter_map(of).collect();
+    let sigmas = |number: &Number| number.value.abs() / number.std.unwrap_or(f64::INFINITY);
+    let most = numbers.iter().filter(|number| number.value.abs() > noise).map(sigmas).fold(0.0, f64::max);
+    if most < STANDS_OUT {
+        return None;
+    }
+    let effect = Effect::new(kind_of("reflector_offset")?, Place::Rig, numbers, Vec::new());
+    Some(NamedEffect {
+        class: vec![(effect.to_string(), 1.0)],
+        effect,
+        lines: Vec::new(),
+        probability: 1.0 - chi_square_tail(most * most, 1.0).unwrap_or(0.0),
+        recurs: 1.0,
+        holdout_rms: engine.unseen_rms(&found.layout, &found.columns, &found.best, found.kappa).unwrap_or_default(),
+        partial: false,
+    })
+}
+
+/// Rows that do not belong to the others, where they are few and far off: not the tail of the others.
+pub fn outliers(engine: &Engine<'_>, found: &Found, case: &Case<'_>) -> Option<NamedEffect> {
+    let readings = case.observation.readings();
+    let rows = &engine.noise.beyond_tails;
+    let fitted = case.rows(true).len();
+    if rows.is_empty()
+        || engine.noise.for_outliers < FOR_OUTLIERS
+        || engine.noise.for_beyond < ODDS.ln()
+        || (rows.len() as f64) < OUTLYING_ROWS * fitted as f64
+    {
+        return None;
+    }
+    let name = "outliers@rig".to_owned();
+    Some(NamedEffect {
+        effect: Effect::outliers(rows.len()),
+        lines: rows.iter().map(|&row| readings.lines[row]).collect(),
+        probability: 1.0 - (-engine.noise.for_beyond).exp(),
+        class: vec![(name, 1.0)],
+        recurs: 1.0,
+        holdout_rms: engine.unseen_rms(&found.layout, &found.columns, &found.best, found.kappa).unwrap_or_default(),
+        partial: false,
+    })
+}
+
+/// The log-likelihood ratio from which on rows are reported as outlying: odds of three thousand.
+const FOR_OUTLIERS: f64 = 8.0;
