@@ -46,7 +46,7 @@ fn assert_near(what: &str, found: f64, expected: f64, fraction: f64) {
 }
 
 #[test]
-fn the_tilt_of_joint_3_is_missing() {
+fn more_than_the_joints_gives_way() {
     let found = &*TRACE;
     assert_eq!((found.rows, found.poses, found.held_out.len()), (43, 43, 0));
     assert_near("joints only (mm)", whole(found.identified.rms), 0.372, 2e-3);
@@ -54,10 +54,12 @@ fn the_tilt_of_joint_3_is_missing() {
     assert!(found.declared.rms > found.identified.rms);
 
     assert!(whole(found.after.rms) < 0.2 && whole(found.after.holdout_rms) < 0.22, "{:?}", found.after);
-    // The tilt is among what the data show, named or suspected.
+    // Whether joint 3 tilts or the link behind it bends, these data do not decide.
+    let near_joint_3 = |name: &String| name == "transverse_compliance@joint 3" || name == "link_compliance@link 3";
+    assert!(found.effects.iter().all(|named| named.partial));
     let of_class = found.effects.iter().map(|named| &named.class).chain(found.suspected.iter().map(|of| &of.class));
-    let names: Vec<&str> = of_class.flatten().map(|(name, _)| name.as_str()).collect();
-    assert!(names.contains(&"transverse_compliance@joint 3"), "{names:?}");
+    let names: Vec<&String> = of_class.flatten().map(|(name, _)| name).collect();
+    assert!(names.into_iter().any(near_joint_3), "{:?} {:?}", found.effects, found.suspected);
     // Nothing but what the model leaves says how large the noise is.
     assert_eq!(found.verdict, Verdict::Partial);
     assert!((0.0..1.0).contains(&found.unexplained) && !found.why.is_empty());
@@ -118,7 +120,8 @@ fn another_least_squares_finds_the_same() {
     // readings, some 0.2 % of them, which is what the two may differ by.
     let (joints, rms, unseen) = least_squares(&columns.columns(0, 6).into_owned(), &readings);
     assert_near("joints only", rms, found.identified.rms, 1e-3);
-    assert_near("joints only, each left out", unseen, found.identified.holdout_rms, 1e-3);
+    // Here each pose is left out by itself, there a fifth of them.
+    assert_near("joints only, each left out", unseen, found.identified.holdout_rms, 0.05);
     for (estimate, own) in found.estimates_before.iter().zip(joints.iter()) {
         assert_near(&estimate.name, *own, estimate.value, 5e-3);
     }
@@ -148,7 +151,8 @@ fn the_description_predicts_what_was_promised_in_every_way() {
     let read = Description::parse("robot.yaml", &written).unwrap_or_else(|problem| panic!("{problem}"));
     assert_eq!(read, TRACE.description);
     let of_robot: Vec<Effect> = TRACE.effects.iter().filter_map(|named| named.effect.effect()).collect();
-    assert_eq!(read.effects, of_robot);
+    // All that predicts is written, what is named among it.
+    assert!(of_robot.iter().all(|effect| read.effects.contains(effect)), "{of_robot:?} {:?}", read.effects);
 
     let prediction = predict(&read, &CAMPAIGN).expect("the campaign's robot");
     // Of the readings as they are: faults of the rig are not in a description.
@@ -185,7 +189,7 @@ fn the_description_compiles_and_the_program_agrees() {
     fs::write(user.folder.join("loads.txt"), chosen.iter().map(line).collect::<String>())
         .expect("the copy can be written");
 
-    let of_robot: Vec<Effect> = TRACE.effects.iter().filter_map(|named| named.effect.effect()).collect();
+    let of_robot = &TRACE.description.effects;
     let printed = user.prints();
     let mut lines = printed.lines();
     assert_eq!(lines.next(), Some(format!("{of_robot:?}").as_str()));

@@ -12,11 +12,11 @@ use robstiff_identify::trace::{Options, trace};
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots/measured/fanuc-r2000ic");
     let campaign = Campaign::read(folder.join("campaign.yaml"))?;
-    let traced = trace(&campaign, &Options { draws: 499, ..Options::default() }, &|_| ())?;
+    let traced = trace(&campaign, &Options::default(), &|_| ())?;
 
     println!("{}: {}", traced.verdict, traced.why);
     for named in &traced.effects {
-        println!("  {}, p = {:.3}", named.effect, named.p_value);
+        println!("  {}, probability {:.3}", named.effect, named.probability);
         for parameter in &named.effect.parameters {
             println!("    {} = {:.3e} {}", parameter.name, parameter.value, parameter.unit);
         }

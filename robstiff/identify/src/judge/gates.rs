@@ -129,7 +129,7 @@ fn why_not(
     if of.stands_out == Some(false) {
         return Some("it does not stand out from the other numbers of the table".into());
     }
-    if of.replaced.is_none() && of.matters < MATTERS {
+    if what == What::Displacements && of.matters < MATTERS {
         return Some("without it the error grows by next to nothing".into());
     }
     if of.stands_out.is_none() && of.replaced.is_some_and(|of| of.loss < LOSS || of.worse < WORSE) {

@@ -207,13 +207,16 @@ impl Noise {
         }
         self.outlying = part;
         self.for_outliers = of_rows().map(|&row| (1.0 - part + part * odds(squares[row])).ln()).sum();
+        let whole = squares.clone();
         let squares: Vec<f64> = of_rows().map(|&row| squares[row]).collect();
         let (ratio, beyond) = beyond_tails(&squares, axes);
         self.for_beyond = ratio;
         self.beyond_tails = of_rows().zip(beyond).filter(|(_, beyond)| *beyond).map(|(row, _)| *row).collect();
         self.beyond_tails.sort_unstable();
         for &row in of_rows() {
-            self.weights[row] = 1.0 - outlying[row] + outlying[row] / (WIDER * WIDER);
+            let weight = 1.0 - outlying[row] + outlying[row] / (WIDER * WIDER);
+            // Beyond the wider distribution, too, no row has more to say than one at its edge.
+            self.weights[row] = if outlying[row] > 0.5 { weight.min(axes / whole[row].max(axes)) } else { weight };
         }
     }
 

@@ -15,6 +15,7 @@ mod corrected;
 mod errors;
 mod estimate;
 mod features;
+mod forms;
 mod found;
 mod noise;
 mod report;

@@ -9,6 +9,7 @@ use super::corrected::corrected;
 use super::errors::{misfit, poses, rows};
 use super::estimate::estimates;
 use super::features::depends_on;
+use super::forms::between_forms;
 use super::found::Found as Effect;
 use super::noise::{self, NoiseSource};
 use super::written::described;
@@ -24,7 +25,7 @@ use crate::regression::Fit;
 use crate::select::classes::ODDS;
 use crate::select::engine::{Engine, Found};
 use crate::select::folds;
-use crate::select::{Layout, Set};
+use crate::select::{Layout, Problem, Set};
 
 /// A tracing in full.
 ///
@@ -39,6 +40,9 @@ pub fn report(
 ) -> Result<Trace, Error> {
     let readings = case.observation.readings();
     let own = engine.declared();
+    let grams = engine.grams(&found.columns, &engine.one_group()).total;
+    let problem = engine.problem(&found.layout, &found.columns, grams);
+    let effect = |of: &Weighed| effect(&problem, found, of);
     let (named, rest): (Vec<&Weighed>, Vec<&Weighed>) = judgement.classes.iter().partition(|of| of.why_not.is_none());
     let side = |of: &&Weighed| found.layout.candidates[of.class.members[0].0].kind.side;
     let (unnamed, rest): (Vec<&Weighed>, Vec<&Weighed>) = rest.into_iter().partition(|of| side(of) == Side::Unnamed);
@@ -46,10 +50,10 @@ pub fn report(
         .iter()
         .chain(&unnamed)
         .filter(|of| of.class.probability > SUSPECTED)
-        .map(|of| suspected(found, of))
+        .map(|of| suspected(found, effect(of), of))
         .collect();
     let looks_like: Vec<String> =
-        unnamed.iter().filter(|of| of.least > 0.5).map(|of| effect(found, of).words()).collect();
+        unnamed.iter().filter(|of| of.least > 0.5).map(|of| effect(of).words()).collect();
     let model = corrected(case, engine, found, nested)
         .ok_or_else(|| Error::NotShown("no description fits these data".into()))?;
     let before = engine.alone(&found.layout);
@@ -59,7 +63,7 @@ pub fn report(
     let mut effects: Vec<NamedEffect> = by_order
         .iter()
         .map(|(of, rms)| NamedEffect {
-            effect: effect(found, of),
+            effect: effect(of),
             lines: Vec::new(),
             probability: of.class.probability,
             class: class(found, of),
@@ -74,7 +78,7 @@ pub fn report(
     let over_noise = known.map(|known| OverNoise { ratio: plain / known.size, by_chance: known.by_chance() });
     // What does not matter is within the noise that is left.
     let names = rest.iter().filter(|of| of.class.probability > SUSPECTED && of.matters >= MATTERS);
-    let names: Vec<String> = names.map(|of| effect(found, of).to_string()).collect();
+    let names: Vec<String> = names.map(|of| effect(of).to_string()).collect();
     let outliers = beside::outliers(engine, found, case);
     let reflector = beside::reflector(engine, found);
     let many = effects.len() + usize::from(reflector.is_some());
@@ -211,8 +215,13 @@ fn declared(campaign: &Campaign, case: &Case<'_>) -> DVector<f64> {
 }
 
 /// An effect of the best set with its numbers.
-fn effect(found: &Found, of: &Weighed) -> Effect {
-    of_form(&found.layout, &found.own.fit, of.class.form)
+fn effect(problem: &Problem<'_>, found: &Found, of: &Weighed) -> Effect {
+    let mut effect = of_form(&found.layout, &found.own.fit, of.class.form);
+    let between = between_forms(problem, found, of.class.form);
+    for (number, between) in effect.parameters.iter_mut().zip(between) {
+        number.std = number.std.map(|std| (std * std + between).sqrt());
+    }
+    effect
 }
 
 /// An effect in one of its forms with its numbers in a fit.
@@ -244,9 +253,9 @@ fn class(found: &Found, of: &Weighed) -> Vec<(String, f64)> {
     all
 }
 
-fn suspected(found: &Found, of: &Weighed) -> Suspected {
+fn suspected(found: &Found, effect: Effect, of: &Weighed) -> Suspected {
     Suspected {
-        effect: effect(found, of),
+        effect,
         probability: of.class.probability,
         class: class(found, of),
         recurs: of.recurs,
