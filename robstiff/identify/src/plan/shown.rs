@@ -138,6 +138,7 @@ impl<'c> Shown<'c> {
     fn noise_of(&self, readings: &Readings, rigged: &Rigged) -> Noise {
         let mut noise = Noise::plain(readings, 1.0);
         noise.growth = self.noise.growth;
+        noise.level = self.noise.level;
         let size = self.source.variance.sqrt();
         let visits = readings.visit.iter().max().map_or(0, |last| last + 1);
         // Of one row, the noise of the campaign is that of both its readings.

@@ -102,6 +102,7 @@ fn of_group(
     let (width, wide) = (readings.width, columns.ncols());
     let count: usize = blocks.iter().map(|rows| rows.len() * width).sum();
     let shared: Vec<usize> = (0..width).filter(|k| readings.channels[*k] < 2).collect();
+    let encoders: Vec<usize> = (0..width).filter(|k| readings.channels[*k] >= 2).collect();
     let mut white = DMatrix::zeros(count, wide);
     let mut plain = 0.0;
     let is_discrepant = kappas.iter().any(|kappa| *kappa > 0.0);
@@ -127,13 +128,17 @@ fn of_group(
             white.rows_mut(at, rows.len()).copy_from(&of_axis);
             at += rows.len();
         }
-        for axis in (0..width).filter(|k| readings.channels[*k] >= 2) {
-            let scale = noise.scales[readings.channels[axis]];
-            for &row in *rows {
-                let by = scale / noise.of_row(row).sqrt();
-                plain -= 2.0 * by.ln();
-                white.row_mut(at).copy_from(&(columns.row(row * width + axis) * by));
-                at += 1;
+        if !encoders.is_empty() {
+            let Some(factor) = noise.of_encoder(readings, rows).cholesky() else { continue };
+            let lower = factor.l();
+            let log_det = 2.0 * lower.diagonal().iter().map(|d| d.ln()).sum::<f64>();
+            for &axis in &encoders {
+                let scale = noise.scales[readings.channels[axis]];
+                let of_axis = DMatrix::from_fn(rows.len(), wide, |i, j| columns[(rows[i] * width + axis, j)] * scale);
+                let of_axis = lower.solve_lower_triangular(&of_axis).unwrap_or(of_axis);
+                plain += log_det - 2.0 * scale.ln() * rows.len() as f64;
+                white.rows_mut(at, rows.len()).copy_from(&of_axis);
+                at += rows.len();
             }
         }
         loads.push(((forces.tr_mul(&forces)).fixed_view::<3, 3>(0, 0).into_owned(), shared.len()));
@@ -180,7 +185,7 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
-    use crate::regression::noise::DISCREPANCIES;
+    use crate::regression::noise::{DISCREPANCIES, Level};
 
     fn readings() -> Readings {
         let rows = 7;
@@ -205,6 +210,7 @@ mod tests {
         let readings = readings();
         let mut noise = Noise::plain(&readings, 0.5);
         noise.weights[2] = 0.2;
+        noise.level = (Level::Block, 40.0);
         let columns = DMatrix::from_fn(readings.values.len(), 2, |i, j| ((3 * i + 5 * j) as f64).cos());
         let all = with_target(columns, &readings.values);
         let grams = Grams::new(&readings, &noise, &all, &[Some(0), Some(1), Some(1)]);
@@ -215,7 +221,10 @@ mod tests {
                 let scale = noise.scales[readings.channels[a.1]] * noise.scales[readings.channels[b.1]];
                 let same = readings.block[a.0] == readings.block[b.0] && a.1 == b.1;
                 let own = if i == j { noise.of_row(a.0) } else { 0.0 };
-                let shared = if same && a.1 < 3 {
+                let shared = if same && a.1 == 3 {
+                    // What the rows of a pose share in an encoder says nothing, and has no part of the load.
+                    noise.level.1
+                } else if same {
                     let visit = if readings.visit[a.0] == readings.visit[b.0] { 1.0 } else { 0.0 };
                     visit + kappa * readings.force[a.0].dot(&readings.force[b.0])
                 } else {

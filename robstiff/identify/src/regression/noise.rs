@@ -10,6 +10,11 @@
 //! last part is what the model does not account for at a pose, its *discrepancy* (Kennedy and
 //! O'Hagan, J. R. Statist. Soc. B 63, 2001): a random compliance of each pose, which adds the more,
 //! the larger the load.
+//!
+//! The readings of an encoder at a pose have the covariance `s_e^2 [diag(v_r / w_r) + tau 1_level]`.
+//! A gear has errors: the angle of the unloaded arm behind it is not the coordinate. What the rows of a
+//! pose, or of a visit, share is a level whose variance `tau` is learned. An encoder has no
+//! discrepancy: it sees the gear alone, where a model lacks little.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 use statrs::function::gamma::ln_gamma;
@@ -22,6 +27,16 @@ pub const DISCREPANCIES: [f64; 5] = [0.0, 0.03, 0.3, 3.0, 30.0];
 /// The shares `rho` of the unloaded reading that are tried: none, some, and as noisy as the loaded
 /// one.
 const SHARED: [f64; 3] = [0.0, 0.3, 1.0];
+
+/// The variances `tau` of the levels of encoders that are tried, over that of one reading. Under the last
+/// a level says nothing.
+const LEVELS: [f64; 10] = [0.0, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1e3, 1e4];
+
+/// A reading of an encoder that is further from its level than this, over the noise, does not count.
+const FAR: f64 = 4.0;
+
+/// The median of `|x|` of a standard normal `x`.
+const MEDIAN_OF_NORMAL: f64 = 0.674_489_75;
 
 /// The parts of a displacement by which noise may grow that are tried.
 const PROPORTIONAL: [f64; 5] = [0.0, 0.005, 0.01, 0.02, 0.04];
@@ -43,6 +58,15 @@ const MOST_OUTLYING: f64 = 0.1;
 /// A row with less weight than this is outlying.
 pub const OUTLYING: f64 = 0.3;
 
+/// What the rows share that have an encoder's level in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// The pose.
+    Block,
+    /// The visit.
+    Visit,
+}
+
 /// The noise of the readings, up to its size.
 #[derive(Clone, Debug)]
 pub struct Noise {
@@ -54,6 +78,8 @@ pub struct Noise {
     pub growth: f64,
     /// What brings each channel to the noise of the first.
     pub scales: Vec<f64>,
+    /// Which rows of an encoder share a level, and its variance `tau` over that of one reading.
+    pub level: (Level, f64),
     /// The part of the rows that is outlying.
     pub outlying: f64,
     /// The log-likelihood ratio of outlying rows against none.
@@ -79,6 +105,7 @@ impl Noise {
             shared: if has_shared(readings) { 1.0 } else { 0.0 },
             growth: 0.0,
             scales: (0..channels).map(|channel| if channel == 0 { 1.0 } else { lever }).collect(),
+            level: (Level::Block, LEVELS[LEVELS.len() - 1]),
             outlying: 0.0,
             for_outliers: 0.0,
             beyond_tails: Vec::new(),
@@ -111,6 +138,7 @@ impl Noise {
             }
             self.learn_weights(readings, left, kappa, &rows);
         }
+        self.learn_encoders(readings, left, kappa, &rows);
     }
 
     /// The log-likelihood where noise has a part in proportion to the displacement, and how it grows
@@ -134,7 +162,7 @@ impl Noise {
         (likelihood, growth)
     }
 
-    /// Rotations and encoders by the medians of their residuals.
+    /// Rotations by the medians of their residuals: these have the covariance of displacements.
     fn learn_scales(&mut self, readings: &Readings, left: &DVector<f64>, rows: &[Vec<usize>]) {
         let median = |channel: usize| {
             let numbers = rows.iter().flatten().flat_map(|row| {
@@ -144,12 +172,79 @@ impl Noise {
             median(numbers.collect())
         };
         let first = median(0);
-        for channel in 1..self.scales.len() {
+        for channel in 1..self.scales.len().min(2) {
             let own = median(channel);
             if own > 0.0 && first > 0.0 {
                 self.scales[channel] = first / own;
             }
         }
+    }
+
+    /// The levels of encoders, and the noise of each over that of displacements.
+    fn learn_encoders(&mut self, readings: &Readings, left: &DVector<f64>, kappa: f64, rows: &[Vec<usize>]) {
+        let axes: Vec<usize> = (0..readings.width).filter(|axis| readings.channels[*axis] >= 2).collect();
+        if axes.is_empty() {
+            return;
+        }
+        let tried = [Level::Block, Level::Visit].into_iter().flat_map(|by| LEVELS.map(|tau| (by, tau)));
+        let mut best: Option<(f64, (Level, f64), Vec<f64>)> = None;
+        for level in tried {
+            let (mut likelihood, mut sizes) = (0.0, Vec::new());
+            for white in self.white_encoders(readings, left, rows, &axes, level) {
+                let (one, size) = size_of(&white);
+                likelihood += one;
+                sizes.push(size);
+            }
+            if best.as_ref().is_none_or(|(most, ..)| likelihood > *most + 1e-6) {
+                best = Some((likelihood, level, sizes));
+            }
+        }
+        let size = self.likelihood(readings, left, kappa, rows, (self.shared, self.growth)).1;
+        let Some((_, level, sizes)) = best else { return };
+        self.level = level;
+        for (&axis, of_axis) in axes.iter().zip(sizes) {
+            if of_axis > 0.0 && size > 0.0 {
+                self.scales[readings.channels[axis]] = size / of_axis;
+            }
+        }
+    }
+
+    /// The whitened residuals of each encoder, and the logarithm of the determinant of their covariance.
+    fn white_encoders(
+        &self,
+        readings: &Readings,
+        left: &DVector<f64>,
+        rows: &[Vec<usize>],
+        axes: &[usize],
+        level: (Level, f64),
+    ) -> Vec<(Vec<f64>, f64)> {
+        let mut white = vec![(Vec::new(), 0.0); axes.len()];
+        for rows in rows.iter().filter(|rows| !rows.is_empty()) {
+            let Some(factor) = self.level_covariance(readings, rows, level).cholesky() else { continue };
+            let lower = factor.l();
+            let log_det = 2.0 * lower.diagonal().iter().map(|d| d.ln()).sum::<f64>();
+            let of = DMatrix::from_fn(rows.len(), axes.len(), |i, k| left[rows[i] * readings.width + axes[k]]);
+            let Some(of) = lower.solve_lower_triangular(&of) else { continue };
+            for (k, (numbers, sum)) in white.iter_mut().enumerate() {
+                numbers.extend(of.column(k).iter());
+                *sum += log_det;
+            }
+        }
+        white
+    }
+
+    /// The covariance of an encoder over some rows of a block, over its variance.
+    fn level_covariance(&self, readings: &Readings, rows: &[usize], (by, tau): (Level, f64)) -> DMatrix<f64> {
+        DMatrix::from_fn(rows.len(), rows.len(), |i, j| {
+            let own = if i == j { self.of_row(rows[i]) } else { 0.0 };
+            let is_shared = by == Level::Block || readings.visit[rows[i]] == readings.visit[rows[j]];
+            own + if is_shared { tau } else { 0.0 }
+        })
+    }
+
+    /// The covariance of an encoder over some rows of a block, over its variance.
+    pub fn of_encoder(&self, readings: &Readings, rows: &[usize]) -> DMatrix<f64> {
+        self.level_covariance(readings, rows, self.level)
     }
 
     /// The log-likelihood of the residuals, at their most likely size, and that size (m).
@@ -207,16 +302,13 @@ impl Noise {
         }
         self.outlying = part;
         self.for_outliers = of_rows().map(|&row| (1.0 - part + part * odds(squares[row])).ln()).sum();
-        let whole = squares.clone();
         let squares: Vec<f64> = of_rows().map(|&row| squares[row]).collect();
         let (ratio, beyond) = beyond_tails(&squares, axes);
         self.for_beyond = ratio;
         self.beyond_tails = of_rows().zip(beyond).filter(|(_, beyond)| *beyond).map(|(row, _)| *row).collect();
         self.beyond_tails.sort_unstable();
         for &row in of_rows() {
-            let weight = 1.0 - outlying[row] + outlying[row] / (WIDER * WIDER);
-            // Beyond the wider distribution, too, no row has more to say than one at its edge.
-            self.weights[row] = if outlying[row] > 0.5 { weight.min(axes / whole[row].max(axes)) } else { weight };
+            self.weights[row] = 1.0 - outlying[row] + outlying[row] / (WIDER * WIDER);
         }
     }
 
@@ -314,6 +406,16 @@ fn has_shared(readings: &Readings) -> bool {
 pub fn discrepancies(readings: &Readings) -> &'static [f64] {
     let is_loaded = readings.force.iter().any(|force: &Vector3<f64>| *force != Vector3::zeros());
     if is_loaded { &DISCREPANCIES } else { &DISCREPANCIES[..1] }
+}
+
+/// The log-likelihood of whitened residuals at their most likely size, and that size. Those that are far
+/// from the others are brought near.
+fn size_of((white, log_det): &(Vec<f64>, f64)) -> (f64, f64) {
+    let most = FAR * median(white.iter().map(|one| one.abs()).collect()) / MEDIAN_OF_NORMAL;
+    let count = white.len().max(1) as f64;
+    let sum: f64 = white.iter().map(|one| one.abs().min(most).powi(2)).sum();
+    let variance = (sum / count).max(f64::MIN_POSITIVE);
+    (-0.5 * count * variance.ln() - 0.5 * log_det, variance.sqrt())
 }
 
 fn median(mut numbers: Vec<f64>) -> f64 {
