@@ -317,7 +317,12 @@ fn other_arms_are_refused_where_they_differ() {
         said.contains("the joint `joint_3` turns, the description's slides") && said.contains("arm.urdf:42:3"),
         "{said}"
     );
-    // The second joint counted the other way round.
+    // The first joint counted the other way round.
+    let mut other = robot.clone();
+    other.base.rpy[0] = 2.0 * FRAC_PI_2;
+    let said = refused(ARM, "flange", &other);
+    assert!(said.contains("at zero the description turns what the joint `joint_1` carries by 180.0 deg"), "{said}");
+    // The second one.
     let mut other = robot.clone();
     other.joints[0].alpha = FRAC_PI_2;
     let said = refused(ARM, "flange", &other);

@@ -99,11 +99,15 @@ pub(super) fn motions(from: &Posture, to: &Posture, is_rigid: bool) -> Vec<Isome
     motions
 }
 
-/// The least turn from one direction to another.
+/// The least turn from one direction to another; to the opposite one about any axis across.
 fn least_turn(from: &Vector3<f64>, to: &Vector3<f64>) -> UnitQuaternion<f64> {
     let axis = from.cross(to);
     let angle = axis.norm().atan2(from.dot(to));
-    axis.try_normalize(0.0).map_or(UnitQuaternion::identity(), |axis| UnitQuaternion::new(axis * angle))
+    match axis.try_normalize(0.0) {
+        Some(axis) => UnitQuaternion::new(axis * angle),
+        None if angle == 0.0 => UnitQuaternion::identity(),
+        None => UnitQuaternion::new(from.cross(&Vector3::ith(from.iamin(), 1.0)).normalize() * angle),
+    }
 }
 
 fn about(point: Vector3<f64>, direction: &Vector3<f64>, angle: f64) -> Isometry3<f64> {

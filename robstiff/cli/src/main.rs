@@ -1,8 +1,10 @@
 //! The command `robstiff`: what a robot's description says about its
 //! stiffness, and what measurements say about the description.
 
+mod agreement;
 mod effect;
 mod emit;
+mod export;
 mod failure;
 mod forces;
 mod identify;
@@ -54,6 +56,7 @@ enum Command {
     Stability(stability::Arguments),
     Path(path::Arguments),
     Import(import::Arguments),
+    Export(export::Arguments),
     View(scene::Arguments),
     Map(map::Arguments),
     Online(online::Arguments),
@@ -77,6 +80,7 @@ impl Command {
             Self::Stability(arguments) => stability::run(arguments),
             Self::Path(arguments) => path::run(arguments),
             Self::Import(arguments) => import::run(arguments),
+            Self::Export(arguments) => export::run(arguments),
             Self::View(arguments) => scene::run(arguments),
             Self::Map(arguments) => map::run(arguments),
             Self::Online(arguments) => online::run(arguments),
