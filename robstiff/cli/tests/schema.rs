@@ -26,6 +26,8 @@ fn parsed(text: &str) -> Value {
 fn kind_of(file: &Value) -> Option<&'static str> {
     let has = |field: &str| file.get(field).is_some();
     match () {
+        // A list of records of forces has no schema.
+        () if has("records") => None,
         () if has("observations") => Some("campaign"),
         () if has("convention") => Some("robot"),
         () if has("seed") && has("poses") => Some("scenario"),

@@ -226,18 +226,7 @@ fn cut(map: &Map<'_>, speed: Option<Option<f64>>) -> Option<Said> {
     let coefficients = coefficients_or_material(map);
     let diameter = mill.as_ref().map(|mill| mill.diameter);
     let engagement = engagement(map, diameter);
-    let depth = map.require("depth", "depth: 2 mm").and_then(|node| {
-        let depth = node.positive(Dimension::Length)?;
-        // The flutes would go round without end.
-        if diameter.is_some_and(|diameter| depth > MOST_DIAMETERS * diameter) {
-            node.error(
-                format!("the cut is more than {MOST_DIAMETERS} times as deep as the tool is wide"),
-                "e.g. `2 mm`",
-            );
-            return None;
-        }
-        Some(depth)
-    });
+    let depth = depth(map, diameter);
     let feed = feed(map, mill.as_ref(), speed);
     let (coefficients, source) = coefficients?;
     let cut =
@@ -245,7 +234,18 @@ fn cut(map: &Map<'_>, speed: Option<Option<f64>>) -> Option<Said> {
     Some(Said::Model(cut, source))
 }
 
-fn mill(node: &Node<'_>) -> Option<EndMill> {
+pub(super) fn depth(map: &Map<'_>, diameter: Option<f64>) -> Option<f64> {
+    let node = map.require("depth", "depth: 2 mm")?;
+    let depth = node.positive(Dimension::Length)?;
+    // The flutes would go round without end.
+    if diameter.is_some_and(|diameter| depth > MOST_DIAMETERS * diameter) {
+        node.error(format!("the cut is more than {MOST_DIAMETERS} times as deep as the tool is wide"), "e.g. `2 mm`");
+        return None;
+    }
+    Some(depth)
+}
+
+pub(super) fn mill(node: &Node<'_>) -> Option<EndMill> {
     let map = node.map(&["diameter", "teeth", "helix", "runout"])?;
     let diameter = map.require("diameter", "diameter: 16 mm").and_then(|node| node.positive(Dimension::Length));
     let teeth = map.require("teeth", "teeth: 3").and_then(|node| {
@@ -292,7 +292,7 @@ fn coefficients_or_material(map: &Map<'_>) -> Option<(Coefficients, String)> {
     node.choice(&words).map(|material| (material.coefficients, format!("{}; {}", material.name, material.source)))
 }
 
-fn engagement(map: &Map<'_>, diameter: Option<f64>) -> Option<Engagement> {
+pub(super) fn engagement(map: &Map<'_>, diameter: Option<f64>) -> Option<Engagement> {
     if let Some(node) = map.get("engagement") {
         for field in ["milling", "width"] {
             if let Some(other) = map.get(field) {
@@ -342,7 +342,7 @@ fn engagement(map: &Map<'_>, diameter: Option<f64>) -> Option<Engagement> {
 }
 
 /// The feed per tooth, as such or from the speeds of feed and spindle.
-fn feed(map: &Map<'_>, mill: Option<&EndMill>, speed: Option<Option<f64>>) -> Option<f64> {
+pub(super) fn feed(map: &Map<'_>, mill: Option<&EndMill>, speed: Option<Option<f64>>) -> Option<f64> {
     let (node, feed) = match map.get("feed_speed") {
         Some(node) => {
             if let Some(other) = map.get("feed") {

@@ -29,11 +29,14 @@
 
 mod coefficients;
 mod cut;
+mod dynoware;
 mod engagement;
 mod file;
+pub mod fit;
 mod force;
 mod frame;
 mod measured;
+mod records;
 mod revolution;
 #[cfg(feature = "schema")]
 pub mod schema;
@@ -47,3 +50,4 @@ pub use file::{CutFile, Forces};
 pub use force::{Range, Revolution};
 pub use frame::CutFrame;
 pub use measured::{ForceFrame, MeasuredForce, Sample};
+pub use records::{Recorded, Records};
