@@ -1,8 +1,8 @@
-//! Coefficients from records, heads of DynoWare files.
+//! Coefficients from records, heads of DynoWare files, the law of Kienzle.
 
 use core::f64::consts::{PI, TAU};
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
 
@@ -213,4 +213,71 @@ fn mistakes_in_a_list_are_shown_where_they_are() {
     }
     let none = LIST.split("records:").next().unwrap().to_owned() + "records: []\n";
     assert!(read("none", &none).unwrap_err().contains("there are no records"));
+}
+
+/// A line instead of the law: at the chips of the cut it is off by little, and its mean by nothing.
+#[test]
+fn the_law_of_kienzle_becomes_the_nearest_line() {
+    let law = Kienzle { kc11: 1990e6, mc: 0.26, radial: 0.3, axial: 0.1 };
+    assert!((law.tangential(1e-3) - 1990e3).abs() < 1e-3);
+    assert!((law.tangential(1e-4) - 1990e3 * 0.1_f64.powf(0.74)).abs() < 1e-3);
+    for engagement in
+        [Engagement::SLOT, Engagement::between(0.3, 1.2).unwrap(), Engagement::between(1.5, 1.62).unwrap()]
+    {
+        let found = law.coefficients(engagement, 1e-4);
+        let Engagement { entry, exit } = engagement;
+        let (mut line, mut curve) = (0.0, 0.0);
+        for k in 0..10_000 {
+            let chip = 1e-4 * (entry + (exit - entry) * (f64::from(k) + 0.5) / 1e4).sin();
+            let (one, other) = (found.ktc * chip + found.kte, law.tangential(chip));
+            (line, curve) = (line + one, curve + other);
+            assert!((one - other).abs() < 0.12 * law.tangential(1e-4), "{chip}: {one} {other}");
+        }
+        assert!((line / curve - 1.0).abs() < 1e-3, "{line} {curve}");
+        assert!((found.krc / found.ktc - 0.3).abs() < 1e-12 && (found.kae / found.kte - 0.1).abs() < 1e-12);
+    }
+}
+
+const STEEL: &str = "\
+tool: {diameter: 16 mm, teeth: 3}
+kienzle: {material: 42crmo4, radial: 0.3}
+milling: slot
+depth: 4 mm
+feed: 0.1 mm/tooth
+";
+
+fn cut_file(text: &str) -> Result<CutFile, robstiff_robots::ReadError> {
+    CutFile::parse("cut.yaml", text, Path::new(""))
+}
+
+#[test]
+fn a_cut_may_have_the_law_of_kienzle() {
+    let file = cut_file(STEEL).unwrap();
+    assert!(file.source.contains("42CrMo4") && file.source.contains("RÖHM"), "{}", file.source);
+    let own = STEEL.replace("material: 42crmo4", "kc11: 2530 N/mm2, mc: 0.25");
+    assert_eq!(cut_file(&own).unwrap().forces, file.forces);
+    // All of the table can be read.
+    for material in kienzle_materials() {
+        cut_file(&STEEL.replace("42crmo4", &material.id)).unwrap();
+        assert!(material.source.contains("RN 1391") && (0.1..0.35).contains(&material.mc));
+    }
+    for (from, to, place, part) in [
+        ("42crmo4", "42crmo", "cut.yaml:2:21", "did you mean `42crmo4`"),
+        (", radial: 0.3", "", "cut.yaml:2:10", "`radial` is missing"),
+        ("material: 42crmo4", "kc11: 2530 N/mm2, mc: 1.2", "cut.yaml:2:33", "mc is less than 1"),
+        ("material: 42crmo4", "kc11: 2530 mm, mc: 0.2", "cut.yaml:2:17", "mm"),
+        ("material: 42crmo4", "material: 42crmo4, mc: 0.2", "cut.yaml:2:34", "the material says this already"),
+        ("milling", "material: al7075-t6\nmilling", "cut.yaml:3:11", "keep one of them"),
+        (
+            "kienzle: {material: 42crmo4, radial: 0.3}",
+            "material: e295",
+            "cut.yaml:2:11",
+            "kienzle: {material: e295, radial: 0.3}",
+        ),
+    ] {
+        let said = cut_file(&STEEL.replacen(from, to, 1)).unwrap_err().to_string();
+        assert!(said.contains(place) && said.contains(part), "{from} -> {to}: {said}");
+    }
+    let bare = STEEL.replace("material: 42crmo4", "kc11: 2530, mc: 0.25");
+    assert_eq!(cut_file(&bare).unwrap().warnings, ["cut.yaml: `kc11` has no unit and is taken in Pa: is it in N/mm2?"]);
 }
