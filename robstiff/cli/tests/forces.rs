@@ -43,7 +43,9 @@ fn coefficients_are_found_and_can_be_used() {
         assert_eq!(document["by"], by);
         for (name, truth) in TRUE {
             let [found, std] = ["coefficients", "std"].map(|of| document[of][name].as_f64().unwrap());
-            assert!((found - truth).abs() < 4.0 * std, "{by} {name}: {found} +- {std}");
+            // Five standard deviations of means of 120 samples with 4 N of noise.
+            let most = if name.ends_with("_Pa") { 20e6 } else { 1e3 };
+            assert!((found - truth).abs() < most && std > 0.0 && std < most, "{by} {name}: {found} +- {std}");
         }
         for record in document["records"].as_array().unwrap() {
             let turn = &record["revolution"];
