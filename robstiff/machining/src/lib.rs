@@ -1,6 +1,7 @@
 //! Machining with a robot arm that yields.
 //!
 //! - [`inverse`], [`path`]: the joint coordinates of a pose of the tool, and of a tool path;
+//! - [`nc`]: programs of machine tools, G-code and APT, move by move;
 //! - [`milling`], [`stability`]: the force of an end mill, and the depth of cut at which the arm
 //!   chatters, by direction of feed and spindle speed;
 //! - [`deviation`], [`compensation`]: how far a cut pushes the tool off a path, and the path that
@@ -15,6 +16,7 @@ mod golden;
 pub mod inverse;
 pub mod map;
 pub mod milling;
+pub mod nc;
 pub mod online;
 pub mod path;
 pub mod stability;
