@@ -7,6 +7,7 @@
 //! - [`deviation`], [`compensation`]: how far a cut pushes the tool off a path, and the path that
 //!   makes up for it;
 //! - [`online`]: correcting the joint targets while cutting;
+//! - [`program`]: programs of KUKA, ABB and FANUC controllers, written, read, and changed in place;
 //! - [`map`]: stiffness and deviation over joint space, planes and boxes, and where a workpiece
 //!   is best put.
 
@@ -19,4 +20,5 @@ pub mod milling;
 pub mod nc;
 pub mod online;
 pub mod path;
+pub mod program;
 pub mod stability;

@@ -1,0 +1,6 @@
+//! What writers write, readers give back; what people write is kept.
+
+mod krl;
+mod ls;
+mod made;
+mod rapid;
