@@ -114,7 +114,7 @@ fn document(robot: &Description, exported: &Export, apart: f64) -> Value {
             "name": moved.name,
             "shift_m": json::number(moved.shift),
             "turn_rad": json::number(moved.turn),
-            "limits": moved.limits.map(|limits| json::numbers(limits)),
+            "limits": moved.limits.map(json::numbers),
         })
     };
     json!({

@@ -56,6 +56,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let (out, json) = (arguments.out.as_deref(), arguments.json.as_deref());
         return fit::run(&arguments.fit, arguments.revolution, out, json);
     };
+    // Clap asks for nothing that conflicts with what is given.
+    if arguments.out.is_some() || arguments.revolution {
+        return Err(Failure::Usage("--out and --revolution go with --fit".into()));
+    }
     let file = input::cut(cut)?;
     let count = arguments.samples as usize;
     let (mean, revolution) = match &file.forces {

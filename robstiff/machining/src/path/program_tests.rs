@@ -42,7 +42,7 @@ fn a_program_is_solved_as_a_path_of_its_lines() {
     rapid.dedup();
     assert_eq!(rapid, [4, 5, 10, 11]);
     // Where the plunge begins and where the cut ends, the rapid beside it is no feed.
-    let tangent = |line: usize| of(line).last().unwrap().tangent.unwrap().into_inner();
+    let tangent = |line: usize| of(line).next_back().unwrap().tangent.unwrap().into_inner();
     assert!((tangent(5) + Vector3::z()).norm() < 1e-6 && (tangent(9) - Vector3::y()).norm() < 1e-6);
     assert_eq!(lines(solved.points.iter().map(|point| point.line)), "lines 4 to 11");
 }
