@@ -1,6 +1,6 @@
 //! Robot programs: what a controller runs, written and read.
 //!
-//! A [`Program`] is a list of [`Instruction`]s. [`write`] makes the text files of a
+//! A [`Program`] is a list of [`Instruction`]s. [`write()`] makes the text files of a
 //! controller of it, [`read`] makes a [`Document`] of such files: the program, the
 //! texts, and where each number of a position stands in them. So a program that
 //! exists is changed in place: [`Document::with_positions`] replaces numbers and
