@@ -1,5 +1,6 @@
 //! What writers write, readers give back; what people write is kept.
 
+mod hostile;
 mod krl;
 mod ls;
 mod made;
